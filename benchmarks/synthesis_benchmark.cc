@@ -51,7 +51,7 @@ void Windows(benchmark::State& state, const Synthesizer* model, bool clean_up) {
   const int frames = model->description().window_frames;
   duet::engine::SynthesisWindow window;
   window.leader = Leader(frames, model->description().skeleton.joint_count());
-  window.clean_up = clean_up;
+  window.options.clean_up = clean_up;
   for (int t = 0; t < frames; ++t) {
     const std::vector<float> label = Label(*model);
     window.labels.insert(window.labels.end(), label.begin(), label.end());

@@ -56,9 +56,9 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
     window.partner_direction =
         EstimatePartnerDirection(*model_.partner_direction, model_.skeleton, window.leader);
   }
-  window.sampling = {WindowSeed(request_.sampling.seed, next_window_), request_.sampling.variety};
+  window.options = request_.options;
+  window.options.sampling.seed = WindowSeed(request_.options.sampling.seed, next_window_);
   window.settled = NextSettled();
-  window.clean_up = request_.clean_up;
   return window;
 }
 

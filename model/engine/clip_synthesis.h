@@ -24,8 +24,7 @@ struct ClipRequest {
   // from the leader's motion in the window, where the model knows how
   // (ModelDescription::partner_direction).
   std::optional<motion::Vec3> partner_direction;
-  Sampling sampling = {};
-  std::optional<bool> clean_up = {};  // see SynthesisWindow
+  SynthesisOptions options = {};
 };
 
 // Turns a clip of any length into network windows and their results back into one motion.

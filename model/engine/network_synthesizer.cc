@@ -86,7 +86,8 @@ class NetworkSynthesizer : public Synthesizer {
   }
 
   bool IsCleanedUp(const SynthesisWindow& window) const {
-    return window.clean_up.value_or(options_.clean_up && description_.cleaned_up_by_default());
+    return window.options.clean_up.value_or(options_.clean_up &&
+                                            description_.cleaned_up_by_default());
   }
 
   const ModelDescription description_;

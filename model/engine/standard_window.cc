@@ -7,7 +7,7 @@ NetworkInput Standardise(const motion::Standardisation& standardisation,
   NetworkInput input;
   input.leader = standardisation.Apply(window.leader);
   input.labels = window.labels;
-  input.sampling = window.sampling;
+  input.sampling = window.options.sampling;
   input.settled = standardisation.Apply(window.settled);
   input.cancelled = window.cancelled.get();
   if (!window.start) return input;

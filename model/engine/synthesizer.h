@@ -9,7 +9,7 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "model/engine/model_description.h"
-#include "model/engine/sampling.h"
+#include "model/engine/synthesis_options.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 
@@ -34,13 +34,11 @@ struct SynthesisWindow {
   // Horizontal direction from the leader to where the follower should be. Absent: towards `start`,
   // or else where the leader's hips face.
   std::optional<motion::Vec3> partner_direction;
-  Sampling sampling;
   // The follower's first frames where they are settled already: [frames, joints], fewer than the
   // leader's, the first of them the start's pose. Empty: the start alone is known. A model that
   // samples goes on from them; others read the start alone.
   motion::Poses settled;
-  // Whether the answer is cleaned up (model/cleanup). Absent: as the model's pipeline does.
-  std::optional<bool> clean_up;
+  SynthesisOptions options;
   // Set by whoever no longer wants the answer, at any time, from any thread; then it may be
   // CANCELLED before it is complete. Null: it is wanted.
   std::shared_ptr<const std::atomic<bool>> cancelled;

@@ -69,7 +69,7 @@ std::vector<engine::SynthesisWindow> GoldenWindows(const engine::ModelDescriptio
   engine::SynthesisWindow window;
   window.leader = GoldenLeader(model.skeleton, frames, model.frame_rate_hz);
   window.labels.assign(static_cast<std::size_t>(frames) * classes, 0);
-  window.clean_up = false;
+  window.options.clean_up = false;
   std::vector<engine::SynthesisWindow> windows(classes + 1, window);
   for (std::size_t label = 0; label < classes; ++label) {
     for (std::size_t t = 0; t < static_cast<std::size_t>(frames); ++t) {

@@ -230,19 +230,14 @@ absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
   if (!validated.ok()) return validated.status();
   const absl::Status frames = reception.HoldFrames(validated->clip.leader.frame_count());
   if (!frames.ok()) return frames;
-  const bool servers_choice = parts_.clean_up.value_or(model.cleaned_up_by_default());
-  const bool clean_up = validated->clean_up.value_or(servers_choice);
-  return SynthesisCall::Parts{std::move(served.model),
-                              *std::move(validated),
-                              reception.TakePlace(),
-                              std::move(held),
-                              reception.TakeScope(),
-                              DeadlineOf(context, *parts_.clock, parts_.max_call_seconds),
-                              parts_.buffered_frames,
-                              clean_up,
-                              reception.client(),
-                              parts_.write_timeout_seconds,
-                              parts_.clock};
+  std::optional<bool>& clean_up = validated->clip.options.clean_up;
+  if (!clean_up.has_value()) clean_up = parts_.clean_up.value_or(model.cleaned_up_by_default());
+  return SynthesisCall::Parts{
+      std::move(served.model),      *std::move(validated),
+      reception.TakePlace(),        std::move(held),
+      reception.TakeScope(),        DeadlineOf(context, *parts_.clock, parts_.max_call_seconds),
+      parts_.buffered_frames,       reception.client(),
+      parts_.write_timeout_seconds, parts_.clock};
 }
 
 template <typename Request, typename Answer>

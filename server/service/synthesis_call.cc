@@ -25,8 +25,7 @@ std::shared_ptr<SynthesisCall> SynthesisCall::Create(Parts parts,
   options.buffered_frames = parts.buffered_frames;
   options.client = parts.client;
   engine::ClipRequest clip = std::move(parts.request.clip);
-  clip.clean_up = parts.clean_up;
-  std::shared_ptr<SynthesisCall> call(new SynthesisCall(std::move(parts), clip.sampling, writer));
+  std::shared_ptr<SynthesisCall> call(new SynthesisCall(std::move(parts), clip.options, writer));
   // The clip outlives a finished call while its last window runs; it must not keep it.
   call->stream_ = std::make_shared<ClipStream>(call->model_, std::move(clip), options, scheduler,
                                                [weak = std::weak_ptr<SynthesisCall>(call)] {
@@ -36,7 +35,8 @@ std::shared_ptr<SynthesisCall> SynthesisCall::Create(Parts parts,
   return call;
 }
 
-SynthesisCall::SynthesisCall(Parts parts, const engine::Sampling& sampling, ReplyWriter& writer)
+SynthesisCall::SynthesisCall(Parts parts, const engine::SynthesisOptions& options,
+                             ReplyWriter& writer)
     : model_(std::move(parts.model)),
       reply_mapping_(std::move(parts.request.reply)),
       chunk_frames_(parts.request.chunk_frames),
@@ -51,9 +51,9 @@ SynthesisCall::SynthesisCall(Parts parts, const engine::Sampling& sampling, Repl
   record.model = model_->description().name;
   record.version = model_->description().version;
   record.priority = PriorityName(parts.request.priority);
-  record.seed = sampling.seed;
-  record.variety = sampling.variety;
-  record.clean_up = parts.clean_up;
+  record.seed = options.sampling.seed;
+  record.variety = options.sampling.variety;
+  record.clean_up = options.clean_up.value_or(false);
 }
 
 void SynthesisCall::Start() {

@@ -52,7 +52,6 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
     std::unique_ptr<CallScope> scope;
     common::TimePoint deadline = common::TimePoint::max();
     int buffered_frames = 0;  // see ClipStreamOptions
-    bool clean_up = false;    // what the request asks for, or else the server's choice
     std::string client;       // see CallIdentity
     // How long one message of the answer may wait for its reader.
     double write_timeout_seconds = std::numeric_limits<double>::infinity();
@@ -85,7 +84,7 @@ class SynthesisCall : public std::enable_shared_from_this<SynthesisCall> {
   enum class State { kIdle, kWriting, kFinished };
   enum class Next { kHeader, kFrames, kEnd };
 
-  SynthesisCall(Parts parts, const engine::Sampling& sampling, ReplyWriter& writer);
+  SynthesisCall(Parts parts, const engine::SynthesisOptions& options, ReplyWriter& writer);
 
   void Advance();
   // Sets end_ where the call has taken too long; true when the write under way is to be broken off.

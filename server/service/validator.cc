@@ -13,6 +13,7 @@
 #include "server/service/priority_message.h"
 #include "server/service/validate_labels.h"
 #include "server/service/validate_leader.h"
+#include "server/service/validate_options.h"
 #include "server/service/violations.h"
 
 namespace duet::server::service {
@@ -34,9 +35,7 @@ class Validation {
   std::vector<motion::Vec3> StartPositions(absl::string_view field,
                                            const google::protobuf::RepeatedField<float>& values,
                                            const std::vector<int>& joints);
-  engine::Sampling CallSampling();
-  std::optional<bool> CallCleanUp();
-  void ReplyJoints();
+  void FillReplyMapping();
   int ChunkFrames();
   batching::Priority CallPriority();
 
@@ -147,36 +146,7 @@ std::optional<motion::Vec3> Validation::PartnerDirection() {
   return std::nullopt;
 }
 
-engine::Sampling Validation::CallSampling() {
-  engine::Sampling sampling;
-  if (request_.has_seed()) sampling.seed = request_.seed();
-  if (request_.has_variety()) sampling.variety = request_.variety();
-  // Also true for NaN.
-  if (!(sampling.variety >= 0 && sampling.variety <= limits_.max_variety)) {
-    violations_.Malformed("variety",
-                          absl::StrCat("is ", sampling.variety, ", wanted a finite value in [0, ",
-                                       limits_.max_variety, "]"));
-  }
-  return sampling;
-}
-
-std::optional<bool> Validation::CallCleanUp() {
-  switch (request_.clean_up()) {
-    case v1::CLEAN_UP_UNSPECIFIED:
-      return std::nullopt;
-    case v1::CLEAN_UP_ON:
-      return true;
-    case v1::CLEAN_UP_OFF:
-      return false;
-    default:
-      violations_.Malformed("clean_up", absl::StrCat("is ", request_.clean_up(),
-                                                     ", wanted CLEAN_UP_ON, CLEAN_UP_OFF or no "
-                                                     "value"));
-      return std::nullopt;
-  }
-}
-
-void Validation::ReplyJoints() {
+void Validation::FillReplyMapping() {
   const v1::Motion& leader = request_.leader();
   reply_.unit = leader.unit();
   reply_.up_axis = leader.up_axis();
@@ -237,17 +207,15 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
       ValidateLabels(request_, model_, limits_, violations_);
   std::optional<engine::FollowerStart> start = Start();
   const std::optional<motion::Vec3> partner_direction = PartnerDirection();
-  const engine::Sampling sampling = CallSampling();
-  const std::optional<bool> clean_up = CallCleanUp();
-  ReplyJoints();
+  const engine::SynthesisOptions options = ValidateOptions(request_, limits_, violations_);
+  FillReplyMapping();
   const int chunk_frames = ChunkFrames();
   const batching::Priority priority = CallPriority();
   if (!violations_.empty()) return violations_.ToStatus();
   return ValidatedRequest{
       {std::move(leader_), request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),
-       std::move(start), partner_direction, sampling},
+       std::move(start), partner_direction, options},
       std::move(reply_),
-      clean_up,
       chunk_frames,
       priority};
 }

@@ -17,8 +17,6 @@ namespace duet::server::service {
 struct ValidatedRequest {
   engine::ClipRequest clip;
   ReplyMapping reply;
-  // Whether the follower is to be cleaned up. Absent: as the server is set up.
-  std::optional<bool> clean_up;
   int chunk_frames = 0;
   batching::Priority priority = batching::Priority::kInteractive;
 };

@@ -159,18 +159,18 @@ TEST(CleanUpStage, IsForModelsThatSampleUnlessTheWindowSays) {
   EXPECT_EQ(RunOne(*Model(Sampling(false)), window), plain);
   const motion::Poses cleaned = RunOne(*Model(Sampling()), window);
   EXPECT_NE(cleaned, plain);
-  window.clean_up = true;
+  window.options.clean_up = true;
   EXPECT_EQ(RunOne(*Model(Sampling(false)), window), cleaned);
   EXPECT_EQ(RunOne(*Model(Sampling(), off), window), cleaned);
-  window.clean_up = false;
+  window.options.clean_up = false;
   EXPECT_EQ(RunOne(*Model(Sampling()), window), plain);
 }
 
 TEST(CleanUpStage, WindowsOfABatchHaveTheirOwnChoices) {
   const auto model = Model(Sampling());
   SynthesisWindow told = Leaning(), told_not = Leaning();
-  told.clean_up = true;
-  told_not.clean_up = false;
+  told.options.clean_up = true;
+  told_not.options.clean_up = false;
   const motion::Poses cleaned = RunOne(*model, told), plain = RunOne(*model, told_not);
   ASSERT_NE(cleaned, plain);
   const SynthesisWindow unsaid = Leaning();
@@ -189,13 +189,12 @@ TEST(CleanUpStage, AllWindowsOfAClipDoAsItsRequestSays) {
                         LabelTrack(std::vector<float>(6, 0)),
                         std::nullopt,
                         std::nullopt,
-                        {},
-                        wanted};
+                        {{}, wanted}};
     ClipSynthesis clip(FakeDescription(), std::move(request));
     ASSERT_GT(clip.window_count(), 1);
     while (clip.HasNextWindow()) {
       const SynthesisWindow window = clip.NextWindow();
-      EXPECT_EQ(window.clean_up, wanted);
+      EXPECT_EQ(window.options.clean_up, wanted);
       clip.Accept(window.leader);
     }
   }

@@ -333,18 +333,18 @@ TEST(ClipSynthesis, WorksWithTheShortestWindows) {
 
 TEST(ClipSynthesis, EveryWindowHasASeedOfItsOwnAndTheRequestsVariety) {
   ClipRequest request = Request(200, 15);
-  request.sampling = {41, 0.25f};
+  request.options.sampling = {41, 0.25f};
   const Outcome run = RunAll(FakeSynthesizer(SamplingDescription()), request);
   ASSERT_EQ(run.windows.size(), 6u);  // 192 frames beyond the first 8, 38 a window
   for (std::size_t k = 0; k < run.windows.size(); ++k) {
-    EXPECT_EQ(run.windows[k].sampling.seed, WindowSeed(41, static_cast<int>(k))) << k;
-    EXPECT_EQ(run.windows[k].sampling.variety, 0.25f) << k;
+    EXPECT_EQ(run.windows[k].options.sampling.seed, WindowSeed(41, static_cast<int>(k))) << k;
+    EXPECT_EQ(run.windows[k].options.sampling.variety, 0.25f) << k;
   }
 }
 
 TEST(ClipSynthesis, AModelThatSamplesGoesOnFromSettledFrames) {
   ClipRequest request = Request(300, 15);
-  request.sampling = {41, 1};
+  request.options.sampling = {41, 1};
   const Outcome run = RunAll(FakeSynthesizer(SamplingDescription()), request);
   const std::vector<int> starts = PlanWindows(300, 46, SettledOverlap(46)).starts;
   ASSERT_EQ(run.windows.size(), starts.size());
@@ -366,7 +366,7 @@ TEST(ClipSynthesis, SettledFramesStayAsTheWindowBeforeMadeThem) {
   // The fake draws another place for each window, and answers settled frames as they are: nothing
   // is averaged.
   ClipRequest request = Request(100, 15);
-  request.sampling = {41, 1};
+  request.options.sampling = {41, 1};
   const Outcome run = RunAll(FakeSynthesizer(SamplingDescription()), request);
   const std::vector<int> starts = PlanWindows(100, 46, SettledOverlap(46)).starts;
   for (int t = 0; t < 100; ++t) {

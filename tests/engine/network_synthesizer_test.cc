@@ -103,7 +103,7 @@ TEST(NetworkSynthesizer, TheNetworkSeesTheStandardFrame) {
 
 TEST(NetworkSynthesizer, TheNetworkSeesSamplingAndSettledFrames) {
   SynthesisWindow window = Window();
-  window.sampling = {41, 0.25f};
+  window.options.sampling = {41, 0.25f};
   window.settled = SwayingMotion(4, 15);
   window.start = FollowerStart{window.settled.at(0, 2), SwayingPose(0)};
   for (const auto origin :

@@ -64,7 +64,7 @@ engine::WindowResult FakeSynthesizer::Answer(const engine::SynthesisWindow& wind
 }
 
 void FakeSynthesizer::Draw(const engine::SynthesisWindow& window, motion::Poses* follower) {
-  for (motion::Vec3& position : follower->all()) position += FakeDraw(window.sampling);
+  for (motion::Vec3& position : follower->all()) position += FakeDraw(window.options.sampling);
   std::copy(window.settled.all().begin(), window.settled.all().end(), follower->all().begin());
 }
 

@@ -44,7 +44,7 @@ TEST(FakeSynthesizer, FailsOneWindowAlone) {
 
 TEST(FakeSynthesizer, DrawsBySeedAndVarietyAfterSettledFramesWhereItSamples) {
   engine::SynthesisWindow window = Window(3);
-  window.sampling = {5, 0.5f};
+  window.options.sampling = {5, 0.5f};
   window.settled = SwayingMotion(1, 15);
   const motion::Vec3 answer = FakeAnswer(window.leader.at(2, 0), std::vector<float>(6));
   EXPECT_EQ(FakeSynthesizer().Synthesize({&window}).front()->at(2, 0), answer);

@@ -95,7 +95,7 @@ TEST(TorchSynthesizerTest, AnswerDependsOnTheSeedUnlessVarietyIsZero) {
   const auto model = Embedded(kSampling);
   const auto answer = [&](uint64_t seed, float variety) {
     engine::SynthesisWindow window = MakeWindow(*model, 20);
-    window.sampling = {seed, variety};
+    window.options.sampling = {seed, variety};
     return RunOne(*model, window);
   };
   EXPECT_EQ(answer(7, 1), answer(7, 1));

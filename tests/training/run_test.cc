@@ -104,7 +104,7 @@ TEST_F(RunTest, SamplingGeneratorWritesACheckpointThatAnswers) {
   const auto first = (*synthesizer)->Synthesize({&one, 1});
   ASSERT_THAT(first[0], IsOk());
   EXPECT_EQ(first[0]->frame_count(), window.leader.frame_count());
-  window.sampling.seed = 1;
+  window.options.sampling.seed = 1;
   const auto second = (*synthesizer)->Synthesize({&one, 1});
   ASSERT_THAT(second[0], IsOk());
   EXPECT_NE(*first[0], *second[0]);

@@ -22,7 +22,7 @@ engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const Labelled
   const motion::Clip& follower = sequence.pair.follower;
   engine::ClipRequest request{
       leader.poses, leader.frame_rate_hz,       engine::LabelTrack(labelled.labels),
-      std::nullopt, sequence.partner_direction, labelled.sampling};
+      std::nullopt, sequence.partner_direction, {labelled.sampling, {}}};
   if (!labelled.tell_direction) request.partner_direction.reset();
   if (start == StartGiven::kNone) return request;
   request.start = engine::FollowerStart{follower.at(0, skeleton.root), {}};

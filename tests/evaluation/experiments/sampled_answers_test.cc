@@ -38,7 +38,7 @@ class SeedTeller : public engine::Synthesizer {
       motion::Poses follower = window->leader;
       for (motion::Vec3& p : follower.all()) {
         p = {window->partner_direction.value_or(motion::Vec3{}).x,
-             static_cast<float>(window->sampling.seed), window->sampling.variety};
+             static_cast<float>(window->options.sampling.seed), window->options.sampling.variety};
       }
       results.emplace_back(std::move(follower));
     }

@@ -460,14 +460,14 @@ TEST(BatcherTest, AWindowThatMakesTheModelThrowFailsAlone) {
   const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real());
   const auto model = std::make_shared<FakeSynthesizer>();
   model->window_status = [](const engine::SynthesisWindow& window) -> absl::Status {
-    if (window.sampling.seed == 3) throw std::runtime_error("three is too much");
+    if (window.options.sampling.seed == 3) throw std::runtime_error("three is too much");
     return absl::OkStatus();
   };
   HeldWorker held(*batcher);
   Ticket first, poison, last;
   ASSERT_THAT(batcher->Submit(first.Job(model)), IsOk());
   WindowJob job = poison.Job(model);
-  job.window.sampling.seed = 3;
+  job.window.options.sampling.seed = 3;
   ASSERT_THAT(batcher->Submit(std::move(job)), IsOk());
   ASSERT_THAT(batcher->Submit(last.Job(model)), IsOk());
   held.Release();

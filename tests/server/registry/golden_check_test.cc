@@ -61,7 +61,7 @@ TEST(CheckAnswersTest, AsksForNoClassAndForEachAlone) {
   model.on_batch = [&](absl::Span<const engine::SynthesisWindow* const> windows) {
     for (const engine::SynthesisWindow* window : windows) {
       EXPECT_EQ(window->leader.frame_count(), 46);
-      EXPECT_EQ(window->clean_up, false);
+      EXPECT_EQ(window->options.clean_up, false);
       labels.emplace_back(window->labels.begin(), window->labels.begin() + 6);
     }
   };

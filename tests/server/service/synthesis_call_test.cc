@@ -84,7 +84,6 @@ class SynthesisCallTest : public ::testing::Test {
                                std::move(scope),
                                deadline_,
                                /*buffered_frames=*/240,
-                               /*clean_up=*/false,
                                "client",
                                /*write_timeout_seconds=*/30,
                                &clock_};

@@ -432,9 +432,9 @@ TEST(ValidateRequestTest, FillsInDefaults) {
   EXPECT_EQ(request->priority, batching::Priority::kInteractive);
   EXPECT_FALSE(request->clip.start.has_value());
   EXPECT_FALSE(request->clip.partner_direction.has_value());
-  EXPECT_EQ(request->clip.sampling.seed, 0u);
-  EXPECT_EQ(request->clip.sampling.variety, 1);
-  EXPECT_EQ(request->clean_up, std::nullopt);
+  EXPECT_EQ(request->clip.options.sampling.seed, 0u);
+  EXPECT_EQ(request->clip.options.sampling.variety, 1);
+  EXPECT_EQ(request->clip.options.clean_up, std::nullopt);
   EXPECT_EQ(request->reply.joint_names, FakeDescription().skeleton.joint_names);
 }
 
@@ -449,16 +449,16 @@ TEST(ValidateRequestTest, TakesOverWhatIsGiven) {
   EXPECT_EQ(validated->chunk_frames, 7);
   EXPECT_EQ(validated->priority, batching::Priority::kBulk);
   EXPECT_EQ(validated->clip.frame_rate_hz, 15);
-  EXPECT_EQ(validated->clip.sampling.seed, std::numeric_limits<uint64_t>::max());
-  EXPECT_EQ(validated->clip.sampling.variety, 0);
+  EXPECT_EQ(validated->clip.options.sampling.seed, std::numeric_limits<uint64_t>::max());
+  EXPECT_EQ(validated->clip.options.sampling.variety, 0);
 }
 
 TEST(ValidateRequestTest, TakesOverWhetherToCleanUp) {
   v1::SynthesizeRequest request = SampleRequest();
   request.set_clean_up(v1::CLEAN_UP_ON);
-  EXPECT_EQ(Validate(request)->clean_up, true);
+  EXPECT_EQ(Validate(request)->clip.options.clean_up, true);
   request.set_clean_up(v1::CLEAN_UP_OFF);
-  EXPECT_EQ(Validate(request)->clean_up, false);
+  EXPECT_EQ(Validate(request)->clip.options.clean_up, false);
 }
 
 // Writes the leader's joints in reverse order.

@@ -1,0 +1,29 @@
+#ifndef DUET_MODEL_ENGINE_SYNTHESIS_OPTIONS_H_
+#define DUET_MODEL_ENGINE_SYNTHESIS_OPTIONS_H_
+
+#include <cstdint>
+#include <optional>
+
+namespace duet::engine {
+
+// Selects the sample that a sampling model draws. Models that do not sample
+// (ModelDescription::samples) ignore it.
+struct Sampling {
+  // On the same engine, the same request with the same seed returns the same motion.
+  uint64_t seed = 0;
+  // In [0, 2]. 0: the typical motion; 1: as varied as the captured motion.
+  float variety = 1;
+};
+
+// What a caller chooses beyond leader, labels and start. The validator fills it in; ClipSynthesis
+// copies it into every window. docs/guides/add_a_request_field.md describes how to add a field.
+struct SynthesisOptions {
+  Sampling sampling;
+  // Whether to clean up the follower (model/cleanup). Absent: the default of the server or of the
+  // engine's pipeline.
+  std::optional<bool> clean_up;
+};
+
+}  // namespace duet::engine
+
+#endif  // DUET_MODEL_ENGINE_SYNTHESIS_OPTIONS_H_

@@ -1,0 +1,50 @@
+#include "server/service/validate_options.h"
+
+#include <optional>
+
+#include "absl/strings/str_cat.h"
+
+namespace duet::server::service {
+namespace {
+
+engine::Sampling ValidateSampling(const v1::SynthesizeRequest& request, const RequestLimits& limits,
+                                  Violations& violations) {
+  engine::Sampling sampling;
+  if (request.has_seed()) sampling.seed = request.seed();
+  if (request.has_variety()) sampling.variety = request.variety();
+  // Negated, so that NaN is rejected.
+  if (!(sampling.variety >= 0 && sampling.variety <= limits.max_variety)) {
+    violations.Malformed("variety",
+                         absl::StrCat("is ", sampling.variety, ", wanted a finite value in [0, ",
+                                      limits.max_variety, "]"));
+  }
+  return sampling;
+}
+
+std::optional<bool> ValidateCleanUp(const v1::SynthesizeRequest& request, Violations& violations) {
+  switch (request.clean_up()) {
+    case v1::CLEAN_UP_UNSPECIFIED:
+      return std::nullopt;
+    case v1::CLEAN_UP_ON:
+      return true;
+    case v1::CLEAN_UP_OFF:
+      return false;
+    default:
+      violations.Malformed(
+          "clean_up",
+          absl::StrCat("is ", request.clean_up(), ", wanted CLEAN_UP_ON, CLEAN_UP_OFF or no value"));
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+engine::SynthesisOptions ValidateOptions(const v1::SynthesizeRequest& request,
+                                         const RequestLimits& limits, Violations& violations) {
+  engine::SynthesisOptions options;
+  options.sampling = ValidateSampling(request, limits, violations);
+  options.clean_up = ValidateCleanUp(request, violations);
+  return options;
+}
+
+}  // namespace duet::server::service
