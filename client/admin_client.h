@@ -12,7 +12,7 @@
 
 namespace duet::client {
 
-// How it stands with one version on a server.
+// State of one model version on a server.
 struct ServedVersion {
   enum class State { kUnknown, kLoading, kServed, kFailed, kUnloaded };
   std::string name;
@@ -22,10 +22,10 @@ struct ServedVersion {
   std::vector<std::string> version_labels;
   bool is_default = false;
   double load_seconds = 0;
-  bool outdated = false;  // served from an earlier load, because the last one failed
+  bool outdated = false;  // served from an earlier load because the last load failed
 };
 
-// A folder in the server's model repository that is no checkpoint.
+// A folder in the server's model repository that is not a checkpoint.
 struct SkippedFolder {
   std::string folder;
   std::string reason;
@@ -34,38 +34,38 @@ struct SkippedFolder {
 struct ServedModels {
   std::vector<ServedVersion> models;  // by name, newest version first
   std::vector<SkippedFolder> skipped_folders;
-  // Certificates and access files that the server refused; those before them are still in use.
+  // Certificates and access files that the server rejected. It keeps using the previous ones.
   std::vector<std::string> problems;
 };
 
-// What a reload did; versions as "name/version".
+// Result of a reload. Versions are written "name/version".
 struct ReloadResult {
   std::vector<std::string> loaded;
-  std::vector<std::string> refused;  // ServedVersion::error tells why
+  std::vector<std::string> refused;  // ServedVersion::error has the reason
   std::vector<std::string> unloaded;
   uint32_t unchanged = 0;
   std::vector<std::string> problems;
 
-  // Whether everything is as the server's configuration has it.
+  // True if the server serves everything that its configuration specifies.
   bool ok() const { return refused.empty() && problems.empty(); }
 };
 
-// Tells a running server what to serve, by its admin service (duet.admin.v1), which has an address
-// of its own.
+// Controls which models a running server serves, through its admin service (duet.admin.v1). The
+// admin service has its own address.
 //
-// Errors:  the server's status, whose message says what is wrong. Nothing is tried twice.
+// Errors:  the server's status. Calls are not retried.
 // Threads: safe to call concurrently.
 class AdminClient {
  public:
-  // INVALID_ARGUMENT when an option makes no sense. Does not connect yet.
+  // Returns INVALID_ARGUMENT if an option is invalid. Connects with the first call.
   static absl::StatusOr<std::unique_ptr<AdminClient>> Create(const ClientOptions& options);
 
   virtual ~AdminClient() = default;
   virtual absl::StatusOr<ServedModels> ListModels() = 0;
-  // Both come back once the version is served, or no longer.
+  // Both return after the version has been loaded or unloaded.
   virtual absl::Status LoadModel(const std::string& name, uint32_t version) = 0;
   virtual absl::Status UnloadModel(const std::string& name, uint32_t version) = 0;
-  // Has the server read configuration and model repository again.
+  // Makes the server read its configuration and its model repository again.
   virtual absl::StatusOr<ReloadResult> Reload() = 0;
   virtual absl::Status SetLabel(const std::string& name, const std::string& label,
                                 uint32_t version) = 0;

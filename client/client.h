@@ -12,7 +12,8 @@
 
 namespace duet::client {
 
-// Asks a Duet server to answer one character's motion with another's.
+// Calls a Duet server, which synthesizes the motion of one character (the follower) in response to
+// the motion of another (the leader).
 //
 //   absl::StatusOr<Client> client = Client::Create({});
 //   if (!client.ok()) return client.status();
@@ -23,32 +24,34 @@ namespace duet::client {
 //   if (!result.ok()) return result.status();       // names every offending field
 //   Use(result->pair.follower);
 //
-// Retries: UNAVAILABLE, streams that break, and RESOURCE_EXHAUSTED for bulk work when the server
-//          says when to come back; see RetryOptions. The same request gives the same motion, so a
-//          broken stream is run again from its start.
-// Errors:  the server's status; client/error_details.h reads its details. INTERNAL when the reply
-//          breaks the contract, UNAVAILABLE when it merely ended early.
+// Retries: UNAVAILABLE, broken streams, and RESOURCE_EXHAUSTED with RetryInfo for bulk calls; see
+//          RetryOptions. The same request returns the same motion, so a broken stream is repeated
+//          from its start.
+// Errors:  the server's status; client/error_details.h reads its details. INTERNAL if the reply
+//          violates the contract, UNAVAILABLE if it ended early.
 // Threads: safe to call concurrently; copies share one connection.
 class Client {
  public:
-  // INVALID_ARGUMENT when an option makes no sense. Does not connect yet.
+  // Returns INVALID_ARGUMENT if an option is invalid. Connects with the first call.
   static absl::StatusOr<Client> Create(const ClientOptions& options);
 
   explicit Client(std::shared_ptr<Connection> connection) : connection_(std::move(connection)) {}
 
-  // Every model version being served, by name, newest version first.
+  // Lists every model version that the server serves, by name, newest version first.
   absl::StatusOr<std::vector<ModelInfo>> ListModels() const;
-  // One model version and the limits that a request to it must keep.
+  // Gets one model version and the limits on requests to it.
   absl::StatusOr<ModelDetails> GetModel(const ModelChoice& choice = {}) const;
-  // Waits for the whole follower.
+  // Blocks until the whole follower has arrived.
   absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request) const;
-  // The same, and hands out frames as soon as they arrive.
+  // Like Synthesize, but also passes each chunk to `on_chunk` when it arrives.
   absl::StatusOr<SynthesisResult> SynthesizeStreaming(const SynthesisRequest& request,
                                                       const ChunkCallback& on_chunk) const;
-  // For callers that keep many calls under way and decide themselves what to do about one that
-  // failed: one attempt, whatever the retry options say. Does not wait; `done` comes once, on the
-  // connection's own thread, which reads all its replies and so should not be kept. The last copy
-  // of a Client waits for calls under way: no `done` may hold it.
+  // Starts a call and returns immediately. For callers that run many calls concurrently and handle
+  // failures themselves: makes one attempt, whatever the retry options are.
+  //
+  // Calls `done` once, on the connection's own thread. That thread reads all replies of the
+  // connection, so `done` should return quickly. Destroying the last copy of a Client waits for
+  // calls in progress, so `done` must not hold a copy.
   void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) const;
 
  private:

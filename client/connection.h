@@ -11,11 +11,11 @@
 
 namespace duet::client {
 
-// Told once how a call ended.
+// Called once, with the result of a call.
 using SynthesisCallback = std::function<void(absl::StatusOr<SynthesisResult>)>;
 
-// How a Client reaches a server. Tests of programs that use a Client replace it
-// (client/mocks/mock_connection.h).
+// The connection of a Client to a server. Tests of programs that use a Client replace it with
+// client/mocks/mock_connection.h.
 //
 // Threads: implementations are safe to call concurrently.
 class Connection {
@@ -27,7 +27,7 @@ class Connection {
   // `on_chunk` may be empty.
   virtual absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request,
                                                      const ChunkCallback& on_chunk) = 0;
-  // One attempt. A connection that can only wait does so, and is done when this returns.
+  // Makes one attempt. The default implementation blocks and calls `done` before it returns.
   virtual void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) {
     done(Synthesize(request, nullptr));
   }

@@ -9,7 +9,7 @@
 namespace duet::client {
 namespace {
 
-// Absent where the status has no such detail, or one that cannot be read.
+// Returns nullopt if the status has no such detail or the detail cannot be parsed.
 template <typename Detail>
 std::optional<Detail> ReadDetail(const absl::Status& status, std::string_view type) {
   const auto payload = status.GetPayload("type.googleapis.com/google.rpc." + std::string(type));

@@ -10,29 +10,29 @@
 
 namespace duet::client {
 
-// A field of a request that the server refused.
+// An invalid field of a request.
 struct FieldViolation {
   std::string field;        // such as "leader.positions[17]"
-  std::string description;  // what came and what was wanted
+  std::string description;  // the expected and the received value
 };
 
-// The functions below read the details of a server's refusal (google.rpc.BadRequest, RetryInfo,
-// ErrorInfo), which a status from this library carries as payloads.
+// The functions below read the google.rpc details of an error (BadRequest, RetryInfo, ErrorInfo). A
+// status from this library carries them as payloads.
 
-// Every field that was refused, in the server's order; empty where the refusal is of another kind.
+// Returns every invalid field, in the server's order. Empty if the error has no BadRequest.
 std::vector<FieldViolation> FieldViolations(const absl::Status& status);
 
-// When the server wants to be asked again; absent where it did not say.
+// Returns the delay after which to retry. Absent if the error has no RetryInfo.
 std::optional<absl::Duration> RetryDelay(const absl::Status& status);
 
-// A stable, machine-readable reason such as "QUEUE_FULL"; empty where the status did not come from
-// a Duet server.
+// Returns a stable, machine-readable reason such as "QUEUE_FULL". Empty if the status did not come
+// from a Duet server.
 std::string ErrorReason(const absl::Status& status);
 
-// Whether the same call will fail again however often it is made: the input, the model or the
-// credentials are refused. INVALID_ARGUMENT, FAILED_PRECONDITION, OUT_OF_RANGE, NOT_FOUND,
-// ALREADY_EXISTS, PERMISSION_DENIED, UNAUTHENTICATED, UNIMPLEMENTED; RESOURCE_EXHAUSTED where the
-// server does not say when to come back (the message is too large).
+// Returns true if a retry of the same call would fail too, because the server rejects the input,
+// the model or the credentials: INVALID_ARGUMENT, FAILED_PRECONDITION, OUT_OF_RANGE, NOT_FOUND,
+// ALREADY_EXISTS, PERMISSION_DENIED, UNAUTHENTICATED, UNIMPLEMENTED, and RESOURCE_EXHAUSTED without
+// RetryInfo (the message is too large).
 bool IsPermanent(const absl::Status& status);
 
 }  // namespace duet::client

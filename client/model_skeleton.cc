@@ -8,7 +8,7 @@
 namespace duet::client {
 namespace {
 
-// Both joints, or nothing where the model lacks one of them.
+// Returns nullopt if the model lacks one of the two joints.
 std::optional<motion::JointPair> FindPair(const motion::Skeleton& skeleton, const std::string& left,
                                           const std::string& right) {
   const motion::JointPair pair{skeleton.Find(left), skeleton.Find(right)};

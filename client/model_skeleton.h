@@ -7,8 +7,8 @@
 
 namespace duet::client {
 
-// A served model's joints as a skeleton, for reading and writing files. INTERNAL when they are no
-// tree.
+// Converts a model's joints to a skeleton, for reading and writing motion files. Returns INTERNAL
+// if the joints do not form a tree.
 absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model);
 
 }  // namespace duet::client

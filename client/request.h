@@ -12,14 +12,15 @@
 
 namespace duet::client {
 
-// Which model answers. Default: the server's default model, in its newest version.
+// Selects a model version. Default: the newest version of the server's default model.
 struct ModelChoice {
   std::string name;            // empty: the server's default model
   std::optional<int> version;  // 1 or more
-  std::string version_label;   // such as "stable"; not together with a version
+  std::string version_label;   // such as "stable"; mutually exclusive with `version`
 };
 
-// How much of one interaction class is wanted: 1 wanted, 0 neutral, -1 avoided, in [-2, 2].
+// The weight of one interaction class, in [-2, 2]: 1 requests the class, 0 is neutral, -1 avoids
+// it.
 struct ClassWeight {
   std::string interaction_class;
   float weight = 0;
@@ -31,41 +32,41 @@ struct WeightKeyframe {
   std::vector<ClassWeight> weights;
 };
 
-// Where the follower is at the leader's first frame, in the leader's world: its root joint alone,
-// or every joint in the order of the leader's joint_names.
+// The follower at the leader's first frame, in the leader's world: the position of its root joint,
+// or the positions of every joint in the order of the leader's joint_names.
 using FollowerStart = std::variant<motion::Vec3, std::vector<motion::Vec3>>;
 
 enum class Priority { kInteractive, kBulk };
 
-// A follower to synthesise.
+// A request to synthesize a follower.
 struct SynthesisRequest {
   ModelChoice model;
-  // Metres, y up. Its joints are those of the model (GetModel lists them), in any order.
+  // Metres, y up. Has every joint of the model (ModelInfo::joint_names), in any order.
   motion::Clip leader;
-  // Either weights for the whole clip, or keyframes for weights that change over time: linear
+  // Either `weights` for the whole clip, or `keyframes` for weights that change over time: linear
   // between keyframes, constant before the first and after the last.
   std::vector<ClassWeight> weights;
   std::vector<WeightKeyframe> keyframes;
   std::optional<FollowerStart> follower_start;
-  // Horizontal direction from the leader to where the follower should be; y does not count. Absent:
-  // towards follower_start; without one, where the leader's motion tells a model that has learned
-  // it, or else where the leader's hips face in the first frame.
+  // Direction from the leader to the follower; y is ignored. Absent: towards follower_start.
+  // Without follower_start, models trained to estimate the direction derive it from the leader's
+  // motion; all others use the direction in which the leader's hips face in the first frame.
   std::optional<motion::Vec3> partner_direction;
-  // Which answer of a model that samples (ModelInfo::samples): the same request with the same seed
-  // has the same answer on the same server.
+  // Seed of the random sample that a sampling model draws (ModelInfo::samples). On the same server,
+  // the same request with the same seed returns the same motion.
   uint64_t seed = 0;
-  // How varied such a model's answers are over the seeds: 0 the typical answer, 1 as varied as
-  // people are; at most RequestLimits::max_variety.
+  // How much the results of a sampling model vary between seeds: 0 returns the typical motion, 1
+  // varies as much as the captured motion does. At most RequestLimits::max_variety.
   float variety = 1;
-  // Whether the follower is corrected so that it stands, keeps its feet still and its joints within
-  // human ranges, and keeps out of the leader. Absent: the server's choice for the model; unless
-  // it is told otherwise, that is where the model samples.
+  // Whether the server cleans up the follower: keeps it upright and on the floor, removes foot
+  // sliding, keeps joints within human ranges, and resolves overlaps with the leader. Absent: the
+  // server's setting. By default, the server cleans up only the results of sampling models.
   std::optional<bool> clean_up;
-  // Bulk work yields to interactive work, and waits its turn when the server is full.
+  // Bulk calls yield to interactive calls, and are retried if the server is full.
   Priority priority = Priority::kInteractive;
-  // Frames in one chunk of the reply. Absent: the server chooses.
+  // Maximum number of frames in one chunk of the reply. Absent: the server's default.
   std::optional<int> chunk_frames;
-  // Names the call in the server's log. Empty: the server makes one.
+  // ID of the call in the server's log. Empty: the server generates one.
   std::string request_id;
 };
 

@@ -15,7 +15,7 @@
 
 namespace duet::client {
 
-// A model version that the server answers with.
+// A model version that the server serves.
 struct ModelInfo {
   std::string name;
   int version = 0;
@@ -25,16 +25,16 @@ struct ModelInfo {
   std::vector<std::string> joint_names;
   std::vector<motion::Bone> bones;  // indices into joint_names
   std::string root_joint;
-  double frame_rate_hz = 0;  // the network's own; any other is resampled
+  double frame_rate_hz = 0;  // of the network; the server resamples leaders at other rates
   int window_frames = 0;
   bool accepts_follower_start = false;
-  bool samples = false;  // answers depend on the request's seed and variety
+  bool samples = false;  // results depend on the request's seed and variety
   std::string description;
-  std::string terms;           // of using the weights; empty: not stated
-  std::string weights_sha256;  // of the weights file, lower-case hex; empty: not known
+  std::string terms;           // terms of use of the weights; empty: not specified
+  std::string weights_sha256;  // of the weights file, lower-case hex; empty: unknown
 };
 
-// What a request must keep to.
+// Limits on a request, inclusive.
 struct RequestLimits {
   double min_frame_rate_hz = 0;
   double max_frame_rate_hz = 0;
@@ -52,26 +52,27 @@ struct ModelDetails {
   RequestLimits limits;
 };
 
-// Where the time of a call went.
+// Durations of the parts of a call.
 struct SynthesisTimings {
   absl::Duration first_chunk;  // from the call to its first frames, retries included
   absl::Duration total;        // from the call to its last frame, retries included
-  absl::Duration queue;        // waiting in the server, over all windows
-  absl::Duration compute;      // in the network, over all windows
+  absl::Duration queue;        // in the server's queue, total of all windows
+  absl::Duration compute;      // in the network, total of all windows
 };
 
-// A follower, and who made it.
+// A follower, the model that produced it, and the options that were used.
 struct SynthesisResult {
   motion::ClipPair pair;  // the request's leader; the follower in its joints, rate and world
   std::string model_name;
   int model_version = 0;
   std::vector<std::string> interaction_classes;  // every class of the model
-  std::string request_id;                        // as in the server's log
-  uint64_t seed = 0;                             // that the server used
-  float variety = 0;                             // the same
-  bool cleaned_up = false;                       // whether the server corrected it, asked to or not
-  // How far the request is from what the model was trained on: 1 as far as the farthest tenth of
-  // the training leaders. Absent when the model does not know.
+  std::string request_id;                        // in the server's log
+  uint64_t seed = 0;                             // used by the server
+  float variety = 0;                             // used by the server
+  bool cleaned_up = false;                       // the server cleaned up the follower
+  // Distance of the leader from the model's training data. A tenth of the training leaders have a
+  // distance above 1; results for a leader far above 1 are unreliable. Absent if the model has no
+  // statistics of its training data.
   std::optional<double> unfamiliarity;
   int window_count = 0;  // network windows that were evaluated
   int attempt_count = 0;
@@ -87,8 +88,8 @@ struct FollowerChunk {
   motion::Poses poses;
 };
 
-// Called with every chunk, in frame order; each frame comes once, even where the call was retried.
-// A status that is not OK cancels the call, which then fails with that status.
+// Called with every chunk, in frame order. Each frame is passed once, even if the call was retried.
+// If it returns an error, the call is cancelled and fails with that error.
 using ChunkCallback = std::function<absl::Status(const FollowerChunk&)>;
 
 }  // namespace duet::client

@@ -19,16 +19,16 @@
 namespace duet::client::internal {
 namespace {
 
-// Calls take turns over all servers behind the name whose health service says that they serve, so
-// that a draining server gets no new work. The empty service name asks for the server as a whole.
+// Distributes calls over all servers behind the name whose health service reports SERVING, so that
+// a draining server gets no new calls. The empty service name stands for the server as a whole.
 constexpr char kServiceConfig[] = R"({
   "loadBalancingConfig": [{"round_robin": {}}],
   "healthCheckConfig": {"serviceName": ""}
 })";
 
 constexpr absl::Duration kLongestReconnectWait = absl::Seconds(1);
-// The longest that one attempt to connect may take, handshake included: gRPC's own 20 s are long
-// where a firewall drops packets.
+// Maximum time of one connection attempt, including the handshake. gRPC's default of 20 s is too
+// long if a firewall drops packets.
 constexpr absl::Duration kConnectTimeout = absl::Seconds(5);
 
 bool IsToken(absl::string_view text) {
@@ -36,8 +36,8 @@ bool IsToken(absl::string_view text) {
                      [](unsigned char c) { return absl::ascii_isgraph(c); });
 }
 
-// Whether what is sent to an address leaves this machine by no network. A host name other than
-// localhost may be anybody's.
+// Returns true if data sent to an address stays on this machine. A host name other than localhost
+// can resolve to any machine.
 bool IsThisMachine(absl::string_view address) {
   if (absl::StartsWith(address, "unix:") || absl::StartsWith(address, "unix-abstract:")) {
     return true;
@@ -45,12 +45,12 @@ bool IsThisMachine(absl::string_view address) {
   for (const char* scheme : {"dns:///", "dns:", "ipv4:", "ipv6:"}) {
     if (absl::ConsumePrefix(&address, scheme)) break;
   }
-  // Several addresses behind one target would each have to be looked at.
+  // A target with several addresses: treated as remote.
   if (absl::StrContains(address, ',')) return false;
   if (address == "[::1]" || absl::StartsWith(address, "[::1]:")) return true;
   const absl::string_view host = address.substr(0, address.find(':'));
   if (host == "localhost") return true;
-  // 127.0.0.0/8 as four numbers: "127.example.com" is a name.
+  // Only digits and dots: "127.example.com" is a host name, not an address in 127.0.0.0/8.
   return absl::StartsWith(host, "127.") &&
          std::all_of(host.begin(), host.end(),
                      [](unsigned char c) { return absl::ascii_isdigit(c) || c == '.'; });
@@ -58,11 +58,11 @@ bool IsThisMachine(absl::string_view address) {
 
 absl::Status Check(const ClientOptions& options) {
   if (options.server_address.empty()) {
-    return absl::InvalidArgumentError("server_address: empty, wanted host:port");
+    return absl::InvalidArgumentError("server_address: expected host:port, got an empty string");
   }
   if (options.deadline <= absl::ZeroDuration()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("deadline: ", absl::FormatDuration(options.deadline), ", wanted more than 0"));
+    return absl::InvalidArgumentError(absl::StrCat("deadline: expected more than 0, got ",
+                                                   absl::FormatDuration(options.deadline)));
   }
   if (options.wait < absl::ZeroDuration()) {
     return absl::InvalidArgumentError(
@@ -71,27 +71,28 @@ absl::Status Check(const ClientOptions& options) {
   const RetryOptions& retry = options.retry;
   if (retry.max_attempts < 1) {
     return absl::InvalidArgumentError(
-        absl::StrCat("retry.max_attempts: ", retry.max_attempts, ", wanted 1 or more"));
+        absl::StrCat("retry.max_attempts: expected 1 or more, got ", retry.max_attempts));
   }
   if (retry.initial_backoff <= absl::ZeroDuration() || retry.max_backoff < retry.initial_backoff) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "retry: initial_backoff ", absl::FormatDuration(retry.initial_backoff), ", max_backoff ",
-        absl::FormatDuration(retry.max_backoff), ", wanted 0 < initial <= max"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("retry: expected 0 < initial_backoff <= max_backoff, got initial_backoff ",
+                     absl::FormatDuration(retry.initial_backoff), " and max_backoff ",
+                     absl::FormatDuration(retry.max_backoff)));
   }
   if (!IsToken(options.token)) {
-    // Not repeated: messages go to logs.
+    // The message does not contain the token, because messages are logged.
     return absl::InvalidArgumentError(
-        "token: has a blank or a character that is not printable ASCII, wanted none");
+        "token: expected printable ASCII without spaces, got another character");
   }
   if (!options.token.empty() && !options.tls.has_value() &&
       !IsThisMachine(options.server_address)) {
-    return absl::InvalidArgumentError(absl::StrCat("token: would travel in plain text to ",
-                                                   options.server_address, ", wanted tls"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("token: expected TLS to ", options.server_address, ", got plain text"));
   }
   if (options.tls.has_value() &&
       options.tls->certificate_chain.empty() != options.tls->private_key.empty()) {
     return absl::InvalidArgumentError(
-        "tls: certificate_chain and private_key, wanted both or neither");
+        "tls: expected certificate_chain and private_key or neither, got one of the two");
   }
   return absl::OkStatus();
 }
@@ -109,18 +110,18 @@ grpc::ChannelArguments Arguments(const ClientOptions& options) {
   grpc::ChannelArguments arguments;
   arguments.SetLoadBalancingPolicyName("round_robin");
   arguments.SetServiceConfigJSON(kServiceConfig);
-  // A lost connection is tried again as soon as a call is, and often: gRPC's own waits grow to two
-  // minutes, while the server has long been back.
+  // Reconnect as often as calls are retried. gRPC's default backoff grows to two minutes, long
+  // after the server is back.
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS,
                    static_cast<int>(absl::ToInt64Milliseconds(options.retry.initial_backoff)));
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS,
                    static_cast<int>(absl::ToInt64Milliseconds(
                        std::max(options.retry.initial_backoff,
                                 std::min(options.retry.max_backoff, kLongestReconnectWait)))));
-  // gRPC's name for it is another, but this is the least time that it gives an attempt to connect.
+  // Despite its name, this is also gRPC's timeout of one connection attempt.
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS,
                    static_cast<int>(absl::ToInt64Milliseconds(kConnectTimeout)));
-  // Plain text to this machine must not take the way of the environment's proxy.
+  // Plain text to this machine must not go through the environment's proxy.
   if (!options.token.empty() && !options.tls.has_value()) {
     arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
   }
@@ -134,9 +135,9 @@ grpc::ChannelArguments Arguments(const ClientOptions& options) {
   return arguments;
 }
 
-// Waits as long as is asked, and looks after a lost connection meanwhile: between calls that fail
-// at once nobody else does, but for gRPC's own look every five seconds.
-RetryEnvironment LookingAfter(std::shared_ptr<grpc::Channel> channel) {
+// Reconnects while a retry waits. Between calls that fail immediately, gRPC itself only checks the
+// connection every five seconds.
+RetryEnvironment ReconnectingEnvironment(std::shared_ptr<grpc::Channel> channel) {
   RetryEnvironment environment = SystemEnvironment();
   environment.sleep = [channel = std::move(channel)](absl::Duration wait) {
     const absl::Time end = absl::Now() + wait;
@@ -168,7 +169,7 @@ absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(const ClientOptions& 
 absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options) {
   absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = OpenChannel(options);
   if (!channel.ok()) return channel.status();
-  RetryEnvironment environment = LookingAfter(*channel);
+  RetryEnvironment environment = ReconnectingEnvironment(*channel);
   return std::make_shared<ConnectionImpl>(MakeGrpcStub(*std::move(channel), options.token), options,
                                           std::move(environment));
 }

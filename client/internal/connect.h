@@ -12,14 +12,16 @@
 
 namespace duet::client::internal {
 
-// A connection over gRPC. INVALID_ARGUMENT when an option makes no sense. Connects lazily.
+// Creates a connection over gRPC, which connects with its first call. Returns INVALID_ARGUMENT if
+// an option is invalid.
 absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options);
 
-// A channel to where the options say. INVALID_ARGUMENT when one makes no sense. Connects lazily.
+// Creates the channel that the options describe, which connects with its first call. Returns
+// INVALID_ARGUMENT if an option is invalid.
 absl::StatusOr<std::shared_ptr<grpc::Channel>> OpenChannel(const ClientOptions& options);
 
-// The gRPC target of an address: "host:port" becomes one that resolves to every server behind the
-// name; an address that is a target already stays as it is.
+// Returns the gRPC target of an address. "host:port" becomes a target that resolves to every server
+// behind the name. An address that is already a target is returned unchanged.
 std::string GrpcTarget(std::string_view server_address);
 
 }  // namespace duet::client::internal

@@ -12,8 +12,8 @@
 namespace duet::client::internal {
 namespace {
 
-// Asks for the model version that the frames already handed out came from: a follower must not be
-// half one version's and half another's.
+// Makes a retry use the model version that produced the frames already handed out, so that all
+// frames of a follower come from the same version.
 void PinModel(const v1::SynthesisHeader& answered, v1::ModelSelector* selector) {
   selector->set_name(answered.model_name());
   selector->set_version(answered.model_version());
@@ -26,7 +26,7 @@ absl::Status ModelIsGone(const absl::Status& status, const v1::ModelSelector& pi
                                               pinned.version(), " is no longer served")));
 }
 
-// Gathers the reply of a call that nobody waits for.
+// Assembles the reply of an asynchronous call.
 class ReplyListener final : public StreamListener {
  public:
   ReplyListener(SynthesisRequest request, SynthesisCallback done, std::function<absl::Time()> now)
@@ -132,8 +132,7 @@ absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisReques
         absl::Status ended = RunStream(call, *wire, &reply, &first_chunk);
         if (resumes && absl::IsNotFound(ended))
           return ModelIsGone(ended, wire->model(), handed_out);
-        // A callback that ends the call is obeyed: its status is never a reason for another
-        // attempt.
+        // An error from the callback ends the call; it is never retried.
         if (!reply.callback_status().ok()) return absl::OkStatus();
         return {std::move(ended), reply.header().has_value()};
       });
@@ -162,7 +161,7 @@ absl::Status ConnectionImpl::RunStream(const CallContext& call,
   v1::SynthesizeResponse response;
   absl::Status accepted;
   while (stream->Read(&response)) {
-    if (!accepted.ok()) continue;  // the stream was cancelled; what still arrives is dropped
+    if (!accepted.ok()) continue;  // cancelled; drop what still arrives
     const absl::Time arrival = environment_.now();
     accepted = reply->Accept(response);
     if (!accepted.ok()) stream->Cancel();

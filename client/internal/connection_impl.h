@@ -13,8 +13,8 @@
 
 namespace duet::client::internal {
 
-// Makes calls through a stub: turns values into protos and back, sets the deadline, retries, and
-// checks the replies.
+// Makes calls through a stub: converts values to protos and back, sets the deadline, retries, and
+// validates the replies.
 class ConnectionImpl final : public Connection {
  public:
   ConnectionImpl(std::shared_ptr<Stub> stub, const ClientOptions& options,

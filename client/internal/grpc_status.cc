@@ -13,18 +13,18 @@
 namespace duet::client::internal {
 namespace {
 
-// "field: description" of each violation that the status's message does not name already.
-std::string UntoldViolations(const absl::Status& status) {
-  std::vector<std::string> untold;
+// Returns "field: description" of each violation that the status's message does not contain.
+std::string MissingViolations(const absl::Status& status) {
+  std::vector<std::string> missing;
   for (const FieldViolation& violation : FieldViolations(status)) {
     if (absl::StrContains(status.message(), violation.field) &&
         absl::StrContains(status.message(), violation.description)) {
       continue;
     }
-    untold.push_back(
+    missing.push_back(
         absl::StrCat(violation.field, violation.field.empty() ? "" : ": ", violation.description));
   }
-  return absl::StrJoin(untold, "; ");
+  return absl::StrJoin(missing, "; ");
 }
 
 }  // namespace
@@ -50,9 +50,9 @@ absl::Status FromGrpc(const grpc::Status& status) {
       result.SetPayload(detail.type_url(), absl::Cord(detail.value()));
     }
   }
-  const std::string untold = UntoldViolations(result);
-  if (untold.empty()) return result;
-  return AppendMessage(result, absl::StrCat(result.message().empty() ? "" : ": ", untold));
+  const std::string missing = MissingViolations(result);
+  if (missing.empty()) return result;
+  return AppendMessage(result, absl::StrCat(result.message().empty() ? "" : ": ", missing));
 }
 
 }  // namespace duet::client::internal

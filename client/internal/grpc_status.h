@@ -8,14 +8,14 @@
 
 namespace duet::client::internal {
 
-// A call's status with its google.rpc details as payloads. The message names every field violation
-// that the server's own text leaves out. Details that cannot be read are dropped: they never turn
-// a refusal into another error.
+// Converts a call's status. The result has its google.rpc details as payloads, and its message
+// names every field violation, including those that the server's message omits. Details that cannot
+// be parsed are dropped, so that they never change the error code.
 absl::Status FromGrpc(const grpc::Status& status);
 
-// The same code and payloads, with `more` after the message.
+// Returns `status` with `more` appended to its message.
 absl::Status AppendMessage(const absl::Status& status, std::string_view more);
-// The same payloads under another code and message.
+// Returns `to` with the payloads of `from`.
 absl::Status WithPayloadsOf(const absl::Status& from, absl::Status to);
 
 }  // namespace duet::client::internal

@@ -42,7 +42,7 @@ class GrpcResponseStream final : public ResponseStream {
   std::unique_ptr<grpc::ClientReader<v1::SynthesizeResponse>> reader_;
 };
 
-// A stream that takes its next step whenever the queue hands it out, and ends itself.
+// A stream in progress. Each event of its completion queue makes it take one step.
 class ListenedStream {
  public:
   ListenedStream(v1::MotionSynthesis::Stub& stub, const CallContext& call,
@@ -54,7 +54,7 @@ class ListenedStream {
     reader_->StartCall(this);
   }
 
-  // `ok`: the step before this one had what it asked for. False: the stream is over.
+  // `ok`: the previous operation succeeded. Returns false when the stream is over.
   bool Step(bool ok) {
     switch (state_) {
       case State::kStarting:
@@ -91,9 +91,9 @@ class ListenedStream {
   bool wanted_ = true;
 };
 
-// A queue of streams and the thread that takes their steps: one for many calls, since a call of
-// which only its own thread hears costs a wake-up for each message. Waits for calls under way when
-// it goes.
+// A completion queue and the thread that processes its events. One thread serves many calls,
+// because a thread for each call would wake up for each message. The destructor waits for calls in
+// progress.
 class StreamThread {
  public:
   StreamThread() : thread_([this] { Run(); }) {}
@@ -101,7 +101,7 @@ class StreamThread {
   StreamThread& operator=(const StreamThread&) = delete;
   ~StreamThread() {
     {
-      // A queue that is being shut down takes no steps of streams that are still under way.
+      // No operation may be started on a queue after its shutdown.
       std::unique_lock<std::mutex> lock(mutex_);
       none_under_way_.wait(lock, [this] { return under_way_ == 0; });
     }
@@ -116,7 +116,7 @@ class StreamThread {
       const std::lock_guard<std::mutex> lock(mutex_);
       ++under_way_;
     }
-    // The queue hands it to the thread, which deletes it.
+    // Run deletes it after its last step.
     new ListenedStream(stub, call, authorization, request, std::move(listener), &queue_);
   }
 
@@ -126,7 +126,7 @@ class StreamThread {
     for (bool ok = false; queue_.Next(&tag, &ok);) {
       std::unique_ptr<ListenedStream> stream(static_cast<ListenedStream*>(tag));
       if (stream->Step(ok)) {
-        (void)stream.release();  // it comes out of the queue again
+        (void)stream.release();  // its next event is in the queue
         continue;
       }
       stream.reset();

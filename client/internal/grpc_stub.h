@@ -9,7 +9,7 @@
 
 namespace duet::client::internal {
 
-// Calls by gRPC, as whoever `token` says; empty: as nobody.
+// Creates a stub that calls over gRPC with `token` as credentials; empty: without credentials.
 std::shared_ptr<Stub> MakeGrpcStub(std::shared_ptr<grpc::Channel> channel,
                                    const std::string& token = "");
 

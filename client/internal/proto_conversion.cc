@@ -31,23 +31,24 @@ void Fill(const std::vector<ClassWeight>& weights, v1::LabelVector* labels) {
 
 absl::Status FillLeader(const motion::Clip& clip, v1::Motion* leader) {
   if (clip.joint_names.empty()) {
-    return absl::InvalidArgumentError("leader.joint_names: empty, wanted the model's joints");
+    return absl::InvalidArgumentError("leader.joint_names: expected the model's joints, got none");
   }
   if (!clip.poses.empty() && clip.poses.joint_count() != clip.joint_count()) {
-    return absl::InvalidArgumentError(absl::StrCat("leader.positions: came poses of ",
-                                                   clip.poses.joint_count(), " joints, wanted the ",
-                                                   clip.joint_count(), " of leader.joint_names"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("leader.positions: expected poses of the ", clip.joint_count(),
+                     " joints in leader.joint_names, got poses of ", clip.poses.joint_count()));
   }
   if (clip.poses.all().size() % clip.joint_names.size() != 0) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "leader.positions: ", clip.poses.all().size(), " points, wanted a multiple of ",
-        clip.joint_names.size(), " (one for each frame and joint)"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("leader.positions: expected a multiple of ", clip.joint_names.size(),
+                     " points (one for each frame and joint), got ", clip.poses.all().size()));
   }
-  // Past this the flat run of floats no longer fits a protobuf message at all.
+  // The limit of protobuf: a message has at most 2 GiB.
   constexpr size_t kMaxPoints = (size_t{1} << 31) / 16;
   if (clip.poses.all().size() > kMaxPoints) {
-    return absl::InvalidArgumentError(absl::StrCat("leader.positions: ", clip.poses.all().size(),
-                                                   " points, wanted at most ", kMaxPoints));
+    return absl::InvalidArgumentError(absl::StrCat("leader.positions: expected at most ",
+                                                   kMaxPoints, " points, got ",
+                                                   clip.poses.all().size()));
   }
   leader->mutable_joint_names()->Assign(clip.joint_names.begin(), clip.joint_names.end());
   leader->set_frame_rate_hz(clip.frame_rate_hz);
@@ -64,7 +65,7 @@ absl::Status FillLabels(const SynthesisRequest& request, v1::SynthesizeRequest* 
     const WeightKeyframe& keyframe = request.keyframes[i];
     if (keyframe.frame < 0) {
       return absl::InvalidArgumentError(
-          absl::StrCat("label_keyframes[", i, "].frame: ", keyframe.frame, ", wanted 0 or more"));
+          absl::StrCat("label_keyframes[", i, "].frame: expected 0 or more, got ", keyframe.frame));
     }
     v1::LabelKeyframe* added = out->add_label_keyframes();
     added->set_frame(static_cast<uint32_t>(keyframe.frame));
@@ -104,14 +105,14 @@ absl::StatusOr<v1::ModelSelector> ToProto(const ModelChoice& choice) {
   v1::ModelSelector selector;
   selector.set_name(choice.name);
   if (choice.version.has_value() && !choice.version_label.empty()) {
-    return absl::InvalidArgumentError(absl::StrCat("model: version ", *choice.version,
-                                                   " and version label \"", choice.version_label,
-                                                   "\", wanted one of the two"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("model: expected a version or a version label, got both: ", *choice.version,
+                     " and \"", choice.version_label, "\""));
   }
   if (choice.version.has_value()) {
     if (*choice.version < 1) {
       return absl::InvalidArgumentError(
-          absl::StrCat("model.version: ", *choice.version, ", wanted 1 or more"));
+          absl::StrCat("model.version: expected 1 or more, got ", *choice.version));
     }
     selector.set_version(static_cast<uint32_t>(*choice.version));
   }
@@ -143,7 +144,7 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
   if (request.chunk_frames.has_value()) {
     if (*request.chunk_frames < 1) {
       return absl::InvalidArgumentError(
-          absl::StrCat("chunk_frames: ", *request.chunk_frames, ", wanted 1 or more"));
+          absl::StrCat("chunk_frames: expected 1 or more, got ", *request.chunk_frames));
     }
     out.set_chunk_frames(static_cast<uint32_t>(*request.chunk_frames));
   }
@@ -161,10 +162,10 @@ absl::StatusOr<ModelInfo> FromProto(const v1::Model& model) {
   info.joint_names = {model.joint_names().begin(), model.joint_names().end()};
   for (const v1::Bone& bone : model.bones()) {
     if (!HasJoint(bone, model.joint_names_size())) {
-      return absl::InternalError(absl::StrCat("the server's model ", model.name(), "@",
-                                              model.version(), " has a bone from joint ",
-                                              bone.parent_joint(), " to ", bone.child_joint(),
-                                              ", wanted 0 to ", model.joint_names_size() - 1));
+      return absl::InternalError(absl::StrCat("model.bones of ", model.name(), "@", model.version(),
+                                              ": expected joints 0 to ",
+                                              model.joint_names_size() - 1, ", got a bone from ",
+                                              bone.parent_joint(), " to ", bone.child_joint()));
     }
     info.bones.push_back(
         {static_cast<int>(bone.parent_joint()), static_cast<int>(bone.child_joint())});

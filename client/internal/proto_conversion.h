@@ -8,12 +8,12 @@
 
 namespace duet::client::internal {
 
-// Values to the wire. INVALID_ARGUMENT, naming the field, only for what the wire cannot carry; all
-// else is the server's to judge.
+// Convert values to protos. Return INVALID_ARGUMENT, naming the field, only for values that the
+// proto cannot represent. The server validates everything else.
 absl::StatusOr<v1::ModelSelector> ToProto(const ModelChoice& choice);
 absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request);
 
-// The wire to values. INTERNAL when the server describes a model that cannot be.
+// Convert protos to values. Return INTERNAL if the server's model is inconsistent.
 absl::StatusOr<ModelInfo> FromProto(const v1::Model& model);
 RequestLimits FromProto(const v1::RequestLimits& limits);
 

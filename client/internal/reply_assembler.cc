@@ -17,8 +17,8 @@ absl::Status Malformed(const Parts&... parts) {
   return absl::InternalError(absl::StrCat("the server's reply is malformed: ", parts...));
 }
 
-// Whether the connection failed, rather than the service. A proxy or a dying server resets streams
-// under several codes; what the service itself says always carries an ErrorInfo.
+// Returns true if the connection failed, rather than the service. A proxy or a crashing server
+// resets streams with various codes; errors of the service itself always carry an ErrorInfo.
 bool IsBrokenConnection(const absl::Status& status) {
   switch (status.code()) {
     case absl::StatusCode::kOk:
@@ -65,16 +65,16 @@ absl::Status ReplyAssembler::AcceptHeader(const v1::SynthesisHeader& header) {
     return Malformed("header.joint_names differ from the leader's");
   }
   if (header.frame_rate_hz() != leader_.frame_rate_hz) {
-    return Malformed("header.frame_rate_hz: ", header.frame_rate_hz(), ", wanted the leader's ",
-                     leader_.frame_rate_hz);
+    return Malformed("header.frame_rate_hz: expected the leader's ", leader_.frame_rate_hz,
+                     ", got ", header.frame_rate_hz());
   }
   if (header.unit() != v1::LENGTH_UNIT_METRES || header.up_axis() != v1::UP_AXIS_Y_UP) {
-    return Malformed("header.unit and up_axis: ", v1::LengthUnit_Name(header.unit()), ", ",
-                     v1::UpAxis_Name(header.up_axis()), ", wanted metres, y up");
+    return Malformed("header.unit and up_axis: expected metres, y up, got ",
+                     v1::LengthUnit_Name(header.unit()), ", ", v1::UpAxis_Name(header.up_axis()));
   }
   if (header.frame_count() != static_cast<uint32_t>(leader_.frame_count())) {
-    return Malformed("header.frame_count: ", header.frame_count(), ", wanted the leader's ",
-                     leader_.frame_count());
+    return Malformed("header.frame_count: expected the leader's ", leader_.frame_count(), ", got ",
+                     header.frame_count());
   }
   header_ = header;
   return absl::OkStatus();
@@ -83,16 +83,16 @@ absl::Status ReplyAssembler::AcceptHeader(const v1::SynthesisHeader& header) {
 absl::Status ReplyAssembler::CheckChunk(const v1::MotionChunk& chunk) const {
   if (!header_.has_value()) return Malformed("a chunk before the header");
   if (chunk.first_frame() != static_cast<uint32_t>(received_)) {
-    return Malformed("chunk.first_frame: ", chunk.first_frame(), ", wanted ", received_);
+    return Malformed("chunk.first_frame: expected ", received_, ", got ", chunk.first_frame());
   }
   const int left = leader_.frame_count() - received_;
   if (chunk.frame_count() < 1 || chunk.frame_count() > static_cast<uint32_t>(left)) {
-    return Malformed("chunk.frame_count: ", chunk.frame_count(), ", wanted 1 to ", left);
+    return Malformed("chunk.frame_count: expected 1 to ", left, ", got ", chunk.frame_count());
   }
   const size_t wanted = size_t{chunk.frame_count()} * leader_.joint_names.size() * 3;
   if (static_cast<size_t>(chunk.positions_size()) != wanted) {
-    return Malformed("chunk.positions: ", chunk.positions_size(), " values, wanted ", wanted,
-                     " for ", chunk.frame_count(), " frames");
+    return Malformed("chunk.positions: expected ", wanted, " values for ", chunk.frame_count(),
+                     " frames, got ", chunk.positions_size());
   }
   for (int i = 0; i < chunk.positions_size(); ++i) {
     if (!std::isfinite(chunk.positions(i))) {
@@ -133,17 +133,17 @@ absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) 
     return Malformed("a summary after ", received_, " of ", leader_.frame_count(), " frames");
   }
   if (summary.frame_count() != static_cast<uint32_t>(received_)) {
-    return Malformed("summary.frame_count: ", summary.frame_count(), ", wanted ", received_);
+    return Malformed("summary.frame_count: expected ", received_, ", got ", summary.frame_count());
   }
   if (summary.chunk_count() != static_cast<uint32_t>(chunk_count_)) {
-    return Malformed("summary.chunk_count: ", summary.chunk_count(), ", but ", chunk_count_,
-                     " chunks came");
+    return Malformed("summary.chunk_count: expected ", chunk_count_, ", got ",
+                     summary.chunk_count());
   }
-  // Also true for NaN.
+  // Negated, so that NaN is rejected.
   if (summary.has_unfamiliarity() &&
       !(summary.unfamiliarity() >= 0 && std::isfinite(summary.unfamiliarity()))) {
-    return Malformed("summary.unfamiliarity: ", summary.unfamiliarity(),
-                     ", wanted a finite value of 0 or more");
+    return Malformed("summary.unfamiliarity: expected a finite value of 0 or more, got ",
+                     summary.unfamiliarity());
   }
   summary_ = summary;
   return absl::OkStatus();
@@ -151,7 +151,8 @@ absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) 
 
 absl::Status ReplyAssembler::EndStream(const absl::Status& transport) const {
   if (!transport.ok() && !IsBrokenConnection(transport)) return transport;
-  if (summary_.has_value()) return absl::OkStatus();  // the reply was whole before anything broke
+  if (summary_.has_value())
+    return absl::OkStatus();  // the reply was complete before the connection broke
   if (!transport.ok() && !header_.has_value()) return transport;
   absl::Status broken = absl::UnavailableError(absl::StrCat(
       "the reply ended without a summary, after ", received_, " of ", leader_.frame_count(),

@@ -11,14 +11,14 @@
 
 namespace duet::client::internal {
 
-// Checks a response stream message by message and gathers the follower.
+// Validates a response stream message by message and assembles the follower.
 //
-// A call whose stream broke is run again from its first frame: StartStream begins each stream, and
-// frames that an earlier one handed to the callback are not handed out twice.
+// A broken stream is repeated from its first frame. StartStream begins each stream; frames that an
+// earlier stream passed to the callback are not passed again.
 //
-// Errors:  INTERNAL when a message breaks the contract (order, counts, frames, finiteness, echo of
-//          the leader's joints, rate, unit and axis); UNAVAILABLE when the stream merely ended
-//          early; the callback's own status.
+// Errors:  INTERNAL if a message violates the contract (order, counts, frames, finiteness, echo of
+//          the leader's joints, rate, unit and axis); UNAVAILABLE if the stream ended early; the
+//          callback's own status.
 class ReplyAssembler {
  public:
   // `leader` and `on_chunk` outlive the assembler; `on_chunk` may be empty.
@@ -27,17 +27,18 @@ class ReplyAssembler {
 
   void StartStream();
   absl::Status Accept(const v1::SynthesizeResponse& response);
-  // Whether the reply is whole, after the stream ended with the status `transport`.
+  // Returns OK if the reply is complete. `transport`: the final status of the stream.
   absl::Status EndStream(const absl::Status& transport) const;
 
-  // Frames that the callback has seen, over all streams.
+  // Number of frames passed to the callback, over all streams.
   int handed_out() const { return handed_out_; }
-  // What the callback said last; not OK when it ended the call.
+  // The last status that the callback returned. An error ended the call.
   const absl::Status& callback_status() const { return callback_status_; }
   bool has_frames() const { return received_ > 0; }
   const std::optional<v1::SynthesisHeader>& header() const { return header_; }
 
-  // The gathered reply, after EndStream returned OK; timings and attempts are the caller's to fill.
+  // Returns the assembled reply. Requires EndStream to have returned OK. The caller fills in
+  // timings and attempts.
   SynthesisResult TakeResult() &&;
 
  private:

@@ -41,7 +41,7 @@ bool HasDetails(const absl::Status& status) {
   return any;
 }
 
-// Random numbers in [0, 1) for calls from any thread; copies share one generator.
+// Thread-safe random numbers in [0, 1). Copies share one generator.
 class SharedUniform {
  public:
   double operator()() {
@@ -92,7 +92,7 @@ absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environm
                    Priority priority, const RetryLimits& limits,
                    absl::FunctionRef<AttemptEnd()> attempt) {
   const absl::Time begin = environment.now();
-  // The end of the first of the latest attempts in a row that reached no server.
+  // When the first of the most recent consecutive attempts that reached no server ended.
   absl::Time away_since = absl::InfiniteFuture();
   for (int made = 1;; ++made) {
     const AttemptEnd end = attempt();
@@ -105,7 +105,7 @@ absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environm
     const bool unreachable = IsUnreachable(end);
     away_since = unreachable ? std::min(away_since, now) : absl::InfiniteFuture();
     const absl::Duration left = away_since + limits.wait - now;
-    // The last attempt is made when the wait is over, not a whole backoff before that.
+    // Make the last attempt at the end of the wait, not up to a whole backoff earlier.
     const absl::Duration wait =
         std::min(left, RetryWait(options, made, status, environment.uniform()));
     const bool too_late = now + wait >= limits.deadline;

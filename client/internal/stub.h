@@ -11,7 +11,7 @@
 
 namespace duet::client::internal {
 
-// What one attempt at a call carries beside its request.
+// What one attempt of a call carries besides its request.
 struct CallContext {
   absl::Time deadline;
   std::string request_id;  // may be empty
@@ -21,26 +21,26 @@ struct CallContext {
 class ResponseStream {
  public:
   virtual ~ResponseStream() = default;
-  // False at the stream's end, however it ended.
+  // Returns false at the end of the stream, whether it succeeded or failed.
   virtual bool Read(v1::SynthesizeResponse* response) = 0;
   // Ends the stream early; Read returns false soon after.
   virtual void Cancel() = 0;
-  // How the stream ended. Called once, after Read returned false.
+  // Returns the final status. Call once, after Read returned false.
   virtual absl::Status Finish() = 0;
 };
 
-// Hears of a stream that Stub::Start began: in its order, on one thread at a time.
+// Receives the messages of a stream that Stub::Start began, in order, from one thread at a time.
 class StreamListener {
  public:
   virtual ~StreamListener() = default;
-  // False: the rest is of no use, the stream is cancelled and no other message comes.
+  // If it returns false, the stream is cancelled and no further message is passed.
   virtual bool OnMessage(const v1::SynthesizeResponse& response) = 0;
-  // How the stream ended. Last.
+  // Called last, with the final status.
   virtual void OnEnd(const absl::Status& status) = 0;
 };
 
-// One attempt at each call of duet.v1.MotionSynthesis: proto in, proto out, no retry. Statuses
-// carry their google.rpc details as payloads (client/error_details.h).
+// The methods of duet.v1.MotionSynthesis: proto in, proto out, one attempt. Statuses carry their
+// google.rpc details as payloads (client/error_details.h).
 class Stub {
  public:
   virtual ~Stub() = default;
@@ -50,7 +50,7 @@ class Stub {
                                                         const v1::GetModelRequest& request) = 0;
   virtual std::unique_ptr<ResponseStream> Synthesize(const CallContext& context,
                                                      const v1::SynthesizeRequest& request) = 0;
-  // The same without waiting.
+  // The asynchronous variant of Synthesize. Does not block.
   virtual void Start(const CallContext& context, const v1::SynthesizeRequest& request,
                      std::unique_ptr<StreamListener> listener) = 0;
 };

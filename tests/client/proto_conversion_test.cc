@@ -109,25 +109,26 @@ TEST(SynthesizeRequestTest, WhatTheWireCannotCarryIsRefused) {
   };
   constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
   EXPECT_THAT(refused([](SynthesisRequest* r) { r->leader.joint_names.clear(); }),
-              StatusIs(kInvalid, HasSubstr("leader.joint_names: empty")));
+              StatusIs(kInvalid, HasSubstr("leader.joint_names: expected")));
   EXPECT_THAT(refused([](SynthesisRequest* r) {
                 r->leader.poses = motion::Poses(3, std::vector<motion::Vec3>(5));
               }),
-              StatusIs(kInvalid, HasSubstr("leader.positions: 5 points, wanted a multiple of 3")));
+              StatusIs(kInvalid, HasSubstr("leader.positions: expected a multiple of 3")));
   EXPECT_THAT(refused([](SynthesisRequest* r) { r->leader.poses = motion::Poses(3, 5); }),
-              StatusIs(kInvalid, HasSubstr("leader.positions: came poses of 5 joints, wanted")));
-  EXPECT_THAT(refused([](SynthesisRequest* r) {
-                r->keyframes = {{-1, {{"kick", 1}}}};
-              }),
-              StatusIs(kInvalid, HasSubstr("label_keyframes[0].frame: -1")));
+              StatusIs(kInvalid, HasSubstr("leader.positions: expected poses of the")));
+  EXPECT_THAT(
+      refused([](SynthesisRequest* r) {
+        r->keyframes = {{-1, {{"kick", 1}}}};
+      }),
+      StatusIs(kInvalid, HasSubstr("label_keyframes[0].frame: expected 0 or more, got -1")));
   EXPECT_THAT(refused([](SynthesisRequest* r) { r->chunk_frames = -8; }),
-              StatusIs(kInvalid, HasSubstr("chunk_frames: -8")));
+              StatusIs(kInvalid, HasSubstr("chunk_frames: expected 1 or more, got -8")));
   EXPECT_THAT(refused([](SynthesisRequest* r) { r->model.version = 0; }),
-              StatusIs(kInvalid, HasSubstr("model.version: 0")));
+              StatusIs(kInvalid, HasSubstr("model.version: expected 1 or more, got 0")));
   EXPECT_THAT(refused([](SynthesisRequest* r) {
                 r->model = {"dancer", 1, "canary"};
               }),
-              StatusIs(kInvalid, HasSubstr("version 1 and version label \"canary\"")));
+              StatusIs(kInvalid, HasSubstr("got both: 1 and \"canary\"")));
 }
 
 TEST(SynthesizeRequestTest, ValuesThatOnlyTheServerJudgesPassThrough) {
@@ -184,8 +185,11 @@ TEST(ModelTest, EveryFieldIsRead) {
 TEST(ModelTest, ABoneWithoutAJointIsTheServersFault) {
   v1::Model model = GoodModel();
   model.mutable_bones(0)->set_child_joint(3);
-  EXPECT_THAT(FromProto(model), StatusIs(absl::StatusCode::kInternal,
-                                         HasSubstr("dancer@2 has a bone from joint 0 to 3")));
+  EXPECT_THAT(
+      FromProto(model),
+      StatusIs(
+          absl::StatusCode::kInternal,
+          HasSubstr("model.bones of dancer@2: expected joints 0 to 2, got a bone from 0 to 3")));
 }
 
 TEST(RequestLimitsTest, EveryFieldIsRead) {

@@ -193,7 +193,7 @@ class SecurityTest(unittest.TestCase):
         self.assertNotIn("bad", refused.stderr)
         plain = tools.duet("models", "--server", "duet.example:50051", "--token-file", token)
         self.assertEqual(plain.returncode, 42)
-        self.assertIn("token: would travel in plain text to duet.example:50051", plain.stderr)
+        self.assertIn("token: expected TLS to duet.example:50051", plain.stderr)
 
     def test_certificates_and_tokens_rotate_under_load_without_a_failed_call(self):
         # A folder as Kubernetes mounts a secret: its files are links through a link that moves.
