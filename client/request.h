@@ -38,16 +38,9 @@ using FollowerStart = std::variant<motion::Vec3, std::vector<motion::Vec3>>;
 
 enum class Priority { kInteractive, kBulk };
 
-// A request to synthesize a follower.
-struct SynthesisRequest {
-  ModelChoice model;
-  // Metres, y up. Has every joint of the model (ModelInfo::joint_names), in any order.
-  motion::Clip leader;
-  // Either `weights` for the whole clip, or `keyframes` for weights that change over time: linear
-  // between keyframes, constant before the first and after the last.
-  std::vector<ClassWeight> weights;
-  std::vector<WeightKeyframe> keyframes;
-  std::optional<FollowerStart> follower_start;
+// What a caller chooses beyond model, leader, weights and start. Every field has a default.
+// docs/guides/add_a_request_field.md describes how to add a field.
+struct SynthesisOptions {
   // Direction from the leader to the follower; y is ignored. Absent: towards follower_start.
   // Without follower_start, models trained to estimate the direction derive it from the leader's
   // motion; all others use the direction in which the leader's hips face in the first frame.
@@ -68,6 +61,19 @@ struct SynthesisRequest {
   std::optional<int> chunk_frames;
   // ID of the call in the server's log. Empty: the server generates one.
   std::string request_id;
+};
+
+// A request to synthesize a follower. The options are a base, so that they can be collected and
+// assigned as one value while each remains a field of the request.
+struct SynthesisRequest : SynthesisOptions {
+  ModelChoice model;
+  // Metres, y up. Has every joint of the model (ModelInfo::joint_names), in any order.
+  motion::Clip leader;
+  // Either `weights` for the whole clip, or `keyframes` for weights that change over time: linear
+  // between keyframes, constant before the first and after the last.
+  std::vector<ClassWeight> weights;
+  std::vector<WeightKeyframe> keyframes;
+  std::optional<FollowerStart> follower_start;
 };
 
 }  // namespace duet::client

@@ -88,7 +88,7 @@ struct AdminArguments {
 };
 
 // duet synthesize
-struct SynthesizeArguments {
+struct SynthesizeArguments : SynthesisOptions {
   ServerArguments server;
   std::filesystem::path leader;
   formats::Side leader_side = kDefaultSide;
@@ -98,14 +98,7 @@ struct SynthesizeArguments {
   std::vector<WeightKeyframe> keyframes;
   std::string follower_start;  // empty, "X,Y,Z" or a motion file
   std::optional<formats::Side> follower_start_side;
-  std::optional<motion::Vec3> partner_direction;
-  uint64_t seed = SynthesisRequest().seed;
-  float variety = SynthesisRequest().variety;
-  std::optional<bool> clean_up;  // absent: the server's choice
-  int samples = 1;               // answers, with seeds from `seed` on; none passes the largest seed
-  Priority priority = Priority::kInteractive;
-  std::optional<int> chunk_frames;
-  std::string request_id;
+  int samples = 1;  // answers, with seeds from `seed` on; none passes the largest seed
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // of standard output
   BvhArguments bvh;

@@ -71,6 +71,7 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   if (!read_options.ok()) return read_options.status();
   formats::ReadOptions options = *std::move(read_options);
   SynthesisRequest request;
+  static_cast<SynthesisOptions&>(request) = arguments;
   if (!arguments.follower_start.empty()) {
     absl::StatusOr<FollowerStart> start = ReadStart(arguments, options);
     if (!start.ok()) return start.status();
@@ -86,13 +87,6 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   request.model = arguments.model;
   request.weights = arguments.weights;
   request.keyframes = arguments.keyframes;
-  request.partner_direction = arguments.partner_direction;
-  request.seed = arguments.seed;
-  request.variety = arguments.variety;
-  request.clean_up = arguments.clean_up;
-  request.priority = arguments.priority;
-  request.chunk_frames = arguments.chunk_frames;
-  request.request_id = arguments.request_id;
   return request;
 }
 
