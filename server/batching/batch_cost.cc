@@ -6,10 +6,10 @@
 namespace duet::server::batching {
 namespace {
 
-constexpr double kKept = 0.8;           // of the weight of earlier batches
-constexpr double kMostSurprise = 4;     // times the expected seconds
-constexpr double kHalfLifeSeconds = 1;  // of an estimate that nothing confirms
-// Sizes that vary by less than this part of their mean say little about what a frame costs.
+constexpr double kKept = 0.8;           // weight of earlier batches, for each new one
+constexpr double kMostSurprise = 4;     // maximum ratio to the expected seconds
+constexpr double kHalfLifeSeconds = 1;  // of an estimate without new batches
+// Sizes that vary by less than this fraction of their mean do not determine the cost of a frame.
 constexpr double kTellingSpread = 0.1;
 
 }  // namespace
@@ -38,10 +38,10 @@ CostEstimate BatchCost::Fit() const {
   const double variance = xx_ / weight_ - mean_x * mean_x;
   const double covariance = xy_ / weight_ - mean_x * mean_y;
   const double proportional = mean_y / mean_x;
-  // Least squares, drawn towards proportionality by sizes that spread as little as that.
+  // Least squares, regularised towards proportionality if the sizes vary too little.
   const double prior = std::pow(kTellingSpread * mean_x, 2);
   const double slope = (covariance + prior * proportional) / (variance + prior);
-  // Neither part is negative.
+  // Both parts are at least 0.
   const double frame_seconds = std::clamp(slope, 0.0, proportional);
   return {mean_y - frame_seconds * mean_x, frame_seconds};
 }

@@ -5,8 +5,8 @@
 
 namespace duet::server::batching {
 
-// How long a batch takes: a part that every batch pays once, and a part for each frame of each
-// window. Both 0 where nothing is known.
+// The time that a batch takes: a fixed part for each batch, and a part for each frame of each
+// window. Both are 0 if nothing is known.
 struct CostEstimate {
   double batch_seconds = 0;
   double frame_seconds = 0;
@@ -14,19 +14,19 @@ struct CostEstimate {
   double Seconds(int frames) const { return batch_seconds + frame_seconds * frames; }
 };
 
-// Learns a model's cost from the batches that it has evaluated: least squares in which each batch
-// weighs a fifth less than the one after it. As long as all batches are of one size, cost is taken
-// to be proportional to frames.
+// Estimates a model's cost from the batches that it has evaluated, by least squares in which each
+// batch weighs a fifth less than the one after it. While all batches have the same size, the cost
+// is assumed to be proportional to the frames.
 //
 // Threads: not safe to call concurrently.
 class BatchCost {
  public:
-  // `frames`: of all windows of the batch together, 1 or more. What took more than four times as
-  // long as expected counts as four times: a machine that paused for a moment is not a slow model.
+  // `frames`: total of all windows of the batch, at least 1. A time of more than four times the
+  // expected one counts as four times, because a pause of the machine does not make a model slow.
   void Observe(int frames, double seconds, common::TimePoint at);
 
-  // What is known, halved for each second without a batch: an estimate that keeps windows from
-  // being evaluated must not stand for ever, as nothing would correct it.
+  // The estimate, halved for each second without a batch. Otherwise an estimate that is so high
+  // that no window is evaluated would never be corrected.
   CostEstimate At(common::TimePoint now) const;
 
  private:

@@ -16,19 +16,19 @@ using Indices = std::vector<std::size_t>;
 using common::SecondsBetween;
 using common::TimePoint;
 
-// When a window is wanted that has no deadline before: late enough for nearer deadlines to go
-// first, soon enough for it not to be passed over for long.
+// The urgency of a window without an earlier deadline: late enough that nearer deadlines go first,
+// early enough that it does not wait long.
 constexpr std::chrono::seconds kPatience(1);
-// The part of throughput that an urgent window may not cost.
+// Maximum fraction of the throughput that an urgent window may cost.
 constexpr double kThroughputKept = 0.75;
-// Of the time from a window's coming to its deadline, kept for its answer's way to the caller.
+// Fraction of the time from arrival to deadline that is reserved for sending the reply.
 constexpr int kWayBack = 8;
-// How long a batch of a lower lane may be while short calls come: so many windows alone, and they
-// come until none has for so long.
+// While short calls arrive, a batch of a lower lane may take as long as this many single windows.
+// Short calls are considered to arrive until none has arrived for this time.
 constexpr double kHeldUp = 3;
 constexpr std::chrono::seconds kShortCallsCome(1);
 
-// The decision's steps on one state.
+// The steps of the decision for one state.
 class Decider {
  public:
   Decider(const QueueState& state, const BatchLimits& limits, TimePoint now)
@@ -41,7 +41,7 @@ class Decider {
   const CostEstimate& CostOf(std::size_t index) const {
     return state_.models[Window(index).model].cost;
   }
-  // When its evaluation must have ended.
+  // When the window's evaluation must have finished.
   TimePoint DueAt(std::size_t index) const {
     const TimePoint deadline = Window(index).deadline;
     return deadline - (deadline - Window(index).queued_at) / kWayBack;
@@ -116,7 +116,7 @@ absl::Status Decider::ReasonToDrop(std::size_t index) const {
   return absl::OkStatus();
 }
 
-// The batch of the lane whose turn it is; empty when nothing waits.
+// Returns the batch of the lane whose turn it is; empty if no window waits.
 Indices Decider::NextBatch() const {
   Indices highest;
   for (std::size_t lane = kLanes; lane-- > 0;) {
@@ -129,7 +129,7 @@ Indices Decider::NextBatch() const {
 }
 
 Indices Decider::LaneBatch(Lane lane) const {
-  std::optional<std::size_t> model;  // the least served; the first to have come of equals
+  std::optional<std::size_t> model;  // the least served; among equals, the first to arrive
   for (const std::size_t i : alive_) {
     if (Window(i).lane != lane) continue;
     const std::size_t other = Window(i).model;
@@ -157,9 +157,9 @@ Indices Decider::WantedFirst(Lane lane, std::size_t model) const {
   return InTurns(line);
 }
 
-// The same line with clients taking turns.
+// Returns the same windows, with clients taking turns.
 Indices Decider::InTurns(const Indices& line) const {
-  std::map<std::size_t, std::size_t> had;  // client -> windows of it so far
+  std::map<std::size_t, std::size_t> had;  // client -> number of its windows so far
   std::vector<std::pair<std::size_t, std::size_t>> turns;
   turns.reserve(line.size());
   for (const std::size_t i : line) turns.emplace_back(had[Window(i).client]++, i);
@@ -171,7 +171,7 @@ Indices Decider::InTurns(const Indices& line) const {
   return taking_turns;
 }
 
-// How many windows of a line a batch may hold.
+// Returns the maximum number of windows in a batch.
 std::size_t Decider::MostOf(const Indices& line) const {
   std::vector<double> busy_seconds;
   for (const TimePoint end : state_.busy_until) {
@@ -186,11 +186,11 @@ std::size_t Decider::MostOf(const Indices& line) const {
   return std::min(line.size(), static_cast<std::size_t>(std::min(limits_.max_windows, share)));
 }
 
-// How many windows of a line hold a short call up no longer than they may.
+// Returns the maximum number of windows that do not delay a short call too long.
 std::size_t Decider::NotHeldUp(const Indices& line) const {
   if (now_ >= state_.last_short + kShortCallsCome) return line.size();
   const CostEstimate& cost = CostOf(line.front());
-  // A hair more, so that rounding errors make no window less.
+  // Slightly more, so that rounding errors do not remove a window.
   const double longest = (kHeldUp + 1e-6) * cost.Seconds(Window(line.front()).frames);
   std::size_t count = 1;
   int frames = Window(line.front()).frames;
@@ -201,11 +201,11 @@ std::size_t Decider::NotHeldUp(const Indices& line) const {
   return count;
 }
 
-// At most so many of a line, 1 or more, whose batch is done in time for each of them.
+// Returns windows, at least 1 and at most the given number, whose batch finishes in time for each.
 Indices Decider::InTime(const Indices& line, std::size_t most) const {
   Indices full(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(most));
   Indices urgent = ForTheMostUrgent(full);
-  // Others in its place: as large a batch as comes in time for enough of them.
+  // Otherwise the largest batch that finishes in time for enough of its windows.
   for (; full.size() > urgent.size(); full.resize(full.size() / 2)) {
     Indices others = WithTimeFor(SecondsOf(full), line, full.size());
     if (others.empty()) continue;
@@ -214,7 +214,7 @@ Indices Decider::InTime(const Indices& line, std::size_t most) const {
   return urgent;
 }
 
-// The longest beginning of a batch that is done in time for each of its windows.
+// Returns the longest prefix of a batch that finishes in time for each of its windows.
 Indices Decider::ForTheMostUrgent(const Indices& full) const {
   Indices batch;
   double least_left = SecondsLeft(full.front());
@@ -229,8 +229,8 @@ Indices Decider::ForTheMostUrgent(const Indices& full) const {
   return batch;
 }
 
-// The first windows of a line, at most so many, that have this long, and whose own batch takes no
-// longer.
+// Returns the first windows, at most the given number, that have this much time left and whose
+// batch takes no longer.
 Indices Decider::WithTimeFor(double seconds, const Indices& line, std::size_t most) const {
   Indices batch;
   for (const std::size_t window : line) {
@@ -242,12 +242,12 @@ Indices Decider::WithTimeFor(double seconds, const Indices& line, std::size_t mo
   return batch;
 }
 
-// Frames a second. Only compared where the cost is known: otherwise no batch is too long.
+// Frames per second. Compared only if the cost is known; otherwise no batch is too long.
 double Decider::Throughput(const Indices& batch) const {
   return FramesOf(batch) / SecondsOf(batch);
 }
 
-// Until when a batch waits for company; nothing when it starts now.
+// Returns until when a batch waits for windows of other calls; absent if it starts now.
 std::optional<TimePoint> Decider::WaitFor(const Indices& batch) const {
   const bool full = batch.size() == static_cast<std::size_t>(limits_.max_windows);
   if (full || batch.size() < alive_.size()) return std::nullopt;

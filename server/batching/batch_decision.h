@@ -13,82 +13,86 @@
 
 namespace duet::server::batching {
 
-// What the decision knows of a window that waits.
+// The input of a decision about one waiting window.
 struct WaitingWindow {
   std::size_t model = 0;  // index into QueueState::models
   Lane lane = Lane::kShort;
-  std::size_t client = 0;  // a number for each client that waits
+  std::size_t client = 0;  // index of the client among those with waiting windows
   int frames = 0;
   common::TimePoint queued_at;
   common::TimePoint deadline = common::TimePoint::max();
   bool cancelled = false;
 };
 
-// What it knows of a model.
+// The input of a decision about one model.
 struct ModelLoad {
   CostEstimate cost;
-  double served_seconds = 0;  // computing time that its windows have had
+  double served_seconds = 0;  // computing time that its windows have used
 };
 
-// So many frames of higher lanes may overtake each frame of a lane: an eighth of the whole is its.
+// Number of frames of higher lanes that may overtake each frame of a lane. A lane thus gets at
+// least an eighth of the work.
 inline constexpr int kOvertaking = 7;
 
-// Everything that decides what a worker does next.
+// Everything that a decision depends on.
 struct QueueState {
   std::vector<WaitingWindow> windows;  // in the order they came
   std::vector<ModelLoad> models;
-  // For each lane, the frames of higher lanes' batches that overtook it since it last was empty,
-  // less kOvertaking times those of its own.
+  // For each lane, the frames of higher lanes that overtook it since it was last empty, minus
+  // kOvertaking times its own frames.
   std::array<int, kLanes> overtaken_frames = {};
-  int free_workers = 1;  // with the one that asks
+  int free_workers = 1;  // including the one that asks
   // When the batches of the other workers are expected to end.
   std::vector<common::TimePoint> busy_until;
-  // When windows of more than one call were last seen together: a batch of them ended.
+  // When a batch with windows of more than one call last ended.
   common::TimePoint last_company = common::TimePoint::min();
-  // When the last window of a short call came.
+  // When the last window of a short call arrived.
   common::TimePoint last_short = common::TimePoint::min();
 };
 
 struct BatchLimits {
   int max_windows = 1;  // of a batch, 1 or more
-  // How long a batch that is not full waits for company while there is any about.
+  // Maximum time that a batch that is not full waits for windows of other calls, if any are likely.
   std::chrono::nanoseconds max_delay{0};
 };
 
-// What a worker is to do.
+// What a worker does next.
 struct Decision {
   struct Drop {
     std::size_t window = 0;  // index into QueueState::windows
     absl::Status reason;     // CANCELLED or DEADLINE_EXCEEDED
   };
-  std::vector<Drop> dropped;       // to be answered now, without being evaluated
-  std::vector<std::size_t> batch;  // to be evaluated now: of one model and one lane; may be empty
-  // When to decide again even if nothing happens until then.
+  std::vector<Drop> dropped;       // fail now, without evaluation
+  std::vector<std::size_t> batch;  // evaluate now: of one model and one lane; may be empty
+  // When to decide again, even if nothing changes until then.
   common::TimePoint look_again = common::TimePoint::max();
 };
 
-// Decides what a free worker does. A function of its arguments alone.
+// Decides what a free worker does next. A pure function of its arguments.
 //
-// 1. Windows that are cancelled, expired, or so close to their deadline that the model would not be
-//    done in time even with each alone, are dropped. In time is an eighth of a window's time before
-//    its deadline: the answer has a way to go, and under overload every window would else be
-//    evaluated just too late.
-// 2. The highest lane with windows has its turn, unless a lower one has been overtaken by
-// kOvertaking
-//    times as many frames as its next batch holds: no lane starves.
-// 3. Within the lane, the model whose windows have had the least computing time.
-// 4. Clients take turns: one window of each, the second of each, and so on. Of the windows of one
-//    client, and of each such round, those that are wanted first: at their deadline, or a second
-//    after they came. At most max_windows, and no more than let all workers end at about the same
-//    time. While short calls come, a batch of a lower lane is no longer than three of its windows
-//    alone: that is what the next short call waits for.
-// 5. A batch is kept small enough for its most urgent window, unless that costs more than a quarter
-//    of throughput: then those for which the batch comes in time go, as many as there are.
-// 6. A batch that is not full waits, up to max_delay, if nothing else does and company is likely:
-//    another worker is busy or windows of several calls were there within max_delay. A lone call on
-//    an idle server waits for nobody.
+// 1. Drop windows that are cancelled, that are expired, or that could not finish in time even in a
+//    batch of their own. In time means an eighth of the window's computing time before its
+//    deadline, because the reply still has to travel. Without this margin, an overloaded server
+//    would evaluate every window slightly too late.
+// 2. Choose the highest lane with windows, unless a lower lane has been overtaken by kOvertaking
+//    times as many frames as its next batch holds. No lane starves.
+// 3. Within the lane, choose the model whose windows have used the least computing time.
+// 4. Choose windows of the clients in rounds: one window of each client, then the second of each,
+// and
+//    so on. Within a client and within a round, the order is by urgency: the deadline, or one
+//    second after arrival if that is earlier. Take at most max_windows, and no more than let all
+//    workers finish at about the same time. While short calls arrive, a batch of a lower lane takes
+//    no longer than three of its windows would take alone, because the next short call waits for
+//    it.
+// 5. Reduce the batch so that its most urgent window finishes in time, unless that costs more than
+// a
+//    quarter of the throughput. In that case, take as many windows as finish in time.
+// 6. A batch that is not full waits for up to max_delay, if no other batch waits and windows of
+// other
+//    calls are likely: another worker is busy, or windows of several calls were present within
+//    max_delay. A single call on an idle server does not wait.
 //
-// Costs count in frames: the engine computes no padding, so windows are not sorted by length.
+// Costs are counted in frames. The engine computes no padding, so windows are not sorted by length.
 Decision Decide(const QueueState& state, const BatchLimits& limits, common::TimePoint now);
 
 }  // namespace duet::server::batching

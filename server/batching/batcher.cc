@@ -42,7 +42,7 @@ absl::Status QueueTooLong(const WindowJob& job, common::TimePoint now) {
 using Windows = absl::Span<const engine::SynthesisWindow* const>;
 using Results = std::vector<engine::WindowResult>;
 
-// A model reports failures as a status; whatever else escapes it must not take the server down.
+// Models report failures as a status. An exception from a model must not end the server.
 absl::StatusOr<Results> EvaluateTogether(const engine::Synthesizer& model, Windows windows) {
   try {
     Results results = model.Synthesize(windows);
@@ -56,8 +56,8 @@ absl::StatusOr<Results> EvaluateTogether(const engine::Synthesizer& model, Windo
   }
 }
 
-// A batch that failed as a whole did so by one of its windows, as far as anybody knows: each has
-// another chance alone, so that none pays for its neighbours.
+// If a whole batch fails, any of its windows may be the cause. Each window is retried alone, so
+// that one failing window does not affect the others.
 Results Evaluate(const Batch& batch) {
   const engine::Synthesizer& model = *batch.windows[0].job.model;
   std::vector<const engine::SynthesisWindow*> windows;
@@ -89,10 +89,10 @@ class Batcher final : public WindowScheduler {
 
  private:
   void Work();
-  // Waits until there is something to do; nothing when there will be no more.
+  // Waits for work. Absent if there will be no more.
   std::optional<Turn> Next();
   void WaitUntil(common::TimePoint time) DUET_REQUIRES(mutex_);
-  // To be called after every change of the queue.
+  // Call after every change of the queue.
   void CountQueue() DUET_REQUIRES(mutex_);
   void Run(Batch batch);
   void Answer(QueuedWindow window, engine::WindowResult result, WindowTimings timings) const;
@@ -102,7 +102,7 @@ class Batcher final : public WindowScheduler {
   mutable common::Mutex mutex_;
   common::CondVar changed_;
   WindowQueue queue_ DUET_GUARDED_BY(mutex_);
-  std::atomic<std::size_t> queued_{0};  // of queue_, for those who must not wait
+  std::atomic<std::size_t> queued_{0};  // size of queue_, readable without the lock
   bool stopping_ DUET_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> workers_;
 };
@@ -123,7 +123,7 @@ Batcher::~Batcher() {
 }
 
 absl::Status Batcher::Submit(WindowJob job) {
-  job.window.cancelled = job.cancelled;  // the model looks at it while it computes
+  job.window.cancelled = job.cancelled;  // the model checks it while it computes
   {
     common::MutexLock lock(mutex_);
     if (stopping_) return ShuttingDown();
@@ -177,7 +177,7 @@ std::optional<Turn> Batcher::Next() {
     turn = queue_.Next(clock_.Now());
     CountQueue();
     if (!turn.dropped.empty() || !turn.batch.windows.empty()) {
-      // What this worker leaves may be for another that is free.
+      // The remaining windows may be for another free worker.
       if (queue_.size() > 0) changed_.NotifyOne();
       return turn;
     }
@@ -194,7 +194,7 @@ void Batcher::WaitUntil(common::TimePoint time) {
   }
 }
 
-// By value, so that the model is let go of as soon as its windows are done.
+// By value, so that the model is released as soon as its windows are done.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 void Batcher::Run(Batch batch) {
   std::vector<engine::WindowResult> results;
@@ -218,7 +218,7 @@ void Batcher::Run(Batch batch) {
   }
 }
 
-// By value: what the job holds is let go of as soon as it is answered.
+// By value, so that the job's resources are released as soon as it is done.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 void Batcher::Answer(QueuedWindow window, engine::WindowResult result,
                      WindowTimings timings) const {

@@ -16,12 +16,12 @@ struct BatcherOptions {
   double client_share = 1;  // see WindowQueueOptions
 };
 
-// A scheduler with a fixed number of threads, each evaluating a batch of one model's windows at a
-// time; they are the only threads that run a model. What a thread takes next is decided by Decide
-// (batch_decision.h). Destroying it finishes the batches that have started; windows still waiting
-// get UNAVAILABLE.
+// Creates a scheduler with a fixed number of threads. Each thread evaluates one batch of windows of
+// one model at a time. No other thread runs a model. Decide (batch_decision.h) chooses the next
+// batch. The destructor waits for batches that have started; windows still waiting fail with
+// UNAVAILABLE.
 //
-// `clock` and `observer`, which may be null, outlive it.
+// `clock` and `observer` outlive the scheduler. `observer` may be null.
 std::unique_ptr<WindowScheduler> MakeBatcher(const BatcherOptions& options,
                                              const common::Clock& clock,
                                              WindowObserver* observer = nullptr);

@@ -6,8 +6,8 @@
 namespace duet::server::batching {
 namespace {
 
-// Seconds until everything is done when the workers that are free, and those that become so early
-// enough to help, share the windows. `busy_seconds` ascends.
+// Returns the seconds until all windows are done if the free workers, and the workers that become
+// free early enough, share them. `busy_seconds` is ascending.
 double EndOfAll(int windows, int free_workers, const std::vector<double>& busy_seconds,
                 WindowCost cost) {
   int workers = free_workers;
@@ -29,7 +29,7 @@ int EvenShare(int windows, int free_workers, std::vector<double> busy_seconds, W
     const double end = EndOfAll(windows, free_workers, busy_seconds, cost);
     share = (end - cost.batch_seconds) / cost.window_seconds;
   }
-  // A hair less, so that rounding errors make no window more.
+  // Slightly less, so that rounding errors do not add a window.
   return std::clamp(static_cast<int>(std::ceil(share - 1e-6)), 1, windows);
 }
 

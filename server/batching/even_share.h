@@ -5,18 +5,18 @@
 
 namespace duet::server::batching {
 
-// The seconds that a batch and each window of it cost; see CostEstimate.
+// Cost of a batch and of each of its windows, in seconds; see CostEstimate.
 struct WindowCost {
   double batch_seconds = 0;
   double window_seconds = 0;
 };
 
-// How many of `windows` waiting windows, 1 or more, a free worker takes so that all workers end at
-// about the same time: between 1 and all of them. While nothing is known of the cost, the free
-// workers take equally many.
+// Returns how many of `windows` waiting windows (at least 1) a free worker takes so that all
+// workers finish at about the same time: between 1 and `windows`. While the cost is unknown, the
+// free workers take equal numbers.
 //
-// `busy_seconds`: what is left of each batch that the other workers evaluate. `free_workers`: with
-// the one that asks, 1 or more.
+// `busy_seconds`: remaining time of each batch that other workers evaluate. `free_workers`:
+// including the one that asks, at least 1.
 int EvenShare(int windows, int free_workers, std::vector<double> busy_seconds, WindowCost cost);
 
 }  // namespace duet::server::batching

@@ -6,16 +6,16 @@
 
 namespace duet::server::batching {
 
-// How urgent a call is: every waiting interactive window starts before any bulk one.
+// How urgent a call is. Bulk windows start after waiting interactive windows; see Decide.
 enum class Priority { kInteractive, kBulk };
 
-// The name in metrics and logs.
+// Returns the name in metrics and logs.
 constexpr std::string_view PriorityName(Priority priority) {
   return priority == Priority::kBulk ? "bulk" : "interactive";
 }
 
-// The part of a limit that work of a priority may fill: interactive work all of it, bulk work three
-// quarters, so that the last quarter stays free for interactive calls.
+// Returns the part of a limit that calls of a priority may use: all of it for interactive calls,
+// three quarters for bulk calls, so that a quarter remains free for interactive calls.
 constexpr std::size_t ShareOf(std::size_t limit, Priority priority) {
   return priority == Priority::kBulk ? limit - limit / 4 : limit;
 }

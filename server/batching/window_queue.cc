@@ -118,7 +118,7 @@ std::vector<DroppedWindow> WindowQueue::DropAll(const absl::Status& reason, Time
 WindowQueue::Account& WindowQueue::AccountOf(const WindowJob& job) {
   const auto found = accounts_.find(job.model.get());
   if (found != accounts_.end() && !found->second.model.expired()) return found->second;
-  // Models that are gone, one at the same address among them.
+  // Remove models that no longer exist; one of them may have had the same address.
   for (auto account = accounts_.begin(); account != accounts_.end();) {
     account = account->second.model.expired() ? accounts_.erase(account) : std::next(account);
   }

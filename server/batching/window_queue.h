@@ -16,13 +16,13 @@
 
 namespace duet::server::batching {
 
-// A job and when it came.
+// A job and its time of arrival.
 struct QueuedWindow {
   WindowJob job;
   common::TimePoint queued_at;
 };
 
-// A window that will never start, and why.
+// A window that will never start, and the reason.
 struct DroppedWindow {
   QueuedWindow window;
   absl::Status reason;
@@ -33,12 +33,12 @@ struct Batch {
   std::vector<QueuedWindow> windows;
   common::TimePoint started_at;
   double expected_seconds = 0;
-  int number = 0;  // tells a queue's batches apart
+  int number = 0;  // unique within a queue
 
   int Frames() const;
 };
 
-// What a worker got from the queue.
+// The work that a worker gets from the queue.
 struct Turn {
   std::vector<DroppedWindow> dropped;
   Batch batch;  // may be empty
@@ -47,18 +47,19 @@ struct Turn {
 };
 
 struct WindowQueueOptions {
-  std::size_t capacity = 1;  // calls waiting for their first window above which no new one is taken
+  std::size_t capacity = 1;  // maximum number of calls that wait for their first window
   int workers = 1;
   BatchLimits limits;
-  // A client's first windows may wait as long as they are fewer than this part of the room left by
-  // all, over 1 less this part: alone it fills this part of the capacity, 1 all of it.
+  // Fraction of the capacity that a single client can fill, in (0, 1]. A client may queue another
+  // call while its waiting calls are fewer than client_share / (1 - client_share) times the free
+  // room.
   double client_share = 1;
 };
 
-// The windows that wait, and what Decide needs to know of the past: which batches run, what each
-// model has had and what its batches cost.
+// The waiting windows, and the history that Decide needs: running batches, the computing time that
+// each model has used, and the cost of its batches.
 //
-//   Turn turn = queue.Next(now);    // a free worker asks
+//   Turn turn = queue.Next(now);    // for a free worker
 //   ... evaluates turn.batch ...
 //   queue.Finished(turn.batch, now);
 //
@@ -67,31 +68,32 @@ class WindowQueue {
  public:
   explicit WindowQueue(const WindowQueueOptions& options) : options_(options) {}
 
-  // True when the first window of a call may join: while fewer first windows wait, of whatever
-  // priority, than its own priority's share of the capacity, and fewer of its client's than the
-  // client's share. Those that are cancelled or expired take no room. Further windows always may.
+  // Returns true if the first window of a call may join: the number of waiting first windows of all
+  // priorities is below this priority's share of the capacity, and the number of those of its
+  // client is below the client's share. Cancelled and expired windows do not count. Further windows
+  // of a call may always join.
   bool HasRoomFor(Priority priority, const std::string& client, common::TimePoint now) const;
   bool HasRoomFor(const WindowJob& job, common::TimePoint now) const {
     return job.continues_call || HasRoomFor(job.priority, job.client, now);
   }
-  // Whether a first window would be done by its deadline if all that waits in its lane and above
-  // went before it: by what windows cost of late. True for one that would wait for nobody: whether
-  // it is done in time alone, and with time left for its answer's way, is for Decide to say.
+  // Returns true if a first window would finish by its deadline after every window that waits in
+  // its lane and above, at recent costs. Returns true if no window waits before it: Decide checks
+  // whether the window itself finishes in time.
   bool ComesInTime(const WindowJob& job, common::TimePoint now) const;
   void Push(WindowJob job, common::TimePoint now);
 
-  // What the worker that asks is to do.
+  // Returns what a free worker does next.
   Turn Next(common::TimePoint now);
-  // The batch was evaluated.
+  // A batch was evaluated.
   void Finished(const Batch& batch, common::TimePoint now);
-  // Empties the queue: the windows that are neither cancelled nor expired end with `reason`.
+  // Empties the queue. Windows that are neither cancelled nor expired fail with `reason`.
   std::vector<DroppedWindow> DropAll(const absl::Status& reason, common::TimePoint now);
 
   std::size_t size() const { return waiting_.size(); }
   std::size_t capacity() const { return options_.capacity; }
 
  private:
-  // What a model has had.
+  // The history of a model.
   struct Account {
     std::weak_ptr<const engine::Synthesizer> model;
     BatchCost cost;
@@ -102,21 +104,22 @@ class WindowQueue {
   Account& AccountOf(const WindowJob& job);
   CostEstimate CostOf(const WindowJob& job, common::TimePoint now) const;
   QueueState StateAt(common::TimePoint now) const;
-  // Takes the windows at these indices out, in this order; leaves null models behind.
+  // Removes the window at an index and leaves one with a null model, for RemoveTaken.
   QueuedWindow TakeOut(std::size_t index);
   void RemoveTaken();
   void CountOvertaking(const Batch& batch);
   void Start(Batch& batch, common::TimePoint now);
 
   const WindowQueueOptions options_;
-  std::vector<QueuedWindow> waiting_;  // in the order they came
+  std::vector<QueuedWindow> waiting_;  // in order of arrival
   std::map<const engine::Synthesizer*, Account> accounts_;
   std::map<int, common::TimePoint> running_;  // batch number -> expected end
   std::array<int, kLanes> overtaken_frames_ = {};
   common::TimePoint last_company_ = common::TimePoint::min();
   common::TimePoint last_short_ = common::TimePoint::min();
-  // What the model whose batch started last had had by then. A model whose line was empty goes on
-  // from here: having had nothing for a while gives no claim to everything now.
+  // The computing time that the model whose batch started last had used by then. A model without
+  // waiting windows continues from here, because an idle model must not claim all the time that it
+  // did not use.
   double served_by_now_ = 0;
   int batches_ = 0;
 };

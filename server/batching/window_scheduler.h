@@ -14,7 +14,7 @@
 
 namespace duet::server::batching {
 
-// Where a window's time went.
+// How long a window waited and how long it was computed.
 struct WindowTimings {
   double queue_seconds = 0;
   double compute_seconds = 0;  // of the batch that the window was part of
@@ -26,27 +26,29 @@ struct WindowOutcome {
   WindowTimings timings;
 };
 
-// One network evaluation, and whom to tell.
+// One network evaluation and the callback for its result.
 struct WindowJob {
   std::shared_ptr<const engine::Synthesizer> model;
   engine::SynthesisWindow window;
   Priority priority = Priority::kInteractive;
   common::TimePoint deadline = common::TimePoint::max();
-  // The owner sets it to give the result up, the model stops soon if it has begun. Required.
+  // Required. Set by the owner when the result is not needed any more. A model that has started
+  // stops soon.
   std::shared_ptr<const std::atomic<bool>> cancelled;
-  // A further window of a call that is being answered. Never refused for a full queue: what was
-  // begun is finished, and a call has one window in the queue at most.
+  // True for every window of a call but the first. Such a window is never rejected because the
+  // queue is full, so that calls that have started can finish. A call has at most one window in the
+  // queue.
   bool continues_call = false;
-  // Whose call it is: clients take turns. Empty is a client as well.
+  // The client of the call. Clients take turns. The empty string is a client too.
   std::string client;
-  // How many windows the whole call has, 1 or more. A long call gives way to shorter ones.
+  // Number of windows of the whole call, at least 1. Long calls yield to short ones.
   int call_windows = 1;
   // Called once, on a thread of the scheduler, under no lock. Must not throw.
   std::function<void(WindowOutcome)> done;
 };
 
-// Told of every batch, and of every window that left a scheduler's queue, whether it was evaluated
-// or dropped.
+// Notified of every batch, and of every window that leaves a scheduler's queue, whether it was
+// evaluated or dropped.
 //
 // Threads: called concurrently, on the scheduler's threads, under no lock. Must neither block nor
 // throw.
@@ -58,30 +60,29 @@ class WindowObserver {
   virtual void WindowFinished(Priority priority, const WindowTimings& timings) = 0;
 };
 
-// Decides when windows are evaluated, and with which others. Callers do not notice the others.
+// Decides when windows are evaluated, and which of them together. Batching does not change results.
 //
 //   absl::Status admitted = scheduler.Submit(std::move(job));
-//   if (!admitted.ok()) return admitted;   // job.done will never run
+//   if (!admitted.ok()) return admitted;   // job.done is never called
 //
-// A job that is cancelled, past its deadline or too close to it to be done in time never starts:
-// done gets CANCELLED or DEADLINE_EXCEEDED.
+// A job that is cancelled, past its deadline, or too close to it to finish in time never starts.
+// Its done gets CANCELLED or DEADLINE_EXCEEDED.
 //
 // Threads: safe to call concurrently.
 class WindowScheduler {
  public:
   virtual ~WindowScheduler() = default;
 
-  // Takes the job: done will run exactly once, never within Submit.
-  // Fails with RESOURCE_EXHAUSTED when the queue is full or too long for the deadline of a call's
-  // first window, with UNAVAILABLE when shutting down;
-  // done then never runs.
+  // Queues the job. Calls done exactly once, never within Submit. Returns RESOURCE_EXHAUSTED if the
+  // queue is full or too long for the deadline of a call's first window, and UNAVAILABLE during
+  // shutdown; done is then never called.
   virtual absl::Status Submit(WindowJob job) = 0;
 
-  // Whether the first window of a call of this priority and client would find room in the queue
-  // now: OK, or what Submit would say. Asked before a call is worked on at all.
+  // Returns what Submit would return now for the first window of a call of this priority and
+  // client, without regard to its deadline. Called before a call is processed.
   virtual absl::Status CheckRoom(Priority priority, const std::string& client) const = 0;
 
-  // Windows that wait for their turn now.
+  // Returns the number of waiting windows.
   virtual std::size_t queued_windows() const = 0;
 };
 
