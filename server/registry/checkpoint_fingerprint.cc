@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The change time cannot be set by a program: it differs even if a file's size and modification
-// time were restored.
+// Programs cannot set the change time, so it differs even if a file's size and modification time
+// were restored.
 std::string StampOf(const struct stat& file) {
   return absl::StrJoin(
       {static_cast<int64_t>(file.st_dev), static_cast<int64_t>(file.st_ino),
@@ -28,7 +28,7 @@ std::string StampOf(const struct stat& file) {
       ":");
 }
 
-// Far more than a tick of any file system.
+// Far more than the time resolution of any file system.
 constexpr std::chrono::seconds kSettling(2);
 
 bool IsSettled(const struct stat& file, CheckpointFingerprint::Time now) {

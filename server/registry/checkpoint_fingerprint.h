@@ -11,11 +11,11 @@ namespace duet::server::registry {
 // The content of a checkpoint's files at one moment: the regular files in its folder, except hidden
 // files and documents (*.md), which no engine reads.
 //
-// A file counts as unchanged if the file system says so (device, inode, size, modification and
-// change time). Otherwise the SHA-256 digest of its content decides, so that a copy or a `touch`
-// is no change, and large files are read only when there is reason to. The times of a file that was
-// written less than two seconds before it was looked at prove nothing: file systems count in ticks,
-// and another write in the same tick would not show.
+// A file is unchanged if its device, inode, size, modification time and change time are equal.
+// Otherwise its SHA-256 digest decides, so that a copy or a `touch` is not a change, and large
+// files are read only if necessary. The times of a file that was written less than two seconds
+// before the check are ignored, because a second write within the resolution of the file system's
+// clock would not change them.
 //
 // Threads: not safe to call concurrently.
 class CheckpointFingerprint {
@@ -23,16 +23,17 @@ class CheckpointFingerprint {
   using Clock = std::chrono::system_clock;
   using Time = Clock::time_point;
 
-  // Of no checkpoint: matches nothing.
+  // Matches no folder.
   CheckpointFingerprint() = default;
-  // Reads every file of a checkpoint folder once. Of a folder without files: matches nothing.
+  // Reads every file of a checkpoint folder once. For a folder without files, matches no folder.
   static CheckpointFingerprint Of(const std::filesystem::path& folder, Time now = Clock::now());
 
-  // Whether the files in `folder` have this content. Remembers the times of files whose content
-  // turned out to be the same, so that the next call need not read them.
+  // Returns true if the files in `folder` have this content. Remembers the times of unchanged
+  // files, so that the next call does not read them.
   bool Matches(const std::filesystem::path& folder, Time now = Clock::now());
 
-  // Whether the file system says that nothing in `folder` was written since. Reads no content.
+  // Returns true if no file in `folder` was written since, according to the file system. Reads no
+  // content.
   bool IsUntouched(const std::filesystem::path& folder) const;
 
  private:

@@ -13,13 +13,13 @@ namespace {
 
 using motion::Vec3;
 
-// As many frames as tell good weights from bad ones, however long the windows are.
+// Enough frames to distinguish valid weights from corrupt ones, independent of the window length.
 constexpr int kFrames = 60;
 constexpr double kBoneMetres = 0.3;
 constexpr double kHipMetres = 0.12;
 constexpr double kSwayMetres = 0.05;
 
-// The joints from the root down to `foot`.
+// Returns the joints from the root down to `foot`.
 std::vector<bool> LegTo(int foot, const motion::Skeleton& skeleton) {
   std::vector<bool> leg(skeleton.joint_names.size());
   const std::vector<int> parents = skeleton.Parents();
@@ -30,7 +30,7 @@ std::vector<bool> LegTo(int foot, const motion::Skeleton& skeleton) {
   return leg;
 }
 
-// Legs point down; everything else goes up and outwards, each bone another way.
+// Legs point down; all other bones point up and outwards, each in a different direction.
 std::vector<Vec3> StandingPose(const motion::Skeleton& skeleton) {
   std::vector<Vec3> pose(skeleton.joint_names.size());
   std::vector<bool> left(pose.size());
@@ -49,7 +49,8 @@ std::vector<Vec3> StandingPose(const motion::Skeleton& skeleton) {
                    static_cast<float>(kBoneMetres * 0.4 * std::sin(angle))};
     if (left[child] != right[child]) {
       const auto parent = static_cast<std::size_t>(bone.parent);
-      const double side = left[parent] == right[parent] ? kHipMetres : 0;  // where the legs part
+      const double side =
+          left[parent] == right[parent] ? kHipMetres : 0;  // where the legs separate
       offset = {static_cast<float>(left[child] ? side : -side), static_cast<float>(-kBoneMetres),
                 0};
     }
@@ -62,7 +63,7 @@ std::vector<Vec3> StandingPose(const motion::Skeleton& skeleton) {
   return pose;
 }
 
-// One window for no class and one for each.
+// Returns one window without a class and one for each class.
 std::vector<engine::SynthesisWindow> GoldenWindows(const engine::ModelDescription& model) {
   const int frames = std::min(kFrames, model.window_frames);
   const std::size_t classes = model.classes.size();
@@ -86,7 +87,7 @@ absl::Status CheckFollower(const motion::Poses& follower, const engine::Synthesi
     const Vec3 leader = window.leader.at(t, model.skeleton.root);
     for (int joint = 0; joint < follower.joint_count(); ++joint) {
       const float distance = Distance(follower.at(t, joint), leader);
-      // Written so that NaN is too far.
+      // Negated, so that NaN is rejected.
       if (distance <= kFarthestFollower) continue;
       return absl::InvalidArgumentError(absl::StrCat(
           "the weights answer a leader who stands still with a follower whose ",
@@ -105,7 +106,7 @@ motion::Poses GoldenLeader(const motion::Skeleton& skeleton, int frames, double 
   for (int t = 0; t < frames; ++t) {
     const double seconds = t / frame_rate_hz;
     for (int joint = 0; joint < skeleton.joint_count(); ++joint) {
-      // What is higher sways farther, and joints do so one after the other.
+      // Higher joints sway farther, and joints sway one after another.
       const Vec3 position = pose[static_cast<std::size_t>(joint)];
       const double sway = kSwayMetres * position.y;
       leader.at(t, joint) =

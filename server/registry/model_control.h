@@ -17,45 +17,46 @@ namespace duet::server::registry {
 // Something besides models that a reload reads again, such as certificates.
 struct Reloadable {
   std::string name;                      // for the log: "certificates"
-  std::function<absl::Status()> reload;  // on failure what was there before stays
-  // OK, or why what is on disk is not in use; quick, safe to call concurrently. Null: as the last
-  // reload left it.
+  std::function<absl::Status()> reload;  // if it fails, the previous content stays in use
+  // Returns OK, or why the content on disk is not in use. Must be fast and safe to call
+  // concurrently. Null: the status of the last reload.
   std::function<absl::Status()> state = nullptr;
 };
 
-// What an operator may do to models while calls are answered, by signal or admin call. Whatever
-// loads does so on a thread of its own with a small share of the processors.
+// Changes models on behalf of the operator, by signal or admin call, while the server handles
+// calls. Models are loaded on a separate thread with low priority.
 //
-// Threads: safe to call concurrently. Nothing here waits but the destructor, for the load under
-// way.
+// Threads: safe to call concurrently. No method blocks, except the destructor, which waits for a
+// load in
+//          progress.
 class ModelControl {
  public:
   using ReloadDone = std::function<void(const absl::StatusOr<ReloadReport>&)>;
   using Done = std::function<void(const absl::Status&)>;
 
-  // All outlive it.
+  // The arguments outlive it.
   ModelControl(ModelManager& manager, ModelRegistry& registry, ModelObserver& observer)
       : manager_(manager), registry_(registry), observer_(observer) {}
 
-  // From the next Reload on.
+  // Takes effect with the next Reload.
   void AddReloadable(Reloadable reloadable);
 
-  // As ModelManager's; before it everything that is reloadable is read again. Each calls `done`
-  // once: on the thread that loads, or with CANCELLED when the server stops first.
+  // Like the methods of ModelManager, but asynchronous. Reload reads everything reloadable first.
+  // Each calls `done` once, on the loading thread, with CANCELLED if the server stops first.
   void Reload(ReloadDone done);
   void Load(std::string name, uint32_t version, Done done);
   void Unload(std::string name, uint32_t version, Done done);
 
-  // As ModelRegistry's.
+  // Like the methods of ModelRegistry.
   absl::Status SetLabel(const std::string& name, const std::string& label, uint32_t version);
   absl::Status DeleteLabel(const std::string& name, const std::string& label);
   std::vector<ModelStatus> List() const { return manager_.List(); }
   std::vector<SkippedFolder> skipped() const { return manager_.skipped(); }
-  // "name: why" for everything reloadable whose content on disk was refused, and for the repository
-  // if the last reload could not read it; what was read before is still in use.
+  // Returns "name: reason" for everything reloadable whose content on disk was rejected, and for
+  // the repository if the last reload could not read it. The previous content is still in use.
   std::vector<std::string> problems() const;
 
-  // Begins nothing further that loads.
+  // Starts no further loads.
   void Stop() { thread_.Stop(); }
 
  private:
@@ -65,10 +66,10 @@ class ModelControl {
   };
 
   absl::StatusOr<ReloadReport> ReloadNow();
-  // Reads everything but models again.
+  // Reads everything reloadable except models.
   void ReloadOthers();
   std::vector<Entry> entries() const;
-  // Calls `work` on the thread that loads, and `done` with what it gives.
+  // Calls `work` on the loading thread, then `done` with its result.
   void Post(std::function<absl::Status()> work, Done done);
 
   ModelManager& manager_;

@@ -21,72 +21,74 @@
 
 namespace duet::server::registry {
 
-// Keeps what is served in line with a repository of checkpoints.
+// Synchronises the served models with a repository of checkpoints.
 //
-// A version is loaded and checked beside the one that is served, then takes its place: calls under
-// way finish on what they began with, and no call finds a gap. A checkpoint that does not load
-// changes nothing. A version is let go only after those in its stead are there, and never while a
-// version label points at it or the default model would be left without any.
+// A version is loaded and checked while the previous one is still served, and then replaces it.
+// Calls in progress keep the model that they started with, and the model is always available. A
+// checkpoint that does not load changes nothing. A version is removed only after its replacements
+// are served, and never while a version label points to it or it is the last version of the default
+// model.
 //
-// Threads: safe to call concurrently. What loads (Reload, Load) does so on the calling thread, one
-// at a time; List and labels never wait for that.
+// Threads: safe to call concurrently. Reload and Load run on the calling thread, one at a time.
+// List and
+//          the methods for labels do not wait for them.
 class ModelManager {
  public:
   // Both outlive the manager.
   ModelManager(ModelRegistry& registry, ModelObserver& observer)
       : registry_(registry), observer_(observer) {}
 
-  // Where checkpoints are and what loads them. Without a repository, what Add gets is served and
-  // nothing can be loaded or unloaded.
+  // Sets the repository and the loader. Without a repository, only models passed to Add are served,
+  // and nothing can be loaded or unloaded.
   void UseRepository(std::filesystem::path repository, ModelLoader loader);
-  // Counts from the next Reload on.
+  // Takes effect with the next Reload.
   void SetPolicies(std::vector<VersionPolicy> policies);
-  // The labels of the configuration. The next Reload, or ApplyLabels, moves those that are not as
-  // they were configured before and deletes those that are gone; others stay where the operator
-  // moved them.
+  // Sets the configured labels. The next Reload or ApplyLabels moves the labels whose configuration
+  // has changed and deletes those that were removed from it. Other labels keep the version that the
+  // operator assigned.
   void SetLabels(std::vector<VersionLabel> labels);
 
-  // Serves a loaded model, or remembers why it is not.
+  // Serves a loaded model, or records why it failed to load.
   void Add(const LoadReport& report);
 
-  // Loads what is new or has changed in the repository and what failed before, as the policies,
-  // labels and the operator's own wishes have it; lets go of what is no longer wanted. Stops before
-  // the next checkpoint when `stop` gives true. Fails, and changes nothing, when the repository
-  // cannot be read or there is nothing in it.
+  // Loads new and changed checkpoints and those that failed before, as policies, labels and the
+  // operator's requests specify, and removes versions that these exclude. Stops before the next
+  // checkpoint if `stop` returns true. Fails, without changes, if the repository cannot be read or
+  // is empty.
   absl::StatusOr<ReloadReport> Reload(const std::function<bool()>& stop);
 
-  // Loads a version even if no policy wants it or it is served already; it stays whatever the
-  // policies say. NOT_FOUND when the repository does not have it, FAILED_PRECONDITION with the
-  // reason when it does not load or there is no repository.
+  // Loads a version even if policies exclude it or it is already served. Policies do not unload it
+  // later. Returns NOT_FOUND if the repository does not contain it, and FAILED_PRECONDITION with
+  // the reason if it does not load or there is no repository.
   absl::Status Load(absl::string_view name, uint32_t version);
 
-  // Serves a version no longer; it stays away until it is loaded by name. NOT_FOUND when it is not
-  // served, FAILED_PRECONDITION when a label or the default needs it or there is no repository.
+  // Stops serving a version until Load is called for it. Returns NOT_FOUND if it is not served, and
+  // FAILED_PRECONDITION if a label or the default model needs it or there is no repository.
   absl::Status Unload(absl::string_view name, uint32_t version);
 
-  // Brings labels in line with the configuration. Returns which could not be set, and why: their
-  // versions are not served. They are tried again next time.
+  // Applies the configured labels. Returns the labels whose versions are not served, with the
+  // reason. The next call retries them.
   std::vector<std::string> ApplyLabels();
 
-  // One line for each label and policy of the configuration that names a model that is neither in
-  // the repository nor served: the field, the names there are, and the name that came.
+  // Returns one line for each configured label and policy whose model is neither in the repository
+  // nor served: the field, the known names, and the unknown name.
   std::vector<std::string> UnknownNames() const;
 
-  // Every version that was ever looked at and is still there, by name, newest first.
+  // Returns every known version that still exists, by name, newest first.
   std::vector<ModelStatus> List() const;
-  // Of the repository, when it was looked through last.
+  // Returns the folders that the last scan of the repository skipped.
   std::vector<SkippedFolder> skipped() const;
-  // Whether there is a model of that name, served or not.
+  // Returns true if there is a model of that name, served or not.
   bool Knows(absl::string_view name) const;
 
  private:
-  // What the operator wants, whatever the policies say.
+  // The operator's request, which overrides policies.
   enum class Wish { kAsThePolicySays, kLoaded, kUnloaded };
   struct Version {
     bool served = false;
     bool loading = false;
     Wish wish = Wish::kAsThePolicySays;
-    std::string error;                  // of its last load; empty after a success
+    std::string error;                  // of the last load; empty if it succeeded
     CheckpointFingerprint fingerprint;  // of what is served
     double load_seconds = 0;
   };
@@ -96,26 +98,27 @@ class ModelManager {
       std::map<std::string, std::map<uint32_t, std::filesystem::path, std::greater<>>, std::less<>>;
 
   absl::StatusOr<Folders> Scan();
-  // One model's part of a reload. False when it was stopped.
+  // Reloads one model. Returns false if it was stopped.
   bool ReloadModel(const std::string& name, const Folders::mapped_type& folders,
                    const std::function<bool()>& stop, ReloadReport& report);
-  // Of one model; empty: of each.
+  // ApplyLabels for one model; if empty, for every model.
   std::vector<std::string> ApplyLabelsOf(absl::string_view name);
-  // Whether policy or operator want a version. `places`: for how many the policy still has room.
+  // Returns true if policy or operator include a version. `places`: how many more versions the
+  // policy includes.
   bool IsWanted(const std::string& name, uint32_t version, const VersionPolicy& policy,
                 uint32_t places) const;
-  // Lists a version that is there and not wanted.
+  // Records a version that exists but is excluded.
   void PassOver(const std::string& name, uint32_t version);
-  // Forgets every version of a model that has neither a folder nor is served.
+  // Forgets every version of a model that has no folder and is not served.
   void ForgetWithout(const Folders::mapped_type& folders, const std::string& name);
-  // Null if the version was never looked at.
+  // Returns null if the version is unknown.
   const Version* Find(const std::string& name, uint32_t version) const DUET_REQUIRES(mutex_);
   Wish WishFor(const std::string& name, uint32_t version) const;
-  // Whether a label points at a version, or is to as the configuration has it.
+  // Returns true if a label points to a version, or is configured to.
   bool IsLabelled(const std::string& name, uint32_t version) const;
   bool WillBeLabelled(const std::string& name, uint32_t version) const;
-  // Whether what is served is what lies in `folder`. A version whose last load failed is not, even
-  // if its old files are back: only a load that succeeds settles that.
+  // Returns true if the served version is the one in `folder`. Returns false if the last load
+  // failed, even if the previous files were restored: only a successful load clears the error.
   bool IsUnchanged(const std::string& name, uint32_t version, const std::filesystem::path& folder);
   absl::Status LoadFolder(const std::string& name, uint32_t version,
                           const std::filesystem::path& folder);
@@ -128,7 +131,7 @@ class ModelManager {
   ModelRegistry& registry_;
   ModelObserver& observer_;
 
-  common::Mutex work_mutex_;  // held by who loads or unloads
+  common::Mutex work_mutex_;  // held while loading or unloading
   mutable common::Mutex mutex_;
   std::filesystem::path repository_ DUET_GUARDED_BY(mutex_);
   ModelLoader loader_ DUET_GUARDED_BY(mutex_);

@@ -17,62 +17,61 @@
 
 namespace duet::server::registry {
 
-// Which model a request asks for. All empty: the default model's newest version.
+// Selects a model. If all fields are empty: the newest version of the default model.
 struct ModelQuery {
   std::string name;
   std::optional<uint32_t> version;
   std::optional<std::string> version_label;
 };
 
-// A model version being served.
+// A model version that the server serves.
 struct ServedModel {
   std::shared_ptr<const engine::Synthesizer> model;
   std::vector<std::string> version_labels;  // sorted
   bool is_default = false;
 };
 
-// What of a query nothing that is served answers to.
+// The part of a query that matches no served model.
 struct ModelNotFound {
   std::string field;        // of the request: "model.name", "model.version", "model.version_label"
-  std::string description;  // what came, and what is served
+  std::string description;  // the value, and what the server serves
 };
 
 using FindResult = std::variant<ServedModel, ModelNotFound>;
 
-// The models being served, by name and version.
+// The served models, by name and version.
 //
-// Find hands out shared ownership: a call keeps its model when another takes its place here. A
-// label always points at a version that is served, and the default model, once set, always has one.
+// Find returns shared ownership, so a call keeps its model when it is replaced here. A label always
+// points to a served version. Once set, the default model always has a served version.
 // Threads: safe to call concurrently.
 class ModelRegistry {
  public:
-  // Serves a model under its description's name and version, in place of one already there.
+  // Serves a model under its description's name and version. Replaces an existing one.
   void Serve(std::shared_ptr<const engine::Synthesizer> model);
 
-  // Points a label of a model at a version, in place of where it pointed before.
-  // NOT_FOUND when that version is not served.
+  // Points a label of a model to a version. Returns NOT_FOUND if that version is not served.
   absl::Status SetLabel(absl::string_view name, absl::string_view label, uint32_t version);
 
-  // NOT_FOUND when there is no such label.
+  // Returns NOT_FOUND if the label does not exist.
   absl::Status DeleteLabel(absl::string_view name, absl::string_view label);
 
-  // Serves a version no longer; calls that found it go on. NOT_FOUND when it is not served,
-  // FAILED_PRECONDITION when a label points at it or it is the default model's last.
+  // Stops serving a version. Calls in progress keep it. Returns NOT_FOUND if it is not served, and
+  // FAILED_PRECONDITION if a label points to it or it is the last version of the default model.
   absl::Status Remove(absl::string_view name, uint32_t version);
 
-  // The model that answers when a request names none; until set, the first name in order.
-  // NOT_FOUND when no version of it is served.
+  // Sets the model for requests that name none. Until then, it is the first one by name. Returns
+  // NOT_FOUND if no version of it is served.
   absl::Status SetDefault(absl::string_view name);
 
   FindResult Find(const ModelQuery& query) const;
 
-  // Every version, by name, newest first.
+  // Returns every version, by name, newest first.
   std::vector<ServedModel> List() const;
 
-  // The versions that labels of a model point at.
+  // Returns the versions to which labels of a model point.
   std::vector<uint32_t> LabelledVersions(absl::string_view name) const;
 
-  // The name of the default model; empty while nothing is served.
+  // Returns the name of the default model; empty if no model is served.
   std::string default_model() const;
 
  private:
@@ -84,7 +83,7 @@ class ModelRegistry {
   using Entries = std::map<std::string, Entry, std::less<>>;
 
   const std::string& DefaultName() const DUET_REQUIRES(mutex_);
-  // Whether a version that is served may be taken away.
+  // Returns OK if a served version may be removed.
   absl::Status CheckRemovable(absl::string_view name, const Entry& entry, uint32_t version) const
       DUET_REQUIRES(mutex_);
   ServedModel Describe(const std::string& name, const Entry& entry, uint32_t version) const

@@ -13,18 +13,18 @@
 
 namespace duet::server::registry {
 
-// Turns a checkpoint folder into a model. Only the main program knows which engine it is.
+// Loads a model from a checkpoint folder. The main program chooses the engine.
 using ModelLoader = std::function<absl::StatusOr<std::shared_ptr<const engine::Synthesizer>>(
     const std::filesystem::path& folder)>;
 
-// What became of one checkpoint.
+// The result of loading one checkpoint.
 struct LoadReport {
   std::string source;  // <name>/<version>, or "embedded/<name>/<version>"
   absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> model;
   double load_seconds = 0;
 };
 
-// A folder that is no checkpoint although it lies where one is looked for.
+// A folder in the repository that is not a checkpoint.
 struct SkippedFolder {
   std::string folder;  // <name>, or <name>/<version>
   std::string reason;
@@ -38,22 +38,22 @@ struct RepositoryListing {
   std::vector<SkippedFolder> skipped;              // sorted
 };
 
-// The checkpoint folders <repository>/<name>/<version>/ that hold a manifest.json. Versions are
-// numbers of 1 or more without leading zeros; every other folder is skipped for a reason. Files,
-// and whatever begins with a dot, are nobody's business.
+// Lists the checkpoint folders <repository>/<name>/<version>/ that contain a manifest.json.
+// Versions are numbers of at least 1 without leading zeros. Other folders are reported as skipped,
+// with a reason. Files and names that start with a dot are ignored.
 //
-// Any of the folders may be a symbolic link, and a version may be a volume as Kubernetes mounts
-// them, whose content lies behind its link `..data`.
+// Any folder may be a symbolic link. A version may be a volume mounted by Kubernetes, whose content
+// is behind its link `..data`.
 //
-// Fails with NOT_FOUND or PERMISSION_DENIED when the repository itself cannot be read.
+// Returns NOT_FOUND or PERMISSION_DENIED if the repository itself cannot be read.
 absl::StatusOr<RepositoryListing> ListCheckpoints(const std::filesystem::path& repository);
 
-// Where a checkpoint's files are at this moment, symbolic links and `..data` followed: all files
-// read from there are of one kind, even if the links change meanwhile.
+// Returns the current folder of a checkpoint's files, with symbolic links and `..data` resolved.
+// All files read from it belong to the same checkpoint, even if the links change in the meantime.
 std::filesystem::path ResolveCheckpoint(const std::filesystem::path& folder);
 
-// Loads one checkpoint folder and checks its answers (golden_check.h). A checkpoint whose manifest
-// does not say the name and version that its folder says is refused: one of the two is wrong.
+// Loads one checkpoint folder and checks its results (golden_check.h). Rejects a checkpoint if name
+// or version in its manifest differ from those of its folder.
 LoadReport LoadCheckpoint(const std::filesystem::path& folder, const ModelLoader& loader);
 
 }  // namespace duet::server::registry

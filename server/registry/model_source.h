@@ -12,11 +12,11 @@
 
 namespace duet::server::registry {
 
-// Where models come from.
+// How models are loaded.
 struct ModelSource {
-  std::string engine;  // what computes their answers, for the log: "cpu, bf16"
+  std::string engine;  // name of the engine for the log: "cpu, bf16"
   ModelLoader load_folder;
-  // The default model first.
+  // Loads the embedded models. The default model is the first.
   std::function<absl::StatusOr<std::vector<std::shared_ptr<const engine::Synthesizer>>>()>
       load_embedded;
 };

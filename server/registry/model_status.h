@@ -10,12 +10,12 @@
 
 namespace duet::server::registry {
 
-// How it stands with a version that was ever looked at.
+// State of a version that is or was in the repository.
 enum class ModelState {
-  kLoading,   // for the first time; while its successor loads, a version is served
-  kServed,    // answers calls
+  kLoading,   // for the first time; a version stays kServed while it is reloaded
+  kServed,    // available to calls
   kFailed,    // could not be loaded
-  kUnloaded,  // is in the repository, but policy or operator do not want it
+  kUnloaded,  // in the repository, but excluded by policy or operator
 };
 
 struct ModelStatus {
@@ -24,42 +24,42 @@ struct ModelStatus {
   ModelState state = ModelState::kUnloaded;
   bool is_default = false;
   std::vector<std::string> version_labels;  // sorted
-  // Why its last load failed; empty if it succeeded. If the version is served nevertheless, what
-  // answers calls was loaded before, and `outdated` is true.
+  // Why the last load failed; empty if it succeeded. If an earlier load is still served, `outdated`
+  // is true.
   std::string error;
   bool outdated = false;
-  double load_seconds = 0;  // of what is served
+  double load_seconds = 0;  // of the load that is served
 };
 
-// What a reload did. Each version as "<name>/<version>".
+// Result of a reload. Versions are written "<name>/<version>".
 struct ReloadReport {
-  std::vector<std::string> loaded;    // new, or in place of what was served
-  std::vector<std::string> refused;   // ModelStatus tells why
-  std::vector<std::string> unloaded;  // no longer in the repository, or no longer wanted
+  std::vector<std::string> loaded;    // new or replaced
+  std::vector<std::string> refused;   // ModelStatus::error has the reason
+  std::vector<std::string> unloaded;  // removed from the repository, or excluded
   int unchanged = 0;
   std::vector<std::string> refused_labels;  // whose versions are not served
-  std::vector<std::string> problems;        // what else could not be done as it should
+  std::vector<std::string> problems;        // other errors
 
-  // Whether everything that was asked for is so now.
+  // True if the server serves everything that was requested.
   bool ok() const { return refused.empty() && refused_labels.empty() && problems.empty(); }
 };
 
-// Hears what becomes of models. Called by whoever loads, under no lock.
+// Notified of changes to models, on the loading thread, under no lock.
 class ModelObserver {
  public:
   virtual ~ModelObserver() = default;
-  // A checkpoint is served from now on, or was refused; `still_served` tells of a refused one that
-  // what was loaded before in its place goes on.
+  // A checkpoint was loaded and is served, or was rejected. `still_served`: an earlier load of the
+  // rejected checkpoint is still served.
   virtual void Loaded(const LoadReport& report, bool still_served) = 0;
-  // A version is served no longer.
+  // A version is no longer served.
   virtual void Unloaded(const std::string& source) = 0;
-  // A version that could not be loaded is no longer there, or no longer wanted.
+  // A version that could not be loaded was removed from the repository, or excluded.
   virtual void Forgotten(const std::string& source) = 0;
-  // The repository was looked through; each folder that is no checkpoint, new or not.
+  // The repository was scanned. `skipped`: every folder that is not a checkpoint.
   virtual void Scanned(const std::vector<SkippedFolder>& skipped) = 0;
-  // A reload that an operator asked for is over.
+  // A reload requested by an operator has finished.
   virtual void Reloaded(const absl::StatusOr<ReloadReport>& report) = 0;
-  // What is served may be other than it was.
+  // The served models may have changed.
   virtual void Changed() = 0;
 };
 

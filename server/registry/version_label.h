@@ -6,7 +6,7 @@
 
 namespace duet::server::registry {
 
-// A name that requests may use in place of a version: "stable", "canary".
+// A name that requests may use instead of a version number: "stable", "canary".
 struct VersionLabel {
   std::string model;
   std::string label;

@@ -10,16 +10,16 @@
 
 namespace duet::server::registry {
 
-// Which versions of a model in the repository are served: every one unless told otherwise.
+// Which versions of a model in the repository are served. Default: all.
 struct VersionPolicy {
   std::string model;               // empty: every model without a policy of its own
-  std::optional<uint32_t> latest;  // so many, the newest that load
-  std::vector<uint32_t> versions;  // these alone, where there are any
+  std::optional<uint32_t> latest;  // only this many of the newest versions that load
+  std::vector<uint32_t> versions;  // if not empty, only these
 
   bool Names(uint32_t version) const;
 };
 
-// The policy of a model; the first that fits of several.
+// Returns the first policy for a model.
 VersionPolicy PolicyOf(absl::string_view model, const std::vector<VersionPolicy>& policies);
 
 }  // namespace duet::server::registry
