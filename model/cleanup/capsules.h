@@ -12,23 +12,26 @@ namespace duet::cleanup {
 
 struct CapsuleOptions {
   bool enabled = true;
-  // Bodies give way, clothes and capsules are rough: captured people overlap as much.
+  // Permitted overlap. Captured people overlap as much, because bodies and clothes yield and
+  // capsules are approximate.
   double allowed_metres = 0.03;
-  double fastest_metres_per_second = 0.5;  // at which a whole body makes room
+  double fastest_metres_per_second = 0.5;  // maximum speed of the correction of a whole body
 };
 
-// How far each frame's bodies may touch: 0 not at all, 1 as they like (an embrace).
+// How far the bodies may overlap in each frame, from 0 (not at all) to 1 (freely, as in an
+// embrace).
 using Touch = std::vector<float>;
 
-// Both keep two bodies of one skeleton from passing through each other by more than allowed, moving
-// the follower alone; a skeleton without a chest stays as it is. `radii` are CapsuleRadii's; frames
-// of `leader` and `touch` as the follower's.
+// Both functions limit the overlap of two bodies with the same skeleton. They move only the
+// follower, and do nothing for a skeleton without a chest. `radii`: from CapsuleRadii. `leader` and
+// `touch` have as many frames as the follower.
 //
-// Where trunks or legs overlap the whole follower makes room horizontally.
+// Resolves overlaps of trunks and legs: moves the whole follower horizontally.
 void PartBodies(const motion::Skeleton& skeleton, const Body& body,
                 const std::vector<double>& radii, const motion::Poses& leader, const Touch& touch,
                 const CapsuleOptions& options, const Timing& timing, motion::Poses* follower);
-// Arms that reach into the leader are taken out of it, hand first, bones keeping their lengths.
+// Resolves overlaps of the follower's arms with the leader: moves the hands, preserving bone
+// lengths.
 void PartArms(const motion::Skeleton& skeleton, const Body& body, const std::vector<double>& radii,
               const motion::Poses& leader, const Touch& touch, const CapsuleOptions& options,
               const Timing& timing, motion::Poses* follower);

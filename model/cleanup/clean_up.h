@@ -14,8 +14,8 @@
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
-// What a body can do and a network need not know: stands upright, on the floor and near the other,
-// on feet that do not slide, bends as joints do, and passes through nobody. World metres, y up.
+// Corrects motion that a body cannot perform: keeps it upright, on the floor and near the other
+// body, stops sliding feet, limits joint angles, and resolves overlaps. World metres, y up.
 namespace duet::cleanup {
 
 struct Options {
@@ -27,8 +27,8 @@ struct Options {
   ContactOptions contacts;
 };
 
-// Corrects one window of a follower, stage by stage. Every stage leaves the settled frames as they
-// are, eases in after them, and keeps the bones' lengths.
+// Corrects one window of a follower in stages. Every stage leaves the settled frames unchanged,
+// eases in after them, and preserves bone lengths.
 //
 // Cost:    linear in the frames.
 // Threads: const methods are safe to call concurrently.
@@ -37,8 +37,8 @@ class CleanUp {
   // Requires a skeleton that Validate accepts.
   explicit CleanUp(const motion::Skeleton& skeleton, const Options& options = {});
 
-  // Shapes: leader as the follower; touch [frames]. At least one frame. The leader's feet tell
-  // where the floor is.
+  // The leader's feet define the floor.
+  // Shapes: `leader` like the follower; touch [frames]. At least one frame.
   void Apply(const motion::Poses& leader, const Touch& touch, const Timing& timing,
              motion::Poses* follower) const;
 

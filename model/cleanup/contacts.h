@@ -13,31 +13,31 @@ namespace duet::cleanup {
 
 struct ContactOptions {
   bool enabled = true;
-  // A foot comes to stand below the first speed and height above the floor, and stands on up to the
-  // second.
+  // A contact begins when speed and height above the floor fall below the first value, and ends
+  // when one exceeds the second.
   double slow_metres_per_second = 0.3, fast_metres_per_second = 0.6;
   double low_metres = 0.08, high_metres = 0.12;
   double shortest_seconds = 0.2;
-  // A foot that would have to be held farther from where it is goes on to another place.
+  // Maximum correction. A foot that would have to move farther gets a new contact.
   double farthest_metres = 0.06;
-  double ease_seconds = 0.2;  // into a contact and out of it
+  double ease_seconds = 0.2;  // at the beginning and the end of a contact
 };
 
-// Frames [begin, end) in which a foot stands at a place.
+// Frames [begin, end) in which a foot stands at one position.
 struct Contact {
   int begin = 0;
   int end = 0;
   motion::Vec3 place;
 };
 
-// Of one foot's positions, from the last settled frame on; a foot that stands there stays where
-// that frame has it. Shapes: foot [frames].
+// Finds the contacts of one foot from the last settled frame on. A contact in the last settled
+// frame keeps the position of that frame. Shapes: foot [frames].
 std::vector<Contact> FindContacts(const std::vector<motion::Vec3>& foot, float floor,
                                   const ContactOptions& options, const Timing& timing);
 
-// Holds each foot in place along the floor while it stands, by turning thigh and shin. The body
-// goes along with its feet, so that it does not lean for them. A skeleton without legs of two bones
-// stays as it is.
+// Fixes the horizontal position of each foot during its contacts by rotating thigh and shin. The
+// body moves with its feet, so that it does not start to lean. Does nothing for a skeleton without
+// legs of two bones.
 void HoldContacts(const motion::Skeleton& skeleton, const Body& body, float floor,
                   const ContactOptions& options, const Timing& timing, motion::Poses* poses);
 

@@ -9,20 +9,20 @@ namespace duet::cleanup {
 
 struct FloorOptions {
   bool enabled = true;
-  // Feet up to the first distance above or below the floor are left alone; none stay beyond the
-  // second. Metres.
+  // Feet within the first distance above or below the floor are not corrected. After correction,
+  // none are beyond the second.
   double free_metres = 0.015;
   double most_metres = 0.035;
-  // What is in the air for less is a jump, and stays.
+  // A shorter time in the air is a jump and is not corrected.
   double jump_seconds = 0.2;
 };
 
-// Where the floor is that a motion stands on: a low percentile of its lower foot's heights, so that
-// neither a jump nor a foot that a tracker loses moves it.
+// Returns the height of the floor under a motion: a low percentile of the heights of its lower
+// foot, so that jumps and tracking errors do not change it.
 float FloorHeight(const motion::JointPair& feet, const motion::Poses& poses);
 
-// Lifts or lowers a body that is below the floor, or above it for longer than a jump. A skeleton
-// without feet stays as it is.
+// Lifts or lowers a body that is below the floor, or above it for longer than a jump. Does nothing
+// for a skeleton without feet.
 void StandOnFloor(const motion::Skeleton& skeleton, float floor, const FloorOptions& options,
                   const Timing& timing, motion::Poses* poses);
 

@@ -10,39 +10,39 @@
 
 namespace duet::cleanup {
 
-// An angle up to the first is left alone; none goes beyond the second. Degrees.
+// Angles up to `free` are not corrected. Corrected angles do not exceed `most`. Degrees.
 struct SoftRange {
   double free = 0;
   double most = 0;
 };
 
-// What grown people can do without help, mean and standard deviation in degrees: knees bend by
-// 142.5 (5.4), elbows by 142.9 (5.6) and backwards by 0.6 (3.1); hips turn the leg about itself by
-// 47 (6) either way, shoulders the arm by 69 (5) inwards and 104 (9) outwards (Boone and Azen 1979,
-// Journal of Bone and Joint Surgery 61-A, 756-759). Knees bend backwards by up to 10 (American
-// Academy of Orthopaedic Surgeons, Joint Motion, 1965). Necks bend forwards by 54 (9), to the side
-// by 45 (7), backwards by 77 (13) (Youdas and others 1992, Physical Therapy 72, 770-780, people in
-// their twenties).
+// Active ranges of motion of adults, as mean (standard deviation) in degrees: knee flexion 142.5
+// (5.4), elbow flexion 142.9 (5.6), elbow hyperextension 0.6 (3.1), hip rotation 47 (6) in both
+// directions, shoulder rotation 69 (5) inwards and 104 (9) outwards (Boone and Azen 1979, Journal
+// of Bone and Joint Surgery 61-A, 756-759). Knee hyperextension up to 10 (American Academy of
+// Orthopaedic Surgeons, Joint Motion, 1965). Neck flexion 54 (9), to the side 45 (7), extension 77
+// (13) (Youdas and others 1992, Physical Therapy 72, 770-780, people aged 20 to 29).
 struct JointRangeOptions {
   bool enabled = true;
-  SoftRange folded = {143, 155};   // knees and elbows: up to two deviations more than the mean
-  SoftRange backwards = {5, 10};   // the same
-  SoftRange knee_aside = {5, 10};  // out of the plane that the leg may bend in
-  // How far from straight backwards a knee may point the shin, from straight forwards an elbow the
-  // forearm, as seen along thigh or upper arm: two deviations and what the reference may be off.
+  SoftRange folded = {143, 155};   // flexion of knees and elbows: mean to two deviations above
+  SoftRange backwards = {5, 10};   // hyperextension of knees and elbows
+  SoftRange knee_aside = {5, 10};  // out of the plane in which the leg may bend
+  // Maximum angle, seen along thigh or upper arm, of the shin from straight backwards and of the
+  // forearm from straight forwards: two deviations plus the uncertainty of the reference.
   double leg_turn = 60;
   double arm_turn = 110;
-  SoftRange neck = {60, 85};  // between the trunk and the way from neck to head
+  SoftRange neck = {60, 85};  // between the trunk and the direction from neck to head
 };
 
-// Keeps knees and elbows from bending backwards, sideways or flat, and the head from falling off
-// the neck, softly and each frame by itself: joints move without jumps where the body does. A limb
-// that is corrected keeps the direction from hip to foot or shoulder to hand. A skeleton without
-// hips, chest, limbs or head loses what needs them; a limb that is raised against its trunk's
-// direction, where that tells nothing of it, is left as it is.
+// Limits how far knees and elbows bend backwards, sideways or together, and how far the head bends
+// from the trunk. The limits are soft and apply to each frame independently, so continuous motion
+// stays continuous. A corrected limb keeps the direction from hip to foot or from shoulder to hand.
+// Corrections that need hips, chest, limbs or a head are skipped if the skeleton lacks them. A limb
+// that is raised along its trunk's direction is not corrected, because the trunk then gives no
+// reference.
 //
-// A leg that is made straight reaches farther. `floor`, where there is one, is its height in
-// metres: no foot is brought more than 3 cm below it, the leg keeps what is wrong with it instead.
+// Straightening a leg lengthens its reach. `floor`: height in metres, if there is a floor. A
+// correction that would move a foot more than 3 cm below it is reduced.
 void KeepJointRanges(const motion::Skeleton& skeleton, const Body& body, std::optional<float> floor,
                      const JointRangeOptions& options, const Timing& timing, motion::Poses* poses);
 

@@ -11,7 +11,7 @@
 
 namespace duet::cleanup {
 
-// An arm or a leg: two bones in a row, and what hangs on their end (toes, fingers).
+// An arm or a leg: a chain of two bones, and the joints beyond their end (toes, fingers).
 struct Limb {
   int upper = 0;   // hip, shoulder
   int middle = 0;  // knee, elbow
@@ -19,37 +19,38 @@ struct Limb {
   std::vector<int> beyond;
 };
 
-// What carries the head.
+// The neck.
 struct Neck {
-  int base = 0;             // the joint that the head hangs on
+  int base = 0;             // the joint to which the head is attached
   int head = 0;             // the first joint with "head" in its name
   std::vector<int> branch;  // the head and all beyond it
 };
 
-// What a skeleton's tree tells of a body. Requires a skeleton that Validate accepts.
+// The limbs of a body, derived from its skeleton's tree.
 struct Body {
-  // Where the arms meet the spine: the joint of three bones or more that is nearest to the pelvis,
-  // off the legs. Absent without hips.
+  // Where the arms meet the spine: of the joints with at least three bones that are not on a leg,
+  // the one nearest to the pelvis. Absent without hips.
   std::optional<int> chest;
-  std::vector<Limb> legs;  // left and right, or none where a foot hangs on fewer than two bones
-  std::vector<Limb> arms;  // chains of three joints or more from the chest, but for the head's
+  std::vector<Limb> legs;  // left and right; none if a foot is attached by fewer than two bones
+  std::vector<Limb> arms;  // chains of at least three joints from the chest, except the head's
   std::optional<Neck> neck;
 };
+// Requires a skeleton that Validate accepts.
 Body FindBody(const motion::Skeleton& skeleton);
 
-// Arms and legs as parts, in the body's order: what capsules have their radii from.
+// Returns arms and legs as parts, in the body's order. They determine the radii of capsules.
 std::vector<motion::BodyPart> LimbParts(const Body& body);
 
-// The radius of every bone's capsule, metres; see motion::CapsuleRadii. Shapes: returns [bones].
+// Returns the radius of each bone's capsule in metres; see motion::CapsuleRadii. Shapes: [bones].
 std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton, const Body& body);
 
-// Moves a limb's end to `target`, or as near as the limb reaches, by turning its two bones. The
-// middle joint keeps to its side; a limb that is nearly straight bends towards `forward` instead.
-// Bones keep their lengths. Shapes: pose [joints].
+// Moves a limb's end to `target`, or as close as the limb reaches, by rotating its two bones. The
+// middle joint stays on its side; a limb that is nearly straight bends towards `forward`. Preserves
+// bone lengths. Shapes: pose [joints].
 void Reach(const Limb& limb, motion::Vec3 target, motion::Vec3 forward,
            absl::Span<motion::Vec3> pose);
 
-// Where the hips of a pose face: horizontal, of length 1. Requires hips. Shapes: pose [joints].
+// Returns the direction in which the hips face: horizontal, of length 1. Shapes: pose [joints].
 motion::Vec3 Facing(const motion::JointPair& hips, absl::Span<const motion::Vec3> pose);
 
 }  // namespace duet::cleanup

@@ -8,8 +8,8 @@
 
 namespace duet::cleanup {
 
-// A track (numbers or Vec3) smoothed over time by a Gaussian, cut off at three standard
-// deviations. Near the ends only the frames that there are count. Frames: as many as came.
+// Smooths a track (numbers or Vec3) over time with a Gaussian, truncated at three standard
+// deviations and renormalised at the ends. Returns as many frames as `track` has.
 template <typename Value>
 std::vector<Value> LowPass(const std::vector<Value>& track, double sigma_frames) {
   const int frames = static_cast<int>(track.size());

@@ -14,17 +14,17 @@ struct SpacingOptions {
   // Horizontal distance of the roots.
   double nearest_metres = 0.15;
   double farthest_metres = 2.5;
-  // Being out of it lasts when it outlives a Gaussian of this deviation.
+  // Standard deviation of the Gaussian that removes short violations.
   double sigma_seconds = 0.5;
-  double fastest_metres_per_second = 0.5;  // of the correction
+  double fastest_metres_per_second = 0.5;  // maximum speed of the correction
 };
 
-// Moves every frame by its shift, none of those that are settled, and where something is settled no
-// faster than told: the body goes there, it does not jump. Shapes: shifts [frames].
+// Moves every frame except the settled ones by its shift. If there are settled frames, limits the
+// speed of the correction, so that the body does not jump. Shapes: shifts [frames].
 void ShiftBody(const std::vector<motion::Vec3>& shifts, double fastest_metres_per_second,
                const Timing& timing, motion::Poses* poses);
 
-// Moves a follower that is too far from its leader, or too near, for longer than a moment.
+// Corrects a follower that is too far from its leader, or too near, except for short violations.
 void KeepSpacing(int root, const motion::Poses& leader, const SpacingOptions& options,
                  const Timing& timing, motion::Poses* follower);
 

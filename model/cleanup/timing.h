@@ -6,30 +6,31 @@
 
 namespace duet::cleanup {
 
-// When a window's frames are, and which of them may change.
+// The frame rate of a window, and which of its frames may change.
 struct Timing {
   double frame_rate_hz = 0;
-  // The first frames, which the window before has fixed already: no stage changes them.
+  // Number of first frames that are final. No stage changes them.
   int settled = 0;
 
   double Frames(double seconds) const { return seconds * frame_rate_hz; }
 };
 
-// 0 to 1 with level ends, and held beyond them.
+// Returns 0 below 0, 1 above 1, and a smooth transition with zero slope at both ends between them.
 inline float SmoothStep(double t) {
   const float at = static_cast<float>(std::clamp(t, 0.0, 1.0));
   return at * at * (3 - 2 * at);
 }
 
-// The share of a correction that a frame gets: none while settled, then more over a third of a
-// second, so that nothing pops where windows meet. All of it where nothing is settled.
+// Returns the fraction of a correction that applies to a frame: 0 in settled frames, then rising to
+// 1 within a third of a second, so that the motion is continuous between windows. 1 if there are no
+// settled frames.
 inline float EaseIn(const Timing& timing, int frame) {
   constexpr double kSeconds = 1.0 / 3;
   if (timing.settled == 0) return 1;
   return SmoothStep((frame - timing.settled + 1) / (timing.Frames(kSeconds) + 1));
 }
 
-// A value that is left alone up to `knee` and, however large, stays below `limit`. Smooth.
+// Returns `value` up to `knee`; above, a smooth function that stays below `limit`.
 inline float SoftLimit(float value, float knee, float limit) {
   if (value <= knee) return value;
   return knee + (limit - knee) * (1 - std::exp(-(value - knee) / (limit - knee)));

@@ -13,25 +13,27 @@ namespace duet::cleanup {
 
 struct UprightOptions {
   bool enabled = true;
-  // A lean up to the first angle is left alone; none that lasts goes beyond the second.
+  // Lasting leans up to the first angle are not corrected. After correction, none exceeds the
+  // second.
   double free_degrees = 8;
   double most_degrees = 11;
-  // A lean lasts when it outlives a Gaussian of this deviation: a bow or a kick does not.
+  // Standard deviation of the Gaussian that separates lasting leans from short ones, such as a bow
+  // or a kick.
   double sigma_seconds = 0.35;
 };
 
-// Where the body points in every frame, for longer than a moment: from the middle of a pair of
-// joints, feet or hips, to the chest, of length 1. Shapes: returns [frames].
+// Returns the smoothed direction of the body in every frame: from the middle of a pair of joints
+// (feet or hips) to the chest, of length 1. Shapes: returns [frames].
 std::vector<motion::Vec3> LastingLean(const motion::JointPair& base, int chest,
                                       const motion::Poses& poses, double sigma_frames);
 
-// Bends a trunk that leans for longer than a moment back towards upright at the hips; feet stay
-// where they are, knees follow. A skeleton without hips or legs stays as it is.
+// Rotates a trunk with a lasting lean towards upright about the hips. The feet keep their
+// positions, and the knees follow. Does nothing for a skeleton without hips or legs.
 void SetTrunkUpright(const motion::Skeleton& skeleton, const Body& body,
                      const UprightOptions& options, const Timing& timing, motion::Poses* poses);
 
-// Turns a body that leans for longer than a moment back towards upright, whichever way it leans,
-// about the point between its feet. A skeleton without hips or feet stays as it is.
+// Rotates a body with a lasting lean in any direction towards upright about the point between its
+// feet. Does nothing for a skeleton without hips or feet.
 void SetUpright(const motion::Skeleton& skeleton, const Body& body, const UprightOptions& options,
                 const Timing& timing, motion::Poses* poses);
 
