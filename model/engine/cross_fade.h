@@ -11,18 +11,18 @@
 
 namespace duet::engine {
 
-// Turns one motion into another over the frames that they share, keeping limb lengths.
+// Blends one motion into another over the frames that they share, preserving limb lengths.
 //
-// Averaging two poses joint by joint shortens every limb that points elsewhere in the other one. So
-// only the root is averaged; each bone gets the averaged direction and the averaged length.
+// Averaging two poses joint by joint shortens every limb whose direction differs between them.
+// Therefore only the root is averaged, and each bone gets the average direction and length.
 class CrossFade {
  public:
   // Requires a skeleton that Validate accepts.
   explicit CrossFade(const motion::Skeleton& skeleton);
 
-  // Replaces the frames of `poses` from `first` on by a blend that leaves them smoothly and arrives
-  // at `next`, whose frame 0 belongs to `first`: even the first of them has some of `next`, even
-  // the last some of `poses`. `next` has at least as many frames.
+  // Replaces the frames of `poses` from `first` on by a smooth blend from `poses` to `next`, whose
+  // frame 0 corresponds to `first`. The first blended frame contains some of `next`, the last some
+  // of `poses`. Requires `next` to have at least as many frames.
   void Blend(const motion::Poses& next, int first, motion::Poses* poses) const;
 
  private:

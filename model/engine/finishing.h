@@ -8,28 +8,28 @@
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
-// The stages between a network's answer, brought back to the world, and the caller. Metres, y up.
+// Stages between a network's result in world coordinates and the caller. Metres, y up.
 namespace duet::engine {
 
-// INTERNAL when a position is not finite.
+// Returns INTERNAL if a position is not finite.
 absl::Status CheckFinite(const motion::Poses& follower);
 
-// Gives the follower the limb lengths of its start's pose or else the leader's median ones, in
-// every frame.
+// Sets the follower's limb lengths in every frame to those of its start's pose, or else to the
+// leader's median lengths.
 void KeepLimbLengths(const motion::Skeleton& skeleton, const SynthesisWindow& window,
                      motion::Poses* follower);
 
-// Lifts or lowers a follower without a start, as a whole, so that its feet reach as low as the
-// leader's. A skeleton without feet tells no floor: nothing changes.
+// Moves a follower without a start vertically so that its lowest foot is as high as the leader's.
+// Does nothing for a skeleton without feet.
 void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
                 motion::Poses* follower);
 
-// How far the two may touch in each frame: the weight of the model's touching classes, from 0 to 1.
+// Returns how far the bodies may overlap in each frame: the weight of the touching classes, 0 to 1.
 // Shapes: returns [frames].
 cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window);
 
-// How many of the window's first frames nothing may change any more: those that are settled, or
-// else the one that a start tells.
+// Returns the number of the window's first frames that must not change: the settled frames, or the
+// frame of the start.
 int SettledFrames(const SynthesisWindow& window);
 
 }  // namespace duet::engine

@@ -11,7 +11,7 @@ struct LabelKeyframe {
   std::vector<float> weights;  // [classes]
 };
 
-// A label vector over time: linear between keyframes, held before the first and after the last.
+// A label vector over time: linear between keyframes, constant before the first and after the last.
 class LabelTrack {
  public:
   // One label vector for the whole clip.

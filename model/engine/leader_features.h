@@ -16,25 +16,26 @@ namespace duet::engine {
 
 struct LeaderFeature {
   std::string_view name;
-  // Leaders that differ by less are alike, in the feature's unit.
+  // Smaller differences are insignificant. In the feature's unit.
   double smallest_deviation = 0;
 };
 
-// The features that a skeleton gives, always in this order:
+// Returns the features of a skeleton, always in this order:
 //   mean_joint_speed     m/s, over all joints and frames
 //   highest_joint_speed  m/s, of any joint between any two frames
-//   root_path_speed      m/s, the root's path along the floor by the time it takes
-//   root_travel          m, the farthest that the root gets along the floor from its first place
-//   still_share          0 to 1, of the frames in which the joints hardly move
+//   root_path_speed      m/s, length of the root's path along the floor divided by its duration
+//   root_travel          m, maximum distance of the root along the floor from its first position
+//   still_share          0 to 1, fraction of frames in which the joints hardly move
 //   bone_length          m, mean of all bones
 //   root_height          root above the lower foot, by the bones between them     (feet)
-//   turn                 degrees, the farthest that the hips turn from their first direction (hips)
-//   trunk_lean           degrees, hips to neck against straight up                (hips, "neck")
+//   turn                 degrees, maximum turn of the hips from their first direction    (hips)
+//   trunk_lean           degrees, angle of hips to neck from vertical             (hips, "neck")
 //   hand_reach           m, root to the farther hand       ("left_hand" and "right_hand")
-// Means over the frames where nothing else is said; speeds without measuring noise.
+// The mean over the frames unless stated otherwise. Speeds are filtered against measurement noise.
+// Parentheses: the joints that the skeleton must have.
 std::vector<LeaderFeature> LeaderFeatures(const motion::Skeleton& skeleton);
 
-// Their values. Requires a frame; one alone stands still.
+// Returns the values of LeaderFeatures. Requires at least one frame. A single frame has speed 0.
 std::vector<double> MeasureLeader(const motion::Skeleton& skeleton, const motion::Poses& leader,
                                   double frame_rate_hz);
 

@@ -9,7 +9,7 @@
 
 namespace duet::engine {
 
-// How the leaders moved that a model was trained on: mean and spread of each of their features.
+// Mean and standard deviation of each feature of a model's training leaders.
 struct LeaderStatistics {
   struct Feature {
     std::string name;  // one of LeaderFeatures
@@ -21,20 +21,22 @@ struct LeaderStatistics {
   double scale = 1;
 };
 
-// Over training leaders, each no longer than a window and of a frame or more. Deviations have a
-// floor (LeaderFeature::smallest_deviation), and so has the scale, so that a handful of leaders
-// does not make everything else strange. Requires a leader.
+// Computes the statistics of training leaders, each with at least one frame and no longer than a
+// window. Deviations have a minimum (LeaderFeature::smallest_deviation), and so has the scale, so
+// that a few similar leaders do not make all others unfamiliar. Requires at least one leader.
 LeaderStatistics FitLeaderStatistics(const motion::Skeleton& skeleton,
                                      const std::vector<const motion::Poses*>& leaders,
                                      double frame_rate_hz);
 
-// How far a motion no longer than a window is from those leaders: the root mean square, over the
-// features, of its distance from their mean in deviations, by the scale. 1: as far as the farthest
-// tenth of them. Features that the statistics lack do not count.
+// Returns the distance of a motion, no longer than a window, from the training leaders: the root
+// mean square of the features' distances from their means in deviations, divided by the scale. A
+// tenth of the training leaders have a distance above 1. Features that the statistics lack are
+// ignored.
 double Unfamiliarity(const LeaderStatistics& statistics, const motion::Skeleton& skeleton,
                      const motion::Poses& leader, double frame_rate_hz);
 
-// The value that at least nine tenths of the values do not exceed: one of them. Requires a value.
+// Returns the smallest of the values that at least nine tenths of them do not exceed. Requires a
+// value.
 double NinthDecile(std::vector<double> values);
 
 }  // namespace duet::engine

@@ -13,14 +13,14 @@
 
 namespace duet::engine {
 
-// A window in the standard coordinates of its leader (window_standardisation.h), metres: all that a
-// network sees.
+// The input of a network: a window in the standard coordinates of its leader
+// (window_standardisation.h), metres.
 struct NetworkInput {
   motion::Poses leader;       // [frames, joints]
   std::vector<float> labels;  // [frames, classes]
   std::optional<FollowerStart> start;
   Sampling sampling;
-  motion::Poses settled;  // [frames, joints], perhaps none; see SynthesisWindow
+  motion::Poses settled;  // [frames, joints], may be empty; see SynthesisWindow
   const std::atomic<bool>* cancelled = nullptr;  // see SynthesisWindow
 };
 
@@ -31,19 +31,19 @@ inline bool AllCancelled(absl::Span<const NetworkInput> inputs) {
   return std::all_of(inputs.begin(), inputs.end(), IsCancelled);
 }
 
-// The numbers in the middle of a synthesizer: what an engine implements. Everything around it
-// (standard coordinates, checks, limb lengths, floor, clean-up) is MakeSynthesizer's.
+// The network of a synthesizer. An engine implements this interface. MakeSynthesizer adds
+// everything around it: standard coordinates, checks, limb lengths, floor, clean-up.
 //
 // Threads: Run is safe to call concurrently.
 class Network {
  public:
   virtual ~Network() = default;
 
-  // Evaluates inputs of any lengths together. Returns each one's follower in the standard
-  // coordinates, in order, of as many frames and joints as its leader; the numbers need not be
-  // finite. Numbers do not depend on what else is in the batch (within 1e-4 m); those of a
-  // cancelled input mean nothing, and nothing more need be computed for it. Throws nothing:
-  // INTERNAL says what went wrong.
+  // Evaluates inputs of any lengths as one batch. Returns the follower of each input, in order, in
+  // standard coordinates, with as many frames and joints as its leader. Values may be infinite or
+  // NaN. A result does not depend on the rest of the batch (within 1e-4 m). The result of a
+  // cancelled input is unspecified and need not be computed. Never throws; returns INTERNAL if
+  // evaluation fails.
   virtual absl::StatusOr<std::vector<motion::Poses>> Run(
       absl::Span<const NetworkInput> inputs) const = 0;
 };

@@ -11,17 +11,16 @@
 
 namespace duet::engine {
 
-// What becomes of a network's answer before the caller gets it.
+// Stages that a network's result passes before the caller gets it.
 struct PipelineOptions {
-  // A network works on positions, and the limbs of captured people change their lengths: give the
-  // follower the limbs of its start, or else its leader's, in every frame. Off: the network's own
-  // answer, for measuring the method.
+  // Sets the follower's limb lengths in every frame to those of its start, or else of its leader. A
+  // network outputs positions, and captured limbs change their lengths. Off: the network's own
+  // result, for measuring the method.
   bool keep_limb_lengths = true;
-  // A follower without a start is set, as a whole, on the leader's floor: both reach equally low.
+  // Moves a follower without a start vertically so that its lowest foot is as high as the leader's.
   bool share_floor = true;
-  // A follower is made to stand, keep its feet still and its joints within human ranges, and keep
-  // out of the leader (model/cleanup), where its model is cleaned up by default. A window may say
-  // otherwise.
+  // Cleans up the follower (model/cleanup), if its model is cleaned up by default.
+  // SynthesisOptions::clean_up overrides both.
   bool clean_up = true;
   cleanup::Options cleaning = {};
 };
@@ -29,7 +28,7 @@ struct PipelineOptions {
 // A synthesizer around a network:
 //   WindowStandardisation, Standardise, Network::Run, Standardisation::Invert, CheckFinite,
 //   KeepLimbLengths, ShareFloor, CleanUp.
-// `origin` is that of the standard coordinates which the network was trained in.
+// `origin`: origin of the standard coordinates in which the network was trained.
 std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
                                              motion::StandardOrigin origin,
                                              std::unique_ptr<const Network> network,

@@ -7,8 +7,8 @@
 
 namespace duet::engine {
 
-// A window in the standard coordinates of its leader. The follower's start is relative to the
-// leader's first root.
+// Converts a window to the standard coordinates of its leader. The follower's start is relative to
+// the leader's first root position.
 NetworkInput Standardise(const motion::Standardisation& standardisation,
                          const SynthesisWindow& window);
 

@@ -17,11 +17,10 @@ namespace duet::engine {
 
 struct ClipRequest;  // clip_synthesis.h
 
-// Where the follower is at a window's first frame. World metres, y up.
+// The follower at a window's first frame. World metres, y up.
 struct FollowerStart {
   motion::Vec3 root;
-  // [joints], with pose[root joint] == root; empty when the root alone is known. One pose, not a
-  // motion: hence no Poses.
+  // [joints], with pose[root joint] == root. Empty if only the root is known.
   std::vector<motion::Vec3> pose;
 };
 
@@ -31,23 +30,23 @@ struct SynthesisWindow {
   motion::Poses leader;       // [frames, joints], 2 frames or more
   std::vector<float> labels;  // [frames, classes]
   std::optional<FollowerStart> start;
-  // Horizontal direction from the leader to where the follower should be. Absent: towards `start`,
-  // or else where the leader's hips face.
+  // Horizontal direction from the leader to the follower. Absent: towards `start`; without a start,
+  // the direction in which the leader's hips face.
   std::optional<motion::Vec3> partner_direction;
-  // The follower's first frames where they are settled already: [frames, joints], fewer than the
-  // leader's, the first of them the start's pose. Empty: the start alone is known. A model that
-  // samples goes on from them; others read the start alone.
+  // The first frames of the follower that are final: [frames, joints], fewer than the leader's. The
+  // first of them is the start's pose. Empty: only the start is known. Sampling models continue
+  // from these frames; others read only the start.
   motion::Poses settled;
   SynthesisOptions options;
-  // Set by whoever no longer wants the answer, at any time, from any thread; then it may be
-  // CANCELLED before it is complete. Null: it is wanted.
+  // Set, at any time and from any thread, when the result is not needed any more. The result may
+  // then be CANCELLED. Null: never cancelled.
   std::shared_ptr<const std::atomic<bool>> cancelled;
 };
 
 // A follower's motion for one window: [frames, joints] in the leader's world, metres, y up.
 using WindowResult = absl::StatusOr<motion::Poses>;
 
-// A loaded model: the only thing that the server knows of the network.
+// A loaded model. The server sees the network only through this interface.
 //
 // Threads: const methods are safe to call concurrently.
 class Synthesizer {
@@ -56,16 +55,16 @@ class Synthesizer {
 
   virtual const ModelDescription& description() const = 0;
 
-  // Synthesises windows of any lengths together: standardise, network, inverse. Returns one result
-  // for each window, in order. A window whose result is not finite fails alone, with INTERNAL, one
-  // that was cancelled meanwhile with CANCELLED; an item's result does not depend on what else is
-  // in the batch (within 1e-4 m).
+  // Synthesizes windows of any lengths as one batch: standardise, network, inverse. Returns one
+  // result for each window, in order. A window whose result is not finite fails with INTERNAL, and
+  // a window that was cancelled with CANCELLED; the others are not affected. A result does not
+  // depend on the rest of the batch (within 1e-4 m).
   virtual std::vector<WindowResult> Synthesize(
       absl::Span<const SynthesisWindow* const> windows) const = 0;
 
-  // How far a request is from what the model was trained on: 0 or more, 1 as far as the farthest
-  // tenth of the training leaders. Absent where the model does not know. Takes time linear in the
-  // clip's length, without running the network.
+  // Returns the distance of a request's leader from the model's training data, at least 0. A tenth
+  // of the training leaders have a distance above 1. Absent if the model has no statistics of its
+  // training data. Does not run the network; takes time linear in the clip's length.
   virtual std::optional<double> Unfamiliarity(const ClipRequest& /*request*/) const {
     return std::nullopt;
   }

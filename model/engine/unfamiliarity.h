@@ -8,10 +8,10 @@
 
 namespace duet::engine {
 
-// How far a request's leader is from the model's training leaders (leader_statistics.h), at the
-// model's frame rate. A clip of several windows is as far as the farthest tenth of them: a minute
-// of good motion does not make up for ten seconds that the model has to guess at. Absent where the
-// model has no statistics, or where no number holds the distance.
+// Returns the distance of a request's leader from the model's training leaders
+// (leader_statistics.h), at the model's frame rate. For a clip of several windows, returns the
+// value that a tenth of the windows exceeds, so that a long familiar part does not hide an
+// unfamiliar one. Absent if the model has no statistics, or if the distance is not finite.
 //
 // Cost: linear in the clip's length; memory beyond the leader bounded by one window.
 std::optional<double> Unfamiliarity(const ModelDescription& model, const ClipRequest& request);

@@ -5,12 +5,12 @@
 
 namespace duet::engine {
 
-// The seed of a clip's window, 0 the first, where the clip was asked for with `seed`. The first
-// window's is `seed` itself, so that a clip of one window is what the network draws with it; each
-// later window draws numbers of its own, of which no two requests share any to speak of.
+// Returns the seed of a window (0 is the first) of a clip that was requested with `seed`. The first
+// window has `seed` itself, so that a clip of one window equals the network's own result. Later
+// windows have different seeds, which practically never coincide with those of another request.
 //
-// Source: Steele, Lea, Flood 2014 (SplitMix64): the window-th number of the stream that `seed`
-// begins. The same on every machine; changing it changes every long answer.
+// Source: Steele, Lea, Flood 2014 (SplitMix64): the window-th number of the stream that starts with
+// `seed`. The same on every machine. Changing it changes the results of all long clips.
 uint64_t WindowSeed(uint64_t seed, int window);
 
 }  // namespace duet::engine

@@ -7,10 +7,11 @@
 
 namespace duet::engine {
 
-// The coordinates in which the network sees a window, in training as in service: the leader's root
-// at the origin (in every frame, or in the first one), and -z towards where the follower is
-// expected: the window's partner direction; else the follower's start, unless the two stand as good
-// as on one spot; else where the leader's hips face. A leader without hips is not turned then.
+// Returns the coordinates in which the network sees a window, in training and in service. The
+// leader's root is at the origin (in every frame, or in the first one). -z points towards the
+// follower: along the window's partner direction; else towards the follower's start, unless both
+// are at nearly the same position; else in the direction of the leader's hips. A leader without
+// hips is not turned.
 motion::Standardisation WindowStandardisation(
     const motion::Skeleton& skeleton, const SynthesisWindow& window,
     motion::StandardOrigin origin = motion::StandardOrigin::kEveryFrame);
