@@ -38,8 +38,8 @@ absl::Status Admission::CheckServing() const { return Refusal(state()); }
 
 absl::StatusOr<ShareLease> Admission::Admit(const std::string& client) {
   common::MutexLock lock(mutex_);
-  // The place is taken under the lock that guards the state: once SetState(kDraining) has returned,
-  // no further call is admitted, and calls() counts every call that was.
+  // The place is taken under the lock of the state. After SetState(kDraining) has returned, no call
+  // is admitted, and calls() counts every admitted call.
   const absl::Status serving = Refusal(state_.load());
   if (!serving.ok()) return serving;
   std::optional<ShareLease> place = places_.Take(client);

@@ -14,16 +14,16 @@
 namespace duet::server::service {
 
 struct AdmissionLimits {
-  std::size_t max_calls = 1;  // answered at the same time
-  // Bytes of the requests of calls being answered, as they came.
+  std::size_t max_calls = 1;  // concurrent calls
+  // Serialized size of the requests of calls in progress.
   std::size_t max_held_bytes = std::size_t{1} << 40;
-  // Requests that take long to arrive, at the same time.
+  // Concurrent requests that may arrive slowly.
   std::size_t max_slow_requests = 1024;
   double client_share = 1;  // see SharePool
 };
 
-// Decides what the server takes on: calls, the bytes of their requests, and how many requests may
-// be long on their way. Each is shared among clients.
+// Limits what the server accepts: concurrent calls, the bytes of their requests, and requests that
+// arrive slowly. Clients share each of these limits.
 //
 // Threads: safe to call concurrently.
 class Admission {
@@ -35,21 +35,22 @@ class Admission {
   void SetState(State state);
   State state() const;
 
-  // Whether new calls are answered at all: UNAVAILABLE with RetryInfo while loading or draining.
+  // Returns UNAVAILABLE with RetryInfo while the server is loading or draining.
   absl::Status CheckServing() const;
 
-  // A place among the Synthesize calls being answered. UNAVAILABLE as above; RESOURCE_EXHAUSTED
-  // with RetryInfo when there are too many calls, altogether or of this client.
+  // Takes a place among the concurrent Synthesize calls. Returns UNAVAILABLE like CheckServing, and
+  // RESOURCE_EXHAUSTED with RetryInfo if there are too many calls, in total or of this client.
   absl::StatusOr<ShareLease> Admit(const std::string& client);
 
-  // Whether a call that has its place may keep it as work of this priority: bulk calls may fill
-  // their share of the places. RESOURCE_EXHAUSTED as above.
+  // Checks that a call that has a place may keep it at this priority: bulk calls may use only part
+  // of the places. Returns RESOURCE_EXHAUSTED with RetryInfo otherwise.
   absl::Status CheckShare(batching::Priority priority) const;
 
-  // Room for a request that has come. RESOURCE_EXHAUSTED with RetryInfo when there is none.
+  // Reserves bytes for a request that has arrived. RESOURCE_EXHAUSTED with RetryInfo if too few are
+  // left.
   absl::StatusOr<ShareLease> Hold(const std::string& client, std::size_t bytes);
 
-  // Leave for a request to take its time to arrive. RESOURCE_EXHAUSTED with RetryInfo.
+  // Permits a request to arrive slowly. RESOURCE_EXHAUSTED with RetryInfo if too many do.
   absl::StatusOr<ShareLease> ArriveSlowly(const std::string& client);
 
   std::size_t calls() const { return places_.taken(); }

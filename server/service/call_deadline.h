@@ -5,9 +5,11 @@
 
 namespace duet::server::service {
 
-// Seconds until a call's deadline, negative once it has passed, infinite where it has none.
+// Returns the seconds until a call's deadline: negative if it has passed, infinite if there is
+// none.
 //
-// Not by the context's deadline(): a caller may ask for 99,999,999 hours, which overflow there.
+// Does not use the context's deadline(), which overflows for a timeout of 99,999,999 hours, the
+// maximum of the wire format.
 double SecondsLeft(const grpc::ServerContextBase& context);
 
 }  // namespace duet::server::service

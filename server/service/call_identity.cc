@@ -51,7 +51,7 @@ std::string ClientOf(std::string_view peer) {
   const std::string text = host.substr(kOpen.size(), host.size() - kOpen.size() - kClose.size());
   in6_addr address = {};
   if (inet_pton(AF_INET6, text.c_str(), &address) != 1) return host;
-  // IPv4 clients of a socket for both.
+  // An IPv4 client of a dual-stack socket.
   if (IN6_IS_ADDR_V4MAPPED(&address))
     return absl::StrCat("ipv4:", text.substr(text.rfind(':') + 1));
   constexpr std::size_t kNetworkBytes = 8;

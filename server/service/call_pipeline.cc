@@ -23,7 +23,7 @@ OpenedCall CallPipeline::Open(const grpc::ServerContextBase& context,
     record.trace = common::BeginTrace(*trace_ratio_);
   }
   opened.status = opened.scope->Enter(guard_.Admit(context, role_));
-  // Whoever is known shares as that, from wherever they call.
+  // A listed caller is one client, whatever address it calls from.
   if (record.caller_is_listed) opened.client = "caller:" + record.caller;
   return opened;
 }
@@ -32,7 +32,7 @@ void CallPipeline::Report(CallScope& scope, const absl::Status& status,
                           grpc::ServerContextBase& context) {
   scope.Finish(status);
   common::AddRetryPushback(status, context);
-  // Tells the caller under which span the call is known here.
+  // The caller learns the span of the call on this server.
   const std::string traceparent = common::Traceparent(scope.record().trace);
   if (!traceparent.empty()) context.AddTrailingMetadata("traceparent", traceparent);
 }
@@ -42,7 +42,7 @@ absl::Status CallPipeline::CheckSize(const grpc::ByteBuffer& bytes) const {
   return TooLargeRefusal(bytes.Length(), max_request_bytes_);
 }
 
-// By value, so that the caller's bytes go as soon as they are read.
+// By value, so that the bytes are freed as soon as they are parsed.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 absl::Status CallPipeline::Read(grpc::ByteBuffer bytes, google::protobuf::Message& request) const {
   const absl::Status fits = CheckSize(bytes);

@@ -21,26 +21,25 @@
 
 namespace duet::server::service {
 
-// A call whose headers have come. Its message has not been read.
+// A call whose headers have arrived. Its message has not been read.
 struct OpenedCall {
   std::unique_ptr<CallScope> scope;
-  std::string client;   // see CallIdentity; of a caller on the access list, that caller
-  absl::Status status;  // OK, or why the guard turned it away
+  std::string client;   // see CallIdentity; for a caller on the access list, the caller's name
+  absl::Status status;  // OK, or the guard's error
 };
 
-// The one way into the service, whatever the method, and the one way out of it. What every call
-// must pass has its place here, so that it is written once.
+// The steps that calls of every method have in common.
 //
 // In:   Open, at the headers: identity and scope (from here on the call is counted), guard.
-//       Admission comes next, then the message (Reception). Read: size -> bounds -> parser.
-// Out:  Close: observers -> status and trailers for the wire. A caller that has its status finds
-//       the call in the metrics.
+//       Admission follows, then the message (Reception). Read: size -> bounds -> parser.
+// Out:  Close: observers -> status and trailers. When a caller receives its status, the metrics
+//       already contain the call.
 //
 // Threads: const methods are safe to call concurrently.
 class CallPipeline {
  public:
-  // `client_key`: see IdentifyCall; `trace_ratio`: see ServiceParts; `role`: what every method asks
-  // for. Everything outlives the pipeline and its calls.
+  // `client_key`: see IdentifyCall. `trace_ratio`: see ServiceParts. `role`: required by every
+  // method. All arguments outlive the pipeline and its calls.
   CallPipeline(std::size_t max_request_bytes, std::string client_key,
                std::vector<metrics::CallObserver*> observers, const common::Clock& clock,
                security::CallGuard guard, security::Role role, std::optional<double> trace_ratio)
@@ -54,16 +53,16 @@ class CallPipeline {
 
   OpenedCall Open(const grpc::ServerContextBase& context, const metrics::MethodInfo& method) const;
 
-  // RESOURCE_EXHAUSTED when the bytes are too many.
+  // Returns RESOURCE_EXHAUSTED if the message is too large.
   absl::Status CheckSize(const grpc::ByteBuffer& bytes) const;
-  // RESOURCE_EXHAUSTED when the bytes are too many, INVALID_ARGUMENT when they are no such message
-  // or one that would be too large when parsed. The bytes are let go of in any case.
+  // Parses a message. Returns RESOURCE_EXHAUSTED if it is too large, and INVALID_ARGUMENT if it is
+  // malformed or would be too large in memory. Frees `bytes` in any case.
   absl::Status Read(grpc::ByteBuffer bytes, google::protobuf::Message& request) const;
 
-  // Reports a call that ends, and leaves its trailers for the wire.
+  // Reports a call that ends, and sets its trailers.
   static void Report(CallScope& scope, const absl::Status& status,
                      grpc::ServerContextBase& context);
-  // Ends a call: reports it, then gives its status to `reactor`, of whatever kind.
+  // Ends a call: reports it, then finishes `reactor` with its status.
   template <typename Reactor>
   static void Close(CallScope& scope, const absl::Status& status, grpc::ServerContextBase& context,
                     Reactor& reactor) {

@@ -11,21 +11,21 @@
 
 namespace duet::server::service {
 
-// One call as its observers see it: begun here, ended by Finish, once.
+// One call as its observers see it. Begins with the constructor and ends with Finish.
 //
 // Threads: not safe to call concurrently.
 class CallScope {
  public:
-  // Everything outlives the scope.
+  // `observers` and `clock` outlive the scope.
   CallScope(const metrics::MethodInfo& method, CallIdentity identity,
             const std::vector<metrics::CallObserver*>& observers, const common::Clock& clock);
 
-  // The guard's answer: whether the call may go on. What it holds is its caller's again at the end.
+  // Keeps the guard's pass until Finish, and returns its status: OK if the call may proceed.
   absl::Status Enter(security::CallPass pass);
-  // RESOURCE_EXHAUSTED when the caller has not so many frames left.
+  // Takes frames from the caller's quota. Returns RESOURCE_EXHAUSTED if too few are left.
   absl::Status HoldFrames(int frames) { return pass_.HoldFrames(frames); }
 
-  // Filled in as the call goes on.
+  // Filled in while the call runs.
   metrics::CallRecord& record() { return record_; }
   double ElapsedSeconds() const { return common::SecondsBetween(begin_, clock_.Now()); }
 

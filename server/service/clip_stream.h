@@ -20,19 +20,19 @@ namespace duet::server::service {
 struct ClipStreamOptions {
   batching::Priority priority = batching::Priority::kInteractive;
   common::TimePoint deadline = common::TimePoint::max();
-  // The next window is scheduled while fewer finished frames than this wait for the reader; 1 or
-  // more. Required.
+  // Required. At least 1. The next window is scheduled only while fewer finished frames than this
+  // wait for the reader.
   int buffered_frames = 0;
   std::string client;  // see WindowJob
 };
 
-// What one call did, for its summary, its metrics and its log line.
+// Statistics of one call, for its summary, metrics and log line.
 struct ClipStreamStats {
   int windows = 0;
   double queue_seconds = 0;
   double compute_seconds = 0;
   int peak_buffered_frames = 0;
-  // engine::Synthesizer::Unfamiliarity, once every window was evaluated.
+  // engine::Synthesizer::Unfamiliarity. Set when every window has been evaluated.
   std::optional<double> unfamiliarity;
 };
 
@@ -40,17 +40,17 @@ struct ClipStreamStats {
 struct ClipPart {
   enum class Kind {
     kPending,  // nothing is ready; on_progress will be called
-    kFrames,   // poses[0, n) follow those taken before
-    kEnd,      // every frame was taken
-    kFailed    // error says why; there will be nothing more
+    kFrames,   // poses[0, n) follow the frames taken before
+    kEnd,      // every frame has been taken
+    kFailed    // the stream ends with `error`
   };
   Kind kind = Kind::kPending;
   motion::Poses poses;  // [n, joints], n >= 1
   absl::Status error;
 };
 
-// Drives one clip through the scheduler, a window at a time, and holds what is finished until the
-// reader takes it. A reader that does not take pauses its own clip: memory stays bounded by
+// Runs one clip through the scheduler, one window at a time, and buffers finished frames until the
+// reader takes them. The clip pauses while its reader takes nothing, so memory is bounded by
 // buffered_frames and one window.
 //
 //   auto stream = std::make_shared<ClipStream>(model, clip, options, scheduler, on_progress);
@@ -58,23 +58,22 @@ struct ClipPart {
 //   ... on_progress: while ((part = stream->Take(30)).kind == kFrames) send(part.poses) ...
 //
 // Threads: safe to call concurrently. on_progress runs on the scheduler's threads, under no lock,
-// and may still come when the end was taken.
+// and
+//          may still run after the end was taken.
 class ClipStream : public std::enable_shared_from_this<ClipStream> {
  public:
-  // `scheduler` outlives every job given to it. The model is held until the last job is done.
+  // `scheduler` outlives every job given to it. The model lives until the last job is done.
   ClipStream(std::shared_ptr<const engine::Synthesizer> model, engine::ClipRequest request,
              const ClipStreamOptions& options, batching::WindowScheduler& scheduler,
              std::function<void()> on_progress);
 
-  // Schedules the first window. A failure is the scheduler's refusal; nothing was begun then.
-  // Call once.
+  // Schedules the first window. Returns the scheduler's error if it is rejected. Call once.
   absl::Status Start();
 
-  // Takes at most `max_frames` (1 or more) of what is ready.
+  // Takes at most `max_frames` (at least 1) of the finished frames.
   ClipPart Take(int max_frames);
 
-  // Gives the rest up: a window that has not started never will, and on_progress is not called
-  // for it.
+  // Stops: a window that has not started never starts, and on_progress is not called for it.
   void Cancel();
 
   int frame_count() const { return clip_.frame_count(); }
@@ -86,8 +85,8 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
   void ScheduleIfWanted();
   void OnWindow(const batching::WindowOutcome& outcome);
   absl::Status Check(const engine::WindowResult& result) const;
-  // Asks the model when the last window came: on the scheduler's thread, and so late that no frames
-  // but the last wait for it.
+  // Computes the unfamiliarity after the last window, on the scheduler's thread, so that it delays
+  // only the last frames.
   void KeepUnfamiliarity() DUET_EXCLUDES(mutex_);
   void Keep(const absl::Status& status, const motion::Poses& frames,
             const batching::WindowTimings& timings) DUET_EXCLUDES(mutex_);
@@ -98,7 +97,7 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
   const std::function<void()> on_progress_;
   const std::shared_ptr<std::atomic<bool>> cancelled_;
 
-  // Used only by the thread that set in_flight_ or was given its window; frame_count() is constant.
+  // Used only by the thread that set in_flight_ or received its window. frame_count() is constant.
   engine::ClipSynthesis clip_;
   int expected_frames_ = 0;  // of the window in flight
 

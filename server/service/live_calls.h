@@ -19,22 +19,21 @@ namespace duet::server::service {
 class LiveCall {
  public:
   virtual ~LiveCall() = default;
-  // Ends the call early, with its first reason.
+  // Ends the call early. The first reason counts.
   virtual void Abort(const absl::Status& reason) = 0;
-  // Ends the call if it has taken longer than it may.
+  // Ends the call if a time limit has passed.
   virtual void CheckTime(common::TimePoint now) = 0;
 
   virtual const std::string& client() const = 0;
-  // Since when a message of the answer has waited for its reader; nothing while none is being
-  // written.
+  // Since when a reply has waited for its reader. Absent if no reply is being written.
   virtual std::optional<common::TimePoint> waiting_since() const = 0;
-  // Ends the call if a message of its answer has waited for its reader for so long, and frees its
-  // place at once. Returns the bytes of its request, which are free as soon as the call has ended;
-  // nothing if no message has waited so long.
+  // If a reply has waited for its reader for `seconds`, ends the call, frees its place at once, and
+  // returns the size of its request in bytes, which are free when the call has ended. Returns
+  // nullopt otherwise.
   virtual std::optional<std::size_t> GiveUpReader(common::TimePoint now, double seconds) = 0;
 };
 
-// All of them, without keeping them alive.
+// All live calls. Does not keep them alive.
 //
 // Threads: safe to call concurrently.
 class LiveCalls {
@@ -44,8 +43,8 @@ class LiveCalls {
   void AbortAll(const absl::Status& reason);
   void CheckTime(common::TimePoint now);
 
-  // Gives up the reader that has kept a message waiting for longest, `seconds` or more: of this
-  // client, or of any client if absent. Returns what LiveCall::GiveUpReader returned.
+  // Calls GiveUpReader for the call whose reader has kept a reply waiting longest, at least
+  // `seconds`: of this client, or of any client if absent. Returns its result.
   std::optional<std::size_t> GiveUpSlowestReader(const std::optional<std::string>& client,
                                                  common::TimePoint now, double seconds);
 
@@ -53,9 +52,10 @@ class LiveCalls {
   std::vector<std::shared_ptr<LiveCall>> All();
 
   common::Mutex mutex_;
-  std::optional<absl::Status> ended_ DUET_GUARDED_BY(mutex_);  // why further calls end at once
+  std::optional<absl::Status> ended_ DUET_GUARDED_BY(mutex_);  // why calls added later end at once
   std::vector<std::weak_ptr<LiveCall>> calls_ DUET_GUARDED_BY(mutex_);
-  std::size_t look_at_ DUET_GUARDED_BY(mutex_) = 64;  // calls at which the dead are taken out
+  std::size_t look_at_ DUET_GUARDED_BY(mutex_) =
+      64;  // number of calls at which ended ones are removed
 };
 
 }  // namespace duet::server::service

@@ -8,7 +8,7 @@
 
 namespace duet::server::service {
 
-// Between the registry's and the limits' types and the contract's messages.
+// Convert between the registry's and the limits' types and proto messages.
 registry::ModelQuery ToQuery(const v1::ModelSelector& selector);
 v1::Model ToMessage(const registry::ServedModel& served);
 v1::RequestLimits ToMessage(const RequestLimits& limits);

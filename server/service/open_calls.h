@@ -5,13 +5,12 @@
 
 namespace duet::server::service {
 
-// Counts the calls that gRPC is not done with. The status of such a call may not have been sent
-// yet.
+// Counts the calls that gRPC has not finished. Their status may not have been sent yet.
 //
 // Threads: safe to call concurrently.
 class OpenCalls {
  public:
-  // Counts one call as long as it exists.
+  // Counts one call during its lifetime.
   class Ticket {
    public:
     explicit Ticket(OpenCalls& calls) : calls_(calls) { calls_.Add(1); }
@@ -23,7 +22,7 @@ class OpenCalls {
     OpenCalls& calls_;
   };
 
-  // Waits until there are none, at most this long.
+  // Waits until there are none, at most `seconds`.
   void WaitForNone(double seconds);
 
  private:

@@ -8,8 +8,7 @@
 
 namespace duet::server::service {
 
-// The priority that a request asks for, interactive when it names none; nothing when it names an
-// unknown one.
+// Returns the priority of a request. Defaults to interactive; absent if the value is unknown.
 std::optional<batching::Priority> PriorityOf(const v1::SynthesizeRequest& request);
 
 }  // namespace duet::server::service

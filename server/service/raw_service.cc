@@ -15,8 +15,8 @@ constexpr common::StepKind kOpening{"gRPC callback", "beginning a call"};
 
 }  // namespace
 
-// What generated code does in its constructors; gRPC serves single messages as streams itself
-// (grpc::Service::MarkMethodStreamed).
+// Does what the constructors of generated services do. gRPC itself serves unary methods as streams
+// this way (grpc::Service::MarkMethodStreamed).
 void RawService::Serve(const char* method,
                        std::function<Reactor*(grpc::CallbackServerContext*)> open) {
   using grpc::internal::CallbackBidiHandler;

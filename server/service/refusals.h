@@ -9,36 +9,37 @@
 
 namespace duet::server::service {
 
-// What callers are told when the server cannot or will not answer, complete with google.rpc
-// details. Refusals of malformed requests come from Violations.
+// The errors that the service returns, with google.rpc details. Violations creates the errors for
+// malformed requests.
 
-// UNAVAILABLE: models are still being loaded.
+// UNAVAILABLE: the server is loading its models.
 absl::Status LoadingRefusal();
-// UNAVAILABLE: the server is going away; another replica, or this one restarted, will answer.
+// UNAVAILABLE: the server is shutting down. A retry can reach another replica or the restarted
+// server.
 absl::Status DrainingRefusal();
-// RESOURCE_EXHAUSTED: as many calls are being answered as the limit, or this client's share of it,
-// allows.
+// RESOURCE_EXHAUSTED: the number of concurrent calls reached the limit, or this client's share of
+// it.
 absl::Status TooManyCallsRefusal(std::size_t calls, std::size_t limit);
-// RESOURCE_EXHAUSTED: the requests of calls being answered hold as many bytes as the limit, or this
-// client's share of it, allows.
+// RESOURCE_EXHAUSTED: the requests of calls in progress reached the limit in bytes, or this
+// client's share of it.
 absl::Status TooManyBytesRefusal(std::size_t bytes, std::size_t held, std::size_t limit);
-// RESOURCE_EXHAUSTED: as many requests are long on their way as may be.
+// RESOURCE_EXHAUSTED: too many requests arrive slowly.
 absl::Status TooManySlowRequestsRefusal(std::size_t limit);
-// DEADLINE_EXCEEDED: the request, or its answer's reader, took longer than the server waits.
+// DEADLINE_EXCEEDED: the request did not arrive, or a reply was not read, within the time limit.
 absl::Status ReceiveTimeoutRefusal(double seconds);
 absl::Status WriteTimeoutRefusal(double seconds);
-// RESOURCE_EXHAUSTED: others waited for the place of a call whose reader took nothing for so long.
+// RESOURCE_EXHAUSTED: other calls waited for the place of a call whose reader had stalled.
 absl::Status StalledReaderRefusal(double seconds);
 // INVALID_ARGUMENT: the call ended without a message.
 absl::Status NoMessageRefusal();
-// RESOURCE_EXHAUSTED: the scheduler's refusal with RetryInfo. Other codes: DrainingRefusal, the
-// only other cause.
+// Adds RetryInfo to a RESOURCE_EXHAUSTED of the scheduler. Any other error of the scheduler means
+// that the server is shutting down, and becomes DrainingRefusal.
 absl::Status QueueRefusal(const absl::Status& scheduler_status);
 // RESOURCE_EXHAUSTED: the message is larger than the limit.
 absl::Status TooLargeRefusal(std::size_t bytes, std::size_t limit);
-// NOT_FOUND, naming the field that nothing answers to.
+// NOT_FOUND, naming the field that matches no served model.
 absl::Status ModelNotFoundRefusal(const registry::ModelNotFound& not_found);
-// INTERNAL: the model failed. The text does not say why; the log does, under the request id.
+// INTERNAL: the model failed. The message has no details; the log has them under the request ID.
 absl::Status ModelFailedRefusal(const std::string& request_id);
 
 }  // namespace duet::server::service

@@ -11,18 +11,18 @@
 
 namespace duet::server::service {
 
-// How the model's follower becomes the caller's: joints, order, unit and up axis.
+// Maps the model's follower to the caller's joints, order, unit and up axis.
 struct ReplyMapping {
   motion::Coordinates coordinates;
-  std::vector<int> joints;               // for every joint of the reply, its index in the model
-  std::vector<std::string> joint_names;  // the same by name
-  // The leader's, repeated in the header.
+  std::vector<int> joints;               // for each joint of the reply, its index in the model
+  std::vector<std::string> joint_names;  // of the reply
+  // Those of the leader, repeated in the header.
   v1::LengthUnit unit = v1::LENGTH_UNIT_UNSPECIFIED;
   v1::UpAxis up_axis = v1::UP_AXIS_UNSPECIFIED;
   double frame_rate_hz = 0;
 };
 
-// Fills in a chunk. Units: `poses` in the model's joint order, world metres.
+// Fills in a chunk. `poses`: in the model's joint order, world metres.
 void FillChunk(const ReplyMapping& reply, const motion::Poses& poses, int first_frame,
                v1::MotionChunk& chunk);
 

@@ -7,7 +7,7 @@
 
 namespace duet::server::service {
 
-// What a request must keep to. GetModel tells callers; every refusal names the limit it enforces.
+// Limits on a request. GetModel returns them to callers; every error names the limit it enforces.
 struct RequestLimits {
   double min_frame_rate_hz = 1;
   double max_frame_rate_hz = motion::kMaxServedFrameRateHz;
@@ -18,9 +18,9 @@ struct RequestLimits {
   int max_label_keyframes = 4096;
   float max_abs_weight = 2;
   float max_variety = 2;
-  // Larger than any room; also keeps float arithmetic on positions meaningful.
+  // Larger than any room, and small enough for float arithmetic on positions.
   float max_abs_coordinate_metres = 10000;
-  // Set by the operator: ServerConfig has the default.
+  // Set by the operator. ServerConfig has the default.
   std::size_t max_request_bytes = 0;
 };
 

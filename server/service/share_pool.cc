@@ -11,7 +11,7 @@ ShareLease::~ShareLease() {
 std::optional<ShareLease> SharePool::Take(const std::string& client, std::size_t amount) {
   common::MutexLock lock(mutex_);
   if (!MayTake(client, amount)) return std::nullopt;
-  // An entry of zero would be erased by the first of several leases and looked up by the others.
+  // No entries of zero: the first of several such leases would erase the entry of the others.
   if (amount == 0) return ShareLease();
   taken_ += amount;
   held_[client] += amount;
@@ -36,7 +36,7 @@ std::size_t SharePool::taken() const {
 void SharePool::GiveBack(const std::string& client, std::size_t amount) {
   common::MutexLock lock(mutex_);
   const auto found = held_.find(client);
-  if (found == held_.end() || found->second < amount) std::abort();  // a lease given back twice
+  if (found == held_.end() || found->second < amount) std::abort();  // a lease was returned twice
   taken_ -= amount;
   found->second -= amount;
   if (found->second == 0) held_.erase(found);

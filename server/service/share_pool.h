@@ -13,7 +13,7 @@ namespace duet::server::service {
 
 class SharePool;
 
-// A part of a pool that a client holds; its destructor gives it back.
+// A part of a pool that a client holds. The destructor returns it.
 class ShareLease {
  public:
   ShareLease() = default;
@@ -30,7 +30,7 @@ class ShareLease {
   ~ShareLease();
 
   explicit operator bool() const { return pool_ != nullptr; }
-  // What the lease holds; 0 if it holds nothing.
+  // The amount that the lease holds; 0 if empty.
   std::size_t amount() const { return pool_ != nullptr ? amount_ : 0; }
 
  private:
@@ -43,23 +43,23 @@ class ShareLease {
   std::size_t amount_ = 0;
 };
 
-// An amount of something that clients share: places, bytes.
+// A resource that clients share: places, bytes.
 //
-// A client may take more as long as it holds less than client_share / (1 - client_share) times what
-// is free. Alone it can come to hold that share of the whole; two such clients with a share of 3/4
-// come to hold 3/7 each. So whoever comes finds something free, however greedy the others are, and
-// nobody needs to say beforehand who will come (Choudhury and Hahne 1998, "Dynamic queue length
-// thresholds for shared-memory packet switches").
+// A client may take more while it holds less than client_share / (1 - client_share) times the free
+// amount. A single client can therefore hold client_share of the whole; two clients with a share of
+// 3/4 can hold 3/7 each. A new client always finds a free amount, and the number of clients need
+// not be known in advance (Choudhury and Hahne 1998, "Dynamic queue length thresholds for
+// shared-memory packet switches").
 //
 // Threads: safe to call concurrently.
 class SharePool {
  public:
-  // `client_share`: over 0, at most 1; with 1 a client may hold everything.
+  // `client_share`: in (0, 1]. With 1, one client may hold everything.
   SharePool(std::size_t amount, double client_share)
       : amount_(amount), client_share_(client_share) {}
 
-  // Returns nothing if `amount` is not free, or if the client already holds its share. A lease of 0
-  // holds nothing and converts to false. The lease must not outlive the pool.
+  // Returns nullopt if `amount` is not free, or if the client already holds its share. A lease of 0
+  // is empty and converts to false. The lease must not outlive the pool.
   std::optional<ShareLease> Take(const std::string& client, std::size_t amount = 1);
 
   std::size_t amount() const { return amount_; }

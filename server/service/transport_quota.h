@@ -11,19 +11,19 @@ namespace duet::server::service {
 
 // The memory that gRPC may use for requests being received.
 //
-// gRPC counts a request until its bytes are freed. It resets calls at random once its quota is used
-// up, so requests that have come and wait to be parsed, for which there is room elsewhere
-// (Admission::Hold), must not use up what is meant for requests being received.
+// gRPC counts a request until its bytes are freed, and resets random calls when its quota is used
+// up. Requests that have arrived and wait to be parsed are limited by Admission::Hold. This class
+// therefore enlarges the quota by their size.
 //
 // Threads: safe to call concurrently.
 class TransportQuota {
  public:
   explicit TransportQuota(std::size_t bytes);
 
-  // For a server's builder.
+  // The quota to pass to the server's builder.
   const grpc::ResourceQuota& quota() const { return quota_; }
 
-  // A request of `bytes` that has come, as long as its bytes exist.
+  // Accounts for a request of `bytes` that has arrived, until its bytes are freed.
   class Received {
    public:
     Received(TransportQuota& quota, std::size_t bytes) : quota_(quota), bytes_(bytes) {

@@ -13,7 +13,8 @@
 namespace duet::server::service {
 namespace {
 
-// A label vector longer than the classes and this many mistakes is not looked at one by one.
+// A label vector with more than this many weights beyond the number of classes is rejected as a
+// whole.
 constexpr int kMaxExtraWeights = 64;
 
 std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVector& label_vector,
@@ -42,7 +43,7 @@ std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVect
                            absl::StrCat("is ", base::Quoted(entry.interaction_class()),
                                         ", wanted one of ", absl::StrJoin(model.classes, ", ")));
     }
-    // Also false for NaN.
+    // False for NaN.
     if (!(std::abs(entry.weight()) <= limits.max_abs_weight)) {
       violations.Malformed(absl::StrCat(at, ".weight"),
                            absl::StrCat("is ", entry.weight(), ", wanted a finite value in [-",

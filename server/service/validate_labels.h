@@ -11,9 +11,9 @@
 
 namespace duet::server::service {
 
-// Reads the request's label vector or keyframes, in the model's class order; a single label vector
-// is one keyframe at frame 0. Adds a violation for everything that is wrong, and the result is
-// meaningful only when there was none.
+// Reads the request's label vector or keyframes, in the model's class order. A label vector becomes
+// one keyframe at frame 0. Adds every invalid field to `violations`; the result is then
+// meaningless.
 std::vector<engine::LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& request,
                                                   const engine::ModelDescription& model,
                                                   const RequestLimits& limits,

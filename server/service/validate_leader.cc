@@ -12,7 +12,7 @@
 namespace duet::server::service {
 namespace {
 
-// Offending values that are named one by one.
+// Maximum number of invalid values that are listed individually.
 constexpr int kNamedValues = 3;
 
 std::string At(absl::string_view field, int index) { return absl::StrCat(field, "[", index, "]"); }
@@ -175,7 +175,7 @@ motion::Poses ReadPositions(absl::string_view field,
     const float* xyz = positions.data() + 3 * static_cast<std::ptrdiff_t>(point);
     const motion::Vec3 position = ToWorld(coordinates, {xyz[0], xyz[1], xyz[2]});
     world.at(point / joint_count, joints[point % joint_count]) = position;
-    // Written so that a conversion that overflowed is too far as well.
+    // Negated, so that a conversion that overflowed is rejected too.
     if (std::abs(position.x) <= limit && std::abs(position.y) <= limit &&
         std::abs(position.z) <= limit) {
       continue;

@@ -14,30 +14,30 @@
 
 namespace duet::server::service {
 
-// A list of more joint names than this is refused as a whole, without a word on each.
+// A longer list of joint names is rejected as a whole, without a violation for each name.
 inline constexpr int kMaxJointNames = 1024;
 
-// The unit and up axis of a motion; nothing, and violations, when they cannot be interpreted.
+// Returns the unit and up axis of a motion. Absent, with violations, if they are invalid.
 std::optional<motion::Coordinates> ValidateCoordinates(const v1::Motion& leader,
                                                        Violations& violations);
 
-// For every joint of the leader, its index in the model; empty, and violations, unless the names
-// are the model's joints in some order.
+// Returns the index in the model of each joint of the leader. Empty, with violations, unless the
+// names are the model's joints in any order.
 std::vector<int> ValidateJoints(const v1::Motion& leader, const engine::ModelDescription& model,
                                 Violations& violations);
 
-// Rate, frame count and duration.
+// Checks frame rate, frame count and duration.
 void ValidateTiming(const v1::Motion& leader, const RequestLimits& limits, Violations& violations);
 
-// Reads flat positions [frames, joints, 3] of the caller as poses in the world, in the model's
-// joint order. Empty, and violations under `field`, when a value is not finite or
-// absurdly far away. `positions` holds a whole number of frames of `joints`.
+// Converts the caller's flat positions [frames, joints, 3] to world poses in the model's joint
+// order. Empty, with violations under `field`, if a value is not finite or exceeds
+// RequestLimits::max_abs_coordinate_metres. Requires a whole number of frames.
 motion::Poses ReadPositions(absl::string_view field,
                             const google::protobuf::RepeatedField<float>& positions,
                             const std::vector<int>& joints, const motion::Coordinates& coordinates,
                             const RequestLimits& limits, Violations& violations);
 
-// Names the first few values that are not finite, and counts them all. True when there are none.
+// Returns true if all values are finite. Otherwise adds violations for the first few and a count.
 bool ValidateFinite(absl::string_view field,
                     const google::protobuf::RepeatedField<float>& positions,
                     Violations& violations);

@@ -19,7 +19,7 @@
 namespace duet::server::service {
 namespace {
 
-// Walks one request; every method adds what is wrong with its field.
+// Validates one request. Each method adds the violations of one field.
 class Validation {
  public:
   Validation(const v1::SynthesizeRequest& request, const engine::ModelDescription& model,
@@ -45,7 +45,7 @@ class Validation {
   Violations violations_;
 
   std::optional<motion::Coordinates> coordinates_;
-  std::vector<int> joints_;  // the leader's joints in the model; empty when they do not fit
+  std::vector<int> joints_;  // the leader's joints in the model; empty if they do not match
   motion::Poses leader_;
   ReplyMapping reply_;
 };
@@ -129,7 +129,7 @@ std::optional<motion::Vec3> Validation::PartnerDirection() {
   if (!ValidateFinite("partner_direction", xyz, violations_) || !coordinates_.has_value()) {
     return std::nullopt;
   }
-  // Scaled first, so that neither tiny nor huge components are lost in the conversion.
+  // Scaled first, so that the conversion loses neither tiny nor huge components.
   const float largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
   if (largest > 0) {
     const motion::Vec3 unit = {xyz[0] / largest, xyz[1] / largest, xyz[2] / largest};
@@ -153,7 +153,7 @@ void Validation::FillReplyMapping() {
   reply_.frame_rate_hz = leader.frame_rate_hz();
   if (coordinates_.has_value()) reply_.coordinates = *coordinates_;
   const auto& wanted = request_.reply_joint_names();
-  // Compared name by name below; a list that cannot be right must not cost its square.
+  // The comparison below takes quadratic time, so a list that is too long is skipped.
   if (leader.joint_names_size() > kMaxJointNames) return;
   if (wanted.size() > leader.joint_names_size()) {
     violations_.Malformed("reply_joint_names",

@@ -13,7 +13,7 @@
 
 namespace duet::server::service {
 
-// A SynthesizeRequest that was found good, in the model's terms.
+// A valid SynthesizeRequest, converted to the model's joints, units and classes.
 struct ValidatedRequest {
   engine::ClipRequest clip;
   ReplyMapping reply;
@@ -21,9 +21,8 @@ struct ValidatedRequest {
   batching::Priority priority = batching::Priority::kInteractive;
 };
 
-// Checks every field of a request against a model and the limits.
-// Fails with INVALID_ARGUMENT or FAILED_PRECONDITION whose BadRequest names every offending field.
-// `request` may hold anything.
+// Validates every field of a request against a model and the limits. Returns INVALID_ARGUMENT or
+// FAILED_PRECONDITION with a BadRequest that names every invalid field. `request` is untrusted.
 absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
                                                  const engine::ModelDescription& model,
                                                  const RequestLimits& limits);

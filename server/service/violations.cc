@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kMaxKept = 24;
 constexpr std::size_t kMaxKeptBytes = 2000;
 constexpr std::size_t kMaxDescriptionBytes = 240;
-// grpc-message repeats the first few for people who see only the text.
+// Number of violations in grpc-message, for people who see only the text.
 constexpr std::size_t kInMessage = 2;
 
 }  // namespace

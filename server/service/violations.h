@@ -10,21 +10,21 @@
 
 namespace duet::server::service {
 
-// Collects everything that is wrong with a request, so that a caller can put it right in one go.
+// Collects every invalid field of a request, so that a caller can correct all of them at once.
 //
-// Only the first few are kept as text, because they travel in trailers, which clients cap at 8 KiB;
-// the rest are counted.
+// Only the first few are kept as text, because trailers are limited to 8 KiB by clients. The others
+// are counted.
 class Violations {
  public:
-  // The field is malformed, whatever the model.
+  // Adds a field that is malformed for every model.
   void Malformed(std::string field, std::string description);
-  // The field is well formed but does not fit the model.
+  // Adds a field that is well formed but does not fit the model.
   void Mismatch(std::string field, std::string description);
 
   bool empty() const { return malformed_ + mismatched_ == 0; }
 
-  // OK when empty. INVALID_ARGUMENT when anything is malformed, FAILED_PRECONDITION when all that
-  // is wrong does not fit the model; with BadRequest and ErrorInfo.
+  // Returns OK if empty, INVALID_ARGUMENT if any field is malformed, and FAILED_PRECONDITION if
+  // fields only do not fit the model. Errors have BadRequest and ErrorInfo.
   absl::Status ToStatus() const;
 
  private:

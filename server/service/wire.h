@@ -8,13 +8,13 @@
 
 namespace duet::server::service {
 
-// Messages and the bytes that travel. The service takes bytes, because gRPC's generated code would
-// refuse malformed ones as UNIMPLEMENTED, and parses a request only once it is known that it will
-// be small enough when parsed (wire_survey.h).
+// Conversion between messages and bytes. The service receives bytes for two reasons: gRPC's
+// generated code reports malformed messages as UNIMPLEMENTED, and a request is parsed only after
+// its size in memory was bounded (wire_survey.h).
 
-// Parses into `message`, which is empty except for memory that was reserved in it.
-// Fails with INVALID_ARGUMENT, saying which message was wanted, when the bytes are no such message,
-// or naming the field that comes too often. The bytes are let go of in either case.
+// Parses `bytes` into `message`, which must be empty except for reserved memory. Returns
+// INVALID_ARGUMENT with the expected message type if the bytes are malformed, or with the field
+// that occurs too often. Frees `bytes` in any case.
 absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& message);
 
 grpc::ByteBuffer SerializeMessage(const google::protobuf::Message& message);

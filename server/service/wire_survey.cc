@@ -31,13 +31,13 @@ constexpr std::size_t kMaxOfRepeated = 65536;
 constexpr std::size_t kMaxOfNested = 262144;
 constexpr std::size_t kMaxUnknown = 1024;
 
-// A field at its place in the message: "label_keyframes.label_vector".
+// A field and its path in the message: "label_keyframes.label_vector".
 struct Place {
   std::string path;
   const FieldDescriptor* field = nullptr;
   std::size_t limit = 0;
   std::size_t count = 0;
-  std::vector<std::unique_ptr<Place>> fields;  // those met so far, of a message
+  std::vector<std::unique_ptr<Place>> fields;  // fields of a message found so far
 
   Place& Field(const FieldDescriptor* wanted, std::size_t limit_of_whole);
 };
@@ -62,12 +62,12 @@ Place& Place::Field(const FieldDescriptor* wanted, std::size_t limit_of_whole) {
   return *fields.back();
 }
 
-// One walk. Ends at the first field that comes too often.
+// One scan. Stops at the first field that occurs too often.
 class Surveyor {
  public:
   explicit Surveyor(CodedInputStream& in) : in_(in) {}
 
-  // False when there is no more to see: the bytes are malformed, or too_many() says why.
+  // Returns false if the scan stopped: the bytes are malformed, or too_many() is an error.
   bool Message(const Descriptor& type, Place& place, std::size_t limit);
   const absl::Status& too_many() const { return too_many_; }
 
@@ -89,7 +89,7 @@ bool IsOfType(const FieldDescriptor& field, uint32_t tag) {
 }
 
 bool Surveyor::Message(const Descriptor& type, Place& place, std::size_t limit) {
-  const Place* last = nullptr;  // most fields follow one of their own
+  const Place* last = nullptr;  // most fields follow another value of the same field
   while (const uint32_t tag = in_.ReadTag()) {
     const int number = WireFormatLite::GetTagFieldNumber(tag);
     const FieldDescriptor* field = last != nullptr && last->field->number() == number
@@ -120,7 +120,7 @@ bool Surveyor::Known(const FieldDescriptor& field, uint32_t tag, Place& place) {
   return seen;
 }
 
-// Groups are looked into: each field of one is an unknown field of its own.
+// Each field within a group counts as an unknown field.
 bool Surveyor::Unknown(uint32_t tag) {
   std::size_t open_groups = 0;
   do {
@@ -160,7 +160,7 @@ bool Surveyor::Count(const std::string& path, std::size_t& count, std::size_t li
 absl::Status SurveyMessage(google::protobuf::io::ZeroCopyInputStream& bytes,
                            const Descriptor& type) {
   CodedInputStream in(&bytes);
-  // A limit of its own, so that every length can be checked against one.
+  // Sets a limit, so that every length can be checked against one.
   const CodedInputStream::Limit outer = in.PushLimit(std::numeric_limits<int>::max());
   Surveyor surveyor(in);
   Place whole;

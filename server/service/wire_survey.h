@@ -8,21 +8,20 @@
 
 namespace duet::server::service {
 
-// Walks the bytes of a message without building anything, and counts what it holds.
+// Scans the bytes of a message without parsing it, and limits how often each field occurs.
 //
-// A parsed message can be many times as large as its bytes: an empty submessage has two bytes on
-// the wire and takes a hundred in memory. So how often a field comes is bounded before the parser
-// sees it, far above what any request of use has; how often it may come in a request that is
-// answered, the validator says.
+// A parsed message can be many times larger than its bytes: an empty submessage has two bytes on
+// the wire and about a hundred in memory. The limits are far above those of any valid request,
+// which the validator enforces.
 //
-//   field that comes              at most, in the whole message
-//   numbers of a repeated field   no limit: in memory they are no larger than on the wire
+//   field                         maximum number in the whole message
+//   repeated numbers              no limit: they are no larger in memory than on the wire
 //   repeated                      65,536; below another repeated field 262,144
-//   any other                     1,024, or as often as the repeated field that it is part of
-//   unknown, or of another type   1,024 together
+//   any other                     1,024, or the limit of the repeated field that contains it
+//   unknown, or of another type   1,024 in total
 //
-// Fails with INVALID_ARGUMENT naming the field and its limit. Bytes that are no message at all are
-// the parser's to refuse: OK here.
+// Returns INVALID_ARGUMENT with the field and its limit. Returns OK for malformed bytes, which the
+// parser rejects.
 absl::Status SurveyMessage(google::protobuf::io::ZeroCopyInputStream& bytes,
                            const google::protobuf::Descriptor& type);
 
