@@ -13,8 +13,8 @@
 namespace duet::server::service {
 namespace {
 
-// A client whose deadline passes resets the call; that may arrive a little before the deadline
-// passes here, where it began later by the request's way.
+// When its deadline passes, a client resets the call. The reset can arrive before the deadline
+// passes here, because the call began here later by the time that the request travelled.
 constexpr double kDeadlineSlackSeconds = 0.1;
 
 constexpr common::StepKind kReceived{"gRPC callback", "handling a request"};
@@ -33,14 +33,22 @@ void CallReactor::Receive(std::shared_ptr<Reception> reception, Handler handle) 
 
 void CallReactor::OnReadDone(bool ok) {
   const common::Step step(kReceived);
-  // The answer may come, and this reactor go, while it is being handled.
+  // Copied, because the call may end while its message is handled.
   const std::shared_ptr<Reception> reception = reception_;
+  grpc::ByteBuffer bytes;
+  bytes.Swap(&request_);
+  if (handle_ == nullptr) {
+    if (ok) {
+      reception->HandOn(std::move(bytes));
+    } else if (!context_.IsCancelled()) {  // OnCancel ends a cancelled call
+      reception->EndOfMessages();
+    }
+    return;
+  }
+  const Handler handle = std::exchange(handle_, nullptr);
   if (!ok) {
     reception->Lost(context_.IsCancelled());
   } else if (reception->Received()) {
-    grpc::ByteBuffer bytes;
-    bytes.Swap(&request_);
-    const Handler handle = std::move(handle_);
     handle(*this, reception, std::move(bytes));
   }
 }
@@ -51,24 +59,25 @@ void CallReactor::Respond(CallScope& scope, grpc::ByteBuffer response) {
   StartWriteAndFinish(&reply_, grpc::WriteOptions(), grpc::Status::OK);
 }
 
-void CallReactor::Run(std::shared_ptr<SynthesisCall> call) {
+void CallReactor::Run(std::shared_ptr<StreamingCall> call, std::shared_ptr<MessageSink> further) {
   const std::shared_ptr<Reception> reception = reception_;
   call_ = call;
-  reception->GoOn(std::move(call));
+  reception->GoOn(std::move(call), std::move(further));
 }
 
-void CallReactor::Write(const v1::SynthesizeResponse& reply) {
+void CallReactor::Write(const google::protobuf::Message& reply) {
   reply_ = SerializeMessage(reply);
   StartWrite(&reply_);
 }
 
 void CallReactor::Finish(CallScope& scope, const absl::Status& status) {
+  if (reception_ != nullptr) reception_->Close();
   GrpcReactor& reactor = *this;
   CallPipeline::Close(scope, status, context_, reactor);
 }
 
-// What ServerContext::TryCancel does, with a status of the server's instead of CANCELLED. gRPC
-// writes it past the messages that wait for the reader.
+// Does what ServerContext::TryCancel does, with another status than CANCELLED. The status overtakes
+// messages that wait for the reader.
 void CallReactor::BreakOff(const absl::Status& reason) {
   const grpc::Status status = common::ToGrpcStatus(reason);
   grpc_call_cancel_with_status(context_.c_call(),

@@ -8,22 +8,22 @@
 #include <memory>
 
 #include "absl/status/status.h"
-#include "duet/v1/synthesis.pb.h"
 #include "server/service/open_calls.h"
 #include "server/service/reception.h"
-#include "server/service/synthesis_call.h"
+#include "server/service/streaming_call.h"
 
 namespace duet::server::service {
 
-// Joins a call of any method to gRPC. Deletes itself when gRPC is done with it.
+// Connects a call of any method to gRPC. Deletes itself when gRPC has finished with it.
 //
-// A bidirectional reactor, whatever the contract says of the method: gRPC reads the message of any
-// other before it tells of the call, so that whoever sends the most decides how much is in memory.
-// On the wire one message each way is the same.
+// A bidirectional reactor, even for methods that take or return one message. For all other kinds,
+// gRPC reads the request before it reports the call, so memory would depend on what callers send.
+// On the wire, a stream of one message and a single message are the same.
 class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
-                          public ReplyWriter {
+                          public ReplyWriter,
+                          public MessageReader {
  public:
-  // What is done with the message: the reception is refused, answered or goes on.
+  // Handles the first message: refuses or answers the reception, or lets it go on.
   using Handler =
       std::function<void(CallReactor&, const std::shared_ptr<Reception>&, grpc::ByteBuffer)>;
 
@@ -31,14 +31,15 @@ class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc:
   CallReactor(grpc::CallbackServerContext& context, OpenCalls& open_calls)
       : context_(context), open_(open_calls) {}
 
-  // Reads the message of an admitted call. A refused one needs Finish alone.
+  // Reads the first message of an admitted call. A refused call needs only Finish.
   void Receive(std::shared_ptr<Reception> reception, Handler handle);
-  // Answers with one message.
+  // Replies with one message.
   void Respond(CallScope& scope, grpc::ByteBuffer response);
-  // Answers with a stream.
-  void Run(std::shared_ptr<SynthesisCall> call);
+  // Replies with a stream. `further`: see Reception::GoOn.
+  void Run(std::shared_ptr<StreamingCall> call, std::shared_ptr<MessageSink> further = nullptr);
 
-  void Write(const v1::SynthesizeResponse& reply) override;
+  void Read() override { StartRead(&request_); }
+  void Write(const google::protobuf::Message& reply) override;
   void Finish(CallScope& scope, const absl::Status& status) override;
   void BreakOff(const absl::Status& reason) override;
 
@@ -52,9 +53,9 @@ class CallReactor final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc:
  private:
   grpc::CallbackServerContext& context_;
   const OpenCalls::Ticket open_;
-  Handler handle_;
+  Handler handle_;                        // null once the first message has arrived
   std::shared_ptr<Reception> reception_;  // null: refused at the headers
-  std::shared_ptr<SynthesisCall> call_;
+  std::shared_ptr<StreamingCall> call_;
   grpc::ByteBuffer request_;  // being read
   grpc::ByteBuffer reply_;    // being written
 };

@@ -9,6 +9,7 @@
 
 #include "server/common/activity.h"
 #include "server/service/call_deadline.h"
+#include "server/service/clip_replies.h"
 #include "server/service/model_message.h"
 #include "server/service/priority_message.h"
 #include "server/service/refusals.h"
@@ -130,6 +131,7 @@ std::shared_ptr<Reception> MotionSynthesisService::Receive(OpenedCall opened, Sh
                                                            CallReactor& reactor) {
   Reception::Parts parts;
   parts.writer = &reactor;
+  parts.reader = &reactor;
   parts.admission = parts_.admission;
   parts.clock = parts_.clock;
   parts.limits = parts_.reception;
@@ -201,16 +203,17 @@ void MotionSynthesisService::Begin(CallReactor& reactor,
     reception->Refuse(read);
     return;
   }
-  absl::StatusOr<SynthesisCall::Parts> prepared =
+  absl::StatusOr<Prepared> prepared =
       Prepare(reactor.context(), *reception, request, std::move(held));
   if (!prepared.ok()) {
     reception->Refuse(prepared.status());
     return;
   }
-  reactor.Run(SynthesisCall::Create(*std::move(prepared), *parts_.scheduler, reactor));
+  reactor.Run(
+      StreamingCall::Create(std::move(prepared->call), std::move(prepared->replies), reactor));
 }
 
-absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
+absl::StatusOr<MotionSynthesisService::Prepared> MotionSynthesisService::Prepare(
     const Context& context, Reception& reception, const v1::SynthesizeRequest& request,
     ShareLease held) {
   // An unknown priority is refused by the validator, together with all else that is wrong.
@@ -232,12 +235,20 @@ absl::StatusOr<SynthesisCall::Parts> MotionSynthesisService::Prepare(
   if (!frames.ok()) return frames;
   std::optional<bool>& clean_up = validated->clip.options.clean_up;
   if (!clean_up.has_value()) clean_up = parts_.clean_up.value_or(model.cleaned_up_by_default());
-  return SynthesisCall::Parts{
-      std::move(served.model),      *std::move(validated),
-      reception.TakePlace(),        std::move(held),
-      reception.TakeScope(),        DeadlineOf(context, *parts_.clock, parts_.max_call_seconds),
-      parts_.buffered_frames,       reception.client(),
-      parts_.write_timeout_seconds, parts_.clock};
+  ClipStreamOptions options;
+  options.deadline = DeadlineOf(context, *parts_.clock, parts_.max_call_seconds);
+  options.buffered_frames = parts_.buffered_frames;
+  options.client = reception.client();
+  StreamingCall::Parts call;
+  call.place = reception.TakePlace();
+  call.held_bytes = std::move(held);
+  call.scope = reception.TakeScope();
+  call.deadline = options.deadline;
+  call.write_timeout_seconds = parts_.write_timeout_seconds;
+  call.clock = parts_.clock;
+  return Prepared{std::move(call),
+                  std::make_unique<ClipReplies>(std::move(served.model), *std::move(validated),
+                                                std::move(options), *parts_.scheduler)};
 }
 
 template <typename Request, typename Answer>

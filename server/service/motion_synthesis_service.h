@@ -27,7 +27,7 @@
 #include "server/service/raw_service.h"
 #include "server/service/reception.h"
 #include "server/service/request_limits.h"
-#include "server/service/synthesis_call.h"
+#include "server/service/streaming_call.h"
 #include "server/service/transport_quota.h"
 
 namespace duet::server::service {
@@ -60,7 +60,7 @@ struct ServiceParts {
 // The contract's service: no method blocks, or keeps a thread of gRPC's for long.
 //
 // Every call comes in by the CallPipeline and is admitted before its message is read (Reception). A
-// Synthesize call goes on model -> validator -> SynthesisCall, which lives until its last reply was
+// Synthesize call goes on model -> validator -> StreamingCall, which lives until its last reply was
 // taken or the caller went away.
 class MotionSynthesisService final : public RawService {
  public:
@@ -97,11 +97,15 @@ class MotionSynthesisService final : public RawService {
   void Begin(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
              grpc::ByteBuffer bytes, ShareLease held,
              std::shared_ptr<TransportQuota::Received> received);
-  // Finds the model and checks the request. Takes place and scope of a call that goes on; those of
-  // a refused one stay.
-  absl::StatusOr<SynthesisCall::Parts> Prepare(const Context& context, Reception& reception,
-                                               const v1::SynthesizeRequest& request,
-                                               ShareLease held);
+  // A Synthesize call that was found valid.
+  struct Prepared {
+    StreamingCall::Parts call;
+    std::unique_ptr<ReplySource> replies;
+  };
+  // Finds the model and validates the request. If it succeeds, takes place and scope from
+  // `reception`.
+  absl::StatusOr<Prepared> Prepare(const Context& context, Reception& reception,
+                                   const v1::SynthesizeRequest& request, ShareLease held);
   v1::ListModelsResponse List() const;
   absl::StatusOr<v1::GetModelResponse> Get(const v1::GetModelRequest& request) const;
   // A method with one answer: `answer` is a StatusOr<Response> from (const Request&).

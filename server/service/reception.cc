@@ -9,7 +9,7 @@ namespace duet::server::service {
 Reception::Reception(Parts parts) : parts_(std::move(parts)), begin_(parts_.clock->Now()) {}
 
 bool Reception::Received() {
-  ShareLease slow;  // others may arrive slowly while this one waits to be handled
+  ShareLease slow;  // another message may arrive slowly while this one waits to be handled
   common::MutexLock lock(mutex_);
   if (state_ != State::kReceiving) return false;
   state_ = State::kHandling;
@@ -38,7 +38,7 @@ bool Reception::EndFrom(State state, const absl::Status& reason) {
     state_ = State::kEnded;
     slow = std::move(slow_);
   }
-  // Everything is free before the call is reported, as in SynthesisCall::Finish.
+  // Everything is free before the call is reported, as in StreamingCall::Finish.
   slow = ShareLease();
   parts_.place = ShareLease();
   const std::unique_ptr<CallScope> scope = std::move(parts_.scope);
@@ -56,22 +56,63 @@ std::unique_ptr<CallScope> Reception::TakeScope() { return std::move(parts_.scop
 
 ShareLease Reception::TakePlace() { return std::move(parts_.place); }
 
-void Reception::GoOn(std::shared_ptr<SynthesisCall> call) {
-  // First, so that what ends the call finds one that has begun.
+void Reception::GoOn(std::shared_ptr<StreamingCall> call, std::shared_ptr<MessageSink> further) {
+  // Start first, so that Abort and CheckTime find a call that has started.
   call->Start();
   std::optional<absl::Status> end;
   {
     common::MutexLock lock(mutex_);
-    state_ = State::kAnswering;
     call_ = call;
     end = end_;
+    // The call may have ended within Start.
+    if (state_ == State::kHandling) {
+      state_ = State::kAnswering;
+      further_ = std::move(further);
+    }
   }
   if (end) call->Abort(*end);
 }
 
+bool Reception::ReadNext(double timeout_seconds) {
+  common::MutexLock lock(mutex_);
+  if (state_ != State::kAnswering || further_ == nullptr || reading_.has_value()) return false;
+  reading_ = {parts_.clock->Now(), timeout_seconds};
+  // Under the lock, so that Close cannot let the reader be destroyed in between.
+  parts_.reader->Read();
+  return true;
+}
+
+std::shared_ptr<MessageSink> Reception::FinishReading() {
+  common::MutexLock lock(mutex_);
+  reading_.reset();
+  return state_ == State::kAnswering ? further_ : nullptr;
+}
+
+void Reception::HandOn(grpc::ByteBuffer bytes) {
+  const std::shared_ptr<MessageSink> sink = FinishReading();
+  if (sink != nullptr) sink->OnMessage(std::move(bytes));
+}
+
+void Reception::EndOfMessages() {
+  const std::shared_ptr<MessageSink> sink = FinishReading();
+  if (sink == nullptr) return;
+  {
+    common::MutexLock lock(mutex_);
+    further_.reset();
+  }
+  sink->OnEndOfMessages();
+}
+
+void Reception::Close() {
+  std::shared_ptr<MessageSink> further;  // destroyed under no lock
+  common::MutexLock lock(mutex_);
+  state_ = State::kEnded;
+  further = std::move(further_);
+}
+
 void Reception::Abort(const absl::Status& reason) {
   if (EndFrom(State::kReceiving, reason)) return;
-  std::shared_ptr<SynthesisCall> call;
+  std::shared_ptr<StreamingCall> call;
   {
     common::MutexLock lock(mutex_);
     if (state_ == State::kHandling && !end_) end_ = reason;
@@ -81,33 +122,38 @@ void Reception::Abort(const absl::Status& reason) {
 }
 
 void Reception::CheckTime(common::TimePoint now) {
-  std::shared_ptr<SynthesisCall> call;
-  absl::Status in_time;
+  std::shared_ptr<StreamingCall> call;
+  absl::Status arrival, next;
   {
     common::MutexLock lock(mutex_);
-    if (state_ == State::kReceiving) in_time = LeaveToArrive(common::SecondsBetween(begin_, now));
+    if (state_ == State::kReceiving) arrival = CheckArrival(common::SecondsBetween(begin_, now));
+    if (reading_ && common::SecondsBetween(reading_->begin, now) >= reading_->timeout_seconds) {
+      next = ReceiveTimeoutRefusal(reading_->timeout_seconds);
+    }
     call = call_;
   }
-  if (!in_time.ok()) EndFrom(State::kReceiving, in_time);
-  if (call != nullptr) call->CheckTime(now);
+  if (!arrival.ok()) EndFrom(State::kReceiving, arrival);
+  if (call == nullptr) return;
+  if (!next.ok()) call->Abort(next);
+  call->CheckTime(now);
 }
 
-std::shared_ptr<SynthesisCall> Reception::call() const {
+std::shared_ptr<StreamingCall> Reception::call() const {
   common::MutexLock lock(mutex_);
   return call_;
 }
 
 std::optional<common::TimePoint> Reception::waiting_since() const {
-  const std::shared_ptr<SynthesisCall> answering = call();
+  const std::shared_ptr<StreamingCall> answering = call();
   return answering == nullptr ? std::nullopt : answering->waiting_since();
 }
 
 std::optional<std::size_t> Reception::GiveUpReader(common::TimePoint now, double seconds) {
-  const std::shared_ptr<SynthesisCall> answering = call();
+  const std::shared_ptr<StreamingCall> answering = call();
   return answering == nullptr ? std::nullopt : answering->GiveUpReader(now, seconds);
 }
 
-absl::Status Reception::LeaveToArrive(double waited) {
+absl::Status Reception::CheckArrival(double waited) {
   if (waited >= parts_.limits.timeout_seconds) {
     return ReceiveTimeoutRefusal(parts_.limits.timeout_seconds);
   }

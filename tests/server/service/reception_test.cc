@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,7 +32,7 @@ using std::chrono::milliseconds;
 
 class FakeWriter final : public ReplyWriter {
  public:
-  void Write(const v1::SynthesizeResponse&) override { ADD_FAILURE() << "nothing to write"; }
+  void Write(const google::protobuf::Message&) override { ADD_FAILURE() << "nothing to write"; }
   void BreakOff(const absl::Status&) override { ADD_FAILURE() << "nothing to break off"; }
   void Finish(CallScope& scope, const absl::Status& status) override {
     EXPECT_FALSE(finished.has_value()) << "two ends";
@@ -37,6 +40,13 @@ class FakeWriter final : public ReplyWriter {
     finished = status;
   }
   std::optional<absl::Status> finished;
+};
+
+// Counts the reads that a reception begins.
+class FakeReader final : public MessageReader {
+ public:
+  void Read() override { ++reads; }
+  int reads = 0;
 };
 
 class ReceptionTest : public ::testing::Test {
@@ -53,6 +63,7 @@ class ReceptionTest : public ::testing::Test {
   std::unique_ptr<Reception> Receive(FakeWriter& writer) {
     Reception::Parts parts;
     parts.writer = &writer;
+    parts.reader = &reader_;
     parts.admission = &admission_;
     parts.clock = &clock_;
     parts.limits = {0.1, 30};
@@ -69,6 +80,7 @@ class ReceptionTest : public ::testing::Test {
   std::vector<metrics::CallObserver*> observers_ = {&observer_};
   Admission admission_;
   FakeWriter writer_;
+  FakeReader reader_;
 };
 
 TEST_F(ReceptionTest, AMessageThatComesIsToBeAnswered) {
@@ -175,6 +187,111 @@ TEST_F(ReceptionTest, AMessageThatTakesTooLongIsNotWaitedFor) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kDeadlineExceeded,
                                           ::testing::HasSubstr("receive_timeout_seconds = 30")));
   EXPECT_EQ(admission_.calls(), 0u);
+}
+
+// Records the messages after the first one.
+class RecordingSink final : public MessageSink {
+ public:
+  void OnMessage(grpc::ByteBuffer bytes) override { sizes.push_back(bytes.Length()); }
+  void OnEndOfMessages() override { ++ends; }
+  std::vector<std::size_t> sizes;
+  int ends = 0;
+};
+
+// A stream that sends nothing and does not end by itself.
+class SilentSource final : public ReplySource {
+ public:
+  absl::Status Start(std::function<void()>) override { return absl::OkStatus(); }
+  NextReply Next(CallScope&) override { return {}; }
+  void Cancel() override {}
+  void Report(metrics::CallRecord&) const override {}
+};
+
+grpc::ByteBuffer Bytes(std::size_t size) {
+  const grpc::Slice slice(std::string(size, 'x'));
+  return {&slice, 1};
+}
+
+// A call that goes on and takes further messages.
+class FurtherMessagesTest : public ReceptionTest {
+ protected:
+  void SetUp() override {
+    reception_ = Receive(writer_);
+    ASSERT_TRUE(reception_->Received());
+    StreamingCall::Parts parts;
+    parts.scope = reception_->TakeScope();
+    parts.place = reception_->TakePlace();
+    parts.clock = &clock_;
+    call_ = StreamingCall::Create(std::move(parts), std::make_unique<SilentSource>(), writer_);
+    reception_->GoOn(call_, sink_);
+  }
+
+  std::unique_ptr<Reception> reception_;
+  std::shared_ptr<StreamingCall> call_;
+  std::shared_ptr<RecordingSink> sink_ = std::make_shared<RecordingSink>();
+};
+
+TEST_F(FurtherMessagesTest, AreReadOnlyOnRequestOneAtATime) {
+  EXPECT_EQ(reader_.reads, 0);
+  EXPECT_TRUE(reception_->ReadNext(30));
+  EXPECT_EQ(reader_.reads, 1);
+  EXPECT_FALSE(reception_->ReadNext(30)) << "a message is being read already";
+  EXPECT_EQ(reader_.reads, 1);
+  reception_->HandOn(Bytes(3));
+  EXPECT_TRUE(reception_->ReadNext(30));
+  reception_->HandOn(Bytes(5));
+  EXPECT_THAT(sink_->sizes, ::testing::ElementsAre(3u, 5u));
+  EXPECT_EQ(sink_->ends, 0);
+}
+
+TEST_F(FurtherMessagesTest, EndOfMessagesLeavesTheCallRunning) {
+  EXPECT_TRUE(reception_->ReadNext(30));
+  reception_->EndOfMessages();
+  EXPECT_EQ(sink_->ends, 1);
+  EXPECT_FALSE(reception_->ReadNext(30)) << "there are no more messages";
+  EXPECT_FALSE(writer_.finished.has_value());
+}
+
+TEST_F(FurtherMessagesTest, MessageThatDoesNotArriveInTimeEndsTheCall) {
+  EXPECT_TRUE(reception_->ReadNext(5));
+  clock_.Advance(milliseconds(4999));
+  reception_->CheckTime(clock_.Now());
+  EXPECT_FALSE(writer_.finished.has_value());
+  clock_.Advance(milliseconds(1));
+  reception_->CheckTime(clock_.Now());
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kDeadlineExceeded, _));
+}
+
+TEST_F(FurtherMessagesTest, TimeLimitAppliesOnlyWhileAMessageIsRead) {
+  EXPECT_TRUE(reception_->ReadNext(5));
+  reception_->HandOn(Bytes(1));
+  clock_.Advance(std::chrono::hours(1));
+  reception_->CheckTime(clock_.Now());
+  EXPECT_FALSE(writer_.finished.has_value());
+}
+
+TEST_F(FurtherMessagesTest, MessagesAfterCloseAreDropped) {
+  EXPECT_TRUE(reception_->ReadNext(30));
+  reception_->Close();
+  reception_->HandOn(Bytes(3));
+  reception_->EndOfMessages();
+  EXPECT_THAT(sink_->sizes, ::testing::IsEmpty());
+  EXPECT_EQ(sink_->ends, 0);
+  EXPECT_FALSE(reception_->ReadNext(30)) << "the reader may be gone";
+  EXPECT_EQ(reader_.reads, 1);
+}
+
+TEST_F(ReceptionTest, CallWithoutASinkReadsNoFurtherMessage) {
+  const auto reception = Receive(writer_);
+  ASSERT_TRUE(reception->Received());
+  EXPECT_FALSE(reception->ReadNext(30)) << "its first message is still handled";
+  StreamingCall::Parts parts;
+  parts.scope = reception->TakeScope();
+  parts.clock = &clock_;
+  reception->GoOn(
+      StreamingCall::Create(std::move(parts), std::make_unique<SilentSource>(), writer_));
+  EXPECT_FALSE(reception->ReadNext(30));
+  EXPECT_EQ(reader_.reads, 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "server/service/synthesis_call.h"
+#include "server/service/clip_replies.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 
 #include "server/service/admission.h"
 #include "server/service/refusals.h"
+#include "server/service/streaming_call.h"
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/recording_observer.h"
@@ -38,11 +39,11 @@ using absl::StatusCode;
 // A reader that the test steps.
 class FakeWriter final : public ReplyWriter {
  public:
-  void Write(const v1::SynthesizeResponse& reply) override {
+  void Write(const google::protobuf::Message& reply) override {
     EXPECT_FALSE(writing) << "two writes at once";
     EXPECT_FALSE(finished.has_value()) << "a write after the end";
     writing = true;
-    replies.push_back(reply);
+    replies.push_back(dynamic_cast<const v1::SynthesizeResponse&>(reply));
   }
   void Finish(CallScope& scope, const absl::Status& status) override {
     EXPECT_FALSE(writing) << "the end while a write is under way";
@@ -65,7 +66,7 @@ class FakeWriter final : public ReplyWriter {
   std::optional<absl::Status> finished;
 };
 
-class SynthesisCallTest : public ::testing::Test {
+class ClipRepliesTest : public ::testing::Test {
  protected:
   void Create(int frames,
               std::shared_ptr<FakeSynthesizer> model = std::make_shared<FakeSynthesizer>()) {
@@ -77,17 +78,19 @@ class SynthesisCallTest : public ::testing::Test {
     auto scope =
         std::make_unique<CallScope>(metrics::MethodInfo{"service", "Synthesize", "server_stream"},
                                     CallIdentity{"id", "", "peer", "client"}, observers_, clock_);
-    SynthesisCall::Parts parts{std::move(model),
-                               *std::move(request),
-                               *std::move(place),
-                               ShareLease(),
-                               std::move(scope),
-                               deadline_,
-                               /*buffered_frames=*/240,
-                               "client",
-                               /*write_timeout_seconds=*/30,
-                               &clock_};
-    call_ = SynthesisCall::Create(std::move(parts), scheduler_, writer_);
+    StreamingCall::Parts parts;
+    parts.place = *std::move(place);
+    parts.scope = std::move(scope);
+    parts.deadline = deadline_;
+    parts.write_timeout_seconds = 30;
+    parts.clock = &clock_;
+    ClipStreamOptions options;
+    options.deadline = deadline_;
+    options.buffered_frames = 240;
+    options.client = "client";
+    auto replies =
+        std::make_unique<ClipReplies>(std::move(model), *std::move(request), options, scheduler_);
+    call_ = StreamingCall::Create(std::move(parts), std::move(replies), writer_);
   }
 
   // The reader took the message under way.
@@ -108,12 +111,12 @@ class SynthesisCallTest : public ::testing::Test {
   common::TimePoint deadline_ = common::TimePoint::max();
   PuppetScheduler scheduler_;
   FakeWriter writer_;
-  std::shared_ptr<SynthesisCall> call_;
+  std::shared_ptr<StreamingCall> call_;
 
-  SynthesisCallTest() { admission_.SetState(Admission::State::kServing); }
+  ClipRepliesTest() { admission_.SetState(Admission::State::kServing); }
 };
 
-TEST_F(SynthesisCallTest, WritesOneMessageAtATimeAndThenEnds) {
+TEST_F(ClipRepliesTest, WritesOneMessageAtATimeAndThenEnds) {
   Create(46);
   call_->Start();
   ASSERT_THAT(writer_.replies, SizeIs(1));
@@ -133,7 +136,7 @@ TEST_F(SynthesisCallTest, WritesOneMessageAtATimeAndThenEnds) {
   EXPECT_THAT(*writer_.finished, IsOk());
 }
 
-TEST_F(SynthesisCallTest, WaitsForTheNextWindowWithoutAMessageUnderWay) {
+TEST_F(ClipRepliesTest, WaitsForTheNextWindowWithoutAMessageUnderWay) {
   Create(46);
   call_->Start();
   Written();
@@ -142,7 +145,7 @@ TEST_F(SynthesisCallTest, WaitsForTheNextWindowWithoutAMessageUnderWay) {
   EXPECT_TRUE(writer_.writing);
 }
 
-TEST_F(SynthesisCallTest, ARefusalComesBeforeAnyMessage) {
+TEST_F(ClipRepliesTest, ARefusalComesBeforeAnyMessage) {
   Create(46);
   scheduler_.Refuse(absl::ResourceExhaustedError("full"));
   call_->Start();
@@ -151,7 +154,7 @@ TEST_F(SynthesisCallTest, ARefusalComesBeforeAnyMessage) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kResourceExhausted, "full"));
 }
 
-TEST_F(SynthesisCallTest, GivesItsPlaceBackAndReportsBeforeTheCallerKnows) {
+TEST_F(ClipRepliesTest, GivesItsPlaceBackAndReportsBeforeTheCallerKnows) {
   Create(46);
   scheduler_.Refuse(absl::ResourceExhaustedError("full"));
   EXPECT_EQ(admission_.calls(), 1u);
@@ -171,13 +174,13 @@ class ProbingObserver final : public metrics::CallObserver {
   }
 
   std::optional<std::size_t> calls_when_reported;
-  SynthesisCall* call = nullptr;
+  StreamingCall* call = nullptr;
 
  private:
   const Admission& admission_;
 };
 
-TEST_F(SynthesisCallTest, ItsPlaceIsFreeWhenItIsReported) {
+TEST_F(ClipRepliesTest, ItsPlaceIsFreeWhenItIsReported) {
   ProbingObserver probe(admission_);
   observers_ = {&probe};
   Create(46);
@@ -187,7 +190,7 @@ TEST_F(SynthesisCallTest, ItsPlaceIsFreeWhenItIsReported) {
   EXPECT_EQ(probe.calls_when_reported, 0u);
 }
 
-TEST_F(SynthesisCallTest, IsReportedUnderNoLock) {
+TEST_F(ClipRepliesTest, IsReportedUnderNoLock) {
   ProbingObserver probe(admission_);
   observers_ = {&probe};
   Create(46);
@@ -198,7 +201,7 @@ TEST_F(SynthesisCallTest, IsReportedUnderNoLock) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, "gone"));
 }
 
-TEST_F(SynthesisCallTest, AnAbortWhileIdleEndsAtOnce) {
+TEST_F(ClipRepliesTest, AnAbortWhileIdleEndsAtOnce) {
   Create(46);
   call_->Start();
   Written();
@@ -207,7 +210,7 @@ TEST_F(SynthesisCallTest, AnAbortWhileIdleEndsAtOnce) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, "gone"));
 }
 
-TEST_F(SynthesisCallTest, AnAbortWaitsForTheMessageUnderWay) {
+TEST_F(ClipRepliesTest, AnAbortWaitsForTheMessageUnderWay) {
   Create(46);
   call_->Start();
   call_->Abort(absl::CancelledError("gone"));
@@ -217,7 +220,7 @@ TEST_F(SynthesisCallTest, AnAbortWaitsForTheMessageUnderWay) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, "gone"));
 }
 
-TEST_F(SynthesisCallTest, TheFirstReasonToEndCounts) {
+TEST_F(ClipRepliesTest, TheFirstReasonToEndCounts) {
   Create(46);
   call_->Start();
   call_->Abort(DrainingRefusal());
@@ -227,7 +230,7 @@ TEST_F(SynthesisCallTest, TheFirstReasonToEndCounts) {
   EXPECT_THAT(observer_.records(), SizeIs(1));
 }
 
-TEST_F(SynthesisCallTest, AMessageThatCannotBeWrittenEndsTheCall) {
+TEST_F(ClipRepliesTest, AMessageThatCannotBeWrittenEndsTheCall) {
   Create(46);
   call_->Start();
   Written(/*ok=*/false);
@@ -236,7 +239,7 @@ TEST_F(SynthesisCallTest, AMessageThatCannotBeWrittenEndsTheCall) {
   EXPECT_FALSE(scheduler_.RunNext()) << "its window was evaluated";
 }
 
-TEST_F(SynthesisCallTest, AReaderThatTakesNothingIsGivenUp) {
+TEST_F(ClipRepliesTest, AReaderThatTakesNothingIsGivenUp) {
   Create(46);
   call_->Start();
   clock_.Advance(std::chrono::seconds(29));
@@ -254,7 +257,7 @@ TEST_F(SynthesisCallTest, AReaderThatTakesNothingIsGivenUp) {
   EXPECT_FALSE(scheduler_.RunNext()) << "its window was evaluated";
 }
 
-TEST_F(SynthesisCallTest, AReaderThatTakesEachMessageInTimeIsNot) {
+TEST_F(ClipRepliesTest, AReaderThatTakesEachMessageInTimeIsNot) {
   Create(46);
   call_->Start();
   scheduler_.RunNext();
@@ -267,7 +270,7 @@ TEST_F(SynthesisCallTest, AReaderThatTakesEachMessageInTimeIsNot) {
   EXPECT_EQ(writer_.broken_off, 0);
 }
 
-TEST_F(SynthesisCallTest, AWriteThatComesBackWhileItIsBrokenOffKeepsTheWriter) {
+TEST_F(ClipRepliesTest, AWriteThatComesBackWhileItIsBrokenOffKeepsTheWriter) {
   Create(46);
   call_->Start();
   writer_.on_break_off = [this] {
@@ -279,7 +282,7 @@ TEST_F(SynthesisCallTest, AWriteThatComesBackWhileItIsBrokenOffKeepsTheWriter) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kDeadlineExceeded, testing::_));
 }
 
-TEST_F(SynthesisCallTest, ACallEndsAtItsDeadlineThoughNobodyElseEndsIt) {
+TEST_F(ClipRepliesTest, ACallEndsAtItsDeadlineThoughNobodyElseEndsIt) {
   deadline_ = clock_.Now() + std::chrono::seconds(5);
   Create(46);
   call_->Start();
@@ -293,7 +296,7 @@ TEST_F(SynthesisCallTest, ACallEndsAtItsDeadlineThoughNobodyElseEndsIt) {
   EXPECT_FALSE(scheduler_.RunNext()) << "its window was evaluated";
 }
 
-TEST_F(SynthesisCallTest, AWindowThatEndsLateFindsNobody) {
+TEST_F(ClipRepliesTest, AWindowThatEndsLateFindsNobody) {
   auto model = std::make_shared<FakeSynthesizer>();
   // The caller goes away, writer and all, while its window is being evaluated.
   model->on_batch = [this](absl::Span<const engine::SynthesisWindow* const>) {
@@ -308,7 +311,7 @@ TEST_F(SynthesisCallTest, AWindowThatEndsLateFindsNobody) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, "gone"));
 }
 
-TEST_F(SynthesisCallTest, AFailedWindowEndsTheCallThoughFramesAreLeft) {
+TEST_F(ClipRepliesTest, AFailedWindowEndsTheCallThoughFramesAreLeft) {
   auto model = std::make_shared<FakeSynthesizer>();
   int windows = 0;
   model->window_status = [&windows](const engine::SynthesisWindow&) {
@@ -323,7 +326,7 @@ TEST_F(SynthesisCallTest, AFailedWindowEndsTheCallThoughFramesAreLeft) {
   EXPECT_EQ(writer_.finished->code(), StatusCode::kInternal);
 }
 
-TEST_F(SynthesisCallTest, MeasuresTheFirstChunkAndTheWhole) {
+TEST_F(ClipRepliesTest, MeasuresTheFirstChunkAndTheWhole) {
   Create(46);
   call_->Start();
   Written();
@@ -336,7 +339,7 @@ TEST_F(SynthesisCallTest, MeasuresTheFirstChunkAndTheWhole) {
   EXPECT_DOUBLE_EQ(record.total_seconds, 0.5);
 }
 
-TEST_F(SynthesisCallTest, ACallThatSendsNoChunkHasNoFirst) {
+TEST_F(ClipRepliesTest, ACallThatSendsNoChunkHasNoFirst) {
   Create(46);
   call_->Start();
   call_->Abort(absl::CancelledError("gone"));
@@ -344,7 +347,7 @@ TEST_F(SynthesisCallTest, ACallThatSendsNoChunkHasNoFirst) {
   EXPECT_LT(observer_.WaitFor(1).first_chunk_seconds, 0);
 }
 
-TEST_F(SynthesisCallTest, GivingUpAStalledReaderFreesThePlaceAtOnce) {
+TEST_F(ClipRepliesTest, GivingUpAStalledReaderFreesThePlaceAtOnce) {
   Create(46);
   call_->Start();
   EXPECT_EQ(call_->waiting_since(), clock_.Now());
@@ -361,7 +364,7 @@ TEST_F(SynthesisCallTest, GivingUpAStalledReaderFreesThePlaceAtOnce) {
               StatusIs(StatusCode::kResourceExhausted, HasSubstr("while other calls")));
 }
 
-TEST_F(SynthesisCallTest, AReaderIsGivenUpOnlyOnce) {
+TEST_F(ClipRepliesTest, AReaderIsGivenUpOnlyOnce) {
   Create(46);
   call_->Start();
   EXPECT_TRUE(call_->GiveUpReader(clock_.Now(), 0).has_value());
@@ -371,7 +374,7 @@ TEST_F(SynthesisCallTest, AReaderIsGivenUpOnlyOnce) {
   Written(/*ok=*/false);
 }
 
-TEST_F(SynthesisCallTest, AReaderThatTakesItsMessagesIsNotGivenUp) {
+TEST_F(ClipRepliesTest, AReaderThatTakesItsMessagesIsNotGivenUp) {
   Create(46);
   call_->Start();
   clock_.Advance(std::chrono::seconds(1));
@@ -385,7 +388,7 @@ TEST_F(SynthesisCallTest, AReaderThatTakesItsMessagesIsNotGivenUp) {
   call_->Abort(absl::CancelledError("the test is over"));
 }
 
-TEST_F(SynthesisCallTest, ACallThatWasEndedKeepsItsReasonWhenItsReaderIsGivenUp) {
+TEST_F(ClipRepliesTest, ACallThatWasEndedKeepsItsReasonWhenItsReaderIsGivenUp) {
   Create(46);
   call_->Start();
   call_->Abort(absl::UnavailableError("the server is shutting down"));

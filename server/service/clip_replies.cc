@@ -1,0 +1,137 @@
+#include "server/service/clip_replies.h"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "server/service/refusals.h"
+#include "server/service/reply_mapping.h"
+
+namespace duet::server::service {
+namespace {
+
+// True if a window failed because of the model, not because of the caller or the server's state.
+bool IsModelFailure(const absl::Status& status) {
+  return !absl::IsCancelled(status) && !absl::IsDeadlineExceeded(status) &&
+         !absl::IsUnavailable(status);
+}
+
+ClipStreamOptions WithPriority(ClipStreamOptions options, batching::Priority priority) {
+  options.priority = priority;
+  return options;
+}
+
+// The status that ends the call after `error`, for the caller.
+absl::Status ToEnd(const absl::Status& error, metrics::CallRecord& record) {
+  if (absl::IsUnavailable(error)) return DrainingRefusal();
+  if (!IsModelFailure(error)) return error;
+  record.cause = error.ToString();
+  return ModelFailedRefusal(record.request_id);
+}
+
+}  // namespace
+
+ClipReplies::ClipReplies(std::shared_ptr<const engine::Synthesizer> model, ValidatedRequest request,
+                         ClipStreamOptions options, batching::WindowScheduler& scheduler)
+    : model_(std::move(model)),
+      options_(request.clip.options),
+      priority_(request.priority),
+      mapping_(std::move(request.reply)),
+      chunk_frames_(request.chunk_frames),
+      on_progress_(std::make_shared<std::function<void()>>()),
+      stream_(std::make_shared<ClipStream>(model_, std::move(request.clip),
+                                           WithPriority(std::move(options), priority_), scheduler,
+                                           [on_progress = on_progress_] { (*on_progress)(); })) {}
+
+absl::Status ClipReplies::Start(std::function<void()> on_progress) {
+  *on_progress_ = std::move(on_progress);
+  const absl::Status scheduled = stream_->Start();
+  return scheduled.ok() ? scheduled : QueueRefusal(scheduled);
+}
+
+NextReply ClipReplies::Next(CallScope& scope) {
+  switch (next_) {
+    case Part::kHeader:
+      FillHeader(scope.record());
+      next_ = Part::kFrames;
+      return {&reply_, {}};
+    case Part::kFrames:
+      return NextFrames(scope);
+    case Part::kEnd:
+      break;
+  }
+  return {nullptr, absl::OkStatus()};
+}
+
+NextReply ClipReplies::NextFrames(CallScope& scope) {
+  const ClipPart part = stream_->Take(chunk_frames_);
+  switch (part.kind) {
+    case ClipPart::Kind::kPending:
+      return {};
+    case ClipPart::Kind::kFrames:
+      FillChunk(part, scope);
+      return {&reply_, {}};
+    case ClipPart::Kind::kEnd:
+      FillSummary(scope.record());
+      next_ = Part::kEnd;
+      return {&reply_, {}};
+    case ClipPart::Kind::kFailed:
+      break;
+  }
+  return {nullptr, ToEnd(part.error, scope.record())};
+}
+
+void ClipReplies::FillHeader(const metrics::CallRecord& record) {
+  v1::SynthesisHeader& header = *reply_.mutable_header();
+  const engine::ModelDescription& model = model_->description();
+  header.set_model_name(model.name);
+  header.set_model_version(static_cast<uint32_t>(model.version));
+  for (const std::string& name : mapping_.joint_names) header.add_joint_names(name);
+  header.set_frame_rate_hz(mapping_.frame_rate_hz);
+  header.set_unit(mapping_.unit);
+  header.set_up_axis(mapping_.up_axis);
+  header.set_frame_count(static_cast<uint32_t>(stream_->frame_count()));
+  for (const std::string& name : model.classes) header.add_interaction_classes(name);
+  header.set_request_id(record.request_id);
+  header.set_seed(options_.sampling.seed);
+  header.set_variety(options_.sampling.variety);
+  header.set_clean_up(options_.clean_up.value_or(false) ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF);
+}
+
+void ClipReplies::FillChunk(const ClipPart& part, CallScope& scope) {
+  metrics::CallRecord& record = scope.record();
+  if (record.chunks == 0) record.first_chunk_seconds = scope.ElapsedSeconds();
+  v1::MotionChunk& chunk = *reply_.mutable_chunk();
+  chunk.Clear();
+  service::FillChunk(mapping_, part.poses, record.frames, chunk);
+  ++record.chunks;
+  record.frames += static_cast<int>(chunk.frame_count());
+}
+
+void ClipReplies::FillSummary(const metrics::CallRecord& record) {
+  const ClipStreamStats stats = stream_->stats();
+  v1::SynthesisSummary& summary = *reply_.mutable_summary();
+  summary.set_frame_count(static_cast<uint32_t>(record.frames));
+  summary.set_chunk_count(static_cast<uint32_t>(record.chunks));
+  summary.set_window_count(static_cast<uint32_t>(stats.windows));
+  summary.set_queue_seconds(stats.queue_seconds);
+  summary.set_compute_seconds(stats.compute_seconds);
+  if (stats.unfamiliarity) summary.set_unfamiliarity(*stats.unfamiliarity);
+}
+
+void ClipReplies::Report(metrics::CallRecord& record) const {
+  record.model = model_->description().name;
+  record.version = model_->description().version;
+  record.priority = PriorityName(priority_);
+  record.seed = options_.sampling.seed;
+  record.variety = options_.sampling.variety;
+  record.clean_up = options_.clean_up.value_or(false);
+  const ClipStreamStats stats = stream_->stats();
+  record.windows = stats.windows;
+  record.queue_seconds = stats.queue_seconds;
+  record.compute_seconds = stats.compute_seconds;
+  record.peak_buffered_frames = stats.peak_buffered_frames;
+  record.unfamiliarity = stats.unfamiliarity;
+}
+
+}  // namespace duet::server::service

@@ -1,0 +1,55 @@
+#ifndef DUET_SERVER_SERVICE_CLIP_REPLIES_H_
+#define DUET_SERVER_SERVICE_CLIP_REPLIES_H_
+
+#include <functional>
+#include <memory>
+
+#include "absl/status/status.h"
+#include "duet/v1/synthesis.pb.h"
+#include "model/engine/synthesizer.h"
+#include "server/batching/window_scheduler.h"
+#include "server/service/clip_stream.h"
+#include "server/service/streaming_call.h"
+#include "server/service/validator.h"
+
+namespace duet::server::service {
+
+// The replies of Synthesize: header, chunks and summary of one clip.
+//
+// Chunks hold at most request.chunk_frames frames. Model failures become INTERNAL without details;
+// CallRecord::cause has the details for the log.
+class ClipReplies final : public ReplySource {
+ public:
+  // `scheduler` outlives every window given to it. request.clip.options.clean_up is the resolved
+  // choice, not absent. options.priority is ignored: the request's counts.
+  ClipReplies(std::shared_ptr<const engine::Synthesizer> model, ValidatedRequest request,
+              ClipStreamOptions options, batching::WindowScheduler& scheduler);
+
+  absl::Status Start(std::function<void()> on_progress) override;
+  NextReply Next(CallScope& scope) override;
+  void Cancel() override { stream_->Cancel(); }
+  void Report(metrics::CallRecord& record) const override;
+
+ private:
+  enum class Part { kHeader, kFrames, kEnd };
+
+  NextReply NextFrames(CallScope& scope);
+  void FillHeader(const metrics::CallRecord& record);
+  void FillChunk(const ClipPart& part, CallScope& scope);
+  void FillSummary(const metrics::CallRecord& record);
+
+  const std::shared_ptr<const engine::Synthesizer> model_;
+  const engine::SynthesisOptions options_;
+  const batching::Priority priority_;
+  const ReplyMapping mapping_;
+  const int chunk_frames_;
+  // Shared with the stream, whose last window may outlive this. Set before the first window starts.
+  const std::shared_ptr<std::function<void()>> on_progress_;
+  const std::shared_ptr<ClipStream> stream_;
+  Part next_ = Part::kHeader;
+  v1::SynthesizeResponse reply_;  // the last one returned
+};
+
+}  // namespace duet::server::service
+
+#endif  // DUET_SERVER_SERVICE_CLIP_REPLIES_H_
