@@ -28,20 +28,20 @@ constexpr metrics::MethodInfo kGetModel = Method("GetModel", "unary");
 
 constexpr common::StepKind kHandlingLarge{"large requests", "handling a large request"};
 
-// Requests whose memory is worth giving back to the system, and that take so long to parse and
-// check (eight milliseconds a mebibyte) that they have a thread of their own.
+// Larger requests are handled on a separate thread, because parsing and validation take 8 ms per
+// MiB. Their memory is returned to the system.
 constexpr std::size_t kLargeRequestBytes = std::size_t{1} << 20;
 
-// A reader that has taken nothing for so long has stalled: longer than a network or a busy machine
-// holds up a good reader, and soon enough for a refused caller that comes back every second.
+// A reader that has taken nothing for this long has stalled. Longer than delays of a network or a
+// busy machine, and short enough for rejected callers, which retry every second.
 constexpr double kStalledSeconds = 5;
 
-// A call's deadline on the scheduler's clock: the caller's, or the server's own where that is
-// nearer.
+// Returns a call's deadline on the scheduler's clock: the earlier one of the caller's and the
+// server's.
 common::TimePoint DeadlineOf(const grpc::ServerContextBase& context, const common::Clock& clock,
                              double max_seconds) {
   const double seconds = std::min(SecondsLeft(context), max_seconds);
-  // Beyond ten days is as good as none, and adding to it may overflow.
+  // More than ten days counts as no deadline, because the addition below may overflow.
   constexpr double kNever = 10 * 24 * 3600;
   if (seconds > kNever) return common::TimePoint::max();
   return clock.Now() + std::chrono::duration_cast<common::TimePoint::duration>(
@@ -72,8 +72,8 @@ RawService::Reactor* MotionSynthesisService::Synthesize(Context* context) {
   absl::StatusOr<ShareLease> place =
       opened.status.ok() ? Admit(opened.client) : absl::StatusOr<ShareLease>(opened.status);
   absl::Status admitted = place.status();
-  // Whether there is a place, and room in the queue, takes no look at the request. A bulk call's
-  // smaller share of both does: that comes when it has been read.
+  // Places and queue are checked before the request is read. The smaller shares of bulk calls are
+  // checked afterwards, because the priority is in the request.
   if (admitted.ok()) {
     const absl::Status room =
         parts_.scheduler->CheckRoom(batching::Priority::kInteractive, opened.client);
@@ -100,7 +100,7 @@ void MotionSynthesisService::FinishAborted(double seconds) {
 absl::StatusOr<ShareLease> MotionSynthesisService::Admit(const std::string& client) {
   absl::StatusOr<ShareLease> place = parts_.admission->Admit(client);
   while (absl::IsResourceExhausted(place.status())) {
-    // The client's own first: a client that has its share has no claim to the others' places.
+    // Calls of this client first: a client that has used its share must not displace others.
     const bool full = parts_.admission->calls() >= parts_.admission->max_calls();
     const common::TimePoint now = parts_.clock->Now();
     if (!calls_.GiveUpSlowestReader(client, now, kStalledSeconds).has_value() &&
@@ -116,7 +116,7 @@ absl::StatusOr<ShareLease> MotionSynthesisService::Hold(const std::string& clien
                                                         const grpc::ByteBuffer& bytes) {
   absl::StatusOr<ShareLease> held = parts_.admission->Hold(client, bytes.Length());
   if (held.ok()) return held;
-  // What these held is free a little later, so this attempt is refused nonetheless.
+  // The bytes are freed a little later, so this attempt fails nevertheless.
   std::size_t freed = 0;
   while (freed < bytes.Length()) {
     const std::optional<std::size_t> more =
@@ -163,7 +163,7 @@ void MotionSynthesisService::Handle(CallReactor& reactor,
   }
 }
 
-// The reactor lives until the reception was told how the call ends, and so does the service.
+// The reactor and the service live until the reception ends the call.
 void MotionSynthesisService::HandleElsewhere(CallReactor& reactor,
                                              const std::shared_ptr<Reception>& reception,
                                              grpc::ByteBuffer bytes, ShareLease held) {
@@ -180,7 +180,7 @@ void MotionSynthesisService::HandleElsewhere(CallReactor& reactor,
       *lease = ShareLease();  // free before the caller knows
       reception->Refuse(ended.value_or(DrainingRefusal()));
     } else {
-      // Not a copy, which would keep the bytes while the parsed message is checked.
+      // Moved, so that the bytes are freed before the parsed message is validated.
       Begin(reactor, reception, std::move(bytes), std::move(*lease), std::move(received));
     }
   });
@@ -191,8 +191,8 @@ void MotionSynthesisService::Begin(CallReactor& reactor,
                                    grpc::ByteBuffer bytes, ShareLease held,
                                    std::shared_ptr<TransportQuota::Received> received) {
   v1::SynthesizeRequest request;
-  // Most of a large request is positions. Without this the array would grow by doubling, and would
-  // exist twice each time.
+  // A large request consists mostly of positions. Without the reservation, the array would grow by
+  // doubling and exist twice each time.
   if (received != nullptr) {
     const std::size_t positions = bytes.Length() / sizeof(float);
     request.mutable_leader()->mutable_positions()->Reserve(static_cast<int>(positions));
@@ -216,7 +216,7 @@ void MotionSynthesisService::Begin(CallReactor& reactor,
 absl::StatusOr<MotionSynthesisService::Prepared> MotionSynthesisService::Prepare(
     const Context& context, Reception& reception, const v1::SynthesizeRequest& request,
     ShareLease held) {
-  // An unknown priority is refused by the validator, together with all else that is wrong.
+  // The validator reports an unknown priority together with all other invalid fields.
   const batching::Priority priority =
       PriorityOf(request).value_or(batching::Priority::kInteractive);
   const absl::Status place = parts_.admission->CheckShare(priority);
@@ -259,7 +259,7 @@ void MotionSynthesisService::ServeUnary(const char* path, const metrics::MethodI
                                      grpc::ByteBuffer bytes) {
     CountIfLarge(bytes);
     absl::StatusOr<ShareLease> held = ShareLease();
-    // A full server still answers requests of an ordinary size.
+    // A full server still handles requests of ordinary size.
     if (bytes.Length() >= kLargeRequestBytes) held = Hold(reception->client(), bytes);
     if (!held.ok()) return reception->Refuse(held.status());
     Request request;

@@ -32,54 +32,53 @@
 
 namespace duet::server::service {
 
-// What the service works with. Everything outlives the service and its calls.
+// Dependencies and settings of the service. All pointers outlive the service and its calls.
 struct ServiceParts {
   registry::ModelRegistry* registry = nullptr;
   batching::WindowScheduler* scheduler = nullptr;
   Admission* admission = nullptr;
-  TransportQuota* transport = nullptr;  // null: not told of requests that have come
+  TransportQuota* transport = nullptr;  // null: not notified of received requests
   std::vector<metrics::CallObserver*> observers;
   const common::Clock* clock = &common::Clock::Real();
   RequestLimits limits;
   ReceptionLimits reception;
   int buffered_frames = 0;  // see ClipStreamOptions
-  // How long one message of an answer may wait for its reader, and how long a call may last. Kept
-  // by whoever calls CheckTime.
+  // Maximum time that one reply may wait for its reader, and maximum duration of a call. CheckTime
+  // enforces both.
   double write_timeout_seconds = std::numeric_limits<double>::infinity();
   double max_call_seconds = std::numeric_limits<double>::infinity();
   std::string client_key;              // see IdentifyCall
-  security::CallGuard guard{nullptr};  // who may call; everybody unless it has a list
-  // Of calls that come without a trace, the part that is sampled in one begun here. Absent: no
-  // trace is begun.
+  security::CallGuard guard{nullptr};  // without an access list, every caller is allowed
+  // Fraction of calls without a trace for which a sampled trace is started. Absent: none.
   std::optional<double> trace_ratio;
-  // Whether followers are cleaned up where the request does not say. Absent: as the model has it
-  // (ModelDescription::cleaned_up_by_default).
+  // Whether followers are cleaned up if the request does not specify it. Absent: the model's
+  // default (ModelDescription::cleaned_up_by_default).
   std::optional<bool> clean_up;
 };
 
-// The contract's service: no method blocks, or keeps a thread of gRPC's for long.
+// Implements duet.v1.MotionSynthesis. No method blocks or occupies a gRPC thread for long.
 //
-// Every call comes in by the CallPipeline and is admitted before its message is read (Reception). A
-// Synthesize call goes on model -> validator -> StreamingCall, which lives until its last reply was
-// taken or the caller went away.
+// Every call passes the CallPipeline and is admitted before its message is read (Reception). A
+// Synthesize call continues with model -> validator -> StreamingCall, which lives until its last
+// reply was taken or the caller went away.
 class MotionSynthesisService final : public RawService {
  public:
   static constexpr char kServiceName[] = "duet.v1.MotionSynthesis";
 
   explicit MotionSynthesisService(ServiceParts parts);
 
-  // Ends every call that is still being answered.
+  // Ends every call in progress.
   void AbortAll(const absl::Status& reason) { calls_.AbortAll(reason); }
 
-  // To be called after AbortAll: waits until every call has its status, at most this long, and then
-  // gives up the readers that still have not taken what was being written.
+  // Waits until every call has its status, at most `seconds`, then breaks off writes that are still
+  // in progress. Call after AbortAll.
   void FinishAborted(double seconds);
 
-  // Ends the calls that have taken longer than they may: to arrive, to be answered, to be read. To
-  // be called every few hundredths of a second.
+  // Ends the calls whose time to arrive, to be processed or to be read has passed. Call every few
+  // hundredths of a second.
   void CheckTime() { calls_.CheckTime(parts_.clock->Now()); }
 
-  // Bytes of all large requests so far: memory that was used and is no more, or soon will not be.
+  // Total size of all large requests so far, in bytes. Their memory can be returned to the system.
   std::uint64_t large_request_bytes() const { return large_request_bytes_; }
 
  private:
@@ -87,13 +86,14 @@ class MotionSynthesisService final : public RawService {
 
   Reactor* Synthesize(Context* context);
   void CountIfLarge(const grpc::ByteBuffer& bytes);
-  // Handles a message that came, a large one elsewhere: gRPC has few threads, and all other calls
-  // would wait.
+  // Handles a message. Large messages are handled on a thread of their own, because they would
+  // occupy one of gRPC's few threads.
   void Handle(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
               grpc::ByteBuffer bytes);
   void HandleElsewhere(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
                        grpc::ByteBuffer bytes, ShareLease held);
-  // Parses the message and begins to answer; `held` are its bytes. `received` goes with the bytes.
+  // Parses the message and starts the call. `held` accounts for its bytes; `received` is released
+  // with them.
   void Begin(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
              grpc::ByteBuffer bytes, ShareLease held,
              std::shared_ptr<TransportQuota::Received> received);
@@ -108,13 +108,13 @@ class MotionSynthesisService final : public RawService {
                                    const v1::SynthesizeRequest& request, ShareLease held);
   v1::ListModelsResponse List() const;
   absl::StatusOr<v1::GetModelResponse> Get(const v1::GetModelRequest& request) const;
-  // A method with one answer: `answer` is a StatusOr<Response> from (const Request&).
+  // Serves a unary method. `answer` maps const Request& to StatusOr<Response>.
   template <typename Request, typename Answer>
   void ServeUnary(const char* path, const metrics::MethodInfo& method, Answer answer);
-  // A place for a call. Readers that have stalled lose theirs to those who come.
+  // Takes a place for a call. If there is none, gives up calls whose readers have stalled.
   absl::StatusOr<ShareLease> Admit(const std::string& client);
-  // Room for a request that has come. Where there is none, readers of this client that have stalled
-  // make room for its next attempt.
+  // Reserves bytes for a request. If too few are left, fails, and gives up calls of this client
+  // whose readers have stalled, so that its next attempt succeeds.
   absl::StatusOr<ShareLease> Hold(const std::string& client, const grpc::ByteBuffer& bytes);
   std::shared_ptr<Reception> Receive(OpenedCall opened, ShareLease place, CallReactor& reactor);
 
