@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_ENGINE_CLIP_SYNTHESIS_H_
 #define DUET_MODEL_ENGINE_CLIP_SYNTHESIS_H_
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
 #include "model/engine/window_plan.h"
+#include "model/engine/window_state.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 
@@ -54,7 +56,7 @@ class ClipSynthesis {
   int frame_count() const { return frame_count_; }
   const ClipRequest& request() const { return request_; }
 
-  bool HasNextWindow() const { return next_window_ < window_count(); }
+  bool HasNextWindow() const { return state_.window_count() < window_count(); }
   // The next window to evaluate. Calling it twice before Accept gives the same window.
   SynthesisWindow NextWindow() const;
   // Takes the result of NextWindow, of as many frames, and returns the follower's frames
@@ -67,12 +69,10 @@ class ClipSynthesis {
   double ToModelFrame(int frame) const { return frame * model_frames_per_frame_; }
   double ToCallerFrame(int model_frame) const { return model_frame / model_frames_per_frame_; }
 
-  std::optional<FollowerStart> NextStart() const;
-  // The follower's frames so far from the next window's first one on, where the model goes on from
-  // them.
-  motion::Poses NextSettled() const;
-  // Adds the follower of the window at `start` to what is kept.
-  void Blend(int start, const motion::Poses& follower);
+  // The model frame at which the next window begins. Requires HasNextWindow().
+  int NextWindowStart() const {
+    return plan_.starts[static_cast<std::size_t>(state_.window_count())];
+  }
   motion::Poses TakeFinalFrames();
   void DropFrames();
 
@@ -82,10 +82,8 @@ class ClipSynthesis {
   int frame_count_;                // the caller's frames
   double model_frames_per_frame_;  // model rate / caller's rate
   WindowPlan plan_;                // in model frames
-  int next_window_ = 0;
+  WindowState state_;
   int next_frame_ = 0;  // the caller's next frame to hand out
-  int kept_from_ = 0;   // model frame of the first of kept_
-  motion::Poses kept_;  // blended follower still needed, model rate
 };
 
 }  // namespace duet::engine
