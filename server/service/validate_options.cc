@@ -30,9 +30,9 @@ std::optional<bool> ValidateCleanUp(const v1::SynthesizeRequest& request, Violat
     case v1::CLEAN_UP_OFF:
       return false;
     default:
-      violations.Malformed(
-          "clean_up",
-          absl::StrCat("is ", request.clean_up(), ", wanted CLEAN_UP_ON, CLEAN_UP_OFF or no value"));
+      violations.Malformed("clean_up",
+                           absl::StrCat("is ", request.clean_up(),
+                                        ", wanted CLEAN_UP_ON, CLEAN_UP_OFF or no value"));
       return std::nullopt;
   }
 }
