@@ -184,12 +184,8 @@ TEST(CleanUpStage, WindowsOfABatchHaveTheirOwnChoices) {
 
 TEST(CleanUpStage, AllWindowsOfAClipDoAsItsRequestSays) {
   for (const std::optional<bool> wanted : {std::optional<bool>(), {true}, {false}}) {
-    ClipRequest request{SwayingMotion(120, 15),
-                        15,
-                        LabelTrack(std::vector<float>(6, 0)),
-                        std::nullopt,
-                        std::nullopt,
-                        {{}, wanted}};
+    ClipRequest request{SwayingMotion(120, 15), 15,           LabelTrack(std::vector<float>(6, 0)),
+                        std::nullopt,           std::nullopt, {{}, wanted}};
     ClipSynthesis clip(FakeDescription(), std::move(request));
     ASSERT_GT(clip.window_count(), 1);
     while (clip.HasNextWindow()) {
