@@ -25,10 +25,11 @@ std::string SizeText(std::size_t bytes) {
   return absl::StrCat(bytes / kMebibyte, " MiB");
 }
 
-// INVALID_ARGUMENT unless the descriptor is open on a regular file.
-absl::Status CheckRegular(int descriptor, const fs::path& path) {
+// Sets `bytes` to the size. INVALID_ARGUMENT unless the descriptor is open on a regular file.
+absl::Status CheckRegular(int descriptor, const fs::path& path, std::size_t* bytes) {
   struct stat info;
   if (fstat(descriptor, &info) != 0) return absl::ErrnoToStatus(errno, path.string());
+  *bytes = static_cast<std::size_t>(info.st_size);
   if (S_ISREG(info.st_mode)) return absl::OkStatus();
   const char* kind = S_ISDIR(info.st_mode)    ? "a folder"
                      : S_ISFIFO(info.st_mode) ? "a named pipe"
@@ -50,19 +51,26 @@ absl::StatusOr<std::string> ReadFile(const fs::path& path, std::size_t max_bytes
   if (!file.ok()) {
     return absl::PermissionDeniedError(absl::StrCat(path.string(), ": cannot be opened"));
   }
-  if (absl::Status status = CheckRegular(file.get(), path); !status.ok()) return status;
-  std::string content;
-  std::string block(kReadBlock, '\0');
+  std::size_t bytes = 0;
+  if (absl::Status status = CheckRegular(file.get(), path, &bytes); !status.ok()) return status;
+  const auto too_large = [&] {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path.string(), ": larger than ", SizeText(max_bytes), ", wanted ", wanted));
+  };
+  if (bytes > max_bytes) return too_large();
+  // One byte more than the size, so that a file that keeps its size is read without growing.
+  std::string content(bytes + 1, '\0');
+  std::size_t filled = 0;
   while (true) {
-    const ssize_t got = read(file.get(), block.data(), block.size());
+    if (filled == content.size()) content.resize(filled + kReadBlock);
+    const ssize_t got = read(file.get(), &content[filled], content.size() - filled);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return absl::DataLossError(absl::StrCat(path.string(), ": cannot be read"));
-    if (got == 0) return content;
-    content.append(block, 0, static_cast<std::size_t>(got));
-    if (content.size() > max_bytes) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(path.string(), ": larger than ", SizeText(max_bytes), ", wanted ", wanted));
-    }
+    filled += static_cast<std::size_t>(got);
+    if (filled > max_bytes) return too_large();
+    if (got > 0) continue;
+    content.resize(filled);
+    return content;
   }
 }
 
