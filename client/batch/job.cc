@@ -47,8 +47,8 @@ Job::Job(Parts parts, Plan plan, const JobOptions& options)
       queue_(kQueuedItems),
       answers_(kQueuedAnswers),
       settled_(kUnwrittenBytes),
-      leaders_(parts_.models.size()),
-      skeleton_indices_(SkeletonIndices(parts_.skeletons)) {}
+      skeleton_indices_(SkeletonIndices(parts_.skeletons)),
+      leaders_(parts_.models.size(), parts_.leaders) {}
 
 Client& Job::NextClient(int server) {
   std::vector<Client>& clients = parts_.servers[static_cast<size_t>(server)];
@@ -74,7 +74,8 @@ Progress Job::progress() const {
 
 // False when the run is being stopped.
 bool Job::Put(Item item) {
-  std::shared_ptr<SharedLeader> leader = leaders_.Get(item.leader, item.side, item.model);
+  std::shared_ptr<SharedLeader> leader =
+      leaders_.Get(item.leader, item.side, skeleton_indices_[static_cast<size_t>(item.model)]);
   return queue_.Put({std::move(item), std::move(leader)});
 }
 

@@ -22,7 +22,7 @@
 #include "client/batch/item_files.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
-#include "client/batch/loaded_leader.h"
+#include "client/batch/leader_sharing.h"
 #include "client/batch/plan.h"
 #include "client/batch/survey.h"
 #include "client/client.h"
@@ -86,6 +86,7 @@ class Job {
     std::vector<std::vector<Client>> servers;
     const JobFolder* folder = nullptr;
     const Survey* survey = nullptr;
+    KeptLeaders* leaders = nullptr;  // read before; may be null
   };
   // The plan begins with its first item.
   Job(Parts parts, Plan plan, const JobOptions& options);
@@ -146,8 +147,8 @@ class Job {
   flow::BoundedQueue<Answered> answers_;
   flow::BoundedQueue<Settled> settled_;  // by bytes
 
-  LastLeaders leaders_;                      // Feed's alone
   const std::vector<int> skeleton_indices_;  // of dataset.json, by model
+  LastLeaders leaders_;                      // used only by Feed
 
   std::atomic<int64_t> planned_{0}, resumed_{0}, done_{0}, rejected_{0}, failed_{0};
   std::atomic<int64_t> unfinished_{0};

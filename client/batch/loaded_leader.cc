@@ -53,12 +53,6 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
   return absl::OkStatus();
 }
 
-// Whether two lines name the same motion to read.
-bool SameMotion(const LeaderEntry& a, const LeaderEntry& b) {
-  return a.file == b.file && a.follower_start == b.follower_start &&
-         a.follower_start_side == b.follower_start_side;
-}
-
 // What the server would reject in every call with this leader.
 absl::Status CheckLimits(const std::filesystem::path& file, const motion::Clip& clip,
                          const RequestLimits& limits) {
@@ -130,15 +124,6 @@ absl::Status WithMendingField(const absl::Status& status) {
 }
 
 }  // namespace
-
-std::shared_ptr<SharedLeader> LastLeaders::Get(const std::shared_ptr<const LeaderEntry>& entry,
-                                               formats::Side side, int model) {
-  Last& last = last_[static_cast<size_t>(model)];
-  const bool same = last.leader != nullptr && last.side == side &&
-                    (last.entry == entry || SameMotion(*last.entry, *entry));
-  if (!same) last = {entry, side, std::make_shared<SharedLeader>(entry, side)};
-  return last.leader;
-}
 
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
                                         const LeaderInput& input, const motion::Skeleton& skeleton,

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/batch/leader_entry.h"
@@ -50,24 +49,6 @@ class SharedLeader {
   formats::Side side_;
   std::once_flag once_;
   absl::StatusOr<LoadedLeader> loaded_;
-};
-
-// Shares leaders between the items of a plan, which come leader by leader: for each model the last
-// one. Lines of a manifest that name the same file and the same start share it too.
-class LastLeaders {
- public:
-  explicit LastLeaders(size_t models) : last_(models) {}
-
-  std::shared_ptr<SharedLeader> Get(const std::shared_ptr<const LeaderEntry>& entry,
-                                    formats::Side side, int model);
-
- private:
-  struct Last {
-    std::shared_ptr<const LeaderEntry> entry;
-    formats::Side side = formats::Side::kLeft;
-    std::shared_ptr<SharedLeader> leader;
-  };
-  std::vector<Last> last_;  // by model
 };
 
 }  // namespace duet::client::batch

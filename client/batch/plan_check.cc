@@ -12,7 +12,7 @@
 #include "client/batch/dataset_json.h"
 #include "client/batch/encode.h"
 #include "client/batch/flow/bounded_queue.h"
-#include "client/batch/loaded_leader.h"
+#include "client/batch/leader_sharing.h"
 #include "model/motion/resample.h"
 
 namespace duet::client::batch {
@@ -37,10 +37,11 @@ struct LeaderItems {
 class Checker {
  public:
   Checker(const Recipe& recipe, const std::vector<motion::Skeleton>& skeletons,
-          const RequestLimits& limits)
+          const RequestLimits& limits, KeptLeaders* kept)
       : recipe_(recipe),
         skeletons_(skeletons),
         limits_(limits),
+        kept_(kept),
         // Models of one skeleton read a leader alike.
         skeleton_of_model_(SkeletonIndices(skeletons)),
         sharing_(skeletons.size()),
@@ -84,7 +85,7 @@ class Checker {
       }
       if (!item.ok()) return item.status();
       if (!item->has_value()) break;
-      if (part.Has(**item)) Add(**item, part.settled);
+      if (part.Has(**item)) Add(**item, part.survey);
     }
     return absl::OkStatus();
   }
@@ -94,7 +95,7 @@ class Checker {
     check_.bad_lines.emplace_back(status.message());
   }
 
-  void Add(const Item& item, const JournalReader* settled) {
+  void Add(const Item& item, const Survey* survey) {
     ++check_.items;
     const int skeleton = skeleton_of_model_[static_cast<size_t>(item.model)];
     std::shared_ptr<SharedLeader> leader = sharing_.Get(item.leader, item.side, skeleton);
@@ -108,7 +109,7 @@ class Checker {
     last_entry_ = item.leader;
     last_side_ = item.side;
     ++current.all;
-    if (settled == nullptr || !settled->Has(item.number)) ++current.unsettled;
+    if (survey == nullptr || !survey->IsSettled(item.number)) ++current.unsettled;
   }
 
   void Hand(LeaderItems* items) {
@@ -117,15 +118,19 @@ class Checker {
   }
 
   void Read(const LeaderItems& items) {
-    const auto skeleton = static_cast<size_t>(items.first->model);
+    const auto model = static_cast<size_t>(items.first->model);
     const absl::StatusOr<LoadedLeader>& leader =
-        items.leader->Get(recipe_.input, skeletons_[skeleton], limits_);
+        items.leader->Get(recipe_.input, skeletons_[model], limits_);
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!leader.ok()) {
       AddBad(items, leader.status());
       return;
     }
     const motion::Clip& clip = leader->clip;
+    if (kept_ != nullptr) {
+      kept_->Keep(*items.first->leader, items.first->side, skeleton_of_model_[model], clip,
+                  items.leader);
+    }
     check_.frames += items.all * FramesAsWritten(clip, recipe_.output);
     check_.seconds += static_cast<double>(items.all) * clip.frame_count() / clip.frame_rate_hz;
     if (!check_.first_item || items.first->number < check_.first_item->number) {
@@ -145,6 +150,7 @@ class Checker {
   const Recipe& recipe_;
   const std::vector<motion::Skeleton>& skeletons_;
   const RequestLimits& limits_;
+  KeptLeaders* const kept_;
   const std::vector<int> skeleton_of_model_;
   LastLeaders sharing_;
   std::vector<LeaderItems> current_;  // by skeleton
@@ -166,8 +172,8 @@ bool PlanPart::Has(const Item& item) const {
 absl::StatusOr<PlanCheck> CheckPlan(const Recipe& recipe,
                                     const std::vector<motion::Skeleton>& skeletons,
                                     const RequestLimits& limits, const PlanPart& part, Plan* plan,
-                                    const std::function<bool()>& stopped) {
-  Checker checker(recipe, skeletons, limits);
+                                    KeptLeaders* kept, const std::function<bool()>& stopped) {
+  Checker checker(recipe, skeletons, limits, kept);
   absl::Status status = checker.Run(part, plan, stopped);
   if (!status.ok()) return status;
   return checker.Result();

@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/batch/journal.h"
+#include "client/batch/leader_sharing.h"
 #include "client/batch/plan.h"
 #include "client/batch/shard.h"
+#include "client/batch/survey.h"
 #include "client/result.h"
 #include "model/motion/skeleton.h"
 
@@ -22,8 +23,8 @@ struct PlanPart {
   Shard shard;
   int64_t limit = std::numeric_limits<int64_t>::max();  // only the first items of the plan
   double share = 1;
-  // Items that it has are not made again, and their leaders are not read. May be null.
-  const JournalReader* settled = nullptr;
+  // Items that it has settled are not made again, and their leaders are not read. May be null.
+  const Survey* survey = nullptr;
   bool Has(const Item& item) const;
 };
 
@@ -54,13 +55,14 @@ struct PlanCheck {
 };
 
 // Reads the plan to its end, every line of its manifest, and the leaders of the part. `skeletons`
-// are the models'. `stopped` is asked between items; after true, the check ends with what it has.
+// are the models'. `kept`, which may be null, receives the leaders that the run can use. `stopped`
+// is called between items; once it returns true, the check ends with what it has.
 // Errors: those that end the plan.
 //
 // Threads: reads leaders in threads of its own.
 absl::StatusOr<PlanCheck> CheckPlan(
     const Recipe& recipe, const std::vector<motion::Skeleton>& skeletons,
-    const RequestLimits& limits, const PlanPart& part, Plan* plan,
+    const RequestLimits& limits, const PlanPart& part, Plan* plan, KeptLeaders* kept = nullptr,
     const std::function<bool()>& stopped = [] { return false; });
 
 // INVALID_ARGUMENT for a plan with bad lines, which must not begin: lists them, one below the

@@ -10,7 +10,7 @@
 
 #include "client/batch/estimate.h"
 #include "client/batch/job.h"
-#include "client/batch/journal.h"
+#include "client/batch/leader_sharing.h"
 #include "client/batch/merge.h"
 #include "client/batch/plan_check.h"
 #include "client/batch/setup.h"
@@ -26,6 +26,9 @@
 
 namespace duet::client::cli {
 namespace {
+
+// Memory for leaders that the check has read and the run is still to use.
+constexpr size_t kMaxKeptLeaderBytes = size_t{64} << 20;
 
 absl::StatusOr<batch::Shard> ShardOf(const BatchArguments& arguments) {
   if (arguments.shard.has_value()) return *arguments.shard;
@@ -125,19 +128,20 @@ absl::Status Prepare(const BatchArguments& arguments, const ProgramEnvironment& 
   return absl::OkStatus();
 }
 
-// Every line of the manifest and every leader of the run's items, before anything is asked for.
+// Checks every line of the manifest and every leader of the part before the first call.
 absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
                                        const ProgramEnvironment& environment,
-                                       const Prepared& prepared,
-                                       const batch::JournalReader* settled,
+                                       const Prepared& prepared, const batch::Survey* survey,
+                                       batch::KeptLeaders* kept,
                                        const std::function<bool()>& stopped) {
   std::vector<std::string> passed_over;
   absl::StatusOr<batch::Plan> plan =
       MakePlan(arguments, prepared.recipe, prepared.models, environment.in, &passed_over);
   if (!plan.ok()) return plan.status();
   ReportPassedOver(arguments, passed_over, environment);
-  const batch::PlanPart part{prepared.shard, arguments.limit, arguments.share, settled};
-  return CheckPlan(prepared.recipe, prepared.skeletons, prepared.limits, part, &*plan, stopped);
+  const batch::PlanPart part{prepared.shard, arguments.limit, arguments.share, survey};
+  return CheckPlan(prepared.recipe, prepared.skeletons, prepared.limits, part, &*plan, kept,
+                   stopped);
 }
 
 absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
@@ -148,7 +152,7 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
                                 begun.ok() ? begun->models : std::vector<ModelChoice>(), &prepared);
   if (!status.ok()) return status;
   const absl::StatusOr<batch::PlanCheck> check =
-      Check(arguments, environment, prepared, nullptr, [] { return false; });
+      Check(arguments, environment, prepared, nullptr, nullptr, [] { return false; });
   if (!check.ok()) return check.status();
   const bool good = check->bad_line_count == 0 && check->bad_leader_count == 0;
   absl::StatusOr<batch::Estimate> estimate = batch::Estimate();
@@ -164,26 +168,7 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
   return good ? kExitDone : kExitBadInput;
 }
 
-// The same before a run, which bad lines stop. What the journal has settled is not looked at again.
-absl::StatusOr<batch::PlanCheck> CheckForRun(const BatchArguments& arguments,
-                                             const ProgramEnvironment& environment,
-                                             const Prepared& prepared,
-                                             const batch::JobFolder& folder,
-                                             const RunningJob& running) {
-  const absl::StatusOr<batch::JournalReader> journal = batch::JournalReader::Open(folder.journal());
-  // A journal that cannot be read is the job's to report.
-  const bool has_settled = journal.ok() && !arguments.retry_failed;
-  absl::StatusOr<batch::PlanCheck> check =
-      Check(arguments, environment, prepared, has_settled ? &*journal : nullptr,
-            [&running] { return running.stopped(); });
-  if (!check.ok()) return check;
-  ReportBadLeaders(arguments, *check, environment);
-  absl::Status status = BadLinesError(*check);
-  if (!status.ok()) return status;
-  return check;
-}
-
-// What earlier runs left of the plan, before anything is asked for.
+// Finds out what earlier runs left of the plan.
 absl::StatusOr<batch::Survey> Survey(const BatchArguments& arguments, const Prepared& prepared,
                                      const batch::JobIdentity& identity,
                                      const batch::JobFolder& folder) {
@@ -192,6 +177,18 @@ absl::StatusOr<batch::Survey> Survey(const BatchArguments& arguments, const Prep
   if (!plan.ok()) return plan.status();
   const batch::SurveyedPart part{arguments.limit, arguments.share, arguments.retry_failed};
   return TakeSurvey(folder, identity, part, &*plan);
+}
+
+// Checks a plan before its run; bad lines are an error. Only leaders of items that `survey` has not
+// settled are read.
+absl::Status CheckForRun(const BatchArguments& arguments, const ProgramEnvironment& environment,
+                         const Prepared& prepared, const batch::Survey* survey,
+                         const RunningJob& running, batch::KeptLeaders* kept) {
+  const absl::StatusOr<batch::PlanCheck> check = Check(
+      arguments, environment, prepared, survey, kept, [&running] { return running.stopped(); });
+  if (!check.ok()) return check.status();
+  ReportBadLeaders(arguments, *check, environment);
+  return BadLinesError(*check);
 }
 
 absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
@@ -207,14 +204,17 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   BatchArguments repeatable = arguments;
   status = CopyManifest(folder.temporary(), environment.in, &repeatable);
   if (!status.ok()) return status;
-  const absl::StatusOr<batch::PlanCheck> check =
-      CheckForRun(repeatable, environment, prepared, folder, running);
-  if (!check.ok()) return check.status();
-  if (running.stopped()) return kExitRetry;
   const absl::StatusOr<batch::JobIdentity> identity =
       GoOn(begun, WithModels(wanted, prepared.models, prepared.skeletons));
   if (!identity.ok()) return identity.status();
   const absl::StatusOr<batch::Survey> survey = Survey(repeatable, prepared, *identity, folder);
+  // A bad line ends the survey. The check lists all of them.
+  if (!survey.ok() && !absl::IsInvalidArgument(survey.status())) return survey.status();
+  batch::KeptLeaders leaders(kMaxKeptLeaderBytes);
+  status = CheckForRun(repeatable, environment, prepared, survey.ok() ? &*survey : nullptr, running,
+                       &leaders);
+  if (!status.ok()) return status;
+  if (running.stopped()) return kExitRetry;
   if (!survey.ok()) return survey.status();
   absl::StatusOr<batch::Plan> plan =
       MakePlan(repeatable, prepared.recipe, prepared.models, nullptr, nullptr);
@@ -227,7 +227,7 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   if (!status.ok()) return status;
   batch::Job job({std::move(prepared.recipe), *identity, std::move(prepared.models),
                   std::move(prepared.skeletons), prepared.limits, std::move(prepared.servers),
-                  &folder, &*survey},
+                  &folder, &*survey, &leaders},
                  *std::move(plan), ToJobOptions(arguments));
   running.Set(&job);
   absl::StatusOr<ExitCode> code =

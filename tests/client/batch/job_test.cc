@@ -433,35 +433,6 @@ TEST_F(JobTest, AnotherRecipeIsRefused) {
                                              "seed: expected none, got \"9\". Use the same")));
 }
 
-TEST(LastLeaders, AreSharedByWhateverReadsTheSameMotion) {
-  const auto entry = [](const char* file, const char* start = "") {
-    LeaderEntry made;
-    made.file = file;
-    made.follower_start = start;
-    return std::make_shared<const LeaderEntry>(made);
-  };
-  const formats::Side left = formats::Side::kLeft, right = formats::Side::kRight;
-  LastLeaders leaders(2);
-  const auto first = leaders.Get(entry("a"), left, 0);
-  EXPECT_EQ(leaders.Get(entry("a"), left, 0), first);
-  // Each model has its own joints, and its own last leader.
-  const auto other_model = leaders.Get(entry("a"), left, 1);
-  EXPECT_NE(other_model, first);
-  EXPECT_EQ(leaders.Get(entry("a"), left, 0), first);
-  EXPECT_EQ(leaders.Get(entry("a"), left, 1), other_model);
-  EXPECT_NE(leaders.Get(entry("a"), right, 0), first);
-  const auto started = leaders.Get(entry("a", "start.csv"), left, 0);
-  EXPECT_NE(started, first);
-  EXPECT_NE(leaders.Get(entry("a", "0,0,1"), left, 0), started);
-  LeaderEntry sided;
-  sided.file = "a";
-  sided.follower_start = "0,0,1";
-  sided.follower_start_side = right;
-  const auto with_side = leaders.Get(std::make_shared<const LeaderEntry>(sided), left, 0);
-  EXPECT_NE(with_side, leaders.Get(entry("a", "0,0,1"), left, 0));
-  EXPECT_NE(leaders.Get(entry("b"), left, 0), with_side);
-}
-
 TEST_F(JobTest, AFirstRunThatWasRefusedDoesNotPinTheRecipe) {
   connection().answer = [](const SynthesisRequest&, int) {
     return absl::InvalidArgumentError("no such class");

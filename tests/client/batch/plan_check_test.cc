@@ -1,5 +1,7 @@
 #include "client/batch/plan_check.h"
 
+#include <filesystem>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -70,7 +72,8 @@ class PlanCheckTest : public ::testing::Test {
         IsOk());
   }
 
-  absl::StatusOr<PlanCheck> Check(const std::string& manifest, const PlanPart& part = {}) {
+  absl::StatusOr<PlanCheck> Check(const std::string& manifest, const PlanPart& part = {},
+                                  KeptLeaders* kept = nullptr) {
     std::string text = kRecipe;
     text.replace(text.find("%s"), 2, output_);
     const absl::StatusOr<Recipe> recipe = ParseRecipe(text, false);
@@ -79,7 +82,7 @@ class PlanCheckTest : public ::testing::Test {
     absl::StatusOr<Plan> plan =
         Plan::Create(*recipe, {Model()}, ReadManifest(in, folder_.path(), "m"));
     EXPECT_THAT(plan, IsOk());
-    return CheckPlan(*recipe, {motion::SbuSkeleton()}, Limits(), part, &*plan, stopped_);
+    return CheckPlan(*recipe, {motion::SbuSkeleton()}, Limits(), part, &*plan, kept, stopped_);
   }
 
   test::TemporaryFolder folder_;
@@ -177,20 +180,39 @@ TEST_F(PlanCheckTest, LeadersOutsideThePartAreNotRead) {
   EXPECT_EQ(whole->bad_line_count, 1);
 }
 
-TEST_F(PlanCheckTest, LeadersOfSettledItemsAreNotRead) {
+TEST_F(PlanCheckTest, OnlyLeadersOfUnsettledItemsAreRead) {
   JournalWriter writer;
   ASSERT_THAT(writer.Open(folder_ / "journal", 0), IsOk());
-  for (int item : {0, 1, 2}) writer.Add(item, "{}");
+  for (int item : {0, 1, 2, 3, 4}) writer.Add(item, "{}");
   ASSERT_THAT(writer.Commit(), IsOk());
-  const auto journal = JournalReader::Open(folder_ / "journal");
+  absl::StatusOr<JournalReader> journal = JournalReader::Open(folder_ / "journal");
   ASSERT_THAT(journal, IsOk());
+  Survey survey{*std::move(journal), {}, {true, true, true, true, false}, 0, false, true, nullptr};
   PlanPart part;
-  part.settled = &*journal;
-  const auto check = Check("leader\nnone.csv\nstill.csv\n", part);
+  part.survey = &survey;
+  // The journal has item 4, but the survey found that its files are gone.
+  const auto check = Check("leader\nnone.csv\na.csv\nstill.csv\n", part);
   ASSERT_THAT(check, IsOk());
-  EXPECT_EQ(check->items, 4);
+  EXPECT_EQ(check->items, 6);
   ASSERT_THAT(check->bad_leaders, SizeIs(1));
   EXPECT_THAT(check->bad_leaders[0].message, HasSubstr("still.csv"));
+}
+
+TEST_F(PlanCheckTest, LeadersThatWereReadAreKeptForTheRun) {
+  KeptLeaders kept(size_t{1} << 20);
+  ASSERT_THAT(Check("leader\na.csv\nstill.csv\n", {}, &kept), IsOk());
+  LeaderEntry entry;
+  entry.file = folder_ / "a.csv";
+  const std::shared_ptr<SharedLeader> leader = kept.Take(entry, formats::Side::kLeft, 0);
+  ASSERT_NE(leader, nullptr);
+  // It has its motion: the file is not read again.
+  std::filesystem::remove(entry.file);
+  const auto& loaded = leader->Get({}, motion::SbuSkeleton(), Limits());
+  ASSERT_THAT(loaded, IsOk());
+  EXPECT_EQ(loaded->clip.frame_count(), 5);
+  EXPECT_EQ(kept.Take(entry, formats::Side::kLeft, 0), nullptr);
+  entry.file = folder_ / "still.csv";
+  EXPECT_EQ(kept.Take(entry, formats::Side::kLeft, 0), nullptr);
 }
 
 TEST_F(PlanCheckTest, ACheckThatIsStoppedReadsNoMore) {
