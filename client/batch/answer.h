@@ -13,25 +13,25 @@
 
 namespace duet::client::batch {
 
-// What a call's status means for its item.
+// What the status of a call means for its item.
 enum class Meaning {
-  kAnswer,    // a follower came
-  kWait,      // the server is full or away: the item is asked for again when it is not
-  kTryAgain,  // a passing failure of this call
-  kRefused,   // the item will always be refused
-  kStop,      // every item would be: credentials, or a model that is gone
+  kAnswer,    // the call returned a follower
+  kWait,      // the server is full or away: the item is retried later
+  kTryAgain,  // a temporary failure of this call
+  kRefused,   // the server will always reject the item
+  kStop,      // every item would fail: credentials, or a missing model
 };
 Meaning MeaningOf(const absl::Status& status);
 flow::CallEnd CallEndOf(const absl::Status& status);
 
-// The request of an item. `retry`: which seed, 0 the first.
+// The request of an item. `retry` selects the seed; 0 is the first.
 SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelInfo& model,
                            const LoadedLeader& leader, int retry);
 
-// The call's name in the server's log: the same whenever the item is asked for.
+// The request id, which is the same in every call for the item.
 std::string RequestId(const Item& item, int retry);
 
-// The index entry of an answer, whose pair is at the output's rate.
+// The index entry of an answer. Its pair has the rate of the output.
 RecordedAnswer ToRecorded(const Item& item, const QualityFilter& filter,
                           const SynthesisResult& result, const LoadedLeader& leader,
                           const motion::Skeleton& skeleton, int retry);

@@ -15,23 +15,23 @@
 
 namespace duet::client::batch {
 
-// A shard being written, member after member; without times and owners, so that the same members
-// give the same bytes.
+// Writes a shard, member by member, without times and owners, so that the same members give the
+// same bytes.
 class Archive {
  public:
   virtual ~Archive() = default;
-  // `path` has as many parts as it likes.
+  // `path` may have any number of parts.
   virtual absl::Status Add(const std::string& path, absl::string_view content) = 0;
-  // An item's record, after its files.
+  // Adds the record of an item, after its files.
   virtual absl::Status AddRecord(const std::string& name, absl::string_view record) = 0;
   virtual absl::Status Finish() = 0;
 };
 
-// Of Packing::kTar: key.npy and so on and key.json of each item, one after the other, as WebDataset
-// reads them. Where the motion itself is .json it is key.motion.json.
+// Packing::kTar: for each item its files (such as key.npy) and its record key.json, as WebDataset
+// reads them. A motion in JSON is key.motion.json.
 // Source: POSIX.1-2001 ustar, with pax headers for long names.
-// Of Packing::kNpz: an array for each item, and "records.jsonl" with a line for each.
-// Source: PKZIP application note 6.3.3, members stored as they are.
+// Packing::kNpz: an array for each item, and "records.jsonl" with one line for each item.
+// Source: PKZIP application note 6.3.3, stored members.
 // `file` outlives the archive.
 std::unique_ptr<Archive> MakeArchive(Packing packing, DurableFile* file);
 
@@ -41,19 +41,19 @@ struct ArchiveMember {
   std::string content;
 };
 
-// Reads what MakeArchive wrote, member after member.
+// Reads an archive of MakeArchive, member by member.
 class ArchiveReader {
  public:
   explicit ArchiveReader(const std::filesystem::path& path);
-  // The next member; nothing at the end. DATA_LOSS for what MakeArchive did not write.
+  // The next member; nullopt at the end. DATA_LOSS for anything that MakeArchive did not write.
   absl::StatusOr<std::optional<ArchiveMember>> Next();
-  // The next member that was added as `path`, without reading those before it; nothing where there
+  // The next member that was added as `path`; skips the content of other members. nullopt if there
   // is none.
   absl::StatusOr<std::optional<ArchiveMember>> Find(const std::string& path);
 
  private:
   bool IsTar() const;
-  // Of members of another name than `wanted`, unless that is empty, the content stays empty.
+  // Skips the content of members with another name than `wanted`, unless that is empty.
   absl::StatusOr<std::optional<ArchiveMember>> NextOf(const std::string& wanted);
   absl::StatusOr<std::optional<ArchiveMember>> NextOfTar(const std::string& wanted);
   absl::StatusOr<std::optional<ArchiveMember>> NextOfZip(const std::string& wanted);

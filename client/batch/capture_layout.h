@@ -11,21 +11,22 @@
 
 namespace duet::client::batch {
 
-// Data sets that lie as those of captures do, so that whatever reads the captures reads them.
+// Data sets in the layouts of captures, so that programs that read captures can read them.
 
-// What an output's layout says of captures: SBU's or K3HI's. Null for layouts of our own.
+// The captures whose layout the output has: SBU or K3HI. Null for Duet's own layouts.
 const dataset::DatasetLayout* CapturesOf(Layout layout);
 
-// Whether a model's answers can be written so. INVALID_ARGUMENT for other joints.
+// INVALID_ARGUMENT if the model does not have the joints of the captures.
 absl::Status CheckJoints(const dataset::DatasetLayout& captures, const ModelInfo& model);
 
-// The folder that a class's clips lie in: "s01s02/03" or "kicking". Of SBU the set is the last part
-// of the leader's path that is named as one, s00s00 where there is none. INVALID_ARGUMENT for a
-// class that the captures do not have.
+// The folder of a class: "s01s02/03" or "kicking". For SBU, the set is the last part of the
+// leader's path that has the form of one, or s00s00. INVALID_ARGUMENT for a class that the captures
+// do not have.
 absl::StatusOr<std::string> CaptureFolder(Layout layout, const std::string& interaction_class,
                                           const std::string& leader);
 
-// The clip of a number, from 1, in its folder, without its ending: "s01s02/03/001/skeleton_pos".
+// The path of a clip in its folder, without extension; numbers begin at 1:
+// "s01s02/03/001/skeleton_pos".
 std::string CaptureName(Layout layout, const std::string& folder, int number);
 
 }  // namespace duet::client::batch

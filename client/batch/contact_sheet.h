@@ -10,10 +10,10 @@
 
 namespace duet::client::batch {
 
-// Writes <out>/contact_sheet.html, a self-contained page to look a data set through: a strip of
-// poses for some items of each class (by the largest weight), chosen by their ids, so that the same
-// data set has the same page. What cannot be read is said in its place. ABORTED where the page
-// cannot be written.
+// Writes <out>/contact_sheet.html, a self-contained page with a strip of poses for some items of
+// each class (by the largest weight). Items are chosen by their ids, so the same data set has the
+// same page. Items that cannot be read show the error instead. ABORTED if the page cannot be
+// written.
 absl::Status WriteContactSheet(const JournalReader& journal, const JobIdentity& identity,
                                const ItemReader& items, const std::filesystem::path& out);
 

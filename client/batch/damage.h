@@ -11,19 +11,20 @@
 
 namespace duet::client::batch {
 
-// What of a data set is to be made again: written by whoever finds it (verify, packing), removed by
-// the run that has repaired it. A run that is stopped in between repairs it all again.
+// The parts of a data set that the next run must make again. Verify and packing write it; the run
+// that has repaired everything removes it. After an interrupted run, the next run repairs
+// everything again.
 struct Damage {
-  std::set<int64_t> items;       // whose files are not what their records say
-  std::set<std::string> shards;  // that are not as they were written, whatever their items
+  std::set<int64_t> items;       // whose files do not match their records
+  std::set<std::string> shards;  // that do not have the bytes that were written
   bool empty() const { return items.empty() && shards.empty(); }
 };
 
-// What `file` says (JobFolder::damage). Nothing where it is not there or cannot be read: what is
-// damaged can be found again.
+// Reads `file` (JobFolder::damage). Empty if the file is missing or cannot be read: verify finds
+// the damage again.
 Damage ReadDamage(const std::filesystem::path& file);
 
-// Replaces `file`, removes it where there is no damage. ABORTED as of durable_file.h.
+// Replaces `file`, or removes it if there is no damage. ABORTED as in durable_file.h.
 absl::Status WriteDamage(const Damage& damage, const std::filesystem::path& file);
 
 }  // namespace duet::client::batch

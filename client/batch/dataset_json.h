@@ -15,11 +15,11 @@ namespace duet::client::batch {
 
 // dataset.json: Dataset of proto/duet/batch/v1/dataset.proto.
 
-// What it states about the items that are done, gathered from their records. Memory grows with the
-// number of different frame rates and shards.
+// The statistics of the done items, collected from their records. Memory grows with the number of
+// different frame rates and shards.
 class DoneItems {
  public:
-  // `record`: of an item that is done, as in index.jsonl.
+  // `record`: a done item, as in index.jsonl.
   void Add(const nlohmann::ordered_json& record);
 
   uint64_t frames() const { return frames_; }
@@ -32,11 +32,11 @@ class DoneItems {
   std::vector<std::string> shards_;
 };
 
-// For each model the index of its skeleton in dataset.json, where models that have the same share
-// one.
+// The index of each model's skeleton in dataset.json. Equal skeletons have the same index.
 std::vector<int> SkeletonIndices(const std::vector<motion::Skeleton>& skeletons);
 
-// The file's content. `planned`: items that the set should have; `packed`: its shards are there.
+// The content of the file. `planned`: the number of items of a finished set; `packed`: the shards
+// exist.
 std::string DatasetJson(const JobIdentity& identity, const SetCounts& counts, int64_t planned,
                         const DoneItems& done, bool packed);
 

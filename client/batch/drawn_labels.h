@@ -10,25 +10,26 @@
 
 namespace duet::client::batch {
 
-// Label vectors that are drawn for each leader. `classes` are those of the reaction, or the model's
-// where it names none.
+// Label vectors that are drawn for each leader. `classes` are the classes of the reaction, or those
+// of the model if the reaction names none.
 
-// Whether a reaction's are.
+// Whether the label vectors of a reaction are drawn.
 bool IsDrawn(const Reaction& reaction);
-// Its classes; empty: the model's.
+// The classes of a reaction; empty: the model's.
 const std::vector<std::string>& ClassesOf(const Reaction& reaction);
-// INVALID_ARGUMENT where it wants more classes in a vector than there are.
+// INVALID_ARGUMENT if the reaction needs more classes in a vector than there are.
 absl::Status CheckDrawn(const Reaction& reaction, const std::vector<std::string>& classes);
 
 struct DrawnLabels {
   std::string name;
   Labels labels;
 };
-// As many whatever is drawn, of the same names. Requires what CheckDrawn accepts.
+// The number of vectors and their names do not depend on the random numbers. Requires a reaction
+// that CheckDrawn accepts.
 std::vector<DrawnLabels> Draw(const Reaction& reaction, const std::vector<std::string>& classes,
                               base::Random* random);
 
-// A class or a model as a part of a file name: no dashes, which separate the parts.
+// A class or a model as a part of a file name, without dashes, which separate the parts.
 std::string PlainName(const std::string& name);
 
 }  // namespace duet::client::batch

@@ -11,13 +11,14 @@
 
 namespace duet::client::batch {
 
-// Files that are whole or not there, whenever the process or the machine stops.
+// Files that are complete or absent, even if the process or the machine stops at any time.
 //
-// Errors: ABORTED naming the path and what the system says; a full disk may have room later, a
-//         closed folder be opened, so that the same run may succeed another time.
+// Errors: ABORTED with the path and the system's message: the same run may succeed later, for
+// example
+//         when the disk has space again.
 
-// Writes `temporary`, brings it to the disk and gives it its place, whose folders are made as
-// needed. Both are on one file system. The name itself is on the disk after SyncFolder.
+// Writes `temporary`, flushes it to disk and renames it to its place; creates folders as needed.
+// Both paths are on the same file system. SyncFolder makes the name durable.
 absl::Status WriteDurably(const std::filesystem::path& temporary, const std::filesystem::path& path,
                           absl::string_view content);
 // The steps of it, for many files at once. A file that is written and not yet brought to the disk;
@@ -54,7 +55,7 @@ class DurableFile {
   int descriptor_ = -1;
 };
 
-// A file that grows at its end; what is there already stays.
+// A file to append to; its content is kept.
 class AppendedFile {
  public:
   explicit AppendedFile(std::filesystem::path path) : path_(std::move(path)) {}
@@ -84,7 +85,8 @@ class AppendedFile {
 // ABORTED "cannot write <path>: <what errno means>".
 absl::Status CannotWrite(const std::filesystem::path& path, int error);
 
-// Held while one process works in a folder; let go however it ends. ABORTED while another holds it.
+// A lock for one process that works in a folder; released when the process ends. ABORTED while
+// another process holds it.
 class FolderLock {
  public:
   FolderLock() = default;

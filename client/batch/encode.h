@@ -18,15 +18,15 @@ struct EncodedFile {
   std::string content;
 };
 
-// The frame rate of every item in Hz: that of the layout, or what the recipe asks for. Absent: each
-// item has its leader's.
+// The frame rate of every item in Hz, set by the layout or the recipe. Absent: each item has its
+// leader's rate.
 std::optional<double> RateOf(const Output& output);
 
 // The pair at that rate. Both people have the same number of frames before and after.
 motion::ClipPair AtOutputRate(motion::ClipPair pair, const Output& output);
 
-// The files that such a pair has: two of BVH, one of any other format; of a layout of captures one,
-// with the leader on its side. INVALID_ARGUMENT for a pair that no file can hold.
+// The files of a pair: two for BVH, one for any other format. A layout of captures has one file
+// with the leader on its side. INVALID_ARGUMENT for a pair that the format cannot hold.
 absl::StatusOr<std::vector<EncodedFile>> Encode(const Output& output, formats::Side leader_side,
                                                 const motion::ClipPair& pair,
                                                 const motion::Skeleton& skeleton);

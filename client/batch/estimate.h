@@ -10,13 +10,13 @@
 
 namespace duet::client::batch {
 
-// What a job would take, from one answer. 0 where no leader can be used.
+// The cost of a job, estimated from one answer. 0 if no leader can be used.
 struct Estimate {
   double seconds = 0;  // for all items, one after the other
   double bytes = 0;    // of all files
 };
 
-// Asks for the first item of a checked plan. Writes nothing. Errors: what the server answers.
+// Requests the first item of a checked plan. Writes nothing. Errors: those of the call.
 absl::StatusOr<Estimate> EstimateJob(const Recipe& recipe, const std::vector<ModelInfo>& models,
                                      const std::vector<motion::Skeleton>& skeletons,
                                      const RequestLimits& limits, const PlanCheck& check,

@@ -15,7 +15,7 @@
 
 namespace duet::client::batch {
 
-// Why items failed, without the names of files: one for many leaders.
+// Why items failed, without file names, so that many leaders can have the same cause.
 struct FailureCause {
   std::string code;     // of a gRPC status, such as "INVALID_ARGUMENT"
   std::string message;  // such as "no such file"
@@ -26,21 +26,21 @@ struct FailureCause {
 // [{"code", "message", "items", "leaders"}]
 nlohmann::ordered_json ToJson(const std::vector<FailureCause>& causes);
 
-// Counts failures by cause. Different causes beyond a thousand are counted as one.
+// Counts failures by cause. After a thousand different causes, all others are counted as one.
 class FailureCauses {
  public:
-  // `leader`: as it was listed; where `message` begins with its file, that is left out.
+  // `leader`: as listed. If `message` begins with its file, the file is left out.
   void Add(absl::string_view leader, absl::string_view code, absl::string_view message,
            int64_t items, int64_t leaders);
-  // Those of the most items first, at most `count`.
+  // At most `count` causes, those of the most items first.
   std::vector<FailureCause> Largest(size_t count) const;
 
  private:
   std::map<std::pair<std::string, std::string>, std::pair<int64_t, int64_t>> counts_;
 };
 
-// Writes failed.tsv: a row for each leader and cause, with the names of the items that it keeps
-// from being made. Records come leader by leader.
+// Writes failed.tsv: one row for each leader and cause, with the names of the failed items. Records
+// come leader by leader.
 class FailureTable {
  public:
   explicit FailureTable(const std::filesystem::path& temporary) : file_(temporary / "failed.tsv") {}
@@ -56,7 +56,7 @@ class FailureTable {
 
   DurableFile file_;
   FailureCauses causes_;
-  // Of the leader at hand: code and message to the items' names.
+  // For the current leader: code and message to the items' names.
   std::string leader_;
   std::map<std::pair<std::string, std::string>, std::vector<std::string>> names_;
 };

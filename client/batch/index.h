@@ -14,27 +14,27 @@
 
 namespace duet::client::batch {
 
-// How many items there should be.
+// The planned items.
 struct PlannedItems {
   int64_t count = 0;
-  bool whole = false;   // a run has come to the plan's end: there are no more
-  int64_t missing = 0;  // neither done, rejected nor failed; of what is read alone
+  bool whole = false;   // a run has reached the end of the plan: `count` is final
+  int64_t missing = 0;  // neither done, rejected nor failed; only set by ReadPlanned
 };
 
-// Writes index.jsonl and index.tsv (items that are done), rejected.tsv (those that the filter did
-// not let pass), failed.tsv (failures.h), dataset.json and summary.json into `out`, in the order of
-// the items and without times: the same for the same journal records, in whatever order these were
-// written. `shards` is empty of a set that is not packed.
+// Writes index.jsonl and index.tsv (done items), rejected.tsv, failed.tsv (failures.h),
+// dataset.json and summary.json into `out`, in the order of the items and without times. The files
+// only depend on the journal records, not on their order. `shards` is empty if the set is not
+// packed.
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
                                      const ShardList& shards, const PlannedItems& planned,
                                      const std::filesystem::path& temporary,
                                      const std::filesystem::path& out);
 
-// A done item's line of index.jsonl, without its end. `record` receives its shard.
+// The line of a done item in index.jsonl, without newline. Adds its shard to `record`.
 std::string IndexLine(int64_t item, Packing packing, const ShardList& shards,
                       nlohmann::ordered_json* record);
 
-// What summary.json says of the plan. NOT_FOUND without one, DATA_LOSS for one that cannot be read.
+// Reads the plan from summary.json. NOT_FOUND if it is missing, DATA_LOSS if it cannot be read.
 absl::StatusOr<PlannedItems> ReadPlanned(const std::filesystem::path& out);
 
 }  // namespace duet::client::batch

@@ -17,27 +17,27 @@
 
 namespace duet::client::batch {
 
-// Where items' files lie while a data set is made: as files below a folder, or, where they will be
-// packed, one after the other in a single file, the spool. A file for each of a million items costs
-// more than all else that is done for it.
+// The files of items while a data set is made: files below a folder, or, if they will be packed,
+// parts of a single file, the spool. Creating a file for each of a million items would cost more
+// than all other work for it.
 
 struct ItemFile {
   std::string path;  // below the data set's folder
   std::string content;
 };
 
-// Where an item's first file begins in the spool; nothing for one that is a file.
+// The offset of an item's first file in the spool; nullopt if it is a file of its own.
 using SpoolPlace = std::optional<uint64_t>;
 
-// Brings items' files to the disk, many at a time. What was added and not committed when the
-// process ends was never there.
+// Writes the files of many items to disk at a time. Files that were not committed when the process
+// ends are discarded.
 //
-// Errors: ABORTED as of durable_file.h; after one it takes nothing more.
+// Errors: ABORTED as in durable_file.h; after an error, it accepts no more files.
 class ItemWriter {
  public:
   virtual ~ItemWriter() = default;
   virtual absl::StatusOr<SpoolPlace> Add(const std::vector<ItemFile>& files) = 0;
-  // What was added is on the disk under its names when it returns.
+  // When it returns, the added files are on disk under their names.
   virtual absl::Status Commit() = 0;
 };
 // `folder` is open and outlives the writer.
@@ -48,25 +48,25 @@ std::unique_ptr<ItemWriter> MakeItemWriter(const JobFolder& folder, Packing pack
 // Threads: safe to call concurrently.
 class ItemReader {
  public:
-  // `items`: the folder of those that are files; `spool` need not be there.
+  // `items`: the folder of the files; `spool` need not exist.
   ItemReader(std::filesystem::path items, const std::filesystem::path& spool);
   ItemReader(const ItemReader&) = delete;
   ItemReader& operator=(const ItemReader&) = delete;
   ~ItemReader();
 
-  // Has Read look in the shards too, for what is nowhere else. `shards` outlives the reader.
+  // Makes Read look in the shards too, for files that are nowhere else. `shards` outlives the
+  // reader.
   void LookInShards(std::filesystem::path out, Packing packing, const ShardList* shards);
 
-  // The content of the record's file of this number. DATA_LOSS where it is not what the record
-  // says.
+  // The content of a file of the record. DATA_LOSS if it does not match the record.
   absl::StatusOr<std::string> Read(const nlohmann::ordered_json& record, const SpoolPlace& place,
                                    size_t file) const;
 
-  // The item's files will not be read again.
+  // Marks the item's files as not needed any more.
   void Forget(const nlohmann::ordered_json& record, const SpoolPlace& place);
-  // Gives their room back to the disk, where the file system can.
+  // Frees the disk space of these files, if the file system can.
   void Release();
-  // They will be read again after all.
+  // Unmarks them.
   void Keep();
 
  private:
@@ -75,7 +75,7 @@ class ItemReader {
                                           const SpoolPlace& place, size_t file) const;
   absl::StatusOr<std::string> ReadShard(const nlohmann::ordered_json& record, size_t file) const;
 
-  std::filesystem::path out_;  // where the shards lie
+  std::filesystem::path out_;  // the folder of the shards
   Packing packing_ = Packing::kNone;
   const ShardList* shards_ = nullptr;
   std::filesystem::path items_, spool_;

@@ -5,8 +5,8 @@
 
 namespace duet::client::batch {
 
-// The most items that a plan may have, and so one more than the largest number in a journal: half a
-// GiB of a journal in memory.
+// Maximum number of items of a plan, and the upper bound of item numbers in a journal. A journal of
+// this size takes half a GiB of memory.
 inline constexpr int64_t kMaxItems = int64_t{1} << 26;
 
 }  // namespace duet::client::batch

@@ -31,58 +31,59 @@ namespace duet::client::batch {
 
 struct JobOptions {
   flow::Options calls;
-  // How long servers may be away before the run ends.
+  // Maximum time for which all servers may be away before the run ends.
   flow::Duration patience = std::chrono::minutes(2);
-  // A part of the plan: its first items, and of these a share that is chosen by hash.
+  // The part of the plan to make: its first items, and a share of these, chosen by hash.
   int64_t limit = std::numeric_limits<int64_t>::max();
   double share = 1;
-  // Items whose failure was for good are asked for again.
+  // Retries items that failed permanently.
   bool retry_failed = false;
 };
 
-// How far a run is. Counts of items.
+// Progress of a run, in items.
 struct Progress {
-  int64_t planned = 0;  // that the run has come to so far
+  int64_t planned = 0;  // that the run has reached so far
   int64_t resumed = 0;  // of these, settled by earlier runs
-  int64_t done = 0;     // by this run, as are all below
+  int64_t done = 0;     // by this run, like all counts below
   int64_t rejected = 0;
-  int64_t failed = 0;      // for good
-  int64_t unfinished = 0;  // failed for a passing reason
+  int64_t failed = 0;      // permanently
+  int64_t unfinished = 0;  // failed temporarily
   uint64_t bytes = 0;
   flow::CallGate::State calls;
 };
 
 // How a run ended.
 struct JobReport {
-  SetCounts set;        // what is in the data set now
-  int64_t planned = 0;  // items that should be in it
+  SetCounts set;        // the content of the data set now
+  int64_t planned = 0;  // items of the finished data set
   int64_t unfinished = 0;
-  bool packed = false;                          // in shards, which leave out what failed
+  bool packed = false;                          // in shards, which leave out failed items
   std::vector<FailureCause> unfinished_causes;  // the largest; without numbers of leaders
-  // Why the run ended before all items were settled; OK when it was not, or when it was asked to.
+  // Why the run ended early; OK if it did not, or if Stop ended it.
   absl::Status stopped;
   bool complete() const { return set.done + set.rejected + set.failed >= planned; }
 };
 
-// One run of a batch: asks for every item of a plan that is not settled yet, keeps what comes, and
-// writes the index. Reading, calls and writing overlap: an item goes from the feeder (its plan) to
-// an asker (its leader, its turn at a server), to a keeper (what came: judged, put into files) and
-// to the writer, which brings many items to the disk at once. Nobody waits for a call.
+// One run of a batch: requests every item of a plan that is not settled yet, stores the answers,
+// and writes the index. Reading, calls and writing overlap. An item passes from the feeder (reads
+// the plan) to an asker (reads the leader, starts the call), to a keeper (judges the answer,
+// encodes its files) and to the writer, which writes many items to disk at once. No thread waits
+// for a call.
 //
-// An item is settled when its files are on the disk under their names and its record in the journal
-// is as well, in this order: whenever the process ends, the next run asks again for what is not
-// settled, gets the same and writes the same files.
+// An item is settled when its files and then its journal record are on disk. Whenever the process
+// ends, the next run requests the items that are not settled again, gets the same answers and
+// writes the same files.
 class Job {
  public:
-  // `servers`: for each the clients that take turns, each with one attempt and bulk priority of its
-  // own accord. `models` and `skeletons` are the plan's. `folder` is open and begun as `identity`;
-  // `survey` is of the plan's part and of this folder.
+  // `servers`: the clients of each server, which take turns and do not retry. `models` and
+  // `skeletons` are those of the plan. `folder` is open and was begun with `identity`. `survey`
+  // covers the same part of the plan and the same folder.
   struct Parts {
     Recipe recipe;
     JobIdentity identity;
     std::vector<ModelInfo> models;
     std::vector<motion::Skeleton> skeletons;
-    RequestLimits limits;  // of the servers, where they are known
+    RequestLimits limits;  // of the servers, if they are known
     std::vector<std::vector<Client>> servers;
     const JobFolder* folder = nullptr;
     const Survey* survey = nullptr;
@@ -91,10 +92,10 @@ class Job {
   // The plan begins with its first item.
   Job(Parts parts, Plan plan, const JobOptions& options);
 
-  // Once. An error is of the input or of the disk, before which everything settled is kept.
+  // Call once. Errors are caused by the input or the disk; items that were settled before are kept.
   absl::StatusOr<JobReport> Run();
 
-  // Lets calls under way end and asks for nothing more. From any thread.
+  // Starts no more calls; calls in progress finish. Callable from any thread.
   void Stop();
   Progress progress() const;
 
@@ -102,17 +103,17 @@ class Job {
   struct Work {
     Item item;
     std::shared_ptr<SharedLeader> leader;
-    int retry = 0;     // which seed
-    int attempts = 0;  // that failed for a passing reason
+    int retry = 0;     // selects the seed
+    int attempts = 0;  // that failed temporarily
   };
   struct Answered {
     Work work;
     absl::StatusOr<SynthesisResult> result;
   };
-  // An item that is known for good, on its way to the disk.
+  // An item with a final result, on its way to the disk.
   struct Settled {
     Item item;
-    absl::string_view state;  // as its record tells
+    absl::string_view state;  // as in its record
     std::string record;
     std::vector<ItemFile> files;
   };
@@ -155,8 +156,8 @@ class Job {
   std::atomic<uint64_t> bytes_{0}, turns_{0};
   std::mutex unfinished_mutex_;
   FailureCauses unfinished_causes_;
-  bool fed_ = false;  // Feed came to the part's end
-  Damage damage_;     // that was found before, less what was settled; the writer's alone
+  bool fed_ = false;  // Feed has reached the end of the part
+  Damage damage_;     // found before, without the items settled since; used only by the writer
   std::mutex stop_mutex_;
   absl::Status stopped_with_;
 };

@@ -15,16 +15,16 @@
 
 namespace duet::client::batch {
 
-// What a data set was begun with; every run that adds to it must have the same.
+// The properties that a data set was begun with. Every run that adds to it must have the same.
 struct JobIdentity {
   std::string recipe_digest;
-  std::string recipe_json;  // Recipe::json; empty of a set begun before it was kept
+  std::string recipe_json;  // Recipe::json; empty in sets that were begun before it was stored
   Shard shard;
   Layout layout = Layout::kMirror;
   Packing packing = Packing::kNone;
   uint64_t shard_bytes = 0;
   std::vector<ModelChoice> models;          // names and versions; empty before a job has begun
-  std::vector<motion::Skeleton> skeletons;  // theirs
+  std::vector<motion::Skeleton> skeletons;  // of the models
   SetDescription description;
 };
 
@@ -38,30 +38,30 @@ class JobFolder {
  public:
   explicit JobFolder(std::filesystem::path out) : out_(std::move(out)) {}
 
-  // Makes and locks the folder and removes temporary files of runs that were killed. ABORTED where
+  // Creates and locks the folder, and removes temporary files of runs that were killed. ABORTED if
   // the folder is locked or cannot be written.
   absl::Status Take();
-  // The same, and reads what the job was begun with into `begun`; its models are empty where there
-  // is none. Also FAILED_PRECONDITION, naming what differs, where that is not what is `wanted` now.
+  // Like Take, and reads the identity of the job into `begun`, with no models if there is no job.
+  // FAILED_PRECONDITION, with the differences, if that is not the `wanted` identity.
   absl::Status Open(const JobIdentity& wanted, JobIdentity* begun);
-  // The same for a run that may add items: a job of another recipe of which no item was answered is
-  // removed, as if it had never begun.
+  // Like Open, for a run that may add items: removes a job of another recipe that has no answers
+  // yet.
   absl::Status OpenForRun(const JobIdentity& wanted, JobIdentity* begun);
-  // Settles what a new job is begun with.
+  // Stores the identity of a new job.
   absl::Status Begin(const JobIdentity& identity) const;
 
   const std::filesystem::path& out() const { return out_; }
   std::filesystem::path journal() const { return state() / "journal"; }
-  // Where they lie in a single file until then; see item_files.h.
+  // Items that wait to be packed; see item_files.h.
   std::filesystem::path spool() const { return state() / "spool"; }
   // Which items each shard holds; see shard_list.h.
   std::filesystem::path shards() const { return state() / "shards"; }
-  // What was found damaged and is still to be repaired; see damage.h.
+  // Damage that was found and not repaired yet; see damage.h.
   std::filesystem::path damage() const { return state() / "damage"; }
-  // The command that the last run was started with; see client/cli/batch_repair.h.
+  // The command of the last run; see client/cli/batch_repair.h.
   std::filesystem::path command() const { return state() / "command.json"; }
   std::filesystem::path temporary() const { return state() / "tmp"; }
-  // Where items' files lie until they are packed, or for good.
+  // The folder of items' files: temporary if they will be packed.
   std::filesystem::path items(Packing packing) const {
     return packing == Packing::kNone ? out_ : state() / "items";
   }
@@ -75,7 +75,7 @@ class JobFolder {
   FolderLock lock_;
 };
 
-// What <out>/.duet-batch/job.json says. NOT_FOUND where `out` is no data set of `duet batch`.
+// Reads <out>/.duet-batch/job.json. NOT_FOUND if `out` is not a data set of `duet batch`.
 absl::StatusOr<JobIdentity> ReadJobIdentity(const std::filesystem::path& out);
 
 }  // namespace duet::client::batch

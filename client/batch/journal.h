@@ -14,15 +14,15 @@
 
 namespace duet::client::batch {
 
-// What is known of each item for good: a file of lines, only ever appended to.
+// The final results of items: a file of lines that is only appended to.
 //
 //   <first 8 hex digits of the SHA-256 of the rest> <item number> <record as JSON>
 //   <first 8 hex digits of the SHA-256 of the rest> <item number> @<place> <record as JSON>
 //
-// The place is that of the item's files in the spool (item_files.h), where they are there.
+// The place is the offset of the item's files in the spool (item_files.h), if they are there.
 //
-// A line that is cut off or does not fit its digest counts as not written, wherever it stands: the
-// last one is what a process was writing when it stopped, one before it was damaged later.
+// Truncated lines and lines that do not match their digest are ignored. After a crash, this is the
+// last line; other lines were damaged later.
 
 struct JournalEntry {
   int64_t item = 0;
@@ -30,30 +30,30 @@ struct JournalEntry {
   std::string record;
 };
 
-// The journal as it is; 8 bytes of memory an item.
+// A snapshot of the journal. Takes 8 bytes of memory for each item.
 //
 // Threads: const methods are safe to call concurrently.
 class JournalReader {
  public:
-  // A journal that is not there is empty. Damaged lines are skipped: their items have the record
-  // before, or none. DATA_LOSS for an item that no plan has.
+  // A missing journal is empty. Damaged lines are skipped: their items have an earlier record, or
+  // none. DATA_LOSS for an item number that no plan can have.
   static absl::StatusOr<JournalReader> Open(const std::filesystem::path& path);
   JournalReader(JournalReader&& other) noexcept;
   JournalReader& operator=(JournalReader&&) = delete;
   ~JournalReader();
 
   bool Has(int64_t item) const;
-  // The record of an item that it has. Where there are several the last one.
+  // The last record of an item. Requires Has(item).
   absl::StatusOr<JournalEntry> Read(int64_t item) const;
-  // Every record, in the order of the items. Stops at what is not OK and returns it.
+  // Visits every record, in the order of the items. Stops at the first error and returns it.
   absl::Status ForEach(const std::function<absl::Status(const JournalEntry&)>& visit) const;
 
-  // One beyond the last item of which there is a record, and how many records there are.
+  // The number after the largest item number, and the number of items with a record.
   int64_t end() const { return static_cast<int64_t>(offsets_.size()); }
   int64_t count() const { return count_; }
-  // Damaged lines, without one that was cut off at the end.
+  // Damaged lines, without a truncated last line.
   int64_t damaged_lines() const { return damaged_lines_; }
-  // Bytes up to the end of the last whole line.
+  // Bytes up to the end of the last complete line.
   uint64_t size() const { return size_; }
 
  private:
@@ -69,12 +69,12 @@ class JournalReader {
   uint64_t size_ = 0;
 };
 
-// Removes the damaged lines of a journal that has any: `temporary` receives the others and replaces
-// it. Nobody else may have it open. ABORTED as of durable_file.h.
+// Removes the damaged lines of a journal, if any: writes the others to `temporary` and replaces the
+// journal, which must not be open. ABORTED as in durable_file.h.
 absl::Status RepairJournal(const std::filesystem::path& path,
                            const std::filesystem::path& temporary);
 
-// Adds to a journal.
+// Appends to a journal.
 class JournalWriter {
  public:
   JournalWriter() = default;
@@ -82,10 +82,11 @@ class JournalWriter {
   JournalWriter& operator=(const JournalWriter&) = delete;
   ~JournalWriter();
 
-  // Cuts off what is beyond `size`, a reader's. ABORTED.
+  // Truncates the journal to `size`, which a reader returned. ABORTED.
   absl::Status Open(const std::filesystem::path& path, uint64_t size);
   void Add(int64_t item, absl::string_view record, std::optional<uint64_t> place = std::nullopt);
-  // Brings what was added to the disk. ABORTED; after that the journal takes nothing more.
+  // Flushes the added records to disk. ABORTED; after an error, the journal accepts no more
+  // records.
   absl::Status Commit();
 
  private:

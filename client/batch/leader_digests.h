@@ -14,18 +14,18 @@
 
 namespace duet::client::batch {
 
-// What each leader's file was when its first answer was made: all answers of a data set are of the
-// same leaders. 16 bytes and a little more for each file.
+// The digest of each leader's file when its first answer was made, which ensures that all answers
+// of a data set are made from the same leaders. Takes little more than 16 bytes for each file.
 //
 // Threads: safe to call concurrently.
 class LeaderDigests {
  public:
-  // Whether the leader's file has a digest by now.
+  // Whether the digest of the leader's file is known.
   bool Knows(const LeaderEntry& leader) const;
-  // Keeps the first digest of the leader's file. FAILED_PRECONDITION, naming the leader, where
-  // `sha256` is another.
+  // Stores the first digest of the leader's file. FAILED_PRECONDITION, with the leader, if `sha256`
+  // differs from it.
   absl::Status Check(const LeaderEntry& leader, const std::string& sha256);
-  // The same of an item's record, whose leader is known as it was listed.
+  // The same for the leader in an item's record.
   absl::Status CheckRecord(const nlohmann::ordered_json& record);
 
  private:
@@ -33,7 +33,7 @@ class LeaderDigests {
   absl::flat_hash_map<uint64_t, uint64_t> digests_;  // by hash of the path; the first 64 bits
 };
 
-// The digest of the leader's file as it is. Errors as of base::ReadFile.
+// The current digest of the leader's file. Errors: those of base::ReadFile.
 absl::StatusOr<std::string> DigestOfLeader(const LeaderEntry& leader);
 
 }  // namespace duet::client::batch

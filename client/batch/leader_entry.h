@@ -13,25 +13,25 @@
 
 namespace duet::client::batch {
 
-// A leader that somebody listed, and what was said of it.
+// A leader of the list, with its settings.
 struct LeaderEntry {
-  // Names its outputs: a path below the data set without an ending; no other entry has it.
+  // Unique name of its outputs: a path relative to the data set, without extension.
   std::string key;
-  std::string given;  // as it was listed
-  std::string line;   // "MANIFEST:NUMBER", of a manifest; else empty
+  std::string given;  // as listed
+  std::string line;   // "MANIFEST:NUMBER" if it comes from a manifest
   std::filesystem::path file;
   std::optional<formats::Side> side;
-  Labels labels;               // instead of the recipe's reactions where not empty
+  Labels labels;               // if not empty, override the recipe's reactions
   std::string model;           // one of the recipe's; empty: all of them
-  std::string follower_start;  // a point or a file; empty: as the recipe says
+  std::string follower_start;  // a point or a file; empty: set by the recipe
   std::optional<formats::Side> follower_start_side;
   std::optional<motion::Vec3> partner_direction;
   std::optional<uint64_t> seed;
-  std::vector<std::pair<std::string, std::string>> extra;  // columns that are passed on, by name
+  std::vector<std::pair<std::string, std::string>> extra;  // other columns, by name
 };
 
 // A path as a key: every part in UTF-8, without dots and without characters that file systems and
-// archives reject, "walks/Kick 1.v2" as "walks/Kick_1_v2". Parts that lead upwards are left out.
+// archives reject, "walks/Kick 1.v2" as "walks/Kick_1_v2". Drops parent folders ("..").
 std::string KeyOf(const std::filesystem::path& path);
 
 }  // namespace duet::client::batch

@@ -12,24 +12,25 @@
 
 namespace duet::client::batch {
 
-// Leaders one after the other, so that a list of any length takes no memory.
+// A sequence of leaders. Its memory does not depend on the length of the list.
 class LeaderSource {
  public:
   virtual ~LeaderSource() = default;
-  // The next one; nothing at the end. INVALID_ARGUMENT is of one line: the call after it goes on
-  // with the next line, so that all bad lines can be reported together. Any other error ends the
-  // list.
+  // The next leader; nullopt at the end. After INVALID_ARGUMENT, which concerns one line, the next
+  // call continues with the next line, so that all bad lines can be reported together. Any other
+  // error ends the list.
   virtual absl::StatusOr<std::optional<LeaderEntry>> Next() = 0;
 };
 
 // Files, folders (all motion files below, by name; .txt and .json files that hold something else
-// are passed over and named in `passed_over`, which may be null) and patterns ("walks/*.bvh"; * and
-// ? within one part of a path). A folder's files are named by their path in it, a file by its own
-// name. Where `format` is said, a file may have any name, those of a folder or a pattern any that
-// tells no other format.
+// are skipped and added to `passed_over`, which may be null) and patterns ("walks/*.bvh"; * and ?
+// within one part of a path). Files of a folder are named by their path in it, other files by their
+// own name. With `format`, a file may have any extension, and files of a folder or a pattern any
+// extension that is not that of another format.
 //
-// Errors: NOT_FOUND for what is not there, INVALID_ARGUMENT for a file of no known kind, for two
-//         leaders of one key, and where there is no motion file at all.
+// Errors: NOT_FOUND for missing inputs; INVALID_ARGUMENT for a file of unknown format, for two
+// leaders
+//         with the same key, and if there is no motion file.
 absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
     const std::vector<std::string>& inputs,
     const std::optional<formats::Format>& format = std::nullopt,

@@ -16,20 +16,20 @@
 
 namespace duet::client::batch {
 
-// A leader's motion in a model's joints, and what its request holds besides.
+// A leader's motion in a model's joints, and the start of its follower.
 struct LoadedLeader {
   motion::Clip clip;
   std::string sha256;  // of the file
   std::optional<FollowerStart> follower_start;
 };
 
-// Reads the leader's file, and that of the follower's start, and checks length and rate against the
-// server's limits; a limit of 0 is not known. Errors name the file.
+// Reads the leader's file and the file of the follower's start, and checks the length and the rate
+// against the server's limits; a limit of 0 is unknown. Errors name the file.
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
                                         const LeaderInput& input, const motion::Skeleton& skeleton,
                                         const RequestLimits& limits);
 
-// A leader that several items share: read by the first that needs it, forgotten with the last.
+// A leader that several items share. The first item that needs it reads it; the last one frees it.
 //
 // Threads: safe to call concurrently.
 class SharedLeader {

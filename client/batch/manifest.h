@@ -10,9 +10,9 @@
 
 namespace duet::client::batch {
 
-// A manifest, line by line: JSON objects where the first line begins with '{', else TSV
-// (ManifestLine in proto/duet/batch/v1/batch.proto). `folder` is where relative paths begin, `name`
-// is how errors call the manifest. `in` outlives the source.
+// Reads a manifest line by line: JSON objects if the first line begins with '{', otherwise TSV
+// (ManifestLine in proto/duet/batch/v1/batch.proto). Relative paths begin at `folder`; errors call
+// the manifest `name`. `in` outlives the source.
 std::unique_ptr<LeaderSource> ReadManifest(std::istream& in, const std::filesystem::path& folder,
                                            const std::string& name);
 

@@ -18,13 +18,13 @@ struct MergeReport {
 };
 
 // Joins the shards <out>/shard-0-of-N and so on into one data set at `out`, as a run without shards
-// would have made it: checks every file against its digest, moves it, writes the index, packs where
-// the recipe says so, and removes the shards' folders. Stopped at any moment it can be run again.
+// would have made it: checks every file against its digest, moves it, writes the index, packs if
+// the recipe says so, and removes the folders of the shards. It can be repeated after an
+// interruption.
 //
-// Errors: NOT_FOUND without shards, ABORTED where one is absent, at work, or was not run to its
-// end,
-//         FAILED_PRECONDITION where they are not of one job or a leader was changed between them,
-//         DATA_LOSS for a file that was changed.
+// Errors: NOT_FOUND without shards; ABORTED if a shard is missing, locked or incomplete;
+//         FAILED_PRECONDITION if the shards belong to different jobs or versions of a leader;
+//         DATA_LOSS if a file was changed.
 absl::StatusOr<MergeReport> Merge(const std::filesystem::path& out);
 
 }  // namespace duet::client::batch

@@ -14,26 +14,24 @@
 
 namespace duet::client::batch {
 
-// The shards of a set, as its list says. A set that was packed before there were lists has one all
-// the same: of all items that are done, in their order. Errors: the list's and the journal's.
+// The list of a set's shards. For a set that was packed before lists existed, the list has all done
+// items, in their order. Errors: those of the list and the journal.
 absl::StatusOr<ShardList> OpenShards(const JournalReader& journal, const JobIdentity& identity,
                                      const JobFolder& folder);
 
-// Whether a shard's file is there and of its size, as far as a look without reading it tells.
+// Whether a shard's file exists and has its size; does not read it.
 bool LooksWhole(const PackedShard& shard, const std::filesystem::path& file);
 
-// The items of a shard whose files are not in it as the journal says, read member after member;
-// all of them where it cannot be read.
+// The items of a shard whose files do not match the journal; all items if the shard cannot be read.
 absl::StatusOr<std::set<int64_t>> FindBadItems(const JournalReader& journal,
                                                const PackedShard& shard,
                                                const std::filesystem::path& file);
 
-// Puts the files of every item that is done and in no shard into further shards, and writes again
-// the shards that are missing or damaged, with the items that they had: each under another name
-// first. Items' files are removed once their shard is on the disk. What was repaired is damage no
-// longer. Goes on where it was stopped.
+// Writes new shards for done items that are in no shard, and rewrites missing or damaged shards
+// with the same items. Each shard is written under a temporary name first. Removes the files of
+// items whose shard is on disk, and the record of repaired damage. Continues after an interruption.
 //
-// Errors: ABORTED; also where an item's file is not what the journal says, which becomes damage
+// Errors: ABORTED; also if an item's file does not match the journal, which is recorded as damage
 // that the next run repairs.
 absl::Status Pack(const JournalReader& journal, const JobIdentity& identity,
                   const JobFolder& folder);

@@ -8,10 +8,9 @@
 
 namespace duet::client::batch {
 
-// Reads back what record.h writes, from a file that this program may not have written. Of the
-// fields that readers rely on, those that are there are of their types, and those of its state are
-// there; whatever else it holds is kept.
-// Errors: DATA_LOSS "field: what came, what was wanted".
+// Parses a record of record.h from an untrusted file. Checks the types of the fields that readers
+// use, and that the fields of the record's state are present. Keeps other fields. Errors: DATA_LOSS
+// "FIELD: expected ..., got ...".
 absl::StatusOr<nlohmann::ordered_json> ParseRecord(absl::string_view text);
 
 }  // namespace duet::client::batch

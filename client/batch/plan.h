@@ -19,35 +19,35 @@ namespace duet::client::batch {
 // One follower to make.
 struct Item {
   int64_t number = 0;     // from 0, in the order of the leaders
-  std::string id;         // 32 hex digits: the digest of all that is asked
-  std::string name;       // its files without their endings; no other item has it
-  std::string full_name;  // what `name` was shortened from; empty unless it was
+  std::string id;         // 32 hex digits: the digest of the whole request
+  std::string name;       // unique path of its files, without extension
+  std::string full_name;  // the name before it was shortened; empty if it was not
   std::shared_ptr<const LeaderEntry> leader;
   formats::Side side = formats::Side::kLeft;
   std::string reaction;
   Labels labels;                              // or keyframes
-  std::vector<Schedule::Keyframe> keyframes;  // in parts of the leader's length
-  int model = 0;                              // of the plan's
+  std::vector<Schedule::Keyframe> keyframes;  // times as fractions of the leader's length
+  int model = 0;                              // index into the plan's models
   int sample = 0;
 };
 
-// The seed of an item's answer, `retry` 0 the first. Below 2^53 where nobody gave one, so that
-// every JSON reader keeps it.
+// The seed of an item's answer; `retry` 0 is the first. Below 2^53 unless the manifest specifies
+// it, so that every JSON reader can represent it.
 uint64_t SeedOf(const Item& item, uint64_t recipe_seed, int retry);
 
-// The items of a recipe and a list of leaders, one after the other: nothing is kept of those before
-// and after, so that lists of any length take the same memory.
+// The items of a recipe and a list of leaders, one after the other. Memory does not depend on the
+// length of the list.
 class Plan {
  public:
-  // `models` are what the recipe's stand for, in its order. INVALID_ARGUMENT for classes that a
-  // model does not have, two reactions of one name, samples of a model that has one answer, and
-  // joints that the layout does not have.
+  // `models` are the recipe's models, in its order. INVALID_ARGUMENT for classes that a model does
+  // not have, two reactions with the same name, several samples of a model that does not sample,
+  // and joints that the layout does not have.
   static absl::StatusOr<Plan> Create(Recipe recipe, std::vector<ModelInfo> models,
                                      std::unique_ptr<LeaderSource> leaders);
 
-  // The next item; nothing at the end. INVALID_ARGUMENT is of one leader or one line of a manifest,
-  // such as a class that the model or the layout does not have: the call after it goes on with the
-  // next leader. Any other error ends the plan.
+  // The next item; nullopt at the end. After INVALID_ARGUMENT, which concerns one leader or one
+  // line of a manifest (such as an unknown class), the next call continues with the next leader.
+  // Any other error ends the plan.
   absl::StatusOr<std::optional<Item>> Next();
 
  private:
@@ -76,9 +76,9 @@ class Plan {
   std::vector<ModelInfo> models_;
   std::unique_ptr<LeaderSource> leaders_;
   std::vector<LabelledReaction> fixed_;  // the same for each leader
-  std::vector<Reaction> drawn_;          // another for each
+  std::vector<Reaction> drawn_;          // different for each leader
 
-  // The leader at hand, and where in it the next item is.
+  // The current leader, and the position of the next item in it.
   std::shared_ptr<const LeaderEntry> leader_;
   std::vector<formats::Side> sides_;
   std::vector<LabelledReaction> reactions_;
@@ -86,13 +86,13 @@ class Plan {
   size_t side_ = 0, reaction_ = 0, model_ = 0;
   int sample_ = 0;
   int64_t number_ = 0;
-  std::map<std::string, int> clips_;  // of a layout of captures, so far by folder
+  std::map<std::string, int> clips_;  // clips so far, by folder of a layout of captures
 };
 
-// The class that is wanted most, of keyframes over all of them; "none" where none is.
+// The class with the largest weight, over all keyframes; "none" if no weight is positive.
 std::string LargestClass(const Item& item);
 
-// "kick", "kick0p5+hug1": classes and weights as a name; a lone weight of 1 goes without saying.
+// Classes and weights as a name: "kick", "kick0p5+hug1". A single weight of 1 is left out.
 std::string NameOfLabels(const Labels& labels);
 
 }  // namespace duet::client::batch

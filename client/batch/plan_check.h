@@ -18,7 +18,7 @@
 
 namespace duet::client::batch {
 
-// Which items of a plan a run makes.
+// The items of a plan that a run makes.
 struct PlanPart {
   Shard shard;
   int64_t limit = std::numeric_limits<int64_t>::max();  // only the first items of the plan
@@ -28,21 +28,21 @@ struct PlanPart {
   bool Has(const Item& item) const;
 };
 
-// A leader that no item can be made of, however often it is listed.
+// A leader that cannot be used, however often it is listed.
 struct BadLeader {
   std::string message;  // names the file
-  int64_t items = 0;    // of the part that it keeps from being made
+  int64_t items = 0;    // of the part that fail because of it
 };
 
-// What is known of a plan before the first call.
+// The result of checking a plan before the first call.
 struct PlanCheck {
-  int64_t items = 0;    // of the part, settled ones included
-  int64_t leaders = 0;  // people who lead, as often as they are listed
-  int64_t frames = 0;   // of all followers, as they will be written
+  int64_t items = 0;    // of the part, including settled ones
+  int64_t leaders = 0;  // leading people, counted as often as they are listed
+  int64_t frames = 0;   // of all followers, at the output rate
   double seconds = 0;   // the same as a duration
 
-  // Lines of a manifest that make no sense, and leaders that cannot be used; in the order of the
-  // list. Of either at most kListed are kept.
+  // Invalid lines of a manifest and leaders that cannot be used, in the order of the list; at most
+  // kListed of each are stored.
   static constexpr size_t kListed = 1000;
   int64_t bad_line_count = 0;
   std::vector<std::string> bad_lines;  // "FILE:LINE: FIELD: expected ..., got ..."
@@ -65,8 +65,7 @@ absl::StatusOr<PlanCheck> CheckPlan(
     const RequestLimits& limits, const PlanPart& part, Plan* plan, KeptLeaders* kept = nullptr,
     const std::function<bool()>& stopped = [] { return false; });
 
-// INVALID_ARGUMENT for a plan with bad lines, which must not begin: lists them, one below the
-// other.
+// INVALID_ARGUMENT with a list of the bad lines, if the plan has any: its run must not begin.
 absl::Status BadLinesError(const PlanCheck& check);
 
 }  // namespace duet::client::batch

@@ -8,11 +8,11 @@
 
 namespace duet::client::batch {
 
-// A pair as a strip of at most six moments, evenly from the first frame to the last: an <svg> with
-// a path of class "leader" and one of class "follower". Seen from the side, the leader on the left;
-// each moment is in the middle of its place, all at one scale and on one floor.
+// A pair as a strip of at most six frames, evenly from the first to the last: an <svg> with a path
+// of class "leader" and one of class "follower". The view is from the side, with the leader on the
+// left. All frames have the same scale and floor; each is centred in its part of the strip.
 //
-// Requires a frame, people of the same length and positions that are finite.
+// Requires at least one frame, people with the same number of frames, and finite positions.
 std::string PoseStrip(const motion::ClipPair& pair, const motion::Skeleton& skeleton);
 
 }  // namespace duet::client::batch

@@ -13,8 +13,8 @@
 
 namespace duet::client::batch {
 
-// How good an answer is: QualityFigures of proto/duet/batch/v1/batch.proto. Absent where the
-// skeleton lacks the joints. Degrees and metres.
+// Quality of an answer: QualityFigures of proto/duet/batch/v1/batch.proto. Figures are absent if
+// the skeleton does not have their joints. Units: degrees and metres.
 struct Quality {
   std::optional<double> lean_degrees;
   std::optional<double> foot_above_floor_metres;
@@ -22,19 +22,19 @@ struct Quality {
   double distance_metres = 0;
   double penetration_metres = 0;
   double range_of_motion_metres = 0;
-  std::string recognised_class;  // empty: nothing looked
+  std::string recognised_class;  // empty: not classified
   std::optional<double> class_probability;
 };
 
-// Requires a frame, and joints that are the skeleton's.
+// Requires at least one frame and the joints of the skeleton.
 Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton);
 
-// What the classifier makes of it, asked for `wanted`. Nothing of a class that it does not know.
-// Requires that the pair has its joints.
+// Classifies the follower of an answer to the class `wanted`. Does nothing if the classifier does
+// not know the class. Requires that the pair has the classifier's joints.
 void Recognise(const classifier::Classifier& classifier, const std::string& wanted,
                const motion::ClipPair& pair, Quality* quality);
 
-// What of an answer the filter does not let pass, a sentence each; empty: it passes.
+// The limits that an answer exceeds, one text for each; empty if it passes.
 std::vector<std::string> WhyRejected(const QualityFilter& filter, const Quality& quality,
                                      const std::optional<double>& unfamiliarity);
 

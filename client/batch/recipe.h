@@ -15,7 +15,7 @@
 
 namespace duet::client::batch {
 
-// What is asked for each leader, as proto/duet/batch/v1/batch.proto explains it field by field.
+// A recipe. proto/duet/batch/v1/batch.proto documents the fields.
 
 using Labels = std::vector<ClassWeight>;  // by class name
 
@@ -80,7 +80,7 @@ struct QualityFilter {
   std::optional<double> max_penetration_metres;
   std::optional<double> min_range_of_motion_metres;
   std::optional<double> max_unfamiliarity;
-  std::shared_ptr<const classifier::Classifier> classifier;  // null: none looks
+  std::shared_ptr<const classifier::Classifier> classifier;  // null: no classifier
   std::optional<double> min_class_probability;
   int retries_per_item = 0;
 };
@@ -94,22 +94,22 @@ struct Output {
   Layout layout = Layout::kMirror;
   Packing packing = Packing::kNone;
   uint64_t shard_bytes = uint64_t{256} << 20;
-  std::optional<double> frame_rate_hz;  // of every item; absent: each item's leader's own
+  std::optional<double> frame_rate_hz;  // of every item; absent: the rate of its leader
 };
 
 struct Recipe {
   uint64_t seed = 0;
-  std::vector<ModelChoice> models;  // one at least
+  std::vector<ModelChoice> models;  // at least one
   std::vector<Reaction> reactions;
   int samples = 1;
   float variety = 1;
   LeaderInput input;
   QualityFilter filter;
   Output output;
-  // Of everything above, in hex: two recipes with one digest ask for the same.
+  // Digest of everything above in hex. Recipes with the same digest are equal.
   std::string digest;
-  // Everything above as one JSON object, what files the recipe names by what they say; with the
-  // names of the proto's fields.
+  // Everything above as one JSON object with the proto's field names. Files that the recipe names
+  // are represented by their content.
   std::string json;
 };
 

@@ -9,8 +9,8 @@ namespace duet::client::batch {
 
 namespace v1 = ::duet::batch::v1;
 
-// Checks every field and sets what is absent to its default; the digest stays empty.
-// INVALID_ARGUMENT "reactions[2].grid.axes[0].weights: came ..., wanted ...".
+// Checks every field and sets absent fields to their defaults. The digest stays empty.
+// INVALID_ARGUMENT "reactions[2].grid.axes[0].weights: expected ..., got ...".
 absl::StatusOr<Recipe> FromProto(const v1::Recipe& proto);
 
 }  // namespace duet::client::batch

@@ -10,7 +10,7 @@
 
 namespace duet::client::batch {
 
-// What the command line may say in place of the recipe.
+// Values of the command line that override the recipe.
 struct RecipeOverrides {
   std::optional<Packing> packing;
   std::optional<int> retries_per_item;
@@ -18,13 +18,14 @@ struct RecipeOverrides {
   std::optional<double> frame_rate_hz;
 };
 
-// Parses a recipe: JSON or text format. Unknown fields are refused. `folder` is where the files
-// that it names lie. INVALID_ARGUMENT says where, what came and what was wanted.
+// Parses a recipe: JSON or text format. Unknown fields are rejected. Files that it names
+// are relative to `folder`. INVALID_ARGUMENT "FIELD: expected ..., got ...".
 absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
                                    const std::filesystem::path& folder = {},
                                    const RecipeOverrides& overrides = {});
 
-// The same of a file; ".json" is JSON, anything else text format. Also NOT_FOUND; names the file.
+// Reads a recipe file: JSON if it ends in ".json", otherwise text format. Errors name the file;
+// also NOT_FOUND.
 absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path,
                                   const RecipeOverrides& overrides = {});
 

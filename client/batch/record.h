@@ -14,7 +14,7 @@
 
 namespace duet::client::batch {
 
-// What became of an item: IndexEntry of proto/duet/batch/v1/batch.proto.
+// The result of an item: IndexEntry of proto/duet/batch/v1/batch.proto.
 
 inline constexpr char kDone[] = "done";
 inline constexpr char kRejected[] = "rejected";
@@ -26,7 +26,7 @@ struct RecordedFile {
   std::string sha256;
 };
 
-// An answer as the index tells of it.
+// An answer as it is recorded in the index.
 struct RecordedAnswer {
   std::string leader_sha256;
   std::string model;  // name@version
@@ -42,15 +42,16 @@ struct RecordedAnswer {
   int answers = 1;
 };
 
-// One JSON object, fields in the proto's order, without times: the same item has the same record
-// whenever it is made.
+// One JSON object with the fields in the proto's order and without times, so that the same item
+// always has the same record.
 nlohmann::ordered_json DoneRecord(const Item& item, const RecordedAnswer& answer,
                                   const std::vector<RecordedFile>& files);
 nlohmann::ordered_json RejectedRecord(const Item& item, const RecordedAnswer& answer,
                                       const std::vector<std::string>& reasons);
 nlohmann::ordered_json FailedRecord(const Item& item, const absl::Status& error);
 
-// As one line, without its end. Bytes that are no UTF-8 come out as the replacement character.
+// The record as one line, without newline. Bytes that are not UTF-8 become the replacement
+// character.
 std::string Line(const nlohmann::ordered_json& record);
 
 }  // namespace duet::client::batch

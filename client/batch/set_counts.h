@@ -8,7 +8,7 @@
 
 namespace duet::client::batch {
 
-// What is in a data set.
+// The number of items in a data set by result.
 struct SetCounts {
   int64_t done = 0;
   int64_t rejected = 0;

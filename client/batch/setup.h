@@ -12,28 +12,29 @@
 
 namespace duet::client::batch {
 
-// What answers, and what its requests must keep to.
+// The models, and the limits of their requests.
 struct ResolvedModels {
   std::vector<ModelInfo> models;
   RequestLimits limits;
 };
 
-// The models that answer, asked of a server: those that the job was begun with, or else what the
-// recipe's stand for today. Errors as Client::GetModel.
+// The models as a server describes them: those that the job was begun with, or the recipe's for a
+// new job. Errors: those of Client::GetModel.
 absl::StatusOr<ResolvedModels> ResolveModels(const Client& client, const Recipe& recipe,
                                              const std::vector<ModelChoice>& begun);
 
-// What a job of this recipe is known by; no models yet.
+// The identity of a job of this recipe, without models.
 JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard);
-// The same once it has begun.
+// The identity with the models that a new job uses.
 JobIdentity WithModels(JobIdentity identity, const std::vector<ModelInfo>& models,
                        const std::vector<motion::Skeleton>& skeletons);
 
-// The identity of a run that goes on with a set begun as `begun`, which has no models in a new set:
-// what dataset.json states was settled then. FAILED_PRECONDITION if a model has other weights now.
+// The identity of a run that continues a set begun as `begun`, which has no models if the set is
+// new: keeps the properties that dataset.json states. FAILED_PRECONDITION if the weights of a model
+// have changed.
 absl::StatusOr<JobIdentity> GoOn(const JobIdentity& begun, JobIdentity identity);
 
-// Where a shard's data set lies: `out` itself unless there are several.
+// The folder of a shard's data set: `out` itself unless there are several shards.
 std::filesystem::path ShardFolder(const std::filesystem::path& out, const Shard& shard);
 
 }  // namespace duet::client::batch

@@ -15,17 +15,17 @@
 
 namespace duet::client::batch {
 
-// Which items a packed set's shards hold: settled before the first byte of a shard is written and
-// kept, so that a shard that was stopped, lost or damaged is written again as it was, and items
-// that are done later go to further shards.
+// The items of each shard of a packed set. They are fixed before the first byte of a shard is
+// written, so that an interrupted, lost or damaged shard is written again with the same bytes, and
+// items that are done later go to new shards.
 //
-// On the disk it is a journal (journal.h) of shards in place of items, {"items": [[first, last],
+// The file is a journal (journal.h) of shards instead of items, {"items": [[first, last],
 // ...], "bytes": ..., "sha256": ...}; the last two once the shard is written.
 
 struct PackedShard {
-  // Ranges of items from the first to the last, rising; none of a shard that does not exist.
+  // Ranges of items, first to last, in increasing order; empty if the shard does not exist.
   std::vector<std::pair<int64_t, int64_t>> items;
-  // Of the whole file; empty before it is written.
+  // Digest of the file; empty before it is written.
   uint64_t bytes = 0;
   std::string sha256;
 };
@@ -35,20 +35,20 @@ std::string ShardName(Packing packing, size_t number);
 
 class ShardList {
  public:
-  // Reads `file`; a list that is not there is empty. Errors as of JournalReader::Open.
+  // Reads `file`; a missing list is empty. Errors: those of JournalReader::Open.
   static absl::StatusOr<ShardList> Open(const std::filesystem::path& file);
 
-  // Puts an item that is in no shard yet into the first shard that has no items, and there after
-  // the item before it, until the next would pass `shard_bytes`. Items come in their order.
+  // Adds an item that is in no shard to the new shard, and begins another one if it would exceed
+  // `shard_bytes`. Call in the order of the items.
   void Add(int64_t item, uint64_t bytes, uint64_t shard_bytes);
-  // Replaces what is known of a shard.
+  // Replaces a shard.
   void Set(size_t number, PackedShard shard);
-  // Brings what Add and Set changed to the disk. ABORTED as of durable_file.h.
+  // Writes the changes of Add and Set to disk. ABORTED as in durable_file.h.
   absl::Status Commit();
 
   const std::vector<PackedShard>& shards() const { return shards_; }
   bool empty() const { return ranges_.empty(); }
-  // Has ShardOf know what was added; Commit does so too.
+  // Makes ShardOf include added items; Commit does this too.
   void Reindex();
   static constexpr size_t kNone = static_cast<size_t>(-1);
   // The number of the shard that an item is in.
@@ -61,9 +61,9 @@ class ShardList {
   };
 
   std::filesystem::path file_;
-  uint64_t size_ = 0;  // of the file's whole lines
+  uint64_t size_ = 0;  // of the file's complete lines
   std::vector<PackedShard> shards_;
-  std::vector<Range> ranges_;  // of all shards, rising
+  std::vector<Range> ranges_;  // of all shards, in increasing order
   std::vector<size_t> changed_;
   size_t filling_ = kNone;
   uint64_t filled_bytes_ = 0;

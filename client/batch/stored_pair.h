@@ -10,7 +10,7 @@
 
 namespace duet::client::batch {
 
-// Reads an item's pair back from the first of its record's files. Errors name the file.
+// Reads the pair of an item from the first file of its record. Errors name the file.
 absl::StatusOr<motion::ClipPair> ReadStoredPair(const ItemReader& items,
                                                 const nlohmann::ordered_json& record,
                                                 const SpoolPlace& place,

@@ -15,24 +15,24 @@
 
 namespace duet::client::batch {
 
-// What of a plan a run is to settle: as JobOptions of the same names.
+// The part of a plan that a run settles. JobOptions has fields of the same names.
 struct SurveyedPart {
   int64_t limit = std::numeric_limits<int64_t>::max();
   double share = 1;
   bool retry_failed = false;
 };
 
-// What earlier runs left of a plan; taken before anything is asked for.
+// The state of a plan after earlier runs, taken before the first call.
 struct Survey {
   JournalReader journal;
   ShardList shards;
-  // By the number of the item, for those of the part alone: whether it is settled, and its files
-  // are there as far as a look without reading them tells.
+  // By item number, only for items of the part: whether the item is settled and its files exist
+  // with their sizes. The files are not read.
   std::vector<bool> settled;
-  int64_t planned = 0;      // items of the part and the job's shard
-  bool whole_plan = false;  // which are all that there are
-  bool all_packed = true;   // every one of them that is done is in a shard
-  // Of every leader that has an answer.
+  int64_t planned = 0;      // items of the part in the job's shard
+  bool whole_plan = false;  // whether these are all items
+  bool all_packed = true;   // whether all done items are in a shard
+  // Digests of all leaders that have an answer.
   std::unique_ptr<LeaderDigests> leaders;
 
   bool IsSettled(int64_t item) const {
@@ -40,12 +40,13 @@ struct Survey {
   }
 };
 
-// Goes through the plan from where it is, and removes damaged lines of the journal. `folder` is
-// open; `identity` is what it was begun with, or will be.
+// Reads the plan to its end, and removes damaged lines of the journal. `folder` is open and was
+// begun, or will be begun, with `identity`.
 //
-// Errors: the plan's; FAILED_PRECONDITION, naming the item or the leader, where the plan is not
-//         the one that the set was begun with, or a leader's file was changed since; ABORTED,
-//         DATA_LOSS where the folder cannot be written or read.
+// Errors: those of the plan; FAILED_PRECONDITION, with the item or the leader, if the set was begun
+// with
+//         another plan or a leader's file has changed since; ABORTED, DATA_LOSS if the folder
+//         cannot be written or read.
 absl::StatusOr<Survey> TakeSurvey(const JobFolder& folder, const JobIdentity& identity,
                                   const SurveyedPart& part, Plan* plan);
 

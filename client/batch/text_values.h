@@ -14,12 +14,12 @@
 
 namespace duet::client::batch {
 
-// How values are written in recipes, manifests and flags. Errors: INVALID_ARGUMENT 'expected
-// ..., got "text"'.
+// The syntax of values in recipes, manifests and flags. Errors: INVALID_ARGUMENT 'expected ..., got
+// "text"'.
 
 // "NAME", "NAME@VERSION" or "NAME:LABEL"
 absl::StatusOr<ModelChoice> ParseModelChoice(absl::string_view text);
-// "NAME@VERSION" of a version that is settled.
+// "NAME@VERSION". Requires a version.
 std::string ModelText(const ModelChoice& model);
 // "kick=1,hug=0.5", by class name. Each class once, weights within [-2, 2].
 absl::StatusOr<std::vector<ClassWeight>> ParseLabels(absl::string_view text);
@@ -31,7 +31,7 @@ inline formats::Side OtherSide(formats::Side side) {
 }
 // "7": a whole number from 0 to 2^64 - 1
 absl::StatusOr<uint64_t> ParseSeed(absl::string_view text);
-// "0.5,1.1,-2" in metres; nothing when the text is no list of three numbers (but, say, a file)
+// "0.5,1.1,-2" in metres; nullopt if the text is not a list of three numbers, such as a file name
 std::optional<motion::Vec3> ParsePoint(absl::string_view text);
 // "1,0,0": a direction of any length
 absl::StatusOr<motion::Vec3> ParseDirection(absl::string_view text);

@@ -13,17 +13,17 @@
 
 namespace duet::client::batch::flow {
 
-// Hands values from threads to threads; who puts waits while it is full.
+// Passes values between threads. Put blocks while the queue is full.
 //
 // Threads: safe to call concurrently.
 template <typename Value>
 class BoundedQueue {
  public:
-  // `capacity`: of what its values cost.
+  // `capacity`: maximum total cost of its values.
   explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  // False after Stop: the value is not taken. A value that costs more than all the room there is
-  // waits until the queue is empty.
+  // Returns false, and drops the value, after Stop. A value that costs more than the capacity waits
+  // until the queue is empty.
   bool Put(Value value, std::size_t cost = 1) {
     std::unique_lock<std::mutex> lock(mutex_);
     has_room_.wait(lock, [&] { return stopped_ || values_.empty() || cost_ + cost <= capacity_; });
@@ -35,7 +35,7 @@ class BoundedQueue {
     return true;
   }
 
-  // Nothing after Stop, and after Close once it is empty.
+  // nullopt after Stop, and after Close when the queue is empty.
   std::optional<Value> Take() {
     std::unique_lock<std::mutex> lock(mutex_);
     has_values_.wait(lock, [this] { return stopped_ || closed_ || !values_.empty(); });
@@ -47,8 +47,8 @@ class BoundedQueue {
     return value;
   }
 
-  // Everything that comes within `time` from now, at least one value; less time where the queue
-  // fills or is closed. Empty as Take has nothing.
+  // All values of the next `time`, at least one. Returns earlier if the queue is full or closed.
+  // Empty when Take would return nullopt.
   std::vector<Value> Gather(std::chrono::nanoseconds time) {
     std::unique_lock<std::mutex> lock(mutex_);
     has_much_.wait_for(lock, time, [this] { return stopped_ || closed_ || HasMuch(); });
@@ -63,14 +63,14 @@ class BoundedQueue {
     return all;
   }
 
-  // Nothing more will be put.
+  // No more values will be put.
   void Close() {
     const std::lock_guard<std::mutex> lock(mutex_);
     closed_ = true;
     has_values_.notify_all();
     has_much_.notify_all();
   }
-  // What is in it is dropped.
+  // Drops all values.
   void Stop() {
     const std::lock_guard<std::mutex> lock(mutex_);
     stopped_ = true;

@@ -11,19 +11,19 @@
 
 namespace duet::client::batch::flow {
 
-// Lets threads start calls as a ServerChoice has it.
+// Makes threads wait until a ServerChoice allows a call.
 //
 // Threads: safe to call concurrently.
 class CallGate {
  public:
-  // `patience`: how long all servers may be away before nobody waits any longer.
+  // `patience`: maximum time for which all servers may be away.
   CallGate(int servers, const Options& options, Duration patience)
       : servers_(servers, options), patience_(patience) {}
 
-  // Waits until a call may start. Nothing after Stop, and once the patience is over.
+  // Waits until a call may start. nullopt after Stop, and when the patience is exceeded.
   std::optional<ServerChoice::Call> Start();
   void Finish(const ServerChoice::Call& call, CallEnd end, std::optional<Duration> delay);
-  // Nobody starts a call any longer; those under way go on.
+  // No more calls start; calls in progress continue.
   void Stop();
 
   struct State {

@@ -10,8 +10,8 @@
 
 namespace duet::client::batch::flow {
 
-// Work that is taken, and then either done or put back to be taken again. It ends when all is done,
-// not when it is empty: what is taken may come back.
+// A queue of work. A value that was taken is either done or put back. The queue ends when all
+// values are done, not when it is empty, because values may be put back.
 //
 // Threads: safe to call concurrently.
 template <typename Value>
@@ -19,7 +19,7 @@ class WorkQueue {
  public:
   explicit WorkQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  // Waits while it is full. False after Stop: the value is not taken.
+  // Blocks while the queue is full. Returns false, and drops the value, after Stop.
   bool Put(Value value) {
     std::unique_lock<std::mutex> lock(mutex_);
     has_room_.wait(lock, [this] { return stopped_ || values_.size() < capacity_; });
@@ -29,20 +29,20 @@ class WorkQueue {
     return true;
   }
 
-  // A value that was taken is to be taken again, before all others. Never waits.
+  // Puts a taken value back, before all others. Never blocks.
   void PutBack(Value value) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!stopped_) values_.push_front(std::move(value));
     EndOne();
     has_values_.notify_one();
   }
-  // A value that was taken needs nothing more.
+  // A taken value is done.
   void Done() {
     const std::lock_guard<std::mutex> lock(mutex_);
     EndOne();
   }
 
-  // Nothing after Stop, and after Close once all is done.
+  // nullopt after Stop, and after Close when all values are done.
   std::optional<Value> Take() {
     std::unique_lock<std::mutex> lock(mutex_);
     has_values_.wait(lock, [this] { return stopped_ || !values_.empty() || AllDone(); });
@@ -54,13 +54,13 @@ class WorkQueue {
     return value;
   }
 
-  // Nothing more will be put, but for what is put back.
+  // No more new values will be put.
   void Close() {
     const std::lock_guard<std::mutex> lock(mutex_);
     closed_ = true;
     has_values_.notify_all();
   }
-  // What is in it is dropped.
+  // Drops all values.
   void Stop() {
     const std::lock_guard<std::mutex> lock(mutex_);
     stopped_ = true;
@@ -68,7 +68,7 @@ class WorkQueue {
     has_values_.notify_all();
     has_room_.notify_all();
   }
-  // Until nothing is taken any longer.
+  // Waits until no value is taken.
   void WaitUntilNoneIsTaken() {
     std::unique_lock<std::mutex> lock(mutex_);
     none_taken_.wait(lock, [this] { return taken_ == 0; });
