@@ -30,9 +30,9 @@ absl::Status Check(const char* name, const Answer& answer) {
   if (!answer.partner || answer.partner->frame_count() == answer.person.frame_count()) {
     return absl::OkStatus();
   }
-  return absl::InvalidArgumentError(absl::StrCat(name, ": partner: came ",
-                                                 answer.partner->frame_count(), " frames, wanted ",
-                                                 answer.person.frame_count(), " as the person"));
+  return absl::InvalidArgumentError(
+      absl::StrCat(name, ": partner: frames: expected ", answer.person.frame_count(),
+                   " as the person has, got ", answer.partner->frame_count()));
 }
 
 // The poses of `clip` at a rate, the first `frames` of them.

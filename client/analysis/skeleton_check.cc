@@ -22,26 +22,26 @@ namespace {
 
 using motion::Vec3;
 
-// Standard deviation of a bone's length over its mean: Kinect's bones reach a tenth.
+// Standard deviation of a bone's length divided by its mean; up to 0.1 for Kinect's bones.
 constexpr double kMostDrift = 0.1;
-// Rounding, in whatever unit.
+// Rounding errors, in any unit.
 constexpr double kLeastLength = 1e-6;
-// A left bone's length over the right one's, or the other way round.
+// Length of a left bone divided by the right one, or vice versa.
 constexpr double kMostAsymmetry = 1.15;
 constexpr double kMostBelowFloor = 0.1, kHighAboveFloor = 0.15, kMostTimeInTheAir = 0.25;
 // A fist in boxing reaches 11 m/s, a kicking foot 16.
 constexpr double kFastestJoint = 20, kFastestRoot = 10;
-// Joints that change places come from farther apart than this.
+// Joints that swap places are at least this far apart.
 constexpr float kLeastSwap = 0.15f;
-// A knee or an elbow counts as bent where it is so far off the line between the limb's ends; of
-// that bending, more than the share the wrong way is no noise.
+// A knee or an elbow counts as bent if it is this far off the line between the limb's ends. If more
+// than this share of the bending is in the wrong direction, it is not noise.
 constexpr float kLeastBend = 0.04f;
 constexpr double kMostBentWrongly = 0.8;
 
-// How far the mean standing direction may lean, degrees. People lean forwards for long, but hardly
-// backwards or to one side; the tilt of a camera does not depend on where they face.
+// Maximum lean of the mean standing direction in degrees. People lean forwards for a long time, but
+// rarely backwards or sideways. The tilt of a camera does not depend on the facing direction.
 constexpr double kMostForwardLean = 12, kMostOtherLean = 5;
-// Shoulders against hips, degrees about the trunk: people reach 50, for a moment more.
+// Rotation of the shoulders against the hips in degrees. People reach 50, and more for a moment.
 constexpr double kMostTwist = 60, kMostTimeTwisted = 0.02;
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
@@ -116,7 +116,7 @@ class Checker {
     return std::sqrt(std::max(0.0, squares / clip_.frame_count() - mean * mean)) / mean;
   }
 
-  // The first whose joints are always in one place; empty where there is none.
+  // The first bone whose joints always coincide; empty if there is none.
   std::string BoneWithoutLength() const {
     for (std::size_t bone = 0; bone < skeleton_.bones.size(); ++bone) {
       if (MedianLength(skeleton_.bones[bone]) < kLeastLength) return BoneName(skeleton_, bone);
@@ -143,7 +143,7 @@ class Checker {
         {{"mean_change", mean}, {"most_change", most}});
   }
 
-  // Limbs come as left and right, or the other way round.
+  // The limbs of a pair may be left and right, or right and left.
   void CheckSymmetry() {
     double most = 1;
     std::string worst;
@@ -229,7 +229,7 @@ class Checker {
     Add("jumps", jumps == 0, text, {{"jumps", jumps}, {"fastest_metres_per_second", fastest}});
   }
 
-  // A frame in which a joint and its counterpart are where the other one was.
+  // Whether a joint and its counterpart swap places in a frame.
   bool SwapsAt(int frame, int left, int right) const {
     const Vec3 l = clip_.at(frame, left), r = clip_.at(frame, right);
     const Vec3 l0 = clip_.at(frame - 1, left), r0 = clip_.at(frame - 1, right);
@@ -252,8 +252,8 @@ class Checker {
     return swaps;
   }
 
-  // How far the middle of a limb is off the line from its upper end to its lower one, along the way
-  // that the hips face. 0 where it hardly is.
+  // Distance of the middle of a limb from the line between its ends, in the direction that the hips
+  // face. 0 if it is small.
   static double BendForwards(const cleanup::Limb& limb, Vec3 facing, absl::Span<const Vec3> pose) {
     const Vec3 upper = pose[Index(limb.upper)], along = pose[Index(limb.end)] - upper;
     const float length = Dot(along, along);
@@ -263,9 +263,8 @@ class Checker {
     return std::abs(bend) < kLeastBend ? 0 : static_cast<double>(bend);
   }
 
-  // Of all bending of knees and elbows, the share that goes the wrong way for where the hips face:
-  // knees go forwards and elbows backwards, and swapped sides turn that round. Absent where nothing
-  // bends.
+  // The share of all bending of knees and elbows in the wrong direction relative to the hips: knees
+  // bend forwards and elbows backwards; swapped sides reverse this. Absent if nothing bends.
   std::optional<double> ShareBentWrongly() const {
     double all = 0, wrong = 0;
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
@@ -282,7 +281,7 @@ class Checker {
     return wrong / all;
   }
 
-  // Whether the shoulders are turned round against the hips, on average.
+  // Whether the shoulders face away from the direction of the hips, on average.
   bool ShouldersOppose() const {
     const std::optional<motion::JointPair> pair = Shoulders();
     if (!pair) return false;
@@ -319,8 +318,8 @@ class Checker {
     Add("sides", wrong.empty(), text, std::move(figures));
   }
 
-  // How far the person leans to the way that the hips face, and to the left of it, on average;
-  // degrees. `directions`: where the person stands up to, of every frame.
+  // Mean lean of the person in the direction of the hips, and to the left of it, in degrees.
+  // `directions`: the standing direction of every frame.
   std::pair<double, double> LeanFromOwnView(const std::vector<Vec3>& directions) const {
     double forwards = 0, sideways = 0;
     const auto angle = [](Vec3 up, Vec3 way) {
@@ -365,7 +364,8 @@ class Checker {
                              body_.arms[first_is_left ? 1 : 0].upper};
   }
 
-  // From the hips to the shoulders about the trunk, 0 to 180 degrees. 0 where any has no length.
+  // Rotation from the hips to the shoulders about the trunk, 0 to 180 degrees. 0 if one of them has
+  // no length.
   double Twist(const motion::JointPair& shoulders, int frame) const {
     const auto at = [this, frame](int joint) { return clip_.at(frame, joint); };
     const Vec3 trunk = at(shoulders.left) + at(shoulders.right) - at(skeleton_.hips->left) -

@@ -10,27 +10,27 @@
 
 namespace duet::client::analysis {
 
-// One thing that was looked at.
+// The result of one check.
 struct Check {
   std::string name;  // "limb lengths"
   bool good = true;
-  std::string text;                       // what was found, for people
-  std::map<std::string, double> figures;  // the same for programs, units in the names
+  std::string text;                       // the finding, for people
+  std::map<std::string, double> figures;  // the same for programs, with units in the names
 };
 
-// Whether a motion is that of a person, in this order: finite (no position is infinite or no
-// number), size (from foot to root as a person's), limb lengths (hardly change over time), symmetry
-// (left limbs as long as right ones), floor (feet stay on it), jumps (no joint is faster than
-// people are), sides (left and right are not swapped), upright (the mean standing direction leans
-// no more than people do), waist (shoulders hardly turn against the hips). A check that needs
-// joints the skeleton lacks is left out; after a position that is not finite only the first is
-// there.
+// Checks whether a motion can be that of a person, in this order: finite (no position is infinite
+// or NaN), size (the distance from foot to root), limb lengths (nearly constant over time),
+// symmetry (left limbs are as long as right ones), floor (feet stay on it), jumps (no joint is
+// faster than people), sides (left and right are not swapped), upright (the mean standing direction
+// leans no more than people do), waist (shoulders rarely turn against the hips). Checks that need
+// joints which the skeleton does not have are left out. If a position is not finite, only the first
+// check is returned.
 //
-// What is not good is worth a look, and may be right: Kinect's bones grow and shrink, acrobats
-// leave the floor.
+// A check that is not good marks something to look at, not an error: Kinect's bones change their
+// length, and acrobats leave the floor.
 //
-// Requires a frame, the skeleton's joints, and a skeleton that Validate accepts. Where the rate is
-// 0 (not known), jumps are left out.
+// Requires at least one frame, the skeleton's joints, and a skeleton that Validate accepts. If the
+// rate is 0 (unknown), jumps are not checked.
 std::vector<Check> CheckSkeleton(const motion::Clip& clip, const motion::Skeleton& skeleton);
 
 }  // namespace duet::client::analysis

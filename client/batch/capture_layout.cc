@@ -36,8 +36,8 @@ absl::Status CheckJoints(const dataset::DatasetLayout& captures, const ModelInfo
   const std::vector<std::string>& wanted = captures.skeleton.joint_names;
   if (model.joint_names == wanted) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
-      "output.layout: came ", model.name, "@", model.version, " with the joints ",
-      absl::StrJoin(model.joint_names, ", "), ", wanted a model of ", absl::StrJoin(wanted, ", ")));
+      "output.layout: expected a model with the joints ", absl::StrJoin(wanted, ", "), ", got ",
+      model.name, "@", model.version, " with ", absl::StrJoin(model.joint_names, ", ")));
 }
 
 absl::StatusOr<std::string> CaptureFolder(Layout layout, const std::string& interaction_class,
@@ -52,8 +52,8 @@ absl::StatusOr<std::string> CaptureFolder(Layout layout, const std::string& inte
   std::vector<std::string> names;
   for (const dataset::ClassLayout& one : classes) names.push_back(one.name);
   return absl::InvalidArgumentError(
-      absl::StrCat("came ", base::Quoted(interaction_class), " as the class of the largest weight",
-                   ", wanted one that the layout has a folder for: ", absl::StrJoin(names, ", ")));
+      absl::StrCat("class of the largest weight: expected one that the layout has a folder for (",
+                   absl::StrJoin(names, ", "), "), got ", base::Quoted(interaction_class)));
 }
 
 std::string CaptureName(Layout layout, const std::string& folder, int number) {

@@ -70,9 +70,9 @@ absl::Status CheckDrawn(const Reaction& reaction, const std::vector<std::string>
                         : std::get<EachClass>(reaction.kind).beside ? 2
                                                                     : 1;
   if (wanted <= classes.size()) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("reactions: came ", wanted,
-                                                 " classes in a label vector, wanted at most the ",
-                                                 classes.size(), " classes"));
+  return absl::InvalidArgumentError(
+      absl::StrCat("reactions: classes in a label vector: expected at most the ", classes.size(),
+                   " classes, got ", wanted));
 }
 
 std::vector<DrawnLabels> Draw(const Reaction& reaction, const std::vector<std::string>& classes,

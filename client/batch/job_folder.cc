@@ -72,7 +72,7 @@ absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
     if (document.ok()) identity.skeletons.push_back(std::move(document->skeleton));
   }
   if (reader.ok() && identity.skeletons.size() != identity.models.size()) {
-    reader.Fail("skeletons", "wanted as many as models");
+    reader.Fail("skeletons", "expected as many as models");
   }
   const absl::StatusOr<Shard> shard = ParseShard(reader.String("shard", 32));
   reader.Update(shard.status());

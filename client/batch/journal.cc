@@ -89,8 +89,9 @@ absl::Status JournalReader::Load() {
       continue;
     }
     if (parsed.item >= kMaxItems) {
-      return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", offset, ": item ",
-                                              parsed.item, ", wanted one below ", kMaxItems));
+      return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", offset,
+                                              ": item: expected a number below ", kMaxItems,
+                                              ", got ", parsed.item));
     }
     if (parsed.item >= end()) offsets_.resize(static_cast<size_t>(parsed.item) + 1);
     uint64_t& known = offsets_[static_cast<size_t>(parsed.item)];

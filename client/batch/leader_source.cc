@@ -39,8 +39,8 @@ class LeaderList final : public LeaderSource {
       entry.key = KeyOf(named);
       if (!keys_.insert(entry.key).second) {
         return absl::InvalidArgumentError(
-            absl::StrCat(file.string(), ": another leader is named ", entry.key,
-                         " as well, wanted files of different names or one folder above both"));
+            absl::StrCat(file.string(), ": another leader has the name ", entry.key,
+                         " too. Use different file names, or list one folder above both files"));
       }
     }
     entries_.push_back(std::move(entry));
@@ -181,8 +181,9 @@ absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
     if (!status.ok()) return status;
   }
   if (list->empty()) {
-    const absl::Status none = absl::InvalidArgumentError(absl::StrCat(
-        "leaders: came no motion file, wanted one or more: ", formats::kReadableExtensions));
+    const absl::Status none = absl::InvalidArgumentError(
+        absl::StrCat("leaders: expected one or more motion files, got none. Formats: ",
+                     formats::kReadableExtensions));
     return format.has_value() ? none : MendedBy(none, motion::ReadingSetting::kFormat);
   }
   return std::unique_ptr<LeaderSource>(std::move(list));

@@ -66,9 +66,8 @@ absl::StatusOr<Part> OpenPart(const fs::path& out, const JobIdentity& identity, 
   const fs::path path = ShardFolder(out, shard);
   const absl::StatusOr<PlannedItems> items = ReadPlanned(path);
   if (!items.ok() || !items->whole) {
-    return absl::AbortedError(absl::StrCat(path.string(),
-                                           ": is absent or was not run to its end, wanted all of ",
-                                           shard.count, " shards"));
+    return absl::AbortedError(absl::StrCat(path.string(), ": expected all ", shard.count,
+                                           " shards, complete; this one is missing or incomplete"));
   }
   *planned += items->count;
   Part part;
@@ -79,8 +78,8 @@ absl::StatusOr<Part> OpenPart(const fs::path& out, const JobIdentity& identity, 
   absl::Status status = part.folder->Open(wanted, &begun);
   if (!status.ok()) return status;
   if (!SameModels(begun, identity)) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        path.string(), ": was made by other models than the other shards, wanted the same"));
+    return absl::FailedPreconditionError(
+        absl::StrCat(path.string(), ": expected the models of the other shards, got others"));
   }
   absl::StatusOr<JournalReader> journal = JournalReader::Open(part.folder->journal());
   if (!journal.ok()) return journal.status();

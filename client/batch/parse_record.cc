@@ -55,7 +55,7 @@ bool IsFiles(const ordered_json& value) {
 struct Field {
   const char* name;
   IsOfType is_type;
-  const char* wanted;
+  const char* expected;
 };
 constexpr Field kOfAnyRecord[] = {{"state", IsText, "a text"}, {"name", IsText, "a text"}};
 constexpr Field kOfAnAnswer[] = {{"id", IsText, "a text"},
@@ -76,9 +76,9 @@ absl::Status CheckFields(const ordered_json& record, absl::Span<const Field> fie
   for (const Field& field : fields) {
     if (!must_be_there && !record.contains(field.name)) continue;
     if (Has(record, field.name, field.is_type)) continue;
-    return absl::DataLossError(absl::StrCat(field.name, ": came ",
-                                            record.contains(field.name) ? "something else" : "none",
-                                            ", wanted ", field.wanted));
+    return absl::DataLossError(
+        absl::StrCat(field.name, ": expected ", field.expected, ", got ",
+                     record.contains(field.name) ? "something else" : "none"));
   }
   return absl::OkStatus();
 }
@@ -91,7 +91,7 @@ absl::Status CheckRecord(const ordered_json& record) {
   if (!status.ok()) return status;
   if (record["state"] == kDone) return CheckFields(record, kOfDone, true);
   if (record["state"] == kRejected) return CheckFields(record, kOfRejected, true);
-  return absl::DataLossError("state: came another, wanted done, rejected or failed");
+  return absl::DataLossError("state: expected done, rejected or failed, got another");
 }
 
 }  // namespace

@@ -137,9 +137,9 @@ absl::StatusOr<Plan> Plan::Create(Recipe recipe, std::vector<ModelInfo> models,
     status.Update(plan.CheckClassifier(model));
     if (!status.ok()) return status;
     if (plan.recipe_.samples > 1 && !model.samples) {
-      return absl::InvalidArgumentError(absl::StrCat("samples: came ", plan.recipe_.samples,
-                                                     ", wanted 1: ", model.name, "@", model.version,
-                                                     " has one answer, whatever the seed"));
+      return absl::InvalidArgumentError(
+          absl::StrCat("samples: expected 1, got ", plan.recipe_.samples, ". ", model.name, "@",
+                       model.version, " does not sample: it has one answer for all seeds"));
     }
   }
   return plan;
@@ -150,19 +150,19 @@ std::vector<std::string> Plan::ClassesOr(const std::vector<std::string>& classes
 }
 
 absl::Status Plan::AddNamed(const Reaction& reaction, LabelledReaction labelled) {
-  // One reaction of a name has it alone, several have their own after it.
+  // A single reaction is named by its name, several by its name and their labels.
   const std::string own = NameOfLabels(labelled.labels);
-  const bool alone = std::holds_alternative<Labels>(reaction.kind) ||
-                     std::holds_alternative<Schedule>(reaction.kind);
+  const bool single = std::holds_alternative<Labels>(reaction.kind) ||
+                      std::holds_alternative<Schedule>(reaction.kind);
   labelled.name = reaction.name;
   if (labelled.name.empty()) labelled.name = own.empty() ? "schedule" : own;
-  if (!reaction.name.empty() && !alone) labelled.name = absl::StrCat(reaction.name, "_", own);
+  if (!reaction.name.empty() && !single) labelled.name = absl::StrCat(reaction.name, "_", own);
   const auto same_name = [&labelled](const LabelledReaction& other) {
     return other.name == labelled.name;
   };
   if (std::any_of(fixed_.begin(), fixed_.end(), same_name)) {
-    return absl::InvalidArgumentError(absl::StrCat("reactions: two are named ", labelled.name,
-                                                   ", wanted different ones: give them a name"));
+    return absl::InvalidArgumentError(absl::StrCat("reactions: expected different names, got ",
+                                                   labelled.name, " twice. Set name in each"));
   }
   fixed_.push_back(std::move(labelled));
   return absl::OkStatus();
@@ -175,7 +175,7 @@ absl::Status Plan::AddDrawn(const Reaction& reaction) {
   const auto same_name = [&reaction](const Reaction& other) { return other.name == reaction.name; };
   if (std::any_of(drawn_.begin(), drawn_.end(), same_name)) {
     return absl::InvalidArgumentError(
-        "reactions: several that are drawn, wanted each with its own name");
+        "reactions: expected a name for each of several drawn reactions, got the same name twice");
   }
   drawn_.push_back(reaction);
   return absl::OkStatus();
@@ -220,9 +220,9 @@ absl::Status Plan::CheckClasses() const {
     for (const std::string& name : wanted) {
       const auto& known = model.interaction_classes;
       if (std::count(known.begin(), known.end(), name) > 0) continue;
-      return absl::InvalidArgumentError(absl::StrCat("reactions: came class ", base::Quoted(name),
-                                                     ", wanted one of ", model.name, "@",
-                                                     model.version, "'s"));
+      return absl::InvalidArgumentError(absl::StrCat("reactions: expected a class of ", model.name,
+                                                     "@", model.version, ", got ",
+                                                     base::Quoted(name)));
     }
   }
   return absl::OkStatus();

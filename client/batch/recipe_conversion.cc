@@ -27,27 +27,27 @@ constexpr size_t kMaxGrid = 100'000;
 // Of names that came, in a message.
 constexpr size_t kLongestField = 200, kLongestValue = 200;
 
-// Remembers the first thing that is wrong.
+// Remembers the first error.
 class Checker {
  public:
-  void Want(bool good, const std::string& field, const std::string& came, const char* wanted) {
+  void Expect(bool good, const std::string& field, const std::string& got, const char* expected) {
     if (good || !status_.ok()) return;
-    status_ = absl::InvalidArgumentError(
-        absl::StrCat(base::Printable(field, kLongestField), ": came ",
-                     base::Printable(came, kLongestValue), ", wanted ", wanted));
+    status_ = absl::InvalidArgumentError(absl::StrCat(base::Printable(field, kLongestField),
+                                                      ": expected ", expected, ", got ",
+                                                      base::Printable(got, kLongestValue)));
   }
   void Weight(const std::string& field, float weight) {
-    Want(std::abs(weight) <= kMaxAbsWeight, field, absl::StrCat(weight), "a number from -2 to 2");
+    Expect(std::abs(weight) <= kMaxAbsWeight, field, absl::StrCat(weight), "a number from -2 to 2");
   }
   void Count(const std::string& field, uint32_t value, uint32_t low, uint32_t high) {
-    Want(value >= low && value <= high, field, absl::StrCat(value),
-         absl::StrCat("a number from ", low, " to ", high).c_str());
+    Expect(value >= low && value <= high, field, absl::StrCat(value),
+           absl::StrCat("a number from ", low, " to ", high).c_str());
   }
   template <typename Range>
   void Different(const std::string& field, const Range& values) {
     std::set<typename Range::value_type> seen;
     for (const auto& value : values) {
-      Want(seen.insert(value).second, field, absl::StrCat(value, " twice"), "each once");
+      Expect(seen.insert(value).second, field, absl::StrCat(value, " twice"), "each once");
     }
   }
   const absl::Status& status() const { return status_; }
@@ -57,10 +57,10 @@ class Checker {
 };
 
 Labels ReadLabels(const v1::Labels& proto, const std::string& field, Checker* check) {
-  check->Want(proto.weights_size() > 0, field + ".weights", "none", "one or more");
+  check->Expect(proto.weights_size() > 0, field + ".weights", "none", "one or more");
   Labels labels;
   for (const auto& [name, weight] : proto.weights()) {
-    check->Want(!name.empty(), field + ".weights", "an empty name", "a class");
+    check->Expect(!name.empty(), field + ".weights", "an empty name", "a class");
     check->Weight(absl::StrCat(field, ".weights[", name, "]"), weight);
     labels.push_back({name, weight});
   }
@@ -79,12 +79,12 @@ Grid ReadGrid(const v1::Grid& proto, const std::string& field, Checker* check) {
   Grid grid;
   std::vector<std::string> names;
   size_t size = 1;
-  check->Want(proto.axes_size() > 0, field + ".axes", "none", "one or more");
+  check->Expect(proto.axes_size() > 0, field + ".axes", "none", "one or more");
   for (int i = 0; i < proto.axes_size(); ++i) {
     const v1::Grid::Axis& axis = proto.axes(i);
     const std::string at = absl::StrCat(field, ".axes[", i, "]");
-    check->Want(!axis.interaction_class().empty(), at + ".interaction_class", "none", "a class");
-    check->Want(axis.weights_size() > 0, at + ".weights", "none", "one or more");
+    check->Expect(!axis.interaction_class().empty(), at + ".interaction_class", "none", "a class");
+    check->Expect(axis.weights_size() > 0, at + ".weights", "none", "one or more");
     for (const float weight : axis.weights()) check->Weight(at + ".weights", weight);
     check->Different(at + ".weights", axis.weights());
     names.push_back(axis.interaction_class());
@@ -92,14 +92,14 @@ Grid ReadGrid(const v1::Grid& proto, const std::string& field, Checker* check) {
     size = std::min(kMaxGrid + 1, size * static_cast<size_t>(std::max(1, axis.weights_size())));
   }
   check->Different(field + ".axes", names);
-  check->Want(size <= kMaxGrid, field, "more combinations", "at most 100000");
+  check->Expect(size <= kMaxGrid, field, "more combinations", "at most 100000");
   return grid;
 }
 
 WeightRange ReadRange(float min, float max, const std::string& field, Checker* check) {
   check->Weight(field + ".min_weight", min);
   check->Weight(field + ".max_weight", max);
-  check->Want(min <= max, field + ".min_weight", absl::StrCat(min), "at most max_weight");
+  check->Expect(min <= max, field + ".min_weight", absl::StrCat(min), "at most max_weight");
   return {min, max};
 }
 
@@ -112,7 +112,7 @@ Mixes ReadMixes(const v1::Mixes& proto, const std::string& field, Checker* check
     check->Count(field + ".classes_in_mix", proto.classes_in_mix(), 1, 1000);
     mixes.classes_in_mix = static_cast<int>(proto.classes_in_mix());
   }
-  check->Want(
+  check->Expect(
       mixes.classes.empty() || static_cast<size_t>(mixes.classes_in_mix) <= mixes.classes.size(),
       field + ".classes_in_mix", absl::StrCat(mixes.classes_in_mix),
       "no more than there are classes");
@@ -131,19 +131,19 @@ EachClass ReadEachClass(const v1::EachClass& proto, const std::string& field, Ch
   if (!proto.has_beside()) return each;
   each.beside =
       ReadRange(proto.beside().min_weight(), proto.beside().max_weight(), field + ".beside", check);
-  check->Want(each.classes.size() != 1, field + ".classes", "one", "two or more with beside");
+  check->Expect(each.classes.size() != 1, field + ".classes", "one", "two or more with beside");
   return each;
 }
 
 Schedule ReadSchedule(const v1::Schedule& proto, const std::string& field, Checker* check) {
   Schedule schedule;
-  check->Want(proto.keyframes_size() > 0, field + ".keyframes", "none", "one or more");
+  check->Expect(proto.keyframes_size() > 0, field + ".keyframes", "none", "one or more");
   double last = -1;
   for (int i = 0; i < proto.keyframes_size(); ++i) {
     const v1::Schedule::Keyframe& keyframe = proto.keyframes(i);
     const std::string at = absl::StrCat(field, ".keyframes[", i, "]");
-    check->Want(keyframe.at() >= 0 && keyframe.at() <= 1 && keyframe.at() > last, at + ".at",
-                absl::StrCat(keyframe.at()), "0 to 1, rising");
+    check->Expect(keyframe.at() >= 0 && keyframe.at() <= 1 && keyframe.at() > last, at + ".at",
+                  absl::StrCat(keyframe.at()), "0 to 1, rising");
     last = keyframe.at();
     schedule.keyframes.push_back({keyframe.at(), ReadLabels(keyframe.labels(), at, check)});
   }
@@ -158,8 +158,8 @@ bool IsName(const std::string& name) {
 Reaction ReadReaction(const v1::Reaction& proto, const std::string& field, Checker* check) {
   Reaction reaction;
   reaction.name = proto.name();
-  check->Want(IsName(proto.name()), field + ".name", base::Quoted(proto.name()),
-              "letters, digits and underscores");
+  check->Expect(IsName(proto.name()), field + ".name", base::Quoted(proto.name()),
+                "letters, digits and underscores");
   switch (proto.kind_case()) {
     case v1::Reaction::kLabels:
       reaction.kind = ReadLabels(proto.labels(), field + ".labels", check);
@@ -177,37 +177,37 @@ Reaction ReadReaction(const v1::Reaction& proto, const std::string& field, Check
       reaction.kind = ReadSchedule(proto.schedule(), field + ".schedule", check);
       break;
     case v1::Reaction::KIND_NOT_SET:
-      check->Want(false, field, "nothing", "one of labels, grid, mixes, each_class and schedule");
+      check->Expect(false, field, "nothing", "one of labels, grid, mixes, each_class and schedule");
   }
   return reaction;
 }
 
 LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
   LeaderInput input;
-  check->Want(v1::Side_IsValid(proto.side()), "input.side", absl::StrCat(proto.side()), "a side");
+  check->Expect(v1::Side_IsValid(proto.side()), "input.side", absl::StrCat(proto.side()), "a side");
   if (proto.side() == v1::SIDE_RIGHT) input.side = Sides::kRight;
   if (proto.side() == v1::SIDE_BOTH) input.side = Sides::kBoth;
   input.starts_as_other_person = proto.follower_start() == v1::FOLLOWER_START_OTHER_PERSON;
   if (proto.has_frame_rate_hz()) input.frame_rate_hz = proto.frame_rate_hz();
   if (proto.has_metres_per_unit()) input.metres_per_unit = proto.metres_per_unit();
-  check->Want(input.frame_rate_hz.value_or(1) > 0, "input.frame_rate_hz",
-              absl::StrCat(proto.frame_rate_hz()), "more than 0");
-  check->Want(input.metres_per_unit.value_or(1) > 0, "input.metres_per_unit",
-              absl::StrCat(proto.metres_per_unit()), "more than 0");
+  check->Expect(input.frame_rate_hz.value_or(1) > 0, "input.frame_rate_hz",
+                absl::StrCat(proto.frame_rate_hz()), "more than 0");
+  check->Expect(input.metres_per_unit.value_or(1) > 0, "input.metres_per_unit",
+                absl::StrCat(proto.metres_per_unit()), "more than 0");
   if (proto.has_unit()) {
     input.unit = motion::ParseLengthUnit(proto.unit());
-    check->Want(input.unit.has_value(), "input.unit", base::Quoted(proto.unit()),
-                motion::kLengthUnitNames);
+    check->Expect(input.unit.has_value(), "input.unit", base::Quoted(proto.unit()),
+                  motion::kLengthUnitNames);
   }
   if (proto.has_up_axis()) {
     input.up_axis = motion::ParseUpAxis(proto.up_axis());
-    check->Want(input.up_axis.has_value(), "input.up_axis", base::Quoted(proto.up_axis()),
-                motion::kUpAxisNames);
+    check->Expect(input.up_axis.has_value(), "input.up_axis", base::Quoted(proto.up_axis()),
+                  motion::kUpAxisNames);
   }
   if (proto.has_format()) {
     input.format = formats::ParseFormat(proto.format());
-    check->Want(input.format.has_value() && formats::IsReadable(*input.format), "input.format",
-                base::Quoted(proto.format()), formats::kReadableFormatNames);
+    check->Expect(input.format.has_value() && formats::IsReadable(*input.format), "input.format",
+                  base::Quoted(proto.format()), formats::kReadableFormatNames);
   }
   input.joint_map.insert(proto.joint_map().begin(), proto.joint_map().end());
   return input;
@@ -218,7 +218,7 @@ QualityFilter ReadFilter(const v1::QualityFilter& proto, Checker* check) {
   const auto read = [check](const char* name, bool has, double value,
                             std::optional<double>* limit) {
     if (!has) return;
-    check->Want(value >= 0, absl::StrCat("filter.", name), absl::StrCat(value), "0 or more");
+    check->Expect(value >= 0, absl::StrCat("filter.", name), absl::StrCat(value), "0 or more");
     *limit = value;
   };
   read("max_lean_degrees", proto.has_max_lean_degrees(), proto.max_lean_degrees(),
@@ -239,10 +239,10 @@ QualityFilter ReadFilter(const v1::QualityFilter& proto, Checker* check) {
        &filter.max_unfamiliarity);
   if (proto.has_classifier()) {
     const double probability = proto.classifier().min_probability();
-    check->Want(probability > 0 && probability <= 1, "filter.classifier.min_probability",
-                absl::StrCat(probability), "above 0, at most 1");
-    check->Want(!proto.classifier().model().empty(), "filter.classifier.model", "none",
-                "the folder of a judge (duet-eval judge)");
+    check->Expect(probability > 0 && probability <= 1, "filter.classifier.min_probability",
+                  absl::StrCat(probability), "above 0, at most 1");
+    check->Expect(!proto.classifier().model().empty(), "filter.classifier.model", "none",
+                  "the folder of a judge (duet-eval judge)");
     filter.min_class_probability = probability;
   }
   check->Count("filter.retries_per_item", proto.retries_per_item(), 0, kMaxRetries);
@@ -265,40 +265,41 @@ Layout ToLayout(v1::Layout layout) {
 
 Output ReadOutput(const v1::Output& proto, Checker* check) {
   Output output;
-  check->Want(v1::Layout_IsValid(proto.layout()), "output.layout", absl::StrCat(proto.layout()),
-              "a layout");
+  check->Expect(v1::Layout_IsValid(proto.layout()), "output.layout", absl::StrCat(proto.layout()),
+                "a layout");
   output.layout = ToLayout(proto.layout());
   const bool own_format = CapturesOf(output.layout) != nullptr;
-  check->Want(own_format || proto.formats_size() > 0, "output.formats", "none", "one or more");
-  check->Want(!own_format || proto.formats_size() == 0, "output.formats", "some",
-              "none: the layout has its own");
+  check->Expect(own_format || proto.formats_size() > 0, "output.formats", "none", "one or more");
+  check->Expect(!own_format || proto.formats_size() == 0, "output.formats", "some",
+                "none: the layout has its own");
   for (const int format : proto.formats()) {
-    check->Want(v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED, "output.formats",
-                absl::StrCat(format),
-                "FORMAT_BVH, FORMAT_CSV, FORMAT_NPY, FORMAT_JSON, FORMAT_GLB or FORMAT_USDA");
+    check->Expect(v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED, "output.formats",
+                  absl::StrCat(format),
+                  "FORMAT_BVH, FORMAT_CSV, FORMAT_NPY, FORMAT_JSON, FORMAT_GLB or FORMAT_USDA");
     // Both count up in the same order, the proto from 1.
     output.formats.push_back(static_cast<Format>(format - v1::FORMAT_BVH));
   }
   check->Different("output.formats", proto.formats());
-  check->Want(v1::Packing_IsValid(proto.packing()), "output.packing", absl::StrCat(proto.packing()),
-              "a packing");
+  check->Expect(v1::Packing_IsValid(proto.packing()), "output.packing",
+                absl::StrCat(proto.packing()), "a packing");
   if (proto.packing() == v1::PACKING_TAR) output.packing = Packing::kTar;
   if (proto.packing() == v1::PACKING_NPZ) output.packing = Packing::kNpz;
   if (proto.has_shard_bytes()) output.shard_bytes = proto.shard_bytes();
   // A zip file counts in 32 bits.
-  check->Want(output.shard_bytes >= 1 && output.shard_bytes <= (uint64_t{2} << 30),
-              "output.shard_bytes", absl::StrCat(output.shard_bytes), "1 to 2147483648");
-  check->Want(!own_format || output.packing == Packing::kNone, "output.packing", "one",
-              "none: the layout is of folders");
+  check->Expect(output.shard_bytes >= 1 && output.shard_bytes <= (uint64_t{2} << 30),
+                "output.shard_bytes", absl::StrCat(output.shard_bytes), "1 to 2147483648");
+  check->Expect(!own_format || output.packing == Packing::kNone, "output.packing", "one",
+                "none: the layout is of folders");
   if (proto.has_frame_rate_hz()) output.frame_rate_hz = proto.frame_rate_hz();
-  check->Want(!own_format || !output.frame_rate_hz, "output.frame_rate_hz", "one",
-              "none: the layout has a rate of its own");
-  check->Want(output.frame_rate_hz.value_or(1) > 0 &&
-                  output.frame_rate_hz.value_or(1) <= motion::kMaxFrameRateHz,
-              "output.frame_rate_hz", absl::StrCat(proto.frame_rate_hz()), "above 0, at most 1000");
+  check->Expect(!own_format || !output.frame_rate_hz, "output.frame_rate_hz", "one",
+                "none: the layout has a rate of its own");
+  check->Expect(output.frame_rate_hz.value_or(1) > 0 &&
+                    output.frame_rate_hz.value_or(1) <= motion::kMaxFrameRateHz,
+                "output.frame_rate_hz", absl::StrCat(proto.frame_rate_hz()),
+                "above 0, at most 1000");
   const bool npy = std::count(output.formats.begin(), output.formats.end(), Format::kNpy) > 0;
-  check->Want(output.packing != Packing::kNpz || (npy && output.formats.size() == 1),
-              "output.formats", "others", "FORMAT_NPY alone with PACKING_NPZ");
+  check->Expect(output.packing != Packing::kNpz || (npy && output.formats.size() == 1),
+                "output.formats", "others", "only FORMAT_NPY with PACKING_NPZ");
   return output;
 }
 
@@ -306,7 +307,7 @@ void ReadModels(const v1::Recipe& proto, Checker* check, Recipe* recipe) {
   check->Different("models", proto.models());
   for (const std::string& name : proto.models()) {
     const absl::StatusOr<ModelChoice> choice = ParseModelChoice(name);
-    check->Want(choice.ok(), "models", base::Quoted(name), "NAME, NAME@VERSION or NAME:LABEL");
+    check->Expect(choice.ok(), "models", base::Quoted(name), "NAME, NAME@VERSION or NAME:LABEL");
     if (choice.ok()) recipe->models.push_back(*choice);
   }
   if (recipe->models.empty()) recipe->models.emplace_back();
@@ -328,8 +329,8 @@ absl::StatusOr<Recipe> FromProto(const v1::Recipe& proto) {
     recipe.samples = static_cast<int>(proto.samples());
   }
   if (proto.has_variety()) recipe.variety = proto.variety();
-  check.Want(recipe.variety >= 0 && recipe.variety <= 2, "variety", absl::StrCat(recipe.variety),
-             "a number from 0 to 2");
+  check.Expect(recipe.variety >= 0 && recipe.variety <= 2, "variety", absl::StrCat(recipe.variety),
+               "a number from 0 to 2");
   recipe.input = ReadInput(proto.input(), &check);
   recipe.filter = ReadFilter(proto.filter(), &check);
   recipe.output = ReadOutput(proto.output(), &check);

@@ -37,9 +37,9 @@ absl::StatusOr<int> ReadNumber(const ReadVariable& read, const char* name) {
   const std::optional<std::string> text = read(name);
   int value = 0;
   if (text.has_value() && absl::SimpleAtoi(*text, &value)) return value;
-  return absl::InvalidArgumentError(
-      absl::StrCat(name, ": came ", text.has_value() ? base::Quoted(*text) : "none",
-                   ", wanted a number beside the task's index, or --shard INDEX/COUNT"));
+  return absl::InvalidArgumentError(absl::StrCat(name, ": expected a number, got ",
+                                                 text.has_value() ? base::Quoted(*text) : "none",
+                                                 ". Set it, or use --shard INDEX/COUNT"));
 }
 
 absl::StatusOr<Shard> ReadConvention(const Convention& convention, const ReadVariable& read) {
@@ -55,8 +55,9 @@ absl::StatusOr<Shard> ReadConvention(const Convention& convention, const ReadVar
   }
   const Shard shard{*index - first, *count};
   if (shard.index >= 0 && shard.index < shard.count) return shard;
-  return absl::InvalidArgumentError(absl::StrCat(convention.index, ": came ", *index,
-                                                 ", wanted one of ", shard.count, " from ", first));
+  return absl::InvalidArgumentError(absl::StrCat(convention.index, ": expected one of ",
+                                                 shard.count, " indices from ", first, ", got ",
+                                                 *index));
 }
 
 }  // namespace
@@ -78,8 +79,8 @@ absl::StatusOr<Shard> ParseShard(absl::string_view text) {
     return shard;
   }
   return absl::InvalidArgumentError(
-      absl::StrCat(base::Quoted(text),
-                   ", wanted INDEX/COUNT such as 0/8, the index from 0 and below the count"));
+      absl::StrCat("expected INDEX/COUNT such as 0/8, with an index from 0 to COUNT - 1, got ",
+                   base::Quoted(text)));
 }
 
 absl::StatusOr<Shard> ShardFromEnvironment(const ReadVariable& read) {

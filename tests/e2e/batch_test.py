@@ -431,7 +431,7 @@ class BatchTest(unittest.TestCase):
                 self.batch(out, recipe, "--shard", "0/3")
                 merged = tools.duet("batch", "merge", out)
                 self.assertEqual(merged.returncode, 1, merged.stdout)
-                self.assertIn("shard-1-of-3: is absent or was not run to its end", merged.stderr)
+                self.assertIn("shard-1-of-3: expected all 3 shards, complete", merged.stderr)
                 self.batch(out, recipe, "--shard", "1/3")
                 environment = dict(os.environ, JOB_COMPLETION_INDEX="2", JOB_COMPLETIONS="3")
                 last = tools.run(*self.command(out, recipe), env=environment)

@@ -128,7 +128,7 @@ TEST(Compare, APartnerHasThePersonsFrames) {
   shorter.poses.Resize(10);
   EXPECT_THAT(Compare({MakePerson(), {}}, {MakePerson(), shorter}, Sbu()).status(),
               StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("b: partner: came 10 frames, wanted 60")));
+                       HasSubstr("b: partner: frames: expected 60 as the person has, got 10")));
 }
 
 }  // namespace

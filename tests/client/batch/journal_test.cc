@@ -148,7 +148,8 @@ TEST_F(JournalTest, AnItemBeyondAllPlansIsAnErrorAndTakesNoMemory) {
   EXPECT_THAT(JournalReader::Open(path_), IsOk());
   Append({{kMaxItems, "beyond"}});
   EXPECT_THAT(JournalReader::Open(path_),
-              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("item 67108864, wanted one below")));
+              StatusIs(absl::StatusCode::kDataLoss,
+                       HasSubstr("item: expected a number below 67108864, got 67108864")));
 }
 
 TEST_F(JournalTest, AFullDiskEndsIt) {

@@ -185,7 +185,8 @@ TEST_F(ListLeadersTest, AFormatThatIsSaidMakesNamesFree) {
   std::filesystem::create_directories(folder_ / "unnamed");
   test::WriteTestFile(folder_ / "unnamed/take3", "");
   const absl::Status none = List({"unnamed"}).status();
-  EXPECT_THAT(none, StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no motion file")));
+  EXPECT_THAT(none, StatusIs(absl::StatusCode::kInvalidArgument,
+                             HasSubstr("expected one or more motion files")));
   EXPECT_EQ(motion::MendingSetting(none), motion::ReadingSetting::kFormat);
   source = ListLeaders({(folder_ / "walks/take2.mocap").string()}, formats::Format::kBvh);
   EXPECT_THAT(source, IsOk());
@@ -202,8 +203,9 @@ TEST_F(ListLeadersTest, WhatIsNotThereIsRefused) {
   EXPECT_THAT(List({"walks/x*.bvh"}), StatusIs(absl::StatusCode::kNotFound, HasSubstr("x*.bvh")));
   EXPECT_THAT(List({"walks/notes.md"}),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("notes.md")));
-  EXPECT_THAT(List({"c.npy", "c.npy", "c.npy"}),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("another leader is named")));
+  EXPECT_THAT(
+      List({"c.npy", "c.npy", "c.npy"}),
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("another leader has the name")));
   EXPECT_THAT(ListLeaders({}),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no motion")));
 }

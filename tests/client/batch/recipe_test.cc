@@ -14,6 +14,7 @@ namespace {
 
 using test::IsOk;
 using test::StatusIs;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 // Of recipes that say nothing of it.
@@ -115,73 +116,82 @@ TEST(ReadRecipe, TakesATableOfJoints) {
 struct BadRecipe {
   const char* text;
   const char* message;
+  const char* got;
 };
 
 class BadRecipes : public ::testing::TestWithParam<BadRecipe> {};
 
-TEST_P(BadRecipes, AreRefused) {
+TEST_P(BadRecipes, AreRejectedWithTheFieldAndItsValue) {
   EXPECT_THAT(Parse(GetParam().text),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(GetParam().message)));
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       AllOf(HasSubstr(GetParam().message), HasSubstr(GetParam().got))));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, BadRecipes,
     ::testing::Values(
-        BadRecipe{"colour: 1", "line 1"},
-        BadRecipe{"reactions {}", "reactions[0]: came nothing, wanted one of labels"},
-        BadRecipe{"reactions { labels {} }", "reactions[0].labels.weights: came none"},
+        BadRecipe{"colour: 1", "line 1", ""},
+        BadRecipe{"reactions {}", "reactions[0]: expected one of labels", ", got nothing"},
+        BadRecipe{"reactions { labels {} }", "reactions[0].labels.weights: expected", ", got none"},
         BadRecipe{"reactions { labels { weights { key: 'a' value: 3 } } }",
-                  "weights[a]: came 3, wanted a number from -2 to 2"},
-        // Names may be anything: one short line says what came.
+                  "weights[a]: expected a number from -2 to 2", ", got 3"},
+        // Names may be anything: the message is one short line.
         BadRecipe{"reactions { labels { weights { key: 'a\\000\\n' value: 3 } } }",
-                  "weights[a\\x00\\n]: came 3, wanted a number"},
+                  "weights[a\\x00\\n]: expected a number", ", got 3"},
         BadRecipe{"models: 'a' reactions { each_class { classes: '\\033' classes: '\\033' } }",
-                  "each_class.classes: came \\x1b twice"},
-        BadRecipe{"reactions { grid {} }", "grid.axes: came none"},
+                  "each_class.classes: expected", ", got \\x1b twice"},
+        BadRecipe{"reactions { grid {} }", "grid.axes: expected", ", got none"},
         BadRecipe{"reactions { grid { axes { interaction_class: 'a' weights: 1 weights: 1 } } }",
-                  "axes[0].weights: came 1 twice"},
-        BadRecipe{"reactions { mixes {} }", "mixes.count: came 0"},
-        BadRecipe{"reactions { mixes { count: 1 classes: 'a' } }", "classes_in_mix: came 2"},
-        BadRecipe{"reactions { mixes { count: 1 min_weight: 2 } }", "min_weight: came 2"},
-        BadRecipe{"reactions { each_class { min_weight: 1.5 } }",
-                  "each_class.min_weight: came 1.5"},
+                  "axes[0].weights: expected", ", got 1 twice"},
+        BadRecipe{"reactions { mixes {} }", "mixes.count: expected", ", got 0"},
+        BadRecipe{"reactions { mixes { count: 1 classes: 'a' } }", "classes_in_mix: expected",
+                  ", got 2"},
+        BadRecipe{"reactions { mixes { count: 1 min_weight: 2 } }", "min_weight: expected",
+                  ", got 2"},
+        BadRecipe{"reactions { each_class { min_weight: 1.5 } }", "each_class.min_weight: expected",
+                  ", got 1.5"},
         BadRecipe{"reactions { each_class { classes: 'a' beside {} } }",
-                  "each_class.classes: came one, wanted two or more"},
+                  "each_class.classes: expected two or more", ", got one"},
         BadRecipe{"reactions { each_class { beside { min_weight: 1 max_weight: 0 } } }",
-                  "beside.min_weight: came 1"},
-        BadRecipe{"reactions { name: 'a-b' each_class {} }", "name: came \"a-b\""},
+                  "beside.min_weight: expected", ", got 1"},
+        BadRecipe{"reactions { name: 'a-b' each_class {} }", "name: expected", ", got \"a-b\""},
         BadRecipe{"reactions { schedule { keyframes { at: 2 labels { weights { key: 'a' } } } } }",
-                  "keyframes[0].at: came 2"},
-        BadRecipe{"samples: 0", "samples: came 0, wanted a number from 1"},
-        BadRecipe{"variety: 3", "variety: came 3"},
-        BadRecipe{"models: 'a@0'", "models: came \"a@0\""},
-        BadRecipe{"models: 'a' models: 'a'", "models: came a twice"},
-        BadRecipe{"filter { max_lean_degrees: -1 }", "filter.max_lean_degrees: came -1"},
-        BadRecipe{"filter { retries_per_item: 101 }", "retries_per_item: came 101"},
-        BadRecipe{"filter { classifier { min_probability: 0.5 } }", "classifier.model: came none"},
-        BadRecipe{"input { format: 'fbx' }", "input.format: came \"fbx\", wanted amc, bvh"},
-        BadRecipe{"input { format: 'usda' }", "input.format: came \"usda\", wanted amc, bvh"},
-        BadRecipe{"input { unit: 'feet' }", "input.unit: came \"feet\""},
-        BadRecipe{"input { frame_rate_hz: 0 }", "input.frame_rate_hz: came 0"},
+                  "keyframes[0].at: expected", ", got 2"},
+        BadRecipe{"samples: 0", "samples: expected a number from 1", ", got 0"},
+        BadRecipe{"variety: 3", "variety: expected", ", got 3"},
+        BadRecipe{"models: 'a@0'", "models: expected", ", got \"a@0\""},
+        BadRecipe{"models: 'a' models: 'a'", "models: expected", ", got a twice"},
+        BadRecipe{"filter { max_lean_degrees: -1 }", "filter.max_lean_degrees: expected",
+                  ", got -1"},
+        BadRecipe{"filter { retries_per_item: 101 }", "retries_per_item: expected", ", got 101"},
+        BadRecipe{"filter { classifier { min_probability: 0.5 } }", "classifier.model: expected",
+                  ", got none"},
+        BadRecipe{"input { format: 'fbx' }", "input.format: expected amc, bvh", ", got \"fbx\""},
+        BadRecipe{"input { format: 'usda' }", "input.format: expected amc, bvh", ", got \"usda\""},
+        BadRecipe{"input { unit: 'feet' }", "input.unit: expected", ", got \"feet\""},
+        BadRecipe{"input { frame_rate_hz: 0 }", "input.frame_rate_hz: expected", ", got 0"},
         BadRecipe{"output { formats: FORMAT_NPY frame_rate_hz: 0 }",
-                  "output.frame_rate_hz: came 0"},
+                  "output.frame_rate_hz: expected", ", got 0"},
         BadRecipe{"output { formats: FORMAT_NPY frame_rate_hz: 1001 }",
-                  "output.frame_rate_hz: came 1001"},
+                  "output.frame_rate_hz: expected", ", got 1001"},
         BadRecipe{"output { formats: FORMAT_NPY frame_rate_hz: nan }",
-                  "output.frame_rate_hz: came nan"},
-        BadRecipe{"output { formats: FORMAT_NPY shard_bytes: 0 }", "shard_bytes: came 0"},
-        BadRecipe{"output { formats: FORMAT_CSV packing: PACKING_NPZ }", "FORMAT_NPY alone"},
+                  "output.frame_rate_hz: expected", ", got nan"},
+        BadRecipe{"output { formats: FORMAT_NPY shard_bytes: 0 }", "shard_bytes: expected",
+                  ", got 0"},
+        BadRecipe{"output { formats: FORMAT_CSV packing: PACKING_NPZ }", "only FORMAT_NPY", ""},
         BadRecipe{"output { formats: FORMAT_NPY layout: LAYOUT_SBU }",
-                  "output.formats: came some, wanted none"},
+                  "output.formats: expected none", ", got some"},
         BadRecipe{"output { layout: LAYOUT_K3HI packing: PACKING_TAR }",
-                  "output.packing: came one, wanted none"},
+                  "output.packing: expected none", ", got one"},
         BadRecipe{"output { layout: LAYOUT_K3HI frame_rate_hz: 30 }",
-                  "output.frame_rate_hz: came one, wanted none"},
-        BadRecipe{"output { formats: FORMAT_NPY formats: FORMAT_NPY }", "formats: came 3 twice"}));
+                  "output.frame_rate_hz: expected none", ", got one"},
+        BadRecipe{"output { formats: FORMAT_NPY formats: FORMAT_NPY }", "formats: expected",
+                  ", got 3 twice"}));
 
-TEST(Recipe, AFormatIsWanted) {
+TEST(Recipe, OutputFormatsAreRequired) {
   EXPECT_THAT(ParseRecipe("", false),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("output.formats: came none")));
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("output.formats: expected one or more, got none")));
 }
 
 TEST(ReadRecipe, AClassifierIsWhatItHoldsNotWhereItLies) {
@@ -217,10 +227,12 @@ TEST(ReadRecipe, AClassifierThatIsNotThereOrAsksForMoreThanAllIsRefused) {
   EXPECT_THAT(read("model: 'none' min_probability: 0.5"),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("none/judge.json: no such file")));
   for (const char* probability : {"2", "0", "-1"}) {
-    EXPECT_THAT(read(std::string("model: 'judge' min_probability: ") + probability),
-                StatusIs(absl::StatusCode::kInvalidArgument,
-                         HasSubstr(std::string("filter.classifier.min_probability: came ") +
-                                   probability + ", wanted above 0, at most 1")));
+    EXPECT_THAT(
+        read(std::string("model: 'judge' min_probability: ") + probability),
+        StatusIs(absl::StatusCode::kInvalidArgument,
+                 HasSubstr(std::string("filter.classifier.min_probability: expected above 0, at "
+                                       "most 1, got ") +
+                           probability)));
   }
 }
 
