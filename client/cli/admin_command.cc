@@ -1,5 +1,6 @@
 #include "client/cli/admin_command.h"
 
+#include <cstdint>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -9,13 +10,33 @@
 #include "absl/strings/str_join.h"
 #include "client/admin_client.h"
 #include "client/cli/report.h"
+#include "client/cli/server_flags.h"
 #include "client/cli/server_options.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
 namespace {
 
+struct AdminArguments {
+  enum class Action { kModels, kReload, kLoad, kUnload, kLabel };
+  Action action = Action::kModels;
+  ServerArguments server = AdminServer();
+  std::string name;
+  uint32_t version = 0;
+  std::string label;
+  bool delete_label = false;
+  bool json = false;
+
+ private:
+  static ServerArguments AdminServer() {
+    ServerArguments server;
+    server.address = "localhost:50052";
+    return server;
+  }
+};
+
 using nlohmann::json;
+using Action = AdminArguments::Action;
 
 const char* StateName(ServedVersion::State state) {
   switch (state) {
@@ -37,7 +58,7 @@ std::string Describe(const ServedModels& models) {
   std::string text;
   for (const ServedVersion& model : models.models) {
     absl::StrAppend(&text, model.name, "/", model.version, "  ", StateName(model.state));
-    if (model.outdated) absl::StrAppend(&text, " (outdated: the files on disk were refused)");
+    if (model.outdated) absl::StrAppend(&text, " (outdated: the files on disk were rejected)");
     if (model.is_default) absl::StrAppend(&text, ", default");
     if (!model.version_labels.empty()) {
       absl::StrAppend(&text, ", labels: ", absl::StrJoin(model.version_labels, ", "));
@@ -101,33 +122,31 @@ void PrintResult(const Result& result, bool as_json, const ProgramEnvironment& e
   *environment.out << (as_json ? Print(ToJson(result)) : Describe(result));
 }
 
-// What has no more to tell than that it is done.
+// Runs an action without a result.
 absl::Status Act(const AdminArguments& arguments, AdminClient& client) {
   switch (arguments.action) {
-    case AdminArguments::Action::kLoad:
+    case Action::kLoad:
       return client.LoadModel(arguments.name, arguments.version);
-    case AdminArguments::Action::kUnload:
+    case Action::kUnload:
       return client.UnloadModel(arguments.name, arguments.version);
-    case AdminArguments::Action::kLabel:
+    case Action::kLabel:
       return arguments.delete_label
                  ? client.DeleteLabel(arguments.name, arguments.label)
                  : client.SetLabel(arguments.name, arguments.label, arguments.version);
-    case AdminArguments::Action::kModels:
-    case AdminArguments::Action::kReload:
+    case Action::kModels:
+    case Action::kReload:
       break;
   }
   return absl::OkStatus();
 }
 
-}  // namespace
-
-absl::StatusOr<ExitCode> RunAdmin(const AdminArguments& arguments,
-                                  const ProgramEnvironment& environment) {
+absl::StatusOr<ExitCode> Run(const AdminArguments& arguments,
+                             const ProgramEnvironment& environment) {
   const absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
   const absl::StatusOr<std::unique_ptr<AdminClient>> client = environment.connect_admin(*options);
   if (!client.ok()) return client.status();
-  if (arguments.action == AdminArguments::Action::kReload) {
+  if (arguments.action == Action::kReload) {
     const absl::StatusOr<ReloadResult> result = (*client)->Reload();
     if (!result.ok()) return result.status();
     PrintResult(*result, arguments.json, environment);
@@ -135,11 +154,85 @@ absl::StatusOr<ExitCode> RunAdmin(const AdminArguments& arguments,
   }
   const absl::Status done = Act(arguments, **client);
   if (!done.ok()) return done;
-  // What came of it.
   const absl::StatusOr<ServedModels> models = (*client)->ListModels();
   if (!models.ok()) return models.status();
   PrintResult(*models, arguments.json, environment);
   return kExitDone;
+}
+
+constexpr char kFooter[] = R"(
+The admin service of a server is off unless its configuration sets admin_listen.
+
+Examples:
+  duet admin models
+  duet admin load sbu 3
+  duet admin label sbu canary 3
+  duet admin reload
+)";
+
+// The flags of duet admin may also follow the action.
+CLI::App* AddAction(CLI::App* app, const char* name, const char* help, Action action,
+                    AdminArguments* arguments) {
+  CLI::App* command = app->add_subcommand(name, help)->fallthrough();
+  command->callback([arguments, action] { arguments->action = action; });
+  return command;
+}
+
+void AddModel(CLI::App* command, AdminArguments* arguments) {
+  command->add_option("name", arguments->name, "Name of the model")->required()->type_name("NAME");
+}
+
+CLI::Option* AddVersion(CLI::App* command, AdminArguments* arguments) {
+  return command->add_option("version", arguments->version, "Version of the model")
+      ->type_name("VERSION");
+}
+
+void AddFlags(CLI::App* command, AdminArguments* arguments) {
+  command->require_subcommand(1);
+  command->footer(kFooter);
+  command->add_option("--admin-server", arguments->server.address, "Address of the admin service")
+      ->capture_default_str()
+      ->type_name("HOST:PORT")
+      ->group(kServerGroup);
+  AddConnectionFlags(command, &arguments->server);
+  command->add_flag("--json", arguments->json, "Print JSON");
+  AddAction(command, "models", "List every version and its state", Action::kModels, arguments);
+  AddAction(command, "reload", "Reload the configuration and the model repository", Action::kReload,
+            arguments);
+  CLI::App* load = AddAction(command, "load", "Load a version; reload it if it is already served",
+                             Action::kLoad, arguments);
+  AddModel(load, arguments);
+  AddVersion(load, arguments)->required();
+  CLI::App* unload =
+      AddAction(command, "unload", "Stop serving a version", Action::kUnload, arguments);
+  AddModel(unload, arguments);
+  AddVersion(unload, arguments)->required();
+  CLI::App* label =
+      AddAction(command, "label", "Point a version label at a version", Action::kLabel, arguments);
+  AddModel(label, arguments);
+  label->add_option("label", arguments->label, "Version label")->required()->type_name("LABEL");
+  CLI::Option* version = AddVersion(label, arguments);
+  CLI::Option* remove = label->add_flag("--delete", arguments->delete_label, "Delete the label");
+  remove->excludes(version);
+  label->callback([arguments, version, remove] {
+    arguments->action = Action::kLabel;
+    if (version->empty() && remove->empty()) throw CLI::RequiredError("version or --delete");
+  });
+}
+
+}  // namespace
+
+Command AddAdminCommand(CLI::App* program) {
+  const auto arguments = std::make_shared<AdminArguments>();
+  CLI::App* app = program->add_subcommand("admin", "Change which models a running server serves");
+  AddFlags(app, arguments.get());
+  Command command;
+  command.app = app;
+  command.run = [arguments](const CommandContext& context) {
+    return Run(*arguments, context.environment);
+  };
+  command.servers = [arguments] { return arguments->server.address; };
+  return command;
 }
 
 }  // namespace duet::client::cli

@@ -1,17 +1,14 @@
 #ifndef DUET_CLIENT_CLI_ADMIN_COMMAND_H_
 #define DUET_CLIENT_CLI_ADMIN_COMMAND_H_
 
-#include "absl/status/statusor.h"
-#include "client/cli/arguments.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/program.h"
+#include "CLI/CLI.hpp"
+#include "client/cli/command.h"
 
 namespace duet::client::cli {
 
-// duet admin: does one thing and prints what came of it. A reload after which not everything is as
-// the server's configuration has it exits with kExitRetry.
-absl::StatusOr<ExitCode> RunAdmin(const AdminArguments& arguments,
-                                  const ProgramEnvironment& environment);
+// duet admin: one action on a running server, whose result it prints. After a reload that could not
+// apply the whole configuration, the exit code is kExitRetry.
+Command AddAdminCommand(CLI::App* program);
 
 }  // namespace duet::client::cli
 

@@ -3,11 +3,13 @@
 #include <atomic>
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "absl/strings/str_join.h"
 #include "client/batch/estimate.h"
 #include "client/batch/job.h"
 #include "client/batch/leader_sharing.h"
@@ -16,6 +18,7 @@
 #include "client/batch/setup.h"
 #include "client/batch/survey.h"
 #include "client/batch/verify.h"
+#include "client/cli/batch_flags.h"
 #include "client/cli/batch_plan.h"
 #include "client/cli/batch_progress.h"
 #include "client/cli/batch_repair.h"
@@ -292,10 +295,8 @@ absl::StatusOr<ExitCode> RunVerify(const BatchArguments& arguments,
   return report->missing > 0 ? kExitRetry : code;
 }
 
-}  // namespace
-
-absl::StatusOr<ExitCode> RunBatch(const BatchArguments& arguments,
-                                  const ProgramEnvironment& environment) {
+absl::StatusOr<ExitCode> RunAction(const BatchArguments& arguments,
+                                   const ProgramEnvironment& environment) {
   switch (arguments.action) {
     case BatchArguments::Action::kMerge:
       return RunMerge(arguments, environment);
@@ -305,6 +306,23 @@ absl::StatusOr<ExitCode> RunBatch(const BatchArguments& arguments,
       break;
   }
   return Run(arguments, environment);
+}
+
+}  // namespace
+
+Command AddBatchCommand(CLI::App* program) {
+  const auto arguments = std::make_shared<BatchArguments>();
+  Command command;
+  command.app = AddBatchFlags(program, arguments.get());
+  command.run = [arguments](const CommandContext& context) {
+    arguments->words = context.words;
+    return RunAction(*arguments, context.environment);
+  };
+  command.servers = [arguments] {
+    const bool repairs = !arguments->repairers.empty();
+    return absl::StrJoin(repairs ? arguments->repairers : arguments->servers, ", ");
+  };
+  return command;
 }
 
 }  // namespace duet::client::cli

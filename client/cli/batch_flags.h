@@ -1,13 +1,21 @@
 #ifndef DUET_CLIENT_CLI_BATCH_FLAGS_H_
 #define DUET_CLIENT_CLI_BATCH_FLAGS_H_
 
+#include <string>
+#include <vector>
+
 #include "CLI/CLI.hpp"
-#include "client/cli/arguments.h"
+#include "absl/status/statusor.h"
+#include "client/cli/batch_arguments.h"
 
 namespace duet::client::cli {
 
-// duet batch with its flags and its commands merge and verify. `arguments` outlives the app.
-CLI::App* AddBatchCommand(CLI::App* app, BatchArguments* arguments);
+// Adds duet batch, with its flags and its commands merge and verify. `arguments` outlives the
+// program.
+CLI::App* AddBatchFlags(CLI::App* program, BatchArguments* arguments);
+
+// The arguments of a command line that begins with "batch". INVALID_ARGUMENT if it is not valid.
+absl::StatusOr<BatchArguments> ParseBatch(const std::vector<std::string>& words);
 
 }  // namespace duet::client::cli
 

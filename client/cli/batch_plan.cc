@@ -18,7 +18,7 @@ namespace {
 // A manifest's file, open as long as it is read.
 class OpenManifest final : public batch::LeaderSource {
  public:
-  // `folder` is where relative paths begin, `name` is how errors call the manifest.
+  // Relative paths begin at `folder`; errors call the manifest `name`.
   OpenManifest(const std::filesystem::path& path, const std::filesystem::path& folder,
                const std::string& name)
       : file_(path), source_(batch::ReadManifest(file_, folder, name)) {}
@@ -38,7 +38,8 @@ absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(
   }
   const bool copied = !arguments.manifest_copy.empty();
   if (arguments.manifest == "-" && !copied) {
-    if (in == nullptr) return absl::NotFoundError("--manifest -: there is no standard input");
+    if (in == nullptr)
+      return absl::NotFoundError("--manifest -: expected a list of leaders, got no standard input");
     return batch::ReadManifest(*in, "", "-");
   }
   const std::filesystem::path given(arguments.manifest);

@@ -9,19 +9,19 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/batch/plan.h"
-#include "client/cli/arguments.h"
+#include "client/cli/batch_arguments.h"
 #include "client/result.h"
 
 namespace duet::client::cli {
 
-// The plan of the leaders that the flags name; `in` is what a manifest named "-" is read from. What
-// was passed over in folders is added to `passed_over`, which may be null.
+// The plan of the leaders that the flags name. A manifest "-" is read from `in`. `passed_over`,
+// which may be null, receives the files in folders that are not motions.
 absl::StatusOr<batch::Plan> MakePlan(const BatchArguments& arguments, const batch::Recipe& recipe,
                                      const std::vector<ModelInfo>& models, std::istream* in,
                                      std::vector<std::string>* passed_over);
 
-// A run reads its leaders twice: to check all of them, and to ask. Copies a manifest named "-" to
-// `folder`, for MakePlan to read from there. ABORTED if it cannot be written.
+// Copies a manifest "-" to `folder`, from where MakePlan reads it: a run walks its plan several
+// times. ABORTED if the copy cannot be written.
 absl::Status CopyManifest(const std::filesystem::path& folder, std::istream* in,
                           BatchArguments* arguments);
 

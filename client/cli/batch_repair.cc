@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/batch/durable_file.h"
+#include "client/cli/batch_flags.h"
 #include "model/base/file.h"
 #include "nlohmann/json.hpp"
 
@@ -27,7 +28,7 @@ struct KeptCommand {
 absl::Status Unknown(const fs::path& out, absl::string_view why) {
   return absl::FailedPreconditionError(
       absl::StrCat(out.string(), ": ", why,
-                   ". Run the duet batch command that made it again: it repairs what was found"));
+                   ". Run the duet batch command that made it again, which repairs the damage"));
 }
 
 absl::StatusOr<KeptCommand> ReadKept(const fs::path& out) {
@@ -39,7 +40,7 @@ absl::StatusOr<KeptCommand> ReadKept(const fs::path& out) {
       !std::all_of(object["words"].begin(), object["words"].end(), is_text) ||
       !object.contains("folder") || !is_text(object["folder"]) || !object.contains("shard") ||
       !is_text(object["shard"])) {
-    return Unknown(out, "does not know the command that made it");
+    return Unknown(out, "the command that made it is not recorded");
   }
   return KeptCommand{object["folder"], object["shard"], object["words"]};
 }
@@ -59,13 +60,13 @@ absl::Status KeepCommand(const BatchArguments& arguments, const batch::Shard& sh
 absl::StatusOr<BatchArguments> CommandOf(const BatchArguments& verify) {
   const absl::StatusOr<KeptCommand> kept = ReadKept(verify.out);
   if (!kept.ok()) return kept.status();
-  ParsedCommandLine parsed = ParseCommandLine(kept->words);
+  absl::StatusOr<BatchArguments> parsed = ParseBatch(kept->words);
   const absl::StatusOr<batch::Shard> shard = batch::ParseShard(kept->shard);
-  if (!parsed.batch.has_value() || !shard.ok()) {
-    return Unknown(verify.out, "was made by a command that is not understood");
+  if (!parsed.ok() || !shard.ok()) {
+    return Unknown(verify.out, "the command that made it is not valid");
   }
-  if (parsed.batch->manifest == "-") return Unknown(verify.out, "its leaders came by a pipe");
-  BatchArguments command = *std::move(parsed.batch);
+  if (parsed->manifest == "-") return Unknown(verify.out, "its leaders came from a pipe");
+  BatchArguments command = *std::move(parsed);
   const fs::path out = fs::absolute(verify.out / "").lexically_normal().parent_path();
   command.out = shard->count == 1 ? out : out.parent_path();
   command.shard = *shard;

@@ -10,18 +10,18 @@
 #include "client/batch/merge.h"
 #include "client/batch/plan_check.h"
 #include "client/batch/verify.h"
-#include "client/cli/arguments.h"
-#include "client/cli/program.h"
+#include "client/cli/batch_arguments.h"
+#include "client/cli/program_environment.h"
 
 namespace duet::client::cli {
 
-// What duet batch says of what it did: a sentence, or with --json an event or an object a line.
+// The output of duet batch: sentences, or with --json one event or object on each line.
 void Report(const BatchArguments& arguments, const std::filesystem::path& folder,
             const batch::JobReport& report, const ProgramEnvironment& environment);
-// Of a dry run. What is wrong goes to the error stream.
+// For a dry run. Problems go to the error stream.
 void Report(const BatchArguments& arguments, const batch::PlanCheck& check,
             const batch::Estimate& estimate, const ProgramEnvironment& environment);
-// Of a run that is about to begin: leaders that its items will fail by, if there are any.
+// Before a run: the leaders that cannot be used, if there are any.
 void ReportBadLeaders(const BatchArguments& arguments, const batch::PlanCheck& check,
                       const ProgramEnvironment& environment);
 void Report(const BatchArguments& arguments, const batch::MergeReport& report,
@@ -29,7 +29,7 @@ void Report(const BatchArguments& arguments, const batch::MergeReport& report,
 void Report(const BatchArguments& arguments, const batch::VerifyReport& report,
             const ProgramEnvironment& environment);
 
-// Names the first of the files that folders hold beside motions.
+// Reports the first of the files in folders that are not motions.
 void ReportPassedOver(const BatchArguments& arguments, const std::vector<std::string>& files,
                       const ProgramEnvironment& environment);
 

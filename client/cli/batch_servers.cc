@@ -10,7 +10,7 @@
 namespace duet::client::cli {
 namespace {
 
-// The longest that a server is waited for before a run begins.
+// The longest time to wait for a server before a run begins.
 constexpr double kFirstAnswerSeconds = 30;
 
 }  // namespace

@@ -6,18 +6,18 @@
 #include "absl/status/statusor.h"
 #include "client/batch/recipe.h"
 #include "client/batch/setup.h"
-#include "client/cli/arguments.h"
-#include "client/cli/program.h"
+#include "client/cli/batch_arguments.h"
+#include "client/cli/program_environment.h"
 #include "client/client.h"
 
 namespace duet::client::cli {
 
-// For each server the clients that take turns. Retries are the job's own, item by item.
+// For each server, the clients that take turns. They do not retry: the job does, for each item.
 absl::StatusOr<std::vector<std::vector<Client>>> Connect(const BatchArguments& arguments,
                                                          const ProgramEnvironment& environment);
 
-// The models, from the first server that answers: those that a set was begun with, or else the
-// recipe's.
+// The models as the first server that answers describes them: those that the set was begun with, or
+// the recipe's for a new set.
 absl::StatusOr<batch::ResolvedModels> AskModels(const BatchArguments& arguments,
                                                 const ProgramEnvironment& environment,
                                                 const batch::Recipe& recipe,

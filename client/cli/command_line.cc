@@ -1,93 +1,196 @@
 #include "client/cli/command_line.h"
 
-#include "client/cli/admin_flags.h"
-#include "client/cli/batch_flags.h"
-#include "client/cli/flags.h"
-#include "client/cli/help_topics.h"
-#include "client/cli/motion_flags.h"
-#include "client/cli/server_flags.h"
-#include "client/cli/synthesize_flags.h"
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "client/cli/command_table.h"
+#include "client/cli/commands.h"
+#include "client/cli/exit_code.h"
+#include "model/base/nearest.h"
+#include "model/base/text.h"
 
 namespace duet::client::cli {
 namespace {
 
-constexpr char kExitCodes[] = R"(
-Exit codes:
-  0   done
-  1   failed, but the same call may succeed later (server away, busy or draining)
-  2   the command line makes no sense
-  42  failed, and will again: the input, the model or the credentials are refused
+using Strings = std::vector<std::string>;
 
-Example:
-  duet synthesize --leader kick.bvh --label kick=1 --out pair.html --out pair.bvh
-)";
-
-void AddModelsCommand(CLI::App* app, ModelsArguments* arguments) {
-  CLI::App* command = app->add_subcommand("models", "List the models being served");
-  AddServerFlags(command, &arguments->server);
-  command->add_flag("--json", arguments->json, "Print JSON");
+ParsedCommandLine UsageError(const std::string& message) {
+  ParsedCommandLine parsed;
+  parsed.text = absl::StrCat(message, "\nRun with --help for more information.\n");
+  parsed.exit_code = kExitUsage;
+  return parsed;
 }
 
-void AddStdioCommand(CLI::App* app) {
-  app->add_subcommand("stdio", "Run commands read from standard input, for other programs")
-      ->footer(R"(
-Each line of standard input is a JSON array with the words of a command. Each is answered with a
-line of JSON and as many bytes as it says of the command's standard output and standard error.
-
-Example:
-  echo '["convert", "walk.bvh", "--out", "-", "--output-format", "json"]' | duet stdio
-)");
+ParsedCommandLine Text(std::string text) {
+  ParsedCommandLine parsed;
+  parsed.text = std::move(text);
+  return parsed;
 }
 
-// What tells of the program itself.
-void AddHelpCommands(CommandLine* line) {
-  CLI::App* help = line->app.add_subcommand("help", "Explain a command or a topic");
-  help->add_option("topic", line->help_topic, "A command, or one of: " + HelpTopicNames())
-      ->type_name("TOPIC");
-  CLI::App* completion =
-      line->app.add_subcommand("completion", "Print what makes a shell complete this program");
-  completion->add_option("shell", line->shell, "bash, zsh or fish")
-      ->required()
-      ->check(Undescribed(CLI::IsMember(std::vector<std::string>{"bash", "zsh", "fish"})))
-      ->type_name("bash|zsh|fish");
-  CLI::App* man = line->app.add_subcommand("man", "Print a manual page");
-  man->add_option("command", line->manual_page, "The command that it is of; duet itself without")
-      ->type_name("COMMAND");
-  man->add_option("--out", line->man.folder, "Write all pages into this folder instead")
-      ->type_name("FOLDER");
+// "--server" of "--server" and "--server=lab:50051".
+std::string FlagOf(const std::string& argument) { return argument.substr(0, argument.find('=')); }
+
+bool IsGiven(const std::string& flag, const Strings& arguments) {
+  for (const std::string& argument : arguments) {
+    if (argument == "--") return false;
+    if (FlagOf(argument) == flag) return true;
+  }
+  return false;
+}
+
+Strings FlagNames(const CLI::App& command) {
+  Strings names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back(absl::StrCat("--", name));
+  }
+  return names;
+}
+
+// Whether a flag on the command line excludes this one.
+bool IsExcluded(const CLI::App& command, const std::string& flag, const Strings& arguments) {
+  for (const CLI::Option* option : command.get_option(flag)->get_excludes()) {
+    for (const std::string& name : option->get_lnames()) {
+      if (IsGiven(absl::StrCat("--", name), arguments)) return true;
+    }
+  }
+  return false;
+}
+
+// The command line's arguments and, after the command, the settings that apply to it.
+class Settled {
+ public:
+  Settled(const CLI::App& app, const Strings& arguments, const std::vector<Setting>& settings)
+      : arguments_(arguments) {
+    const auto command =
+        std::find_if(arguments.begin(), arguments.end(),
+                     [](const std::string& argument) { return !absl::StartsWith(argument, "-"); });
+    if (command == arguments.end()) return;
+    const CLI::App* chosen = FindCommand(app, *command);
+    if (chosen == nullptr) return;
+    Strings added;
+    for (const Setting& setting : settings) {
+      const std::string flag = absl::StrCat("--", setting.name);
+      if (!Knows(*chosen, flag)) continue;
+      if (IsGiven(flag, arguments) || IsExcluded(*chosen, flag, arguments)) continue;
+      added.push_back(absl::StrCat(flag, "=", setting.value));
+      used_.push_back(setting);
+    }
+    arguments_.insert(arguments_.begin() + (command - arguments.begin()) + 1, added.begin(),
+                      added.end());
+  }
+
+  const Strings& arguments() const { return arguments_; }
+
+  // The source of the setting that an error is about, as "config:3: "; empty if it is about a flag.
+  std::string SourceOf(const std::string& error) const {
+    for (const Setting& setting : used_) {
+      if (absl::StrContains(error, absl::StrCat("--", setting.name))) {
+        return absl::StrCat(setting.source, ": ");
+      }
+    }
+    return "";
+  }
+
+ private:
+  static bool Knows(const CLI::App& command, const std::string& flag) {
+    const Strings names = FlagNames(command);
+    return std::find(names.begin(), names.end(), flag) != names.end();
+  }
+
+  Strings arguments_;
+  std::vector<Setting> used_;
+};
+
+// The error about the first setting that no command has a flag for; empty if there is none.
+std::string FindUnknownSetting(const CLI::App& app, const std::vector<Setting>& settings) {
+  Strings known;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    for (const std::string& flag : FlagNames(*command)) known.push_back(flag.substr(2));
+  }
+  for (const Setting& setting : settings) {
+    if (std::find(known.begin(), known.end(), setting.name) != known.end()) continue;
+    return absl::StrCat(setting.source, ": no command has a flag --", setting.name,
+                        base::DidYouMean(setting.name, known));
+  }
+  return "";
+}
+
+// The error about a first word that is not a command; empty if it is one.
+std::string FindUnknownCommand(const CLI::App& app, const Strings& arguments) {
+  if (arguments.empty() || absl::StartsWith(arguments[0], "-")) return "";
+  if (FindCommand(app, arguments[0]) != nullptr || IsGiven("--help", arguments)) return "";
+  return absl::StrCat("There is no command ", base::Quoted(arguments[0]),
+                      base::DidYouMean(arguments[0], CommandNames(app)));
+}
+
+// The error about the first flag that the command does not have; empty if there is none.
+std::string FindUnknownFlag(const CLI::App& app, const Strings& arguments) {
+  const CLI::App* command = arguments.empty() ? nullptr : FindCommand(app, arguments[0]);
+  if (command == nullptr) return "";
+  Strings known = FlagNames(*command);
+  for (const CLI::App* subcommand : command->get_subcommands({})) {
+    const Strings further = FlagNames(*subcommand);
+    known.insert(known.end(), further.begin(), further.end());
+  }
+  for (const std::string& argument : arguments) {
+    if (argument == "--") break;
+    if (!absl::StartsWith(argument, "--")) continue;
+    const std::string flag = FlagOf(argument);
+    if (std::find(known.begin(), known.end(), flag) != known.end()) continue;
+    return absl::StrCat(arguments[0], " has no flag ", flag, base::DidYouMean(flag, known));
+  }
+  return "";
 }
 
 }  // namespace
 
 CommandLine::CommandLine()
-    : app("Asks a Duet server to answer one character's motion with another's.", "duet") {
-  app.set_version_flag("--version", "duet " DUET_VERSION);
-  app.require_subcommand(1);
-  app.footer(kExitCodes);
-  app.get_formatter()->column_width(34);
-  AddModelsCommand(&app, &models);
-  AddSynthesizeCommand(&app, &synthesize)->footer(kExitCodes);
-  AddBatchCommand(&app, &batch);
-  AddInspectCommand(&app, &inspect);
-  AddConvertCommand(&app, &convert);
-  AddViewCommand(&app, &view);
-  AddCompareCommand(&app, &compare);
-  AddAdminCommand(&app, &admin);
-  AddStdioCommand(&app);
-  AddHelpCommands(this);
+    : app_("Asks a Duet server to answer one character's motion with another's.", "duet") {
+  app_.set_version_flag("--version", "duet " DUET_VERSION);
+  app_.require_subcommand(1);
+  app_.footer(kExitCodesFooter);
+  app_.get_formatter()->column_width(34);
+  commands_ = AddCommands(&app_);
 }
 
-const CLI::App* FindCommand(const CLI::App& app, const std::string& name) {
-  for (const CLI::App* command : app.get_subcommands({})) {
-    if (command->get_name() == name) return command;
+bool CommandLine::UsesSettings(const std::vector<std::string>& arguments) const {
+  if (arguments.empty() || absl::StartsWith(arguments[0], "-")) return false;
+  for (const Command& command : commands_) {
+    if (command.app->get_name() == arguments[0]) return command.uses_settings;
   }
-  return nullptr;
+  return true;
 }
 
-std::vector<std::string> CommandNames(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  return names;
+ParsedCommandLine CommandLine::Parse(const std::vector<std::string>& arguments,
+                                     const std::vector<Setting>& settings) {
+  for (const std::string& error :
+       {FindUnknownSetting(app_, settings), FindUnknownCommand(app_, arguments)}) {
+    if (!error.empty()) return UsageError(error);
+  }
+  const Settled settled(app_, arguments, settings);
+  try {
+    // CLI11 takes the arguments in reverse.
+    app_.parse(Strings(settled.arguments().rbegin(), settled.arguments().rend()));
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out;
+    const int code = app_.exit(error, out, out);
+    if (code == 0) return Text(out.str());
+    // An unknown flag may cause other errors: its value counts as one argument more.
+    const std::string unknown = FindUnknownFlag(app_, arguments);
+    if (!unknown.empty()) return UsageError(unknown);
+    ParsedCommandLine parsed = Text(absl::StrCat(settled.SourceOf(error.what()), out.str()));
+    parsed.exit_code = kExitUsage;
+    return parsed;
+  }
+  ParsedCommandLine parsed;
+  for (const Command& command : commands_) {
+    if (command.app->parsed()) parsed.command = &command;
+  }
+  parsed.words = settled.arguments();
+  return parsed;
 }
 
 }  // namespace duet::client::cli

@@ -5,35 +5,41 @@
 #include <vector>
 
 #include "CLI/CLI.hpp"
-#include "client/cli/arguments.h"
+#include "client/cli/command.h"
+#include "client/cli/settings.h"
 
 namespace duet::client::cli {
 
-// All commands with their flags: what parsing, help, completion and the manual pages come from.
+// What a command line asks for: to run `command`, or, if that is null, to print `text` and exit
+// with `exit_code` (help, version, a usage error).
+struct ParsedCommandLine {
+  const Command* command = nullptr;  // owned by the CommandLine
+  std::vector<std::string> words;    // the arguments, with the settings that apply
+  std::string text;
+  int exit_code = kExitDone;
+};
+
+// The program's commands and flags: the source of parsing, help, completion and manual pages.
 class CommandLine {
  public:
   CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  CLI::App app;
-  ModelsArguments models;
-  AdminArguments admin;
-  SynthesizeArguments synthesize;
-  BatchArguments batch;
-  InspectArguments inspect;
-  ConvertArguments convert;
-  ViewArguments view;
-  CompareArguments compare;
-  std::string help_topic;
-  std::string shell;
-  std::string manual_page;
-  ManArguments man;
-};
+  const CLI::App& app() const { return app_; }
 
-// The command of that name, or null.
-const CLI::App* FindCommand(const CLI::App& app, const std::string& name);
-std::vector<std::string> CommandNames(const CLI::App& app);
+  // Whether settings apply to the command that `arguments` name.
+  bool UsesSettings(const std::vector<std::string>& arguments) const;
+
+  // Call at most once. `arguments` come without the program's name; `settings` apply to flags that
+  // are not among them. Never connects to a server. The only files it looks at are output folders.
+  ParsedCommandLine Parse(const std::vector<std::string>& arguments,
+                          const std::vector<Setting>& settings = {});
+
+ private:
+  CLI::App app_;
+  std::vector<Command> commands_;
+};
 
 }  // namespace duet::client::cli
 

@@ -33,6 +33,10 @@ struct CommandEntry {
 // The program, every command, and every command of a command, in the order of help.
 std::vector<CommandEntry> ListCommands(const CLI::App& app);
 
+// The command of that name, or null.
+const CLI::App* FindCommand(const CLI::App& app, const std::string& name);
+std::vector<std::string> CommandNames(const CLI::App& app);
+
 }  // namespace duet::client::cli
 
 #endif  // DUET_CLIENT_CLI_COMMAND_TABLE_H_

@@ -1,18 +1,28 @@
 #include "client/cli/compare_command.h"
 
+#include <memory>
 #include <ostream>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/comparison_report.h"
+#include "client/cli/flags.h"
+#include "client/cli/input_flags.h"
 #include "client/cli/output.h"
 #include "client/cli/report.h"
+#include "client/cli/take_flags.h"
 #include "model/base/file.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
 namespace {
+
+struct CompareArguments {
+  TakeArguments takes;  // two
+  std::filesystem::path out;
+  bool json = false;
+};
 
 // Of two people the follower is compared, the leader its partner.
 analysis::Answer AnswerOf(const Take& take) {
@@ -26,7 +36,7 @@ absl::StatusOr<ComparedTakes> CompareTakes(const TakeArguments& arguments,
   if (!takes.ok()) return takes.status();
   if (takes->size() != 2) {
     return absl::InvalidArgumentError(
-        "files: the second is the follower of the first, wanted two motions");
+        "files: expected two motions, got one: the second is the follower of the first");
   }
   ComparedTakes compared;
   compared.a = std::move((*takes)[0]);
@@ -38,9 +48,7 @@ absl::StatusOr<ComparedTakes> CompareTakes(const TakeArguments& arguments,
   return compared;
 }
 
-}  // namespace
-
-absl::Status RunCompare(const CompareArguments& arguments, const ProgramEnvironment& environment) {
+absl::Status Run(const CompareArguments& arguments, const ProgramEnvironment& environment) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const absl::StatusOr<ComparedTakes> compared =
       CompareTakes(arguments.takes, skeleton, environment.in);
@@ -57,6 +65,45 @@ absl::Status RunCompare(const CompareArguments& arguments, const ProgramEnvironm
     *environment.out << "\nwrote     " << arguments.out.string() << "\n";
   }
   return absl::OkStatus();
+}
+
+void AddFlags(CLI::App* command, CompareArguments* arguments) {
+  command
+      ->add_option("files", arguments->takes.takes,
+                   "The two motions; of two people each, their followers are compared")
+      ->required()
+      ->expected(2)
+      ->type_name("[NAME=]FILE");
+  AddTakeFlags(command, &arguments->takes);
+  command->add_flag("--json", arguments->json, "Print JSON")->group(kOutputGroup);
+  command
+      ->add_option("--out", arguments->out,
+                   "Page to write with both motions and all figures, .html")
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  command->footer(kTakesFooter);
+  command->callback([arguments] {
+    CheckTakes(arguments->takes);
+    if (arguments->out == kStandardStream) {
+      throw CLI::ValidationError("--out", "expected a file, got standard output");
+    }
+    if (!arguments->out.empty()) CheckPage("--out", arguments->out);
+  });
+}
+
+}  // namespace
+
+Command AddCompareCommand(CLI::App* program) {
+  const auto arguments = std::make_shared<CompareArguments>();
+  CLI::App* app = program->add_subcommand(
+      "compare", "Print how two motions differ: displacement, speed, lean, contact");
+  AddFlags(app, arguments.get());
+  Command command;
+  command.app = app;
+  command.run = [arguments](const CommandContext& context) {
+    return Done(Run(*arguments, context.environment));
+  };
+  return command;
 }
 
 }  // namespace duet::client::cli

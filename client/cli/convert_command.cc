@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -12,6 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "client/cli/flags.h"
 #include "client/cli/input_flags.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
@@ -24,11 +27,29 @@
 namespace duet::client::cli {
 namespace {
 
+// The people of a file with two people.
+enum class People { kLeft, kRight, kBoth };
+
+struct ConvertArguments {
+  std::filesystem::path file;
+  InputArguments input;
+  std::optional<People> people;  // absent: everyone
+  std::optional<double> resample_hz;
+  std::vector<std::filesystem::path> outputs;
+  std::optional<OutputFormat> output_format;  // for standard output
+  BvhArguments bvh;
+  bool json = false;
+  bool quiet = false;
+};
+
+const std::map<std::string, People> kPeople = {
+    {"both", People::kBoth}, {"left", People::kLeft}, {"right", People::kRight}};
+
 using formats::Format;
 using Clips = std::vector<motion::Clip>;
 using Paths = std::vector<std::filesystem::path>;
 
-// Below this, positions differ by rounding alone.
+// Smaller errors come from rounding.
 constexpr double kExactMetres = 2e-5;
 
 // A motion that is to be written.
@@ -53,7 +74,8 @@ absl::Status ChoosePeople(const std::optional<People>& wanted, Clips* people) {
   if (!wanted.has_value()) return absl::OkStatus();
   if (*wanted == People::kBoth) {
     if (people->size() == 2) return absl::OkStatus();
-    return absl::InvalidArgumentError("--side: came both, but the file has one person");
+    return absl::InvalidArgumentError(
+        "--side: expected left or right for a file with one person, got both");
   }
   // A file of one person serves either side.
   if (*wanted == People::kRight && people->size() > 1) std::swap((*people)[0], (*people)[1]);
@@ -68,9 +90,9 @@ absl::Status Resample(double rate_hz, motion::Clip* clip) {
   const double step = clip->frame_rate_hz / rate_hz;
   const double frames = std::floor((clip->frame_count() - 1) / step + 1e-6) + 1;
   if (frames > motion::kMaxMotionFrames) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--resample: came ", rate_hz, " Hz, which makes ", frames,
-                     " frames, wanted at most ", motion::kMaxMotionFrames));
+    return absl::InvalidArgumentError(absl::StrCat("--resample: expected at most ",
+                                                   motion::kMaxMotionFrames, " frames, got ",
+                                                   frames, " at ", rate_hz, " Hz"));
   }
   motion::Poses poses(static_cast<int>(frames), clip->joint_count());
   for (int frame = 0; frame < poses.frame_count(); ++frame) {
@@ -173,7 +195,7 @@ absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesyste
   if (output == kStandardStream) {
     if (contents->size() > 1) {
       return absl::InvalidArgumentError(
-          "--out -: BVH has a file for each of two people; choose one with --side");
+          "--out -: BVH has one file for each person. Choose a person with --side");
     }
     absl::Status status = WriteToStream((*contents)[0], out);
     if (!status.ok()) return status;
@@ -190,7 +212,7 @@ absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesyste
 }
 
 std::string DescribeExactness(const Written& written) {
-  if (!written.largest_error_metres) return "not read back: Duet writes this format alone";
+  if (!written.largest_error_metres) return "not read back: Duet only writes this format";
   std::string text =
       *written.largest_error_metres < kExactMetres
           ? "every position kept"
@@ -243,9 +265,7 @@ nlohmann::json ToJson(const Conversion& conversion, const std::vector<Written>& 
           {"outputs", outputs}};
 }
 
-}  // namespace
-
-absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironment& environment) {
+absl::Status Run(const ConvertArguments& arguments, const ProgramEnvironment& environment) {
   const absl::StatusOr<Conversion> conversion = ReadConversion(arguments, environment.in);
   if (!conversion.ok()) return conversion.status();
   std::vector<Written> all;
@@ -261,6 +281,68 @@ absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironm
       WritesToStandardOutput(arguments.outputs) ? *environment.err : *environment.out;
   out << (arguments.json ? Print(ToJson(*conversion, all)) : Describe(*conversion, all));
   return absl::OkStatus();
+}
+
+void CheckTogether(const ConvertArguments& arguments) {
+  CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
+  if (arguments.output_format && !arguments.output_format->motion) {
+    throw CLI::ValidationError("--output-format",
+                               "html is not a motion format. Use duet view to make a page");
+  }
+  for (const std::filesystem::path& output : arguments.outputs) {
+    const absl::Status status = CheckOutput(output, arguments.file, PageAllowed::kNo);
+    if (!status.ok()) throw CLI::ValidationError("--out", std::string(status.message()));
+  }
+}
+
+void AddFlags(CLI::App* command, ConvertArguments* arguments) {
+  command
+      ->add_option("file", arguments->file,
+                   "Motion: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt; - for standard "
+                   "input")
+      ->required()
+      ->type_name("FILE");
+  AddChoice<People>(
+      command, "--side", kPeople, [arguments](People people) { arguments->people = people; },
+      "The people to write (default: all)")
+      ->group(kInputGroup);
+  AddInputFlags(command, &arguments->input);
+  command
+      ->add_option("--out", arguments->outputs,
+                   "File to write: .glb, .gltf, .usda, .bvh (a file for each person), .csv, .npy, "
+                   ".json or .txt (SBU text); repeatable; - for standard output")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  command
+      ->add_option(
+          "--resample", arguments->resample_hz,
+          "Frame rate of the output; the motion keeps its speed (--frame-rate sets the rate "
+          "of the input)")
+      ->check(AboveZero())
+      ->type_name("HZ")
+      ->group(kOutputGroup);
+  AddOutputFormatFlag(command, &arguments->output_format);
+  AddBvhFlags(command, &arguments->bvh);
+  command->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
+  command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
+  command->callback([arguments] { CheckTogether(*arguments); });
+}
+
+}  // namespace
+
+Command AddConvertCommand(CLI::App* program) {
+  const auto arguments = std::make_shared<ConvertArguments>();
+  CLI::App* app =
+      program->add_subcommand("convert", "Write a motion in another format, positions as they are");
+  AddFlags(app, arguments.get());
+  Command command;
+  command.app = app;
+  command.run = [arguments](const CommandContext& context) {
+    return Done(Run(*arguments, context.environment));
+  };
+  return command;
 }
 
 }  // namespace duet::client::cli

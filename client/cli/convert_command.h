@@ -1,15 +1,14 @@
 #ifndef DUET_CLIENT_CLI_CONVERT_COMMAND_H_
 #define DUET_CLIENT_CLI_CONVERT_COMMAND_H_
 
-#include "absl/status/status.h"
-#include "client/cli/arguments.h"
-#include "client/cli/program.h"
+#include "CLI/CLI.hpp"
+#include "client/cli/command.h"
 
 namespace duet::client::cli {
 
-// duet convert: a motion from one format to others, without a server. What is written is read back,
-// so that what a format cannot hold is told rather than promised.
-absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironment& environment);
+// duet convert: writes a motion in other formats, without a server. Reads back what it wrote, and
+// reports what the format could not hold.
+Command AddConvertCommand(CLI::App* program);
 
 }  // namespace duet::client::cli
 

@@ -5,11 +5,11 @@
 
 namespace duet::client::cli {
 
-// What the program tells its caller, such as a job scheduler.
+// The result that the program reports to its caller, such as a job scheduler.
 enum ExitCode : int {
   kExitDone = 0,
   kExitRetry = 1,      // the same call may succeed later
-  kExitUsage = 2,      // the command line makes no sense
+  kExitUsage = 2,      // the command line is invalid
   kExitBadInput = 42,  // the same call will never succeed: input, model or credentials
 };
 
@@ -17,10 +17,22 @@ enum ExitCode : int {
 //
 //   0   OK
 //   42  INVALID_ARGUMENT, FAILED_PRECONDITION, OUT_OF_RANGE, NOT_FOUND, ALREADY_EXISTS,
-//       PERMISSION_DENIED, UNAUTHENTICATED, UNIMPLEMENTED; RESOURCE_EXHAUSTED where the server does
-//       not say when to come back (the message is too large)
+//       PERMISSION_DENIED, UNAUTHENTICATED, UNIMPLEMENTED; RESOURCE_EXHAUSTED if the server does
+//       not say when to retry (the message is too large)
 //   1   everything else
 ExitCode ExitCodeFor(const absl::Status& status);
+
+// The end of --help of the program and of duet synthesize.
+inline constexpr char kExitCodesFooter[] = R"(
+Exit codes:
+  0   done
+  1   failed, but the same call may succeed later (server away, busy or draining)
+  2   the command line is invalid
+  42  failed, and will fail again: the input, the model or the credentials are rejected
+
+Example:
+  duet synthesize --leader kick.bvh --label kick=1 --out pair.html --out pair.bvh
+)";
 
 }  // namespace duet::client::cli
 

@@ -15,28 +15,28 @@
 #include "absl/strings/string_view.h"
 #include "model/base/text.h"
 
-// Kinds of flag that this program has and CLI11 does not.
+// Kinds of flags that CLI11 does not have.
 
 namespace duet::client::cli {
 
-// A validator that --help does not spell out.
+// A validator that --help does not describe.
 inline CLI::Validator Undescribed(CLI::Validator validator) {
   validator.description("");
   return validator;
 }
 
-// Any finite number above 0. (CLI11's own spells out the largest double.)
+// Any finite number above 0. CLI11's own validator prints the largest double in --help.
 inline CLI::Validator AboveZero() {
   const auto check = [](const std::string& text) {
     double value = 0;
     if (base::ParseNumber(text, &value) && value > 0) return std::string();
-    return absl::StrCat(base::Quoted(text), ", wanted a number above 0");
+    return absl::StrCat("expected a number above 0, got ", base::Quoted(text));
   };
   return CLI::Validator(check, "");
 }
 
-// A flag whose value `parse` reads; help shows the value as `form`. One value after each flag, so
-// that a file name that follows is never taken for another value.
+// A flag whose value `parse` reads; --help shows the value as `form`. Each flag takes one value, so
+// that a file name that follows is never read as another value.
 template <typename T>
 CLI::Option* AddParsed(CLI::App* app, const std::string& flag, const std::string& form,
                        absl::StatusOr<T> (*parse)(absl::string_view), std::function<void(T)> sink,
@@ -53,8 +53,8 @@ CLI::Option* AddParsed(CLI::App* app, const std::string& flag, const std::string
       ->type_name(form);
 }
 
-// One of a few names. CLI11's own transformer would also take the enum's number. `names` outlives
-// the app.
+// A flag with one of a few names. CLI11's transformer would also accept the enum's number. `names`
+// outlives the app.
 template <typename T>
 CLI::Option* AddChoice(CLI::App* app, const std::string& flag,
                        const std::map<std::string, T>& names, std::function<void(T)> sink,

@@ -2,71 +2,66 @@
 
 #include <map>
 
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "client/cli/command_line.h"
-#include "client/cli/exit_code.h"
-#include "model/base/nearest.h"
-#include "model/base/text.h"
 
 namespace duet::client::cli {
 namespace {
 
 const std::map<std::string, std::string>& Topics() {
   static const auto& topics = *new std::map<std::string, std::string>{
-      {"exit-codes", R"(What the program's exit code tells a script.
+      {"exit-codes", R"(The exit codes of the program.
 
   0   done
   1   failed, but the same call may succeed later (server away, busy or draining; a full disk)
-  2   the command line, or a setting, makes no sense
-  42  failed, and will again: the input, the model or the credentials are refused
+  2   the command line or a setting is invalid
+  42  failed, and will fail again: the input, the model or the credentials are rejected
 )"},
-      {"formats", R"(Which motion files are read and written.
+      {"formats", R"(The motion files that Duet reads and writes.
 
   extension    read                  written              holds
   .gltf .glb   yes                   yes                  animated skeletons
   .usda        no                    yes                  animated skeletons
-  .bvh         yes                   a file a person      joint angles, one length a bone
+  .bvh         yes                   one per person       joint angles, one length per bone
   .amc         with its .asf beside  no                   joint angles
   .csv         yes                   yes                  positions of one or two people
   .json        yes                   yes                  positions of one or two people
   .npy         with --frame-rate     yes                  positions of one or two people
   .txt         yes                   of two people        SBU text: positions of two people
 
-The extension decides; --input-format says it where there is none, as for standard input (-).
-Unit, up axis and joints are found by themselves; duet inspect FILE shows what was found and why.
+The extension decides the format. --input-format sets it for standard input (-) and overrides the
+extension. Duet detects unit, up axis and joints; duet inspect FILE shows the result and the reason.
 )"},
-      {"joints", R"(How the joints of a file are found.
+      {"joints", R"(How Duet finds the joints of a file.
 
 Models have these joints: head, neck, torso, and left_ and right_ of shoulder, elbow, hand, hip,
-knee and foot. In a file they go by their names, as Mixamo, CMU, Biped, SMPL, DAZ, Rigify, Unreal
-and others write them; neck and torso go by where they are along the trunk.
+knee and foot. Duet finds them in a file by the names of Mixamo, CMU, Biped, SMPL, DAZ, Rigify,
+Unreal and others, and neck and torso by their position along the trunk.
 
-  duet inspect walk.bvh                    which joint of the file became which
-  --joint-map torso=Chest3                 says it where the names do not (repeatable)
-  --joint-map-file rig.txt                 the same for a rig that is used often, one a line
+  duet inspect walk.bvh                    which joint of the file stands for which
+  --joint-map torso=Chest3                 sets a joint (repeatable)
+  --joint-map-file rig.txt                 the same from a file, one joint on each line
 )"},
-      {"labels", R"(How a reaction is described.
+      {"labels", R"(How to describe a reaction.
 
-A label is an interaction class and its weight: 1 is wanted, 0 is neutral, -1 is avoided, up to 2
-either way. Several mix. duet models lists the classes that each model knows.
+A label is an interaction class and its weight from -2 to 2: 1 requests the class, 0 is neutral, -1
+avoids it. Several labels are mixed. duet models lists the classes of each model.
 
   --label kick=1                           a kick
-  --label hug=0.7 --label push=-0.5        something like a hug and nothing like a push
-  --keyframe 0:kick=1 --keyframe 30:hug=1  first a kick, from frame 30 on a hug
+  --label hug=0.7 --label push=-0.5        similar to a hug and unlike a push
+  --keyframe 0:kick=1 --keyframe 30:hug=1  a kick, then a hug from frame 30
 )"},
-      {"settings", R"(What counts where the command line says nothing.
+      {"settings", R"(Defaults from the environment and a file.
 
-A flag wins over the environment, the environment over the configuration file, and that over the
+A flag overrides the environment, which overrides the configuration file, which overrides the
 default.
 
-  DUET_SERVER   stands for --server
-  DUET_CONFIG   the configuration file; empty: none. Otherwise $XDG_CONFIG_HOME/duet/config, or
-                ~/.config/duet/config
-  NO_COLOR      set to anything: no colour, which only a terminal gets at all
+  DUET_SERVER   sets --server
+  DUET_CONFIG   the configuration file; empty for none (default: $XDG_CONFIG_HOME/duet/config, or
+                ~/.config/duet/config)
+  NO_COLOR      any value turns off colour; only terminals get colour
 
-The configuration file holds flags of any command without their dashes, one a line. A command takes
-those that it has; a flag that none has is an error.
+The configuration file holds flags of any command without their dashes, one on each line. Flags that
+a command does not have are ignored; a flag that no command has is an error.
 
   # the lab's server
   server = lab:50051
@@ -87,27 +82,5 @@ std::vector<std::string> HelpTopics() {
 std::string HelpTopicNames() { return absl::StrJoin(HelpTopics(), ", "); }
 
 std::string TopicText(const std::string& topic) { return Topics().at(topic); }
-
-ParsedCommandLine ExplainTopic(const CLI::App& app, const std::string& topic) {
-  ParsedCommandLine parsed;
-  const CLI::App* command = FindCommand(app, topic);
-  if (topic.empty()) {
-    // The program that was parsed would explain the command help.
-    parsed.text = absl::StrCat(CommandLine().app.help(), "\nTopics (duet help TOPIC):\n  ",
-                               HelpTopicNames(), "\n");
-  } else if (command != nullptr) {
-    parsed.text = command->help("duet");
-  } else if (Topics().count(topic) > 0) {
-    parsed.text = TopicText(topic);
-  } else {
-    std::vector<std::string> known = CommandNames(app);
-    for (std::string& name : HelpTopics()) known.push_back(std::move(name));
-    parsed.text =
-        absl::StrCat("There is no command or topic ", base::Quoted(topic),
-                     base::DidYouMean(topic, known), "\nTopics: ", HelpTopicNames(), "\n");
-    parsed.exit_code = kExitUsage;
-  }
-  return parsed;
-}
 
 }  // namespace duet::client::cli

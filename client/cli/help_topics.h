@@ -4,20 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "CLI/CLI.hpp"
-#include "client/cli/arguments.h"
-
 namespace duet::client::cli {
 
-// What duet help explains besides commands.
+// The topics of duet help.
 std::vector<std::string> HelpTopics();
 std::string HelpTopicNames();  // "exit-codes, formats, ..."
-// The text of one of them: a line that says what it is about, and the rest.
+// The text of a topic: a summary in one line, an empty line, and the rest.
 std::string TopicText(const std::string& topic);
-
-// What a command or a topic is about; of all commands for an empty one. A usage error for a name
-// that is neither.
-ParsedCommandLine ExplainTopic(const CLI::App& app, const std::string& topic);
 
 }  // namespace duet::client::cli
 

@@ -33,22 +33,23 @@ const std::map<std::string, formats::Side> kSides = {{"left", formats::Side::kLe
 void AddInputFlags(CLI::App* app, InputArguments* input) {
   AddChoice<Format>(
       app, "--input-format", kInputFormats, [input](Format format) { input->format = format; },
-      "What is read, where no name tells it (-); replaces the extension")
+      "Format of the input; required for standard input (-), overrides the extension")
       ->group(kInputGroup);
-  app->add_option("--frame-rate", input->frame_rate_hz, "Replaces what the file says")
+  app->add_option("--frame-rate", input->frame_rate_hz,
+                  "Frame rate of the input; overrides the file")
       ->check(AboveZero())
       ->type_name("HZ")
       ->group(kInputGroup);
   AddParsed<motion::LengthUnit>(
       app, "--unit", "metres|millimetres|sbu-normalised", ParseUnit,
       [input](motion::LengthUnit unit) { input->unit = unit; },
-      "Unit of positions; replaces what the file says")
+      "Unit of positions; overrides the file")
       ->take_last()
       ->group(kInputGroup);
   AddParsed<motion::UpAxis>(
       app, "--up-axis", "y-up|z-up|y-down", ParseAxis,
       [input](motion::UpAxis axis) { input->up_axis = axis; },
-      "Up axis of positions; replaces what the file says")
+      "Up axis of positions; overrides the file")
       ->take_last()
       ->group(kInputGroup);
   app->add_option("--metres-per-unit", input->metres_per_unit,
@@ -59,10 +60,10 @@ void AddInputFlags(CLI::App* app, InputArguments* input) {
   AddParsed<std::pair<std::string, std::string>>(
       app, "--joint-map", "MODEL_JOINT=FILE_JOINT", ParseJointPair,
       [input](std::pair<std::string, std::string> joints) { input->joints.insert(joints); },
-      "Where names alone do not tell which is which; repeatable")
+      "Joint of the file for a joint of the model, if its name is not recognised; repeatable")
       ->group(kInputGroup);
   app->add_option("--joint-map-file", input->joint_table,
-                  "A table of such joints, one MODEL_JOINT=FILE_JOINT a line; --joint-map wins")
+                  "File with one MODEL_JOINT=FILE_JOINT on each line; --joint-map overrides it")
       ->type_name("FILE")
       ->group(kInputGroup);
 }
@@ -70,20 +71,20 @@ void AddInputFlags(CLI::App* app, InputArguments* input) {
 void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format) {
   AddChoice<OutputFormat>(
       app, "--output-format", kOutputFormats, [format](OutputFormat chosen) { *format = chosen; },
-      "What is written to standard output (--out -)")
+      "Format of standard output (--out -)")
       ->group(kOutputGroup);
 }
 
 void AddBvhFlags(CLI::App* app, BvhArguments* bvh) {
   AddChoice<double>(
       app, "--bvh-unit", kBvhUnits, [bvh](double metres) { bvh->metres_per_unit = metres; },
-      "Unit of .bvh that is written, which the format does not tell: centimetres as Maya, "
-      "MotionBuilder and Unreal take it, metres as Blender does")
+      "Unit of .bvh output, which the format does not state: Maya, MotionBuilder and Unreal "
+      "expect centimetres, Blender metres")
       ->default_str("centimetres")
       ->group(kOutputGroup);
   app->add_option("--bvh-keys-per-frame", bvh->keys_per_frame,
-                  "Keys in .bvh for each frame of the motion: with more, programs that draw lines "
-                  "from angle to angle stay near the motion where a joint passes gimbal lock")
+                  "Keys in .bvh for each frame of the motion; more keep programs that interpolate "
+                  "angles linearly close to the motion near gimbal lock")
       ->check(Undescribed(CLI::Range(1, formats::kMostBvhKeysPerFrame)))
       ->capture_default_str()
       ->type_name("COUNT")
@@ -99,11 +100,13 @@ void CheckStandardOutput(const std::vector<std::filesystem::path>& outputs,
   const auto count = std::count(outputs.begin(), outputs.end(), kStandardStream);
   if (count == 0) {
     if (!format.has_value()) return;
-    throw CLI::ValidationError("--output-format", "counts for --out - alone, which is not there");
+    throw CLI::ValidationError("--output-format", "is only valid with --out -");
   }
-  if (count > 1) throw CLI::ValidationError("--out", "- came twice, wanted once");
+  if (count > 1) throw CLI::ValidationError("--out", "expected - once, got it twice");
   if (!format.has_value()) throw CLI::RequiredError("--output-format, which --out - needs,");
-  if (json) throw CLI::ValidationError("--json", "and --out - both print to standard output");
+  if (json)
+    throw CLI::ValidationError("--json",
+                               "cannot be used with --out -: both print to standard output");
 }
 
 }  // namespace duet::client::cli

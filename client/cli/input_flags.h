@@ -5,7 +5,7 @@
 #include <string>
 
 #include "CLI/CLI.hpp"
-#include "client/cli/arguments.h"
+#include "client/cli/motion_arguments.h"
 
 namespace duet::client::cli {
 

@@ -1,11 +1,14 @@
 #include "client/cli/inspect_command.h"
 
 #include <algorithm>
+#include <memory>
 #include <ostream>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "client/cli/flags.h"
+#include "client/cli/input_flags.h"
 #include "client/cli/inspection.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/report.h"
@@ -15,10 +18,16 @@
 namespace duet::client::cli {
 namespace {
 
-// A rate that lets a motion without one be read; it is told of none.
+struct InspectArguments {
+  std::vector<std::filesystem::path> files;
+  InputArguments input;
+  bool json = false;
+};
+
+// Lets a motion without a rate be read. The rate is not reported.
 constexpr double kStandInRateHz = 30;
 
-// A file without a frame rate is looked at all the same.
+// A file without a frame rate can be inspected too.
 absl::StatusOr<motion::Clip> ReadAtAnyRate(const MotionInput& input, formats::ReadOptions options) {
   absl::StatusOr<motion::Clip> clip = input.Read(options);
   if (motion::MendingSetting(clip.status()) != motion::ReadingSetting::kFrameRate) return clip;
@@ -62,9 +71,7 @@ Inspection Inspect(const std::filesystem::path& file, const InputArguments& inpu
   return inspection;
 }
 
-}  // namespace
-
-ExitCode RunInspect(const InspectArguments& arguments, const ProgramEnvironment& environment) {
+ExitCode Run(const InspectArguments& arguments, const ProgramEnvironment& environment) {
   const Style style = environment.OutStyle();
   ExitCode worst = kExitDone;
   nlohmann::json files = nlohmann::json::array();
@@ -80,6 +87,33 @@ ExitCode RunInspect(const InspectArguments& arguments, const ProgramEnvironment&
   }
   if (arguments.json) *environment.out << Print({{"files", files}});
   return worst;
+}
+
+void AddFlags(CLI::App* command, InspectArguments* arguments) {
+  command
+      ->add_option(
+          "files", arguments->files,
+          "Motions: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt; - for standard "
+          "input")
+      ->required()
+      ->type_name("FILE");
+  AddInputFlags(command, &arguments->input);
+  command->add_flag("--json", arguments->json, "Print JSON")->group(kOutputGroup);
+}
+
+}  // namespace
+
+Command AddInspectCommand(CLI::App* program) {
+  const auto arguments = std::make_shared<InspectArguments>();
+  CLI::App* app = program->add_subcommand(
+      "inspect", "Print what motion files contain, how Duet reads them, and what looks wrong");
+  AddFlags(app, arguments.get());
+  Command command;
+  command.app = app;
+  command.run = [arguments](const CommandContext& context) -> absl::StatusOr<ExitCode> {
+    return Run(*arguments, context.environment);
+  };
+  return command;
 }
 
 }  // namespace duet::client::cli

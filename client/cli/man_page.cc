@@ -9,13 +9,9 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
-#include "client/cli/command_line.h"
 #include "client/cli/command_table.h"
-#include "client/cli/exit_code.h"
 #include "client/cli/help_topics.h"
 #include "model/base/file.h"
-#include "model/base/nearest.h"
-#include "model/base/text.h"
 
 namespace duet::client::cli {
 namespace {
@@ -146,17 +142,12 @@ std::string Page(const CLI::App& app, const CommandEntry& command,
 
 }  // namespace
 
-ParsedCommandLine PrintManualPage(const CLI::App& app, const std::string& command) {
+std::string ManualPage(const CLI::App& app, const std::string& command) {
   const std::vector<CommandEntry> all = ListCommands(app);
-  ParsedCommandLine parsed;
   for (const CommandEntry& entry : all) {
-    if (entry.name == command) parsed.text = Page(app, entry, all);
+    if (entry.name == command) return Page(app, entry, all);
   }
-  if (!parsed.text.empty()) return parsed;
-  parsed.text = absl::StrCat("There is no command ", base::Quoted(command),
-                             base::DidYouMean(command, CommandNames(app)), "\n");
-  parsed.exit_code = kExitUsage;
-  return parsed;
+  return "";
 }
 
 absl::Status WriteManualPages(const CLI::App& app, const std::filesystem::path& folder) {

@@ -6,16 +6,15 @@
 
 #include "CLI/CLI.hpp"
 #include "absl/status/status.h"
-#include "client/cli/arguments.h"
 
 namespace duet::client::cli {
 
-// The manual page of a command in man(7)'s markup, of the program itself where `command` is empty;
-// a usage error for an unknown one.
-ParsedCommandLine PrintManualPage(const CLI::App& app, const std::string& command);
+// The manual page of a command in man(7) markup; of the program itself if `command` is empty. Empty
+// if there is no such command.
+std::string ManualPage(const CLI::App& app, const std::string& command);
 
-// Writes duet.1, duet-synthesize.1 and so on, by the name of the program, into a folder, which is
-// made where it is not there.
+// Writes the pages of all commands into a folder, creating it if necessary. Files are named after
+// the program: duet.1, duet-synthesize.1 and so on.
 absl::Status WriteManualPages(const CLI::App& app, const std::filesystem::path& folder);
 
 }  // namespace duet::client::cli

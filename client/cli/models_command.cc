@@ -1,23 +1,47 @@
 #include "client/cli/models_command.h"
 
+#include <memory>
 #include <ostream>
 #include <vector>
 
 #include "client/cli/report.h"
+#include "client/cli/server_flags.h"
 #include "client/cli/server_options.h"
 
 namespace duet::client::cli {
+namespace {
 
-absl::Status RunModels(const ModelsArguments& arguments, const ProgramEnvironment& environment) {
+struct ModelsArguments {
+  ServerArguments server;
+  bool json = false;
+};
+
+absl::Status Run(const ModelsArguments& arguments, const ProgramEnvironment& environment) {
   absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
-  SayWhenWaiting(arguments.server, *environment.err, &*options);
+  ReportWaiting(arguments.server, *environment.err, &*options);
   const absl::StatusOr<Client> client = environment.connect(*options);
   if (!client.ok()) return client.status();
   const absl::StatusOr<std::vector<ModelInfo>> models = client->ListModels();
   if (!models.ok()) return models.status();
   *environment.out << (arguments.json ? ModelsJson(*models) : DescribeModels(*models));
   return absl::OkStatus();
+}
+
+}  // namespace
+
+Command AddModelsCommand(CLI::App* program) {
+  const auto arguments = std::make_shared<ModelsArguments>();
+  CLI::App* app = program->add_subcommand("models", "List the models that the server serves");
+  AddServerFlags(app, &arguments->server);
+  app->add_flag("--json", arguments->json, "Print JSON");
+  Command command;
+  command.app = app;
+  command.run = [arguments](const CommandContext& context) {
+    return Done(Run(*arguments, context.environment));
+  };
+  command.servers = [arguments] { return arguments->server.address; };
+  return command;
 }
 
 }  // namespace duet::client::cli

@@ -1,14 +1,13 @@
 #ifndef DUET_CLIENT_CLI_MODELS_COMMAND_H_
 #define DUET_CLIENT_CLI_MODELS_COMMAND_H_
 
-#include "absl/status/status.h"
-#include "client/cli/arguments.h"
-#include "client/cli/program.h"
+#include "CLI/CLI.hpp"
+#include "client/cli/command.h"
 
 namespace duet::client::cli {
 
-// duet models: prints what the server answers with.
-absl::Status RunModels(const ModelsArguments& arguments, const ProgramEnvironment& environment);
+// duet models: prints the models that a server serves.
+Command AddModelsCommand(CLI::App* program);
 
 }  // namespace duet::client::cli
 

@@ -24,9 +24,9 @@ absl::StatusOr<std::string> ReadWhole(std::istream* in) {
   while (in->read(block.data(), static_cast<std::streamsize>(block.size())) || in->gcount() > 0) {
     content.append(block, 0, static_cast<std::size_t>(in->gcount()));
     if (content.size() > motion::kMaxMotionFileBytes) {
-      return absl::InvalidArgumentError(absl::StrCat(kStandardInput, ": larger than ",
-                                                     motion::kMaxMotionFileBytes >> 20,
-                                                     " MiB, wanted a motion"));
+      return absl::InvalidArgumentError(
+          absl::StrCat(kStandardInput, ": expected a motion of at most ",
+                       motion::kMaxMotionFileBytes >> 20, " MiB, got more"));
     }
   }
   return content;
@@ -43,7 +43,7 @@ absl::StatusOr<MotionInput> MotionInput::Open(const std::filesystem::path& path,
   if (!content.ok()) return content.status();
   if (content->empty()) {
     return absl::InvalidArgumentError(
-        absl::StrCat(kStandardInput, ": came empty, wanted a motion"));
+        absl::StrCat(kStandardInput, ": expected a motion, got no data"));
   }
   input.content_ = *std::move(content);
   return input;
@@ -112,14 +112,14 @@ absl::Status CheckInput(const std::filesystem::path& path,
                         const std::optional<formats::Format>& format) {
   if (path == kStandardStream) {
     if (format.has_value()) return absl::OkStatus();
-    return MendedBy(absl::InvalidArgumentError(
-                        absl::StrCat(kStandardInput, ": format: nothing says which it is")),
+    return MendedBy(absl::InvalidArgumentError(absl::StrCat(
+                        kStandardInput, ": format: expected --input-format, got none")),
                     motion::ReadingSetting::kFormat);
   }
   absl::Status status = CheckExists(path);
   if (std::error_code error; std::filesystem::is_directory(path, error)) {
     return absl::InvalidArgumentError(
-        absl::StrCat(path.string(), ": is a folder, wanted a motion file"));
+        absl::StrCat(path.string(), ": expected a motion file, got a folder"));
   }
   if (!status.ok() || format.has_value() || formats::IsReadable(path)) return status;
   return MendedBy(formats::UnknownExtension(path, formats::kReadableExtensions),

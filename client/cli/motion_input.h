@@ -9,23 +9,23 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "client/cli/arguments.h"
+#include "client/cli/motion_arguments.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
 
-// A motion file, or standard input, of which the whole is read once.
+// A motion file, or standard input, which is read completely and only once.
 class MotionInput {
  public:
-  // `-` is standard input; `in` may be null, where there is none.
+  // `-` is standard input; `in` may be null if there is none.
   static absl::StatusOr<MotionInput> Open(const std::filesystem::path& path, std::istream* in);
 
-  // How errors and reports call it.
+  // Its name in errors and reports.
   const std::string& name() const { return name_; }
 
-  // As formats::ReadLeader.
+  // Like formats::ReadLeader.
   absl::StatusOr<motion::Clip> Read(const formats::ReadOptions& options) const;
 
  private:
@@ -33,7 +33,7 @@ class MotionInput {
   std::optional<std::string> content_;  // of standard input
 };
 
-// All that one file holds, at most two people.
+// All people of a file, at most two.
 struct ReadPeople {
   std::vector<motion::Clip> people;
   std::vector<std::string> notes;  // on how the first was read
@@ -41,7 +41,7 @@ struct ReadPeople {
 absl::StatusOr<ReadPeople> ReadAllPeople(const MotionInput& input,
                                          const formats::ReadOptions& options);
 
-// `joints` and those of a table; `joints` win over it. Without a table's file, as they are.
+// `joints` and those of a table file, which `joints` override. `table_file` may be empty.
 absl::StatusOr<retargeting::JointOverrides> ReadJoints(retargeting::JointOverrides joints,
                                                        const std::filesystem::path& table_file);
 
@@ -49,7 +49,7 @@ absl::StatusOr<retargeting::JointOverrides> ReadJoints(retargeting::JointOverrid
 absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
                                                    const motion::Skeleton& skeleton);
 
-// Whether the file is there and of a known kind; `-` always is.
+// Checks that the file exists and has a known format. `-` needs `format`.
 absl::Status CheckInput(const std::filesystem::path& path,
                         const std::optional<formats::Format>& format);
 absl::Status CheckExists(const std::filesystem::path& path);

@@ -9,7 +9,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "client/cli/arguments.h"
+#include "client/cli/motion_arguments.h"
 #include "client/request.h"
 #include "client/result.h"
 #include "model/formats/follower_rig.h"

@@ -82,7 +82,7 @@ json ModelJson(const ModelInfo& model) {
           {"weights_sha256", model.weights_sha256}};
 }
 
-// How the user of this program says what a motion file does not.
+// The flag for what a motion file does not state.
 std::string FlagFor(motion::ReadingSetting setting) {
   switch (setting) {
     case motion::ReadingSetting::kFormat:
@@ -103,11 +103,12 @@ std::string FlagFor(motion::ReadingSetting setting) {
 std::string Advice(const absl::Status& status, const std::string& server_address) {
   if (std::string advice = DescribeAdvice(status); !advice.empty()) return advice;
   if (ExitCodeFor(status) != kExitRetry) return "";
-  // A reason would mean that a Duet server answered.
+  // An error reason shows that a Duet server answered.
   if (absl::IsUnavailable(status) && ErrorReason(status).empty()) {
-    return absl::StrCat("Does a duet-server listen at ", server_address,
-                        "? (--server; to wait for one, --wait SECONDS; where it encrypts, --tls or "
-                        "--tls-ca FILE)\n");
+    return absl::StrCat(
+        "Does a duet-server listen at ", server_address,
+        "? (Choose a server with --server, wait for it with --wait SECONDS, and use "
+        "--tls or --tls-ca FILE if it encrypts.)\n");
   }
   return "Trying again later may help.\n";
 }
@@ -120,7 +121,7 @@ std::string Print(const json& value) {
 
 std::string DescribeAdvice(const absl::Status& status) {
   const auto setting = motion::MendingSetting(status);
-  return setting.has_value() ? absl::StrCat("Say it with ", FlagFor(*setting), ".\n") : "";
+  return setting.has_value() ? absl::StrCat("Specify it with ", FlagFor(*setting), ".\n") : "";
 }
 
 std::string DescribeModels(const std::vector<ModelInfo>& models) {
@@ -171,7 +172,7 @@ std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& writt
     if (*result.unfamiliarity > kFarUnfamiliarity) {
       absl::StrAppend(
           &text,
-          "          the leader is unlike those that the model learnt from: look at the "
+          "          the leader differs from those that the model was trained on: check the "
           "answer before you use it\n");
     }
   }
@@ -233,7 +234,7 @@ std::string DescribeFailure(const absl::Status& status, const std::string& serve
                         Advice(status, server_address));
   }
   std::string text =
-      absl::StrCat(style.Bad("duet:"), " the server refuses the request (", code, ")\n");
+      absl::StrCat(style.Bad("duet:"), " the server rejects the request (", code, ")\n");
   for (const FieldViolation& violation : violations) {
     absl::StrAppend(&text, "  ", violation.field, violation.field.empty() ? "" : ": ",
                     violation.description, "\n");

@@ -13,28 +13,29 @@
 
 namespace duet::client::cli {
 
-// What the program prints: text for people, JSON for programs. Every text ends with a line end.
+// The output of the program: text for people, JSON for programs. Every text ends with a newline.
 
 std::string DescribeModels(const std::vector<ModelInfo>& models);
 std::string ModelsJson(const std::vector<ModelInfo>& models);
 
-// What was asked, the same for every sample; and what came of one of them.
+// The request, which is the same for every sample; and the answer to one of them.
 std::string DescribeRequest(const Synthesis& synthesis, const std::vector<std::string>& notes);
 std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& written);
 
-// Both of one sample; and the text for all samples: the one's object, of several
+// Both as JSON, for one sample. SamplesJson prints the object of a single sample, or
 // {"samples": [object, ...]}.
 nlohmann::json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
                              const std::vector<std::string>& notes);
 std::string SamplesJson(const std::vector<nlohmann::json>& samples);
 
-// Why it failed, one line for every refused field, and what may help.
+// The error, with one line for every rejected field, and a hint.
 std::string DescribeFailure(const absl::Status& status, const std::string& server_address,
                             const Style& style);
-// The flag that mends how a file was read: "Say it with --frame-rate HZ.\n"; empty where none does.
+// The flag that fixes how a file was read: "Specify it with --frame-rate HZ.\n"; empty if there is
+// none.
 std::string DescribeAdvice(const absl::Status& status);
 
-// As this program prints JSON.
+// The JSON text that this program prints.
 std::string Print(const nlohmann::json& value);
 
 }  // namespace duet::client::cli

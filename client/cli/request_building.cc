@@ -61,7 +61,7 @@ absl::Status CheckInputs(const SynthesizeArguments& arguments) {
   status = CheckInput(start, std::nullopt);
   if (!absl::IsNotFound(status)) return status;
   return absl::NotFoundError(
-      absl::StrCat("--follower-start: ", status.message(), "; wanted a motion file or X,Y,Z"));
+      absl::StrCat("--follower-start: ", status.message(), "; expected a motion file or X,Y,Z"));
 }
 
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,

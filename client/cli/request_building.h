@@ -6,26 +6,26 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/cli/arguments.h"
+#include "client/cli/synthesize_arguments.h"
 #include "client/request.h"
 #include "model/formats/follower_rig.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
 
-// Whether the files that the flags name exist and are of a known kind. Needs no skeleton, so that a
-// wrong name is refused before the server is asked for its model.
+// Checks that the files of the flags exist and have a known format. Needs no skeleton, so that a
+// wrong name is rejected before the first call to the server.
 absl::Status CheckInputs(const SynthesizeArguments& arguments);
 
-// The request that the flags describe; reads the files that they name, in the skeleton's joints.
-// `notes` receives what was decided where the leader's file leaves a choice; a leader `-` is read
-// from `in`.
+// Builds the request that the flags describe, with the motions of their files in the skeleton's
+// joints. `notes` receives the choices that were made while reading the leader. A leader `-` is
+// read from `in`.
 absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
                                               const motion::Skeleton& skeleton,
                                               std::vector<std::string>* notes,
                                               std::istream* in = nullptr);
 
-// The rig that the follower is written onto. The leader's is read as the leader was.
+// The rig for the follower. The leader's rig is read with the leader's flags.
 absl::StatusOr<formats::FollowerRig> BuildFollowerRig(const SynthesizeArguments& arguments,
                                                       const motion::Skeleton& skeleton);
 

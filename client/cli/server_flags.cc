@@ -5,12 +5,13 @@
 namespace duet::client::cli {
 
 void AddServerFlags(CLI::App* app, ServerArguments* server) {
-  app->add_option("--server", server->address, "Or any gRPC target, such as unix:/run/duet.sock")
+  app->add_option("--server", server->address,
+                  "Server, or any gRPC target such as unix:/run/duet.sock")
       ->capture_default_str()
       ->type_name("HOST:PORT")
       ->group(kServerGroup);
   app->add_option("--wait", server->wait_seconds,
-                  "Seconds to retry a server that cannot be reached, within --timeout")
+                  "Seconds to retry a server that cannot be reached; at most --timeout")
       ->check(Undescribed(CLI::Range(0.0, 86400.0)))
       ->capture_default_str()
       ->type_name("SECONDS")
@@ -19,7 +20,7 @@ void AddServerFlags(CLI::App* app, ServerArguments* server) {
 }
 
 void AddConnectionFlags(CLI::App* app, ServerArguments* server) {
-  app->add_option("--timeout", server->timeout_seconds, "Seconds for the whole call, with retries")
+  app->add_option("--timeout", server->timeout_seconds, "Deadline of the whole call, with retries")
       ->check(Undescribed(CLI::Range(0.001, 86400.0)))
       ->capture_default_str()
       ->type_name("SECONDS")
@@ -28,30 +29,32 @@ void AddConnectionFlags(CLI::App* app, ServerArguments* server) {
 }
 
 void AddCredentialFlags(CLI::App* app, ServerArguments* server) {
-  app->add_flag("--tls", server->tls, "Encrypt; trust the system's authorities")
+  app->add_flag("--tls", server->tls, "Encrypt; trust the certificate authorities of the system")
       ->group(kServerGroup);
-  app->add_option("--tls-ca", server->tls_ca_file, "Encrypt; trust the authorities in this file")
+  app->add_option("--tls-ca", server->tls_ca_file,
+                  "Encrypt; trust the certificate authorities in this file")
       ->type_name("FILE")
       ->group(kServerGroup);
   CLI::Option* certificate =
-      app->add_option("--tls-cert", server->tls_certificate_file, "This client's certificate")
+      app->add_option("--tls-cert", server->tls_certificate_file, "Certificate of this client")
           ->type_name("FILE")
           ->group(kServerGroup);
-  CLI::Option* key = app->add_option("--tls-key", server->tls_key_file, "This client's private key")
-                         ->type_name("FILE")
-                         ->group(kServerGroup);
+  CLI::Option* key =
+      app->add_option("--tls-key", server->tls_key_file, "Private key of this client")
+          ->type_name("FILE")
+          ->group(kServerGroup);
   certificate->needs(key);
   key->needs(certificate);
   app->add_option("--tls-server-name", server->tls_server_name,
-                  "Name in the server's certificate, where it is not the address")
+                  "Name in the server's certificate, if it differs from the address")
       ->type_name("NAME")
       ->group(kServerGroup);
   app->add_option("--token-file", server->token_file,
-                  "A token that says who calls; sent encrypted or to this machine alone")
+                  "Token that identifies the caller; only sent encrypted or to this machine")
       ->type_name("FILE")
       ->group(kServerGroup);
   app->add_option("--authority", server->authority,
-                  "Name of the server that a proxy chooses by, where it is not the address")
+                  "Name of the server that a proxy routes by, if it differs from the address")
       ->type_name("NAME")
       ->group(kServerGroup);
 }

@@ -2,15 +2,15 @@
 #define DUET_CLIENT_CLI_SERVER_FLAGS_H_
 
 #include "CLI/CLI.hpp"
-#include "client/cli/arguments.h"
+#include "client/cli/server_arguments.h"
 
 namespace duet::client::cli {
 
-// --server and how to speak to it.
+// --server, --wait, and the connection flags.
 void AddServerFlags(CLI::App* app, ServerArguments* server);
-// All but --server itself and --wait.
+// --timeout and the credential flags.
 void AddConnectionFlags(CLI::App* app, ServerArguments* server);
-// The same without --timeout.
+// TLS, the token, and the name for a proxy.
 void AddCredentialFlags(CLI::App* app, ServerArguments* server);
 
 inline constexpr char kServerGroup[] = "Server";

@@ -14,10 +14,10 @@
 namespace duet::client::cli {
 namespace {
 
-// A key or a chain of certificates is some kilobytes; whatever is far larger is another file.
+// A key or a certificate chain has some kilobytes; a much larger file is something else.
 constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
 
-// The token in a file: its one line. Nothing for a file that was not named.
+// The token, which is the only line of the file. Does nothing if `path` is empty.
 absl::Status ReadToken(const std::string& path, std::string* token) {
   if (path.empty()) return absl::OkStatus();
   constexpr std::size_t kMaxTokenBytes = 4096;
@@ -25,10 +25,10 @@ absl::Status ReadToken(const std::string& path, std::string* token) {
   if (!content.ok()) return content.status();
   *token = std::string(absl::StripAsciiWhitespace(*content));
   if (!token->empty()) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(path, ": empty, wanted a token"));
+  return absl::InvalidArgumentError(absl::StrCat(path, ": expected a token, got an empty file"));
 }
 
-// Nothing for a file that was not named.
+// Does nothing if `path` is empty.
 absl::Status ReadPem(const std::string& path, std::string* pem) {
   if (path.empty()) return absl::OkStatus();
   absl::StatusOr<std::string> content = base::ReadFile(path, kMaxPemBytes, "a PEM file");
@@ -61,7 +61,7 @@ absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) 
   return options;
 }
 
-void SayWhenWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options) {
+void ReportWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options) {
   options->retry.on_wait = [&err, address = arguments.address,
                             waits = std::make_shared<std::atomic<int>>(0)](const absl::Status& why,
                                                                            absl::Duration) {

@@ -4,17 +4,17 @@
 #include <ostream>
 
 #include "absl/status/statusor.h"
-#include "client/cli/arguments.h"
+#include "client/cli/server_arguments.h"
 #include "client/options.h"
 
 namespace duet::client::cli {
 
-// The flags as a client's options; reads the certificates that they name.
+// The client options for these flags. Reads the files of certificates and the token.
 absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments);
 
-// Has a client report on `err`, once, that a server does not answer and that it is retried: after
-// two attempts, since most outages are shorter. `err` outlives the client.
-void SayWhenWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options);
+// Makes the client report on `err`, once, that it retries a server that does not answer: after two
+// attempts, because most outages are shorter. `err` outlives the client.
+void ReportWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options);
 
 }  // namespace duet::client::cli
 

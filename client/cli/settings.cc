@@ -25,7 +25,7 @@ bool IsFlagName(absl::string_view name) {
   });
 }
 
-// Where the file is when nobody says; nothing without a home.
+// The default path of the file; empty without a home.
 std::filesystem::path DefaultFile(const Variables& variables) {
   if (const auto xdg = variables("XDG_CONFIG_HOME"); xdg.has_value() && !xdg->empty()) {
     return std::filesystem::path(*xdg) / "duet" / "config";
@@ -62,9 +62,8 @@ absl::StatusOr<std::vector<Setting>> ParseSettings(absl::string_view text,
     const absl::string_view name = absl::StripAsciiWhitespace(line.substr(0, equals));
     if (equals == absl::string_view::npos || !IsFlagName(name) || absl::StartsWith(name, "-")) {
       return base::ErrorAt(source, lines.number(),
-                           absl::StrCat("came ", base::Quoted(line),
-                                        ", wanted a flag without its dashes and its value, such "
-                                        "as server = lab:50051"));
+                           absl::StrCat("expected FLAG = VALUE, such as server = lab:50051, got ",
+                                        base::Quoted(line)));
     }
     settings.push_back({std::string(name),
                         std::string(absl::StripAsciiWhitespace(line.substr(equals + 1))),

@@ -11,31 +11,32 @@
 
 namespace duet::client::cli {
 
-// The value of an environment variable; nothing for one that is not set.
+// The value of an environment variable; nullopt if it is not set.
 using Variables = std::function<std::optional<std::string>(const std::string& name)>;
 
-// A flag that counts where the command line does not have it.
+// A flag that applies unless the command line has it.
 struct Setting {
   std::string name;    // without its dashes: "server"
-  std::string value;   // of a switch "true" or "false"
+  std::string value;   // "true" or "false" for a switch
   std::string source;  // for errors: "DUET_SERVER" or "/home/ada/.config/duet/config:3"
 };
 
-// What the environment and the configuration file say, where they differ the environment's alone:
-// DUET_SERVER, then the file that DUET_CONFIG names (empty: none), or else duet/config below
-// XDG_CONFIG_HOME or ~/.config, which need not exist.
-// Errors: what ParseSettings and reading the file have.
+// Reads the configuration file and the environment, which overrides it: DUET_SERVER sets the
+// server; DUET_CONFIG names the file (empty: none). The default file is duet/config below
+// XDG_CONFIG_HOME or
+// ~/.config; it need not exist.
+// Errors: those of ParseSettings and of base::ReadFile.
 absl::StatusOr<std::vector<Setting>> ReadSettings(const Variables& variables);
 
-// A configuration file: flags of any command without their dashes, one a line; a flag that may be
-// repeated may have several lines.
+// Parses a configuration file: flags of any command without their dashes, one on each line. A
+// repeatable flag may have several lines.
 //
 //   # the lab's server
 //   server = lab:50051
 //   tls-ca = /etc/lab/ca.pem
 //   quiet = true
 //
-// Errors: INVALID_ARGUMENT "source:line: ..." for a line of another kind.
+// Errors: INVALID_ARGUMENT "source:line: ..." for any other line.
 absl::StatusOr<std::vector<Setting>> ParseSettings(absl::string_view text,
                                                    absl::string_view source);
 

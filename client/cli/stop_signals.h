@@ -7,8 +7,8 @@
 
 namespace duet::client::cli {
 
-// While it lives, SIGINT and SIGTERM ask for an end: the first one calls `on_first` in a thread of
-// its own, the second one ends the process at once with kExitRetry.
+// Handles SIGINT and SIGTERM during its lifetime: the first signal calls `on_first` in another
+// thread, the second one ends the process immediately with kExitRetry.
 //
 // Threads that are started while it lives do not see the two signals: make it before others.
 class StopSignals {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -15,6 +16,7 @@
 #include "client/cli/report.h"
 #include "client/cli/request_building.h"
 #include "client/cli/server_options.h"
+#include "client/cli/synthesize_flags.h"
 #include "client/model_skeleton.h"
 #include "model/base/nearest.h"
 #include "model/base/text.h"
@@ -58,7 +60,7 @@ struct Job {
   std::vector<std::string> notes;  // on how the leader was read
 };
 
-// A class that the model does not know is refused here, where its near namesake can be told.
+// Rejects a class that the model does not know and suggests the nearest name.
 absl::Status CheckLabels(const SynthesizeArguments& arguments, const ModelInfo& model) {
   std::vector<ClassWeight> weights = arguments.weights;
   for (const WeightKeyframe& keyframe : arguments.keyframes) {
@@ -69,9 +71,9 @@ absl::Status CheckLabels(const SynthesizeArguments& arguments, const ModelInfo& 
     const std::string& name = weight.interaction_class;
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     return absl::InvalidArgumentError(
-        absl::StrCat(arguments.keyframes.empty() ? "--label" : "--keyframe", ": class: came ",
-                     base::Quoted(name), ", ", model.name, " knows ", absl::StrJoin(known, ", "),
-                     base::DidYouMean(name, known)));
+        absl::StrCat(arguments.keyframes.empty() ? "--label" : "--keyframe",
+                     ": class: expected one of ", model.name, " (", absl::StrJoin(known, ", "),
+                     "), got ", base::Quoted(name), base::DidYouMean(name, known)));
   }
   return absl::OkStatus();
 }
@@ -128,20 +130,33 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
   return absl::OkStatus();
 }
 
-}  // namespace
-
-absl::Status RunSynthesize(const SynthesizeArguments& arguments,
-                           const ProgramEnvironment& environment) {
+absl::Status Run(const SynthesizeArguments& arguments, const ProgramEnvironment& environment) {
   absl::Status inputs = CheckInputs(arguments);
   if (!inputs.ok()) return inputs;
   absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
-  SayWhenWaiting(arguments.server, *environment.err, &*options);
+  ReportWaiting(arguments.server, *environment.err, &*options);
   const absl::StatusOr<Client> client = environment.connect(*options);
   if (!client.ok()) return client.status();
   const absl::StatusOr<Job> job = PrepareJob(arguments, *client, environment.in);
   if (!job.ok()) return job.status();
   return RunSamples(arguments, *job, *client, environment);
+}
+
+}  // namespace
+
+Command AddSynthesizeCommand(CLI::App* program) {
+  const auto arguments = std::make_shared<SynthesizeArguments>();
+  CLI::App* app = program->add_subcommand("synthesize", "Synthesise the follower of a leader");
+  AddSynthesizeFlags(app, arguments.get());
+  app->footer(kExitCodesFooter);
+  Command command;
+  command.app = app;
+  command.run = [arguments](const CommandContext& context) {
+    return Done(Run(*arguments, context.environment));
+  };
+  command.servers = [arguments] { return arguments->server.address; };
+  return command;
 }
 
 }  // namespace duet::client::cli

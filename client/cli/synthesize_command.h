@@ -1,15 +1,13 @@
 #ifndef DUET_CLIENT_CLI_SYNTHESIZE_COMMAND_H_
 #define DUET_CLIENT_CLI_SYNTHESIZE_COMMAND_H_
 
-#include "absl/status/status.h"
-#include "client/cli/arguments.h"
-#include "client/cli/program.h"
+#include "CLI/CLI.hpp"
+#include "client/cli/command.h"
 
 namespace duet::client::cli {
 
-// duet synthesize: reads the leader in the joints of the model, calls, writes every output.
-absl::Status RunSynthesize(const SynthesizeArguments& arguments,
-                           const ProgramEnvironment& environment);
+// duet synthesize: reads the leader in the joints of the model, calls, and writes every output.
+Command AddSynthesizeCommand(CLI::App* program);
 
 }  // namespace duet::client::cli
 

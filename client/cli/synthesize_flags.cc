@@ -36,7 +36,7 @@ void AddLeaderFlags(CLI::App* app, SynthesizeArguments* arguments) {
   AddChoice<formats::Side>(
       app, "--leader-side", kSides,
       [arguments](formats::Side side) { arguments->leader_side = side; },
-      "Which person of a file with two leads")
+      "The person who leads in a file with two people")
       ->default_str(NameOf(kSides, arguments->leader_side))
       ->group(kInputGroup);
   AddInputFlags(app, &arguments->input);
@@ -46,19 +46,19 @@ void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {
   constexpr char kGroup[] = "Reaction";
   AddParsed<uint64_t>(
       app, "--seed", "SEED", ParseSeed, [arguments](uint64_t seed) { arguments->seed = seed; },
-      "Which answer of a model that samples; the same seed gives the same answer")
+      "Seed of a model that samples; the same seed gives the same answer")
       ->take_last()
       ->default_str(absl::StrCat(arguments->seed))
       ->group(kGroup);
   AddParsed<float>(
       app, "--variety", "VARIETY", ParseVariety,
       [arguments](float variety) { arguments->variety = variety; },
-      "How varied such answers are: 0 the typical one, 1 as varied as people, up to 2")
+      "Variety of such answers, from 0 (typical) over 1 (as varied as people) to 2")
       ->take_last()
       ->default_str(absl::StrCat(arguments->variety))
       ->group(kGroup);
   app->add_option("--samples", arguments->samples,
-                  "Answers to ask for, with seeds SEED, SEED+1, ...; with several, each --out "
+                  "Number of answers, with the seeds SEED, SEED+1, ...; with several, each --out "
                   "pair.html becomes pair.seed0.html and so on")
       ->check(Undescribed(CLI::Range(1, 1000)))
       ->capture_default_str()
@@ -68,59 +68,61 @@ void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {
 
 void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
   constexpr char kGroup[] = "Reaction";
-  CLI::Option* label = AddParsed<ClassWeight>(app, "--label", "CLASS[=WEIGHT]", ParseClassWeight,
-                                              AppendTo(&arguments->weights),
-                                              "Such as kick=1 or hug=-0.5; repeatable")
-                           ->group(kGroup);
-  AddParsed<WeightKeyframe>(app, "--keyframe", "FRAME:CLASS[=WEIGHT],...", ParseKeyframe,
-                            AppendTo(&arguments->keyframes),
-                            "For weights that change over time; repeatable")
+  CLI::Option* label =
+      AddParsed<ClassWeight>(
+          app, "--label", "CLASS[=WEIGHT]", ParseClassWeight, AppendTo(&arguments->weights),
+          "Weight of an interaction class, such as kick=1 or hug=-0.5; repeatable")
+          ->group(kGroup);
+  AddParsed<WeightKeyframe>(
+      app, "--keyframe", "FRAME:CLASS[=WEIGHT],...", ParseKeyframe, AppendTo(&arguments->keyframes),
+      "Weights from a frame on, for weights that change over time; repeatable")
       ->excludes(label)
       ->group(kGroup);
   AddParsed<ModelChoice>(
       app, "--model", "NAME[@VERSION|:LABEL]", ParseModelChoice,
       [arguments](ModelChoice choice) { arguments->model = std::move(choice); },
-      "Default: the server's own")
+      "Model to use (default: the server's default model)")
       ->take_last()
       ->group(kGroup);
   app->add_option("--follower-start", arguments->follower_start,
-                  "Where the follower begins: a motion file (its first frame), or X,Y,Z of the "
-                  "root joint in metres, y up")
+                  "Start of the follower: a motion file (its first frame), or X,Y,Z of the root "
+                  "joint in metres, y up")
       ->type_name("FILE|X,Y,Z")
       ->group(kGroup);
   AddChoice<formats::Side>(
       app, "--follower-start-side", kSides,
       [arguments](formats::Side side) { arguments->follower_start_side = side; },
-      absl::StrCat("Which person of a file with two (default: not the leader where it is the "
-                   "leader's file, else ",
-                   NameOf(kSides, kDefaultSide), ")"))
+      absl::StrCat(
+          "The person in a --follower-start file with two people (default: in the leader's "
+          "file, the other person; else ",
+          NameOf(kSides, kDefaultSide), ")"))
       ->group(kGroup);
   AddParsed<motion::Vec3>(
       app, "--partner-direction", "X,Y,Z", ParseDirection,
       [arguments](motion::Vec3 direction) { arguments->partner_direction = direction; },
-      "Where the follower should be, as a horizontal direction from the leader (default: towards "
-      "--follower-start, else as the model tells from the leader)")
+      "Horizontal direction from the leader to the follower (default: towards --follower-start, "
+      "else the model's estimate from the leader)")
       ->take_last()
       ->group(kGroup);
   AddSamplingFlags(app, arguments);
   AddChoice<std::optional<bool>>(
       app, "--clean-up", kCleanUps,
       [arguments](std::optional<bool> clean_up) { arguments->clean_up = clean_up; },
-      "Correct the follower: stand, feet still, human joints, out of the leader; auto: as the "
-      "server does for the model")
+      "Correct the follower: upright, feet still, joints within human ranges, outside the leader; "
+      "auto: the server's default for the model")
       ->default_str(NameOf(kCleanUps, arguments->clean_up))
       ->group(kGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->priority = priority; },
-      "bulk yields to interactive calls and waits when the server is full")
+      "bulk calls yield to interactive calls, and wait if the server is full")
       ->default_str(NameOf(kPriorities, arguments->priority))
       ->group(kGroup);
-  app->add_option("--chunk-frames", arguments->chunk_frames, "Frames in one chunk of the reply")
+  app->add_option("--chunk-frames", arguments->chunk_frames, "Frames in each chunk of the reply")
       ->check(Undescribed(CLI::Range(1, 100000)))
       ->type_name("FRAMES")
       ->group(kGroup);
-  app->add_option("--request-id", arguments->request_id, "Names the call in the server's log")
+  app->add_option("--request-id", arguments->request_id, "Name of the call in the server's log")
       ->type_name("ID")
       ->group(kGroup);
 }
@@ -139,8 +141,8 @@ void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
   AddBvhFlags(app, &arguments->bvh);
   app->add_option(
          "--follower-rig", arguments->follower_rig,
-         "Rig of the follower in --out FILE.bvh, FILE.glb and FILE.gltf: the leader's, or that "
-         "of another .bvh, .amc, .glb or .gltf (default: Duet's own)")
+         "Rig of the follower in --out FILE.bvh, FILE.glb and FILE.gltf: the leader's rig, or the "
+         "rig of another .bvh, .amc, .glb or .gltf (default: Duet's rig)")
       ->type_name("leader|FILE")
       ->group(kOutputGroup);
   AddParsed<std::pair<std::string, std::string>>(
@@ -148,16 +150,16 @@ void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       [arguments](std::pair<std::string, std::string> joints) {
         arguments->rig_joints.insert(joints);
       },
-      "Where the names of --follower-rig FILE alone do not tell which is which; repeatable (the "
-      "leader's own rig goes by --joint-map)")
+      "Joint of --follower-rig FILE for a joint of the model, if its name is not recognised; "
+      "repeatable (for the leader's rig, use --joint-map)")
       ->group(kOutputGroup);
   app->add_option("--follower-rig-joint-map-file", arguments->rig_joint_table,
-                  "A table of such joints, one MODEL_JOINT=RIG_JOINT a line; "
-                  "--follower-rig-joint-map wins")
+                  "File with one MODEL_JOINT=RIG_JOINT on each line; --follower-rig-joint-map "
+                  "overrides it")
       ->type_name("FILE")
       ->group(kOutputGroup);
   app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
-  app->add_flag("--quiet", arguments->quiet, "Print errors alone")->group(kOutputGroup);
+  app->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
 }
 
 void CheckFollowerRig(const SynthesizeArguments& arguments) {
@@ -166,8 +168,8 @@ void CheckFollowerRig(const SynthesizeArguments& arguments) {
   if (names_joints && (leaders || arguments.follower_rig.empty())) {
     throw CLI::ValidationError(
         arguments.rig_joints.empty() ? "--follower-rig-joint-map-file" : "--follower-rig-joint-map",
-        "is for --follower-rig FILE; of the leader's rig, --joint-map and --joint-map-file say "
-        "which joint is which");
+        "is only valid with --follower-rig FILE. For the leader's rig, use --joint-map or "
+        "--joint-map-file");
   }
   if (arguments.follower_rig.empty()) return;
   const std::filesystem::path file =
@@ -189,7 +191,7 @@ void CheckFollowerRig(const SynthesizeArguments& arguments) {
                                  })));
 }
 
-// What no single flag can tell.
+// Checks flags that depend on each other.
 void CheckTogether(const SynthesizeArguments& arguments) {
   if (arguments.weights.empty() && arguments.keyframes.empty()) {
     throw CLI::RequiredError("--label or --keyframe");
@@ -197,16 +199,19 @@ void CheckTogether(const SynthesizeArguments& arguments) {
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
   CheckFollowerRig(arguments);
   if (arguments.samples > 1 && WritesToStandardOutput(arguments.outputs)) {
-    throw CLI::ValidationError("--samples", "of several answers each wants a file, not --out -");
+    throw CLI::ValidationError("--samples",
+                               "cannot be used with --out -: each answer needs a file");
   }
   if (arguments.output_format && arguments.output_format->motion == formats::Format::kBvh) {
-    throw CLI::ValidationError("--output-format", "bvh has a file for each person, not --out -");
+    throw CLI::ValidationError("--output-format",
+                               "bvh cannot be used with --out -: it has one file for each person");
   }
   const uint64_t left = std::numeric_limits<uint64_t>::max() - arguments.seed;
   if (static_cast<uint64_t>(arguments.samples) - 1 > left) {
     throw CLI::ValidationError(
-        "--samples", absl::StrCat(arguments.samples, " from --seed ", arguments.seed,
-                                  " on pass the largest seed, wanted at most ", left + 1));
+        "--samples",
+        absl::StrCat("expected at most ", left + 1, " with --seed ", arguments.seed,
+                     ", so that no seed exceeds the largest, got ", arguments.samples));
   }
   for (int sample = 0; sample < arguments.samples; ++sample) {
     for (const std::filesystem::path& output : SampleOutputs(arguments, sample)) {
@@ -218,14 +223,12 @@ void CheckTogether(const SynthesizeArguments& arguments) {
 
 }  // namespace
 
-CLI::App* AddSynthesizeCommand(CLI::App* app, SynthesizeArguments* arguments) {
-  CLI::App* command = app->add_subcommand("synthesize", "Synthesise the follower of a leader");
+void AddSynthesizeFlags(CLI::App* command, SynthesizeArguments* arguments) {
   AddLeaderFlags(command, arguments);
   AddReactionFlags(command, arguments);
   AddOutputFlags(command, arguments);
   AddServerFlags(command, &arguments->server);
   command->callback([arguments] { CheckTogether(*arguments); });
-  return command;
 }
 
 }  // namespace duet::client::cli

@@ -2,12 +2,12 @@
 #define DUET_CLIENT_CLI_SYNTHESIZE_FLAGS_H_
 
 #include "CLI/CLI.hpp"
-#include "client/cli/arguments.h"
+#include "client/cli/synthesize_arguments.h"
 
 namespace duet::client::cli {
 
-// duet synthesize.
-CLI::App* AddSynthesizeCommand(CLI::App* app, SynthesizeArguments* arguments);
+// Adds the flags of duet synthesize to its command. `arguments` outlives the command.
+void AddSynthesizeFlags(CLI::App* command, SynthesizeArguments* arguments);
 
 }  // namespace duet::client::cli
 

@@ -8,11 +8,19 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/cli/arguments.h"
+#include "client/cli/motion_arguments.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
+
+// The motions that duet view and duet compare show: "[NAME=]FILE" or "[NAME=]LEADER,FOLLOWER".
+struct TakeArguments {
+  std::vector<std::string> takes;
+  // Who leads in a file with two people: one value for all files, or one for each file.
+  std::vector<formats::Side> leader_sides = {kDefaultSide};
+  InputArguments input;
+};
 
 // One motion that is shown or compared: a leader and a follower, or one person.
 struct Take {

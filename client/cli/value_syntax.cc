@@ -11,8 +11,9 @@
 namespace duet::client::cli {
 namespace {
 
-absl::Status Wanted(absl::string_view text, absl::string_view wanted) {
-  return absl::InvalidArgumentError(absl::StrCat(base::Quoted(text), ", wanted ", wanted));
+absl::Status Expected(absl::string_view expected, absl::string_view text) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("expected ", expected, ", got ", base::Quoted(text)));
 }
 
 }  // namespace
@@ -23,7 +24,7 @@ absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text) {
   const bool has_weight = absl::StrContains(text, '=');
   if (weight.interaction_class.empty() ||
       (has_weight && !absl::SimpleAtof(parts.second, &weight.weight))) {
-    return Wanted(text, "CLASS or CLASS=WEIGHT such as kick or kick=0.5");
+    return Expected("CLASS or CLASS=WEIGHT such as kick or kick=0.5", text);
   }
   return weight;
 }
@@ -33,11 +34,11 @@ absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text) {
   const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits(':', 1));
   WeightKeyframe keyframe;
   if (!absl::SimpleAtoi(parts.first, &keyframe.frame) || keyframe.frame < 0) {
-    return Wanted(text, kForm);
+    return Expected(kForm, text);
   }
   for (absl::string_view item : absl::StrSplit(parts.second, ',')) {
     absl::StatusOr<ClassWeight> weight = ParseClassWeight(item);
-    if (!weight.ok()) return Wanted(text, kForm);
+    if (!weight.ok()) return Expected(kForm, text);
     keyframe.weights.push_back(*std::move(weight));
   }
   return keyframe;
@@ -46,7 +47,7 @@ absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text) {
 absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_view text) {
   std::pair<std::string, std::string> joints = absl::StrSplit(text, absl::MaxSplits('=', 1));
   if (joints.first.empty() || joints.second.empty()) {
-    return Wanted(text, "MODEL_JOINT=FILE_JOINT such as left_hand=LeftWrist");
+    return Expected("MODEL_JOINT=FILE_JOINT such as left_hand=LeftWrist", text);
   }
   return joints;
 }
@@ -54,19 +55,19 @@ absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_
 absl::StatusOr<float> ParseVariety(absl::string_view text) {
   float variety = 0;
   if (absl::SimpleAtof(text, &variety) && variety >= 0 && variety <= 2) return variety;
-  return Wanted(text, "a number from 0 to 2");
+  return Expected("a number from 0 to 2", text);
 }
 
 absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text) {
   const std::optional<motion::LengthUnit> unit = motion::ParseLengthUnit(text);
   if (unit.has_value()) return *unit;
-  return Wanted(text, motion::kLengthUnitNames);
+  return Expected(motion::kLengthUnitNames, text);
 }
 
 absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text) {
   const std::optional<motion::UpAxis> axis = motion::ParseUpAxis(text);
   if (axis.has_value()) return *axis;
-  return Wanted(text, motion::kUpAxisNames);
+  return Expected(motion::kUpAxisNames, text);
 }
 
 }  // namespace duet::client::cli

@@ -12,8 +12,8 @@
 
 namespace duet::client::cli {
 
-// How the values of the program's flags are written. Errors: INVALID_ARGUMENT with what came and
-// what was wanted. Whether a class exists and a weight is in range, the server checks.
+// The syntax of the program's flag values. Errors: INVALID_ARGUMENT "expected ..., got ...". The
+// server checks whether a class exists and a weight is in range.
 
 // As in recipes and manifests.
 using batch::ParseDirection;

@@ -1,19 +1,30 @@
 #include "client/cli/view_command.h"
 
+#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "client/cli/flags.h"
+#include "client/cli/input_flags.h"
 #include "client/cli/output.h"
 #include "client/cli/take.h"
+#include "client/cli/take_flags.h"
 #include "client/viewer/gallery.h"
 #include "model/base/file.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
 namespace {
+
+struct ViewArguments {
+  TakeArguments takes;
+  std::filesystem::path out;
+  std::string title;  // empty: the takes' names
+  bool quiet = false;
+};
 
 constexpr std::size_t kMostNamesInTitle = 3;
 
@@ -43,9 +54,7 @@ std::string Describe(const std::vector<Take>& takes, const std::filesystem::path
   return absl::StrCat(text, "wrote     ", out.string(), "\n");
 }
 
-}  // namespace
-
-absl::Status RunView(const ViewArguments& arguments, const ProgramEnvironment& environment) {
+absl::Status Run(const ViewArguments& arguments, const ProgramEnvironment& environment) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const absl::StatusOr<std::vector<Take>> takes =
       ReadTakes(arguments.takes, skeleton, environment.in);
@@ -68,6 +77,41 @@ absl::Status RunView(const ViewArguments& arguments, const ProgramEnvironment& e
     (to_stream ? *environment.err : *environment.out) << Describe(*takes, arguments.out);
   }
   return absl::OkStatus();
+}
+
+void AddFlags(CLI::App* command, ViewArguments* arguments) {
+  command->add_option("files", arguments->takes.takes, "Motions to show, at most 12")
+      ->required()
+      ->expected(1, 12)
+      ->type_name("[NAME=]FILE");
+  AddTakeFlags(command, &arguments->takes);
+  command->add_option("--out", arguments->out, "Page to write, .html; - for standard output")
+      ->required()
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  command->add_option("--title", arguments->title, "Title of the page")
+      ->type_name("TEXT")
+      ->group(kOutputGroup);
+  command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
+  command->footer(kTakesFooter);
+  command->callback([arguments] {
+    CheckTakes(arguments->takes);
+    CheckPage("--out", arguments->out);
+  });
+}
+
+}  // namespace
+
+Command AddViewCommand(CLI::App* program) {
+  const auto arguments = std::make_shared<ViewArguments>();
+  CLI::App* app = program->add_subcommand("view", "Make a page that plays motions side by side");
+  AddFlags(app, arguments.get());
+  Command command;
+  command.app = app;
+  command.run = [arguments](const CommandContext& context) {
+    return Done(Run(*arguments, context.environment));
+  };
+  return command;
 }
 
 }  // namespace duet::client::cli

@@ -76,7 +76,7 @@ class RigTest(unittest.TestCase):
     def test_a_table_without_such_a_rig_is_a_mistake(self):
         for flags in ((), ("--follower-rig", "leader")):
             done = self.synthesize("mistake.bvh", "--follower-rig-joint-map-file", self.table, *flags)
-            self.assertIn("--follower-rig-joint-map-file: is for --follower-rig FILE", done.stderr)
+            self.assertIn("--follower-rig-joint-map-file: is only valid with --follower-rig FILE", done.stderr)
         done = self.synthesize("mistake.bvh", "--follower-rig", self.rig,
                                "--follower-rig-joint-map-file", self.folder / "nowhere.txt")
         self.assertIn("nowhere.txt: no such file", done.stderr)

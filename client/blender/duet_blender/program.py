@@ -45,7 +45,7 @@ def run(settings, *arguments):
 def _in_the_panel(message):
     """Replaces hints about the program's flags by hints about the panel."""
     lines = message.splitlines()
-    hints = [line for line in lines if "joint-map" in line and line.startswith("Say it with")]
+    hints = [line for line in lines if "joint-map" in line and line.startswith("Specify it with")]
     kept = [line for line in lines if line not in hints]
     return "\n".join(kept + ["Choose the bones in the panel, under Reading the leader."] * bool(hints))
 

@@ -11,7 +11,7 @@
 #include "CLI/CLI.hpp"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "client/cli/arguments.h"
+#include "client/cli/server_arguments.h"
 #include "client/load/arrivals.h"
 #include "client/load/call_kinds.h"
 #include "client/load/load_options.h"

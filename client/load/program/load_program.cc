@@ -173,7 +173,7 @@ int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironm
                                                                     : cli::kExitUsage;
   }
   if (parsed.manual_page || !parsed.completion.empty()) {
-    *environment.out << (parsed.manual_page ? cli::PrintManualPage(app, "").text
+    *environment.out << (parsed.manual_page ? cli::ManualPage(app, "")
                                             : cli::CompletionScript(app, parsed.completion));
     return cli::kExitDone;
   }

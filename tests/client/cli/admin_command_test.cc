@@ -88,7 +88,7 @@ TEST_F(AdminCommandTest, ShowsWhatIsOutdatedAndWhatWasRefused) {
   EXPECT_CALL(*client_, ListModels).WillOnce(Return(models));
   EXPECT_EQ(Run({"models"}), kExitDone);
   EXPECT_EQ(out_.str(),
-            "sbu/3  served (outdated: the files on disk were refused), default\n"
+            "sbu/3  served (outdated: the files on disk were rejected), default\n"
             "    weights: 7 bytes, wanted 9\n"
             "problem: access file: empty\n");
 }

@@ -1,8 +1,9 @@
-#include "client/cli/arguments.h"
+#include "client/cli/command_line.h"
 
 #include <string>
 #include <vector>
 
+#include "client/cli/synthesize_flags.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
@@ -20,34 +21,49 @@ using ::testing::SizeIs;
 
 using Strings = std::vector<std::string>;
 
-class ArgumentsTest : public ::testing::Test {
+// The text and exit code of a command line that runs no command.
+ParsedCommandLine Parse(const Strings& arguments) {
+  CommandLine line;
+  ParsedCommandLine parsed = line.Parse(arguments);
+  EXPECT_EQ(parsed.command, nullptr);
+  return parsed;
+}
+
+class CommandLineTest : public ::testing::Test {
  protected:
-  // `duet synthesize` with what it cannot do without, and `more`.
-  ParsedCommandLine Synthesize(const Strings& more) {
+  // The required flags of `duet synthesize` except its labels, and `more`.
+  Strings Synthesize(const Strings& more) const {
     Strings arguments = {"synthesize", "--leader", "kick.bvh", "--out", Out("pair.html")};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return ParseCommandLine(arguments);
+    return arguments;
   }
 
-  // The parsed flags of a good command line.
+  // The arguments of a valid command line with a label.
   SynthesizeArguments Good(const Strings& more) {
     Strings with_label = {"--label", "kick=1"};
     with_label.insert(with_label.end(), more.begin(), more.end());
-    const ParsedCommandLine parsed = Synthesize(with_label);
-    EXPECT_TRUE(parsed.synthesize.has_value()) << parsed.text;
-    return parsed.synthesize.value_or(SynthesizeArguments{});
+    return Arguments(Synthesize(with_label));
+  }
+
+  // The arguments of a valid command line.
+  static SynthesizeArguments Arguments(const Strings& words) {
+    CommandLine line;
+    EXPECT_NE(line.Parse(words).command, nullptr);
+    CLI::App command;
+    SynthesizeArguments arguments;
+    AddSynthesizeFlags(&command, &arguments);
+    // Without the command's name; CLI11 takes the arguments in reverse.
+    command.parse(Strings(words.rbegin(), words.rend() - 1));
+    return arguments;
   }
 
   void ExpectUsageError(const Strings& arguments, const std::string& message) {
-    const ParsedCommandLine parsed = ParseCommandLine(arguments);
-    EXPECT_FALSE(parsed.models.has_value() || parsed.synthesize.has_value()) << message;
+    const ParsedCommandLine parsed = Parse(arguments);
     EXPECT_EQ(parsed.exit_code, 2);
     EXPECT_THAT(parsed.text, HasSubstr(message));
   }
   void ExpectRefused(const Strings& more, const std::string& message) {
-    Strings arguments = {"synthesize", "--leader", "kick.bvh", "--out", Out("pair.html")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    ExpectUsageError(arguments, message);
+    ExpectUsageError(Synthesize(more), message);
   }
 
   std::string Out(const std::string& name) const { return (folder_ / name).string(); }
@@ -55,20 +71,20 @@ class ArgumentsTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ArgumentsTest, VersionAndHelpSucceed) {
-  EXPECT_EQ(ParseCommandLine({"--version"}).exit_code, 0);
-  EXPECT_THAT(ParseCommandLine({"--version"}).text, HasSubstr("duet " DUET_VERSION));
+TEST_F(CommandLineTest, VersionAndHelpSucceed) {
+  EXPECT_EQ(Parse({"--version"}).exit_code, 0);
+  EXPECT_THAT(Parse({"--version"}).text, HasSubstr("duet " DUET_VERSION));
   for (const Strings& arguments :
        {Strings{"--help"}, Strings{"synthesize", "--help"}, Strings{"models", "--help"}}) {
-    const ParsedCommandLine parsed = ParseCommandLine(arguments);
+    const ParsedCommandLine parsed = Parse(arguments);
     EXPECT_EQ(parsed.exit_code, 0);
     EXPECT_THAT(parsed.text, HasSubstr("Usage: duet"));
   }
-  EXPECT_THAT(ParseCommandLine({"synthesize", "--help"}).text, HasSubstr("  42  failed"));
+  EXPECT_THAT(Parse({"synthesize", "--help"}).text, HasSubstr("  42  failed"));
 }
 
-TEST_F(ArgumentsTest, HelpShowsDefaults) {
-  const std::string help = ParseCommandLine({"synthesize", "--help"}).text;
+TEST_F(CommandLineTest, HelpShowsDefaults) {
+  const std::string help = Parse({"synthesize", "--help"}).text;
   for (const char* shown :
        {"--server HOST:PORT=localhost:50051", "--timeout SECONDS=120", "--wait SECONDS=5",
         "--leader-side left|right=left", "--priority bulk|interactive=interactive", "else left)",
@@ -78,15 +94,7 @@ TEST_F(ArgumentsTest, HelpShowsDefaults) {
   }
 }
 
-TEST_F(ArgumentsTest, ModelsHasDefaults) {
-  const ParsedCommandLine parsed = ParseCommandLine({"models"});
-  ASSERT_TRUE(parsed.models.has_value());
-  EXPECT_EQ(parsed.models->server.address, "localhost:50051");
-  EXPECT_EQ(parsed.models->server.timeout_seconds, 120);
-  EXPECT_FALSE(parsed.models->json);
-}
-
-TEST_F(ArgumentsTest, SynthesizeHasDefaults) {
+TEST_F(CommandLineTest, SynthesizeHasDefaults) {
   const SynthesizeArguments arguments = Good({});
   EXPECT_EQ(arguments.leader, "kick.bvh");
   EXPECT_EQ(arguments.leader_side, formats::Side::kLeft);
@@ -103,7 +111,7 @@ TEST_F(ArgumentsTest, SynthesizeHasDefaults) {
   EXPECT_THAT(arguments.outputs, ElementsAre(Out("pair.html")));
 }
 
-TEST_F(ArgumentsTest, EveryFlagIsRead) {
+TEST_F(CommandLineTest, EveryFlagIsRead) {
   const SynthesizeArguments arguments = Good({"--label",
                                               "hug=-0.5",
                                               "--leader-side",
@@ -178,48 +186,47 @@ TEST_F(ArgumentsTest, EveryFlagIsRead) {
   EXPECT_EQ(arguments.server.timeout_seconds, 2.5);
 }
 
-TEST_F(ArgumentsTest, KeyframesStandInForLabels) {
-  const ParsedCommandLine parsed =
-      Synthesize({"--keyframe", "0:kick=1", "--keyframe", "30:kick=0,hug=1"});
-  ASSERT_TRUE(parsed.synthesize.has_value()) << parsed.text;
-  ASSERT_THAT(parsed.synthesize->keyframes, SizeIs(2));
-  EXPECT_EQ(parsed.synthesize->keyframes[1].frame, 30);
+TEST_F(CommandLineTest, KeyframesStandInForLabels) {
+  const SynthesizeArguments arguments =
+      Arguments(Synthesize({"--keyframe", "0:kick=1", "--keyframe", "30:kick=0,hug=1"}));
+  ASSERT_THAT(arguments.keyframes, SizeIs(2));
+  EXPECT_EQ(arguments.keyframes[1].frame, 30);
 }
 
-TEST_F(ArgumentsTest, WhatIsMissingIsNamed) {
+TEST_F(CommandLineTest, WhatIsMissingIsNamed) {
   ExpectUsageError({}, "subcommand is required");
   ExpectUsageError({"synthesize", "--label", "kick=1", "--out", Out("pair.html")}, "--leader");
   ExpectUsageError({"synthesize", "--leader", "kick.bvh", "--label", "kick=1"}, "--out");
   ExpectRefused({}, "--label or --keyframe is required");
 }
 
-TEST_F(ArgumentsTest, WhatMakesNoSenseIsNamed) {
+TEST_F(CommandLineTest, WhatMakesNoSenseIsNamed) {
   ExpectUsageError({"dance"}, "There is no command \"dance\"");
   ExpectUsageError({"models", "--frobnicate"}, "--frobnicate");
-  ExpectRefused({"--label", "kick="}, "--label: \"kick=\", wanted CLASS or CLASS=WEIGHT");
+  ExpectRefused({"--label", "kick="}, "--label: expected CLASS or CLASS=WEIGHT");
   ExpectRefused({"--label", "kick=1", "hug=1"}, "hug=1");
-  ExpectRefused({"--keyframe", "kick=1"}, "--keyframe: \"kick=1\", wanted FRAME:CLASS=WEIGHT");
+  ExpectRefused({"--keyframe", "kick=1"}, "--keyframe: expected FRAME:CLASS=WEIGHT");
   ExpectRefused({"--label", "kick=1", "--keyframe", "0:kick=1"}, "excludes");
   ExpectRefused({"--label", "kick=1", "--leader-side", "up"}, "--leader-side: up");
-  ExpectRefused({"--label", "kick=1", "--unit", "1"}, "--unit: \"1\", wanted metres");
+  ExpectRefused({"--label", "kick=1", "--unit", "1"}, "--unit: expected metres");
   ExpectRefused({"--label", "kick=1", "--frame-rate", "-15"},
-                "--frame-rate: \"-15\", wanted a number above 0");
+                "--frame-rate: expected a number above 0, got \"-15\"");
   ExpectRefused({"--label", "kick=1", "--metres-per-unit", "inf"},
-                "--metres-per-unit: \"inf\", wanted a number above 0");
+                "--metres-per-unit: expected a number above 0, got \"inf\"");
   ExpectRefused({"--label", "kick=1", "--timeout", "0"}, "--timeout");
   ExpectRefused({"--label", "kick=1", "--tls-key", "key.pem"}, "--tls-key");
   ExpectRefused({"--label", "kick=1", "--model", "sbu@x"}, "--model: expected NAME");
   ExpectRefused({"--label", "kick=1", "--seed", "-1"}, "--seed: expected a whole number");
   ExpectRefused({"--label", "kick=1", "--variety", "3"},
-                "--variety: \"3\", wanted a number from 0");
+                "--variety: expected a number from 0 to 2, got \"3\"");
   ExpectRefused({"--label", "kick=1", "--samples", "0"}, "--samples");
   ExpectRefused({"--label", "kick=1", "--seed", "18446744073709551610", "--samples", "7"},
-                "--samples: 7 from --seed 18446744073709551610 on pass the largest seed, wanted at "
-                "most 6");
+                "--samples: expected at most 6 with --seed 18446744073709551610, so that no seed "
+                "exceeds the largest, got 7");
   ExpectRefused({"--label", "kick=1", "--tls-cert", "a.pem"}, "--tls-key");
 }
 
-TEST_F(ArgumentsTest, ARigNeedsAnOutputThatHoldsOne) {
+TEST_F(CommandLineTest, ARigNeedsAnOutputThatHoldsOne) {
   ExpectRefused({"--label", "kick", "--out", Out("pair.bvh"), "--follower-rig", "rig.csv"},
                 "--follower-rig: expected a .bvh, .amc, .glb or .gltf and --out FILE with .bvh, "
                 ".glb or .gltf, got rig.csv");
@@ -227,7 +234,7 @@ TEST_F(ArgumentsTest, ARigNeedsAnOutputThatHoldsOne) {
                 "got rig.bvh and --out");
 }
 
-TEST_F(ArgumentsTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
+TEST_F(CommandLineTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
   ExpectRefused({"--label", "kick=1", "--out", Out("pair.fbx")},
                 "\".fbx\", wanted .html, .glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt");
   ExpectRefused({"--label", "kick=1", "--out", Out("no/pair.csv")}, "there is no folder");
@@ -237,7 +244,7 @@ TEST_F(ArgumentsTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
                    "would replace the file that is read");
 }
 
-TEST_F(ArgumentsTest, EachOfSeveralSamplesHasFilesNamedAfterItsSeed) {
+TEST_F(CommandLineTest, EachOfSeveralSamplesHasFilesNamedAfterItsSeed) {
   const SynthesizeArguments one = Good({"--seed", "7", "--out", Out("pair.bvh")});
   EXPECT_THAT(SampleOutputs(one, 0), ElementsAre(Out("pair.html"), Out("pair.bvh")));
   const SynthesizeArguments two =
@@ -247,12 +254,12 @@ TEST_F(ArgumentsTest, EachOfSeveralSamplesHasFilesNamedAfterItsSeed) {
   EXPECT_THAT(SampleOutputs(two, 1), ElementsAre(Out("pair.seed8.html"), Out("pair.x.seed8.bvh")));
 }
 
-TEST_F(ArgumentsTest, AnOutputWithoutAnExtensionIsRefusedUnderItsOwnName) {
+TEST_F(CommandLineTest, AnOutputWithoutAnExtensionIsRefusedUnderItsOwnName) {
   ExpectRefused({"--label", "kick=1", "--out", Out("pair"), "--samples", "2"},
                 "pair: extension: came \"\", wanted .html");
 }
 
-TEST_F(ArgumentsTest, NoSampleReplacesTheLeader) {
+TEST_F(CommandLineTest, NoSampleReplacesTheLeader) {
   const std::string leader = Out("pair.seed8.csv");
   WriteTestFile(leader, "");
   ExpectUsageError({"synthesize", "--leader", leader, "--label", "kick=1", "--out", Out("pair.csv"),

@@ -1,6 +1,7 @@
 // Everything that the program tells of itself.
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,7 +9,6 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "client/cli/arguments.h"
 #include "client/cli/command_line.h"
 #include "client/cli/command_table.h"
 #include "client/cli/help_topics.h"
@@ -28,19 +28,29 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
+struct Printed {
+  int exit_code = 0;
+  std::string text;  // standard output and standard error
+};
+
+Printed Duet(const std::vector<std::string>& arguments) {
+  std::ostringstream out, err;
+  const int exit_code = RunProgram(arguments, {nullptr, &out, &err});
+  return {exit_code, out.str() + err.str()};
+}
+
 TEST(Help, ExplainsCommandsAndTopics) {
-  EXPECT_THAT(ParseCommandLine({"help"}).text,
+  EXPECT_THAT(Duet({"help"}).text,
               AllOf(HasSubstr("Usage: duet [OPTIONS] SUBCOMMAND"),
                     HasSubstr("exit-codes, formats, joints, labels, settings")));
-  EXPECT_THAT(ParseCommandLine({"help", "convert"}).text, HasSubstr("Usage: duet convert"));
-  EXPECT_EQ(ParseCommandLine({"help", "convert"}).text,
-            ParseCommandLine({"convert", "--help"}).text);
+  EXPECT_THAT(Duet({"help", "convert"}).text, HasSubstr("Usage: duet convert"));
+  EXPECT_EQ(Duet({"help", "convert"}).text, Duet({"convert", "--help"}).text);
   for (const std::string& topic : HelpTopics()) {
-    const ParsedCommandLine parsed = ParseCommandLine({"help", topic});
-    EXPECT_EQ(parsed.exit_code, 0);
-    EXPECT_THAT(parsed.text, HasSubstr(".\n\n")) << topic;
+    const Printed printed = Duet({"help", topic});
+    EXPECT_EQ(printed.exit_code, 0);
+    EXPECT_THAT(printed.text, HasSubstr(".\n\n")) << topic;
   }
-  EXPECT_THAT(ParseCommandLine({"help", "settings"}).text, HasSubstr("DUET_SERVER"));
+  EXPECT_THAT(Duet({"help", "settings"}).text, HasSubstr("DUET_SERVER"));
 }
 
 TEST(Help, TellsWhichFormatsAreReadAndWritten) {
@@ -67,9 +77,9 @@ TEST(Help, TellsWhichFormatsAreReadAndWritten) {
 
 TEST(Help, SuggestsWhatWasMeant) {
   const auto expect = [](const std::vector<std::string>& arguments, const char* text) {
-    const ParsedCommandLine parsed = ParseCommandLine(arguments);
-    EXPECT_EQ(parsed.exit_code, 2);
-    EXPECT_THAT(parsed.text, HasSubstr(text));
+    const Printed printed = Duet(arguments);
+    EXPECT_EQ(printed.exit_code, 2);
+    EXPECT_THAT(printed.text, HasSubstr(text));
   };
   expect({"sinthesize"}, "There is no command \"sinthesize\"; did you mean synthesize?");
   expect({"help", "lables"}, "did you mean labels?");
@@ -77,7 +87,7 @@ TEST(Help, SuggestsWhatWasMeant) {
   expect({"man", "modls"}, "did you mean models?");
   expect({"models", "--sever", "x"}, "models has no flag --sever; did you mean --server?");
   expect({"models", "--sever=x"}, "models has no flag --sever; did you mean --server?");
-  EXPECT_THAT(ParseCommandLine({"models", "--xyzzy"}).text, Not(HasSubstr("did you mean")));
+  EXPECT_THAT(Duet({"models", "--xyzzy"}).text, Not(HasSubstr("did you mean")));
   // Whose value would be a third file.
   expect({"compare", "a", "b", "--page", "c"}, "compare has no flag --page\n");
   expect({"convert", "a", "--ou", "b"}, "convert has no flag --ou; did you mean --out?");
@@ -107,7 +117,7 @@ FlagEntry FlagOf(const CommandEntry& command, const std::string& name) {
 
 TEST(CommandTable, HoldsEveryCommandAndFlag) {
   const CommandLine line;
-  const std::vector<CommandEntry> commands = ListCommands(line.app);
+  const std::vector<CommandEntry> commands = ListCommands(line.app());
   std::vector<std::string> names;
   for (const CommandEntry& command : commands) names.push_back(command.name);
   EXPECT_THAT(names, ElementsAre("", "models", "synthesize", "batch", "batch merge", "batch verify",
@@ -125,20 +135,20 @@ TEST(CommandTable, HoldsEveryCommandAndFlag) {
 
 TEST(Completion, KnowsEveryFlag) {
   for (const char* shell : {"bash", "zsh", "fish"}) {
-    const std::string script = ParseCommandLine({"completion", shell}).text;
+    const std::string script = Duet({"completion", shell}).text;
     EXPECT_THAT(script, AllOf(HasSubstr("joint-map-file"), HasSubstr("retries-per-item"),
                               HasSubstr("resample"), HasSubstr("left right")));
   }
-  EXPECT_EQ(ParseCommandLine({"completion", "tcsh"}).exit_code, 2);
+  EXPECT_EQ(Duet({"completion", "tcsh"}).exit_code, 2);
 }
 
 TEST(ManualPage, TellsAllThatHelpTells) {
-  const std::string page = ParseCommandLine({"man", "convert"}).text;
+  const std::string page = Duet({"man", "convert"}).text;
   EXPECT_THAT(page,
               AllOf(StartsWith(".TH DUET\\-CONVERT 1 "), HasSubstr(".SH SYNOPSIS"),
                     HasSubstr("\\fB\\-\\-resample\\fR \\fIHZ\\fR"), HasSubstr("(default: all)")));
-  EXPECT_THAT(ParseCommandLine({"man", "synthesize"}).text, HasSubstr("(default: left)"));
-  EXPECT_THAT(ParseCommandLine({"man"}).text,
+  EXPECT_THAT(Duet({"man", "synthesize"}).text, HasSubstr("(default: left)"));
+  EXPECT_THAT(Duet({"man"}).text,
               AllOf(StartsWith(".TH DUET 1 "), HasSubstr("\\fBduet\\-batch\\fR(1)\n"),
                     HasSubstr(".SH SETTINGS")));
 }

@@ -173,7 +173,7 @@ TEST_F(MotionCommandsTest, InspectGoesOnAfterAFileThatCannotBeRead) {
 
 TEST_F(MotionCommandsTest, InspectTellsAFolderFromAFile) {
   EXPECT_EQ(Run({"inspect", folder_.path().string()}), 42);
-  EXPECT_THAT(out_.str(), HasSubstr(": is a folder, wanted a motion file"));
+  EXPECT_THAT(out_.str(), HasSubstr(": expected a motion file, got a folder"));
 }
 
 TEST_F(MotionCommandsTest, InspectTellsPeopleOfDifferentLengths) {
@@ -297,7 +297,8 @@ TEST_F(MotionCommandsTest, ConvertTakesOnePersonOrBoth) {
   ASSERT_EQ(Run({"convert", Path("one.csv"), "--side", "right", "--out", Path("r.csv")}), 0);
   EXPECT_EQ(ReadTestFile(folder_ / "r.csv"), ReadTestFile(folder_ / "one.csv"));
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--side", "both", "--out", Path("r.csv")}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("--side: came both, but the file has one person"));
+  EXPECT_THAT(err_.str(),
+              HasSubstr("--side: expected left or right for a file with one person, got both"));
 }
 
 TEST_F(MotionCommandsTest, ResamplingKeepsThePaceAndFrameRateDoesNot) {
@@ -329,7 +330,7 @@ TEST_F(MotionCommandsTest, ConvertBetweenPipes) {
 TEST_F(MotionCommandsTest, AFormatThatIsSaidWinsOverTheExtension) {
   WriteTestFile(folder_ / "walk.data", ReadTestFile(folder_ / "one.bvh"));
   EXPECT_EQ(Run({"inspect", Path("walk.data")}), 42);
-  EXPECT_THAT(out_.str(), HasSubstr("Say it with --input-format FORMAT.\n"));
+  EXPECT_THAT(out_.str(), HasSubstr("Specify it with --input-format FORMAT.\n"));
   ASSERT_EQ(Run({"inspect", Path("walk.data"), "--input-format", "bvh"}), 0);
   EXPECT_THAT(out_.str(), HasSubstr(": BVH, 1 person"));
 }
@@ -343,21 +344,23 @@ TEST_F(MotionCommandsTest, WhatPipesCannotDoIsSaid) {
   };
   const std::string one = Path("one.csv"), pair = Path("pair.csv");
   refused(42, {"convert", "-", "--out", Path("x.csv")},
-          "standard input: format: nothing says which it is");
+          "standard input: format: expected --input-format, got none");
   refused(2, {"convert", one, "--out", "-"}, "--output-format, which --out - needs");
   refused(2, {"convert", one, "--out", Path("x.csv"), "--output-format", "csv"},
-          "--output-format: counts for --out - alone");
+          "--output-format: is only valid with --out -");
   refused(2, {"convert", one, "--out", "-", "--output-format", "csv", "--json"}, "--json");
-  refused(2, {"convert", one, "--out", "-", "--output-format", "html"}, "html is no motion");
-  refused(42, {"convert", pair, "--out", "-", "--output-format", "bvh"}, "choose one with --side");
+  refused(2, {"convert", one, "--out", "-", "--output-format", "html"},
+          "html is not a motion format");
+  refused(42, {"convert", pair, "--out", "-", "--output-format", "bvh"},
+          "Choose a person with --side");
   refused(42, {"convert", "-", "--input-format", "amc", "--out", Path("x.csv")},
           "came as AMC without its skeleton");
-  refused(2, {"compare", "-", "-", "--input-format", "csv"}, "- came twice");
+  refused(2, {"compare", "-", "-", "--input-format", "csv"}, "expected - once, got it twice");
 }
 
 TEST_F(MotionCommandsTest, AnEmptyPipeIsNoMotion) {
   EXPECT_EQ(Run({"convert", "-", "--input-format", "csv", "--out", Path("x.csv")}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("standard input: came empty, wanted a motion"));
+  EXPECT_THAT(err_.str(), HasSubstr("standard input: expected a motion, got no data"));
 }
 
 TEST_F(MotionCommandsTest, ConvertNeverReplacesWhatItReads) {
@@ -416,7 +419,7 @@ TEST_F(MotionCommandsTest, WhoLeadsMayBeSaidForEach) {
   EXPECT_EQ(Run({"view", files[0], "--leader-side", "left", "--leader-side", "right", "--out",
                  Path("v.html")}),
             2);
-  EXPECT_THAT(err_.str(), HasSubstr("--leader-side: came 2 times, wanted once or 1 times"));
+  EXPECT_THAT(err_.str(), HasSubstr("--leader-side: expected once or 1 times, got 2 times"));
 }
 
 TEST_F(MotionCommandsTest, CompareRefusesOneMotion) {

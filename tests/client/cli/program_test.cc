@@ -401,7 +401,7 @@ TEST_F(ProgramTest, WarnsOfALeaderThatIsFarFromTheTrainingLeaders) {
         return result;
       });
   ASSERT_EQ(Synthesize("pair.csv"), 0);
-  EXPECT_THAT(out_.str(), HasSubstr("unlike those that the model learnt from"));
+  EXPECT_THAT(out_.str(), HasSubstr("differs from those that the model was trained on"));
 }
 
 TEST_F(ProgramTest, QuietPrintsNothing) {
@@ -441,17 +441,18 @@ TEST_F(ProgramTest, WhatPipesCannotDoNeverReachesTheServer) {
   refused(42, {"--leader", "-", "--out", Path("a.csv")}, "standard input: format");
   refused(2, {"--leader", Path("leader.csv"), "--out", "-"}, "--output-format");
   refused(2, {"--leader", Path("leader.csv"), "--out", "-", "--output-format", "bvh"},
-          "bvh has a file for each person");
+          "bvh cannot be used with --out -");
   refused(
       2, {"--leader", Path("leader.csv"), "--out", "-", "--output-format", "csv", "--samples", "2"},
-      "each wants a file");
+      "each answer needs a file");
 }
 
 TEST_F(ProgramTest, AnUnknownClassIsRefusedWithTheOneThatWasMeant) {
   EXPECT_CALL(*connection_, Synthesize).Times(0);
   EXPECT_EQ(Synthesize("pair.html", {"--label", "hugg=1"}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("--label: class: came \"hugg\", sbu knows kick, hug; did you "
-                                    "mean hug?"));
+  EXPECT_THAT(err_.str(),
+              HasSubstr("--label: class: expected one of sbu (kick, hug), got \"hugg\"; did you "
+                        "mean hug?"));
 }
 
 TEST_F(ProgramTest, AServerMayComeFromTheEnvironment) {
@@ -483,8 +484,9 @@ TEST_F(ProgramTest, AMissingFollowerStartNeverReachesTheServer) {
   EXPECT_EQ(Synthesize("pair.html", {"--follower-start", Path("no.bvh")}), 42);
   EXPECT_THAT(err_.str(), HasSubstr("no.bvh: no such file"));
   EXPECT_EQ(Synthesize("pair.html", {"--follower-start", "0,1"}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("--follower-start: 0,1: no such file; wanted a motion file or "
-                                    "X,Y,Z"));
+  EXPECT_THAT(err_.str(),
+              HasSubstr("--follower-start: 0,1: no such file; expected a motion file or "
+                        "X,Y,Z"));
 }
 
 TEST_F(ProgramTest, AMalformedLeaderIsBadInput) {
@@ -500,9 +502,10 @@ TEST_F(ProgramTest, AJointTableSaysWhichJointIsWhich) {
   text = absl::StrReplaceAll(text, {{".left_hand_", ".paw_"}, {".right_hand_", ".claw_"}});
   WriteTestFile(folder_ / "leader.csv", text);
   EXPECT_EQ(Synthesize("pair.html"), 42);
-  EXPECT_THAT(err_.str(), AllOf(HasSubstr("nothing stands for left_hand, right_hand"),
-                                HasSubstr("Say it with --joint-map MODEL_JOINT=FILE_JOINT, or a "
-                                          "table of them with --joint-map-file FILE.\n")));
+  EXPECT_THAT(err_.str(),
+              AllOf(HasSubstr("nothing stands for left_hand, right_hand"),
+                    HasSubstr("Specify it with --joint-map MODEL_JOINT=FILE_JOINT, or a "
+                              "table of them with --joint-map-file FILE.\n")));
   SynthesisRequest sent;
   EXPECT_CALL(*connection_, Synthesize)
       .WillRepeatedly([&](const SynthesisRequest& request, const ChunkCallback&) {
@@ -534,7 +537,7 @@ TEST_F(ProgramTest, AMissingFrameRateNamesItsFlag) {
   WriteTestFile(folder_ / "leader.csv", text.substr(text.find('\n') + 1));
   EXPECT_EQ(Synthesize("pair.html"), 42);
   EXPECT_THAT(err_.str(), AllOf(HasSubstr("frame rate: the file has none"),
-                                HasSubstr("\nSay it with --frame-rate HZ.\n")));
+                                HasSubstr("\nSpecify it with --frame-rate HZ.\n")));
 }
 
 TEST_F(ProgramTest, ASizeThatCannotBeToldNamesItsFlag) {
@@ -545,7 +548,7 @@ TEST_F(ProgramTest, ASizeThatCannotBeToldNamesItsFlag) {
   EXPECT_EQ(Run({"synthesize", "--leader", Path("pair.leader.bvh"), "--label", "kick=1", "--out",
                  Path("pair.html")}),
             42);
-  EXPECT_THAT(err_.str(), HasSubstr("\nSay it with --metres-per-unit METRES.\n"));
+  EXPECT_THAT(err_.str(), HasSubstr("\nSpecify it with --metres-per-unit METRES.\n"));
 }
 
 TEST_F(ProgramTest, ARefusalListsEveryField) {
@@ -558,7 +561,7 @@ TEST_F(ProgramTest, ARefusalListsEveryField) {
   EXPECT_CALL(*connection_, Synthesize).WillOnce(Return(refusal));
   EXPECT_EQ(Synthesize("pair.html"), 42);
   EXPECT_EQ(err_.str(),
-            "duet: the server refuses the request (INVALID_ARGUMENT)\n  a: b1\n  c: d2\n");
+            "duet: the server rejects the request (INVALID_ARGUMENT)\n  a: b1\n  c: d2\n");
 }
 
 TEST_F(ProgramTest, AnAbsentServerIsWorthRetryingAndNamed) {
@@ -566,8 +569,9 @@ TEST_F(ProgramTest, AnAbsentServerIsWorthRetryingAndNamed) {
   EXPECT_EQ(Synthesize("pair.html", {"--server", "duet:1"}), 1);
   EXPECT_EQ(
       err_.str(),
-      "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (--server; to wait for "
-      "one, --wait SECONDS; where it encrypts, --tls or --tls-ca FILE)\n");
+      "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (Choose a server with "
+      "--server, wait for it with --wait SECONDS, and use --tls or --tls-ca FILE if it "
+      "encrypts.)\n");
 }
 
 TEST_F(ProgramTest, ADrainingServerIsWorthRetrying) {
@@ -645,7 +649,7 @@ TEST_F(ProgramTest, ATokenIsTheOneLineOfItsFile) {
 TEST_F(ProgramTest, ATokenFileWithoutATokenIsBadInput) {
   WriteTestFile(folder_ / "token", " \n");
   EXPECT_EQ(Run({"models", "--token-file", Path("token")}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("token: empty, wanted a token"));
+  EXPECT_THAT(err_.str(), HasSubstr("token: expected a token, got an empty file"));
   EXPECT_EQ(Run({"models", "--token-file", Path("no-token")}), 42);
   EXPECT_THAT(err_.str(), HasSubstr("no-token"));
 }

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "client/cli/arguments.h"
+#include "client/cli/command_line.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/status_matchers.h"
@@ -17,6 +17,7 @@ using test::StatusIs;
 using test::TemporaryFolder;
 using test::WriteTestFile;
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
@@ -53,7 +54,7 @@ TEST(ParseSettings, ReadsFlagsWithoutDashes) {
 TEST(ParseSettings, NamesTheLineThatIsNone) {
   for (const char* line : {"server lab", "--server = lab", "= lab", "Server = lab", "a b = c"}) {
     EXPECT_THAT(ParseSettings(std::string("\n") + line + "\n", "config").status(),
-                StatusIs(kInvalid, HasSubstr("config:2: came \"")))
+                StatusIs(kInvalid, HasSubstr("config:2: expected FLAG = VALUE")))
         << line;
   }
 }
@@ -73,7 +74,6 @@ TEST_F(ReadSettingsTest, TheFileIsFoundWhereItBelongs) {
   Write("home/.config/duet/config", "server = home:1\n");
   Write("xdg/duet/config", "server = xdg:1\n");
   Write("mine", "server = mine:1\n");
-  using ::testing::ElementsAre;
   EXPECT_THAT(Read({{"HOME", Path("home")}}), ElementsAre("server=home:1"));
   EXPECT_THAT(Read({{"HOME", Path("home")}, {"XDG_CONFIG_HOME", Path("xdg")}}),
               ElementsAre("server=xdg:1"));
@@ -96,60 +96,60 @@ TEST_F(ReadSettingsTest, ANamedFileMustBeThere) {
 TEST_F(ReadSettingsTest, TheEnvironmentsServerWins) {
   Write("c", "server = file:1\nserver = file:2\ntimeout = 3\n");
   EXPECT_THAT(Read({{"DUET_CONFIG", Path("c")}, {"DUET_SERVER", "variable:1"}}),
-              ::testing::ElementsAre("timeout=3", "server=variable:1"));
+              ElementsAre("timeout=3", "server=variable:1"));
   EXPECT_THAT(Read({{"DUET_CONFIG", Path("c")}, {"DUET_SERVER", ""}}), ::testing::SizeIs(3));
 }
 
-// What a command line makes of settings.
-std::string ServerOf(const std::vector<std::string>& arguments,
-                     const std::vector<Setting>& settings) {
-  const ParsedCommandLine parsed = ParseCommandLine(arguments, settings);
-  EXPECT_TRUE(parsed.models.has_value()) << parsed.text;
-  return parsed.models.has_value() ? parsed.models->server.address : "";
+// The words of a valid command line with the settings that apply to it.
+std::vector<std::string> Words(const std::vector<std::string>& arguments,
+                               const std::vector<Setting>& settings) {
+  CommandLine line;
+  const ParsedCommandLine parsed = line.Parse(arguments, settings);
+  EXPECT_NE(parsed.command, nullptr) << parsed.text;
+  return parsed.words;
 }
 
-TEST(Settings, AFlagWinsOverThemAndTheyOverDefaults) {
+TEST(Settings, FlagsOverrideThem) {
   const std::vector<Setting> settings = {{"server", "lab:1", "config:1"}};
-  EXPECT_EQ(ServerOf({"models"}, {}), "localhost:50051");
-  EXPECT_EQ(ServerOf({"models"}, settings), "lab:1");
-  EXPECT_EQ(ServerOf({"models", "--server", "mine:1"}, settings), "mine:1");
-  EXPECT_EQ(ServerOf({"models", "--server=mine:1"}, settings), "mine:1");
+  EXPECT_THAT(Words({"models"}, {}), ElementsAre("models"));
+  EXPECT_THAT(Words({"models"}, settings), ElementsAre("models", "--server=lab:1"));
+  EXPECT_THAT(Words({"models", "--server", "mine:1"}, settings),
+              ElementsAre("models", "--server", "mine:1"));
+  EXPECT_THAT(Words({"models", "--server=mine:1"}, settings),
+              ElementsAre("models", "--server=mine:1"));
 }
 
-TEST(Settings, ACommandTakesThoseThatItHas) {
-  const ParsedCommandLine parsed = ParseCommandLine(
-      {"models"},
-      {{"json", "true", "c:1"}, {"leader-side", "right", "c:2"}, {"tls", "false", "c:3"}});
-  ASSERT_TRUE(parsed.models.has_value()) << parsed.text;
-  EXPECT_TRUE(parsed.models->json);
-  EXPECT_FALSE(parsed.models->server.tls);
+TEST(Settings, ApplyOnlyToCommandsThatHaveTheFlag) {
+  EXPECT_THAT(
+      Words({"models"},
+            {{"json", "true", "c:1"}, {"leader-side", "right", "c:2"}, {"tls", "false", "c:3"}}),
+      ElementsAre("models", "--json=true", "--tls=false"));
 }
 
-TEST(Settings, WhatAFlagExcludesDoesNotCount) {
-  const TemporaryFolder folder;
-  const ParsedCommandLine parsed =
-      ParseCommandLine({"synthesize", "--leader", "a.bvh", "--out", (folder / "a.csv").string(),
-                        "--keyframe", "0:kick=1"},
-                       {{"label", "hug=1", "c:1"}});
-  ASSERT_TRUE(parsed.synthesize.has_value()) << parsed.text;
-  EXPECT_TRUE(parsed.synthesize->weights.empty());
+class SynthesizeSettingsTest : public ::testing::Test {
+ protected:
+  const test::TemporaryFolder folder_;
+  const std::vector<std::string> words_ = {"synthesize", "--leader", "a.bvh", "--out",
+                                           (folder_ / "a.csv").string()};
+};
+
+TEST_F(SynthesizeSettingsTest, AreIgnoredIfAFlagExcludesThem) {
+  std::vector<std::string> words = words_;
+  words.insert(words.end(), {"--keyframe", "0:kick=1"});
+  EXPECT_EQ(Words(words, {{"label", "hug=1", "c:1"}}), words);
 }
 
-TEST(Settings, ARepeatableFlagMayHaveSeveral) {
-  const TemporaryFolder folder;
-  const ParsedCommandLine parsed =
-      ParseCommandLine({"synthesize", "--leader", "a.bvh", "--out", (folder / "a.csv").string()},
-                       {{"label", "hug=1", "c:1"}, {"label", "kick=0.5", "c:2"}});
-  ASSERT_TRUE(parsed.synthesize.has_value()) << parsed.text;
-  ASSERT_EQ(parsed.synthesize->weights.size(), 2u);
-  EXPECT_EQ(parsed.synthesize->weights[1].interaction_class, "kick");
+TEST_F(SynthesizeSettingsTest, CanRepeatARepeatableFlag) {
+  EXPECT_THAT(Words(words_, {{"label", "hug=1", "c:1"}, {"label", "kick=0.5", "c:2"}}),
+              ::testing::IsSupersetOf({"--label=hug=1", "--label=kick=0.5"}));
 }
 
-TEST(Settings, OneThatMakesNoSenseIsPlaced) {
-  const ParsedCommandLine wrong = ParseCommandLine({"models"}, {{"timeout", "soon", "config:7"}});
+TEST(Settings, ErrorsNameTheirPlace) {
+  CommandLine first, second;
+  const ParsedCommandLine wrong = first.Parse({"models"}, {{"timeout", "soon", "config:7"}});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.text, ::testing::StartsWith("config:7: --timeout"));
-  const ParsedCommandLine unknown = ParseCommandLine({"models"}, {{"servr", "lab:1", "config:2"}});
+  const ParsedCommandLine unknown = second.Parse({"models"}, {{"servr", "lab:1", "config:2"}});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.text,
               HasSubstr("config:2: no command has a flag --servr; did you mean server?"));

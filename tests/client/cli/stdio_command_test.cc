@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "client/cli/program.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/formats/motion_file.h"

@@ -34,7 +34,7 @@ TEST(ParseClassWeightTest, RefusesEverythingElse) {
   for (const char* text : {"", "kick=", "=1", "kick=hard", "kick=1x", "kick=1=2"}) {
     EXPECT_THAT(
         ParseClassWeight(text),
-        StatusIs(kInvalid, AllOf(HasSubstr(text), HasSubstr("wanted CLASS or CLASS=WEIGHT"))));
+        StatusIs(kInvalid, AllOf(HasSubstr(text), HasSubstr("expected CLASS or CLASS=WEIGHT"))));
   }
 }
 
@@ -50,7 +50,7 @@ TEST(ParseKeyframeTest, ReadsFrameAndWeights) {
 TEST(ParseKeyframeTest, RefusesEverythingElse) {
   for (const char* text : {"", "30", "30:", "kick=1", "-1:kick=1", "x:kick=1",
                            "30:kick=", "30:kick=1,", "30:,kick=1"}) {
-    EXPECT_THAT(ParseKeyframe(text), StatusIs(kInvalid, HasSubstr("wanted FRAME:CLASS=WEIGHT")));
+    EXPECT_THAT(ParseKeyframe(text), StatusIs(kInvalid, HasSubstr("expected FRAME:CLASS=WEIGHT")));
   }
 }
 
@@ -87,7 +87,7 @@ TEST(ParseJointPairTest, ReadsBothNames) {
 
 TEST(ParseJointPairTest, RefusesEverythingElse) {
   for (const char* text : {"", "left_hand", "left_hand=", "=LeftHand"}) {
-    EXPECT_THAT(ParseJointPair(text), StatusIs(kInvalid, HasSubstr("wanted MODEL_JOINT")));
+    EXPECT_THAT(ParseJointPair(text), StatusIs(kInvalid, HasSubstr("expected MODEL_JOINT")));
   }
 }
 
@@ -105,7 +105,7 @@ TEST(ParseVarietyTest, ReadsZeroToTwoAndNothingElse) {
   EXPECT_EQ(*ParseVariety("0.75"), 0.75f);
   EXPECT_EQ(*ParseVariety("2"), 2);
   for (const char* text : {"", "-0.1", "2.1", "nan", "inf", "much"}) {
-    EXPECT_THAT(ParseVariety(text), StatusIs(kInvalid, HasSubstr("wanted a number from 0 to 2")));
+    EXPECT_THAT(ParseVariety(text), StatusIs(kInvalid, HasSubstr("expected a number from 0 to 2")));
   }
 }
 
@@ -128,14 +128,15 @@ TEST(ParseUnitTest, ReadsNamesAndShortForms) {
     EXPECT_EQ(*unit, motion::LengthUnit::kMillimetres);
   }
   EXPECT_THAT(ParseUnit("feet"),
-              StatusIs(kInvalid, HasSubstr("\"feet\", wanted metres, millimetres or sbu-")));
+              StatusIs(kInvalid, HasSubstr("expected metres, millimetres or sbu-")));
 }
 
 TEST(ParseAxisTest, ReadsNames) {
   const absl::StatusOr<motion::UpAxis> axis = ParseAxis("y-down");
   ASSERT_THAT(axis, IsOk());
   EXPECT_EQ(*axis, motion::UpAxis::kYDown);
-  EXPECT_THAT(ParseAxis("x"), StatusIs(kInvalid, HasSubstr("\"x\", wanted y-up, z-up or y-down")));
+  EXPECT_THAT(ParseAxis("x"),
+              StatusIs(kInvalid, HasSubstr("expected y-up, z-up or y-down, got \"x\"")));
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+#ifndef DUET_CLIENT_CLI_BATCH_ARGUMENTS_H_
+#define DUET_CLIENT_CLI_BATCH_ARGUMENTS_H_
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/batch/flow/server_choice.h"
+#include "client/batch/recipe_file.h"
+#include "client/batch/shard.h"
+#include "client/cli/server_arguments.h"
+#include "client/options.h"
+
+namespace duet::client::cli {
+
+// The flags of duet batch, duet batch merge and duet batch verify.
+struct BatchArguments {
+  enum class Action { kRun, kMerge, kVerify };
+  Action action = Action::kRun;
+  std::vector<std::string> words;       // the command line, with the settings that apply
+  bool repair = false;                  // only for kVerify, as is
+  std::vector<std::string> repairers;   // servers instead of those of the last run
+  std::vector<std::string> leaders;     // files, folders, patterns
+  std::string manifest;                 // a file, "-" or empty
+  std::filesystem::path manifest_copy;  // the manifest "-" once it was read
+  std::filesystem::path recipe;
+  std::filesystem::path out;
+  std::vector<std::string> servers = {ClientOptions().server_address};
+  ServerArguments connection;  // the address is unused
+  std::optional<batch::Shard> shard;
+  batch::RecipeOverrides overrides;
+  int max_in_flight = batch::flow::Options().max_in_flight;
+  int channels = 1;
+  double patience_seconds = 120;
+  int64_t limit = std::numeric_limits<int64_t>::max();
+  double share = 1;
+  bool retry_failed = false;
+  bool dry_run = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+}  // namespace duet::client::cli
+
+#endif  // DUET_CLIENT_CLI_BATCH_ARGUMENTS_H_

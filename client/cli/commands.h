@@ -1,0 +1,16 @@
+#ifndef DUET_CLIENT_CLI_COMMANDS_H_
+#define DUET_CLIENT_CLI_COMMANDS_H_
+
+#include <vector>
+
+#include "CLI/CLI.hpp"
+#include "client/cli/command.h"
+
+namespace duet::client::cli {
+
+// Adds every command to the program, in the order in which help lists them.
+std::vector<Command> AddCommands(CLI::App* program);
+
+}  // namespace duet::client::cli
+
+#endif  // DUET_CLIENT_CLI_COMMANDS_H_

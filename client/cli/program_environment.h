@@ -1,0 +1,40 @@
+#ifndef DUET_CLIENT_CLI_PROGRAM_ENVIRONMENT_H_
+#define DUET_CLIENT_CLI_PROGRAM_ENVIRONMENT_H_
+
+#include <functional>
+#include <iosfwd>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "client/admin_client.h"
+#include "client/cli/settings.h"
+#include "client/cli/style.h"
+#include "client/client.h"
+
+namespace duet::client::cli {
+
+// How the program reaches servers, and where it reads and prints; tests replace it.
+struct ProgramEnvironment {
+  std::function<absl::StatusOr<Client>(const ClientOptions&)> connect;
+  std::ostream* out;
+  std::ostream* err;
+  std::istream* in = nullptr;    // what `-` reads; null: no standard input
+  bool err_is_terminal = false;  // then progress is updated in place and coloured
+  bool out_is_terminal = false;  // then output is coloured
+  Variables variables = [](const std::string&) { return std::nullopt; };
+  std::function<absl::StatusOr<std::unique_ptr<AdminClient>>(const ClientOptions&)> connect_admin =
+      AdminClient::Create;
+
+  // Coloured on a terminal, unless NO_COLOR has a value.
+  Style OutStyle() const { return Style(out_is_terminal && WantsColour()); }
+  Style ErrStyle() const { return Style(err_is_terminal && WantsColour()); }
+
+ private:
+  bool WantsColour() const { return variables("NO_COLOR").value_or("").empty(); }
+};
+
+}  // namespace duet::client::cli
+
+#endif  // DUET_CLIENT_CLI_PROGRAM_ENVIRONMENT_H_

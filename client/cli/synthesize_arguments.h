@@ -1,0 +1,49 @@
+#ifndef DUET_CLIENT_CLI_SYNTHESIZE_ARGUMENTS_H_
+#define DUET_CLIENT_CLI_SYNTHESIZE_ARGUMENTS_H_
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/cli/motion_arguments.h"
+#include "client/cli/server_arguments.h"
+#include "client/request.h"
+
+namespace duet::client::cli {
+
+// The flags of duet synthesize.
+struct SynthesizeArguments : SynthesisOptions {
+  ServerArguments server;
+  std::filesystem::path leader;
+  formats::Side leader_side = kDefaultSide;
+  InputArguments input;
+  ModelChoice model;
+  std::vector<ClassWeight> weights;
+  std::vector<WeightKeyframe> keyframes;
+  std::string follower_start;  // empty, "X,Y,Z" or a motion file
+  std::optional<formats::Side> follower_start_side;
+  int samples = 1;  // answers, with the seeds `seed`, `seed` + 1, ...
+  std::vector<std::filesystem::path> outputs;
+  std::optional<OutputFormat> output_format;  // for standard output
+  BvhArguments bvh;
+  std::string follower_rig;                // empty, kLeadersRig or a file
+  retargeting::JointOverrides rig_joints;  // if it is a file
+  std::filesystem::path rig_joint_table;   // a file of joints, which `rig_joints` override
+  bool json = false;
+  bool quiet = false;
+};
+inline constexpr char kLeadersRig[] = "leader";
+
+// The seed of a sample; the first sample is 0.
+inline uint64_t SeedOf(const SynthesizeArguments& arguments, int sample) {
+  return arguments.seed + static_cast<uint64_t>(sample);
+}
+
+// The output files of one sample. With several samples, pair.html becomes pair.seed7.html.
+std::vector<std::filesystem::path> SampleOutputs(const SynthesizeArguments& arguments, int sample);
+
+}  // namespace duet::client::cli
+
+#endif  // DUET_CLIENT_CLI_SYNTHESIZE_ARGUMENTS_H_
