@@ -1,11 +1,12 @@
 # Functions for every target of the project: explicit sources, aliases, no global flags.
 include(DuetWarnings)
 include(DuetTools)
+include(DuetPrecompile)
 
-# duet_library(NAME motion SOURCES a.cc b.cc [DEPS duet::x absl::y] [PRIVATE_DEPS ...])
+# duet_library(NAME motion SOURCES a.cc b.cc [DEPS duet::x absl::y] [PRIVATE_DEPS ...] [PRECOMPILED torch])
 # Makes duet_<name> with the alias duet::<name>; headers are included from the top folder.
 function(duet_library)
-  cmake_parse_arguments(A "" "NAME" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  cmake_parse_arguments(A "" "NAME;PRECOMPILED" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   add_library(duet_${A_NAME} STATIC ${A_SOURCES})
   add_library(duet::${A_NAME} ALIAS duet_${A_NAME})
   target_include_directories(duet_${A_NAME} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
@@ -13,6 +14,10 @@ function(duet_library)
   target_link_libraries(duet_${A_NAME} PUBLIC ${A_DEPS} PRIVATE ${A_PRIVATE_DEPS})
   duet_enable_warnings(duet_${A_NAME})
   duet_compile_fast(duet_${A_NAME})
+  if(NOT A_PRECOMPILED AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/tests")
+    set(A_PRECOMPILED library)
+  endif()
+  duet_precompile(duet_${A_NAME} "${A_PRECOMPILED}")
 endfunction()
 
 # duet_program(NAME duet-server SOURCES main.cc DEPS ...): an executable in <build>/bin.
@@ -26,13 +31,18 @@ function(duet_program)
   duet_link_fast(${A_NAME})
 endfunction()
 
-# duet_test(NAME motion_test SOURCES a_test.cc DEPS ... [LABELS ...] [ENVIRONMENT ...] [TIMEOUT s])
+# duet_test(NAME motion_test SOURCES a_test.cc DEPS ... [LABELS ...] [ENVIRONMENT ...] [TIMEOUT s]
+#           [PRECOMPILED torch_test])
 # One CTest entry for each test program, linked with GoogleTest's main and mocks.
 function(duet_test)
-  cmake_parse_arguments(A "" "NAME;TIMEOUT" "SOURCES;DEPS;LABELS;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(A "" "NAME;TIMEOUT;PRECOMPILED" "SOURCES;DEPS;LABELS;ENVIRONMENT" ${ARGN})
   add_executable(${A_NAME} ${A_SOURCES})
   target_link_libraries(${A_NAME} PRIVATE ${A_DEPS} GTest::gmock GTest::gtest_main)
   duet_compile_fast(${A_NAME})
+  if(NOT A_PRECOMPILED)
+    set(A_PRECOMPILED test)
+  endif()
+  duet_precompile(${A_NAME} ${A_PRECOMPILED})
   target_include_directories(${A_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   set_target_properties(${A_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   duet_enable_warnings(${A_NAME})

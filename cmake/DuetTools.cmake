@@ -4,7 +4,9 @@ include(DuetTargetTable)
 find_program(DUET_CCACHE ccache)
 mark_as_advanced(DUET_CCACHE)
 if(DUET_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${DUET_CCACHE})
+  # Without these ccache passes on files that use precompiled headers (DuetPrecompile.cmake).
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+      CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${DUET_CCACHE})
 endif()
 
 find_program(DUET_MOLD mold)

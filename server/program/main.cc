@@ -91,7 +91,8 @@ absl::StatusOr<ModelSource> OpenEngine(const ServerConfig& settings) {
 
 int main(int argc, char** argv) {
   duet::server::lifecycle::LimitFreeMemory();
-  // Never deleted (see RunServer); static, so that LeakSanitizer still finds it when the process ends.
+  // Never deleted (see RunServer); static, so that LeakSanitizer still finds it when the process
+  // ends.
   static auto* const stop = new duet::server::watchdog::StopSignal;
   return duet::server::lifecycle::RunServer(
       argc, argv, OpenEngine, *stop,

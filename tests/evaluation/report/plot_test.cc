@@ -28,7 +28,8 @@ TEST(PlotTest, LinesHaveTheirAxesAndNullForGaps) {
   EXPECT_EQ(written["kind"], "lines");
   EXPECT_EQ(written["title"], "Losses");
   EXPECT_EQ(written["x_label"], "epoch");
-  EXPECT_EQ(written["series"][0], json::parse(R"({"name": "bone", "x": [1, 2], "y": [2.5, null]})"));
+  EXPECT_EQ(written["series"][0],
+            json::parse(R"({"name": "bone", "x": [1, 2], "y": [2.5, null]})"));
   EXPECT_EQ(written["y_range"], json::parse("[0, 1]"));
   EXPECT_EQ(written["log_y"], true);
   EXPECT_EQ(written["marked_x"], json::parse("[2]"));
@@ -37,7 +38,8 @@ TEST(PlotTest, LinesHaveTheirAxesAndNullForGaps) {
 }
 
 TEST(PlotTest, LatentSpaceHasAVectorAndAClassForEachSample) {
-  const json written = Written(LatentPlot{"ours", {"kick", "hug"}, {1, 0}, {{1, 2}, {3, 4}}, 12, 7});
+  const json written =
+      Written(LatentPlot{"ours", {"kick", "hug"}, {1, 0}, {{1, 2}, {3, 4}}, 12, 7});
   EXPECT_EQ(written["kind"], "latent");
   EXPECT_EQ(written["class_names"], json::parse(R"(["kick", "hug"])"));
   EXPECT_EQ(written["classes"], json::parse("[1, 0]"));

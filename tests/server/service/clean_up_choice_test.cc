@@ -30,7 +30,8 @@ class Service {
     auto noting = std::make_shared<FakeSynthesizer>(std::move(model));
     noting->on_batch = [this](absl::Span<const engine::SynthesisWindow* const> windows) {
       common::MutexLock lock(mutex_);
-      for (const engine::SynthesisWindow* window : windows) told_.push_back(window->options.clean_up);
+      for (const engine::SynthesisWindow* window : windows)
+        told_.push_back(window->options.clean_up);
     };
     RunningService::Setup setup;
     setup.model = std::move(noting);
