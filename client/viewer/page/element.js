@@ -260,8 +260,7 @@ class DuetMotion extends HTMLElement {
   }
 
   resize() {
-    if (!this.stage || !this.clientWidth) return;
-    this.stage.resize();
+    if (!this.stage || !this.clientWidth || !this.stage.resize()) return;
     if (this.view) this.stage.view(this.view);
     this.draw();  // resizing clears the canvas
   }

@@ -26,11 +26,16 @@ class Stage {
     this.controls.update();
   }
 
+  // Fits the picture to the canvas. Returns whether that changed its size.
   resize() {
     const {clientWidth, clientHeight} = this.canvas;
+    if (clientWidth === this.width && clientHeight === this.height) return false;
+    this.width = clientWidth;
+    this.height = clientHeight;
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / Math.max(1, clientHeight);
     this.camera.updateProjectionMatrix();
+    return true;
   }
 
   // Returns the number of triangles drawn.
