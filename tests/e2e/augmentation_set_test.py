@@ -82,7 +82,7 @@ class AugmentationSetTest(unittest.TestCase):
         self.runs = folder / "runs"
         write_captures(self.data)
         checkpoints = self.runs / "half-4" / "checkpoint"
-        shutil.copytree(tools.SOURCE / "model" / "checkpoints" / "sbu" / "1",
+        shutil.copytree(tools.SOURCE / "model" / "embedded" / "sbu" / "1",
                         checkpoints / "sbu" / "1")
         self.server = tools.Server("--model-repository", checkpoints)
         self.addCleanup(self.server.stop)

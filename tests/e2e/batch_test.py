@@ -369,7 +369,7 @@ class BatchTest(unittest.TestCase):
             self.assertEqual({entry["model"] for entry in index}, {model["name"]})
             self.assertEqual({entry["skeleton"] for entry in index}, {model["skeleton"]})
             self.assertIn("research", model["terms"])
-            weights = tools.SOURCE / "model" / "checkpoints" / "sbu" / "2" / "weights.safetensors"
+            weights = tools.SOURCE / "model" / "embedded" / "sbu" / "2" / "weights.safetensors"
             self.assertEqual(model["weights_sha256"],
                              hashlib.sha256(weights.read_bytes()).hexdigest())
             self.assertEqual(dataset["files"][0]["unit"], "metres")

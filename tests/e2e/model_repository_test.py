@@ -14,7 +14,7 @@ import unittest
 
 import tools
 
-CHECKPOINT = tools.SOURCE / "model" / "checkpoints" / "sbu" / "1"
+CHECKPOINT = tools.SOURCE / "model" / "embedded" / "sbu" / "1"
 
 
 def write_checkpoint(folder, version, change_weights=None):

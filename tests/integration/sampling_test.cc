@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/client.h"
+#include "model/engine/clip_synthesis.h"
 #include "model/motion/skeleton.h"
 #include "tests/server/support/running_service.h"
 #include "tests/support/fake_synthesizer.h"

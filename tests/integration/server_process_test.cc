@@ -10,6 +10,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -17,11 +18,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "model/base/sha256.h"
 #include "tests/server/support/http_get.h"
 #include "tests/server/support/refusal.h"
@@ -489,6 +492,25 @@ TEST(ServerProcessTest, FailsOnARepositoryThatIsNotThere) {
   EXPECT_EQ(server.Wait(), 1);
 }
 
+// Whether no signal waits for the process and all of its threads sleep, so that what a signal began
+// is done.
+bool HasHandledSignals(pid_t pid) {
+  const fs::path folder = absl::StrCat("/proc/", pid);
+  std::ifstream status(folder / "status");
+  for (std::string word, mask; status >> word;) {
+    if (word == "ShdPnd:" && status >> mask &&
+        absl::string_view(mask).find_first_not_of('0') != absl::string_view::npos)
+      return false;
+  }
+  for (const fs::directory_entry& thread : fs::directory_iterator(folder / "task")) {
+    std::ifstream stat(thread.path() / "stat");
+    std::string line;
+    // "PID (NAME) STATE ..."
+    if (!std::getline(stat, line) || line.substr(line.rfind(')') + 2, 1) != "S") return false;
+  }
+  return true;
+}
+
 TEST(ServerProcessTest, SigtermWhileLoadingStopsAfterTheCheckpointUnderWay) {
   TemporaryFolder folder;
   fs::create_directories(folder / "a/1");
@@ -500,6 +522,8 @@ TEST(ServerProcessTest, SigtermWhileLoadingStopsAfterTheCheckpointUnderWay) {
   const int manifest = open((folder / "a/1/manifest.json").c_str(), O_WRONLY);
   ASSERT_GE(manifest, 0);
   server.Signal(SIGTERM);
+  while (!HasHandledSignals(server.pid()))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   close(manifest);
   EXPECT_EQ(server.Wait(), 0);
   EXPECT_THAT(server.Rest(), testing::Not(HasSubstr("model_loaded")));

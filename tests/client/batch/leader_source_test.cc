@@ -207,7 +207,7 @@ TEST_F(ListLeadersTest, WhatIsNotThereIsRefused) {
       List({"c.npy", "c.npy", "c.npy"}),
       StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("another leader has the name")));
   EXPECT_THAT(ListLeaders({}),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("no motion")));
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected one or more motion files, got none")));
 }
 
 TEST(KeyOf, HoldsNothingThatFileSystemsOrArchivesTakeAmiss) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/engine/clip_synthesis.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
