@@ -206,8 +206,8 @@ TEST_F(ListLeadersTest, WhatIsNotThereIsRefused) {
   EXPECT_THAT(
       List({"c.npy", "c.npy", "c.npy"}),
       StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("another leader has the name")));
-  EXPECT_THAT(ListLeaders({}),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected one or more motion files, got none")));
+  EXPECT_THAT(ListLeaders({}), StatusIs(absl::StatusCode::kInvalidArgument,
+                                        HasSubstr("expected one or more motion files")));
 }
 
 TEST(KeyOf, HoldsNothingThatFileSystemsOrArchivesTakeAmiss) {
