@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-readonly build_dir=build/release
+readonly build_dir=build/lint
 
 changed_files() {
   if [[ "${1:-}" == all ]]; then
@@ -15,8 +15,8 @@ changed_files() {
   fi
 }
 
-# clang-tidy needs the generated protocol headers.
-cmake --preset release -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=ON >/dev/null
+# clang-tidy needs the generated protocol headers, and reads no precompiled ones.
+cmake --preset release -B "${build_dir}" -DDUET_PRECOMPILE=OFF -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=ON >/dev/null
 cmake --build "${build_dir}" --parallel "${JOBS:-1}" --target duet_generated
 
 mapfile -t files < <(changed_files "$@" | sort -u)

@@ -126,7 +126,7 @@ class SimulatedLimitTest(Mixes, unittest.TestCase):
         checked = tools.run(tools.PROGRAMS / "duet-server", "--memory-limit-bytes", LIMIT, *flags,
                             "--check-config")
         self.assertEqual(checked.returncode, 0, checked.stderr)
-        self.assertIn("warning: memory: the settings let in", checked.stdout)
+        self.assertIn("warning: memory: the settings admit requests that need", checked.stdout)
 
 
 class ControlGroupTest(Mixes, unittest.TestCase):
