@@ -11,6 +11,7 @@ function(duet_precompiled_headers)
   file(CONFIGURE OUTPUT ${source} CONTENT "int main() { return 0; }\n")
   if(A_PROGRAM)  # Programs and libraries differ in their position-independent code.
     add_executable(${target} EXCLUDE_FROM_ALL ${source})
+    set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/precompiled)
   else()
     add_library(${target} OBJECT EXCLUDE_FROM_ALL ${source})
   endif()
