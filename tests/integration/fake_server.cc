@@ -98,7 +98,8 @@ absl::StatusOr<std::shared_ptr<const Synthesizer>> LoadFolder(const std::filesys
 }  // namespace
 
 int main(int argc, char** argv) {
-  auto* const stop = new duet::server::watchdog::StopSignal;  // see RunServer
+  // Never deleted (see RunServer); static, so that LeakSanitizer still finds it.
+  static auto* const stop = new duet::server::watchdog::StopSignal;
   const duet::server::lifecycle::ModelSource source{
       "fake", LoadFolder, [] {
         return std::vector<std::shared_ptr<const Synthesizer>>{

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kMegabyte = std::size_t{1} << 20;
 
+#if !defined(__SANITIZE_ADDRESS__)  // AddressSanitizer has a heap of its own.
 // Whether a block of this size is mapped individually, so that freeing it returns it to the system.
 bool IsMappedByItself(std::size_t bytes) {
   const std::size_t before = mallinfo2().hblks;
@@ -26,6 +27,7 @@ TEST(LimitFreeMemoryTest, LargeBlocksAreReturnedToTheSystem) {
   EXPECT_TRUE(IsMappedByItself(2 * kMegabyte));
   EXPECT_FALSE(IsMappedByItself(kMegabyte / 2));
 }
+#endif
 
 class HeapTrimmerTest : public ::testing::Test {
  protected:
