@@ -23,6 +23,13 @@
 
 namespace duet::test {
 
+// A program built with a sanitizer is slower and takes more memory.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = false;
+#endif
+
 // A running fake server and what it writes.
 class Process {
  public:

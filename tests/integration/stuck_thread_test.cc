@@ -102,7 +102,7 @@ TEST(StuckThreadTest, LinesAreForPeopleIfTheLogIs) {
 // gRPC's own threads hang, and soon one that holds a lock of the server.
 TEST(StuckThreadTest, ReadinessTurnsAndTheProcessEndsWhenCallbacksNeverReturn) {
   Process server({"--listen", "127.0.0.1:0", "--metrics-listen", "127.0.0.1:0",
-                  "--self-check-seconds", "0.1", "--watchdog-seconds", "12"});
+                  "--self-check-seconds", "0.1", "--watchdog-seconds", kSanitized ? "48" : "12"});
   const json serving = server.WaitForEvent("serving");
   const int metrics_port = serving["metrics_port"];
   EXPECT_THAT(HttpGet(metrics_port, "/readyz"), StartsWith("HTTP/1.1 200"));
