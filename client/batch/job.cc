@@ -80,7 +80,7 @@ bool Job::Put(Item item) {
 }
 
 absl::Status Job::Feed() {
-  while (planned_ < parts_.survey->planned) {
+  while (planned_ < parts_.planned) {
     absl::StatusOr<std::optional<Item>> item = plan_.Next();
     if (!item.ok()) return item.status();
     if (!item->has_value() || (*item)->number >= options_.limit) {
@@ -273,8 +273,7 @@ absl::Status Job::RunThreads(JournalWriter* writer) {
 
 // Whether every item there is was settled, by this run or an earlier one.
 bool Job::IsComplete() const {
-  return fed_ && parts_.survey->whole_plan &&
-         resumed_ + done_ + rejected_ + failed_ == parts_.survey->planned;
+  return fed_ && parts_.whole_plan && resumed_ + done_ + rejected_ + failed_ == parts_.planned;
 }
 
 // What is left of the damage once this run has written everything that it could.
@@ -318,7 +317,7 @@ absl::StatusOr<JobReport> Job::Finish() {
   const absl::StatusOr<ShardList> shards = OpenShards(*journal, identity, folder);
   if (!shards.ok()) return shards.status();
   report.packed = !shards->empty();
-  const PlannedItems planned{report.planned, fed_ && parts_.survey->whole_plan};
+  const PlannedItems planned{report.planned, fed_ && parts_.whole_plan};
   absl::StatusOr<SetCounts> counts =
       WriteIndex(*journal, identity, *shards, planned, folder.temporary(), folder.out());
   if (!counts.ok()) return counts.status();

@@ -77,7 +77,8 @@ class Job {
  public:
   // `servers`: the clients of each server, which take turns and do not retry. `models` and
   // `skeletons` are those of the plan. `folder` is open and was begun with `identity`. `survey`
-  // covers the same part of the plan and the same folder.
+  // covers the same part of the plan and the same folder; `planned` and `whole_plan` come from the
+  // check of that part.
   struct Parts {
     Recipe recipe;
     JobIdentity identity;
@@ -87,6 +88,8 @@ class Job {
     std::vector<std::vector<Client>> servers;
     const JobFolder* folder = nullptr;
     const Survey* survey = nullptr;
+    int64_t planned = 0;             // items of the part in the job's shard
+    bool whole_plan = false;         // whether these are all items
     KeptLeaders* leaders = nullptr;  // read before; may be null
   };
   // The plan begins with its first item.

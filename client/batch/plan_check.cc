@@ -77,6 +77,7 @@ class Checker {
 
  private:
   absl::Status Walk(const PlanPart& part, Plan* plan, const std::function<bool()>& stopped) {
+    check_.whole_plan = part.share >= 1;
     while (!stopped()) {
       const absl::StatusOr<std::optional<Item>> item = plan->Next();
       if (absl::IsInvalidArgument(item.status())) {
@@ -85,7 +86,12 @@ class Checker {
       }
       if (!item.ok()) return item.status();
       if (!item->has_value()) break;
-      if (part.Has(**item)) Add(**item, part.survey);
+      if ((*item)->number >= part.limit) check_.whole_plan = false;
+      if (!part.Has(**item)) continue;
+      absl::StatusOr<bool> settled = false;
+      if (part.is_settled && check_.bad_line_count == 0) settled = part.is_settled(**item);
+      if (!settled.ok()) return settled.status();
+      Add(**item, *settled);
     }
     return absl::OkStatus();
   }
@@ -95,7 +101,7 @@ class Checker {
     check_.bad_lines.emplace_back(status.message());
   }
 
-  void Add(const Item& item, const Survey* survey) {
+  void Add(const Item& item, bool settled) {
     ++check_.items;
     const int skeleton = skeleton_of_model_[static_cast<size_t>(item.model)];
     std::shared_ptr<SharedLeader> leader = sharing_.Get(item.leader, item.side, skeleton);
@@ -109,7 +115,7 @@ class Checker {
     last_entry_ = item.leader;
     last_side_ = item.side;
     ++current.all;
-    if (survey == nullptr || !survey->IsSettled(item.number)) ++current.unsettled;
+    if (!settled) ++current.unsettled;
   }
 
   void Hand(LeaderItems* items) {

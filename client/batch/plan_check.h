@@ -12,7 +12,6 @@
 #include "client/batch/leader_sharing.h"
 #include "client/batch/plan.h"
 #include "client/batch/shard.h"
-#include "client/batch/survey.h"
 #include "client/result.h"
 #include "model/motion/skeleton.h"
 
@@ -23,8 +22,10 @@ struct PlanPart {
   Shard shard;
   int64_t limit = std::numeric_limits<int64_t>::max();  // only the first items of the plan
   double share = 1;
-  // Items that it has settled are not made again, and their leaders are not read. May be null.
-  const Survey* survey = nullptr;
+  // If not empty, is called for each item of the part, in the order of the plan and up to the first
+  // bad line, which shifts the numbers of items. Leaders of settled items are not read. An error
+  // ends the check.
+  std::function<absl::StatusOr<bool>(const Item&)> is_settled;
   bool Has(const Item& item) const;
 };
 
@@ -36,10 +37,11 @@ struct BadLeader {
 
 // The result of checking a plan before the first call.
 struct PlanCheck {
-  int64_t items = 0;    // of the part, including settled ones
-  int64_t leaders = 0;  // leading people, counted as often as they are listed
-  int64_t frames = 0;   // of all followers, at the output rate
-  double seconds = 0;   // the same as a duration
+  int64_t items = 0;        // of the part, including settled ones
+  bool whole_plan = false;  // whether the part, before sharding, has all items of the plan
+  int64_t leaders = 0;      // leading people, counted as often as they are listed
+  int64_t frames = 0;       // of all followers, at the output rate
+  double seconds = 0;       // the same as a duration
 
   // Invalid lines of a manifest and leaders that cannot be used, in the order of the list; at most
   // kListed of each are stored.
@@ -57,7 +59,7 @@ struct PlanCheck {
 // Reads the plan to its end, every line of its manifest, and the leaders of the part. `skeletons`
 // are the models'. `kept`, which may be null, receives the leaders that the run can use. `stopped`
 // is called between items; once it returns true, the check ends with what it has.
-// Errors: those that end the plan.
+// Errors: those that end the plan, and those of `part.is_settled`.
 //
 // Threads: reads leaders in threads of its own.
 absl::StatusOr<PlanCheck> CheckPlan(

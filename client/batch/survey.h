@@ -2,11 +2,16 @@
 #define DUET_CLIENT_BATCH_SURVEY_H_
 
 #include <cstdint>
-#include <limits>
+#include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/batch/damage.h"
+#include "client/batch/item_files.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/leader_digests.h"
@@ -15,23 +20,14 @@
 
 namespace duet::client::batch {
 
-// The part of a plan that a run settles. JobOptions has fields of the same names.
-struct SurveyedPart {
-  int64_t limit = std::numeric_limits<int64_t>::max();
-  double share = 1;
-  bool retry_failed = false;
-};
-
-// The state of a plan after earlier runs, taken before the first call.
+// The state of a plan after earlier runs.
 struct Survey {
   JournalReader journal;
   ShardList shards;
-  // By item number, only for items of the part: whether the item is settled and its files exist
-  // with their sizes. The files are not read.
+  // By item number, only for surveyed items: whether the item is settled and its files exist with
+  // their sizes. The files are not read.
   std::vector<bool> settled;
-  int64_t planned = 0;      // items of the part in the job's shard
-  bool whole_plan = false;  // whether these are all items
-  bool all_packed = true;   // whether all done items are in a shard
+  bool all_packed = true;  // whether all done items are in a shard
   // Digests of all leaders that have an answer.
   std::unique_ptr<LeaderDigests> leaders;
 
@@ -40,15 +36,44 @@ struct Survey {
   }
 };
 
-// Reads the plan to its end, and removes damaged lines of the journal. `folder` is open and was
-// begun, or will be begun, with `identity`.
-//
-// Errors: those of the plan; FAILED_PRECONDITION, with the item or the leader, if the set was begun
-// with
-//         another plan or a leader's file has changed since; ABORTED, DATA_LOSS if the folder
-//         cannot be written or read.
-absl::StatusOr<Survey> TakeSurvey(const JobFolder& folder, const JobIdentity& identity,
-                                  const SurveyedPart& part, Plan* plan);
+// Compares the items of a plan with the journal and the files of earlier runs, before the first
+// call.
+class Surveyor {
+ public:
+  // Removes damaged lines of the journal. `folder` is open and was begun, or will be begun, with
+  // `identity`; both outlive the surveyor. With `retry_failed`, items that failed permanently are
+  // not settled. Errors: ABORTED, DATA_LOSS if the folder cannot be written or read.
+  static absl::StatusOr<std::unique_ptr<Surveyor>> Open(const JobFolder& folder,
+                                                        const JobIdentity& identity,
+                                                        bool retry_failed);
+
+  // Adds an item of the part that the run makes. Returns whether it is settled. Call it for each
+  // item of the part, in the order of the plan. Errors: FAILED_PRECONDITION, with the item or the
+  // leader, if the set was begun with another plan or a leader's file has changed since; ABORTED,
+  // DATA_LOSS as in Open.
+  absl::StatusOr<bool> Add(const Item& item);
+
+  const Survey& survey() const { return survey_; }
+
+ private:
+  Surveyor(const JobFolder& folder, const JobIdentity& identity, bool retry_failed, Survey survey);
+  absl::Status CheckLeader(const LeaderEntry& leader, const nlohmann::ordered_json& record);
+  absl::StatusOr<bool> IsSettled(int64_t item, const nlohmann::ordered_json& record,
+                                 const SpoolPlace& place);
+  bool HasFiles(const nlohmann::ordered_json& record) const;
+  bool IsInSpool(const nlohmann::ordered_json& record, const SpoolPlace& place) const;
+  bool CanReadSpool(const nlohmann::ordered_json& record, const SpoolPlace& place) const;
+  absl::StatusOr<const std::set<int64_t>*> BadItemsOf(size_t number);
+
+  const JobFolder& folder_;
+  const JobIdentity& identity_;
+  const bool retry_failed_;
+  Survey survey_;
+  const Damage damage_;
+  const ItemReader files_;
+  uint64_t spool_bytes_ = 0;
+  std::map<size_t, std::set<int64_t>> bad_;  // by shard
+};
 
 }  // namespace duet::client::batch
 

@@ -131,10 +131,11 @@ absl::Status Prepare(const BatchArguments& arguments, const ProgramEnvironment& 
   return absl::OkStatus();
 }
 
-// Checks every line of the manifest and every leader of the part before the first call.
+// Checks every line of the manifest, and every leader of the part that has an item which `surveyor`
+// (may be null) does not find settled.
 absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
                                        const ProgramEnvironment& environment,
-                                       const Prepared& prepared, const batch::Survey* survey,
+                                       const Prepared& prepared, batch::Surveyor* surveyor,
                                        batch::KeptLeaders* kept,
                                        const std::function<bool()>& stopped) {
   std::vector<std::string> passed_over;
@@ -142,7 +143,10 @@ absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
       MakePlan(arguments, prepared.recipe, prepared.models, environment.in, &passed_over);
   if (!plan.ok()) return plan.status();
   ReportPassedOver(arguments, passed_over, environment);
-  const batch::PlanPart part{prepared.shard, arguments.limit, arguments.share, survey};
+  batch::PlanPart part{prepared.shard, arguments.limit, arguments.share, nullptr};
+  if (surveyor != nullptr) {
+    part.is_settled = [surveyor](const batch::Item& item) { return surveyor->Add(item); };
+  }
   return CheckPlan(prepared.recipe, prepared.skeletons, prepared.limits, part, &*plan, kept,
                    stopped);
 }
@@ -171,29 +175,6 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
   return good ? kExitDone : kExitBadInput;
 }
 
-// Finds out what earlier runs left of the plan.
-absl::StatusOr<batch::Survey> Survey(const BatchArguments& arguments, const Prepared& prepared,
-                                     const batch::JobIdentity& identity,
-                                     const batch::JobFolder& folder) {
-  absl::StatusOr<batch::Plan> plan =
-      MakePlan(arguments, prepared.recipe, prepared.models, nullptr, nullptr);
-  if (!plan.ok()) return plan.status();
-  const batch::SurveyedPart part{arguments.limit, arguments.share, arguments.retry_failed};
-  return TakeSurvey(folder, identity, part, &*plan);
-}
-
-// Checks a plan before its run; bad lines are an error. Only leaders of items that `survey` has not
-// settled are read.
-absl::Status CheckForRun(const BatchArguments& arguments, const ProgramEnvironment& environment,
-                         const Prepared& prepared, const batch::Survey* survey,
-                         const RunningJob& running, batch::KeptLeaders* kept) {
-  const absl::StatusOr<batch::PlanCheck> check = Check(
-      arguments, environment, prepared, survey, kept, [&running] { return running.stopped(); });
-  if (!check.ok()) return check.status();
-  ReportBadLeaders(arguments, *check, environment);
-  return BadLinesError(*check);
-}
-
 absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
                                   const ProgramEnvironment& environment, Prepared prepared) {
   RunningJob running;
@@ -210,15 +191,18 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   const absl::StatusOr<batch::JobIdentity> identity =
       GoOn(begun, WithModels(wanted, prepared.models, prepared.skeletons));
   if (!identity.ok()) return identity.status();
-  const absl::StatusOr<batch::Survey> survey = Survey(repeatable, prepared, *identity, folder);
-  // A bad line ends the survey. The check lists all of them.
-  if (!survey.ok() && !absl::IsInvalidArgument(survey.status())) return survey.status();
+  const absl::StatusOr<std::unique_ptr<batch::Surveyor>> surveyor =
+      batch::Surveyor::Open(folder, *identity, arguments.retry_failed);
+  if (!surveyor.ok()) return surveyor.status();
   batch::KeptLeaders leaders(kMaxKeptLeaderBytes);
-  status = CheckForRun(repeatable, environment, prepared, survey.ok() ? &*survey : nullptr, running,
-                       &leaders);
+  const absl::StatusOr<batch::PlanCheck> check =
+      Check(repeatable, environment, prepared, surveyor->get(), &leaders,
+            [&running] { return running.stopped(); });
+  if (!check.ok()) return check.status();
+  ReportBadLeaders(arguments, *check, environment);
+  status = BadLinesError(*check);
   if (!status.ok()) return status;
   if (running.stopped()) return kExitRetry;
-  if (!survey.ok()) return survey.status();
   absl::StatusOr<batch::Plan> plan =
       MakePlan(repeatable, prepared.recipe, prepared.models, nullptr, nullptr);
   if (!plan.ok()) return plan.status();
@@ -230,11 +214,11 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   if (!status.ok()) return status;
   batch::Job job({std::move(prepared.recipe), *identity, std::move(prepared.models),
                   std::move(prepared.skeletons), prepared.limits, std::move(prepared.servers),
-                  &folder, &*survey, &leaders},
+                  &folder, &(*surveyor)->survey(), check->items, check->whole_plan, &leaders},
                  *std::move(plan), ToJobOptions(arguments));
   running.Set(&job);
   absl::StatusOr<ExitCode> code =
-      RunJob(arguments, job, folder.out(), survey->planned, environment, running);
+      RunJob(arguments, job, folder.out(), check->items, environment, running);
   running.Set(nullptr);
   return code;
 }

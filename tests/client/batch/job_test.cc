@@ -15,6 +15,7 @@
 #include "absl/strings/str_format.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/manifest.h"
+#include "client/batch/plan_check.h"
 #include "client/batch/recipe_file.h"
 #include "client/batch/setup.h"
 #include "client/batch/survey.h"
@@ -117,14 +118,29 @@ class JobTest : public ::testing::Test {
     absl::StatusOr<Plan> plan =
         Plan::Create(*recipe, {model}, ReadManifest(surveyed, folder_.path(), "m"));
     EXPECT_THAT(plan, IsOk());
-    const absl::StatusOr<Survey> survey =
-        TakeSurvey(folder, identity, {options.limit, options.share, options.retry_failed}, &*plan);
-    if (!survey.ok()) return survey.status();
+    const absl::StatusOr<std::unique_ptr<Surveyor>> surveyor =
+        Surveyor::Open(folder, identity, options.retry_failed);
+    if (!surveyor.ok()) return surveyor.status();
+    const PlanPart part{{}, options.limit, options.share, [&surveyor](const Item& item) {
+                          return (*surveyor)->Add(item);
+                        }};
+    const absl::StatusOr<PlanCheck> check =
+        CheckPlan(*recipe, {motion::SbuSkeleton()}, {}, part, &*plan);
+    if (!check.ok()) return check.status();
     plan = Plan::Create(*recipe, {model}, ReadManifest(in, folder_.path(), "m"));
     EXPECT_THAT(folder.Begin(identity), IsOk());
     std::vector<std::vector<Client>> servers;
     for (const auto& connection : connections_) servers.push_back({Client(connection)});
-    Job job({*recipe, identity, {model}, {motion::SbuSkeleton()}, {}, servers, &folder, &*survey},
+    Job job({*recipe,
+             identity,
+             {model},
+             {motion::SbuSkeleton()},
+             {},
+             servers,
+             &folder,
+             &(*surveyor)->survey(),
+             check->items,
+             check->whole_plan},
             *std::move(plan), WithFewThreads(options));
     job_ = &job;
     absl::StatusOr<JobReport> report = job.Run();

@@ -181,21 +181,46 @@ TEST_F(PlanCheckTest, LeadersOutsideThePartAreNotRead) {
 }
 
 TEST_F(PlanCheckTest, OnlyLeadersOfUnsettledItemsAreRead) {
-  JournalWriter writer;
-  ASSERT_THAT(writer.Open(folder_ / "journal", 0), IsOk());
-  for (int item : {0, 1, 2, 3, 4}) writer.Add(item, "{}");
-  ASSERT_THAT(writer.Commit(), IsOk());
-  absl::StatusOr<JournalReader> journal = JournalReader::Open(folder_ / "journal");
-  ASSERT_THAT(journal, IsOk());
-  Survey survey{*std::move(journal), {}, {true, true, true, true, false}, 0, false, true, nullptr};
   PlanPart part;
-  part.survey = &survey;
-  // The journal has item 4, but the survey found that its files are gone.
+  part.is_settled = [](const Item& item) { return item.number < 4; };
   const auto check = Check("leader\nnone.csv\na.csv\nstill.csv\n", part);
   ASSERT_THAT(check, IsOk());
   EXPECT_EQ(check->items, 6);
   ASSERT_THAT(check->bad_leaders, SizeIs(1));
   EXPECT_THAT(check->bad_leaders[0].message, HasSubstr("still.csv"));
+}
+
+// A bad line shifts the numbers of the items after it, so they cannot be compared with a journal.
+TEST_F(PlanCheckTest, ItemsAfterABadLineAreNotSurveyed) {
+  std::vector<int64_t> surveyed;
+  PlanPart part;
+  part.is_settled = [&surveyed](const Item& item) {
+    surveyed.push_back(item.number);
+    return true;
+  };
+  const auto check = Check("leader\tseed\na.csv\t1\nb.csv\tx\nnone.csv\t2\n", part);
+  ASSERT_THAT(check, IsOk());
+  EXPECT_THAT(surveyed, ElementsAre(0, 1));
+  EXPECT_EQ(check->bad_line_count, 1);
+  EXPECT_EQ(check->bad_leader_count, 1);
+}
+
+TEST_F(PlanCheckTest, ErrorOfTheSurveyEndsTheCheck) {
+  PlanPart part;
+  part.is_settled = [](const Item&) { return absl::FailedPreconditionError("changed"); };
+  EXPECT_THAT(Check("leader\na.csv\n", part),
+              StatusIs(absl::StatusCode::kFailedPrecondition, "changed"));
+}
+
+TEST_F(PlanCheckTest, ReportsWhetherThePartHasAllItems) {
+  PlanPart part;
+  EXPECT_TRUE(Check("leader\na.csv\n", part)->whole_plan);
+  part.limit = 2;
+  EXPECT_TRUE(Check("leader\na.csv\n", part)->whole_plan);
+  EXPECT_FALSE(Check("leader\na.csv\nb.csv\n", part)->whole_plan);
+  part.limit = 100;
+  part.share = 0.5;
+  EXPECT_FALSE(Check("leader\na.csv\n", part)->whole_plan);
 }
 
 TEST_F(PlanCheckTest, LeadersThatWereReadAreKeptForTheRun) {
