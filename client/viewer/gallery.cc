@@ -104,7 +104,7 @@ absl::StatusOr<std::string> RenderGallery(const GalleryContent& content) {
   absl::Status status = Check(content);
   if (!status.ok()) return status;
   PageParts parts;
-  parts.index = Embedded(duet_page_gallery_index, duet_page_gallery_index_end);
+  parts.body = Embedded(duet_page_gallery_index, duet_page_gallery_index_end);
   parts.title = content.title;
   parts.style =
       absl::StrCat(SharedStyle(), Embedded(duet_page_gallery_style, duet_page_gallery_style_end));

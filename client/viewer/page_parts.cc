@@ -10,6 +10,10 @@
 
 // Embedded by duet_embed_file.
 extern "C" {
+extern const char duet_page_frame[], duet_page_frame_end[];
+extern const char duet_page_views[], duet_page_views_end[];
+extern const char duet_page_play[], duet_page_play_end[];
+extern const char duet_page_speeds[], duet_page_speeds_end[];
 extern const char duet_page_style[], duet_page_style_end[];
 extern const char duet_page_three[], duet_page_three_end[];
 extern const char duet_page_controls[], duet_page_controls_end[];
@@ -40,15 +44,20 @@ void AppendLittleEndian(float value, std::string* bytes) {
 }  // namespace
 
 std::string FillPage(const PageParts& parts) {
+  const std::string page = absl::StrReplaceAll(Embedded(duet_page_frame, duet_page_frame_end),
+                                               {{"{{BODY}}", parts.body}});
   // One pass: inserted text is not searched again, so a title that contains "{{DATA}}" is harmless.
   return absl::StrReplaceAll(
-      parts.index, {{"{{TITLE}}", EscapeHtml(parts.title)},
-                    {"{{STYLE}}", parts.style},
-                    {"{{DATA}}", parts.data},
-                    {"{{LICENCE}}", Embedded(duet_page_licence, duet_page_licence_end)},
-                    {"{{THREE}}", Embedded(duet_page_three, duet_page_three_end)},
-                    {"{{CONTROLS}}", Embedded(duet_page_controls, duet_page_controls_end)},
-                    {"{{SCRIPT}}", parts.script}});
+      page, {{"{{TITLE}}", EscapeHtml(parts.title)},
+             {"{{VIEWS}}", Embedded(duet_page_views, duet_page_views_end)},
+             {"{{PLAY}}", Embedded(duet_page_play, duet_page_play_end)},
+             {"{{SPEEDS}}", Embedded(duet_page_speeds, duet_page_speeds_end)},
+             {"{{STYLE}}", parts.style},
+             {"{{DATA}}", parts.data},
+             {"{{LICENCE}}", Embedded(duet_page_licence, duet_page_licence_end)},
+             {"{{THREE}}", Embedded(duet_page_three, duet_page_three_end)},
+             {"{{CONTROLS}}", Embedded(duet_page_controls, duet_page_controls_end)},
+             {"{{SCRIPT}}", parts.script}});
 }
 
 std::string SafeJson(const nlohmann::json& data) {

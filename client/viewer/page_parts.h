@@ -11,9 +11,10 @@
 
 namespace duet::client::viewer {
 
-// Values of the placeholders "{{TITLE}}", "{{STYLE}}", "{{DATA}}" and "{{SCRIPT}}" of a page.
+// The parts in which the pages differ: values of the placeholders of page/frame.html. `body` may
+// contain the shared controls "{{VIEWS}}", "{{PLAY}}" and "{{SPEEDS}}".
 struct PageParts {
-  absl::string_view index;
+  absl::string_view body;
   std::string title;
   std::string style;
   std::string data;  // JSON of SafeJson
