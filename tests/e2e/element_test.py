@@ -205,10 +205,10 @@ class ElementTest(unittest.TestCase):
     def test_canvas_has_the_elements_size(self):
         page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
         page.evaluate("elements[0].style.width = '300px'")
-        page.wait_until("elements[0].canvas.width === 300")
+        page.wait_until("elements[0].canvas.width === 300 * devicePixelRatio")
         page.next_frame()
         self.sees(page, left=0, right=0.5, top=0)
-        self.assertEqual(page.evaluate("elements[0].canvas.height"), 188)
+        self.assertEqual(page.evaluate("elements[0].canvas.height / devicePixelRatio"), 188)
 
     def test_shows_both_on_a_phone(self):
         page = self.open('<duet-motion src="pair.json" paused controls></duet-motion>', width=360,

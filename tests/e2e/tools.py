@@ -178,9 +178,11 @@ def running_server(*flags, **options):
 
 
 class Picture:
-    """The pixels of a PNG as Chromium writes it: 8 bits, RGB or RGBA, not interlaced."""
+    """The pixels of a PNG as Chromium writes it: 8 bits, RGB or RGBA, not interlaced. `scale`: its
+    pixels for each pixel of the layout, along one axis."""
 
-    def __init__(self, data):
+    def __init__(self, data, scale=1):
+        self.scale = scale
         self.width, self.height, depth, kind = struct.unpack(">IIBB", data[16:26])
         assert depth == 8 and kind in (2, 6), "not a PNG of 8 bits a channel"
         self.channels = 3 if kind == 2 else 4
@@ -222,11 +224,13 @@ class Picture:
         return row
 
     def count(self, is_wanted, left=0.25, right=0.9, top=0.1, bottom=0.85):
-        """Pixels of the stage (away from the panels) whose (red, green, blue) is wanted."""
+        """Pixels of the stage (away from the panels) whose (red, green, blue) is wanted, in pixels of
+        the layout."""
         columns = range(int(left * self.width), int(right * self.width))
-        return sum(is_wanted(*self.rows[y][x * self.channels:x * self.channels + 3])
-                   for y in range(int(top * self.height), int(bottom * self.height))
-                   for x in columns)
+        wanted = sum(is_wanted(*self.rows[y][x * self.channels:x * self.channels + 3])
+                     for y in range(int(top * self.height), int(bottom * self.height))
+                     for x in columns)
+        return wanted / self.scale ** 2
 
 
 def is_leader_orange(red, green, blue):

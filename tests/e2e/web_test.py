@@ -52,11 +52,11 @@ class WebTest(unittest.TestCase):
         cls.addClassCleanup(cls.server.stop)
         cls.gateway = gateways.Gateway(cls.server.address)
         cls.addClassCleanup(cls.gateway.stop)
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
 
     def setUp(self):
-        # A browser of its own: what one test keeps in it is no other's.
-        self.browser = Browser()
-        self.addCleanup(self.browser.close)
+        self.browser.forget()
 
     def open(self, address="", **size):
         page = self.browser.open(f"{self.gateway.url}/{address}", **size)
@@ -162,10 +162,8 @@ class WebTest(unittest.TestCase):
         self.assertEqual(again.evaluate("document.querySelector('[name=start]').value"),
                          "0, 0.9, 1.2")
         self.assertEqual(again.evaluate("document.querySelector('#labels [name=hug]').value"), "1")
-        self.browser.close()
-        self.browser = Browser()
-        self.addCleanup(self.browser.close)
-        stranger = self.open_still(link)  # another one: it has the settings and not the file
+        self.browser.forget()
+        stranger = self.open_still(link)  # another browser: it has the settings and not the file
         self.assertIn("visitor's hug.bvh", stranger.text("#empty"))
         self.drop(stranger)
         self.react(stranger)
