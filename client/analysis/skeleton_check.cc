@@ -98,7 +98,7 @@ class Checker {
     Add("size", good,
         absl::StrFormat("foot to %s %.2f m%s", skeleton_.joint_names[Index(skeleton_.root)], leg,
                         good ? ""
-                             : absl::StrFormat(", people have %.1f to %.1f m: is the unit right?",
+                             : absl::StrFormat(", expected %.1f to %.1f m. Check the unit",
                                                motion::kShortestLeg, motion::kLongestLeg)),
         {{"foot_to_root_metres", leg}});
   }
@@ -302,11 +302,11 @@ class Checker {
     const bool oppose = ShouldersOppose();
     std::vector<std::string> wrong;
     if (oppose)
-      wrong.push_back("the shoulders have left and right the other way round than the hips");
+      wrong.push_back("left and right of the shoulders are opposite to those of the hips");
     if (bent_wrongly.value_or(0) > kMostBentWrongly) {
       wrong.push_back(
           absl::StrFormat("knees and elbows bend the wrong way (%.0f %% of their "
-                          "bending), as where left and right are swapped",
+                          "bending): left and right may be swapped",
                           100 * *bent_wrongly));
     }
     if (swaps > 0)

@@ -8,7 +8,8 @@
 namespace duet::client::batch {
 namespace {
 
-// Keyframes of parts of a clip as frames; of several at one frame, in a short clip, the last.
+// Keyframes with times as fractions of the clip, converted to frames. In a short clip, several can
+// fall on one frame; the last one counts.
 std::vector<WeightKeyframe> ToFrames(const std::vector<Schedule::Keyframe>& keyframes,
                                      int frame_count) {
   std::vector<WeightKeyframe> frames;
@@ -28,7 +29,7 @@ Meaning MeaningOf(const absl::Status& status) {
     case absl::StatusCode::kUnavailable:
       return Meaning::kWait;
     case absl::StatusCode::kResourceExhausted:
-      // Without a delay it is the request that is too large.
+      // Without a retry delay, the request itself is too large.
       return RetryDelay(status).has_value() ? Meaning::kWait : Meaning::kRefused;
     case absl::StatusCode::kNotFound:
     case absl::StatusCode::kPermissionDenied:

@@ -48,7 +48,7 @@ class TarHeader {
   std::array<char, kBlock> bytes_;
 };
 
-// The motion name.json, beside the record of that name.
+// A motion in JSON becomes <name>.motion.json, because <name>.json is its record.
 std::string NameInTar(const std::string& path) {
   absl::string_view stem = path;
   return absl::ConsumeSuffix(&stem, ".json") ? absl::StrCat(stem, ".motion.json") : path;
@@ -149,7 +149,7 @@ class ZipArchive final : public Archive {
 
  private:
   static constexpr uint64_t kVersion = 20;
-  static constexpr uint64_t kFirstDay = 0x21;  // 1980-01-01, the first that zip knows
+  static constexpr uint64_t kFirstDay = 0x21;  // 1980-01-01, the first date in zip
 
   struct Member {
     std::string path;
@@ -162,7 +162,7 @@ class ZipArchive final : public Archive {
     return crc32_z(0, reinterpret_cast<const Bytef*>(content.data()), content.size());
   }
 
-  // What the header before the content and the directory at the end have in common.
+  // The fields that the header of a file and its entry in the directory share.
   static void AppendFields(const Member& member, std::string* out) {
     AppendLittle(out, kVersion, 2);
     AppendLittle(out, uint64_t{1} << 11, 2);  // names in UTF-8
@@ -192,7 +192,7 @@ absl::Status ArchiveReader::Damaged() const {
 }
 
 bool ArchiveReader::Read(size_t bytes, std::string* out) {
-  // No member is larger than the file that it is in.
+  // A member cannot be larger than its archive.
   std::error_code error;
   if (bytes > std::filesystem::file_size(path_, error) || error) return false;
   out->resize(bytes);

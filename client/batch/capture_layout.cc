@@ -12,7 +12,7 @@
 namespace duet::client::batch {
 namespace {
 
-// Of people whom SBU does not have.
+// The folder for leaders that are not from SBU.
 constexpr char kNobodysSet[] = "s00s00";
 
 std::string SetOf(const std::string& leader) {

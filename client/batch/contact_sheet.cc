@@ -54,7 +54,7 @@ std::string Escaped(absl::string_view text) {
                              {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
 }
 
-// The class of the largest weight, of keyframes that of all of them.
+// The class of the largest weight, over all keyframes if there are any.
 std::string ClassOf(const ordered_json& record) {
   std::string best = "none";
   double largest = 0;
@@ -72,7 +72,7 @@ std::string ClassOf(const ordered_json& record) {
   return best;
 }
 
-// "kick 1, hug 0.5", keyframe after keyframe.
+// "kick 1, hug 0.5", one keyframe after the other.
 std::string LabelsText(const ordered_json& record) {
   const auto text = [](const ordered_json& labels) {
     std::vector<std::string> words;
@@ -102,7 +102,7 @@ std::string FiguresText(const ordered_json& record) {
   return text;
 }
 
-// Some items of a class: those of the lowest ids, which are as good as random.
+// A random sample of the items of a class: those with the lowest ids, which are digests.
 struct Sample {
   int64_t items = 0;                         // of the class
   std::map<std::string, JournalEntry> kept;  // by id
@@ -157,7 +157,7 @@ class Sheet {
     const std::string name = Escaped(record["name"].get<std::string>());
     const std::string file = Escaped(record["files"][0]["path"].get<std::string>());
     absl::StrAppend(page, "<figure>", Picture(record, place), "<figcaption>");
-    // A file in a shard is nothing to open.
+    // A file in a shard has no link.
     if (identity_.packing == Packing::kNone) {
       absl::StrAppend(page, "<a href=\"", file, "\">", name, "</a>");
     } else {
@@ -179,7 +179,7 @@ class Sheet {
       const absl::StatusOr<motion::ClipPair> pair = ReadStoredPair(items_, record, place, skeleton);
       return pair.ok() ? PoseStrip(*pair, skeleton) : unread(pair.status().message());
     }
-    return unread(model + " is no model of the job");
+    return unread(model + " is not a model of the job");
   }
 
   const JobIdentity& identity_;

@@ -10,7 +10,7 @@
 namespace duet::client::batch {
 namespace {
 
-constexpr size_t kMaxDamageBytes = size_t{1} << 30;  // ten digits for each of the most items
+constexpr size_t kMaxDamageBytes = size_t{1} << 30;  // ten digits for each of kMaxItems
 
 }  // namespace
 

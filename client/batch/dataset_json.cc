@@ -16,7 +16,7 @@ namespace v1 = ::duet::batch::v1;
 constexpr char kFormat[] = "duet-batch";
 constexpr int kFormatVersion = 1;
 
-// The enums count up in the same order as the proto's, which begin with one more.
+// The enums have the order of the proto's, which also have an UNSPECIFIED value first.
 std::string LayoutName(Layout layout) {
   return v1::Layout_Name(static_cast<v1::Layout>(static_cast<int>(layout) + 1));
 }
@@ -37,7 +37,7 @@ ordered_json SkeletonJson(const motion::Skeleton& skeleton) {
           {"root_joint", skeleton.joint_names[static_cast<size_t>(skeleton.root)]}};
 }
 
-// Each skeleton once, at the index that SkeletonIndices gives.
+// Each skeleton once, at the index that SkeletonIndices returns.
 ordered_json SkeletonsJson(const std::vector<motion::Skeleton>& skeletons) {
   ordered_json array = ordered_json::array();
   const std::vector<int> indices = SkeletonIndices(skeletons);
@@ -59,7 +59,7 @@ ordered_json ModelsJson(const JobIdentity& identity) {
   ordered_json array = ordered_json::array();
   for (size_t i = 0; i < identity.models.size(); ++i) {
     ordered_json model = {{"name", ModelText(identity.models[i])}};
-    // A set that an earlier version began has no descriptions.
+    // A set that was begun by an earlier version has no descriptions.
     const DescribedModel about = i < described.size() ? described[i] : DescribedModel();
     AddText("weights_sha256", about.weights_sha256, &model);
     AddText("terms", about.terms, &model);

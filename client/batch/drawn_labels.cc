@@ -12,7 +12,7 @@
 namespace duet::client::batch {
 namespace {
 
-// A drawn weight is a multiple of this part of 1, so that it reads well.
+// Drawn weights are multiples of 1 / kWeightsInOne, so that they have few decimals.
 constexpr double kWeightsInOne = 1000;
 
 float DrawWeight(const WeightRange& range, base::Random* random) {
@@ -43,7 +43,7 @@ std::vector<DrawnLabels> DrawEachClass(const std::string& name, const EachClass&
     drawn.push_back({absl::StrCat(name.empty() ? "each" : name, "_", PlainName(classes[c])),
                      {{classes[c], DrawWeight(each.weight, random)}}});
     if (!each.beside.has_value()) continue;
-    // Any class but its own.
+    // Any other class.
     auto other = static_cast<size_t>(random->Below(static_cast<int64_t>(classes.size()) - 1));
     if (other >= c) ++other;
     drawn.back().labels.push_back({classes[other], DrawWeight(*each.beside, random)});

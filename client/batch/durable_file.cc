@@ -30,7 +30,7 @@ absl::Status WriteAll(int descriptor, absl::string_view content, const fs::path&
   return absl::OkStatus();
 }
 
-// A new folder's name is on the disk when it returns, as are those above it.
+// Flushes the names of new folders, including parents, to disk.
 absl::Status MakeFolders(const fs::path& folder) {
   std::vector<fs::path> missing;
   std::error_code error;
@@ -173,8 +173,8 @@ absl::Status FolderLock::Take(const fs::path& file) {
   if (descriptor_ < 0) return CannotWrite(file, errno);
   if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return absl::OkStatus();
   if (errno != EWOULDBLOCK) return CannotWrite(file, errno);
-  return absl::AbortedError(absl::StrCat(file.parent_path().parent_path().string(),
-                                         ": another duet batch is at work in it"));
+  return absl::AbortedError(
+      absl::StrCat(file.parent_path().parent_path().string(), ": is in use by another duet batch"));
 }
 
 }  // namespace duet::client::batch

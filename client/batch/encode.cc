@@ -30,7 +30,7 @@ absl::StatusOr<std::vector<EncodedFile>> EncodeBvh(const motion::ClipPair& pair,
                                   {".follower.bvh", FormatBvh(*follower)}};
 }
 
-// Labels and model of an item are in the index.
+// The file omits labels and model, which are in the index.
 absl::StatusOr<std::vector<EncodedFile>> EncodeGlb(const motion::ClipPair& pair,
                                                    const motion::Skeleton& skeleton) {
   absl::StatusOr<std::string> content = formats::gltf::FormatGltf(

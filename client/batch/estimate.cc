@@ -27,7 +27,7 @@ absl::StatusOr<Estimate> EstimateJob(const Recipe& recipe, const std::vector<Mod
   double bytes = 0;
   for (const EncodedFile& file : *files) bytes += static_cast<double>(file.content.size());
   Estimate estimate;
-  // The network works at a rate of its own, so that the motion's duration tells the time.
+  // The network runs at its own frame rate, so the time depends on the duration of the motion.
   estimate.seconds = absl::ToDoubleSeconds(result->timings.total) * check.seconds *
                      clip.frame_rate_hz / clip.frame_count();
   estimate.bytes = bytes * static_cast<double>(check.frames) / pair.follower.frame_count();

@@ -24,12 +24,12 @@ std::string Cell(absl::string_view text) {
   return absl::StrReplaceAll(text, {{"\t", " "}, {"\n", " "}, {"\r", " "}});
 }
 
-// "walks/a.bvh: no such file" without the file, which may stand below a manifest's folder.
+// Removes the file from "walks/a.bvh: no such file"; its path may begin with the manifest's folder.
 absl::string_view WithoutFile(absl::string_view leader, absl::string_view message) {
   const std::string file = absl::StrCat(leader, ":");
   const size_t at = leader.empty() ? absl::string_view::npos : message.find(file);
   if (at == absl::string_view::npos) return message;
-  // Only a path may stand before it.
+  // Only a path may precede the file name.
   if (message.substr(0, at).find(": ") != absl::string_view::npos) return message;
   return absl::StripLeadingAsciiWhitespace(message.substr(at + file.size()));
 }

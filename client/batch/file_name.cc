@@ -12,14 +12,14 @@
 namespace duet::client::batch {
 namespace {
 
-// File systems hold 255 bytes; an item's ending and the names of temporary files need some.
+// File systems allow 255 bytes; extensions and the names of temporary files need the rest.
 constexpr std::size_t kMaxPartBytes = 200;
-// Linux opens paths of 4095 bytes; the data set's folder needs some.
+// Linux opens paths of up to 4095 bytes; the data set's folder needs the rest.
 constexpr std::size_t kMaxPathBytes = 1000;
 constexpr std::size_t kDigestDigits = 16;
 constexpr std::size_t kKeptBytes = 120;
 
-// Bytes of the UTF-8 character at `at`; 0 where there is none.
+// Bytes of the UTF-8 character at `at`; 0 if the bytes there are not valid UTF-8.
 std::size_t CharacterBytes(const std::string& text, std::size_t at) {
   const auto byte = [&text](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
@@ -29,7 +29,7 @@ std::size_t CharacterBytes(const std::string& text, std::size_t at) {
   if (first < 0x80) return 1;
   if (first >= 0xc2 && first <= 0xdf) return follows(at + 1) ? 2 : 0;
   if (first >= 0xe0 && first <= 0xef) {
-    // Neither an encoding that is longer than needed nor a half of a UTF-16 pair.
+    // Rejects overlong encodings and UTF-16 surrogates.
     const bool allowed = (first != 0xe0 || second >= 0xa0) && (first != 0xed || second < 0xa0);
     return allowed && follows(at + 1) && follows(at + 2) ? 3 : 0;
   }
@@ -40,7 +40,7 @@ std::size_t CharacterBytes(const std::string& text, std::size_t at) {
   return 0;
 }
 
-// At most `bytes` from the beginning, without a part of a character.
+// At most the first `bytes` bytes, without truncating a character.
 std::string Beginning(const std::string& text, std::size_t bytes) {
   while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xc0u) == 0x80u) --bytes;
   return text.substr(0, bytes);

@@ -29,7 +29,7 @@ constexpr const char* kFigures[] = {
     "distance_metres",  "penetration_metres",      "range_of_motion_metres",
     "recognised_class", "class_probability"};
 
-// A cell holds no tab and no line end; what is not there is empty.
+// A field as a TSV cell, without tabs and line ends; empty if the field is missing.
 std::string Cell(const ordered_json& object, const char* name) {
   const auto found = object.find(name);
   if (found == object.end()) return "";
@@ -37,7 +37,7 @@ std::string Cell(const ordered_json& object, const char* name) {
   return absl::StrReplaceAll(text, {{"\t", " "}, {"\n", " "}, {"\r", " "}});
 }
 
-// "kick=1,hug=0.5", or the keyframes as they are.
+// "kick=1,hug=0.5", or the keyframes as JSON.
 std::string LabelsCell(const ordered_json& record) {
   if (!record.contains("labels")) return Cell(record, "keyframes");
   std::vector<std::string> labels;
@@ -79,7 +79,7 @@ uint64_t BytesOf(const ordered_json& record) {
   return bytes;
 }
 
-// The files that grow with the items.
+// The files with one line for each item.
 class IndexWriter {
  public:
   IndexWriter(const JobIdentity& identity, const ShardList& shards,
@@ -103,7 +103,7 @@ class IndexWriter {
     rejected.insert(rejected.end(), {"answers", "reasons", "extra"});
     status.Update(rejected_.Append(Row(rejected)));
     if (packing_ != Packing::kNone) header.emplace_back("shard");
-    // What readers of captures look for.
+    // The columns that readers of captures need.
     if (captures_) header.insert(header.end(), {"path", "leader_side"});
     header.insert(header.end(), {"files", "sha256", "extra"});
     status.Update(tsv_.Append(Row(header)));
@@ -232,7 +232,7 @@ absl::StatusOr<PlannedItems> ReadPlanned(const std::filesystem::path& out) {
   };
   if (!summary.is_object() || !is_count("planned") || !is_count("missing") ||
       !summary.contains("whole_plan") || !summary["whole_plan"].is_boolean()) {
-    return absl::DataLossError(absl::StrCat(file.string(), ": is no summary of duet batch"));
+    return absl::DataLossError(absl::StrCat(file.string(), ": is not a summary of duet batch"));
   }
   return PlannedItems{summary["planned"], summary["whole_plan"], summary["missing"]};
 }

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-// Files of their own: written under other names, brought to the disk all at once, renamed.
+// A file for each item: written under temporary names, flushed together and renamed.
 class FolderWriter final : public ItemWriter {
  public:
   FolderWriter(fs::path temporary, const fs::path& items)
@@ -109,7 +109,7 @@ absl::StatusOr<std::string> ItemReader::ReadSpool(uint64_t offset, uint64_t byte
     const ssize_t got = pread(descriptor_, content.data() + done, content.size() - done,
                               static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return absl::DataLossError(absl::StrCat(spool_.string(), ": was cut short"));
+    if (got <= 0) return absl::DataLossError(absl::StrCat(spool_.string(), ": is truncated"));
     done += static_cast<size_t>(got);
   }
   return content;
@@ -132,7 +132,7 @@ absl::StatusOr<std::string> ItemReader::ReadShard(const ordered_json& record, si
   const ordered_json& recorded = record["files"][file];
   const std::string path = recorded["path"];
   const size_t shard = shards_->ShardOf(record["item"].get<int64_t>());
-  if (shard == ShardList::kNone) return absl::NotFoundError(path + ": is in no shard");
+  if (shard == ShardList::kNone) return absl::NotFoundError(path + ": is not in any shard");
   const fs::path archive = out_ / ShardName(packing_, shard);
   absl::StatusOr<std::optional<ArchiveMember>> member = ArchiveReader(archive).Find(path);
   if (!member.ok()) return member.status();
@@ -180,7 +180,7 @@ void ItemReader::Release() {
     fs::remove(file, error);
   }
   forgotten_.clear();
-  // Neighbours together: a hole takes whole blocks alone.
+  // Merges neighbours, because a hole covers only whole blocks.
   std::sort(ranges_.begin(), ranges_.end());
   for (size_t i = 0; i < ranges_.size();) {
     const uint64_t from = ranges_[i].first;

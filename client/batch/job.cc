@@ -16,13 +16,13 @@
 namespace duet::client::batch {
 namespace {
 
-constexpr int kAttempts = 3;  // at a call that fails for a passing reason
+constexpr int kAttempts = 3;  // of a call that fails temporarily
 constexpr size_t kQueuedItems = 64;
 constexpr size_t kQueuedAnswers = 64;
 constexpr size_t kCausesReported = 20;
 constexpr size_t kUnwrittenBytes = size_t{64} << 20;
-// How long items gather before they are brought to the disk together: a look at the disk costs as
-// much as several items, and one that is not written yet is only asked for again.
+// How long items are collected before they are flushed to disk together. A flush costs as much as
+// several items, and an item that is lost before the flush is requested again.
 constexpr flow::Duration kGatherTime = std::chrono::milliseconds(100);
 
 std::optional<flow::Duration> DelayOf(const absl::Status& status) {
@@ -31,8 +31,8 @@ std::optional<flow::Duration> DelayOf(const absl::Status& status) {
   return absl::ToChronoNanoseconds(*delay);
 }
 
-// Askers, and keepers: as many as can work at once, of whom the first two overlap reading and
-// waiting.
+// The number of askers, and of keepers: one for each core, and at least two, so that one can work
+// while the other waits.
 int ThreadsOfAKind() {
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 2, 8);
 }
@@ -72,7 +72,7 @@ Progress Job::progress() const {
   return {planned_, resumed_, done_, rejected_, failed_, unfinished_, bytes_, gate_.state()};
 }
 
-// False when the run is being stopped.
+// Returns false after a stop.
 bool Job::Put(Item item) {
   std::shared_ptr<SharedLeader> leader =
       leaders_.Get(item.leader, item.side, skeleton_indices_[static_cast<size_t>(item.model)]);
@@ -120,7 +120,7 @@ void Job::Ask(Work work) {
   const std::optional<flow::ServerChoice::Call> call = gate_.Start();
   if (!call.has_value()) {
     queue_.Done();
-    return queue_.Stop();  // nobody gets a call any longer
+    return queue_.Stop();  // no more calls start
   }
   NextClient(call->server)
       .SynthesizeAsync(std::move(request), [this, call = *call, work = std::move(work)](
@@ -134,7 +134,7 @@ void Job::KeepUntilClosed() {
   while (std::optional<Answered> answered = answers_.Take()) Receive(*std::move(answered));
 }
 
-// The item is done, or goes back to be asked for again.
+// Finishes the item, or puts it back for another attempt.
 void Job::Receive(Answered answered) {
   const absl::Status status = answered.result.status();
   Work& work = answered.work;
@@ -198,7 +198,7 @@ void Job::Fail(const Item& item, const absl::Status& error) {
   Settle({item, kFailed, Line(FailedRecord(item, error)), {}});
 }
 
-// The journal does not keep it: the next run asks again.
+// Writes no journal record, so the next run requests the item again.
 void Job::FailForNow(const Item& item, const absl::Status& error) {
   ++unfinished_;
   const std::lock_guard<std::mutex> lock(unfinished_mutex_);
@@ -212,7 +212,7 @@ void Job::Settle(Settled settled) {
   settled_.Put(std::move(settled), bytes);
 }
 
-// Many items share one look at the disk.
+// Flushes many items at once.
 void Job::WriteUntilClosed(JournalWriter* journal) {
   const std::unique_ptr<ItemWriter> items = MakeItemWriter(*parts_.folder, parts_.identity.packing);
   for (std::vector<Settled> all; !(all = settled_.Gather(kGatherTime)).empty();) {
@@ -223,7 +223,7 @@ void Job::WriteUntilClosed(JournalWriter* journal) {
   }
 }
 
-// Files before records: a record never names what is not there.
+// Writes files before records, so that a record never names a missing file.
 absl::Status Job::Write(const std::vector<Settled>& all, ItemWriter* items,
                         JournalWriter* journal) {
   for (const Settled& settled : all) {
@@ -271,23 +271,24 @@ absl::Status Job::RunThreads(JournalWriter* writer) {
   return fed;
 }
 
-// Whether every item there is was settled, by this run or an earlier one.
+// Whether all items of the plan are settled, by this run or an earlier one.
 bool Job::IsComplete() const {
   return fed_ && parts_.whole_plan && resumed_ + done_ + rejected_ + failed_ == parts_.planned;
 }
 
-// What is left of the damage once this run has written everything that it could.
+// Packs a complete set, and updates the record of damage.
 absl::Status Job::PackOrRepaired(const JournalReader& journal) {
   const JobFolder& folder = *parts_.folder;
   if (parts_.identity.packing == Packing::kNone) return WriteDamage(damage_, folder.damage());
-  // A shard of a set that is made in several is packed when they are merged.
+  // A set that is made in several shards is packed when they are merged.
   if (parts_.identity.shard.count > 1) return WriteDamage(damage_, folder.damage());
   if (!IsComplete() || journal.count() != planned_) return absl::OkStatus();
   absl::Status status = Pack(journal, parts_.identity, folder);
   return status.ok() ? WriteDamage({}, folder.damage()) : status;
 }
 
-// Before anything is packed, and again when more was done since: what a shard holds is read slowly.
+// Draws the sheet before packing, because items in shards are slow to read. Skips it if the items
+// have not changed since.
 absl::Status Job::DrawContactSheet(const JournalReader& journal) const {
   const JobFolder& folder = *parts_.folder;
   const JobIdentity& identity = parts_.identity;
@@ -337,7 +338,7 @@ absl::StatusOr<JobReport> Job::Run() {
   if (!report.ok()) return stopped_with_.ok() ? report : stopped_with_;
   report->stopped = stopped_with_;
   if (gate_.state().lost_patience) {
-    report->stopped.Update(absl::UnavailableError("no server answered for too long"));
+    report->stopped.Update(absl::UnavailableError("no server answered within --patience"));
   }
   return report;
 }

@@ -26,7 +26,7 @@ constexpr size_t kMaxModels = 1000;
 
 std::string ShardText(const Shard& shard) { return absl::StrCat(shard.index, "/", shard.count); }
 
-// The file's skeletons have parts, which nobody asks for here.
+// Body parts are not used here, so one part holds all joints.
 std::vector<motion::BodyPart> WholeBody(const motion::Skeleton& skeleton) {
   motion::BodyPart body{"body", {}};
   for (int joint = 0; joint < skeleton.joint_count(); ++joint) body.joints.push_back(joint);
@@ -133,7 +133,7 @@ absl::Status JobFolder::Take() {
   absl::Status status = lock_.Take(state() / "lock");
   if (!status.ok()) return status;
   fs::remove_all(temporary(), error);
-  // What a process that was killed had not yet renamed.
+  // Temporary files of a process that was killed.
   for (const char* name : {"contact_sheet.html", "dataset.json", "summary.json"}) {
     fs::remove(out_ / absl::StrCat(name, ".partial"), error);
   }
@@ -158,7 +158,7 @@ absl::Status JobFolder::OpenForRun(const JobIdentity& wanted, JobIdentity* begun
   return Discard();
 }
 
-// What cannot be read counts as answers: nothing that may be of use is removed.
+// A folder that cannot be read counts as one with answers, so that nothing useful is removed.
 bool JobFolder::HasAnswers() const {
   std::error_code error;
   const fs::path index = out_ / "index.jsonl";
@@ -173,7 +173,7 @@ bool JobFolder::HasAnswers() const {
   return !all_failed.ok();
 }
 
-// The job itself last: stopped before, the next run comes here again.
+// Removes job.json last: if the run is stopped before, the next run repeats this.
 absl::Status JobFolder::Discard() const {
   for (const fs::path& path :
        {journal(), spool(), shards(), damage(), RecipeFile(out_), IdentityFile(out_)}) {

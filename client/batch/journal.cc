@@ -31,7 +31,7 @@ struct ParsedLine {
   absl::string_view record;
 };
 
-// False for a line that is not whole.
+// Returns false for a truncated or damaged line.
 bool ParseLine(absl::string_view line, ParsedLine* parsed) {
   if (line.size() < kDigestDigits + 2 || line[kDigestDigits] != ' ') return false;
   const absl::string_view rest = line.substr(kDigestDigits + 1);
@@ -77,13 +77,13 @@ JournalReader::~JournalReader() {
 
 absl::Status JournalReader::Load() {
   std::ifstream file(path_, std::ios::binary);
-  int64_t damaged_since = 0;  // after the last whole line
+  int64_t damaged_since = 0;  // after the last complete line
   uint64_t position = 0;
   for (std::string line; std::getline(file, line);) {
     const uint64_t offset = position;
     position += line.size() + 1;
     ParsedLine parsed;
-    // A line without its end meets the end of the file.
+    // A line that reaches the end of the file has no newline.
     if (file.eof() || !ParseLine(line, &parsed)) {
       ++damaged_since;
       continue;
@@ -101,7 +101,7 @@ absl::Status JournalReader::Load() {
     damaged_lines_ += std::exchange(damaged_since, 0);
   }
   if (file.bad()) return absl::DataLossError(absl::StrCat(path_.string(), ": cannot be read"));
-  // The very last one may be what a process was writing when it stopped.
+  // The last line may be truncated because the process was stopped while it wrote.
   damaged_lines_ += std::max<int64_t>(0, damaged_since - 1);
   return absl::OkStatus();
 }

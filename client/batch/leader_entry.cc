@@ -12,7 +12,7 @@ std::string KeyOf(const std::filesystem::path& path) {
     if (name.empty() || name == "." || name == "..") continue;
     for (char& c : name) {
       const auto byte = static_cast<unsigned char>(c);
-      // From 0x80 on: letters of other scripts in UTF-8.
+      // Bytes from 0x80 on are letters of other scripts in UTF-8.
       if (!absl::ascii_isalnum(byte) && byte < 0x80 && c != '_' && c != '-' && c != '+') c = '_';
     }
     if (!key.empty()) key += '/';

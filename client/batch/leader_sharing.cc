@@ -12,7 +12,7 @@ size_t BytesOf(const motion::Clip& clip) {
   return clip.poses.all().size() * sizeof(motion::Vec3) + kOverheadBytes;
 }
 
-// Whether two lines name the same motion to read.
+// Whether two lines read the same motion.
 bool SameMotion(const LeaderEntry& a, const LeaderEntry& b) {
   return a.file == b.file && a.follower_start == b.follower_start &&
          a.follower_start_side == b.follower_start_side;

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::streamsize kLookedAtBytes = 4096;
 
-// Files of a list that is made beforehand: a path each, as long as a folder's listing.
+// A list of files that is complete before the first one is returned.
 class LeaderList final : public LeaderSource {
  public:
   absl::StatusOr<std::optional<LeaderEntry>> Next() override {
@@ -35,12 +35,13 @@ class LeaderList final : public LeaderSource {
     entry.given = file.string();
     entry.file = file;
     if (!keys_.insert(entry.key).second) {
-      // Two formats of one name: both with their endings.
+      // Two files differ only in their extension: the second key keeps it.
       entry.key = KeyOf(named);
       if (!keys_.insert(entry.key).second) {
         return absl::InvalidArgumentError(
-            absl::StrCat(file.string(), ": another leader has the name ", entry.key,
-                         " too. Use different file names, or list one folder above both files"));
+            absl::StrCat(file.string(), ": name: expected a unique one, got ", entry.key,
+                         ", which another leader has. Use different file names, or list one folder "
+                         "above both files"));
       }
     }
     entries_.push_back(std::move(entry));
@@ -55,8 +56,8 @@ class LeaderList final : public LeaderSource {
   size_t next_ = 0;
 };
 
-// Whether a file that a folder happens to hold looks like a motion. Of .txt and .json files, which
-// hold much else, the beginning tells: rows of numbers, the names of a motion's fields.
+// Whether a file in a folder looks like a motion. For .txt and .json files, which can be anything,
+// the beginning decides: rows of numbers, or the names of a motion's fields.
 bool LooksLikeMotion(const fs::path& file) {
   const std::string extension = absl::AsciiStrToLower(file.extension().string());
   if (extension != ".txt" && extension != ".json") return true;
@@ -75,8 +76,8 @@ bool LooksLikeMotion(const fs::path& file) {
          row.find_first_not_of("0123456789+-.eE, \t\r") == absl::string_view::npos;
 }
 
-// Whether a file of a folder or a pattern may be a leader: as its name says, or, where it is said
-// what leaders are, unless its name says otherwise.
+// Whether a file of a folder or a pattern may be a leader. Without a format, its extension must be
+// that of a motion; with one, its extension must not be that of another format.
 bool MayLead(const fs::path& file, const std::optional<formats::Format>& format) {
   if (!format.has_value()) return formats::IsReadable(file);
   return formats::FormatOf(file).value_or(*format) == *format;
@@ -109,7 +110,7 @@ bool IsPattern(const fs::path& path) {
   return path.string().find_first_of("*?") != std::string::npos;
 }
 
-// Every file that a pattern of several parts stands for, by name.
+// Every file that matches a pattern of several parts, sorted by name.
 std::vector<fs::path> Expand(const fs::path& pattern) {
   std::vector<fs::path> found = {pattern.is_absolute() ? pattern.root_path() : fs::path()};
   for (const fs::path& part : pattern.relative_path()) {
@@ -132,7 +133,7 @@ std::vector<fs::path> Expand(const fs::path& pattern) {
   return found;
 }
 
-// The folder that names are told from: all of a pattern before its first wildcard.
+// The folder that names are relative to: the parts of a pattern before its first wildcard.
 fs::path FixedPart(const fs::path& pattern) {
   fs::path fixed;
   for (const fs::path& part : pattern.parent_path()) {
@@ -154,7 +155,8 @@ absl::Status AddPattern(const fs::path& pattern, const std::optional<formats::Fo
     if (!status.ok()) return status;
   }
   if (any) return absl::OkStatus();
-  return absl::NotFoundError(absl::StrCat(pattern.string(), ": no motion file is named so"));
+  return absl::NotFoundError(
+      absl::StrCat(pattern.string(), ": no motion file matches this pattern"));
 }
 
 absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>& format,

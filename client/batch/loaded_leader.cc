@@ -42,9 +42,9 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
   }
   const std::filesystem::path file = start.empty() ? entry.file : std::filesystem::path(start);
   std::error_code error;
-  // Of the leader's own file, the follower is the other person.
+  // In the leader's own file, the follower is the other person.
   const bool own = start.empty() || std::filesystem::equivalent(file, entry.file, error);
-  // What was said is of leaders; another file may be of another format.
+  // The settings describe leaders; another file may have another format.
   if (!own && formats::IsReadable(file)) options.format.reset();
   options.side = entry.follower_start_side.value_or(own ? OtherSide(side) : formats::Side::kLeft);
   absl::StatusOr<FollowerStart> pose = ReadStart(file, options);
@@ -53,7 +53,7 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
   return absl::OkStatus();
 }
 
-// What the server would reject in every call with this leader.
+// Checks the limits that would make the server reject every call with this leader.
 absl::Status CheckLimits(const std::filesystem::path& file, const motion::Clip& clip,
                          const RequestLimits& limits) {
   const auto refuse = [&file](const auto&... what) {
@@ -98,7 +98,7 @@ absl::StatusOr<LoadedLeader> Load(const LeaderEntry& entry, formats::Side side,
   return loaded;
 }
 
-// Field of the recipe that would mend what a reader could not know; null where there is none.
+// The field of the recipe that sets what a reader could not find out; null if there is none.
 const char* MendingField(const absl::Status& status) {
   const std::optional<motion::ReadingSetting> setting = motion::MendingSetting(status);
   if (!setting.has_value()) return nullptr;
@@ -110,7 +110,7 @@ const char* MendingField(const absl::Status& status) {
     case motion::ReadingSetting::kJointMap:
       return "joint_map";
     case motion::ReadingSetting::kFormat:
-    case motion::ReadingSetting::kRigJointMap:  // of a rig, which a batch has none of
+    case motion::ReadingSetting::kRigJointMap:  // a batch has no rig
       break;
   }
   return nullptr;

@@ -21,9 +21,9 @@ namespace {
 
 constexpr int kJsonDepth = 8;
 constexpr size_t kMaxLineBytes = size_t{1} << 20;
-constexpr size_t kShownBytes = 60;  // of a line, in a message
+constexpr size_t kShownBytes = 60;  // of a line in a message
 
-// A line's columns by name, in either of the two forms; empty ones are left out.
+// The columns of a JSON or TSV line by name, without empty ones.
 using Columns = std::map<std::string, std::string>;
 
 // A value of a JSON line as the text that a TSV cell would hold.
@@ -53,7 +53,7 @@ absl::StatusOr<Columns> ParseJsonLine(const std::string& line) {
   return columns;
 }
 
-// What is wrong with the columns of a line, all of it.
+// Collects all errors of a line.
 class LineProblems {
  public:
   void Add(absl::string_view column, absl::string_view problem) {
@@ -68,7 +68,7 @@ class LineProblems {
   std::vector<std::string> problems_;
 };
 
-// Takes a column out of those that are left.
+// Removes a column and returns its value; empty if it is missing.
 std::string Take(const char* name, Columns* columns) {
   const auto found = columns->find(name);
   if (found == columns->end()) return "";
@@ -87,7 +87,7 @@ void TakeParsed(const char* name, absl::StatusOr<Value> (*parse)(absl::string_vi
   *value = *std::move(parsed);
 }
 
-// All but the key.
+// Fills all fields except the key.
 absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns columns) {
   LeaderEntry entry;
   LineProblems problems;
@@ -146,7 +146,7 @@ class Manifest final : public LeaderSource {
     return true;
   }
 
-  // What the first line says of the others; whether it is one of them.
+  // Reads the kind of the manifest from its first line. Returns whether that line is an entry.
   absl::StatusOr<bool> Begin(const std::string& line) {
     kind_ = line[0] == '{' ? Kind::kJson : Kind::kTsv;
     if (kind_ == Kind::kJson) return true;
@@ -178,7 +178,7 @@ class Manifest final : public LeaderSource {
     if (!columns.ok()) return columns.status();
     const std::string id = Take("id", &*columns);
     absl::StatusOr<LeaderEntry> entry = ToEntry(folder_, *std::move(columns));
-    // Of a bad line as well, so that another line of the same id is reported with it.
+    // Bad lines register their ids too, so that a later line with the same id is reported.
     absl::StatusOr<std::string> key = KeyFor(id, entry.ok() ? entry->given : "");
     if (!entry.ok() && !key.ok()) {
       return absl::InvalidArgumentError(
@@ -191,8 +191,8 @@ class Manifest final : public LeaderSource {
     return entry;
   }
 
-  // An id's own key, which must differ from all others; the leader's path and the number of the
-  // line otherwise, which differs of itself.
+  // The key of an id, which must be unique; without ids, the leader's path and the line number,
+  // which are unique.
   absl::StatusOr<std::string> KeyFor(const std::string& id, const std::filesystem::path& leader) {
     if (!has_ids_.has_value()) has_ids_ = !id.empty();
     if (*has_ids_ != !id.empty()) {
@@ -218,7 +218,7 @@ class Manifest final : public LeaderSource {
   std::string name_;
   int64_t line_ = 0;
   Kind kind_ = Kind::kUnknown;
-  bool ended_ = false;  // without a header no line means anything
+  bool ended_ = false;  // without a header, no line can be read
   std::vector<std::string> header_;
   std::optional<bool> has_ids_;
   absl::flat_hash_set<size_t> ids_;

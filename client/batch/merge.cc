@@ -37,7 +37,7 @@ struct Part {
   std::shared_ptr<ItemReader> items;
 };
 
-// Any of the shards' identities; all others are checked against it.
+// The identity of one of the shards; the others are checked against it.
 absl::StatusOr<JobIdentity> FindIdentity(const fs::path& out) {
   std::error_code error;
   std::vector<fs::path> folders;
@@ -49,11 +49,12 @@ absl::StatusOr<JobIdentity> FindIdentity(const fs::path& out) {
     absl::StatusOr<JobIdentity> identity = ReadJobIdentity(folder);
     if (identity.ok()) return identity;
   }
-  return absl::NotFoundError(absl::StrCat(out.string(), ": has no shard of duet batch"));
+  return absl::NotFoundError(absl::StrCat(
+      out.string(), ": expected folders shard-INDEX-of-COUNT of duet batch, got none"));
 }
 
 bool SameModels(const JobIdentity& a, const JobIdentity& b) {
-  if (!GoOn(a, b).ok()) return false;  // other weights
+  if (!GoOn(a, b).ok()) return false;  // different weights
   return std::equal(a.models.begin(), a.models.end(), b.models.begin(), b.models.end(),
                     [](const ModelChoice& one, const ModelChoice& other) {
                       return one.name == other.name && one.version == other.version;
@@ -89,7 +90,7 @@ absl::StatusOr<Part> OpenPart(const fs::path& out, const JobIdentity& identity, 
   return part;
 }
 
-// Moves an item's files; those that are there already were moved by a run that was stopped.
+// Moves an item's files. A merge that was stopped may have moved some of them.
 absl::Status MoveFile(const fs::path& from, const fs::path& to, const std::string& sha256) {
   absl::Status status = CheckFile(from, sha256);
   if (absl::IsNotFound(status)) return CheckFile(to, sha256);
@@ -100,7 +101,7 @@ absl::Status MoveFile(const fs::path& from, const fs::path& to, const std::strin
   return error ? CannotWrite(to, error.value()) : absl::OkStatus();
 }
 
-// Whether all was merged already, and only folders of shards may be left.
+// Whether everything is merged and only the folders of shards may be left.
 bool IsMerged(const fs::path& out) {
   const absl::StatusOr<JobIdentity> identity = ReadJobIdentity(out);
   const absl::StatusOr<PlannedItems> planned = ReadPlanned(out);
@@ -133,7 +134,7 @@ class Merger {
     return folder_.Open(identity_, &begun);
   }
 
-  // Goes on where a run before this one was stopped: what the merged journal has is moved.
+  // Continues a merge that was stopped: items in the merged journal have been moved.
   absl::Status MoveAll() {
     absl::Status status = RepairJournal(folder_.journal(), folder_.temporary() / "journal");
     if (!status.ok()) return status;
@@ -172,7 +173,7 @@ class Merger {
     if (!counts.ok()) return counts.status();
     report_.set = *counts;
     report_.planned = planned_;
-    // What is missing can still be made in its shard, and merged again.
+    // Missing items can still be made in their shard and merged again.
     if (journal->count() < planned_) return report_;
     status = RemoveShards(folder_.out(), static_cast<int>(parts_.size()));
     if (!status.ok()) return status;
@@ -234,7 +235,7 @@ class Merger {
     return absl::OkStatus();
   }
 
-  // Only what is on the disk in its new place is let go of in the old.
+  // Removes files from the old place only after they are on disk in the new one.
   absl::Status Commit() {
     absl::Status status = writer_->Commit();
     for (const fs::path& folder : folders_) status.Update(SyncFolder(folder));

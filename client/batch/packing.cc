@@ -24,14 +24,14 @@ using nlohmann::ordered_json;
 
 bool IsDone(const ordered_json& record) { return record["state"] == kDone; }
 
-// An item of a shard: its record and where its files lie outside of the shard, if anywhere.
+// An item of a shard: its record, and the place of its files outside the shard, if any.
 struct DoneItem {
   int64_t item = 0;
   SpoolPlace place;
   ordered_json record;
 };
 
-// The item's record; nothing where it is not done.
+// The item's record; nullopt if the item is not done.
 absl::StatusOr<std::optional<DoneItem>> ReadDone(const JournalReader& journal, int64_t item) {
   if (!journal.Has(item)) return std::optional<DoneItem>();
   const absl::StatusOr<JournalEntry> entry = journal.Read(item);
@@ -42,13 +42,13 @@ absl::StatusOr<std::optional<DoneItem>> ReadDone(const JournalReader& journal, i
   return std::optional<DoneItem>(DoneItem{item, entry->place, *std::move(record)});
 }
 
-// A shard that was written before, member after member in the order of its items.
+// Reads an existing shard, member by member in the order of its items.
 class OldShard {
  public:
   explicit OldShard(const fs::path& file) : reader_(file) {}
 
-  // The content of an item's file, after those found before; nothing where it is not there or not
-  // what its record says.
+  // The content of an item's file, searched after the previous one. nullopt if it is missing or
+  // differs from its record.
   std::optional<std::string> Find(const ordered_json& file) {
     if (ended_) return std::nullopt;
     absl::StatusOr<std::optional<ArchiveMember>> member = reader_.Find(file["path"]);
@@ -68,9 +68,9 @@ uint64_t BytesOf(const ordered_json& record) {
   return bytes;
 }
 
-// Every done item that is in no shard.
+// All done items that are not in a shard.
 absl::Status AddRest(const JournalReader& journal, const JobIdentity& identity, ShardList* list) {
-  // As it was before: what is added here does not count.
+  // A copy, because items are added below.
   const ShardList known = *list;
   return journal.ForEach([&](const JournalEntry& entry) {
     if (known.ShardOf(entry.item) != ShardList::kNone) return absl::OkStatus();
@@ -82,7 +82,7 @@ absl::Status AddRest(const JournalReader& journal, const JobIdentity& identity, 
   });
 }
 
-// Writes the shards of a list that are not there as they should be.
+// Writes the shards of a list that are missing or damaged.
 class Packer {
  public:
   Packer(const JournalReader& journal, const JobIdentity& identity, const JobFolder& folder,
@@ -102,9 +102,9 @@ class Packer {
     if (!bad_.empty()) {
       damage_.items.insert(bad_.begin(), bad_.end());
       (void)WriteDamage(damage_, folder_.damage());
-      return absl::AbortedError(absl::StrCat(
-          folder_.out().string(), ": ", bad_.size(),
-          " items that wait to be packed were damaged; the same command asks for them again"));
+      return absl::AbortedError(absl::StrCat(folder_.out().string(), ": ", bad_.size(),
+                                             " items waiting to be packed are damaged. Run the "
+                                             "same command again to request them again"));
     }
     return status;
   }
@@ -115,7 +115,7 @@ class Packer {
     if (shard.items.empty()) return absl::OkStatus();
     const fs::path file = folder_.out() / ShardName(packing_, number);
     if (LooksWhole(shard, file) && !IsDamaged(shard, file)) {
-      // Written whole and stopped before the list said so, or packed before there were lists.
+      // The run was stopped between the shard and the list, or an earlier version wrote no list.
       if (!shard.sha256.empty()) return absl::OkStatus();
       const absl::StatusOr<std::set<int64_t>> bad = FindBadItems(journal_, shard, file);
       if (!bad.ok()) return bad.status();
@@ -145,7 +145,7 @@ class Packer {
       for (int64_t item = first; item <= last; ++item) {
         const absl::StatusOr<std::optional<DoneItem>> done = ReadDone(journal_, item);
         if (!done.ok()) return done.status();
-        // One that has failed since, when it was asked for again, is in no shard any longer.
+        // An item that failed when it was requested again is no longer in a shard.
         if (!done->has_value()) continue;
         status = AddItem(**done, &old, archive.get());
         if (!status.ok()) return status;
@@ -182,7 +182,7 @@ class Packer {
       absl::Status status = archive->Add(recorded["path"], *content);
       if (!status.ok()) return status;
     }
-    // The place of one that was packed before is another item's by now.
+    // The place of an item that was packed earlier may now belong to another item.
     if (unpacked) items_.Forget(done.record, done.place);
     return archive->AddRecord(done.record["name"], Line(done.record) + "\n");
   }

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Deeper than any record goes.
+// Larger than the depth of any record.
 constexpr int kMaxDepth = 8;
 
 using IsOfType = bool (*)(const ordered_json& value);
@@ -26,12 +26,12 @@ bool IsTexts(const ordered_json& value) {
 bool IsNumbers(const ordered_json& value) {
   return value.is_object() && std::all_of(value.begin(), value.end(), IsNumber);
 }
-// Whether an object's field is there, and of a type.
+// Whether an object has a field of a type.
 bool Has(const ordered_json& object, const char* name, IsOfType is_type) {
   const auto found = object.find(name);
   return found != object.end() && is_type(*found);
 }
-// Figures, and the class that a classifier saw.
+// Figures, and the class that a classifier recognised.
 bool IsQuality(const ordered_json& value) {
   if (!value.is_object()) return false;
   for (const auto& [name, figure] : value.items()) {
@@ -103,7 +103,7 @@ absl::StatusOr<ordered_json> ParseRecord(absl::string_view text) {
     return !too_deep;
   };
   ordered_json record = ordered_json::parse(text.begin(), text.end(), within_depth, false);
-  if (too_deep || !record.is_object()) return absl::DataLossError("is no record");
+  if (too_deep || !record.is_object()) return absl::DataLossError("is not a record");
   absl::Status status = CheckRecord(record);
   if (!status.ok()) return status;
   return record;

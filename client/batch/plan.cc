@@ -37,7 +37,7 @@ std::string Text(const Labels& labels) {
   return text;
 }
 
-// All that is asked, as a text of which two items have never the same.
+// The whole request as text, unique to each item.
 std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model) {
   const LeaderEntry& leader = *item.leader;
   std::string text =
@@ -58,7 +58,7 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
   return text;
 }
 
-// Every combination of a grid's weights, the last axis the fastest.
+// All combinations of a grid's weights; the last axis changes fastest.
 std::vector<Labels> Combinations(const Grid& grid) {
   std::vector<Labels> all = {{}};
   for (const Grid::Axis& axis : grid.axes) {
@@ -75,7 +75,7 @@ std::vector<Labels> Combinations(const Grid& grid) {
   return all;
 }
 
-// What an error of a leader begins with: its line of the manifest, or the leader as it was listed.
+// The prefix of a leader's errors: its line of the manifest, or the leader as listed.
 const std::string& PlaceOf(const LeaderEntry& leader) {
   return leader.line.empty() ? leader.given : leader.line;
 }
@@ -150,7 +150,7 @@ std::vector<std::string> Plan::ClassesOr(const std::vector<std::string>& classes
 }
 
 absl::Status Plan::AddNamed(const Reaction& reaction, LabelledReaction labelled) {
-  // A single reaction is named by its name, several by its name and their labels.
+  // A single reaction has the name of its entry; several append their labels.
   const std::string own = NameOfLabels(labelled.labels);
   const bool single = std::holds_alternative<Labels>(reaction.kind) ||
                       std::holds_alternative<Schedule>(reaction.kind);
@@ -233,9 +233,9 @@ absl::Status Plan::CheckClassifier(const ModelInfo& model) const {
   for (const std::string& joint : recipe_.filter.classifier->parts().skeleton.joint_names) {
     const auto& known = model.joint_names;
     if (std::find(known.begin(), known.end(), joint) != known.end()) continue;
-    return absl::InvalidArgumentError(absl::StrCat("filter.classifier: wants joint ",
-                                                   base::Quoted(joint), ", which ", model.name, "@",
-                                                   model.version, " does not have"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("filter.classifier: expected a model with joint ", base::Quoted(joint),
+                     ", got ", model.name, "@", model.version, " without it"));
   }
   return absl::OkStatus();
 }
@@ -344,7 +344,7 @@ absl::StatusOr<Item> Plan::MakeItem() {
   return item;
 }
 
-// Whether the leader at hand has another item.
+// Moves to the next item of the current leader. Returns false if there is none.
 bool Plan::Advance() {
   if (++sample_ < recipe_.samples) return true;
   sample_ = 0;

@@ -26,7 +26,7 @@ int FramesAsWritten(const motion::Clip& clip, const Output& output) {
   return motion::ResampledFrameCount(clip.frame_count(), clip.frame_rate_hz, *rate_hz);
 }
 
-// A leader, and the items that the part has of it.
+// A leader, and its items in the part.
 struct LeaderItems {
   std::shared_ptr<SharedLeader> leader;
   std::optional<Item> first;
@@ -42,7 +42,7 @@ class Checker {
         skeletons_(skeletons),
         limits_(limits),
         kept_(kept),
-        // Models of one skeleton read a leader alike.
+        // Models with the same skeleton read a leader in the same way.
         skeleton_of_model_(SkeletonIndices(skeletons)),
         sharing_(skeletons.size()),
         current_(skeletons.size()),
@@ -146,7 +146,7 @@ class Checker {
 
   void AddBad(const LeaderItems& items, const absl::Status& status) {
     check_.items_of_bad_leaders += items.all;
-    // A leader that is listed again has the same message.
+    // A leader that is listed again has the same message, which is its key.
     auto& [number, count] =
         bad_.insert({std::string(status.message()), {items.first->number, 0}}).first->second;
     number = std::min(number, items.first->number);
@@ -164,7 +164,7 @@ class Checker {
   formats::Side last_side_ = formats::Side::kLeft;
   flow::BoundedQueue<LeaderItems> queue_;
   std::mutex mutex_;
-  // Message to the number of the first item and how many there are.
+  // By message: the number of the first item, and the number of items.
   std::map<std::string, std::pair<int64_t, int64_t>> bad_;
   PlanCheck check_;
 };
@@ -192,7 +192,7 @@ absl::Status BadLinesError(const PlanCheck& check) {
   if (more > 0) absl::StrAppend(&lines, "\n  and ", more, " more");
   return absl::InvalidArgumentError(
       absl::StrCat(check.bad_line_count, check.bad_line_count == 1 ? " bad line" : " bad lines",
-                   "; nothing was asked for:\n  ", lines));
+                   "; no call was made:\n  ", lines));
 }
 
 }  // namespace duet::client::batch

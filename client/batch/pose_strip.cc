@@ -10,13 +10,13 @@ namespace duet::client::batch {
 namespace {
 
 constexpr int kMoments = 6;
-// In the strip's own unit, which is fine enough for whole numbers.
-constexpr int kPlace = 1000;  // a moment's width and the strip's height
+// In the strip's unit, which is small enough for integer coordinates.
+constexpr int kPlace = 1000;  // width of a moment, height of the strip
 constexpr int kFloor = 950;
 constexpr float kRoomAcross = 780, kRoomUp = 880;
 constexpr float kHeadMetres = 0.1f;  // the radius of a head
 
-// How the pair is looked at.
+// The projection of the pair.
 struct View {
   motion::Vec3 across = {1, 0, 0};  // to the right of the picture
   float floor = 0;                  // metres
@@ -32,8 +32,7 @@ std::vector<int> Moments(int frame_count) {
   return frames;
 }
 
-// The horizontal direction from leader to follower, mean over the frames; x where they share a
-// place.
+// The mean horizontal direction from leader to follower; x if they are at the same place.
 motion::Vec3 Across(const motion::ClipPair& pair, int root) {
   motion::Vec3 sum;
   for (int t = 0; t < pair.leader.frame_count(); ++t) {
@@ -44,7 +43,7 @@ motion::Vec3 Across(const motion::ClipPair& pair, int root) {
   return length > 0 ? sum / length : motion::Vec3{1, 0, 0};
 }
 
-// The middle of the two people along the picture.
+// The mean horizontal position of the two people in the picture.
 float Middle(const motion::ClipPair& pair, int root, int frame, motion::Vec3 across) {
   return Dot(pair.leader.at(frame, root) + pair.follower.at(frame, root), across) / 2;
 }
@@ -70,7 +69,7 @@ View Look(const motion::ClipPair& pair, int root, const std::vector<int>& frames
   return view;
 }
 
-// The bones of one person at all moments, as the d of a path.
+// The bones of one person at all moments, as the attribute d of an SVG path.
 class PersonPath {
  public:
   PersonPath(const motion::Skeleton& skeleton, const View& view)

@@ -19,7 +19,7 @@ std::optional<double> Known(double figure) {
   return std::isnan(figure) ? std::nullopt : std::optional<double>(figure);
 }
 
-// The clip with these of its joints, in this order.
+// The clip reduced to these joints, in this order.
 motion::Clip InJoints(const motion::Clip& clip, const std::vector<std::string>& joints) {
   if (clip.joint_names == joints) return clip;
   std::vector<int> from;
@@ -80,12 +80,12 @@ std::vector<std::string> WhyRejected(const QualityFilter& filter, const Quality&
   const auto at_most = [&reasons](const char* name, const std::optional<double>& figure,
                                   const std::optional<double>& limit) {
     if (!figure || !limit || *figure <= *limit) return;
-    reasons.push_back(absl::StrFormat("%s %.4g, wanted at most %g", name, *figure, *limit));
+    reasons.push_back(absl::StrFormat("%s: expected at most %g, got %.4g", name, *limit, *figure));
   };
   const auto at_least = [&reasons](const char* name, double figure,
                                    const std::optional<double>& limit) {
     if (!limit || figure >= *limit) return;
-    reasons.push_back(absl::StrFormat("%s %.4g, wanted at least %g", name, figure, *limit));
+    reasons.push_back(absl::StrFormat("%s: expected at least %g, got %.4g", name, *limit, figure));
   };
   at_most("lean_degrees", quality.lean_degrees, filter.max_lean_degrees);
   at_most("foot_above_floor_metres", quality.foot_above_floor_metres,

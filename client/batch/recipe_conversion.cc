@@ -24,10 +24,10 @@ constexpr uint32_t kMaxMixes = 10'000;
 constexpr uint32_t kMaxRetries = 100;
 constexpr size_t kMaxGrid = 100'000;
 
-// Of names that came, in a message.
+// Of the names in a message.
 constexpr size_t kLongestField = 200, kLongestValue = 200;
 
-// Remembers the first error.
+// Stores the first error.
 class Checker {
  public:
   void Expect(bool good, const std::string& field, const std::string& got, const char* expected) {
@@ -276,7 +276,7 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
     check->Expect(v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED, "output.formats",
                   absl::StrCat(format),
                   "FORMAT_BVH, FORMAT_CSV, FORMAT_NPY, FORMAT_JSON, FORMAT_GLB or FORMAT_USDA");
-    // Both count up in the same order, the proto from 1.
+    // The enums have the same order; the proto's begins at 1.
     output.formats.push_back(static_cast<Format>(format - v1::FORMAT_BVH));
   }
   check->Different("output.formats", proto.formats());
@@ -285,7 +285,7 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
   if (proto.packing() == v1::PACKING_TAR) output.packing = Packing::kTar;
   if (proto.packing() == v1::PACKING_NPZ) output.packing = Packing::kNpz;
   if (proto.has_shard_bytes()) output.shard_bytes = proto.shard_bytes();
-  // A zip file counts in 32 bits.
+  // Zip files have 32-bit sizes.
   check->Expect(output.shard_bytes >= 1 && output.shard_bytes <= (uint64_t{2} << 30),
                 "output.shard_bytes", absl::StrCat(output.shard_bytes), "1 to 2147483648");
   check->Expect(!own_format || output.packing == Packing::kNone, "output.packing", "one",

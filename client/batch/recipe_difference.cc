@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr size_t kDescribed = 5;
 
-// Every value that is no object and no array, by its path: "reactions[0].labels.weights.kick".
+// All values except objects and arrays, by path: "reactions[0].labels.weights.kick".
 using Fields = std::map<std::string, json>;
 
 void Flatten(const json& value, const std::string& path, Fields* fields) {

@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kMaxRecipeBytes = std::size_t{4} << 20;
 constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
 
-// The same for two files that say the same: maps are written by key.
+// Equal for files with the same content: map entries are sorted by key.
 std::string Digest(const v1::Recipe& recipe) {
   std::string bytes;
   google::protobuf::io::StringOutputStream stream(&bytes);
@@ -39,7 +39,7 @@ std::string ToJson(const v1::Recipe& recipe) {
   std::string json;
   google::protobuf::util::JsonPrintOptions options;
   options.preserve_proto_field_names = true;
-  // Fails for no message without Any.
+  // Cannot fail for a message without Any.
   (void)google::protobuf::util::MessageToJsonString(recipe, &json, options);
   return json;
 }
@@ -70,7 +70,7 @@ void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
   }
 }
 
-// Puts the joints of the table that the recipe names into it.
+// Merges the joint map file that the recipe names into its joint map.
 absl::Status TakeJointTable(const std::filesystem::path& folder, v1::LeaderInput* input) {
   if (input->joint_map_file().empty()) return absl::OkStatus();
   const std::filesystem::path path = folder / input->joint_map_file();
@@ -81,11 +81,11 @@ absl::Status TakeJointTable(const std::filesystem::path& folder, v1::LeaderInput
       retargeting::ParseJointTable(*text, path.string());
   if (!table.ok()) return table.status();
   input->clear_joint_map_file();
-  input->mutable_joint_map()->insert(table->begin(), table->end());  // keeps what is there
+  input->mutable_joint_map()->insert(table->begin(), table->end());  // keeps existing entries
   return absl::OkStatus();
 }
 
-// Reads the classifier that the recipe names, and names it by what it is.
+// Reads the classifier that the recipe names, and replaces its path by its digest.
 absl::StatusOr<std::shared_ptr<const classifier::Classifier>> TakeClassifier(
     const std::filesystem::path& folder, v1::ClassifierFilter* filter) {
   if (filter->model().empty()) return nullptr;

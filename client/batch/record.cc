@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A float as the shortest decimal that reads back as the same: 0.1 rather than 0.10000000149.
+// A float as the shortest decimal with the same value: 0.1 instead of 0.10000000149.
 ordered_json Number(float value) { return ordered_json::parse(WeightText(value)); }
 
 // Rounded to micrometres and millionths of a degree, so that records stay short.

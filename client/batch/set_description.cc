@@ -40,7 +40,7 @@ DescribedModel ReadModel(const nlohmann::json& json, base::ObjectReader* parent)
 }  // namespace
 
 std::string FormatName(Format format) {
-  // Both count up in the same order, the proto from 1.
+  // The enums have the same order; the proto's begins at 1.
   return v1::Format_Name(static_cast<v1::Format>(static_cast<int>(format) + v1::FORMAT_BVH));
 }
 

@@ -16,7 +16,7 @@ absl::StatusOr<ResolvedModels> ResolveModels(const Client& client, const Recipe&
     absl::StatusOr<ModelDetails> details = client.GetModel(choice);
     if (!details.ok()) return details.status();
     resolved.models.push_back(std::move(details->model));
-    resolved.limits = details->limits;  // a server has the same for every model
+    resolved.limits = details->limits;  // the same for all models of a server
   }
   return resolved;
 }
@@ -53,7 +53,7 @@ absl::StatusOr<JobIdentity> GoOn(const JobIdentity& begun, JobIdentity identity)
   const std::vector<DescribedModel>& before = begun.description.models;
   const std::vector<DescribedModel>& now = identity.description.models;
   for (size_t i = 0; i < std::min(before.size(), now.size()); ++i) {
-    // A server that does not report digests proves nothing.
+    // Without digests, the weights cannot be compared.
     if (before[i].weights_sha256 == now[i].weights_sha256 || before[i].weights_sha256.empty() ||
         now[i].weights_sha256.empty()) {
       continue;

@@ -12,7 +12,7 @@
 namespace duet::client::batch {
 namespace {
 
-// How a cluster tells a task which of how many it is.
+// The variables in which a cluster passes the index and the count of a task.
 struct Convention {
   const char* index;
   const char* count;
@@ -63,7 +63,7 @@ absl::StatusOr<Shard> ReadConvention(const Convention& convention, const ReadVar
 }  // namespace
 
 bool Shard::Has(absl::string_view item_id) const {
-  // The id is a digest: any of its hex digits are as good as random.
+  // The id is a digest, so its hex digits are uniformly distributed.
   return static_cast<int>(HexNumber(item_id.substr(0, 8)) % static_cast<uint32_t>(count)) == index;
 }
 
@@ -85,7 +85,7 @@ absl::StatusOr<Shard> ParseShard(absl::string_view text) {
 
 absl::StatusOr<Shard> ShardFromEnvironment(const ReadVariable& read) {
   for (const Convention& convention : kConventions) {
-    // An indexed job of Kubernetes always has the first, and a count only where somebody sets it.
+    // Kubernetes always sets the index of an indexed job. The user sets the count.
     if (read(convention.index).has_value()) return ReadConvention(convention, read);
   }
   return Shard{};

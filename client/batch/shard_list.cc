@@ -22,7 +22,7 @@ bool IsRange(const json& range) {
 
 absl::StatusOr<PackedShard> FromJson(const std::string& text) {
   const json object = json::parse(text, nullptr, false);
-  const absl::Status damaged = absl::DataLossError("is no shard");
+  const absl::Status damaged = absl::DataLossError("is not a shard");
   if (!object.is_object() || !object.contains("items") || !object.contains("bytes") ||
       !object.contains("sha256") || !object["bytes"].is_number_unsigned() ||
       !object["sha256"].is_string()) {

@@ -15,13 +15,13 @@ absl::StatusOr<motion::ClipPair> ReadStoredPair(const ItemReader& items,
                                                 const SpoolPlace& place,
                                                 const motion::Skeleton& skeleton) {
   const std::filesystem::path first = record["files"][0]["path"].get<std::string>();
-  // Of BVH the other person has a file of its own.
+  // BVH has one file for each person.
   const bool apart = first.extension() == ".bvh";
   const absl::StatusOr<std::string> content = items.Read(record, place, 0);
   if (!content.ok()) return content.status();
   const absl::StatusOr<std::string> other = apart ? items.Read(record, place, 1) : content;
   if (!other.ok()) return other.status();
-  // Only captures' files keep the leader's side.
+  // Only layouts of captures keep the leader on its side.
   const bool leader_right = first.extension() == ".txt" && record["side"] == "right";
   formats::ReadOptions options;
   options.format = formats::FormatOf(first);

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-// Which fields of an item were others in its record, each as 'labels: expected ..., got ...'.
+// The fields in which an item differs from its record, each as 'labels: expected ..., got ...'.
 std::string DescribeChange(const ordered_json& record, const Item& item,
                            const JobIdentity& identity) {
   ordered_json now = FailedRecord(item, absl::OkStatus());
@@ -27,7 +27,7 @@ std::string DescribeChange(const ordered_json& record, const Item& item,
     return of.contains(field) ? base::Shown(nlohmann::json(of[field])) : std::string("none");
   };
   for (const char* field : {"leader", "side", "reaction", "labels", "model", "name"}) {
-    // One that failed has no model.
+    // The record of a failed item has no model.
     if (!record.contains(field) && field == std::string("model")) continue;
     const std::string was = shown(record, field), is = shown(now, field);
     if (was != is) changes.push_back(absl::StrCat(field, ": expected ", was, ", got ", is));

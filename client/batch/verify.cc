@@ -38,12 +38,12 @@ void AddProblem(absl::string_view problem, VerifyReport* report) {
   if (report->problems.size() < kProblemsKept) report->problems.emplace_back(problem);
 }
 
-// The shard that is being read, in the index's own order.
+// Reads shards in the order of the index.
 class ShardReader {
  public:
   explicit ShardReader(fs::path out) : out_(std::move(out)) {}
 
-  // The next member that is a file of an item.
+  // The next member that is an item's file.
   absl::Status Check(const std::string& shard, const std::string& path, const std::string& sha256) {
     if (shard != name_) {
       name_ = shard;

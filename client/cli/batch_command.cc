@@ -30,7 +30,7 @@
 namespace duet::client::cli {
 namespace {
 
-// Memory for leaders that the check has read and the run is still to use.
+// Memory for leaders that the check has read and that the run uses.
 constexpr size_t kMaxKeptLeaderBytes = size_t{64} << 20;
 
 absl::StatusOr<batch::Shard> ShardOf(const BatchArguments& arguments) {
@@ -42,7 +42,7 @@ absl::StatusOr<batch::Shard> ShardOf(const BatchArguments& arguments) {
   });
 }
 
-// The job that a signal stops, once there is one.
+// The job that a signal stops. A signal may arrive before the job exists.
 //
 // Threads: safe to call concurrently.
 class RunningJob {
@@ -103,7 +103,7 @@ absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job
   return CodeOf(*report, running.stopped());
 }
 
-// What a run and a dry run have in common.
+// The state that a run and a dry run share.
 struct Prepared {
   batch::Recipe recipe;
   batch::Shard shard;
@@ -206,7 +206,7 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   absl::StatusOr<batch::Plan> plan =
       MakePlan(repeatable, prepared.recipe, prepared.models, nullptr, nullptr);
   if (!plan.ok()) return plan.status();
-  // Nothing before this keeps another recipe from the folder.
+  // Until now, another recipe could still use the folder.
   if (begun.description.models.empty() || begun.recipe_json.empty()) {
     status = folder.Begin(*identity);
   }
@@ -244,7 +244,7 @@ absl::StatusOr<ExitCode> RunMerge(const BatchArguments& arguments,
   return report->missing.empty() ? kExitDone : kExitRetry;
 }
 
-// Looks at a data set, says what was found, and leaves it to the next run.
+// Verifies a data set, reports the result, and records the damage for the next run.
 absl::StatusOr<batch::VerifyReport> VerifyAndRecord(const BatchArguments& arguments,
                                                     const ProgramEnvironment& environment) {
   absl::StatusOr<batch::VerifyReport> report = batch::Verify(arguments.out);
@@ -252,7 +252,8 @@ absl::StatusOr<batch::VerifyReport> VerifyAndRecord(const BatchArguments& argume
   Report(arguments, *report, environment);
   const absl::Status recorded = batch::RecordDamage(report->damage, arguments.out);
   if (!recorded.ok() && report->problem_count > 0 && !arguments.json) {
-    *environment.err << "duet: the next run does not know of it: " << recorded.message() << "\n";
+    *environment.err << "duet: the damage is not recorded for the next run: " << recorded.message()
+                     << "\n";
   }
   return report;
 }

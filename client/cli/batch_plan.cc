@@ -15,7 +15,7 @@
 namespace duet::client::cli {
 namespace {
 
-// A manifest's file, open as long as it is read.
+// Reads a manifest and owns its open file.
 class OpenManifest final : public batch::LeaderSource {
  public:
   // Relative paths begin at `folder`; errors call the manifest `name`.
@@ -68,7 +68,7 @@ absl::Status CopyManifest(const std::filesystem::path& folder, std::istream* in,
   if (arguments->manifest != "-" || in == nullptr) return absl::OkStatus();
   arguments->manifest_copy = folder / "manifest";
   std::ofstream copy(arguments->manifest_copy, std::ios::binary);
-  // An empty stream would make the operator fail.
+  // operator<< fails if the source is empty.
   if (in->peek() != std::istream::traits_type::eof()) copy << in->rdbuf();
   copy.close();
   return copy ? absl::OkStatus() : batch::CannotWrite(arguments->manifest_copy, errno);

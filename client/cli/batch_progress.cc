@@ -95,7 +95,7 @@ void ProgressDisplay::Show() {
   if (kind_ == Kind::kEvents) {
     out_ << ProgressEvent(progress, total_, seconds) << std::flush;
   } else if (kind_ == Kind::kTerminal) {
-    // Back to the start of the line, and what is left of the last one removed.
+    // Returns to the start of the line, and clears the rest of the previous text.
     out_ << "\r" << ProgressLine(progress, total_, seconds) << "\x1b[K" << std::flush;
   } else {
     out_ << ProgressLine(progress, total_, seconds) << "\n" << std::flush;

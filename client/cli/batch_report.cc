@@ -11,7 +11,7 @@
 namespace duet::client::cli {
 namespace {
 
-// Causes that are named in the summary; failed.tsv has all.
+// Maximum number of causes in the summary; failed.tsv lists all.
 constexpr size_t kCausesShown = 5;
 
 std::string Counted(int64_t count, const char* what) {
@@ -79,17 +79,17 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
   }
   if (arguments.json) return;
   if (!report.set.failures.empty()) {
-    *environment.err << "failed for good, each leader in " << (folder / "failed.tsv").string()
+    *environment.err << "failed permanently, by leader in " << (folder / "failed.tsv").string()
                      << ":\n";
     WriteCauses(report.set.failures, *environment.err);
   }
   if (!report.unfinished_causes.empty()) {
-    *environment.err << "failed for now, run again:\n";
+    *environment.err << "failed temporarily; run the command again:\n";
     WriteCauses(report.unfinished_causes, *environment.err);
   }
   if (!report.packed || report.set.failed == 0) return;
   *environment.err << "duet: the shards leave out the " << report.set.failed
-                   << " that failed; --retry-failed asks for them again, and adds a shard\n";
+                   << " failed items; --retry-failed retries them and adds a shard\n";
 }
 
 void Report(const BatchArguments& arguments, const batch::PlanCheck& check,
@@ -167,14 +167,14 @@ void Report(const BatchArguments& arguments, const batch::VerifyReport& report,
                    << " items missing\n";
   for (const std::string& problem : report.problems) *environment.err << problem << "\n";
   if (report.problem_count == 0 || arguments.repair) return;
-  *environment.err << "duet: duet batch verify --repair asks again for what is missing or was "
-                      "changed, and so does the command that made it\n";
+  *environment.err << "duet: to request missing and changed items again, use duet batch verify "
+                      "--repair or the command that made the set\n";
 }
 
 void ReportPassedOver(const BatchArguments& arguments, const std::vector<std::string>& files,
                       const ProgramEnvironment& environment) {
   if (files.empty() || arguments.quiet) return;
-  *environment.err << "passed over, no motion: " << files.front();
+  *environment.err << "skipped, not a motion: " << files.front();
   if (files.size() > 1) *environment.err << " and " << files.size() - 1 << " more";
   *environment.err << "\n";
 }

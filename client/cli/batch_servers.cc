@@ -10,7 +10,7 @@
 namespace duet::client::cli {
 namespace {
 
-// The longest time to wait for a server before a run begins.
+// Maximum time to wait for a server before a run begins.
 constexpr double kFirstAnswerSeconds = 30;
 
 }  // namespace

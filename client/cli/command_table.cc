@@ -11,7 +11,7 @@
 namespace duet::client::cli {
 namespace {
 
-// A form of lower-case words and bars is a list of all there is.
+// Whether a value's form lists all allowed values: lower-case words separated by bars.
 std::vector<std::string> ChoicesOf(const std::string& form) {
   const auto is_plain = [](char c) {
     const auto letter = static_cast<unsigned char>(c);

@@ -24,7 +24,7 @@ struct CompareArguments {
   bool json = false;
 };
 
-// Of two people the follower is compared, the leader its partner.
+// If a take has two people, compares the follower, with the leader as its partner.
 analysis::Answer AnswerOf(const Take& take) {
   if (take.follower) return {*take.follower, take.leader};
   return {take.leader, std::nullopt};

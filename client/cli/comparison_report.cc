@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr int kNameColumns = 16;
 
-// Shares as percent, degrees to a tenth, the rest to three places.
+// Shares in percent, degrees with one decimal, other values with three.
 std::string Shown(const std::optional<double>& value, const std::string& unit) {
   if (!value.has_value()) return "-";
   if (unit.empty()) return absl::StrFormat("%.1f %%", 100 * *value);
@@ -30,7 +30,7 @@ std::string Shown(const std::optional<double>& value, const std::string& unit) {
   return absl::StrFormat("%.3f %s", *value, unit);
 }
 
-// Pads by what is seen: a degree sign is two bytes and one column.
+// Pads by columns, not bytes: a degree sign has two bytes and one column.
 std::string Padded(const std::string& text, int columns) {
   const auto seen = std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
@@ -43,7 +43,7 @@ struct Line {
   std::string title, value;
 };
 
-// What is told of both together.
+// Prints the figures that compare the two motions.
 std::vector<Line> DisplacementLines(const analysis::Comparison& comparison) {
   const Displacement& d = comparison.displacement;
   const auto metres = [](double value) { return absl::StrFormat("%.3f m", value); };
@@ -60,7 +60,7 @@ std::vector<Line> DisplacementLines(const analysis::Comparison& comparison) {
   return lines;
 }
 
-// One figure at least that both have.
+// Whether at least one of the motions has the figure.
 bool IsKnown(const Figure& figure) { return figure.a.has_value() || figure.b.has_value(); }
 
 std::string Cut(const std::string& name) {

@@ -16,10 +16,10 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
-// In all scripts @PROGRAM@ stands for the program's name and @FUNCTION@ for that of the shell's
-// function that completes it.
+// In all scripts, @PROGRAM@ is the program's name and @FUNCTION@ is the name of the shell function
+// that completes it.
 
-// Words that may stand where no flag does.
+// Words that are valid in place of a flag.
 Strings WordsOf(const CommandEntry& command, const std::vector<CommandEntry>& all) {
   Strings words = command.subcommands;
   for (const FlagEntry& flag : command.flags) {
@@ -64,7 +64,7 @@ std::string BashCase(const CommandEntry& command, const std::vector<CommandEntry
   return text;
 }
 
-// The command that the words before the cursor name, as "batch merge".
+// The command before the cursor, such as "batch merge".
 constexpr char kBashHead[] =
     R"(# bash completion for @PROGRAM@: source it, or install it as completions/@PROGRAM@.
 @FUNCTION@() {
@@ -95,7 +95,7 @@ constexpr char kBashTail[] = R"(  esac
 complete -F @FUNCTION@ @PROGRAM@
 )";
 
-// The pattern that matches a command after the one that it belongs to: " batch", "batch merge".
+// The pattern of a command with its parent: " batch", "batch merge".
 std::string StepOf(const std::string& name) {
   return name.find(' ') == std::string::npos ? absl::StrCat(" ", name) : name;
 }
@@ -112,12 +112,12 @@ std::string BashScript(const std::vector<CommandEntry>& commands) {
   return text + kBashTail;
 }
 
-// Inside single quotes, of bash, zsh and fish alike where no backslash is left alone.
+// Text inside single quotes, for bash and zsh, and for fish if it has no backslash.
 std::string Quoted(const std::string& text) {
   return absl::StrCat("'", absl::StrReplaceAll(text, {{"'", "'\\''"}}), "'");
 }
 
-// Of a description in _arguments' square brackets.
+// Escapes a description for the square brackets of _arguments.
 std::string ZshText(const std::string& text) {
   return absl::StrReplaceAll(text, {{"\\", "\\\\"}, {"[", "\\["}, {"]", "\\]"}, {":", "\\:"}});
 }
@@ -195,7 +195,7 @@ std::string FishQuoted(const std::string& text) {
   return absl::StrCat("'", absl::StrReplaceAll(text, {{"\\", "\\\\"}, {"'", "\\'"}}), "'");
 }
 
-// Whether the words before the cursor name this command and none of its own.
+// Whether the words before the cursor name this command and none of its subcommands.
 std::string FishCondition(const CommandEntry& command) {
   if (command.name.empty()) return "__fish_use_subcommand";
   const Strings words = absl::StrSplit(command.name, ' ');

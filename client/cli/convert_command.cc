@@ -27,13 +27,13 @@
 namespace duet::client::cli {
 namespace {
 
-// The people of a file with two people.
+// Which people of a file with two people to convert.
 enum class People { kLeft, kRight, kBoth };
 
 struct ConvertArguments {
   std::filesystem::path file;
   InputArguments input;
-  std::optional<People> people;  // absent: everyone
+  std::optional<People> people;  // nullopt: all
   std::optional<double> resample_hz;
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // for standard output
@@ -52,7 +52,7 @@ using Paths = std::vector<std::filesystem::path>;
 // Smaller errors come from rounding.
 constexpr double kExactMetres = 2e-5;
 
-// A motion that is to be written.
+// A motion to write.
 struct Conversion {
   std::string source;
   Clips people;
@@ -64,9 +64,9 @@ struct Conversion {
 
 struct Written {
   Paths files;
-  // Of a position that is read back; absent for what Duet does not read.
+  // Largest error of a position that is read back; nullopt for formats that Duet does not read.
   std::optional<double> largest_error_metres = 0;
-  std::vector<std::string> missing;  // what the format has no place for
+  std::vector<std::string> missing;  // data that the format cannot store
   std::vector<std::string> notes;
 };
 
@@ -77,13 +77,13 @@ absl::Status ChoosePeople(const std::optional<People>& wanted, Clips* people) {
     return absl::InvalidArgumentError(
         "--side: expected left or right for a file with one person, got both");
   }
-  // A file of one person serves either side.
+  // A file of one person is valid for both sides.
   if (*wanted == People::kRight && people->size() > 1) std::swap((*people)[0], (*people)[1]);
   people->resize(1);
   return absl::OkStatus();
 }
 
-// To another rate through a spline, from the first frame to the last that lies within the motion.
+// Resamples by a spline, from the first frame to the last one within the motion.
 absl::Status Resample(double rate_hz, motion::Clip* clip) {
   absl::Status status = motion::CheckFrameRate("--resample", rate_hz);
   if (!status.ok()) return status;
@@ -129,14 +129,14 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   return conversion;
 }
 
-// How far off a motion is that was written as `content`, in a format that is read.
+// The largest error of a motion that was written as `content`, in a format that Duet reads.
 absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const Clips& people,
                                const Conversion& conversion) {
   formats::ReadOptions options;
   options.format = format;
   options.skeleton = conversion.skeleton;
   options.frame_rate_hz = people[0].frame_rate_hz;
-  // SBU text has its own, which it always means.
+  // SBU text always has the coordinates of the format.
   if (format != Format::kSbuText) options.coordinates = motion::Coordinates{};
   options.metres_per_unit = format == Format::kBvh ? conversion.writing.bvh_metres_per_unit : 1;
   const int keys = format == Format::kBvh ? conversion.writing.bvh_keys_per_frame : 1;
@@ -161,7 +161,7 @@ std::vector<std::string> MissingIn(Format format, double rate_hz) {
   return {"joint names", absl::StrFormat("the frame rate: read it with --frame-rate %g", rate_hz)};
 }
 
-// The content of each file: BVH has one for each person.
+// The content of each file. BVH has one file for each person.
 absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversion, Format format,
                                                      std::optional<double>* largest_error) {
   std::vector<Clips> files = {conversion.people};

@@ -20,7 +20,7 @@ bool IsTopic(const std::string& name) {
   return false;
 }
 
-// The help of the program itself. App::help would explain the command that was parsed.
+// The help of the program. App::help would print the help of the command that was parsed.
 std::string ProgramHelp(const CLI::App& program) {
   return program.get_formatter()->make_help(&program, program.get_name(),
                                             CLI::AppFormatMode::Normal);

@@ -24,7 +24,7 @@ struct InspectArguments {
   bool json = false;
 };
 
-// Lets a motion without a rate be read. The rate is not reported.
+// Allows a motion without a frame rate. This rate is not reported.
 constexpr double kStandInRateHz = 30;
 
 // A file without a frame rate can be inspected too.

@@ -18,7 +18,7 @@ using retargeting::Setting;
 
 constexpr std::size_t kMostNames = 12;
 
-// Nothing for what reading did not come to.
+// Empty if reading ended before this was known.
 std::string DescribeSetting(const char* name, const std::optional<Setting>& setting,
                             const Style& style) {
   if (!setting.has_value()) return "";
@@ -52,7 +52,7 @@ std::string DescribeJoints(const std::vector<JointReading>& joints, const Style&
   return text;
 }
 
-// Joints of the file that stand for nothing.
+// Joints of the file that are not used.
 std::vector<std::string> Unused(const retargeting::ReadingReport& report) {
   std::vector<std::string> unused;
   for (const std::string& name : report.file_joints) {
@@ -107,7 +107,7 @@ std::string DescribeLength(const motion::Clip& clip) {
   return text;
 }
 
-// Nothing where the second person of a file is as long as the first.
+// Empty if both people have the same number of frames.
 std::string DescribeUnlikeLength(const motion::Clip& first, const motion::Clip& second,
                                  const Style& style) {
   if (second.frame_count() == 0 || (second.frame_count() == first.frame_count() &&

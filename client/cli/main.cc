@@ -16,8 +16,8 @@ std::optional<std::string> Variable(const std::string& name) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // What goes wrong is in the status of a call; gRPC's own lines on standard error would come on
-  // top, and do even where nothing is wrong, such as a proxy that has no health service.
+  // Errors are in the status of a call. gRPC's own log lines would repeat them, and also appear
+  // without an error, for example for a proxy without a health service.
   setenv("GRPC_VERBOSITY", "NONE", 0);
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   return duet::client::cli::RunProgram(

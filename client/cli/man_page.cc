@@ -16,7 +16,7 @@
 namespace duet::client::cli {
 namespace {
 
-// Text as it stands: no markup, and hyphens that may be copied.
+// Escapes text: no markup, and hyphens that can be copied.
 std::string Escaped(absl::string_view text) {
   std::string escaped =
       absl::StrReplaceAll(text, {{"\\", "\\e"}, {"-", "\\-"}, {"'", "\\(aq"}, {"\u00b0", "\\(de"}});
@@ -24,7 +24,7 @@ std::string Escaped(absl::string_view text) {
   return escaped;
 }
 
-// Lines as they stand.
+// Lines without filling.
 std::string Example(absl::string_view text) {
   std::string page = ".nf\n";
   for (absl::string_view line : absl::StrSplit(absl::StripSuffix(text, "\n"), '\n')) {
@@ -99,7 +99,7 @@ std::string Commands(const CLI::App& app, const CommandEntry& command,
   return text;
 }
 
-// The topics of duet help, each a section.
+// The topics of duet help, one section each.
 std::string Topics() {
   std::string text;
   for (const std::string& topic : HelpTopics()) {

@@ -84,7 +84,7 @@ absl::StatusOr<retargeting::JointOverrides> ReadJoints(retargeting::JointOverrid
   absl::StatusOr<retargeting::JointOverrides> table =
       retargeting::ParseJointTable(*text, table_file.string());
   if (!table.ok()) return table.status();
-  joints.merge(*std::move(table));  // keeps those that were given
+  joints.merge(*std::move(table));  // keeps the joints of --joint-map
   return joints;
 }
 

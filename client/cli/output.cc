@@ -15,7 +15,7 @@
 namespace duet::client::cli {
 namespace {
 
-// A page holds the motion a second time, as a file to take away: two minutes at 30 Hz are 3 MB.
+// A page also contains the motion as a file to download: 3 MB for two minutes at 30 Hz.
 constexpr int kMostFramesToHandOut = 3600;
 
 bool IsPage(const std::filesystem::path& path) {
@@ -23,7 +23,7 @@ bool IsPage(const std::filesystem::path& path) {
   return extension == ".html" || extension == ".htm";
 }
 
-// Weights for the whole clip are those of its first frame.
+// Weights for the whole clip become a keyframe at frame 0.
 std::vector<WeightKeyframe> KeyframesOf(const SynthesisRequest& request) {
   if (!request.keyframes.empty()) return request.keyframes;
   return {{0, request.weights}};
@@ -79,7 +79,7 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
   return RenderPage(content);
 }
 
-// Whether the rig that the follower is wanted on is one of the output's format.
+// Whether the format of the follower's rig is the format of the output.
 bool HasRig(const std::filesystem::path& output, const Synthesis& synthesis) {
   if (!synthesis.follower_rig) return false;
   const std::optional<formats::Format> written = formats::FormatOf(output);
@@ -87,7 +87,8 @@ bool HasRig(const std::filesystem::path& output, const Synthesis& synthesis) {
   return written && rig && formats::FitsRig(*written, *rig);
 }
 
-// The follower on somebody else's rig: of BVH in place of Duet's own, of glTF beside the pair.
+// Writes the follower on another rig: BVH replaces the file on Duet's skeleton, glTF is one more
+// file.
 absl::StatusOr<WrittenFiles> WriteWithRig(const std::filesystem::path& output,
                                           const Synthesis& synthesis) {
   const motion::ClipPair& pair = synthesis.result.pair;
@@ -98,7 +99,7 @@ absl::StatusOr<WrittenFiles> WriteWithRig(const std::filesystem::path& output,
       formats::FormatOntoRig(pair.follower, *synthesis.follower_rig, format,
                              WritingOf(synthesis, provenance, &written.notes));
   if (!follower.ok()) return follower.status();
-  // Of the follower on Duet's own rig, which is replaced, nothing is told.
+  // The follower on Duet's skeleton is replaced, so it is not reported.
   absl::StatusOr<std::vector<std::filesystem::path>> files = formats::WritePair(
       output, pair, synthesis.skeleton, WritingOf(synthesis, provenance, nullptr));
   if (!files.ok()) return files.status();
@@ -165,7 +166,7 @@ absl::Status WriteToStream(const std::string& content, std::ostream& out) {
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.flush();
   if (out.good()) return absl::OkStatus();
-  return NotWritten(absl::AbortedError("standard output: not all of it arrived"));
+  return NotWritten(absl::AbortedError("standard output: cannot write all of it"));
 }
 
 absl::Status NotWritten(const absl::Status& status) {

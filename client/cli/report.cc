@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// Of captured leaders that a model was not trained on, hardly any is farther.
+// Held-out captured leaders rarely exceed this.
 constexpr double kFarUnfamiliarity = 1.5;
 
 std::string Milliseconds(absl::Duration duration) {
@@ -82,7 +82,7 @@ json ModelJson(const ModelInfo& model) {
           {"weights_sha256", model.weights_sha256}};
 }
 
-// The flag for what a motion file does not state.
+// The flag for a setting that a motion file does not state.
 std::string FlagFor(motion::ReadingSetting setting) {
   switch (setting) {
     case motion::ReadingSetting::kFormat:

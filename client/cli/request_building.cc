@@ -14,7 +14,7 @@
 namespace duet::client::cli {
 namespace {
 
-// Of the leader's own file, the follower is the other person.
+// In the leader's own file, the follower is the other person.
 formats::Side FollowerStartSide(const SynthesizeArguments& arguments) {
   if (arguments.follower_start_side.has_value()) return *arguments.follower_start_side;
   std::error_code error;
@@ -27,7 +27,7 @@ formats::Side FollowerStartSide(const SynthesizeArguments& arguments) {
 
 absl::StatusOr<FollowerStart> ReadStart(const SynthesizeArguments& arguments,
                                         formats::ReadOptions options) {
-  options.format = std::nullopt;  // is the leader's
+  options.format = std::nullopt;  // describes the leader
   if (const std::optional<motion::Vec3> root = ParsePoint(arguments.follower_start);
       root.has_value()) {
     return FollowerStart(*root);
@@ -39,7 +39,7 @@ absl::StatusOr<FollowerStart> ReadStart(const SynthesizeArguments& arguments,
   return FollowerStart(*std::move(pose));
 }
 
-// Whether somebody else's rig can be understood: before anything is asked of the server.
+// Checks the follower's rig before the first call.
 absl::Status CheckFollowerRig(const formats::FollowerRig& rig) {
   absl::Status status = formats::CheckRig(rig);
   if (motion::MendingSetting(status) != motion::ReadingSetting::kJointMap) return status;

@@ -14,7 +14,7 @@
 namespace duet::client::cli {
 namespace {
 
-// A key or a certificate chain has some kilobytes; a much larger file is something else.
+// A key or a certificate chain has a few kilobytes. A much larger file is not one.
 constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
 
 // The token, which is the only line of the file. Does nothing if `path` is empty.

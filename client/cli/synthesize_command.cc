@@ -51,13 +51,13 @@ absl::StatusOr<WrittenFiles> WriteAll(const SynthesizeArguments& arguments, cons
   return written;
 }
 
-// What every sample has in common.
+// The state that all samples share.
 struct Job {
   SynthesisRequest request;
   motion::Skeleton skeleton;
   bool sampled = false;
   std::optional<formats::FollowerRig> follower_rig;
-  std::vector<std::string> notes;  // on how the leader was read
+  std::vector<std::string> notes;  // about how the leader was read
 };
 
 // Rejects a class that the model does not know and suggests the nearest name.
@@ -100,10 +100,10 @@ absl::StatusOr<Job> PrepareJob(const SynthesizeArguments& arguments, const Clien
   return job;
 }
 
-// Asks for every sample in turn, and writes and reports each before the next.
+// Requests the samples one after the other; writes and reports each before the next.
 absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, const Client& client,
                         const ProgramEnvironment& environment) {
-  // With a motion on standard output, what is told goes beside it.
+  // With a motion on standard output, the report goes to standard error.
   std::ostream& out =
       WritesToStandardOutput(arguments.outputs) ? *environment.err : *environment.out;
   std::vector<nlohmann::json> samples;

@@ -29,7 +29,7 @@ bool IsSame(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, error);
 }
 
-// At the first comma that parts the names of two files.
+// Splits at the first comma that separates two file names.
 std::vector<fs::path> SplitFiles(const std::string& text) {
   for (std::size_t comma = text.find(','); comma != std::string::npos && !Exists(text);
        comma = text.find(',', comma + 1)) {
@@ -55,7 +55,8 @@ std::string NameOfFile(const fs::path& file) {
   return file.stem().string();
 }
 
-// Brings a follower of another file to the leader's rate and both to the shorter one's frames.
+// Resamples a follower from another file to the leader's rate, and truncates both to the shorter
+// one.
 void Match(Take* take) {
   motion::Clip &leader = take->leader, &follower = *take->follower;
   const double step = follower.frame_rate_hz / leader.frame_rate_hz;
@@ -106,7 +107,7 @@ class TakeReader {
   std::istream* in_;
 };
 
-// Whether a file is the follower of a take that names another file first.
+// Whether a file is the follower of a take that has its leader in another file.
 bool IsFollowerOfAnother(const TakeFiles& take, const std::vector<TakeFiles>& takes) {
   return take.files.size() == 1 &&
          std::any_of(takes.begin(), takes.end(), [&take](const TakeFiles& other) {

@@ -151,7 +151,7 @@ class BatchRepairTest(unittest.TestCase):
                 command = [tools.PROGRAMS / "duet", "batch", "--manifest", manifest, "--recipe",
                            f"{packing}.textproto", "--out", out, "--server", self.server.address]
                 result = self.run_in_folder(*command, code=42)
-                self.assertIn("the shards leave out the 12 that failed", result.stderr)
+                self.assertIn("the shards leave out the 12 failed items", result.stderr)
                 before = {name: digest for name, digest in digests(out).items()
                           if name.startswith("set-")}
                 self.assertEqual(len(entries(out)), 24)

@@ -156,7 +156,7 @@ class BatchTest(unittest.TestCase):
         keyframes = leaders / "kick.txt"
         shutil.copy(tools.SOURCE / "samples" / "keyframes" / "kick.txt", keyframes)
         result = self.batch(out, self.recipe(), "--limit", "1", leaders=leaders)
-        self.assertIn(f"passed over, no motion: {keyframes}\n", result.stderr)
+        self.assertIn(f"skipped, not a motion: {keyframes}\n", result.stderr)
         self.assertEqual([entry["leader"] for entry in entries(out)], [str(leaders / "kick.bvh")])
         quiet = self.batch(out, self.recipe(), "--limit", "1", "--quiet", leaders=leaders)
         self.assertEqual(quiet.stderr, "")
@@ -541,7 +541,7 @@ class BatchTest(unittest.TestCase):
         self.assertGreater(summary["rejected"], 0)
         rows = (out / "rejected.tsv").read_text(encoding="utf-8").splitlines()
         self.assertEqual(len(rows), summary["rejected"] + 1)
-        self.assertIn("wanted at most 0.9", rows[1])
+        self.assertIn("expected at most 0.9", rows[1])
         for entry in entries(out):
             self.assertLessEqual(entry["quality"]["distance_metres"], 0.9)
 

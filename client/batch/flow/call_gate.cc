@@ -8,8 +8,7 @@ std::optional<ServerChoice::Call> CallGate::Start() {
     const Time now = std::chrono::steady_clock::now();
     std::optional<ServerChoice::Call> call = servers_.Start(now);
     if (call.has_value()) {
-      // One is woken at a time, and wakes the next while there is room: for a call, or to wait
-      // for the moment when there may be one.
+      // Wakes one more thread if a window has room for a call, now or after a delay.
       if (servers_.HasRoom()) changed_.notify_one();
       return call;
     }

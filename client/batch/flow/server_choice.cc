@@ -22,7 +22,7 @@ void CallWindow::Finish(int64_t call, CallEnd end, std::optional<Duration> delay
   }
   slow_start_ = false;
   if (delay.has_value()) Close(*delay, now);
-  // What was under way when the window shrank tells nothing of the smaller one.
+  // Failures of calls that started before the window shrank do not shrink it again.
   const bool counts = call >= counted_from_;
   if (counts) counted_from_ = started_;
   if (end == CallEnd::kRefused) {

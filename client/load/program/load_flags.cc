@@ -41,9 +41,9 @@ Examples:
   duet-load --rate 50,100,200 --frames 46=9,460 --seconds 30 --html load.html
 )";
 
-absl::Status Wanted(absl::string_view text, absl::string_view wanted) {
+absl::Status Expected(absl::string_view expected, absl::string_view text) {
   return absl::InvalidArgumentError(
-      absl::StrCat(base::Quoted(text), ", wanted ", wanted, ", such as 46=9,460"));
+      absl::StrCat("expected ", expected, ", such as 46=9,460, got ", base::Quoted(text)));
 }
 
 // A list of values with optional weights; `parse` reads a value.
@@ -57,7 +57,7 @@ absl::StatusOr<std::vector<Weighted<T>>> ParseMix(absl::string_view text, const 
     double weight = 1;
     if (equals != absl::string_view::npos &&
         (!base::ParseNumber(part.substr(equals + 1), &weight) || weight <= 0)) {
-      return Wanted(part, "a weight above 0 after the =");
+      return Expected("a weight above 0 after the =", part);
     }
     mix.push_back({*std::move(value), weight});
   }
@@ -67,7 +67,7 @@ absl::StatusOr<std::vector<Weighted<T>>> ParseMix(absl::string_view text, const 
 absl::StatusOr<int> ParseFrameCount(absl::string_view text) {
   int frames = 0;
   if (base::ParseInteger(text, &frames) && frames >= 1) return frames;
-  return Wanted(text, "numbers of frames, 1 or more");
+  return Expected("numbers of frames, 1 or more", text);
 }
 
 void AddLoad(CLI::App* app, LoadArguments* arguments) {

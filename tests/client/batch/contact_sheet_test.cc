@@ -52,7 +52,7 @@ std::vector<int> Points(const std::string& svg, const std::string& person) {
   return points;
 }
 
-TEST(PoseStrip, TheLeaderIsOnTheLeftWhereverPeopleStand) {
+TEST(PoseStrip, LeaderIsAlwaysOnTheLeft) {
   for (const motion::Vec3 apart : {motion::Vec3{1, 0, 0}, {-1, 0, 0}, {0, 0, 2}, {1, 0.5f, -1}}) {
     const std::string svg = PoseStrip(Pair(apart), motion::SbuSkeleton());
     const std::vector<int> leader = Points(svg, "leader"), follower = Points(svg, "follower");
@@ -63,7 +63,7 @@ TEST(PoseStrip, TheLeaderIsOnTheLeftWhereverPeopleStand) {
   }
 }
 
-TEST(PoseStrip, WhoStandsHigherIsDrawnHigher) {
+TEST(PoseStrip, HigherPersonIsDrawnHigher) {
   const std::string svg = PoseStrip(Pair({1, 4, 0}), motion::SbuSkeleton());
   const std::vector<int> leader = Points(svg, "leader"), follower = Points(svg, "follower");
   for (size_t i = 0; i < leader.size(); i += 2) {
@@ -175,17 +175,17 @@ TEST_F(ContactSheetTest, ShowsSomeOfEachClass) {
   EXPECT_THAT(sheet, HasSubstr("0.6 s \u00b7 1.25 m apart \u00b7 leans 8\u00b0"));
 }
 
-TEST_F(ContactSheetTest, IsTheSameInWhateverOrderItemsCame) {
+TEST_F(ContactSheetTest, IsIndependentOfTheOrderOfItems) {
   for (int i = 0; i < 30; ++i) Add(Record(i, {{"kick", 1}}));
   const std::string sheet = Sheet();
   std::reverse(records_.begin(), records_.end());
   EXPECT_EQ(Sheet(), sheet);
 }
 
-TEST_F(ContactSheetTest, OnlyWhatIsDoneIsShown) {
+TEST_F(ContactSheetTest, ShowsOnlyDoneItems) {
   nlohmann::ordered_json rejected = Record(0, {{"kick", 1}});
   rejected["state"] = "rejected";
-  rejected["reasons"] = {"lean_degrees 40, wanted at most 20"};
+  rejected["reasons"] = {"lean_degrees: expected at most 20, got 40"};
   rejected.erase("files");
   records_.push_back(rejected.dump());
   records_.push_back(R"({"state":"failed","name":"pair1"})");
@@ -199,7 +199,7 @@ TEST_F(ContactSheetTest, ADamagedRecordIsNamed) {
   EXPECT_THAT(Write(), StatusIs(absl::StatusCode::kDataLoss, HasSubstr("id: ")));
 }
 
-TEST_F(ContactSheetTest, WhatCannotBeReadIsSaidInItsPlace) {
+TEST_F(ContactSheetTest, UnreadableItemShowsItsError) {
   Add(Record(0, {{"kick", 1}}));
   Add(Record(1, {{"kick", 1}}));
   std::filesystem::remove(folder_ / "pair0.csv");
@@ -208,7 +208,7 @@ TEST_F(ContactSheetTest, WhatCannotBeReadIsSaidInItsPlace) {
   EXPECT_THAT(sheet, HasSubstr("pair0.csv: no such file"));
 }
 
-TEST_F(ContactSheetTest, NamesAreText) {
+TEST_F(ContactSheetTest, NamesAreEscaped) {
   nlohmann::ordered_json record = Record(0, {{"<kick>", 1}});
   record["name"] = "a<b>&\"c";
   Add(record);
@@ -218,7 +218,7 @@ TEST_F(ContactSheetTest, NamesAreText) {
   EXPECT_THAT(sheet, Not(HasSubstr("<kick>")));
 }
 
-TEST_F(ContactSheetTest, APackedSetHasNothingToOpen) {
+TEST_F(ContactSheetTest, PackedSetHasNoLinks) {
   identity_.packing = Packing::kTar;
   Add(Record(0, {{"kick", 1}}));
   EXPECT_THAT(Sheet(), Not(HasSubstr("<a ")));

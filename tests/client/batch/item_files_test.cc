@@ -47,7 +47,7 @@ class ItemFilesTest : public ::testing::Test {
                                       {"walks/a.bvh", "and second"}};
 };
 
-TEST_F(ItemFilesTest, FilesHaveTheirNamesOnceTheyAreCommitted) {
+TEST_F(ItemFilesTest, CommitRenamesTheFiles) {
   const auto writer = MakeItemWriter(folder_, Packing::kNone);
   EXPECT_EQ(*writer->Add(two_), SpoolPlace());
   EXPECT_FALSE(std::filesystem::exists(folder_.out() / "walks"));
@@ -57,12 +57,12 @@ TEST_F(ItemFilesTest, FilesHaveTheirNamesOnceTheyAreCommitted) {
   EXPECT_EQ(*Reader(Packing::kNone).Read(Record(two_), {}, 1), "and second");
 }
 
-TEST_F(ItemFilesTest, WhatWasNotCommittedLeavesNothing) {
+TEST_F(ItemFilesTest, UncommittedFilesAreRemoved) {
   EXPECT_THAT(MakeItemWriter(folder_, Packing::kNone)->Add(two_), IsOk());
   EXPECT_TRUE(std::filesystem::is_empty(folder_.temporary()));
 }
 
-TEST_F(ItemFilesTest, ThoseThatWillBePackedLieInTheSpool) {
+TEST_F(ItemFilesTest, ItemsOfPackedSetsAreInTheSpool) {
   SpoolPlace first, second;
   {
     const auto writer = MakeItemWriter(folder_, Packing::kTar);
@@ -81,10 +81,10 @@ TEST_F(ItemFilesTest, ThoseThatWillBePackedLieInTheSpool) {
   EXPECT_THAT(reader.Read(Record({{"c", "thirD"}}), second, 0),
               StatusIs(absl::StatusCode::kDataLoss, HasSubstr("c: was changed")));
   EXPECT_THAT(reader.Read(Record({{"c", "third and more"}}), second, 0),
-              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("was cut short")));
+              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("is truncated")));
 }
 
-TEST_F(ItemFilesTest, ForgottenOnesGiveTheirRoomBack) {
+TEST_F(ItemFilesTest, ForgettingAnItemFreesItsDiskSpace) {
   const std::vector<ItemFile> large = {{"a", std::string(1 << 20, 'a')}};
   const auto writer = MakeItemWriter(folder_, Packing::kNpz);
   const SpoolPlace first = *writer->Add(large), second = *writer->Add(large);

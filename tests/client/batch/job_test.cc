@@ -190,7 +190,7 @@ TEST_F(JobTest, KeepsEveryAnswerAndListsIt) {
   }
 }
 
-TEST_F(JobTest, DescribesTheSetAlsoWhereItIsNotFinished) {
+TEST_F(JobTest, UnfinishedSetHasADescription) {
   JobOptions options;
   options.limit = 5;
   ASSERT_THAT(Run("set", options), IsOk());
@@ -203,7 +203,7 @@ TEST_F(JobTest, DescribesTheSetAlsoWhereItIsNotFinished) {
   EXPECT_EQ(nlohmann::json::parse(Lines("set/index.jsonl")[4])["skeleton"], 0);
 }
 
-TEST_F(JobTest, ARateOfTheRecipeIsThatOfEveryArray) {
+TEST_F(JobTest, RecipesFrameRateAppliesToEveryArray) {
   recipe_.insert(recipe_.rfind('}'), "frame_rate_hz: 60 ");
   recipe_ =
       "reactions { schedule { keyframes { at: 1 labels { weights { key: 'hug' value: 1 } } } } }" +
@@ -231,13 +231,13 @@ TEST_F(JobTest, ARateOfTheRecipeIsThatOfEveryArray) {
   EXPECT_EQ(nlohmann::json::parse(Read("set/dataset.json"))["frame_rate_hz"], 60);
 }
 
-TEST_F(JobTest, ASecondRunAsksForNothing) {
+TEST_F(JobTest, SecondRunMakesNoCalls) {
   ASSERT_THAT(Run("set"), IsOk());
   ASSERT_THAT(Run("set"), IsOk());
   EXPECT_EQ(connection().calls, kItems);
 }
 
-TEST_F(JobTest, GoesOnAfterTheJournalWasTornAnywhere) {
+TEST_F(JobTest, ContinuesAfterAJournalTruncatedAnywhere) {
   ASSERT_THAT(Run("set"), IsOk());
   const std::filesystem::path journal = folder_ / "set/.duet-batch/journal";
   const auto whole = std::filesystem::file_size(journal);
@@ -248,7 +248,7 @@ TEST_F(JobTest, GoesOnAfterTheJournalWasTornAnywhere) {
   }
 }
 
-TEST_F(JobTest, AFullServerIsAskedAgainAndNothingIsLost) {
+TEST_F(JobTest, FullServerIsRetriedWithoutLoss) {
   connection().answer = [](const SynthesisRequest&, int call) {
     if (call % 2 == 1) return absl::OkStatus();
     absl::Status full = absl::ResourceExhaustedError("full");
@@ -262,7 +262,7 @@ TEST_F(JobTest, AFullServerIsAskedAgainAndNothingIsLost) {
   ExpectSameAsUndisturbed("set");
 }
 
-TEST_F(JobTest, AServerThatIsAwayIsLeftToTheOthers) {
+TEST_F(JobTest, OtherServersReplaceOneThatIsAway) {
   connections_.push_back(std::make_shared<FakeConnection>());
   connections_[0]->answer = [](const SynthesisRequest&, int) {
     return absl::UnavailableError("away");
@@ -286,7 +286,7 @@ TEST_F(JobTest, ServersThatStayAwayEndTheRun) {
   ExpectSameAsUndisturbed("set");
 }
 
-TEST_F(JobTest, PassingFailuresAreTriedAgainInTheRunAndInTheNext) {
+TEST_F(JobTest, TemporaryFailuresAreRetriedInThisRunAndTheNext) {
   connection().answer = [](const SynthesisRequest& request, int) {
     return request.weights[0].interaction_class == "hug" ? absl::InternalError("hiccup")
                                                          : absl::OkStatus();
@@ -305,7 +305,7 @@ TEST_F(JobTest, PassingFailuresAreTriedAgainInTheRunAndInTheNext) {
   ExpectSameAsUndisturbed("set");
 }
 
-TEST_F(JobTest, WhatIsRefusedFailsForGoodUnlessAskedAgain) {
+TEST_F(JobTest, RejectedItemsFailPermanentlyUnlessRetryIsRequested) {
   connection().answer = [](const SynthesisRequest& request, int) {
     return request.weights[0].interaction_class == "hug" ? absl::InvalidArgumentError("no hugs")
                                                          : absl::OkStatus();
@@ -322,7 +322,7 @@ TEST_F(JobTest, WhatIsRefusedFailsForGoodUnlessAskedAgain) {
   ExpectSameAsUndisturbed("set");
 }
 
-TEST_F(JobTest, CredentialsThatAreRefusedEndTheRunAndMarkNothing) {
+TEST_F(JobTest, RejectedCredentialsEndTheRunAndSettleNothing) {
   connection().answer = [](const SynthesisRequest&, int) {
     return absl::UnauthenticatedError("who?");
   };
@@ -332,7 +332,7 @@ TEST_F(JobTest, CredentialsThatAreRefusedEndTheRunAndMarkNothing) {
   EXPECT_EQ(report->set.failed, 0);
 }
 
-TEST_F(JobTest, RejectedAnswersAreAskedForWithOtherSeedsAndListed) {
+TEST_F(JobTest, RejectedAnswersAreRetriedWithOtherSeedsAndListed) {
   connection().distance = 20;  // beyond the filter, whatever the seed
   const auto report = Run("set");
   ASSERT_THAT(report, IsOk());
@@ -340,7 +340,7 @@ TEST_F(JobTest, RejectedAnswersAreAskedForWithOtherSeedsAndListed) {
   EXPECT_EQ(connection().calls, 3 * kItems);
   const auto lines = Lines("set/rejected.tsv");
   ASSERT_THAT(lines, SizeIs(kItems + 1));
-  EXPECT_THAT(lines[1], HasSubstr("wanted at most 9"));
+  EXPECT_THAT(lines[1], HasSubstr("expected at most 9"));
   EXPECT_THAT(Lines("set/index.jsonl"), SizeIs(0));
   // Each is settled once, by its last answer.
   std::ifstream journal(JobFolder(folder_ / "set").journal());
@@ -351,7 +351,7 @@ TEST_F(JobTest, RejectedAnswersAreAskedForWithOtherSeedsAndListed) {
   EXPECT_EQ(rejected, kItems);
 }
 
-TEST_F(JobTest, AClassifierThatSeesAnotherClassRejects) {
+TEST_F(JobTest, AnswerOfAnotherClassIsRejectedByTheClassifier) {
   ASSERT_THAT(classifier::WriteClassifier(folder_ / "judge", test::RandomClassifier()), IsOk());
   recipe_.insert(recipe_.find("retries_per_item"),
                  "classifier { model: 'judge' min_probability: 0.5 } ");
@@ -386,7 +386,7 @@ TEST_F(JobTest, StopsBetweenItems) {
   ExpectSameAsUndisturbed("set");
 }
 
-TEST_F(JobTest, LeadersInAnotherOrderAreRefused) {
+TEST_F(JobTest, LeadersInAnotherOrderAreRejected) {
   ASSERT_THAT(Run("set"), IsOk());
   EXPECT_THAT(
       Run("set", {}, "leader\nb.csv\na.csv\n"),
@@ -397,7 +397,7 @@ TEST_F(JobTest, LeadersInAnotherOrderAreRefused) {
   EXPECT_EQ(connection().calls, kItems + kItems / 2);
 }
 
-TEST_F(JobTest, LimitAndShareTakeAPartOfThePlan) {
+TEST_F(JobTest, LimitAndShareSelectAPartOfThePlan) {
   JobOptions options;
   options.limit = 5;
   EXPECT_EQ(Run("set", options)->set.done, 5);
@@ -412,7 +412,7 @@ TEST_F(JobTest, LimitAndShareTakeAPartOfThePlan) {
   ExpectSameAsUndisturbed("half");
 }
 
-TEST_F(JobTest, ALeaderThatCannotBeReadFailsAlone) {
+TEST_F(JobTest, UnreadableLeaderFailsOnlyItsItems) {
   const auto report = Run("set", {}, "leader\na.csv\nnone.csv\n");
   ASSERT_THAT(report, IsOk());
   EXPECT_EQ(report->set.done, kItems / 2);
@@ -429,7 +429,7 @@ TEST_F(JobTest, ALeaderThatCannotBeReadFailsAlone) {
             "no such file");
 }
 
-TEST_F(JobTest, ALeaderThatLacksSomethingSaysWhereToTellIt) {
+TEST_F(JobTest, MissingInformationNamesTheRecipesField) {
   motion::Clip walk;
   walk.joint_names = motion::SbuSkeleton().joint_names;
   walk.frame_rate_hz = 15;
@@ -449,7 +449,7 @@ TEST_F(JobTest, AnotherRecipeIsRefused) {
                                              "seed: expected none, got \"9\". Use the same")));
 }
 
-TEST_F(JobTest, AFirstRunThatWasRefusedDoesNotPinTheRecipe) {
+TEST_F(JobTest, RejectedFirstRunDoesNotFixTheRecipe) {
   connection().answer = [](const SynthesisRequest&, int) {
     return absl::InvalidArgumentError("no such class");
   };
@@ -463,7 +463,7 @@ TEST_F(JobTest, AFirstRunThatWasRefusedDoesNotPinTheRecipe) {
   ExpectSameAsUndisturbed("set");
 }
 
-TEST_F(JobTest, LinesThatAskForSomethingElseAreRefusedByTheirField) {
+TEST_F(JobTest, ChangedLinesAreRejectedByField) {
   const std::string before = "id\tleader\tlabels\tseed\nx\ta.csv\tkick=1\t1\n";
   ASSERT_THAT(Run("set", {}, before), IsOk());
   const auto refused = [](const char* message) {
@@ -493,7 +493,7 @@ TEST_F(JobTest, IdsOfAnyLengthAreKept) {
   EXPECT_EQ(connection().calls, 18);
 }
 
-TEST_F(JobTest, MissingAndCutFilesAreAskedForAgain) {
+TEST_F(JobTest, MissingAndTruncatedFilesAreRequestedAgain) {
   ASSERT_THAT(Run("set"), IsOk());
   std::filesystem::remove(folder_ / "set/a-2-kick-s0.npy");
   std::filesystem::resize_file(folder_ / "set/b-3-hug0p5-s1.npy", 100);
@@ -511,7 +511,7 @@ void Change(const std::filesystem::path& file, size_t at) {
   test::WriteTestFile(file, content);
 }
 
-TEST_F(JobTest, ChangedFilesAreAskedForAgainOnceTheyAreFound) {
+TEST_F(JobTest, ChangedFilesAreRequestedAgainAfterVerify) {
   ASSERT_THAT(Run("set"), IsOk());
   Change(folder_ / "set/a-2-kick-s0.npy", 500);
   ASSERT_THAT(Run("set"), IsOk());
@@ -532,7 +532,7 @@ TEST_F(JobTest, ChangedFilesAreAskedForAgainOnceTheyAreFound) {
   EXPECT_EQ(connection().calls, calls);
 }
 
-TEST_F(JobTest, ADamagedJournalCostsItsItemsOnly) {
+TEST_F(JobTest, DamagedJournalLineLosesOnlyItsItem) {
   ASSERT_THAT(Run("set"), IsOk());
   const std::filesystem::path journal = folder_ / "set/.duet-batch/journal";
   const std::string lines = ReadTestFile(journal);
@@ -556,7 +556,7 @@ TEST_F(JobTest, AChangedIndexIsWrittenAgain) {
   ExpectSameAsUndisturbed("set");
 }
 
-TEST_F(JobTest, ALeaderThatWasChangedIsAnotherJob) {
+TEST_F(JobTest, ChangedLeaderIsRejected) {
   JobOptions first;
   first.limit = 2;
   ASSERT_THAT(Run("set", first), IsOk());
@@ -616,7 +616,7 @@ class PackedJobTest : public JobTest, public ::testing::WithParamInterface<const
 INSTANTIATE_TEST_SUITE_P(, PackedJobTest, ::testing::Values("TAR", "NPZ"),
                          [](const auto& packing) { return std::string(packing.param); });
 
-TEST_P(PackedJobTest, AShardThatIsMissingOrCutIsWrittenAgain) {
+TEST_P(PackedJobTest, MissingOrTruncatedShardIsWrittenAgain) {
   ASSERT_THAT(Run("set"), IsOk());
   std::filesystem::remove(ShardFile(1));
   std::filesystem::resize_file(ShardFile(2), 3000);
@@ -642,7 +642,7 @@ TEST_P(PackedJobTest, AnyChangedByteOfAShardIsFoundAndRepaired) {
   }
 }
 
-TEST_P(PackedJobTest, AListOfShardsThatIsLostOrDamagedIsFoundAgain) {
+TEST_P(PackedJobTest, LostOrDamagedShardListIsRestored) {
   ASSERT_THAT(Run("set"), IsOk());
   const std::filesystem::path list = JobFolder(folder_ / "set").shards();
   const std::string whole = ReadTestFile(list);
@@ -656,7 +656,7 @@ TEST_P(PackedJobTest, AListOfShardsThatIsLostOrDamagedIsFoundAgain) {
   }
 }
 
-TEST_P(PackedJobTest, WhatFailedGoesToFurtherShards) {
+TEST_P(PackedJobTest, RetriedItemsGoToNewShards) {
   connection().answer = [](const SynthesisRequest& request, int) {
     return request.weights[0].interaction_class == "hug" ? absl::InvalidArgumentError("no hugs")
                                                          : absl::OkStatus();
@@ -685,7 +685,7 @@ TEST_P(PackedJobTest, WhatFailedGoesToFurtherShards) {
   EXPECT_EQ(Shards("set"), after);
 }
 
-TEST_P(PackedJobTest, FurtherLeadersGoToFurtherShards) {
+TEST_P(PackedJobTest, NewLeadersGoToNewShards) {
   ASSERT_THAT(Run("set"), IsOk());
   const std::vector<std::string> before = Shards("set");
   const auto report = Run("set", {}, "leader\na.csv\nb.csv\na.csv\n");
@@ -697,7 +697,7 @@ TEST_P(PackedJobTest, FurtherLeadersGoToFurtherShards) {
   EXPECT_EQ(Verify(folder_ / "set")->problem_count, 0);
 }
 
-TEST_P(PackedJobTest, ADamagedSpoolIsAskedForAgain) {
+TEST_P(PackedJobTest, ItemsOfADamagedSpoolAreRequestedAgain) {
   JobOptions part;
   part.limit = 7;
   ASSERT_THAT(Run("set", part), IsOk());

@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "m:2: line: expected a JSON object, got \"not json\""},
         BadManifest{"{\"leader\": \"a.bvh\"}\n{\"leader\"\n", "m:2: line: not JSON"}));
 
-TEST(ManifestTest, GoesOnAfterABadLine) {
+TEST(ManifestTest, ContinuesAfterABadLine) {
   std::istringstream in("leader\tseed\na.bvh\tx\nb.bvh\t2\n");
   const auto manifest = ReadManifest(in, "/data", "m");
   EXPECT_THAT(manifest->Next(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("m:2: ")));
@@ -148,7 +148,7 @@ TEST_F(ListLeadersTest, FoldersAreMirroredByName) {
   EXPECT_THAT(*keys, ElementsAre("c", "walks/a", "walks/a_csv", "walks/b"));
 }
 
-TEST_F(ListLeadersTest, WhatHoldsNoMotionIsPassedOver) {
+TEST_F(ListLeadersTest, FilesWithoutMotionAreSkipped) {
   const test::TemporaryFolder folder;
   test::WriteTestFile(folder / "walk.txt", "\n1,0.5,-1e-3,\t2\n");
   test::WriteTestFile(folder / "keys.txt", "# A kick, key by key\nat 0\n");
@@ -172,7 +172,7 @@ TEST_F(ListLeadersTest, WhatHoldsNoMotionIsPassedOver) {
   EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("keys"));
 }
 
-TEST_F(ListLeadersTest, AFormatThatIsSaidMakesNamesFree) {
+TEST_F(ListLeadersTest, FormatFlagAllowsAnyExtension) {
   test::WriteTestFile(folder_ / "walks/take1", "");
   test::WriteTestFile(folder_ / "walks/take2.mocap", "");
   std::vector<std::string> keys;
@@ -198,19 +198,18 @@ TEST_F(ListLeadersTest, PatternsAndFiles) {
   EXPECT_THAT(*keys, ElementsAre("walks/a", "walks/b", "c"));
 }
 
-TEST_F(ListLeadersTest, WhatIsNotThereIsRefused) {
+TEST_F(ListLeadersTest, MissingPathIsRejected) {
   EXPECT_THAT(List({"none.bvh"}), StatusIs(absl::StatusCode::kNotFound, HasSubstr("none.bvh")));
   EXPECT_THAT(List({"walks/x*.bvh"}), StatusIs(absl::StatusCode::kNotFound, HasSubstr("x*.bvh")));
   EXPECT_THAT(List({"walks/notes.md"}),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("notes.md")));
-  EXPECT_THAT(
-      List({"c.npy", "c.npy", "c.npy"}),
-      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("another leader has the name")));
+  EXPECT_THAT(List({"c.npy", "c.npy", "c.npy"}),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected a unique one")));
   EXPECT_THAT(ListLeaders({}), StatusIs(absl::StatusCode::kInvalidArgument,
                                         HasSubstr("expected one or more motion files")));
 }
 
-TEST(KeyOf, HoldsNothingThatFileSystemsOrArchivesTakeAmiss) {
+TEST(KeyOf, IsValidInFileSystemsAndArchives) {
   EXPECT_EQ(KeyOf("../walks/./Kick 1.v2"), "walks/Kick_1_v2");
   EXPECT_EQ(KeyOf("/abs/a:b+c-d_e"), "abs/a_b+c-d_e");
 }

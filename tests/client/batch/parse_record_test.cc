@@ -31,13 +31,13 @@ ordered_json Done() {
     "files": [{"path": "kick/a.npy", "bytes": 12, "sha256": "ab"}], "extra": {"note": "x"}})");
 }
 
-TEST(ParseRecord, GivesWhatWasWritten) {
+TEST(ParseRecord, ReadsAWrittenRecord) {
   const auto record = ParseRecord(Line(Done()));
   ASSERT_THAT(record, IsOk());
   EXPECT_EQ(*record, Done());
 }
 
-TEST(ParseRecord, RefusesWhatIsNoRecord) {
+TEST(ParseRecord, RejectsInvalidRecords) {
   EXPECT_THAT(ParseRecord(""), StatusIs(kDataLoss, HasSubstr("no record")));
   EXPECT_THAT(ParseRecord("{\"state\": "), StatusIs(kDataLoss, HasSubstr("no record")));
   EXPECT_THAT(ParseRecord("[]"), StatusIs(kDataLoss, HasSubstr("no record")));
@@ -47,7 +47,7 @@ TEST(ParseRecord, RefusesWhatIsNoRecord) {
 }
 
 // A field of the right record that is gone or of another type: the readers would throw.
-TEST(ParseRecord, NamesTheFieldThatIsGoneOrOfAnotherType) {
+TEST(ParseRecord, NamesTheMissingOrMistypedField) {
   for (const char* field :
        {"state", "name", "id", "side", "model", "frames", "frame_rate_hz", "quality", "files"}) {
     ordered_json record = Done();
@@ -98,7 +98,7 @@ TEST(Verify, ReportsAnIndexAndRefusesASummaryOfOtherTypes) {
   ASSERT_THAT(report, IsOk());
   EXPECT_EQ(report->problem_count, 1);  // the file is not there
   WriteTestFile(folder / "summary.json", R"({"planned": "1", "whole_plan": true, "missing": 0})");
-  EXPECT_THAT(ReadPlanned(folder.path()), StatusIs(kDataLoss, HasSubstr("is no summary")));
+  EXPECT_THAT(ReadPlanned(folder.path()), StatusIs(kDataLoss, HasSubstr("is not a summary")));
 }
 
 }  // namespace

@@ -129,11 +129,11 @@ TEST_F(PlanCheckTest, EveryBadLineIsNamedWithAllItsFields) {
   EXPECT_EQ(check->items, 1);
   EXPECT_THAT(BadLinesError(*check),
               StatusIs(absl::StatusCode::kInvalidArgument,
-                       AllOf(HasSubstr("4 bad lines; nothing was asked for:\n  m:2: labels"),
+                       AllOf(HasSubstr("4 bad lines; no call was made:\n  m:2: labels"),
                              HasSubstr("\n  m:5: columns"))));
 }
 
-TEST_F(PlanCheckTest, AnIdOfABadLineIsTakenAllTheSame) {
+TEST_F(PlanCheckTest, IdOfABadLineIsReserved) {
   const auto check = Check("leader\tid\tseed\na.csv\tx\t-1\nb.csv\tx\t1\n");
   ASSERT_THAT(check, IsOk());
   EXPECT_THAT(check->bad_lines,
@@ -141,7 +141,7 @@ TEST_F(PlanCheckTest, AnIdOfABadLineIsTakenAllTheSame) {
                           "m:3: id: expected one that no other line has, got \"x\""));
 }
 
-TEST_F(PlanCheckTest, AManifestWithoutAHeaderIsOneProblem) {
+TEST_F(PlanCheckTest, ManifestWithoutAHeaderIsOneBadLine) {
   const auto check = Check("a.csv\nb.csv\n");
   ASSERT_THAT(check, IsOk());
   EXPECT_EQ(check->bad_line_count, 1);
@@ -240,7 +240,7 @@ TEST_F(PlanCheckTest, LeadersThatWereReadAreKeptForTheRun) {
   EXPECT_EQ(kept.Take(entry, formats::Side::kLeft, 0), nullptr);
 }
 
-TEST_F(PlanCheckTest, ACheckThatIsStoppedReadsNoMore) {
+TEST_F(PlanCheckTest, StoppedCheckReadsNoMoreLeaders) {
   stopped_ = [] { return true; };
   const auto check = Check("leader\nnone.csv\n");
   ASSERT_THAT(check, IsOk());

@@ -33,7 +33,7 @@ motion::Skeleton WithLandmarks() {
   return skeleton;
 }
 
-TEST(Measure, TellsWhereTheFollowerIs) {
+TEST(Measure, MeasuresThePlaceOfTheFollower) {
   const Quality standing = Measure(Pair({3, 0, 4}), WithLandmarks());
   EXPECT_NEAR(standing.distance_metres, 5, 1e-4);
   EXPECT_EQ(standing.penetration_metres, 0);
@@ -47,7 +47,7 @@ TEST(Measure, TellsWhereTheFollowerIs) {
   EXPECT_GT(*sunk.foot_below_floor_metres, 0.4);
 }
 
-TEST(Recognise, ThatTheClassIsWantedCountsAndNotTheOrderOfTheJoints) {
+TEST(Recognise, UsesTheRequestedClassInAnyOrderOfJoints) {
   const auto classifier = classifier::Classifier::Create(test::RandomClassifier());
   ASSERT_TRUE(classifier.ok());
   const motion::ClipPair pair = Pair({1, 0, 0});
@@ -71,7 +71,7 @@ TEST(Recognise, ThatTheClassIsWantedCountsAndNotTheOrderOfTheJoints) {
   EXPECT_NEAR(*turned.class_probability, *kick.class_probability, 1e-6);
 }
 
-TEST(WhyRejected, GoesByTheProbabilityOfTheClass) {
+TEST(WhyRejected, UsesTheProbabilityOfTheClass) {
   QualityFilter filter;
   filter.min_class_probability = 0.5;
   Quality quality;
@@ -80,10 +80,10 @@ TEST(WhyRejected, GoesByTheProbabilityOfTheClass) {
   EXPECT_THAT(WhyRejected(filter, quality, std::nullopt), IsEmpty());
   quality.class_probability = 0.25;
   EXPECT_THAT(WhyRejected(filter, quality, std::nullopt),
-              ElementsAre("class_probability 0.25, wanted at least 0.5"));
+              ElementsAre("class_probability: expected at least 0.5, got 0.25"));
 }
 
-TEST(Measure, LeavesOutWhatASkeletonDoesNotTell) {
+TEST(Measure, OmitsFiguresWithoutTheirJoints) {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   skeleton.hips.reset();
   skeleton.feet.reset();
@@ -103,7 +103,7 @@ Quality Good() {
   return quality;
 }
 
-TEST(WhyRejected, EachLimitByItself) {
+TEST(WhyRejected, EachLimitIsCheckedSeparately) {
   EXPECT_THAT(WhyRejected({}, Good(), 5.0), IsEmpty());
   const auto only = [](auto set) {
     QualityFilter filter;
@@ -111,25 +111,25 @@ TEST(WhyRejected, EachLimitByItself) {
     return WhyRejected(filter, Good(), 5.0);
   };
   EXPECT_THAT(only([](QualityFilter* f) { f->max_lean_degrees = 9; }),
-              ElementsAre("lean_degrees 10, wanted at most 9"));
+              ElementsAre("lean_degrees: expected at most 9, got 10"));
   EXPECT_THAT(only([](QualityFilter* f) { f->max_lean_degrees = 10; }), IsEmpty());
   EXPECT_THAT(only([](QualityFilter* f) { f->max_foot_above_floor_metres = 0.05; }),
-              ElementsAre("foot_above_floor_metres 0.1, wanted at most 0.05"));
+              ElementsAre("foot_above_floor_metres: expected at most 0.05, got 0.1"));
   EXPECT_THAT(only([](QualityFilter* f) { f->max_foot_below_floor_metres = 0.05; }),
-              ElementsAre("foot_below_floor_metres 0.1, wanted at most 0.05"));
+              ElementsAre("foot_below_floor_metres: expected at most 0.05, got 0.1"));
   EXPECT_THAT(only([](QualityFilter* f) { f->min_distance_metres = 1.5; }),
-              ElementsAre("distance_metres 1, wanted at least 1.5"));
+              ElementsAre("distance_metres: expected at least 1.5, got 1"));
   EXPECT_THAT(only([](QualityFilter* f) { f->max_distance_metres = 0.5; }),
-              ElementsAre("distance_metres 1, wanted at most 0.5"));
+              ElementsAre("distance_metres: expected at most 0.5, got 1"));
   EXPECT_THAT(only([](QualityFilter* f) { f->max_penetration_metres = 0; }),
-              ElementsAre("penetration_metres 0.1, wanted at most 0"));
+              ElementsAre("penetration_metres: expected at most 0, got 0.1"));
   EXPECT_THAT(only([](QualityFilter* f) { f->min_range_of_motion_metres = 0.2; }),
-              ElementsAre("range_of_motion_metres 0.1, wanted at least 0.2"));
+              ElementsAre("range_of_motion_metres: expected at least 0.2, got 0.1"));
   EXPECT_THAT(only([](QualityFilter* f) { f->max_unfamiliarity = 1.5; }),
-              ElementsAre("unfamiliarity 5, wanted at most 1.5"));
+              ElementsAre("unfamiliarity: expected at most 1.5, got 5"));
 }
 
-TEST(WhyRejected, WhatIsNotKnownPasses) {
+TEST(WhyRejected, UnknownFiguresPass) {
   QualityFilter filter;
   filter.max_lean_degrees = 1;
   filter.max_unfamiliarity = 1;

@@ -44,7 +44,7 @@ TEST(LoadFlagsTest, EachValueIsAStep) {
   EXPECT_EQ(Parse({}).Steps().front().callers, 1);
 }
 
-TEST(LoadFlagsTest, ReadsWhatCallsAskFor) {
+TEST(LoadFlagsTest, ReadsTheContentOfCalls) {
   const LoadArguments parsed =
       Parse({"--frames", "46=9,460", "--model", "sbu=0.5,k3hi@1=2", "--label", "kick=1",
              "--priority", "bulk", "--deadline", "0.3", "--arrivals", "constant"});
@@ -63,9 +63,9 @@ TEST(LoadFlagsTest, ReadsWhatCallsAskFor) {
 
 TEST(LoadFlagsTest, InvalidMixesNameTheExpectedForm) {
   EXPECT_THAT(std::string(ParseFrames("46=0").status().message()),
-              HasSubstr("\"46=0\", wanted a weight above 0"));
+              HasSubstr("expected a weight above 0"));
   EXPECT_THAT(std::string(ParseFrames("46,x").status().message()),
-              HasSubstr("\"x\", wanted numbers of frames"));
+              HasSubstr("expected numbers of frames, 1 or more, such as 46=9,460, got \"x\""));
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{"--callers", "0"},
                                              {"--rate", "1", "--callers", "1"},
