@@ -77,7 +77,7 @@ TEST_F(ConnectionTest, EveryAttemptCarriesTheSameDeadlineAndRequestId) {
   EXPECT_THAT(stub_->contexts, Each(Field(&CallContext::request_id, "mine")));
 }
 
-TEST_F(ConnectionTest, ABrokenStreamIsRunAgain) {
+TEST_F(ConnectionTest, BrokenStreamIsRetried) {
   stub_->streams = {Broken(), Good()};
   const absl::StatusOr<SynthesisResult> result = Synthesize();
   ASSERT_THAT(result, IsOk());
@@ -86,7 +86,7 @@ TEST_F(ConnectionTest, ABrokenStreamIsRunAgain) {
   EXPECT_THAT(time_.sleeps, ElementsAre(absl::Milliseconds(50)));
 }
 
-TEST_F(ConnectionTest, AMissingSummaryIsRunAgainAndThenAnError) {
+TEST_F(ConnectionTest, MissingSummaryIsRetriedAndThenAnError) {
   ScriptedStream unfinished = Good();
   unfinished.responses.pop_back();
   options_.retry.max_attempts = 4;
@@ -95,7 +95,7 @@ TEST_F(ConnectionTest, AMissingSummaryIsRunAgainAndThenAnError) {
                                      HasSubstr("without a summary, after 5 of 5 frames")));
 }
 
-TEST_F(ConnectionTest, AMalformedReplyIsCancelledAndNotRunAgain) {
+TEST_F(ConnectionTest, MalformedReplyIsCancelledAndNotRetried) {
   ScriptedStream malformed = Good();
   malformed.responses.erase(malformed.responses.begin() + 1);
   stub_->streams = {malformed};
@@ -103,7 +103,7 @@ TEST_F(ConnectionTest, AMalformedReplyIsCancelledAndNotRunAgain) {
   EXPECT_EQ(stub_->cancelled, 1);
 }
 
-TEST_F(ConnectionTest, ACallThatNobodyWaitsForIsOneAttempt) {
+TEST_F(ConnectionTest, AsynchronousCallIsNotRetried) {
   std::vector<absl::StatusOr<SynthesisResult>> results;
   const auto done = [&results](absl::StatusOr<SynthesisResult> result) {
     results.push_back(std::move(result));
@@ -127,7 +127,7 @@ TEST_F(ConnectionTest, ACallThatNobodyWaitsForIsOneAttempt) {
   EXPECT_THAT(time_.sleeps, SizeIs(0));
 }
 
-TEST_F(ConnectionTest, AFullServerIsRetriedForBulkAlone) {
+TEST_F(ConnectionTest, FullServerIsRetriedOnlyForBulk) {
   const ScriptedStream full = Refused(
       ServiceError(absl::StatusCode::kResourceExhausted, "queue full", absl::Milliseconds(500)));
   stub_->streams = {full};
@@ -140,12 +140,12 @@ TEST_F(ConnectionTest, AFullServerIsRetriedForBulkAlone) {
   EXPECT_THAT(time_.sleeps, ElementsAre(absl::Milliseconds(500)));
 }
 
-TEST_F(ConnectionTest, ExpiredCallsAreNotTriedAgain) {
+TEST_F(ConnectionTest, ExpiredCallIsNotRetried) {
   stub_->streams = {Refused(absl::DeadlineExceededError("too late"))};
   EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kDeadlineExceeded, "too late"));
 }
 
-TEST_F(ConnectionTest, TheCallbackSeesEveryFrameOnceAcrossRetries) {
+TEST_F(ConnectionTest, CallbackGetsEveryFrameOnceAcrossRetries) {
   stub_->streams = {Broken(), Good(3)};
   motion::Poses frames(0, request_.leader.joint_count());
   const absl::StatusOr<SynthesisResult> result = Synthesize([&](const FollowerChunk& chunk) {
@@ -169,13 +169,13 @@ TEST_F(ConnectionTest, AResumedStreamComesFromTheSameModelVersion) {
   }
 }
 
-TEST_F(ConnectionTest, WithoutACallbackARerunMayComeFromAnyVersion) {
+TEST_F(ConnectionTest, RetryWithoutCallbackAcceptsAnyVersion) {
   stub_->streams = {Broken(), Good()};
   ASSERT_THAT(Synthesize(), IsOk());
   EXPECT_EQ(stub_->synthesize_requests[1].model().name(), "");
 }
 
-TEST_F(ConnectionTest, AModelThatVanishedUnderAStreamIsSaidSo) {
+TEST_F(ConnectionTest, ModelThatIsNoLongerServedIsReported) {
   stub_->streams = {Broken(), Refused(absl::NotFoundError("no version 1"))};
   EXPECT_THAT(Synthesize([](const FollowerChunk&) { return absl::OkStatus(); }),
               StatusIs(absl::StatusCode::kAborted,
@@ -206,7 +206,7 @@ TEST_F(ConnectionTest, TimingsCountFromTheCall) {
   EXPECT_EQ(result->timings.total, absl::Milliseconds(3050));
 }
 
-TEST_F(ConnectionTest, AnImpossibleRequestIsNotSent) {
+TEST_F(ConnectionTest, InvalidRequestIsNotSent) {
   request_.leader.joint_names.clear();
   EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("leader")));
   EXPECT_THAT(stub_->synthesize_requests, SizeIs(0));
@@ -236,7 +236,7 @@ TEST_F(ConnectionTest, GetModelRetriesAndReads) {
   EXPECT_EQ(stub_->get_model_requests[1].model().version(), 2u);
 }
 
-TEST_F(ConnectionTest, GetModelPassesARefusalOn) {
+TEST_F(ConnectionTest, GetModelReturnsARejection) {
   stub_->get_model = {ServiceError(absl::StatusCode::kNotFound, "no such model")};
   EXPECT_THAT(ConnectionImpl(stub_, options_, time_.Environment()).GetModel({}),
               StatusIs(absl::StatusCode::kNotFound, "no such model"));

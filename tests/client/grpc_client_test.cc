@@ -94,7 +94,7 @@ TEST_F(GrpcClientTest, StreamsChunksToTheCallback) {
   EXPECT_THAT(first_frames, ElementsAre(0, 2, 4));
 }
 
-TEST_F(GrpcClientTest, AStreamThatBreaksIsRunAgain) {
+TEST_F(GrpcClientTest, BrokenStreamIsRetried) {
   int calls = 0;
   server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
                                         Writer* writer) {
@@ -109,7 +109,7 @@ TEST_F(GrpcClientTest, AStreamThatBreaksIsRunAgain) {
   EXPECT_EQ(result->attempt_count, 2);
 }
 
-TEST_F(GrpcClientTest, RefusalsNameEveryField) {
+TEST_F(GrpcClientTest, RejectionNamesEveryField) {
   server_.service().on_synthesize = [](grpc::ServerContext*, const v1::SynthesizeRequest&,
                                        Writer*) {
     rpc::v1::BadRequest bad;
@@ -128,7 +128,7 @@ TEST_F(GrpcClientTest, RefusalsNameEveryField) {
   ASSERT_EQ(FieldViolations(status).size(), 1u);
 }
 
-TEST_F(GrpcClientTest, TheDeadlineEndsACall) {
+TEST_F(GrpcClientTest, DeadlineEndsACall) {
   server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
                                         Writer*) {
     const bool ended = finished_.WaitForNotificationWithTimeout(kLongestCall);
@@ -139,7 +139,7 @@ TEST_F(GrpcClientTest, TheDeadlineEndsACall) {
   finished_.Notify();
 }
 
-TEST_F(GrpcClientTest, AServerThatSaysNotServingGetsNoCalls) {
+TEST_F(GrpcClientTest, ServerThatReportsNotServingGetsNoCalls) {
   server_.service().on_list_models = [](grpc::ServerContext*, v1::ListModelsResponse*) {
     ADD_FAILURE() << "a call reached a server that does not serve";
     return grpc::Status::OK;
@@ -152,7 +152,7 @@ TEST_F(GrpcClientTest, AServerThatSaysNotServingGetsNoCalls) {
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
 }
 
-TEST_F(GrpcClientTest, AServerThatSaysNotServingIsNotUnreachable) {
+TEST_F(GrpcClientTest, ServerThatReportsNotServingIsReachable) {
   server_.SetServing(false);
   options_.retry.max_attempts = 4;
   options_.wait = absl::ZeroDuration();
@@ -160,14 +160,14 @@ TEST_F(GrpcClientTest, AServerThatSaysNotServingIsNotUnreachable) {
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
 }
 
-TEST_F(GrpcClientTest, AServerThatIsNotThereIsReportedWithItsAddressOnceTheWaitIsOver) {
+TEST_F(GrpcClientTest, MissingServerIsReportedWithItsAddressAfterTheWait) {
   options_.server_address = "127.0.0.1:1";
   options_.wait = absl::Milliseconds(50);
   EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kUnavailable,
                                      HasSubstr("expected a Duet server at 127.0.0.1:1, got")));
 }
 
-TEST_F(GrpcClientTest, AServerThatIsNotThereIsUnavailableAfterEveryAttempt) {
+TEST_F(GrpcClientTest, MissingServerIsUnavailableAfterEveryAttempt) {
   // Port 1 of this machine: nothing listens there.
   options_.server_address = "127.0.0.1:1";
   options_.retry.max_attempts = 4;
@@ -191,7 +191,7 @@ TEST_F(GrpcClientTest, CallsRunConcurrentlyOnOneClient) {
   EXPECT_EQ(good, 8);
 }
 
-TEST_F(GrpcClientTest, ManyCallsThatNobodyWaitsForEndOnceEach) {
+TEST_F(GrpcClientTest, EachAsynchronousCallEndsOnce) {
   constexpr int kCalls = 20;
   std::atomic<int> arrived{0};
   server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest& request,
@@ -218,7 +218,7 @@ TEST_F(GrpcClientTest, ManyCallsThatNobodyWaitsForEndOnceEach) {
   EXPECT_EQ(refused, kCalls / 2);
 }
 
-TEST_F(GrpcClientTest, ACallThatNobodyWaitsForEndsByItsDeadline) {
+TEST_F(GrpcClientTest, AsynchronousCallEndsAtItsDeadline) {
   server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
                                         Writer*) {
     finished_.WaitForNotification();
@@ -245,7 +245,7 @@ TEST(GrpcTargetTest, HostsAreResolvedToEveryServerBehindThem) {
   EXPECT_EQ(GrpcTarget("dns://8.8.8.8/duet:1"), "dns://8.8.8.8/duet:1");
 }
 
-TEST(ClientCreateTest, SenselessOptionsAreRefused) {
+TEST(ClientCreateTest, InvalidOptionsAreRejected) {
   const auto refused = [](void (*spoil)(ClientOptions*)) {
     ClientOptions options;
     spoil(&options);

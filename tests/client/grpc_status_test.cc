@@ -40,7 +40,7 @@ grpc::Status Refusal(const std::string& message, const rpc::v1::Status& details)
   return {grpc::StatusCode::INVALID_ARGUMENT, message, details.SerializeAsString()};
 }
 
-TEST(FromGrpcTest, OkStaysOk) { EXPECT_THAT(FromGrpc(grpc::Status::OK), IsOk()); }
+TEST(FromGrpcTest, OkStatusIsConverted) { EXPECT_THAT(FromGrpc(grpc::Status::OK), IsOk()); }
 
 TEST(FromGrpcTest, CodeAndMessageAreKept) {
   EXPECT_THAT(FromGrpc({grpc::StatusCode::NOT_FOUND, "no such model"}),
@@ -59,7 +59,7 @@ TEST(FromGrpcTest, EveryFieldViolationIsNamedInTheMessage) {
   EXPECT_EQ(FieldViolations(status)[1].description, "empty, wanted at least one weight");
 }
 
-TEST(FromGrpcTest, ViolationsThatTheMessageTellsAreNotToldTwice) {
+TEST(FromGrpcTest, ViolationsInTheMessageAreNotRepeated) {
   rpc::v1::Status details;
   Pack(TwoViolations(), "BadRequest", &details);
   const absl::Status status =
@@ -69,7 +69,7 @@ TEST(FromGrpcTest, ViolationsThatTheMessageTellsAreNotToldTwice) {
                                "label_vector: empty, wanted at least one weight"));
 }
 
-TEST(FromGrpcTest, AnEmptyMessageIsFilledWithTheViolations) {
+TEST(FromGrpcTest, EmptyMessageListsTheViolations) {
   rpc::v1::Status details;
   Pack(TwoViolations(), "BadRequest", &details);
   EXPECT_THAT(FromGrpc(Refusal("", details)),
@@ -92,7 +92,7 @@ TEST(FromGrpcTest, RetryInfoAndErrorInfoAreReadable) {
   EXPECT_EQ(ErrorReason(status), "QUEUE_FULL");
 }
 
-TEST(FromGrpcTest, UnreadableDetailsNeverHideTheRefusal) {
+TEST(FromGrpcTest, MalformedDetailsKeepCodeAndMessage) {
   const grpc::Status refusal(grpc::StatusCode::INVALID_ARGUMENT, "bad", "\xff\xff\xff");
   EXPECT_THAT(FromGrpc(refusal), StatusIs(absl::StatusCode::kInvalidArgument, "bad"));
 
@@ -105,14 +105,14 @@ TEST(FromGrpcTest, UnreadableDetailsNeverHideTheRefusal) {
   EXPECT_THAT(FieldViolations(status), IsEmpty());
 }
 
-TEST(ErrorDetailsTest, AStatusWithoutDetailsHasNone) {
+TEST(ErrorDetailsTest, StatusWithoutDetailsHasNone) {
   const absl::Status status = absl::UnavailableError("away");
   EXPECT_THAT(FieldViolations(status), IsEmpty());
   EXPECT_EQ(RetryDelay(status), std::nullopt);
   EXPECT_EQ(ErrorReason(status), "");
 }
 
-TEST(ErrorDetailsTest, ANegativeDelayIsNoDelay) {
+TEST(ErrorDetailsTest, NegativeRetryDelayIsIgnored) {
   rpc::v1::Status details;
   rpc::v1::RetryInfo retry;
   retry.mutable_retry_delay()->set_seconds(-5);

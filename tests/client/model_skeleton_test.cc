@@ -31,19 +31,19 @@ TEST(ToSkeleton, FindsLandmarksByName) {
   EXPECT_EQ(skeleton->feet, (motion::JointPair{3, 1}));
 }
 
-TEST(ToSkeleton, ALandmarkMayBeTheFirstJoint) {
+TEST(ToSkeleton, FirstJointCanBeALandmark) {
   EXPECT_EQ(ToSkeleton(Model({"left_hip", "right_hip"}))->hips, (motion::JointPair{0, 1}));
   EXPECT_EQ(ToSkeleton(Model({"right_foot", "left_foot"}))->feet, (motion::JointPair{1, 0}));
 }
 
-TEST(ToSkeleton, AModelMayLackLandmarks) {
+TEST(ToSkeleton, LandmarksAreOptional) {
   const auto skeleton = ToSkeleton(Model({"thorax", "wing", "left_hip", "tail"}));
   ASSERT_THAT(skeleton, IsOk());
   EXPECT_FALSE(skeleton->hips.has_value());
   EXPECT_FALSE(skeleton->feet.has_value());
 }
 
-TEST(ToSkeleton, BonesThatAreNoTreeAreTheServersFault) {
+TEST(ToSkeleton, BonesThatAreNotATreeAreAnInternalError) {
   ModelInfo model = Model({"pelvis", "left_hip", "right_hip"});
   model.bones.pop_back();
   EXPECT_THAT(ToSkeleton(model),

@@ -24,7 +24,7 @@ SynthesisRequest GoodRequest() {
   return request;
 }
 
-TEST(SynthesizeRequestTest, LeaderGoesOutInMetresYUp) {
+TEST(SynthesizeRequestTest, LeaderIsSentInMetresYUp) {
   const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(GoodRequest());
   ASSERT_THAT(wire, IsOk());
   const v1::Motion& leader = wire->leader();
@@ -101,7 +101,7 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
 }
 
 // What the wire could not carry is refused here, naming the field; the rest is the server's.
-TEST(SynthesizeRequestTest, WhatTheWireCannotCarryIsRefused) {
+TEST(SynthesizeRequestTest, ValuesThatTheProtoCannotHoldAreRejected) {
   const auto refused = [](void (*spoil)(SynthesisRequest*)) {
     SynthesisRequest request = GoodRequest();
     spoil(&request);
@@ -131,7 +131,7 @@ TEST(SynthesizeRequestTest, WhatTheWireCannotCarryIsRefused) {
               StatusIs(kInvalid, HasSubstr("got both: 1 and \"canary\"")));
 }
 
-TEST(SynthesizeRequestTest, ValuesThatOnlyTheServerJudgesPassThrough) {
+TEST(SynthesizeRequestTest, ValuesThatTheServerValidatesAreSent) {
   SynthesisRequest request = GoodRequest();
   request.leader.poses.all()[0].x = std::numeric_limits<float>::quiet_NaN();
   request.leader.frame_rate_hz = -1;
@@ -182,7 +182,7 @@ TEST(ModelTest, EveryFieldIsRead) {
   EXPECT_EQ(info->weights_sha256, "ab12");
 }
 
-TEST(ModelTest, ABoneWithoutAJointIsTheServersFault) {
+TEST(ModelTest, BoneWithoutAJointIsAnInternalError) {
   v1::Model model = GoodModel();
   model.mutable_bones(0)->set_child_joint(3);
   EXPECT_THAT(

@@ -59,7 +59,7 @@ class ReplyAssemblerTest : public ::testing::Test {
   ReplyAssembler assembler_{leader_, on_chunk_};
 };
 
-TEST_F(ReplyAssemblerTest, GathersAGoodReply) {
+TEST_F(ReplyAssemblerTest, AssemblesAValidReply) {
   ASSERT_THAT(Feed(ReplyFor(leader_, 2)), IsOk());
   EXPECT_THAT(handed_out_, ElementsAre(std::pair(0, 2), std::pair(2, 2), std::pair(4, 1)));
   EXPECT_EQ(frames_, FollowerFor(leader_));
@@ -82,13 +82,13 @@ TEST_F(ReplyAssemblerTest, GathersAGoodReply) {
   EXPECT_EQ(result.timings.compute, absl::Milliseconds(500));
 }
 
-TEST_F(ReplyAssemblerTest, ReadsHowUnfamiliarTheRequestIs) {
+TEST_F(ReplyAssemblerTest, ReadsUnfamiliarity) {
   ASSERT_THAT(FeedSpoilt([](Reply* r) { r->back().mutable_summary()->set_unfamiliarity(1.25); }),
               IsOk());
   EXPECT_EQ(std::move(assembler_).TakeResult().unfamiliarity, 1.25);
 }
 
-TEST_F(ReplyAssemblerTest, EveryBreachOfTheContractIsNamed) {
+TEST_F(ReplyAssemblerTest, EveryContractViolationIsReported) {
   const std::vector<std::pair<std::string, std::function<void(Reply*)>>> breaches = {
       {"a chunk before the header", [](Reply* r) { r->erase(r->begin()); }},
       {"a second header", [](Reply* r) { r->insert(r->begin(), r->front()); }},
@@ -144,7 +144,7 @@ TEST_F(ReplyAssemblerTest, EveryBreachOfTheContractIsNamed) {
   }
 }
 
-TEST_F(ReplyAssemblerTest, AStreamWithoutASummaryIsIncompleteWhateverItsStatus) {
+TEST_F(ReplyAssemblerTest, StreamWithoutSummaryIsIncompleteForAnyStatus) {
   Reply reply = ReplyFor(leader_, 2);
   reply.pop_back();
   EXPECT_THAT(Feed(reply), StatusIs(absl::StatusCode::kUnavailable,
@@ -152,7 +152,7 @@ TEST_F(ReplyAssemblerTest, AStreamWithoutASummaryIsIncompleteWhateverItsStatus) 
   EXPECT_THAT(Feed({}), StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 0 of 5 frames")));
 }
 
-TEST_F(ReplyAssemblerTest, ABrokenConnectionIsUnavailableUnderEveryCodeThatItComesIn) {
+TEST_F(ReplyAssemblerTest, BrokenConnectionIsUnavailableForEveryGrpcCode) {
   const Reply begun = {HeaderFor(leader_), ChunkFor(leader_, 0, 2)};
   for (absl::StatusCode code : {absl::StatusCode::kUnavailable, absl::StatusCode::kInternal,
                                 absl::StatusCode::kUnknown, absl::StatusCode::kCancelled}) {
@@ -161,7 +161,7 @@ TEST_F(ReplyAssemblerTest, ABrokenConnectionIsUnavailableUnderEveryCodeThatItCom
   }
 }
 
-TEST_F(ReplyAssemblerTest, WhatTheServiceSaysIsNotABrokenConnection) {
+TEST_F(ReplyAssemblerTest, ServiceErrorIsNotABrokenConnection) {
   const Reply begun = {HeaderFor(leader_), ChunkFor(leader_, 0, 2)};
   for (absl::StatusCode code : {absl::StatusCode::kInternal, absl::StatusCode::kCancelled,
                                 absl::StatusCode::kDeadlineExceeded}) {
@@ -170,16 +170,16 @@ TEST_F(ReplyAssemblerTest, WhatTheServiceSaysIsNotABrokenConnection) {
   }
 }
 
-TEST_F(ReplyAssemblerTest, ARefusalBeforeTheHeaderIsPassedOn) {
+TEST_F(ReplyAssemblerTest, RejectionBeforeTheHeaderIsReturned) {
   EXPECT_THAT(Feed({}, absl::InternalError("no method")),
               StatusIs(absl::StatusCode::kInternal, "no method"));
 }
 
-TEST_F(ReplyAssemblerTest, NothingThatBreaksAfterTheSummaryMatters) {
+TEST_F(ReplyAssemblerTest, ErrorAfterTheSummaryIsIgnored) {
   EXPECT_THAT(Feed(ReplyFor(leader_, 2), absl::UnavailableError("closed")), IsOk());
 }
 
-TEST_F(ReplyAssemblerTest, ASecondStreamHandsOutOnlyWhatTheFirstDidNot) {
+TEST_F(ReplyAssemblerTest, ResumedStreamReturnsOnlyNewFrames) {
   EXPECT_THAT(Feed({HeaderFor(leader_), ChunkFor(leader_, 0, 2)}, absl::UnavailableError("")),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 2 of 5 frames")));
   // The second stream cuts its chunks elsewhere.

@@ -47,13 +47,13 @@ class RetryTest : public ::testing::Test {
   int attempts_ = 0;
 };
 
-TEST_F(RetryTest, FirstSuccessEndsIt) {
+TEST_F(RetryTest, FirstSuccessEndsTheRetries) {
   EXPECT_THAT(Run({absl::OkStatus()}), IsOk());
   EXPECT_EQ(attempts_, 1);
   EXPECT_THAT(time_.sleeps, IsEmpty());
 }
 
-TEST_F(RetryTest, UnavailableIsTriedAsOftenAsIsWantedWithGrowingWaits) {
+TEST_F(RetryTest, UnavailableIsRetriedWithGrowingWaitsUpToMaxAttempts) {
   options_.max_attempts = 4;
   time_.uniform = 1;
   absl::Status status = Run(std::vector<absl::Status>(4, Unavailable()));
@@ -63,12 +63,12 @@ TEST_F(RetryTest, UnavailableIsTriedAsOftenAsIsWantedWithGrowingWaits) {
               ElementsAre(100 * kMillisecond, 200 * kMillisecond, 400 * kMillisecond));
 }
 
-TEST_F(RetryTest, RecoversInTheMiddle) {
+TEST_F(RetryTest, SucceedsAfterFailedAttempts) {
   EXPECT_THAT(Run({Unavailable(), Unavailable(), absl::OkStatus()}), IsOk());
   EXPECT_EQ(attempts_, 3);
 }
 
-TEST_F(RetryTest, WaitsGrowToSecondsAndNeverExceedTheLongest) {
+TEST_F(RetryTest, WaitsGrowUpToTheMaximum) {
   options_.max_attempts = 9;
   time_.uniform = 1;
   EXPECT_THAT(Run(std::vector<absl::Status>(9, Unavailable())), Not(IsOk()));
@@ -77,7 +77,7 @@ TEST_F(RetryTest, WaitsGrowToSecondsAndNeverExceedTheLongest) {
                                         3200 * kMillisecond, absl::Seconds(5), absl::Seconds(5)));
 }
 
-TEST_F(RetryTest, TheDeadlineAloneEndsTheAttempts) {
+TEST_F(RetryTest, OnlyTheDeadlineEndsTheAttempts) {
   const absl::Time begin = time_.now;
   EXPECT_THAT(Run(std::vector<absl::Status>(100, Unavailable())),
               StatusIs(absl::StatusCode::kUnavailable,
@@ -85,7 +85,7 @@ TEST_F(RetryTest, TheDeadlineAloneEndsTheAttempts) {
   EXPECT_GT(time_.now - begin, deadline_ - options_.max_backoff);
 }
 
-TEST_F(RetryTest, AServerThatCannotBeReachedIsRetriedForTheWaitAndThenNamed) {
+TEST_F(RetryTest, UnreachableServerIsRetriedForTheWaitAndThenReported) {
   const absl::Time begin = time_.now;
   const absl::Status status = Run(std::vector<absl::Status>(100, Refused()));
   EXPECT_THAT(status, StatusIs(absl::StatusCode::kUnavailable,
@@ -94,7 +94,7 @@ TEST_F(RetryTest, AServerThatCannotBeReachedIsRetriedForTheWaitAndThenNamed) {
   EXPECT_EQ(time_.now - begin, wait_);
 }
 
-TEST_F(RetryTest, WithoutAWaitAServerThatCannotBeReachedIsTriedOnce) {
+TEST_F(RetryTest, UnreachableServerIsTriedOnceWithoutAWait) {
   wait_ = absl::ZeroDuration();
   EXPECT_THAT(Run({Refused()}),
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("(1 attempt in 0 s)")));
@@ -109,7 +109,7 @@ TEST_F(RetryTest, TheWaitEndsAtTheDeadline) {
       StatusIs(absl::StatusCode::kUnavailable, HasSubstr("expected a Duet server at lab:50051")));
 }
 
-TEST_F(RetryTest, AnAnswerOfAnyKindStartsTheWaitAnew) {
+TEST_F(RetryTest, AnyReplyRestartsTheWait) {
   wait_ = absl::Milliseconds(100);
   const RetryLimits limits = {time_.now + deadline_, wait_, "lab:50051"};
   const std::vector<AttemptEnd> ends = {Refused(),     {Refused(), true}, Refused(),
@@ -120,7 +120,7 @@ TEST_F(RetryTest, AnAnswerOfAnyKindStartsTheWaitAnew) {
   EXPECT_EQ(attempts_, 6);
 }
 
-TEST(IsUnreachableTest, ServersSendDetailsAndUnhealthyOnesAreThere) {
+TEST(IsUnreachableTest, StatusWithDetailsOrUnhealthyServerIsReachable) {
   EXPECT_TRUE(IsUnreachable(Refused()));
   EXPECT_FALSE(IsUnreachable({Refused(), /*server_answered=*/true}));
   EXPECT_FALSE(IsUnreachable(Unavailable()));
@@ -128,12 +128,12 @@ TEST(IsUnreachableTest, ServersSendDetailsAndUnhealthyOnesAreThere) {
   EXPECT_FALSE(IsUnreachable(absl::InternalError("")));
 }
 
-TEST_F(RetryTest, ACallThatAServerDroppedWithoutAWordIsMadeAgain) {
+TEST_F(RetryTest, CallThatWasDroppedWithoutAStatusIsRetried) {
   EXPECT_THAT(Run({absl::CancelledError("CANCELLED"), absl::OkStatus()}), IsOk());
   EXPECT_EQ(attempts_, 2);
 }
 
-TEST_F(RetryTest, TellsWhyItWaitsAndForHowLong) {
+TEST_F(RetryTest, ReportsTheReasonAndLengthOfEachWait) {
   std::vector<absl::Duration> told;
   options_.on_wait = [&](const absl::Status& why, absl::Duration wait) {
     EXPECT_THAT(why, StatusIs(absl::StatusCode::kUnavailable, "away"));
@@ -161,26 +161,26 @@ TEST_F(RetryTest, BulkWorkWaitsForAFullServer) {
   EXPECT_EQ(attempts_, 2);
 }
 
-TEST_F(RetryTest, InteractiveWorkIsToldThatTheServerIsFull) {
+TEST_F(RetryTest, InteractiveCallFailsIfTheServerIsFull) {
   const absl::Status full =
       ServiceError(absl::StatusCode::kResourceExhausted, "full", 2 * kMillisecond);
   EXPECT_THAT(Run({full}), StatusIs(absl::StatusCode::kResourceExhausted, "full"));
 }
 
-TEST_F(RetryTest, AMessageTooLargeIsNotSentAgain) {
+TEST_F(RetryTest, TooLargeMessageIsNotRetried) {
   const absl::Status large = ServiceError(absl::StatusCode::kResourceExhausted, "too large");
   EXPECT_THAT(Run({large}, Priority::kBulk),
               StatusIs(absl::StatusCode::kResourceExhausted, "too large"));
 }
 
-TEST_F(RetryTest, PushbackIsObeyed) {
+TEST_F(RetryTest, RetryDelayOfTheServerIsRespected) {
   const absl::Status later =
       ServiceError(absl::StatusCode::kUnavailable, "later", absl::Seconds(7));
   EXPECT_THAT(Run({later, absl::OkStatus()}), IsOk());
   EXPECT_THAT(time_.sleeps, ElementsAre(absl::Seconds(7)));
 }
 
-TEST_F(RetryTest, PushbackNeverShortensTheWait) {
+TEST_F(RetryTest, RetryDelayNeverShortensTheWait) {
   const absl::Status soon =
       ServiceError(absl::StatusCode::kUnavailable, "soon", absl::ZeroDuration());
   EXPECT_THAT(Run({soon, absl::OkStatus()}), IsOk());
@@ -209,7 +209,7 @@ TEST(RetryWaitTest, JitterSpreadsOverTheUpperHalf) {
   EXPECT_EQ(RetryWait(options, 1, status, 1), 100 * kMillisecond);
 }
 
-TEST(RetryWaitTest, JitterComesOnTopOfPushback) {
+TEST(RetryWaitTest, JitterIsAddedToTheRetryDelay) {
   const RetryOptions options;
   const absl::Status later =
       ServiceError(absl::StatusCode::kUnavailable, "later", absl::Seconds(3));
@@ -222,7 +222,7 @@ TEST(RetryWaitTest, ManyAttemptsDoNotOverflow) {
   EXPECT_EQ(RetryWait(options, 1'000'000, Unavailable(), 1), options.max_backoff);
 }
 
-TEST(SystemEnvironmentTest, DrawsBetweenZeroAndOneAndNotAlwaysTheSame) {
+TEST(SystemEnvironmentTest, DrawsDifferentNumbersBetweenZeroAndOne) {
   const RetryEnvironment environment = SystemEnvironment();
   const double first = environment.uniform();
   bool varies = false;

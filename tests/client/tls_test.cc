@@ -56,7 +56,7 @@ class TlsTest : public ::testing::Test {
 
 constexpr auto kUnavailable = absl::StatusCode::kUnavailable;
 
-TEST_F(TlsTest, AServerWithATrustedCertificateIsReached) {
+TEST_F(TlsTest, TrustedCertificateIsAccepted) {
   StartServer(false);
   EXPECT_THAT(Call(), IsOk());
 }
@@ -73,13 +73,13 @@ TEST_F(TlsTest, ACertificateOfAnotherNameIsRefused) {
   EXPECT_THAT(Call(), StatusIs(kUnavailable, HasSubstr("")));
 }
 
-TEST_F(TlsTest, PlainTextDoesNotReachAServerThatEncrypts) {
+TEST_F(TlsTest, PlainTextIsRejectedByATlsServer) {
   StartServer(false);
   options_.tls.reset();
   EXPECT_THAT(Call(), StatusIs(kUnavailable, HasSubstr("")));
 }
 
-TEST_F(TlsTest, AServerThatAsksForACertificateGetsOne) {
+TEST_F(TlsTest, ClientCertificateIsSentOnRequest) {
   StartServer(true);
   EXPECT_THAT(Call(), StatusIs(kUnavailable, HasSubstr("")));
   options_.tls->certificate_chain = clients_.certificate;
@@ -87,7 +87,7 @@ TEST_F(TlsTest, AServerThatAsksForACertificateGetsOne) {
   EXPECT_THAT(Call(), IsOk());
 }
 
-TEST_F(TlsTest, ATokenTravelsEncryptedWithEveryCall) {
+TEST_F(TlsTest, TokenIsSentEncryptedWithEveryCall) {
   StartServer(false);
   std::string came;
   server_->service().on_list_models = [&](grpc::ServerContext* context, v1::ListModelsResponse*) {
@@ -104,7 +104,7 @@ TEST_F(TlsTest, ATokenTravelsEncryptedWithEveryCall) {
   EXPECT_EQ(came, "Bearer secret-1");
 }
 
-TEST_F(TlsTest, AnAuthorityIsWhatTheServerIsCalled) {
+TEST_F(TlsTest, AuthorityIsSent) {
   StartServer(false);
   options_.tls->server_name.clear();
   EXPECT_THAT(Call(), StatusIs(kUnavailable, HasSubstr("")));
@@ -112,7 +112,7 @@ TEST_F(TlsTest, AnAuthorityIsWhatTheServerIsCalled) {
   EXPECT_THAT(Call(), IsOk());
 }
 
-TEST(TokenTest, TravelsInPlainTextToThisMachineAlone) {
+TEST(TokenTest, IsSentInPlainTextOnlyToThisMachine) {
   ClientOptions options;
   options.token = "secret-1";
   for (const char* here :

@@ -40,7 +40,7 @@ motion::Clip Moved(motion::Clip clip, motion::Vec3 by) {
   return clip;
 }
 
-TEST(Compare, AMotionIsWhereItIs) {
+TEST(Compare, MotionHasNoDisplacementFromItself) {
   const Comparison same = Compared({MakePerson(), {}}, {MakePerson(), {}});
   EXPECT_EQ(same.frame_count, 60);
   EXPECT_FALSE(same.resampled);
@@ -49,7 +49,7 @@ TEST(Compare, AMotionIsWhereItIs) {
   for (const Figure& figure : same.figures) EXPECT_EQ(figure.a, figure.b) << figure.name;
 }
 
-TEST(Compare, AStepAsideIsDisplacementOfTheRootAlone) {
+TEST(Compare, StepAsideDisplacesOnlyTheRoot) {
   const Comparison moved = Compared({MakePerson(), {}}, {Moved(MakePerson(), {0.3f, 0, 0.4f}), {}});
   EXPECT_NEAR(moved.displacement.mean_metres, 0.5, 1e-5);
   EXPECT_NEAR(moved.displacement.root_metres, 0.5, 1e-5);
@@ -93,7 +93,7 @@ TEST(Compare, PartnersAreComparedAndTouched) {
   EXPECT_EQ(*FigureOf(comparison, "penetration_metres").b, 0);
 }
 
-TEST(Compare, OneAloneTouchesNobody) {
+TEST(Compare, PersonWithoutPartnerHasNoContact) {
   const Comparison comparison =
       Compared({MakePerson(), {}}, {MakePerson(), Moved(MakePerson(), {0, 0, 1.5f})});
   EXPECT_EQ(comparison.partner_metres, std::nullopt);
@@ -101,7 +101,7 @@ TEST(Compare, OneAloneTouchesNobody) {
   EXPECT_TRUE(FigureOf(comparison, "touch_share").b.has_value());
 }
 
-TEST(Compare, SomebodyWhoLeansLeans) {
+TEST(Compare, LeanIsMeasured) {
   motion::Clip leaning = MakePerson();
   const int torso = Sbu().root;
   for (int frame = 0; frame < leaning.frame_count(); ++frame) {
@@ -115,7 +115,7 @@ TEST(Compare, SomebodyWhoLeansLeans) {
   EXPECT_GT(*lean.b, *lean.a + 15);
 }
 
-TEST(Compare, OneFrameWillDo) {
+TEST(Compare, SingleFrameIsCompared) {
   motion::Clip one = MakePerson();
   one.poses.Resize(1);
   const Comparison comparison = Compared({one, {}}, {MakePerson(), {}});
@@ -123,7 +123,7 @@ TEST(Compare, OneFrameWillDo) {
   EXPECT_EQ(comparison.displacement.velocity_metres_per_second, 0);
 }
 
-TEST(Compare, APartnerHasThePersonsFrames) {
+TEST(Compare, PartnerWithOtherFrameCountIsRejected) {
   motion::Clip shorter = MakePerson();
   shorter.poses.Resize(10);
   EXPECT_THAT(Compare({MakePerson(), {}}, {MakePerson(), shorter}, Sbu()).status(),

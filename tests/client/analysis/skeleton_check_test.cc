@@ -51,7 +51,7 @@ void SwapSides(motion::Clip* clip, int first_frame, int last_frame) {
   }
 }
 
-TEST(CheckSkeleton, APersonIsGoodInEveryWay) {
+TEST(CheckSkeleton, PlausiblePersonPassesEveryCheck) {
   const std::vector<Check> checks = CheckSkeleton(MakePerson(), Sbu());
   std::vector<std::string> names;
   for (const Check& check : checks) {
@@ -62,7 +62,7 @@ TEST(CheckSkeleton, APersonIsGoodInEveryWay) {
                                             "jumps", "sides", "upright", "waist"));
 }
 
-TEST(CheckSkeleton, AfterAPositionThatIsNotFiniteThereIsNothingMoreToSay) {
+TEST(CheckSkeleton, PositionThatIsNotFiniteEndsTheChecks) {
   motion::Clip clip = MakePerson();
   clip.at(7, 3).y = std::numeric_limits<float>::infinity();
   clip.at(9, 3).y = std::numeric_limits<float>::quiet_NaN();
@@ -73,7 +73,7 @@ TEST(CheckSkeleton, AfterAPositionThatIsNotFiniteThereIsNothingMoreToSay) {
   EXPECT_THAT(checks[0].text, HasSubstr("in 2 frames, first in 7"));
 }
 
-TEST(CheckSkeleton, AGiantIsInTheWrongUnit) {
+TEST(CheckSkeleton, GiantFailsTheSizeCheck) {
   const Check check = Spoilt("size", [](motion::Clip* clip) {
     for (motion::Vec3& at : clip->poses.all()) at = at * 100;
   });
@@ -125,7 +125,7 @@ TEST(CheckSkeleton, AShortArmIsNamed) {
   EXPECT_THAT(check.text, HasSubstr("elbow to"));
 }
 
-TEST(CheckSkeleton, SomebodyWhoFliesHasLeftTheFloor) {
+TEST(CheckSkeleton, FlyingPersonFailsTheFloorCheck) {
   const Check check = Spoilt("floor", [](motion::Clip* clip) {
     for (int frame = 20; frame < clip->frame_count(); ++frame) {
       for (motion::Vec3& at : clip->poses[frame]) at.y += 1;
@@ -134,7 +134,7 @@ TEST(CheckSkeleton, SomebodyWhoFliesHasLeftTheFloor) {
   EXPECT_NEAR(check.figures.at("share_in_the_air"), 40.0 / 60, 0.01);
 }
 
-TEST(CheckSkeleton, AFootBelowTheFloorIsSeen) {
+TEST(CheckSkeleton, FootBelowTheFloorIsDetected) {
   const Check check =
       Spoilt("floor", [](motion::Clip* clip) { clip->at(30, Sbu().feet->left).y -= 0.5f; });
   EXPECT_THAT(check.text, HasSubstr("a foot gets"));
@@ -151,7 +151,7 @@ motion::Clip Tilted(double degrees) {
   return clip;
 }
 
-TEST(CheckSkeleton, ATiltedCameraIsSeen) {
+TEST(CheckSkeleton, TiltedCameraIsDetected) {
   const double own =
       Find(CheckSkeleton(MakePerson(), Sbu()), "upright").figures.at("lean_z_degrees");
   for (double degrees : {-15.0, 12.0}) {
@@ -162,7 +162,7 @@ TEST(CheckSkeleton, ATiltedCameraIsSeen) {
   }
 }
 
-TEST(CheckSkeleton, ATwistedWaistIsSeen) {
+TEST(CheckSkeleton, TwistedWaistIsDetected) {
   const Check check = Spoilt("waist", [](motion::Clip* clip) {
     const int left = Sbu().Find("left_shoulder"), right = Sbu().Find("right_shoulder");
     for (int frame = 0; frame < 6; ++frame)
@@ -182,7 +182,7 @@ TEST(CheckSkeleton, AJumpIsCountedAndPlaced) {
   EXPECT_THAT(check.text, HasSubstr("first 12"));
 }
 
-TEST(CheckSkeleton, WithoutARateNothingIsSaidOfJumps) {
+TEST(CheckSkeleton, JumpsAreNotCheckedWithoutAFrameRate) {
   motion::Clip clip = MakePerson();
   clip.frame_rate_hz = 0;
   for (const Check& check : CheckSkeleton(clip, Sbu())) EXPECT_NE(check.name, "jumps");
@@ -213,7 +213,7 @@ TEST(CheckSkeleton, ShouldersThatAreSwappedOpposeTheHips) {
   EXPECT_EQ(check.figures.at("shoulders_oppose_hips"), 1);
 }
 
-TEST(CheckSkeleton, WhatASkeletonLacksIsLeftOut) {
+TEST(CheckSkeleton, ChecksWithoutTheirJointsAreOmitted) {
   motion::Skeleton rod;
   rod.joint_names = {"root", "tip"};
   rod.bones = {{0, 1}};

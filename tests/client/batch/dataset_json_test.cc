@@ -62,7 +62,7 @@ v1::Dataset Parsed(const std::string& json) {
   return dataset;
 }
 
-TEST(DatasetJson, IsTheMessageOfTheContract) {
+TEST(DatasetJson, ParsesAsTheProtoMessage) {
   const JobIdentity identity =
       WithModels(IdentityOf(WithFormats({Format::kNpy, Format::kBvh}), {}),
                  {Model("one", {"kick", "hug"}), Model("two", {"hug", "wave"})},
@@ -108,7 +108,7 @@ TEST(DatasetJson, IsTheMessageOfTheContract) {
   EXPECT_THAT(dataset.shards(), IsEmpty());
 }
 
-TEST(DatasetJson, StatesTheRateThatAllItemsHave) {
+TEST(DatasetJson, StatesTheCommonFrameRate) {
   const JobIdentity identity =
       WithModels(IdentityOf(WithFormats({Format::kNpy}), {}), {Model("one", {"kick"})}, {Stick()});
   DoneItems done;
@@ -117,7 +117,7 @@ TEST(DatasetJson, StatesTheRateThatAllItemsHave) {
   EXPECT_EQ(Parsed(DatasetJson(identity, {}, 0, done, false)).frame_rate_hz(), 60);
 }
 
-TEST(DatasetJson, ARateOfTheRecipeIsStatedBeforeAnyItemIsDone) {
+TEST(DatasetJson, RecipesFrameRateIsStatedBeforeAnyItemIsDone) {
   Recipe recipe = WithFormats({Format::kNpy});
   recipe.output.frame_rate_hz = 25;
   const JobIdentity identity =
@@ -183,20 +183,20 @@ class GoOnTest : public ::testing::Test {
   }
 };
 
-TEST_F(GoOnTest, OtherWeightsAreRefused) {
+TEST_F(GoOnTest, DifferentWeightsAreRejected) {
   EXPECT_THAT(GoOn(Identity("aa", ""), Identity("bb", "")),
               StatusIs(absl::StatusCode::kFailedPrecondition,
                        HasSubstr("model one@2: expected the weights that the set was begun with "
                                  "(SHA-256 aa), got bb")));
 }
 
-TEST_F(GoOnTest, WhatWasStatedStays) {
+TEST_F(GoOnTest, OriginalDescriptionIsKept) {
   const auto identity = GoOn(Identity("aa", "before"), Identity("aa", "after"));
   ASSERT_THAT(identity, IsOk());
   EXPECT_EQ(identity->description.models[0].description, "before");
 }
 
-TEST_F(GoOnTest, AServerWithoutDigestsAndANewSetAreFine) {
+TEST_F(GoOnTest, ServerWithoutDigestsAndNewSetAreAccepted) {
   EXPECT_THAT(GoOn(Identity("aa", ""), Identity("", "")), IsOk());
   const auto fresh = GoOn({}, Identity("aa", "new"));
   ASSERT_THAT(fresh, IsOk());

@@ -48,7 +48,7 @@ TEST(FailureTable, HasARowForEachLeaderAndCause) {
               ElementsAre(Cause("no such file", 3, 2), Cause("no\tpushes\n", 1, 1)));
 }
 
-TEST(FailureCauses, OnlyALeadersOwnFileIsLeftOut) {
+TEST(FailureCauses, OnlyTheLeadersOwnFileIsOmitted) {
   FailureCauses causes;
   causes.Add("a.bvh", "X", "a.bvh:12:3: expected a number, got \"x\"", 1, 1);
   causes.Add("a.bvh", "X", "other: a.bvh: is named", 2, 1);
@@ -56,7 +56,7 @@ TEST(FailureCauses, OnlyALeadersOwnFileIsLeftOut) {
                                              Cause("12:3: expected a number, got \"x\"", 1, 1)));
 }
 
-TEST(FailureCauses, ManyDifferentOnesAreBounded) {
+TEST(FailureCauses, NumberOfCausesIsLimited) {
   FailureCauses causes;
   for (int i = 0; i < 5000; ++i) causes.Add("", "X", std::to_string(i), 1, 1);
   const auto largest = causes.Largest(10000);

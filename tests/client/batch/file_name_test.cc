@@ -24,14 +24,14 @@ TEST(FitFileName, ShortNamesStayAsTheyAre) {
   }
 }
 
-TEST(FitFileName, LongPartsKeepTheirBeginningAndADigest) {
+TEST(FitFileName, LongPartsAreTruncatedWithADigest) {
   const std::string fitting = FitFileName("walks/" + std::string(300, 'x') + "/a-kick");
   EXPECT_THAT(fitting, MatchesRegex("walks/x{120}_[0-9a-f]{16}/a-kick"));
   EXPECT_EQ(fitting, FitFileName("walks/" + std::string(300, 'x') + "/a-kick"));
   EXPECT_NE(fitting, FitFileName("walks/" + std::string(301, 'x') + "/a-kick"));
 }
 
-TEST(FitFileName, NoCharacterIsCut) {
+TEST(FitFileName, CharactersAreNotSplit) {
   // Two and three bytes a character.
   EXPECT_THAT(FitFileName("x" + Repeated("\xc3\xa9", 200)),
               StartsWith("x" + Repeated("\xc3\xa9", 59) + "_"));

@@ -68,7 +68,7 @@ class JournalTest : public ::testing::Test {
   std::filesystem::path path_ = folder_ / "journal";
 };
 
-TEST_F(JournalTest, GivesRecordsInTheOrderOfTheItems) {
+TEST_F(JournalTest, RecordsAreInTheOrderOfItems) {
   Append({{5, "{five}"}, {0, "{zero}"}});
   Append({{2, std::string(10000, 'x')}});
   EXPECT_THAT(Records(), ElementsAre("0{zero}", "2" + std::string(10000, 'x'), "5{five}"));
@@ -86,7 +86,7 @@ TEST_F(JournalTest, TheLastRecordOfAnItemCounts) {
   EXPECT_EQ(JournalReader::Open(path_)->count(), 1);
 }
 
-TEST_F(JournalTest, KeepsTheFilesPlaceBesideTheRecord) {
+TEST_F(JournalTest, StoresThePlaceOfTheFiles) {
   {
     JournalWriter writer;
     ASSERT_THAT(writer.Open(path_, 0), IsOk());
@@ -100,7 +100,7 @@ TEST_F(JournalTest, KeepsTheFilesPlaceBesideTheRecord) {
   EXPECT_EQ(reader->Read(1)->place, std::nullopt);
 }
 
-TEST_F(JournalTest, AnyTornEndCountsAsNotWrittenAndIsWrittenOver) {
+TEST_F(JournalTest, TruncatedLastLineIsIgnoredAndOverwritten) {
   Append({{0, "zero"}, {1, "one"}});
   const std::string whole = ReadTestFile(path_);
   const size_t first = whole.find('\n') + 1;
@@ -116,7 +116,7 @@ TEST_F(JournalTest, AnyTornEndCountsAsNotWrittenAndIsWrittenOver) {
   EXPECT_THAT(Records(), ElementsAre("0zero", "2two"));
 }
 
-TEST_F(JournalTest, ADamagedLineCostsItsItemOnlyAndIsRepaired) {
+TEST_F(JournalTest, DamagedLineLosesOnlyItsItemAndIsRepaired) {
   Append({{0, "zero"}, {1, "one"}, {2, "two"}});
   const std::string whole = ReadTestFile(path_);
   const size_t first = whole.find('\n') + 1;
@@ -135,7 +135,7 @@ TEST_F(JournalTest, ADamagedLineCostsItsItemOnlyAndIsRepaired) {
   }
 }
 
-TEST_F(JournalTest, TwoLinesRunTogetherCostBothItems) {
+TEST_F(JournalTest, JoinedLinesLoseBothItems) {
   Append({{0, "zero"}, {1, "one"}, {2, "two"}});
   std::string damaged = ReadTestFile(path_);
   damaged[damaged.find('\n')] = ' ';
@@ -143,7 +143,7 @@ TEST_F(JournalTest, TwoLinesRunTogetherCostBothItems) {
   EXPECT_THAT(Records(), ElementsAre("2two"));
 }
 
-TEST_F(JournalTest, AnItemBeyondAllPlansIsAnErrorAndTakesNoMemory) {
+TEST_F(JournalTest, TooLargeItemNumberIsAnErrorWithoutAllocation) {
   Append({{0, "zero"}, {kMaxItems - 1, "last"}});
   EXPECT_THAT(JournalReader::Open(path_), IsOk());
   Append({{kMaxItems, "beyond"}});
@@ -152,7 +152,7 @@ TEST_F(JournalTest, AnItemBeyondAllPlansIsAnErrorAndTakesNoMemory) {
                        HasSubstr("item: expected a number below 67108864, got 67108864")));
 }
 
-TEST_F(JournalTest, AFullDiskEndsIt) {
+TEST_F(JournalTest, FullDiskIsAnError) {
   Append({{0, "zero"}});
   {
     JournalWriter writer;
@@ -168,7 +168,7 @@ TEST_F(JournalTest, AFullDiskEndsIt) {
   EXPECT_THAT(Records(), ElementsAre("0zero", "1one"));
 }
 
-TEST(DurableFiles, AreWholeOrNotThere) {
+TEST(DurableFiles, AreCompleteOrMissing) {
   const test::TemporaryFolder folder;
   EXPECT_THAT(WriteDurably(folder / "tmp", folder / "a" / "b" / "file", "content"), IsOk());
   EXPECT_EQ(ReadTestFile(folder / "a" / "b" / "file"), "content");
@@ -184,7 +184,7 @@ TEST(DurableFiles, AreWholeOrNotThere) {
   EXPECT_FALSE(std::filesystem::exists(folder / "file"));
 }
 
-TEST(FolderLock, IsHeldByOne) {
+TEST(FolderLock, HasOneHolder) {
   const test::TemporaryFolder folder;
   {
     FolderLock first, second;

@@ -120,7 +120,7 @@ TEST(Plan, MixesDifferFromLeaderToLeaderAndNotFromRunToRun) {
   EXPECT_EQ(mixes.size(), 6u);
 }
 
-TEST(Plan, ALinesLabelsSeedAndModelWin) {
+TEST(Plan, LabelsSeedAndModelOfALineOverrideTheRecipe) {
   const auto items = PlanOf(std::string(kKick) + "models: 'sbu' models: 'k3hi' samples: 2",
                             "leader\tlabels\tseed\tmodel\na.bvh\thug=1\t9\tk3hi@2\n",
                             {Model("sbu"), Model("k3hi")});
@@ -215,7 +215,7 @@ TEST(Plan, K3hiClipsAreCountedInTheirClasses) {
   EXPECT_THAT(Names(*items), ElementsAre("kicking/001", "kicking/002", "pushing/001"));
 }
 
-TEST(Plan, WhatCapturesCannotHoldIsRefused) {
+TEST(Plan, ClassesWithoutACaptureFolderAreRejected) {
   const auto refused = [](const char* message) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message));
   };
@@ -256,7 +256,7 @@ TEST(Plan, SbuThreeHundred) {
                           Pair("s00s00/06", 25), Pair("s00s00/07", 25), Pair("s00s00/08", 25)));
 }
 
-TEST(Plan, WhatMakesNoSenseIsRefused) {
+TEST(Plan, InvalidCombinationsAreRejected) {
   const auto refused = [](const char* message) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message));
   };
@@ -296,7 +296,7 @@ TEST(ToRequest, KeyframesFallOnFrames) {
   EXPECT_EQ(ToRequest((*items)[0], Recipe(), Model("sbu"), leader, 0).keyframes.size(), 1u);
 }
 
-TEST(Shard, EveryItemFallsToOneAndTheyAreAlike) {
+TEST(Shard, EveryItemBelongsToOneShardOfSimilarSize) {
   const auto items = PlanOf(std::string(kKick) + "samples: 500");
   std::vector<int> sizes(4);
   for (const Item& item : *items) {

@@ -26,13 +26,13 @@ TEST(DescribeDifference, NamesTheFieldAndBothValues) {
             "seed: expected \"7\", got \"8\"");
 }
 
-TEST(DescribeDifference, CountsWhatItDoesNotName) {
+TEST(DescribeDifference, CountsUnlistedDifferences) {
   EXPECT_EQ(DescribeDifference("{}", R"({"a":1,"b":2,"c":3,"d":4,"e":5,"f":6,"g":[1,2]})"),
             "a: expected none, got 1; b: expected none, got 2; c: expected none, got 3; "
             "d: expected none, got 4; e: expected none, got 5; and 3 more");
 }
 
-TEST(DescribeDifference, SaysNothingOfWhatIsNoRecipe) {
+TEST(DescribeDifference, IsEmptyForInvalidRecipes) {
   EXPECT_EQ(DescribeDifference("", Json(kBefore)), "");
   EXPECT_EQ(DescribeDifference("[1]", Json(kBefore)), "");
 }

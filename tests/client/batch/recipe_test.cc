@@ -36,13 +36,13 @@ TEST(Recipe, AbsentFieldsHaveTheirDefaults) {
   EXPECT_EQ(recipe->output.shard_bytes, uint64_t{256} << 20);
 }
 
-TEST(Recipe, TheLeaderIsThePersonOnTheSideThatItSays) {
+TEST(Recipe, SideSelectsTheLeader) {
   EXPECT_EQ(Parse("input { side: SIDE_LEFT }")->input.side, Sides::kLeft);
   EXPECT_EQ(Parse("input { side: SIDE_RIGHT }")->input.side, Sides::kRight);
   EXPECT_EQ(Parse("input { side: SIDE_BOTH }")->input.side, Sides::kBoth);
 }
 
-TEST(Recipe, TextFormatAndJsonSayTheSame) {
+TEST(Recipe, TextFormatAndJsonAreEquivalent) {
   const auto text = Parse(R"(
     seed: 3 models: "sbu@2" variety: 0.5
     reactions { labels { weights { key: "kick" value: 1 } weights { key: "hug" value: -0.5 } } }
@@ -65,7 +65,7 @@ TEST(Recipe, TextFormatAndJsonSayTheSame) {
   EXPECT_EQ(text->filter.retries_per_item, 2);
 }
 
-TEST(Recipe, WhatAsksForOtherFilesHasAnotherDigest) {
+TEST(Recipe, ChangesOfTheOutputChangeTheDigest) {
   EXPECT_NE(Parse("seed: 1")->digest, Parse("seed: 2")->digest);
   RecipeOverrides overrides;
   overrides.packing = Packing::kTar;
@@ -75,7 +75,7 @@ TEST(Recipe, WhatAsksForOtherFilesHasAnotherDigest) {
             ParseRecipe("output { formats: FORMAT_NPY packing: PACKING_TAR }", false)->digest);
 }
 
-TEST(Recipe, ARateOfTheCommandLineIsPartOfTheDigest) {
+TEST(Recipe, RateFlagChangesTheDigest) {
   RecipeOverrides overrides;
   overrides.frame_rate_hz = 30;
   const auto at_30_hz = ParseRecipe(kOutput, false, "", overrides);
@@ -86,7 +86,7 @@ TEST(Recipe, ARateOfTheCommandLineIsPartOfTheDigest) {
             ParseRecipe("output { formats: FORMAT_NPY frame_rate_hz: 30 }", false)->digest);
 }
 
-TEST(ReadRecipe, TakesATableOfJoints) {
+TEST(ReadRecipe, ReadsAJointMapFile) {
   const test::TemporaryFolder folder;
   const std::string output = "output { formats: FORMAT_NPY } ";
   test::WriteTestFile(folder / "rig.txt", "# ours\nhead = Skull\ntorso = Chest 3\n");
@@ -194,7 +194,7 @@ TEST(Recipe, OutputFormatsAreRequired) {
                        HasSubstr("output.formats: expected one or more, got none")));
 }
 
-TEST(ReadRecipe, AClassifierIsWhatItHoldsNotWhereItLies) {
+TEST(ReadRecipe, ClassifierIsIdentifiedByContent) {
   const test::TemporaryFolder folder;
   ASSERT_THAT(WriteClassifier(folder / "a", test::RandomClassifier()), IsOk());
   ASSERT_THAT(WriteClassifier(folder / "b", test::RandomClassifier()), IsOk());
@@ -215,7 +215,7 @@ TEST(ReadRecipe, AClassifierIsWhatItHoldsNotWhereItLies) {
   EXPECT_EQ(recipes["c"]->filter.min_class_probability, 0.5);
 }
 
-TEST(ReadRecipe, AClassifierThatIsNotThereOrAsksForMoreThanAllIsRefused) {
+TEST(ReadRecipe, MissingClassifierAndProbabilityAboveOneAreRejected) {
   const test::TemporaryFolder folder;
   ASSERT_THAT(WriteClassifier(folder / "judge", test::RandomClassifier()), IsOk());
   const auto read = [&folder](const std::string& filter) {
@@ -236,7 +236,7 @@ TEST(ReadRecipe, AClassifierThatIsNotThereOrAsksForMoreThanAllIsRefused) {
   }
 }
 
-TEST(ReadRecipe, TheFlagForTheFormatWins) {
+TEST(ReadRecipe, FormatFlagOverridesTheRecipe) {
   RecipeOverrides overrides;
   overrides.input_format = "sbu";
   const auto recipe =
@@ -245,7 +245,7 @@ TEST(ReadRecipe, TheFlagForTheFormatWins) {
   EXPECT_EQ(recipe->input.format, formats::Format::kSbuText);
 }
 
-TEST(ReadRecipe, NamesTheFileAndGoesByItsEnding) {
+TEST(ReadRecipe, ErrorsNameTheFileAndExtensionSelectsTheFormat) {
   const test::TemporaryFolder folder;
   test::WriteTestFile(folder / "r.json", R"({"output": {"formats": ["FORMAT_BVH"]}})");
   EXPECT_THAT(ReadRecipe(folder / "r.json"), IsOk());

@@ -48,7 +48,7 @@ TEST_F(ShardListTest, FillsShardsInTheOrderOfTheItems) {
   EXPECT_EQ(again.ShardOf(7), ShardList::kNone);
 }
 
-TEST_F(ShardListTest, WhatIsAddedLaterGoesToFurtherShards) {
+TEST_F(ShardListTest, LaterItemsGoToNewShards) {
   ShardList list = Open();
   list.Add(0, 10, 100);
   list.Add(2, 10, 100);
@@ -66,7 +66,7 @@ TEST_F(ShardListTest, WhatIsAddedLaterGoesToFurtherShards) {
   EXPECT_EQ(again.ShardOf(2), 0u);
 }
 
-TEST_F(ShardListTest, ALostShardIsTheFirstThatIsFilledAgain) {
+TEST_F(ShardListTest, LostShardIsFilledFirst) {
   ShardList list = Open();
   for (const int64_t item : {0, 1, 2}) list.Add(item, 100, 100);
   ASSERT_THAT(list.Commit(), IsOk());
@@ -83,7 +83,7 @@ TEST_F(ShardListTest, ALostShardIsTheFirstThatIsFilledAgain) {
   EXPECT_EQ(Open().ShardOf(3), 3u);
 }
 
-TEST_F(ShardListTest, AnyTornEndLosesWholeShardsOnly) {
+TEST_F(ShardListTest, TruncatedListLosesOnlyWholeShards) {
   ShardList list = Open();
   for (const int64_t item : {0, 1, 2, 3}) list.Add(item, 50, 100);
   ASSERT_THAT(list.Commit(), IsOk());

@@ -80,7 +80,7 @@ TEST_F(AdminCommandTest, ListsModelsAsJson) {
   EXPECT_EQ(options_.server_address, "lab:7");
 }
 
-TEST_F(AdminCommandTest, ShowsWhatIsOutdatedAndWhatWasRefused) {
+TEST_F(AdminCommandTest, ShowsOutdatedAndRejectedModels) {
   ServedModels models;
   models.models.push_back(
       {"sbu", 3, ServedVersion::State::kServed, "weights: 7 bytes, wanted 9", {}, true, 0.5, true});
@@ -93,13 +93,13 @@ TEST_F(AdminCommandTest, ShowsWhatIsOutdatedAndWhatWasRefused) {
             "problem: access file: empty\n");
 }
 
-TEST_F(AdminCommandTest, LoadsAndShowsWhatCameOfIt) {
+TEST_F(AdminCommandTest, LoadsAModelAndPrintsTheResult) {
   EXPECT_CALL(*client_, LoadModel("sbu", 3));
   EXPECT_EQ(Run({"load", "sbu", "3"}), kExitDone);
   EXPECT_THAT(out_.str(), HasSubstr("sbu/3  served"));
 }
 
-TEST_F(AdminCommandTest, TellsWhyItCouldNot) {
+TEST_F(AdminCommandTest, PrintsTheReasonOfAFailure) {
   EXPECT_CALL(*client_, UnloadModel("sbu", 3))
       .WillOnce(Return(absl::FailedPreconditionError("version label \"canary\" points at it")));
   EXPECT_EQ(Run({"unload", "sbu", "3"}), kExitBadInput);
@@ -115,7 +115,7 @@ TEST_F(AdminCommandTest, MovesAndDeletesLabels) {
   EXPECT_EQ(Run({"label", "sbu", "canary", "--delete"}), kExitDone);
 }
 
-TEST_F(AdminCommandTest, AReloadThatDidNotDoEverythingSaysSo) {
+TEST_F(AdminCommandTest, IncompleteReloadIsReported) {
   EXPECT_CALL(*client_, Reload())
       .WillOnce(Return(ReloadResult{{"sbu/4"}, {"sbu/5"}, {"sbu/1"}, 2, {"no label"}}));
   EXPECT_EQ(Run({"reload"}), kExitRetry);
@@ -123,13 +123,13 @@ TEST_F(AdminCommandTest, AReloadThatDidNotDoEverythingSaysSo) {
             "loaded: sbu/4\nrefused: sbu/5\nunloaded: sbu/1\nunchanged: 2\nproblem: no label\n");
 }
 
-TEST_F(AdminCommandTest, AReloadThatChangedNothingIsFine) {
+TEST_F(AdminCommandTest, ReloadWithoutChangesSucceeds) {
   EXPECT_CALL(*client_, Reload()).WillOnce(Return(ReloadResult{{}, {}, {}, 2, {}}));
   EXPECT_EQ(Run({"reload"}), kExitDone);
   EXPECT_EQ(out_.str(), "unchanged: 2\n");
 }
 
-TEST_F(AdminCommandTest, WantsACommandAndWhatItNeeds) {
+TEST_F(AdminCommandTest, ActionAndItsArgumentsAreRequired) {
   EXPECT_EQ(Run({}), kExitUsage);
   EXPECT_EQ(Run({"load", "sbu"}), kExitUsage);
   EXPECT_EQ(Run({"load", "sbu", "three"}), kExitUsage);

@@ -186,21 +186,21 @@ TEST_F(CommandLineTest, EveryFlagIsRead) {
   EXPECT_EQ(arguments.server.timeout_seconds, 2.5);
 }
 
-TEST_F(CommandLineTest, KeyframesStandInForLabels) {
+TEST_F(CommandLineTest, KeyframesReplaceLabels) {
   const SynthesizeArguments arguments =
       Arguments(Synthesize({"--keyframe", "0:kick=1", "--keyframe", "30:kick=0,hug=1"}));
   ASSERT_THAT(arguments.keyframes, SizeIs(2));
   EXPECT_EQ(arguments.keyframes[1].frame, 30);
 }
 
-TEST_F(CommandLineTest, WhatIsMissingIsNamed) {
+TEST_F(CommandLineTest, MissingFlagIsNamed) {
   ExpectUsageError({}, "subcommand is required");
   ExpectUsageError({"synthesize", "--label", "kick=1", "--out", Out("pair.html")}, "--leader");
   ExpectUsageError({"synthesize", "--leader", "kick.bvh", "--label", "kick=1"}, "--out");
   ExpectRefused({}, "--label or --keyframe is required");
 }
 
-TEST_F(CommandLineTest, WhatMakesNoSenseIsNamed) {
+TEST_F(CommandLineTest, InvalidValueIsNamed) {
   ExpectUsageError({"dance"}, "There is no command \"dance\"");
   ExpectUsageError({"models", "--frobnicate"}, "--frobnicate");
   ExpectRefused({"--label", "kick="}, "--label: expected CLASS or CLASS=WEIGHT");
@@ -226,7 +226,7 @@ TEST_F(CommandLineTest, WhatMakesNoSenseIsNamed) {
   ExpectRefused({"--label", "kick=1", "--tls-cert", "a.pem"}, "--tls-key");
 }
 
-TEST_F(CommandLineTest, ARigNeedsAnOutputThatHoldsOne) {
+TEST_F(CommandLineTest, RigRequiresAnOutputFormatWithARig) {
   ExpectRefused({"--label", "kick", "--out", Out("pair.bvh"), "--follower-rig", "rig.csv"},
                 "--follower-rig: expected a .bvh, .amc, .glb or .gltf and --out FILE with .bvh, "
                 ".glb or .gltf, got rig.csv");
@@ -234,7 +234,7 @@ TEST_F(CommandLineTest, ARigNeedsAnOutputThatHoldsOne) {
                 "got rig.bvh and --out");
 }
 
-TEST_F(CommandLineTest, OutputsThatCannotBeWrittenAreRefusedBeforeAnyWork) {
+TEST_F(CommandLineTest, UnwritableOutputsAreRejectedFirst) {
   ExpectRefused({"--label", "kick=1", "--out", Out("pair.fbx")},
                 "\".fbx\", wanted .html, .glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt");
   ExpectRefused({"--label", "kick=1", "--out", Out("no/pair.csv")}, "there is no folder");
@@ -254,7 +254,7 @@ TEST_F(CommandLineTest, EachOfSeveralSamplesHasFilesNamedAfterItsSeed) {
   EXPECT_THAT(SampleOutputs(two, 1), ElementsAre(Out("pair.seed8.html"), Out("pair.x.seed8.bvh")));
 }
 
-TEST_F(CommandLineTest, AnOutputWithoutAnExtensionIsRefusedUnderItsOwnName) {
+TEST_F(CommandLineTest, OutputWithoutAnExtensionIsRejectedByName) {
   ExpectRefused({"--label", "kick=1", "--out", Out("pair"), "--samples", "2"},
                 "pair: extension: came \"\", wanted .html");
 }

@@ -8,9 +8,9 @@ namespace {
 
 ExitCode CodeFor(absl::StatusCode code) { return ExitCodeFor(absl::Status(code, "")); }
 
-TEST(ExitCodeTest, OkIsDone) { EXPECT_EQ(ExitCodeFor(absl::OkStatus()), 0); }
+TEST(ExitCodeTest, OkExitsWithZero) { EXPECT_EQ(ExitCodeFor(absl::OkStatus()), 0); }
 
-TEST(ExitCodeTest, WhatMayPassIsWorthRetrying) {
+TEST(ExitCodeTest, TemporaryErrorsExitWithRetry) {
   for (absl::StatusCode code :
        {absl::StatusCode::kUnavailable, absl::StatusCode::kDeadlineExceeded,
         absl::StatusCode::kCancelled, absl::StatusCode::kAborted, absl::StatusCode::kInternal,
@@ -19,7 +19,7 @@ TEST(ExitCodeTest, WhatMayPassIsWorthRetrying) {
   }
 }
 
-TEST(ExitCodeTest, WhatWillFailAgainIsBadInput) {
+TEST(ExitCodeTest, PermanentErrorsExitWithBadInput) {
   for (absl::StatusCode code :
        {absl::StatusCode::kInvalidArgument, absl::StatusCode::kFailedPrecondition,
         absl::StatusCode::kOutOfRange, absl::StatusCode::kNotFound,
@@ -29,7 +29,7 @@ TEST(ExitCodeTest, WhatWillFailAgainIsBadInput) {
   }
 }
 
-TEST(ExitCodeTest, AFullServerIsWorthRetryingAndATooLargeMessageIsNot) {
+TEST(ExitCodeTest, FullServerExitsWithRetryAndTooLargeMessageDoesNot) {
   EXPECT_EQ(ExitCodeFor(
                 test::ServiceError(absl::StatusCode::kResourceExhausted, "full", absl::Seconds(1))),
             1);

@@ -53,7 +53,7 @@ TEST(Help, ExplainsCommandsAndTopics) {
   EXPECT_THAT(Duet({"help", "settings"}).text, HasSubstr("DUET_SERVER"));
 }
 
-TEST(Help, TellsWhichFormatsAreReadAndWritten) {
+TEST(Help, ListsReadableAndWritableFormats) {
   std::map<std::string, std::pair<bool, bool>> told;  // by extension
   for (absl::string_view line : absl::StrSplit(TopicText("formats"), '\n')) {
     if (!absl::StartsWith(line, "  .")) continue;
@@ -75,7 +75,7 @@ TEST(Help, TellsWhichFormatsAreReadAndWritten) {
   EXPECT_EQ(told.size(), 9u);
 }
 
-TEST(Help, SuggestsWhatWasMeant) {
+TEST(Help, SuggestsTheNearestTopic) {
   const auto expect = [](const std::vector<std::string>& arguments, const char* text) {
     const Printed printed = Duet(arguments);
     EXPECT_EQ(printed.exit_code, 2);
@@ -94,7 +94,7 @@ TEST(Help, SuggestsWhatWasMeant) {
   expect({"batch", "merge", "--jsn"}, "batch has no flag --jsn; did you mean --json?");
 }
 
-TEST(Help, WorksWhateverTheSettingsAre) {
+TEST(Help, WorksWithInvalidSettings) {
   std::ostringstream out, err;
   ProgramEnvironment environment{nullptr, &out, &err};
   environment.variables = [](const std::string& name) {
@@ -115,7 +115,7 @@ FlagEntry FlagOf(const CommandEntry& command, const std::string& name) {
   return {};
 }
 
-TEST(CommandTable, HoldsEveryCommandAndFlag) {
+TEST(CommandTable, ListsEveryCommandAndFlag) {
   const CommandLine line;
   const std::vector<CommandEntry> commands = ListCommands(line.app());
   std::vector<std::string> names;
@@ -133,7 +133,7 @@ TEST(CommandTable, HoldsEveryCommandAndFlag) {
   EXPECT_TRUE(FlagOf(commands[6], "files").is_argument);
 }
 
-TEST(Completion, KnowsEveryFlag) {
+TEST(Completion, CompletesEveryFlag) {
   for (const char* shell : {"bash", "zsh", "fish"}) {
     const std::string script = Duet({"completion", shell}).text;
     EXPECT_THAT(script, AllOf(HasSubstr("joint-map-file"), HasSubstr("retries-per-item"),
@@ -142,7 +142,7 @@ TEST(Completion, KnowsEveryFlag) {
   EXPECT_EQ(Duet({"completion", "tcsh"}).exit_code, 2);
 }
 
-TEST(ManualPage, TellsAllThatHelpTells) {
+TEST(ManualPage, HasTheContentOfHelp) {
   const std::string page = Duet({"man", "convert"}).text;
   EXPECT_THAT(page,
               AllOf(StartsWith(".TH DUET\\-CONVERT 1 "), HasSubstr(".SH SYNOPSIS"),
@@ -153,7 +153,7 @@ TEST(ManualPage, TellsAllThatHelpTells) {
                     HasSubstr(".SH SETTINGS")));
 }
 
-TEST(ManualPage, AllAreWrittenIntoAFolder) {
+TEST(ManualPage, EveryPageIsWrittenToAFolder) {
   const test::TemporaryFolder folder;
   std::ostringstream out, err;
   ASSERT_EQ(RunProgram({"man", "--out", (folder / "new/man1").string()}, {nullptr, &out, &err}), 0)

@@ -88,7 +88,7 @@ class MotionCommandsTest : public ::testing::Test {
   std::ostringstream out_, err_;
 };
 
-TEST_F(MotionCommandsTest, InspectTellsWhatWasUnderstoodAndWhy) {
+TEST_F(MotionCommandsTest, InspectPrintsEachSettingAndItsOrigin) {
   ASSERT_EQ(Run({"inspect", Path("one.bvh")}), 0);
   EXPECT_THAT(out_.str(),
               StartsWith(Path("one.bvh") + ": BVH, 1 person, 60 frames, 2.00 s at 30 Hz\n"
@@ -106,14 +106,14 @@ TEST_F(MotionCommandsTest, InspectTellsWhatWasUnderstoodAndWhy) {
                                 HasSubstr("up axis     y-up  (given)")));
 }
 
-TEST_F(MotionCommandsTest, InspectTellsEachOfTwoPeople) {
+TEST_F(MotionCommandsTest, InspectPrintsEachOfTwoPeople) {
   ASSERT_EQ(Run({"inspect", Path("pair.csv")}), 0);
   EXPECT_THAT(out_.str(), AllOf(HasSubstr(": CSV, 2 people, 60 frames"),
                                 HasSubstr("  left person\n  frame rate  30 Hz  (file)\n"),
                                 HasSubstr("  right person\n  read as the other\n  skeleton\n")));
 }
 
-TEST_F(MotionCommandsTest, InspectForPrograms) {
+TEST_F(MotionCommandsTest, InspectPrintsJson) {
   const json files = RunJson({"inspect", "--json", Path("pair.csv"), Path("one.bvh")})["files"];
   ASSERT_EQ(files.size(), 2u);
   EXPECT_EQ(files[0]["format"], "CSV");
@@ -147,14 +147,14 @@ TEST_F(MotionCommandsTest, InspectNamesWhatIsMissing) {
   EXPECT_THAT(out_.str(), HasSubstr("    left_hand       paw  (given)\n"));
 }
 
-TEST_F(MotionCommandsTest, InspectSuggestsTheJointThatWasMeant) {
+TEST_F(MotionCommandsTest, InspectSuggestsTheNearestJoint) {
   EXPECT_EQ(Run({"inspect", Path("one.bvh"), "--joint-map", "left_hnd=left_hand"}), 42);
   EXPECT_THAT(out_.str(), HasSubstr("did you mean left_hand?"));
   EXPECT_EQ(Run({"inspect", Path("one.bvh"), "--joint-map", "left_hand=left_elbw"}), 42);
   EXPECT_THAT(out_.str(), HasSubstr("did you mean left_elbow?"));
 }
 
-TEST_F(MotionCommandsTest, InspectLooksAtAFileWithoutARate) {
+TEST_F(MotionCommandsTest, InspectReadsAFileWithoutAFrameRate) {
   ASSERT_EQ(Run({"inspect", Path("one.npy")}), 0);
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("NPY, 1 person, 60 frames\n"),
                                 HasSubstr("frame rate  unknown; say it with --frame-rate HZ\n"),
@@ -164,19 +164,19 @@ TEST_F(MotionCommandsTest, InspectLooksAtAFileWithoutARate) {
             nullptr);
 }
 
-TEST_F(MotionCommandsTest, InspectGoesOnAfterAFileThatCannotBeRead) {
+TEST_F(MotionCommandsTest, InspectContinuesAfterAnUnreadableFile) {
   WriteTestFile(folder_ / "empty.bvh", "");
   EXPECT_EQ(Run({"inspect", Path("empty.bvh"), Path("no.csv"), Path("one.csv")}), 42);
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("empty.bvh:1: came the end of the file"),
                                 HasSubstr("no.csv: no such file"), HasSubstr("CSV, 1 person")));
 }
 
-TEST_F(MotionCommandsTest, InspectTellsAFolderFromAFile) {
+TEST_F(MotionCommandsTest, InspectRejectsAFolder) {
   EXPECT_EQ(Run({"inspect", folder_.path().string()}), 42);
   EXPECT_THAT(out_.str(), HasSubstr(": expected a motion file, got a folder"));
 }
 
-TEST_F(MotionCommandsTest, InspectTellsPeopleOfDifferentLengths) {
+TEST_F(MotionCommandsTest, InspectReportsPeopleOfDifferentLengths) {
   Write("pair.json", Format::kJson, {leader_, follower_});
   json pair = json::parse(ReadTestFile(folder_ / "pair.json"));
   pair["follower"].erase(pair["follower"].begin() + 5, pair["follower"].end());
@@ -188,7 +188,7 @@ TEST_F(MotionCommandsTest, InspectTellsPeopleOfDifferentLengths) {
   EXPECT_THAT(out_.str(), Not(HasSubstr("  length  ")));
 }
 
-TEST_F(MotionCommandsTest, InspectTellsWhatLooksWrong) {
+TEST_F(MotionCommandsTest, InspectReportsImplausibleMotion) {
   motion::Clip odd = leader_;
   for (motion::Vec3& at : odd.poses.all()) at = at * 3;
   Write("odd.csv", Format::kCsv, {odd});
@@ -196,7 +196,7 @@ TEST_F(MotionCommandsTest, InspectTellsWhatLooksWrong) {
   EXPECT_THAT(out_.str(), HasSubstr("look size"));
 }
 
-TEST_F(MotionCommandsTest, ColourIsForTerminalsThatWantIt) {
+TEST_F(MotionCommandsTest, ColourIsUsedOnlyOnTerminalsThatAllowIt) {
   terminal_ = true;
   ASSERT_EQ(Run({"inspect", Path("one.csv")}), 0);
   EXPECT_THAT(out_.str(), StartsWith("\x1b[1m"));
@@ -230,7 +230,7 @@ TEST_F(MotionCommandsTest, ConvertKeepsEveryPosition) {
                                           "with --frame-rate 30")));
 }
 
-TEST_F(MotionCommandsTest, ConvertSaysHowFarAFormatIsOff) {
+TEST_F(MotionCommandsTest, ConvertReportsTheErrorOfTheFormat) {
   motion::Clip growing = leader_;
   const int elbow = motion::SbuSkeleton().Find("left_elbow");
   const int hand = motion::SbuSkeleton().Find("left_hand");
@@ -249,7 +249,7 @@ TEST_F(MotionCommandsTest, ConvertSaysHowFarAFormatIsOff) {
 }
 
 // What docs/formats.md's table says.
-TEST_F(MotionCommandsTest, EveryFormatThatIsReadBecomesEveryFormatThatIsWritten) {
+TEST_F(MotionCommandsTest, EveryReadableFormatConvertsToEveryWritableFormat) {
   const Strings read = {"csv", "json", "npy", "bvh", "glb", "gltf", "txt", "amc"};
   const Strings written = {"csv", "json", "npy", "bvh", "glb", "gltf", "txt", "usda"};
   const auto people = [](const std::string& from) {
@@ -301,7 +301,7 @@ TEST_F(MotionCommandsTest, ConvertTakesOnePersonOrBoth) {
               HasSubstr("--side: expected left or right for a file with one person, got both"));
 }
 
-TEST_F(MotionCommandsTest, ResamplingKeepsThePaceAndFrameRateDoesNot) {
+TEST_F(MotionCommandsTest, ResampleKeepsTheDurationAndFrameRateChangesIt) {
   ASSERT_EQ(Run({"convert", Path("one.csv"), "--resample", "15", "--out", Path("slow.csv")}), 0);
   const motion::Clip resampled = Read("slow.csv");
   EXPECT_EQ(resampled.frame_rate_hz, 15);
@@ -327,7 +327,7 @@ TEST_F(MotionCommandsTest, ConvertBetweenPipes) {
   EXPECT_EQ(LargestDistance(Read("piped.json"), leader_), 0);
 }
 
-TEST_F(MotionCommandsTest, AFormatThatIsSaidWinsOverTheExtension) {
+TEST_F(MotionCommandsTest, FormatFlagOverridesTheExtension) {
   WriteTestFile(folder_ / "walk.data", ReadTestFile(folder_ / "one.bvh"));
   EXPECT_EQ(Run({"inspect", Path("walk.data")}), 42);
   EXPECT_THAT(out_.str(), HasSubstr("Specify it with --input-format FORMAT.\n"));
@@ -335,7 +335,7 @@ TEST_F(MotionCommandsTest, AFormatThatIsSaidWinsOverTheExtension) {
   EXPECT_THAT(out_.str(), HasSubstr(": BVH, 1 person"));
 }
 
-TEST_F(MotionCommandsTest, WhatPipesCannotDoIsSaid) {
+TEST_F(MotionCommandsTest, InvalidUseOfPipesIsReported) {
   const std::string csv = ReadTestFile(folder_ / "pair.csv");
   const auto refused = [&](int code, const Strings& arguments, const std::string& message) {
     EXPECT_EQ(Run(arguments, csv), code) << message;
@@ -358,12 +358,12 @@ TEST_F(MotionCommandsTest, WhatPipesCannotDoIsSaid) {
   refused(2, {"compare", "-", "-", "--input-format", "csv"}, "expected - once, got it twice");
 }
 
-TEST_F(MotionCommandsTest, AnEmptyPipeIsNoMotion) {
+TEST_F(MotionCommandsTest, EmptyPipeIsRejected) {
   EXPECT_EQ(Run({"convert", "-", "--input-format", "csv", "--out", Path("x.csv")}), 42);
   EXPECT_THAT(err_.str(), HasSubstr("standard input: expected a motion, got no data"));
 }
 
-TEST_F(MotionCommandsTest, ConvertNeverReplacesWhatItReads) {
+TEST_F(MotionCommandsTest, ConvertNeverOverwritesItsInput) {
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.csv")}), 2);
   EXPECT_THAT(err_.str(), HasSubstr("would replace the file that is read"));
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.html")}), 2);
@@ -384,7 +384,7 @@ TEST_F(MotionCommandsTest, ViewShowsMotionsSideBySide) {
   EXPECT_EQ(Run({"view", Path("one.bvh"), "--out", Path("view.csv")}), 2);
 }
 
-TEST_F(MotionCommandsTest, CompareTellsHowFollowersDiffer) {
+TEST_F(MotionCommandsTest, CompareReportsTheDifferenceOfFollowers) {
   motion::Clip moved = follower_;
   for (motion::Vec3& at : moved.poses.all()) at.x += 0.25f;
   Write("moved.csv", Format::kCsv, {leader_, moved});
@@ -404,7 +404,7 @@ TEST_F(MotionCommandsTest, CompareTellsHowFollowersDiffer) {
   EXPECT_TRUE(compared["figures"]["mean_lean_degrees"]["a"].is_number());
 }
 
-TEST_F(MotionCommandsTest, WhoLeadsMayBeSaidForEach) {
+TEST_F(MotionCommandsTest, LeaderSideCanDifferForEachFile) {
   Write("turned.csv", Format::kCsv, {follower_, leader_});
   const Strings files = {Path("pair.csv"), Path("turned.csv")};
   const auto mean = [&](const Strings& sides) {
@@ -422,7 +422,7 @@ TEST_F(MotionCommandsTest, WhoLeadsMayBeSaidForEach) {
   EXPECT_THAT(err_.str(), HasSubstr("--leader-side: expected once or 1 times, got 2 times"));
 }
 
-TEST_F(MotionCommandsTest, CompareRefusesOneMotion) {
+TEST_F(MotionCommandsTest, CompareRejectsASingleMotion) {
   EXPECT_EQ(Run({"compare", Path("one.csv")}), 2);
   EXPECT_EQ(Run({"compare", Path("one.csv"), Path("no.csv")}), 42);
   EXPECT_THAT(err_.str(), HasSubstr("no.csv: no such file"));

@@ -128,7 +128,7 @@ class ProgramTest : public ::testing::Test {
   std::ostringstream err_;
 };
 
-TEST_F(ProgramTest, ListsModelsForPeople) {
+TEST_F(ProgramTest, ListsModelsAsText) {
   EXPECT_CALL(*connection_, ListModels).WillOnce(Return(std::vector{SbuModel().model}));
   EXPECT_EQ(Run({"models", "--server", "duet:1", "--timeout", "3", "--wait", "0.5"}), 0);
   EXPECT_EQ(out_.str(),
@@ -155,7 +155,7 @@ TEST_F(ProgramTest, ListsWhichModelsSample) {
   EXPECT_EQ(nlohmann::json::parse(out_.str())["models"][0]["samples"], true);
 }
 
-TEST_F(ProgramTest, ListsModelsForPrograms) {
+TEST_F(ProgramTest, ListsModelsAsJson) {
   EXPECT_CALL(*connection_, ListModels).WillOnce(Return(std::vector{SbuModel().model}));
   EXPECT_EQ(Run({"models", "--json"}), 0);
   const nlohmann::json json = nlohmann::json::parse(out_.str());
@@ -221,7 +221,7 @@ TEST_F(ProgramTest, WritesTheFollowerOnAGltfRigBesideThePair) {
   EXPECT_TRUE(Exists("pair.gltf") && Exists("pair.follower.gltf"));
 }
 
-TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
+TEST_F(ProgramTest, SendsTheValuesOfTheFlags) {
   SynthesisRequest sent;
   EXPECT_CALL(*connection_, GetModel(Field(&ModelChoice::name, "sbu")));
   EXPECT_CALL(*connection_, Synthesize)
@@ -271,7 +271,7 @@ TEST_F(ProgramTest, SendsWhatTheFlagsSay) {
   EXPECT_NEAR(sent.leader.at(5, 2).y, leader_.at(5, 2).y, 1e-5);
 }
 
-TEST_F(ProgramTest, OfTheLeadersOwnFileTheFollowerStartsAsTheOther) {
+TEST_F(ProgramTest, FollowerStartsAsTheOtherPersonOfTheLeadersFile) {
   motion::ClipPair pair{leader_, leader_};
   for (motion::Vec3& position : pair.follower.poses.all()) position.x += 3;
   ASSERT_THAT(formats::WritePair(folder_ / "leader.csv", pair, motion::SbuSkeleton()), IsOk());
@@ -294,7 +294,7 @@ TEST_F(ProgramTest, OfTheLeadersOwnFileTheFollowerStartsAsTheOther) {
   EXPECT_NEAR(same[0].x, leader_.at(0, 0).x, 1e-5);
 }
 
-TEST_F(ProgramTest, SummaryForPeople) {
+TEST_F(ProgramTest, PrintsASummaryAsText) {
   ASSERT_EQ(Synthesize("pair.html", {"--label", "hug=0.5"}), 0);
   EXPECT_THAT(out_.str(),
               HasSubstr("leader    " + Path("leader.csv") + ": 20 frames, 1.33 s at 15 Hz\n"));
@@ -306,7 +306,7 @@ TEST_F(ProgramTest, SummaryForPeople) {
   EXPECT_THAT(out_.str(), HasSubstr("          cleaned up\n"));
 }
 
-TEST_F(ProgramTest, SummaryForPrograms) {
+TEST_F(ProgramTest, PrintsASummaryAsJson) {
   ASSERT_EQ(Synthesize("pair.html", {"--json"}), 0);
   const nlohmann::json json = nlohmann::json::parse(out_.str());
   EXPECT_EQ(json["frames"], kFrames);
@@ -319,7 +319,7 @@ TEST_F(ProgramTest, SummaryForPrograms) {
   EXPECT_EQ(json["files"], std::vector<std::string>{Path("pair.html")});
 }
 
-TEST_F(ProgramTest, SeveralSamplesAreSeveralCallsWithFilesOfTheirOwn) {
+TEST_F(ProgramTest, EachSampleIsACallWithItsOwnFiles) {
   std::vector<uint64_t> seeds;
   EXPECT_CALL(*connection_, Synthesize)
       .Times(3)
@@ -348,7 +348,7 @@ TEST_F(ProgramTest, SeveralSamplesAreSeveralCallsWithFilesOfTheirOwn) {
   }
 }
 
-TEST_F(ProgramTest, SeveralSamplesAreAListForPrograms) {
+TEST_F(ProgramTest, SeveralSamplesAreAJsonList) {
   ASSERT_EQ(Synthesize("pair.csv", {"--samples", "2", "--json"}), 0) << err_.str();
   const nlohmann::json json = nlohmann::json::parse(out_.str());
   ASSERT_EQ(json["samples"].size(), 2u);
@@ -356,7 +356,7 @@ TEST_F(ProgramTest, SeveralSamplesAreAListForPrograms) {
   EXPECT_EQ(json["samples"][1]["files"], std::vector<std::string>{Path("pair.seed1.csv")});
 }
 
-TEST_F(ProgramTest, AFailedSampleEndsTheCommandAndKeepsThoseBefore) {
+TEST_F(ProgramTest, FailedSampleEndsTheCommandAndKeepsEarlierSamples) {
   EXPECT_CALL(*connection_, Synthesize)
       .WillOnce(
           [](const SynthesisRequest& request, const ChunkCallback&) { return Follow(request); })
@@ -366,7 +366,7 @@ TEST_F(ProgramTest, AFailedSampleEndsTheCommandAndKeepsThoseBefore) {
   EXPECT_FALSE(Exists("pair.seed1.csv"));
 }
 
-TEST_F(ProgramTest, SaysSeedAndVarietyOfAModelThatSamples) {
+TEST_F(ProgramTest, PrintsSeedAndVarietyOfAModelThatSamples) {
   ASSERT_EQ(Synthesize("pair.html", {"--seed", "7"}), 0);
   EXPECT_THAT(out_.str(), Not(HasSubstr("seed")));
   ModelDetails details = SbuModel();
@@ -377,7 +377,7 @@ TEST_F(ProgramTest, SaysSeedAndVarietyOfAModelThatSamples) {
   EXPECT_THAT(ReadTestFile(folder_ / "pair.html"), HasSubstr("seed 7"));
 }
 
-TEST_F(ProgramTest, SaysHowUnfamiliarTheRequestIsWhereTheServerKnows) {
+TEST_F(ProgramTest, PrintsUnfamiliarityIfTheServerReportsIt) {
   ASSERT_EQ(Synthesize("pair.csv", {"--json"}), 0);
   EXPECT_FALSE(nlohmann::json::parse(out_.str()).contains("unfamiliarity"));
   EXPECT_CALL(*connection_, Synthesize)
@@ -393,7 +393,7 @@ TEST_F(ProgramTest, SaysHowUnfamiliarTheRequestIsWhereTheServerKnows) {
   EXPECT_THAT(out_.str(), Not(HasSubstr("unlike")));
 }
 
-TEST_F(ProgramTest, WarnsOfALeaderThatIsFarFromTheTrainingLeaders) {
+TEST_F(ProgramTest, WarnsAboutAnUnfamiliarLeader) {
   EXPECT_CALL(*connection_, Synthesize)
       .WillOnce([](const SynthesisRequest& request, const ChunkCallback&) {
         absl::StatusOr<SynthesisResult> result = Follow(request);
@@ -429,7 +429,7 @@ TEST_F(ProgramTest, SynthesizesBetweenPipes) {
   EXPECT_EQ(err_.str(), "");
 }
 
-TEST_F(ProgramTest, WhatPipesCannotDoNeverReachesTheServer) {
+TEST_F(ProgramTest, InvalidUseOfPipesMakesNoCall) {
   EXPECT_CALL(*connection_, GetModel).Times(0);
   const auto refused = [this](int code, const std::vector<std::string>& more,
                               const std::string& message) {
@@ -447,7 +447,7 @@ TEST_F(ProgramTest, WhatPipesCannotDoNeverReachesTheServer) {
       "each answer needs a file");
 }
 
-TEST_F(ProgramTest, AnUnknownClassIsRefusedWithTheOneThatWasMeant) {
+TEST_F(ProgramTest, UnknownClassIsRejectedWithASuggestion) {
   EXPECT_CALL(*connection_, Synthesize).Times(0);
   EXPECT_EQ(Synthesize("pair.html", {"--label", "hugg=1"}), 42);
   EXPECT_THAT(err_.str(),
@@ -455,7 +455,7 @@ TEST_F(ProgramTest, AnUnknownClassIsRefusedWithTheOneThatWasMeant) {
                         "mean hug?"));
 }
 
-TEST_F(ProgramTest, AServerMayComeFromTheEnvironment) {
+TEST_F(ProgramTest, ServerIsReadFromTheEnvironment) {
   variables_["DUET_SERVER"] = "lab:7";
   EXPECT_CALL(*connection_, ListModels).WillRepeatedly(Return(std::vector{SbuModel().model}));
   EXPECT_EQ(Run({"models"}), 0);
@@ -464,14 +464,14 @@ TEST_F(ProgramTest, AServerMayComeFromTheEnvironment) {
   EXPECT_EQ(options_.server_address, "mine:8");
 }
 
-TEST_F(ProgramTest, AUsageErrorNeverReachesTheServer) {
+TEST_F(ProgramTest, UsageErrorMakesNoCall) {
   EXPECT_CALL(*connection_, GetModel).Times(0);
   EXPECT_EQ(Synthesize("pair.fbx"), 2);
   EXPECT_THAT(err_.str(), HasSubstr(".fbx"));
   EXPECT_EQ(out_.str(), "");
 }
 
-TEST_F(ProgramTest, AMissingLeaderNeverReachesTheServer) {
+TEST_F(ProgramTest, MissingLeaderMakesNoCall) {
   EXPECT_CALL(*connection_, GetModel).Times(0);
   EXPECT_EQ(Run({"synthesize", "--leader", Path("no.bvh"), "--label", "kick=1", "--out",
                  Path("pair.html")}),
@@ -479,7 +479,7 @@ TEST_F(ProgramTest, AMissingLeaderNeverReachesTheServer) {
   EXPECT_THAT(err_.str(), HasSubstr("no.bvh: no such file"));
 }
 
-TEST_F(ProgramTest, AMissingFollowerStartNeverReachesTheServer) {
+TEST_F(ProgramTest, MissingFollowerStartMakesNoCall) {
   EXPECT_CALL(*connection_, GetModel).Times(0);
   EXPECT_EQ(Synthesize("pair.html", {"--follower-start", Path("no.bvh")}), 42);
   EXPECT_THAT(err_.str(), HasSubstr("no.bvh: no such file"));
@@ -497,7 +497,7 @@ TEST_F(ProgramTest, AMalformedLeaderIsBadInput) {
   EXPECT_FALSE(Exists("pair.html"));
 }
 
-TEST_F(ProgramTest, AJointTableSaysWhichJointIsWhich) {
+TEST_F(ProgramTest, JointMapFileMapsTheJoints) {
   std::string text = ReadTestFile(folder_ / "leader.csv");
   text = absl::StrReplaceAll(text, {{".left_hand_", ".paw_"}, {".right_hand_", ".claw_"}});
   WriteTestFile(folder_ / "leader.csv", text);
@@ -526,7 +526,7 @@ TEST_F(ProgramTest, AJointTableSaysWhichJointIsWhich) {
   EXPECT_THAT(err_.str(), HasSubstr("rig.txt:1: came \"left_hand\""));
 }
 
-TEST_F(ProgramTest, AMissingJointTableNeverReachesTheServer) {
+TEST_F(ProgramTest, MissingJointMapFileMakesNoCall) {
   EXPECT_CALL(*connection_, GetModel).Times(0);
   EXPECT_EQ(Synthesize("pair.html", {"--joint-map-file", Path("no.txt")}), 42);
   EXPECT_THAT(err_.str(), HasSubstr("no.txt: no such file"));
@@ -540,7 +540,7 @@ TEST_F(ProgramTest, AMissingFrameRateNamesItsFlag) {
                                 HasSubstr("\nSpecify it with --frame-rate HZ.\n")));
 }
 
-TEST_F(ProgramTest, ASizeThatCannotBeToldNamesItsFlag) {
+TEST_F(ProgramTest, UnknownUnitNamesItsFlag) {
   motion::Clip point = leader_;
   for (motion::Vec3& position : point.poses.all()) position = {0, 1, 0};
   ASSERT_THAT(formats::WritePair(folder_ / "pair.bvh", {point, point}, motion::SbuSkeleton()),
@@ -551,7 +551,7 @@ TEST_F(ProgramTest, ASizeThatCannotBeToldNamesItsFlag) {
   EXPECT_THAT(err_.str(), HasSubstr("\nSpecify it with --metres-per-unit METRES.\n"));
 }
 
-TEST_F(ProgramTest, ARefusalListsEveryField) {
+TEST_F(ProgramTest, RejectionListsEveryField) {
   absl::Status refusal = ServiceError(absl::StatusCode::kInvalidArgument, "refused");
   refusal.SetPayload("type.googleapis.com/google.rpc.BadRequest", absl::Cord("\x0a\x07\x0a\x01"
                                                                              "a\x12\x02"
@@ -564,7 +564,7 @@ TEST_F(ProgramTest, ARefusalListsEveryField) {
             "duet: the server rejects the request (INVALID_ARGUMENT)\n  a: b1\n  c: d2\n");
 }
 
-TEST_F(ProgramTest, AnAbsentServerIsWorthRetryingAndNamed) {
+TEST_F(ProgramTest, MissingServerIsNamedAndExitsWithRetry) {
   EXPECT_CALL(*connection_, GetModel).WillOnce(Return(absl::UnavailableError("refused")));
   EXPECT_EQ(Synthesize("pair.html", {"--server", "duet:1"}), 1);
   EXPECT_EQ(
@@ -574,7 +574,7 @@ TEST_F(ProgramTest, AnAbsentServerIsWorthRetryingAndNamed) {
       "encrypts.)\n");
 }
 
-TEST_F(ProgramTest, ADrainingServerIsWorthRetrying) {
+TEST_F(ProgramTest, DrainingServerExitsWithRetry) {
   EXPECT_CALL(*connection_, Synthesize)
       .WillOnce(Return(ServiceError(absl::StatusCode::kUnavailable, "draining")));
   EXPECT_EQ(Synthesize("pair.html"), 1);
@@ -582,7 +582,7 @@ TEST_F(ProgramTest, ADrainingServerIsWorthRetrying) {
                                 Not(HasSubstr("--server"))));
 }
 
-TEST_F(ProgramTest, AResultThatCannotBeWrittenIsWorthRetrying) {
+TEST_F(ProgramTest, UnwritableResultExitsWithRetry) {
   // A folder in the place of the file is only there once the command line has been checked.
   EXPECT_CALL(*connection_, Synthesize)
       .WillOnce([this](const SynthesisRequest& request, const ChunkCallback&) {
@@ -594,7 +594,7 @@ TEST_F(ProgramTest, AResultThatCannotBeWrittenIsWorthRetrying) {
   EXPECT_THAT(err_.str(), HasSubstr("cannot write the result"));
 }
 
-TEST_F(ProgramTest, AModelWithoutASkeletonIsTheServersFault) {
+TEST_F(ProgramTest, ModelWithoutASkeletonIsAnInternalError) {
   ModelDetails details = SbuModel();
   details.model.root_joint = "tail";
   EXPECT_CALL(*connection_, GetModel).WillOnce(Return(details));
@@ -602,7 +602,7 @@ TEST_F(ProgramTest, AModelWithoutASkeletonIsTheServersFault) {
   EXPECT_THAT(err_.str(), HasSubstr("the server's model sbu@1 has no usable skeleton"));
 }
 
-TEST_F(ProgramTest, AModelNeedsNeitherHipsNorFeet) {
+TEST_F(ProgramTest, ModelWithoutHipsAndFeetIsAccepted) {
   ModelDetails details = SbuModel();
   details.model.joint_names = {"torso", "head"};
   details.model.bones = {{0, 1}};
@@ -637,7 +637,7 @@ TEST_F(ProgramTest, CertificatesAreReadFromTheirFiles) {
   EXPECT_EQ(out_.str(), "The server serves no model.\n");
 }
 
-TEST_F(ProgramTest, ATokenIsTheOneLineOfItsFile) {
+TEST_F(ProgramTest, TokenIsTheOnlyLineOfItsFile) {
   WriteTestFile(folder_ / "token", "secret-1\n");
   EXPECT_CALL(*connection_, ListModels).WillOnce(Return(std::vector<ModelInfo>{}));
   EXPECT_EQ(Run({"models", "--token-file", Path("token"), "--authority", "duet.example"}), 0);

@@ -30,7 +30,7 @@ void ExpectPoint(const InputArguments& input, const motion::Coordinates& coordin
   EXPECT_LT(Distance(ReadPoint(input), ToWorld(coordinates, {1, 2, 3})), 1e-5f);
 }
 
-TEST(BuildRequest, CoordinatesThatAreHalfSaidAreCompletedByTheOtherHalf) {
+TEST(BuildRequest, UnitOrAxisWithoutTheOtherUsesItsDefault) {
   using motion::LengthUnit;
   using motion::UpAxis;
   InputArguments input;

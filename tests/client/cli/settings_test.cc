@@ -51,7 +51,7 @@ TEST(ParseSettings, ReadsFlagsWithoutDashes) {
   EXPECT_EQ((*settings)[2].value, "");
 }
 
-TEST(ParseSettings, NamesTheLineThatIsNone) {
+TEST(ParseSettings, MalformedLineIsReportedWithItsNumber) {
   for (const char* line : {"server lab", "--server = lab", "= lab", "Server = lab", "a b = c"}) {
     EXPECT_THAT(ParseSettings(std::string("\n") + line + "\n", "config").status(),
                 StatusIs(kInvalid, HasSubstr("config:2: expected FLAG = VALUE")))
@@ -70,7 +70,7 @@ class ReadSettingsTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ReadSettingsTest, TheFileIsFoundWhereItBelongs) {
+TEST_F(ReadSettingsTest, FileIsFoundInTheDefaultPlaces) {
   Write("home/.config/duet/config", "server = home:1\n");
   Write("xdg/duet/config", "server = xdg:1\n");
   Write("mine", "server = mine:1\n");
@@ -81,19 +81,19 @@ TEST_F(ReadSettingsTest, TheFileIsFoundWhereItBelongs) {
               ElementsAre("server=mine:1"));
 }
 
-TEST_F(ReadSettingsTest, NoneNeedBeThere) {
+TEST_F(ReadSettingsTest, FilesAreOptional) {
   EXPECT_TRUE(Read({}).empty());
   EXPECT_TRUE(Read({{"HOME", Path("nowhere")}}).empty());
   Write("home/.config/duet/config", "server = home:1\n");
   EXPECT_TRUE(Read({{"HOME", Path("home")}, {"DUET_CONFIG", ""}}).empty());
 }
 
-TEST_F(ReadSettingsTest, ANamedFileMustBeThere) {
+TEST_F(ReadSettingsTest, NamedFileMustExist) {
   EXPECT_THAT(ReadSettings(Environment({{"DUET_CONFIG", Path("no")}})).status(),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("DUET_CONFIG: " + Path("no"))));
 }
 
-TEST_F(ReadSettingsTest, TheEnvironmentsServerWins) {
+TEST_F(ReadSettingsTest, EnvironmentOverridesTheFile) {
   Write("c", "server = file:1\nserver = file:2\ntimeout = 3\n");
   EXPECT_THAT(Read({{"DUET_CONFIG", Path("c")}, {"DUET_SERVER", "variable:1"}}),
               ElementsAre("timeout=3", "server=variable:1"));
@@ -144,7 +144,7 @@ TEST_F(SynthesizeSettingsTest, CanRepeatARepeatableFlag) {
               ::testing::IsSupersetOf({"--label=hug=1", "--label=kick=0.5"}));
 }
 
-TEST(Settings, ErrorsNameTheirPlace) {
+TEST(Settings, ErrorsNameTheirSource) {
   CommandLine first, second;
   const ParsedCommandLine wrong = first.Parse({"models"}, {{"timeout", "soon", "config:7"}});
   EXPECT_EQ(wrong.exit_code, 2);

@@ -51,7 +51,7 @@ std::vector<Answer> Ask(const std::string& lines) {
   return answers;
 }
 
-TEST(StdioCommandTest, AnswersEachLineInTurn) {
+TEST(StdioCommandTest, AnswersEachLineInOrder) {
   const std::vector<Answer> answers =
       Ask("[\"--version\"]\n[\"convert\", \"/no/such.bvh\", \"--out\", \"-\"]\n[\"--version\"]\n");
   ASSERT_THAT(answers, SizeIs(3));
@@ -63,7 +63,7 @@ TEST(StdioCommandTest, AnswersEachLineInTurn) {
   EXPECT_EQ(answers[2].out, answers[0].out);
 }
 
-TEST(StdioCommandTest, WritesWhatACommandWritesToStandardOutput) {
+TEST(StdioCommandTest, PassesOnTheStandardOutputOfCommands) {
   TemporaryFolder folder;
   const std::string file = (folder / "leader.csv").string();
   motion::Clip leader;
@@ -89,7 +89,7 @@ TEST(StdioCommandTest, ACommandHasNoStandardInput) {
   EXPECT_EQ(answers[1].exit_code, 0);
 }
 
-TEST(StdioCommandTest, ALineThatIsNoCommandIsAUsageError) {
+TEST(StdioCommandTest, InvalidLineIsAUsageError) {
   for (const char* line : {"", "convert", "{", "[]", "{\"a\": 1}", "[1]", "[[\"models\"]]",
                            "[\"stdio\"]", "[\"\xff\"]"}) {
     const std::vector<Answer> answers = Ask(std::string(line) + "\n[\"--version\"]\n");
@@ -100,7 +100,7 @@ TEST(StdioCommandTest, ALineThatIsNoCommandIsAUsageError) {
   }
 }
 
-TEST(StdioCommandTest, WithoutInputThereIsNothingToDo) { EXPECT_THAT(Ask(""), SizeIs(0)); }
+TEST(StdioCommandTest, EmptyInputSucceeds) { EXPECT_THAT(Ask(""), SizeIs(0)); }
 
 }  // namespace
 }  // namespace duet::client::cli

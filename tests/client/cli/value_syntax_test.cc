@@ -23,14 +23,14 @@ TEST(ParseClassWeightTest, ReadsNameAndWeight) {
   EXPECT_EQ(weight->weight, -0.5f);
 }
 
-TEST(ParseClassWeightTest, ANameAloneWeighsOne) {
+TEST(ParseClassWeightTest, NameWithoutWeightHasWeightOne) {
   const absl::StatusOr<ClassWeight> weight = ParseClassWeight("kick");
   ASSERT_THAT(weight, IsOk());
   EXPECT_EQ(weight->interaction_class, "kick");
   EXPECT_EQ(weight->weight, 1);
 }
 
-TEST(ParseClassWeightTest, RefusesEverythingElse) {
+TEST(ParseClassWeightTest, RejectsOtherForms) {
   for (const char* text : {"", "kick=", "=1", "kick=hard", "kick=1x", "kick=1=2"}) {
     EXPECT_THAT(
         ParseClassWeight(text),
@@ -47,7 +47,7 @@ TEST(ParseKeyframeTest, ReadsFrameAndWeights) {
   EXPECT_EQ(keyframe->weights[1].weight, 0);
 }
 
-TEST(ParseKeyframeTest, RefusesEverythingElse) {
+TEST(ParseKeyframeTest, RejectsOtherForms) {
   for (const char* text : {"", "30", "30:", "kick=1", "-1:kick=1", "x:kick=1",
                            "30:kick=", "30:kick=1,", "30:,kick=1"}) {
     EXPECT_THAT(ParseKeyframe(text), StatusIs(kInvalid, HasSubstr("expected FRAME:CLASS=WEIGHT")));
@@ -72,7 +72,7 @@ TEST(ParseModelChoiceTest, ReadsNameVersionAndLabel) {
   EXPECT_EQ(choice->version_label, "canary");
 }
 
-TEST(ParseModelChoiceTest, RefusesEverythingElse) {
+TEST(ParseModelChoiceTest, RejectsOtherForms) {
   for (const char* text : {"", "@1", ":stable", "sbu@", "sbu@0", "sbu@-1", "sbu@one", "sbu:"}) {
     EXPECT_THAT(ParseModelChoice(text), StatusIs(kInvalid, HasSubstr("expected NAME")));
   }
@@ -85,13 +85,13 @@ TEST(ParseJointPairTest, ReadsBothNames) {
   EXPECT_EQ(joints->second, "mixamorig:LeftHand");
 }
 
-TEST(ParseJointPairTest, RefusesEverythingElse) {
+TEST(ParseJointPairTest, RejectsOtherForms) {
   for (const char* text : {"", "left_hand", "left_hand=", "=LeftHand"}) {
     EXPECT_THAT(ParseJointPair(text), StatusIs(kInvalid, HasSubstr("expected MODEL_JOINT")));
   }
 }
 
-TEST(ParseSeedTest, ReadsEverySeedAndNothingElse) {
+TEST(ParseSeedTest, ReadsEverySeedAndRejectsOtherForms) {
   EXPECT_EQ(*ParseSeed("0"), 0u);
   EXPECT_EQ(*ParseSeed("18446744073709551615"), 18446744073709551615u);
   for (const char* text : {"", "-1", "1.5", "18446744073709551616", "random"}) {
@@ -100,7 +100,7 @@ TEST(ParseSeedTest, ReadsEverySeedAndNothingElse) {
   }
 }
 
-TEST(ParseVarietyTest, ReadsZeroToTwoAndNothingElse) {
+TEST(ParseVarietyTest, ReadsZeroToTwoAndRejectsOtherValues) {
   EXPECT_EQ(*ParseVariety("0"), 0);
   EXPECT_EQ(*ParseVariety("0.75"), 0.75f);
   EXPECT_EQ(*ParseVariety("2"), 2);
@@ -109,14 +109,14 @@ TEST(ParseVarietyTest, ReadsZeroToTwoAndNothingElse) {
   }
 }
 
-TEST(ParsePointTest, ReadsThreeNumbersAndNothingElse) {
+TEST(ParsePointTest, ReadsThreeNumbersAndRejectsOtherForms) {
   EXPECT_EQ(ParsePoint("0.5,1,-2"), (motion::Vec3{0.5f, 1, -2}));
   for (const char* text : {"", "1,2", "1,2,3,4", "a,b,c", "start.bvh"}) {
     EXPECT_EQ(ParsePoint(text), std::nullopt) << text;
   }
 }
 
-TEST(ParseDirectionTest, SaysWhatWasWanted) {
+TEST(ParseDirectionTest, ErrorStatesTheExpectedForm) {
   EXPECT_EQ(*ParseDirection("0,0,-3"), (motion::Vec3{0, 0, -3}));
   EXPECT_THAT(ParseDirection("north").status().message(), ::testing::HasSubstr("expected X,Y,Z"));
 }

@@ -7,7 +7,7 @@
 namespace duet::client::load {
 namespace {
 
-TEST(ArrivalsTest, ConstantOnesDoNotDrift) {
+TEST(ArrivalsTest, ConstantArrivalsDoNotDrift) {
   Arrivals arrivals(ArrivalKind::kConstant, 3, 0);
   EXPECT_EQ(arrivals.Next(), Seconds(0));
   EXPECT_EQ(arrivals.Next(), Seconds(1.0 / 3));
@@ -16,7 +16,7 @@ TEST(ArrivalsTest, ConstantOnesDoNotDrift) {
   EXPECT_EQ(last, Seconds(1000));
 }
 
-TEST(ArrivalsTest, PoissonOnesComeAtTheRateWithExponentialGaps) {
+TEST(ArrivalsTest, PoissonArrivalsHaveTheRateAndExponentialGaps) {
   constexpr int kCalls = 20000;
   Arrivals arrivals(ArrivalKind::kPoisson, 100, 7);
   Duration last{0};
@@ -39,7 +39,7 @@ TEST(ArrivalsTest, SeedDeterminesTheDueTimes) {
   EXPECT_NE(first, other.Next());
 }
 
-TEST(WeightedChoiceTest, SharesAreThoseOfTheWeights) {
+TEST(WeightedChoiceTest, SharesMatchTheWeights) {
   const WeightedChoice choice({1, 3});
   EXPECT_EQ(choice.Pick(0), 0U);
   EXPECT_EQ(choice.Pick(0.2499), 0U);

@@ -53,7 +53,7 @@ TEST(GeneratorTest, RateIsIndependentOfTheAnswers) {
   EXPECT_TRUE(KeptUp(seen));
 }
 
-TEST(GeneratorTest, PoissonArrivalsQueueWhereConstantOnesDoNot) {
+TEST(GeneratorTest, PoissonArrivalsQueueAtRatesWhereConstantOnesDoNot) {
   SimulatedServer server, other;
   server.cost = other.cost = [](std::size_t) { return Seconds(0.008); };
   LoadOptions options;
@@ -78,7 +78,7 @@ TEST(GeneratorTest, PauseOfTheServerDelaysEveryCallDueInIt) {
   EXPECT_NEAR(P(seen.all.whole_call, 100), 1001, 1);
 }
 
-TEST(GeneratorTest, ACallThatIsSentLateIsMeasuredFromWhenItWasDue) {
+TEST(GeneratorTest, LateCallIsMeasuredFromItsDueTime) {
   SimulatedServer server;
   server.cost = [](std::size_t) { return Seconds(0.001); };
   server.stands_still_from = Seconds(5);
@@ -105,7 +105,7 @@ TEST(GeneratorTest, CallsThatWereNeverSentAreReported) {
   EXPECT_FALSE(KeptUp(seen));
 }
 
-TEST(GeneratorTest, TheWarmUpIsNotMeasured) {
+TEST(GeneratorTest, WarmUpIsNotMeasured) {
   SimulatedServer server;
   server.cost = [&server](std::size_t) {
     return server.Now() < Time() + Seconds(0.9) ? Seconds(0.05) : Seconds(0.01);

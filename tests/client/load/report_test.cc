@@ -124,7 +124,7 @@ TEST(ReportTest, PageHoldsTheJsonAndNeedsNoOtherFile) {
   EXPECT_EQ(nlohmann::json::parse(json), nlohmann::json::parse(ToJson(report)));
 }
 
-TEST(ReportTest, ARecordIsALine) {
+TEST(ReportTest, EachRecordIsALine) {
   CallRecord record;
   record.due = Seconds(1.5);
   record.late = Seconds(0.001);

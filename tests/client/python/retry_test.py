@@ -40,7 +40,7 @@ class RetryTest(unittest.TestCase):
         self.assertAlmostEqual(retry_wait(options, 1, error, 0.0), 0.05)
         self.assertAlmostEqual(retry_wait(options, 10**6, error, 1.0), 1.0)
 
-    def test_the_servers_word_is_the_shortest_wait_and_is_spread(self):
+    def test_servers_delay_is_the_minimum_wait_with_jitter(self):
         options = duet.RetryOptions()
         asked = make_error(UNAVAILABLE, "", retry_delay=5.0)
         self.assertAlmostEqual(retry_wait(options, 1, asked, 0.0), 5.0)
@@ -48,7 +48,7 @@ class RetryTest(unittest.TestCase):
         sooner = make_error(UNAVAILABLE, "", retry_delay=0.01)
         self.assertAlmostEqual(retry_wait(options, 1, sooner, 1.0), 0.1)
 
-    def test_options_that_make_no_sense_are_refused(self):
+    def test_invalid_options_are_rejected(self):
         for fields in ({"max_attempts": 0}, {"initial_backoff": 0}, {"max_backoff": 0.01}):
             with self.subTest(fields=fields), self.assertRaisesRegex(ValueError, "retry"):
                 duet.RetryOptions(**fields)

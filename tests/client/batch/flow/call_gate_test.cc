@@ -13,7 +13,7 @@ namespace {
 using std::chrono::hours;
 using std::chrono::milliseconds;
 
-TEST(CallGate, NeverLetsMoreThroughThanTheWindow) {
+TEST(CallGate, NeverStartsMoreCallsThanTheWindow) {
   Options options;
   options.max_in_flight = 3;
   CallGate gate(1, options, hours(1));
@@ -37,7 +37,7 @@ TEST(CallGate, NeverLetsMoreThroughThanTheWindow) {
   EXPECT_LE(most, 3);
 }
 
-TEST(CallGate, StopsThoseWhoWait) {
+TEST(CallGate, StopWakesWaitingThreads) {
   CallGate gate(1, Options(), hours(1));
   while (gate.state().in_flight < gate.state().limit) gate.Start();
   std::thread waiting([&gate] { EXPECT_FALSE(gate.Start().has_value()); });
@@ -45,7 +45,7 @@ TEST(CallGate, StopsThoseWhoWait) {
   waiting.join();
 }
 
-TEST(CallGate, LosesPatienceWithServersThatStayAway) {
+TEST(CallGate, EndsIfServersStayAway) {
   Options options;
   options.first_backoff = options.longest_backoff = milliseconds(1);
   CallGate gate(1, options, milliseconds(0));
@@ -62,7 +62,7 @@ TEST(CallGate, CountsRefusals) {
   EXPECT_EQ(gate.state().refusals, 1);
 }
 
-TEST(BoundedQueue, HandsOverEverythingOnce) {
+TEST(BoundedQueue, EveryValueIsTakenOnce) {
   BoundedQueue<int> queue(2);
   std::atomic<int> sum{0};
   std::vector<std::thread> takers;
@@ -77,7 +77,7 @@ TEST(BoundedQueue, HandsOverEverythingOnce) {
   EXPECT_EQ(sum, 5050);
 }
 
-TEST(BoundedQueue, WhoPutsWaitsForRoomAndIsLetGoByStop) {
+TEST(BoundedQueue, PutBlocksWhileFullUntilStop) {
   BoundedQueue<int> queue(1);
   EXPECT_TRUE(queue.Put(1));
   std::thread putting([&queue] { EXPECT_FALSE(queue.Put(2)); });
@@ -86,7 +86,7 @@ TEST(BoundedQueue, WhoPutsWaitsForRoomAndIsLetGoByStop) {
   EXPECT_FALSE(queue.Take().has_value());
 }
 
-TEST(BoundedQueue, GathersWhatComesAndEndsEarlyWhenItFills) {
+TEST(BoundedQueue, GatherReturnsEarlyWhenFull) {
   BoundedQueue<int> queue(4);
   for (int i = 0; i < 3; ++i) queue.Put(i);
   // More than half full: there is nothing to wait for.
@@ -103,7 +103,7 @@ TEST(BoundedQueue, GathersWhatComesAndEndsEarlyWhenItFills) {
   EXPECT_TRUE(queue.Gather(hours(1)).empty());
 }
 
-TEST(BoundedQueue, IsFullByWhatValuesCost) {
+TEST(BoundedQueue, CapacityLimitsTheTotalCost) {
   BoundedQueue<int> queue(10);
   queue.Put(1, 100);  // more than there is room for: alone
   std::atomic<bool> put{false};
@@ -119,7 +119,7 @@ TEST(BoundedQueue, IsFullByWhatValuesCost) {
   EXPECT_TRUE(put);
 }
 
-TEST(BoundedQueue, AValueThatCostsTooMuchWaits) {
+TEST(BoundedQueue, ValueAboveTheCapacityWaitsUntilEmpty) {
   BoundedQueue<int> queue(10);
   queue.Put(1, 6);
   std::thread putting([&queue] { EXPECT_FALSE(queue.Put(2, 6)); });

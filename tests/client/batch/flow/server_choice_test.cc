@@ -33,7 +33,7 @@ void FinishAll(const std::vector<int64_t>& calls, CallEnd end, CallWindow* windo
   for (const int64_t call : calls) window->Finish(call, end, std::nullopt, now);
 }
 
-TEST(CallWindow, GrowsQuicklyWhileNothingIsRefused) {
+TEST(CallWindow, GrowsWithEachAnswerBeforeTheFirstRefusal) {
   CallWindow window(Limits());
   const int first = window.limit();
   FinishAll(Fill(&window), CallEnd::kAnswered, &window);
@@ -42,7 +42,7 @@ TEST(CallWindow, GrowsQuicklyWhileNothingIsRefused) {
   EXPECT_GT(window.limit(), 15);
 }
 
-TEST(CallWindow, StopsAtItsLargest) {
+TEST(CallWindow, StopsAtItsMaximum) {
   CallWindow window(Limits(5));
   for (int i = 0; i < 20; ++i) FinishAll(Fill(&window), CallEnd::kAnswered, &window);
   EXPECT_EQ(window.limit(), 5);
@@ -58,7 +58,7 @@ TEST(CallWindow, DoesNotGrowWhileItIsNotFull) {
   EXPECT_EQ(window.limit(), limit);
 }
 
-TEST(CallWindow, HalvesOnceForAllThatWereUnderWay) {
+TEST(CallWindow, HalvesOnceForAllCallsInFlight) {
   CallWindow window(Limits());
   for (int i = 0; i < 20; ++i) FinishAll(Fill(&window), CallEnd::kAnswered, &window);
   const int before = window.limit();
@@ -84,14 +84,14 @@ TEST(CallWindow, GrowsByOneForEachFullWindowAfterARefusal) {
   EXPECT_EQ(window.limit(), limit + 1);
 }
 
-TEST(CallWindow, ObeysTheServersDelay) {
+TEST(CallWindow, RespectsTheServersDelay) {
   CallWindow window(Limits());
   window.Finish(window.Start(), CallEnd::kRefused, seconds(3), kStart);
   EXPECT_FALSE(window.MayStart(kStart + milliseconds(2999)));
   EXPECT_TRUE(window.MayStart(kStart + seconds(3)));
 }
 
-TEST(CallWindow, AsksLessAndLessOftenWhileTheServerIsAway) {
+TEST(CallWindow, ProbesAtIncreasingIntervalsWhileTheServerIsAway) {
   CallWindow window(Limits());
   for (int i = 0; i < 20; ++i) FinishAll(Fill(&window), CallEnd::kAnswered, &window);
   FinishAll(Fill(&window), CallEnd::kAway, &window);
@@ -117,7 +117,7 @@ TEST(ServerChoice, GivesEachServerItsShare) {
   EXPECT_THAT(calls, ::testing::Each(CallWindow(Limits()).limit()));
 }
 
-TEST(ServerChoice, LeavesAloneWhoIsAway) {
+TEST(ServerChoice, SendsNoCallsToAServerThatIsAway) {
   ServerChoice servers(2, Limits());
   auto call = servers.Start(kStart);
   servers.Finish(*call, CallEnd::kAway, seconds(5), kStart);

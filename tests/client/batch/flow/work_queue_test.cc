@@ -9,7 +9,7 @@
 namespace duet::client::batch::flow {
 namespace {
 
-TEST(WorkQueue, WhatIsPutBackComesFirst) {
+TEST(WorkQueue, ReturnedValuesComeFirst) {
   WorkQueue<int> queue(4);
   queue.Put(1);
   queue.Put(2);
@@ -19,7 +19,7 @@ TEST(WorkQueue, WhatIsPutBackComesFirst) {
   EXPECT_EQ(queue.Take(), 2);
 }
 
-TEST(WorkQueue, EndsWhenAllIsDoneAndNotWhenItIsEmpty) {
+TEST(WorkQueue, EndsWhenAllValuesAreDone) {
   WorkQueue<int> queue(4);
   queue.Put(1);
   queue.Close();
@@ -35,7 +35,7 @@ TEST(WorkQueue, EndsWhenAllIsDoneAndNotWhenItIsEmpty) {
   EXPECT_FALSE(queue.Take().has_value());
 }
 
-TEST(WorkQueue, StopDropsWhatIsLeftAndWaitsForWhatIsTaken) {
+TEST(WorkQueue, StopDropsQueuedValuesAndWaitsForTakenOnes) {
   WorkQueue<int> queue(2);
   queue.Put(1);
   queue.Put(2);
@@ -54,7 +54,7 @@ TEST(WorkQueue, StopDropsWhatIsLeftAndWaitsForWhatIsTaken) {
   EXPECT_FALSE(queue.Take().has_value());
 }
 
-TEST(WorkQueue, HandsEverythingToSomebodyUntilItIsDone) {
+TEST(WorkQueue, EveryValueIsTakenUntilItIsDone) {
   constexpr int kValues = 200;
   WorkQueue<int> queue(3);
   std::atomic<int> done{0};
