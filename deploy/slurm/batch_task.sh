@@ -7,7 +7,7 @@
 # Stops the client before the time limit, so that its calls end and the task can continue later.
 #SBATCH --signal=B:TERM@60
 #
-# Exit codes of `duet batch`: 0, the shard is settled; 1, the task requeues itself; 2 and 42, it fails for good.
+# Exit codes of `duet batch`: 0, the shard is settled; 1, the task requeues itself; 2 and 42, it fails permanently.
 # A task that is killed, or whose node is lost, continues from the shard's journal.
 #
 # Slurm copies only this file to the node, so it repeats code of train_task.sh (waiting for a process despite
@@ -51,10 +51,10 @@ port_of_server() {
 requeue_or_fail() {
   local status="$1"
   if ((${SLURM_RESTART_COUNT:-0} >= most_restarts)); then
-    say "restarted ${SLURM_RESTART_COUNT} times: given up"
+    say "restarted ${SLURM_RESTART_COUNT} times; not requeued"
     exit "${status}"
   fi
-  say "ended with ${status}: asks to be run again"
+  say "ended with ${status}; requeued"
   clean_up
   # Slurm ends this script when it requeues the task.
   scontrol requeue "${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}"
@@ -67,8 +67,8 @@ main() {
   trap clean_up EXIT
   trap '[[ -z "${client_pid}" ]] || kill -TERM "${client_pid}" 2>/dev/null' TERM
 
-  # Any free port, because tasks share nodes; only the loopback, because nobody else calls. As many workers as
-  # the task has cores, even if Slurm does not bind tasks to cores.
+  # Any free port, because tasks share nodes; only the loopback, because only this task calls the server. As many
+  # workers as the task has cores, even if Slurm does not bind tasks to cores.
   : >"${scratch}/server.log"
   duet-server --listen 127.0.0.1:0 --metrics-listen off --workers "${SLURM_CPUS_PER_TASK:-1}" \
     2>>"${scratch}/server.log" &
@@ -90,7 +90,7 @@ main() {
   client_pid=""
   case "${status}" in
     0) say "settled" ;;
-    2 | 42) say "ended with ${status}: not worth running again" && exit "${status}" ;;
+    2 | 42) say "ended with ${status}; not requeued" && exit "${status}" ;;
     *) requeue_or_fail "${status}" ;;
   esac
 }

@@ -27,7 +27,7 @@ shift
 mkdir -p "${out}/logs"
 array="$(sbatch --parsable --array="0-$((shards - 1))" --output="${out}/logs/shard-%a.log" \
   "${sbatch_words[@]}" "${folder}/batch_task.sh" "$@" --out "${out}")"
-# Runs when every shard is settled, and not at all if one failed for good.
+# Runs when every shard is settled, and not at all if one failed permanently.
 merge="$(sbatch --parsable --dependency="afterok:${array}" --kill-on-invalid-dep=yes \
   --output="${out}/logs/merge.log" "${folder}/merge_task.sh" "${out}")"
 echo "shards ${array}, merge ${merge}"

@@ -43,10 +43,10 @@ main() {
   trainer_pid=""
 
   ((status != 0)) || { say "trained without ${fold}" && exit 0; }
-  ((status > 128)) || { say "ended with ${status}: not worth running again" && exit "${status}"; }
+  ((status > 128)) || { say "ended with ${status}; not requeued" && exit "${status}"; }
   ((${SLURM_RESTART_COUNT:-0} < most_restarts)) ||
-    { say "restarted ${SLURM_RESTART_COUNT} times: given up" && exit "${status}"; }
-  say "ended with ${status}: asks to be run again"
+    { say "restarted ${SLURM_RESTART_COUNT} times; not requeued" && exit "${status}"; }
+  say "ended with ${status}; requeued"
   # Slurm ends this script when it requeues the task.
   scontrol requeue "${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}"
   sleep 60

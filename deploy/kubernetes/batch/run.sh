@@ -20,7 +20,7 @@ wait_for() {
   kill "${waits[@]}" 2>/dev/null || true
   wait "${waits[@]}" 2>/dev/null || true
   if [[ "${status}" -ne 0 || "${first}" != "${waits[0]}" ]]; then
-    echo "run.sh: ${job} failed; kubectl describe ${job} says which shards" >&2
+    echo "run.sh: ${job} failed; kubectl describe ${job} lists its shards" >&2
     exit 1
   fi
 }
