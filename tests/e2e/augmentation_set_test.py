@@ -87,7 +87,7 @@ class AugmentationSetTest(unittest.TestCase):
         self.server = tools.Server("--model-repository", checkpoints)
         self.addCleanup(self.server.stop)
 
-    def test_the_set_comes_back_through_server_and_client(self):
+    def test_set_is_made_by_server_and_client(self):
         written = evaluate("--data", self.data, "--write-jobs", self.jobs, "--seeds", "4",
                            "--match", "1", "--mix", "1")
         self.assertEqual(written.returncode, 0, written.stderr)
@@ -136,7 +136,7 @@ class AugmentationSetTest(unittest.TestCase):
                     self.assertLess(math.dist(one, other), 1e-4)
                 self.assertNotEqual(wanted[1 - place], came[1 - place])
 
-    def test_leaders_at_another_rate_come_out_at_the_layouts(self):
+    def test_leaders_at_another_rate_are_resampled_to_the_layouts(self):
         made = make_set(self.server, self.out, tools.sample("kick"))
         self.assertEqual(made.returncode, 0, made.stderr)
         clips = read_sbu(self.out)

@@ -51,7 +51,7 @@ class BatchRepairTest(unittest.TestCase):
             shutil.copy(tools.sample(name), cls.leaders)
         cls.server = tools.Server()
         cls.addClassCleanup(cls.server.stop)
-        # What each packing gives when nothing is in the way.
+        # The set of each packing that an undisturbed run makes.
         cls.whole = {}
         for packing, output in PACKINGS.items():
             recipe = cls.folder / f"{packing}.textproto"
@@ -82,7 +82,7 @@ class BatchRepairTest(unittest.TestCase):
         self.run_in_folder(tools.PROGRAMS / "duet", "batch", "verify", out)
         self.assertEqual(digests(out), digests(self.whole[packing]))
 
-    def test_what_verify_finds_is_repaired(self):
+    def test_damage_found_by_verify_is_repaired(self):
         for packing in PACKINGS:
             for again in ("repair", "rerun"):
                 with self.subTest(packing, again=again):
@@ -102,7 +102,7 @@ class BatchRepairTest(unittest.TestCase):
                                            out, cwd=tempfile.gettempdir())
                     self.check_whole(out, packing)
 
-    def test_killed_while_it_repairs(self):
+    def test_killed_repair_is_repeated(self):
         dice = random.Random()
         for packing in PACKINGS:
             with self.subTest(packing):
@@ -126,7 +126,7 @@ class BatchRepairTest(unittest.TestCase):
                 self.assertEqual(result.returncode, 0, f"{seconds} {result.stderr}")
                 self.check_whole(out, packing)
 
-    def test_killed_while_it_packs(self):
+    def test_killed_packing_is_repeated(self):
         for packing in ("tar", "npz"):
             # The list of shards, the first shard, one in the middle; all of them and no index.
             for moment in (".duet-batch/shards", f"set-000000.{packing}", f"set-000004.{packing}",
@@ -141,7 +141,7 @@ class BatchRepairTest(unittest.TestCase):
                     self.run_in_folder(*self.command(out.name, packing))
                     self.check_whole(out, packing)
 
-    def test_a_leader_that_was_mended_goes_to_a_shard_of_its_own(self):
+    def test_items_of_a_mended_leader_go_to_a_new_shard(self):
         for packing in ("tar", "npz"):
             with self.subTest(packing):
                 out, mended = self.folder / f"{packing}-mended", self.folder / f"{packing}.bvh"
@@ -168,7 +168,7 @@ class BatchRepairTest(unittest.TestCase):
                 self.run_in_folder(tools.PROGRAMS / "duet", "batch", "verify", "--repair", out)
                 self.assertEqual(digests(out), after)
 
-    def test_a_leader_that_was_changed_is_another_job(self):
+    def test_changed_leader_is_rejected(self):
         for packing in PACKINGS:
             with self.subTest(packing):
                 leaders, out = self.folder / f"{packing}-leaders", self.folder / f"{packing}-other"
@@ -186,7 +186,7 @@ class BatchRepairTest(unittest.TestCase):
                 self.run_in_folder(*command)
                 self.run_in_folder(tools.PROGRAMS / "duet", "batch", "verify", out)
 
-    def test_a_recipe_that_was_refused_does_not_keep_another_out(self):
+    def test_rejected_recipe_does_not_block_another(self):
         out, recipe = self.folder / "refused", self.folder / "refused.textproto"
         command = [tools.PROGRAMS / "duet", "batch", "leaders", "--recipe", recipe, "--out", out,
                    "--server", self.server.address]
@@ -199,7 +199,7 @@ class BatchRepairTest(unittest.TestCase):
         result = self.run_in_folder(*command, code=42)
         self.assertIn('seed: expected "7", got "8"', result.stderr)
 
-    def test_ids_that_no_file_can_be_named(self):
+    def test_ids_that_are_invalid_file_names_are_kept(self):
         out, manifest = self.folder / "long", self.folder / "long.jsonl"
         lines = [{"id": "x" * 300, "leader": str(self.leaders / "hug.bvh")},
                  {"id": "a/" * 3000 + "b", "leader": str(self.leaders / "hug.bvh")}]

@@ -44,7 +44,7 @@ output { formats: FORMAT_NPY %s }
 
 
 def digests(folder):
-    """What is in a data set: path to digest, without the job's own folder."""
+    """The files of a data set: path to digest, without the job's folder."""
     found = {}
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
@@ -86,7 +86,7 @@ class BatchTest(unittest.TestCase):
         shutil.copy(tools.sample("push"), cls.leaders / "far")
         cls.server = tools.Server()
         cls.addClassCleanup(cls.server.stop)
-        # What RECIPE gives when nothing is in the way.
+        # The set of RECIPE that an undisturbed run makes.
         cls.whole = cls.folder / "whole"
         recipe = cls.folder / "whole.textproto"
         recipe.write_text(RECIPE % "", encoding="utf-8")
@@ -113,7 +113,7 @@ class BatchTest(unittest.TestCase):
 
     @staticmethod
     def classes(index):
-        """How many items each class has the largest weight of."""
+        """The number of items by the class of their largest weight."""
         return collections.Counter(max(entry["labels"], key=entry["labels"].get)
                                    for entry in index)
 
@@ -122,7 +122,7 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 
-    def test_a_folder_becomes_a_data_set(self):
+    def test_folder_becomes_a_data_set(self):
         out = self.out()
         self.batch(out, self.recipe())
         index = entries(out)
@@ -149,7 +149,7 @@ class BatchTest(unittest.TestCase):
         (out / "far" / "push-kick-s1.npy").write_bytes(b"changed")
         self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
 
-    def test_files_beside_motions_are_passed_over(self):
+    def test_files_without_motion_are_skipped(self):
         leaders, out = self.out("leaders"), self.out()
         leaders.mkdir()
         shutil.copy(tools.sample("kick"), leaders)
@@ -161,7 +161,7 @@ class BatchTest(unittest.TestCase):
         quiet = self.batch(out, self.recipe(), "--limit", "1", "--quiet", leaders=leaders)
         self.assertEqual(quiet.stderr, "")
 
-    def test_an_answer_is_what_synthesize_gives(self):
+    def test_answer_equals_that_of_synthesize(self):
         out, single = self.whole, self.folder / "single.npy"
         entry = next(e for e in entries(out) if e["name"] == "hug-kick-s0")
         result = tools.duet("synthesize", "--server", self.server.address, "--leader",
@@ -170,8 +170,8 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(single.read_bytes(), (out / "hug-kick-s0.npy").read_bytes())
 
-    def test_killed_at_any_moment_it_makes_the_same(self):
-        # As many items as take longer than all the kills.
+    def test_killed_runs_end_with_the_same_set(self):
+        # Enough items for the run to outlast all kills.
         samples = f"samples: {max(2, KILLS // 3)}"
         recipe = self.recipe(text=RECIPE.replace("samples: 2", samples))
         whole, out = self.out("whole"), self.out()
@@ -209,7 +209,7 @@ class BatchTest(unittest.TestCase):
         self.verified(out)
         print(f"{KILLS} kills, {sum(unsettled)} of them before the last item", file=sys.stderr)
 
-    def test_a_server_that_goes_and_comes_back_costs_nothing(self):
+    def test_server_restart_loses_nothing(self):
         recipe, out = self.recipe(), self.out()
         port = tools.free_port()
         server = tools.Server(port=port)
@@ -227,8 +227,8 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(client.returncode, 0, said)
         self.assertEqual(digests(out), digests(self.whole))
 
-    def test_a_server_that_comes_late_is_waited_for(self):
-        # gRPC's own look at a lost connection every five seconds is left out: the client looks.
+    def test_run_waits_for_a_late_server(self):
+        # Switches off gRPC's own reconnection attempts every five seconds: the client probes.
         environment = dict(os.environ, GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS="0")
         port = tools.free_port()
         with socket.create_server(("127.0.0.1", port)) as listener:
@@ -241,12 +241,12 @@ class BatchTest(unittest.TestCase):
         self.addCleanup(server.stop)
         self.assertEqual(client.wait(timeout=tools.RUN_SECONDS), 0)
 
-    def test_a_server_that_stays_away_is_worth_another_run(self):
+    def test_missing_server_exits_with_retry(self):
         out = self.out()
         result = self.batch(out, self.recipe(), "--patience", "0.2", code=1, server="127.0.0.1:1")
         self.assertIn("Does a duet-server listen", result.stderr)
 
-    def test_a_full_disk_is_worth_another_run(self):
+    def test_full_disk_exits_with_retry(self):
         recipe, out = self.recipe(), self.out()
 
         def fill_disk():  # files take no more than this; SIGXFSZ would end the process
@@ -270,9 +270,9 @@ class BatchTest(unittest.TestCase):
             self.assertEqual((out / glb).read_bytes()[:4], b"glTF")
         self.verified(out)
 
-    def test_an_interrupt_drains(self):
+    def test_interrupt_finishes_calls_in_progress(self):
         recipe, out = self.recipe("formats: FORMAT_BVH"), self.out()
-        # Five calls a second: what is left once files appear takes seconds, not a moment.
+        # Five calls a second, so the run still takes seconds after the first files appear.
         token, access = self.out("token"), self.out("access")
         token.write_text("secret", encoding="utf-8")
         access.write_text(f"batch synthesise sha256:{hashlib.sha256(b'secret').hexdigest()} "
@@ -296,7 +296,7 @@ class BatchTest(unittest.TestCase):
         self.batch(out, recipe)
         self.assertEqual(len(entries(out)), 48)
 
-    def test_a_dry_run_counts_and_writes_nothing(self):
+    def test_dry_run_counts_and_writes_nothing(self):
         out = self.out()
         result = self.batch(out, self.recipe(), "--dry-run")
         self.assertIn("48 items of 3 leaders", result.stdout)
@@ -336,7 +336,7 @@ class BatchTest(unittest.TestCase):
         corrected = tools.run(*command, "--limit", "1")  # the same --out
         self.assertEqual(corrected.returncode, 0, corrected.stderr)
 
-    def test_a_bad_leader_costs_its_own_items(self):
+    def test_bad_leader_fails_only_its_items(self):
         leaders, out = self.out("leaders"), self.out()
         leaders.mkdir()
         shutil.copy(tools.sample("kick"), leaders)
@@ -399,7 +399,7 @@ class BatchTest(unittest.TestCase):
         another = self.batch(out, self.recipe(), "--rate", "50", code=42, leaders=leaders)
         self.assertIn("was begun with another recipe", another.stderr)
 
-    def test_what_makes_no_sense_is_refused(self):
+    def test_invalid_arguments_are_rejected(self):
         for words, said in ((("--out", "x", "--recipe", "r"), "leaders or --manifest"),
                             ((self.leaders, "--out", "x"), "--recipe"),
                             ((self.leaders, "--recipe", "r"), "--out"),
@@ -416,13 +416,13 @@ class BatchTest(unittest.TestCase):
         self.assertEqual({event["event"] for event in events}, {"progress", "end"})
         self.assertEqual((events[-1]["done"], events[-1]["missing"]), (48, 0))
 
-    def test_another_recipe_is_refused(self):
+    def test_another_recipe_is_rejected(self):
         out = self.out()
         self.batch(out, self.recipe(), "--limit", "2")
         result = self.batch(out, self.recipe("formats: FORMAT_CSV"), code=42)
         self.assertIn("was begun with another recipe", result.stderr)
 
-    def test_shards_merge_to_what_one_run_makes(self):
+    def test_merged_shards_equal_a_single_run(self):
         for packing in ("", "packing: PACKING_TAR shard_bytes: 300000"):
             with self.subTest(packing):
                 recipe = self.recipe(packing)
@@ -457,7 +457,7 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(found, {path.relative_to(plain).as_posix(): path.read_bytes()
                                  for path in plain.rglob("*.npy")})
         self.assertFalse((out / ".duet-batch" / "items").exists())
-        # The sheet is drawn before its files go into shards, and has nothing to open.
+        # The sheet is drawn before its files go into shards, so it has no links.
         sheet = (out / "contact_sheet.html").read_text(encoding="utf-8")
         self.assertEqual(re.sub("</?(a|span)( href=[^>]*)?>", "", sheet),
                          re.sub("</?(a|span)( href=[^>]*)?>", "",
@@ -488,7 +488,7 @@ class BatchTest(unittest.TestCase):
             self.assertEqual(arrays[name].shape[0::2], (2, 15))
             self.assertTrue(numpy.isfinite(arrays[name]).all())
 
-    def test_the_layout_of_k3hi_is_read_by_others(self):
+    def test_k3hi_layout_is_readable(self):
         out, single = self.out(), self.folder / "single.json"
         self.batch(out, self.recipe(text='models: "k3hi" reactions { each_class {} } '
                                          'output { layout: LAYOUT_K3HI %s }'))
@@ -503,7 +503,7 @@ class BatchTest(unittest.TestCase):
         with (out / "index.tsv").open(encoding="utf-8", newline="") as table:
             sides = {row["path"]: row["leader_side"] for row in csv.DictReader(table, delimiter="\t")}
         self.assertEqual(sides, dict.fromkeys(found, "left"))
-        # One of them against what the server says when asked for it alone; both have 30 Hz.
+        # Compares one item with the answer to a single call; both have 30 Hz.
         entry, frames = index["punching/002.txt"], found["punching/002.txt"]
         result = tools.duet("synthesize", "--server", self.server.address, "--model", "k3hi",
                             "--leader", entry["leader"], "--label", "punch=1", "--seed",
@@ -516,7 +516,7 @@ class BatchTest(unittest.TestCase):
             for came, wanted in zip(points, leader + follower):
                 self.assertLess(math.dist(came, wanted), 1e-4)
 
-    def test_a_manifest_from_a_pipe(self):
+    def test_manifest_is_read_from_a_pipe(self):
         out = self.out()
         lines = [{"leader": str(self.leaders / "kick.bvh"), "labels": {"hug": 1}, "seed": 5,
                   "take": "seven"},
@@ -533,7 +533,7 @@ class BatchTest(unittest.TestCase):
         self.assertIn("none.bvh: no such file", failed)
         self.assertIn("1 item of 1 leader: NOT_FOUND: no such file", result.stderr)
 
-    def test_what_the_filter_rejects_is_listed(self):
+    def test_rejected_items_are_listed(self):
         out = self.out()
         self.batch(out, self.recipe("} filter { max_distance_metres: 0.9 retries_per_item: 2"))
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))

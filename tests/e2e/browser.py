@@ -40,8 +40,7 @@ class Browser:
     def __init__(self):
         self._context = None
         self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        # Chromium reads commands from descriptor 3 and writes answers to 4. Ours are kept out of
-        # their way.
+        # Chromium reads commands from descriptor 3 and writes answers to 4, so ours are above 16.
         ours = [fcntl.fcntl(fd, fcntl.F_DUPFD, 16) for fd in os.pipe() + os.pipe()]
         theirs_in, self._commands, self._answers, theirs_out = ours
 
@@ -69,7 +68,7 @@ class Browser:
         self._profile.cleanup()
 
     def call(self, method, session=None, **parameters):
-        """Sends a command and returns its result; events that come meanwhile are kept."""
+        """Sends a command and returns its result. Stores events that arrive before it."""
         self._last_id += 1
         message = {"id": self._last_id, "method": method, "params": parameters}
         if session:
@@ -84,7 +83,7 @@ class Browser:
             self.events.append(answer)
 
     def read(self, deadline):
-        """The next message, which must come by `deadline` (of time.monotonic)."""
+        """The next message, which must arrive by `deadline` (of time.monotonic)."""
         while b"\0" not in self._buffer:
             left = deadline - time.monotonic()
             ready = left > 0 and select.select([self._answers], [], [], left)[0]
@@ -109,12 +108,12 @@ class Browser:
         return self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
 
     def open(self, url, width=640, height=420, still=False):
-        """Opens a tab. `still`: of a visitor who prefers reduced motion, from the first frame on."""
+        """Opens a tab. `still`: the visitor prefers reduced motion."""
         return Page(self, url, width, height, still)
 
 
 class Page:
-    """A tab that has opened a URL, drawn it once or failed to."""
+    """A tab that has opened a URL, and has drawn it once or failed."""
 
     def __init__(self, browser, url, width, height, still):
         self._browser = browser
@@ -128,7 +127,7 @@ class Page:
                       features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
         self.call("Page.addScriptToEvaluateOnNewDocument", source=WITHOUT_ANTIALIASING)
         self.call("Page.navigate", url=url)
-        # Until then a command may still meet the blank page that the tab began with.
+        # Before this event, a command may run in the blank page of a new tab.
         deadline = time.monotonic() + WAIT_SECONDS
         while not self.events("Page.loadEventFired"):
             browser.events.append(browser.read(deadline))
@@ -159,7 +158,7 @@ class Page:
                       "() => requestAnimationFrame(() => resolve())))")
 
     def state(self):
-        """The page's own account of itself: data-* attributes of its root element."""
+        """The page's state: data-* attributes of its root element."""
         return self.evaluate("({...document.documentElement.dataset})")
 
     def text(self, selector):

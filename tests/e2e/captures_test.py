@@ -1,4 +1,4 @@
-"""Every SBU sequence of the six classes through the real client and server, where the data is.
+"""Every SBU sequence of the six classes through the real client and server, if the data is available.
 
 Looks in $DUET_DATA_DIR, else in ../shared/data beside the repository.
 """

@@ -82,14 +82,14 @@ class ClientServerTest(unittest.TestCase):
         self.assertIn(f"sbu@{models['sbu']['version']}, default", for_people.stdout)
         self.assertIn(f"k3hi@{models['k3hi']['version']}", for_people.stdout)
 
-    def test_the_second_model_answers_by_name(self):
+    def test_second_model_is_selected_by_name(self):
         out = self.out("k3hi.json")
         self.good(tools.sample("punch"), "point=1", out=out, more=("--model", "k3hi"))
         pair = Pair(out)
         self.assertEqual(len(pair.follower), bvh_frames(tools.sample("punch")))
         self.check_plausible(pair, "point")
 
-    def test_every_class_answers_its_sample(self):
+    def test_every_class_has_an_answer_to_its_sample(self):
         for name in tools.CLASSES:
             out = self.out(f"{name}.json")
             self.good(tools.sample(name), f"{name}=1", out=out)
@@ -113,7 +113,7 @@ class ClientServerTest(unittest.TestCase):
         towards = facing[0] * (leader[0] - torso[0]) + facing[1] * (leader[2] - torso[2])
         self.assertGreater(towards, 0, f"{name}: the follower turns its back")
 
-    def test_a_mix_differs_from_both_of_its_classes(self):
+    def test_mix_differs_from_both_of_its_classes(self):
         followers = {}
         for name, labels in (("hug", ["hug=1"]), ("push", ["push=1"]),
                              ("mix", ["hug=0.5", "push=0.5"])):
@@ -126,7 +126,7 @@ class ClientServerTest(unittest.TestCase):
         self.assertGreater(apart("mix", "hug"), 0.01)
         self.assertGreater(apart("mix", "push"), 0.01)
 
-    def test_the_same_call_gives_the_same_motion(self):
+    def test_same_call_gives_the_same_motion(self):
         first, second = self.out("first.json"), self.out("second.json")
         for out in (first, second):
             self.good(tools.sample("kick"), "kick=1", out=out)
@@ -134,7 +134,7 @@ class ClientServerTest(unittest.TestCase):
             for p, q in zip(a, b):
                 self.assertLess(distance(p, q), 1e-4)
 
-    def test_clean_up_is_the_callers_choice(self):
+    def test_clean_up_can_be_switched_off(self):
         frames, said = {}, {}
         for choice in ("auto", "on", "off"):
             out = self.out(f"{choice}.json")
@@ -148,7 +148,7 @@ class ClientServerTest(unittest.TestCase):
             for p, q in zip(a, b):
                 self.assertLess(distance(p, q), 1e-4)
 
-    def test_every_format_holds_the_same_follower(self):
+    def test_every_format_has_the_same_follower(self):
         out = {extension: self.out(extension) for extension in ("json", "csv", "npy", "html", "bvh")}
         more = [flag for path in list(out.values())[1:] for flag in ("--out", path)]
         result = self.good(tools.sample("push"), "push=1", out=out["json"], more=more)
@@ -169,18 +169,18 @@ class ClientServerTest(unittest.TestCase):
         page = out["html"].read_text(encoding="utf-8")
         self.assertIn(f'"frames":{frames}', page)
         self.assertNotIn("://cdn", page)
-        # Nothing else is left behind.
+        # No other file is left.
         mine = {path.name for path in self.folder.glob(out["json"].stem + ".*")}
         self.assertEqual(len(mine), 6, mine)
 
-    def test_the_written_follower_can_lead(self):
+    def test_written_follower_can_be_the_leader(self):
         out = self.out("bvh")
         self.good(tools.sample("kick"), "kick=1", out=out)
         again = self.out("again.json")
         self.good(out.with_suffix(".follower.bvh"), "kick=1", out=again)
         self.assertEqual(len(Pair(again).leader), bvh_frames(tools.sample("kick")))
 
-    def test_weights_over_time(self):
+    def test_weights_can_change_over_time(self):
         out = self.out("json")
         result = tools.duet("synthesize", "--server", self.server.address, "--leader",
                             tools.sample("hug"), "--keyframe", "0:push=1", "--keyframe",
@@ -188,7 +188,7 @@ class ClientServerTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("at frame 0 push 1; at frame 60 push 0, hug 1", result.stdout)
 
-    def test_the_follower_starts_where_it_is_told(self):
+    def test_follower_starts_at_follower_start(self):
         plain, told = self.out("plain.json"), self.out("told.json")
         self.good(tools.sample("kick"), "kick=1", out=plain)
         pair = Pair(plain)
@@ -200,7 +200,7 @@ class ClientServerTest(unittest.TestCase):
         began = pair.at(pair.follower, 0, "torso")
         self.assertLess(distance(began, moved), distance(began, start))
 
-    def test_summary_for_programs(self):
+    def test_summary_is_printed_as_json(self):
         out = self.out("json")
         result = self.good(tools.sample("punch"), "punch=1", out=out,
                            more=("--json", "--request-id", "e2e-punch"))
@@ -210,7 +210,7 @@ class ClientServerTest(unittest.TestCase):
         self.assertEqual(summary["attempts"], 1)
         self.assertEqual(summary["files"], [str(out)])
 
-    def test_usage_errors_are_2(self):
+    def test_usage_error_exits_with_2(self):
         out = self.out("html")
         kick = tools.sample("kick")
         self.refused(2, ["--label"], kick, "kick=", out=out)
@@ -219,7 +219,7 @@ class ClientServerTest(unittest.TestCase):
         self.refused(2, ["--label or --keyframe"], kick, out=out)
         self.assertFalse(out.exists())
 
-    def test_bad_input_is_42_and_named(self):
+    def test_bad_input_exits_with_42_and_is_named(self):
         out = self.out("html")
         kick = tools.sample("kick")
         self.refused(42, ["no-such.bvh"], self.folder / "no-such.bvh", "kick=1", out=out)
@@ -236,7 +236,7 @@ class ClientServerTest(unittest.TestCase):
         self.refused(42, ["NOT_FOUND"], kick, "kick=1", out=out, more=("--model", "sbu@99"))
         self.assertFalse(out.exists())
 
-    def test_an_absent_server_is_1(self):
+    def test_missing_server_exits_with_1(self):
         with socket.socket() as unused:  # bound, but nobody listens
             unused.bind(("127.0.0.1", 0))
             address = "127.0.0.1:%d" % unused.getsockname()[1]
@@ -250,14 +250,14 @@ class ClientServerTest(unittest.TestCase):
                 self.assertIn(f"expected a Duet server at {address}, got", result.stderr)
                 self.assertIn(f"Does a duet-server listen at {address}?", result.stderr)
 
-    def test_a_deadline_that_passes_is_1(self):
+    def test_expired_deadline_exits_with_1(self):
         result = self.synthesize(tools.sample("kick"), "kick=1", out=self.out("html"),
                                  more=("--timeout", "0.001"))
         self.assertEqual(result.returncode, 1, result.stderr)
 
 
 class StoppingTest(unittest.TestCase):
-    def test_a_server_stops_cleanly_and_is_then_absent(self):
+    def test_stopped_server_is_reported_as_missing(self):
         server = tools.Server()
         self.assertEqual(tools.duet("models", "--server", server.address).returncode, 0)
         self.assertEqual(server.stop(), 0, server.log)

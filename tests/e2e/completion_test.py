@@ -1,6 +1,6 @@
-"""The completion scripts in the shells that they are for, and the manual pages under their linters.
+"""The completion scripts in their shells, and the manual pages under their linters.
 
-Shells and linters that are not installed are passed over."""
+Shells and linters that are not installed are skipped."""
 
 import os
 import pathlib
@@ -14,7 +14,7 @@ import unittest
 
 import tools
 
-# What is typed, and what each shell offers for its last word. Files: kick.csv and kick.json.
+# The typed text, and the completions of its last word in each shell. Files: kick.csv and kick.json.
 OFFERS = {
     "duet in": {"inspect"},
     "duet synthesize --leader": {"--leader", "--leader-side"},
@@ -39,7 +39,7 @@ _duet
 printf '%s\\n' "${COMPREPLY[@]}"
 """
 
-# ^I completes what was typed, ^X prints it between marks and begins anew.
+# ^I completes the typed text, ^X prints it between marks and clears it.
 ZSH = """
 PROMPT='' RPROMPT=''
 unset zle_bracketed_paste
@@ -113,7 +113,7 @@ class CompletionTest(unittest.TestCase):
                     continue
                 with self.subTest(line):
                     terminal.type(line + "\t\x18")
-                    # One offer is typed out, a flag that takes a value with its '='.
+                    # A single completion is inserted; a flag with a value gets its '='.
                     shown = terminal.read_until(">\r\n").rpartition("<")[2].partition(">")[0]
                     start = line.rpartition(" ")[0]
                     self.assertEqual(shown.rstrip(" ="), f"{start} {next(iter(offers))}")
@@ -140,7 +140,7 @@ class CompletionTest(unittest.TestCase):
 
 
 class Terminal:
-    """A program that believes to be on a terminal."""
+    """Runs a program on a pseudo-terminal."""
 
     def __init__(self, command, folder):
         self._descriptor, inner = pty.openpty()

@@ -1,4 +1,4 @@
-"""The viewer's element, <duet-motion>, on pages of others in a real browser.
+"""The viewer's element, <duet-motion>, on other pages in a real browser.
 
     element_test.py
 """
@@ -45,7 +45,7 @@ PAGE = """<!doctype html><meta charset="utf-8"><meta name="viewport" content="wi
  script-src {scripts}; style-src 'self'">
 {body}
 <script src="events.js"></script><script src="duet-motion.js"></script>"""
-# Tells when every element is ready or has failed, and keeps what they say.
+# Sets the state when every element is ready or has failed, and stores their events.
 EVENTS = """
 window.told = [];
 const elements = [...document.querySelectorAll('duet-motion')];
@@ -89,7 +89,7 @@ class ElementTest(unittest.TestCase):
         cls.addClassCleanup(cls.browser.close)
 
     def open(self, body, over="http", **size):
-        # A page of a file has no origin that could be called its own.
+        # A page from a file has no origin for 'self'.
         scripts = "'self'" if over == "http" else "'unsafe-inline' file:"
         ElementTest.pages += 1
         file = self.folder / f"{ElementTest.pages}.html"
@@ -261,7 +261,7 @@ class ElementTest(unittest.TestCase):
 
 class Handler(http.server.SimpleHTTPRequestHandler):
     def log_message(self, *values):
-        """Nobody reads it."""
+        """Logs nothing."""
 
 
 class Server(http.server.ThreadingHTTPServer):

@@ -58,13 +58,13 @@ class GatewayProxyTest(unittest.TestCase):
             return answers(read_all(connection))
 
     def victim(self):
-        """The style sheet, asked for over a connection that others have used."""
+        """The style sheet, requested over a connection that others have used."""
         [(status, headers, body)] = self.ask(allowed(
             b"GET /page.css HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"))
         self.assertEqual((status, headers["content-type"]), (200, "text/css; charset=utf-8"))
         self.assertEqual(body, (gateways.WEB / "page" / "page.css").read_bytes())
 
-    def test_what_one_visitor_hides_answers_no_other(self):
+    def test_smuggled_request_answers_no_other_visitor(self):
         ending = b"GET /nowhere HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"
         for name, data in AMBIGUOUS.items():
             with self.subTest(name):
@@ -89,12 +89,12 @@ class GatewayProxyTest(unittest.TestCase):
                                             **ALLOWED))
         self.assertEqual(status, 200, body)
 
-    def test_nobody_enters_without_the_password(self):
+    def test_password_is_required(self):
         for headers in ({}, {"Authorization": "Basic ZHVldDpvcGVu"}):
             [(status, _, _)] = self.ask(post("/read?name=a.bvh", b"x", **headers))
             self.assertEqual(status, 401)
 
-    def test_names_and_lengths_are_refused_as_json(self):
+    def test_name_and_length_errors_are_json(self):
         for path, headers, expected in (("/read?name=a.bvh", {"Host": "elsewhere.test"}, 421),
                                         ("/read?name=a.bvh", {"Content_Length": LARGEST + 1}, 413),
                                         ("/nowhere", {}, 404)):
@@ -102,7 +102,7 @@ class GatewayProxyTest(unittest.TestCase):
             self.assertEqual(status, expected)
             self.assertRegex(message_of(body), r"^\w+: ")
 
-    def test_slow_visitors_stop_nobody(self):
+    def test_slow_visitors_do_not_block_others(self):
         with contextlib.ExitStack() as stack:
             for _ in range(40):
                 slow = stack.enter_context(self.connect())
@@ -111,7 +111,7 @@ class GatewayProxyTest(unittest.TestCase):
                 stack.enter_context(self.connect()).sendall(b"GET / HTTP/1.1\r\nHost: loc")
             self.victim()
 
-    def test_a_flood_is_refused_and_passes(self):
+    def test_flood_is_rejected_and_service_recovers(self):
         port = tools.free_port()
         with haproxy(self.folder, port, self.gateway_port, DUET_WEB_REQUESTS_PER_10S="50"):
             through, self.port = self.port, port
@@ -131,7 +131,7 @@ class GatewayProxyTest(unittest.TestCase):
 
 @contextlib.contextmanager
 def haproxy(folder, port, gateway_port, **environment):
-    """HAProxy on a port, in front of a gateway, from when it listens."""
+    """HAProxy in front of a gateway; yields when it listens."""
     digest = tools.run("openssl", "passwd", "-5", PASSWORD).stdout.strip()
     with open(folder / "web.log", "w", encoding="utf-8") as log:
         process = subprocess.Popen(

@@ -1,4 +1,4 @@
-"""The gateway of client/web as hostile and unlucky visitors meet it, against a real server."""
+"""The gateway of client/web under hostile and faulty requests, against a real server."""
 
 import contextlib
 import glob
@@ -29,7 +29,7 @@ HIDDEN = b"GET /about.json HTTP/1.1\r\nHost: localhost\r\n\r\n"
 CHUNKED = HEAD + b"Transfer-Encoding: chunked\r\n"
 EMPTY = b"Content-Length: 0\r\n\r\n"
 GET = b"GET / HTTP/1.1\r\nHost: localhost\r\n"
-# Requests in which one reader may see the hidden one, and another not.
+# Requests that hide another request, which only some parsers see.
 AMBIGUOUS = {
     "two lengths": HEAD + b"Content-Length: 0\r\nContent-Length: %d\r\n\r\n" % len(HIDDEN),
     "two equal lengths": HEAD + b"Content-Length: 0\r\nContent-Length: 0\r\n\r\n",
@@ -153,7 +153,7 @@ class GatewayTest(unittest.TestCase):
                 self.assertEqual(found, status, body[:200])
                 self.assertTrue(message_of(body).startswith(words), body[:200])
 
-    def test_an_empty_message_to_each_path_is_answered(self):
+    def test_empty_message_to_each_path_is_answered(self):
         for path in ("/", "/about.json", "/read", "/read?name=a.bvh", "/write", "/write?format=glb",
                      "/write_on_rig"):
             with self.subTest(path):
@@ -178,7 +178,7 @@ class GatewayTest(unittest.TestCase):
         self.assertIn(b"grpc-status-details-bin: ", body)
 
     def call(self, method, message, gateway=None):
-        """What a call is answered with, all of it."""
+        """The complete answer to a call."""
         return self.ask(f"{CALLS}/{method}", framed(message), gateway, Content_Type=GRPC_WEB)[2]
 
     def test_unknown_hosts_and_origins_are_rejected(self):
@@ -248,7 +248,7 @@ class GatewayTest(unittest.TestCase):
         [(status, headers, body)] = ask_raw(gateway.port, post("/read?name=a.bvh", b"xyz")[:-1])
         self.assertEqual((status, headers["connection"]), (408, "close"))
         self.assertIn("body: expected all of it within 0.3 s, got 2 bytes", message_of(body))
-        # A connection that is kept open is ended as well, also with half a header on it.
+        # An idle connection is closed too, even with half a header.
         for rest in (b"", b"GET / HTT"):
             [(status, _, _)] = ask_raw(
                 gateway.port, b"GET /page.css HTTP/1.1\r\nHost: localhost\r\n\r\n" + rest)
@@ -299,7 +299,7 @@ class GatewayTest(unittest.TestCase):
         self.assertEqual(json.loads(body)["frame_rate_hz"], 60)
         self.assertEqual(len(json.loads(body)["leader"]), 2 * len(motion["leader"]) - 1)
 
-    def test_a_follower_is_written_on_the_leaders_rig(self):
+    def test_follower_is_written_on_the_leaders_rig(self):
         leader = tools.sample("hug").read_bytes()
         for others in ([], [("rig.bvh", leader)]):
             head = {"name": "hug_seed1", "format": "bvh", "seed": "1", "label": ["hug=1"],
@@ -397,7 +397,7 @@ def sockets_with(pid, peer_port):
 
 
 def long_request():
-    """Ten minutes of a leader that stands, as bytes."""
+    """Ten minutes of a standing leader, as bytes."""
     import duet_motion as duet
     os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
     motion = duet.read_motion(tools.sample("hug"))

@@ -24,7 +24,7 @@ def skip_without_modules():
             tools.skip(f"no Python module {module}; install the package {package}")
 
 
-# AddressSanitizer reserves address space for every byte that there could be.
+# AddressSanitizer reserves address space for the whole range.
 SANITIZED_BOUNDS = "conversions.PROGRAM_BYTES = 2**47" if tools.SANITIZED else ""
 
 
@@ -53,7 +53,7 @@ class Gateway:
         self._process.send_signal(number)
 
     def peak_mebibytes(self):
-        """The most memory that it has had at a time."""
+        """Its peak memory."""
         status = pathlib.Path(f"/proc/{self.pid}/status").read_text(encoding="ascii")
         return int(re.search(r"VmHWM:\s*(\d+) kB", status)[1]) / 1024
 
@@ -119,7 +119,7 @@ def ask_raw(port, data):
 
 
 def message_of(body):
-    """The message of a refusal, which must be JSON."""
+    """The message of a rejection, which must be JSON."""
     return json.loads(body)["error"]["message"]
 
 

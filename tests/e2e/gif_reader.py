@@ -1,4 +1,4 @@
-"""Reads animated GIFs as any program does that knows the format (GIF 89a, W3C)."""
+"""Reads animated GIFs (GIF 89a, W3C)."""
 
 import dataclasses
 import struct

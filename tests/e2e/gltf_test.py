@@ -5,7 +5,7 @@ The validator and three.js come from npm, into any folder outside the repository
     npm install --prefix FOLDER gltf-validator three
     DUET_NODE_MODULES=FOLDER/node_modules
 
-A reader that is not there is passed over and named; with none of them the test is skipped.
+A missing reader is skipped and named; without any reader the test is skipped.
 """
 
 import json
@@ -75,7 +75,7 @@ class GltfTest(unittest.TestCase):
                     self.assertLess(distance, TOLERANCE_METRES, f"{role} {name}, frame {frame}")
 
     @unittest.skipUnless(has_module("gltf-validator"), NO_VALIDATOR)
-    def test_the_validator_finds_nothing(self):
+    def test_validator_reports_no_problem(self):
         for name in ("pair.glb", "pair.gltf"):
             done = tools.run(NODE, FOLDER / "validate.js", self.folder / name,
                              env={**os.environ, "NODE_PATH": str(MODULES)})
@@ -83,14 +83,14 @@ class GltfTest(unittest.TestCase):
             self.assertEqual(json.loads(done.stdout)["issues"]["messages"], [])
 
     @unittest.skipUnless(has_module("three"), NO_THREE)
-    def test_three_js_has_our_positions(self):
+    def test_three_js_reads_the_same_positions(self):
         done = tools.run(NODE, FOLDER / "positions.mjs", MODULES, self.folder / "pair.glb",
                          len(self.pair["leader"]), self.pair["frame_rate_hz"])
         self.assertEqual(done.returncode, 0, done.stderr)
         self.expect_our_positions(json.loads(done.stdout))
 
     @unittest.skipUnless(BLENDER, NO_BLENDER)
-    def test_blender_has_our_positions(self):
+    def test_blender_reads_the_same_positions(self):
         out = self.folder / "blender.json"
         done = tools.run(BLENDER, "--background", "--factory-startup", "--python",
                          FOLDER / "blender_positions.py", "--", self.folder / "pair.glb",

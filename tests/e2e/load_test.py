@@ -1,5 +1,5 @@
-"""duet-load against a real server: what it counts is what the server counts, and its files are read
-back by others than itself."""
+"""duet-load against a real server: its counts match the server's, and its files are read back by other
+programs."""
 
 import csv
 import json
@@ -44,13 +44,13 @@ class LoadTest(unittest.TestCase):
         pattern = r'grpc_server_handled_total\{grpc_code="(\w+)",grpc_method="Synthesize".*?\} (\d+)'
         return {code: int(count) for code, count in re.findall(pattern, text)}
 
-    def test_counts_what_the_server_counts(self):
+    def test_counts_match_the_servers(self):
         server = self.serve()
         report = self.load(server, "--callers", "1,4", "--calls", "24", "--frames", "46=3,92",
                            "--connections", "2", "--records", self.folder / "calls.csv", "--csv",
                            self.folder / "load.csv", "--html", self.folder / "load.html")
         self.assertEqual([step["ended"] for step in report["steps"]], [{"OK": 24}] * 2)
-        # Each of the two kinds is tried once beforehand, and given up as soon as frames come.
+        # Each of the two kinds is tried once before, and cancelled at the first frames.
         tools.wait_until(lambda: sum(self.handled(server).values()) == 50, "the server's count")
         self.assertIn(self.handled(server)["OK"], (48, 49, 50))
         with (self.folder / "calls.csv").open(encoding="utf-8") as file:
@@ -78,7 +78,7 @@ class LoadTest(unittest.TestCase):
         self.read_page(report)
 
     def read_page(self, report):
-        """What a browser draws of the page."""
+        """The page in a browser."""
         chromium = browser.Browser()
         self.addCleanup(chromium.close)
         page = chromium.open((self.folder / "load.html").as_uri())
@@ -95,14 +95,14 @@ class LoadTest(unittest.TestCase):
         self.assertEqual(rows[2][4], f"{answered:.{1 if answered < 100 else 0}f}")
         self.assertEqual(page.events("Runtime.exceptionThrown"), [])
 
-    def test_a_rate_is_sent_as_it_was_asked_for(self):
+    def test_calls_are_sent_at_the_requested_rate(self):
         report = self.load(self.serve(), "--rate", "40", "--arrivals", "constant", "--calls", "30")
         step = report["steps"][0]
         self.assertEqual((step["due"], step["sent"], step["ended"]), (30, 30, {"OK": 30}))
         # The last call is due 29/40 s after the first.
         self.assertGreater(step["seconds"], 0.724)
 
-    def test_what_is_refused_is_counted_by_its_status(self):
+    def test_rejections_are_counted_by_status(self):
         server = self.serve("--max-calls", "2", "--client-share", "1")
         report = self.load(server, "--callers", "8", "--calls", "40", "--frames", "460",
                            "--connections", "8")
@@ -113,19 +113,19 @@ class LoadTest(unittest.TestCase):
         tools.wait_until(lambda: self.handled(server).get("ResourceExhausted")
                          == ended["RESOURCE_EXHAUSTED"], "the server's count")
 
-    def test_what_no_server_would_answer_is_said_beforehand(self):
+    def test_invalid_calls_are_reported_before_the_load(self):
         server = self.serve()
         self.assertIn("levitate", self.load(server, "--label", "levitate=1", code=42))
         self.assertIn("nobody", self.load(server, "--model", "nobody", code=42))
 
-    def test_a_signal_ends_it_with_a_report(self):
+    def test_signal_ends_the_run_with_a_report(self):
         server = self.serve()
         process = subprocess.Popen(
             [LOAD, "--server", server.address, "--seconds", "3600", "--warm-up", "0", "--json", "-",
              "--records", self.folder / "calls.csv"], stdout=subprocess.PIPE, text=True)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
-        # A block of lines is there once some hundred calls are over.
+        # The first block of lines is written after some hundred calls.
         tools.wait_until(lambda: (self.folder / "calls.csv").exists()
                          and (self.folder / "calls.csv").stat().st_size > 1000, "calls")
         process.send_signal(signal.SIGINT)

@@ -1,4 +1,4 @@
-"""The Python package's notebook runs top to bottom, and its pictures show something."""
+"""The Python package's notebook runs top to bottom, and its pictures are not empty."""
 
 import base64
 import importlib.util
@@ -28,7 +28,7 @@ def pictures(notebook):
 
 
 class NotebookTest(unittest.TestCase):
-    def test_it_runs_top_to_bottom(self):
+    def test_notebook_runs_top_to_bottom(self):
         with tempfile.TemporaryDirectory() as folder, tools.running_server() as server:
             root = pathlib.Path(folder)
             (root / EXAMPLES).mkdir(parents=True)
@@ -48,7 +48,7 @@ class NotebookTest(unittest.TestCase):
             blue = picture.count(lambda red, green, blue: blue > 1.4 * red and blue > 100, 0, 1, 0, 1)
             self.assertGreater(blue, 100)
 
-    def test_what_is_kept_in_it_is_a_whole_run(self):
+    def test_stored_outputs_are_from_a_complete_run(self):
         kept = json.loads((tools.SOURCE / EXAMPLES / NAME).read_text(encoding="utf-8"))
         counts = [cell["execution_count"] for cell in kept["cells"] if cell["cell_type"] == "code"]
         self.assertEqual(counts, list(range(1, len(counts) + 1)))

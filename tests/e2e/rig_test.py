@@ -1,4 +1,4 @@
-"""`duet synthesize --follower-rig`: rigs whose names nobody knows, by the tables that readers take."""
+"""`duet synthesize --follower-rig`: rigs with unknown joint names, and joint maps for them."""
 
 import pathlib
 import re
@@ -39,14 +39,14 @@ class RigTest(unittest.TestCase):
         """The channel values, which are the same whatever joints are called."""
         return (self.folder / file).read_text(encoding="utf-8").partition("MOTION")[2]
 
-    def test_names_that_nobody_knows_are_refused_with_the_flag_that_helps(self):
+    def test_unknown_joint_names_are_rejected_with_the_flag_to_use(self):
         done = self.synthesize("refused.bvh", "--follower-rig", self.rig)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("strange.bvh", done.stderr)
         self.assertIn(ADVICE, done.stderr)
         self.assertFalse((self.folder / "refused.follower.bvh").exists())
 
-    def test_a_table_tells_them(self):
+    def test_joint_map_file_maps_the_joints(self):
         self.synthesize("known.bvh", "--follower-rig", self.leader).check_returncode()
         done = self.synthesize("told.bvh", "--follower-rig", self.rig,
                                "--follower-rig-joint-map-file", self.table)
@@ -54,7 +54,7 @@ class RigTest(unittest.TestCase):
         self.assertEqual(self.motion_of("told.follower.bvh"), self.motion_of("known.follower.bvh"))
         self.assertIn("JOINT Part1", (self.folder / "told.follower.bvh").read_text(encoding="utf-8"))
 
-    def test_single_joints_win_over_the_table(self):
+    def test_joint_map_flags_override_the_file(self):
         spoilt = self.folder / "spoilt.txt"
         spoilt.write_text(self.table.read_text(encoding="utf-8").replace(
             f"left_hand = {self.strange['left_hand']}", "left_hand = Nowhere"), encoding="utf-8")
@@ -65,7 +65,7 @@ class RigTest(unittest.TestCase):
                                f"left_hand={self.strange['left_hand']}")
         self.assertEqual(done.returncode, 0, done.stderr)
 
-    def test_the_leaders_own_rig_goes_by_the_leaders_table(self):
+    def test_leaders_rig_uses_the_leaders_joint_map(self):
         done = self.synthesize("own.bvh", "--follower-rig", "leader", leader=self.rig)
         self.assertIn("--joint-map-file FILE", done.stderr)
         done = self.synthesize("own.bvh", "--follower-rig", "leader", "--joint-map-file", self.table,
@@ -73,7 +73,7 @@ class RigTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("ROOT Part0", (self.folder / "own.follower.bvh").read_text(encoding="utf-8"))
 
-    def test_a_table_without_such_a_rig_is_a_mistake(self):
+    def test_joint_map_without_a_rig_is_rejected(self):
         for flags in ((), ("--follower-rig", "leader")):
             done = self.synthesize("mistake.bvh", "--follower-rig-joint-map-file", self.table, *flags)
             self.assertIn("--follower-rig-joint-map-file: is only valid with --follower-rig FILE", done.stderr)
@@ -81,7 +81,7 @@ class RigTest(unittest.TestCase):
                                "--follower-rig-joint-map-file", self.folder / "nowhere.txt")
         self.assertIn("nowhere.txt: no such file", done.stderr)
 
-    def test_keys_between_frames_make_the_file_faster_and_longer(self):
+    def test_keys_between_frames_raise_rate_and_frame_count(self):
         self.synthesize("plain.bvh").check_returncode()
         self.synthesize("fine.bvh", "--bvh-keys-per-frame", "4").check_returncode()
         counts = [[int(re.search(r"Frames: (\d+)", text)[1]),
@@ -92,7 +92,7 @@ class RigTest(unittest.TestCase):
         self.assertAlmostEqual(finer, step / 4, places=7)
         plain, fine = ([line.split() for line in self.motion_of(file).splitlines()[3:]]
                        for file in ("plain.follower.bvh", "fine.follower.bvh"))
-        # Whole turns aside, every fourth key is a frame.
+        # Every fourth key is a frame, up to whole turns.
         for frame, key in zip(plain, fine[::4]):
             for a, b in zip(frame[:3], key[:3]):
                 self.assertAlmostEqual(float(a), float(b), places=3)

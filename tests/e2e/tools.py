@@ -1,4 +1,4 @@
-"""What the end-to-end tests share: programs, a running server, pictures."""
+"""Helpers of the end-to-end tests: programs, a running server, pictures."""
 
 import collections
 import contextlib
@@ -20,11 +20,10 @@ from free_ports import free_port, free_ports  # noqa: F401
 SOURCE = pathlib.Path(os.environ["DUET_SOURCE_DIR"])
 PROGRAMS = pathlib.Path(os.environ["DUET_BIN_DIR"])
 SKIPPED = 77  # tells CTest that a test was skipped
-# The longest that anything here is waited for, on a busy machine: a defect ends in a failure rather
-# than in a test that hangs.
+# Maximum time to wait for anything, on a busy machine: a defect makes a test fail instead of hang.
 RUN_SECONDS = 120
 STOP_SECONDS = 60
-# What a program built with a sanitizer may take of memory (scripts/sanitizer_options.sh).
+# Programs built with a sanitizer may use more memory (scripts/sanitizer_options.sh).
 SANITIZED = bool(os.environ.get("DUET_SANITIZER"))
 MEMORY_FACTOR = 4 if SANITIZED else 1
 
@@ -71,7 +70,7 @@ class Server:
             command if within is None else within.command(command),
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         serving = queue.Queue()
-        # Reads to the end: a server whose log nobody reads stands still.
+        # Reads the whole log, because the server blocks when the pipe is full.
         self._reader = threading.Thread(target=self._read_log, args=(serving,), daemon=True)
         self._reader.start()
         try:
@@ -135,7 +134,7 @@ class Server:
 
 
 def wait_until(happened, what):
-    """Looks again and again whether something outside this process has happened."""
+    """Polls a condition outside this process."""
     end = time.monotonic() + RUN_SECONDS
     while not happened():
         if time.monotonic() > end:
@@ -144,7 +143,7 @@ def wait_until(happened, what):
 
 
 def together(jobs):
-    """Runs functions at the same time; what they returned, in order."""
+    """Runs functions concurrently; returns their results in order."""
     results = [None] * len(jobs)
 
     def run(i):
@@ -159,7 +158,7 @@ def together(jobs):
 
 def generate_stubs(folder, *protos):
     """Python stubs of protos, below `folder`, which becomes importable. Skips without the plugin."""
-    # Not grpc_tools.protoc: Debian 12's is of 2018 and does not know `optional`.
+    # Not grpc_tools.protoc: Debian 12's version is from 2018 and does not support `optional`.
     plugin = shutil.which("grpc_python_plugin")
     if plugin is None:
         skip("no grpc_python_plugin; install the package protobuf-compiler-grpc")

@@ -72,7 +72,7 @@ class UsdTest(unittest.TestCase):
         cls.metadata, (cls.top,) = usd_reader.read(cls.folder / "pair.usda")
         cls.motion = json.loads((cls.folder / "pair.json").read_text(encoding="utf-8"))
 
-    def test_the_layer_says_unit_axis_and_times(self):
+    def test_layer_states_unit_axis_and_times(self):
         rate, frames = self.motion["frame_rate_hz"], len(self.motion["leader"])
         self.assertEqual({name: self.metadata[name] for name in (
             "metersPerUnit", "upAxis", "startTimeCode", "endTimeCode", "timeCodesPerSecond",
@@ -80,7 +80,7 @@ class UsdTest(unittest.TestCase):
             {"metersPerUnit": 1, "upAxis": "Y", "startTimeCode": 0, "endTimeCode": frames - 1,
              "timeCodesPerSecond": rate, "framesPerSecond": rate, "defaultPrim": "pair"})
 
-    def test_every_joint_stands_where_the_motion_has_it(self):
+    def test_every_joint_has_the_motions_position(self):
         largest = 0
         for person in ("leader", "follower"):
             skeleton = self.top.child(person).child("skeleton")
@@ -100,7 +100,7 @@ class UsdTest(unittest.TestCase):
 
     @unittest.skipUnless(NODE and (MODULES / "three" / "examples" / "jsm" / "loaders" / "usd").is_dir(),
                          "no three.js of npm that reads USD; see the head of usd_test.py")
-    def test_three_js_has_every_joint_there_too(self):
+    def test_three_js_reads_the_same_positions(self):
         frames = len(self.motion["leader"])
         script = pathlib.Path(__file__).parent / "usd" / "positions.mjs"
         found = tools.run(NODE, script, MODULES, self.folder / "pair.usda", frames)
@@ -122,7 +122,7 @@ class UsdTest(unittest.TestCase):
             heights = [at[1] for at, _ in rest.values()]
             self.assertTrue(-0.01 < min(heights) < 0.2 and 1.2 < max(heights) < 2.2, heights)
 
-    def test_mannequins_go_with_their_skeletons(self):
+    def test_mannequins_follow_their_skeletons(self):
         for person in ("leader", "follower"):
             root = self.top.child(person)
             self.assertEqual(root.type, "SkelRoot")
@@ -145,7 +145,7 @@ class UsdTest(unittest.TestCase):
                 for normal in mesh["normals"]:
                     self.assertAlmostEqual(math.hypot(*normal), 1, delta=1e-3)
 
-    def test_what_is_pointed_at_is_there(self):
+    def test_every_path_that_is_referenced_exists(self):
         prims = {prim.path: prim for prim in self.top.all()}
         for prim in prims.values():
             for name, attribute in prim.attributes.items():
@@ -159,14 +159,14 @@ class UsdTest(unittest.TestCase):
         self.assertEqual(prims["/pair/follower/mannequin"]["material:binding"],
                          "/pair/materials/follower")
 
-    def test_it_says_who_made_it(self):
+    def test_layer_names_its_generator(self):
         data = self.top.metadata["customData"]
         self.assertRegex(data["model"], r"^[\w-]+@\d+$")
         self.assertEqual(data["labels"],
                          {"frames": [0], "weights": {"hug": [0.25], "kick": [1]}})
         self.assertEqual((data["seed"], data["variety"]), (0, 1))
 
-    def test_duet_convert_writes_it_and_says_that_nobody_read_it_back(self):
+    def test_convert_writes_usd_and_reports_that_it_was_not_read_back(self):
         out = self.folder / "alone.usda"
         done = tools.run(tools.PROGRAMS / "duet", "convert", self.folder / "pair.json", "--side",
                          "right", "--out", out)

@@ -19,27 +19,27 @@ import numpy as np  # noqa: E402
 from duet_motion.rpc.v1 import status_pb2  # noqa: E402
 from duet_motion.v1 import synthesis_pb2  # noqa: E402
 
-# Drops a file on the page as a visitor would, with the text that `fetched` gives.
+# Drops a file on the page like a visitor; its text comes from the URL `fetched`.
 DROP = """(async () => {{
   const text = await (await fetch({fetched})).text();
   const transfer = new DataTransfer();
   transfer.items.add(new File([text], {name}));
   window.dispatchEvent(new DragEvent('drop', {{dataTransfer: transfer, cancelable: true}}));
 }})()"""
-# Sets a field as a visitor would, by its selector.
+# Sets a field like a visitor, by its selector.
 SET = """(() => {{
   const field = document.querySelector({selector});
   field.value = {value};
   field.dispatchEvent(new Event('input', {{bubbles: true}}));
 }})()"""
 FOLLOWER = "Array.from(state.takes[state.chosen].positions)"
-# Everything that a finger or a key is meant for, as [what, width, height], without what is hidden.
+# All visible controls, as [name, width, height].
 TARGETS = """[...document.querySelectorAll(
         'button, select, input:not([type=file]), summary, .button')]
     .filter((item) => item.offsetParent !== null)
     .map((item) => [item.id || item.name || item.textContent.trim(),
                     item.getBoundingClientRect().width, item.getBoundingClientRect().height])"""
-# Fields without a name that is read out.
+# Fields without an accessible name.
 NAMELESS = """[...document.querySelectorAll('input, select, textarea, button')].filter((item) =>
     !(item.labels?.length || item.getAttribute('aria-label') || item.textContent.trim()))
     .map((item) => item.outerHTML)"""
@@ -78,7 +78,7 @@ class WebTest(unittest.TestCase):
         self.set(page, f"#labels input[name={name}]", weight)
 
     def press(self, page, button):
-        """Presses a button; returns when the answers are there."""
+        """Presses a button, and waits for the answers."""
         before = int(page.state().get("answers", 0))
         page.evaluate(f"element({json.dumps(button)}).click()")
         page.wait_until(f"Number(document.documentElement.dataset.answers) > {before} || "
@@ -113,7 +113,7 @@ class WebTest(unittest.TestCase):
         self.react(page)
         np.testing.assert_allclose(self.shown(page), self.expected({"hug": 1, "push": 0.5}),
                                    atol=1e-5)
-        # What changes afterwards is asked for by React alone.
+        # Later changes take effect only at React.
         self.label(page, "push", 0)
         self.assertIn("press React", page.text("#status"))
         self.assertEqual(page.state()["answers"], "1")
@@ -265,7 +265,7 @@ class WebTest(unittest.TestCase):
         rig = page.evaluate("window.bodies.pop()")
         self.assertEqual(re.findall(r"(?:ROOT|JOINT) \S+", rig), re.findall(
             r"(?:ROOT|JOINT) \S+", tools.sample("hug").read_text(encoding="utf-8")))
-        # With what comes after it set but not asked for, the name is still the answer's.
+        # Settings that were changed after the answer do not change the name.
         self.label(page, "hug", -1)
         self.assertEqual(page.evaluate("downloadName(state.takes[0])"), name)
 
