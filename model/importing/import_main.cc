@@ -11,7 +11,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
-#include "model/base/flag_names.h"
 #include "model/importing/import.h"
 #include "model/motion/coordinates.h"
 
@@ -122,8 +121,7 @@ int main(int argc, char** argv) {
                "duet-import");
   app.set_version_flag("--version", "duet-import " DUET_VERSION);
   Declare(&options, &words, &app);
-  const duet::base::KebabCaseCommandLine line(argc, argv);
-  CLI11_PARSE(app, line.argc(), line.argv());
+  CLI11_PARSE(app, argc, argv);
   duet::importing::ImportReport report;
   absl::Status status = duet::importing::Parse(words, &options);
   if (status.ok()) status = duet::importing::Import(options, &report);

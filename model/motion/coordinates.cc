@@ -5,40 +5,14 @@
 namespace duet::motion {
 namespace {
 
-template <typename Value>
-struct Spelling {
-  absl::string_view name;
-  Value value;
-};
-
-// The first spelling of a value is its name.
-constexpr Spelling<LengthUnit> kUnitSpellings[] = {
-    {"metres", LengthUnit::kMetres},
-    {"millimetres", LengthUnit::kMillimetres},
-    {"sbu-normalised", LengthUnit::kSbuNormalised},
-    {"m", LengthUnit::kMetres},
-    {"mm", LengthUnit::kMillimetres},
-    {"sbu", LengthUnit::kSbuNormalised},
-    {"sbu_normalised", LengthUnit::kSbuNormalised},
-};
-constexpr Spelling<UpAxis> kAxisSpellings[] = {
-    {"y-up", UpAxis::kYUp}, {"z-up", UpAxis::kZUp}, {"y-down", UpAxis::kYDown},
-    {"y", UpAxis::kYUp},    {"z", UpAxis::kZUp},    {"-y", UpAxis::kYDown},
-    {"y_up", UpAxis::kYUp}, {"z_up", UpAxis::kZUp}, {"y_down", UpAxis::kYDown},
-};
+// The names of the enumerators, in their order.
+constexpr absl::string_view kUnits[] = {"metres", "millimetres", "sbu-normalised"};
+constexpr absl::string_view kAxes[] = {"y-up", "z-up", "y-down"};
 
 template <typename Value, std::size_t size>
-absl::string_view NameOf(const Spelling<Value> (&spellings)[size], Value value) {
-  for (const Spelling<Value>& spelling : spellings) {
-    if (spelling.value == value) return spelling.name;
-  }
-  return {};
-}
-
-template <typename Value, std::size_t size>
-std::optional<Value> ValueOf(const Spelling<Value> (&spellings)[size], absl::string_view name) {
-  for (const Spelling<Value>& spelling : spellings) {
-    if (spelling.name == name) return spelling.value;
+std::optional<Value> ValueOf(const absl::string_view (&names)[size], absl::string_view name) {
+  for (std::size_t i = 0; i < size; ++i) {
+    if (names[i] == name) return static_cast<Value>(i);
   }
   return std::nullopt;
 }
@@ -110,12 +84,12 @@ Vec3 FromWorld(const Coordinates& coordinates, Vec3 p) {
   return p;
 }
 
-absl::string_view LengthUnitName(LengthUnit unit) { return NameOf(kUnitSpellings, unit); }
-absl::string_view UpAxisName(UpAxis axis) { return NameOf(kAxisSpellings, axis); }
+absl::string_view LengthUnitName(LengthUnit unit) { return kUnits[static_cast<size_t>(unit)]; }
+absl::string_view UpAxisName(UpAxis axis) { return kAxes[static_cast<size_t>(axis)]; }
 
 std::optional<LengthUnit> ParseLengthUnit(absl::string_view name) {
-  return ValueOf(kUnitSpellings, name);
+  return ValueOf<LengthUnit>(kUnits, name);
 }
-std::optional<UpAxis> ParseUpAxis(absl::string_view name) { return ValueOf(kAxisSpellings, name); }
+std::optional<UpAxis> ParseUpAxis(absl::string_view name) { return ValueOf<UpAxis>(kAxes, name); }
 
 }  // namespace duet::motion

@@ -35,8 +35,7 @@ absl::string_view UpAxisName(UpAxis axis);
 inline constexpr char kLengthUnitNames[] = "metres, millimetres or sbu-normalised";
 inline constexpr char kUpAxisNames[] = "y-up, z-up or y-down";
 
-// Absent for an unknown name. Besides the names above, these are accepted: "m", "mm", "sbu",
-// "sbu_normalised"; "y", "z", "-y", "y_up", "z_up", "y_down".
+// Absent for an unknown name.
 std::optional<LengthUnit> ParseLengthUnit(absl::string_view name);
 std::optional<UpAxis> ParseUpAxis(absl::string_view name);
 

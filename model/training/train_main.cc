@@ -8,7 +8,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "model/base/flag_names.h"
 #include "model/checkpoint/manifest.h"
 #include "model/network/exceptions.h"
 #include "model/training/named_configs.h"
@@ -179,8 +178,7 @@ int main(int argc, char** argv) {
   CLI::App app("Trains a generator on a folder of captures and writes a checkpoint.");
   app.set_version_flag("--version", "duet-train " DUET_VERSION);
   Declare(&arguments, &app);
-  const duet::base::KebabCaseCommandLine line(argc, argv);
-  CLI11_PARSE(app, line.argc(), line.argv());
+  CLI11_PARSE(app, argc, argv);
   const absl::Status status =
       duet::network::CatchExceptions([&arguments] { return Train(arguments); });
   if (status.ok()) return 0;

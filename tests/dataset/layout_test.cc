@@ -162,21 +162,6 @@ TEST(DatasetLayoutTest, LevellingNeedsFeet) {
   EXPECT_TRUE(ParseDatasetLayout(json.dump()).ok());
 }
 
-TEST(DatasetLayoutTest, ReadsEarlierSpellingsOfUnitAndAxis) {
-  Json json = Complete();
-  json["unit"] = "sbu_normalised";
-  json["up_axis"] = "y_down";
-  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(json.dump());
-  ASSERT_TRUE(layout.ok()) << layout.status();
-  EXPECT_EQ(layout->coordinates.unit, motion::LengthUnit::kSbuNormalised);
-  EXPECT_EQ(layout->coordinates.up_axis, motion::UpAxis::kYDown);
-  for (const char* up_axis : {"y_up", "z_up"}) {
-    json["unit"] = "metres";
-    json["up_axis"] = up_axis;
-    EXPECT_TRUE(ParseDatasetLayout(json.dump()).ok()) << up_axis;
-  }
-}
-
 TEST(DatasetLayoutTest, NamesTheFieldThatIsMissing) {
   const Json complete = Complete();
   for (const auto& item : complete.items()) {

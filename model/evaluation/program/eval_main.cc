@@ -2,7 +2,6 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "model/base/flag_names.h"
 #include "model/evaluation/program/commands.h"
 #include "model/network/exceptions.h"
 #include "model/torch_engine/torch_synthesizer.h"
@@ -23,8 +22,7 @@ int main(int argc, char** argv) {
   duet::evaluation::program::AddDataCommand(&app, &chosen);
   duet::evaluation::program::AddJudgeCommand(&app, &chosen);
   duet::evaluation::program::AddDirectionCommand(&app, &chosen);
-  const duet::base::KebabCaseCommandLine line(argc, argv);
-  CLI11_PARSE(app, line.argc(), line.argv());
+  CLI11_PARSE(app, argc, argv);
   const absl::Status status = duet::network::CatchExceptions([&chosen] {
     absl::Status prepared = duet::torch_engine::SetTorchThreads(1);
     return prepared.ok() ? chosen() : prepared;

@@ -16,7 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr char kOnePerson[] =
-    "# made by hand: fps=25, unit=millimetres; up_axis=z\n"
+    "# made by hand: fps=25, unit=millimetres; up_axis=z-up\n"
     "time,neck_x,head_x,head_y,head_z,neck_z,neck_y\n"
     "0.00,1,2,3,4,5,6\r\n"
     "0.04,-1,-2,-3,+4e1,-5,-6\n";
@@ -47,15 +47,6 @@ TEST(Csv, ReadsQuotedFieldsAndAByteOrderMark) {
   ASSERT_TRUE(motion.ok()) << motion.status();
   EXPECT_THAT(motion->people[0].joint_names, ElementsAre("a"));
   EXPECT_EQ(motion->people[0].at(0, 0), (motion::Vec3{1, -2.5f, 3}));
-}
-
-TEST(Csv, ReadsTodaysAndEarlierAxes) {
-  for (const char* axis : {"y-down", "-y"}) {
-    const absl::StatusOr<motion::RecordedMotion> motion =
-        ParseCsv(absl::StrCat("# up_axis=", axis, "\na_x,a_y,a_z\n1,2,3\n"), "a.csv");
-    ASSERT_TRUE(motion.ok()) << motion.status();
-    EXPECT_EQ(motion->coordinates.up_axis, motion::UpAxis::kYDown) << axis;
-  }
 }
 
 TEST(Csv, LeavesTheRateOpenWhereTheFileHasNone) {
