@@ -15,9 +15,9 @@ using motion::Bone;
 using motion::Vec3;
 
 constexpr double kBodySmoothSeconds = 0.2, kArmSmoothSeconds = 0.07;
-// Pushes in one frame: each resolves the deepest overlap that is left.
+// Maximum number of pushes per frame. Each resolves the deepest remaining overlap.
 constexpr int kPushes = 5;
-// Below this, metres, an offset tells no direction.
+// Metres. A shorter offset has no direction.
 constexpr float kNoDirection = 1e-4f;
 
 // A bone's capsule in one frame.
@@ -26,13 +26,13 @@ struct Capsule {
   double radius = 0;
 };
 
-// An overlap of two capsules beyond what is allowed, and the way out of it for the follower's.
+// An overlap of two capsules beyond the limit, and the direction in which the follower leaves it.
 struct Overlap {
   double depth = 0;
   Vec3 out;  // of length 1
 };
 
-// Whether two capsules are near enough to look closer: the spheres around them meet.
+// Whether the bounding spheres of two capsules overlap.
 bool MayTouch(const Capsule& a, const Capsule& b) {
   const Vec3 apart = (a.from + a.to - b.from - b.to) * 0.5f;
   const float reach = (Distance(a.from, a.to) + Distance(b.from, b.to)) * 0.5f +
@@ -64,7 +64,7 @@ bool IsInside(const Limb& limb, const Bone& bone) {
          std::find(limb.beyond.begin(), limb.beyond.end(), bone.parent) != limb.beyond.end();
 }
 
-// Indices of the bones that belong to no arm.
+// Indices of all bones except those of arms.
 std::vector<std::size_t> AllButArms(const motion::Skeleton& skeleton, const Body& body) {
   std::vector<std::size_t> bones;
   for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
@@ -74,7 +74,7 @@ std::vector<std::size_t> AllButArms(const motion::Skeleton& skeleton, const Body
   return bones;
 }
 
-// How far a follower has to go along `way` so that none of these bones of the two overlap.
+// The distance along `way` after which none of these bones of the two people overlap.
 float RoomToMake(const std::vector<Capsule>& leader, std::vector<Capsule> follower,
                  const std::vector<std::size_t>& bones, Vec3 way, double allowed) {
   double room = 0;
@@ -95,7 +95,7 @@ float RoomToMake(const std::vector<Capsule>& leader, std::vector<Capsule> follow
   return static_cast<float>(room);
 }
 
-// The most within `reach` frames on either side.
+// The maximum within `reach` frames on either side.
 std::vector<float> MostAround(const std::vector<float>& track, int reach) {
   const int frames = static_cast<int>(track.size());
   std::vector<float> most;
@@ -106,14 +106,14 @@ std::vector<float> MostAround(const std::vector<float>& track, int reach) {
   return most;
 }
 
-// The way from the leader to the follower, horizontal, of length 1.
+// The horizontal direction from leader to follower, of length 1.
 Vec3 WayApart(Vec3 leader, Vec3 follower) {
   const Vec3 way = {follower.x - leader.x, 0, follower.z - leader.z};
   const float length = Norm(way);
   return length > kNoDirection ? way / length : Vec3{0, 0, 1};
 }
 
-// The arm's deepest overlap with the leader: both its bones, the outer one first.
+// The deepest overlap of the arm's two bones with the leader, the outer bone first.
 Overlap DeepestOverlap(const std::vector<Capsule>& leader, const Capsule& outer,
                        const Capsule& inner, double allowed) {
   Overlap deepest;
@@ -126,7 +126,7 @@ Overlap DeepestOverlap(const std::vector<Capsule>& leader, const Capsule& outer,
   return deepest;
 }
 
-// Where an arm's hand has to go, from where it is, to leave the leader. `pose` is the arm's to try.
+// The offset by which a hand must move to resolve the arm's overlap. Uses `pose` as scratch space.
 Vec3 WayOut(const Limb& arm, double radius, const std::vector<Capsule>& leader, double allowed,
             Vec3 backwards, std::vector<Vec3> pose) {
   const Vec3 from = pose[static_cast<std::size_t>(arm.end)];

@@ -12,9 +12,9 @@ CleanUp::CleanUp(const motion::Skeleton& skeleton, const Options& options)
 
 void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timing& timing,
                     motion::Poses* follower) const {
-  // The whole body first, then its limbs, so that what is held stays held.
+  // The whole body first, then its limbs, so that fixed feet stay fixed.
   if (options_.upright.enabled) {
-    // Each moves what the other one sees; the second time little is left to do.
+    // Each stage changes the input of the other; after the second pass little remains.
     for (int round = 0; round < 2; ++round) {
       SetTrunkUpright(skeleton_, body_, options_.upright, timing, follower);
       SetUpright(skeleton_, body_, options_.upright, timing, follower);

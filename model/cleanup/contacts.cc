@@ -11,14 +11,14 @@ namespace {
 
 using motion::Vec3;
 
-// Takes the network's jitter out of a foot before it is judged.
+// Removes the network's jitter before contacts are detected.
 constexpr double kSmoothSeconds = 0.08;
-// The body follows its feet a little later, and smoothly.
+// Smooths the motion with which the body follows its feet.
 constexpr double kBodySmoothSeconds = 0.13;
 
 float Float(double value) { return static_cast<float>(value); }
 
-// Whether a foot stands, frame by frame, with hysteresis. Shapes: smooth [frames].
+// Whether a foot stands in each frame, with hysteresis. Shapes: smooth [frames].
 std::vector<bool> Stands(const std::vector<Vec3>& smooth, float floor,
                          const ContactOptions& options, const Timing& timing) {
   const int last = static_cast<int>(smooth.size()) - 1;
@@ -43,20 +43,20 @@ Vec3 Mean(const std::vector<Vec3>& track, int begin, int end) {
   return sum / Float(end - begin);
 }
 
-// The share of a contact's hold that a frame gets: all of it within, less and less around.
+// The weight of a contact in a frame: 1 within the contact, fading out around it.
 float HoldAt(const Contact& contact, int frame, const ContactOptions& options,
              const Timing& timing) {
   const int outside = std::max({0, contact.begin - frame, frame - (contact.end - 1)});
   return SmoothStep(1 - outside / (timing.Frames(options.ease_seconds) + 1));
 }
 
-// How a foot is to be moved along the floor in a frame.
+// The correction of a foot along the floor in a frame.
 Vec3 HoldInFrame(const std::vector<Contact>& contacts, Vec3 foot, int frame,
                  const ContactOptions& options, const Timing& timing) {
   Vec3 sum;
   float weights = 0;
   for (const Contact& contact : contacts) {
-    // What the settled frames already hold goes on at once.
+    // A contact that began in settled frames continues without easing in.
     const float ease = contact.begin < timing.settled ? 1 : EaseIn(timing, frame);
     const float weight = ease * HoldAt(contact, frame, options, timing);
     sum += (contact.place - foot) * weight;
@@ -66,7 +66,7 @@ Vec3 HoldInFrame(const std::vector<Contact>& contacts, Vec3 foot, int frame,
   return {hold.x, 0, hold.z};
 }
 
-// The same in every frame; none while settled. Shapes: foot [frames]; returns [frames].
+// The corrections of all frames; zero in settled ones. Shapes: foot [frames]; returns [frames].
 std::vector<Vec3> Holds(const std::vector<Vec3>& foot, float floor, const ContactOptions& options,
                         const Timing& timing) {
   const std::vector<Contact> contacts = FindContacts(foot, floor, options, timing);
@@ -107,7 +107,7 @@ void HoldContacts(const motion::Skeleton& skeleton, const Body& body, float floo
                   const ContactOptions& options, const Timing& timing, motion::Poses* poses) {
   if (body.legs.empty()) return;
   const std::size_t frames = static_cast<std::size_t>(poses->frame_count());
-  std::vector<std::vector<Vec3>> places;  // of each foot, held
+  std::vector<std::vector<Vec3>> places;  // corrected positions of each foot
   std::vector<Vec3> shifts(frames);
   for (const Limb& leg : body.legs) {
     std::vector<Vec3> foot;

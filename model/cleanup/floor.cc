@@ -15,8 +15,8 @@ namespace {
 // Steps in height are not copied into the correction.
 constexpr double kSmoothSeconds = 0.1;
 
-// For each frame the most that a run of `length` frames around it never falls below: what rises
-// above that for a shorter time is cut off.
+// For each frame, the largest minimum of the runs of `length` frames that contain it: truncates
+// peaks that are shorter than `length`.
 std::vector<float> CutShortRises(const std::vector<float>& track, int length) {
   const int frames = static_cast<int>(track.size());
   length = std::clamp(length, 1, frames);
@@ -32,7 +32,7 @@ std::vector<float> CutShortRises(const std::vector<float>& track, int length) {
   return level;
 }
 
-// What takes a height relative to the floor back to where it may be.
+// The correction of a height relative to the floor.
 float Lift(float height, const FloorOptions& options) {
   const float allowed = SoftLimit(std::abs(height), static_cast<float>(options.free_metres),
                                   static_cast<float>(options.most_metres));

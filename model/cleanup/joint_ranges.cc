@@ -13,17 +13,17 @@ namespace {
 using motion::Vec3;
 
 constexpr float kRadiansPerDegree = 0.01745329252f;
-// Below this, metres or as a sine, a vector tells no direction.
+// Metres, or a sine. A shorter vector has no direction.
 constexpr float kNoDirection = 1e-5f;
-// An arm at rest points this far forwards of straight down: half of how much farther shoulders turn
-// it outwards than inwards, degrees.
+// Degrees by which an arm at rest points forwards of straight down: half the difference between the
+// outward and inward rotation of shoulders.
 constexpr float kArmRestDegrees = 17.5f;
 constexpr float kNoFloor = -std::numeric_limits<float>::infinity();
-// How far a foot may come below the floor for its knee, metres: less than captures do.
+// Metres by which correcting a knee may move the foot below the floor: less than in captures.
 constexpr float kSink = 0.03f;
-// To find how far a leg may straighten: to a thousandth.
+// Bisection steps that find how far a leg may straighten, to a thousandth.
 constexpr int kHalvings = 10;
-// Cosines of 110 and 150 degrees from rest, between which a limb's reference fades out.
+// Cosines of 110 and 150 degrees from rest, between which the reference of a limb fades out.
 constexpr float kFadesFrom = -0.342f, kFadesTo = -0.866f;
 
 float Float(double value) { return static_cast<float>(value); }
@@ -32,7 +32,7 @@ float Within(const SoftRange& range, float degrees, float slack = 0) {
   return SoftLimit(degrees, Float(range.free) + slack, Float(range.most) + slack);
 }
 
-// A body's own directions, each of length 1 and at right angles.
+// Orthonormal directions of a body.
 struct Axes {
   Vec3 up, forward;
 };
@@ -45,7 +45,7 @@ std::optional<Axes> AxesOf(Vec3 trunk, Vec3 across) {
   return Axes{trunk / height, forward / area};
 }
 
-// Which way a limb hangs at rest and bends then, and how far from there it may turn about itself.
+// The directions in which a limb hangs and bends at rest, and its range of rotation about itself.
 struct Hinge {
   Vec3 rest, bend;
   float turn_degrees = 0;
@@ -61,15 +61,15 @@ Hinge ElbowOf(const Axes& axes, const JointRangeOptions& options) {
   return {axes.forward * s - axes.up * c, axes.forward * c + axes.up * s, Float(options.arm_turn)};
 }
 
-// `v` turned the shortest way that takes `from` to `to`, both of length 1 and not opposite.
+// Rotates `v` by the shortest arc from `from` to `to`, both of length 1 and not opposite.
 Vec3 Swing(Vec3 from, Vec3 to, Vec3 v) {
   const Vec3 axis = Cross(from, to);
   const float cosine = Dot(from, to);
   return v * cosine + Cross(axis, v) + axis * (Dot(axis, v) / (1 + cosine));
 }
 
-// How a limb is bent: by the length of (ahead, aside) in degrees, straight at (0, 0), ahead the way
-// it is made for.
+// The bend of a limb in degrees: `ahead` in its natural direction, `aside` perpendicular to it;
+// (0, 0) is straight.
 struct Bend {
   float ahead = 0, aside = 0;
 };
@@ -90,10 +90,10 @@ Bend Limited(Bend bend, float turn_degrees, const JointRangeOptions& options) {
   return bend;
 }
 
-// The share of a correction that a limb gets whose direction has this cosine with its rest.
+// The weight of the correction of a limb whose direction has this cosine with its rest direction.
 float Certainty(float cosine) { return SmoothStep((cosine - kFadesTo) / (kFadesFrom - kFadesTo)); }
 
-// Where the outer bone, of length 1, ought to point; `inner` and `outer` are of length 1.
+// The corrected direction of the outer bone. `inner`, `outer` and the result have length 1.
 Vec3 RightDirection(Vec3 inner, Vec3 outer, const Hinge& hinge, const JointRangeOptions& options,
                     float share) {
   share *= Certainty(Dot(hinge.rest, inner));
@@ -114,13 +114,13 @@ Vec3 RightDirection(Vec3 inner, Vec3 outer, const Hinge& hinge, const JointRange
   return inner * std::cos(angle * kRadiansPerDegree) + way * std::sin(angle * kRadiansPerDegree);
 }
 
-// Where a limb's middle and end belong.
+// The corrected positions of a limb's middle and end.
 struct Placed {
   Vec3 middle, end;
 };
 
-// Bends a limb as far as it may, then turns it as a whole so that its end is where it was seen from
-// its upper joint. Nothing where it may be as it is.
+// Limits the bend of a limb, then rotates the limb so that its end keeps its direction from the
+// upper joint. Absent if the limb is within its range.
 std::optional<Placed> PlaceLimb(Vec3 upper, Vec3 middle, Vec3 end, const Hinge& hinge,
                                 const JointRangeOptions& options, float share) {
   const float thigh = Distance(upper, middle), shin = Distance(middle, end);
@@ -136,8 +136,8 @@ std::optional<Placed> PlaceLimb(Vec3 upper, Vec3 middle, Vec3 end, const Hinge& 
   return Placed{upper + Swing(bent / bent_reach, to, inner) * thigh, upper + to * bent_reach};
 }
 
-// A leg that straightens reaches farther: as much of the correction as leaves its end no lower than
-// `lowest`.
+// Reduces the correction of a leg, which reaches farther when it straightens, so that its end is
+// not below `lowest`.
 std::optional<Placed> PlaceAbove(float lowest, Vec3 upper, Vec3 middle, Vec3 end,
                                  const Hinge& hinge, const JointRangeOptions& options,
                                  float share) {
@@ -155,7 +155,7 @@ std::optional<Placed> PlaceAbove(float lowest, Vec3 upper, Vec3 middle, Vec3 end
   return placed;
 }
 
-// True when something moved.
+// Returns whether a joint moved.
 bool LimitLimb(const Limb& limb, float floor, const Hinge& hinge, const JointRangeOptions& options,
                float share, absl::Span<Vec3> pose) {
   Vec3& middle = pose[static_cast<std::size_t>(limb.middle)];
@@ -171,7 +171,7 @@ bool LimitLimb(const Limb& limb, float floor, const Hinge& hinge, const JointRan
   return true;
 }
 
-// Turning a limb turns what it is judged by: the second time little is left to do.
+// Rotating a limb changes its reference; after the second pass little remains.
 void LimitLimbs(const std::vector<Limb>& limbs, float floor, const Hinge& hinge,
                 const JointRangeOptions& options, float share, absl::Span<Vec3> pose) {
   for (const Limb& limb : limbs) {
@@ -196,8 +196,8 @@ void LimitNeck(const Neck& neck, Vec3 up, const JointRangeOptions& options, floa
   }
 }
 
-// The way from one arm's shoulder to the other's, in every frame, from the right one to the left
-// one: which is which tell the hips, over all frames. Shapes: returns [frames].
+// The vector from the right shoulder to the left one in every frame. The hips over all frames
+// determine which arm is the left one. Shapes: returns [frames].
 std::vector<Vec3> ShouldersToTheLeft(const motion::JointPair& hips, const std::vector<Limb>& arms,
                                      const motion::Poses& poses) {
   std::vector<Vec3> across;

@@ -14,7 +14,7 @@ namespace {
 
 using motion::Vec3;
 
-// The joints of a tree by their neighbours.
+// The neighbours of each joint of a tree.
 struct Tree {
   explicit Tree(const motion::Skeleton& skeleton)
       : parents(skeleton.Parents()), children(parents.size()) {
@@ -26,7 +26,7 @@ struct Tree {
   const std::vector<int>& Children(int joint) const {
     return children[static_cast<std::size_t>(joint)];
   }
-  // The joint and all that hang on it.
+  // The joint and all joints below it.
   std::vector<int> Branch(int joint) const {
     std::vector<int> branch = {joint};
     for (std::size_t i = 0; i < branch.size(); ++i) {
@@ -59,14 +59,14 @@ std::vector<Limb> FindLegs(const Tree& tree, const motion::JointPair& feet) {
   return {*left, *right};
 }
 
-// The joint nearest to both hips that both hang on.
+// The nearest common ancestor of both hips.
 int Pelvis(const Tree& tree, const motion::JointPair& hips) {
   int joint = hips.left;
   while (!Contains(tree.Branch(joint), hips.right)) joint = tree.Parent(joint);
   return joint;
 }
 
-// Walks outwards from the pelvis, nearest joints first, but for the legs.
+// Visits the joints outwards from the pelvis, nearest first, except the legs.
 std::optional<int> FindChest(const Tree& tree, const motion::JointPair& hips) {
   const int pelvis = Pelvis(tree, hips);
   std::vector<int> seen = {pelvis};
@@ -125,7 +125,7 @@ Vec3 Across(Vec3 v, Vec3 unit) { return v - unit * Dot(v, unit); }
 
 Vec3 Unit(Vec3 v) { return v / Norm(v); }
 
-// A direction at right angles to `along`.
+// A direction perpendicular to `along`.
 Vec3 AnyAcross(Vec3 along) {
   return Unit(Across(std::abs(along.y) < 0.9f ? Vec3{0, 1, 0} : Vec3{1, 0, 0}, along));
 }
@@ -156,9 +156,9 @@ std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton, const Body& b
 }
 
 void Reach(const Limb& limb, Vec3 target, Vec3 forward, absl::Span<Vec3> pose) {
-  // How much of a bend tells its direction, metres.
+  // Metres. A smaller bend has no direction.
   constexpr float kClearBend = 0.02f;
-  // Never quite straight and never folded flat: there the bend has no direction.
+  // A straight or completely folded limb would have no bend direction.
   constexpr float kLongest = 0.999f, kShortest = 0.1f;
   const Vec3 upper = pose[static_cast<std::size_t>(limb.upper)];
   Vec3& middle = pose[static_cast<std::size_t>(limb.middle)];

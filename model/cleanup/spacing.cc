@@ -10,18 +10,18 @@ namespace {
 
 using motion::Vec3;
 
-// The distance that the farthest follower approaches, as a share of the farthest allowed.
+// The distance that the correction approaches, as a fraction of the maximum distance.
 constexpr float kSoftness = 1.1f;
-// Below this, metres, an offset tells no direction.
+// Metres. A shorter offset has no direction.
 constexpr float kNoDirection = 1e-3f;
 
 Vec3 ShiftFor(Vec3 offset, const SpacingOptions& options) {
   const float distance = Norm(offset);
   if (distance < kNoDirection) return {};
   const float farthest = static_cast<float>(options.farthest_metres);
-  const float wanted = std::max(static_cast<float>(options.nearest_metres),
+  const float target = std::max(static_cast<float>(options.nearest_metres),
                                 SoftLimit(distance, farthest, farthest * kSoftness));
-  return offset * (wanted / distance - 1);
+  return offset * (target / distance - 1);
 }
 
 }  // namespace

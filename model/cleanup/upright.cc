@@ -17,14 +17,14 @@ Vec3 Middle(const motion::JointPair& pair, const motion::Poses& poses, int frame
   return Lerp(poses.at(frame, pair.left), poses.at(frame, pair.right), 0.5f);
 }
 
-// The turn that brings a lasting lean back to where it may be.
+// The rotation that reduces a lasting lean to the permitted one.
 struct Turn {
   Vec3 axis;
   float radians = 0;
 };
 
 Turn TurnBack(Vec3 lean, const UprightOptions& options) {
-  const Vec3 axis = Cross(lean, Vec3{0, 1, 0});  // turning about it lifts the trunk
+  const Vec3 axis = Cross(lean, Vec3{0, 1, 0});  // rotating about it lifts the trunk
   const float sine = Norm(axis);
   const float angle = std::atan2(sine, lean.y);
   const float allowed =
@@ -34,7 +34,7 @@ Turn TurnBack(Vec3 lean, const UprightOptions& options) {
   return {axis / sine, angle - allowed};
 }
 
-// Turns all but the legs about the middle of the hips; the feet stay, the knees follow.
+// Rotates everything except the legs about the middle of the hips. Feet stay and knees follow.
 void BendAtHips(const motion::Skeleton& skeleton, const Body& body, const Turn& turn,
                 absl::Span<Vec3> pose) {
   const auto at = [&](int joint) -> Vec3& { return pose[static_cast<std::size_t>(joint)]; };

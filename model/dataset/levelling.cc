@@ -11,12 +11,12 @@
 namespace duet::dataset {
 namespace {
 
-// Sets differ by what their people do about as much as by their camera: what the whole data set
-// shows counts like this many sequences of the set.
+// Weight of the whole data set's vertical, in sequences: sets differ by what their people do about
+// as much as by their camera.
 constexpr float kSharedSequences = 3;
 constexpr std::size_t kFewestPoses = 60;
 constexpr float kLeastUpright = 0.866f;  // the cosine of 30 degrees
-constexpr double kFloorShare = 0.25;     // of the lower feet, below the floor
+constexpr double kFloorShare = 0.25;     // fraction of the lower feet that are below the floor
 
 struct SetOfSequences {
   std::vector<Sequence*> sequences;
@@ -38,7 +38,7 @@ std::map<std::string, SetOfSequences> GatherSets(Dataset* dataset) {
   return sets;
 }
 
-// Turns the set; where its floor then is, it says itself.
+// Rotates the set, then finds its floor.
 void Level(const motion::Skeleton& skeleton, motion::Vec3 up, SetOfSequences* set) {
   const motion::Levelling turn(up, 0);
   std::vector<motion::Vec3> feet;

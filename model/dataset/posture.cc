@@ -10,13 +10,14 @@
 namespace duet::dataset {
 namespace {
 
-// What counts in full, times the median distance: Huber's 1.345 standard deviations for a plane.
+// Distance up to which points have full weight, times the median one. Planes: Huber's 1.345 sigma.
 constexpr double kPlaneReach = 2;
 constexpr double kMeanReach = 2;
-constexpr double kSmallestReach = 1e-4;  // of points that all coincide
+constexpr double kSmallestReach = 1e-4;  // if all points coincide
 constexpr int kPlaneSteps = 20;
 constexpr int kMeanSteps = 30;
-constexpr double kFlatDeterminant = 1e-9;  // of the normal equations, per point: no plane
+constexpr double kFlatDeterminant =
+    1e-9;  // of the normal equations, per point; below it, there is no plane
 
 // y = slope_x x + slope_z z + height
 struct Plane {
@@ -40,7 +41,7 @@ motion::Vec3 Mean(const std::vector<motion::Vec3>& points, const std::vector<dou
   return {static_cast<float>(x / sum), static_cast<float>(y / sum), static_cast<float>(z / sum)};
 }
 
-// Weighted least squares about the weighted mean; level where the points lie on a line.
+// Weighted least squares about the weighted mean; horizontal if the points are on a line.
 Plane FitPlane(const std::vector<motion::Vec3>& points, const std::vector<double>& weights) {
   const motion::Vec3 mean = Mean(points, weights);
   double xx = 0, xz = 0, zz = 0, xy = 0, zy = 0, sum = 0;

@@ -19,7 +19,7 @@ Vec3d AxisOf(int axis) {
 
 double Component(Vec3d a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
 
-// `angle` plus the whole turns that bring it nearest to `previous`.
+// `angle` plus the multiple of 2 pi that brings it nearest to `previous`.
 EulerAngles Nearest(EulerAngles angles, const EulerAngles& previous) {
   for (std::size_t i = 0; i < angles.size(); ++i) {
     angles[i] += 2 * kPi * std::round((previous[i] - angles[i]) / (2 * kPi));
@@ -41,9 +41,9 @@ double MiddleCosine(Quaternion q, EulerOrder order) {
 
 bool InGimbalLock(Quaternion q, EulerOrder order) { return MiddleCosine(q, order) < kGimbalLock; }
 
-// The angles of frames `begin` to `end`, all in gimbal lock, between those before and after. The
-// last one turns while the joint stays in the lock, where that changes no pose; of one frame alone
-// half on the way in.
+// Interpolates the angles of frames `begin` to `end`, all in gimbal lock, between those before and
+// after. The last angle changes within the lock, where that does not change the pose. A single
+// frame gets half the change.
 void FillLock(const std::vector<Quaternion>& turns, EulerOrder order, std::size_t begin,
               std::size_t end, std::vector<EulerAngles>* track) {
   EulerAngles angles = begin > 0 ? (*track)[begin - 1] : EulerAngles{};
@@ -78,7 +78,7 @@ Quaternion FromEuler(EulerAngles angles, EulerOrder order) {
 
 EulerAngles ToEuler(Quaternion q, EulerOrder order, EulerAngles previous) {
   const auto [i, j, k] = order;
-  // Of the rotation matrix.
+  // An element of the rotation matrix.
   const auto at = [&q](int row, int column) { return Component(Rotate(q, AxisOf(column)), row); };
   const double parity = (i + 1) % 3 == j ? 1 : -1;
   const double sine = std::clamp(parity * at(i, k), -1.0, 1.0);

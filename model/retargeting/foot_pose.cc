@@ -7,11 +7,11 @@
 namespace duet::retargeting {
 namespace {
 
-// Of all frames, those that may lie below: captures jitter.
+// Fraction of frames that may be below the floor, because captures jitter.
 constexpr double kFloorShare = 0.02;
-// Metres above the floor: below the first a foot is level, above the second it hangs on its shin.
+// Metres above the floor. Below the first, a foot is level; above the second, it follows its shin.
 constexpr double kStands = 0.03, kInTheAir = 0.18;
-// Cosine of the shin's lean: somebody who kneels or lies has no level foot.
+// Cosine of the shin's lean. The feet of a person who kneels or lies are not level.
 constexpr double kLying = 0.1, kUpright = 0.6;
 
 double SmoothStep(double from, double to, double at) {

@@ -40,7 +40,7 @@ class StraightFigure {
     return places_[Index(tree_.parents[joint])] + direction * Norm(tree_.offsets[joint]);
   }
 
-  // Where legs and trunk part, -1 where there are no hips.
+  // The joint at which legs and trunk separate; -1 without hips.
   int Base() const {
     if (!landmarks_.hips) return -1;
     const int pelvis = CommonAncestor(tree_, landmarks_.hips->left, landmarks_.hips->right);
@@ -57,7 +57,7 @@ class StraightFigure {
     return sum;
   }
 
-  // Both limbs of a pair, whose middle is towards `middle` from `ancestor`.
+  // Places both limbs of a pair whose middle is in the direction of `middle` from `ancestor`.
   void PlaceLimbs(motion::JointPair starts, int ancestor, Vec3d middle, Vec3d left, Vec3d right) {
     const Vec3d to_left = Offset(ancestor, starts.left), to_right = Offset(ancestor, starts.right);
     const Vec3d centre = places_[Index(ancestor)] + middle * (Norm(to_left + to_right) / 2);
@@ -87,7 +87,7 @@ bool IsAtOrBelow(const JointTree& tree, int joint, int ancestor) {
 }
 
 int CommonAncestor(const JointTree& tree, int a, int b) {
-  // Parents come before their children: the later one of two different joints is no ancestor.
+  // Parents precede their children, so the later of two different joints is not an ancestor.
   while (a != b && a >= 0 && b >= 0) {
     int& later = a > b ? a : b;
     later = tree.parents[Index(later)];

@@ -6,10 +6,10 @@
 namespace duet::retargeting {
 namespace {
 
-// A limb is never quite straight nor folded: its plane would be lost. Share of its length.
+// Fraction of a limb's length that keeps it from being straight or folded, which has no plane.
 constexpr double kSlack = 1e-4;
-// How far, as a share of the limb, the middle joint is off the line between the ends: below the
-// first nothing is said, above the second all.
+// Distance of the middle joint from the line between the ends, as a fraction of the limb. Below the
+// first, the limb defines no direction; above the second, it defines it completely.
 constexpr double kStraight = 0.02, kBent = 0.12;
 
 double SmoothStep(double from, double to, double at) {
@@ -19,7 +19,7 @@ double SmoothStep(double from, double to, double at) {
 
 Vec3d Across(Vec3d a, Vec3d along) { return a - along * Dot(a, along); }
 
-// Any direction across.
+// Any perpendicular direction.
 Vec3d SomeAcross(Vec3d along) {
   const Vec3d axis = std::abs(along.x) < 0.7 ? Vec3d{1, 0, 0} : Vec3d{0, 0, 1};
   return Unit(Across(axis, along), axis);
@@ -53,7 +53,7 @@ Vec3d PoleTracker::Follow(Vec3d start, Vec3d middle, Vec3d end, Vec3d otherwise)
   if (!first_) kept = Rotate(ShortestArc(along_, along, SomeAcross(along_)), pole_);
   kept = Unit(Across(kept, along), SomeAcross(along));
   const double share = length > 0 ? SmoothStep(kStraight, kBent, Norm(out) / length) : 0.0;
-  // The shorter way round, so that opposite sides do not cancel.
+  // Along the shorter arc, so that opposite directions do not cancel.
   const Vec3d said = Unit(out, kept);
   const Quaternion whole = ShortestArc(kept, said, along);
   const double angle = Angle(whole, {}) * share;

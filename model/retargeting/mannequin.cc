@@ -14,15 +14,15 @@ namespace duet::retargeting {
 namespace {
 
 constexpr double kSlenderRadius = 0.035;
-// Of a stick figure's bones: radius over length, and the least radius in metres.
+// Bones of a stick figure: ratio of radius to length, and the minimum radius in metres.
 constexpr double kStickShare = 0.12, kThinnestStick = 0.004;
 // Half the height of a foot, metres.
 constexpr double kThinnestSole = 0.015, kThickestSole = 0.05;
-// Bones are a little thinner than the balls that they go into.
+// Bones are slightly thinner than the balls at their ends.
 constexpr double kBoneShare = 0.94;
 constexpr Fineness kBall = {10, 6}, kPart = {18, 12};
 
-// Metres, by what a joint's name holds; joints of other names are slender.
+// Radii in metres by a part of the joint's name. Other joints are slender.
 double Radius(absl::string_view name) {
   static constexpr struct {
     const char* part;
@@ -62,7 +62,7 @@ class MannequinMaker {
   }
   Vec3d At(int rig_joint) const { return rest_[static_cast<std::size_t>(rig_joint)]; }
 
-  // The rig joint of a name, -1 where there is none.
+  // The rig joint with a name, or -1.
   int Find(absl::string_view name) const {
     for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
       if (rig_.joints[j].name == name) return static_cast<int>(j);
@@ -70,7 +70,7 @@ class MannequinMaker {
     return -1;
   }
 
-  // The rig joint that stands where the skeleton's joint `aim` does.
+  // The rig joint at the position of the skeleton's joint `aim`.
   int JointOf(int joint) const {
     for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
       if (rig_.joints[j].joint == joint) return static_cast<int>(j);
@@ -82,21 +82,21 @@ class MannequinMaker {
     MeshBuilder body(&mannequin_.body);
     const RigJoint& joint = rig_.joints[static_cast<std::size_t>(j)];
     const double radius = RadiusOf(j);
-    // A helper's joint has its ball already.
+    // The joint at a helper's position already has a ball.
     if (joint.name == NameOf(j)) body.AddEllipsoid(At(j), {radius, radius, radius}, j, kBall);
     if (joint.kind != RigJoint::Kind::kAim) return;
     const int child = JointOf(joint.aim);
     body.AddLimb(At(j), At(child), radius * kBoneShare, Radius(NameOf(child)) * kBoneShare, j);
   }
 
-  // An ankle's ball does not reach through the floor.
+  // The ball of an ankle must not intersect the floor.
   double RadiusOf(int j) const {
     const double radius = Radius(NameOf(j));
     const bool foot = absl::EndsWith(NameOf(j), "_foot");
     return foot ? std::min(radius, std::max(sole_depth_, kThinnestSole)) : radius;
   }
 
-  // Ellipsoids around the trunk, whose joints tell where it is broad.
+  // Adds ellipsoids around the trunk; its joints determine their widths.
   void AddTrunk() {
     const int torso = Find("torso"), neck = Find("neck"), chest = Find("torso_to_neck");
     const int left_shoulder = Find("left_shoulder"), right_shoulder = Find("right_shoulder");
@@ -127,7 +127,7 @@ class MannequinMaker {
         .AddEllipsoid(At(head) + Vec3d{0, 0.014, 0.036}, {0.074, 0.042, 0.074}, head, kPart);
   }
 
-  // Stretched out to the side, the palm down.
+  // Adds a hand that is stretched out to the side, palm down.
   void AddHand(const std::string& name) {
     const int hand = Find(name);
     if (hand < 0) return;
@@ -166,7 +166,7 @@ SkinnedMesh MakeStickFigure(const CharacterRig& rig) {
     const int joint = static_cast<int>(j), parent = rig.parents[j];
     if (parent < 0) continue;
     const Vec3d from = rig.positions[static_cast<std::size_t>(parent)], to = rig.positions[j];
-    // As thick as fits the bone: fingers are thinner than thighs.
+    // In proportion to the bone: fingers are thinner than thighs.
     const double radius = std::clamp(kStickShare * Norm(to - from), kThinnestStick, kSlenderRadius);
     body.AddLimb(from, to, radius, radius, parent);
     body.AddEllipsoid(to, {radius, radius, radius}, joint, kBall);

@@ -5,10 +5,10 @@
 namespace duet::retargeting {
 namespace {
 
-// Decides a branch's turn only where its neighbours leave it open (all on one line).
+// Weight that decides a branch's rotation only if its neighbours are on one line.
 constexpr double kBranchPrior = 1e-3;
-// The upper limb's direction is kept whatever the plane says; the plane weighs sin^2 of the bend,
-// so that below some 10 degrees, where noise turns it, the past and the plain swing decide.
+// The upper limb always keeps its direction. The weight of the plane is sin^2 of the bend, so that
+// below about 10 degrees, where noise dominates it, the past and the plain swing decide.
 constexpr double kDirectionWeight = 10;
 constexpr double kPreviousPrior = 0.05;
 constexpr double kSwingPrior = 0.02;
@@ -88,15 +88,15 @@ Quaternion PoseFitter::FitBend(const RigJoint& joint, Vec3d direction, Vec3d nex
   const Vec3d rest_axis = HingeAxis(joint.rest_direction);
   Vec3d axis = Cross(direction, Unit(next_bone, direction));
   const double plane_weight = Dot(axis, axis);
-  // A noisy capture bends straight limbs the wrong way: the plane counts, not its sign.
+  // In a noisy capture, straight limbs bend in the wrong direction: ignore the sign of the plane.
   const Vec3d expected = Rotate(first_ ? swing : previous, rest_axis);
   axis = Unit(Dot(axis, expected) < 0 ? -axis : axis, expected);
-  // The swing's own twist flips where the limb points away from its rest direction: it fades there.
+  // The twist of the swing flips opposite to the limb's rest direction, so it fades out there.
   const double swing_weight = kSwingPrior * (1 + Dot(joint.rest_direction, direction)) / 2;
   const Quaternion fit = FitRotation(
       {{joint.rest_direction, direction, kDirectionWeight}, {rest_axis, axis, plane_weight}},
       {{previous, first_ ? 0 : kPreviousPrior}, {swing, swing_weight}});
-  // Exactly onto the direction, with the twist of the fit.
+  // Points exactly in the direction, with the twist of the fit.
   return ShortestArc(Rotate(fit, joint.rest_direction), direction, axis) * fit;
 }
 

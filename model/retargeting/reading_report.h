@@ -11,10 +11,10 @@ namespace duet::retargeting {
 
 // The origin of a setting of a motion file.
 enum class Origin {
-  kGiven,    // whoever reads it, beside the file
-  kFile,     // the file says it
-  kGuessed,  // found from the motion
-  kDefault,  // taken where nothing says otherwise
+  kGiven,    // specified by the caller
+  kFile,     // stated by the file
+  kGuessed,  // inferred from the motion
+  kDefault,  // used if nothing else determines it
 };
 // "given", "file", "guessed" or "default".
 absl::string_view OriginName(Origin origin);

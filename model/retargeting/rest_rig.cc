@@ -44,7 +44,7 @@ LocalPose ToLocal(const CharacterRig& rig, const CharacterPose& pose) {
 
 std::vector<int> DepthFirst(const std::vector<int>& parents) {
   std::vector<std::vector<int>> children(parents.size());
-  std::vector<int> waiting;  // the next one last
+  std::vector<int> waiting;  // a stack
   for (std::size_t j = parents.size(); j-- > 0;) {
     if (parents[j] < 0) {
       waiting.push_back(static_cast<int>(j));
@@ -57,7 +57,7 @@ std::vector<int> DepthFirst(const std::vector<int>& parents) {
     const int joint = waiting.back();
     waiting.pop_back();
     order.push_back(joint);
-    // Children were gathered from the last to the first, so that the first is taken next.
+    // Children were pushed in reverse order, so that the first one is next.
     const std::vector<int>& below = children[Index(joint)];
     waiting.insert(waiting.end(), below.begin(), below.end());
   }

@@ -11,7 +11,7 @@ namespace duet::retargeting {
 namespace {
 
 constexpr Vec3d kRight = {-1, 0, 0}, kUp = {0, 1, 0}, kDown = {0, -1, 0}, kForward = {0, 0, 1};
-// Of the last bone: a hand, a foot, the upper half of the head.
+// Length of the last bone: a hand, a foot, the upper half of the head.
 constexpr double kEndSiteLength = 0.35;
 
 class RigBuilder {
@@ -50,7 +50,7 @@ class RigBuilder {
            (IsAtOrBelow(skeleton_.hips->left, joint) || IsAtOrBelow(skeleton_.hips->right, joint));
   }
 
-  // The root's child that leads upwards, -1 when every child leads to a hip.
+  // The root's child that leads upwards; -1 if every child leads to a hip.
   int UpperNeighbour() const {
     for (int child : Children(skeleton_.root)) {
       if (!LeadsToAHip(child)) return child;
@@ -58,12 +58,12 @@ class RigBuilder {
     return -1;
   }
 
-  // For every frame the rotation that takes the rest pose's trunk to the clip's.
+  // For every frame, the rotation from the rest pose's trunk to the clip's.
   void FindTrunkAxes() {
     const int upper = UpperNeighbour();
     trunk_axes_.reserve(static_cast<size_t>(clip_.frame_count()));
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
-      // Without hips the trunk keeps the rest pose's right.
+      // Without hips, the trunk keeps the rest pose's lateral axis.
       const motion::JointPair hips =
           skeleton_.hips.value_or(motion::JointPair{skeleton_.root, skeleton_.root});
       const Vec3d left = ToDouble(clip_.at(frame, hips.left));
@@ -84,7 +84,7 @@ class RigBuilder {
     return base::Median(std::move(lengths));
   }
 
-  // Where `to` is from `from` along the trunk's axes, on average.
+  // The mean offset of `to` from `from` in the trunk's axes.
   Vec3d MeanOffset(int from, int to) const {
     Vec3d sum;
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
@@ -94,15 +94,15 @@ class RigBuilder {
     return sum * (1.0 / clip_.frame_count());
   }
 
-  // The way that the limb starting at `joint` goes in the rest pose; `first` leads to its start.
+  // The rest direction of the limb that starts at `joint`; `first` leads to its start.
   Vec3d LimbDirection(int joint, Vec3d first) const {
     if (IsLeg(joint)) return kDown;
     if (std::abs(first.x) > std::abs(first.y)) return first.x > 0 ? -kRight : kRight;
     return first.y < 0 ? kDown : kUp;
   }
 
-  // Children and parent; at the root also the children of branching children, so that the shoulders
-  // have a say in where the chest faces.
+  // Children and parent. At the root also the children of branching children, so that the shoulders
+  // influence the direction of the chest.
   std::vector<int> Neighbours(int joint) const {
     std::vector<int> neighbours = Children(joint);
     const int parent = parents_[static_cast<size_t>(joint)];
@@ -120,7 +120,7 @@ class RigBuilder {
     return static_cast<int>(rig_.joints.size()) - 1;
   }
 
-  // `limb` is the direction in which a chain of single children goes on from here.
+  // `limb` is the direction in which a chain of single children continues.
   void AddJoint(int joint, int parent, Vec3d offset, Vec3d limb) {
     RigJoint added;
     added.name = skeleton_.joint_names[static_cast<size_t>(joint)];

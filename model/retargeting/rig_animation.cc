@@ -18,7 +18,7 @@ bool IsFoot(const motion::Skeleton& skeleton, int joint) {
   return skeleton.feet && (joint == skeleton.feet->left || joint == skeleton.feet->right);
 }
 
-// Turns feet, which the fit leaves as they hang on their shins.
+// Rotates feet, which the fit leaves at rest relative to their shins.
 void TurnFeet(const motion::Skeleton& skeleton, const Rig& rig, double ankle_height,
               RigPose* pose) {
   std::vector<Quaternion> world(rig.joints.size());

@@ -60,7 +60,7 @@ motion::Poses Stabbing() {
   });
 }
 
-TEST(PartBodies, WhoStandsInTheOtherMakesRoom) {
+TEST(PartBodies, AnOverlappingFollowerMovesAway) {
   const motion::Poses inside = Opposite(0.1f);
   EXPECT_GT(Depth(inside, 20), 0.1);
   const motion::Poses parted = Parted(inside);
@@ -69,7 +69,7 @@ TEST(PartBodies, WhoStandsInTheOtherMakesRoom) {
   EXPECT_EQ(parted.at(20, 2).y, inside.at(20, 2).y);
 }
 
-TEST(PartArms, AnArmThatReachesThroughTheOtherIsTakenOut) {
+TEST(PartArms, AnArmThatReachesThroughTheLeaderIsMovedOut) {
   const motion::Poses through = Stabbing();
   EXPECT_GT(Depth(through, 20), 0.08);
   const motion::Poses parted = Parted(through);
@@ -79,9 +79,9 @@ TEST(PartArms, AnArmThatReachesThroughTheOtherIsTakenOut) {
   EXPECT_LT(LargestStep(parted), 0.05f);
 }
 
-TEST(PartBoth, WhoIsApartOrTouchesLightlyStays) { EXPECT_EQ(Parted(Opposite(1)), Opposite(1)); }
+TEST(PartBoth, SmallOverlapsAreUnchanged) { EXPECT_EQ(Parted(Opposite(1)), Opposite(1)); }
 
-TEST(PartBoth, AnEmbraceStays) {
+TEST(PartBoth, AnEmbraceIsUnchanged) {
   EXPECT_EQ(Parted(Opposite(0.1f), 1), Opposite(0.1f));
   EXPECT_EQ(Parted(Stabbing(), 1), Stabbing());
   EXPECT_GT(Depth(Parted(Stabbing(), 0.7f), 20), Depth(Parted(Stabbing()), 20) + 0.02);

@@ -78,7 +78,7 @@ TEST(CleanUp, EveryStageHasItsSwitch) {
   EXPECT_NE(alone([](Options* o) { o->joint_ranges.enabled = true; }, broken), broken);
 }
 
-TEST(CleanUp, AShortWindowAndALoneFrameAreWindowsToo) {
+TEST(CleanUp, ShortWindowsAndSingleFramesAreValid) {
   for (const int frames : {1, 2, 3}) {
     motion::Poses soiled = Soiled();
     soiled.Resize(frames);

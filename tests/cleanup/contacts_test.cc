@@ -51,7 +51,7 @@ motion::Poses Walking() {
   });
 }
 
-TEST(HoldContacts, AFootThatSlidesIsHeld) {
+TEST(HoldContacts, FixesASlidingFoot) {
   const motion::Poses sliding = Sliding(), held = Held(sliding);
   for (const int foot : {11, 14}) {
     EXPECT_GT(Slide(sliding, foot, 0, kFrames - 1), 0.002);
@@ -90,7 +90,7 @@ TEST(HoldContacts, AFootInTheAirIsFree) {
   for (int t = 0; t < kFrames; ++t) EXPECT_LT(Distance(held.at(t, 11), kicking.at(t, 11)), 1e-4f);
 }
 
-TEST(HoldContacts, GoesOnFromWhereTheSettledFramesStand) {
+TEST(HoldContacts, ContinuesTheContactsOfSettledFrames) {
   const motion::Poses sliding = Sliding();
   const motion::Poses held = Held(sliding, 15);
   for (int t = 0; t < 15; ++t) EXPECT_EQ(held[t], sliding[t]);

@@ -22,13 +22,13 @@ motion::Poses Raised(const std::function<double(double)>& height) {
   });
 }
 
-TEST(FloorHeight, IsTheLowFootsAndNoStrayFramesOrJumps) {
+TEST(FloorHeight, IgnoresJumpsAndStrayFrames) {
   motion::Poses poses = Raised([](double t) { return t > 1 && t < 1.5 ? 0.4 : 0; });
   poses.at(7, 11).y = -3;  // lost by a tracker
   EXPECT_NEAR(FloorHeight(*motion::SbuSkeleton().feet, poses), kFloor, 1e-4f);
 }
 
-TEST(StandOnFloor, WhatFloatsOrSinksIsBroughtThere) {
+TEST(StandOnFloor, FloatingAndSunkenBodiesAreMovedToTheFloor) {
   for (const double off : {0.3, 0.06, -0.06, -0.5}) {
     const motion::Poses floating = Raised([&](double) { return off; });
     const motion::Poses standing = OnFloor(floating);

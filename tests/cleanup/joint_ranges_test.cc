@@ -70,7 +70,7 @@ void ExpectPointsAsBefore(const motion::Poses& after, const motion::Poses& befor
   EXPECT_LT(LargestLengthChange(after, before), 1e-5f);
 }
 
-TEST(KeepJointRanges, WhatPeopleDoIsLeftAlone) {
+TEST(KeepJointRanges, NaturalPosesAreUnchanged) {
   const motion::Poses people[] = {
       Puppet(),
       Leg(Down(0, {}), Down(4, kForwards)),
@@ -142,7 +142,7 @@ TEST(KeepJointRanges, AnElbowDoesNotBendBackwards) {
   }
 }
 
-TEST(KeepJointRanges, ALimbRaisedAgainstItsRestIsLeftAlone) {
+TEST(KeepJointRanges, ALimbRaisedOppositeToItsRestIsUnchanged) {
   const motion::Poses overhead = Leg({0, 1, 0}, {0, 0.5f, 1}), arm = Arm({0, 1, -0.3f}, {0, 0, 1});
   EXPECT_EQ(InRange(overhead), overhead);
   EXPECT_EQ(InRange(arm), arm);
@@ -189,7 +189,7 @@ motion::Poses Swinging(int upper, Vec3 way, double degrees) {
   return poses;
 }
 
-TEST(KeepJointRanges, NothingPops) {
+TEST(KeepJointRanges, CorrectionsAreContinuous) {
   const motion::Poses swings[] = {Swinging(kHip, kForwards, 60), Swinging(kHip, kOut, 60),
                                   Swinging(kHip, kBackwards, 175),
                                   Swinging(kShoulder, kBackwards, 60)};
@@ -200,7 +200,7 @@ TEST(KeepJointRanges, NothingPops) {
   }
 }
 
-TEST(KeepJointRanges, GoesOnFromTheSettledFrames) {
+TEST(KeepJointRanges, ContinuesFromSettledFrames) {
   // Within the range until the settled frames end, then beyond it at once.
   motion::Poses broken = Puppet();
   const motion::Poses leg = Leg(Down(0, {}), Down(45, kForwards));
@@ -214,7 +214,7 @@ TEST(KeepJointRanges, GoesOnFromTheSettledFrames) {
   EXPECT_LT(LargestStep(rest), 0.08f);
 }
 
-TEST(KeepJointRanges, LimitsWhatASkeletonHas) {
+TEST(KeepJointRanges, SkipsLimbsThatASkeletonLacks) {
   const motion::Poses leg = Leg(Down(0, {}), Down(45, kForwards));
   const motion::Poses arm = Arm(Down(0, {}), Down(60, kBackwards));
   EXPECT_EQ(InRange(leg, 0, WithoutHips()), leg);

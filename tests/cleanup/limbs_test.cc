@@ -39,7 +39,7 @@ TEST(FindBody, KnowsTheSbuSkeleton) {
   EXPECT_EQ(body.neck->head, 0);
 }
 
-TEST(FindBody, KnowsASpineCollarsToesAndFingers) {
+TEST(FindBody, FindsLimbsAmongSpineCollarsToesAndFingers) {
   motion::Skeleton skeleton =
       Tree({{"pelvis", -1},  {"spine", 0},    {"chest", 1},      {"neck", 2},
             {"Head", 3},     {"head_end", 4},  // 5
@@ -65,7 +65,7 @@ TEST(FindBody, KnowsASpineCollarsToesAndFingers) {
   EXPECT_THAT(body.neck->branch, ElementsAre(4, 5));
 }
 
-TEST(FindBody, FindsNoLimbsWhereThereAreNone) {
+TEST(FindBody, FindsNoLimbsInASkeletonWithoutThem) {
   EXPECT_THAT(FindBody(WithoutFeet()).legs, IsEmpty());
   EXPECT_THAT(FindBody(WithoutHips()).arms, IsEmpty());
   EXPECT_EQ(FindBody(WithoutHips()).chest, std::nullopt);
@@ -92,7 +92,7 @@ class ReachTest : public ::testing::Test {
   const motion::Poses before_ = poses_;
 };
 
-TEST_F(ReachTest, PutsTheEndThereAndKeepsTheBones) {
+TEST_F(ReachTest, ReachesTheTargetAndKeepsBoneLengths) {
   const Vec3 target = poses_.at(0, 11) + Vec3{0.1f, 0.15f, -0.2f};
   ReachFor(target);
   EXPECT_LT(Distance(poses_.at(0, 11), target), 1e-5f);
@@ -100,7 +100,7 @@ TEST_F(ReachTest, PutsTheEndThereAndKeepsTheBones) {
   EXPECT_GT(poses_.at(0, 10).z, poses_.at(0, 11).z);  // the knee still bends forwards
 }
 
-TEST_F(ReachTest, StretchesTowardsWhatIsOutOfReach) {
+TEST_F(ReachTest, StretchesTowardsATargetOutOfReach) {
   ReachFor({5, 0, 0});
   const Vec3 leg = poses_.at(0, 11) - poses_.at(0, 9);
   EXPECT_LT(LargestLengthChange(poses_, before_), 1e-6f);
@@ -123,7 +123,7 @@ TEST_F(ReachTest, AStraightLegBendsForwards) {
   EXPECT_GT(poses_.at(0, 10).z, poses_.at(0, 9).z + 0.1f);
 }
 
-TEST(Facing, IsWhereThePuppetLooks) {
+TEST(Facing, IsTheDirectionOfTheHips) {
   const Vec3 facing = Facing(*motion::SbuSkeleton().hips, Puppet({}, 1)[0]);
   EXPECT_NEAR(facing.z, 1, 1e-5f);
 }

@@ -17,7 +17,7 @@ float DistanceAt(const motion::Poses& follower, int frame) {
   return std::hypot(offset.x, offset.z);
 }
 
-TEST(KeepSpacing, WhoIsFarAwayIsBroughtNear) {
+TEST(KeepSpacing, MovesADistantFollowerNearer) {
   const motion::Poses far = Moved(Puppet(), {3, 0, 4});
   const motion::Poses near = Spaced(far);
   for (int t = 0; t < kFrames; ++t) EXPECT_LE(DistanceAt(near, t), 2.751f);
@@ -25,22 +25,22 @@ TEST(KeepSpacing, WhoIsFarAwayIsBroughtNear) {
   EXPECT_EQ(near.at(5, 2).y, far.at(5, 2).y);
 }
 
-TEST(KeepSpacing, WhoStandsInsideTheOtherMovesOut) {
+TEST(KeepSpacing, MovesATooNearFollowerAway) {
   EXPECT_NEAR(DistanceAt(Spaced(Moved(Puppet(), {0.05f, 0, 0})), 9), 0.15f, 1e-4f);
 }
 
-TEST(KeepSpacing, WhoIsInRangeStays) {
+TEST(KeepSpacing, AFollowerInRangeIsUnchanged) {
   EXPECT_EQ(Spaced(Moved(Puppet(), {0, 0, 2.4f})), Moved(Puppet(), {0, 0, 2.4f}));
 }
 
-TEST(KeepSpacing, AMomentOutsideStays) {
+TEST(KeepSpacing, AShortViolationIsUnchanged) {
   const motion::Poses lunge = Changed(Puppet(), [](int t, Vec3 joint) {
     return joint + Vec3{t > 20 && t < 24 ? 2.6f : 2.2f, 0, 0};
   });
   EXPECT_EQ(Spaced(lunge), lunge);
 }
 
-TEST(KeepSpacing, SettledFramesStayAndTheWayBackIsNoFasterThanTold) {
+TEST(KeepSpacing, SettledFramesAreUnchangedAndSpeedIsLimited) {
   const motion::Poses far = Moved(Puppet(), {3.5f, 0, 0});
   const motion::Poses near = Spaced(far, 15);
   for (int t = 0; t < 15; ++t) EXPECT_EQ(near[t], far[t]);

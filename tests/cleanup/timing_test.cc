@@ -8,7 +8,7 @@
 namespace duet::cleanup {
 namespace {
 
-TEST(EaseIn, NothingWhileSettledThenMoreAndMoreOverAThirdOfASecond) {
+TEST(EaseIn, RisesFromZeroToOneWithinAThirdOfASecond) {
   const Timing timing{15, 4};
   EXPECT_EQ(EaseIn(timing, 0), 0);
   EXPECT_EQ(EaseIn(timing, 3), 0);
@@ -23,9 +23,9 @@ TEST(EaseIn, TakesAsLongAtEveryRate) {
   EXPECT_EQ(EaseIn({60, 10}, 10 + 20), 1);
 }
 
-TEST(EaseIn, EverythingAtOnceWhereNothingIsSettled) { EXPECT_EQ(EaseIn({15, 0}, 0), 1); }
+TEST(EaseIn, IsOneWithoutSettledFrames) { EXPECT_EQ(EaseIn({15, 0}, 0), 1); }
 
-TEST(SoftLimit, LeavesWhatIsSmallAndHoldsWhatIsLarge) {
+TEST(SoftLimit, KeepsSmallValuesAndLimitsLargeOnes) {
   EXPECT_EQ(SoftLimit(0, 12, 14), 0);
   EXPECT_EQ(SoftLimit(12, 12, 14), 12);
   EXPECT_NEAR(SoftLimit(12.01f, 12, 14), 12.01f, 1e-4f);
@@ -33,7 +33,7 @@ TEST(SoftLimit, LeavesWhatIsSmallAndHoldsWhatIsLarge) {
   EXPECT_LE(SoftLimit(90, 12, 14), 14);
 }
 
-TEST(LowPass, KeepsALevelAndTakesOutASpike) {
+TEST(LowPass, KeepsAConstantAndRemovesASpike) {
   std::vector<float> track(31, 2);
   for (const float value : LowPass(track, 3)) EXPECT_NEAR(value, 2, 1e-6f);
   track[15] = 10;

@@ -17,7 +17,7 @@ motion::Poses Leaning(double degrees) {
   return Changed(Puppet(), [&](int, Vec3 joint) { return LeanForwards(joint, degrees); });
 }
 
-TEST(SetUpright, ALeanThatLastsIsTakenBackWhicheverWay) {
+TEST(SetUpright, ALastingLeanInAnyDirectionIsReduced) {
   for (const double degrees : {20.0, 60.0}) {
     for (const double yaw : {0.0, 1.0, 2.5, 4.0}) {
       const motion::Poses leaning =
@@ -81,7 +81,7 @@ double TrunkLeanDegrees(const motion::Poses& poses, int frame) {
   return std::acos(trunk.y) * 180 / 3.14159265;
 }
 
-TEST(SetTrunkUpright, ABendThatLastsIsTakenBackOverFeetThatStay) {
+TEST(SetTrunkUpright, ALastingBendIsReducedOverFixedFeet) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   for (const double degrees : {-70.0, 30.0, 100.0}) {
     const motion::Poses bent = Bent(degrees);

@@ -22,7 +22,7 @@ constexpr char kName[] = "follower";
 
 std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
 
-// The node that the joints hang from, then the joints in the rig's order.
+// Adds a parent node, then the joints in the rig's order below it. Returns the parent.
 int AddJoints(const CharacterRig& rig, GltfWriter* writer) {
   const int holder = writer->Add("nodes", {{"name", kName}});
   for (std::size_t j = 0; j < rig.names.size(); ++j) {
@@ -45,8 +45,7 @@ int AddBody(const CharacterRig& rig, int first_joint, GltfWriter* writer) {
   return writer->Add("nodes", {{"name", "follower_body"}, {"mesh", mesh}, {"skin", skin}});
 }
 
-// Rotations of neighbouring frames on the same side (q, not -q), so that players take the short
-// way.
+// Chooses between q and -q so that players interpolate along the shorter arc.
 std::vector<Quaternion> TurnsOf(const std::vector<LocalPose>& poses, std::size_t joint) {
   std::vector<Quaternion> turns;
   for (const LocalPose& pose : poses) {

@@ -10,11 +10,12 @@
 
 namespace duet::formats::gltf {
 
-// A rig of another format's file as glTF: its names, hierarchy and bone lengths, in metres, y up,
-// with a slender skinned body (retargeting::MakeStickFigure) and one animation. What `provenance`
-// says is in the scene's extras; it may be null.
+// Formats a rig from another format as glTF: its names, hierarchy and bone lengths, in metres, y
+// up, with a slender skinned body (retargeting::MakeStickFigure) and one animation. The scene's
+// extras hold `provenance`, which may be null.
 //
-// Requires a rig whose joints are not turned at rest. Shapes: poses [frames >= 1], of its joints.
+// Requires a rig whose joints are not rotated at rest.
+// Shapes: poses [frames >= 1], with the rig's joints.
 std::string FormatCharacter(const retargeting::CharacterRig& rig,
                             const std::vector<retargeting::CharacterPose>& poses,
                             double frame_rate_hz, const motion::Provenance* provenance,

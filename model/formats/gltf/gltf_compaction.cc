@@ -13,7 +13,7 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kAlignment = 4;
 
-// Extensions by the beginning of their names that refer to no accessor and to no view.
+// Prefixes of extensions that refer to no accessor and no view.
 constexpr const char* kHarmless[] = {
     "KHR_materials_",        "KHR_texture_", "EXT_texture_", "KHR_lights_",
     "KHR_mesh_quantization", "KHR_xmp",      "VRM",          "KHR_node_"};
@@ -26,7 +26,8 @@ bool IsHarmless(const ordered_json& extension) {
   return false;
 }
 
-// Finds what is in use, then writes everything anew. Any doubt leaves the document as it is.
+// Finds the used accessors and views, then rewrites the document without the others. Leaves the
+// document unchanged if any index, range or extension is not understood.
 class Compaction {
  public:
   Compaction(ordered_json* json, std::string* buffer) : json_(*json), buffer_(*buffer) {}
@@ -50,7 +51,7 @@ class Compaction {
  private:
   static constexpr int kUnused = -1, kUsed = 0;
 
-  // An array of the document; an empty one where it has none.
+  // An array of the document, or an empty array.
   const ordered_json& List(const char* name) const {
     static const ordered_json* const kEmpty = new ordered_json(ordered_json::array());
     const auto found = json_.find(name);
@@ -116,7 +117,7 @@ class Compaction {
              length->get<std::size_t>() <= buffer_.size() - begin->get<std::size_t>();
   }
 
-  // Keeps what is used of an array, and turns `places` into where it is then.
+  // Keeps the used items of an array and sets `places` to their new indices.
   void Keep(const char* name, std::vector<int>* places) {
     ordered_json kept = ordered_json::array();
     for (std::size_t i = 0; i < places->size(); ++i) {
@@ -158,7 +159,7 @@ class Compaction {
   ordered_json& json_;
   std::string& buffer_;
   bool sound_ = true;
-  // Where each is after compaction.
+  // The state of each item, then its index after compaction.
   std::vector<int> accessors_, views_;
 };
 

@@ -8,8 +8,8 @@
 namespace duet::formats::gltf {
 
 // Removes the animations of a document with one buffer, and the accessors, views and bytes that
-// only they used. A document with an extension that may refer to accessors in its own way keeps all
-// but the animations, and so does one whose indices or ranges are invalid.
+// only they used. If an extension may refer to accessors, or an index or range is invalid, removes
+// only the animations.
 void DropAnimations(nlohmann::ordered_json* json, std::string* buffer);
 
 }  // namespace duet::formats::gltf

@@ -38,7 +38,7 @@ class GltfExporter {
       scene["nodes"].push_back(all.back().mannequin);
     }
     AddAnimation(people[0], all);
-    // Keys alone do not tell 29.97 Hz from 30.
+    // The times of keys do not distinguish 29.97 Hz from 30.
     writer_.json()["asset"]["extras"] = {{"frame_rate_hz", people[0].frame_rate_hz}};
     if (provenance != nullptr) scene["extras"] = Extras(*provenance);
     writer_.json()["scene"] = 0;
@@ -49,7 +49,7 @@ class GltfExporter {
  private:
   struct Person {
     RigAnimation animation;
-    int node = 0;         // what the skeleton hangs from
+    int node = 0;         // parent of the skeleton
     int first_joint = 0;  // node; the others follow in the rig's order
     int mannequin = 0;    // node
   };

@@ -42,7 +42,7 @@ ordered_json ToArray(Vec3d a) {
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
 }
 
-// At rest no joint is turned, so that a bind matrix is a translation.
+// No joint is rotated at rest, so a bind matrix is a translation.
 int AddSkin(const std::string& name, int first_joint, const std::vector<Vec3d>& rest_positions,
             GltfWriter* writer) {
   std::vector<Vec3d> to_joints;

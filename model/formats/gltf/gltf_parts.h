@@ -12,17 +12,17 @@
 #include "model/retargeting/rotation.h"
 #include "nlohmann/json.hpp"
 
-// What several writers of glTF have in common.
+// Parts that several writers of glTF share.
 
 namespace duet::formats::gltf {
 
 // One animation of a document, named "duet", with keys at every frame.
 class AnimationWriter {
  public:
-  // `writer` outlives the animation.
+  // `writer` must outlive this object.
   AnimationWriter(std::size_t frames, double frame_rate_hz, GltfWriter* writer);
 
-  // [frames], in the node's parent
+  // Shapes: [frames], in the axes of the node's parent.
   void Translate(int node, const std::vector<retargeting::Vec3d>& translations);
   void Rotate(int node, const std::vector<retargeting::Quaternion>& rotations);
 
@@ -39,18 +39,19 @@ class AnimationWriter {
 
 nlohmann::ordered_json ToArray(retargeting::Vec3d a);
 
-// A skin of joints that are not turned at rest, the nodes from `first_joint` on. Returns its index.
+// Adds a skin of joints that are not rotated at rest, the nodes from `first_joint`. Returns its
+// index.
 int AddSkin(const std::string& name, int first_joint,
             const std::vector<retargeting::Vec3d>& rest_positions, GltfWriter* writer);
 
-// Each returns the index.
+// Returns the index of the new material.
 int AddMaterial(const std::string& name, const retargeting::Look& look, GltfWriter* writer);
 
-// A primitive of a mesh that is skinned to `joint_count` joints.
+// Returns a primitive of a mesh that is skinned to `joint_count` joints.
 nlohmann::ordered_json AddPrimitive(const retargeting::SkinnedMesh& mesh, std::size_t joint_count,
                                     int material, GltfWriter* writer);
 
-// What a scene's extras say of how its follower was made.
+// Formats the provenance of a follower for a scene's extras.
 nlohmann::ordered_json Extras(const motion::Provenance& provenance);
 
 }  // namespace duet::formats::gltf

@@ -15,7 +15,7 @@ using nlohmann::ordered_json;
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 
-// glTF's own numbers.
+// Constants of glTF.
 constexpr int kUnsignedByte = 5121, kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F534A,

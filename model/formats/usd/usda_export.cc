@@ -24,7 +24,7 @@ using retargeting::SkinnedMesh;
 using retargeting::Vec3d;
 using Texts = std::vector<std::string>;
 
-// How far a body reaches around its joints, metres.
+// Margin of a body around its joints, in metres.
 constexpr double kAroundJoints = 0.25;
 
 template <typename Values, typename Write>
@@ -46,7 +46,7 @@ std::string Box(const std::vector<Vec3d>& points, double margin) {
   return UsdArray({UsdVector(low - by), UsdVector(high + by)});
 }
 
-// Every joint as the path from the root, "torso/torso_to_neck/neck": names of one file are unique.
+// The path of every joint from the root, "torso/torso_to_neck/neck". Paths are unique.
 Texts JointPaths(const retargeting::Rig& rig) {
   Texts paths;
   std::set<std::string> taken;
@@ -60,7 +60,7 @@ Texts JointPaths(const retargeting::Rig& rig) {
   return paths;
 }
 
-// Weights by class, one value for each frame of the keys; a class that a key leaves out weighs 0.
+// Writes weights by class, one value for each key. A class that a key omits has weight 0.
 void WriteLabels(const std::vector<motion::Provenance::Labels>& labels, UsdaWriter* out) {
   Texts frames;
   std::map<std::string, Texts> weights;
@@ -148,7 +148,7 @@ class UsdaExporter {
     out_.Close();
   }
 
-  // At rest no joint is turned, so that every transform is a translation.
+  // No joint is rotated at rest, so every transform is a translation.
   void WriteSkeleton(const std::string& path, const RigAnimation& animation) {
     const retargeting::Rig& rig = animation.rig;
     const std::string joints = ArrayOf(JointPaths(rig), UsdString);
@@ -204,7 +204,7 @@ class UsdaExporter {
     out_.Close();
   }
 
-  // One value a vertex; `elements` where the format wants to hear how many.
+  // Writes one value per vertex. Omits elementSize if `elements` is 0.
   void WriteVertexValues(const std::string& name, const std::string& values, int elements) {
     out_.Open(absl::StrCat(name, " = ", values), '(');
     if (elements > 0) out_.Line(absl::StrCat("elementSize = ", elements));
@@ -212,7 +212,7 @@ class UsdaExporter {
     out_.Close(")");
   }
 
-  // A prim to which schemas are applied.
+  // Opens a prim with applied API schemas.
   void OpenBound(const std::string& type, const std::string& name, const std::string& schemas) {
     out_.Open(absl::StrCat("def ", type, " ", UsdString(name)), '(');
     out_.Line(absl::StrCat("prepend apiSchemas = [", schemas, "]"));
@@ -247,7 +247,7 @@ class UsdaExporter {
 
   const motion::Skeleton& skeleton_;
   UsdaWriter out_;
-  std::string top_;  // the prim above all
+  std::string top_;  // the default prim
 };
 
 }  // namespace

@@ -14,11 +14,11 @@ namespace duet::formats::usd {
 // Writes one person, or a leader and a follower, as text USD: skinned mannequins, each with a
 // UsdSkel skeleton, in metres, y up, in the clips' world. The rest pose is the T pose of MakeRig
 // with the feet on the floor at the origin. A time code is a frame, and its rate is the clip's.
-// Every joint is exactly at its position in the clip. The customData of the prim above both holds
+// Every joint is exactly at its position in the clip. The customData of the default prim holds
 // `provenance`, which may be null.
 //
-//   /pair                        default prim; of one person /person_alone
-//     leader, follower           SkelRoot; of one person: person
+//   /pair                        default prim; for one person: /person_alone
+//     leader, follower           SkelRoot; for one person: person
 //       skeleton                 joints, bind and rest transforms
 //         animation              SkelAnimation
 //       mannequin, visor         meshes, every vertex with one joint

@@ -8,21 +8,21 @@
 #include "absl/strings/string_view.h"
 #include "model/retargeting/rotation.h"
 
-// Text USD (.usda) in the making, a line at a time.
+// Builds text USD (.usda) line by line.
 
 namespace duet::formats::usd {
 
-// A name as prims may have it: letters, digits and underscores, the first no digit.
+// Converts a name to a valid prim name: letters, digits and underscores; not a digit first.
 std::string PrimName(absl::string_view name);
-// Text in double quotes, whatever it holds.
+// Quotes any text with double quotes.
 std::string UsdString(absl::string_view text);
 
-// Values as the format writes them. Turns have the real part first; matrices are of row vectors.
+// Format values. Rotations have the real part first; matrices apply to row vectors.
 std::string UsdNumber(double value);
 std::string UsdVector(retargeting::Vec3d a);
 std::string UsdTurn(retargeting::Quaternion q);
 std::string UsdTranslation(retargeting::Vec3d by);
-// "[a, b, c]" of values that are written already.
+// Joins formatted values to "[a, b, c]".
 std::string UsdArray(const std::vector<std::string>& values);
 
 class UsdaWriter {
@@ -30,12 +30,12 @@ class UsdaWriter {
   // "#usda 1.0"
   UsdaWriter();
 
-  // An indented line.
+  // Adds an indented line.
   void Line(absl::string_view text);
-  // Ends the line with `bracket` ("{" or "("), and indents what follows until Close("}").
+  // Adds a line that ends with `bracket` ("{" or "("), and indents the next lines until Close.
   void Open(absl::string_view text, char bracket = '{');
   void Close(absl::string_view bracket = "}");
-  // "name.timeSamples = {", a line for each of `values`, of frames from 0 on.
+  // Adds "name.timeSamples = {" with a line for each of `values`, at frames 0, 1, 2, ...
   void TimeSamples(absl::string_view name, const std::vector<std::string>& values);
 
   std::string Take() { return std::move(text_); }
