@@ -1,4 +1,4 @@
-// duet-keyframe: makes a BVH clip from a hand-written key-frame file.
+// duet-keyframe: converts a handwritten key-frame file to a BVH clip.
 //
 //   duet-keyframe samples/keyframes/kick.txt --out samples/kick.bvh
 
@@ -34,10 +34,10 @@ absl::Status Convert(const std::string& keyframes, const std::string& out) {
 }  // namespace duet::authoring
 
 int main(int argc, char** argv) {
-  CLI::App app("Makes a BVH clip from a hand-written key-frame file.", "duet-keyframe");
+  CLI::App app("Converts a handwritten key-frame file to a BVH clip.", "duet-keyframe");
   app.set_version_flag("--version", "duet-keyframe " DUET_VERSION);
   std::string keyframes, out;
-  app.add_option("keyframes", keyframes, "Key-frame text (docs/formats.md)")->required();
+  app.add_option("keyframes", keyframes, "Key-frame file (docs/formats.md)")->required();
   app.add_option("--out", out, "The BVH file to write")->required();
   CLI11_PARSE(app, argc, argv);
   const absl::Status status = duet::authoring::Convert(keyframes, out);

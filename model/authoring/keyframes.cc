@@ -36,7 +36,7 @@ enum TrackIndex {
   kTrackCount
 };
 
-// A relaxed stand.
+// A track with the values of a relaxed stand.
 struct TrackDefault {
   const char* name;
   std::vector<double> values;
@@ -58,7 +58,7 @@ const std::vector<TrackDefault>& TrackDefaults() {
   return *kDefaults;
 }
 
-// Keys of one track: for each of its values the value over time.
+// The keys of one track, for each of its values.
 using TrackKeys = std::vector<std::vector<MonotoneCubic::Key>>;
 
 class KeyframeParser {
@@ -77,13 +77,13 @@ class KeyframeParser {
       if (!status.ok()) return status;
     }
     if (time_ > 0) return absl::OkStatus();
-    return Error("no \"at\" after 0 seconds, wanted at least two key poses");
+    return Error("at: expected at least two key poses, got no time after 0 s");
   }
 
   double frame_rate_hz() const { return frame_rate_hz_; }
   double duration() const { return time_; }
 
-  // Every track's values over time.
+  // Returns the values of every track over time.
   std::vector<std::vector<MonotoneCubic>> Curves() const {
     std::vector<std::vector<MonotoneCubic>> curves(keys_.size());
     for (std::size_t track = 0; track < keys_.size(); ++track) {
@@ -107,22 +107,21 @@ class KeyframeParser {
     for (std::size_t track = 0; track < keys_.size(); ++track) {
       if (words[0] == TrackDefaults()[track].name) return ParseKey(words, track);
     }
-    return Error(absl::StrCat("came ", base::Quoted(words[0]),
-                              ", wanted frame_rate, at or a track such as torso"));
+    return Error(absl::StrCat("expected frame_rate, at or a track such as torso, got ",
+                              base::Quoted(words[0])));
   }
 
-  absl::Status ParseValues(const std::vector<absl::string_view>& words, std::size_t wanted,
+  absl::Status ParseValues(const std::vector<absl::string_view>& words, std::size_t expected,
                            std::vector<double>* values) const {
     for (std::size_t i = 1; i < words.size(); ++i) {
       float value = 0;
       if (!motion::ParseCoordinate(words[i], &value)) {
-        return Error(
-            absl::StrCat(words[0], ": came ", base::Quoted(words[i]), ", wanted a number"));
+        return Error(absl::StrCat(words[0], ": expected a number, got ", base::Quoted(words[i])));
       }
       values->push_back(static_cast<double>(value));
     }
-    if (values->size() == wanted) return absl::OkStatus();
-    return Error(absl::StrCat(words[0], ": came ", values->size(), " values, wanted ", wanted));
+    if (values->size() == expected) return absl::OkStatus();
+    return Error(absl::StrCat(words[0], ": expected ", expected, " values, got ", values->size()));
   }
 
   absl::Status ParseFrameRate(const std::vector<absl::string_view>& words) {
@@ -130,7 +129,8 @@ class KeyframeParser {
     absl::Status status = ParseValues(words, 1, &values);
     if (!status.ok()) return status;
     if (values[0] < 1 || values[0] > motion::kMaxServedFrameRateHz) {
-      return Error(absl::StrCat("frame_rate: wanted 1 to ", motion::kMaxServedFrameRateHz));
+      return Error(absl::StrCat("frame_rate: expected 1 to ", motion::kMaxServedFrameRateHz,
+                                ", got ", values[0]));
     }
     frame_rate_hz_ = values[0];
     return absl::OkStatus();
@@ -142,23 +142,24 @@ class KeyframeParser {
     if (!status.ok()) return status;
     if (time_ < 0 ? values[0] != 0 : values[0] <= time_ || values[0] > kLongestMotion) {
       return Error(absl::StrCat(
-          "at: came ", values[0],
-          time_ < 0 ? ", wanted 0 first"
-                    : absl::StrCat(", wanted more than ", time_, " and at most ", kLongestMotion)));
+          "at: expected ",
+          time_ < 0 ? "0 first"
+                    : absl::StrCat("more than ", time_, " and at most ", kLongestMotion),
+          ", got ", values[0]));
     }
     time_ = values[0];
     return absl::OkStatus();
   }
 
   absl::Status ParseKey(const std::vector<absl::string_view>& words, std::size_t track) {
-    if (time_ < 0) return Error(absl::StrCat(words[0], ": wanted \"at 0\" first"));
+    if (time_ < 0) return Error(absl::StrCat("expected \"at 0\" first, got ", words[0]));
     std::vector<double> values;
     absl::Status status = ParseValues(words, keys_[track].size(), &values);
     if (!status.ok()) return status;
     for (std::size_t i = 0; i < values.size(); ++i) {
       std::vector<MonotoneCubic::Key>& keys = keys_[track][i];
       if (!keys.empty() && keys.back().time == time_) {
-        return Error(absl::StrCat(words[0], ": a second key at ", time_, " s"));
+        return Error(absl::StrCat(words[0], ": expected one key at ", time_, " s, got two"));
       }
       keys.push_back({time_, values[i]});
     }

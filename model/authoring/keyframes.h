@@ -23,7 +23,7 @@ namespace duet::authoring {
 // (MonotoneCubic). A track without keys keeps the value of a relaxed stand. '#' starts a comment.
 //
 // Returns the joints of SbuSkeleton, facing +z. At most a minute.
-// Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ...".
+// Errors: INVALID_ARGUMENT "source:line: ...: expected ..., got ...".
 absl::StatusOr<motion::Clip> ParseKeyframes(absl::string_view text, absl::string_view source);
 
 }  // namespace duet::authoring

@@ -12,7 +12,7 @@ MonotoneCubic::MonotoneCubic(std::vector<Key> keys)
         (keys_[k].value - keys_[k - 1].value) / (keys_[k].time - keys_[k - 1].time);
     const double after =
         (keys_[k + 1].value - keys_[k].value) / (keys_[k + 1].time - keys_[k].time);
-    // At a turning point the value rests; elsewhere the flatter side decides.
+    // Zero at a turning point; elsewhere the harmonic mean, which the flatter side dominates.
     if (before * after > 0) slopes_[k] = 2 * before * after / (before + after);
   }
 }

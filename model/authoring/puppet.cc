@@ -8,14 +8,14 @@
 namespace duet::authoring {
 namespace {
 
-// Metres. Hips from the torso, shoulders and head from the neck; x is the left side's.
+// Metres. Hips relative to the torso, shoulders and head to the neck; x is for the left side.
 constexpr retargeting::Vec3d kHip = {0.1, -0.215, 0};
 constexpr retargeting::Vec3d kNeck = {0, 0.216, 0};
 constexpr retargeting::Vec3d kShoulder = {0.15, -0.01, 0};
 constexpr retargeting::Vec3d kHead = {0, 0.208, 0.035};
 constexpr double kThigh = 0.43, kShin = 0.41;
 constexpr double kUpperArm = 0.29, kForearm = 0.28;
-// Limbs never stretch out completely: a last bend keeps the plane of elbow and knee.
+// Limbs never extend completely: a slight bend keeps the plane of elbow and knee defined.
 constexpr double kReach = 0.995;
 constexpr double kFold = 1.1;
 
@@ -37,8 +37,8 @@ struct Bones {
   double upper = 0, lower = 0;
 };
 
-// Middle and end of a limb of two bones from `start` towards `target`, the middle on the side of
-// `pole`, a unit vector across the way.
+// The middle and end of a limb of two bones from `start` towards `target`. The middle is on the
+// side of `pole`, a unit vector perpendicular to the direction.
 //
 // Source: law of cosines.
 struct LimbPoints {
@@ -56,8 +56,8 @@ LimbPoints Reach(retargeting::Vec3d start, retargeting::Vec3d target, Bones bone
   return {start + direction * along + pole * across, start + direction * way};
 }
 
-// A limb hangs down with its bend towards `hanging_pole`; the shortest arc from there to the target
-// carries the bend along: a hand that reaches forwards has its elbow below.
+// A hanging limb bends towards `hanging_pole`. The shortest arc from hanging to the target rotates
+// the bend too: a hand that reaches forwards has its elbow below.
 LimbPoints PoseLimb(retargeting::Vec3d start, retargeting::Vec3d target, Bones bones,
                     retargeting::Quaternion body, retargeting::Vec3d hanging_pole, double swivel) {
   const retargeting::Vec3d down = Rotate(body, -kUp);
@@ -69,7 +69,7 @@ LimbPoints PoseLimb(retargeting::Vec3d start, retargeting::Vec3d target, Bones b
   return Reach(start, target, bones, direction, pole);
 }
 
-// Outwards is a turn to one side on the left, to the other on the right.
+// Outward rotations of the two sides have opposite signs.
 double Outwards(double swivel, Side side) { return side == kLeft ? swivel : -swivel; }
 
 class Puppet {

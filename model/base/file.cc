@@ -42,7 +42,7 @@ absl::Status CheckRegular(int descriptor, const fs::path& path, std::size_t* byt
 }  // namespace
 
 absl::StatusOr<std::string> ReadFile(const fs::path& path, std::size_t max_bytes,
-                                     absl::string_view wanted) {
+                                     absl::string_view expected) {
   // O_NONBLOCK: otherwise, opening a named pipe waits for its writer.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (!file.ok() && (errno == ENOENT || errno == ENOTDIR)) {
@@ -54,8 +54,8 @@ absl::StatusOr<std::string> ReadFile(const fs::path& path, std::size_t max_bytes
   std::size_t bytes = 0;
   if (absl::Status status = CheckRegular(file.get(), path, &bytes); !status.ok()) return status;
   const auto too_large = [&] {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path.string(), ": larger than ", SizeText(max_bytes), ", wanted ", wanted));
+    return absl::InvalidArgumentError(absl::StrCat(
+        path.string(), ": expected ", expected, " of at most ", SizeText(max_bytes), ", got more"));
   };
   if (bytes > max_bytes) return too_large();
   // One byte more than the size, so that a file that keeps its size is read without growing.
@@ -77,7 +77,8 @@ absl::StatusOr<std::string> ReadFile(const fs::path& path, std::size_t max_bytes
 absl::Status WriteFile(const fs::path& path, absl::string_view content) {
   std::error_code error;
   if (fs::is_directory(path, error)) {
-    return absl::InvalidArgumentError(absl::StrCat(path.string(), ": is a folder, wanted a file"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(path.string(), ": expected a file, got a folder"));
   }
   // A pipe or a device can be written to, but not replaced.
   const bool special = fs::exists(path, error) && !fs::is_regular_file(path, error);

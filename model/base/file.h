@@ -11,14 +11,14 @@
 
 namespace duet::base {
 
-// Returns the content of a file. `wanted` names the expected kind of file, with its article, for
-// the message about a file that is too large: "key.pem: larger than 1 MiB, wanted a PEM file".
+// Returns the content of a file. `expected` names the kind of file, with its article, for the
+// message about a file that is too large: "key.pem: expected a PEM file of at most 1 MiB, got
+// more".
 //
-// Errors: NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT (too large, or not a regular file),
-// naming
-//         the path. A named pipe is rejected without waiting for its writer.
+// Errors: NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT (too large, or not a regular file); the
+//         message names the path. A named pipe is rejected without waiting for its writer.
 absl::StatusOr<std::string> ReadFile(const std::filesystem::path& path, std::size_t max_bytes,
-                                     absl::string_view wanted);
+                                     absl::string_view expected);
 
 // Replaces a file atomically: a failed write leaves no partial file. A pipe or a device is written
 // to directly. Errors: PERMISSION_DENIED or INVALID_ARGUMENT (a folder), naming the path.

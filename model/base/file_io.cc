@@ -25,10 +25,10 @@ absl::Status Error(int code, const fs::path& path) {
 }
 
 // Replaces the codes that open() sets for a symbolic link (ELOOP, ENOTDIR), which explain little.
-absl::Status OpenError(int code, const fs::path& path, const char* wanted) {
+absl::Status OpenError(int code, const fs::path& path, const char* expected) {
   if (code != ELOOP && code != ENOTDIR) return Error(code, path);
-  return absl::InvalidArgumentError(
-      absl::StrCat(path.string(), ": wanted ", wanted, ", not a symbolic link"));
+  return absl::InvalidArgumentError(absl::StrCat(path.string(), ": expected ", expected,
+                                                 ", got another kind of file or a symbolic link"));
 }
 
 // Removes a final separator, with which open() would follow a symbolic link.
@@ -102,11 +102,12 @@ absl::StatusOr<std::string> Folder::Read(const std::string& name, std::size_t ma
   struct stat info;
   if (fstat(file.get(), &info) != 0) return Error(errno, path);
   if (!S_ISREG(info.st_mode)) {
-    return absl::InvalidArgumentError(absl::StrCat(path.string(), ": wanted a regular file"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(path.string(), ": expected a regular file, got another kind"));
   }
   if (static_cast<uint64_t>(info.st_size) > max_bytes) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path.string(), ": ", info.st_size, " bytes, wanted at most ", max_bytes));
+    return absl::InvalidArgumentError(absl::StrCat(path.string(), ": expected at most ", max_bytes,
+                                                   " bytes, got ", info.st_size));
   }
   std::string content(static_cast<std::size_t>(info.st_size), '\0');
   std::size_t at = 0;

@@ -9,7 +9,7 @@
 namespace duet::base {
 namespace {
 
-// Longer texts are no misspelt names, and comparing them takes long.
+// Longer texts are not misspelt names, and comparing them is slow.
 constexpr std::size_t kLongestName = 64;
 
 // Edit distance with swaps of neighbours (optimal string alignment).
@@ -35,13 +35,13 @@ std::size_t Slips(absl::string_view a, absl::string_view b) {
 
 std::optional<std::string> Nearest(absl::string_view text, const std::vector<std::string>& known) {
   if (text.size() > kLongestName) return std::nullopt;
-  const std::string wanted = absl::AsciiStrToLower(text);
+  const std::string lower = absl::AsciiStrToLower(text);
   const std::string* best = nullptr;
   std::size_t fewest = kLongestName;
   for (const std::string& name : known) {
     if (name == text) return std::nullopt;
     if (name.size() > kLongestName) continue;
-    const std::size_t slips = Slips(wanted, absl::AsciiStrToLower(name));
+    const std::size_t slips = Slips(lower, absl::AsciiStrToLower(name));
     if (slips * 3 > std::max(name.size(), text.size()) || slips >= fewest) continue;
     best = &name;
     fewest = slips;

@@ -139,8 +139,8 @@ class SkippingBuilder : public StrictnessChecker {
 
   const std::set<std::string>& skipped_;
   json root_;
-  std::vector<json*>
-      open_;  // pointers stay valid: a container is not changed while an inner one is open
+  // Pointers stay valid: a container does not change while an inner one is open.
+  std::vector<json*> open_;
   std::string key_;
 };
 
@@ -160,7 +160,7 @@ namespace {
 
 absl::Status CheckStrict(std::string_view text, StrictnessChecker* checker) {
   if (text.empty() || text.front() != '{') {
-    return absl::InvalidArgumentError("not a JSON object: wanted '{' as the first byte");
+    return absl::InvalidArgumentError("expected a JSON object with '{' as the first byte");
   }
   // The parser treats a NUL as the end of the text and would ignore the rest.
   if (const std::size_t at = text.find('\0'); at != std::string_view::npos) {
@@ -202,8 +202,8 @@ absl::StatusOr<json> ParseHandwrittenJson(absl::string_view text, int max_depth,
 ObjectReader::ObjectReader(const json& object, std::string path)
     : object_(object), path_(std::move(path)) {
   if (!object_.is_object()) {
-    status_ =
-        absl::InvalidArgumentError(absl::StrCat(path_, ": ", Shown(object_), ", wanted an object"));
+    status_ = absl::InvalidArgumentError(
+        absl::StrCat(path_, ": expected an object, got ", Shown(object_)));
   }
 }
 
@@ -219,8 +219,8 @@ void ObjectReader::Fail(const std::string& key, const std::string& problem) {
 
 void ObjectReader::Update(const absl::Status& status) { status_.Update(status); }
 
-void ObjectReader::FailType(const std::string& key, const json& value, absl::string_view wanted) {
-  Fail(key, absl::StrCat(Shown(value), ", wanted ", wanted));
+void ObjectReader::FailType(const std::string& key, const json& value, absl::string_view expected) {
+  Fail(key, absl::StrCat("expected ", expected, ", got ", Shown(value)));
 }
 
 const json* ObjectReader::Get(const std::string& key) {
@@ -275,10 +275,23 @@ std::vector<std::string> ObjectReader::Strings(const std::string& key, std::size
   std::vector<std::string> strings;
   for (const json& item : Array(key, max_count)) {
     if (!item.is_string() || item.get_ref<const std::string&>().empty()) {
-      FailType(key, item, "strings that are not empty");
+      FailType(key, item, "non-empty strings");
       return {};
     }
     strings.push_back(item.get<std::string>());
+  }
+  return strings;
+}
+
+std::vector<std::string> ObjectReader::UniqueStrings(const std::string& key, std::size_t max_count,
+                                                     std::size_t max_bytes) {
+  std::vector<std::string> strings = Strings(key, max_count);
+  std::set<std::string> seen;
+  for (const std::string& one : strings) {
+    if (one.size() > max_bytes) {
+      Fail(key, absl::StrCat("expected at most ", max_bytes, " bytes, got a name of ", one.size()));
+    }
+    if (!seen.insert(one).second) Fail(key, absl::StrCat(Quoted(one), " is repeated"));
   }
   return strings;
 }

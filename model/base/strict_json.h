@@ -25,16 +25,16 @@ inline constexpr std::size_t kMaxJsonValues = 2'000'000;
 // at most kMaxJsonValues values, and there is no NUL byte. Never throws.
 absl::StatusOr<nlohmann::json> ParseStrictJson(std::string_view text, int max_depth);
 
-// The same for handwritten documents, which may begin with a byte order mark and white space.
+// Parses a handwritten document, which may also begin with a byte order mark and white space.
 absl::StatusOr<nlohmann::json> ParseHandwrittenJson(absl::string_view text, int max_depth);
 
-// The same for a document with any number of values. The content of the root's fields `skipped` is
-// checked but not stored: their arrays and objects are empty in the result.
+// Parses a handwritten document with any number of values. The content of the root's fields
+// `skipped` is checked but not stored: their arrays and objects are empty in the result.
 absl::StatusOr<nlohmann::json> ParseHandwrittenJson(absl::string_view text, int max_depth,
                                                     const std::set<std::string>& skipped);
 
-// A value for a message: a string as by Quoted, a long array or object by its size, other values as
-// JSON.
+// Formats a value for a message: a string like Quoted, a long array or object as its size, other
+// values as JSON.
 std::string Shown(const nlohmann::json& value);
 
 // Reads an object field by field and keeps the first error, so that reading code is a plain list of
@@ -55,19 +55,22 @@ class ObjectReader {
   bool Bool(const std::string& key);
   int64_t Int(const std::string& key, int64_t min, int64_t max);
   double Number(const std::string& key, double min, double max);
-  // A string that `parse` accepts; `wanted` lists these for messages. Returns Value{} otherwise.
+  // A string that `parse` accepts; `expected` lists these for messages. Returns Value{} otherwise.
   template <typename Value>
   Value Choice(const std::string& key, std::optional<Value> (*parse)(absl::string_view),
-               absl::string_view wanted) {
+               absl::string_view expected) {
     const nlohmann::json* value = Get(key);
     if (value == nullptr) return {};
     std::optional<Value> choice;
     if (value->is_string()) choice = parse(value->get_ref<const std::string&>());
-    if (!choice.has_value()) FailType(key, *value, wanted);
+    if (!choice.has_value()) FailType(key, *value, expected);
     return choice.value_or(Value{});
   }
   // An array of at most `max_count` non-empty strings.
   std::vector<std::string> Strings(const std::string& key, std::size_t max_count);
+  // The same for different strings of at most `max_bytes` each.
+  std::vector<std::string> UniqueStrings(const std::string& key, std::size_t max_count,
+                                         std::size_t max_bytes);
   // An array of at most `max_count` values of any type, or an empty array.
   const nlohmann::json& Array(const std::string& key, std::size_t max_count);
   // An object, or an empty object.
@@ -88,7 +91,7 @@ class ObjectReader {
  private:
   // The field's value. Records an error and returns null if it is missing.
   const nlohmann::json* Get(const std::string& key);
-  void FailType(const std::string& key, const nlohmann::json& value, absl::string_view wanted);
+  void FailType(const std::string& key, const nlohmann::json& value, absl::string_view expected);
 
   const nlohmann::json& object_;
   std::string path_;

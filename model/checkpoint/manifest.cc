@@ -4,7 +4,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -53,22 +52,6 @@ std::string ReadName(base::ObjectReader* reader, const std::string& key) {
     reader->Fail(key, absl::StrCat(json(name).dump(), ", wanted ", kPlainName));
   }
   return name;
-}
-
-std::vector<std::string> ReadUniqueNames(base::ObjectReader* reader, const std::string& key,
-                                         std::size_t max_count) {
-  std::vector<std::string> names = reader->Strings(key, max_count);
-  std::set<std::string> seen;
-  for (const std::string& name : names) {
-    if (name.size() > kMaxNameBytes) {
-      reader->Fail(
-          key, absl::StrCat("a name of ", name.size(), " bytes, wanted at most ", kMaxNameBytes));
-    }
-    if (!seen.insert(name).second) {
-      reader->Fail(key, absl::StrCat(json(name).dump(), " is repeated"));
-    }
-  }
-  return names;
 }
 
 void ReadGenerator(const json& value, base::ObjectReader* root, Manifest* manifest) {
@@ -142,7 +125,7 @@ void ReadTouchingClasses(base::ObjectReader* reader, engine::ModelDescription* m
     if (is_class("hug")) model->touching_classes = {"hug"};
     return;
   }
-  model->touching_classes = ReadUniqueNames(reader, kTouchingClasses, kMaxClasses);
+  model->touching_classes = reader->UniqueStrings(kTouchingClasses, kMaxClasses, kMaxNameBytes);
   for (const std::string& name : model->touching_classes) {
     if (is_class(name)) continue;
     reader->Fail(kTouchingClasses, absl::StrCat(json(name).dump(), ", wanted one of classes"));
@@ -156,7 +139,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   if (reader->Has(kTerms)) model->terms = reader->String(kTerms, kMaxTextBytes);
   model->frame_rate_hz = reader->Number("frame_rate_hz", 1, motion::kMaxServedFrameRateHz);
   model->window_frames = static_cast<int>(reader->Int("window_frames", 2, kMaxWindowFrames));
-  model->classes = ReadUniqueNames(reader, "classes", kMaxClasses);
+  model->classes = reader->UniqueStrings("classes", kMaxClasses, kMaxNameBytes);
   if (reader->ok() && model->classes.empty()) {
     reader->Fail("classes", "empty, wanted at least one class");
   }

@@ -22,26 +22,18 @@ constexpr std::size_t kMaxNameBytes = 256;
 
 std::string ReadName(base::ObjectReader* reader, const std::string& key) {
   std::string name = reader->String(key, kMaxNameBytes);
-  if (reader->ok() && name.empty()) reader->Fail(key, "\"\", wanted a name");
+  if (reader->ok() && name.empty()) reader->Fail(key, "expected a name, got \"\"");
   return name;
-}
-
-int FindJoint(base::ObjectReader* reader, const std::string& key, const motion::Skeleton& skeleton,
-              const std::string& name) {
-  const int joint = skeleton.Find(name);
-  if (joint < 0) {
-    reader->Fail(key, absl::StrCat(base::Quoted(name), ", wanted one of skeleton.joint_names"));
-  }
-  return joint;
 }
 
 std::vector<int> ReadJoints(base::ObjectReader* reader, const std::string& key,
                             const motion::Skeleton& skeleton) {
   std::vector<int> joints;
   for (const std::string& name : reader->Strings(key, kMaxJoints)) {
-    joints.push_back(FindJoint(reader, absl::StrCat(key, "[", joints.size(), "]"), skeleton, name));
+    joints.push_back(
+        motion::FindJoint(reader, absl::StrCat(key, "[", joints.size(), "]"), skeleton, name));
   }
-  if (joints.empty()) reader->Fail(key, "empty, wanted at least one joint");
+  if (joints.empty()) reader->Fail(key, "expected at least one joint, got none");
   return joints;
 }
 
@@ -58,7 +50,7 @@ void ReadSkeleton(base::ObjectReader* document, DatasetLayout* layout) {
   layout->parts = std::move(read->parts);
 }
 
-// A class's folder bears the class's name: it may not lead anywhere else.
+// Whether `name` is a plain folder name: the folder of a class has the class's name.
 bool IsPlainFolderName(const std::string& name) {
   return !name.empty() && name.find_first_of("/\\") == std::string::npos && name[0] != '.';
 }
@@ -67,7 +59,8 @@ ClassLayout ReadClass(base::ObjectReader* reader, const motion::Skeleton& skelet
   ClassLayout one;
   one.name = ReadName(reader, "name");
   if (reader->ok() && !IsPlainFolderName(one.name)) {
-    reader->Fail("name", absl::StrCat(base::Quoted(one.name), ", wanted a plain folder name"));
+    reader->Fail("name",
+                 absl::StrCat("expected a plain folder name, got ", base::Quoted(one.name)));
   }
   one.folder = one.name;
   if (reader->Has("symmetric")) one.symmetric = reader->Bool("symmetric");
@@ -85,12 +78,13 @@ std::vector<ClassLayout> ReadClasses(base::ObjectReader* document,
     base::ObjectReader reader(item, absl::StrCat("classes[", classes.size(), "]"));
     ClassLayout one = ReadClass(&reader, skeleton);
     if (!seen.insert(one.name).second) {
-      reader.Fail("name", absl::StrCat(base::Quoted(one.name), " again, wanted a new name"));
+      reader.Fail("name",
+                  absl::StrCat("expected a new name, got ", base::Quoted(one.name), " again"));
     }
     document->Update(reader.Finish());
     classes.push_back(std::move(one));
   }
-  if (classes.empty()) document->Fail("classes", "empty, wanted at least one");
+  if (classes.empty()) document->Fail("classes", "expected at least one, got none");
   return classes;
 }
 
@@ -100,8 +94,8 @@ motion::Coordinates ReadCoordinates(base::ObjectReader* document) {
   coordinates.up_axis = document->Choice("up_axis", motion::ParseUpAxis, motion::kUpAxisNames);
   if (document->ok() && coordinates.unit == motion::LengthUnit::kSbuNormalised &&
       coordinates.up_axis != motion::UpAxis::kYDown) {
-    document->Fail("up_axis", absl::StrCat(UpAxisName(coordinates.up_axis),
-                                           ", wanted y-down, which sbu-normalised implies"));
+    document->Fail("up_axis", absl::StrCat("expected y-down, which sbu-normalised implies, got ",
+                                           UpAxisName(coordinates.up_axis)));
   }
   return coordinates;
 }
@@ -110,7 +104,7 @@ bool ReadLevel(base::ObjectReader* document, const motion::Skeleton& skeleton) {
   if (!document->Has("level")) return false;
   const bool level = document->Bool("level");
   if (document->ok() && level && !skeleton.feet) {
-    document->Fail("level", "true without feet, wanted skeleton.left_foot and right_foot");
+    document->Fail("level", "expected skeleton.left_foot and right_foot for true, got none");
   }
   return level;
 }

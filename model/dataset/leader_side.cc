@@ -21,9 +21,9 @@ struct Columns {
   size_t count = 0;
 };
 
-absl::Status Wrong(int line, const std::string& came, const std::string& wanted) {
+absl::Status Wrong(int line, const std::string& expected, const std::string& got) {
   return absl::InvalidArgumentError(
-      absl::StrCat("index.tsv: line ", line, ": ", came, ", wanted ", wanted));
+      absl::StrCat("index.tsv: line ", line, ": expected ", expected, ", got ", got));
 }
 
 absl::StatusOr<Columns> ParseHeader(absl::string_view line) {
@@ -37,8 +37,7 @@ absl::StatusOr<Columns> ParseHeader(absl::string_view line) {
     if (names[i] == "leader_source") columns.source = static_cast<int>(i);
   }
   if (columns.path < 0 || columns.leader_side < 0) {
-    return Wrong(1, "no column path or leader_side",
-                 "a header of tab-separated names with both of them");
+    return Wrong(1, "a header of tab-separated names with path and leader_side", "others");
   }
   return columns;
 }
@@ -47,7 +46,7 @@ absl::StatusOr<LeaderSide> ParseSide(int line, absl::string_view text) {
   if (text == "left") return LeaderSide::kLeft;
   if (text == "right") return LeaderSide::kRight;
   if (text == "unknown") return LeaderSide::kUnknown;
-  return Wrong(line, absl::StrCat("leader_side ", base::Quoted(text)), "left, right or unknown");
+  return Wrong(line, "leader_side left, right or unknown", base::Quoted(text));
 }
 
 std::vector<std::string> ParseSubjects(absl::string_view text) {
@@ -77,7 +76,7 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view t
     if (row.empty()) continue;
     const std::vector<absl::string_view> cells = absl::StrSplit(row, '\t');
     if (cells.size() != columns.count) {
-      return Wrong(line, absl::StrCat(cells.size(), " columns"), absl::StrCat(columns.count));
+      return Wrong(line, absl::StrCat(columns.count, " columns"), absl::StrCat(cells.size()));
     }
     IndexEntry entry;
     entry.line = line;
@@ -93,7 +92,7 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view t
     }
     const std::string path(cells[static_cast<size_t>(columns.path)]);
     if (!entries.emplace(path, std::move(entry)).second) {
-      return Wrong(line, absl::StrCat("path ", base::Quoted(path), " again"), "each file once");
+      return Wrong(line, "each path once", absl::StrCat(base::Quoted(path), " again"));
     }
   }
   return entries;

@@ -1,4 +1,4 @@
-// ReadDataset: recognises a layout, lists its files, reads each.
+// ReadDataset: recognises the layout, lists the files and reads each.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -59,7 +59,7 @@ int FindFolder(const DatasetLayout& layout, const std::string& folder) {
   return -1;
 }
 
-// <set>/<class>/<sequence>/skeleton_pos.txt. Other classes (approaching, departing) are passed by.
+// <set>/<class>/<sequence>/skeleton_pos.txt. Ignores other classes (approaching, departing).
 absl::Status FindSbuSet(const fs::path& folder, const DatasetLayout& layout, const std::string& set,
                         std::vector<FoundFile>* found) {
   absl::StatusOr<std::vector<std::string>> classes = ListFolder(folder / set);
@@ -119,12 +119,12 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ReadIndex(const fs::path& fold
     return absl::InvalidArgumentError(
         absl::StrCat((folder / "").string(), index.status().message()));
   }
-  // A misspelt path would silently hand its file to the motion rule.
+  // With a misspelt path, the motion rule would silently choose the leader of that file.
   for (const auto& [path, entry] : *index) {
     if (Exists(folder / path)) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat((folder / "index.tsv").string(), ": line ", entry.line, ": ",
-                     base::Quoted(path), " is not there, wanted a file below ", folder.string()));
+    return absl::InvalidArgumentError(absl::StrCat((folder / "index.tsv").string(), ": line ",
+                                                   entry.line, ": path: expected a file below ",
+                                                   folder.string(), ", got ", base::Quoted(path)));
   }
   return index;
 }
@@ -137,12 +137,12 @@ absl::StatusOr<formats::flat::SbuRecording> ReadPeople(const std::string& path,
   options.coordinates = layout.coordinates;
   absl::StatusOr<formats::flat::SbuRecording> people = ReadSbu(path, options);
   if (people.ok() && people->left.frame_count() < 2) {
-    return base::ErrorAt(path, 1, "came 1 frame, wanted at least 2");
+    return base::ErrorAt(path, 1, "frames: expected at least 2, got 1");
   }
   return people;
 }
 
-// What the motion rule says; nothing where the class names no effectors.
+// The leader by the motion rule. Fails if the class has no effectors.
 LeaderSide LeaderByRule(const formats::flat::SbuRecording& people, const ClassLayout& interaction,
                         int root) {
   if (interaction.effectors.empty()) return LeaderSide::kUnknown;
@@ -151,12 +151,12 @@ LeaderSide LeaderByRule(const formats::flat::SbuRecording& people, const ClassLa
 
 absl::Status NobodyLeads(const std::string& path, const ClassLayout& interaction) {
   return absl::InvalidArgumentError(absl::StrCat(
-      path, ": no leader_side, wanted left or right in index.tsv or effectors for class ",
-      interaction.name, " in dataset.json"));
+      path, ": leader_side: expected left or right in index.tsv, or effectors for class ",
+      interaction.name, " in dataset.json, got neither"));
 }
 
-// Which end of the axis the follower stands at: the one thing read off the pair. The files' own
-// order does not tell: it differs from set to set.
+// The end of the axis at which the follower stands, inferred from the pair: the order in the files
+// differs from set to set.
 std::optional<motion::Vec3> PartnerDirection(const DatasetLayout& layout,
                                              const motion::ClipPair& pair) {
   if (!layout.people_axis) return std::nullopt;
@@ -191,8 +191,9 @@ absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayou
 absl::StatusOr<Dataset> ReadFiles(const fs::path& folder, const DatasetLayout& layout,
                                   std::vector<FoundFile> files) {
   if (files.empty()) {
-    return absl::NotFoundError(absl::StrCat(folder.string(), ": no sequence of the classes of ",
-                                            layout.name, " (docs/datasets.md)"));
+    return absl::NotFoundError(absl::StrCat(folder.string(),
+                                            ": expected sequences of the classes of ", layout.name,
+                                            ", got none; see docs/datasets.md"));
   }
   std::sort(files.begin(), files.end(),
             [](const FoundFile& a, const FoundFile& b) { return a.id < b.id; });
@@ -254,8 +255,8 @@ absl::StatusOr<Dataset> ReadDataset(const fs::path& folder) {
   if (!files.ok()) return files.status();
   if (!files->empty()) return ReadFiles(folder, layout, *std::move(files));
   return absl::NotFoundError(absl::StrCat(
-      folder.string(), ": no data set, wanted sXXsYY/<class>/<sequence>/skeleton_pos.txt (SBU), ",
-      "<class>/<sequence>.txt (K3HI) or a dataset.json (docs/datasets.md)"));
+      folder.string(), ": expected sXXsYY/<class>/<sequence>/skeleton_pos.txt (SBU), ",
+      "<class>/<sequence>.txt (K3HI) or a dataset.json, got none; see docs/datasets.md"));
 }
 
 }  // namespace duet::dataset

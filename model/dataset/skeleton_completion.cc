@@ -14,7 +14,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Joints and bones alone, for which nothing has to be found; any part will do to read them by.
+// Reads only joints and bones, which need no completion. ReadSkeleton requires a part, so the
+// document gets an arbitrary one.
 std::optional<motion::Skeleton> ReadTree(const Json& object, const std::string& root) {
   Json tree = {{"joint_names", object.value("joint_names", Json())},
                {"bones", object.value("bones", Json())},
@@ -32,7 +33,7 @@ bool IsPair(const Json& bone) {
   return bone.is_array() && bone.size() == 2 && bone[0].is_string() && bone[1].is_string();
 }
 
-// The one joint that no bone leads to.
+// The joint that no bone leads to, if there is exactly one.
 std::optional<std::string> FindRoot(const Json& object) {
   const Json names = object.value("joint_names", Json()), bones = object.value("bones", Json());
   if (!names.is_array() || !bones.is_array()) return std::nullopt;
@@ -61,8 +62,8 @@ absl::StatusOr<Json> CompleteSkeleton(Json object, std::vector<std::string>* not
     const std::optional<std::string> root = FindRoot(object);
     if (!root) {
       return absl::InvalidArgumentError(
-          "skeleton.root: missing, and no single joint is left that no bone leads to; wanted the "
-          "joint that the bones start from");
+          "skeleton.root: expected the joint that the bones start from, got none, and the bones "
+          "leave no single candidate");
     }
     object["root"] = *root;
     notes->push_back(absl::StrCat("root: ", *root, " (no bone leads to it)"));
@@ -70,15 +71,16 @@ absl::StatusOr<Json> CompleteSkeleton(Json object, std::vector<std::string>* not
   std::optional<motion::Skeleton> skeleton;
   if (object["root"].is_string()) skeleton = ReadTree(object, object["root"].get<std::string>());
   if (!skeleton) {
-    object["parts"] = Json::array();  // whoever reads it meets what is wrong with the rest first
+    object["parts"] = Json::array();  // ReadSkeleton then reports the first error
     return object;
   }
   const absl::StatusOr<retargeting::Anatomy> anatomy = retargeting::FindAnatomy(*skeleton);
   if (!anatomy.ok()) {
     return absl::InvalidArgumentError(
-        absl::StrCat("skeleton.parts: missing, and not to be found: ", anatomy.status().message(),
-                     "; say skeleton.parts, or rename the joints (hips and feet may be said as "
-                     "left_hip, right_hip, left_foot, right_foot)"));
+        absl::StrCat("skeleton.parts: expected parts, or joints to infer them from, got ",
+                     anatomy.status().message(),
+                     "; specify skeleton.parts, or rename the joints (left_hip, right_hip, "
+                     "left_foot and right_foot specify hips and feet)"));
   }
   SetPair("hip", anatomy->hips, *skeleton, &object);
   SetPair("foot", anatomy->feet, *skeleton, &object);

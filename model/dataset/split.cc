@@ -38,9 +38,9 @@ absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string&
   }
   if (!split.test.empty()) return split;
   const std::vector<std::string> known = dataset.Subjects();
-  return absl::NotFoundError(
-      absl::StrCat("subject: ", base::Quoted(subject), ", wanted one of ", dataset.name,
-                   "'s: ", known.empty() ? "(it names none)" : absl::StrJoin(known, ", ")));
+  return absl::NotFoundError(absl::StrCat("subject: expected one of ", dataset.name, "'s: ",
+                                          known.empty() ? "(none)" : absl::StrJoin(known, ", "),
+                                          ", got ", base::Quoted(subject)));
 }
 
 absl::StatusOr<Split> SplitInHalves(const Dataset& dataset, uint64_t seed) {
@@ -53,8 +53,10 @@ absl::StatusOr<Split> SplitInHalves(const Dataset& dataset, uint64_t seed) {
     std::vector<int>& indices = by_class[c];
     if (indices.size() < 2) {
       return absl::InvalidArgumentError(
-          absl::StrCat(dataset.name, ": ", indices.size(), " sequences of ", dataset.classes[c],
-                       ", wanted 2 or more of each class to split in halves"));
+          absl::StrCat(dataset.name,
+                       ": expected at least 2 sequences of each class to split in "
+                       "halves, got ",
+                       indices.size(), " of ", dataset.classes[c]));
     }
     random.Shuffle(&indices);
     const auto middle = indices.begin() + static_cast<std::ptrdiff_t>((indices.size() + 1) / 2);

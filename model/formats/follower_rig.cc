@@ -9,6 +9,7 @@
 #include "model/formats/bvh/bvh_character.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_rig.h"
+#include "model/formats/format_options.h"
 #include "model/formats/gltf/gltf_character.h"
 #include "model/formats/gltf/gltf_rig.h"
 #include "model/motion/motion_limits.h"
@@ -17,28 +18,12 @@
 namespace duet::formats {
 namespace {
 
-bool IsGltf(Format format) { return format == Format::kGltf || format == Format::kGlb; }
-
-retargeting::CharacterOptions CharacterOptionsOf(const ReadOptions& reading) {
-  retargeting::CharacterOptions options;
-  options.skeleton = reading.skeleton;
-  options.joint_overrides = reading.joint_overrides;
-  options.metres_per_unit = reading.metres_per_unit;
-  if (reading.coordinates.has_value()) options.up_axis = reading.coordinates->up_axis;
-  return options;
-}
-
-int PersonOf(const ReadOptions& reading) { return reading.side == Side::kLeft ? 0 : 1; }
-
 bvh::BvhImportOptions BvhOptionsOf(const FollowerRig& rig) {
   return {CharacterOptionsOf(rig.reading), PersonOf(rig.reading)};
 }
 
 gltf::GltfImportOptions GltfOptionsOf(const FollowerRig& rig) {
-  gltf::GltfImportOptions options;
-  static_cast<retargeting::CharacterOptions&>(options) = CharacterOptionsOf(rig.reading);
-  options.person = PersonOf(rig.reading);
-  return options;
+  return {CharacterOptionsOf(rig.reading), PersonOf(rig.reading), std::nullopt};
 }
 
 gltf::GltfFileReader FilesBeside(const FollowerRig& rig) {
@@ -55,7 +40,7 @@ bvh::BvhKeys KeysOf(const WriteOptions& writing) {
   return {writing.bvh_keys_per_frame, writing.notes};
 }
 
-// A rig in its own format keeps all that the file says of it.
+// In the rig's own format, everything in its file except the motion is kept.
 absl::StatusOr<std::string> OntoBvh(const motion::Clip& follower, const std::string& text,
                                     const FollowerRig& rig, const WriteOptions& writing) {
   const std::string source = rig.file.string();
@@ -84,7 +69,7 @@ absl::StatusOr<retargeting::CharacterRig> ReadAmcRig(const std::string& text,
   return AmcRig(*skeleton, *motion, source, {CharacterOptionsOf(rig.reading), std::nullopt});
 }
 
-// A rig of another format: its joints and bones, without what only its own format holds.
+// In another format, joints and bones are kept.
 absl::StatusOr<std::string> OntoRig(const motion::Clip& follower,
                                     const retargeting::CharacterRig& rig, const std::string& source,
                                     Format format, const WriteOptions& writing) {

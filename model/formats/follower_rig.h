@@ -25,7 +25,7 @@ inline constexpr char kRigOutputExtensions[] = ".bvh, .glb or .gltf";
 // Whether a follower on a rig of the format `rig` can be written in the format `written`.
 bool FitsRig(Format written, Format rig);
 
-// Whether the rig can be read; it need not be animated. Errors: those of reading it.
+// Checks that the rig can be read; it need not be animated. Errors: those of reading it.
 absl::Status CheckRig(const FollowerRig& rig);
 
 // Formats the follower on the rig. In the rig's own format, everything in its file except the
@@ -33,8 +33,7 @@ absl::Status CheckRig(const FollowerRig& rig);
 // lengths are kept (bvh::ToBvh, gltf::FormatCharacter).
 //
 // Errors: those of reading the rig; INVALID_ARGUMENT for an unsuitable rig, or a format that
-// FitsRig
-//         does not accept.
+//         FitsRig does not accept.
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
                                           Format format, const WriteOptions& options = {});
 

@@ -17,6 +17,7 @@
 #include "model/formats/flat/json_motion.h"
 #include "model/formats/flat/npy.h"
 #include "model/formats/flat/sbu_text.h"
+#include "model/formats/format_options.h"
 #include "model/formats/gltf/gltf_document.h"
 #include "model/formats/gltf/gltf_export.h"
 #include "model/formats/gltf/gltf_import.h"
@@ -38,7 +39,7 @@ static_assert(kMostBvhKeysPerFrame == bvh::kMostKeysPerFrame);
 using retargeting::Origin;
 using retargeting::Setting;
 
-// A motion's name and folder, from which further files are read.
+// A motion's name and folder.
 struct Source {
   std::string name;                // for errors
   std::optional<fs::path> folder;  // of further files; absent for a pipe
@@ -48,9 +49,10 @@ struct Source {
     if (folder.has_value()) {
       return base::ReadFile(*folder / file, motion::kMaxMotionFileBytes, what);
     }
-    return absl::InvalidArgumentError(absl::StrCat(name, ": came without ", base::Quoted(file),
-                                                   ", ", what,
-                                                   " that lies beside it; wanted both as files"));
+    return absl::InvalidArgumentError(absl::StrCat(name, ": expected ", what, " ",
+                                                   base::Quoted(file),
+                                                   " in the same folder, got a motion without a "
+                                                   "folder; pass both as files"));
   }
 };
 
@@ -144,20 +146,6 @@ absl::StatusOr<motion::Clip> ReadSbuPerson(const std::string& text, const std::s
   return options.side == Side::kLeft ? std::move(recording->left) : std::move(recording->right);
 }
 
-// Left is the first person of a file.
-int PersonOf(const ReadOptions& options) { return options.side == Side::kLeft ? 0 : 1; }
-
-retargeting::CharacterOptions CharacterOptionsOf(const ReadOptions& options) {
-  retargeting::CharacterOptions character;
-  character.skeleton = options.skeleton;
-  character.joint_overrides = options.joint_overrides;
-  character.metres_per_unit = options.metres_per_unit;
-  if (options.coordinates.has_value()) character.up_axis = options.coordinates->up_axis;
-  character.notes = options.notes;
-  character.report = options.report;
-  return character;
-}
-
 absl::StatusOr<motion::Clip> ReadBvhPerson(const std::string& text, const std::string& source,
                                            const ReadOptions& options) {
   absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(text, source);
@@ -178,11 +166,11 @@ absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const So
   return FromGltf(*document, source.name, read_beside, gltf);
 }
 
-// The skeleton is a file in the motion's folder.
 absl::StatusOr<asf::AsfSkeleton> ReadAsfBeside(const Source& source) {
   if (source.folder.has_value()) return asf::ReadSkeletonBeside(source.name);
-  return absl::InvalidArgumentError(absl::StrCat(
-      source.name, ": came as AMC without its skeleton; wanted both as files in one folder"));
+  return absl::InvalidArgumentError(absl::StrCat(source.name,
+                                                 ": expected the .asf skeleton in the same folder, "
+                                                 "got AMC without a folder; pass both as files"));
 }
 
 absl::StatusOr<motion::Clip> ReadAmcPerson(const std::string& text, const Source& source,
@@ -194,8 +182,6 @@ absl::StatusOr<motion::Clip> ReadAmcPerson(const std::string& text, const Source
   const asf::AmcImportOptions amc{CharacterOptionsOf(options), options.frame_rate_hz};
   return FromAmc(*skeleton, *motion, source.name, amc);
 }
-
-bool IsGltf(Format format) { return format == Format::kGltf || format == Format::kGlb; }
 
 const char* FormatTitle(Format format) {
   switch (format) {
@@ -253,9 +239,10 @@ absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& conten
     if (!valid.ok()) return valid;
     return clip;
   }
-  return MendedBy(absl::InvalidArgumentError(absl::StrCat(
-                      source.name, ": frame rate: the file has none, wanted one beside it")),
-                  motion::ReadingSetting::kFrameRate);
+  return MendedBy(
+      absl::InvalidArgumentError(absl::StrCat(
+          source.name, ": frame rate: expected one, got none; the file has none, so specify it")),
+      motion::ReadingSetting::kFrameRate);
 }
 
 absl::Status CheckOptions(const ReadOptions& options) {
@@ -357,9 +344,9 @@ bool IsWritable(const fs::path& path) {
 }
 
 absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
-  return absl::InvalidArgumentError(absl::StrCat(path.string(), ": extension: came ",
-                                                 base::Quoted(path.extension().string()),
-                                                 ", wanted ", known));
+  return absl::InvalidArgumentError(absl::StrCat(path.string(), ": extension: expected ", known,
+                                                 ", got ",
+                                                 base::Quoted(path.extension().string())));
 }
 
 absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions& options) {
@@ -378,9 +365,9 @@ absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions&
 absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::string& name,
                                          const ReadOptions& options) {
   if (!options.format.has_value() || !IsReadable(*options.format)) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        name, ": format: ", options.format.has_value() ? "is written alone" : "nothing says which",
-        ", wanted one of ", kReadableExtensions));
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": format: expected one of ", kReadableExtensions, ", got ",
+                     options.format.has_value() ? "one that is only written" : "none"));
   }
   absl::Status status = CheckOptions(options);
   if (!status.ok()) return status;
@@ -411,14 +398,14 @@ absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion
   absl::Status status = CheckPeople(people, skeleton);
   if (!status.ok()) return status;
   if (!IsWritable(format)) {
-    return absl::InvalidArgumentError(absl::StrCat("format: came ", FormatTitle(format),
-                                                   ", wanted one of ", kWritableExtensions));
+    return absl::InvalidArgumentError(absl::StrCat("format: expected one of ", kWritableExtensions,
+                                                   ", got ", FormatTitle(format)));
   }
   if (format == Format::kBvh && people.size() > 1) {
-    return absl::InvalidArgumentError("people: came 2, wanted one: BVH has a file for each");
+    return absl::InvalidArgumentError("people: expected 1, got 2; BVH has a file for each person");
   }
   if (format == Format::kSbuText && people.size() != 2) {
-    return absl::InvalidArgumentError("people: came 1, wanted 2: SBU text has always two");
+    return absl::InvalidArgumentError("people: expected 2, got 1; SBU text always has two");
   }
   return FormatChecked(format, people, skeleton, options);
 }

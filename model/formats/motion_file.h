@@ -65,8 +65,9 @@ struct ReadOptions {
 absl::StatusOr<motion::Clip> ReadLeader(const std::filesystem::path& path,
                                         const ReadOptions& options = {});
 
-// The same for a motion that is not in a file, such as a pipe's. `content` is the whole motion;
-// `name` denotes it in messages. Requires options.format, and a motion that needs no second file.
+// Reads a motion that is not in a file but, for example, from a pipe. `content` is the whole
+// motion; `name` denotes it in messages. Requires options.format, and a motion that needs no second
+// file.
 absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::string& name,
                                          const ReadOptions& options);
 
@@ -99,8 +100,8 @@ absl::StatusOr<std::vector<std::filesystem::path>> WritePair(const std::filesyst
                                                              const motion::Skeleton& skeleton,
                                                              const WriteOptions& options = {});
 
-// The same for a single person (one file in every format), or a leader and a follower, in a format
-// that may differ from the extension's.
+// Writes one person (one file in every format), or a leader and a follower, in a format that may
+// differ from the extension's.
 absl::StatusOr<std::vector<std::filesystem::path>> WritePeople(
     const std::filesystem::path& path, Format format, const std::vector<motion::Clip>& people,
     const motion::Skeleton& skeleton, const WriteOptions& options = {});
@@ -126,7 +127,7 @@ inline constexpr char kWritableExtensions[] =
     ".glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt (SBU text)";
 inline constexpr char kReadableExtensions[] =
     ".txt (SBU text), .bvh, .gltf, .glb, .amc (beside its .asf), .csv, .npy or .json";
-// INVALID_ARGUMENT "path: extension: came ..., wanted <known>".
+// INVALID_ARGUMENT "path: extension: expected <known>, got ...".
 absl::Status UnknownExtension(const std::filesystem::path& path, absl::string_view known);
 
 }  // namespace duet::formats

@@ -39,7 +39,7 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
   read.notes = options.notes;
   const std::optional<formats::Format> format = formats::FormatOf(path);
   if (format.has_value() && HasHierarchy(*format)) {
-    // ASF is the only one that may state its unit.
+    // Only ASF may state its unit.
     if (options.unit_is_given || format != formats::Format::kAmc) read.metres_per_unit = 1;
     read.coordinates = motion::Coordinates{};
   }
@@ -52,7 +52,7 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
                    "--skeleton unless they are the 15 joints of SBU"));
 }
 
-// The whole duration, as the engine resamples its leaders.
+// Resamples the whole duration, as the engine does with leaders.
 void ToRate(double rate_hz, motion::Clip* clip) {
   if (clip->frame_rate_hz != rate_hz) {
     clip->poses = Resample(clip->poses, clip->frame_rate_hz, rate_hz);
@@ -87,12 +87,13 @@ absl::StatusOr<Capture> ReadCapture(const fs::path& folder, const PairFiles& fil
   absl::StatusOr<motion::Clip> second = ReadPerson(
       folder / files.second, one_file ? formats::Side::kRight : formats::Side::kLeft, options);
   if (!second.ok()) return second.status();
-  // The reader gives the only person for either side.
+  // The reader returns the only person of a file for either side.
   if (first->poses == second->poses) {
     return absl::InvalidArgumentError(
-        one_file ? "holds one person, wanted both in it, or a file for each whose names end in _a "
-                   "and _b (or _leader and _follower)"
-                 : "expected one motion for each person, got the same one in both files");
+        one_file
+            ? "people: expected 2 in the file, or a file for each whose names end in _a and _b "
+              "(or _leader and _follower), got 1"
+            : "expected one motion for each person, got the same one in both files");
   }
   const int frames = std::min(first->frame_count(), second->frame_count());
   if (frames < kFewestFrames) {

@@ -33,8 +33,8 @@ using retargeting::ParsedJointName;
 
 constexpr std::size_t kMaxSkeletonBytes = std::size_t{1} << 20;
 constexpr int kMaxSkeletonDepth = 5;
-constexpr int kMostFrames = 200;      // that bones are found in
-constexpr double kChangeWeight = 10;  // of a bone's deviation beside its length
+constexpr int kMostFrames = 200;      // frames that bones are inferred from
+constexpr double kChangeWeight = 10;  // weight of a bone's deviation relative to its length
 
 motion::Skeleton ParentsToSkeleton(std::vector<std::string> names,
                                    const std::vector<int>& parents) {
@@ -50,7 +50,7 @@ motion::Skeleton ParentsToSkeleton(std::vector<std::string> names,
   return skeleton;
 }
 
-// Only the joints of `kept`, each below the nearest of its ancestors that is kept.
+// Keeps only the joints of `kept`. The parent of each is its nearest kept ancestor.
 motion::Skeleton Keep(const motion::Skeleton& all, const std::vector<bool>& kept) {
   const std::vector<int> parents = all.Parents();
   std::vector<int> index(kept.size(), -1);
@@ -72,7 +72,8 @@ motion::Skeleton Keep(const motion::Skeleton& all, const std::vector<bool>& kept
   return ParentsToSkeleton(std::move(names), kept_parents);
 }
 
-// Lies on its parent for good: exporters write such to turn each child on its own.
+// Whether the joint is always at its parent. Exporters write such joints to rotate each child
+// separately.
 bool IsHelper(const formats::bvh::BvhJoint& joint) {
   using formats::bvh::BvhChannel;
   const bool moves = std::any_of(joint.channels.begin(), joint.channels.end(), [](BvhChannel c) {
@@ -82,7 +83,7 @@ bool IsHelper(const formats::bvh::BvhJoint& joint) {
   return joint.parent >= 0 && !moves && Norm(joint.offset) == 0;
 }
 
-// The first person's.
+// Returns the skeleton of the first person.
 absl::StatusOr<motion::Skeleton> BvhSkeleton(const std::string& text, const std::string& source) {
   const absl::StatusOr<formats::bvh::BvhDocument> document = formats::bvh::ParseBvh(text, source);
   if (!document.ok()) return document.status();
@@ -98,7 +99,7 @@ absl::StatusOr<motion::Skeleton> BvhSkeleton(const std::string& text, const std:
   return Keep(ParentsToSkeleton(std::move(names), parents), kept);
 }
 
-// The joint that bodies are built from, among those of the middle.
+// Finds the root among the joints that are on neither side.
 absl::StatusOr<int> FindRoot(const std::vector<std::string>& names, const std::string& source) {
   for (const char* word : {"hips", "pelvis", "hip", "root", "torso", "spine", "waist", "chest"}) {
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -108,7 +109,7 @@ absl::StatusOr<int> FindRoot(const std::vector<std::string>& names, const std::s
     }
   }
   return absl::InvalidArgumentError(
-      absl::StrCat(source, ": no joint is called hips, pelvis, torso or spine; the file has ",
+      absl::StrCat(source, ": joints: expected hips, pelvis, torso or spine, got ",
                    absl::StrJoin(names, ", "), "; specify the root with --root NAME"));
 }
 
@@ -141,8 +142,9 @@ absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file, const std::s
   if (!text.ok()) return text.status();
   if (extension == ".bvh") return BvhSkeleton(*text, file.string());
   if (extension != ".csv" && extension != ".json") {
-    return absl::InvalidArgumentError(
-        absl::StrCat(file.string(), ": this format has no skeleton; specify --skeleton"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.string(),
+        ": skeleton: expected a format that has one, got another; specify --skeleton"));
   }
   const absl::StatusOr<motion::RecordedMotion> motion =
       extension == ".csv" ? formats::flat::ParseCsv(*text, file.string())
@@ -151,7 +153,7 @@ absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file, const std::s
   return NamedSkeleton(*motion, file.string(), root);
 }
 
-// The tree turned so that it starts at another joint.
+// Makes another joint the root of the tree.
 absl::Status MoveRoot(const std::string& name, motion::Skeleton* skeleton) {
   const int root = skeleton->Find(name);
   if (root < 0) {
@@ -171,7 +173,7 @@ absl::Status MoveRoot(const std::string& name, motion::Skeleton* skeleton) {
   return absl::OkStatus();
 }
 
-// Fingers and face move little and count as much as a leg.
+// Omits fingers and face: they move little, but losses weight every joint equally.
 motion::Skeleton WithoutFingersAndFace(const motion::Skeleton& skeleton, motion::JointPair hands) {
   const std::vector<int> parents = skeleton.Parents();
   std::vector<bool> kept(skeleton.joint_names.size(), true);
@@ -199,7 +201,7 @@ std::string PlainName(const std::string& name) {
   return absl::StrCat(side, parsed.base);
 }
 
-// Duet's words where every joint still has a name of its own; else plain names; else the file's.
+// Assigns Duet's names if they are unique, or else plain names, or else keeps the file's.
 void Rename(const retargeting::Anatomy& anatomy, motion::Skeleton* skeleton) {
   std::vector<std::string> plain;
   for (const std::string& name : skeleton->joint_names) plain.push_back(PlainName(name));
@@ -250,26 +252,28 @@ absl::StatusOr<CaptureSkeleton> Complete(motion::Skeleton skeleton, const std::s
   return found;
 }
 
-absl::StatusOr<CaptureSkeleton> ReadSaid(const std::string& said) {
+// Reads the skeleton that --skeleton specifies.
+absl::StatusOr<CaptureSkeleton> ReadSpecified(const std::string& specified) {
   motion::SkeletonDocument document = {motion::SbuSkeleton(), motion::SbuParts()};
   CaptureSkeleton found;
   found.origin = "the 15 joints of Duet's own models";
-  if (said != "sbu") {
-    const absl::StatusOr<std::string> text = base::ReadFile(said, kMaxSkeletonBytes, "a skeleton");
+  if (specified != "sbu") {
+    const absl::StatusOr<std::string> text =
+        base::ReadFile(specified, kMaxSkeletonBytes, "a skeleton");
     if (!text.ok()) return text.status();
     absl::StatusOr<nlohmann::json> json = base::ParseHandwrittenJson(*text, kMaxSkeletonDepth);
     if (json.ok()) json = dataset::CompleteSkeleton(*std::move(json), &found.notes);
     absl::StatusOr<motion::SkeletonDocument> read =
         json.ok() ? motion::ReadSkeleton(*json, "skeleton") : json.status();
     if (!read.ok()) {
-      return absl::InvalidArgumentError(absl::StrCat(said, ": ", read.status().message()));
+      return absl::InvalidArgumentError(absl::StrCat(specified, ": ", read.status().message()));
     }
     document = *std::move(read);
-    found.origin = said;
+    found.origin = specified;
   }
   const absl::StatusOr<retargeting::Anatomy> anatomy = retargeting::FindAnatomy(document.skeleton);
   if (!anatomy.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(said, ": ", anatomy.status().message()));
+    return absl::InvalidArgumentError(absl::StrCat(specified, ": ", anatomy.status().message()));
   }
   found.skeleton = std::move(document.skeleton);
   found.skeleton.hips = anatomy->hips;
@@ -279,11 +283,7 @@ absl::StatusOr<CaptureSkeleton> ReadSaid(const std::string& said) {
   return found;
 }
 
-}  // namespace
-
-namespace {
-
-// What names tell of joints before any position does.
+// The properties of a joint that follow from its name.
 struct KnownJoint {
   BodySide side = BodySide::kMiddle;
   bool in_limb = false;
@@ -329,7 +329,7 @@ bool AreAcross(const KnownJoint& a, const KnownJoint& b) {
   return a.side != b.side && a.side != BodySide::kMiddle && b.side != BodySide::kMiddle;
 }
 
-// Mean length and how it changes, over some of the frames.
+// The mean length plus the weighted deviation, over some of the frames.
 double BoneCost(const motion::Poses& poses, std::size_t a, std::size_t b) {
   const int step = std::max(1, poses.frame_count() / kMostFrames);
   double sum = 0, squares = 0, count = 0;
@@ -354,13 +354,13 @@ std::vector<motion::Bone> FindBones(const std::vector<std::string>& joint_names,
     if (parent == static_cast<int>(joined) || known[joined].parent == static_cast<int>(next)) {
       return 0.0;
     }
-    // Whose place in a limb is known hangs there alone: a hanging hand is near the hips.
+    // A limb joint with a known parent has no other: a hanging hand is near the hips.
     if (parent >= 0 || AreAcross(known[joined], known[next])) {
       return std::numeric_limits<double>::max();
     }
     return BoneCost(poses, joined, next);
   };
-  // Prim's tree: the cheapest bone from what is joined to what is not, until all are.
+  // Prim's algorithm: repeatedly adds the cheapest bone from a joined joint to another.
   std::vector<motion::Bone> bones;
   std::vector<double> best(joints, std::numeric_limits<double>::infinity());
   std::vector<int> parent(joints, root);
@@ -384,7 +384,7 @@ std::vector<motion::Bone> FindBones(const std::vector<std::string>& joint_names,
 }
 
 absl::StatusOr<CaptureSkeleton> FindSkeleton(const fs::path& file, const SkeletonOptions& options) {
-  if (!options.skeleton.empty()) return ReadSaid(options.skeleton);
+  if (!options.skeleton.empty()) return ReadSpecified(options.skeleton);
   absl::StatusOr<motion::Skeleton> skeleton = ReadCaptured(file, options.root);
   if (!skeleton.ok()) return skeleton.status();
   if (!options.root.empty()) {

@@ -47,7 +47,7 @@ std::string PathOf(const ImportedSequence& sequence) {
   return absl::StrCat(files.label, "/", files.name, ".txt");
 }
 
-// File names may hold what would end a cell.
+// Replaces characters of file names that would end a cell.
 std::string Cell(const std::string& text) {
   return absl::StrReplaceAll(text, {{"\t", " "}, {"\n", " "}, {"\r", " "}});
 }
@@ -75,8 +75,8 @@ absl::Status WriteAll(const fs::path& folder, const dataset::DatasetLayout& layo
     const fs::path path = folder / PathOf(sequence);
     if (!written.insert(PathOf(sequence)).second) {
       return absl::InvalidArgumentError(absl::StrCat(PathOf(sequence),
-                                                     ": two sequences come out under this name, "
-                                                     "wanted another name for ",
+                                                     ": expected one sequence of this name, got "
+                                                     "two; rename ",
                                                      sequence.capture.files.first));
     }
     std::error_code error;
@@ -93,7 +93,7 @@ absl::Status WriteAll(const fs::path& folder, const dataset::DatasetLayout& layo
   return status;
 }
 
-// A hidden name beside a folder's own.
+// A hidden folder next to `folder`.
 fs::path Beside(const fs::path& folder, const std::string& purpose) {
   return folder.parent_path() / absl::StrCat(".", folder.filename().string(), ".", purpose);
 }
@@ -124,8 +124,8 @@ absl::Status CheckOut(const fs::path& out, bool overwrite) {
         out.string(), ": expected a new folder or a data set, got a folder with other files"));
   }
   if (overwrite) return absl::OkStatus();
-  return absl::AlreadyExistsError(
-      absl::StrCat(out.string(), ": is a data set already; replace it with --overwrite"));
+  return absl::AlreadyExistsError(absl::StrCat(
+      out.string(), ": expected a new folder, got a data set; replace it with --overwrite"));
 }
 
 absl::Status WriteDataset(const fs::path& out, const dataset::DatasetLayout& layout,
@@ -134,7 +134,7 @@ absl::Status WriteDataset(const fs::path& out, const dataset::DatasetLayout& lay
   const fs::path folder = place.filename().empty() ? place.parent_path() : place;
   const fs::path written = Beside(folder, "importing");
   std::error_code error;
-  fs::remove_all(written, error);  // of an import that was killed
+  fs::remove_all(written, error);  // left by an import that was killed
   fs::create_directories(written, error);
   if (error) {
     return absl::PermissionDeniedError(absl::StrCat(written.string(), ": ", error.message()));

@@ -26,13 +26,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxTableBytes = std::size_t{16} << 20;
 constexpr char kTableName[] = "pairs.tsv";
-constexpr double kHighestOwnRate = 30;  // networks are made for it or less
+constexpr double kHighestOwnRate = 30;  // networks expect at most this
 constexpr double kSameRate = 1e-3;
-// Data that is levelled unless its maker says otherwise.
+// Thresholds above which data is levelled by default.
 constexpr double kLeastLeanDegrees = 3;
 constexpr double kLeastFloorMetres = 0.1;
 constexpr double kFloorShare = 0.25;
-constexpr double kCloseCall = 1.2;  // the larger displacement by the smaller
+constexpr double kCloseCall = 1.2;  // ratio of the larger displacement to the smaller
 constexpr std::size_t kMostListed = 8;
 
 std::string ListSome(const std::vector<std::string>& names) {
@@ -49,7 +49,7 @@ bool IsHidden(const fs::path& path) {
   return false;
 }
 
-// What a folder holds: motion files below it, and how many others of each extension.
+// The motion files below a folder, and the number of other files by extension.
 struct Listing {
   std::vector<std::string> motions;
   std::map<std::string, int> others;
@@ -73,7 +73,7 @@ absl::StatusOr<Listing> ListMotions(const fs::path& folder) {
   return listing;
 }
 
-// One import from beginning to end; each step leaves its assumptions.
+// Runs one import. Each step records its assumptions.
 class Importer {
  public:
   Importer(const ImportOptions& options, ImportReport* report)
@@ -90,7 +90,7 @@ class Importer {
     if (status.ok()) status = CheckRefused();
     if (status.ok()) status = DescribeClasses();
     if (!status.ok()) return status;
-    SayWhoLeads();
+    ChooseLeaders();
     FindLevel();
     CutLongPairs();
     return Write();
@@ -122,10 +122,10 @@ class Importer {
     const absl::StatusOr<Listing> listing = ListMotions(options_.from);
     if (!listing.ok()) return listing.status();
     for (const auto& [extension, count] : listing->others) {
-      Assume("passed by",
-             absl::StrCat(count, count == 1 ? " file " : " files ",
-                          extension.empty() ? "without an extension" : extension,
-                          count == 1 ? ", which is" : ", which are", " no motion"),
+      Assume("ignored",
+             absl::StrCat(count, " ", extension.empty() ? "" : absl::StrCat(extension, " "),
+                          count == 1 ? "file" : "files",
+                          extension.empty() ? " without an extension" : "", ": not a motion"),
              "");
     }
     fs::path table = options_.table;
@@ -144,10 +144,12 @@ class Importer {
     report_.refused = pairing->refused;
     pairs_ = std::move(pairing->pairs);
     if (pairs_.empty()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(options_.from.string(), ": no pairs among ", listing->motions.size(),
-                       " motion files, wanted names such as kick_01_a.bvh and kick_01_b.bvh, one "
-                       "file for both people, or a table (docs/guides/own_data.md)"));
+      return absl::InvalidArgumentError(absl::StrCat(
+          options_.from.string(),
+          ": expected pairs of motion files (kick_01_a.bvh and kick_01_b.bvh), or files "
+          "of both people, got no pairs among ",
+          listing->motions.size(),
+          " motion files; rename them or write a table (docs/guides/own_data.md)"));
     }
     Assume("pairs",
            absl::StrCat(pairs_.size(), " by ", table.empty() ? "their names" : table.string()),
@@ -157,14 +159,14 @@ class Importer {
 
   absl::Status FindJoints() {
     absl::StatusOr<CaptureSkeleton> found;
-    for (const PairFiles& files : pairs_) {  // the first that can be read: each says so itself
+    for (const PairFiles& files : pairs_) {  // the first readable one; ReadPairs reports the others
       found = FindSkeleton(options_.from / files.first, options_.skeleton);
       if (found.ok() || !options_.skeleton.skeleton.empty()) break;
     }
     if (!found.ok()) return found.status();
     skeleton_ = *std::move(found);
     const motion::Skeleton& skeleton = skeleton_.skeleton;
-    Assume("skeleton", absl::StrCat(skeleton.joint_count(), " joints, of ", skeleton_.origin),
+    Assume("skeleton", absl::StrCat(skeleton.joint_count(), " joints, from ", skeleton_.origin),
            "--skeleton FILE, --all-joints");
     Assume("root", skeleton.joint_names[static_cast<std::size_t>(skeleton.root)], "--root JOINT");
     for (const std::string& note : skeleton_.notes) Assume("joints", note, "--skeleton FILE");
@@ -187,7 +189,7 @@ class Importer {
     std::map<std::string, int> people;
     for (const std::string& note : notes) ++people[note];
     for (const auto& [note, count] : people) {
-      Assume("joint map", absl::StrCat(note, ", of ", count, " people"), "--joint-map JOINT=NAME");
+      Assume("joint map", absl::StrCat(note, ", for ", count, " people"), "--joint-map JOINT=NAME");
     }
     if (captures_.empty()) return AllRefused();
     return absl::OkStatus();
@@ -236,10 +238,9 @@ class Importer {
         }
       }
     }
-    Assume(
-        "unit",
-        absl::StrFormat("%s: legs are then %.2f m long", unit->name, legs.front() * unit->metres),
-        "--metres-per-unit METRES");
+    Assume("unit",
+           absl::StrFormat("%s: legs are %.2f m long", unit->name, legs.front() * unit->metres),
+           "--metres-per-unit METRES");
     Assume("up axis", std::string(UpAxisName(*axis)), "--up-axis y-up|z-up|y-down");
     return absl::OkStatus();
   }
@@ -255,7 +256,8 @@ class Importer {
                          })->first;
     const double nth = std::ceil(found / kHighestOwnRate - kSameRate);
     rate_hz_ = options_.to_rate_hz.value_or(found / std::max(1.0, nth));
-    std::string value = absl::StrFormat("%g frames a second, of files with %g", rate_hz_, found);
+    std::string value =
+        absl::StrFormat("%g frames per second, from files with %g", rate_hz_, found);
     if (rates.size() > 1) absl::StrAppend(&value, " and ", rates.size() - 1, " other rates");
     Assume("frame rate", value, "--to-rate HZ, --frame-rate HZ");
     return absl::OkStatus();
@@ -325,7 +327,7 @@ class Importer {
       Assume("class",
              absl::StrCat(one.name, ": ", counts[one.name], " pairs; ",
                           one.symmetric ? "either may lead" : "one leads", ", ",
-                          one.handed ? "with one hand by custom" : "with either hand", ", ",
+                          one.handed ? "always with the same hand" : "with either hand", ", ",
                           one.touches ? "bodies may touch" : "bodies are kept apart"),
              "--symmetric, --handed, --touches CLASS");
     }
@@ -370,10 +372,10 @@ class Importer {
     return absl::OkStatus();
   }
 
-  void SayWhoLeads() {
+  void ChooseLeaders() {
     std::map<std::string, int> by_source;
     std::vector<std::string> close;
-    std::set<std::string> ruled;  // classes
+    std::set<std::string> ruled;  // classes with inferred leaders
     for (const Capture& capture : captures_) {
       ImportedSequence sequence{capture, dataset::LeaderSide::kLeft, capture.files.leader_source};
       if (sequence.leader_source.empty()) RuleByMotion(&sequence, &close);

@@ -1,4 +1,4 @@
-// duet-import: turns a folder of motion files of two people into a data set to train on.
+// duet-import: converts a folder of motion files of two people to a data set for training.
 //
 //   duet-import --from captures --out studio
 
@@ -17,7 +17,7 @@
 namespace duet::importing {
 namespace {
 
-// Flags whose values CLI11 does not know, as they were typed.
+// Flags that Parse reads, because CLI11 does not know their types.
 struct Words {
   std::string up_axis;
   std::string level;
@@ -27,34 +27,43 @@ struct Words {
 
 void Declare(ImportOptions* options, Words* words, CLI::App* app) {
   app->add_option("--from", options->from, "Folder of motion files")->required()->type_name("DIR");
-  app->add_option("--out", options->out, "The data set to write")->required()->type_name("DIR");
-  app->add_option("--name", options->name, "Of the data set (default: its folder's)")
+  app->add_option("--out", options->out, "Data set to write")->required()->type_name("DIR");
+  app->add_option("--name", options->name, "Name of the data set (default: the name of its folder)")
       ->type_name("NAME");
   app->add_option("--table", options->table,
-                  "Tab-separated: leader, follower, label, subjects (default: FROM/pairs.tsv)")
+                  "Tab-separated table of leader, follower, label and subjects (default: "
+                  "FROM/pairs.tsv, if it exists)")
       ->type_name("FILE");
   app->add_option("--skeleton", options->skeleton.skeleton,
-                  "sbu, or a file with the skeleton object of dataset.json")
+                  "sbu, or a file with the skeleton object of dataset.json (default: inferred)")
       ->type_name("FILE");
-  app->add_option("--root", options->skeleton.root, "The joint that bodies are built from")
+  app->add_option("--root", options->skeleton.root,
+                  "Root joint of the skeleton (default: inferred)")
       ->type_name("JOINT");
-  app->add_flag("--all-joints", options->skeleton.all_joints, "Fingers and face as well");
-  app->add_option("--joint-map", words->joints,
-                  "Where names alone do not tell which is which; repeatable")
+  app->add_flag("--all-joints", options->skeleton.all_joints, "Include fingers and face");
+  app->add_option(
+         "--joint-map", words->joints,
+         "Joint of the file for a joint of the skeleton, if its name is ambiguous; repeatable")
       ->type_name("JOINT=FILE_JOINT");
-  app->add_option("--frame-rate", options->frame_rate_hz, "Replaces what the files say")
+  app->add_option("--frame-rate", options->frame_rate_hz,
+                  "Frame rate of the files (default: the rate that they state)")
       ->check(CLI::Range(1.0, 1000.0))
       ->type_name("HZ");
-  app->add_option("--to-rate", options->to_rate_hz, "Of the data set (default: theirs, 30 at most)")
+  app->add_option("--to-rate", options->to_rate_hz,
+                  "Frame rate of the data set (default: that of the files, at most "
+                  "30)")
       ->check(CLI::Range(1.0, 240.0))
       ->type_name("HZ");
   app->add_option("--metres-per-unit", options->metres_per_unit,
-                  "Metres in one unit of the files (0.01 for centimetres)")
+                  "Metres in one unit of the files, 0.01 for centimetres (default: inferred)")
       ->check(CLI::Range(1e-6, 1e6))
       ->type_name("METRES");
-  app->add_option("--up-axis", words->up_axis, "Of the files (default: along which people stand)")
+  app->add_option("--up-axis", words->up_axis,
+                  "Up axis of the files (default: the axis along which people "
+                  "stand)")
       ->type_name("y-up|z-up|y-down");
-  app->add_option("--longest", options->longest_seconds, "Seconds; longer pairs are cut")
+  app->add_option("--longest", options->longest_seconds,
+                  "Maximum length of a sequence; longer ones are cut")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str()
       ->type_name("SECONDS");
@@ -62,23 +71,24 @@ void Declare(ImportOptions* options, Words* words, CLI::App* app) {
       ->delimiter(',')
       ->type_name("CLASS");
   app->add_option("--handed", options->handed,
-                  "Classes done with one hand by custom, which are not mirrored")
+                  "Classes that are always done with the same hand; they are not mirrored")
       ->delimiter(',')
       ->type_name("CLASS");
   app->add_option("--touches", options->touches, "Classes in which bodies may touch")
       ->delimiter(',')
       ->type_name("CLASS");
-  app->add_option("--effectors", words->effectors, "Whoever moves these farther leads; repeatable")
+  app->add_option("--effectors", words->effectors,
+                  "Joints of a class: the person who moves them farther leads; repeatable")
       ->type_name("CLASS=JOINT,JOINT");
-  app->add_option("--level", words->level, "Level the people (default: where they lean)")
+  app->add_option("--level", words->level, "Level the people (default: if they lean or float)")
       ->check(CLI::IsMember({"yes", "no"}))
       ->type_name("yes|no");
-  app->add_flag("--skip-refused", options->skip_refused, "Go on without pairs that are refused");
+  app->add_flag("--skip-refused", options->skip_refused, "Continue without rejected pairs");
   app->add_flag("--overwrite", options->overwrite, "Replace the data set at --out");
 }
 
-absl::Status Wrong(const std::string& flag, const std::string& came, const std::string& wanted) {
-  return absl::InvalidArgumentError(absl::StrCat(flag, ": expected ", wanted, ", got ", came));
+absl::Status Wrong(const std::string& flag, const std::string& got, const std::string& expected) {
+  return absl::InvalidArgumentError(absl::StrCat(flag, ": expected ", expected, ", got ", got));
 }
 
 absl::Status Parse(const Words& words, ImportOptions* options) {
@@ -117,7 +127,7 @@ void Print(const ImportReport& report) {
 int main(int argc, char** argv) {
   duet::importing::ImportOptions options;
   duet::importing::Words words;
-  CLI::App app("Turns a folder of motion files of two people into a data set to train on.",
+  CLI::App app("Converts a folder of motion files of two people to a data set for training.",
                "duet-import");
   app.set_version_flag("--version", "duet-import " DUET_VERSION);
   Declare(&options, &words, &app);

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whose file it is, said by a name's last word.
+// The last words of two names that denote two people.
 struct RoleWords {
   const char* first;
   const char* second;
@@ -40,8 +40,8 @@ struct Parsed {
   std::string file;
   std::vector<std::string> folders;  // kick, day 1
   std::string base;                  // 02; empty where the word is the whole name
-  const RoleWords* role = nullptr;   // whose word it ends with
-  bool second = false;               // which of the two
+  const RoleWords* role = nullptr;   // the words it ends with, if any
+  bool second = false;               // whether it ends with the second word
 };
 
 Parsed ParseName(const std::string& file) {
@@ -66,14 +66,14 @@ Parsed ParseName(const std::string& file) {
   return parsed;
 }
 
-// "kick_01" -> "kick"; a name that is a number alone stays.
+// "kick_01" -> "kick". A name that is only a number is unchanged.
 std::string WithoutNumber(const std::string& name) {
   std::size_t end = name.size();
   while (end > 0 && (IsDigit(name[end - 1]) || IsSeparator(name[end - 1]))) --end;
   return end == 0 || end == name.size() || !IsDigit(name.back()) ? name : name.substr(0, end);
 }
 
-// A file name that every system takes.
+// Converts text to a file name that is valid on every system.
 std::string ToFileName(absl::string_view text) {
   std::string name(text);
   for (char& c : name) {
@@ -83,7 +83,7 @@ std::string ToFileName(absl::string_view text) {
   return std::string(absl::StripPrefix(name, "."));
 }
 
-// Label and name of the pair that a file belongs to.
+// Sets the label and the name of a file's pair.
 void NamePair(const Parsed& parsed, PairFiles* pair) {
   std::vector<std::string> words = parsed.folders;
   if (!parsed.base.empty()) words.push_back(parsed.base);
@@ -94,7 +94,7 @@ void NamePair(const Parsed& parsed, PairFiles* pair) {
   pair->name = ToFileName(absl::StrJoin(words, "_"));
 }
 
-// Names that came out alike are told apart by a number.
+// Appends numbers to equal names.
 void MakeNamesUnique(std::vector<PairFiles>* pairs) {
   std::set<std::string> seen;
   for (PairFiles& pair : *pairs) {
@@ -115,14 +115,14 @@ void Add(PairFiles pair, Pairing* pairing) {
   if (pair.label.empty()) {
     pairing->refused.push_back(
         {pair.first,
-         "its name tells no class, wanted CLASS_NUMBER, a folder for each class, or a "
-         "table"});
+         "class: expected a name CLASS_NUMBER or a folder for each class, got neither; rename the "
+         "file or write a table"});
     return;
   }
   pairing->pairs.push_back(std::move(pair));
 }
 
-// The files of one name and one pair of words.
+// Adds the files with one name and one pair of words.
 void AddGroup(const std::vector<Parsed>& group, Pairing* pairing) {
   std::vector<const Parsed*> people[2];
   for (const Parsed& one : group) people[one.second ? 1 : 0].push_back(&one);
@@ -138,10 +138,10 @@ void AddGroup(const std::vector<Parsed>& group, Pairing* pairing) {
   for (const Parsed& one : group) {
     const bool alone = people[one.second ? 0 : 1].empty();
     pairing->refused.push_back(
-        {one.file, alone ? absl::StrCat("the other person is missing, wanted a file that ends in ",
-                                        one.second ? role.first : role.second)
-                         : absl::StrCat("more than two files are called ", NameOf(one),
-                                        ", wanted one a person")});
+        {one.file, alone ? absl::StrCat("other person: expected a file that ends in ",
+                                        one.second ? role.first : role.second, ", got none")
+                         : absl::StrCat("files: expected one for each person of ", NameOf(one),
+                                        ", got more")});
   }
 }
 
@@ -193,9 +193,9 @@ absl::StatusOr<Pairing> PairByTable(absl::string_view table, absl::string_view s
   for (const char* column : {"leader", "follower", "label"}) {
     if (columns.count(column) > 0) continue;
     return base::ErrorAt(source, 1,
-                         absl::StrCat("no column ", column,
-                                      ", wanted a header of tab-separated names with leader, "
-                                      "follower and label"));
+                         absl::StrCat("header: expected tab-separated names with leader, follower "
+                                      "and label, got no ",
+                                      column));
   }
   const std::set<std::string> known(files.begin(), files.end());
   Pairing pairing;
@@ -227,8 +227,8 @@ absl::StatusOr<Pairing> PairByTable(absl::string_view table, absl::string_view s
                                  : known.count(pair.second) == 0 ? &pair.second
                                                                  : nullptr;
     if (missing != nullptr) {
-      pairing.refused.push_back({*missing, absl::StrCat("named in ", source, ":", lines.number(),
-                                                        ", but there is no such motion file")});
+      pairing.refused.push_back({*missing, absl::StrCat("expected a motion file, as ", source, ":",
+                                                        lines.number(), " names it, got none")});
       continue;
     }
     pairing.pairs.push_back(std::move(pair));

@@ -14,7 +14,7 @@ struct PairFiles {
   std::string label;   // the interaction class: lower case, words joined by '_'
   std::string name;    // of the sequence within its class
   std::string first;   // the file of one person, below the folder of captures
-  std::string second;  // of the other; the same file where one holds both
+  std::string second;  // of the other; the same file if it holds both
   // "name" or "table", whichever states that `first` leads; empty if neither does.
   std::string leader_source;
   std::vector<std::string> subjects;  // the leader's first, if the table has them
@@ -48,7 +48,7 @@ Pairing PairByName(const std::vector<std::string>& files);
 // `follower` (empty if the leader's file holds both) and `label` are required, `subjects` (names
 // separated by commas) is optional, and others are ignored. A pair with a file not in `files` is
 // rejected.
-// Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ...".
+// Errors: INVALID_ARGUMENT "source:line: ...: expected ..., got ...".
 absl::StatusOr<Pairing> PairByTable(absl::string_view table, absl::string_view source,
                                     const std::vector<std::string>& files);
 

@@ -6,11 +6,11 @@
 namespace duet::motion {
 
 absl::Status Validate(const std::vector<BodyPart>& parts, const Skeleton& skeleton) {
-  if (parts.empty()) return absl::InvalidArgumentError("parts: empty, wanted at least one");
+  if (parts.empty()) return absl::InvalidArgumentError("parts: expected at least one, got none");
   for (const BodyPart& part : parts) {
     if (part.joints.empty()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("parts: ", base::Quoted(part.name), " has no joints"));
+      return absl::InvalidArgumentError(absl::StrCat("parts: expected at least one joint of ",
+                                                     base::Quoted(part.name), ", got none"));
     }
     for (const int joint : part.joints) {
       absl::Status status = CheckJoint(absl::StrCat("parts.", part.name), joint, skeleton);

@@ -28,8 +28,8 @@ void SetBoneLengths(const Skeleton& skeleton, const std::vector<float>& lengths,
       const Bone& bone = skeleton.bones[static_cast<std::size_t>(index)];
       const Vec3 along = before.at(t, bone.child) - before.at(t, bone.parent);
       const float length = Norm(along);
-      const float wanted = lengths[static_cast<std::size_t>(index)];
-      const Vec3 offset = length > 0 ? along * (wanted / length) : along;
+      const float target = lengths[static_cast<std::size_t>(index)];
+      const Vec3 offset = length > 0 ? along * (target / length) : along;
       poses->at(t, bone.child) = poses->at(t, bone.parent) + offset;
     }
   }

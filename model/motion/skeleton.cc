@@ -12,11 +12,12 @@ namespace {
 
 absl::Status CheckNames(const Skeleton& skeleton) {
   if (skeleton.joint_names.empty()) {
-    return absl::InvalidArgumentError("joint_names: empty, wanted at least one joint");
+    return absl::InvalidArgumentError("joint_names: expected at least one joint, got none");
   }
   std::set<std::string> seen;
   for (const std::string& name : skeleton.joint_names) {
-    if (name.empty()) return absl::InvalidArgumentError("joint_names: an empty name");
+    if (name.empty())
+      return absl::InvalidArgumentError("joint_names: expected non-empty names, got \"\"");
     if (!seen.insert(name).second) {
       return absl::InvalidArgumentError(
           absl::StrCat("joint_names: ", base::Quoted(name), " is repeated"));
@@ -43,8 +44,8 @@ absl::Status CheckLandmarks(const Skeleton& skeleton) {
 absl::Status CheckTree(const Skeleton& skeleton) {
   const int joints = skeleton.joint_count();
   if (static_cast<int>(skeleton.bones.size()) != joints - 1) {
-    return absl::InvalidArgumentError(absl::StrCat("bones: ", skeleton.bones.size(), ", wanted ",
-                                                   joints - 1, " to connect ", joints, " joints"));
+    return absl::InvalidArgumentError(absl::StrCat("bones: expected ", joints - 1, " to connect ",
+                                                   joints, " joints, got ", skeleton.bones.size()));
   }
   std::vector<int> parent(static_cast<size_t>(joints), -1);
   for (const Bone& bone : skeleton.bones) {
@@ -54,7 +55,8 @@ absl::Status CheckTree(const Skeleton& skeleton) {
     }
     if (bone.child == skeleton.root || parent[static_cast<size_t>(bone.child)] != -1) {
       return absl::InvalidArgumentError(
-          absl::StrCat("bones: joint ", bone.child, " may not have a further parent"));
+          absl::StrCat("bones: expected ", bone.child == skeleton.root ? "no parent" : "one parent",
+                       " of joint ", bone.child, ", got another"));
     }
     parent[static_cast<size_t>(bone.child)] = bone.parent;
   }
@@ -63,7 +65,7 @@ absl::Status CheckTree(const Skeleton& skeleton) {
     for (int steps = 0; at != skeleton.root; ++steps) {
       if (at == -1 || steps > joints) {
         return absl::InvalidArgumentError(
-            absl::StrCat("bones: joint ", joint, " is not connected to the root"));
+            absl::StrCat("bones: expected joint ", joint, " below the root, got it elsewhere"));
       }
       at = parent[static_cast<size_t>(at)];
     }
@@ -86,8 +88,9 @@ std::vector<int> Skeleton::Parents() const {
 
 absl::Status CheckJoint(std::string_view field, int joint, const Skeleton& skeleton) {
   if (joint >= 0 && joint < skeleton.joint_count()) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(std::string(field), ": joint index ", joint,
-                                                 ", wanted 0 to ", skeleton.joint_count() - 1));
+  return absl::InvalidArgumentError(absl::StrCat(std::string(field),
+                                                 ": expected a joint index from 0 to ",
+                                                 skeleton.joint_count() - 1, ", got ", joint));
 }
 
 absl::Status Validate(const Skeleton& skeleton) {

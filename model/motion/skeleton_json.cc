@@ -6,7 +6,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "model/base/strict_json.h"
+#include "model/base/text.h"
 
 namespace duet::motion {
 namespace {
@@ -14,14 +14,14 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-// Far above any character, and small enough that a small file cannot demand a huge network.
+// Far above any character. Limits the size of the network that a small file can request.
 constexpr std::size_t kMaxJoints = 256;
 constexpr std::size_t kMaxParts = 64;
 constexpr std::size_t kMaxNameBytes = 64;
 constexpr std::size_t kMaxTextBytes = 4096;
 constexpr char kWholeBody[] = "whole_body";  // reserved for the slice that the generator adds
 
-// The names of parts occur in the names of tensors.
+// Whether `name` may be part of a tensor's name.
 bool IsPlainName(const std::string& name) {
   if (name.empty() || name.size() > kMaxNameBytes || name.front() == '.') return false;
   for (const char c : name) {
@@ -32,35 +32,9 @@ bool IsPlainName(const std::string& name) {
   return true;
 }
 
-// The index of a joint of the skeleton. Fails `reader` and returns -1 if there is none.
-int FindJoint(base::ObjectReader* reader, const std::string& key, const Skeleton& skeleton,
-              const std::string& name) {
-  const int joint = skeleton.Find(name);
-  if (joint < 0) {
-    reader->Fail(key, absl::StrCat("unknown joint ", json(name).dump(),
-                                   ", wanted one of skeleton.joint_names"));
-  }
-  return joint;
-}
-
 int ReadJoint(base::ObjectReader* reader, const std::string& key, const Skeleton& skeleton) {
   const std::string name = reader->String(key, kMaxTextBytes);
   return reader->ok() ? FindJoint(reader, key, skeleton, name) : 0;
-}
-
-std::vector<std::string> ReadUniqueNames(base::ObjectReader* reader, const std::string& key) {
-  std::vector<std::string> names = reader->Strings(key, kMaxJoints);
-  std::set<std::string> seen;
-  for (const std::string& name : names) {
-    if (name.size() > kMaxNameBytes) {
-      reader->Fail(
-          key, absl::StrCat("a name of ", name.size(), " bytes, wanted at most ", kMaxNameBytes));
-    }
-    if (!seen.insert(name).second) {
-      reader->Fail(key, absl::StrCat(json(name).dump(), " is repeated"));
-    }
-  }
-  return names;
 }
 
 std::vector<Bone> ReadBones(base::ObjectReader* reader, const Skeleton& skeleton) {
@@ -70,7 +44,8 @@ std::vector<Bone> ReadBones(base::ObjectReader* reader, const Skeleton& skeleton
     const bool is_pair =
         item.is_array() && item.size() == 2 && item[0].is_string() && item[1].is_string();
     if (!is_pair) {
-      reader->Fail(key, "wanted a pair of joint names, parent first");
+      reader->Fail(key, absl::StrCat("expected a pair of joint names, parent first, got ",
+                                     base::Shown(item)));
       return {};
     }
     bones.push_back({FindJoint(reader, key, skeleton, item[0].get<std::string>()),
@@ -84,15 +59,16 @@ BodyPart ReadPart(base::ObjectReader* fields, const Skeleton& skeleton,
   BodyPart part;
   part.name = fields->String("name", kMaxTextBytes);
   if (fields->ok() && !IsPlainName(part.name)) {
-    fields->Fail("name", absl::StrCat(json(part.name).dump(), ", wanted 1 to ", kMaxNameBytes,
+    fields->Fail("name", absl::StrCat("expected 1 to ", kMaxNameBytes,
                                       " letters, digits, '_', '-' or '.', the first of them not "
-                                      "'.'"));
+                                      "'.', got ",
+                                      base::Quoted(part.name)));
   }
-  for (const std::string& joint : ReadUniqueNames(fields, "joints")) {
+  for (const std::string& joint : fields->UniqueStrings("joints", kMaxJoints, kMaxNameBytes)) {
     part.joints.push_back(FindJoint(fields, "joints", skeleton, joint));
   }
   if (!seen->insert(part.name).second) {
-    fields->Fail("name", absl::StrCat(json(part.name).dump(), " is repeated or reserved"));
+    fields->Fail("name", absl::StrCat(base::Quoted(part.name), " is repeated or reserved"));
   }
   return part;
 }
@@ -117,11 +93,21 @@ std::optional<JointPair> ReadPair(base::ObjectReader* reader, const std::string&
 
 }  // namespace
 
+int FindJoint(base::ObjectReader* reader, const std::string& key, const Skeleton& skeleton,
+              const std::string& name) {
+  const int joint = skeleton.Find(name);
+  if (joint < 0) {
+    reader->Fail(key,
+                 absl::StrCat("expected one of skeleton.joint_names, got ", base::Quoted(name)));
+  }
+  return joint;
+}
+
 absl::StatusOr<SkeletonDocument> ReadSkeleton(const json& value, const std::string& path) {
   base::ObjectReader reader(value, path);
   SkeletonDocument document;
   Skeleton& skeleton = document.skeleton;
-  skeleton.joint_names = ReadUniqueNames(&reader, "joint_names");
+  skeleton.joint_names = reader.UniqueStrings("joint_names", kMaxJoints, kMaxNameBytes);
   skeleton.bones = ReadBones(&reader, skeleton);
   document.parts = ReadParts(&reader, skeleton);
   skeleton.root = ReadJoint(&reader, "root", skeleton);

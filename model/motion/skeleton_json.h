@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "model/base/strict_json.h"
 #include "model/motion/body_part.h"
 #include "model/motion/skeleton.h"
 
@@ -26,6 +27,10 @@ struct SkeletonDocument {
 // are too long and skeletons that Validate rejects are INVALID_ARGUMENT. The message names the
 // field below `path`, the expected value and the actual one.
 absl::StatusOr<SkeletonDocument> ReadSkeleton(const nlohmann::json& value, const std::string& path);
+
+// The index of the joint `name`. If there is none, records an error at `key` and returns -1.
+int FindJoint(base::ObjectReader* reader, const std::string& key, const Skeleton& skeleton,
+              const std::string& name);
 
 // Requires a skeleton and parts that Validate accepts.
 nlohmann::ordered_json SkeletonToJson(const Skeleton& skeleton, const std::vector<BodyPart>& parts);

@@ -30,7 +30,7 @@ class Finder {
     for (const std::string& name : skeleton.joint_names) parsed_.push_back(ParseJointName(name));
   }
 
-  // Both sides by one alias: a file's hips are not a thigh and a leg.
+  // Finds both sides by the same alias, so that a pair is never a thigh and a leg.
   std::optional<motion::JointPair> FindByName(const Landmark& landmark) const {
     for (const std::string& alias : JointAliases(landmark.name)) {
       const int left = Find({BodySide::kLeft, alias}), right = Find({BodySide::kRight, alias});
@@ -54,7 +54,7 @@ class Finder {
     return joints;
   }
 
-  // The farthest from `top` along the bones.
+  // The joint that is farthest from `top` along the bones.
   int Outermost(int top) const {
     int outermost = top, most = 0;
     for (const int joint : Below(top)) {
@@ -71,9 +71,9 @@ class Finder {
   }
 
  private:
-  int Find(const ParsedJointName& wanted) const {
+  int Find(const ParsedJointName& name) const {
     for (std::size_t i = 0; i < parsed_.size(); ++i) {
-      if (parsed_[i] == wanted) return static_cast<int>(i);
+      if (parsed_[i] == name) return static_cast<int>(i);
     }
     return -1;
   }
@@ -97,7 +97,7 @@ class Finder {
   std::vector<ParsedJointName> parsed_;
 };
 
-// Every joint in one part; a part without any is left out.
+// Assigns every joint to one part. Omits empty parts.
 std::vector<motion::BodyPart> FindParts(const Finder& finder, const Anatomy& anatomy,
                                         int joint_count) {
   std::vector<motion::BodyPart> parts = {{"left_arm", finder.Below(anatomy.shoulders.left)},

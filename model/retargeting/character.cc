@@ -17,7 +17,7 @@ constexpr double kTypicalLeg = 1;
 constexpr double kLargestUnit = 1000;
 // Range without a warning of the height from feet to head of a straightened character, metres.
 constexpr double kShortestPerson = 1.3, kTallestPerson = 2.1;
-// In units of the file. A smaller figure is treated as having no size.
+// In units of the file. A smaller character is treated as having no size.
 constexpr double kSmallestLeg = 1e-3;
 
 double Rounded(double value, double step) { return std::round(value / step) * step; }
@@ -76,7 +76,7 @@ class ClipMaker {
     if (metres >= kShortestPerson && metres <= kTallestPerson) return;
     Warn(absl::StrCat("size: ", Rounded(metres, 0.01), " m from the feet to the head, expected ",
                       kShortestPerson, " to ", kTallestPerson,
-                      " for an adult; say how many metres a unit has if the unit is another"));
+                      " for an adult; specify the metres per unit if the unit is another"));
   }
 
   // Adds a note and a remark, which `duet inspect` prints.
@@ -90,12 +90,12 @@ class ClipMaker {
   static absl::StatusOr<double> CheckUnit(double metres) {
     if (metres > 0 && metres <= kLargestUnit) return metres;
     return absl::InvalidArgumentError(absl::StrCat(
-        "metres per unit: came ", metres, ", wanted more than 0 and at most ", kLargestUnit));
+        "metres per unit: expected more than 0 and at most ", kLargestUnit, ", got ", metres));
   }
 
   absl::Status UnitNeeded(absl::string_view why) const {
     return MendedBy(absl::InvalidArgumentError(
-                        absl::StrCat(source_, ": size: ", why, "; say how many metres a unit has")),
+                        absl::StrCat(source_, ": size: ", why, "; specify the metres per unit")),
                     motion::ReadingSetting::kMetresPerUnit);
   }
 
@@ -105,7 +105,7 @@ class ClipMaker {
       return CheckUnit(*options_.metres_per_unit);
     }
     if (!options_.skeleton.feet) {
-      return UnitNeeded("the skeleton has no feet to tell it by");
+      return UnitNeeded("expected a skeleton with feet to infer the unit, got none");
     }
     const double length =
         LegLength(options_.skeleton, motion::Poses(options_.skeleton.joint_count(), straight));
@@ -118,24 +118,25 @@ class ClipMaker {
         ReportUnit({absl::StrCat(unit, " m"), Origin::kFile, character_.stated_by});
         return unit;
       }
-      Warn(absl::StrCat("unit: ", character_.stated_by, " would make the way from foot to ", root,
-                        " ", Rounded(length * unit, 0.01), " m, and was passed over"));
+      Warn(absl::StrCat("unit: ignored ", character_.stated_by,
+                        ", with which the distance from foot to ", root, " would be ",
+                        Rounded(length * unit, 0.01), " m"));
     }
     if (const std::optional<motion::InferredUnit> unit = motion::InferUnit({length})) {
       const std::string why =
-          absl::StrCat("foot to ", root, " is then ", Rounded(length * unit->metres, 0.01), " m");
+          absl::StrCat("foot to ", root, " is ", Rounded(length * unit->metres, 0.01), " m");
       Note(absl::StrCat("unit: ", unit->name, " (", why, ")"));
       ReportUnit({unit->name, Origin::kGuessed, why});
       return unit->metres;
     }
     if (!(length >= kSmallestLeg)) {
       return UnitNeeded(
-          absl::StrCat("foot to ", root, " came as ", length, " units, which is no size"));
+          absl::StrCat("expected a distance from foot to ", root, ", got ", length, " units"));
     }
     const std::string why =
         absl::StrCat("foot to ", root, " is ", length,
-                     " units, no person's in any usual unit, and was taken as ", kTypicalLeg,
-                     " m; say how many metres a unit has where the size matters");
+                     " units, which is no person's in any usual unit, and was read as ",
+                     kTypicalLeg, " m; specify the metres per unit if the size matters");
     Note(absl::StrCat("warning: unit: a guess: ", why));
     ReportUnit({absl::StrCat(kTypicalLeg / length, " m"), Origin::kGuessed, why});
     if (options_.report != nullptr) options_.report->remarks.push_back("warning: unit: a guess");
@@ -163,8 +164,8 @@ class ClipMaker {
                  found.has_value() ? "the feet are below the root along it" : "");
     if (!found.has_value() && options_.skeleton.feet) {
       Warn(
-          "up axis: expected a person who stands along y, z or -y, got none; y is taken as up; "
-          "specify the up axis if another is");
+          "up axis: expected a person who stands along y, z or -y, got none; assuming y; specify "
+          "the up axis if it is another");
     }
     if (up == motion::UpAxis::kZUp) Note("up axis: z (the feet are below the root along it)");
     if (up == motion::UpAxis::kYDown) {

@@ -21,19 +21,19 @@ namespace duet::retargeting {
 namespace {
 
 constexpr std::size_t kMostNamesInError = 60;
-// Shares of the way from hips to neck. How far from its middle a spine joint may be to stand for
-// the torso; the shortest head with an end of its own; how near to the neck a head's joint is that
-// stands at the base of the skull; how far above that the middle of the head is.
+// Fractions of the distance from hips to neck: the maximum distance of a torso joint from the
+// middle; the minimum length of a head with an end; the maximum distance from the neck of a head
+// joint at the base of the skull; the height of the middle of the head above that joint.
 constexpr float kTorsoReach = 0.25f;
 constexpr float kShortestHead = 0.1f;
 constexpr float kShortestNeck = 0.05f, kLongestNeck = 0.35f;
 constexpr float kHeadRise = 0.19f;
-// Distances are means over as many frames, spread over the motion.
+// Number of frames, spread over the motion, over which distances are averaged.
 constexpr int kMeasuredFrames = 100;
 
 JointSource Whole(int joint) { return {{{joint, 1.0f}}}; }
 
-// The mean of several sources, each of weight `weights`.
+// The weighted mean of several sources.
 JointSource Mix(std::initializer_list<std::pair<const JointSource*, float>> parts) {
   JointSource mixed;
   for (const auto& [part, weight] : parts) {
@@ -104,10 +104,9 @@ class Mapper {
     for (const auto& [target, name] : overrides) {
       const int joint = skeleton_.Find(target);
       if (joint < 0) {
-        return absl::InvalidArgumentError(
-            absl::StrCat("joint map: came target ", base::Quoted(target),
-                         ", wanted one of: ", absl::StrJoin(skeleton_.joint_names, ", "),
-                         base::DidYouMean(target, skeleton_.joint_names)));
+        return absl::InvalidArgumentError(absl::StrCat(
+            "joint map: target: expected one of ", absl::StrJoin(skeleton_.joint_names, ", "),
+            ", got ", base::Quoted(target), base::DidYouMean(target, skeleton_.joint_names)));
       }
       const int index = FindExactly(name);
       if (index < 0) {
@@ -122,7 +121,7 @@ class Mapper {
     return absl::OkStatus();
   }
 
-  // All names as the skeleton has them: nothing to decide.
+  // Whether the file has exactly the skeleton's names.
   bool MapIdentity() {
     std::vector<int> indices;
     for (const std::string& name : skeleton_.joint_names) indices.push_back(FindExactly(name));
@@ -139,7 +138,7 @@ class Mapper {
     }
   }
 
-  // What goes by where joints are, in `measured_`.
+  // Maps the joints that depend on positions, in `measured_`.
   void PlaceTrunk() {
     PlaceNeck();
     PlaceTorso();
@@ -161,8 +160,8 @@ class Mapper {
     if (missing.empty()) return map;
     return MendedBy(
         absl::InvalidArgumentError(absl::StrCat(
-            source_, ": joints: nothing stands for ", absl::StrJoin(missing, ", "), "; ",
-            ListNames(), "; say which with a joint map such as ", missing[0], "=NAME")),
+            source_, ": joints: expected joints for ", absl::StrJoin(missing, ", "), ", got none; ",
+            ListNames(), "; specify a joint map such as ", missing[0], "=NAME")),
         motion::ReadingSetting::kJointMap);
   }
 
@@ -183,7 +182,7 @@ class Mapper {
     }
   }
 
-  // Each joint of the file once.
+  // Uses each joint of the file at most once.
   void AddPart(const JointSource::Term& term, std::vector<JointReading::Part>* parts) const {
     const std::string& name = names_[static_cast<size_t>(term.joint)];
     const auto known = std::find_if(parts->begin(), parts->end(),
@@ -202,7 +201,7 @@ class Mapper {
   const std::string& TargetName(int joint) const {
     return skeleton_.joint_names[static_cast<size_t>(joint)];
   }
-  // Neck and torso go by where they are: conventions differ in how many joints a spine has.
+  // Neck and torso depend on positions: conventions differ in the number of spine joints.
   bool IsPlaced(int joint) const {
     return joint == skeleton_.Find("neck") || joint == skeleton_.Find("torso");
   }
@@ -212,9 +211,9 @@ class Mapper {
     return it == names_.end() ? -1 : static_cast<int>(it - names_.begin());
   }
 
-  int FindUnused(const ParsedJointName& wanted) const {
+  int FindUnused(const ParsedJointName& name) const {
     for (std::size_t i = 0; i < parsed_.size(); ++i) {
-      if (!used_[i] && parsed_[i] == wanted) return static_cast<int>(i);
+      if (!used_[i] && parsed_[i] == name) return static_cast<int>(i);
     }
     return -1;
   }
@@ -237,7 +236,7 @@ class Mapper {
   void MapByAlias(int joint) {
     const ParsedJointName target = ParseJointName(TargetName(joint));
     for (const std::string& alias : JointAliases(target.base)) {
-      // A skeleton with both wrist and hand keeps each for its own.
+      // A skeleton with both wrist and hand uses each for its own joint.
       const bool other_target = alias != target.base && IsTarget({target.side, alias});
       const int index = other_target ? -1 : FindUnused({target.side, alias});
       if (index < 0) continue;
@@ -252,13 +251,13 @@ class Mapper {
         [&name](const std::string& target) { return ParseJointName(target) == name; });
   }
 
-  // The joint of the file that stands for a skeleton's joint by itself, or -1.
+  // The only joint of the file that a skeleton's joint is mapped to, or -1.
   int FileJoint(absl::string_view target) const {
     const int joint = skeleton_.Find({target.data(), target.size()});
     return Found(joint) ? found_[static_cast<size_t>(joint)]->terms[0].joint : -1;
   }
 
-  // Before neck and torso are placed: every source is one joint.
+  // Requires that neck and torso are not mapped yet: every source is one joint.
   Landmarks FindLandmarks() const {
     const auto pair = [this](absl::string_view left, absl::string_view right) {
       const motion::JointPair joints{FileJoint(left), FileJoint(right)};
@@ -273,7 +272,7 @@ class Mapper {
     return landmarks;
   }
 
-  // A neck that ends without a joint for the head: its end is the head.
+  // Maps the head to the end of the neck if the file has no joint for the head.
   void PlaceHeadAtAnEnd(const JointTree& tree) {
     const int head = skeleton_.Find("head");
     const Landmarks landmarks = FindLandmarks();
@@ -289,10 +288,10 @@ class Mapper {
     if (best < 0) return;
     Take(head, best);
     overridden_[static_cast<size_t>(head)] = true;
-    Note("head", best, "the end of the neck; no joint is called a head");
+    Note("head", best, "the end of the neck; no joint is named head");
   }
 
-  // Whether the file has `joint` as an end, in the middle of the body all the way from the chest.
+  // Whether `joint` is an end whose ancestors up to the chest are all on neither side.
   bool IsEndAbove(const JointTree& tree, int chest, int joint) const {
     const auto& parsed = parsed_[static_cast<size_t>(joint)];
     if (used_[static_cast<size_t>(joint)] || !absl::EndsWith(parsed.base, "end")) return false;
@@ -303,7 +302,7 @@ class Mapper {
     return true;
   }
 
-  // The mean distance, over what is measured.
+  // The mean distance over the measured frames.
   float MeanDistance(const JointSource& a, const JointSource& b) const {
     double sum = 0;
     for (absl::Span<const motion::Vec3> pose : measured_) {
@@ -360,8 +359,8 @@ class Mapper {
     }
   }
 
-  // Capture software puts the head's joint at the base of the skull; the skeleton's is its middle,
-  // half way to the end of the head. A file without that end gives the neck's direction.
+  // Capture software has the head joint at the base of the skull. The skeleton's is in the middle
+  // of the head: half way to its end or, in a file without that end, along the neck.
   void RaiseHead() {
     const int head = skeleton_.Find("head"), neck = skeleton_.Find("neck");
     if (!Found(head) || overridden_[static_cast<size_t>(head)] || !HasSpineEnds()) return;
@@ -388,7 +387,7 @@ class Mapper {
            Found(skeleton_.hips->right);
   }
 
-  // Hips to neck; HasSpineEnds.
+  // The distance from hips to neck. Requires HasSpineEnds.
   float SpineLength() {
     const JointSource hips =
         Mix({{&SourceOf(skeleton_.hips->left), 0.5f}, {&SourceOf(skeleton_.hips->right), 0.5f}});
@@ -400,7 +399,7 @@ class Mapper {
     notes_.push_back(
         absl::StrCat(target, ": ", names_[static_cast<size_t>(index)], " (", reason, ")"));
   }
-  // A joint that stands between others.
+  // Notes a joint between others.
   void Note(const char* target, const char* place, const char* reason) {
     why_[static_cast<size_t>(skeleton_.Find(target))] = absl::StrCat(place, "; ", reason);
     notes_.push_back(absl::StrCat(target, ": ", place, " (", reason, ")"));
@@ -416,7 +415,7 @@ class Mapper {
   std::vector<bool> overridden_;                          // [skeleton joints] named by the user
   std::vector<absl::Span<const motion::Vec3>> measured_;  // poses in which distances are taken
   std::vector<std::string> notes_;
-  std::vector<std::string> why_;  // [skeleton joints] where a name alone does not say it
+  std::vector<std::string> why_;  // [skeleton joints] unless the name is sufficient
   std::set<int> given_;           // joints that the user names
 };
 

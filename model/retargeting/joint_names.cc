@@ -16,8 +16,8 @@ struct AliasRow {
   std::vector<std::string> aliases;
 };
 
-// The table of docs/formats.md. Order matters within a row: `LeftShoulder` is the collar bone
-// beside a `LeftArm`, and the shoulder itself in files without one.
+// The table of docs/formats.md. The order within a row matters: `LeftShoulder` is the collar bone
+// in files with a `LeftArm`, and the shoulder in others.
 const std::vector<AliasRow>& AliasTable() {
   static const auto* const kTable = new std::vector<AliasRow>{
       {"head", {"head", "skull"}},
@@ -84,7 +84,7 @@ bool IsLimbAlias(absl::string_view base) {
   return false;
 }
 
-// Sides written without any border: "leftarm", "armleft", "lfemur".
+// Sides without a separator: "leftarm", "armleft", "lfemur".
 void SplitJoinedSide(ParsedJointName* name) {
   const std::pair<const char*, BodySide> sides[] = {{"left", BodySide::kLeft},
                                                     {"right", BodySide::kRight},

@@ -21,14 +21,16 @@ absl::StatusOr<JointOverrides> ParseJointTable(absl::string_view text, absl::str
     const absl::string_view target = absl::StripAsciiWhitespace(joints.first);
     const absl::string_view name = absl::StripAsciiWhitespace(joints.second);
     if (target.empty() || name.empty()) {
-      return base::ErrorAt(source, lines.number(),
-                           absl::StrCat("came ", base::Quoted(line),
-                                        ", wanted MODEL_JOINT=FILE_JOINT such as "
-                                        "left_hand=LeftWrist"));
+      return base::ErrorAt(
+          source, lines.number(),
+          absl::StrCat("expected MODEL_JOINT=FILE_JOINT such as left_hand=LeftWrist, "
+                       "got ",
+                       base::Quoted(line)));
     }
     if (!table.emplace(target, name).second) {
-      return base::ErrorAt(source, lines.number(),
-                           absl::StrCat(base::Quoted(target), " comes twice"));
+      return base::ErrorAt(
+          source, lines.number(),
+          absl::StrCat("expected each joint once, got ", base::Quoted(target), " twice"));
     }
   }
   return table;

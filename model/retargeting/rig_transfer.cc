@@ -17,24 +17,24 @@ namespace duet::retargeting {
 namespace {
 
 constexpr Vec3d kUp = {0, 1, 0};
-// Metres: shorter limbs have no direction; a root so near to the pelvis turns with it.
+// Metres. Shorter limbs have no direction; a root this near to the pelvis rotates with it.
 constexpr double kNoLength = 0.01, kAtThePelvis = 0.3;
-// Sine of the bend at rest above which the rest pose itself says where elbow or knee bend.
+// Sine of the bend at rest above which the rest pose determines the hinge of elbow or knee.
 constexpr double kBentAtRest = 0.15;
-// Cosine of the shin's lean at rest up to which the foot is taken to be flat there.
+// Cosine of the maximum lean of the shin at rest at which the foot counts as flat.
 constexpr double kShinHangs = 0.8;
-// What a fit leaves open stays as it was.
+// Weight of the previous rotation, for directions that a fit does not determine.
 constexpr double kPreviousPrior = 1e-3;
 
 std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
 
-// Two directions in one frame: the first exactly, the second as far as it is across.
+// The axes of the first direction and of the part of the second that is perpendicular to it.
 Quaternion Frame(Vec3d along, Vec3d across) {
   const Vec3d y = Unit(across - along * Dot(across, along), kUp);
   return FromAxes(along, y, Cross(along, y));
 }
 
-// An arm or a leg: joints of the rig, and how it is at rest.
+// An arm or a leg: its joints and its rest pose.
 struct Limb {
   int start = 0, middle = 0, end = 0;                 // of the rig
   int clip_start = 0, clip_middle = 0, clip_end = 0;  // of the skeleton
@@ -87,7 +87,7 @@ class Transfer {
   }
   Vec3d RestAt(int joint) const { return rig_.positions[Index(joint)]; }
 
-  // Which way the rest pose faces.
+  // The direction that the rest pose faces.
   void FindBody() {
     const Vec3d hips = (Rest("left_hip") + Rest("right_hip")) * 0.5;
     const Vec3d left = Unit(Rest("left_hip") - Rest("right_hip"),
@@ -100,7 +100,7 @@ class Transfer {
   absl::StatusOr<int> JointFor(const std::string& name) const {
     const JointSource& found = rig_.joints.sources[Index(skeleton_.Find(name))];
     if (found.terms.size() == 1) return found.terms[0].joint;
-    return Error(absl::StrCat(name, " lies between joints, wanted one of the rig's own"));
+    return Error(absl::StrCat(name, ": expected one joint of the rig, got a place between joints"));
   }
 
   bool IsBelow(int joint, int ancestor) const {
@@ -118,7 +118,7 @@ class Transfer {
       if (!joint->ok()) return joint->status();
     }
     if (!IsBelow(*third, *second) || !IsBelow(*second, *first)) {
-      return Error(absl::StrCat(start, ", ", middle, " and ", end, " are no chain"));
+      return Error(absl::StrCat("expected a chain, got ", start, ", ", middle, " and ", end));
     }
     Limb limb;
     limb.start = *first, limb.middle = *second, limb.end = *third;
@@ -130,8 +130,8 @@ class Transfer {
     const Vec3d lower = RestAt(limb.end) - RestAt(limb.middle);
     limb.upper_length = Norm(upper), limb.lower_length = Norm(lower);
     if (limb.upper_length < kNoLength || limb.lower_length < kNoLength) {
-      return Error(absl::StrCat(middle, ": bones of ", limb.upper_length, " and ",
-                                limb.lower_length, " m, wanted a limb"));
+      return Error(absl::StrCat(middle, ": expected the bones of a limb, got ", limb.upper_length,
+                                " and ", limb.lower_length, " m"));
     }
     const Vec3d u = Unit(upper, kUp), l = Unit(lower, kUp);
     const Vec3d hinge = RestHinge(u, l, leg, absl::string_view(start).substr(0, 4) == "left");
@@ -141,8 +141,8 @@ class Transfer {
     return absl::OkStatus();
   }
 
-  // About which a limb bends: knees about the line to the left, elbows of a T pose about the
-  // vertical, forearms coming forward.
+  // The axis about which a limb bends: knees about the axis to the left; elbows of a T pose about
+  // the vertical, so that forearms move forwards.
   Vec3d RestHinge(Vec3d upper, Vec3d lower, bool leg, bool left) const {
     const Vec3d side = Rotate(body_, {left ? 1.0 : -1.0, 0, 0});
     const Vec3d vertical = Rotate(body_, {0, left ? -1.0 : 1.0, 0});
@@ -150,7 +150,7 @@ class Transfer {
         leg ? Rotate(body_, {1, 0, 0})
             : Rotate(ShortestArc(side, upper, Rotate(body_, {0, 0, 1})), vertical);
     const Vec3d bend = Cross(upper, lower);
-    // A bend the wrong way is slack of the rest pose, not a plane.
+    // A bend in the wrong direction is slack of the rest pose and determines no plane.
     return Norm(bend) > kBentAtRest && Dot(bend, expected) > 0 ? Unit(bend, expected) : expected;
   }
 
@@ -159,7 +159,7 @@ class Transfer {
     return a;
   }
 
-  // From below `top` down to `joint`.
+  // The joints from below `top` to `joint`.
   std::vector<int> Chain(int top, int joint) const {
     std::vector<int> chain;
     for (; joint >= 0 && joint != top; joint = rig_.parents[Index(joint)]) chain.push_back(joint);
@@ -170,14 +170,14 @@ class Transfer {
   absl::Status FindTrunk() {
     for (const Limb& limb : limbs_) {
       if (IsBelow(limb.start, 0)) continue;
-      return Error("limbs hang from different roots");
+      return Error("expected limbs below one root, got several");
     }
     pelvis_ = CommonAncestor(limbs_[2].start, limbs_[3].start);
     chest_ = CommonAncestor(limbs_[0].start, limbs_[1].start);
     pelvis_ = CommonAncestor(pelvis_, chest_);
     spine_ = Chain(pelvis_, chest_);
     const JointSource& head = rig_.joints.sources[Index(skeleton_.Find("head"))];
-    // The head's middle lies between its joint and its end.
+    // The middle of the head is between its joint and its end.
     int joint = head.terms[0].joint;
     for (const JointSource::Term& term : head.terms) {
       if (IsBelow(joint, term.joint)) joint = term.joint;
@@ -203,7 +203,7 @@ class Transfer {
     return ToDouble(clip.at(frame, skeleton_.Find(std::string(joint))));
   }
 
-  // The turn that takes a side-to-side line and a direction up the trunk from rest to the clip.
+  // The rotation that takes a lateral direction and one up the trunk from rest to the clip.
   static Quaternion FitTurn(Vec3d rest_side, Vec3d rest_up, Vec3d side, Vec3d up,
                             Quaternion previous) {
     return FitRotation({{Unit(rest_side, {1, 0, 0}), Unit(side, {1, 0, 0}), 1},
@@ -234,7 +234,7 @@ class Transfer {
   void TurnTrunk(const motion::Clip& clip, int frame, CharacterPose* pose) {
     const Vec3d hips = (At(clip, frame, "left_hip") + At(clip, frame, "right_hip")) * 0.5;
     const Vec3d rest_hips = (Rest("left_hip") + Rest("right_hip")) * 0.5;
-    // The joint that stands for the torso may lie in the hips; the shoulders never do.
+    // The rig's torso joint may coincide with the hips; the shoulders never do.
     const Vec3d rest_torso = Rest("torso") - rest_hips;
     const bool low = Norm(rest_torso) < kNoLength * 5;
     const char* upper = low ? "neck" : "torso";
@@ -247,7 +247,7 @@ class Transfer {
     chest_turn_ = FitTurn(Rest("left_shoulder") - Rest("right_shoulder"), Rest("neck") - rest_from,
                           At(clip, frame, "left_shoulder") - At(clip, frame, "right_shoulder"),
                           At(clip, frame, "neck") - from, chest_turn_);
-    // A root at the pelvis turns with it, one on the floor stays.
+    // A root at the pelvis rotates with it; a root on the floor does not.
     for (int joint = rig_.parents[Index(pelvis_)]; joint >= 0; joint = rig_.parents[Index(joint)]) {
       const bool near = Norm(RestAt(joint) - RestAt(pelvis_)) < kAtThePelvis;
       Turn(joint, near ? pelvis_turn_ : Quaternion{}, pose);
@@ -259,36 +259,36 @@ class Transfer {
     }
   }
 
-  // Hips as high as the rig's legs are long, and no higher than both legs reach.
+  // Scales the height of the hips to the rig's legs, at most as high as both legs reach.
   void PlacePelvis(const motion::Clip& clip, int frame, CharacterPose* pose) {
     const Vec3d hips = (At(clip, frame, "left_hip") + At(clip, frame, "right_hip")) * 0.5;
-    Vec3d wanted = hips;
-    wanted.y = ankle_height_ + (hips.y - ankle_height_) * leg_ratio_;
+    Vec3d target = hips;
+    target.y = ankle_height_ + (hips.y - ankle_height_) * leg_ratio_;
     const Vec3d rest_hips = (RestAt(limbs_[2].start) + RestAt(limbs_[3].start)) * 0.5;
     for (const Limb& limb : limbs_) {
       if (!limb.leg) continue;
       const Vec3d ankle = ToDouble(clip.at(frame, limb.clip_end));
-      const Vec3d hip = wanted + Rotate(pelvis_turn_, RestAt(limb.start) - rest_hips);
+      const Vec3d hip = target + Rotate(pelvis_turn_, RestAt(limb.start) - rest_hips);
       const double reach = 0.9999 * (limb.upper_length + limb.lower_length);
       const double across = std::hypot(ankle.x - hip.x, ankle.z - hip.z);
       if (across >= reach) continue;
-      wanted.y -= std::max(0.0, hip.y - ankle.y - std::sqrt(reach * reach - across * across));
+      target.y -= std::max(0.0, hip.y - ankle.y - std::sqrt(reach * reach - across * across));
     }
-    pelvis_at_ = wanted + Rotate(pelvis_turn_, RestAt(pelvis_) - rest_hips);
+    pelvis_at_ = target + Rotate(pelvis_turn_, RestAt(pelvis_) - rest_hips);
     Stand(pose);
   }
 
-  // Shoulders in the direction from the hips that the clip has them in.
+  // Leans the trunk so that the shoulders are in the clip's direction from the hips.
   void LeanSpine(const motion::Clip& clip, int frame, CharacterPose* pose) {
     if (spine_.empty()) return;
     const Vec3d hips = (At(clip, frame, "left_hip") + At(clip, frame, "right_hip")) * 0.5;
     const Vec3d shoulders =
         (At(clip, frame, "left_shoulder") + At(clip, frame, "right_shoulder")) * 0.5;
-    const Vec3d wanted = Unit(shoulders - hips, kUp);
+    const Vec3d target = Unit(shoulders - hips, kUp);
     const auto stands = [&](int joint) { return pose->positions[Index(joint)]; };
     const Vec3d from = (stands(limbs_[2].start) + stands(limbs_[3].start)) * 0.5;
     const Vec3d to = (stands(limbs_[0].start) + stands(limbs_[1].start)) * 0.5;
-    const Quaternion lean = ShortestArc(Unit(to - from, wanted), wanted, {1, 0, 0});
+    const Quaternion lean = ShortestArc(Unit(to - from, target), target, {1, 0, 0});
     for (int joint : spine_) Turn(joint, lean * pose->turns[Index(joint)], pose);
     Stand(pose);
   }
@@ -297,8 +297,8 @@ class Transfer {
     if (neck_.empty()) return;
     const Quaternion chest = pose->turns[Index(chest_)];
     const Vec3d at_rest = Unit(Rotate(chest, Rest("head") - Rest("neck")), kUp);
-    const Vec3d wanted = Unit(At(clip, frame, "head") - At(clip, frame, "neck"), at_rest);
-    const Quaternion whole = ShortestArc(at_rest, wanted, {1, 0, 0}) * chest;
+    const Vec3d target = Unit(At(clip, frame, "head") - At(clip, frame, "neck"), at_rest);
+    const Quaternion whole = ShortestArc(at_rest, target, {1, 0, 0}) * chest;
     for (std::size_t i = 0; i < neck_.size(); ++i) {
       const double share = static_cast<double>(i + 1) / static_cast<double>(neck_.size());
       Turn(neck_[i], Slerp(chest, whole, share), pose);
@@ -308,7 +308,7 @@ class Transfer {
   void TurnLimb(const motion::Clip& clip, int frame, Limb* limb, CharacterPose* pose) {
     const Vec3d start = pose->positions[Index(limb->start)];
     const Vec3d target = ToDouble(clip.at(frame, limb->clip_end));
-    // Knees go out to the front, elbows to the back.
+    // Knees point forwards, elbows backwards.
     const Quaternion trunk = pose->turns[Index(limb->leg ? pelvis_ : chest_)];
     const Vec3d otherwise = Rotate(trunk * body_, {0, 0, limb->leg ? 1.0 : -1.0});
     const Vec3d pole =
@@ -319,7 +319,7 @@ class Transfer {
     Turn(limb->start, Frame(reach.upper, reach.hinge) * Inverse(limb->upper_rest), pose);
     Turn(limb->middle, lower * Inverse(limb->lower_rest), pose);
     if (!limb->leg) return;
-    // Canonically the shin hangs and bends about the left.
+    // In the canonical pose the shin hangs and bends about the axis to the left.
     const Quaternion hangs = Frame({0, -1, 0}, {1, 0, 0});
     const Quaternion shin = lower * Inverse(hangs);
     const Quaternion rest_shin = limb->lower_rest * Inverse(hangs);
@@ -331,7 +331,7 @@ class Transfer {
          pose);
   }
 
-  // Undriven joints follow their parents; places follow from the turns.
+  // Joints without a target rotation follow their parents. Positions follow from the rotations.
   void Stand(CharacterPose* pose) const {
     for (std::size_t j = 0; j < rig_.names.size(); ++j) {
       const int parent = rig_.parents[j];
@@ -347,7 +347,7 @@ class Transfer {
     Move(pose);
   }
 
-  // Brings the pelvis to its place: by itself where the rig lets it move, otherwise with all.
+  // Moves the pelvis to its position, or the whole rig if the pelvis cannot move.
   void Move(CharacterPose* pose) const {
     const bool alone = pelvis_ != 0 && rig_.moves[Index(pelvis_)];
     const Vec3d root = alone ? rig_.positions[0] : Vec3d{};
@@ -379,9 +379,9 @@ absl::StatusOr<std::vector<CharacterPose>> TransferToRig(const motion::Clip& cli
                                                          absl::string_view source) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   if (clip.joint_names != skeleton.joint_names) {
-    return absl::InvalidArgumentError(absl::StrCat("follower: came ", clip.joint_count(),
-                                                   " joints, wanted the ", skeleton.joint_count(),
-                                                   " of SBU to write them onto a rig"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("follower: expected the ", skeleton.joint_count(),
+                     " joints of SBU to write onto a rig, got ", clip.joint_count()));
   }
   absl::Status status = CheckClip("follower", clip);
   if (!status.ok()) return status;

@@ -15,12 +15,6 @@ constexpr int kMaxSweeps = 32;
 
 using Matrix4 = std::array<std::array<double, 4>, 4>;
 
-Quaternion Normalised(Quaternion q) {
-  const double norm = std::sqrt(Dot(q, q));
-  if (!(norm > kTiny)) return {};
-  return {q.w / norm, q.x / norm, q.y / norm, q.z / norm};
-}
-
 // One Jacobi rotation: makes m[p][q] zero, and keeps the eigenvectors in the columns of v.
 void RotateOut(int p, int q, Matrix4* m, Matrix4* v) {
   Matrix4& a = *m;
@@ -107,6 +101,12 @@ double Dot(Quaternion a, Quaternion b) { return a.w * b.w + a.x * b.x + a.y * b.
 
 Quaternion Inverse(Quaternion q) { return {q.w, -q.x, -q.y, -q.z}; }
 
+Quaternion Normalised(Quaternion q) {
+  const double norm = std::sqrt(Dot(q, q));
+  if (!(norm > kTiny)) return {};
+  return {q.w / norm, q.x / norm, q.y / norm, q.z / norm};
+}
+
 Vec3d Rotate(Quaternion q, Vec3d a) {
   const Vec3d u{q.x, q.y, q.z};
   const Vec3d t = Cross(u, a) * 2;
@@ -129,7 +129,7 @@ Quaternion FromAxes(Vec3d x, Vec3d y, Vec3d z) {
 Quaternion Slerp(Quaternion a, Quaternion b, double share) {
   const double cosine = Dot(a, b), side = cosine < 0 ? -1 : 1;
   const double angle = std::acos(std::min(1.0, std::abs(cosine)));
-  // Between rotations that hardly differ, as straight as an arc.
+  // For nearly equal rotations, linear interpolation is accurate.
   const bool line = angle < kNearlyEqual;
   const double from = line ? 1 - share : std::sin((1 - share) * angle);
   const double to = side * (line ? share : std::sin(share * angle));

@@ -41,6 +41,8 @@ struct Quaternion {
 
 double Dot(Quaternion a, Quaternion b);
 Quaternion Inverse(Quaternion q);
+// `q` scaled to norm 1, or no rotation if its norm is near zero.
+Quaternion Normalised(Quaternion q);
 Vec3d Rotate(Quaternion q, Vec3d a);
 // The angle between two rotations, 0 to pi.
 double Angle(Quaternion a, Quaternion b);

@@ -79,7 +79,7 @@ TEST(Puppet, BendsKneesForwardsAndElbowsBackOrDown) {
   EXPECT_LT(PosePuppet(pose)[7].x, joints[7].x - 0.1f) << "outwards is to the right on the right";
 }
 
-TEST(Puppet, LeansAsItsDocumentationSays) {
+TEST(Puppet, LeansInTheDocumentedDirections) {
   PuppetPose pose;
   pose.torso = {0, 1.1, 0};
   pose.chest.pitch = 20;
@@ -108,19 +108,19 @@ TEST(Keyframes, GoesThroughItsKeyPoses) {
 }
 
 TEST(Keyframes, NamesThePlaceOfAnError) {
-  EXPECT_THAT(ParseError(""), HasSubstr("a.txt:1: no \"at\" after 0"));
-  EXPECT_THAT(ParseError("at 0\ntorso 0 1 0\n"), HasSubstr("wanted at least two key poses"));
-  EXPECT_THAT(ParseError("at 0\ntail 0 1 0\n"), HasSubstr("a.txt:2: came \"tail\""));
+  EXPECT_THAT(ParseError(""), HasSubstr("a.txt:1: at: expected at least two key poses"));
+  EXPECT_THAT(ParseError("at 0\ntorso 0 1 0\n"), HasSubstr("at: expected at least two key poses"));
+  EXPECT_THAT(ParseError("at 0\ntail 0 1 0\n"), HasSubstr("such as torso, got \"tail\""));
   EXPECT_THAT(ParseError("at 0\ntorso 0 1\n"),
-              HasSubstr("a.txt:2: torso: came 2 values, wanted 3"));
-  EXPECT_THAT(ParseError("at 0\ntorso 0 x 1\n"), HasSubstr("torso: came \"x\", wanted a number"));
-  EXPECT_THAT(ParseError("torso 0 1 0\n"), HasSubstr("torso: wanted \"at 0\" first"));
-  EXPECT_THAT(ParseError("at 1\n"), HasSubstr("at: came 1, wanted 0 first"));
-  EXPECT_THAT(ParseError("at 0\nat 1\nat 1\n"),
-              HasSubstr("a.txt:3: at: came 1, wanted more than 1"));
+              HasSubstr("a.txt:2: torso: expected 3 values, got 2"));
+  EXPECT_THAT(ParseError("at 0\ntorso 0 x 1\n"), HasSubstr("torso: expected a number, got \"x\""));
+  EXPECT_THAT(ParseError("torso 0 1 0\n"), HasSubstr("expected \"at 0\" first, got torso"));
+  EXPECT_THAT(ParseError("at 1\n"), HasSubstr("at: expected 0 first, got 1"));
+  EXPECT_THAT(ParseError("at 0\nat 1\nat 1\n"), HasSubstr("a.txt:3: at: expected more than 1"));
   EXPECT_THAT(ParseError("at 0\nat 61\n"), HasSubstr("at most 60"));
-  EXPECT_THAT(ParseError("at 0\nleft_knee 1\nleft_knee 2\n"), HasSubstr("a second key at 0 s"));
-  EXPECT_THAT(ParseError("frame_rate 0\n"), HasSubstr("wanted 1 to 240"));
+  EXPECT_THAT(ParseError("at 0\nleft_knee 1\nleft_knee 2\n"),
+              HasSubstr("left_knee: expected one key at 0 s"));
+  EXPECT_THAT(ParseError("frame_rate 0\n"), HasSubstr("frame_rate: expected 1 to 240, got 0"));
 }
 
 }  // namespace

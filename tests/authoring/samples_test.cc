@@ -39,7 +39,7 @@ class Sample : public ::testing::TestWithParam<const char*> {
   motion::Clip clip_;
 };
 
-TEST_P(Sample, IsWhatItsKeyFramesSay) {
+TEST_P(Sample, EqualsItsKeyFrames) {
   const absl::StatusOr<std::string> text = base::ReadFile(keyframes_, 1 << 20, "key frames"),
                                     committed = base::ReadFile(bvh_, 1 << 20, "a motion");
   ASSERT_TRUE(text.ok()) << text.status();

@@ -38,7 +38,7 @@ TEST(Folder, ReadsFilesUpToTheLimit) {
   WriteTestFile(folder / "over", std::string(kMax + 1, 'x'));
   EXPECT_EQ(*ReadIn(folder.path(), "empty"), "");
   EXPECT_EQ(*ReadIn(folder.path(), "full"), std::string(kMax, 'x'));
-  EXPECT_THAT(ReadIn(folder.path(), "over"), Refused("101 bytes, wanted at most 100"));
+  EXPECT_THAT(ReadIn(folder.path(), "over"), Refused("expected at most 100 bytes, got 101"));
 }
 
 TEST(Folder, StaysInTheFolderThatWasOpened) {
@@ -53,19 +53,19 @@ TEST(Folder, StaysInTheFolderThatWasOpened) {
   EXPECT_EQ(*open->Read("file", kMax), "first");
 }
 
-TEST(Folder, RefusesWhatIsNoRegularFile) {
+TEST(Folder, RejectsOtherKindsOfFiles) {
   const TemporaryFolder folder;
   fs::create_directory(folder / "folder");
   // A reader that opened it as a file would wait for ever.
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
-  EXPECT_THAT(ReadIn(folder.path(), "folder"), Refused("wanted a regular file"));
-  EXPECT_THAT(ReadIn(folder.path(), "pipe"), Refused("wanted a regular file"));
+  EXPECT_THAT(ReadIn(folder.path(), "folder"), Refused("expected a regular file"));
+  EXPECT_THAT(ReadIn(folder.path(), "pipe"), Refused("expected a regular file"));
 }
 
-TEST(Folder, RefusesWhatIsNoFolder) {
+TEST(Folder, RejectsOtherKindsThanFolders) {
   const TemporaryFolder folder;
   WriteTestFile(folder / "file", "");
-  EXPECT_THAT(Folder::Open(folder / "file"), Refused("wanted a folder"));
+  EXPECT_THAT(Folder::Open(folder / "file"), Refused("expected a folder"));
   EXPECT_THAT(Folder::Open(folder / "absent"), StatusIs(absl::StatusCode::kNotFound, _));
 }
 

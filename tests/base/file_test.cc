@@ -35,18 +35,18 @@ TEST_F(FileTest, ReadsBackWhatWasWritten) {
   EXPECT_EQ(*read, content);
 }
 
-TEST_F(FileTest, SaysWhatWasWantedInsteadOfALargeFile) {
+TEST_F(FileTest, LargeFileIsRejectedWithItsExpectedKind) {
   test::WriteTestFile(Path("a.pem"), std::string((1 << 20) + 1, 'x'));
   EXPECT_THAT(ReadFile(Path("a.pem"), 1 << 20, "a PEM file"),
               StatusIs(absl::StatusCode::kInvalidArgument,
                        AllOf(HasSubstr(Path("a.pem").string()),
-                             HasSubstr("larger than 1 MiB, wanted a PEM file"))));
+                             HasSubstr("expected a PEM file of at most 1 MiB, got more"))));
   EXPECT_THAT(ReadFile(Path("a.pem"), 1000, "a PEM file"),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("larger than 1000 bytes")));
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("at most 1000 bytes")));
   EXPECT_THAT(ReadFile(Path("a.pem"), (1 << 20) + 1, "a PEM file"), IsOk());
 }
 
-TEST_F(FileTest, NamesWhatCannotBeRead) {
+TEST_F(FileTest, ReportsThePathThatCannotBeRead) {
   EXPECT_THAT(ReadFile(Path("none"), 9, "a test"),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr(Path("none").string())));
   fs::create_directory(Path("folder"));
@@ -55,7 +55,7 @@ TEST_F(FileTest, NamesWhatCannotBeRead) {
 }
 
 // Opening a named pipe waits for its writer: a leader that is one once hung the program.
-TEST_F(FileTest, RefusesANamedPipeWithoutWaitingForAWriter) {
+TEST_F(FileTest, RejectsANamedPipeWithoutWaitingForAWriter) {
   ASSERT_EQ(mkfifo(Path("pipe").c_str(), 0600), 0);
   EXPECT_THAT(
       ReadFile(Path("pipe"), 9, "a test"),
@@ -64,10 +64,10 @@ TEST_F(FileTest, RefusesANamedPipeWithoutWaitingForAWriter) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("got a device")));
 }
 
-TEST_F(FileTest, NamesWhatCannotBeWritten) {
+TEST_F(FileTest, ReportsThePathThatCannotBeWritten) {
   fs::create_directory(Path("folder"));
-  EXPECT_THAT(WriteFile(Path("folder"), "x"),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("is a folder")));
+  EXPECT_THAT(WriteFile(Path("folder"), "x"), StatusIs(absl::StatusCode::kInvalidArgument,
+                                                       HasSubstr("expected a file, got a folder")));
   EXPECT_THAT(WriteFile(Path("no") / "file", "x"),
               StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("cannot be written")));
   EXPECT_THAT(WriteFile("/dev/full", "x"),

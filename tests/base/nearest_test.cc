@@ -14,7 +14,7 @@ const std::vector<std::string>& Classes() {
   return classes;
 }
 
-TEST(Nearest, ForgivesASlip) {
+TEST(Nearest, FindsANameWithOneEdit) {
   EXPECT_THAT(Nearest("kik", Classes()), Optional(std::string("kick")));    // left out
   EXPECT_THAT(Nearest("kickk", Classes()), Optional(std::string("kick")));  // added
   EXPECT_THAT(Nearest("kock", Classes()), Optional(std::string("kick")));   // changed
@@ -23,12 +23,12 @@ TEST(Nearest, ForgivesASlip) {
   EXPECT_THAT(Nearest("shakehands", Classes()), Optional(std::string("shake_hands")));
 }
 
-TEST(Nearest, TakesTheNearestAndOfSeveralTheFirst) {
+TEST(Nearest, FindsTheNearestAndAmongSeveralTheFirst) {
   EXPECT_THAT(Nearest("puncch", {"punt", "punch"}), Optional(std::string("punch")));
   EXPECT_THAT(Nearest("cat", {"bat", "hat"}), Optional(std::string("bat")));
 }
 
-TEST(Nearest, HasNothingToSayOfOtherWords) {
+TEST(Nearest, IsAbsentForOtherWords) {
   EXPECT_EQ(Nearest("dance", Classes()), std::nullopt);
   EXPECT_EQ(Nearest("", Classes()), std::nullopt);
   EXPECT_EQ(Nearest("kick", {}), std::nullopt);

@@ -7,7 +7,7 @@
 namespace duet::base {
 namespace {
 
-TEST(Printable, EscapesWhatIsNoPrintableAscii) {
+TEST(Printable, EscapesBytesThatAreNotPrintableAscii) {
   EXPECT_EQ(Printable("no field \"c\"", 64), "no field \"c\"");
   EXPECT_EQ(Printable("a\nb\x7f\xff\r", 64), R"(a\nb\x7f\xff\r)");
   // Each byte alone: an escape swallows nothing that follows it.

@@ -48,7 +48,7 @@ TEST(RandomTest, IntegersAndOrdersStayTheSame) {
   EXPECT_THAT(values, ElementsAre(2, 3, 5, 6, 1, 0, 4, 7));
 }
 
-TEST(RandomTest, StreamsDependOnSeedAndPartAlone) {
+TEST(RandomTest, StreamsDependOnlyOnSeedAndPart) {
   std::set<double> first;
   for (const uint64_t seed : {1, 2}) {
     for (const int64_t part : {2, 3}) {
@@ -89,7 +89,7 @@ TEST(RandomTest, NormalNumbersHaveTheirDeviation) {
   EXPECT_NEAR(standard_squares / kDraws, 1, 0.05);
 }
 
-TEST(RandomTest, ChancesAreTaken) {
+TEST(RandomTest, ChanceHasItsProbability) {
   Random random(7, 0);
   int taken = 0;
   for (int i = 0; i < 10000; ++i) {

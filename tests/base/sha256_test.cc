@@ -19,7 +19,7 @@ TEST(Sha256, PublishedVectors) {
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST(Sha256, OfAFileIsThatOfItsContent) {
+TEST(Sha256, OfAFileEqualsThatOfItsContent) {
   const test::TemporaryFolder folder;
   for (const std::size_t size : {0, 1, 262144, 262145, 1000000}) {
     const std::string content(size, 'a');

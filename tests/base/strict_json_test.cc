@@ -23,19 +23,19 @@ auto Refused(const std::string& why) {
   return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));
 }
 
-TEST(ParseStrictJson, TakesAnObject) {
+TEST(ParseStrictJson, AcceptsAnObject) {
   const absl::StatusOr<json> parsed = ParseStrictJson("{\"a\": [1, {\"a\": 2}]} \n", 3);
   ASSERT_THAT(parsed, IsOk());
   EXPECT_EQ((*parsed)["a"][1]["a"], 2);
 }
 
-TEST(ParseStrictJson, RefusesWhatIsNotAnObject) {
+TEST(ParseStrictJson, RejectsWhatIsNotAnObject) {
   for (const char* text : {"", "[]", "1", " {}", "\xEF\xBB\xBF{}", "null"}) {
     EXPECT_THAT(ParseStrictJson(text, 3), Refused("first byte")) << text;
   }
 }
 
-TEST(ParseHandwrittenJson, SkipsWhatEditorsPutBefore) {
+TEST(ParseHandwrittenJson, SkipsByteOrderMarkAndWhiteSpace) {
   const absl::StatusOr<json> parsed = ParseHandwrittenJson("\xEF\xBB\xBF \r\n{\"a\": 1}", 3);
   ASSERT_THAT(parsed, IsOk());
   EXPECT_EQ((*parsed)["a"], 1);
@@ -43,20 +43,20 @@ TEST(ParseHandwrittenJson, SkipsWhatEditorsPutBefore) {
   EXPECT_THAT(ParseHandwrittenJson(" {\"a\": [[]]}", 2), Refused("deeper than 2"));
 }
 
-TEST(ParseStrictJson, RefusesBrokenJson) {
+TEST(ParseStrictJson, RejectsBrokenJson) {
   for (const char* text : {"{", "{}}", "{} x", "{\"a\":}", "{\"a\":1,}", "{'a':1}", "{\"a\":01}",
                            "{\"a\":NaN}", "{\"a\":1e999}", "{\"a\":\"\xff\"}", "{/**/}"}) {
     EXPECT_THAT(ParseStrictJson(text, 3), Refused("not JSON")) << text;
   }
 }
 
-TEST(ParseStrictJson, RefusesTextBehindANul) {
+TEST(ParseStrictJson, RejectsTextBehindANul) {
   using std::string_literals::operator""s;
   EXPECT_THAT(ParseStrictJson("{}\0x"s, 3), Refused("NUL"));
   EXPECT_THAT(ParseStrictJson("{}\0"s, 3), Refused("NUL"));
 }
 
-TEST(ParseStrictJson, RefusesRepeatedKeysAtAnyLevel) {
+TEST(ParseStrictJson, RejectsRepeatedKeysAtAnyLevel) {
   EXPECT_THAT(ParseStrictJson("{\"a\":1,\"a\":1}", 3), Refused("\"a\" is repeated"));
   EXPECT_THAT(ParseStrictJson("{\"x\":[{\"b\":1,\"b\":2}]}", 3), Refused("\"b\" is repeated"));
   // The same key, written in two ways.
@@ -92,22 +92,22 @@ TEST(ParseStrictJson, LimitsTheNumberOfValues) {
               Refused("values: expected at most 2000000"));
 }
 
-TEST(ParseHandwrittenJson, HoldsNothingOfSkippedFields) {
+TEST(ParseHandwrittenJson, DoesNotStoreSkippedFields) {
   const absl::StatusOr<json> parsed =
       ParseHandwrittenJson(ArrayOf(kMaxJsonValues + 1, "[]"), 3, {"a"});
   ASSERT_THAT(parsed, IsOk());
   EXPECT_EQ(*parsed, json({{"a", json::array()}}));
 }
 
-TEST(ParseHandwrittenJson, BuildsTheOtherFieldsAsTheyAre) {
+TEST(ParseHandwrittenJson, StoresAllOtherFields) {
   const std::string text =
       R"({"a":[1,-2,0.5,"x",true,null,[],{}],"b":{"c":{"a":[7]},"d":[[1],[2,[3]]]},"s":{"x":1},"z":9})";
-  json wanted = json::parse(text);
-  EXPECT_EQ(*ParseHandwrittenJson(text, 9, {}), wanted);
+  json expected = json::parse(text);
+  EXPECT_EQ(*ParseHandwrittenJson(text, 9, {}), expected);
   // The name counts in the root only.
-  wanted["a"] = json::array();
-  wanted["s"] = json::object();
-  EXPECT_EQ(*ParseHandwrittenJson(text, 9, {"a", "s", "z"}), wanted);
+  expected["a"] = json::array();
+  expected["s"] = json::object();
+  EXPECT_EQ(*ParseHandwrittenJson(text, 9, {"a", "s", "z"}), expected);
 }
 
 TEST_F(ObjectReaderTest, ReadsEveryType) {
@@ -132,9 +132,9 @@ TEST_F(ObjectReaderTest, NamesAnUnknownField) {
   EXPECT_THAT(reader_.Finish(), Refused("part: unknown field"));
 }
 
-TEST_F(ObjectReaderTest, SaysWhatCameAndWhatWasWanted) {
+TEST_F(ObjectReaderTest, ReportsExpectedAndActualValue) {
   EXPECT_EQ(reader_.Int("n", 0, 9), 0);
-  EXPECT_THAT(reader_.Finish(), Refused("part.n: 1.5, wanted a whole number from 0 to 9"));
+  EXPECT_THAT(reader_.Finish(), Refused("part.n: expected a whole number from 0 to 9, got 1.5"));
 }
 
 TEST_F(ObjectReaderTest, KeepsTheFirstProblem) {
@@ -147,13 +147,13 @@ TEST_F(ObjectReaderTest, ChecksRanges) {
   constexpr int64_t kMax = std::numeric_limits<int64_t>::max();
   ObjectReader too_big(object_, ""), too_small(object_, ""), wraps(object_, "");
   EXPECT_EQ(too_big.Int("i", 0, 6), 0);
-  EXPECT_THAT(too_big.Finish(), Refused("i: 7"));
+  EXPECT_THAT(too_big.Finish(), Refused("i: expected a whole number from 0 to 6, got 7"));
   EXPECT_EQ(too_small.Int("i", 8, 9), 0);
-  EXPECT_THAT(too_small.Finish(), Refused("i: 7"));
+  EXPECT_THAT(too_small.Finish(), Refused("i: expected a whole number from 8 to 9, got 7"));
   EXPECT_EQ(wraps.Int("big", -kMax, kMax), 0);
-  EXPECT_THAT(wraps.Finish(), Refused("big: 18446744073709551615"));
+  EXPECT_THAT(wraps.Finish(), Refused(", got 18446744073709551615"));
   EXPECT_EQ(reader_.Number("n", 2, 3), 0);
-  EXPECT_THAT(reader_.Finish(), Refused("n: 1.5"));
+  EXPECT_THAT(reader_.Finish(), Refused("n: expected a number from 2 to 3, got 1.5"));
 }
 
 TEST_F(ObjectReaderTest, ChecksLengths) {
@@ -164,17 +164,29 @@ TEST_F(ObjectReaderTest, ChecksLengths) {
   EXPECT_THAT(list.Finish(), Refused("at most 1 values"));
 }
 
-TEST_F(ObjectReaderTest, RefusesEmptyStringsInAList) {
-  object_["list"].push_back("");
-  reader_.Strings("list", 9);
-  EXPECT_THAT(reader_.Finish(), Refused("list: \"\", wanted strings"));
+TEST_F(ObjectReaderTest, ReadsUniqueStrings) {
+  EXPECT_THAT(reader_.UniqueStrings("list", 2, 1), ::testing::ElementsAre("x", "y"));
+  ASSERT_THAT(reader_.status(), IsOk());
+  object_["list"].push_back("long");
+  reader_.UniqueStrings("list", 3, 3);
+  EXPECT_THAT(reader_.status(), Refused("list: expected at most 3 bytes, got a name of 4"));
+  object_["list"][2] = "x";
+  ObjectReader repeated(object_, "");
+  repeated.UniqueStrings("list", 3, 3);
+  EXPECT_THAT(repeated.status(), Refused("list: \"x\" is repeated"));
 }
 
-TEST(ObjectReader, RefusesWhatIsNoObject) {
+TEST_F(ObjectReaderTest, RejectsEmptyStringsInAList) {
+  object_["list"].push_back("");
+  reader_.Strings("list", 9);
+  EXPECT_THAT(reader_.Finish(), Refused("list: expected non-empty strings, got \"\""));
+}
+
+TEST(ObjectReader, RejectsOtherValuesThanObjects) {
   const json list = json::array({1, 2});
   ObjectReader reader(list, "part");
   EXPECT_EQ(reader.Int("x", 0, 1), 0);
-  EXPECT_THAT(reader.Finish(), Refused("part: [1,2], wanted an object"));
+  EXPECT_THAT(reader.Finish(), Refused("part: expected an object, got [1,2]"));
 }
 
 TEST(ObjectReader, ShortensWhatItQuotes) {
@@ -202,15 +214,15 @@ TEST(ObjectReader, ReadsAChoice) {
   EXPECT_EQ(reader.Choice("a", ParseDigit, "seven"), 7);
   EXPECT_THAT(reader.status(), IsOk());
   EXPECT_EQ(reader.Choice("b", ParseDigit, "seven"), 0);
-  EXPECT_THAT(reader.status(), Refused("b: \"eight\", wanted seven"));
+  EXPECT_THAT(reader.status(), Refused("b: expected seven, got \"eight\""));
   ObjectReader mistyped(object, ""), missing(object, "");
   EXPECT_EQ(mistyped.Choice("c", ParseDigit, "seven"), 0);
-  EXPECT_THAT(mistyped.status(), Refused("c: 7, wanted seven"));
+  EXPECT_THAT(mistyped.status(), Refused("c: expected seven, got 7"));
   EXPECT_EQ(missing.Choice("d", ParseDigit, "seven"), 0);
   EXPECT_THAT(missing.status(), Refused("d: missing"));
 }
 
-TEST(ObjectReader, PassesOverUnknownFieldsUntilFinish) {
+TEST(ObjectReader, IgnoresUnknownFieldsUntilFinish) {
   const json object = {{"a", 1}};
   ObjectReader reader(object, "");
   EXPECT_THAT(reader.status(), IsOk());

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-TEST(ParseNumber, TakesOneFiniteNumber) {
+TEST(ParseNumber, AcceptsOneFiniteNumber) {
   double value = 0;
   EXPECT_TRUE(ParseNumber(" +1.5e3 ", &value));
   EXPECT_EQ(value, 1500);
@@ -24,7 +24,7 @@ TEST(ParseNumber, TakesOneFiniteNumber) {
   }
 }
 
-TEST(ParseInteger, TakesNineDigits) {
+TEST(ParseInteger, AcceptsNineDigits) {
   int value = 0;
   EXPECT_TRUE(ParseInteger("-999999999", &value));
   EXPECT_EQ(value, -999'999'999);
@@ -63,7 +63,7 @@ TEST(AppendFixed, NeverWritesAMinusBeforeZero) {
   EXPECT_EQ(Fixed(std::numeric_limits<double>::max(), 3).size(), 313u);
 }
 
-TEST(Quoted, EscapesWhatIsNoPrintableAscii) {
+TEST(Quoted, EscapesBytesThatAreNotPrintableAscii) {
   EXPECT_EQ(Quoted("head"), "\"head\"");
   EXPECT_EQ(Quoted("a\nb\"c\\d\xff"), R"("a\nb\"c\\d\xff")");
 }
@@ -89,7 +89,7 @@ TEST(ErrorAt, StaysAPrintableLineWhateverItQuotes) {
   EXPECT_LT(ErrorAt("a.bvh", 3, std::string(100'000, 'x')).message().size(), 1100u);
 }
 
-TEST(SkipByteOrderMark, SkipsThatAlone) {
+TEST(SkipByteOrderMark, SkipsOnlyAByteOrderMark) {
   EXPECT_EQ(SkipByteOrderMark("\xEF\xBB\xBFx"), "x");
   EXPECT_EQ(SkipByteOrderMark("x\xEF\xBB\xBF"), "x\xEF\xBB\xBF");
 }

@@ -89,7 +89,7 @@ TEST(FlowManifest, RejectsByName) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));
   };
   EXPECT_THAT(refusal("/generator/kind", "wave"),
-              names("generator.kind: \"wave\", wanted \"paper\" or \"flow\""));
+              names("generator.kind: expected \"paper\" or \"flow\", got \"wave\""));
   EXPECT_THAT(refusal("/generator/kind", "paper"), names("generator.variant"));
   EXPECT_THAT(refusal("/generator/heads", 5), names("generator.heads: 5, wanted a divisor"));
   EXPECT_THAT(refusal("/generator/width", 0), names("generator.width: 0, wanted"));

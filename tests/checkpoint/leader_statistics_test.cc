@@ -70,14 +70,15 @@ TEST(LeaderStatisticsInManifest, RejectsByName) {
   const auto names = [](const std::string& why) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));
   };
-  EXPECT_THAT(refusal("/leader_statistics", 3), names("leader_statistics: 3, wanted an object"));
+  EXPECT_THAT(refusal("/leader_statistics", 3),
+              names("leader_statistics: expected an object, got 3"));
   EXPECT_THAT(refusal("/leader_statistics/scale", 0), names("leader_statistics.scale: 0, wanted"));
   EXPECT_THAT(refusal("/leader_statistics/more", 0),
               names("leader_statistics: unknown field \"more\""));
   EXPECT_THAT(refusal("/leader_statistics/features", json::array()),
               names("leader_statistics.features: empty, wanted at least one feature"));
   EXPECT_THAT(refusal("/leader_statistics/features/1", 7),
-              names("leader_statistics.features[1]: 7, wanted an object"));
+              names("leader_statistics.features[1]: expected an object, got 7"));
   EXPECT_THAT(refusal("/leader_statistics/features/1/deviation", 0),
               names("leader_statistics.features[1].deviation: 0, wanted"));
   EXPECT_THAT(refusal("/leader_statistics/features/0/mean", "much"),

@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
                   R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4]},)"
                   R"("a":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}})",
                   "\"a\" is repeated"},
-        BadHeader{"not_an_object", R"({"a":[]})", "tensor \"a\": [], wanted an object"},
+        BadHeader{"not_an_object", R"({"a":[]})", "tensor \"a\": expected an object, got []"},
         BadHeader{"no_dtype", R"({"a":{"shape":[2],"data_offsets":[0,8]}})", "dtype: missing"},
         BadHeader{"other_dtype", R"({"a":{"dtype":"F64","shape":[1],"data_offsets":[0,8]}})",
                   "tensor \"a\".dtype: \"F64\", wanted \"F32\""},
@@ -176,8 +176,10 @@ INSTANTIATE_TEST_SUITE_P(
                   "begins at 0, wanted 8"},
         BadHeader{"unused_bytes", R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4]}})",
                   "4 bytes after the last tensor"},
-        BadHeader{"metadata_not_an_object", R"({"__metadata__":1})", "__metadata__: 1, wanted"},
-        BadHeader{"metadata_not_strings", R"({"__metadata__":{"x":1}})", "__metadata__.x: 1"}),
+        BadHeader{"metadata_not_an_object", R"({"__metadata__":1})",
+                  "__metadata__: expected an object, got 1"},
+        BadHeader{"metadata_not_strings", R"({"__metadata__":{"x":1}})",
+                  "__metadata__.x: expected a string"}),
     [](const ::testing::TestParamInfo<BadHeader>& bad) { return bad.param.what; });
 
 TEST(Safetensors, DeclaringMoreBytesThanPresentIsDataLoss) {

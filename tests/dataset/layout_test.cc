@@ -135,12 +135,13 @@ TEST(DatasetLayoutTest, SaysWhatOfASkeletonCannotBeFoundAndHowToSayIt) {
   json["skeleton"]["joint_names"][6] = "wing";
   json["skeleton"]["bones"][5][1] = json["skeleton"]["bones"][6][0] = "wing";
   EXPECT_THAT(ErrorOf(json), HasSubstr("left and right shoulder"));
-  EXPECT_THAT(ErrorOf(json), HasSubstr("say skeleton.parts, or rename the joints"));
+  EXPECT_THAT(ErrorOf(json), HasSubstr("specify skeleton.parts, or rename the joints"));
   json = TwentyJoints();
   json["skeleton"]["bones"].erase(0);
-  EXPECT_THAT(ErrorOf(json), HasSubstr("skeleton.root: missing, and no single joint"));
+  EXPECT_THAT(ErrorOf(json),
+              HasSubstr("skeleton.root: expected the joint that the bones start from, got none"));
   json["skeleton"]["root"] = "Hips";
-  EXPECT_THAT(ErrorOf(json), HasSubstr("skeleton.bones: 18, wanted 19"));
+  EXPECT_THAT(ErrorOf(json), HasSubstr("skeleton.bones: expected 19 to connect 20 joints, got 18"));
 }
 
 TEST(DatasetLayoutTest, OwnDataIsLevelUnlessItSaysOtherwise) {
@@ -157,7 +158,7 @@ TEST(DatasetLayoutTest, LevellingNeedsFeet) {
   json["skeleton"].erase("left_foot");
   json["skeleton"].erase("right_foot");
   json["level"] = true;
-  EXPECT_THAT(ErrorOf(json), HasSubstr("level: true without feet, wanted skeleton.left_foot"));
+  EXPECT_THAT(ErrorOf(json), HasSubstr("level: expected skeleton.left_foot"));
   json["level"] = false;
   EXPECT_TRUE(ParseDatasetLayout(json.dump()).ok());
 }
@@ -176,7 +177,7 @@ TEST(DatasetLayoutTest, NamesTheFieldThatIsMissing) {
   }
 }
 
-TEST(DatasetLayoutTest, RefusesEveryWrongValueByName) {
+TEST(DatasetLayoutTest, RejectsEveryWrongValueByName) {
   struct Case {
     const char* patch;  // JSON pointer
     const char* value;
@@ -184,29 +185,29 @@ TEST(DatasetLayoutTest, RefusesEveryWrongValueByName) {
   };
   const Case cases[] = {
       {"/name", "\"\"", "name: \"\""},
-      {"/frame_rate_hz", "0", "frame_rate_hz: 0, wanted a number from 1 to 240"},
+      {"/frame_rate_hz", "0", "frame_rate_hz: expected a number from 1 to 240, got 0"},
       {"/frame_rate_hz", "\"fast\"", "frame_rate_hz: \"fast\""},
-      {"/unit", "\"feet\"", "unit: \"feet\", wanted metres, millimetres or sbu-normalised"},
-      {"/unit", "\"sbu-normalised\"", "up_axis: z-up, wanted y-down"},
+      {"/unit", "\"feet\"", "unit: expected metres, millimetres or sbu-normalised, got \"feet\""},
+      {"/unit", "\"sbu-normalised\"", "up_axis: expected y-down"},
       {"/up_axis", "3", "up_axis: 3"},
-      {"/level", "\"yes\"", "level: \"yes\", wanted true or false"},
+      {"/level", "\"yes\"", "level: expected true or false, got \"yes\""},
       {"/rate", "3", "unknown field \"rate\""},
       {"/skeleton/tail", "3", "unknown field \"tail\""},
       {"/skeleton/root", "\"nose\"",
-       "skeleton.root: unknown joint \"nose\", wanted one of skeleton.joint_names"},
+       "skeleton.root: expected one of skeleton.joint_names, got \"nose\""},
       {"/skeleton/joint_names", R"(["hip","left_hip","right_hip","left_foot","right_foot","hip"])",
        "skeleton.joint_names: \"hip\" is repeated"},
-      {"/skeleton/joint_names", "{}", "skeleton.joint_names: {}, wanted an array"},
+      {"/skeleton/joint_names", "{}", "skeleton.joint_names: expected an array"},
       {"/skeleton/bones/1", "[\"hip\"]", "skeleton.bones[1]"},
       {"/skeleton/bones/1", "[\"hip\", \"left_hip\"]", "skeleton.bones"},
       {"/skeleton/bones/0/1", "\"tail\"", "skeleton.bones[0]: unknown joint \"tail\""},
-      {"/skeleton/parts/0/joints", "[]", "skeleton.parts: \"left\" has no joints"},
+      {"/skeleton/parts/0/joints", "[]", "skeleton.parts: expected at least one joint of \"left\""},
       {"/classes", "[]", "classes: empty"},
       {"/classes/1/name", "\"kick\"", "classes[1].name: \"kick\" again"},
       {"/classes/1/name", "\"../kick\"", "classes[1].name"},
-      {"/classes/1/symmetric", "1", "classes[1].symmetric: 1, wanted true or false"},
-      {"/classes/0/handed", "\"yes\"", "classes[0].handed: \"yes\", wanted true or false"},
-      {"/classes/1/touches", "1", "classes[1].touches: 1, wanted true or false"},
+      {"/classes/1/symmetric", "1", "classes[1].symmetric: expected true or false, got 1"},
+      {"/classes/0/handed", "\"yes\"", "classes[0].handed: expected true or false, got \"yes\""},
+      {"/classes/1/touches", "1", "classes[1].touches: expected true or false, got 1"},
       {"/classes/0/effectors/0", "\"tail\"", "classes[0].effectors[0]: \"tail\""},
   };
   for (const Case& one : cases) {
@@ -216,7 +217,7 @@ TEST(DatasetLayoutTest, RefusesEveryWrongValueByName) {
   }
 }
 
-TEST(DatasetLayoutTest, RefusesWhatIsNoJsonOrRepeatsAField) {
+TEST(DatasetLayoutTest, RejectsWhatIsNoJsonOrRepeatsAField) {
   EXPECT_THAT(std::string(ParseDatasetLayout("{").status().message()),
               HasSubstr("dataset.json: not JSON at byte"));
   EXPECT_THAT(std::string(ParseDatasetLayout("[]").status().message()),

@@ -31,10 +31,13 @@ TEST(LeaderIndexTest, NamesTheLineThatIsWrong) {
     return std::string(index.status().message());
   };
   EXPECT_THAT(message(""), HasSubstr("line 1"));
-  EXPECT_THAT(message("path\tside\n"), HasSubstr("line 1: no column path or leader_side"));
-  EXPECT_THAT(message("path\tleader_side\na\tleft\nb\n"), HasSubstr("line 3: 1 columns, wanted 2"));
+  EXPECT_THAT(
+      message("path\tside\n"),
+      HasSubstr("line 1: expected a header of tab-separated names with path and leader_side"));
+  EXPECT_THAT(message("path\tleader_side\na\tleft\nb\n"),
+              HasSubstr("line 3: expected 2 columns, got 1"));
   EXPECT_THAT(message("path\tleader_side\na\tLeft\n"),
-              HasSubstr("line 2: leader_side \"Left\", wanted left, right or unknown"));
+              HasSubstr("line 2: expected leader_side left, right or unknown, got \"Left\""));
   EXPECT_THAT(message("path\tleader_side\na\tleft\na\tleft\n"), HasSubstr("line 3: path \"a\""));
 }
 

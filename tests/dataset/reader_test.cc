@@ -177,11 +177,11 @@ TEST(ReadDatasetTest, NamesFileAndLineOfABadCapture) {
   std::string word = StillCapture(3);
   word.replace(word.find("\n3,") + 3, 8, "arm");
   const Case cases[] = {
-      {StillCapture(2) + "3,0.5,0.5\n", ":3: came 3 comma-separated values, wanted 91"},
-      {StillCapture(1), "came 1 frame, wanted at least 2"},
-      {"", "no frames"},
-      {not_finite, ":2:3: left person's head x: came \"nan\", wanted a finite number"},
-      {word, ":3:3: left person's head x: came \"arm\", wanted a finite number"},
+      {StillCapture(2) + "3,0.5,0.5\n", ":3: expected 91 comma-separated values"},
+      {StillCapture(1), "frames: expected at least 2, got 1"},
+      {"", "expected at least one line, got none"},
+      {not_finite, ":2:3: left person's head x: expected a finite number, got \"nan\""},
+      {word, ":3:3: left person's head x: expected a finite number, got \"arm\""},
   };
   for (const Case& one : cases) {
     CaptureFolder folder;
@@ -191,7 +191,7 @@ TEST(ReadDatasetTest, NamesFileAndLineOfABadCapture) {
   }
 }
 
-TEST(ReadDatasetTest, RefusesAnIndexThatNamesAnAbsentFile) {
+TEST(ReadDatasetTest, RejectsAnIndexThatNamesAnAbsentFile) {
   CaptureFolder folder;
   folder.Write("s01s02/03/001/skeleton_pos.txt", StillCapture(2));
   folder.Write("index.tsv", "path\tleader_side\ns01s02/03/01/skeleton_pos.txt\tleft\n");
@@ -199,18 +199,19 @@ TEST(ReadDatasetTest, RefusesAnIndexThatNamesAnAbsentFile) {
               AllOf(HasSubstr("index.tsv: line 2"), HasSubstr("is not there")));
 }
 
-TEST(ReadDatasetTest, RefusesASequenceFolderWithoutItsFile) {
+TEST(ReadDatasetTest, RejectsASequenceFolderWithoutItsFile) {
   CaptureFolder folder;
   std::filesystem::create_directories(folder.path() / "s01s02/03/001");
   EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound),
               HasSubstr("s01s02/03/001/skeleton_pos.txt"));
 }
 
-TEST(ReadDatasetTest, RefusesAFolderThatIsNoDataSet) {
+TEST(ReadDatasetTest, RejectsAFolderThatIsNoDataSet) {
   CaptureFolder folder;
   EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound), HasSubstr("no data set"));
   folder.Write("s01s02/01/001/skeleton_pos.txt", StillCapture(2));
-  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound), HasSubstr("no sequence"));
+  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound),
+              HasSubstr("expected sequences of the classes of"));
   EXPECT_EQ(ReadDataset(folder.path() / "nowhere").status().code(), absl::StatusCode::kNotFound);
 }
 

@@ -52,7 +52,8 @@ TEST(LeaveSubjectOutTest, TestsOnEitherPlace) {
   EXPECT_THAT(split->train, ElementsAre(1, 3));
   const absl::Status unknown = LeaveSubjectOut(dataset, "z").status();
   EXPECT_EQ(unknown.code(), absl::StatusCode::kNotFound);
-  EXPECT_THAT(std::string(unknown.message()), HasSubstr("\"z\", wanted one of made up's: a, b, c"));
+  EXPECT_THAT(std::string(unknown.message()),
+              HasSubstr("expected one of made up's: a, b, c, got \"z\""));
 }
 
 TEST(SplitInHalvesTest, HalvesEachClass) {
@@ -75,10 +76,12 @@ TEST(SplitInHalvesTest, DependsOnTheSeed) {
   EXPECT_NE(SplitInHalves(dataset, 5)->train, SplitInHalves(dataset, 6)->train);
 }
 
-TEST(SplitInHalvesTest, RefusesAClassThatCannotBeHalved) {
+TEST(SplitInHalvesTest, RejectsAClassThatCannotBeHalved) {
   const absl::Status status = SplitInHalves(MadeUp({4, 1}), 5).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(std::string(status.message()), HasSubstr("made up: 1 sequences of class1, wanted 2"));
+  EXPECT_THAT(std::string(status.message()),
+              HasSubstr("made up: expected at least 2 sequences of each class to split in halves, "
+                        "got 1 of class1"));
 }
 
 TEST(TakeValidationTest, TakesTheFractionOfEachClass) {

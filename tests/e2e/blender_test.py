@@ -37,7 +37,7 @@ class BlenderTest(unittest.TestCase):
         self.assertTrue(self.state["refused_without_leader"])
         self.assertEqual([self.state["still"], self.state["missing"]], [["CANCELLED"]] * 2)
         zero, program, joints = self.state["failures"]
-        self.assertIn("nothing stands for left_hand, right_hand", joints)
+        self.assertIn("expected joints for left_hand, right_hand, got none", joints)
         self.assertIn("Choose the bones in the panel", joints)
         self.assertIn("Every label is 0", zero)
         self.assertIn("no-such-program", program)

@@ -120,7 +120,7 @@ TEST_F(FollowerRigTest, ARigNeedNotBeAnimated) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("rig.csv")));
 }
 
-TEST_F(FollowerRigTest, NamesWhatARigMayBe) {
+TEST_F(FollowerRigTest, ReportsTheExtensionsOfRigs) {
   EXPECT_THAT(FormatOntoRig(Follower(), {"rig.csv", {}}, Format::kGlb).status(),
               StatusIs(absl::StatusCode::kInvalidArgument,
                        HasSubstr("rig.csv: rig: expected a .bvh, .amc, .glb or .gltf")));

@@ -54,7 +54,7 @@ TEST_F(MotionFile, OnePersonIsWrittenInEveryFormat) {
   }
 }
 
-TEST_F(MotionFile, AMotionThatIsNoFileIsParsed) {
+TEST_F(MotionFile, ParsesAMotionThatIsNotAFile) {
   const auto csv =
       FormatPeople(Format::kCsv, {pair_.leader, pair_.follower}, motion::SbuSkeleton());
   ASSERT_TRUE(csv.ok());
@@ -70,20 +70,20 @@ TEST_F(MotionFile, AMotionThatIsNoFileIsParsed) {
               HasSubstr("a pipe:1: "));
 }
 
-TEST_F(MotionFile, WhatAFormatCannotHoldIsRefused) {
+TEST_F(MotionFile, RejectsPeopleThatAFormatCannotHold) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const auto refused = [&](Format format, const std::vector<motion::Clip>& people) {
     return std::string(FormatPeople(format, people, skeleton).status().message());
   };
   EXPECT_THAT(refused(Format::kBvh, {pair_.leader, pair_.follower}),
-              HasSubstr("came 2, wanted one"));
-  EXPECT_THAT(refused(Format::kAmc, {pair_.leader}), HasSubstr("format: came ASF/AMC"));
-  EXPECT_THAT(refused(Format::kCsv, {}), HasSubstr("people: came 0"));
+              HasSubstr("people: expected 1, got 2"));
+  EXPECT_THAT(refused(Format::kAmc, {pair_.leader}), HasSubstr("(SBU text), got ASF/AMC"));
+  EXPECT_THAT(refused(Format::kCsv, {}), HasSubstr("people: expected one or two, got 0"));
   EXPECT_THAT(refused(Format::kCsv, {pair_.leader, pair_.follower, pair_.leader}),
-              HasSubstr("people: came 3"));
+              HasSubstr("people: expected one or two, got 3"));
 }
 
-TEST_F(MotionFile, AReportSaysWhoDecided) {
+TEST_F(MotionFile, ReportNamesTheOriginOfEachDecision) {
   using retargeting::Origin;
   const fs::path file = folder_ / "half.csv";
   auto text = FormatPeople(Format::kCsv, {pair_.leader}, motion::SbuSkeleton());
@@ -150,7 +150,7 @@ TEST_F(MotionFile, ReadsBackWhatItWrites) {
   }
 }
 
-TEST_F(MotionFile, WritesBothPeopleAsGltfInTheFormOfTheExtension) {
+TEST_F(MotionFile, WritesBothPeopleAsGltfOrGlbByExtension) {
   for (const char* name : {"a.glb", "a.gltf"}) {
     const fs::path path = folder_ / name;
     ASSERT_TRUE(WritePair(path, pair_, motion::SbuSkeleton()).ok());
@@ -166,7 +166,7 @@ TEST_F(MotionFile, WritesBothPeopleAsGltfInTheFormOfTheExtension) {
   }
 }
 
-TEST_F(MotionFile, WritesBvhInTheUnitThatIsAskedFor) {
+TEST_F(MotionFile, WritesBvhInTheRequestedUnit) {
   WriteOptions metres;
   metres.bvh_metres_per_unit = 1;
   const auto text = FormatPeople(Format::kBvh, {pair_.leader}, motion::SbuSkeleton(), metres);
@@ -221,7 +221,7 @@ TEST_F(MotionFile, ReadsAnAmcFileWithTheSkeletonBesideIt) {
   const absl::Status missing = ReadLeader(folder_ / "01_02.amc").status();
   EXPECT_EQ(missing.code(), absl::StatusCode::kNotFound);
   EXPECT_THAT(std::string(missing.message()),
-              HasSubstr("01_02.amc: skeleton: wanted 01_02.asf or 01.asf in the same folder"));
+              HasSubstr("01_02.amc: skeleton: expected 01_02.asf or 01.asf in the same folder"));
   ASSERT_TRUE(base::WriteFile(folder_ / "01.asf", files.asf).ok());
   const absl::StatusOr<motion::Clip> clip = ReadLeader(folder_ / "01_02.amc");
   ASSERT_TRUE(clip.ok()) << clip.status();
@@ -232,7 +232,7 @@ TEST_F(MotionFile, ReadsAnAmcFileWithTheSkeletonBesideIt) {
   EXPECT_EQ(ReadLeader(folder_ / "01_02.amc", options)->frame_rate_hz, 60);
   ASSERT_TRUE(base::WriteFile(folder_ / "01_02.asf", "nothing").ok());
   EXPECT_THAT(std::string(ReadLeader(folder_ / "01_02.amc").status().message()),
-              HasSubstr("01_02.asf:1: no bones"));
+              HasSubstr("01_02.asf:1: :bonedata: expected at least 1 bone"));
   EXPECT_FALSE(IsWritable("a.amc"));
 }
 
@@ -249,7 +249,7 @@ TEST_F(MotionFile, ReadsEitherPersonOfSbuText) {
   EXPECT_EQ(ReadLeader(path, options)->frame_rate_hz, 30);
 }
 
-TEST_F(MotionFile, LetsTheCallerSayTheCoordinates) {
+TEST_F(MotionFile, UsesTheCallersCoordinates) {
   const fs::path path = folder_ / "a.csv";
   std::string header = "frame", row = "0";
   for (const std::string& joint : motion::SbuSkeleton().joint_names) {
@@ -267,7 +267,7 @@ TEST_F(MotionFile, LetsTheCallerSayTheCoordinates) {
   EXPECT_LT(Distance(clip->at(0, 7), {1, 3, -2}), 1e-6f);
 }
 
-TEST_F(MotionFile, WarnsOfPositionsWhoseUpAxisIsAnother) {
+TEST_F(MotionFile, WarnsIfTheUpAxisIsProbablyAnother) {
   motion::ClipPair z_up = pair_;
   for (motion::Clip* clip : {&z_up.leader, &z_up.follower}) {
     for (motion::Vec3& p : clip->poses.all()) p = {p.x, -p.z, p.y};
@@ -293,7 +293,7 @@ TEST_F(MotionFile, WarnsOfPositionsWhoseUpAxisIsAnother) {
 
 // Two joints may be the neck: in the first frame the upper one is between the shoulders, in all
 // others the lower one.
-TEST_F(MotionFile, MapsJointsByTheWholeMotion) {
+TEST_F(MotionFile, MapsJointsFromTheWholeMotion) {
   motion::Clip person = pair_.leader;
   person.joint_names[1] = "LowerNeck";
   person.joint_names.push_back("UpperNeck");
@@ -319,7 +319,7 @@ TEST_F(MotionFile, MapsJointsByTheWholeMotion) {
   EXPECT_THAT(notes, Contains(HasSubstr("neck: LowerNeck (")));
 }
 
-TEST_F(MotionFile, TakesTheFirstFrameAsAFollowersStart) {
+TEST_F(MotionFile, ReadsTheFirstFrameAsAFollowersStart) {
   const absl::StatusOr<std::vector<fs::path>> written =
       WritePair(folder_ / "a.npy", pair_, motion::SbuSkeleton());
   ASSERT_TRUE(written.ok());
@@ -331,11 +331,11 @@ TEST_F(MotionFile, TakesTheFirstFrameAsAFollowersStart) {
   EXPECT_EQ((*start)[14], pair_.follower.at(0, 14));
 }
 
-TEST_F(MotionFile, NamesExtensionsItKnows) {
+TEST_F(MotionFile, ReportsTheKnownExtensions) {
   EXPECT_THAT(std::string(ReadLeader("a.fbx").status().message()),
-              HasSubstr("extension: came \".fbx\", wanted .txt (SBU text), .bvh"));
+              HasSubstr("extension: expected .txt (SBU text), .bvh"));
   EXPECT_THAT(std::string(WritePair("a.amc", pair_, motion::SbuSkeleton()).status().message()),
-              HasSubstr("extension: came \".amc\", wanted .glb, .gltf, .usda, .bvh, .csv"));
+              HasSubstr("extension: expected .glb, .gltf, .usda, .bvh, .csv"));
   EXPECT_TRUE(IsWritable("a.json"));
   EXPECT_TRUE(IsWritable("a.txt"));
   EXPECT_FALSE(IsWritable("a"));
@@ -343,12 +343,12 @@ TEST_F(MotionFile, NamesExtensionsItKnows) {
   EXPECT_TRUE(IsReadable("a.BVH"));
 }
 
-TEST_F(MotionFile, RefusesAPairThatIsNone) {
+TEST_F(MotionFile, RejectsAnInconsistentPair) {
   motion::ClipPair shorter = pair_;
   shorter.follower.poses.Resize(1);
   EXPECT_THAT(
       std::string(WritePair(folder_ / "a.csv", shorter, motion::SbuSkeleton()).status().message()),
-      HasSubstr("wanted the same joints, frames and rate"));
+      HasSubstr("expected the same joints, frames and rate"));
   motion::ClipPair broken = pair_;
   broken.follower.at(3, 1).x = std::nanf("");
   EXPECT_THAT(
@@ -358,7 +358,7 @@ TEST_F(MotionFile, RefusesAPairThatIsNone) {
   far_away.leader.at(0, 0).x = 3e38f;
   EXPECT_THAT(
       std::string(WritePair(folder_ / "a.bvh", far_away, motion::SbuSkeleton()).status().message()),
-      HasSubstr("leader: frame 0 head: came a position that is not finite or beyond"));
+      HasSubstr("leader: frame 0 head: expected a finite position within +-1e+07 m"));
   motion::ClipPair renamed = pair_;
   renamed.leader.joint_names.pop_back();
   EXPECT_FALSE(WritePair(folder_ / "a.csv", renamed, motion::SbuSkeleton()).ok());
@@ -373,7 +373,7 @@ TEST_F(MotionFile, NamesAFileThatCannotBeReadOrWritten) {
   EXPECT_THAT(
       std::string(
           WritePair(folder_ / "folder.csv", pair_, motion::SbuSkeleton()).status().message()),
-      HasSubstr("is a folder"));
+      HasSubstr("expected a file, got a folder"));
   EXPECT_THAT(
       std::string(
           WritePair(folder_ / "no" / "a.csv", pair_, motion::SbuSkeleton()).status().message()),

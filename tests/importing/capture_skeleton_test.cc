@@ -35,7 +35,7 @@ class FindSkeletonTest : public ::testing::Test {
   SkeletonOptions options_;
 };
 
-TEST_F(FindSkeletonTest, TakesTheHierarchyOfABvhInDuetsWords) {
+TEST_F(FindSkeletonTest, ReadsTheHierarchyOfABvhWithDuetsNames) {
   BvhPerson person;
   person.prefix = "mixamorig:";
   const absl::StatusOr<CaptureSkeleton> found = Find("kick.bvh", BvhText(person));
@@ -54,7 +54,7 @@ TEST_F(FindSkeletonTest, TakesTheHierarchyOfABvhInDuetsWords) {
 }
 
 // Duet's own files have a helper beside every joint of several children.
-TEST_F(FindSkeletonTest, PassesByJointsThatLieOnTheirParents) {
+TEST_F(FindSkeletonTest, OmitsJointsAtTheirParents) {
   motion::ClipPair pair = {test::MakePerson(), test::MakePerson()};
   ASSERT_THAT(formats::WritePair(folder_ / "pair.bvh", pair, motion::SbuSkeleton()), IsOk());
   const absl::StatusOr<CaptureSkeleton> found = FindSkeleton(folder_ / "pair.leader.bvh", options_);
@@ -65,7 +65,7 @@ TEST_F(FindSkeletonTest, PassesByJointsThatLieOnTheirParents) {
             found->skeleton.Find("neck"));
 }
 
-TEST_F(FindSkeletonTest, LeavesOutFingersUnlessAskedNotTo) {
+TEST_F(FindSkeletonTest, OmitsFingersUnlessRequested) {
   const std::string fingers = absl::StrReplaceAll(
       BvhText({}), {{"JOINT LeftHand\n{\nOFFSET 26 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
                      "End Site\n",
@@ -92,7 +92,7 @@ TEST_F(FindSkeletonTest, NamesWhatIsMissing) {
                              HasSubstr("--skeleton"))));
 }
 
-TEST_F(FindSkeletonTest, SaidSkeletonsWin) {
+TEST_F(FindSkeletonTest, SpecifiedSkeletonsOverrideTheFile) {
   options_.skeleton = "sbu";
   EXPECT_EQ(Find("kick.bvh", BvhText({}))->skeleton.joint_names, motion::SbuSkeleton().joint_names);
   options_.skeleton = (folder_ / "skeleton.json").string();
@@ -107,7 +107,7 @@ TEST_F(FindSkeletonTest, SaidSkeletonsWin) {
   EXPECT_EQ(found->parts.size(), 5u);
 }
 
-TEST_F(FindSkeletonTest, AnotherRootTurnsTheBonesRound) {
+TEST_F(FindSkeletonTest, AnotherRootReversesBones) {
   options_.root = "Chest";
   const absl::StatusOr<CaptureSkeleton> found = Find("kick.bvh", BvhText({}));
   ASSERT_THAT(found, IsOk());

@@ -96,20 +96,20 @@ TEST_F(ImportTest, MakesADatasetOfBvhPairs) {
   EXPECT_GT(foot.z, 0.5f);
 }
 
-TEST_F(ImportTest, SaysWhatItAssumedAndTheFlagThatChangesIt) {
+TEST_F(ImportTest, ReportsAssumptionsWithTheirFlags) {
   WriteBvhPairs(options_.from, 2);
   WriteTestFile(options_.from / "notes.md", "taken on Monday");
   ASSERT_THAT(Go(), IsOk());
-  EXPECT_EQ(Assumed("passed by"), "1 file .md, which is no motion");
+  EXPECT_EQ(Assumed("ignored"), "1 .md file: not a motion");
   EXPECT_EQ(Assumed("pairs"), "4 by their names");
-  EXPECT_EQ(Assumed("skeleton"), "20 joints, of kick_01_a.bvh");
+  EXPECT_EQ(Assumed("skeleton"), "20 joints, from kick_01_a.bvh");
   EXPECT_EQ(Assumed("root"), "hips");
   EXPECT_THAT(Assumed("joints"), HasSubstr("left_hip, right_hip: LeftUpLeg, RightUpLeg"));
-  EXPECT_EQ(Assumed("unit"), "centimetres: legs are then 0.93 m long");
+  EXPECT_EQ(Assumed("unit"), "centimetres: legs are 0.93 m long");
   EXPECT_EQ(Assumed("up axis"), "y-up");
   EXPECT_THAT(Assumed("joint map"), HasSubstr("head: Head.end (half way to it from the head's "
                                               "joint), of 8 people"));
-  EXPECT_EQ(Assumed("frame rate"), "30 frames a second, of files with 60");
+  EXPECT_EQ(Assumed("frame rate"), "30 frames per second, from files with 60");
   EXPECT_THAT(Assumed("leader"),
               AllOf(HasSubstr("4 pairs by who moves farther"),
                     HasSubstr("kick: who moves left_foot or right_foot farther"),
@@ -118,12 +118,12 @@ TEST_F(ImportTest, SaysWhatItAssumedAndTheFlagThatChangesIt) {
                                           "kept apart"));
   EXPECT_THAT(Assumed("level"), HasSubstr("no: people lean"));
   for (const Assumption& one : report_.assumptions) {
-    if (one.what == "passed by") continue;
+    if (one.what == "ignored") continue;
     EXPECT_THAT(one.flag, HasSubstr("--")) << one.what;
   }
 }
 
-TEST_F(ImportTest, TakesWhatItIsTold) {
+TEST_F(ImportTest, FlagsOverrideInference) {
   WriteBvhPairs(options_.from, 2);
   options_.name = "fights";
   options_.to_rate_hz = 15;
@@ -145,7 +145,7 @@ TEST_F(ImportTest, TakesWhatItIsTold) {
             "left_hand or right_hand farther");
 }
 
-TEST_F(ImportTest, NamesTheClassOrJointThatAFlagGetsWrong) {
+TEST_F(ImportTest, ReportsUnknownClassesAndJointsInFlags) {
   WriteBvhPairs(options_.from, 1);
   options_.handed = {"punch"};
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
@@ -158,7 +158,7 @@ TEST_F(ImportTest, NamesTheClassOrJointThatAFlagGetsWrong) {
   EXPECT_FALSE(fs::exists(options_.out));
 }
 
-TEST_F(ImportTest, ATableSaysWhoLeadsAndWhoTheyAre) {
+TEST_F(ImportTest, ATableSpecifiesLeadersAndSubjects) {
   WriteBvhPairs(options_.from, 1);
   WriteTestFile(options_.from / "pairs.tsv",
                 "leader\tfollower\tlabel\tsubjects\n"
@@ -198,7 +198,7 @@ void WriteCsvPair(const fs::path& from, const fs::path& to) {
   WriteTestFile(to / "kick_01.csv", formats::flat::FormatCsv(pair));
 }
 
-TEST_F(ImportTest, PositionsAloneTellSkeletonUnitAndAxis) {
+TEST_F(ImportTest, InfersSkeletonUnitAndAxisFromPositions) {
   WriteBvhPairs(folder_ / "bvh", 1);
   WriteCsvPair(folder_ / "bvh", options_.from);
   ASSERT_THAT(Go(), IsOk());
@@ -293,7 +293,7 @@ TEST_F(ImportTest, InfersTheSameUnitAndAxisOfTheSamplesAsAReaderOfOneFile) {
   }
 }
 
-TEST_F(ImportTest, RefusesLegsOfNoPersonInAnyUsualUnit) {
+TEST_F(ImportTest, RejectsLegsOfNoPersonInAnyUsualUnit) {
   BvhPerson giant;
   giant.scale = 3;
   WriteBvhPairs(options_.from, 1, giant);
@@ -302,7 +302,7 @@ TEST_F(ImportTest, RefusesLegsOfNoPersonInAnyUsualUnit) {
                                    HasSubstr("specify --metres-per-unit"))));
 }
 
-TEST_F(ImportTest, RefusesPeopleWhoStandAlongX) {
+TEST_F(ImportTest, RejectsPeopleWhoStandAlongX) {
   fs::create_directories(options_.from);
   options_.skeleton.skeleton = "sbu";
   for (const float z : {0.0f, 1.2f}) {
@@ -385,7 +385,7 @@ TEST_F(ImportTest, ReadsEveryFormatOfPairs) {
   }
 }
 
-TEST_F(ImportTest, SequencesThatWouldReplaceOneAnotherAreRefused) {
+TEST_F(ImportTest, RejectsSequencesOfTheSameName) {
   BvhPerson person;
   person.frames = 150;
   WriteBvhPairs(options_.from, 1, person);
@@ -403,12 +403,13 @@ TEST_F(ImportTest, SequencesThatWouldReplaceOneAnotherAreRefused) {
   person.leads = false;
   WriteTestFile(options_.from / "shove" / "shove_01_p1" / "b.bvh", BvhText(person));
   options_.overwrite = true;
-  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
-                             HasSubstr("shove/shove_01_p1.txt: two sequences")));
+  EXPECT_THAT(Go(),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("shove/shove_01_p1.txt: expected one sequence of this name")));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 2);  // nothing beside it
 }
 
-TEST_F(ImportTest, NobodyIsLeftOutInSilence) {
+TEST_F(ImportTest, RejectedPairsAreReported) {
   WriteBvhPairs(options_.from, 1);
   fs::rename(options_.from / "shove_01_b.bvh", options_.from / "shove_02_b.bvh");
   WriteTestFile(options_.from / "hug_01_a.bvh", "HIERARCHY\n");
@@ -418,17 +419,17 @@ TEST_F(ImportTest, NobodyIsLeftOutInSilence) {
                              HasSubstr("4 refused and 1 usable; nothing was written")));
   EXPECT_FALSE(fs::exists(options_.out));
   ASSERT_THAT(report_.refused, SizeIs(4));
-  EXPECT_THAT(report_.refused[0].reason, HasSubstr("wanted a file that ends in b"));
+  EXPECT_THAT(report_.refused[0].reason, HasSubstr("expected a file that ends in b"));
   EXPECT_THAT(report_.refused[2].name, "hug_01_a.bvh and hug_01_b.bvh");
   EXPECT_THAT(report_.refused[2].reason, HasSubstr("hug_01_a.bvh:"));
-  EXPECT_THAT(report_.refused[3].reason, HasSubstr("holds one person"));
+  EXPECT_THAT(report_.refused[3].reason, HasSubstr("people: expected 2 in the file"));
   options_.skip_refused = true;
   ASSERT_THAT(Go(), IsOk());
   EXPECT_THAT(report_.refused, SizeIs(4));
   EXPECT_THAT(Read().sequences, SizeIs(1));
 }
 
-TEST_F(ImportTest, PeopleInWorldsOfTheirOwnAreRefused) {
+TEST_F(ImportTest, PeopleInWorldsOfTheirOwnAreRejected) {
   WriteBvhPairs(options_.from, 1);
   BvhPerson also_leads;
   also_leads.variant = 1;
@@ -492,7 +493,7 @@ TEST_F(ImportTest, AFailedImportKeepsTheDatasetThatWasThere) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 2);  // nothing beside it
 }
 
-TEST_F(ImportTest, SaysWhatAFolderWithoutPairsWants) {
+TEST_F(ImportTest, ReportsTheExpectedNamesIfThereAreNoPairs) {
   fs::create_directories(options_.from);
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
                              AllOf(HasSubstr("no pairs among 0 motion files"),

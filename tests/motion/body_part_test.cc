@@ -27,14 +27,14 @@ TEST(SbuParts, AreFiveOfThreeJoints) {
   EXPECT_THAT(joints, ::testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14));
 }
 
-TEST(BodyParts, AreRefusedByName) {
+TEST(BodyParts, AreRejectedByName) {
   const auto refused = [](const std::vector<BodyPart>& parts, const char* why) {
     EXPECT_THAT(Validate(parts, SbuSkeleton()),
                 StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why)));
   };
-  refused({}, "parts: empty");
-  refused({{"arm", {3}}, {"trunk", {}}}, "parts: \"trunk\" has no joints");
-  refused({{"trunk", {0, 15}}}, "parts.trunk: joint index 15, wanted 0 to 14");
+  refused({}, "parts: expected at least one, got none");
+  refused({{"arm", {3}}, {"trunk", {}}}, "parts: expected at least one joint of \"trunk\"");
+  refused({{"trunk", {0, 15}}}, "parts.trunk: expected a joint index from 0 to 14, got 15");
   refused({{"trunk", {-1}}}, "parts.trunk: joint index -1");
 }
 

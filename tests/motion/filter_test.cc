@@ -48,7 +48,7 @@ TEST(GaussianFilterTest, ClipShorterThanTheKernelIsSmoothed) {
   EXPECT_EQ(GaussianFilter(Along({5}), 2), Along({5}));
 }
 
-TEST(GaussianFilterTest, NoWidthChangesNothing) {
+TEST(GaussianFilterTest, ZeroWidthChangesNothing) {
   const Poses poses = Along({0, 5, 1});
   EXPECT_EQ(GaussianFilter(poses, 0), poses);
   EXPECT_EQ(GaussianFilter(poses, -1), poses);

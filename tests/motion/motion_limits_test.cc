@@ -12,7 +12,7 @@ namespace {
 using test::IsOk;
 using test::StatusIs;
 
-TEST(CheckFrameRate, TakesWhatACameraMayHave) {
+TEST(CheckFrameRate, AcceptsRatesOfCameras) {
   for (const double rate : {0.1, 15.0, 29.97, 1000.0}) {
     EXPECT_THAT(CheckFrameRate("a.csv", rate), IsOk()) << rate;
   }
@@ -20,12 +20,13 @@ TEST(CheckFrameRate, TakesWhatACameraMayHave) {
                             std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THAT(CheckFrameRate("a.csv", rate),
                 StatusIs(absl::StatusCode::kInvalidArgument,
-                         ::testing::StartsWith("a.csv: frame rate: came ")))
+                         ::testing::StartsWith(
+                             "a.csv: frame rate: expected more than 0 and at most 1000 Hz, got ")))
         << rate;
   }
 }
 
-TEST(ParseCoordinate, TakesANumberWithinTheLimit) {
+TEST(ParseCoordinate, AcceptsNumbersWithinTheLimit) {
   float value = 0;
   EXPECT_TRUE(ParseCoordinate("-10000000", &value));
   EXPECT_EQ(value, -1e7f);

@@ -6,7 +6,7 @@
 namespace duet::motion {
 namespace {
 
-TEST(ReadingSetting, GoesWithTheError) {
+TEST(ReadingSetting, IsAttachedToTheError) {
   for (ReadingSetting setting :
        {ReadingSetting::kFrameRate, ReadingSetting::kMetresPerUnit, ReadingSetting::kJointMap}) {
     const absl::Status status = MendedBy(absl::InvalidArgumentError("no"), setting);
@@ -16,7 +16,7 @@ TEST(ReadingSetting, GoesWithTheError) {
   }
 }
 
-TEST(ReadingSetting, IsAbsentWhereNothingWouldHelp) {
+TEST(ReadingSetting, IsAbsentIfNoSettingWouldHelp) {
   EXPECT_EQ(MendingSetting(absl::InvalidArgumentError("no")), std::nullopt);
   absl::Status other = absl::InvalidArgumentError("no");
   other.SetPayload("duet.motion.ReadingSetting", absl::Cord("of a later version"));

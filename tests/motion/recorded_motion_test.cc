@@ -29,7 +29,8 @@ TEST(CheckClipTest, NamesWhatNoWriterCanExpress) {
   EXPECT_THAT(CheckClip("leader", TwoFrames()), IsOk());
   Clip clip = TwoFrames();
   clip.poses = {};
-  EXPECT_THAT(CheckClip("leader", clip), StatusIs(kInvalid, HasSubstr("leader: no frames")));
+  EXPECT_THAT(CheckClip("leader", clip),
+              StatusIs(kInvalid, HasSubstr("leader: expected at least 1 frame, got none")));
   clip = TwoFrames();
   clip.at(1, 2).y = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THAT(CheckClip("leader", clip), StatusIs(kInvalid, HasSubstr("leader: frame 1 foot")));
@@ -38,14 +39,15 @@ TEST(CheckClipTest, NamesWhatNoWriterCanExpress) {
   EXPECT_THAT(CheckClip("leader", clip), StatusIs(kInvalid, HasSubstr("frame rate")));
 }
 
-TEST(CheckClipTest, RefusesPosesOfAnotherNumberOfJointsThanNames) {
+TEST(CheckClipTest, RejectsPosesOfAnotherNumberOfJointsThanNames) {
   Clip clip = TwoFrames();
   clip.poses = Poses(2, 1);
-  EXPECT_THAT(CheckClip("leader", clip),
-              StatusIs(kInvalid, HasSubstr("came poses of 1 joints, wanted 3")));
+  EXPECT_THAT(
+      CheckClip("leader", clip),
+      StatusIs(kInvalid, HasSubstr("expected poses of 3 joints, one for each name, got 1")));
 }
 
-TEST(CheckPairTest, WantsTheSameJointsFramesAndRate) {
+TEST(CheckPairTest, RequiresTheSameJointsFramesAndRate) {
   EXPECT_THAT(CheckPair({TwoFrames(), TwoFrames()}), IsOk());
   ClipPair pair{TwoFrames(), TwoFrames()};
   pair.follower.poses.Resize(1);

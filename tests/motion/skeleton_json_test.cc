@@ -46,20 +46,21 @@ TEST(SkeletonJson, LandmarksMayBeAbsentBothSidesTogether) {
   }
 }
 
-TEST(SkeletonJson, RefusesByFieldAndPlace) {
+TEST(SkeletonJson, RejectsByFieldAndPlace) {
   const struct {
     const char* pointer;
     const char* value;
     const char* why;
   } cases[] = {
       {"/joint_names/3", "\"head\"", "a.joint_names: \"head\" is repeated"},
-      {"/bones/2", "[\"neck\"]", "a.bones[2]: wanted a pair of joint names, parent first"},
-      {"/bones/2/1", "\"tail\"", "a.bones[2]: unknown joint \"tail\", wanted one of"},
-      {"/bones", "[]", "a.bones: 0, wanted 14"},
+      {"/bones/2", "[\"neck\"]",
+       "a.bones[2]: expected a pair of joint names, parent first, got [\"neck\"]"},
+      {"/bones/2/1", "\"tail\"", "a.bones[2]: expected one of skeleton.joint_names, got \"tail\""},
+      {"/bones", "[]", "a.bones: expected 14 to connect 15 joints, got 0"},
       {"/parts/1/joints/0", "\"tail\"", "a.parts[1].joints: unknown joint \"tail\""},
-      {"/parts/1/joints", "[]", "a.parts: \"right_arm\" has no joints"},
+      {"/parts/1/joints", "[]", "a.parts: expected at least one joint of \"right_arm\""},
       {"/parts/1/name", "\"left_arm\"", "a.parts[1].name: \"left_arm\" is repeated or reserved"},
-      {"/parts/1/name", "\"a/b\"", "a.parts[1].name: \"a/b\", wanted 1 to 64 letters"},
+      {"/parts/1/name", "\"a/b\"", "a.parts[1].name: expected 1 to 64 letters"},
       {"/parts", "[]", "a.parts: empty"},
       {"/root", "\"tail\"", "a.root: unknown joint \"tail\""},
       {"/left_hip", "3", "a.left_hip: 3"},

@@ -61,7 +61,7 @@ struct Broken {
 
 class BrokenSkeleton : public ::testing::TestWithParam<Broken> {};
 
-TEST_P(BrokenSkeleton, IsRefusedByField) {
+TEST_P(BrokenSkeleton, IsRejectedByField) {
   Skeleton skeleton = SbuSkeleton();
   GetParam().how(skeleton);
   EXPECT_THAT(Validate(skeleton),
@@ -70,42 +70,50 @@ TEST_P(BrokenSkeleton, IsRefusedByField) {
 
 INSTANTIATE_TEST_SUITE_P(
     Skeleton, BrokenSkeleton,
-    ::testing::Values(
-        Broken{"no_joints", [](Skeleton& s) { s.joint_names.clear(); }, "joint_names: empty"},
-        Broken{"unnamed", [](Skeleton& s) { s.joint_names[3] = ""; }, "joint_names: an empty name"},
-        Broken{"name_twice", [](Skeleton& s) { s.joint_names[3] = "head"; },
-               "joint_names: \"head\" is repeated"},
-        Broken{"root_high", [](Skeleton& s) { s.root = 15; },
-               "root: joint index 15, wanted 0 to 14"},
-        Broken{"root_low", [](Skeleton& s) { s.root = -1; }, "root: joint index -1"},
-        Broken{"left_hip", [](Skeleton& s) { s.hips->left = 99; }, "left_hip: joint index 99"},
-        Broken{"right_hip", [](Skeleton& s) { s.hips->right = 99; }, "right_hip: joint index 99"},
-        Broken{"left_foot", [](Skeleton& s) { s.feet->left = 99; }, "left_foot: joint index 99"},
-        Broken{"right_foot", [](Skeleton& s) { s.feet->right = 99; }, "right_foot: joint index 99"},
-        Broken{"bone_missing", [](Skeleton& s) { s.bones.pop_back(); }, "bones: 13, wanted 14"},
-        Broken{"bone_more",
-               [](Skeleton& s) {
-                 s.bones.push_back({0, 1});
-               },
-               "bones: 15, wanted 14"},
-        Broken{"bone_joint", [](Skeleton& s) { s.bones[0].child = -2; }, "bones: joint index -2"},
-        Broken{"two_parents",
-               [](Skeleton& s) {
-                 s.bones[0] = {2, 3};
-               },
-               "joint 3 may not have a further parent"},
-        Broken{"root_has_a_parent",
-               [](Skeleton& s) {
-                 s.bones[0] = {0, 2};
-               },
-               "joint 2 may not have a further parent"},
-        Broken{"bone_to_itself", [](Skeleton& s) { s.bones[6].parent = 4; },
-               "is not connected to the root"},
-        Broken{"circle_of_two",
-               [](Skeleton& s) {
-                 s.bones[2].parent = 4;  // shoulder <- elbow <- shoulder
-               },
-               "is not connected to the root"}),
+    ::testing::Values(Broken{"no_joints", [](Skeleton& s) { s.joint_names.clear(); },
+                             "joint_names: expected at least one joint"},
+                      Broken{"unnamed", [](Skeleton& s) { s.joint_names[3] = ""; },
+                             "joint_names: expected non-empty names"},
+                      Broken{"name_twice", [](Skeleton& s) { s.joint_names[3] = "head"; },
+                             "joint_names: \"head\" is repeated"},
+                      Broken{"root_high", [](Skeleton& s) { s.root = 15; },
+                             "root: expected a joint index from 0 to 14, got 15"},
+                      Broken{"root_low", [](Skeleton& s) { s.root = -1; },
+                             "root: expected a joint index from 0 to 14, got -1"},
+                      Broken{"left_hip", [](Skeleton& s) { s.hips->left = 99; },
+                             "left_hip: expected a joint index"},
+                      Broken{"right_hip", [](Skeleton& s) { s.hips->right = 99; },
+                             "right_hip: expected a joint index"},
+                      Broken{"left_foot", [](Skeleton& s) { s.feet->left = 99; },
+                             "left_foot: expected a joint index"},
+                      Broken{"right_foot", [](Skeleton& s) { s.feet->right = 99; },
+                             "right_foot: expected a joint index"},
+                      Broken{"bone_missing", [](Skeleton& s) { s.bones.pop_back(); },
+                             "bones: expected 14 to connect 15 joints, got 13"},
+                      Broken{"bone_more",
+                             [](Skeleton& s) {
+                               s.bones.push_back({0, 1});
+                             },
+                             "bones: expected 14 to connect 15 joints, got 15"},
+                      Broken{"bone_joint", [](Skeleton& s) { s.bones[0].child = -2; },
+                             "bones: expected a joint index from 0 to 14, got -2"},
+                      Broken{"two_parents",
+                             [](Skeleton& s) {
+                               s.bones[0] = {2, 3};
+                             },
+                             "expected one parent of joint 3, got another"},
+                      Broken{"root_has_a_parent",
+                             [](Skeleton& s) {
+                               s.bones[0] = {0, 2};
+                             },
+                             "expected no parent of joint 2, got another"},
+                      Broken{"bone_to_itself", [](Skeleton& s) { s.bones[6].parent = 4; },
+                             "below the root, got it elsewhere"},
+                      Broken{"circle_of_two",
+                             [](Skeleton& s) {
+                               s.bones[2].parent = 4;  // shoulder <- elbow <- shoulder
+                             },
+                             "below the root, got it elsewhere"}),
     [](const ::testing::TestParamInfo<Broken>& broken) { return broken.param.what; });
 
 TEST(Skeleton, LandmarksMayBeAbsent) {

@@ -78,7 +78,7 @@ TEST_P(AnyYaw, KeepsTheDistanceBetweenTheTwo) {
   }
 }
 
-TEST_P(AnyYaw, FirstFrameOriginLeavesWhatStandsStillStill) {
+TEST_P(AnyYaw, FirstFrameOriginKeepsStillJointsStill) {
   Poses leader = Leader(GetParam());
   for (int t = 0; t < leader.frame_count(); ++t) {
     for (Vec3& p : leader[t]) p.x += 0.02f * static_cast<float>(t);  // walks
@@ -123,7 +123,7 @@ TEST(Standardisation, PointsAreThoseOfTheFirstFrame) {
   EXPECT_EQ(standardisation.Apply(leader.at(0, 7)), standardisation.Apply(leader).at(0, 7));
 }
 
-TEST(Standardisation, HipsOnOneSpotLeaveTheYawAlone) {
+TEST(Standardisation, CoincidentHipsDoNotChangeTheYaw) {
   Poses leader = Leader(1);
   leader.at(0, kRightHip).x = leader.at(0, kLeftHip).x;
   leader.at(0, kRightHip).z = leader.at(0, kLeftHip).z;
@@ -132,7 +132,7 @@ TEST(Standardisation, HipsOnOneSpotLeaveTheYawAlone) {
   }
 }
 
-TEST(Standardisation, WithoutHipsOnlyACallersYawTurns) {
+TEST(Standardisation, WithoutHipsOnlyTheCallersYawApplies) {
   const Poses leader = Leader(1);
   Skeleton skeleton = SbuSkeleton();
   skeleton.hips.reset();

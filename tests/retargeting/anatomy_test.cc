@@ -50,7 +50,7 @@ TEST(FindAnatomyTest, CollarBonesAreTrunkAndToesAreLeg) {
                                           HasSubstr("trunk Hips, Spine, LeftShoulder")));
 }
 
-TEST(FindAnatomyTest, TakesWhatIsKnown) {
+TEST(FindAnatomyTest, KeepsKnownHipsAndFeet) {
   motion::Skeleton skeleton = MixamoSkeleton();
   skeleton.joint_names[11] = "a";
   skeleton.feet = motion::JointPair{11, 14};
@@ -59,7 +59,7 @@ TEST(FindAnatomyTest, TakesWhatIsKnown) {
   EXPECT_EQ(anatomy->feet, *skeleton.feet);
 }
 
-TEST(FindAnatomyTest, AHandWithoutANameIsTheArmsEnd) {
+TEST(FindAnatomyTest, UsesTheEndOfTheArmAsAnUnnamedHand) {
   motion::Skeleton skeleton = MixamoSkeleton();
   skeleton.joint_names[8] = "tip";
   const absl::StatusOr<Anatomy> anatomy = FindAnatomy(skeleton);
@@ -67,7 +67,7 @@ TEST(FindAnatomyTest, AHandWithoutANameIsTheArmsEnd) {
   EXPECT_EQ(anatomy->hands, (motion::JointPair{6, 8}));
 }
 
-TEST(FindAnatomyTest, NamesWhatNothingStandsFor) {
+TEST(FindAnatomyTest, ReportsRolesWithoutAJoint) {
   motion::Skeleton skeleton = MixamoSkeleton();
   skeleton.joint_names[7] = "wing";
   EXPECT_THAT(FindAnatomy(skeleton),
@@ -75,7 +75,7 @@ TEST(FindAnatomyTest, NamesWhatNothingStandsFor) {
                        AllOf(HasSubstr("left and right shoulder"), HasSubstr("wing"))));
 }
 
-TEST(CounterpartJointsTest, AreFoundWhereverANameSaysTheSide) {
+TEST(CounterpartJointsTest, AreFoundByTheSideInTheName) {
   EXPECT_THAT(CounterpartJoints({"Hips", "LeftUpLeg", "RightUpLeg", "arm.L", "arm.R", "left_toe"}),
               ElementsAre(0, 2, 1, 4, 3, 5));
 }

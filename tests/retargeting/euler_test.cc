@@ -35,7 +35,7 @@ TEST(Euler, TheFirstAngleIsTheOutermost) {
   EXPECT_NEAR(Angle(q, wanted), 0, 1e-6);
 }
 
-TEST(Euler, AnglesMakeTheRotationAgainNearGimbalLockToo) {
+TEST(Euler, AnglesReproduceTheRotationNearGimbalLock) {
   for (const EulerOrder& order : kOrders) {
     for (double first = -7; first < 7; first += 0.9) {
       for (double middle : {-kPi / 2, -1.5707, -1.0, 0.0, 0.4, 1.57079, kPi / 2, 2.5}) {
@@ -66,7 +66,7 @@ TEST(Euler, TheMiddleAnglePassesOverTheTop) {
   }
 }
 
-TEST(Euler, AWholeTurnGoesOn) {
+TEST(Euler, AnglesContinueBeyondAFullTurn) {
   for (const EulerOrder& order : kOrders) {
     EulerAngles angles = {};
     for (double turn = 0; turn < 4 * kPi; turn += 0.1) {
@@ -115,7 +115,7 @@ double LargestError(const std::vector<EulerAngles>& track, const std::vector<Qua
 }
 
 // A limb that swings through the lock and on: no angle turns farther than the limb.
-TEST(EulerTrack, StraightThroughTheLockNoAngleTurnsFartherThanTheJoint) {
+TEST(EulerTrack, ThroughGimbalLockNoAngleChangesMoreThanTheJoint) {
   for (const EulerOrder& order : kOrders) {
     for (const double side : {1.0, -1.0}) {
       std::vector<Quaternion> turns;
@@ -132,7 +132,7 @@ TEST(EulerTrack, StraightThroughTheLockNoAngleTurnsFartherThanTheJoint) {
 
 // Up to the lock, eleven frames in it, and down on another side, a quarter turn away: what the lock
 // leaves open has its quarter turn while the limb stands, a share of it each frame.
-TEST(EulerTrack, WhatTheLockLeavesOpenIsSpreadOverTheTimeInIt) {
+TEST(EulerTrack, TheFreeAngleInGimbalLockIsInterpolated) {
   for (const EulerOrder& order : kOrders) {
     std::vector<Quaternion> turns;
     for (int frame = 0; frame <= 20; ++frame) {
@@ -168,7 +168,7 @@ std::vector<Quaternion> PastTheLock(const EulerOrder& order) {
   return turns;
 }
 
-TEST(EulerTrack, PastTheLockNoAngleTurnsMoreThanAQuarterAndKeysBetweenBringPosesTogether) {
+TEST(EulerTrack, NearGimbalLockAnglesChangeByAtMostAQuarterTurn) {
   const double degree = kPi / 180;
   for (const EulerOrder& order : kOrders) {
     const std::vector<Quaternion> turns = PastTheLock(order);
@@ -186,7 +186,7 @@ TEST(EulerTrack, PastTheLockNoAngleTurnsMoreThanAQuarterAndKeysBetweenBringPoses
 }
 
 // One frame in the lock has no time to turn: half on the way in, half on the way out.
-TEST(EulerTrack, OneFrameInTheLockTurnsHalfBeforeAndHalfAfter) {
+TEST(EulerTrack, OneFrameInGimbalLockGetsHalfTheChange) {
   const EulerOrder order = {2, 0, 1};
   const std::vector<Quaternion> turns = {FromEuler({0.1, 1.5, 0}, order),
                                          FromEuler({0.1, kPi / 2, 0}, order),
@@ -197,7 +197,7 @@ TEST(EulerTrack, OneFrameInTheLockTurnsHalfBeforeAndHalfAfter) {
   EXPECT_LT(LargestError(track, turns, order), 2e-5);
 }
 
-TEST(EulerTrack, OfNoFrameAndOfLockAloneIsNothingSpecial) {
+TEST(EulerTrack, NoFrameAndOnlyLockedFramesAreValid) {
   EXPECT_TRUE(ToEulerTrack({}, {2, 0, 1}).empty());
   const Quaternion locked = FromEuler({0.3, kPi / 2, 0}, {2, 0, 1});
   const std::vector<EulerAngles> track = ToEulerTrack({locked, locked}, {2, 0, 1});

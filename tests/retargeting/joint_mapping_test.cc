@@ -19,39 +19,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-void ExpectName(const char* name, BodySide side, const char* base) {
-  const ParsedJointName parsed = ParseJointName(name);
-  EXPECT_EQ(parsed.side, side) << name;
-  EXPECT_EQ(parsed.base, base) << name;
-}
-
-TEST(JointNames, LoseSidePrefixCaseAndSeparators) {
-  ExpectName("mixamorig:LeftUpLeg", BodySide::kLeft, "upleg");
-  ExpectName("mixamorig1:Spine2", BodySide::kMiddle, "spine2");
-  ExpectName("Bip01 L UpperArm", BodySide::kLeft, "upperarm");
-  ExpectName("Bip01_R_Calf", BodySide::kRight, "calf");
-  ExpectName("upper_arm.L", BodySide::kLeft, "upperarm");
-  ExpectName("DEF-forearm.R", BodySide::kRight, "forearm");
-  ExpectName("thigh_r", BodySide::kRight, "thigh");
-  ExpectName("rShldr", BodySide::kRight, "shldr");
-  ExpectName("LHipJoint", BodySide::kLeft, "hipjoint");
-  ExpectName("RIGHT_KNEE", BodySide::kRight, "knee");
-  ExpectName("lfemur", BodySide::kLeft, "femur");
-  ExpectName("leftarm", BodySide::kLeft, "arm");
-  ExpectName("J_Bip_L_UpperArm", BodySide::kLeft, "upperarm");
-  ExpectName("J_Bip_C_Head", BodySide::kMiddle, "head");
-  ExpectName("left_hand", BodySide::kLeft, "hand");
-}
-
-TEST(JointNames, DoNotReadASideWhereThereIsNone) {
-  ExpectName("root", BodySide::kMiddle, "root");
-  ExpectName("LowerBack", BodySide::kMiddle, "lowerback");
-  ExpectName("lowerback", BodySide::kMiddle, "lowerback");
-  ExpectName("leg", BodySide::kMiddle, "leg");
-  ExpectName("L", BodySide::kMiddle, "l");
-  ExpectName("", BodySide::kMiddle, "");
-}
-
 // What one program calls the joints of a person in a T pose. '@' is the side.
 struct Convention {
   const char* name;
@@ -424,7 +391,7 @@ TEST_P(Conventions, FindEveryJointInAHierarchy) {
 }
 
 // Some rigs turn every joint's axes along its bone: at rest all bones lie on a line.
-TEST_P(Conventions, FindEveryJointWhicheverWayBonesPointAtRest) {
+TEST_P(Conventions, FindEveryJointInAnyRestPose) {
   JointTree tree = MakeTree(GetParam());
   for (std::size_t j = 0; j < tree.names.size(); ++j) {
     if (ParseJointName(tree.names[j]).side != BodySide::kMiddle) continue;
@@ -447,7 +414,7 @@ TEST_P(Conventions, FindEveryJointWithoutAHierarchy) {
 
 INSTANTIATE_TEST_SUITE_P(All, Conventions, ::testing::ValuesIn(kConventions));
 
-TEST(JointMapping, TakesTheSkeletonsOwnNamesAsTheyAre) {
+TEST(JointMapping, UsesTheSkeletonsOwnNames) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   std::vector<std::string> names = {"head.end"};
   names.insert(names.end(), skeleton.joint_names.rbegin(), skeleton.joint_names.rend());
@@ -460,7 +427,7 @@ TEST(JointMapping, TakesTheSkeletonsOwnNamesAsTheyAre) {
   for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(mapped[i].x, 15.0f - static_cast<float>(i));
 }
 
-TEST(JointMapping, SaysWhichJointsAreMissingAndWhatThereIs) {
+TEST(JointMapping, ReportsMissingJointsAndTheFilesNames) {
   NamedPose pose = MakePose(kConventions[0]);
   for (std::string& name : pose.names) {
     if (name == "mixamorig:LeftHand") name = "paw";
@@ -469,11 +436,11 @@ TEST(JointMapping, SaysWhichJointsAreMissingAndWhatThereIs) {
       MapJoints("a.bvh", pose.names, OneFrame(pose), motion::SbuSkeleton());
   EXPECT_EQ(map.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(map.status().message()),
-              AllOf(HasSubstr("a.bvh: joints: nothing stands for left_hand;"), HasSubstr("paw"),
-                    HasSubstr("left_hand=NAME")));
+              AllOf(HasSubstr("a.bvh: joints: expected joints for left_hand, got none;"),
+                    HasSubstr("paw"), HasSubstr("left_hand=NAME")));
 }
 
-TEST(JointMapping, FindsATorsoByNameWhereThereAreNoHipsToPlaceItBy) {
+TEST(JointMapping, FindsATorsoByNameWithoutHips) {
   NamedPose pose;
   pose.names = {"Torso", "Head", "LeftHand", "RightHand"};
   pose.positions = {{0, 1, 0}, {0, 1.5f, 0}, {0.6f, 1, 0}, {-0.6f, 1, 0}};
@@ -514,19 +481,19 @@ TEST(JointMapping, LetsTheUserNameJointsOfAFileWithTheSkeletonsOwnNames) {
   }
 }
 
-TEST(JointMapping, RefusesOverridesThatNameNothing) {
+TEST(JointMapping, RejectsOverridesOfUnknownJoints) {
   const NamedPose pose = MakePose(kConventions[0]);
   const absl::StatusOr<JointMap> tail = MapJoints(
       "a.bvh", pose.names, OneFrame(pose), motion::SbuSkeleton(), {{"tail", "mixamorig:Hips"}});
   EXPECT_THAT(std::string(tail.status().message()),
-              HasSubstr("came target \"tail\", wanted one of"));
+              HasSubstr("joint map: target: expected one of"));
   const absl::StatusOr<JointMap> nothing =
       MapJoints("a.bvh", pose.names, OneFrame(pose), motion::SbuSkeleton(), {{"torso", "Nothing"}});
   EXPECT_THAT(std::string(nothing.status().message()),
               HasSubstr("torso=Nothing: a.bvh has no such joint"));
 }
 
-TEST(JointMapping, PlacesTheTorsoWhereNoSpineJointIsNear) {
+TEST(JointMapping, InterpolatesTheTorsoIfNoSpineJointIsNear) {
   NamedPose pose = MakePose(kConventions[0]);
   for (std::string& name : pose.names) {
     if (name.find("Spine") != std::string::npos) name = "part of " + name;
@@ -549,7 +516,7 @@ TEST(JointMapping, MeasuresTheTrunkOverTheWholeMotion) {
   EXPECT_THAT(map->notes, Contains(HasSubstr("torso: mixamorig:Spine1 (")));
 }
 
-TEST(JointMapping, TakesTheEndOfTheNeckForAHeadThatIsMissing) {
+TEST(JointMapping, UsesTheEndOfTheNeckAsAMissingHead) {
   Convention c = kConventions[0];
   c.middle = {{"Hips", 0.97f}, {"Spine", 1.18f}, {"Neck", 1.43f}, {"Neck.end", 1.63f}};
   const JointTree tree = MakeTree(c);
@@ -559,14 +526,15 @@ TEST(JointMapping, TakesTheEndOfTheNeckForAHeadThatIsMissing) {
   EXPECT_THAT(map->notes, Contains(HasSubstr("head: Neck.end (the end of the neck")));
 }
 
-TEST(JointMapping, TakesNoOtherEndForAHead) {
+TEST(JointMapping, UsesNoOtherEndAsAHead) {
   Convention c = kConventions[0];
   c.middle = {{"Hips", 0.97f}, {"Spine", 1.18f}, {"Neck", 1.43f}, {"left ear end", 1.63f}};
   const absl::StatusOr<JointMap> map = MapJoints("a.bvh", MakeTree(c), motion::SbuSkeleton());
-  EXPECT_THAT(std::string(map.status().message()), HasSubstr("nothing stands for head;"));
+  EXPECT_THAT(std::string(map.status().message()),
+              HasSubstr("expected joints for head, got none;"));
 }
 
-TEST(JointMapping, GivesTheSkeletonsMeasuresFromTheHierarchyAlone) {
+TEST(JointMapping, StraightensTheCharacterFromTheHierarchyOnly) {
   const absl::StatusOr<JointMap> map =
       MapJoints("a.bvh", MakeTree(kConventions[0]), motion::SbuSkeleton());
   ASSERT_TRUE(map.ok()) << map.status();

@@ -11,7 +11,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Pair;
 
-TEST(JointTable, ReadsAJointALine) {
+TEST(JointTable, ReadsOneJointPerLine) {
   const absl::StatusOr<JointOverrides> table = ParseJointTable(
       "\xEF\xBB\xBF# ours\r\n\r\nleft_hand=LeftWrist\r\n  torso = Chest 3 \r\nhead=a=b", "a.txt");
   ASSERT_TRUE(table.ok()) << table.status();
@@ -29,10 +29,12 @@ TEST(JointTable, NamesTheLineOfAnError) {
   for (const char* bad : {"head", "=Head", "head=", "head = "}) {
     const auto status = ParseJointTable(std::string("# one\n") + bad + "\n", "a.txt").status();
     EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument) << bad;
-    EXPECT_THAT(std::string(status.message()), HasSubstr("a.txt:2: came \"")) << bad;
+    EXPECT_THAT(std::string(status.message()),
+                HasSubstr("a.txt:2: expected MODEL_JOINT=FILE_JOINT"))
+        << bad;
   }
   EXPECT_THAT(std::string(ParseJointTable("head=a\nhead = b\n", "a.txt").status().message()),
-              HasSubstr("a.txt:2: \"head\" comes twice"));
+              HasSubstr("a.txt:2: expected each joint once, got \"head\" twice"));
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ TEST(JointTree, FindsCommonAncestors) {
   EXPECT_EQ(CommonAncestor(two, kLeftFoot, kHead), -1);
 }
 
-TEST(JointTree, KnowsWhatHangsFromWhat) {
+TEST(JointTree, FindsAncestorsAndDescendants) {
   const JointTree tree = Figure();
   EXPECT_TRUE(IsAtOrBelow(tree, kHead, kChest));
   EXPECT_TRUE(IsAtOrBelow(tree, kHead, kRoot));
@@ -47,7 +47,7 @@ TEST(JointTree, KnowsWhatHangsFromWhat) {
   EXPECT_FALSE(IsAtOrBelow(tree, kChest, kHead));
 }
 
-TEST(PullStraight, StandsTheFigureUpWhicheverWayItsBonesPoint) {
+TEST(PullStraight, StraightensACharacterInAnyRestPose) {
   Landmarks landmarks;
   landmarks.head = kHead;
   landmarks.hips = motion::JointPair{kLeftHip, kRightHip};

@@ -27,7 +27,7 @@ TEST(ReachFor, PointsAtATargetThatIsTooFarOrTooNear) {
   ExpectNear(near.upper * 0.4 + near.lower * 0.3, {0, -0.1, 0}, 1e-3);
 }
 
-TEST(PoleTracker, ABentLimbSaysItsSideAndAStraightOneKeepsIt) {
+TEST(PoleTracker, ABentLimbDefinesItsSideAndAStraightOneKeepsIt) {
   PoleTracker pole;
   const Vec3d hip = {0, 1, 0};
   ExpectNear(pole.Follow(hip, {0, 0.6, 0.25}, {0, 0.2, 0}, {1, 0, 0}), {0, 0, 1});
@@ -35,7 +35,7 @@ TEST(PoleTracker, ABentLimbSaysItsSideAndAStraightOneKeepsIt) {
   ExpectNear(pole.Follow(hip, {0, 0.6, -0.01}, {0, 0.2, 0}, {1, 0, 0}), {0, 0, 1});
 }
 
-TEST(PoleTracker, BeginsWithWhatItIsTold) {
+TEST(PoleTracker, BeginsWithTheSpecifiedDirection) {
   ExpectNear(PoleTracker().Follow({0, 1, 0}, {0, 0.5, 0}, {0, 0, 0}, {0, 0.5, -1}), {0, 0, -1});
 }
 

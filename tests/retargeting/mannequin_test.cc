@@ -32,7 +32,7 @@ TEST_F(MannequinTest, TrianglesFaceOutwards) {
   }
 }
 
-TEST_F(MannequinTest, EveryJointOfTheSkeletonHasFlesh) {
+TEST_F(MannequinTest, EveryJointOfTheSkeletonHasVertices) {
   const std::set<int> fleshed(mannequin_.body.joints.begin(), mannequin_.body.joints.end());
   for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
     const bool helper = rig_.joints[j].name.find("_to_") != std::string::npos;
@@ -53,7 +53,7 @@ TEST_F(MannequinTest, FeetPointAheadAndHandsReachBeyondTheirJoints) {
 }
 
 // Ankles are 2 to 12 cm above the floor, as captures have them.
-TEST_F(MannequinTest, SolesAreAsFarBelowTheAnkleAsTheFloorIs) {
+TEST_F(MannequinTest, SolesAreOnTheFloor) {
   for (double ankle : {0.02, 0.06, 0.12}) {
     const Mannequin mannequin = MakeMannequin(skeleton_, rig_, rest_, ankle);
     double lowest = 1;

@@ -6,11 +6,13 @@
 #include "gtest/gtest.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/rig.h"
+#include "tests/support/expect_near.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::retargeting {
 namespace {
 
+using test::ExpectNear;
 using test::MakePerson;
 using test::PersonOptions;
 
@@ -18,12 +20,6 @@ constexpr double kRightAngle = 1.5707963267948966;
 constexpr Vec3d kUp = {0, 1, 0};
 constexpr float kUpperArm = 0.3f, kForearm = 0.25f;
 const motion::Vec3 kShoulder = {1, 2, 3};
-
-void ExpectNear(Vec3d a, Vec3d b, double tolerance = 1e-6) {
-  EXPECT_NEAR(a.x, b.x, tolerance);
-  EXPECT_NEAR(a.y, b.y, tolerance);
-  EXPECT_NEAR(a.z, b.z, tolerance);
-}
 
 // Where the joints of the rig are on the skeleton when it is turned so.
 std::vector<motion::Vec3> Stand(const Rig& rig, const RigPose& pose, int skeleton_joints) {

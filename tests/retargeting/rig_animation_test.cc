@@ -55,7 +55,7 @@ TEST(RigAnimation, NeighbouringFramesAreOnTheSameSide) {
 }
 
 // Somebody who stands with bent knees: the shins lean, the soles do not.
-TEST(RigAnimation, AFootThatStandsIsLevelAndOneInTheAirHangsOnItsShin) {
+TEST(RigAnimation, AStandingFootIsLevelAndALiftedOneFollowsItsShin) {
   motion::Clip clip = MakePerson();
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const int knee = skeleton.Find("left_knee"), foot = skeleton.Find("left_foot");

@@ -5,6 +5,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/motion/skeleton.h"
+#include "tests/support/expect_near.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::retargeting {
@@ -25,11 +26,7 @@ const RigJoint& Find(const Rig& rig, const std::string& name) {
   return none;
 }
 
-void ExpectNear(Vec3d a, Vec3d b, double tolerance = 1e-5) {
-  EXPECT_NEAR(a.x, b.x, tolerance);
-  EXPECT_NEAR(a.y, b.y, tolerance);
-  EXPECT_NEAR(a.z, b.z, tolerance);
-}
+void ExpectNear(Vec3d a, Vec3d b) { test::ExpectNear(a, b, 1e-5); }
 
 double Length(const motion::Clip& clip, int a, int b) {
   return static_cast<double>(Distance(clip.at(0, a), clip.at(0, b)));
@@ -129,7 +126,7 @@ TEST(Rig, BranchesKeepTheirMeanShapeAlongTheTrunk) {
     const RigJoint &a = Find(rig, name), &b = Find(other, name);
     ASSERT_EQ(a.rest_shape.size(), b.rest_shape.size());
     for (std::size_t k = 0; k < a.rest_shape.size(); ++k) {
-      ExpectNear(a.rest_shape[k], b.rest_shape[k], 1e-4);
+      test::ExpectNear(a.rest_shape[k], b.rest_shape[k], 1e-4);
     }
   }
 }
@@ -142,7 +139,7 @@ motion::Skeleton Hipless() {
   return skeleton;
 }
 
-TEST(Rig, WithoutHipsTheTrunkStandsAsItIsAndLimbsGoTheirWay) {
+TEST(Rig, WithoutHipsTheTrunkAndLimbsKeepTheirDirections) {
   motion::Clip clip;
   clip.joint_names = Hipless().joint_names;
   clip.frame_rate_hz = 30;

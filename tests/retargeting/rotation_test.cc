@@ -5,17 +5,14 @@
 
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
+#include "tests/support/expect_near.h"
 
 namespace duet::retargeting {
 namespace {
 
 using base::kPi;
 
-void ExpectNear(Vec3d a, Vec3d b, double tolerance = 1e-9) {
-  EXPECT_NEAR(a.x, b.x, tolerance);
-  EXPECT_NEAR(a.y, b.y, tolerance);
-  EXPECT_NEAR(a.z, b.z, tolerance);
-}
+void ExpectNear(Vec3d a, Vec3d b) { test::ExpectNear(a, b, 1e-9); }
 
 TEST(Rotation, TurnsCounterClockwise) {
   ExpectNear(Rotate(AxisAngle({0, 0, 1}, kPi / 2), {1, 0, 0}), {0, 1, 0});
@@ -32,7 +29,7 @@ TEST(Rotation, TakesTheShortestArcEvenBetweenOppositeDirections) {
     for (const Vec3d& to : directions) {
       const Vec3d axis = Unit(Cross(from, {0.1, 0.2, 0.3}), {0, 0, 1});
       const Quaternion q = ShortestArc(from, to, axis);
-      ExpectNear(Rotate(q, from), to, 1e-8);
+      test::ExpectNear(Rotate(q, from), to, 1e-8);
       EXPECT_NEAR(Angle(q, {}), std::acos(std::min(1.0, std::max(-1.0, Dot(from, to)))), 1e-6);
     }
   }
@@ -47,7 +44,7 @@ TEST(Rotation, FitsARotationExactly) {
   EXPECT_LT(Angle(FitRotation(points, {}), truth), 1e-7);
 }
 
-TEST(Rotation, LeavesWhatThePointsLeaveOpenToThePrior) {
+TEST(Rotation, UsesThePriorWherePointsAreAmbiguous) {
   const Quaternion prior = AxisAngle({0, 1, 0}, 0.7);
   EXPECT_LT(Angle(FitRotation({}, {{prior, 1}}), prior), 1e-7);
   // One direction fixes two of three angles; the third is the prior's.
@@ -55,7 +52,7 @@ TEST(Rotation, LeavesWhatThePointsLeaveOpenToThePrior) {
   EXPECT_LT(Angle(FitRotation({}, {}), {}), 1e-7);
 }
 
-TEST(Rotation, GoesTheShortWayBetweenTwoAtAConstantSpeed) {
+TEST(Rotation, SlerpsAlongTheShorterArcAtConstantSpeed) {
   const Quaternion a = AxisAngle({0, 1, 0}, 0.3);
   const Quaternion b = a * AxisAngle(Unit({1, 2, 3}, {}), 2);
   const Quaternion minus_b = {-b.w, -b.x, -b.y, -b.z};

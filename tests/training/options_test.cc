@@ -74,7 +74,7 @@ TEST(TrainingOptionsTest, InvalidFlowSettingsAreRejectedByName) {
     return std::string(ParseTrainingOptions(FlowJson(), {{path, value}}).status().message());
   };
   EXPECT_THAT(refusal("generator.kind", "wave"),
-              HasSubstr("generator.kind: \"wave\", wanted \"paper\" or \"flow\""));
+              HasSubstr("generator.kind: expected \"paper\" or \"flow\", got \"wave\""));
   EXPECT_THAT(refusal("generator.kind", "paper"), HasSubstr("generator.variant"));
   EXPECT_THAT(refusal("generator.heads", "7"), HasSubstr("generator.heads: 7, wanted a divisor"));
   EXPECT_THAT(refusal("generator.noise.white", "-1"), HasSubstr("generator.noise.white"));

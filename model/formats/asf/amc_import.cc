@@ -86,8 +86,9 @@ absl::StatusOr<AsfSkeleton> ReadSkeletonBeside(const std::filesystem::path& moti
     if (!text.ok()) return text.status();
     return ParseAsf(*text, path.string());
   }
-  return absl::NotFoundError(absl::StrCat(motion_file.string(), ": skeleton: wanted ",
-                                          absl::StrJoin(names, " or "), " in the same folder"));
+  return absl::NotFoundError(absl::StrCat(motion_file.string(), ": skeleton: expected ",
+                                          absl::StrJoin(names, " or "),
+                                          " in the same folder, got neither"));
 }
 
 std::vector<std::string> SkeletonNames(absl::string_view motion_name) {

@@ -17,7 +17,7 @@
 namespace duet::formats::asf {
 
 struct AmcImportOptions : retargeting::CharacterOptions {
-  // The files do not state it. If absent, 120 Hz, the rate of CMU's captures, with a note.
+  // The files do not state a rate. If absent, 120 Hz, the rate of CMU's captures, with a note.
   std::optional<double> frame_rate_hz;
 };
 
@@ -29,14 +29,14 @@ absl::StatusOr<motion::Clip> FromAmc(const AsfSkeleton& skeleton, const AmcMotio
                                      absl::string_view source,
                                      const AmcImportOptions& options = {});
 
-// The rig of an .asf file, read by ToClip with this motion, to be written in another format.
+// Returns the rig of an .asf file, read by ToClip with this motion, to write in another format.
 // Errors: those of FromAmc.
 absl::StatusOr<retargeting::CharacterRig> AmcRig(const AsfSkeleton& skeleton,
                                                  const AmcMotion& motion, absl::string_view source,
                                                  const AmcImportOptions& options = {});
 
 // Reads the skeleton in a motion's folder that has one of SkeletonNames.
-// Errors: NOT_FOUND naming them; those of reading the file.
+// Errors: NOT_FOUND with these names; those of base::ReadFile and ParseAsf.
 absl::StatusOr<AsfSkeleton> ReadSkeletonBeside(const std::filesystem::path& motion_file);
 
 // The possible file names of a motion's skeleton, in order of preference: 01_02.asf, then 01.asf

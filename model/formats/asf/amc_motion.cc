@@ -42,7 +42,8 @@ class AmcParser {
       absl::Status status = ParseLine(line);
       if (!status.ok()) return status;
     }
-    if (motion_.frame_count == 0) return Error("no frames (is this an AMC file?)");
+    if (motion_.frame_count == 0)
+      return Error("expected at least 1 frame, got none; is this an AMC file?");
     absl::Status status = CheckFrame();
     if (!status.ok()) return status;
     return std::move(motion_);
@@ -75,7 +76,8 @@ class AmcParser {
       if (!status.ok()) return status;
     }
     if (motion_.frame_count == motion::kMaxMotionFrames) {
-      return Error(absl::StrCat("more than ", motion::kMaxMotionFrames, " frames"));
+      return Error(
+          absl::StrCat("expected at most ", motion::kMaxMotionFrames, " frames, got more"));
     }
     ++motion_.frame_count;
     motion_.values.resize(motion_.values.size() + width_);
@@ -83,12 +85,13 @@ class AmcParser {
     return absl::OkStatus();
   }
 
-  // Every bone that moves has been given.
+  // Checks that the open frame has values for every bone that moves.
   absl::Status CheckFrame() const {
     for (std::size_t b = 0; b < given_.size(); ++b) {
       if (given_[b] || skeleton_.bones[b].freedoms.empty()) continue;
-      return Error(absl::StrCat("before this line: frame ", motion_.frame_count, ": no values for ",
-                                base::Quoted(skeleton_.bones[b].name)));
+      return Error(absl::StrCat("frame ", motion_.frame_count,
+                                ", before this line: expected values for ",
+                                base::Quoted(skeleton_.bones[b].name), ", got none"));
     }
     return absl::OkStatus();
   }
@@ -96,25 +99,27 @@ class AmcParser {
   absl::Status ParseBone(const Words& words) {
     const std::string name(words[0]);
     if (motion_.frame_count == 0) {
-      return Error(absl::StrCat("came ", base::Quoted(name), ", wanted the number of a frame"));
+      return Error(absl::StrCat("expected a frame number, got ", base::Quoted(name)));
     }
     const auto found = places_.find(name);
     if (found == places_.end()) {
-      return Error(absl::StrCat("came ", base::Quoted(name), ", which is no bone of the skeleton"));
+      return Error(absl::StrCat("expected a bone of the skeleton, got ", base::Quoted(name)));
     }
     const std::size_t bone = found->second.bone;
     const std::vector<AsfFreedom>& freedoms = skeleton_.bones[bone].freedoms;
-    if (given_[bone]) return Error(absl::StrCat(base::Quoted(name), " comes twice in a frame"));
+    if (given_[bone]) {
+      return Error(absl::StrCat(base::Quoted(name), ": expected once per frame, got twice"));
+    }
     given_[bone] = true;
     if (words.size() - 1 != freedoms.size()) {
-      return Error(absl::StrCat(base::Quoted(name), ": came ", words.size() - 1, " values, wanted ",
-                                freedoms.size()));
+      return Error(absl::StrCat(base::Quoted(name), ": expected ", freedoms.size(), " values, got ",
+                                words.size() - 1));
     }
     float* values = motion_.values.data() + motion_.values.size() - width_ + found->second.start;
     for (std::size_t i = 0; i < freedoms.size(); ++i) {
       if (!motion::ParseCoordinate(words[i + 1], &values[i])) {
-        return Error(absl::StrCat(base::Quoted(name), ": came ", base::Quoted(words[i + 1]),
-                                  ", wanted a finite number"));
+        return Error(absl::StrCat(base::Quoted(name), ": expected a finite number, got ",
+                                  base::Quoted(words[i + 1])));
       }
       if (freedoms[i] >= AsfFreedom::kRx && !radians_)
         values[i] *= static_cast<float>(base::kRadiansPerDegree);
@@ -128,7 +133,7 @@ class AmcParser {
   bool radians_;
   std::map<std::string, Place> places_;
   std::size_t width_ = 0;    // values in a frame
-  std::vector<bool> given_;  // [bones], in the frame that is open
+  std::vector<bool> given_;  // [bones], in the open frame
   AmcMotion motion_;
 };
 

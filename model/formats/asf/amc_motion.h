@@ -19,16 +19,17 @@ struct AmcMotion {
 
 // Parses the motion of `skeleton`. Every frame must have every bone that can move exactly once.
 //
-// Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ..."
+// Errors: INVALID_ARGUMENT "source:line: ...: expected ..., got ...".
 absl::StatusOr<AmcMotion> ParseAmc(absl::string_view text, absl::string_view source,
                                    const AsfSkeleton& skeleton);
 
-// Computes by forward kinematics where each bone starts, and where each bone without children ends.
+// Computes the start of each bone, and the end of each bone without children, by forward
+// kinematics.
 class AsfKinematics {
  public:
   // Both arguments must outlive the kinematics.
   AsfKinematics(const AsfSkeleton& skeleton, const AmcMotion& motion);
-  // [bones, then the ends of `ends`]
+  // Returns the starts of all bones, then the ends of the bones in `ends`.
   std::vector<retargeting::Vec3d> Positions(int frame) const;
   // Bones without children, in order.
   const std::vector<int>& ends() const { return ends_; }

@@ -51,9 +51,9 @@ class AsfParser {
       absl::Status status = ParseLine(words);
       if (!status.ok()) return status;
     }
-    if (in_block_) return Error("came the end of the file, wanted end");
+    if (in_block_) return Error("expected end, got the end of the file");
     if (skeleton_.bones.size() < 2)
-      return Error("no bones, wanted :bonedata (is this an ASF file?)");
+      return Error(":bonedata: expected at least 1 bone, got none; is this an ASF file?");
     absl::Status status = SortBones();
     if (!status.ok()) return status;
     return std::move(skeleton_);
@@ -64,9 +64,9 @@ class AsfParser {
     return base::ErrorAt(source_, std::max(lines_.number(), 1), message);
   }
   absl::Status Unexpected(absl::string_view what, const Words& words,
-                          absl::string_view wanted) const {
-    return Error(absl::StrCat(what, ": came ", base::Quoted(absl::StrJoin(words, " ")), ", wanted ",
-                              wanted));
+                          absl::string_view expected) const {
+    return Error(absl::StrCat(what, ": expected ", expected, ", got ",
+                              base::Quoted(absl::StrJoin(words, " "))));
   }
 
   absl::Status ParseLine(const Words& words) {
@@ -91,7 +91,7 @@ class AsfParser {
   absl::Status ParseLengthUnit(const Words& words) {
     float units = 0;
     if (words.size() != 2 || !motion::ParseCoordinate(words[1], &units) || !(units > 0)) {
-      return Unexpected("length", words, "a number over 0");
+      return Unexpected("length", words, "a number above 0");
     }
     skeleton_.units_per_inch = static_cast<double>(units);
     return absl::OkStatus();
@@ -105,7 +105,7 @@ class AsfParser {
     return Unexpected("angle", words, "angle deg or angle rad");
   }
 
-  // The words after the first as three numbers; `more` words may follow.
+  // Parses the words after the first as three numbers. Requires `more` words after them.
   absl::Status ParseVector(const Words& words, std::size_t more, Vec3d* vector) const {
     float values[3] = {};
     bool good = words.size() == 4 + more;
@@ -117,7 +117,7 @@ class AsfParser {
     return absl::OkStatus();
   }
 
-  // "XYZ"; the letters' turns apply in this order.
+  // Parses "XYZ". The rotations apply in the order of the letters.
   absl::Status ParseOrder(const Words& words, absl::string_view order,
                           std::vector<AsfFreedom>* axes) const {
     axes->clear();
@@ -210,43 +210,45 @@ class AsfParser {
 
   absl::Status EndBone() {
     in_block_ = false;
-    if (bone_.name.empty()) return Error("a bone without a name");
+    if (bone_.name.empty()) return Error("name: expected a word, got none");
     if (skeleton_.Find(bone_.name) >= 0) {
-      return Error(absl::StrCat("bone ", base::Quoted(bone_.name), ": given twice"));
+      return Error(
+          absl::StrCat("name: expected a new bone, got ", base::Quoted(bone_.name), " again"));
     }
     if (skeleton_.bones.size() >= motion::kMaxFileJoints) {
-      return Error(absl::StrCat("more than ", motion::kMaxFileJoints, " bones"));
+      return Error(absl::StrCat("expected at most ", motion::kMaxFileJoints, " bones, got more"));
     }
     bone_.extent = retargeting::Unit(direction_, {}) * length_;
     skeleton_.bones.push_back(std::move(bone_));
     return absl::OkStatus();
   }
 
-  // A parent and its children, in a line.
+  // Parses a line with a parent and its children.
   absl::Status ParseHierarchy(const Words& words) {
     if (words.size() == 1 && (words[0] == "begin" || words[0] == "end")) {
       in_block_ = words[0] == "begin";
       return absl::OkStatus();
     }
-    if (words.size() < 2) return Unexpected("hierarchy", words, "a bone and those below it");
+    if (words.size() < 2) return Unexpected("hierarchy", words, "a bone and its children");
     std::vector<int> bones;
     for (absl::string_view word : words) {
       bones.push_back(skeleton_.Find(word));
       if (bones.back() < 0) {
-        return Error(absl::StrCat("hierarchy: came ", base::Quoted(word), ", wanted a bone"));
+        return Error(absl::StrCat("hierarchy: expected a bone, got ", base::Quoted(word)));
       }
     }
     for (std::size_t i = 1; i < bones.size(); ++i) {
       AsfBone& child = skeleton_.bones[static_cast<size_t>(bones[i])];
       if (bones[i] == 0 || child.parent >= 0) {
-        return Error(absl::StrCat("hierarchy: ", base::Quoted(words[i]), " has a parent already"));
+        return Error(absl::StrCat("hierarchy: expected one parent for ", base::Quoted(words[i]),
+                                  ", got two"));
       }
       child.parent = bones[0];
     }
     return absl::OkStatus();
   }
 
-  // Parents first. What the root does not reach is refused.
+  // Sorts parents first. Fails if a bone is not below the root.
   absl::Status SortBones() {
     std::vector<int> order = {0};
     std::map<int, std::vector<int>> children;
@@ -259,8 +261,8 @@ class AsfParser {
     }
     if (order.size() != skeleton_.bones.size()) {
       return absl::InvalidArgumentError(
-          absl::StrCat(source_, ": hierarchy: came ", order.size() - 1,
-                       " bones below the root, wanted all ", skeleton_.bones.size() - 1));
+          absl::StrCat(source_, ": hierarchy: expected all ", skeleton_.bones.size() - 1,
+                       " bones below the root, got ", order.size() - 1));
     }
     std::vector<int> places(order.size());
     std::vector<AsfBone> sorted;
@@ -279,10 +281,10 @@ class AsfParser {
   AsfSkeleton skeleton_;
   std::string section_;
   bool in_block_ = false;
-  // Of the root.
+  // The state of the root.
   std::vector<AsfFreedom> root_order_ = {AsfFreedom::kRx, AsfFreedom::kRy, AsfFreedom::kRz};
   Vec3d orientation_;
-  // Of the bone that is open.
+  // The state of the open bone.
   AsfBone bone_;
   Vec3d direction_;
   double length_ = 0;

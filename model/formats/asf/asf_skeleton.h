@@ -20,7 +20,7 @@ struct AsfBone {
   int parent = -1;                   // an earlier bone; -1 for the root, which is the first
   retargeting::Vec3d extent;         // from start to end at rest, in the world's axes
   retargeting::Quaternion axes;      // of its rotations, in world axes
-  std::vector<AsfFreedom> freedoms;  // in the order of the motion's values; bones turn only
+  std::vector<AsfFreedom> freedoms;  // in the order of the motion's values; only the root moves
 };
 
 // The skeleton of an .asf file. Lengths are in the file's unit; `radians` is the unit of motions.
@@ -32,14 +32,15 @@ struct AsfSkeleton {
   bool radians = false;
   std::optional<double> units_per_inch;
 
-  int Find(absl::string_view name) const;  // -1 if there is none
+  // Returns -1 if no bone has this name.
+  int Find(absl::string_view name) const;
 };
 
-// Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ..."; bones that are no tree below
-//         the root.
+// Errors: INVALID_ARGUMENT "source:line: ...: expected ..., got ..."; also if the bones are not a
+//         tree below the root.
 absl::StatusOr<AsfSkeleton> ParseAsf(absl::string_view text, absl::string_view source);
 
-// The product of rotations about these axes, of which the first applies first.
+// Returns the product of rotations about these axes. The first axis applies first.
 //
 // angles: [axes], radians
 retargeting::Quaternion TurnInOrder(const std::vector<AsfFreedom>& axes,

@@ -17,7 +17,7 @@ using retargeting::Vec3d;
 
 // How FormatBvh and ParseBvh name an End Site after its joint.
 constexpr char kEndSuffix[] = ".end";
-// Length of a last bone whose file does not say it, as a share of the bone before it.
+// Length of a last bone if its file does not state it, as a fraction of the bone before it.
 constexpr double kLastBone = 0.25;
 
 std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
@@ -31,7 +31,7 @@ class HierarchyWriter {
     }
   }
 
-  // `places` receives where each joint of the rig is in the document.
+  // `places` receives the index of each rig joint in the document.
   BvhDocument Write(std::vector<int>* places) {
     places->assign(rig_.names.size(), -1);
     for (int joint : retargeting::DepthFirst(rig_.parents)) {
@@ -55,7 +55,7 @@ class HierarchyWriter {
     if (leaf && !document_.joints.back().end_site) AddEndSite(OffsetOf(j) * kLastBone);
   }
 
-  // An end that the rig has as a joint of its own, and that is its parent's only child.
+  // Whether the joint is an end that the rig stores as a joint, and its parent's only child.
   bool IsEndOf(int j) const {
     const int parent = rig_.parents[Index(j)];
     return parent >= 0 && children_[Index(parent)] == 1 &&
@@ -88,7 +88,7 @@ class HierarchyWriter {
 
   const CharacterRig& rig_;
   double units_per_metre_;
-  std::vector<int> children_;  // [rig joints], how many
+  std::vector<int> children_;  // [rig joints], their number
   BvhDocument document_;
 };
 

@@ -18,7 +18,7 @@ constexpr int kMaxChannels = 6;
 constexpr int kOffsetDecimals = 6;
 constexpr int kValueDecimals = 5;
 constexpr int kFrameTimeDecimals = 9;
-// Of the longest OFFSET.
+// As a fraction of the longest OFFSET.
 constexpr double kRoundingOffset = 1e-4;
 
 struct ChannelName {
@@ -39,7 +39,7 @@ const ChannelName* FindChannel(absl::string_view name) {
 
 bool IsPosition(BvhChannel channel) { return channel <= BvhChannel::kZPosition; }
 
-// Words and lines of a text, and where they stand.
+// Reads words and lines of a text and tracks the line number.
 class Cursor {
  public:
   explicit Cursor(absl::string_view text) : rest_(text) {}
@@ -57,7 +57,7 @@ class Cursor {
     return Take(size);
   }
 
-  // The rest of the line up to a brace, without blanks at its ends: names may hold spaces.
+  // The rest of the line up to a brace, stripped of white space: names may contain spaces.
   absl::string_view Name() {
     const std::size_t end = rest_.find_first_of("{}\n");
     return absl::StripAsciiWhitespace(Take(end == absl::string_view::npos ? rest_.size() : end));
@@ -95,14 +95,14 @@ class BvhParser {
     return base::ErrorAt(source_, cursor_.line(), message);
   }
 
-  absl::Status Unexpected(absl::string_view came, absl::string_view wanted) const {
-    return Error(absl::StrCat("came ", came.empty() ? "the end of the file" : base::Quoted(came),
-                              ", wanted ", wanted));
+  absl::Status Unexpected(absl::string_view got, absl::string_view expected) const {
+    return Error(absl::StrCat("expected ", expected, ", got ",
+                              got.empty() ? "the end of the file" : base::Quoted(got)));
   }
 
   absl::Status ParseHierarchy() {
     const absl::string_view first = cursor_.Word();
-    if (first != "HIERARCHY") return Unexpected(first, "HIERARCHY (is this a BVH file?)");
+    if (first != "HIERARCHY") return Unexpected(first, "HIERARCHY at the start of a BVH file");
     while (true) {
       const absl::string_view word = cursor_.Word();
       if (word == "MOTION" && open_.empty() && !document_.joints.empty()) return absl::OkStatus();
@@ -130,12 +130,12 @@ class BvhParser {
     joint.parent = open_.empty() ? -1 : open_.back();
     joint.end_site = end_site;
     const absl::string_view name = cursor_.Name();
-    if (name.empty()) return Error(absl::StrCat(keyword, ": no name"));
+    if (name.empty()) return Error(absl::StrCat(keyword, ": expected a name, got none"));
     joint.name =
         end_site ? absl::StrCat(document_.joints[static_cast<size_t>(joint.parent)].name, ".end")
                  : std::string(name);
     if (document_.joints.size() >= motion::kMaxFileJoints) {
-      return Error(absl::StrCat("more than ", motion::kMaxFileJoints, " joints"));
+      return Error(absl::StrCat("expected at most ", motion::kMaxFileJoints, " joints, got more"));
     }
     const absl::string_view brace = cursor_.Word();
     if (brace != "{") return Unexpected(brace, absl::StrCat("{ after ", keyword, " ", name));
@@ -148,7 +148,8 @@ class BvhParser {
   absl::Status CloseJoint() {
     const BvhJoint& joint = document_.joints[static_cast<size_t>(open_.back())];
     if (!has_offset_[static_cast<size_t>(open_.back())]) {
-      return Error(absl::StrCat("joint ", base::Quoted(joint.name), ": no OFFSET"));
+      return Error(
+          absl::StrCat("joint ", base::Quoted(joint.name), ": expected an OFFSET, got none"));
     }
     open_.pop_back();
     return absl::OkStatus();
@@ -173,14 +174,14 @@ class BvhParser {
     if (!base::ParseInteger(word, &count) || count < 0 || count > kMaxChannels) {
       return Unexpected(word, "a number of channels, 0 to 6");
     }
-    if (!joint.channels.empty()) return Error("CHANNELS: given twice for one joint");
+    if (!joint.channels.empty()) return Error("CHANNELS: expected once per joint, got twice");
     for (int i = 0; i < count; ++i) {
       const absl::string_view name = cursor_.Word();
       const ChannelName* entry = FindChannel(name);
       if (entry == nullptr) return Unexpected(name, "a channel such as Xposition or Zrotation");
       for (BvhChannel earlier : joint.channels) {
         if (earlier == entry->channel)
-          return Error(absl::StrCat("channel ", name, ": given twice"));
+          return Error(absl::StrCat("channel ", name, ": expected once per joint, got twice"));
       }
       joint.channels.push_back(entry->channel);
     }
@@ -216,34 +217,34 @@ class BvhParser {
       const int number = first_line + lines.number() - 1;
       if (frames == document_.frame_count) {
         return base::ErrorAt(source_, number,
-                             absl::StrCat("came more frames than the ", frames, " of Frames:"));
+                             absl::StrCat("expected the ", frames, " frames of Frames:, got more"));
       }
       absl::Status status = ParseFrame(line, number);
       if (!status.ok()) return status;
       ++frames;
     }
     if (frames == document_.frame_count) return absl::OkStatus();
-    return base::ErrorAt(source_, first_line + lines.number(),
-                         absl::StrCat("came ", frames, " frames, wanted the ",
-                                      document_.frame_count, " of Frames:"));
+    return base::ErrorAt(
+        source_, first_line + lines.number(),
+        absl::StrCat("expected the ", document_.frame_count, " frames of Frames:, got ", frames));
   }
 
   absl::Status ParseFrame(absl::string_view line, int number) {
-    const int wanted = document_.ChannelCount();
+    const int expected = document_.ChannelCount();
     Cursor words(line);
     int count = 0;
     for (absl::string_view word = words.Word(); !word.empty(); word = words.Word(), ++count) {
       float value = 0;
       if (!motion::ParseCoordinate(word, &value)) {
         return base::ErrorAt(source_, number,
-                             absl::StrCat("channel value ", count + 1, ": came ",
-                                          base::Quoted(word), ", wanted a finite number"));
+                             absl::StrCat("channel value ", count + 1,
+                                          ": expected a finite number, got ", base::Quoted(word)));
       }
-      if (count < wanted) document_.values.push_back(value);
+      if (count < expected) document_.values.push_back(value);
     }
-    if (count == wanted) return absl::OkStatus();
+    if (count == expected) return absl::OkStatus();
     return base::ErrorAt(source_, number,
-                         absl::StrCat("came ", count, " channel values, wanted ", wanted));
+                         absl::StrCat("expected ", expected, " channel values, got ", count));
   }
 
   Cursor cursor_;
@@ -348,13 +349,13 @@ double* Axis(BvhChannel position_channel, retargeting::Vec3d* vector) {
   }
 }
 
-// How far a joint's position channels are from zero and from OFFSET, summed over all frames, and
-// how far they count at most: a channel that is farther than OFFSET is long moves freely.
+// Distances of a joint's position channels from zero and from OFFSET, summed over all frames. Each
+// is limited to the length of OFFSET (`most`): a channel farther away moves freely.
 struct PositionVote {
   double from_zero = 0, from_offset = 0, most = 0;
 };
 
-// [joints]; of joints below a root alone. OFFSETs that are mere rounding have no vote.
+// Returns the votes of all joints. Only joints below a root vote, unless OFFSET is mere rounding.
 std::vector<PositionVote> PositionVotes(const BvhDocument& document) {
   double longest = 0;
   for (const BvhJoint& joint : document.joints) longest = std::max(longest, Norm(joint.offset));

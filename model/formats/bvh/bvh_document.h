@@ -43,7 +43,7 @@ struct BvhDocument {
 };
 
 // Parses any hierarchy with any channels in any order. Several ROOTs are allowed.
-// Errors: INVALID_ARGUMENT "source:line: ... came ..., wanted ...".
+// Errors: INVALID_ARGUMENT "source:line: ...: expected ..., got ...".
 absl::StatusOr<BvhDocument> ParseBvh(absl::string_view text, absl::string_view source);
 
 // The inverse of ParseBvh. Requires joints in depth-first order, as ParseBvh returns them.
@@ -63,7 +63,7 @@ enum class PositionChannels {
 // position channels and an OFFSET.
 std::optional<PositionChannels> FindPositionChannels(const BvhDocument& document);
 
-// Computes the joint positions of a frame by forward kinematics, in the file's unit. [joints]
+// Computes the joint positions of a frame by forward kinematics, in the file's unit.
 //
 // The rotations of a joint apply in the order of its channels, with the first one outermost. A
 // root's position channels replace OFFSET; FindPositionChannels determines the meaning of the

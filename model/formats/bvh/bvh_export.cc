@@ -14,9 +14,9 @@ namespace {
 
 absl::Status CheckJoints(const motion::Clip& clip, const motion::Skeleton& skeleton) {
   if (clip.joint_names == skeleton.joint_names) return CheckClip("clip", clip);
-  return absl::InvalidArgumentError(absl::StrCat("clip: joints: came ", clip.joint_count(),
-                                                 ", wanted the skeleton's ", skeleton.joint_count(),
-                                                 " in its order"));
+  return absl::InvalidArgumentError(absl::StrCat("clip: joints: expected the skeleton's ",
+                                                 skeleton.joint_count(), " in its order, got ",
+                                                 clip.joint_count()));
 }
 
 BvhDocument MakeHierarchy(const retargeting::Rig& rig, double units_per_metre,

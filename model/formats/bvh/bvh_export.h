@@ -16,8 +16,7 @@ namespace duet::formats::bvh {
 // the sum of the differences between the bones from the root to the joint and their medians.
 //
 // Errors: INVALID_ARGUMENT if the clip's joints are not the skeleton's, it has no frame, its frame
-// rate
-//         is out of range or a position is not finite.
+//         rate is out of range or a position is not finite.
 absl::StatusOr<BvhDocument> ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton,
                                   double metres_per_unit = 0.01, const BvhKeys& keys = {});
 

@@ -12,7 +12,7 @@
 namespace duet::formats::bvh {
 namespace {
 
-// Frame times carry 3 to 7 digits.
+// Relative. Files write frame times with 3 to 7 digits.
 constexpr double kRateTolerance = 5e-4;
 
 // The joints below one ROOT.
@@ -35,7 +35,7 @@ retargeting::JointTree TreeOf(const BvhDocument& document, const std::vector<int
   for (int joint : joints) {
     const BvhJoint& written = document.joints[static_cast<size_t>(joint)];
     tree.names.push_back(written.name);
-    // One person's joints lie together.
+    // A person's joints are contiguous.
     tree.parents.push_back(written.parent < 0 ? -1 : written.parent - joints.front());
     tree.offsets.push_back(written.offset);
   }

@@ -17,8 +17,8 @@ using retargeting::InBetween;
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 
-// One centimetre at the end of an arm.
-constexpr double kWorthTelling = 1 / base::kDegreesPerRadian;
+// The smallest reported deviation: one centimetre at the end of an arm.
+constexpr double kReportedRadians = 1 / base::kDegreesPerRadian;
 
 bool IsRotation(BvhChannel channel) { return channel >= BvhChannel::kXRotation; }
 
@@ -40,44 +40,44 @@ std::vector<Vec3d> WithPlacesBetween(const std::vector<Vec3d>& places, int keys)
   return all;
 }
 
-// What a joint's channels say at every key.
+// The channel values of a joint at every key.
 struct Values {
   std::vector<EulerAngles> angles;
   std::vector<Vec3d> places;
 };
 
-// What a program shows between frames that draws straight lines between angles.
+// Measures how far linear interpolation of angles between keys deviates from the rotation.
 class BetweenFrames {
  public:
-  // `keys_per_frame` of what is written.
+  // `keys_per_frame` of the written file.
   explicit BetweenFrames(int keys_per_frame) : keys_per_frame_(keys_per_frame) {}
 
   void Add(const std::string& joint, const std::vector<Quaternion>& turns,
            const std::vector<EulerAngles>& angles, EulerOrder order) {
     const InBetween here = LargestInBetween(turns, angles, order);
-    if (here.radians <= kWorthTelling) return;
+    if (here.radians <= kReportedRadians) return;
     enough_ = std::max(enough_, EnoughKeys(turns, order));
     if (here.radians <= largest_.radians) return;
     largest_ = here;
     joint_ = joint;
   }
 
-  void Tell(std::vector<std::string>* notes) const {
+  void Report(std::vector<std::string>* notes) const {
     if (joint_.empty()) return;
     notes->push_back(absl::StrFormat(
-        "%s comes near gimbal lock: between frames, lines drawn from angle to angle are up to %.1f "
-        "degrees off (frame %d); %d keys per frame bring that below %.0f",
+        "%s comes near gimbal lock: between frames, interpolated angles are up to %.1f degrees off "
+        "(frame %d); %d keys per frame reduce this below %.0f",
         base::Quoted(joint_), largest_.radians * base::kDegreesPerRadian,
         static_cast<int>(largest_.frame) / keys_per_frame_, enough_,
-        kWorthTelling * base::kDegreesPerRadian));
+        kReportedRadians * base::kDegreesPerRadian));
   }
 
  private:
-  // Keys for each frame of the motion; `turns` are those of the keys that are written.
+  // Returns the sufficient number of keys per frame of the motion. `turns`: of the written keys.
   int EnoughKeys(const std::vector<Quaternion>& turns, EulerOrder order) const {
     for (int times = 2; times * keys_per_frame_ < kMostKeysPerFrame; times *= 2) {
       const std::vector<Quaternion> finer = WithKeysBetween(turns, times);
-      if (LargestInBetween(finer, ToEulerTrack(finer, order), order).radians <= kWorthTelling) {
+      if (LargestInBetween(finer, ToEulerTrack(finer, order), order).radians <= kReportedRadians) {
         return times * keys_per_frame_;
       }
     }
@@ -135,7 +135,7 @@ void WriteMotion(const std::vector<BvhTrack>& tracks, double frame_rate_hz, cons
       }
     }
   }
-  if (keys.notes != nullptr) between.Tell(keys.notes);
+  if (keys.notes != nullptr) between.Report(keys.notes);
 }
 
 }  // namespace duet::formats::bvh

@@ -30,7 +30,7 @@ struct BvhKeys {
   std::vector<std::string>* notes = nullptr;
 };
 
-// The order of a joint's rotation channels; absent unless there are three, about three axes.
+// The order of a joint's rotation channels; absent unless it has one about each of three axes.
 std::optional<retargeting::EulerOrder> RotationOrder(const BvhJoint& joint);
 
 // Writes the motion into `document`: its frames, frame time and values. Angles are continuous: of

@@ -92,7 +92,7 @@ class RigWriter {
     return Rotate(Inverse(to_world_), in_world) * (1 / fit_.metres_per_unit);
   }
 
-  // Joints below the root may have position channels as well.
+  // Joints below the root may also have position channels.
   retargeting::CharacterRig Rig() const {
     retargeting::CharacterRig rig = RestRig(TreeOf(document_), fit_);
     for (std::size_t j = 0; j < document_.joints.size(); ++j) {
@@ -114,7 +114,7 @@ class RigWriter {
     }
   }
 
-  // A turn of the world in the file's axes.
+  // Converts a rotation in world axes to the file's axes.
   Quaternion InFile(Quaternion turn) const { return Inverse(to_world_) * turn * to_world_; }
 
   absl::Status CheckTurns(const BvhJoint& joint, const BvhTrack& track) const {
@@ -125,7 +125,8 @@ class RigWriter {
     }
     return absl::InvalidArgumentError(
         absl::StrCat(source_, ": rig: ", base::Quoted(joint.name),
-                     " has to turn, and has not three rotation channels about three axes"));
+                     ": expected rotation channels about three axes, got fewer; the motion turns "
+                     "this joint"));
   }
 
   BvhDocument document_;

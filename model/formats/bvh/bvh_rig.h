@@ -17,13 +17,12 @@ namespace duet::formats::bvh {
 //
 // `options` select the rig and how to read its file; `source` denotes it in messages.
 // Errors: INVALID_ARGUMENT for a rig that FromBvh or TransferToRig rejects, or a joint that must
-// rotate
-//         but has not three rotation channels.
+//         rotate but has fewer than three rotation channels.
 absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocument& rig,
                                        absl::string_view source, const BvhImportOptions& options,
                                        const BvhKeys& keys = {});
 
-// The rig of a person of a BVH, to be written in another format. Errors: those of FromBvh.
+// Returns the rig of a person of a BVH, to write in another format. Errors: those of FromBvh.
 absl::StatusOr<retargeting::CharacterRig> BvhRig(const BvhDocument& document,
                                                  absl::string_view source,
                                                  const BvhImportOptions& options);

@@ -41,7 +41,8 @@ class CsvParser {
     }
     if (status.ok() && header_.row_for_each_joint) status = CollectFrames();
     if (!status.ok()) return status;
-    if (motion_.people[0].poses.empty()) return Error("no frames after the header line");
+    if (motion_.people[0].poses.empty())
+      return Error("expected at least 1 frame after the header line, got none");
     motion_.rate_from_times = frame_rate_hz_ <= 0;
     const double rate = motion_.rate_from_times ? times_.FrameRate() : frame_rate_hz_;
     for (motion::Clip& person : motion_.people) person.frame_rate_hz = rate;
@@ -52,17 +53,18 @@ class CsvParser {
   absl::Status Error(absl::string_view message) const {
     return base::ErrorAt(source_, std::max(lines_.number(), 1), message);
   }
-  // `column` counts fields, from 1.
+  // `column` is the number of the field, from 1.
   absl::Status ErrorInColumn(std::size_t column, absl::string_view message) const {
     return Error(absl::StrCat("column ", column, ": ", message));
   }
 
-  absl::Status UnknownName(absl::string_view setting, absl::string_view came,
-                           absl::string_view wanted) const {
-    return Error(absl::StrCat(setting, ": came ", base::Quoted(came), ", wanted ", wanted));
+  absl::Status Unexpected(absl::string_view setting, absl::string_view got,
+                          absl::string_view expected) const {
+    return Error(absl::StrCat(setting, ": expected ", expected, ", got ", base::Quoted(got)));
   }
 
-  // The next line that is neither empty nor a comment; false at the end or where `status` fails.
+  // Reads the next line that is neither empty nor a comment. Returns false at the end, or if
+  // `status` fails.
   bool NextLine(absl::string_view* line, absl::Status* status) {
     while (lines_.Next(line)) {
       *line = absl::StripAsciiWhitespace(*line);
@@ -74,7 +76,7 @@ class CsvParser {
     return false;
   }
 
-  // Rows that were read on the way to the end of the header come first.
+  // Returns first the rows that ParseLevels read beyond the header.
   bool NextRow(CsvRow* row, absl::Status* status) {
     if (next_waiting_ < waiting_.size()) {
       *row = std::move(waiting_[next_waiting_++]);
@@ -100,17 +102,17 @@ class CsvParser {
     if (key == "frame_rate_hz" || key == "fps") {
       if (!base::ParseNumber(value, &frame_rate_hz_) ||
           !motion::CheckFrameRate("", frame_rate_hz_).ok()) {
-        return Error(absl::StrCat(key, ": came ", base::Quoted(value),
-                                  ", wanted more than 0 and at most ", motion::kMaxFrameRateHz));
+        return Unexpected(key, value,
+                          absl::StrCat("more than 0 and at most ", motion::kMaxFrameRateHz));
       }
     } else if (key == "unit") {
       const std::optional<motion::LengthUnit> unit = motion::ParseLengthUnit(value);
-      if (!unit.has_value()) return UnknownName(key, value, motion::kLengthUnitNames);
+      if (!unit.has_value()) return Unexpected(key, value, motion::kLengthUnitNames);
       motion_.coordinates.unit = *unit;
       motion_.says_unit = true;
     } else if (key == "up_axis") {
       const std::optional<motion::UpAxis> axis = motion::ParseUpAxis(value);
-      if (!axis.has_value()) return UnknownName(key, value, motion::kUpAxisNames);
+      if (!axis.has_value()) return Unexpected(key, value, motion::kUpAxisNames);
       motion_.coordinates.up_axis = *axis;
       motion_.says_up_axis = true;
     }
@@ -121,17 +123,19 @@ class CsvParser {
     absl::Status status;
     absl::string_view line;
     if (!NextLine(&line, &status)) {
-      return status.ok() ? Error("no header line, wanted frame,head_x,head_y,head_z,...") : status;
+      return status.ok() ? Error("header: expected frame,head_x,head_y,head_z,..., got no line")
+                         : status;
     }
     delimiter_ = FindDelimiter(line);
     std::vector<CsvRow> rows = {SplitRow(line, delimiter_)};
     if (rows[0].size() > kMaxColumns) {
-      return Error(absl::StrCat("came ", rows[0].size(), " columns, wanted at most ", kMaxColumns));
+      return Error(
+          absl::StrCat("expected at most ", kMaxColumns, " columns, got ", rows[0].size()));
     }
     return NeedsFurtherRows(rows[0]) ? ParseLevels(std::move(rows)) : TakeHeader(rows);
   }
 
-  // Whether a first row names no axis, as that of columns of several levels.
+  // Whether the first row names no axis, which means that the columns have several levels.
   static bool NeedsFurtherRows(const CsvRow& row) { return !ReadHeader({row}).ok(); }
 
   absl::Status ParseLevels(std::vector<CsvRow> rows) {
@@ -168,18 +172,19 @@ class CsvParser {
 
   absl::Status CheckRow(const CsvRow& row) const {
     if (row.size() == header_.columns.size()) return absl::OkStatus();
-    return Error(absl::StrCat("came ", row.size(), " values, wanted ", header_.columns.size(),
-                              " as in the header line"));
+    return Error(absl::StrCat("expected ", header_.columns.size(),
+                              " values as in the header line, got ", row.size()));
   }
 
   absl::Status ParsePosition(const CsvRow& row, std::size_t column, float* value) const {
     if (motion::ParseCoordinate(row[column], value)) return absl::OkStatus();
     if (motion::ParseCoordinate(WithPoint(row[column]), value)) return absl::OkStatus();
-    return ErrorInColumn(
-        column + 1, absl::StrCat("came ", base::Quoted(row[column]), ", wanted a finite number"));
+    return ErrorInColumn(column + 1,
+                         absl::StrCat("expected a finite number, got ", base::Quoted(row[column])));
   }
 
-  // "0,05", as half of Europe's spreadsheets write it, where no comma separates columns.
+  // Converts a decimal comma ("0,05"), as many European spreadsheets write it, unless commas
+  // separate the columns.
   std::string WithPoint(absl::string_view field) const {
     std::string text(field);
     if (delimiter_ != ',' && std::count(text.begin(), text.end(), ',') == 1) {
@@ -194,7 +199,8 @@ class CsvParser {
     if (!status.ok()) return status;
     const int frame = motion_.people[0].frame_count();
     if (frame >= motion::kMaxMotionFrames) {
-      return Error(absl::StrCat("more than ", motion::kMaxMotionFrames, " frames"));
+      return Error(
+          absl::StrCat("expected at most ", motion::kMaxMotionFrames, " frames, got more"));
     }
     for (motion::Clip& person : motion_.people) {
       person.Append(std::vector<motion::Vec3>(person.joint_names.size()));
@@ -224,7 +230,7 @@ class CsvParser {
       if (column.kind == CsvColumn::Kind::kPerson) parsed.person = row[i];
     }
     if (!status.ok()) return status;
-    // Of both, a frame's number tells frames apart that a rounded time does not.
+    // Prefer the frame number: two frames may have the same rounded time.
     if (parsed.frame.empty()) parsed.frame = time;
     const absl::StatusOr<bool> new_frame = joint_rows_.Add(parsed);
     if (!new_frame.ok()) return Error(new_frame.status().message());
@@ -246,7 +252,7 @@ class CsvParser {
   std::vector<CsvRow> waiting_;
   std::size_t next_waiting_ = 0;
   motion::RecordedMotion motion_;
-  double frame_rate_hz_ = 0;  // as a comment says
+  double frame_rate_hz_ = 0;  // from a comment
   CsvTimes times_;
   CsvJointRows joint_rows_;
 };

@@ -22,7 +22,7 @@ namespace duet::formats::flat {
 // has examples) columns of several levels as pandas writes them, a row for each joint, and
 // semicolons or tabs. A column of even times in seconds gives the rate if no comment does.
 //
-// Errors: INVALID_ARGUMENT "source:line:column: ... came ..., wanted ...".
+// Errors: INVALID_ARGUMENT "source:line: column 4: expected ..., got ...".
 absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source);
 
 // Writes metres, y up. Requires a pair that CheckPair accepts, or a person that CheckClip accepts.

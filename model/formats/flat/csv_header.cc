@@ -29,7 +29,7 @@ bool IsOneOf(absl::string_view text, std::initializer_list<absl::string_view> wo
 bool IsTime(absl::string_view name) {
   return IsOneOf(name, {"time", "time_s", "t", "seconds", "timestamp"});
 }
-// An index has no name, or the one that pandas gives it when it reads it back.
+// An index has no name, or the name that pandas gives it when it reads it back.
 bool IsIndex(absl::string_view name) {
   return IsOneOf(name, {"", "frame", "index", "frame_number", "unnamed: 0"});
 }
@@ -37,7 +37,7 @@ bool IsJointColumn(absl::string_view name) {
   return IsOneOf(name, {"joint", "bone", "joint_name", "bone_name", "joint name", "bone name",
                         "name", "marker"});
 }
-// Whose a row is, in a file with a row for each joint.
+// Whether the column names the person of a row, in a file with a row for each joint.
 bool IsPersonColumn(absl::string_view name) {
   return IsOneOf(name, {"person", "character", "armature", "rig", "object", "actor", "subject"});
 }
@@ -48,8 +48,8 @@ int AxisNumber(absl::string_view text) {
   return axis >= 'x' && axis <= 'z' ? axis - 'x' : -1;
 }
 
-// "head_x" -> head and x; -1 where the name does not end in an axis. Separators are _ . : - | and
-// blank, or none before a capital: "headX".
+// Removes the axis from a name: "head_x" -> head and x. Returns -1 if the name does not end in an
+// axis. Separators are _ . : - | and space, or none before a capital: "headX".
 int TakeAxis(absl::string_view* name) {
   if (name->size() < 2) return -1;
   const int axis = AxisNumber(name->substr(name->size() - 1));
@@ -67,7 +67,7 @@ int TakeAxis(absl::string_view* name) {
   return axis;
 }
 
-// "head_location" -> head: what scripts call a position.
+// Removes a word for "position": "head_location" -> head.
 void DropPositionWord(absl::string_view* name) {
   for (absl::string_view word : {"location", "loc", "position", "pos"}) {
     if (name->size() <= word.size() || !absl::EndsWithIgnoreCase(*name, word)) continue;
@@ -79,14 +79,14 @@ void DropPositionWord(absl::string_view* name) {
 }
 
 // The axis of a column of positions in a file with a row for each joint: x, loc_x, location.x, and
-// head_x, where Blender has a bone's joint (its tail is where the next one's is).
+// head_x. Blender's name for the joint of a bone is head; the tail is the joint of the next bone.
 int PlainAxis(absl::string_view name) {
   if (const int axis = AxisNumber(name); axis >= 0) return axis;
   const int axis = TakeAxis(&name);
   return IsOneOf(name, {"location", "loc", "position", "pos", "head"}) ? axis : -1;
 }
 
-// pandas writes columns of several levels that were made one as "('head', 'x')".
+// pandas writes flattened columns of several levels as "('head', 'x')".
 std::string WithoutTuple(absl::string_view name) {
   if (!absl::ConsumePrefix(&name, "(") || !absl::ConsumeSuffix(&name, ")")) {
     return std::string(name);
@@ -107,25 +107,25 @@ bool NamesAxes(const CsvRow& row) {
   bool any = false;
   for (std::size_t i = 0; i < row.size(); ++i) {
     const bool axis = AxisNumber(row[i]) >= 0;
-    // The first column may say what the level is called.
+    // The first column may hold the name of the level.
     if (!axis && !row[i].empty() && i > 0 && !IsIndex(row[i]) && !IsTime(row[i])) return false;
     any = any || axis;
   }
   return any;
 }
 
-// One name a column from the names of all levels: leader, head, x -> leader.head_x. A level's name
-// holds until the next. One level is its own names.
+// Joins the names of all levels to one name per column: leader, head, x -> leader.head_x. A level's
+// name applies to all columns up to its next name.
 std::vector<std::string> JoinLevels(const std::vector<CsvRow>& rows) {
   std::vector<std::string> names(rows.back().begin(), rows.back().end());
   if (rows.size() == 1) return names;
-  CsvRow current(rows.size(), "");  // StrJoin copies from each, whatever its length
+  CsvRow current(rows.size(), "");  // "" because StrJoin reads data() even of an empty name
   for (std::size_t column = 0; column < names.size(); ++column) {
     for (std::size_t level = 0; level + 1 < rows.size(); ++level) {
       if (!rows[level][column].empty()) current[level] = rows[level][column];
     }
     if (AxisNumber(names[column]) < 0) {
-      // An index or a time, which may be named in any level.
+      // An index or a time; any level may hold its name.
       for (std::size_t level = 0; level + 1 < rows.size() && names[column].empty(); ++level) {
         names[column] = std::string(rows[level][column]);
       }
@@ -149,7 +149,8 @@ class HeaderReader {
     std::set<std::string> seen;
     for (std::size_t column = 0; column < names.size(); ++column) {
       if (!seen.insert(names[column]).second) {
-        return ColumnError(column, absl::StrCat(base::Quoted(names[column]), " comes twice"));
+        return ColumnError(column, absl::StrCat("expected a new name, got ",
+                                                base::Quoted(names[column]), " again"));
       }
       absl::Status status = header_.row_for_each_joint ? AddPlainColumn(names[column])
                                                        : AddColumn(column, names[column]);
@@ -197,8 +198,9 @@ class HeaderReader {
       return absl::OkStatus();
     }
     return absl::InvalidArgumentError(
-        "came a row for each joint, wanted one column of each of joint, x, y and z, and frame or "
-        "time, at most one of person");
+        "expected one column each of joint, x, y and z, frame or time, and at most one of person "
+        "in "
+        "a file with a row for each joint, got other columns");
   }
 
   absl::Status AddColumn(std::size_t number, absl::string_view name) {
@@ -215,8 +217,8 @@ class HeaderReader {
       DropPositionWord(&joint);
       if (column.axis < 0 || joint.empty()) {
         return ColumnError(number,
-                           absl::StrCat("came ", base::Quoted(name),
-                                        ", wanted frame, time or JOINT_x, JOINT_y, JOINT_z"));
+                           absl::StrCat("expected frame, time or JOINT_x, JOINT_y, JOINT_z, got ",
+                                        base::Quoted(name)));
       }
       (prefixed ? has_prefixed_ : has_plain_) = true;
       column.joint = JointIndex(static_cast<size_t>(column.person), joint);
@@ -236,11 +238,12 @@ class HeaderReader {
 
   absl::Status CheckColumns() const {
     if (header_.joint_names.empty()) {
-      return absl::InvalidArgumentError("no joint columns, wanted JOINT_x, JOINT_y, JOINT_z");
+      return absl::InvalidArgumentError(
+          "columns: expected JOINT_x, JOINT_y, JOINT_z, got no joint");
     }
     if (has_prefixed_ && has_plain_) {
       return absl::InvalidArgumentError(
-          "columns with and without \"leader.\" or \"follower.\", wanted one kind");
+          "columns: expected all with \"leader.\" or \"follower.\", or none, got both kinds");
     }
     for (std::size_t person = 0; person < header_.joint_names.size(); ++person) {
       absl::Status status = CheckAxes(person);
@@ -261,13 +264,14 @@ class HeaderReader {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (counts[joint][axis] == 1) continue;
         return absl::InvalidArgumentError(
-            absl::StrCat(counts[joint][axis] == 0 ? "no column " : "several columns for ",
-                         has_prefixed_ ? kPrefixes[person] : "",
-                         base::Printable(names[joint], base::kLongestQuote), kSuffixes[axis]));
+            absl::StrCat(has_prefixed_ ? kPrefixes[person] : "",
+                         base::Printable(names[joint], base::kLongestQuote), kSuffixes[axis],
+                         ": expected one column, got ", counts[joint][axis]));
       }
     }
     if (names.empty()) {
-      return absl::InvalidArgumentError("no leader columns beside the follower's");
+      return absl::InvalidArgumentError(
+          "columns: expected the leader's and the follower's, got only the follower's");
     }
     return absl::OkStatus();
   }
@@ -284,7 +288,7 @@ CsvRow SplitRow(absl::string_view line, char delimiter) {
   std::size_t start = 0;
   for (std::size_t i = 0; i <= line.size(); ++i) {
     if (i < line.size() && line[i] == '"') quoted = !quoted;
-    // A quote that is never closed does not swallow the row's end.
+    // An unclosed quote ends with the row.
     if (i < line.size() && (quoted || line[i] != delimiter)) continue;
     absl::string_view field = absl::StripAsciiWhitespace(line.substr(start, i - start));
     if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {

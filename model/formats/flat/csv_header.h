@@ -17,9 +17,10 @@ struct CsvColumn {
     kPassedOver,  // a frame number, an index
     kPosition,    // one axis of a joint's position
     kTime,        // seconds
-    kFrame,       // the row's frame    } of a file
-    kPerson,      // the row's person   } with a row for each joint
-    kJoint,       // the row's joint    }
+    // In a file with a row for each joint:
+    kFrame,
+    kPerson,
+    kJoint,
   };
   Kind kind = Kind::kPassedOver;
   int person = 0;  // kPosition
@@ -43,8 +44,7 @@ CsvRow SplitRow(absl::string_view line, char delimiter);
 char FindDelimiter(absl::string_view line);
 
 // The number of header rows: 1 (`head_x`), or with columns of several levels 2 (`head` over `x`) or
-// 3
-// (`leader` over `head` over `x`). `rows` holds at most the first three.
+// 3 (`leader` over `head` over `x`). `rows` holds at most the first three.
 std::size_t CountHeaderRows(const std::vector<CsvRow>& rows);
 
 // The kind of the first column, if the row below several header rows holds only its name (`frame`,
@@ -52,7 +52,7 @@ std::size_t CountHeaderRows(const std::vector<CsvRow>& rows);
 std::optional<CsvColumn::Kind> ReadIndexName(const CsvRow& row);
 
 // Requires header rows with the same number of fields.
-// Errors: INVALID_ARGUMENT "column 4: came ..., wanted ..." or what is missing.
+// Errors: INVALID_ARGUMENT "column 4: expected ..., got ..." or "head_x: expected ...".
 absl::StatusOr<CsvHeader> ReadHeader(const std::vector<CsvRow>& rows);
 
 }  // namespace duet::formats::flat

@@ -15,13 +15,13 @@
 
 namespace duet::formats::flat {
 
-// Builds motions from rows in any order, each of one joint in one frame.
+// Builds motions from rows in any order. Each row holds one joint in one frame.
 //
 // Errors: INVALID_ARGUMENT with the expected value and the actual one.
 class CsvJointRows {
  public:
   struct Row {
-    absl::string_view frame;   // its name in the file
+    absl::string_view frame;   // number or time, as in the file
     absl::string_view person;  // empty if the file has one person
     absl::string_view joint;
     motion::Vec3 position;
@@ -37,7 +37,7 @@ class CsvJointRows {
  private:
   struct Joint {
     std::size_t person = 0;
-    int place = 0;  // among the person's
+    int place = 0;  // index into the person's joints
   };
   struct Cell {
     int frame = 0;
@@ -46,7 +46,7 @@ class CsvJointRows {
   };
   absl::StatusOr<std::size_t> FindPerson(absl::string_view name);
   absl::StatusOr<std::size_t> FindJoint(std::size_t person, absl::string_view name);
-  // What tells people apart, where nothing did.
+  // A hint for files of two people without a column for the person; empty for others.
   const char* Hint() const;
 
   std::map<std::string, int> frames_;

@@ -10,10 +10,10 @@
 namespace duet::formats::flat {
 namespace {
 
-// A time column that gives less is no column of seconds.
+// A column with a lower rate does not hold seconds.
 constexpr double kSlowestTimedRateHz = 1;
 constexpr double kUsualRatesHz[] = {15, 24, 25, 30, 50, 60, 90, 100, 120, 240};
-constexpr std::size_t kMostDecimals = 9;  // of times; further ones are a computer's own rounding
+constexpr std::size_t kMostDecimals = 9;  // of times; further digits are floating-point noise
 
 }  // namespace
 

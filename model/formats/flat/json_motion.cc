@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 constexpr char kFormat[] = "duet-motion";
 constexpr int kVersion = 1;
-// Of our documents: object, people, frames, positions. Deeper ones would only cost memory.
+// Duet's documents have object, people, frames and positions. More depth would only cost memory.
 constexpr int kMaxDepth = 8;
 constexpr std::size_t kMaxNameBytes = 64;
 constexpr const char* kPeople[] = {"leader", "follower"};
@@ -29,8 +29,8 @@ motion::RecordedMotion ReadSettings(base::ObjectReader* reader, motion::Clip* em
   if (reader->Has("format")) {
     const std::string format = reader->String("format", kMaxNameBytes);
     if (format != kFormat) {
-      reader->Fail("format",
-                   absl::StrCat(base::Quoted(format), ", wanted ", base::Quoted(kFormat)));
+      reader->Fail("format", absl::StrCat("expected ", base::Quoted(kFormat), ", got ",
+                                          base::Quoted(format)));
     }
   }
   if (reader->Has("version")) reader->Int("version", kVersion, kVersion);
@@ -49,7 +49,8 @@ motion::RecordedMotion ReadSettings(base::ObjectReader* reader, motion::Clip* em
     motion.says_up_axis = true;
   }
   empty->joint_names = reader->Strings("joint_names", motion::kMaxFileJoints);
-  if (empty->joint_names.empty()) reader->Fail("joint_names", "empty, wanted at least one name");
+  if (empty->joint_names.empty())
+    reader->Fail("joint_names", "expected at least one name, got none");
   return motion;
 }
 
@@ -65,20 +66,21 @@ bool ReadPosition(const Json& value, motion::Vec3* position) {
   return true;
 }
 
-// Appends one frame; false after recording what is wrong with it.
+// Appends one frame. Records an error and returns false if it is invalid.
 bool ReadFrame(const Json& frame, const std::string& field, base::ObjectReader* reader,
                motion::Clip* clip) {
   const std::size_t joints = clip->joint_names.size();
   if (!frame.is_array() || frame.size() != joints) {
-    reader->Fail(field,
-                 absl::StrCat(base::Shown(frame), ", wanted a list of ", joints, " positions"));
+    reader->Fail(
+        field, absl::StrCat("expected a list of ", joints, " positions, got ", base::Shown(frame)));
     return false;
   }
   std::vector<motion::Vec3> pose(joints);
   for (std::size_t joint = 0; joint < joints; ++joint) {
     if (!ReadPosition(frame[joint], &pose[joint])) {
-      reader->Fail(absl::StrCat(field, "[", joint, "]"),
-                   absl::StrCat(base::Shown(frame[joint]), ", wanted [x, y, z], finite numbers"));
+      reader->Fail(
+          absl::StrCat(field, "[", joint, "]"),
+          absl::StrCat("expected finite numbers [x, y, z], got ", base::Shown(frame[joint])));
       return false;
     }
   }
@@ -86,13 +88,13 @@ bool ReadFrame(const Json& frame, const std::string& field, base::ObjectReader* 
   return true;
 }
 
-// Where parsing is within a document: the depths of nlohmann::json's parser callback.
+// Places in a document, as depths of nlohmann::json's parser callback.
 constexpr int kFieldDepth = 1, kFrameDepth = 2, kPositionDepth = 3, kNumberDepth = 4;
-// More elements than any frame or position may have are dropped, all but the one that makes the
-// frame or position invalid.
+// One more than a valid frame or position may have. The element that makes it invalid is kept; all
+// further elements are dropped.
 constexpr std::size_t kMostInPosition = 4, kMostInFrame = motion::kMaxFileJoints + 1;
 
-// Which of kPeople a field is; -1 for any other.
+// The index of a field in kPeople; -1 for any other field.
 int PersonIndex(const std::string& key) {
   for (std::size_t i = 0; i < std::size(kPeople); ++i) {
     if (key == kPeople[i]) return static_cast<int>(i);
@@ -100,11 +102,11 @@ int PersonIndex(const std::string& key) {
   return -1;
 }
 
-// Reads the positions of a document whose frames are as they should be, without building anything.
-// Stops at whatever is not.
+// Reads the positions of a document with valid frames, without building JSON values. Stops at the
+// first invalid frame.
 class PositionReader : public nlohmann::json_sax<Json> {
  public:
-  // `people` has the joint names, and outlives the reader.
+  // `people` has the joint names and must outlive the reader.
   explicit PositionReader(std::vector<motion::Clip>* people) : people_(*people) {
     pose_.reserve(people_[0].joint_names.size());
   }
@@ -160,7 +162,7 @@ class PositionReader : public nlohmann::json_sax<Json> {
     --depth_;
     return true;
   }
-  // Whether anything may stand here that is neither a number nor an array.
+  // Whether a value that is neither a number nor an array may occur here.
   bool Outside() const { return clip_ == nullptr || depth_ == 0; }
 
   bool Add(double value) {
@@ -173,19 +175,19 @@ class PositionReader : public nlohmann::json_sax<Json> {
   }
 
   std::vector<motion::Clip>& people_;
-  motion::Clip* clip_ = nullptr;  // of the field that is read; null for other fields
+  motion::Clip* clip_ = nullptr;  // of the current field; null for fields other than people
   int depth_ = 0;
   std::vector<motion::Vec3> pose_;
   float numbers_at_[3] = {};
   std::size_t numbers_ = 0;
 };
 
-// Finds what is wrong with the frames of a document that PositionReader stopped at. Takes them out
-// of it one at a time while it is parsed, so that memory does not grow with the text: "[]," is
-// 3 bytes, and 50 once parsed.
+// Reports the error in a document that PositionReader stopped at. Removes each frame from the
+// document as soon as it is parsed, so that memory does not grow with the text: "[]," is 3 bytes of
+// text and 50 in memory.
 class FrameReader {
  public:
-  // `people` has the joint names. All outlive the reader.
+  // `people` has the joint names. Both arguments must outlive this object.
   FrameReader(base::ObjectReader* reader, std::vector<motion::Clip>* people)
       : reader_(*reader), people_(*people) {}
 
@@ -233,7 +235,7 @@ class FrameReader {
   std::size_t in_frame_ = 0, in_position_ = 0;
 };
 
-// The fields that are lists of frames; their frames come later.
+// Counts the fields that are lists of frames.
 int CountPeople(base::ObjectReader* reader) {
   int people = 0;
   for (const char* person : kPeople) {
@@ -264,7 +266,7 @@ void AppendPerson(const char* field, const motion::Clip& clip, std::string* out)
   *out += "]";
 }
 
-// The fields before the people's.
+// Formats the fields before those of the people.
 std::string FormatSettings(const motion::Clip& clip, const motion::Skeleton& skeleton) {
   Json bones = Json::array();
   for (const motion::Bone& bone : skeleton.bones) bones.push_back({bone.parent, bone.child});
@@ -311,7 +313,7 @@ absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
       reader.Fail(kPeople[i], "expected at least 1 frame, got none");
     }
   }
-  // Not Finish: other programs may add fields of their own.
+  // Not Finish: other programs may add fields.
   if (!reader.ok()) return in_file(reader.status());
   return motion;
 }

@@ -13,8 +13,8 @@ namespace duet::formats::flat {
 
 // One JSON document:
 //
-//   {"format": "duet-motion", "version": 1, "frame_rate_hz": 30, "unit": "metres", "up_axis":
-//   "y-up",
+//   {"format": "duet-motion", "version": 1, "frame_rate_hz": 30, "unit": "metres",
+//    "up_axis": "y-up",
 //    "joint_names": ["head", ...], "bones": [[1, 0], ...],
 //    "leader": [[[x, y, z], ... joints], ... frames], "follower": [...]}
 //

@@ -29,7 +29,7 @@ struct Header {
   std::vector<int> shape;
 };
 
-// What stands after `'key':` in the header's dictionary, up to its comma or closing bracket.
+// The value of `key` in the header's dictionary: the text up to its comma or closing bracket.
 absl::string_view DictValue(absl::string_view dict, absl::string_view key) {
   const std::size_t at = dict.find(absl::StrCat("'", key, "':"));
   if (at == absl::string_view::npos) return {};
@@ -66,20 +66,21 @@ class NpyParser {
 
   absl::Status ParseHeader() {
     if (!absl::ConsumePrefix(&bytes_, kMagic) || bytes_.size() < 4) {
-      return Error("no NumPy array, wanted a file that starts with \\x93NUMPY");
+      return Error("expected a NumPy array, got a file that does not start with \\x93NUMPY");
     }
     const int version = static_cast<unsigned char>(bytes_[0]);
     if (version < 1 || version > 3) {
-      return Error(absl::StrCat("array format version ", version, ", wanted 1 to 3"));
+      return Error(absl::StrCat("format version: expected 1 to 3, got ", version));
     }
     const std::size_t length_bytes = version == 1 ? 2 : 4;
-    if (bytes_.size() < 2 + length_bytes) return Error("ends within its header");
+    if (bytes_.size() < 2 + length_bytes)
+      return Error("header: expected its length, got the end of the file");
     uint32_t length = 0;
     std::memcpy(&length, bytes_.data() + 2, length_bytes);
     bytes_.remove_prefix(2 + length_bytes);
     if (length > kMaxHeaderBytes || length > bytes_.size()) {
-      return Error(absl::StrCat("header of ", length, " bytes, wanted at most ",
-                                std::min(kMaxHeaderBytes, bytes_.size())));
+      return Error(absl::StrCat("header: expected at most ",
+                                std::min(kMaxHeaderBytes, bytes_.size()), " bytes, got ", length));
     }
     const absl::string_view dict = bytes_.substr(0, length);
     bytes_.remove_prefix(length);
@@ -93,7 +94,7 @@ class NpyParser {
       if (absl::StripAsciiWhitespace(field).empty()) continue;
       int size = 0;
       if (!base::ParseInteger(field, &size)) {
-        return Error(absl::StrCat("shape: came ", base::Quoted(tuple), ", wanted whole numbers"));
+        return Error(absl::StrCat("shape: expected whole numbers, got ", base::Quoted(tuple)));
       }
       header_.shape.push_back(size);
     }
@@ -102,26 +103,27 @@ class NpyParser {
 
   absl::Status CheckHeader(int joints) const {
     if (header_.descr != "'<f4'" && header_.descr != "'<f8'") {
-      return Error(absl::StrCat("descr: came ", base::Quoted(header_.descr),
-                                ", wanted '<f4' or '<f8' (float32 or float64, little-endian)"));
+      return Error(
+          absl::StrCat("descr: expected '<f4' or '<f8' (float32 or float64, little-endian), got ",
+                       base::Quoted(header_.descr)));
     }
     if (header_.fortran_order != "False") {
-      return Error(absl::StrCat("fortran_order: came ", base::Quoted(header_.fortran_order),
-                                ", wanted False (C order)"));
+      return Error(absl::StrCat("fortran_order: expected False (C order), got ",
+                                base::Quoted(header_.fortran_order)));
     }
     const std::vector<int>& shape = header_.shape;
     const std::size_t rank = shape.size();
     const bool people = rank == 4 && (shape[0] == 1 || shape[0] == 2);
     if ((rank != 3 && !people) || shape[rank - 1] != 3 || shape[rank - 2] != joints ||
         shape[rank - 3] < 1 || shape[rank - 3] > motion::kMaxMotionFrames) {
-      return Error(absl::StrCat("shape: came (", absl::StrJoin(shape, ", "), "), wanted (frames, ",
-                                joints, ", 3) or (2, frames, ", joints, ", 3) with 1 to ",
-                                motion::kMaxMotionFrames, " frames"));
+      return Error(absl::StrCat("shape: expected (frames, ", joints, ", 3) or (2, frames, ", joints,
+                                ", 3) with 1 to ", motion::kMaxMotionFrames, " frames, got (",
+                                absl::StrJoin(shape, ", "), ")"));
     }
-    std::size_t wanted = ValueBytes();
-    for (int size : shape) wanted *= static_cast<std::size_t>(size);
-    if (bytes_.size() == wanted) return absl::OkStatus();
-    return Error(absl::StrCat("came ", bytes_.size(), " bytes of values, wanted ", wanted));
+    std::size_t expected = ValueBytes();
+    for (int size : shape) expected *= static_cast<std::size_t>(size);
+    if (bytes_.size() == expected) return absl::OkStatus();
+    return Error(absl::StrCat("expected ", expected, " bytes of values, got ", bytes_.size()));
   }
 
   std::size_t ValueBytes() const { return header_.descr == "'<f4'" ? 4 : 8; }
@@ -147,7 +149,7 @@ class NpyParser {
         if (!(std::abs(value) <= motion::kMaxCoordinate)) {
           const std::size_t joints = person->joint_names.size();
           return Error(absl::StrCat("frame ", i / joints, " ", person->joint_names[i % joints],
-                                    ": came ", value, ", wanted a finite position"));
+                                    ": expected a finite position, got ", value));
         }
         *axis = static_cast<float>(value);
       }
@@ -165,7 +167,7 @@ void AppendPositions(const motion::Clip& clip, std::string* out) {
               clip.poses.all().size() * sizeof(motion::Vec3));
 }
 
-// All before the values; `people` is the first dimension.
+// Formats everything before the values. `people` is the text of the first dimension.
 std::string FormatHeader(absl::string_view people, const motion::Clip& clip) {
   std::string dict = absl::StrCat("{'descr': '<f4', 'fortran_order': False, 'shape': (", people,
                                   clip.frame_count(), ", ", clip.joint_count(), ", 3), }");

@@ -12,7 +12,7 @@ namespace {
 constexpr int kPeople = 2;
 constexpr const char* kAxes[] = {"x", "y", "z"};
 
-// Splits one line of a file into values, knowing where each stands.
+// Splits one line of a file into values and tracks the column for errors.
 class SbuLine {
  public:
   SbuLine(absl::string_view source, int number, absl::string_view text,
@@ -20,14 +20,15 @@ class SbuLine {
       : source_(source), number_(number), text_(text), joint_names_(joint_names) {}
 
   absl::Status CheckCount() const {
-    const std::size_t wanted = 1 + joint_names_.size() * 3 * kPeople;
+    const std::size_t expected = 1 + joint_names_.size() * 3 * kPeople;
     std::size_t count = 1;
     for (char c : text_) count += c == ',' ? 1 : 0;
-    if (count == wanted) return absl::OkStatus();
-    return base::ErrorAt(source_, number_,
-                         absl::StrCat("came ", count, " comma-separated values, wanted ", wanted,
-                                      ": a frame number, then ", joint_names_.size(),
-                                      " joints x (x, y, z) of the left and of the right person"));
+    if (count == expected) return absl::OkStatus();
+    return base::ErrorAt(
+        source_, number_,
+        absl::StrCat("expected ", expected, " comma-separated values (a frame number, then ",
+                     joint_names_.size(),
+                     " joints x (x, y, z) of the left and of the right person), got ", count));
   }
 
   absl::Status ReadFrameNumber(int* value) {
@@ -35,7 +36,7 @@ class SbuLine {
     if (base::ParseInteger(field, value)) return absl::OkStatus();
     return base::ErrorAt(
         source_, number_, 1,
-        absl::StrCat("frame number: came ", base::Quoted(field), ", wanted a whole number"));
+        absl::StrCat("frame number: expected a whole number, got ", base::Quoted(field)));
   }
 
   absl::Status ReadPosition(int person, std::size_t joint, motion::Vec3* position) {
@@ -47,7 +48,7 @@ class SbuLine {
         return base::ErrorAt(
             source_, number_, column,
             absl::StrCat(person == 0 ? "left" : "right", " person's ", joint_names_[joint], " ",
-                         kAxes[axis], ": came ", base::Quoted(field), ", wanted a finite number"));
+                         kAxes[axis], ": expected a finite number, got ", base::Quoted(field)));
       }
     }
     return absl::OkStatus();
@@ -69,16 +70,16 @@ class SbuLine {
   int column_ = 1;
 };
 
-// Frame numbers rise by the step between the first two.
+// Checks that frame numbers increase by the step between the first two.
 class FrameNumbers {
  public:
   absl::Status Accept(absl::string_view source, int line, int number) {
     if (count_ == 1) step_ = number - last_;
     if (count_ >= 1 && (step_ <= 0 || number - last_ != step_)) {
-      return base::ErrorAt(
-          source, line, 1,
-          absl::StrCat("frame number: came ", number, " after ", last_, ", wanted ",
-                       step_ > 0 ? absl::StrCat(last_ + step_) : "a larger one"));
+      return base::ErrorAt(source, line, 1,
+                           absl::StrCat("frame number: expected ",
+                                        step_ > 0 ? absl::StrCat(last_ + step_) : "a larger one",
+                                        " after ", last_, ", got ", number));
     }
     last_ = number;
     ++count_;
@@ -133,8 +134,9 @@ absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view 
   for (absl::string_view content; lines.Next(&content);) {
     if (absl::StripAsciiWhitespace(content).empty()) continue;
     if (recording.left.frame_count() >= motion::kMaxMotionFrames) {
-      return base::ErrorAt(source, lines.number(),
-                           absl::StrCat("more than ", motion::kMaxMotionFrames, " frames"));
+      return base::ErrorAt(
+          source, lines.number(),
+          absl::StrCat("expected at most ", motion::kMaxMotionFrames, " frames, got more"));
     }
     SbuLine line(source, lines.number(), content, options.joint_names);
     int number = 0;
@@ -145,7 +147,7 @@ absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view 
     if (!status.ok()) return status;
   }
   if (recording.left.poses.empty()) {
-    return base::ErrorAt(source, 1, "no frames, wanted at least one line");
+    return base::ErrorAt(source, 1, "expected at least one line, got none");
   }
   return recording;
 }
@@ -161,10 +163,10 @@ absl::StatusOr<std::string> FormatSbu(const SbuRecording& recording, const SbuOp
   const motion::Clip& right = recording.right;
   if (left.poses.all().size() != right.poses.all().size() ||
       left.joint_names != right.joint_names) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("recording: came ", left.frame_count(), " frames of ", left.joint_count(),
-                     " joints on the left and ", right.frame_count(), " of ", right.joint_count(),
-                     " on the right, wanted the same on both sides"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "recording: expected the same frames and joints on both sides, got ", left.frame_count(),
+        " frames of ", left.joint_count(), " joints on the left and ", right.frame_count(), " of ",
+        right.joint_count(), " on the right"));
   }
   std::string text;
   for (int frame = 0; frame < left.frame_count(); ++frame) {

@@ -35,9 +35,8 @@ struct SbuRecording {
 // Shapes: both clips [frames >= 1, joint_names].
 // Units:  the text in options.coordinates; the clips in world metres, y up.
 // Errors: INVALID_ARGUMENT naming source, line and column, for a wrong number of values in a line,
-// a
-//         value that is not a finite number, frame numbers that do not increase by a constant step,
-//         or an empty text.
+//         a value that is not a finite number, frame numbers that do not increase by a constant
+//         step, or an empty text.
 absl::StatusOr<SbuRecording> ParseSbu(absl::string_view text, absl::string_view source,
                                       const SbuOptions& options = {});
 absl::StatusOr<SbuRecording> ReadSbu(const std::filesystem::path& path,

@@ -10,22 +10,10 @@
 #include "absl/strings/str_cat.h"
 
 namespace duet::formats::gltf {
-namespace {
 
+using retargeting::Normalised;
 using retargeting::Quaternion;
 using retargeting::Vec3d;
-
-Quaternion Scaled(Quaternion q, double factor) {
-  return {q.w * factor, q.x * factor, q.y * factor, q.z * factor};
-}
-
-// At length 1; no turn where there is no direction.
-Quaternion Normalised(Quaternion q) {
-  const double norm = std::sqrt(Dot(q, q));
-  return norm > 1e-12 ? Scaled(q, 1 / norm) : Quaternion{};
-}
-
-}  // namespace
 
 absl::StatusOr<GltfTrack> GltfTrack::Read(const GltfChannel& channel, GltfBuffers* buffers) {
   GltfTrack track;
@@ -38,14 +26,15 @@ absl::StatusOr<GltfTrack> GltfTrack::Read(const GltfChannel& channel, GltfBuffer
   if (!values.ok()) return values.status();
   const std::size_t parts = channel.interpolation == GltfInterpolation::kCubicSpline ? 3 : 1;
   if (times->empty() || values->size() != times->size() * parts * track.components_) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "accessors[", channel.values, "]: came ", values->size() / track.components_,
-        " values for ", times->size(), " keys, wanted ", parts, " for each of at least one"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("accessors[", channel.values, "]: expected ", parts,
+                     " values for each of at least 1 key, got ", values->size() / track.components_,
+                     " for ", times->size(), " keys"));
   }
   if (std::adjacent_find(times->begin(), times->end(), std::greater_equal<float>()) !=
       times->end()) {
     return absl::InvalidArgumentError(
-        absl::StrCat("accessors[", channel.times, "]: times that do not rise"));
+        absl::StrCat("accessors[", channel.times, "]: expected increasing times, got others"));
   }
   track.times_ = *std::move(times);
   track.values_ = *std::move(values);
@@ -74,7 +63,7 @@ double GltfTrack::Interpolate(const Place& place, std::size_t component) const {
   const double to = Get(place.key + 1, kValue, component);
   const double t = place.share;
   if (channel_.interpolation == GltfInterpolation::kLinear) return from + (to - from) * t;
-  // glTF 2.0, appendix C: tangents are a second's change.
+  // glTF 2.0, appendix C: tangents are changes per second.
   const double leaves = place.step_seconds * Get(place.key, kOutTangent, component);
   const double arrives = place.step_seconds * Get(place.key + 1, kInTangent, component);
   const double t2 = t * t, t3 = t2 * t;

@@ -10,40 +10,40 @@
 
 namespace duet::formats::gltf {
 
-// One property of a node over time, with its values at hand. Before the first key and after the
-// last one it stays.
+// One property of a node over time, with its values in memory. It is constant before the first key
+// and after the last one.
 class GltfTrack {
  public:
-  // Errors: INVALID_ARGUMENT for times that do not rise, another number of values than keys, no
-  //         key, and what GltfBuffers says.
+  // Errors: INVALID_ARGUMENT if times do not increase, the number of values does not match the
+  //         keys, or there is no key; those of GltfBuffers.
   static absl::StatusOr<GltfTrack> Read(const GltfChannel& channel, GltfBuffers* buffers);
 
   const GltfChannel& channel() const { return channel_; }
-  const std::vector<float>& times() const { return times_; }  // seconds, rising
+  const std::vector<float>& times() const { return times_; }  // seconds, increasing
 
-  // Of a translation or scale.
+  // Requires a translation or scale.
   retargeting::Vec3d VectorAt(double seconds) const;
-  // Of a rotation: along the shorter arc, at length 1.
+  // Requires a rotation. Interpolates along the shorter arc; returns a unit quaternion.
   retargeting::Quaternion RotationAt(double seconds) const;
 
  private:
-  // Where a moment is among the keys: `key` and the share of the way to the next one.
+  // A time relative to the keys: the last key before it and the fraction of the step to the next.
   struct Place {
     std::size_t key = 0;
     double share = 0;
     double step_seconds = 0;
   };
   Place Find(double seconds) const;
-  // A component of a key's value, or of its tangents where the track has some.
+  // A component of a key's value, or of a tangent of a spline.
   enum Part { kInTangent, kValue, kOutTangent };
   double Get(std::size_t key, Part part, std::size_t component) const;
-  // The component at a place, each on its own: steps, lines or splines.
+  // Interpolates one component.
   double Interpolate(const Place& place, std::size_t component) const;
 
   GltfChannel channel_;
   std::size_t components_ = 0;
   std::vector<float> times_;   // [keys]
-  std::vector<float> values_;  // [keys, components], or [keys, 3 parts, components] of splines
+  std::vector<float> values_;  // [keys, components]; splines: [keys, 3 parts, components]
 };
 
 }  // namespace duet::formats::gltf

@@ -18,7 +18,7 @@
 namespace duet::formats::gltf {
 namespace {
 
-// Several accessors may share bytes: a small file must not become a large motion.
+// Limits the values of all accessors: they may share bytes, so a small file could yield many.
 constexpr std::size_t kMaxValues = std::size_t{64} << 20;
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
               kFloat = 5126;
@@ -54,7 +54,7 @@ float Value(const char* bytes, int component_type) {
   return value;
 }
 
-// "my%20file.bin" -> my file.bin; nothing where a % is followed by no number.
+// "my%20file.bin" -> my file.bin. Absent if no hex number follows a %.
 std::optional<std::string> Unescaped(absl::string_view uri) {
   std::string name;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -73,7 +73,7 @@ std::optional<std::string> Unescaped(absl::string_view uri) {
   return name;
 }
 
-// A plain name in the document's folder.
+// Whether `name` is a file in the document's folder.
 bool IsPlainName(absl::string_view name) {
   return !name.empty() && name != "." && name != ".." &&
          name.find_first_of(absl::string_view("/\\:\0", 4)) == absl::string_view::npos;
@@ -84,7 +84,7 @@ absl::StatusOr<std::string> DecodeData(absl::string_view uri) {
   std::string bytes;
   if (comma == absl::string_view::npos || !absl::EndsWith(uri.substr(0, comma), ";base64") ||
       !absl::Base64Unescape(uri.substr(comma + 1), &bytes)) {
-    return absl::InvalidArgumentError("uri: data that is no base64");
+    return absl::InvalidArgumentError("uri: expected base64 data, got other data");
   }
   return bytes;
 }
@@ -94,13 +94,13 @@ absl::StatusOr<std::string> DecodeData(absl::string_view uri) {
 absl::StatusOr<std::string> GltfBuffers::Load(const GltfBuffer& buffer) const {
   if (buffer.uri.empty()) {
     if (document_.binary.has_value()) return *document_.binary;
-    return absl::InvalidArgumentError("no uri, and the file has no binary chunk");
+    return absl::InvalidArgumentError("uri: expected one, got none; the file has no binary chunk");
   }
   if (absl::StartsWith(buffer.uri, "data:")) return DecodeData(buffer.uri);
   const std::optional<std::string> name = Unescaped(buffer.uri);
   if (!name.has_value() || !IsPlainName(*name)) {
     return absl::InvalidArgumentError(
-        absl::StrCat("uri: came ", base::Quoted(buffer.uri), ", wanted a file in the same folder"));
+        absl::StrCat("uri: expected a file in the same folder, got ", base::Quoted(buffer.uri)));
   }
   return read_file_(*name);
 }
@@ -111,11 +111,12 @@ absl::StatusOr<const std::string*> GltfBuffers::Whole(int buffer) {
     const GltfBuffer& described = document_.buffers[static_cast<size_t>(buffer)];
     absl::StatusOr<std::string> bytes = Load(described);
     if (bytes.ok() && bytes->size() < described.length) {
-      bytes = absl::InvalidArgumentError(absl::StrCat("came ", bytes->size(), " bytes, wanted the ",
-                                                      described.length, " of byteLength"));
+      bytes = absl::InvalidArgumentError(absl::StrCat("expected the ", described.length,
+                                                      " bytes of byteLength, got ", bytes->size()));
     }
     if (bytes.ok() && described.length > motion::kMaxMotionFileBytes - bytes_loaded_) {
-      bytes = absl::InvalidArgumentError("more bytes in buffers than a motion may have");
+      bytes = absl::InvalidArgumentError(absl::StrCat(
+          "expected at most ", motion::kMaxMotionFileBytes, " bytes in all buffers, got more"));
     }
     if (!bytes.ok()) {
       return absl::Status(bytes.status().code(),
@@ -135,26 +136,28 @@ absl::StatusOr<std::vector<float>> GltfBuffers::Read(int index, int components) 
   const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(index)];
   const std::size_t bytes = ComponentBytes(accessor);
   if (accessor.components != components || bytes == 0) {
-    return error(absl::StrCat("came ", accessor.components, " numbers of type ",
-                              accessor.component_type, ", wanted ", components,
-                              " floats or normalized whole numbers"));
+    return error(absl::StrCat("expected ", components, " floats or normalized whole numbers, got ",
+                              accessor.components, " of type ", accessor.component_type));
   }
-  if (accessor.view < 0 || accessor.sparse) return error("sparse, wanted values in a bufferView");
+  if (accessor.view < 0 || accessor.sparse)
+    return error("expected values in a bufferView, got sparse ones");
   const GltfView& view = document_.views[static_cast<size_t>(accessor.view)];
   const std::size_t width = bytes * static_cast<std::size_t>(components);
   const std::size_t stride = view.stride == 0 ? width : view.stride;
   const absl::StatusOr<const std::string*> buffer = Whole(view.buffer);
   if (!buffer.ok()) return buffer.status();
-  // Every number is below 2^32, so that 64 bits hold each product.
+  // Every number is below 2^32, so 64 bits hold each product.
   const uint64_t end = accessor.count == 0 ? 0
                                            : uint64_t{accessor.offset} +
                                                  uint64_t{accessor.count - 1} * stride + width;
   if (stride < width || end > view.length ||
       uint64_t{view.offset} + view.length > (*buffer)->size()) {
-    return error(absl::StrCat(accessor.count, " values that reach beyond their buffer"));
+    return error(
+        absl::StrCat("expected values within the buffer, got ", accessor.count, " beyond it"));
   }
   const std::size_t count = accessor.count * static_cast<std::size_t>(components);
-  if (count > kMaxValues - values_read_) return error("more values than a motion may have");
+  if (count > kMaxValues - values_read_)
+    return error(absl::StrCat("expected at most ", kMaxValues, " values in all, got more"));
   values_read_ += count;
   std::vector<float> values(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -163,7 +166,8 @@ absl::StatusOr<std::vector<float>> GltfBuffers::Read(int index, int components) 
                            i / static_cast<std::size_t>(components) * stride + component * bytes;
     values[i] = Value((*buffer)->data() + at, accessor.component_type);
     if (!(std::abs(values[i]) <= static_cast<float>(motion::kMaxCoordinate))) {
-      return error(absl::StrCat("value ", i, ": not finite, or beyond +-", motion::kMaxCoordinate));
+      return error(absl::StrCat("value ", i, ": expected a finite number within +-",
+                                motion::kMaxCoordinate, ", got ", values[i]));
     }
   }
   return values;

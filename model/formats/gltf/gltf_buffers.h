@@ -14,26 +14,25 @@
 
 namespace duet::formats::gltf {
 
-// Reads a file beside the document, by its name.
+// Reads a file in the document's folder.
 using GltfFileReader = std::function<absl::StatusOr<std::string>(const std::string& name)>;
 
-// The numbers behind a document's accessors. A buffer is read when it is first needed: the binary
-// chunk, data within the document, or a file in the same folder (never one above or elsewhere).
+// Reads the values of a document's accessors. Loads a buffer when it is first needed: the binary
+// chunk, data within the document, or a file in the same folder (no other folder).
 class GltfBuffers {
  public:
-  // Both outlive the buffers.
+  // Both arguments must outlive this object.
   GltfBuffers(const GltfDocument& document, const GltfFileReader& read_file)
       : document_(document), read_file_(read_file) {}
 
-  // All values of an accessor with `components` a value, whole numbers scaled to [-1, 1] as the
-  // format has it. [count, components]
+  // Returns all values of an accessor. Integers are scaled to [-1, 1] as the format specifies.
   //
-  // Errors: INVALID_ARGUMENT "accessors[3]: ..." for another kind of value, a place outside its
-  //         buffer, a value that is not finite, or more values altogether than a motion may have;
-  //         what `read_file` says.
+  // Shape: [count, components].
+  // Errors: INVALID_ARGUMENT "accessors[3]: ..." for another kind of value, a range outside the
+  //         buffer, a value that is not finite, or too many values in all; those of `read_file`.
   absl::StatusOr<std::vector<float>> Read(int accessor, int components);
 
-  // All bytes of a buffer. Lives as long as this. Errors as of Read.
+  // Returns all bytes of a buffer; valid while this object lives. Errors: those of Read.
   absl::StatusOr<const std::string*> Whole(int buffer);
 
  private:

@@ -21,11 +21,11 @@ constexpr absl::string_view kMagic = "glTF";
 constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
 constexpr uint32_t kBinaryVersion = 2;
 constexpr absl::string_view kJsonChunk = "JSON", kBinaryChunk = absl::string_view("BIN\0", 4);
-constexpr int kMaxDepth = 64;             // tools nest what they like in `extras`
+constexpr int kMaxDepth = 64;             // tools may nest deeply in `extras`
 constexpr std::size_t kMaxItems = 16384;  // of each kind; a scene has more nodes than joints
 constexpr std::size_t kMaxSkins = 256;
 constexpr std::size_t kMaxNameBytes = 256;
-constexpr std::size_t kMaxUriBytes = motion::kMaxMotionFileBytes * 4 / 3 + 64;  // data, encoded
+constexpr std::size_t kMaxUriBytes = motion::kMaxMotionFileBytes * 4 / 3 + 64;  // base64 data
 
 uint32_t ReadUint32(absl::string_view bytes, std::size_t at) {
   uint32_t value = 0;
@@ -42,26 +42,28 @@ absl::Status Malformed(absl::string_view message) {
   return absl::InvalidArgumentError(absl::StrCat("binary glTF: ", message));
 }
 
-// The chunks of a .glb.
+// Splits a .glb into its chunks.
 absl::StatusOr<Parts> SplitBinary(absl::string_view content) {
-  if (content.size() < kHeaderBytes) return Malformed("cut off in its header");
+  if (content.size() < kHeaderBytes) return Malformed("header: expected 12 bytes, got fewer");
   if (const uint32_t version = ReadUint32(content, 4); version != kBinaryVersion) {
-    return Malformed(absl::StrCat("version: came ", version, ", wanted ", kBinaryVersion));
+    return Malformed(absl::StrCat("version: expected ", kBinaryVersion, ", got ", version));
   }
   const std::size_t length = ReadUint32(content, 8);
   if (length != content.size()) {
-    return Malformed(
-        absl::StrCat("length: came ", content.size(), " bytes, wanted the ", length, " it says"));
+    return Malformed(absl::StrCat("length: expected ", length, " bytes, got ", content.size()));
   }
   Parts parts;
   for (std::size_t at = kHeaderBytes, chunk = 0; at < content.size(); ++chunk) {
-    if (content.size() - at < kChunkHeaderBytes) return Malformed("cut off in a chunk's header");
+    if (content.size() - at < kChunkHeaderBytes)
+      return Malformed("chunk header: expected 8 bytes, got fewer");
     const std::size_t size = ReadUint32(content, at);
     const absl::string_view type = content.substr(at + 4, 4);
     at += kChunkHeaderBytes;
-    if (size > content.size() - at) return Malformed("a chunk is longer than the file");
+    if (size > content.size() - at)
+      return Malformed(absl::StrCat("chunk: expected ", size, " bytes, got fewer"));
     const absl::string_view data = content.substr(at, size);
-    if (chunk == 0 && type != kJsonChunk) return Malformed("the first chunk is not JSON");
+    if (chunk == 0 && type != kJsonChunk)
+      return Malformed("first chunk: expected JSON, got another type");
     if (chunk == 0) parts.json = data;
     if (chunk == 1 && type == kBinaryChunk) parts.binary = std::string(data);
     at += size;
@@ -98,7 +100,7 @@ class DocumentReader {
   }
 
  private:
-  // Calls `read` for every object of an array that may be absent.
+  // Calls `read` for every object of an optional array.
   template <typename Read>
   void ReadEach(const std::string& key, Read read) {
     ReadEachOf(&root_, key, read);
@@ -124,10 +126,10 @@ class DocumentReader {
     return static_cast<std::size_t>(reader->Int(key, 0, std::numeric_limits<uint32_t>::max()));
   }
 
-  // An index into something that has `count` of its kind.
+  // An index below `count`.
   static int Index(base::ObjectReader* reader, const std::string& key, std::size_t count) {
     if (count == 0) {
-      reader->Fail(key, "points at nothing, the file has none of that kind");
+      reader->Fail(key, "expected an index, but the file has no such item");
       return 0;
     }
     return static_cast<int>(reader->Int(key, 0, static_cast<int64_t>(count) - 1));
@@ -139,20 +141,20 @@ class DocumentReader {
     return name.empty() ? otherwise : name;
   }
 
-  // `count` finite numbers, or what stands there already where the field is absent.
+  // Reads `count` finite numbers. Leaves `values` unchanged if the field is absent.
   static void Numbers(base::ObjectReader* reader, const std::string& key, std::size_t count,
                       double* values) {
     if (!reader->Has(key)) return;
     const Json& array = reader->Array(key, count);
     if (reader->ok() && array.size() != count) {
-      reader->Fail(key, absl::StrCat(array.size(), " numbers, wanted ", count));
+      reader->Fail(key, absl::StrCat("expected ", count, " numbers, got ", array.size()));
     }
     for (std::size_t i = 0; i < count && reader->ok(); ++i) {
       const double value =
           array[i].is_number() ? array[i].get<double>() : motion::kMaxCoordinate * 2;
       if (!(value >= -motion::kMaxCoordinate && value <= motion::kMaxCoordinate)) {
-        reader->Fail(key, absl::StrCat(base::Shown(array[i]), ", wanted a number within +-",
-                                       motion::kMaxCoordinate));
+        reader->Fail(key, absl::StrCat("expected a number within +-", motion::kMaxCoordinate,
+                                       ", got ", base::Shown(array[i])));
         return;
       }
       values[i] = value;
@@ -164,7 +166,8 @@ class DocumentReader {
     for (const Json& item : reader->Array(key, kMaxItems)) {
       const bool fits = item.is_number_unsigned() && item.get<uint64_t>() < count;
       if (!fits) {
-        reader->Fail(key, absl::StrCat(base::Shown(item), ", wanted an index below ", count));
+        reader->Fail(key,
+                     absl::StrCat("expected an index below ", count, ", got ", base::Shown(item)));
         return {};
       }
       indices.push_back(item.get<int>());
@@ -178,19 +181,20 @@ class DocumentReader {
     base::ObjectReader reader(asset, "asset");
     const std::string version = reader.String("version", kMaxNameBytes);
     if (reader.ok() && !absl::StartsWith(version, "2.")) {
-      reader.Fail("version", absl::StrCat(base::Quoted(version), ", wanted 2.0"));
+      reader.Fail("version", absl::StrCat("expected 2.0, got ", base::Quoted(version)));
     }
     ReadWriter(asset);
     root_.Update(reader.status());
     if (!root_.ok() || !root_.Has("extensionsRequired")) return;
     for (const std::string& extension : root_.Strings("extensionsRequired", kMaxItems)) {
       if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression") {
-        root_.Fail("extensionsRequired", absl::StrCat(extension, ": export without compression"));
+        root_.Fail("extensionsRequired", absl::StrCat("expected no compression, got ", extension,
+                                                      "; export without compression"));
       }
     }
   }
 
-  // Nothing depends on it: what another program has there in another form is passed over.
+  // Ignores values of another type: these fields are informative only.
   void ReadWriter(const Json& asset) {
     const auto writer = asset.find("generator");
     if (writer != asset.end() && writer->is_string()) document_.writer = *writer;
@@ -228,7 +232,8 @@ class DocumentReader {
     const std::string type = reader->String("type", kMaxNameBytes);
     accessor.components = Components(type);
     if (reader->ok() && accessor.components == 0) {
-      reader->Fail("type", absl::StrCat(base::Quoted(type), ", wanted SCALAR, VEC3, VEC4, ..."));
+      reader->Fail("type",
+                   absl::StrCat("expected SCALAR, VEC3, VEC4, ..., got ", base::Quoted(type)));
     }
     accessor.sparse = reader->Has("sparse");
     document_.accessors.push_back(accessor);
@@ -249,20 +254,20 @@ class DocumentReader {
     document_.nodes.push_back(std::move(node));
   }
 
-  // Parents from children. A node with a second parent, or among its own ancestors, is refused.
+  // Derives parents from children. Rejects a node with two parents or among its own ancestors.
   absl::Status LinkNodes() {
     std::vector<GltfNode>& nodes = document_.nodes;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       for (int child : nodes[n].children) {
         int& parent = nodes[static_cast<size_t>(child)].parent;
         if (parent >= 0) {
-          return absl::InvalidArgumentError(
-              absl::StrCat("nodes[", n, "].children: ", child, " has a parent already"));
+          return absl::InvalidArgumentError(absl::StrCat(
+              "nodes[", n, "].children: expected one parent for node ", child, ", got two"));
         }
         parent = static_cast<int>(n);
       }
     }
-    // With one parent each, what no root reaches is a ring.
+    // Each node has at most one parent, so nodes that no root reaches form a cycle.
     std::vector<int> reached;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       if (nodes[n].parent < 0) reached.push_back(static_cast<int>(n));
@@ -272,23 +277,23 @@ class DocumentReader {
       for (int child : node.children) nodes[static_cast<size_t>(child)].depth = node.depth + 1;
       if (node.depth > motion::kMaxFileJoints) {
         return absl::InvalidArgumentError(
-            absl::StrCat("nodes: nested deeper than ", motion::kMaxFileJoints));
+            absl::StrCat("nodes: expected at most ", motion::kMaxFileJoints, " levels, got more"));
       }
       reached.insert(reached.end(), node.children.begin(), node.children.end());
     }
     if (reached.size() == nodes.size()) return absl::OkStatus();
-    return absl::InvalidArgumentError("nodes: some are their own ancestors");
+    return absl::InvalidArgumentError("nodes: expected trees, got a cycle");
   }
 
   void ReadSkin(base::ObjectReader* reader) {
     GltfSkin skin;
     skin.joints = Indices(reader, "joints", document_.nodes.size());
     if (reader->ok() && (skin.joints.empty() || skin.joints.size() > motion::kMaxFileJoints)) {
-      reader->Fail("joints",
-                   absl::StrCat(skin.joints.size(), ", wanted 1 to ", motion::kMaxFileJoints));
+      reader->Fail("joints", absl::StrCat("expected 1 to ", motion::kMaxFileJoints, " joints, got ",
+                                          skin.joints.size()));
     }
     if (document_.skins.size() == kMaxSkins) {
-      reader->Fail("joints", absl::StrCat("more than ", kMaxSkins, " skins"));
+      reader->Fail("joints", absl::StrCat("expected at most ", kMaxSkins, " skins, got more"));
     }
     document_.skins.push_back(std::move(skin));
   }
@@ -310,7 +315,7 @@ class DocumentReader {
       sampler.interpolation = GltfInterpolation::kCubicSpline;
     } else if (name != "LINEAR") {
       reader->Fail("interpolation",
-                   absl::StrCat(base::Quoted(name), ", wanted LINEAR, STEP or CUBICSPLINE"));
+                   absl::StrCat("expected LINEAR, STEP or CUBICSPLINE, got ", base::Quoted(name)));
     }
     return sampler;
   }
@@ -331,7 +336,7 @@ class DocumentReader {
       if (path.has_value() && target.Has("node")) {
         const int node = Index(&target, "node", document_.nodes.size());
         if (!targets.insert({node, *path}).second) {
-          target.Fail("path", "a second channel for the same property of a node");
+          target.Fail("path", "expected one channel per property of a node, got two");
         }
         animation.channels.push_back(
             {node, *path, sampler->interpolation, sampler->times, sampler->values});
@@ -347,7 +352,7 @@ class DocumentReader {
     return channel->ok() ? &samplers[static_cast<size_t>(index)] : nullptr;
   }
 
-  // Nothing for morph targets and what extensions animate.
+  // Absent for morph targets and properties of extensions.
   static std::optional<GltfPath> ReadPath(base::ObjectReader* target) {
     const std::string path = target->String("path", kMaxNameBytes);
     if (path == "translation") return GltfPath::kTranslation;

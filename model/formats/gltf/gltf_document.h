@@ -13,16 +13,16 @@
 
 namespace duet::formats::gltf {
 
-// A node at rest: translation, rotation and scale, or a matrix in their place.
+// A node at rest: translation, rotation and scale, or a matrix instead.
 struct GltfNode {
-  std::string name;  // "node 3" where the file has none
+  std::string name;  // "node 3" if the file has none
   int parent = -1;
-  int depth = 0;  // nodes above
+  int depth = 0;  // number of ancestors
   std::vector<int> children;
   retargeting::Vec3d translation;
   retargeting::Quaternion rotation;
   retargeting::Vec3d scale = {1, 1, 1};
-  std::optional<std::array<double, 16>> matrix;  // column after column
+  std::optional<std::array<double, 16>> matrix;  // column-major
 };
 
 struct GltfSkin {
@@ -42,15 +42,15 @@ struct GltfChannel {
 };
 
 struct GltfAnimation {
-  std::string name;                   // "animation 1" where the file has none
-  std::vector<GltfChannel> channels;  // morph targets are left out
+  std::string name;                   // "animation 1" if the file has none
+  std::vector<GltfChannel> channels;  // without morph targets
 };
 
-// Where values are in a buffer.
+// The place of values in a buffer.
 struct GltfAccessor {
   int view = -1;  // -1: none
   std::size_t offset = 0;
-  int component_type = 0;  // glTF's own numbers
+  int component_type = 0;  // a glTF constant
   bool normalized = false;
   std::size_t count = 0;
   int components = 1;
@@ -67,11 +67,11 @@ struct GltfBuffer {
   std::size_t length = 0;
 };
 
-// What a glTF 2.0 file says of skeletons and their motion. Every index has been checked, nodes form
-// trees, and nobody has touched a buffer yet.
+// The skeletons of a glTF 2.0 file and their motion. Every index is valid and nodes form trees.
+// Buffers have not been read.
 struct GltfDocument {
-  std::string writer;                   // the program, where the file says it
-  std::optional<double> frame_rate_hz;  // where Duet wrote it
+  std::string writer;                   // the program that wrote it, if stated
+  std::optional<double> frame_rate_hz;  // if Duet wrote it
   std::vector<GltfNode> nodes;
   std::vector<GltfSkin> skins;
   std::vector<GltfAnimation> animations;
@@ -81,8 +81,8 @@ struct GltfDocument {
   std::optional<std::string> binary;  // the binary chunk of a .glb
 };
 
-// Reads a .gltf or a .glb, whichever the first bytes say.
-// Errors: INVALID_ARGUMENT "source: nodes[3].rotation: came ..., wanted ...".
+// Parses a .gltf or a .glb; the first bytes select which.
+// Errors: INVALID_ARGUMENT "source: nodes[3].rotation: expected ..., got ...".
 absl::StatusOr<GltfDocument> ParseGltf(absl::string_view content, absl::string_view source);
 
 }  // namespace duet::formats::gltf

@@ -21,23 +21,23 @@ namespace {
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 
-// Keys farther apart than this were set by hand, and say nothing of a rate.
+// Keys farther apart than this were set by hand and do not indicate a rate.
 constexpr double kSlowestKeysHz = 15, kHandKeyedRateHz = 30, kFastestRateHz = 240;
 constexpr double kRateTolerance = 0.01;
 constexpr std::size_t kMostCharacters = 64;
 
 std::size_t Index(int node) { return static_cast<std::size_t>(node); }
 
-// An affine map: where the axes go, and the origin.
+// An affine map: the images of the axes and of the origin.
 struct Affine {
   Vec3d x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1}, origin;
 
   Vec3d Turn(Vec3d a) const { return x * a.x + y * a.y + z * a.z; }
-  // `inner` first, then this one.
+  // Applies `inner` first, then this map.
   Affine operator*(const Affine& inner) const {
     return {Turn(inner.x), Turn(inner.y), Turn(inner.z), origin + Turn(inner.origin)};
   }
-  // How much longer a length becomes, on average over the axes.
+  // The mean factor by which lengths along the axes grow.
   double Scale() const { return (Norm(x) + Norm(y) + Norm(z)) / 3; }
 };
 
@@ -46,17 +46,11 @@ Affine FromParts(Vec3d translation, Quaternion rotation, Vec3d scale) {
           Rotate(rotation, {0, 0, 1}) * scale.z, translation};
 }
 
-Quaternion AtLengthOne(Quaternion q) {
-  const double norm = std::sqrt(Dot(q, q));
-  if (!(norm > 1e-12)) return {};
-  return {q.w / norm, q.x / norm, q.y / norm, q.z / norm};
-}
-
 Affine FromMatrix(const std::array<double, 16>& m) {
   return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
 }
 
-// Nodes of a character, and the nodes that it stands on.
+// The nodes of a character and their ancestors.
 struct Members {
   std::vector<int> above;  // from the outermost one to the root's parent
   std::vector<int> nodes;  // the root and all below it, parents first
@@ -66,7 +60,7 @@ class Hierarchy {
  public:
   explicit Hierarchy(const GltfDocument& document) : nodes_(document.nodes) {}
 
-  // -1 where they are in different trees.
+  // Returns -1 if the nodes are in different trees.
   int CommonAncestor(int a, int b) const {
     while (a != b && a >= 0 && b >= 0) {
       int& deeper = nodes_[Index(a)].depth >= nodes_[Index(b)].depth ? a : b;
@@ -96,7 +90,7 @@ class Hierarchy {
   const std::vector<GltfNode>& nodes_;
 };
 
-// The roots of the characters in the file, in its order.
+// Finds the roots of the characters, in the order of the file.
 class CharacterFinder {
  public:
   CharacterFinder(const GltfDocument& document, const Hierarchy& hierarchy)
@@ -115,7 +109,7 @@ class CharacterFinder {
   }
 
  private:
-  // Where all joints hang from, or the first where they share nothing.
+  // The common ancestor of all joints, or of the first ones if there is none.
   int RootOf(const std::vector<int>& joints) const {
     int root = joints[0];
     for (int joint : joints) {
@@ -125,7 +119,7 @@ class CharacterFinder {
     return root;
   }
 
-  // One character where one root is above the other, or, without skins, where they share a tree.
+  // Two roots are one character if one is above the other, or, without skins, in the same tree.
   void Add(int root) {
     for (int& known : roots_) {
       const int common = hierarchy_.CommonAncestor(known, root);
@@ -144,7 +138,7 @@ class CharacterFinder {
   std::vector<int> roots_;
 };
 
-// A character's nodes with the tracks that move them.
+// The nodes of a character with their tracks.
 class Puppet {
  public:
   Puppet(const GltfDocument& document, Members members)
@@ -175,7 +169,6 @@ class Puppet {
     return absl::OkStatus();
   }
 
-  // Every track of the character.
   template <typename Visit>
   void ForEachTrack(Visit visit) const {
     for (const std::vector<GltfTrack>& tracks : tracks_) {
@@ -183,7 +176,7 @@ class Puppet {
     }
   }
 
-  // At rest: lengths in the world's unit, each bone in its parent's axes.
+  // The rest pose: lengths in the world's unit, each bone in its parent's axes.
   retargeting::JointTree Tree() {
     Stand(std::nullopt);
     retargeting::JointTree tree;
@@ -210,7 +203,7 @@ class Puppet {
   }
 
  private:
-  // In its parent; at rest without a moment.
+  // The transform in the parent's axes; at rest if `seconds` is absent.
   Affine Local(int node, std::optional<double> seconds) const {
     const GltfNode& written = document_.nodes[Index(node)];
     const std::vector<GltfTrack>& tracks = tracks_[Index(node)];
@@ -218,7 +211,7 @@ class Puppet {
       return FromMatrix(*written.matrix);
     }
     Vec3d translation = written.translation, scale = written.scale;
-    Quaternion rotation = AtLengthOne(written.rotation);
+    Quaternion rotation = Normalised(written.rotation);
     for (const GltfTrack& track : tracks) {
       if (!seconds.has_value()) break;
       if (track.channel().path == GltfPath::kRotation) rotation = track.RotationAt(*seconds);
@@ -242,11 +235,11 @@ class Puppet {
   Members members_;
   std::vector<std::vector<GltfTrack>> tracks_;  // [nodes]
   std::vector<bool> is_member_;                 // [nodes]
-  std::vector<bool> moves_;                     // [nodes], members and what they stand on
+  std::vector<bool> moves_;                     // [nodes], members and their ancestors
   std::vector<Affine> world_;                   // [nodes]
 };
 
-// The time from the first key of all tracks to the last, and how often keys come.
+// The times of the first and last keys of all tracks, and the rate of keys.
 struct Timing {
   double start = 0, end = 0;
   double rate_hz = kHandKeyedRateHz;
@@ -289,18 +282,19 @@ class Importer {
   absl::StatusOr<motion::Clip> Import(absl::string_view source) {
     const Hierarchy hierarchy(document_);
     const std::vector<int> roots = CharacterFinder(document_, hierarchy).Find();
-    if (roots.empty()) return Error(source, "no skin and no animated node, wanted a skeleton");
+    if (roots.empty())
+      return Error(source, "expected a skeleton, got no skin and no animated node");
     if (options_.report != nullptr) options_.report->people = static_cast<int>(roots.size());
     const std::size_t person = Index(options_.person) < roots.size() ? Index(options_.person) : 0;
     Puppet puppet(document_, hierarchy.MembersOf(roots[person]));
     if (puppet.members().nodes.size() > motion::kMaxFileJoints) {
-      return Error(source, absl::StrCat("skeleton: came ", puppet.members().nodes.size(),
-                                        " nodes, wanted at most ", motion::kMaxFileJoints));
+      return Error(source, absl::StrCat("skeleton: expected at most ", motion::kMaxFileJoints,
+                                        " nodes, got ", puppet.members().nodes.size()));
     }
     if (options_.nodes != nullptr) *options_.nodes = puppet.members().nodes;
     const GltfAnimation* animation = Choose(puppet);
     if (animation == nullptr && options_.nodes == nullptr) {
-      return Error(source, "no animation moves the skeleton");
+      return Error(source, "expected an animation of the skeleton, got none");
     }
     const absl::Status status =
         animation == nullptr ? absl::OkStatus() : puppet.ReadTracks(*animation, &buffers_);
@@ -353,12 +347,11 @@ class Importer {
                                                                retargeting::Origin::kGuessed,
                                                                "as the animation's keys suggest"};
     }
-    // A last frame that falls short of the end by rounding alone counts.
+    // Rounding must not drop the last frame.
     const double frames = std::floor((timing.end - timing.start) * timing.rate_hz + 1e-3) + 1;
     if (!(frames <= motion::kMaxMotionFrames)) {
-      return Error(
-          source, absl::StrCat("animation: came ", timing.end - timing.start, " s, wanted at most ",
-                               motion::kMaxMotionFrames, " frames"));
+      return Error(source, absl::StrCat("animation: expected at most ", motion::kMaxMotionFrames,
+                                        " frames, got ", timing.end - timing.start, " s"));
     }
     retargeting::Character character;
     character.tree = puppet->Tree();
@@ -369,14 +362,14 @@ class Importer {
     };
     retargeting::CharacterOptions options = options_;
     if (document_.writer == kDuetsWriter) {
-      // As the format has them; a child's legs would suggest another unit.
+      // The format's own values; the leg length of a child would suggest another unit.
       options.metres_per_unit = options.metres_per_unit.value_or(1);
       options.up_axis = options.up_axis.value_or(motion::UpAxis::kYUp);
     }
     return ToClip(character, source, options);
   }
 
-  // The rate that a file of Duet's own says; absent where that is none.
+  // The rate that a file written by Duet states, if it is valid.
   std::optional<double> StatedRate() const {
     if (document_.writer != kDuetsWriter || !document_.frame_rate_hz.has_value() ||
         !motion::CheckFrameRate("frame rate", *document_.frame_rate_hz).ok()) {

@@ -29,8 +29,7 @@ struct GltfImportOptions : retargeting::CharacterOptions {
 // last.
 //
 // Errors: INVALID_ARGUMENT naming `source` if there is no skeleton or no animation of it, for
-// invalid
-//         values and too many frames; those of retargeting::ToClip.
+//         invalid values and too many frames; those of retargeting::ToClip.
 absl::StatusOr<motion::Clip> FromGltf(const GltfDocument& document, absl::string_view source,
                                       const GltfFileReader& read_file,
                                       const GltfImportOptions& options = {});

@@ -30,7 +30,7 @@ constexpr std::size_t kJsonBegins = 20, kJsonLengthAt = 12, kAlignment = 4;
 
 std::size_t Index(int node) { return static_cast<std::size_t>(node); }
 
-// The document's text: of a .glb its first chunk. Requires a file that ParseGltf accepts.
+// The document's text; the first chunk of a .glb. Requires a file that ParseGltf accepts.
 absl::string_view JsonOf(absl::string_view content) {
   if (!absl::StartsWith(content, "glTF")) return content;
   std::size_t length = 0;
@@ -40,7 +40,7 @@ absl::string_view JsonOf(absl::string_view content) {
   return content.substr(kJsonBegins, length);
 }
 
-// A node at rest, in its parent or in the world; scale is the same along all axes, or their mean.
+// A node at rest, in its parent's axes or the world's. `scale` is the mean over the axes.
 struct Place {
   Vec3d at;
   Quaternion turn;
@@ -51,16 +51,10 @@ struct Place {
   }
 };
 
-Quaternion AtLengthOne(Quaternion q) {
-  const double norm = std::sqrt(Dot(q, q));
-  if (!(norm > 1e-12)) return {};
-  return {q.w / norm, q.x / norm, q.y / norm, q.z / norm};
-}
-
 Place LocalPlace(const GltfNode& node) {
   if (!node.matrix.has_value()) {
     const Vec3d s = node.scale;
-    return {node.translation, AtLengthOne(node.rotation), (s.x + s.y + s.z) / 3};
+    return {node.translation, Normalised(node.rotation), (s.x + s.y + s.z) / 3};
   }
   const auto& m = *node.matrix;
   const Vec3d x{m[0], m[1], m[2]}, y{m[4], m[5], m[6]}, z{m[8], m[9], m[10]};
@@ -100,7 +94,7 @@ class RigAnimator {
     return rig;
   }
 
-  // Adds the animation, and makes room for it in the nodes that it moves.
+  // Adds the animation and prepares the nodes that it moves.
   void Write(const std::vector<CharacterPose>& poses, double frame_rate_hz, GltfWriter* writer) {
     AnimationWriter animation(poses.size(), frame_rate_hz, writer);
     for (std::size_t j = 0; j < nodes_.size(); ++j) AddJoint(j, poses, writer, &animation);
@@ -114,7 +108,7 @@ class RigAnimator {
     return RestAbove(written.parent) * LocalPlace(written);
   }
 
-  // A joint in the file's world when the character stands so.
+  // A joint in the file's world axes in this pose.
   Place Posed(const CharacterPose& pose, std::size_t j) const {
     const Quaternion turn = Inverse(to_world_) * pose.turns[j] * to_world_;
     return {Rotate(Inverse(to_world_), pose.positions[j]) * (1 / fit_.metres_per_unit),
@@ -134,7 +128,7 @@ class RigAnimator {
     bool turned = false, moved = false;
     for (const CharacterPose& pose : poses) {
       const Place above = PosedAbove(pose, j), here = Posed(pose, j);
-      Quaternion turn = AtLengthOne(Inverse(above.turn) * here.turn);
+      Quaternion turn = Normalised(Inverse(above.turn) * here.turn);
       if (!turns.empty() && Dot(turn, turns.back()) < 0)
         turn = {-turn.w, -turn.x, -turn.y, -turn.z};
       turns.push_back(turn);
@@ -148,7 +142,7 @@ class RigAnimator {
     if (turned) animation->Rotate(nodes_[j], turns);
   }
 
-  // A node that is animated may not have a matrix.
+  // Replaces the matrix of a node: an animated node must not have one.
   void MakeMovable(int node, const Place& rest, GltfWriter* writer) const {
     ordered_json& written = writer->json()["nodes"][Index(node)];
     if (!written.contains("matrix")) return;
@@ -188,11 +182,7 @@ absl::StatusOr<GltfWriter> Gather(absl::string_view content, const GltfDocument&
   return GltfWriter(std::move(json), std::move(all));
 }
 
-}  // namespace
-
-namespace {
-
-// A character of a file, understood.
+// A character of a file.
 struct RigFile {
   GltfDocument document;
   std::vector<int> nodes;

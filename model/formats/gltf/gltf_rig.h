@@ -20,13 +20,13 @@ namespace duet::formats::gltf {
 //
 // `content` is the file, .gltf or .glb; `options` select the character and how to read it.
 // Errors: INVALID_ARGUMENT naming `source` for a file that FromGltf rejects or a rig that
-// TransferToRig
-//         rejects; those of `read_file`.
+//         TransferToRig rejects; those of `read_file`.
 absl::StatusOr<std::string> OntoGltfRig(const motion::Clip& clip, absl::string_view content,
                                         absl::string_view source, const GltfFileReader& read_file,
                                         const GltfImportOptions& options, GltfContainer container);
 
-// The rig of a character of a glTF file, for writing in another format. Errors as of OntoGltfRig.
+// Returns the rig of a character of a glTF file, to write in another format. Errors: those of
+// OntoGltfRig.
 absl::StatusOr<retargeting::CharacterRig> ReadGltfRig(absl::string_view content,
                                                       absl::string_view source,
                                                       const GltfFileReader& read_file,

@@ -235,8 +235,10 @@ TEST_F(CommandLineTest, RigRequiresAnOutputFormatWithARig) {
 }
 
 TEST_F(CommandLineTest, UnwritableOutputsAreRejectedFirst) {
-  ExpectRefused({"--label", "kick=1", "--out", Out("pair.fbx")},
-                "\".fbx\", wanted .html, .glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt");
+  ExpectRefused(
+      {"--label", "kick=1", "--out", Out("pair.fbx")},
+      "expected .html, .glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt (SBU text), got "
+      "\".fbx\"");
   ExpectRefused({"--label", "kick=1", "--out", Out("no/pair.csv")}, "there is no folder");
   const std::string leader = Out("leader.csv");
   WriteTestFile(leader, "");
@@ -256,7 +258,7 @@ TEST_F(CommandLineTest, EachOfSeveralSamplesHasFilesNamedAfterItsSeed) {
 
 TEST_F(CommandLineTest, OutputWithoutAnExtensionIsRejectedByName) {
   ExpectRefused({"--label", "kick=1", "--out", Out("pair"), "--samples", "2"},
-                "pair: extension: came \"\", wanted .html");
+                "pair: extension: expected .html");
 }
 
 TEST_F(CommandLineTest, NoSampleReplacesTheLeader) {

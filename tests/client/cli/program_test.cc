@@ -503,7 +503,7 @@ TEST_F(ProgramTest, JointMapFileMapsTheJoints) {
   WriteTestFile(folder_ / "leader.csv", text);
   EXPECT_EQ(Synthesize("pair.html"), 42);
   EXPECT_THAT(err_.str(),
-              AllOf(HasSubstr("nothing stands for left_hand, right_hand"),
+              AllOf(HasSubstr("joints: expected joints for left_hand, right_hand, got none"),
                     HasSubstr("Specify it with --joint-map MODEL_JOINT=FILE_JOINT, or a "
                               "table of them with --joint-map-file FILE.\n")));
   SynthesisRequest sent;
@@ -523,7 +523,7 @@ TEST_F(ProgramTest, JointMapFileMapsTheJoints) {
   EXPECT_NEAR(sent.leader.at(3, right).x, leader_.at(3, right).x, 1e-5);
   WriteTestFile(folder_ / "rig.txt", "left_hand\n");
   EXPECT_EQ(Synthesize("pair.html", {"--joint-map-file", Path("rig.txt")}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("rig.txt:1: came \"left_hand\""));
+  EXPECT_THAT(err_.str(), HasSubstr("rig.txt:1: expected MODEL_JOINT=FILE_JOINT"));
 }
 
 TEST_F(ProgramTest, MissingJointMapFileMakesNoCall) {
@@ -662,7 +662,7 @@ TEST_F(ProgramTest, AMissingCertificateIsBadInput) {
 TEST_F(ProgramTest, AFileTooLargeForACertificateIsBadInput) {
   WriteTestFile(folder_ / "ca.pem", std::string((1 << 20) + 1, 'x'));
   EXPECT_EQ(Run({"models", "--tls-ca", Path("ca.pem")}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("ca.pem: larger than 1 MiB, wanted a PEM file"));
+  EXPECT_THAT(err_.str(), HasSubstr("ca.pem: expected a PEM file of at most 1 MiB, got more"));
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ TEST(AmcImport, ReadsAPerson) {
 }
 
 // The same person in metres that claims to be in another unit.
-TEST(AmcImport, AStatedUnitThatNoPersonFitsIsPassedOver) {
+TEST(AmcImport, IgnoresAStatedUnitThatGivesNoPersonsSize) {
   AsfFiles files = MakeAsfFiles(MakePerson({2}));
   const std::string stated = "length 0.45";
   ASSERT_NE(files.asf.find(stated), std::string::npos);
@@ -55,19 +55,19 @@ TEST(AmcImport, AStatedUnitThatNoPersonFitsIsPassedOver) {
   EXPECT_THAT(notes, Contains(HasSubstr("unit: CMU's unit")));
 }
 
-TEST(AmcImport, TakesTheRateThatIsGiven) {
+TEST(AmcImport, UsesTheSpecifiedRate) {
   AmcImportOptions options;
   options.frame_rate_hz = 60;
   EXPECT_EQ(Read(MakeAsfFiles(MakePerson({2})), options)->frame_rate_hz, 60);
 }
 
-TEST(AmcImport, LooksForASkeletonOfTheMotionAndOfItsSubject) {
+TEST(AmcImport, FindsTheSkeletonOfTheMotionOrItsSubject) {
   EXPECT_THAT(SkeletonNames("01_02.amc"), ElementsAre("01_02.asf", "01.asf"));
   EXPECT_THAT(SkeletonNames("walk.amc"), ElementsAre("walk.asf"));
   EXPECT_THAT(SkeletonNames("_1.amc"), ElementsAre("_1.asf"));
 }
 
-TEST(AmcImport, RefusesEveryTruncation) {
+TEST(AmcImport, RejectsEveryTruncation) {
   const AsfFiles files = MakeAsfFiles(MakePerson({2}));
   for (std::size_t size = 0; size + 8 < files.asf.size(); ++size) {
     EXPECT_FALSE(ParseAsf(files.asf.substr(0, size), "a.asf").ok()) << size;

@@ -6,6 +6,7 @@
 #include "absl/strings/str_replace.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/expect_near.h"
 
 namespace duet::formats::asf {
 namespace {
@@ -47,13 +48,9 @@ constexpr char kWave[] =
     "arm 0\n"
     "hand\n";
 
-void ExpectNear(Vec3d a, Vec3d b) {
-  EXPECT_NEAR(a.x, b.x, 1e-5);
-  EXPECT_NEAR(a.y, b.y, 1e-5);
-  EXPECT_NEAR(a.z, b.z, 1e-5);
-}
+void ExpectNear(Vec3d a, Vec3d b) { test::ExpectNear(a, b, 1e-5); }
 
-TEST(AmcMotion, TurnsBonesAboutAxesOfTheirOwn) {
+TEST(AmcMotion, RotatesBonesAboutTheirOwnAxes) {
   const AsfSkeleton arm = Arm();
   const absl::StatusOr<AmcMotion> motion = ParseAmc(kWave, "a.amc", arm);
   ASSERT_TRUE(motion.ok()) << motion.status();
@@ -74,7 +71,7 @@ TEST(AmcMotion, TurnsBonesAboutAxesOfTheirOwn) {
   ExpectNear(at[3], {0, 0, 112});
 }
 
-TEST(AmcMotion, ReadsRadiansWhereTheMotionOrTheSkeletonSaysSo) {
+TEST(AmcMotion, ReadsRadiansIfMotionOrSkeletonStatesThem) {
   AsfSkeleton arm = Arm();
   const std::string quarter = "1\nroot 0 0 0 0 0\narm 1.5707963\n";
   for (const bool by_skeleton : {false, true}) {
@@ -96,18 +93,22 @@ TEST(AmcMotion, NamesThePlaceOfAnError) {
     EXPECT_EQ(motion.status().code(), absl::StatusCode::kInvalidArgument) << from;
     return std::string(motion.status().message());
   };
-  EXPECT_THAT(error("arm 90", "arm x"), HasSubstr("a.amc:8: \"arm\": came \"x\""));
-  EXPECT_THAT(error("arm 90", "arm nan"), HasSubstr("wanted a finite number"));
-  EXPECT_THAT(error("arm 90", "arm 90 1"), HasSubstr("\"arm\": came 2 values, wanted 1"));
-  EXPECT_THAT(error("arm 90", "leg 90"), HasSubstr("\"leg\", which is no bone of the skeleton"));
-  EXPECT_THAT(error("arm 90\n", ""), HasSubstr("frame 2: no values for \"arm\""));
-  EXPECT_THAT(error("arm 0\n2\n", "2\n"), HasSubstr("frame 1: no values for \"arm\""));
-  EXPECT_THAT(error("arm 90\n", "arm 90\narm 90\n"), HasSubstr("a.amc:9: \"arm\" comes twice"));
-  EXPECT_THAT(error("1\nroot", "root"), HasSubstr("came \"root\", wanted the number of a frame"));
+  EXPECT_THAT(error("arm 90", "arm x"),
+              HasSubstr("a.amc:8: \"arm\": expected a finite number, got \"x\""));
+  EXPECT_THAT(error("arm 90", "arm nan"), HasSubstr("expected a finite number"));
+  EXPECT_THAT(error("arm 90", "arm 90 1"), HasSubstr("\"arm\": expected 1 values, got 2"));
+  EXPECT_THAT(error("arm 90", "leg 90"), HasSubstr("expected a bone of the skeleton, got \"leg\""));
+  EXPECT_THAT(error("arm 90\n", ""),
+              HasSubstr("frame 2, before this line: expected values for \"arm\""));
+  EXPECT_THAT(error("arm 0\n2\n", "2\n"),
+              HasSubstr("frame 1, before this line: expected values for \"arm\""));
+  EXPECT_THAT(error("arm 90\n", "arm 90\narm 90\n"),
+              HasSubstr("a.amc:9: \"arm\": expected once per frame, got twice"));
+  EXPECT_THAT(error("1\nroot", "root"), HasSubstr("expected a frame number, got \"root\""));
   EXPECT_THAT(error("root 0 0 0 90 90\narm 0\nhand\n", ""),
-              HasSubstr("frame 3: no values for \"root\""));
+              HasSubstr("frame 3, before this line: expected values for \"root\""));
   EXPECT_THAT(std::string(ParseAmc("", "a.amc", Arm()).status().message()),
-              HasSubstr("a.amc:1: no frames"));
+              HasSubstr("a.amc:1: expected at least 1 frame, got none"));
 }
 
 }  // namespace

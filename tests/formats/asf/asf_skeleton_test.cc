@@ -5,6 +5,7 @@
 #include "absl/strings/str_replace.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/expect_near.h"
 
 namespace duet::formats::asf {
 namespace {
@@ -59,11 +60,7 @@ std::string ErrorWith(const std::string& from, const std::string& to) {
   return std::string(skeleton.status().message());
 }
 
-void ExpectNear(Vec3d a, Vec3d b) {
-  EXPECT_NEAR(a.x, b.x, 1e-9);
-  EXPECT_NEAR(a.y, b.y, 1e-9);
-  EXPECT_NEAR(a.z, b.z, 1e-9);
-}
+void ExpectNear(Vec3d a, Vec3d b) { test::ExpectNear(a, b, 1e-9); }
 
 TEST(AsfSkeleton, ReadsBonesParentsFirst) {
   const absl::StatusOr<AsfSkeleton> skeleton = ParseAsf(kArm, "a.asf");
@@ -87,7 +84,7 @@ TEST(AsfSkeleton, ReadsBonesParentsFirst) {
 }
 
 // About x first, then about z: y goes to z and stays there.
-TEST(AsfSkeleton, TurnsAxesInTheOrderOfTheirLetters) {
+TEST(AsfSkeleton, RotatesAxesInTheOrderOfTheirLetters) {
   const absl::StatusOr<AsfSkeleton> skeleton = ParseAsf(kArm, "a.asf");
   ASSERT_TRUE(skeleton.ok()) << skeleton.status();
   ExpectNear(Rotate(skeleton->bones[1].axes, {0, 1, 0}), {0, 0, 1});
@@ -109,33 +106,37 @@ TEST(AsfSkeleton, ReadsRadians) {
 
 TEST(AsfSkeleton, NamesThePlaceOfAnError) {
   EXPECT_THAT(ErrorWith("position 1 2 3", "position 1 2 x"),
-              HasSubstr("a.asf:9: position: came \"position 1 2 x\", wanted three numbers"));
+              HasSubstr("a.asf:9: position: expected three numbers, got \"position 1 2 x\""));
   EXPECT_THAT(ErrorWith("direction 0 0 2", "direction 0 0"), HasSubstr("a.asf:15: direction"));
-  EXPECT_THAT(ErrorWith("length 5", "length far"), HasSubstr("length: came \"length far\""));
+  EXPECT_THAT(ErrorWith("length 5", "length far"),
+              HasSubstr("length: expected a number, got \"length far\""));
   EXPECT_THAT(ErrorWith("0 0 0 ZYX", "0 0 0 ZYQ"), HasSubstr("an order of axes such as XYZ"));
   EXPECT_THAT(ErrorWith("0 0 0 ZYX", "0 0 0 ZYXZ"), HasSubstr("an order of axes"));
-  EXPECT_THAT(ErrorWith("dof rx\n", "dof rx tx\n"), HasSubstr("wanted rx ry rz"));
+  EXPECT_THAT(ErrorWith("dof rx\n", "dof rx tx\n"), HasSubstr("expected rx ry rz"));
   EXPECT_THAT(ErrorWith("dof rx\n", "dof rx rx\n"), HasSubstr("each at most once"));
-  EXPECT_THAT(ErrorWith("order TX", "order L"), HasSubstr("order: came"));
+  EXPECT_THAT(ErrorWith("order TX", "order L"), HasSubstr("order: expected TX"));
   EXPECT_THAT(ErrorWith("angle deg", "angle grad"), HasSubstr("angle deg or angle rad"));
-  EXPECT_THAT(ErrorWith("name forearm", "id 3"), HasSubstr("a.asf:20: a bone without a name"));
-  EXPECT_THAT(ErrorWith("name forearm", "name arm"), HasSubstr("\"arm\": given twice"));
-  EXPECT_THAT(ErrorWith("  begin\n    id 2\n", "    id 2\n"), HasSubstr("wanted begin"));
-  EXPECT_THAT(ErrorWith("  end\n:hierarchy", ":hierarchy"), HasSubstr("wanted end"));
-  EXPECT_THAT(ErrorWith("  end\n:skin arm.skin\n", ""), HasSubstr("came the end of the file"));
+  EXPECT_THAT(ErrorWith("name forearm", "id 3"),
+              HasSubstr("a.asf:20: name: expected a word, got none"));
+  EXPECT_THAT(ErrorWith("name forearm", "name arm"),
+              HasSubstr("expected a new bone, got \"arm\" again"));
+  EXPECT_THAT(ErrorWith("  begin\n    id 2\n", "    id 2\n"), HasSubstr("expected begin"));
+  EXPECT_THAT(ErrorWith("  end\n:hierarchy", ":hierarchy"), HasSubstr("expected end"));
+  EXPECT_THAT(ErrorWith("  end\n:skin arm.skin\n", ""), HasSubstr("got the end of the file"));
 }
 
-TEST(AsfSkeleton, RefusesBonesThatAreNoTreeBelowTheRoot) {
+TEST(AsfSkeleton, RejectsBonesThatAreNotATreeBelowTheRoot) {
   EXPECT_THAT(ErrorWith("    arm forearm\n", ""),
-              HasSubstr("a.asf: hierarchy: came 1 bones below the root, wanted all 2"));
-  EXPECT_THAT(ErrorWith("root arm\n", "forearm arm\n"), HasSubstr("came 0 bones below the root"));
-  EXPECT_THAT(ErrorWith("arm forearm\n", "arm leg\n"), HasSubstr("came \"leg\", wanted a bone"));
+              HasSubstr("a.asf: hierarchy: expected all 2 bones below the root, got 1"));
+  EXPECT_THAT(ErrorWith("root arm\n", "forearm arm\n"), HasSubstr("bones below the root, got 0"));
+  EXPECT_THAT(ErrorWith("arm forearm\n", "arm leg\n"), HasSubstr("expected a bone, got \"leg\""));
   EXPECT_THAT(ErrorWith("arm forearm\n", "arm forearm forearm\n"),
-              HasSubstr("\"forearm\" has a parent already"));
-  EXPECT_THAT(ErrorWith("arm forearm\n", "arm forearm root\n"), HasSubstr("has a parent already"));
-  EXPECT_THAT(ErrorWith("arm forearm\n", "arm\n"), HasSubstr("a bone and those below it"));
+              HasSubstr("expected one parent for \"forearm\", got two"));
+  EXPECT_THAT(ErrorWith("arm forearm\n", "arm forearm root\n"),
+              HasSubstr("expected one parent for"));
+  EXPECT_THAT(ErrorWith("arm forearm\n", "arm\n"), HasSubstr("expected a bone and its children"));
   EXPECT_THAT(std::string(ParseAsf("", "a.asf").status().message()),
-              HasSubstr("a.asf:1: no bones, wanted :bonedata"));
+              HasSubstr("a.asf:1: :bonedata: expected at least 1 bone, got none"));
 }
 
 }  // namespace

@@ -7,10 +7,12 @@
 #include "absl/strings/str_replace.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/expect_near.h"
 
 namespace duet::formats::bvh {
 namespace {
 
+using test::ExpectNear;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -46,12 +48,6 @@ std::string ParseError(const std::string& text) {
 std::string ErrorWith(const std::string& from, const std::string& to) {
   EXPECT_THAT(kArm, HasSubstr(from));
   return ParseError(absl::StrReplaceAll(kArm, {{from, to}}));
-}
-
-void ExpectNear(retargeting::Vec3d a, retargeting::Vec3d b) {
-  EXPECT_NEAR(a.x, b.x, 1e-6);
-  EXPECT_NEAR(a.y, b.y, 1e-6);
-  EXPECT_NEAR(a.z, b.z, 1e-6);
 }
 
 TEST(BvhDocument, ReadsAnyHierarchy) {
@@ -142,7 +138,7 @@ TEST(BvhDocument, ReadsPositionChannelsOfOneKindThroughoutAFile) {
 }
 
 // In the first frame the spine alone speaks for the wrong kind.
-TEST(BvhDocument, DecidesOnPositionChannelsByAllFrames) {
+TEST(BvhDocument, InfersPositionChannelsFromAllFrames) {
   const absl::StatusOr<BvhDocument> document = ParseBvh(
       "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
       "CHANNELS 1 Yposition\n}\n}\nMOTION\nFrames: 3\nFrame Time: 1\n4\n10\n9\n",
@@ -152,7 +148,7 @@ TEST(BvhDocument, DecidesOnPositionChannelsByAllFrames) {
   ExpectNear(BvhKinematics(*document).Positions(0)[1], {0, 4, 0});
 }
 
-TEST(BvhDocument, OffsetsThatAreRoundingHaveNoVoteOnPositionChannels) {
+TEST(BvhDocument, OffsetsFromRoundingDoNotAffectPositionChannels) {
   const absl::StatusOr<BvhDocument> document = ParseBvh(
       "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
       "CHANNELS 1 Yposition\nJOINT c\n{\nOFFSET 0 1e-6 0\nCHANNELS 1 Yposition\n"
@@ -164,7 +160,7 @@ TEST(BvhDocument, OffsetsThatAreRoundingHaveNoVoteOnPositionChannels) {
 }
 
 // The root's channels are not those of the joint that is asked.
-TEST(BvhDocument, DecidesOnPositionChannelsBehindThoseOfTheRoot) {
+TEST(BvhDocument, InfersPositionChannelsAfterThoseOfTheRoot) {
   const absl::StatusOr<BvhDocument> document = ParseBvh(
       "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Yposition\nJOINT b\n{\nOFFSET 0 10 0\n"
       "CHANNELS 1 Yposition\n}\n}\nMOTION\nFrames: 1\nFrame Time: 1\n0 10\n",
@@ -174,7 +170,7 @@ TEST(BvhDocument, DecidesOnPositionChannelsBehindThoseOfTheRoot) {
 }
 
 // A thousandth of a unit is rounding where bones are hundreds long.
-TEST(BvhDocument, RoundingIsAShareOfTheLongestOffset) {
+TEST(BvhDocument, RoundingIsRelativeToTheLongestOffset) {
   const absl::StatusOr<BvhDocument> document = ParseBvh(
       "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 100 0\n"
       "CHANNELS 1 Yposition\nJOINT c\n{\nOFFSET 0 1e-3 0\nCHANNELS 1 Yposition\n"
@@ -185,7 +181,7 @@ TEST(BvhDocument, RoundingIsAShareOfTheLongestOffset) {
   EXPECT_EQ(FindPositionChannels(*document), PositionChannels::kReplaceOffset);
 }
 
-TEST(BvhDocument, PositionChannelsOfARootNeedNoDecision) {
+TEST(BvhDocument, PositionChannelsOfARootAreNotInferred) {
   const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
   ASSERT_TRUE(document.ok()) << document.status();
   EXPECT_EQ(FindPositionChannels(*document), std::nullopt);
@@ -202,7 +198,7 @@ TEST(BvhDocument, WritesWhatItReads) {
   EXPECT_EQ(again->joints[1].name, "Fore Arm");
 }
 
-TEST(BvhDocument, PassesOverAByteOrderMark) {
+TEST(BvhDocument, IgnoresAByteOrderMark) {
   const absl::StatusOr<BvhDocument> document =
       ParseBvh(absl::StrCat("\xEF\xBB\xBF", kArm), "a.bvh");
   ASSERT_TRUE(document.ok()) << document.status();
@@ -211,35 +207,43 @@ TEST(BvhDocument, PassesOverAByteOrderMark) {
 
 TEST(BvhDocument, NamesThePlaceOfAnError) {
   EXPECT_THAT(ErrorWith("HIERARCHY", "hello"),
-              HasSubstr("a.bvh:1: came \"hello\", wanted HIERARCHY"));
-  EXPECT_THAT(ErrorWith("OFFSET 10 0 0", "OFFSET 10 x 0"), HasSubstr("a.bvh:7: came \"x\""));
-  EXPECT_THAT(ErrorWith("OFFSET 10 0 0", ""), HasSubstr("joint \"Fore Arm\": no OFFSET"));
-  EXPECT_THAT(ErrorWith("CHANNELS 1 z", "CHANNELS 7 z"), HasSubstr("a.bvh:8: came \"7\""));
-  EXPECT_THAT(ErrorWith("CHANNELS 1 z", "CHANNELS 1 w"), HasSubstr("came \"wrotation\""));
-  EXPECT_THAT(ErrorWith("Xrotation", "Yrotation"), HasSubstr("channel Yrotation: given twice"));
-  EXPECT_THAT(ErrorWith("JOINT Fore Arm", "JOINT"), HasSubstr("a.bvh:5: JOINT: no name"));
-  EXPECT_THAT(ErrorWith("End Site", "End"), HasSubstr("End: no name"));
-  EXPECT_THAT(ErrorWith("ROOT", "JOINT"), HasSubstr("wanted ROOT"));
-  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 0"), HasSubstr("a.bvh:16: came \"0\""));
+              HasSubstr("a.bvh:1: expected HIERARCHY at the start of a BVH file, got \"hello\""));
+  EXPECT_THAT(ErrorWith("OFFSET 10 0 0", "OFFSET 10 x 0"),
+              HasSubstr("a.bvh:7: expected a number of OFFSET x y z, got \"x\""));
+  EXPECT_THAT(ErrorWith("OFFSET 10 0 0", ""),
+              HasSubstr("joint \"Fore Arm\": expected an OFFSET, got none"));
+  EXPECT_THAT(ErrorWith("CHANNELS 1 z", "CHANNELS 7 z"),
+              HasSubstr("a.bvh:8: expected a number of channels, 0 to 6, got \"7\""));
+  EXPECT_THAT(ErrorWith("CHANNELS 1 z", "CHANNELS 1 w"), HasSubstr("got \"wrotation\""));
+  EXPECT_THAT(ErrorWith("Xrotation", "Yrotation"),
+              HasSubstr("channel Yrotation: expected once per joint, got twice"));
+  EXPECT_THAT(ErrorWith("JOINT Fore Arm", "JOINT"),
+              HasSubstr("a.bvh:5: JOINT: expected a name, got none"));
+  EXPECT_THAT(ErrorWith("End Site", "End"), HasSubstr("End: expected a name, got none"));
+  EXPECT_THAT(ErrorWith("ROOT", "JOINT"), HasSubstr("expected ROOT"));
+  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 0"),
+              HasSubstr("a.bvh:16: expected a number of frames, 1 to 200000, got \"0\""));
   EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 999999999"), HasSubstr("a number of frames"));
   EXPECT_THAT(ErrorWith("Time: 0.04", "Time: 0"), HasSubstr("a frame time of"));
   EXPECT_THAT(ErrorWith("90 0 0 7 8 9 0", "90 0 0 7 8 9"),
-              HasSubstr("a.bvh:18: came 6 channel values, wanted 7"));
+              HasSubstr("a.bvh:18: expected 7 channel values, got 6"));
   EXPECT_THAT(ErrorWith("90 0 0 7 8 9 0", "90 0 0 7 8 nan 0"),
-              HasSubstr("a.bvh:18: channel value 6: came \"nan\""));
-  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 3"), HasSubstr("came 2 frames, wanted the 3"));
-  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 1"), HasSubstr("came more frames than the 1"));
+              HasSubstr("a.bvh:18: channel value 6: expected a finite number, got \"nan\""));
+  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 3"),
+              HasSubstr("expected the 3 frames of Frames:, got 2"));
+  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 1"),
+              HasSubstr("expected the 1 frames of Frames:, got more"));
 }
 
-TEST(BvhDocument, RefusesEveryTruncation) {
+TEST(BvhDocument, RejectsEveryTruncation) {
   const std::string text(kArm, sizeof(kArm) - 6);  // without the last value and what follows
   for (std::size_t size = 0; size < text.size(); ++size) ParseError(text.substr(0, size));
 }
 
-TEST(BvhDocument, RefusesEndlessNesting) {
+TEST(BvhDocument, RejectsEndlessNesting) {
   std::string text = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n";
   for (int i = 0; i < 100000; ++i) text += "JOINT a\n{\nOFFSET 0 0 0\n";
-  EXPECT_THAT(ParseError(text), HasSubstr("more than 1024 joints"));
+  EXPECT_THAT(ParseError(text), HasSubstr("expected at most 1024 joints, got more"));
 }
 
 TEST(BvhDocument, ReadsSeveralRoots) {

@@ -263,7 +263,7 @@ TEST(BvhExport, RestsInATPoseFacingForwards) {
   EXPECT_GT(offset(2, 0).y, 0.38);            // the head is up
 }
 
-TEST(BvhExport, TakesASkeletonWithoutLandmarks) {
+TEST(BvhExport, AcceptsASkeletonWithoutLandmarks) {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   skeleton.hips.reset();
   skeleton.feet.reset();
@@ -315,7 +315,7 @@ TEST(BvhExport, NamesEveryJointOnceWithoutSpaces) {
     EXPECT_EQ(names.count(name), 1u) << name;
 }
 
-TEST(BvhExport, RefusesWhatIsNoMotionOfTheSkeleton) {
+TEST(BvhExport, RejectsMotionsOfAnotherSkeleton) {
   motion::Clip renamed = MakePerson();
   renamed.joint_names[0] = "tail";
   EXPECT_EQ(ToBvh(renamed, motion::SbuSkeleton()).status().code(),
@@ -327,7 +327,7 @@ TEST(BvhExport, RefusesWhatIsNoMotionOfTheSkeleton) {
   motion::Clip empty = MakePerson();
   empty.poses = {};
   EXPECT_THAT(std::string(ToBvh(empty, motion::SbuSkeleton()).status().message()),
-              HasSubstr("no frames"));
+              HasSubstr("expected at least 1 frame, got none"));
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST(BvhImport, ReadsWhatWeWrite) {
   EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
 }
 
-TEST(BvhImport, ASkeletonWithoutFeetNeedsItsUnitSaid) {
+TEST(BvhImport, ASkeletonWithoutFeetRequiresAUnit) {
   const motion::Clip clip = MakePerson();
   BvhImportOptions options;
   options.skeleton.feet.reset();
@@ -59,7 +59,7 @@ TEST(BvhImport, ASkeletonWithoutFeetNeedsItsUnitSaid) {
   EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
 }
 
-TEST(BvhImport, FindsTheUnitFromThePersonsSize) {
+TEST(BvhImport, InfersTheUnitFromThePersonsSize) {
   const motion::Clip clip = MakePerson();
   const std::pair<double, const char*> units[] = {
       {1, "unit: centimetres"},          {0.01, "unit: metres"},
@@ -77,7 +77,7 @@ TEST(BvhImport, FindsTheUnitFromThePersonsSize) {
   }
 }
 
-TEST(BvhImport, TakesLegsOfSevenTenthsToOnePointFourMetresForAPersons) {
+TEST(BvhImport, AcceptsLegsFromSevenTenthsToOnePointFourMetres) {
   const motion::Clip clip = MakePerson({2});
   const double leg = 0.41 + 0.43 + 0.237;  // of MakePerson, foot to torso
   const std::pair<double, bool> lengths[] = {
@@ -87,13 +87,12 @@ TEST(BvhImport, TakesLegsOfSevenTenthsToOnePointFourMetresForAPersons) {
     BvhImportOptions options;
     options.notes = &notes;
     ASSERT_TRUE(FromBvh(Scaled(Export(clip), metres / leg), "a.bvh", options).ok());
-    const std::string note =
-        absl::StrCat("unit: centimetres (foot to torso is then ", metres, " m)");
+    const std::string note = absl::StrCat("unit: centimetres (foot to torso is ", metres, " m)");
     EXPECT_EQ(std::find(notes.begin(), notes.end(), note) != notes.end(), taken) << metres;
   }
 }
 
-TEST(BvhImport, GuessesTheUnitOfASizeThatIsNoPersonsAndWarns) {
+TEST(BvhImport, WarnsIfNoUnitGivesAPersonsSize) {
   const motion::Clip clip = MakePerson();
   const double leg = 0.41 + 0.43 + 0.237;
   const BvhDocument odd = Scaled(Export(clip), 2.24 / leg);  // 224 units from foot to root
@@ -103,8 +102,8 @@ TEST(BvhImport, GuessesTheUnitOfASizeThatIsNoPersonsAndWarns) {
   const absl::StatusOr<motion::Clip> guessed = FromBvh(odd, "a.bvh", options);
   ASSERT_TRUE(guessed.ok()) << guessed.status();
   EXPECT_THAT(notes,
-              Contains(HasSubstr("warning: unit: a guess: foot to torso is 224 units, no person's "
-                                 "in any usual unit, and was taken as 1 m")));
+              Contains(HasSubstr("warning: unit: a guess: foot to torso is 224 units, which is no "
+                                 "person's in any usual unit, and was read as 1 m")));
   motion::Clip smaller = clip;
   for (motion::Vec3& p : smaller.poses.all()) p = p * static_cast<float>(1 / leg);
   EXPECT_LT(LargestDistance(*guessed, smaller), kOneMillimetre);
@@ -132,18 +131,18 @@ TEST(BvhImport, GuessesTheSameUnitForEveryClipOfARig) {
   EXPECT_EQ(before, after);
 }
 
-TEST(BvhImport, RefusesAFigureWithoutSizeAndUnitsThatAreNone) {
+TEST(BvhImport, RejectsACharacterWithoutSizeAndInvalidUnits) {
   const motion::Clip clip = MakePerson({2});
   const BvhDocument point = Scaled(Export(clip), 0);
   const absl::StatusOr<motion::Clip> refused = FromBvh(point, "a.bvh");
   EXPECT_EQ(refused.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(refused.status().message()),
-              HasSubstr("a.bvh: size: foot to torso came as 0 units"));
+              HasSubstr("a.bvh: size: expected a distance from foot to torso, got 0 units"));
   BvhImportOptions options;
   for (double unit : {0.0, -1.0, 1e30, std::nan("")}) {
     options.metres_per_unit = unit;
     EXPECT_THAT(std::string(FromBvh(Export(clip), "a.bvh", options).status().message()),
-                HasSubstr("metres per unit: came"));
+                HasSubstr("metres per unit: expected more than 0"));
   }
 }
 
@@ -168,7 +167,7 @@ TEST(BvhImport, FindsTheUpAxis) {
   EXPECT_LT(LargestDistance(*read, z_up), kOneMillimetre);
 }
 
-TEST(BvhImport, WarnsAndTakesYAsUpWhereThePersonStandsAlongX) {
+TEST(BvhImport, WarnsAndAssumesYIfThePersonStandsAlongX) {
   motion::Clip x_up = MakePerson();
   for (motion::Vec3& p : x_up.poses.all()) p = {p.y, -p.x, p.z};
   std::vector<std::string> notes;
@@ -201,7 +200,7 @@ TEST(BvhImport, FindsTheUpAxisFromTheWholeMotion) {
   EXPECT_THAT(notes, Not(Contains(HasSubstr("up axis:"))));
 }
 
-TEST(BvhImport, RoundsFrameTimesToTheRateThatIsMeant) {
+TEST(BvhImport, RoundsFrameTimesToTheIntendedRate) {
   const std::pair<double, double> rates[] = {{0.0333333, 30}, {0.033333, 30},  {0.0083333, 120},
                                              {0.041667, 24},  {0.0166667, 60}, {0.04, 25},
                                              {0.008333, 120}, {0.0041666, 240}};
@@ -254,7 +253,7 @@ BvhDocument BelowAStandingRoot(const BvhDocument& person, PositionChannels kind)
   return document;
 }
 
-TEST(BvhImport, ReadsPositionChannelsOfEveryJointHoweverTheyAreMeant) {
+TEST(BvhImport, ReadsPositionChannelsOfBothMeanings) {
   PersonOptions near, far;
   near.at = {0.1f, 1, 0.05f};
   far.at = {1.4f, 0.95f, -1.9f};
@@ -276,7 +275,7 @@ TEST(BvhImport, ReadsPositionChannelsOfEveryJointHoweverTheyAreMeant) {
   }
 }
 
-TEST(BvhImport, SaysNothingOfPositionChannelsWhereOnlyTheRootHasThem) {
+TEST(BvhImport, ReportsNoPositionChannelsIfOnlyTheRootHasThem) {
   std::vector<std::string> notes;
   BvhImportOptions options;
   options.notes = &notes;

@@ -87,7 +87,7 @@ double BetweenKeys(const BvhDocument& document, const std::vector<BvhTrack>& tra
   return largest / kDegree;
 }
 
-TEST(WriteMotion, StraightUpThroughTheLockNoAngleTurnsFartherThanTheArm) {
+TEST(WriteMotion, ThroughGimbalLockNoAngleChangesMoreThanTheArm) {
   std::vector<std::string> notes;
   const BvhDocument document = Written(0, {1, &notes});
   EXPECT_LT(LargestStep(document), 12.001);
@@ -95,7 +95,7 @@ TEST(WriteMotion, StraightUpThroughTheLockNoAngleTurnsFartherThanTheArm) {
   EXPECT_TRUE(notes.empty()) << notes[0];
 }
 
-TEST(WriteMotion, PastTheLockTellsHowFarLinesAreOffAndHowManyKeysWouldDo) {
+TEST(WriteMotion, NearGimbalLockReportsTheErrorAndSufficientKeys) {
   std::vector<std::string> notes;
   const BvhDocument document = Written(3, {1, &notes});
   EXPECT_LT(LargestStep(document), 102);  // a quarter turn, and the arm's own 12
@@ -103,7 +103,7 @@ TEST(WriteMotion, PastTheLockTellsHowFarLinesAreOffAndHowManyKeysWouldDo) {
   EXPECT_GT(off, 1);
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_THAT(notes[0], HasSubstr("\"arm\" comes near gimbal lock"));
-  EXPECT_THAT(notes[0], HasSubstr("4 keys per frame bring that below 1"));
+  EXPECT_THAT(notes[0], HasSubstr("4 keys per frame reduce this below 1"));
 }
 
 TEST(WriteMotion, KeysBetweenFramesStayNearTheMotion) {

@@ -150,7 +150,7 @@ TEST_P(BvhRig, NoAngleJumps) {
 }
 
 // Keys between frames are on the way of the joints: every fourth is a frame, as it was.
-TEST_P(BvhRig, KeysBetweenFramesKeepTheFramesAndComeNearerToTheMotion) {
+TEST_P(BvhRig, KeysBetweenFramesKeepFramesAndReduceTheError) {
   const motion::Clip clip = Follower();
   const BvhDocument coarse = OntoRig(clip, GetParam().document);
   const BvhDocument fine = OntoRig(clip, GetParam().document, {4, nullptr});
@@ -169,7 +169,7 @@ TEST_P(BvhRig, KeysBetweenFramesKeepTheFramesAndComeNearerToTheMotion) {
   EXPECT_LT(of_fine.between, std::max(0.3 * of_coarse.between, 0.05));
 }
 
-TEST_P(BvhRig, HierarchyNamesOffsetsAndChannelsStay) {
+TEST_P(BvhRig, KeepsHierarchyNamesOffsetsAndChannels) {
   const BvhDocument& rig = GetParam().document;
   const BvhDocument written = OntoRig(Follower(), rig);
   ASSERT_EQ(written.joints.size(), rig.joints.size());
@@ -183,7 +183,7 @@ TEST_P(BvhRig, HierarchyNamesOffsetsAndChannelsStay) {
 }
 
 // The toes are ahead of an ankle that stands, as far down as at rest.
-TEST_P(BvhRig, FeetPointAheadAndLieFlatWhereTheyStand) {
+TEST_P(BvhRig, StandingFeetPointForwardsAndAreLevel) {
   const motion::Clip clip = Follower();
   const BvhDocument written = OntoRig(clip, GetParam().document);
   // The left one comes first.
@@ -239,20 +239,20 @@ INSTANTIATE_TEST_SUITE_P(Families, BvhRig, ::testing::ValuesIn(test::RigFamilies
                            return name;
                          });
 
-TEST(OntoBvhRig, RefusesARigThatCannotBeAPerson) {
+TEST(OntoBvhRig, RejectsARigThatCannotBeAPerson) {
   BvhDocument rig = test::RigFamilies()[1].document;
   for (BvhJoint& joint : rig.joints) {
     if (joint.name == "mixamorig:LeftForeArm") joint.channels.resize(1);
   }
   rig.values.resize(static_cast<std::size_t>(rig.ChannelCount()));
   EXPECT_THAT(std::string(OntoBvhRig(Follower(), rig, "rig.bvh", {}).status().message()),
-              HasSubstr("\"mixamorig:LeftForeArm\" has to turn, and has not three"));
+              HasSubstr("\"mixamorig:LeftForeArm\": expected rotation channels about three axes"));
   motion::Clip other = Follower();
   other.joint_names[0] = "skull";
   EXPECT_THAT(
       std::string(
           OntoBvhRig(other, test::RigFamilies()[0].document, "rig.bvh", {}).status().message()),
-      HasSubstr("wanted the 15 of SBU"));
+      HasSubstr("expected the 15 joints of SBU"));
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST(Csv, ReadsQuotedFieldsAndAByteOrderMark) {
   EXPECT_EQ(motion->people[0].at(0, 0), (motion::Vec3{1, -2.5f, 3}));
 }
 
-TEST(Csv, LeavesTheRateOpenWhereTheFileHasNone) {
+TEST(Csv, ReturnsNoRateIfTheFileHasNone) {
   const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv("a_x,a_y,a_z\n1,2,3\n", "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
   EXPECT_EQ(motion->people[0].frame_rate_hz, 0);
@@ -74,13 +74,13 @@ void ExpectHeadAndNeck(const std::string& text, double frame_rate_hz = 0) {
 
 constexpr char kRows[] = "0,1,2,3,4,5,6\n1,7,8,9,-4,-5,-6\n";
 
-TEST(Csv, ReadsAnIndexWhateverItIsCalled) {
+TEST(Csv, ReadsAnIndexOfAnyName) {
   for (const char* index : {"", "frame", "Frame", "index", "Unnamed: 0"}) {
     ExpectHeadAndNeck(absl::StrCat(index, ",head_x,head_y,head_z,neck_x,neck_y,neck_z\n", kRows));
   }
 }
 
-TEST(Csv, ReadsAxesHoweverTheyAreJoinedToTheName) {
+TEST(Csv, ReadsAxesWithAnySeparator) {
   for (const char* header :
        {"head_X,head_Y,head_Z,neck_X,neck_Y,neck_Z", "head.x,head.y,head.z,neck.x,neck.y,neck.z",
         "head x,head y,head z,neck x,neck y,neck z", "headX,headY,headZ,neckX,neckY,neckZ",
@@ -124,7 +124,7 @@ TEST(Csv, ReadsARowForEachJoint) {
       10);
 }
 
-TEST(Csv, ReadsTheHeadsOfBlendersBones) {
+TEST(Csv, ReadsTheHeadsOfBlenderBones) {
   ExpectHeadAndNeck(
       "Frame,Bone Name,head_x,head_y,head_z,tail_x,tail_y,tail_z\n1,head,1,2,3,0,0,0\n"
       "1,neck,4,5,6,0,0,0\n2,head,7,8,9,0,0,0\n2,neck,-4,-5,-6,0,0,0\n");
@@ -145,33 +145,34 @@ TEST(Csv, ReadsARowForEachJointOfTwoPeople) {
     EXPECT_EQ(motion->people[1].at(0, 1), (motion::Vec3{7, 8, 9}));
   }
   EXPECT_THAT(ParseError("frame,person,bone,x,y,z\n1,A,a,1,2,3\n1,B,a,1,2,3\n1,C,a,1,2,3\n"),
-              HasSubstr("a.csv:4: people: came a third, \"C\", wanted at most 2"));
+              HasSubstr("a.csv:4: people: expected at most 2, got a third, \"C\""));
   EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,a,1,2,3\n1,a,1,2,3\n"),
-              HasSubstr("of two people a column named person tells whose a row is"));
+              HasSubstr("for two people, add a column named person"));
 }
 
-TEST(Csv, ReadsDecimalCommasWhereCommasDoNotSeparate) {
+TEST(Csv, ReadsDecimalCommasUnlessCommasSeparate) {
   const absl::StatusOr<motion::RecordedMotion> motion =
       ParseCsv("time;a_x;a_y;a_z\n0,00;1,5;-2,25;3e-1\n0,04;1;2;3\n", "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
   EXPECT_EQ(motion->people[0].at(0, 0), (motion::Vec3{1.5f, -2.25f, 0.3f}));
   EXPECT_EQ(motion->people[0].frame_rate_hz, 25);
-  EXPECT_THAT(ParseError("a_x;a_y;a_z\n1,500,000;2;3\n"), HasSubstr("came \"1,500,000\""));
+  EXPECT_THAT(ParseError("a_x;a_y;a_z\n1,500,000;2;3\n"), HasSubstr("got \"1,500,000\""));
 }
 
-TEST(Csv, WantsEveryJointOnceInEveryFrameWithARowForEach) {
+TEST(Csv, RequiresEveryJointOnceInEveryFrame) {
   EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,head,1,2,3\n1,neck,4,5,6\n2,head,7,8,9\n"),
-              HasSubstr("came 3 rows, wanted 4: one for each of 2 joints in each of 2 frames"));
+              HasSubstr("expected 4 rows (one for each of 2 joints in each of 2 frames), got 3"));
   EXPECT_THAT(
       ParseError("frame,bone,x,y,z\n1,head,1,2,3\n1,neck,4,5,6\n2,head,7,8,9\n2,head,7,8,9\n"),
-      HasSubstr("\"head\" comes twice in the frame that is number 2"));
-  EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,,1,2,3\n"), HasSubstr("a joint without a name"));
+      HasSubstr("\"head\": expected once per frame, got twice in the file's frame number 2"));
+  EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,,1,2,3\n"),
+              HasSubstr("joint: expected a name, got none"));
   EXPECT_THAT(ParseError("bone,x,y,z\nhead,1,2,3\n"), HasSubstr("and frame or time"));
   EXPECT_THAT(ParseError("frame,bone,x,y,z,loc_x\n1,head,1,2,3,1\n"),
               HasSubstr("one column of each of joint, x, y and z"));
   EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,head,1,2,w\n"),
-              HasSubstr("a.csv:2: column 5: came \"w\""));
-  EXPECT_THAT(ParseError("frame,bone,x,y,z\n"), HasSubstr("no frames"));
+              HasSubstr("a.csv:2: column 5: expected a finite number, got \"w\""));
+  EXPECT_THAT(ParseError("frame,bone,x,y,z\n"), HasSubstr("expected at least 1 frame"));
 }
 
 TEST(Csv, ReadsSemicolonsAndTabs) {
@@ -194,7 +195,7 @@ double RateOf(const std::string& text) {
   return motion.ok() ? motion->people[0].frame_rate_hz : -1;
 }
 
-TEST(Csv, TakesTheRateFromEvenTimes) {
+TEST(Csv, InfersTheRateFromEvenTimes) {
   EXPECT_EQ(RateOf(Timed({"0.00", "0.03", "0.07", "0.10", "0.13"})), 30);
   EXPECT_EQ(RateOf(Timed({"5", "5.04", "5.08"})), 25);
   EXPECT_EQ(RateOf(Timed({"0.0", "0.03333333333333333", "0.06666666666666667"})), 30);
@@ -203,7 +204,7 @@ TEST(Csv, TakesTheRateFromEvenTimes) {
   EXPECT_EQ(RateOf(absl::StrCat("# fps=50\n", Timed({"0.00", "0.04"}))), 50);
 }
 
-TEST(Csv, TakesNoRateFromOtherTimes) {
+TEST(Csv, InfersNoRateFromUnevenTimes) {
   EXPECT_EQ(RateOf(Timed({"0"})), 0);
   EXPECT_EQ(RateOf(Timed({"0", "0.1", "0.5"})), 0) << "uneven";
   EXPECT_EQ(RateOf(Timed({"0", "40", "80"})), 0) << "milliseconds";
@@ -212,11 +213,11 @@ TEST(Csv, TakesNoRateFromOtherTimes) {
   EXPECT_EQ(RateOf(Timed({"00:00:01", "00:00:02"})), 0) << "no numbers";
 }
 
-TEST(Csv, TakesTheRateFromAnIndexOfTimes) {
+TEST(Csv, InfersTheRateFromAnIndexOfTimes) {
   EXPECT_EQ(RateOf(",a,a,a\n,x,y,z\ntime,,,\n0.000,1,2,3\n0.100,1,2,3\n"), 10);
 }
 
-TEST(Csv, RefusesEveryCutButThatOfALastValue) {
+TEST(Csv, RejectsEveryTruncationExceptInTheLastValue) {
   const std::string text = "joint,head,head,head\naxis,x,y,z\nframe,,,\n0,1,2,3\n1,7,8,9";
   const std::size_t first_frame = text.find("0,1,2,3") + 7;
   for (std::size_t size = 0; size < text.size(); ++size) {
@@ -243,39 +244,45 @@ TEST(Csv, ReadsBackAPairExactly) {
 TEST(Csv, NamesThePlaceOfABadValue) {
   for (const char* bad : {"nan", "inf", "x", "", "1e20", "1;5"}) {
     EXPECT_THAT(ParseError(absl::StrReplaceAll(kOnePerson, {{"+4e1", bad}})),
-                HasSubstr("a.csv:4: column 5: came"))
+                HasSubstr("a.csv:4: column 5: expected a finite number"))
         << bad;
   }
 }
 
-TEST(Csv, RefusesARowOfAnotherLength) {
-  EXPECT_THAT(ParseError("a_x,a_y,a_z\n1,2\n"), HasSubstr("a.csv:2: came 2 values, wanted 3"));
-  EXPECT_THAT(ParseError("a_x,a_y,a_z\n1,2,3,\n"), HasSubstr("came 4 values"));
+TEST(Csv, RejectsARowOfAnotherLength) {
+  EXPECT_THAT(ParseError("a_x,a_y,a_z\n1,2\n"),
+              HasSubstr("a.csv:2: expected 3 values as in the header line, got 2"));
+  EXPECT_THAT(ParseError("a_x,a_y,a_z\n1,2,3,\n"), HasSubstr("header line, got 4"));
 }
 
-TEST(Csv, RefusesAHeaderThatDescribesNoJoints) {
-  EXPECT_THAT(ParseError("a_x,a_y\n1,2\n"), HasSubstr("no column a_z"));
-  EXPECT_THAT(ParseError("a\rb_x,a\rb_y\n1,2\n"), HasSubstr(R"(no column a\rb_z)"));
-  EXPECT_THAT(ParseError("a_x,a_y,a_z,a_x\n1,2,3,4\n"), HasSubstr("column 4: \"a_x\" comes twice"));
-  EXPECT_THAT(ParseError("a_x,a_y,a_z,speed\n1,2,3,4\n"), HasSubstr("column 4: came \"speed\""));
-  EXPECT_THAT(ParseError("frame\n1\n"), HasSubstr("no joint columns"));
+TEST(Csv, RejectsAHeaderThatDescribesNoJoints) {
+  EXPECT_THAT(ParseError("a_x,a_y\n1,2\n"), HasSubstr("a_z: expected one column, got 0"));
+  EXPECT_THAT(ParseError("a\rb_x,a\rb_y\n1,2\n"),
+              HasSubstr(R"(a\rb_z: expected one column, got 0)"));
+  EXPECT_THAT(ParseError("a_x,a_y,a_z,a_x\n1,2,3,4\n"),
+              HasSubstr("column 4: expected a new name, got \"a_x\" again"));
+  EXPECT_THAT(
+      ParseError("a_x,a_y,a_z,speed\n1,2,3,4\n"),
+      HasSubstr("column 4: expected frame, time or JOINT_x, JOINT_y, JOINT_z, got \"speed\""));
+  EXPECT_THAT(ParseError("frame\n1\n"), HasSubstr("got no joint"));
   EXPECT_THAT(ParseError("leader.a_x,leader.a_y,leader.a_z,b_x,b_y,b_z\n1,2,3,4,5,6\n"),
-              HasSubstr("wanted one kind"));
+              HasSubstr("or none, got both kinds"));
   EXPECT_THAT(ParseError("follower.a_x,follower.a_y,follower.a_z\n1,2,3\n"),
-              HasSubstr("no leader columns"));
+              HasSubstr("got only the follower's"));
 }
 
-TEST(Csv, RefusesSettingsThatItDoesNotKnow) {
-  EXPECT_THAT(ParseError("# fps=0\na_x,a_y,a_z\n1,2,3\n"), HasSubstr("fps: came \"0\""));
+TEST(Csv, RejectsUnknownSettings) {
+  EXPECT_THAT(ParseError("# fps=0\na_x,a_y,a_z\n1,2,3\n"),
+              HasSubstr("fps: expected more than 0 and at most 1000, got \"0\""));
   EXPECT_THAT(ParseError("# unit=feet\na_x,a_y,a_z\n1,2,3\n"),
-              HasSubstr("unit: came \"feet\", wanted metres, "));
+              HasSubstr("unit: expected metres, "));
   EXPECT_THAT(ParseError("# up_axis=x\na_x,a_y,a_z\n1,2,3\n"),
-              HasSubstr("up_axis: came \"x\", wanted y-up, z-up or y-down"));
+              HasSubstr("up_axis: expected y-up, z-up or y-down, got \"x\""));
 }
 
-TEST(Csv, RefusesAnEmptyFile) {
-  EXPECT_THAT(ParseError(""), HasSubstr("no header line"));
-  EXPECT_THAT(ParseError("a_x,a_y,a_z\n"), HasSubstr("no frames"));
+TEST(Csv, RejectsAnEmptyFile) {
+  EXPECT_THAT(ParseError(""), HasSubstr("header: expected frame,head_x"));
+  EXPECT_THAT(ParseError("a_x,a_y,a_z\n"), HasSubstr("expected at least 1 frame"));
 }
 
 }  // namespace

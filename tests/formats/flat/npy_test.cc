@@ -59,7 +59,7 @@ TEST(Npy, ReadsLaterVersionsOfTheFormat) {
   for (const char version : {'\0', '\x04'}) {
     std::string bytes = FormatNpy(pair);
     bytes[6] = version;
-    EXPECT_THAT(ParseError(bytes), HasSubstr("wanted 1 to 3"));
+    EXPECT_THAT(ParseError(bytes), HasSubstr("format version: expected 1 to 3"));
   }
 }
 
@@ -93,31 +93,34 @@ TEST(Npy, IsReadAndWrittenByNumPy) {
   EXPECT_EQ(motion->people[0].at(11, 14), 2 * pair.follower.at(11, 14));
 }
 
-TEST(Npy, RefusesOtherArrays) {
-  EXPECT_THAT(ParseError(Replaced("<f4", "<i4")), HasSubstr("descr: came"));
-  EXPECT_THAT(ParseError(Replaced("<f4", ">f4")), HasSubstr("descr: came"));
-  EXPECT_THAT(ParseError(Replaced("False", "True ")), HasSubstr("fortran_order: came"));
-  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(2, 15, 12, 3)")), HasSubstr("shape: came"));
-  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(3, 12, 15, 3)")), HasSubstr("shape: came"));
-  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(2, 00, 15, 3)")), HasSubstr("shape: came"));
+TEST(Npy, RejectsOtherArrays) {
+  EXPECT_THAT(ParseError(Replaced("<f4", "<i4")), HasSubstr("descr: expected"));
+  EXPECT_THAT(ParseError(Replaced("<f4", ">f4")), HasSubstr("descr: expected"));
+  EXPECT_THAT(ParseError(Replaced("False", "True ")), HasSubstr("fortran_order: expected False"));
+  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(2, 15, 12, 3)")),
+              HasSubstr("frames, got (2, 15, 12, 3)"));
+  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(3, 12, 15, 3)")),
+              HasSubstr("frames, got (3, 12, 15, 3)"));
+  EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(2, 00, 15, 3)")),
+              HasSubstr("frames, got (2, 0, 15, 3)"));
   EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(2, 13, 15, 3)")),
               HasSubstr("bytes of values"));
   EXPECT_THAT(ParseError(Replaced("(2, 12, 15, 3)", "(2, xx, 15, 3)")), HasSubstr("whole numbers"));
-  EXPECT_THAT(ParseError(Replaced("shape", "shade")), HasSubstr("shape: came ()"));
+  EXPECT_THAT(ParseError(Replaced("shape", "shade")), HasSubstr("frames, got ()"));
 }
 
-TEST(Npy, RefusesEveryTruncation) {
+TEST(Npy, RejectsEveryTruncation) {
   const std::string bytes = FormatNpy(MakePair());
   for (std::size_t size = 0; size < bytes.size(); size += size < 200 ? 1 : 97) {
     ParseError(bytes.substr(0, size));
   }
 }
 
-TEST(Npy, RefusesBytesAfterTheValues) {
+TEST(Npy, RejectsBytesAfterTheValues) {
   EXPECT_THAT(ParseError(FormatNpy(MakePair()) + "x"), HasSubstr("bytes of values"));
 }
 
-TEST(Npy, RefusesAHeaderLongerThanTheFile) {
+TEST(Npy, RejectsAHeaderLongerThanTheFile) {
   std::string bytes = FormatNpy(MakePair());
   bytes[8] = bytes[9] = '\xff';
   EXPECT_THAT(ParseError(bytes), HasSubstr("header of 65535 bytes"));
@@ -127,7 +130,7 @@ TEST(Npy, NamesAPositionThatIsNotFinite) {
   std::string bytes = FormatNpy(MakePair());
   const std::size_t second_joint = bytes.find('\n') + 1 + (15 * 3 + 3) * 4;
   bytes.replace(second_joint, 4, std::string("\0\0\xc0\x7f", 4));
-  EXPECT_THAT(ParseError(bytes), HasSubstr("frame 1 neck: came nan"));
+  EXPECT_THAT(ParseError(bytes), HasSubstr("frame 1 neck: expected a finite position, got nan"));
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST(SbuText, ReadsBothPeople) {
   EXPECT_EQ(recording->right.at(1, 1), (motion::Vec3{1, 1.5f, -0.2f}));
 }
 
-TEST(SbuText, PassesOverAByteOrderMark) {
+TEST(SbuText, IgnoresAByteOrderMark) {
   const absl::StatusOr<SbuRecording> recording =
       ParseSbu(absl::StrCat("\xEF\xBB\xBF", kTwoFrames), "a.txt", TwoJoints());
   ASSERT_TRUE(recording.ok()) << recording.status();
@@ -75,10 +75,10 @@ TEST(SbuText, NamesThePlaceOfABadValue) {
   const std::string text = absl::StrReplaceAll(kTwoFrames, {{"-2e-1", "abc"}});
   const std::string error = ParseError(text);
   EXPECT_THAT(error, HasSubstr("a.txt:2:33: right person's head z"));
-  EXPECT_THAT(error, HasSubstr("came \"abc\", wanted a finite number"));
+  EXPECT_THAT(error, HasSubstr("expected a finite number, got \"abc\""));
 }
 
-TEST(SbuText, RefusesNumbersThatAreNoPosition) {
+TEST(SbuText, RejectsNumbersThatAreNotPositions) {
   for (const char* bad :
        {"nan", "inf", "1e400", "1e30", "0x10", "1.5.2", "1,5", "", "1 2", "--1"}) {
     const std::string text = absl::StrReplaceAll(kTwoFrames, {{"-2e-1", bad}});
@@ -86,30 +86,29 @@ TEST(SbuText, RefusesNumbersThatAreNoPosition) {
   }
 }
 
-TEST(SbuText, RefusesAWrongNumberOfValues) {
-  EXPECT_THAT(ParseError("1,0,1,0\n"),
-              HasSubstr("a.txt:1: came 4 comma-separated values, wanted 13"));
+TEST(SbuText, RejectsAWrongNumberOfValues) {
+  EXPECT_THAT(ParseError("1,0,1,0\n"), HasSubstr("a.txt:1: expected 13 comma-separated values"));
 }
 
-TEST(SbuText, RefusesFrameNumbersThatSkip) {
+TEST(SbuText, RejectsFrameNumbersThatSkip) {
   const std::string text = absl::StrCat(kTwoFrames, "10,0,1,0,0,1.5,0,1,1,0,1,1.5,0\n");
-  EXPECT_THAT(ParseError(text), HasSubstr("a.txt:3:1: frame number: came 10 after 8, wanted 9"));
+  EXPECT_THAT(ParseError(text), HasSubstr("a.txt:3:1: frame number: expected 9 after 8, got 10"));
   EXPECT_THAT(ParseError(absl::StrReplaceAll(kTwoFrames, {{"8,", "7,"}})),
-              HasSubstr("came 7 after 7, wanted a larger one"));
+              HasSubstr("expected a larger one after 7, got 7"));
   EXPECT_THAT(ParseError(absl::StrReplaceAll(kTwoFrames, {{"8,", "99999999999999999999,"}})),
-              HasSubstr("wanted a whole number"));
+              HasSubstr("expected a whole number"));
 }
 
-TEST(SbuText, RefusesAnEmptyText) {
-  EXPECT_THAT(ParseError(""), HasSubstr("no frames"));
-  EXPECT_THAT(ParseError("\n\n"), HasSubstr("no frames"));
+TEST(SbuText, RejectsAnEmptyText) {
+  EXPECT_THAT(ParseError(""), HasSubstr("expected at least one line"));
+  EXPECT_THAT(ParseError("\n\n"), HasSubstr("expected at least one line"));
 }
 
-TEST(SbuText, RefusesARateThatIsNoRate) {
+TEST(SbuText, RejectsAnInvalidRate) {
   SbuOptions options = TwoJoints();
   options.frame_rate_hz = -1;
   EXPECT_THAT(std::string(ParseSbu(kTwoFrames, "a.txt", options).status().message()),
-              HasSubstr("frame rate: came -1"));
+              HasSubstr("frame rate: expected more than 0 and at most 1000 Hz, got -1"));
 }
 
 TEST(SbuText, WritesWhatItReads) {

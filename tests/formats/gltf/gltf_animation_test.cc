@@ -8,12 +8,14 @@
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
 #include "tests/formats/gltf/gltf_fixture.h"
+#include "tests/support/expect_near.h"
 
 namespace duet::formats::gltf {
 namespace {
 
 using retargeting::Quaternion;
 using retargeting::Vec3d;
+using test::ExpectNear;
 using ::testing::HasSubstr;
 
 using base::kPi;
@@ -35,13 +37,7 @@ absl::StatusOr<GltfTrack> Track(GltfPath path, GltfInterpolation interpolation,
   return GltfTrack::Read(channel, &buffers);
 }
 
-void ExpectNear(Vec3d a, Vec3d b) {
-  EXPECT_NEAR(a.x, b.x, 1e-6);
-  EXPECT_NEAR(a.y, b.y, 1e-6);
-  EXPECT_NEAR(a.z, b.z, 1e-6);
-}
-
-TEST(GltfTrack, GoesInLinesAndHoldsItsEnds) {
+TEST(GltfTrack, InterpolatesLinearlyAndHoldsItsEnds) {
   const auto track =
       Track(GltfPath::kTranslation, GltfInterpolation::kLinear, {1, 3}, {0, 0, 0, 4, -8, 2});
   ASSERT_TRUE(track.ok()) << track.status();
@@ -69,7 +65,7 @@ TEST(GltfTrack, FollowsSplines) {
   ExpectNear(track->VectorAt(2), {3, 0, 0});
 }
 
-TEST(GltfTrack, TurnsAlongTheShorterArc) {
+TEST(GltfTrack, RotatesAlongTheShorterArc) {
   const float s = static_cast<float>(std::sin(kPi / 4)), c = static_cast<float>(std::cos(kPi / 4));
   // From no turn to a quarter about z, written as its negative, twice as long.
   const auto track = Track(GltfPath::kRotation, GltfInterpolation::kLinear, {0, 1},
@@ -90,18 +86,21 @@ TEST(GltfTrack, SplinesOfRotationsHaveLengthOne) {
   EXPECT_NEAR(Dot(half, half), 1, 1e-12);
 }
 
-TEST(GltfTrack, RefusesKeysThatMakeNoSense) {
+TEST(GltfTrack, RejectsInvalidKeys) {
   const auto error = [](const std::vector<float>& times, const std::vector<float>& values,
                         GltfInterpolation interpolation = GltfInterpolation::kLinear) {
     const auto track = Track(GltfPath::kScale, interpolation, times, values);
     EXPECT_EQ(track.status().code(), absl::StatusCode::kInvalidArgument);
     return std::string(track.status().message());
   };
-  EXPECT_THAT(error({1, 1}, {1, 1, 1, 2, 2, 2}), HasSubstr("accessors[0]: times that do not rise"));
-  EXPECT_THAT(error({1, 0}, {1, 1, 1, 2, 2, 2}), HasSubstr("times that do not rise"));
-  EXPECT_THAT(error({0, 1}, {1, 1, 1}), HasSubstr("accessors[1]: came 1 values for 2 keys"));
+  EXPECT_THAT(error({1, 1}, {1, 1, 1, 2, 2, 2}),
+              HasSubstr("accessors[0]: expected increasing times"));
+  EXPECT_THAT(error({1, 0}, {1, 1, 1, 2, 2, 2}), HasSubstr("expected increasing times"));
+  EXPECT_THAT(
+      error({0, 1}, {1, 1, 1}),
+      HasSubstr("accessors[1]: expected 1 values for each of at least 1 key, got 1 for 2 keys"));
   EXPECT_THAT(error({0}, {1, 1, 1}, GltfInterpolation::kCubicSpline),
-              HasSubstr("came 1 values for 1 keys, wanted 3 for each"));
+              HasSubstr("expected 3 values for each of at least 1 key, got 1 for 1 keys"));
   EXPECT_THAT(error({}, {}), HasSubstr("at least one"));
   EXPECT_THAT(error({0, std::nanf("")}, {1, 1, 1, 2, 2, 2}), HasSubstr("accessors[0]: value 1"));
 }

@@ -63,7 +63,7 @@ nlohmann::json Json(const std::vector<motion::Clip>& people,
   return nlohmann::json::parse(*content);
 }
 
-TEST(GltfExport, BothPeopleStandWhereTheyDid) {
+TEST(GltfExport, KeepsThePositionsOfBothPeople) {
   const motion::Clip leader = Person(0, 1), follower = Person(1.2f, 4);
   for (const GltfContainer container : {GltfContainer::kBinary, GltfContainer::kText}) {
     const std::string content = Format({leader, follower}, container);
@@ -72,7 +72,7 @@ TEST(GltfExport, BothPeopleStandWhereTheyDid) {
   }
 }
 
-TEST(GltfExport, JointsStandWhereTheyDidThoughBonesChangeTheirLength) {
+TEST(GltfExport, KeepsJointPositionsIfBoneLengthsVary) {
   motion::Clip clip = Person(0, 1);
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     for (int joint = 0; joint < clip.joint_count(); ++joint) {
@@ -82,7 +82,7 @@ TEST(GltfExport, JointsStandWhereTheyDidThoughBonesChangeTheirLength) {
   EXPECT_LT(LargestDistance(ReadBack(Format({clip}), 0), clip), kRounding);
 }
 
-TEST(GltfExport, KeepsARateThatKeysDoNotTell) {
+TEST(GltfExport, KeepsARateThatKeysDoNotDetermine) {
   motion::Clip clip = Person(0, 0);
   clip.frame_rate_hz = 29.97;
   EXPECT_EQ(ReadBack(Format({clip}), 0).frame_rate_hz, 29.97);
@@ -117,7 +117,7 @@ TEST(GltfExport, EachPersonHasASkeletonAndAMannequinOfTheirOwn) {
 }
 
 // Bones of constant length turn; only the root moves as well.
-TEST(GltfExport, OnlyTheRootMovesWhereBonesKeepTheirLength) {
+TEST(GltfExport, TranslatesOnlyTheRootIfBoneLengthsAreConstant) {
   const nlohmann::json json = Json({Person(0, 0)});
   int moves = 0;
   for (const auto& channel : json["animations"][0]["channels"]) {
@@ -150,7 +150,7 @@ TEST(GltfExport, BindMatricesUndoTheRestPose) {
   }
 }
 
-TEST(GltfExport, SaysWhoMadeTheFollowerAndOfWhat) {
+TEST(GltfExport, StoresTheProvenanceOfTheFollower) {
   motion::Provenance provenance;
   provenance.model = "flow";
   provenance.model_version = 3;
@@ -165,17 +165,17 @@ TEST(GltfExport, SaysWhoMadeTheFollowerAndOfWhat) {
   EXPECT_EQ(extras["labels"][1]["weights"]["push"], -0.5);
 }
 
-TEST(GltfExport, RefusesWhatNoFileCanHold) {
+TEST(GltfExport, RejectsPeopleThatNoFileCanHold) {
   const auto refused = [](const std::vector<motion::Clip>& people) {
     return std::string(FormatGltf(people, motion::SbuSkeleton(), nullptr, GltfContainer::kBinary)
                            .status()
                            .message());
   };
   motion::Clip clip = Person(0, 0);
-  EXPECT_THAT(refused({}), HasSubstr("people: came 0, wanted one or two"));
+  EXPECT_THAT(refused({}), HasSubstr("people: expected one or two, got 0"));
   motion::Clip renamed = clip;
   renamed.joint_names[0] = "skull";
-  EXPECT_THAT(refused({renamed}), HasSubstr("wanted the skeleton's 15"));
+  EXPECT_THAT(refused({renamed}), HasSubstr("expected the skeleton's 15"));
   motion::Clip broken = clip;
   broken.at(3, 3).x = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THAT(refused({broken}), HasSubstr("person"));

@@ -49,7 +49,7 @@ std::string OnePerson(const motion::Clip& clip, const GltfPersonOptions& options
   return builder.Binary();
 }
 
-TEST(GltfImport, ReadsAPersonHoweverKeysAreJoined) {
+TEST(GltfImport, ReadsAPersonWithEveryInterpolation) {
   const motion::Clip clip = MakePerson();
   for (const char* interpolation : {"LINEAR", "STEP", "CUBICSPLINE"}) {
     GltfPersonOptions options;
@@ -92,7 +92,7 @@ TEST(GltfImport, ReadsABufferBesideTheDocument) {
               HasSubstr("a.gltf: buffers[0]: my walk.bin: no such file"));
 }
 
-TEST(GltfImport, TakesWhatStandsAboveTheSkeletonIntoAccount) {
+TEST(GltfImport, AppliesTheAncestorsOfTheSkeleton) {
   GltfPersonOptions options;
   options.centimetres_below_an_armature = true;
   const motion::Clip clip = MakePerson();
@@ -147,7 +147,7 @@ TEST(GltfImport, SeveralSkinsOfOneSkeletonAreOneCharacter) {
   EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
 }
 
-TEST(GltfImport, TakesTheFirstOfSeveralAnimationsAndSaysSo) {
+TEST(GltfImport, UsesTheFirstOfSeveralAnimationsWithANote) {
   GltfBuilder builder;
   const motion::Clip clip = MakePerson();
   AddPerson(clip, {}, &builder);
@@ -161,7 +161,7 @@ TEST(GltfImport, TakesTheFirstOfSeveralAnimationsAndSaysSo) {
   EXPECT_THAT(notes, Contains("animation: \"walk\", the first of 2 that move the skeleton"));
 }
 
-TEST(GltfImport, SamplesAtTheRateOfTheKeysOrTheOneGiven) {
+TEST(GltfImport, SamplesAtTheKeysRateOrTheSpecifiedOne) {
   motion::Clip clip = MakePerson({25});
   clip.frame_rate_hz = 24;
   std::vector<std::string> notes;
@@ -194,40 +194,42 @@ TEST(GltfImport, KeepsTheLastFrame) {
   }
 }
 
-TEST(GltfImport, RefusesFilesWithoutAMovingSkeleton) {
+TEST(GltfImport, RejectsFilesWithoutAMovingSkeleton) {
   EXPECT_THAT(ReadError(R"({"asset": {"version": "2.0"}})"),
-              HasSubstr("a.glb: no skin and no animated node"));
+              HasSubstr("a.glb: expected a skeleton, got no skin and no animated node"));
   GltfBuilder builder;
   AddPerson(MakePerson({2}), {}, &builder);
   builder.json().erase("animations");
-  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("a.glb: no animation moves the skeleton"));
+  EXPECT_THAT(ReadError(builder.Binary()),
+              HasSubstr("a.glb: expected an animation of the skeleton, got none"));
 }
 
-TEST(GltfImport, RefusesJointsThatItCannotMap) {
+TEST(GltfImport, RejectsJointsThatItCannotMap) {
   GltfBuilder builder;
   AddPerson(MakePerson({2}), {}, &builder);
   for (nlohmann::json& node : builder.json()["nodes"]) node["name"] = "bone";
-  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("a.glb: joints: nothing stands for head"));
+  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("a.glb: joints: expected joints for head"));
 }
 
-TEST(GltfImport, RefusesMoreFramesThanAMotionMayHave) {
+TEST(GltfImport, RejectsMoreFramesThanAMotionMayHave) {
   GltfBuilder builder;
   motion::Clip slow = MakePerson({3});
   slow.frame_rate_hz = 1e-4;
   AddPerson(slow, {}, &builder);
-  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("wanted at most 200000 frames"));
+  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("expected at most 200000 frames"));
 }
 
-TEST(GltfImport, RefusesMoreNodesThanASkeletonMayHave) {
+TEST(GltfImport, RejectsMoreNodesThanASkeletonMayHave) {
   GltfBuilder builder;
   AddPerson(MakePerson({2}), {}, &builder);
   for (int i = 0; i < 1024; ++i) {
     builder.json()["nodes"][0]["children"].push_back(builder.AddNode({{"name", "leaf"}}));
   }
-  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("skeleton: came 10"));
+  EXPECT_THAT(ReadError(builder.Binary()),
+              HasSubstr("skeleton: expected at most 1024 nodes, got 10"));
 }
 
-TEST(GltfImport, RefusesEveryTruncation) {
+TEST(GltfImport, RejectsEveryTruncation) {
   GltfBuilder builder;
   AddPerson(MakePerson({2}), {}, &builder);
   const std::string binary = builder.Binary();

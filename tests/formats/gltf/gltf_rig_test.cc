@@ -73,7 +73,7 @@ TEST(OntoGltfRig, TheFollowerStandsAndReachesOnTheRig) {
   EXPECT_LT(Error(OntoRig(BlendersRig(false), GltfContainer::kText)), 0.005);
 }
 
-TEST(OntoGltfRig, AllOfTheFileStaysButItsAnimations) {
+TEST(OntoGltfRig, KeepsEverythingExceptAnimations) {
   test::GltfBuilder builder;
   test::AddPerson(test::MakePerson(), {}, &builder);
   builder.json()["extras"] = {{"note", "mine"}};
@@ -102,13 +102,13 @@ test::GltfBuilder CharacterWithMesh(int frames) {
   return builder;
 }
 
-TEST(OntoGltfRig, TheOldAnimationsDataIsDropped) {
+TEST(OntoGltfRig, RemovesTheDataOfOldAnimations) {
   // Whatever the rig's own animation is, the file is as large.
   EXPECT_EQ(OntoRig(CharacterWithMesh(10).Binary()).size(),
             OntoRig(CharacterWithMesh(2000).Binary()).size());
 }
 
-TEST(OntoGltfRig, WhatMeshesAndSkinsReferToStays) {
+TEST(OntoGltfRig, KeepsTheDataOfMeshesAndSkins) {
   test::GltfBuilder builder = CharacterWithMesh(30);
   const std::string before = builder.buffer();
   const std::string text = OntoRig(builder.Binary(), GltfContainer::kText);
@@ -135,14 +135,14 @@ TEST(OntoGltfRig, AnUnknownExtensionKeepsAllData) {
             OntoRig(plain.Binary()).size() + plain.buffer().size() / 2);
 }
 
-TEST(OntoGltfRig, ACharacterThatNothingMovesWillDo) {
+TEST(OntoGltfRig, AcceptsACharacterWithoutAnimation) {
   test::GltfBuilder builder;
   test::AddPerson(test::MakePerson(), {}, &builder);
   builder.json().erase("animations");
   EXPECT_LT(Error(OntoRig(builder.Binary())), 0.005);
 }
 
-TEST(OntoGltfRig, TakesBuffersFromBesideTheFile) {
+TEST(OntoGltfRig, ReadsBuffersInTheSameFolder) {
   test::GltfBuilder builder;
   test::AddPerson(test::MakePerson(), {}, &builder);
   const std::string rig = builder.WithFile("data.bin");

@@ -39,7 +39,7 @@ TEST(UsdaWriter, NamesOfPrimsAreIdentifiers) {
   EXPECT_EQ(PrimName(""), "_");
 }
 
-TEST(UsdaWriter, TextIsQuotedWhateverItHolds) {
+TEST(UsdaWriter, AnyTextIsQuoted) {
   EXPECT_EQ(UsdString("a \"b\" \\c\n"), "\"a \\\"b\\\" \\\\c\\x0a\"");
 }
 
@@ -49,7 +49,7 @@ TEST(UsdaWriter, NumbersReadBackAsTheyWere) {
   EXPECT_EQ(UsdTurn({1, 0, 0.5, 0}), "(1, 0, 0.5, 0)");
 }
 
-TEST(FormatUsda, SaysUnitAxisAndTimesOfTheClip) {
+TEST(FormatUsda, StatesUnitAxisAndTimesOfTheClip) {
   const std::string text = Export({Person(), Person()});
   EXPECT_THAT(text, HasSubstr("#usda 1.0\n(\n"));
   for (const char* line :
@@ -59,7 +59,7 @@ TEST(FormatUsda, SaysUnitAxisAndTimesOfTheClip) {
   }
 }
 
-TEST(FormatUsda, BothPeopleHaveSkeletonAnimationAndSkinOfTheirOwn) {
+TEST(FormatUsda, EachPersonHasASkeletonAnimationAndSkin) {
   const std::string text = Export({Person(), Person()});
   for (const char* person : {"leader", "follower"}) {
     const std::string path = std::string("/pair/") + person;
@@ -89,24 +89,24 @@ TEST(FormatUsda, ProvenanceIsCustomData) {
   EXPECT_THAT(Export({Person(), Person()}), Not(HasSubstr("customData")));
 }
 
-TEST(FormatUsda, OnePersonIsAlone) {
+TEST(FormatUsda, OnePersonIsWrittenWithoutAFollower) {
   const std::string text = Export({Person()});
   EXPECT_THAT(text, HasSubstr("defaultPrim = \"person_alone\""));
   EXPECT_THAT(text, HasSubstr("def SkelRoot \"person\""));
   EXPECT_THAT(text, Not(HasSubstr("follower")));
 }
 
-TEST(FormatUsda, RefusesPeopleWhoAreNotTwoOfTheSkeletons) {
+TEST(FormatUsda, RejectsPeopleWhoDoNotMatchTheSkeleton) {
   const auto error = [](const std::vector<motion::Clip>& people) {
     return std::string(FormatUsda(people, motion::SbuSkeleton(), nullptr).status().message());
   };
-  EXPECT_THAT(error({}), HasSubstr("people: came 0, wanted one or two"));
+  EXPECT_THAT(error({}), HasSubstr("people: expected one or two, got 0"));
   motion::Clip other = Person();
   other.joint_names[0] = "skull";
-  EXPECT_THAT(error({other}), HasSubstr("wanted the skeleton's 15 in its order"));
+  EXPECT_THAT(error({other}), HasSubstr("expected the skeleton's 15 joints in its order"));
   motion::Clip longer = Person();
   longer.Append(std::vector<motion::Vec3>(15));
-  EXPECT_THAT(error({Person(), longer}), HasSubstr("wanted the same joints, frames and rate"));
+  EXPECT_THAT(error({Person(), longer}), HasSubstr("expected the same joints, frames and rate"));
 }
 
 }  // namespace
