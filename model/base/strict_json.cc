@@ -160,7 +160,7 @@ namespace {
 
 absl::Status CheckStrict(std::string_view text, StrictnessChecker* checker) {
   if (text.empty() || text.front() != '{') {
-    return absl::InvalidArgumentError("expected a JSON object with '{' as the first byte");
+    return absl::InvalidArgumentError("not a JSON object: expected '{' as the first byte");
   }
   // The parser treats a NUL as the end of the text and would ignore the rest.
   if (const std::size_t at = text.find('\0'); at != std::string_view::npos) {

@@ -239,10 +239,9 @@ absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& conten
     if (!valid.ok()) return valid;
     return clip;
   }
-  return MendedBy(
-      absl::InvalidArgumentError(absl::StrCat(
-          source.name, ": frame rate: expected one, got none; the file has none, so specify it")),
-      motion::ReadingSetting::kFrameRate);
+  return MendedBy(absl::InvalidArgumentError(absl::StrCat(
+                      source.name, ": frame rate: expected one, got none in the file")),
+                  motion::ReadingSetting::kFrameRate);
 }
 
 absl::Status CheckOptions(const ReadOptions& options) {

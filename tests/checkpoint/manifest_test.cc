@@ -337,7 +337,8 @@ TEST(Manifest, ANewerFormatIsNamedBeforeItsNewFields) {
 TEST(Manifest, ANonFiniteMetricCannotBeRead) {
   Manifest manifest = CompleteManifest();
   manifest.metrics["afd.kick"] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(ParseManifest(SerializeManifest(manifest)), Refused("metrics.afd.kick: null"));
+  EXPECT_THAT(ParseManifest(SerializeManifest(manifest)),
+              Refused("metrics.afd.kick: expected a number"));
 }
 
 }  // namespace

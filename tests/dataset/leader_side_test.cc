@@ -38,7 +38,8 @@ TEST(LeaderIndexTest, NamesTheLineThatIsWrong) {
               HasSubstr("line 3: expected 2 columns, got 1"));
   EXPECT_THAT(message("path\tleader_side\na\tLeft\n"),
               HasSubstr("line 2: expected leader_side left, right or unknown, got \"Left\""));
-  EXPECT_THAT(message("path\tleader_side\na\tleft\na\tleft\n"), HasSubstr("line 3: path \"a\""));
+  EXPECT_THAT(message("path\tleader_side\na\tleft\na\tleft\n"),
+              HasSubstr("line 3: expected each path once, got \"a\" again"));
 }
 
 // Two joints: a root that walks from `start` on, and a hand.

@@ -196,7 +196,7 @@ TEST(ReadDatasetTest, RejectsAnIndexThatNamesAnAbsentFile) {
   folder.Write("s01s02/03/001/skeleton_pos.txt", StillCapture(2));
   folder.Write("index.tsv", "path\tleader_side\ns01s02/03/01/skeleton_pos.txt\tleft\n");
   EXPECT_THAT(MessageOf(folder, absl::StatusCode::kInvalidArgument),
-              AllOf(HasSubstr("index.tsv: line 2"), HasSubstr("is not there")));
+              AllOf(HasSubstr("index.tsv: line 2"), HasSubstr("path: expected a file below")));
 }
 
 TEST(ReadDatasetTest, RejectsASequenceFolderWithoutItsFile) {
@@ -208,7 +208,7 @@ TEST(ReadDatasetTest, RejectsASequenceFolderWithoutItsFile) {
 
 TEST(ReadDatasetTest, RejectsAFolderThatIsNoDataSet) {
   CaptureFolder folder;
-  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound), HasSubstr("no data set"));
+  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound), HasSubstr("expected sXXsYY"));
   folder.Write("s01s02/01/001/skeleton_pos.txt", StillCapture(2));
   EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound),
               HasSubstr("expected sequences of the classes of"));

@@ -259,7 +259,7 @@ TEST_F(MotionFile, UsesTheCallersCoordinates) {
   ASSERT_TRUE(base::WriteFile(path, absl::StrCat(header, "\n", row, "\n")).ok());
   ReadOptions options;
   EXPECT_THAT(std::string(ReadLeader(path, options).status().message()),
-              HasSubstr("frame rate: the file has none"));
+              HasSubstr("frame rate: expected one, got none"));
   options.frame_rate_hz = 24;
   options.coordinates = {motion::LengthUnit::kMillimetres, motion::UpAxis::kZUp};
   const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);

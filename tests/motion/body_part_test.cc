@@ -35,7 +35,7 @@ TEST(BodyParts, AreRejectedByName) {
   refused({}, "parts: expected at least one, got none");
   refused({{"arm", {3}}, {"trunk", {}}}, "parts: expected at least one joint of \"trunk\"");
   refused({{"trunk", {0, 15}}}, "parts.trunk: expected a joint index from 0 to 14, got 15");
-  refused({{"trunk", {-1}}}, "parts.trunk: joint index -1");
+  refused({{"trunk", {-1}}}, "parts.trunk: expected a joint index from 0 to 14, got -1");
 }
 
 }  // namespace

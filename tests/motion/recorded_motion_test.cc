@@ -57,7 +57,7 @@ TEST(CheckPairTest, RequiresTheSameJointsFramesAndRate) {
   EXPECT_THAT(CheckPair(pair), StatusIs(kInvalid, HasSubstr("the same joints, frames and rate")));
   pair = {TwoFrames(), TwoFrames()};
   pair.follower.poses = Poses(3, 2);
-  EXPECT_THAT(CheckPair(pair), StatusIs(kInvalid, HasSubstr("poses of 2 joints")));
+  EXPECT_THAT(CheckPair(pair), StatusIs(kInvalid, HasSubstr("one for each name, got 2")));
 }
 
 }  // namespace

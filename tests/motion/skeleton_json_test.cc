@@ -57,13 +57,14 @@ TEST(SkeletonJson, RejectsByFieldAndPlace) {
        "a.bones[2]: expected a pair of joint names, parent first, got [\"neck\"]"},
       {"/bones/2/1", "\"tail\"", "a.bones[2]: expected one of skeleton.joint_names, got \"tail\""},
       {"/bones", "[]", "a.bones: expected 14 to connect 15 joints, got 0"},
-      {"/parts/1/joints/0", "\"tail\"", "a.parts[1].joints: unknown joint \"tail\""},
+      {"/parts/1/joints/0", "\"tail\"",
+       "a.parts[1].joints: expected one of skeleton.joint_names, got \"tail\""},
       {"/parts/1/joints", "[]", "a.parts: expected at least one joint of \"right_arm\""},
       {"/parts/1/name", "\"left_arm\"", "a.parts[1].name: \"left_arm\" is repeated or reserved"},
       {"/parts/1/name", "\"a/b\"", "a.parts[1].name: expected 1 to 64 letters"},
-      {"/parts", "[]", "a.parts: empty"},
-      {"/root", "\"tail\"", "a.root: unknown joint \"tail\""},
-      {"/left_hip", "3", "a.left_hip: 3"},
+      {"/parts", "[]", "a.parts: expected at least one, got none"},
+      {"/root", "\"tail\"", "a.root: expected one of skeleton.joint_names, got \"tail\""},
+      {"/left_hip", "3", "a.left_hip: expected a string"},
       {"/tail", "3", "unknown field \"tail\""},
   };
   for (const auto& one : cases) {

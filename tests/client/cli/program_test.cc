@@ -536,7 +536,7 @@ TEST_F(ProgramTest, AMissingFrameRateNamesItsFlag) {
   std::string text = ReadTestFile(folder_ / "leader.csv");
   WriteTestFile(folder_ / "leader.csv", text.substr(text.find('\n') + 1));
   EXPECT_EQ(Synthesize("pair.html"), 42);
-  EXPECT_THAT(err_.str(), AllOf(HasSubstr("frame rate: the file has none"),
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("frame rate: expected one, got none"),
                                 HasSubstr("\nSpecify it with --frame-rate HZ.\n")));
 }
 

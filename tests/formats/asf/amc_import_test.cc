@@ -51,7 +51,7 @@ TEST(AmcImport, IgnoresAStatedUnitThatGivesNoPersonsSize) {
   AmcImportOptions options;
   options.notes = &notes;
   ASSERT_TRUE(Read(files, options).ok());
-  EXPECT_THAT(notes, Contains(HasSubstr("warning: unit: :units length 45 would make")));
+  EXPECT_THAT(notes, Contains(HasSubstr("warning: unit: ignored :units length 45")));
   EXPECT_THAT(notes, Contains(HasSubstr("unit: CMU's unit")));
 }
 

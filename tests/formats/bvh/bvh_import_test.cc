@@ -52,7 +52,7 @@ TEST(BvhImport, ASkeletonWithoutFeetRequiresAUnit) {
   BvhImportOptions options;
   options.skeleton.feet.reset();
   EXPECT_THAT(std::string(FromBvh(Export(clip), "a.bvh", options).status().message()),
-              HasSubstr("a.bvh: size: the skeleton has no feet"));
+              HasSubstr("a.bvh: size: expected a skeleton with feet to infer the unit"));
   options.metres_per_unit = 0.01;
   const absl::StatusOr<motion::Clip> read = FromBvh(Export(clip), "a.bvh", options);
   ASSERT_TRUE(read.ok()) << read.status();

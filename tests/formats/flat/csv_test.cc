@@ -167,9 +167,9 @@ TEST(Csv, RequiresEveryJointOnceInEveryFrame) {
       HasSubstr("\"head\": expected once per frame, got twice in the file's frame number 2"));
   EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,,1,2,3\n"),
               HasSubstr("joint: expected a name, got none"));
-  EXPECT_THAT(ParseError("bone,x,y,z\nhead,1,2,3\n"), HasSubstr("and frame or time"));
+  EXPECT_THAT(ParseError("bone,x,y,z\nhead,1,2,3\n"), HasSubstr("frame or time"));
   EXPECT_THAT(ParseError("frame,bone,x,y,z,loc_x\n1,head,1,2,3,1\n"),
-              HasSubstr("one column of each of joint, x, y and z"));
+              HasSubstr("expected one column each of joint, x, y and z"));
   EXPECT_THAT(ParseError("frame,bone,x,y,z\n1,head,1,2,w\n"),
               HasSubstr("a.csv:2: column 5: expected a finite number, got \"w\""));
   EXPECT_THAT(ParseError("frame,bone,x,y,z\n"), HasSubstr("expected at least 1 frame"));

@@ -88,9 +88,10 @@ TEST(JsonMotion, RejectsRepeatedFields) {
 }
 
 TEST(JsonMotion, NamesTheFieldThatIsWrong) {
-  EXPECT_THAT(ErrorWith("/frame_rate_hz", -1), HasSubstr("a.json: frame_rate_hz: -1, wanted"));
+  EXPECT_THAT(ErrorWith("/frame_rate_hz", -1),
+              HasSubstr("a.json: frame_rate_hz: expected a number from 0 to 1000, got -1"));
   EXPECT_THAT(ErrorWith("/frame_rate_hz", 0), HasSubstr("frame_rate_hz: "));
-  EXPECT_THAT(ErrorWith("/frame_rate_hz", "x"), HasSubstr("frame_rate_hz: \"x\""));
+  EXPECT_THAT(ErrorWith("/frame_rate_hz", "x"), HasSubstr("frame_rate_hz: expected a number"));
   EXPECT_THAT(ErrorWith("/unit", "feet"), HasSubstr("unit: expected metres, "));
   EXPECT_THAT(ErrorWith("/up_axis", 3), HasSubstr("up_axis: expected y-up, z-up or y-down, got 3"));
   EXPECT_THAT(ErrorWith("/format", "glTF"),
@@ -99,7 +100,8 @@ TEST(JsonMotion, NamesTheFieldThatIsWrong) {
               HasSubstr("version: expected a whole number from 1 to 1, got 2"));
   EXPECT_THAT(ErrorWith("/joint_names", Json::array()),
               HasSubstr("joint_names: expected at least one name, got none"));
-  EXPECT_THAT(ErrorWith("/joint_names/1", 7), HasSubstr("joint_names: 7, wanted"));
+  EXPECT_THAT(ErrorWith("/joint_names/1", 7),
+              HasSubstr("joint_names: expected non-empty strings, got 7"));
   EXPECT_THAT(ErrorWith("/leader", Json::array()),
               HasSubstr("leader: expected at least 1 frame, got none"));
   EXPECT_THAT(ErrorWith("/leader", 1), HasSubstr("leader: expected an array"));
@@ -109,13 +111,13 @@ TEST(JsonMotion, NamesTheFieldThatIsWrong) {
               HasSubstr("leader[1][0]: expected finite numbers [x, y, z], got [1,2]"));
   EXPECT_THAT(ErrorWith("/leader/1/0/2", 1e30), HasSubstr("leader[1][0]: "));
   EXPECT_THAT(ErrorWith("/leader/1/0/2", nullptr), HasSubstr("leader[1][0]: "));
-  EXPECT_THAT(ErrorWith("/follower", "none"), HasSubstr("follower: \"none\""));
+  EXPECT_THAT(ErrorWith("/follower", "none"), HasSubstr("follower: expected an array"));
 }
 
 TEST(JsonMotion, RejectsTextThatIsNotAJsonObject) {
   EXPECT_THAT(ParseError(""), HasSubstr("a.json: not a JSON object"));
   EXPECT_THAT(ParseError("{\"leader\": [[[1e999"), HasSubstr("a.json: not JSON at byte"));
-  EXPECT_THAT(ParseError("[1, 2]"), HasSubstr("expected a JSON object"));
+  EXPECT_THAT(ParseError("[1, 2]"), HasSubstr("expected '{'"));
   EXPECT_THAT(ParseError("{}"), HasSubstr("joint_names: missing"));
   EXPECT_THAT(ParseError("{\"joint_names\": [\"a\"]}"), HasSubstr("leader: missing"));
   EXPECT_THAT(ParseError("{\"unit\": \"\xff\xfe\"}"), HasSubstr("a.json"));

@@ -101,7 +101,7 @@ TEST(GltfTrack, RejectsInvalidKeys) {
       HasSubstr("accessors[1]: expected 1 values for each of at least 1 key, got 1 for 2 keys"));
   EXPECT_THAT(error({0}, {1, 1, 1}, GltfInterpolation::kCubicSpline),
               HasSubstr("expected 3 values for each of at least 1 key, got 1 for 1 keys"));
-  EXPECT_THAT(error({}, {}), HasSubstr("at least one"));
+  EXPECT_THAT(error({}, {}), HasSubstr("at least 1 key, got 0 for 0 keys"));
   EXPECT_THAT(error({0, std::nanf("")}, {1, 1, 1, 2, 2, 2}), HasSubstr("accessors[0]: value 1"));
 }
 
