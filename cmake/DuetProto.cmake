@@ -11,13 +11,17 @@ function(duet_proto_library)
     set(generated ${out}/${stem}.pb.cc ${out}/${stem}.pb.h)
     set(grpc_arguments "")
     if(proto IN_LIST A_GRPC)
-      list(APPEND generated ${out}/${stem}.grpc.pb.cc ${out}/${stem}.grpc.pb.h)
+      # First: Ninja expects the order of protoc's dependency file, which is alphabetical.
+      list(PREPEND generated ${out}/${stem}.grpc.pb.cc ${out}/${stem}.grpc.pb.h)
       set(grpc_arguments --grpc_out=${out}
           --plugin=protoc-gen-grpc=$<TARGET_FILE:gRPC::grpc_cpp_plugin>)
     endif()
     add_custom_command(OUTPUT ${generated}
-      COMMAND protobuf::protoc -I ${A_IMPORT_DIR} --cpp_out=${out} ${grpc_arguments} ${proto}
-      DEPENDS ${A_IMPORT_DIR}/${proto} protobuf::protoc VERBATIM)
+      COMMAND protobuf::protoc -I ${A_IMPORT_DIR} --cpp_out=${out} ${grpc_arguments}
+              --dependency_out=${out}/${stem}.d ${proto}
+      DEPENDS ${A_IMPORT_DIR}/${proto} protobuf::protoc
+      DEPFILE ${out}/${stem}.d  # imported protos
+      VERBATIM)
     list(APPEND sources ${generated})
   endforeach()
   add_library(duet_${A_NAME} STATIC ${sources})
