@@ -35,43 +35,20 @@ stop_server() {
   server_pid=""
 }
 
-port_is_taken() {
-  (exec 3<>"/dev/tcp/127.0.0.1/$1") 2>/dev/null
-}
-
-# Prints the first free port from the given one on.
-free_port() {
-  local port
-  for ((port = $1; port < $1 + 100; ++port)); do
-    if ! port_is_taken "${port}"; then
-      echo "${port}"
-      return
-    fi
-  done
-  fail "no free port from $1 on"
-}
-
+# Sets `address` once the server serves its models. The kernel chooses the port: the default one lies in the range of
+# outgoing connections, so another program's connection can occupy it.
 start_server() {
-  # If the default ports are free, the server needs no flags.
-  local flags=() port metrics_port
-  port="$(free_port 50051)"
-  metrics_port="$(free_port 9464)"
-  [[ "${port}" == 50051 ]] || flags+=(--listen "127.0.0.1:${port}")
-  [[ "${metrics_port}" == 9464 ]] || flags+=(--metrics-listen "127.0.0.1:${metrics_port}")
-  address="127.0.0.1:${port}"
-
-  echo "\$ duet-server${flags[*]:+ ${flags[*]}}"
+  local flags=(--listen 127.0.0.1:0 --metrics-listen off) port="" deadline=$((SECONDS + start_limit_s))
+  echo "\$ duet-server ${flags[*]}"
   "${bin_dir}/duet-server" "${flags[@]}" >"${server_log}" 2>&1 &
   server_pid=$!
-}
-
-wait_until_healthy() {
-  local deadline=$((SECONDS + start_limit_s))
-  until timeout 5 "${bin_dir}/duet" models --server "${address}" >/dev/null 2>&1; do
-    kill -0 "${server_pid}" 2>/dev/null || fail "the server exited before it was healthy"
-    ((SECONDS < deadline)) || fail "the server was not healthy after ${start_limit_s} s"
+  until [[ -n "${port}" ]]; do
+    kill -0 "${server_pid}" 2>/dev/null || fail "the server exited before it served"
+    ((SECONDS < deadline)) || fail "the server did not serve within ${start_limit_s} s"
     sleep 0.1
+    port="$(sed -nE 's/.*"event":"serving".*"port":([0-9]+).*/\1/p' "${server_log}")"
   done
+  address="127.0.0.1:${port}"
 }
 
 # Shows a client command, then runs it.
@@ -97,7 +74,6 @@ main() {
   trap 'exit 130' INT TERM
 
   start_server
-  wait_until_healthy
   echo
   duet models --server "${address}"
   echo

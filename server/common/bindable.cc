@@ -41,8 +41,8 @@ absl::Status Refusal(const std::string& host, int port, int error) {
   const std::string address = AddressText(host, port);
   if (error == EADDRINUSE) {
     return absl::AlreadyExistsError(absl::StrCat("expected a free port, got ", address,
-                                                 ", which is in use; \"ss -ltnp sport = :", port,
-                                                 "\" shows the process that listens there"));
+                                                 ", which is in use; \"ss -tanp sport = :", port,
+                                                 "\" shows the socket that holds it"));
   }
   if (error == EACCES || error == EPERM) {
     return absl::PermissionDeniedError(

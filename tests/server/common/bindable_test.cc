@@ -60,7 +60,7 @@ TEST(BindableTest, PortWithAListenerIsReportedAsInUse) {
   const std::string address = absl::StrCat("127.0.0.1:", other.port());
   const auto in_use = StatusIs(
       absl::StatusCode::kAlreadyExists,
-      StartsWith("expected a free port, got " + address + ", which is in use; \"ss -ltnp"));
+      StartsWith("expected a free port, got " + address + ", which is in use; \"ss -tanp"));
   EXPECT_THAT(CheckBindable("127.0.0.1", other.port()), in_use);
   EXPECT_THAT(CheckBindable("0.0.0.0", other.port()).code(), absl::StatusCode::kAlreadyExists);
   EXPECT_THAT(ListenFailure("127.0.0.1", other.port()),
