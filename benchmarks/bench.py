@@ -18,7 +18,7 @@ PROGRAMS = {
     "roofline": ("roofline_benchmark", ""),
     "kernel": ("kernel_benchmark", ""),
     "clean_up": ("clean_up_benchmark", ""),
-    # Clips by the default engine alone: the others take minutes.
+    # Clips only with the default engine: the others take minutes.
     "synthesis": ("synthesis_benchmark", "^windows/|^cleaned_windows/.*/(bf16|f32)|^clip/.*/bf16"),
 }
 
@@ -50,8 +50,8 @@ def table(figures, before):
     yield f"{'':{width}}  {'ms':>12}  {'committed':>12}  times"
     for name, now in figures.items():
         then = before.get(name)
-        told = f"{then:12.5f}  {now / then:5.2f}" if then else f"{'-':>12}"
-        yield f"{name:{width}}  {now:12.5f}  {told}"
+        committed = f"{then:12.5f}  {now / then:5.2f}" if then else f"{'-':>12}"
+        yield f"{name:{width}}  {now:12.5f}  {committed}"
 
 
 def main():

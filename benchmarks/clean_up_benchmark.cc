@@ -46,7 +46,7 @@ BENCHMARK(BM_CleanUp)
     ->Unit(benchmark::kMicrosecond)
     ->Complexity();
 
-// The joints' ranges alone: of a person none of whose limbs is within them.
+// Only the joints' ranges, for a person whose limbs are all outside them.
 void BM_JointRanges(benchmark::State& state) {
   const int frames = static_cast<int>(state.range(0));
   const duet::motion::Skeleton skeleton = duet::motion::SbuSkeleton();

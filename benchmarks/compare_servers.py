@@ -99,7 +99,7 @@ def main():
                       f"{slow['p50_ms']:.1f} | "
                       f"{fast['clips_per_second'] / max(slow['clips_per_second'], 1e-9):.1f} |",
                       flush=True)
-            print(f"| sbu@{version} | engine alone | {engine_alone(build, version):.0f} | | |",
+            print(f"| sbu@{version} | engine only | {engine_alone(build, version):.0f} | | |",
                   flush=True)
 
 

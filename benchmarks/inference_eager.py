@@ -25,7 +25,7 @@ WIDTH, BLOCKS, HEADS, FEED_FORWARD, REACH = 160, 4, 4, 480, 50
 
 
 class Paper(nn.Module):
-    """Hierarchical encoders, an attentive decoder in each direction; told a start of so many values."""
+    """Hierarchical encoders and an attentive decoder in each direction, conditioned on a start of `start` values."""
 
     def __init__(self, start=START):
         super().__init__()

@@ -62,7 +62,7 @@ def write_manifest(path, lines, leaders=1):
 
 @contextlib.contextmanager
 def serving(program, folder):
-    """A server and its address; its log goes to a file, which no reader holds up."""
+    """A server and its address. The log goes to a file, so no reader delays the server."""
     log = folder / f"{program.name}.log"
     with log.open("w", encoding="utf-8") as file:
         server = subprocess.Popen(

@@ -34,12 +34,12 @@ LOADS = [
 
 
 def start_server(program, log, batch):
-    """The server and its address; its log goes to a file, which no reader holds up."""
+    """The server and its address. The log goes to a file, so no reader delays the server."""
     with log.open("w", encoding="utf-8") as file:
         server = subprocess.Popen(
             [program, "--listen", "127.0.0.1:0", "--metrics-listen", "off",
              "--max-batch-windows", str(batch),
-             # Of one client: nobody is refused, whose asking again would cost the others.
+             # All of them for one client: rejected calls would retry and delay the others.
              "--max-queued-windows", "256"], stdout=file, stderr=file)
     while server.poll() is None:
         if found := re.search(r'"event":"serving".*?"port":(\d+)', log.read_text(encoding="utf-8")):

@@ -89,12 +89,12 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--model", default="sbu@2")
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--frames", type=int, choices=CALLS, help="of one length alone")
+    parser.add_argument("--frames", type=int, choices=CALLS, help="only this length")
     parser.add_argument("--awake", action="store_true")
     chosen = parser.parse_args()
     if chosen.awake:
         keep_awake()
-    print("| frames | first chunk, ms | whole call, ms | engine alone, ms | call without engine, ms "
+    print("| frames | first chunk, ms | whole call, ms | engine only, ms | call without engine, ms "
           "| server's time, us a frame | ratio | memory above idle, MB |\n" + "|---" * 8 + "|")
     last = None
     for frames in [chosen.frames] if chosen.frames else CALLS:

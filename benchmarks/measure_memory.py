@@ -80,7 +80,7 @@ def small(server):
 
 
 def stalled(server):
-    """256 calls of ten seconds at 240 Hz on eight connections, whose answers nobody reads."""
+    """256 calls of ten seconds at 240 Hz on eight connections with unread replies."""
     readers = mixes.StalledReaders(
         server.port, mixes.request(2400, rate=240, chunk_frames=240), connections=8, calls=32)
     time.sleep(15)
@@ -98,7 +98,7 @@ def stalled_labels(server):
 
 
 def stalled_leaders(server):
-    """Sixteen ten-minute leaders whose answers nobody reads, and the same that are read beside."""
+    """Sixteen ten-minute leaders with unread replies, and eight of the same that are read."""
     readers = mixes.StalledReaders(server.port, mixes.request(**LONGEST), connections=16, calls=1)
     time.sleep(5)
     outcome = server.ask(mixes.request(**LONGEST), 8)

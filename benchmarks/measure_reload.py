@@ -23,7 +23,7 @@ CHECKPOINTS = SOURCE / "model/embedded"
 
 
 def publish(repository, name, change=0):
-    """Puts a checkpoint into the repository, changed in its description alone."""
+    """Writes a checkpoint to the repository; only its description is changed."""
     folder = repository / name / "1"
     partial = repository / f".{name}"
     shutil.rmtree(partial, ignore_errors=True)

@@ -1,4 +1,4 @@
-// Clips a second that the trainer learns from: L1 alone, the paper's sizes, one thread. Its peer is
+// Clips a second that the trainer learns from: L1 only, the paper's sizes, one thread. Its peer is
 // training_eager.py, the same network and batch in eager PyTorch; compare_training.sh runs both.
 #include <benchmark/benchmark.h>
 #include <torch/torch.h>

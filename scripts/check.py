@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the checks of scripts/checks.tsv, configuring and building build/release first where one needs it.
 
-    scripts/check.py [NAME...]       runs every check, or only these; goes on after a failure, ends with a table
+    scripts/check.py [NAME...]       runs every check, or only these; continues after a failure, ends with a table
     scripts/check.py --quick         runs the checks of `make test`; stops at the first failure
     scripts/check.py --write-guide   writes the table in docs/guides/checks.md
 """

@@ -2,7 +2,7 @@
 """Rewrites DEPS and PRIVATE_DEPS of the CMakeLists.txt files as check_links.py expects.
 
 Every duet_library, duet_program and duet_test whose links differ is laid out anew; what else the
-call says stays as it is. Targets made by other means are left alone: check_links.py names them.
+call says stays as it is. Targets made by other means stay as they are: check_links.py names them.
 
     scripts/fix_links.py [--build-dir build/release]     then configure and build
 """

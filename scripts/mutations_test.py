@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows which changes mutations.py finds in a C++ text, and which it leaves alone."""
+"""Shows which changes mutations.py finds in a C++ text, and which texts it skips."""
 
 import unittest
 

@@ -96,14 +96,14 @@ def run(command, environment, seconds=None):
     with tempfile.TemporaryFile() as written:
         process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL,
                                    stderr=written)
-        told = False
+        signalled = False
         while True:
             pid, status, usage = os.wait4(process.pid, 0 if seconds is None else os.WNOHANG)
             if pid:
                 break
-            if not told and processor_seconds(process.pid) >= seconds:
+            if not signalled and processor_seconds(process.pid) >= seconds:
                 process.send_signal(signal.SIGUSR1)
-                told = True
+                signalled = True
             time.sleep(LOOK_SECONDS)
         process.returncode = os.waitstatus_to_exitcode(status)
         written.seek(0)
