@@ -134,7 +134,7 @@ class ApiServerTest(unittest.TestCase):
         folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
         cls.server = ApiServer(folder, stack)
 
-    def test_every_object_is_taken_and_kept_whole(self):
+    def test_every_object_is_accepted_without_loss(self):
         for number, folder in enumerate(FOLDERS):
             namespace = f"try-{number}"
             self.server.kubectl("create", "namespace", namespace).check_returncode()
@@ -148,7 +148,7 @@ class ApiServerTest(unittest.TestCase):
                     self.assertIsInstance(kept, dict, kept)
                     self.assertEqual(missing_of(one, kept), [])
 
-    def test_an_update_of_the_server_changes_what_may_change(self):
+    def test_server_update_changes_only_mutable_fields(self):
         """`kubectl apply` again with another image: selectors, which may not change, do not."""
         self.server.kubectl("create", "namespace", "again").check_returncode()
         deployment = next(one for one in map(as_of_1_20, objects_of("overlays/production"))
@@ -162,7 +162,7 @@ class ApiServerTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(json.loads(result.stdout)["metadata"]["generation"], 2)
 
-    def test_the_server_refuses_what_makes_no_sense(self):
+    def test_invalid_objects_are_rejected(self):
         """That the checks above are the server's: a selector that misses its own pods."""
         self.server.kubectl("create", "namespace", "wrong").check_returncode()
         deployment = next(one for one in map(as_of_1_20, objects_of("overlays/small"))

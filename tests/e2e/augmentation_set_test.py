@@ -117,7 +117,7 @@ class AugmentationSetTest(unittest.TestCase):
         self.assertNotEqual(other.returncode, 0)
         self.assertIn("half-5", other.stderr)
 
-    def test_leaders_of_captures_keep_their_side_and_set(self):
+    def test_captured_leaders_keep_their_side_and_pair(self):
         manifest = self.data / "manifest.tsv"
         manifest.write_text("leader\tside\tlabels\n"
                             "s01s02/03/001/skeleton_pos.txt\tright\tkick=1\n"
@@ -152,7 +152,7 @@ class AugmentationSetTest(unittest.TestCase):
                           for row in rows(self.out / "index.tsv")},
                          {(str(len(clip)), 15.0) for clip in clips.values()})
 
-    def test_jobs_are_of_one_half(self):
+    def test_write_jobs_rejects_several_seeds(self):
         result = evaluate("--data", self.data, "--write-jobs", self.jobs, "--seeds", "1,2")
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("--seeds: 2 came, wanted one with --write-jobs", result.stderr)

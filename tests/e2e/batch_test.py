@@ -315,7 +315,7 @@ class BatchTest(unittest.TestCase):
         self.assertIn("still.bvh: frames: expected at least 2, got 1 (16 items)", result.stderr)
         self.assertFalse(out.exists())
 
-    def test_bad_lines_stop_a_run_before_it_begins(self):
+    def test_invalid_lines_are_rejected_before_the_run(self):
         out, manifest = self.out(), self.out("manifest.tsv")
         rows = ["leader\tlabels\tside", f"{self.leaders}/kick.bvh\tkick=1\t",
                 f"{self.leaders}/hug.bvh\tkik=1\t", f"{self.leaders}/hug.bvh\thug=1\tlft",

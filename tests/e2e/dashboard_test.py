@@ -25,7 +25,7 @@ class DashboardTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         self.assertIn(", 0 wrong", result.stdout)
 
-    def test_a_wrong_name_is_found_in_the_whole_and_in_a_panel(self):
+    def test_wrong_metric_name_is_found_in_dashboard_and_panel(self):
         dashboard = json.loads((GRAFANA / "duet.json").read_text(encoding="utf-8"))
         dashboard["refreshes"] = dashboard.pop("refresh")
         dashboard["panels"][0]["options"]["tooltip"]["mode"] = "many"

@@ -129,7 +129,7 @@ class FaultsTest(unittest.TestCase):
         result = self.synthesize(address, self.folder / "other.npy")
         self.assertEqual(result.returncode, 0, result.stderr)
 
-    def test_a_log_on_a_full_disk_stops_nothing(self):
+    def test_full_disk_of_the_log_stops_no_call(self):
         server = LoggingServer(self.folder / "log")
         self.addCleanup(server.kill)
         part = 20  # bytes of a line
@@ -149,7 +149,7 @@ class FaultsTest(unittest.TestCase):
         self.assertEqual(server.stop(), 0)
         self.assertEqual(len(server.events("stopped")), 1)
 
-    def test_an_answer_that_does_not_fit_leaves_no_part_of_itself(self):
+    def test_result_on_a_full_disk_leaves_no_partial_file(self):
         server = self.serve()
         for name in ("pair.npy", "pair.html", "pair.glb"):
             result = self.synthesize(server.address, self.folder / name, preexec_fn=limit_files)
@@ -158,7 +158,7 @@ class FaultsTest(unittest.TestCase):
         self.assertEqual(list(self.folder.iterdir()), [])
         self.assert_others_are_answered(server.address)
 
-    def test_a_client_that_is_killed_gives_its_place_back(self):
+    def test_killed_client_releases_its_place(self):
         server = self.serve()
         request = self.folder / "request"
         request.write_bytes(small_request(self.folder, frames=300))
@@ -176,7 +176,7 @@ class FaultsTest(unittest.TestCase):
         self.assertEqual(in_flight(server), 0)
         self.assert_others_are_answered(server.address)
 
-    def test_a_thousand_silent_connections_hold_up_nobody(self):
+    def test_a_thousand_silent_connections_delay_no_call(self):
         most = resource.getrlimit(resource.RLIMIT_NOFILE)
         if most[1] != resource.RLIM_INFINITY and most[1] < 2 * SILENT:
             self.skipTest("needs more descriptors")
@@ -198,7 +198,7 @@ class FaultsTest(unittest.TestCase):
             tools.wait_until(lambda: descriptors(server) < before + SILENT // 10,
                              "the server closes them")
 
-    def test_a_flood_of_resets_leaves_nothing_behind(self):
+    def test_flood_of_resets_leaves_no_resources_behind(self):
         server = self.serve()
         self.assertGreater(reset_flood.flood(server.port, False, FLOOD), 0)
         # The server is still at it; while the flood holds its share of places, others are refused.
@@ -232,12 +232,12 @@ class NoProcTest(unittest.TestCase):
         self.assertNotIn("frame #", result.stderr)
         return result.returncode
 
-    def test_training_and_evaluation_say_what_is_missing(self):
+    def test_training_and_evaluation_report_missing_files(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.check("duet-train", "--data", folder, "--out", folder), 1)
             self.assertEqual(self.check("duet-eval", "data", "--data", folder), 1)
 
-    def test_the_server_says_that_it_cannot_use_that_engine(self):
+    def test_server_reports_an_unusable_engine(self):
         self.assertNotIn(self.check("duet-server", "--engine", "torch", "--listen", "127.0.0.1:0",
                                     "--metrics-listen", ""), (0, -signal.SIGABRT))
 

@@ -111,7 +111,7 @@ class HostileClientTest(unittest.TestCase):
             self.assertIn("label_keyframes: comes more than 65536 times", message)
         self.assertLess(peak_megabytes(server), 600 * tools.MEMORY_FACTOR)
 
-    def test_readers_that_never_read_give_their_places_back(self):
+    def test_stalled_readers_release_their_places(self):
         server = self.serve("--write-timeout-seconds", "0.5")
         connection = self.connect(server, window=0)
         # Malformed requests end at once: their refusal needs no window. These are good.
@@ -127,7 +127,7 @@ class HostileClientTest(unittest.TestCase):
         self.assertTrue(any("write_timeout_seconds = 0.5" in text for _, text in ended(server)))
         self.assertEqual(in_flight(server), 0)
 
-    def test_requests_that_never_come_give_their_places_back(self):
+    def test_missing_requests_release_their_places(self):
         server = self.serve("--receive-timeout-seconds", "0.5")
         connection = self.connect(server)
         for _ in range(200):
@@ -136,7 +136,7 @@ class HostileClientTest(unittest.TestCase):
         tools.wait_until(lambda: sum(handled(server).values()) == 200, "all have ended")
         self.assertEqual(in_flight(server), 0)
 
-    def test_sockets_that_say_little_hold_up_no_page(self):
+    def test_silent_sockets_delay_no_metrics_page(self):
         server = self.serve()
         for words in ("", "G", "GET /metr") * 30:
             loiterer = socket.create_connection(("127.0.0.1", server.metrics_port))
@@ -145,7 +145,7 @@ class HostileClientTest(unittest.TestCase):
         for path in ("/healthz", "/readyz", "/metrics"):
             self.assertEqual(get(server, path)[0], 200)
 
-    def test_a_listener_that_is_dead_is_not_healthy(self):
+    def test_dead_listener_is_unhealthy(self):
         server = self.serve("--self-check-seconds", "0.1", descriptors=64)
         self.assertEqual(get(server, "/healthz")[0], 200)
         held = []
@@ -160,7 +160,7 @@ class HostileClientTest(unittest.TestCase):
         tools.wait_until(lambda: get(server, "/readyz")[0] == 503, "it takes no new calls")
         tools.wait_until(lambda: get(server, "/healthz")[0] == 503, "it says so")
 
-    def test_a_deadline_beyond_all_time_is_one(self):
+    def test_deadline_beyond_the_clocks_range_is_accepted(self):
         server = self.serve()
         connection = self.connect(server)
         with tempfile.TemporaryDirectory() as folder:

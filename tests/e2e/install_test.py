@@ -36,7 +36,7 @@ def commands(build):
 
 
 class InstallTest(unittest.TestCase):
-    def test_the_library_is_usable_where_it_is_installed(self):
+    def test_installed_library_is_usable(self):
         prefix = fresh("whole")
         for component in ("client", "client-development"):
             run(CMAKE, "--install", BUILD, "--prefix", prefix, "--component", component)

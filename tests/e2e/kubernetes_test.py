@@ -84,14 +84,14 @@ class KubernetesTest(unittest.TestCase):
                     sleep + int(settings["drain_seconds"]) + int(settings["grace_seconds"])
                     + 10)  # until a server that hangs exits by itself
 
-    def test_a_server_asks_for_the_whole_cores_that_it_may_use(self):
+    def test_server_requests_as_many_whole_cores_as_its_limit(self):
         for overlay in OVERLAYS:
             for _, template in pods_of(objects_of(f"overlays/{overlay}")):
                 resources = template["spec"]["containers"][0]["resources"]
                 self.assertEqual(resources["requests"], resources["limits"])
                 self.assertRegex(resources["limits"]["cpu"], r"^\d+$")
 
-    def test_selectors_find_the_servers_and_tell_the_canary_apart(self):
+    def test_selectors_distinguish_servers_and_canary(self):
         stable = objects_of("overlays/production")
         canary = objects_of("overlays/canary")
         pods = {track: of_kind(objects, "Deployment")[0]
@@ -111,7 +111,7 @@ class KubernetesTest(unittest.TestCase):
                 self.assertEqual(selected(selector, labels[other]), track == other)
         self.assertNotEqual(pods["stable"]["metadata"]["name"], pods["canary"]["metadata"]["name"])
 
-    def test_names_that_are_referred_to_are_there(self):
+    def test_referenced_names_exist(self):
         for folder in FOLDERS:
             objects = objects_of(folder)
             there = {(one["kind"], one["metadata"]["name"]) for one in objects}
@@ -134,7 +134,7 @@ class KubernetesTest(unittest.TestCase):
         script = re.sub(r"(?<![\w.])/(?=(models|hashes|tmp)\b)", f"{folder}/", script)
         return tools.run(shell, flags, script)
 
-    def test_models_are_served_only_as_their_hashes_say(self):
+    def test_models_are_served_only_with_matching_hashes(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             for path in ("models/sbu/1", "hashes", "tmp"):
@@ -175,13 +175,13 @@ class KubernetesTest(unittest.TestCase):
                 self.assertFalse(pathlib.Path(f"/proc/{process}").exists(), "a wait goes on")
             return result, (folder / "asked").read_text().splitlines()
 
-    def test_a_batch_is_merged_once_its_shards_are_done(self):
+    def test_batch_is_merged_after_its_shards(self):
         result, asked = self.run_batch("complete")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(asked, ["apply -k .", "apply -k merge",
                                  "--namespace there logs job/duet-batch-merge"])
 
-    def test_a_batch_whose_shards_failed_is_not_merged(self):
+    def test_batch_with_failed_shards_is_not_merged(self):
         result, asked = self.run_batch("failed")
         self.assertEqual(result.returncode, 1)
         self.assertIn("job/duet-batch failed", result.stderr)

@@ -88,7 +88,7 @@ class Mixes:
         self.assert_within_limit(server)
         self.assert_answered(tally, 16)
 
-    def test_everything_at_once_is_survived(self):
+    def test_all_loads_together_stay_within_the_limit(self):
         with tempfile.TemporaryDirectory() as folder:
             reloads = Reloads(folder)
             server = self.serve("--model-repository", reloads.folder, "--default-model", "sbu")
@@ -115,7 +115,7 @@ class SimulatedLimitTest(Mixes, unittest.TestCase):
         return server
 
 
-    def test_settings_that_do_not_fit_are_warned_of(self):
+    def test_settings_that_do_not_fit_cause_a_warning(self):
         flags = ["--max-held-bytes", str(512 * mixes.MIB)]
         server = self.serve(*flags)
         tools.wait_until(lambda: server.events("settings_do_not_fit"), "the server warns")

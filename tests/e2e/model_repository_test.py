@@ -72,7 +72,7 @@ class ModelRepositoryTest(unittest.TestCase):
                           tools.sample("kick"), "--label", "kick=1", "--out",
                           self.folder / f"{threading.get_ident()}.json", "--quiet", *flags)
 
-    def test_absurd_and_torn_weights_never_replace_good_ones(self):
+    def test_absurd_and_truncated_weights_never_replace_good_ones(self):
         write_checkpoint(self.repository / "sbu" / "1", 1)
         server = self.serve()
         write_checkpoint(self.repository / "sbu" / "2", 2, make_huge)
@@ -89,7 +89,7 @@ class ModelRepositoryTest(unittest.TestCase):
         self.assertRegex(models["sbu/3 failed"], r"weights: \d+ bytes, wanted \d+")
         self.assertEqual(self.synthesize(server).returncode, 0)
 
-    def test_weights_that_change_under_their_manifest_are_refused_until_they_are_mended(self):
+    def test_weights_that_contradict_their_manifest_are_rejected_until_fixed(self):
         folder = self.repository / "sbu" / "1"
         write_checkpoint(folder, 1)
         server = self.serve()
@@ -118,14 +118,14 @@ class ModelRepositoryTest(unittest.TestCase):
         self.assertEqual(self.admin("reload").returncode, 0)
         self.assertEqual(outdated(), (False, ""))
 
-    def test_a_server_refuses_absurd_weights_at_the_start(self):
+    def test_server_rejects_absurd_weights_at_start(self):
         write_checkpoint(self.repository / "sbu" / "1", 1, make_huge)
         result = tools.run(tools.PROGRAMS / "duet-server", "--check-config", "--model-repository",
                            self.repository)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stdout, "wrong: sbu/1: the weights (do not )?answer")
 
-    def test_a_volume_as_kubernetes_mounts_it(self):
+    def test_kubernetes_volume_is_served(self):
         def publish(generation, version):
             write_checkpoint(self.repository / f"..{generation}" / "sbu" / str(version), version)
             link = self.repository / "..data_tmp"
@@ -143,7 +143,7 @@ class ModelRepositoryTest(unittest.TestCase):
         self.assertEqual(set(self.models()), {"sbu/2 served"})
         self.assertEqual(self.synthesize(server).returncode, 0)
 
-    def test_a_repository_that_cannot_be_written(self):
+    def test_read_only_repository_is_served(self):
         write_checkpoint(self.repository / "sbu" / "1", 1)
         for path in (self.repository / "sbu" / "1", self.repository / "sbu", self.repository):
             path.chmod(0o555)
@@ -156,7 +156,7 @@ class ModelRepositoryTest(unittest.TestCase):
         self.assertEqual(self.synthesize(server).returncode, 0)
         self.assertEqual(sorted(self.repository.rglob("*")), before)
 
-    def test_labels_move_and_versions_go(self):
+    def test_labels_move_and_versions_unload(self):
         for version in (1, 2):
             write_checkpoint(self.repository / "sbu" / str(version), version)
         server = self.serve("--version-label", "sbu:stable=1")

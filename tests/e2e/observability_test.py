@@ -71,7 +71,7 @@ class MetricsTest(unittest.TestCase):
         text = get(self.server.metrics_port, "/metrics")
         return {line.split()[2] for line in text.splitlines() if line.startswith("# TYPE ")}
 
-    def test_whoever_asks_for_metrics_asks_for_some_that_are_there(self):
+    def test_queried_metrics_exist(self):
         asked = set()
         for file in ("prometheus/rules.yml", "grafana/duet.json",
                      "kubernetes/components/scale_by_adapter/adapter_rules.yaml",
@@ -231,7 +231,7 @@ class TraceTest(unittest.TestCase):
                                             timeout=tools.RUN_SECONDS, metadata=metadata)
         return dict(call.trailing_metadata()).get("traceparent")
 
-    def test_a_trace_goes_through_the_server(self):
+    def test_trace_passes_through_the_server(self):
         server, stub = self.exporting()
         begin = time.time_ns()
         came = self.returned(stub, f"00-{TRACE}-{PARENT}-01")
@@ -261,7 +261,7 @@ class TraceTest(unittest.TestCase):
         tools.wait_until(lambda: self.collector.spans, "a span")
         self.assertEqual(len(self.collector.spans), 1)
 
-    def test_a_call_without_a_trace_begins_one(self):
+    def test_call_without_a_trace_starts_one(self):
         _, stub = self.exporting()
         came = self.returned(stub)
         tools.wait_until(lambda: self.collector.spans, "a span")
@@ -269,7 +269,7 @@ class TraceTest(unittest.TestCase):
         self.assertEqual(came, f"00-{span['trace']}-{span['id']}-01")
         self.assertEqual(span["parent"], "")
 
-    def test_a_reply_of_motion_says_when_its_first_frames_left(self):
+    def test_synthesize_span_has_the_time_of_the_first_chunk(self):
         server, _ = self.exporting()
         answer = tools.duet("synthesize", "--server", server.address, "--leader",
                             tools.sample("kick"), "--label", "kick=1", "--out", "-",
@@ -284,7 +284,7 @@ class TraceTest(unittest.TestCase):
         self.assertGreater(span["attributes"]["duet.frames"], 0)
         self.assertGreater(span["attributes"]["duet.compute_seconds"], 0)
 
-    def test_without_a_collector_a_trace_is_still_carried(self):
+    def test_trace_is_propagated_without_a_collector(self):
         _, stub = self.start()
         came = self.returned(stub, f"00-{TRACE}-{PARENT}-01")
         self.assertRegex(came, f"^00-{TRACE}-[0-9a-f]{{16}}-01$")
@@ -292,7 +292,7 @@ class TraceTest(unittest.TestCase):
         self.assertIsNone(self.returned(stub))
         self.assertEqual(self.collector.spans, [])
 
-    def test_a_collector_that_is_away_costs_spans_and_nothing_else(self):
+    def test_absent_collector_loses_only_spans(self):
         server, stub = self.exporting()
         self.collector.stop()
         for _ in range(5):
@@ -302,7 +302,7 @@ class TraceTest(unittest.TestCase):
             "the count of lost spans")
         self.assertIn("duet_spans_sent_total 0\n", get(server.metrics_port, "/metrics"))
 
-    def test_an_endpoint_that_makes_no_sense_stops_the_start(self):
+    def test_invalid_endpoint_prevents_the_start(self):
         wrong = tools.run(tools.PROGRAMS / "duet-server", "--listen", "127.0.0.1:0",
                           "--metrics-listen", "off", "--otlp-endpoint", "collector:4317")
         self.assertNotEqual(wrong.returncode, 0)
@@ -317,7 +317,7 @@ class LogTest(unittest.TestCase):
         self.addCleanup(channel.close)
         return server, synthesis_pb2_grpc.MotionSynthesisStub(channel)
 
-    def test_a_flood_of_refused_calls_is_counted_not_written(self):
+    def test_flood_of_rejections_is_counted_not_logged(self):
         server, stub = self.start("--log-refusals-per-second", "2")
         request = synthesis_pb2.GetModelRequest()
         request.model.name = "nobody"
@@ -336,7 +336,7 @@ class LogTest(unittest.TestCase):
         self.assertEqual({line["code"] for line in server.events("calls_not_logged")},
                          {"NOT_FOUND"})
 
-    def test_a_part_of_the_successes_is_written(self):
+    def test_share_of_successes_is_logged(self):
         server, stub = self.start("--log-success-ratio", "0.1")
         for _ in range(40):
             stub.ListModels(synthesis_pb2.ListModelsRequest(), timeout=tools.RUN_SECONDS)
@@ -344,7 +344,7 @@ class LogTest(unittest.TestCase):
         self.assertEqual(len(server.events("call")), 4)
         self.assertEqual(server.events("call")[0]["sampled_ratio"], 0.1)
 
-    def test_people_may_read_it(self):
+    def test_text_log_is_readable(self):
         server = subprocess.Popen(
             [tools.PROGRAMS / "duet-server", "--listen", "127.0.0.1:0", "--metrics-listen", "off",
              "--log-format", "text"], stderr=subprocess.PIPE, text=True)
@@ -359,7 +359,7 @@ class LogTest(unittest.TestCase):
             self.assertRegex(line, r"^\d{4}-\d\d-\d\dT[\d:.]+Z (INFO   |WARNING|ERROR  ) \w+ ")
         self.assertRegex(lines[-1], r" serving port=\d+ ")
 
-    def test_a_level_leaves_out_what_is_less_grave(self):
+    def test_level_omits_less_severe_lines(self):
         process = tools.run(tools.PROGRAMS / "duet-server", "--listen", "127.0.0.1:0",
                             "--metrics-listen", "off", "--log-level", "error",
                             "--model-repository", "/nowhere")

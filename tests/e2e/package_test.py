@@ -37,7 +37,7 @@ class PackageTest(unittest.TestCase):
         for package in cls.packages.values():
             run("dpkg-deb", "-x", package, cls.root)
 
-    def test_each_package_has_its_files_and_needs_no_more_than_they_do(self):
+    def test_each_package_has_its_files_and_only_their_dependencies(self):
         self.assertEqual(sorted(self.packages), ["duet", "duet-server", "duet-training"])
         for name, package in self.packages.items():
             needed = run("dpkg-deb", "-f", package, "Depends")
@@ -82,7 +82,7 @@ class PackageTest(unittest.TestCase):
         self.assertEqual(found.stdout, "")
 
     @unittest.skipUnless(shutil.which("systemd-analyze"), "needs systemd-analyze")
-    def test_the_service_may_do_little(self):
+    def test_service_unit_is_confined(self):
         unit = self.root / "usr/lib/systemd/system/duet-server.service"
         # In tenths, of 100.
         run("systemd-analyze", "security", "--offline=yes", "--threshold=15", unit)

@@ -40,7 +40,7 @@ class ScaleTest(unittest.TestCase):
         lines = (self.folder / "set/index.jsonl").read_text().splitlines()
         return [json.loads(line)["id"] for line in lines]
 
-    def test_clients_that_balance_give_each_server_its_share(self):
+    def test_round_robin_gives_each_server_its_share(self):
         addresses = ",".join(server.address for server in self.servers)
         result = self.batch(44, "--server", f"ipv4:{addresses}")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -52,7 +52,7 @@ class ScaleTest(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("haproxy") and shutil.which("openssl"),
                          "needs haproxy and openssl")
-    def test_a_server_that_is_killed_behind_the_proxy_loses_no_item(self):
+    def test_killed_server_behind_the_proxy_loses_no_item(self):
         proxy_test.certificate(self.folder)
         text = (proxy_test.PROXY / "haproxy.cfg").read_text(encoding="utf-8")
         # A line for each server in place of the name that stands for all of them.

@@ -123,7 +123,7 @@ class SecurityTest(unittest.TestCase):
             self.assertNotIn("CONNECTION ESTABLISHED",
                              self.shake(server, "-tls1_2", "-cipher", weak + ":@SECLEVEL=0"), weak)
 
-    def test_both_sides_must_be_who_they_say(self):
+    def test_both_sides_need_valid_certificates(self):
         stranger = Authority(self.folder / "stranger")
         server = self.start(*self.tls_flags(self.authority.issue("localhost")),
                             "--tls-client-ca-file", self.authority.certificate)
@@ -148,7 +148,7 @@ class SecurityTest(unittest.TestCase):
             client = self.authority.issue(name)
             self.assertEqual(self.list_models(self.channel(server, client=client)), answer, name)
 
-    def test_tokens_open_the_door(self):
+    def test_valid_tokens_are_required(self):
         access = self.folder / "access"
         access.write_text(f"studio synthesise {known('good')}\nops admin {known('admin')}\n"
                           f"slow synthesise {known('slow')} calls_per_second=0.001\n")
@@ -173,7 +173,7 @@ class SecurityTest(unittest.TestCase):
                 grpc.access_token_call_credentials("good"))) as composite:
             self.assertEqual(self.list_models(composite)[0], "OK")
 
-    def test_our_own_client_shows_its_token_and_its_certificate(self):
+    def test_client_sends_its_token_and_certificate(self):
         access = self.folder / "access"
         access.write_text(f"studio synthesise {known('good')}\n")
         server = self.start(*self.tls_flags(self.authority.issue("localhost")),
@@ -254,7 +254,7 @@ class SecurityTest(unittest.TestCase):
                          "UNAUTHENTICATED")
         self.assertEqual(server.events("secrets_refused"), [])
 
-    def test_half_a_rotation_changes_nothing(self):
+    def test_partial_rotation_changes_nothing(self):
         folder = self.authority.issue("localhost")
         server = self.start(*self.tls_flags(folder))
         before = ssl.get_server_certificate(("127.0.0.1", server.port))

@@ -45,7 +45,7 @@ class SiteTest(unittest.TestCase):
                              timeout=800)
         cls.pages = {path: Page(path) for path in cls.site.rglob("*.html")}
 
-    def test_it_is_made_without_a_warning(self):
+    def test_site_builds_without_warnings(self):
         self.assertEqual(self.made.returncode, 0, self.made.stderr)
         names = {path.relative_to(self.site).as_posix() for path in self.pages}
         for name in ("index.html", "docs/site/index.html", "docs/site/python.html", "README.html",
@@ -54,7 +54,7 @@ class SiteTest(unittest.TestCase):
                      "client/python/examples/mixing_reactions.html"):
             self.assertIn(name, names)
 
-    def test_its_links_lead_somewhere(self):
+    def test_links_have_targets(self):
         for path, page in self.pages.items():
             for link in page.links + page.loads:
                 parts = urllib.parse.urlsplit(link)
@@ -68,12 +68,12 @@ class SiteTest(unittest.TestCase):
                     self.assertIn(urllib.parse.unquote(parts.fragment), self.pages[target].ids,
                                   f"{path.name} links to {link}")
 
-    def test_its_pages_load_nothing_from_elsewhere(self):
+    def test_pages_load_nothing_from_other_hosts(self):
         for path, page in self.pages.items():
             for load in page.loads:
                 self.assertFalse(urllib.parse.urlsplit(load).netloc, f"{path.name} loads {load}")
 
-    def test_the_python_reference_has_its_words(self):
+    def test_python_reference_lists_the_public_names(self):
         text = (self.site / "docs/site/python.html").read_text(encoding="utf-8")
         for name in ("duet_motion.Client.synthesize", "duet_motion.Motion",
                      "duet_motion.errors.InvalidRequestError", "duet_motion.sets.read_set",

@@ -234,7 +234,7 @@ class SlurmTest(unittest.TestCase):
         _, different, unreadable = filecmp.cmpfiles(whole, out, names, shallow=False)
         self.assertEqual((different, unreadable), ([], []))
 
-    def test_faults_leave_no_trace_in_what_is_trained(self):
+    def test_faults_leave_no_trace_in_trained_models(self):
         data = puppets.make_data_set(self.folder)
         folds = " ".join(puppets.SUBJECTS)
         runs = self.folder / "runs"

@@ -35,11 +35,11 @@ class SoakTest(unittest.TestCase):
             self.assertGreater(figures["calls"], 50)
             xml.etree.ElementTree.parse(pathlib.Path(folder) / "soak.svg")
 
-    def test_growth_is_that_of_settled_rounds_after_the_warm_up(self):
+    def test_growth_counts_settled_rounds_after_the_warm_up(self):
         rounds = [(0, size, 0, 0) for size in (50, 90, 100, 100, 100, 100, 100, 103, 104, 105)]
         self.assertAlmostEqual(soak.growth_of(rounds), 0.045)
 
-    def test_what_it_does_not_let_pass(self):
+    def test_each_failure_fails_the_soak(self):
         good = dict(lost=0, unexpected=0, unfinished=0, failed_actions=0, growth=0.01,
                     descriptors_left=0, exit_code=0)
         self.assertTrue(soak.passes(good, 0.02))

@@ -34,14 +34,14 @@ def fuzz(*words):
 
 
 class InputsTest(unittest.TestCase):
-    def test_a_message_is_taken_apart_and_put_together(self):
+    def test_message_survives_splitting_and_joining(self):
         fields = protobuf.parse(REQUEST)
         self.assertEqual([field.number for field in fields], [2, 3, 5, 6, 8, 9, 10, 11])
         self.assertEqual(protobuf.encode(fields), REQUEST)
         self.assertIsNone(protobuf.parse(REQUEST[:-1]))
         self.assertEqual(protobuf.varint(300), b"\xac\x02")
 
-    def test_simple_changes_hold_each_field_alone_and_every_other_kind(self):
+    def test_simple_changes_cover_each_field_and_kind(self):
         changes = set(mutation.systematic(REQUEST))
         for field in protobuf.parse(REQUEST):
             self.assertIn(field.encoded(), changes)
@@ -55,7 +55,7 @@ class InputsTest(unittest.TestCase):
         self.assertTrue(any(0 < len(change) < len(REQUEST) and REQUEST.startswith(change)
                             for change in changes))
 
-    def test_two_clients_begin_with_empty_messages_of_synthesize(self):
+    def test_two_clients_start_with_empty_synthesize_messages(self):
         empty = next(calls.plain(1, corpus.SYNTHESIZE, b""))
         first = rounds.Rounds(1, METHODS)[0]
         self.assertEqual(len(first), 2)
@@ -117,7 +117,7 @@ class FindingsTest(unittest.TestCase):
         patched.start()
         self.addCleanup(patched.stop)
 
-    def test_a_server_that_dies(self):
+    def test_dead_server_is_reported(self):
         self.during_the_second_round(lambda server: os.kill(server.pid, signal.SIGABRT))
         printed = self.find("--seed", "5")
         self.assertIn("ended with -6", printed)
@@ -125,14 +125,14 @@ class FindingsTest(unittest.TestCase):
         kept = json.loads((pathlib.Path(self.folder) / "rounds.json").read_text())
         self.assertEqual((kept["seed"], kept["numbers"]), (5, [1, 2]))
 
-    def test_a_server_that_hangs(self):
+    def test_hanging_server_is_reported(self):
         self.during_the_second_round(lambda server: os.kill(server.pid, signal.SIGSTOP))
         self.assertIn("hangs", self.find(patience="1"))
 
-    def test_too_much_memory(self):
+    def test_excessive_memory_is_reported(self):
         self.assertIn("memory: ", self.find("--memory", "1"))
 
-    def test_another_answer(self):
+    def test_changed_answer_is_reported(self):
         real, seen = judge.call, []
 
         def call(port, method, request, patience):
@@ -145,17 +145,17 @@ class FindingsTest(unittest.TestCase):
         self.patch(judge, "call", call)
         self.assertIn("Synthesize: a good call was answered differently", self.find())
 
-    def test_an_exit_status_other_than_0(self):
+    def test_nonzero_exit_status_is_reported(self):
         real = tools.Server.stop
         self.patch(tools.Server, "stop", lambda server: real(server) or 23)
         self.assertIn("ended with 23, not 0", self.find())
 
-    def test_a_sanitizers_report(self):
+    def test_sanitizer_report_is_reported(self):
         report = "==1==ERROR: AddressSanitizer: heap-use-after-free\n"
         self.during_the_second_round(lambda server: server.log.append({"text": report}))
         self.assertIn(report, self.find())
 
-    def test_a_method_without_requests(self):
+    def test_method_without_requests_is_reported(self):
         known = corpus.requests_of_methods(tools.SOURCE)
         del known[corpus.SYNTHESIZE]
         self.patch(corpus, "requests_of_methods", lambda _: known)
@@ -163,7 +163,7 @@ class FindingsTest(unittest.TestCase):
 
 
 class ServerTest(unittest.TestCase):
-    def test_the_server_stands_it(self):
+    def test_server_withstands_the_traffic(self):
         status = wire_fuzzer.main([BUILD, "--seconds", SECONDS, "--memory",
                                    str(600 * tools.MEMORY_FACTOR), "--out", f"{BUILD}/wire"])
         self.assertEqual(status, 0)
