@@ -68,11 +68,11 @@ class AdminService::Call {
 
   void Finish(const absl::Status& status) {
     // A server that stops cancels what it has not begun.
-    const absl::Status told = absl::IsCancelled(status) ? service::DrainingRefusal() : status;
+    const absl::Status reported = absl::IsCancelled(status) ? service::DrainingRefusal() : status;
     const metrics::CallRecord& record = opened_.scope->record();
     log_.Audit({record.caller, record.peer, record.request_id, std::string(record.method.name),
-                arguments_, told});
-    service::CallPipeline::Close(*opened_.scope, told, context_, reactor_);
+                arguments_, reported});
+    service::CallPipeline::Close(*opened_.scope, reported, context_, reactor_);
   }
 
  private:

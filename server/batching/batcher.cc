@@ -22,7 +22,7 @@ namespace {
 
 constexpr common::StepKind kTaking{"worker", "taking windows from the queue"};
 constexpr common::StepKind kEvaluating{"worker", "evaluating a batch"};
-constexpr common::StepKind kAnswering{"worker", "handing an answer on"};
+constexpr common::StepKind kAnswering{"worker", "passing a result on"};
 
 absl::Status ShuttingDown() { return absl::UnavailableError("the server is shutting down"); }
 
@@ -47,16 +47,16 @@ absl::StatusOr<Results> EvaluateTogether(const engine::Synthesizer& model, Windo
   try {
     Results results = model.Synthesize(windows);
     if (results.size() == windows.size()) return results;
-    return absl::InternalError("the model gave " + std::to_string(results.size()) +
-                               " results for a batch of " + std::to_string(windows.size()));
+    return absl::InternalError("model: expected results for " + std::to_string(windows.size()) +
+                               " windows, got " + std::to_string(results.size()));
   } catch (const std::exception& error) {
     return absl::InternalError(std::string("the model threw: ") + error.what());
   } catch (...) {
-    return absl::InternalError("the model threw something that is no exception");
+    return absl::InternalError("the model threw an object that is not a std::exception");
   }
 }
 
-// If a whole batch fails, any of its windows may be the cause. Each window is retried alone, so
+// If a whole batch fails, any of its windows may be the cause. Each window is retried by itself, so
 // that one failing window does not affect the others.
 Results Evaluate(const Batch& batch) {
   const engine::Synthesizer& model = *batch.windows[0].job.model;

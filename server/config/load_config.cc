@@ -67,8 +67,8 @@ void AddErrors(const absl::Status& status, CommandLine* command_line) {
   }
 }
 
-// Parses each flag of a command line alone, so that every mistake is reported and the other flags
-// count. `first` is the first mistake of the command line as a whole.
+// Parses each flag of a command line separately, so that every mistake is reported and the other
+// flags count. `first` is the first mistake of the command line as a whole.
 Flags ParseEach(int argc, const char* const* argv, const absl::Status& first,
                 CommandLine* command_line) {
   Flags all;

@@ -93,7 +93,7 @@ void SetDefaults(ServerConfig* values) {
   }
 }
 
-// Checks each field alone.
+// Checks each field by itself.
 void CheckFields(ServerConfig* values, Mistakes& mistakes) {
   for (const Setting& setting : AllSettings()) {
     if (IsSet(setting, *values)) CheckField(setting, values, mistakes);

@@ -38,8 +38,8 @@ constexpr double kSelfCheckTimeoutSeconds = 5;
 // Interval for returning the memory of large requests.
 constexpr double kTrimSeconds = 1;
 
-constexpr common::StepKind kLookingAtTime{"time limits", "ending calls that take too long"};
-constexpr common::StepKind kTrimming{"memory", "giving memory back"};
+constexpr common::StepKind kLookingAtTime{"time limits", "ending calls that exceed time limits"};
+constexpr common::StepKind kTrimming{"memory", "returning memory to the system"};
 constexpr common::StepKind kHousekeeping{"housekeeping",
                                          "reading certificates, counting unlogged calls"};
 

@@ -54,7 +54,7 @@ using ReadSettings = std::function<absl::StatusOr<v1::ServerConfig>()>;
 
 constexpr common::StepKind kStarting{"main", "starting and loading models", /*is_bounded=*/false};
 constexpr common::StepKind kDraining{"main", "draining", /*is_bounded=*/false};
-constexpr common::StepKind kEnding{"main", "ending threads", /*is_bounded=*/false};
+constexpr common::StepKind kEnding{"main", "joining threads", /*is_bounded=*/false};
 
 // Maximum time to exit when no call is left: gRPC sends statuses for a second; a running self-check
 // and a stuck log take at most five seconds each.

@@ -73,9 +73,10 @@ absl::Status Visit(const addrinfo& address, steady_clock::time_point end) {
   if (error != 0) return Failure("cannot connect", error);
   // Send nothing: plain text would be an error in the log of a server with TLS, and a TLS handshake
   // needs certificates.
-  if (shutdown(socket.get(), SHUT_WR) != 0) return Failure("cannot take leave", errno);
+  if (shutdown(socket.get(), SHUT_WR) != 0)
+    return Failure("cannot shut the connection down", errno);
   // Data, or the end of the connection, shows that the server accepted it.
-  if (!WaitFor(socket.get(), POLLIN, end)) return Failure("connected, but nobody answers", 0);
+  if (!WaitFor(socket.get(), POLLIN, end)) return Failure("connected, but got no answer", 0);
   return absl::OkStatus();
 }
 

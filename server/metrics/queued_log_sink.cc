@@ -34,15 +34,15 @@ class QueuedLogSink::Queue {
   // Runs on the writing thread until the queue is closed and empty.
   void Run() {
     Batch batch;
-    std::uint64_t told = 0;  // lost lines that notices have reported
+    std::uint64_t reported = 0;  // lost lines that notices have reported
     while (Next(&batch)) {
       std::uint64_t lost = 0;
       for (const std::string& line : batch.lines) lost += sink_->Write(line) ? 0 : 1;
       CountLost(lost);
       // Lines are dropped only while the queue is full, so they followed the lines of the batch. If
       // the notice is lost as well, the next one reports all lines.
-      const std::uint64_t untold = batch.dropped + lost - told;
-      if (untold > 0 && sink_->Write(options_.drop_notice(untold))) told += untold;
+      const std::uint64_t unreported = batch.dropped + lost - reported;
+      if (unreported > 0 && sink_->Write(options_.drop_notice(unreported))) reported += unreported;
     }
     common::MutexLock lock(mutex_);
     finished_ = true;

@@ -75,7 +75,7 @@ ServerMetrics::ServerMetrics()
                    .Register(registry_)),
       handled_(BuildCounter()
                    .Name("grpc_server_handled_total")
-                   .Help("RPCs completed on the server, whatever their outcome.")
+                   .Help("RPCs completed on the server, by status code.")
                    .Register(registry_)),
       handling_seconds_(BuildHistogram()
                             .Name("grpc_server_handling_seconds")
@@ -110,7 +110,7 @@ ServerMetrics::ServerMetrics()
       windows_dropped_(
           BuildCounter()
               .Name("duet_windows_dropped_total")
-              .Help("Windows that never started: cancelled, or not to be done in time.")
+              .Help("Windows that never started: cancelled, or too late for their deadline.")
               .Register(registry_)),
       queued_windows_(BuildGauge()
                           .Name("duet_queued_windows")
@@ -119,61 +119,59 @@ ServerMetrics::ServerMetrics()
                           .Add({})),
       load_seconds_(BuildGauge()
                         .Name("duet_model_load_seconds")
-                        .Help("Time that loading a checkpoint took.")
+                        .Help("Time to load a checkpoint.")
                         .Register(registry_)),
       model_state_(BuildGauge()
                        .Name("duet_model_state")
-                       .Help("1 when a checkpoint is served, 0 when it was refused.")
+                       .Help("1 if the checkpoint is served, 0 if it was rejected.")
                        .Register(registry_)),
       model_last_load_(
           BuildGauge()
               .Name("duet_model_last_load_successful")
-              .Help("1 when the last load of a checkpoint succeeded, 0 when what is on "
-                    "disk was refused, whether or not an older load is served.")
+              .Help("1 if the checkpoint on disk was loaded, 0 if it was rejected, even "
+                    "if an earlier load of it is served.")
               .Register(registry_)),
       model_loads_(BuildCounter()
                        .Name("duet_model_loads_total")
-                       .Help("Checkpoints that were loaded, or refused.")
+                       .Help("Loads of checkpoints, by result.")
                        .Register(registry_)),
       folders_skipped_(BuildGauge()
                            .Name("duet_model_folders_skipped")
-                           .Help("Folders in the model repository that are no checkpoints.")
+                           .Help("Folders in the model repository that hold no checkpoint.")
                            .Register(registry_)
                            .Add({})),
       reloads_(BuildCounter()
                    .Name("duet_reloads_total")
-                   .Help("Reloads of settings and models that were asked for.")
+                   .Help("Requested reloads of settings and models, by result.")
                    .Register(registry_)),
       log_lines_dropped_(
           BuildCounter()
               .Name("duet_log_lines_dropped_total")
-              .Help("Log lines lost: their reader did not keep up, or they could not be written.")
+              .Help("Log lines lost because their reader was too slow or writing failed.")
               .Register(registry_)
               .Add({})),
-      self_check_failures_(
-          BuildCounter()
-              .Name("duet_self_check_failures_total")
-              .Help("Times that the server did not answer when it connected to its own port.")
-              .Register(registry_)
-              .Add({})),
+      self_check_failures_(BuildCounter()
+                               .Name("duet_self_check_failures_total")
+                               .Help("Times that the server did not answer its own call.")
+                               .Register(registry_)
+                               .Add({})),
       refusals_(BuildCounter()
                     .Name("duet_refusals_total")
-                    .Help("RPCs that were refused, by the reason in their error details.")
+                    .Help("Rejected RPCs, by the reason in their error details.")
                     .Register(registry_)),
       caller_calls_(BuildCounter()
                         .Name("duet_caller_calls_total")
-                        .Help("RPCs of the access file's callers, whatever their outcome.")
+                        .Help("Completed RPCs of the access file's callers, by status code.")
                         .Register(registry_)),
-      secrets_reloads_(
-          BuildCounter()
-              .Name("duet_secrets_reloads_total")
-              .Help("Times that certificates or the access file were read again after a change.")
-              .Register(registry_)),
+      secrets_reloads_(BuildCounter()
+                           .Name("duet_secrets_reloads_total")
+                           .Help("Reloads of changed certificates or of a changed access file.")
+                           .Register(registry_)),
       secrets_last_reload_(
           BuildGauge()
               .Name("duet_secrets_last_reload_successful")
-              .Help("1 when the certificates or access file on disk are in use, 0 when they were "
-                    "refused and the ones before them are.")
+              .Help("1 if the certificates or access file on disk are in use, 0 if they were "
+                    "rejected and the previous ones are.")
               .Register(registry_)) {
   // Start at 0: Prometheus would not see the first rejection as an increase otherwise.
   for (const char* kind : {"access", "tls"}) {
@@ -284,7 +282,7 @@ void ServerMetrics::SetCapacity(const Capacity& capacity) {
 void ServerMetrics::SetBuild(const std::string& version) {
   BuildGauge()
       .Name("duet_build_info")
-      .Help("1; its labels say which program this is.")
+      .Help("1; the labels identify the program.")
       .Register(registry_)
       .Add({{"version", version}})
       .Set(1);
@@ -305,24 +303,23 @@ std::string ServerMetrics::Render() {
   if (models_) families.push_back(ModelInfo(models_()));
   if (ready_) {
     families.push_back(
-        Gauge("duet_ready", "1 while calls are served and new ones may come.", ready_() ? 1 : 0));
+        Gauge("duet_ready", "1 while the server accepts and answers calls.", ready_() ? 1 : 0));
   }
   if (longest_step_) {
     families.push_back(Gauge("duet_longest_step_seconds",
-                             "Time that the slowest thread has taken for its step so far.",
+                             "Duration of the longest step in progress of any thread.",
                              longest_step_()));
   }
   if (certificate_end_) {
     families.push_back(Gauge("duet_tls_certificate_expiry_timestamp_seconds",
-                             "When the server's certificate ceases to be valid.",
-                             certificate_end_()));
+                             "When the server's certificate expires.", certificate_end_()));
   }
   if (spans_) {
     const SpanCounts spans = spans_();
-    families.push_back(Counter("duet_spans_sent_total", "Spans that the collector took.",
+    families.push_back(Counter("duet_spans_sent_total", "Spans that the collector accepted.",
                                static_cast<double>(spans.sent)));
     families.push_back(Counter("duet_spans_dropped_total",
-                               "Spans lost to a collector that was away or too slow.",
+                               "Spans lost because the collector was unavailable or too slow.",
                                static_cast<double>(spans.dropped)));
   }
   for (prometheus::MetricFamily& family : ReadProcessMetrics()) {

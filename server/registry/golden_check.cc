@@ -89,10 +89,11 @@ absl::Status CheckFollower(const motion::Poses& follower, const engine::Synthesi
       const float distance = Distance(follower.at(t, joint), leader);
       // Negated, so that NaN is rejected.
       if (distance <= kFarthestFollower) continue;
-      return absl::InvalidArgumentError(absl::StrCat(
-          "the weights answer a leader who stands still with a follower whose ",
-          model.skeleton.joint_names[static_cast<std::size_t>(joint)], " is ", distance,
-          " m away in frame ", t, ", wanted ", kFarthestFollower, " m at most"));
+      return absl::InvalidArgumentError(
+          absl::StrCat("weights: expected every joint of a follower within ", kFarthestFollower,
+                       " m of a standing leader, got ",
+                       model.skeleton.joint_names[static_cast<std::size_t>(joint)], " at ",
+                       distance, " m in frame ", t));
     }
   }
   return absl::OkStatus();
@@ -125,7 +126,7 @@ absl::Status CheckAnswers(const engine::Synthesizer& model) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (!results[i].ok()) {
       return absl::Status(results[i].status().code(),
-                          absl::StrCat("the weights do not answer a leader who stands still: ",
+                          absl::StrCat("weights: expected a follower for a standing leader, got: ",
                                        results[i].status().message()));
     }
     const absl::Status checked = CheckFollower(*results[i], windows[i], model.description());

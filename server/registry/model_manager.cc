@@ -116,16 +116,16 @@ absl::StatusOr<ReloadReport> ModelManager::Reload(const std::function<bool()>& s
   absl::StatusOr<Folders> folders = Scan();
   if (!folders.ok()) return folders.status();
   if (folders->empty()) {
-    return absl::FailedPreconditionError("no model could be loaded: the repository holds none");
+    return absl::FailedPreconditionError("no model could be loaded: the repository is empty");
   }
   {
-    // Models whose folders are gone take part as well.
+    // Includes models whose folders are gone.
     common::MutexLock lock(mutex_);
     for (const auto& [name, versions] : models_) (*folders)[name];
   }
   for (const auto& [name, versions] : *folders) {
     if (!ReloadModel(name, versions, stop, report)) {
-      return absl::CancelledError("told to stop while loading");
+      return absl::CancelledError("loading was stopped");
     }
   }
   return report;
@@ -154,11 +154,11 @@ bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_ty
       const bool loaded = LoadFolder(name, version, folder).ok();
       (loaded ? report.loaded : report.refused).push_back(SourceOf(name, version));
     }
-    // One that does not load leaves its place to the next older.
+    // A version that cannot be loaded leaves its place to the next older one.
     const std::vector<uint32_t> served = ServedVersions(name);
     if (std::find(served.begin(), served.end(), version) != served.end() && places > 0) --places;
   }
-  // Before anything goes: what a label leaves may.
+  // Moved first: a version without labels may be unloaded below.
   for (std::string& label : ApplyLabelsOf(name)) report.refused_labels.push_back(std::move(label));
   for (const uint32_t version : ServedVersions(name)) {
     if (std::find(keep.begin(), keep.end(), version) != keep.end()) continue;
@@ -259,7 +259,7 @@ absl::Status ModelManager::LoadFolder(const std::string& name, uint32_t version,
   }
   CheckpointFingerprint fingerprint = CheckpointFingerprint::Of(folder);
   const LoadReport report = LoadCheckpoint(folder, loader);
-  // If the files changed meanwhile, nobody knows which of them were loaded: the next reload loads
+  // If the files changed meanwhile, it is unknown which of them were loaded: the next reload loads
   // them again.
   if (!fingerprint.IsUntouched(folder)) fingerprint = {};
   Take(name, version, report, std::move(fingerprint));
@@ -288,7 +288,8 @@ void ModelManager::Take(const std::string& name, uint32_t version, const LoadRep
 void ModelManager::Retire(const std::string& name, uint32_t version, ReloadReport& report) {
   const absl::Status removed = registry_.Remove(name, version);
   if (!removed.ok()) {
-    report.problems.push_back(absl::StrCat(SourceOf(name, version), " stays: ", removed.message()));
+    report.problems.push_back(
+        absl::StrCat(SourceOf(name, version), " stays served: ", removed.message()));
     return;
   }
   {
@@ -314,7 +315,7 @@ absl::Status ModelManager::Load(absl::string_view name, uint32_t version) {
   const absl::Status loaded = LoadFolder(model->first, version, model->second.at(version));
   if (!loaded.ok()) {
     return absl::FailedPreconditionError(
-        absl::StrCat(SourceOf(name, version), " does not load: ", loaded.message()));
+        absl::StrCat(SourceOf(name, version), " cannot be loaded: ", loaded.message()));
   }
   common::MutexLock lock(mutex_);
   models_[model->first][version].wish = Wish::kLoaded;
@@ -351,11 +352,11 @@ absl::Status ModelManager::CheckRepository() const {
   common::MutexLock lock(mutex_);
   if (!repository_.empty()) return absl::OkStatus();
   return absl::FailedPreconditionError(
-      "the server serves the models inside the program, wanted one with a model_repository");
+      "model_repository: expected a folder, got none; the server serves its embedded models");
 }
 
 std::vector<ModelStatus> ModelManager::List() const {
-  // The registry knows labels and default of what is served.
+  // The registry holds the labels and the default of the served models.
   std::map<std::pair<std::string, uint32_t>, ServedModel> served;
   for (ServedModel& model : registry_.List()) {
     const engine::ModelDescription& description = model.model->description();
@@ -399,7 +400,7 @@ std::vector<std::string> ModelManager::UnknownNames() const {
     if (model.empty() || std::find(names.begin(), names.end(), model) != names.end()) return;
     unknown.push_back(absl::StrCat(field, "[", index,
                                    "].model: expected one of: ", absl::StrJoin(names, ", "),
-                                   "; got ", base::Quoted(model), base::DidYouMean(model, names)));
+                                   ", got ", base::Quoted(model), base::DidYouMean(model, names)));
   };
   for (std::size_t i = 0; i < labels_.size(); ++i) check("version_labels", i, labels_[i].model);
   for (std::size_t i = 0; i < policies_.size(); ++i) {

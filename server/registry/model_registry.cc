@@ -26,7 +26,7 @@ absl::Status NotServed(absl::string_view name, uint32_t version) {
 void ModelRegistry::Serve(std::shared_ptr<const engine::Synthesizer> model) {
   const engine::ModelDescription& description = model->description();
   common::MutexLock lock(mutex_);
-  // What was served in its place goes with the parameter, after the lock: freeing takes time.
+  // The previous model is freed with the parameter, after the lock, because freeing takes time.
   entries_[description.name].versions[static_cast<uint32_t>(description.version)].swap(model);
 }
 
@@ -51,9 +51,9 @@ absl::Status ModelRegistry::DeleteLabel(absl::string_view name, absl::string_vie
   }
   const auto found = entry->second.labels.find(label);
   if (found == entry->second.labels.end()) {
-    return absl::NotFoundError(absl::StrCat("model ", base::Quoted(name), " has no version label ",
-                                            base::Quoted(label),
-                                            "; it has: ", Keys(entry->second.labels)));
+    return absl::NotFoundError(absl::StrCat("version label: expected a label of model ",
+                                            base::Quoted(name), " (", Keys(entry->second.labels),
+                                            "), got ", base::Quoted(label)));
   }
   entry->second.labels.erase(found);
   return absl::OkStatus();
@@ -68,8 +68,8 @@ absl::Status ModelRegistry::CheckRemovable(absl::string_view name, const Entry& 
                                                       base::Quoted(name)));
   }
   if (entry.versions.size() > 1 || name != DefaultName()) return absl::OkStatus();
-  return absl::FailedPreconditionError(absl::StrCat("version ", version, " is the last of model ",
-                                                    base::Quoted(name), ", the default model"));
+  return absl::FailedPreconditionError(absl::StrCat(
+      "version ", version, " is the last version of the default model ", base::Quoted(name)));
 }
 
 absl::Status ModelRegistry::Remove(absl::string_view name, uint32_t version) {
@@ -90,8 +90,8 @@ absl::Status ModelRegistry::Remove(absl::string_view name, uint32_t version) {
 absl::Status ModelRegistry::SetDefault(absl::string_view name) {
   common::MutexLock lock(mutex_);
   if (entries_.find(name) == entries_.end()) {
-    return absl::NotFoundError(absl::StrCat("the default model ", base::Quoted(name),
-                                            " is not served; served are: ", Keys(entries_)));
+    return absl::NotFoundError(absl::StrCat("default_model: expected a served model (",
+                                            Keys(entries_), "), got ", base::Quoted(name)));
   }
   default_name_ = std::string(name);
   return absl::OkStatus();
@@ -117,18 +117,17 @@ FindResult ModelRegistry::Find(const ModelQuery& query) const {
   const std::string& name = query.name.empty() ? DefaultName() : query.name;
   const auto found = entries_.find(name);
   if (found == entries_.end()) {
-    return ModelNotFound{"model.name",
-                         absl::StrCat("is ", base::Quoted(name),
-                                      ", which is not served; served are: ", Keys(entries_))};
+    return ModelNotFound{"model.name", absl::StrCat("expected a served model (", Keys(entries_),
+                                                    "), got ", base::Quoted(name))};
   }
   const Entry& entry = found->second;
   uint32_t version = entry.versions.begin()->first;
   if (query.version_label.has_value()) {
     const auto label = entry.labels.find(*query.version_label);
     if (label == entry.labels.end()) {
-      return ModelNotFound{"model.version_label",
-                           absl::StrCat("is ", base::Quoted(*query.version_label),
-                                        "; labels of model ", name, " are: ", Keys(entry.labels))};
+      return ModelNotFound{"model.version_label", absl::StrCat("expected a label of model ", name,
+                                                               " (", Keys(entry.labels), "), got ",
+                                                               base::Quoted(*query.version_label))};
     }
     version = label->second;
   }
@@ -136,8 +135,8 @@ FindResult ModelRegistry::Find(const ModelQuery& query) const {
     version = *query.version;
     if (entry.versions.count(version) == 0) {
       return ModelNotFound{"model.version",
-                           absl::StrCat("is ", version, "; served versions of model ", name,
-                                        " are: ", Keys(entry.versions))};
+                           absl::StrCat("expected a served version of model ", name, " (",
+                                        Keys(entry.versions), "), got ", version)};
     }
   }
   return Describe(found->first, entry, version);

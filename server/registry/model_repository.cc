@@ -42,9 +42,9 @@ absl::Status CheckPlace(const fs::path& folder, const engine::ModelDescription& 
   const std::string name = folder.parent_path().filename().string();
   const std::string version = folder.filename().string();
   if (model.name == name && absl::StrCat(model.version) == version) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("the manifest says model ", model.name,
-                                                 " version ", model.version, ", its folder says ",
-                                                 name, " version ", version));
+  return absl::InvalidArgumentError(absl::StrCat("manifest: expected model ", name, " version ",
+                                                 version, " as in the folder, got ", model.name,
+                                                 " version ", model.version));
 }
 
 bool IsHidden(const fs::path& path) { return absl::StartsWith(path.filename().string(), "."); }
@@ -71,9 +71,9 @@ void ListVersions(const fs::path& name, RepositoryListing& listing) {
     std::error_code ignored;
     if (!IsVersion(version.filename().string())) {
       listing.skipped.push_back(
-          {folder, "is no version, wanted a number of 1 or more without leading zeros"});
+          {folder, "expected a version of at least 1 without leading zeros as the folder's name"});
     } else if (!fs::exists(ResolveCheckpoint(version) / kManifest, ignored)) {
-      listing.skipped.push_back({folder, "has no manifest.json"});
+      listing.skipped.push_back({folder, "expected a manifest.json, got none"});
     } else {
       listing.checkpoints.push_back(std::move(version));
     }

@@ -70,10 +70,10 @@ absl::Status RoleRefusal(Role role) {
 
 absl::Status CallRateRefusal(const Caller& caller, double retry_seconds) {
   const std::string limit = absl::StrCat(caller.limits.calls_per_second.value_or(0));
-  absl::Status status =
-      Refusal(absl::StatusCode::kResourceExhausted,
-              absl::StrCat("the caller makes more than its ", limit, " calls a second"),
-              common::kReasonCallRate, {{"calls_per_second", limit}});
+  absl::Status status = Refusal(
+      absl::StatusCode::kResourceExhausted,
+      absl::StrCat("expected at most ", limit, " calls per second from this caller, got more"),
+      common::kReasonCallRate, {{"calls_per_second", limit}});
   common::AddRetryInfo(status, absl::Seconds(retry_seconds));
   return status;
 }
@@ -94,7 +94,7 @@ absl::Status ToStatus(const AccessControl::Decision& decision, Role role) {
                      common::kReasonCredentialsInvalid);
     case AccessControl::Answer::kUnknownCertificate:
       return Refusal(absl::StatusCode::kPermissionDenied,
-                     "the client's certificate is of nobody who may call",
+                     "expected a client certificate of a listed caller, got another",
                      common::kReasonCallerUnknown);
     case AccessControl::Answer::kWrongRole:
       return RoleRefusal(role);
@@ -117,8 +117,8 @@ absl::Status CallPass::HoldFrames(std::int64_t frames) {
   }
   absl::Status status =
       Refusal(absl::StatusCode::kResourceExhausted,
-              absl::StrCat("the call has ", frames, " frames, the caller may have ", limit,
-                           " frames of calls being answered"),
+              absl::StrCat("expected at most ", limit,
+                           " frames of this caller in progress, got a call of ", frames),
               common::kReasonFramesInFlight, {{"frames_in_flight", absl::StrCat(limit)}});
   if (frames <= limit) common::AddRetryInfo(status, kFramesDelay);
   return status;

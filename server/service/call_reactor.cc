@@ -18,7 +18,7 @@ namespace {
 constexpr double kDeadlineSlackSeconds = 0.1;
 
 constexpr common::StepKind kReceived{"gRPC callback", "handling a request"};
-constexpr common::StepKind kWritten{"gRPC callback", "writing an answer"};
+constexpr common::StepKind kWritten{"gRPC callback", "writing a reply"};
 constexpr common::StepKind kCancelled{"gRPC callback", "ending a cancelled call"};
 
 using GrpcReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;

@@ -129,13 +129,13 @@ absl::Status ClipStream::Check(const engine::WindowResult& result) const {
   const int joints = model_->description().skeleton.joint_count();
   if (result->joint_count() != joints || result->frame_count() != expected_frames_ ||
       positions.size() % static_cast<std::size_t>(joints) != 0) {
-    return absl::InternalError("the model gave " + std::to_string(positions.size()) +
-                               " positions in frames of " + std::to_string(result->joint_count()) +
-                               " joints, wanted " + std::to_string(expected_frames_) +
-                               " frames of " + std::to_string(joints) + " joints");
+    return absl::InternalError("model: expected " + std::to_string(expected_frames_) +
+                               " frames of " + std::to_string(joints) + " joints, got " +
+                               std::to_string(positions.size()) + " positions in frames of " +
+                               std::to_string(result->joint_count()) + " joints");
   }
   if (!std::all_of(positions.begin(), positions.end(), motion::IsFinite)) {
-    return absl::InternalError("the model gave a position that is not finite");
+    return absl::InternalError("model: expected finite positions, got one that is not finite");
   }
   return absl::OkStatus();
 }

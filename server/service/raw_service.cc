@@ -11,7 +11,7 @@
 namespace duet::server::service {
 namespace {
 
-constexpr common::StepKind kOpening{"gRPC callback", "beginning a call"};
+constexpr common::StepKind kOpening{"gRPC callback", "starting a call"};
 
 }  // namespace
 

@@ -19,7 +19,7 @@ bool Reception::Received() {
 
 void Reception::Lost(bool cancelled) {
   EndFrom(State::kReceiving,
-          cancelled ? absl::CancelledError("the caller went away before its request had come")
+          cancelled ? absl::CancelledError("the caller disconnected before its request arrived")
                     : NoMessageRefusal());
 }
 

@@ -32,26 +32,24 @@ absl::Status DrainingRefusal() {
 }
 
 absl::Status TooManyCallsRefusal(std::size_t calls, std::size_t limit) {
-  return Retryable(
-      absl::ResourceExhaustedError(absl::StrCat(calls, " calls are being answered, at most ", limit,
-                                                " of this priority may, and no client may fill "
-                                                "all of them alone")),
-      common::kReasonTooManyCalls, {{"max_calls", absl::StrCat(limit)}});
+  return Retryable(absl::ResourceExhaustedError(absl::StrCat(
+                       "calls in progress: expected at most ", limit,
+                       " of this priority and only a share of them for one client, got ", calls)),
+                   common::kReasonTooManyCalls, {{"max_calls", absl::StrCat(limit)}});
 }
 
 absl::Status TooManyBytesRefusal(std::size_t bytes, std::size_t held, std::size_t limit) {
-  return Retryable(absl::ResourceExhaustedError(absl::StrCat(
-                       "the request has ", bytes, " bytes; the requests being answered hold ", held,
-                       " already, at most max_held_bytes = ", limit,
-                       " may be held, and not all of them for one client")),
-                   common::kReasonTooManyBytes, {{"max_held_bytes", absl::StrCat(limit)}});
+  return Retryable(
+      absl::ResourceExhaustedError(absl::StrCat(
+          "requests in progress: expected at most max_held_bytes = ", limit,
+          " bytes and only a share of them for one client, got ", bytes, " in addition to ", held)),
+      common::kReasonTooManyBytes, {{"max_held_bytes", absl::StrCat(limit)}});
 }
 
 absl::Status TooManySlowRequestsRefusal(std::size_t limit) {
-  return Retryable(absl::ResourceExhaustedError(absl::StrCat(
-                       "the request is taking long to arrive, and as many others are as may: at "
-                       "most ",
-                       limit, ", and not all of them of one client")),
+  return Retryable(absl::ResourceExhaustedError(
+                       absl::StrCat("slow requests: expected at most ", limit,
+                                    " and only a share of them for one client, got one more")),
                    common::kReasonTooManyBytes);
 }
 
@@ -64,22 +62,22 @@ absl::Status ReceiveTimeoutRefusal(double seconds) {
 
 absl::Status WriteTimeoutRefusal(double seconds) {
   absl::Status status = absl::DeadlineExceededError(
-      absl::StrCat("the caller took nothing of the answer for write_timeout_seconds = ", seconds));
+      absl::StrCat("the caller read no reply for write_timeout_seconds = ", seconds));
   common::AddErrorInfo(status, common::kReasonWriteTimeout);
   return status;
 }
 
 absl::Status StalledReaderRefusal(double seconds) {
   return Retryable(absl::ResourceExhaustedError(
-                       absl::StrCat("the caller took nothing of the answer for ", seconds,
+                       absl::StrCat("the caller read no reply for ", seconds,
                                     " s while other calls waited for a place or for memory")),
                    common::kReasonWriteTimeout);
 }
 
 absl::Status NoMessageRefusal() {
   absl::Status status = absl::InvalidArgumentError(
-      "no request came: the call ended without one, or with one of more than twice "
-      "max_request_bytes, which the transport does not take");
+      "expected a request, got none or one of more than twice max_request_bytes, which the "
+      "transport rejects");
   common::AddErrorInfo(status, common::kReasonInvalidRequest);
   return status;
 }
@@ -90,8 +88,8 @@ absl::Status QueueRefusal(const absl::Status& scheduler_status) {
 }
 
 absl::Status TooLargeRefusal(std::size_t bytes, std::size_t limit) {
-  absl::Status status = absl::ResourceExhaustedError(absl::StrCat(
-      "the request has ", bytes, " bytes, wanted at most max_request_bytes = ", limit));
+  absl::Status status = absl::ResourceExhaustedError(
+      absl::StrCat("request: expected at most max_request_bytes = ", limit, " bytes, got ", bytes));
   common::AddErrorInfo(
       status, common::kReasonRequestTooLarge,
       {{"max_request_bytes", absl::StrCat(limit)}, {"request_bytes", absl::StrCat(bytes)}});
@@ -108,7 +106,7 @@ absl::Status ModelNotFoundRefusal(const registry::ModelNotFound& not_found) {
 
 absl::Status ModelFailedRefusal(const std::string& request_id) {
   absl::Status status = absl::InternalError(absl::StrCat(
-      "the model failed to answer; the server's log tells why under request_id ", request_id));
+      "the model failed; the server's log has the reason under request_id ", request_id));
   common::AddErrorInfo(status, common::kReasonModelFailed, {{"request_id", request_id}});
   return status;
 }

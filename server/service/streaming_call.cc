@@ -36,7 +36,7 @@ void StreamingCall::OnWritten(bool ok) {
   {
     common::MutexLock lock(mutex_);
     state_ = State::kIdle;
-    if (!ok && !end_.has_value()) end_ = absl::CancelledError("the caller went away");
+    if (!ok && !end_.has_value()) end_ = absl::CancelledError("the caller disconnected");
     if (!ok) source_->Cancel();
   }
   Advance();

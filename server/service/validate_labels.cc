@@ -24,13 +24,14 @@ std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVect
   std::vector<int> first_use(model.classes.size(), -1);
   const std::string list = absl::StrCat(field, ".weights");
   if (label_vector.weights().empty()) {
-    violations.Malformed(list, absl::StrCat("is empty, wanted a weight for at least one of ",
-                                            absl::StrJoin(model.classes, ", ")));
+    violations.Malformed(
+        list, absl::StrCat("a weight for at least one of ", absl::StrJoin(model.classes, ", ")),
+        "none");
   }
   if (label_vector.weights_size() > model.class_count() + kMaxExtraWeights) {
-    violations.Malformed(list, absl::StrCat("has ", label_vector.weights_size(),
-                                            " weights, wanted at most one for each of ",
-                                            model.class_count(), " classes"));
+    violations.Malformed(
+        list, absl::StrCat("at most one weight for each of ", model.class_count(), " classes"),
+        absl::StrCat(label_vector.weights_size(), " weights"));
     return weights;
   }
   for (int i = 0; i < label_vector.weights_size(); ++i) {
@@ -40,22 +41,22 @@ std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVect
         std::find(model.classes.begin(), model.classes.end(), entry.interaction_class());
     if (found == model.classes.end()) {
       violations.Malformed(absl::StrCat(at, ".interaction_class"),
-                           absl::StrCat("is ", base::Quoted(entry.interaction_class()),
-                                        ", wanted one of ", absl::StrJoin(model.classes, ", ")));
+                           absl::StrCat("one of ", absl::StrJoin(model.classes, ", ")),
+                           base::Quoted(entry.interaction_class()));
     }
     // False for NaN.
     if (!(std::abs(entry.weight()) <= limits.max_abs_weight)) {
       violations.Malformed(absl::StrCat(at, ".weight"),
-                           absl::StrCat("is ", entry.weight(), ", wanted a finite value in [-",
-                                        limits.max_abs_weight, ", ", limits.max_abs_weight, "]"));
+                           absl::StrCat("a finite value in [-", limits.max_abs_weight, ", ",
+                                        limits.max_abs_weight, "]"),
+                           absl::StrCat(entry.weight()));
     }
     if (found == model.classes.end()) continue;
     const auto index = static_cast<std::size_t>(found - model.classes.begin());
     if (first_use[index] >= 0) {
-      violations.Malformed(
-          absl::StrCat(at, ".interaction_class"),
-          absl::StrCat("is ", base::Quoted(entry.interaction_class()), ", which weights[",
-                       first_use[index], "] is already; wanted each class at most once"));
+      violations.Malformed(absl::StrCat(at, ".interaction_class"), "each class at most once",
+                           absl::StrCat(base::Quoted(entry.interaction_class()),
+                                        " again after weights[", first_use[index], "]"));
       continue;
     }
     first_use[index] = i;
@@ -71,8 +72,8 @@ std::vector<engine::LabelKeyframe> ReadKeyframes(const v1::SynthesizeRequest& re
   std::vector<engine::LabelKeyframe> keyframes;
   if (request.label_keyframes_size() > limits.max_label_keyframes) {
     violations.Malformed("label_keyframes",
-                         absl::StrCat("has ", request.label_keyframes_size(),
-                                      " keyframes, wanted at most ", limits.max_label_keyframes));
+                         absl::StrCat("at most ", limits.max_label_keyframes, " keyframes"),
+                         absl::StrCat(request.label_keyframes_size()));
     return keyframes;
   }
   const uint32_t frames = request.leader().frame_count();
@@ -81,14 +82,14 @@ std::vector<engine::LabelKeyframe> ReadKeyframes(const v1::SynthesizeRequest& re
     const std::string at = absl::StrCat("label_keyframes[", i, "]");
     if (keyframe.frame() >= frames) {
       violations.Malformed(absl::StrCat(at, ".frame"),
-                           absl::StrCat("is ", keyframe.frame(), ", wanted less than ", frames,
-                                        ", the leader's frame_count"));
+                           absl::StrCat("less than the leader's frame_count ", frames),
+                           absl::StrCat(keyframe.frame()));
     }
     if (i > 0 && keyframe.frame() <= request.label_keyframes(i - 1).frame()) {
       violations.Malformed(absl::StrCat(at, ".frame"),
-                           absl::StrCat("is ", keyframe.frame(), ", wanted more than ",
-                                        request.label_keyframes(i - 1).frame(),
-                                        ", the frame of the keyframe before it"));
+                           absl::StrCat("more than the previous keyframe's ",
+                                        request.label_keyframes(i - 1).frame()),
+                           absl::StrCat(keyframe.frame()));
     }
     keyframes.push_back({static_cast<int>(std::min(keyframe.frame(), frames)),
                          ReadLabelVector(absl::StrCat(at, ".label_vector"), keyframe.label_vector(),
@@ -105,11 +106,10 @@ std::vector<engine::LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& r
                                                   Violations& violations) {
   const bool has_keyframes = !request.label_keyframes().empty();
   if (request.has_label_vector() && has_keyframes) {
-    violations.Malformed("label_keyframes",
-                         "is given together with label_vector, wanted one of the two");
+    violations.Malformed("label_keyframes", "label_vector or label_keyframes", "both");
   }
   if (!request.has_label_vector() && !has_keyframes) {
-    violations.Malformed("label_vector", "is missing, wanted label_vector or label_keyframes");
+    violations.Malformed("label_vector", "label_vector or label_keyframes", "neither");
   }
   std::vector<engine::LabelKeyframe> keyframes;
   if (has_keyframes) keyframes = ReadKeyframes(request, model, limits, violations);

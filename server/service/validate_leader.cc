@@ -54,9 +54,10 @@ void NameMissingJoints(const engine::ModelDescription& model, const std::vector<
     if (first_use[joint] < 0) missing.push_back(model.skeleton.joint_names[joint]);
   }
   if (missing.empty()) return;
-  violations.Mismatch("leader.joint_names",
-                      absl::StrCat("lacks ", absl::StrJoin(missing, ", "), "; wanted all ",
-                                   model.skeleton.joint_count(), " joints of model ", model.name));
+  violations.Mismatch(
+      "leader.joint_names",
+      absl::StrCat("all ", model.skeleton.joint_count(), " joints of model ", model.name),
+      absl::StrCat("none for ", absl::StrJoin(missing, ", ")));
 }
 
 }  // namespace
@@ -67,22 +68,17 @@ std::optional<motion::Coordinates> ValidateCoordinates(const v1::Motion& leader,
   const std::optional<motion::UpAxis> up_axis = ToUpAxis(leader.up_axis());
   if (!unit.has_value()) {
     violations.Malformed(
-        "leader.unit",
-        absl::StrCat("is ", EnumValue(v1::LengthUnit_Name(leader.unit()), leader.unit()),
-                     ", wanted LENGTH_UNIT_METRES, LENGTH_UNIT_MILLIMETRES or "
-                     "LENGTH_UNIT_SBU_NORMALISED"));
+        "leader.unit", "LENGTH_UNIT_METRES, LENGTH_UNIT_MILLIMETRES or LENGTH_UNIT_SBU_NORMALISED",
+        EnumValue(v1::LengthUnit_Name(leader.unit()), leader.unit()));
   }
   if (!up_axis.has_value()) {
-    violations.Malformed(
-        "leader.up_axis",
-        absl::StrCat("is ", EnumValue(v1::UpAxis_Name(leader.up_axis()), leader.up_axis()),
-                     ", wanted UP_AXIS_Y_UP, UP_AXIS_Z_UP or UP_AXIS_Y_DOWN"));
+    violations.Malformed("leader.up_axis", "UP_AXIS_Y_UP, UP_AXIS_Z_UP or UP_AXIS_Y_DOWN",
+                         EnumValue(v1::UpAxis_Name(leader.up_axis()), leader.up_axis()));
   }
   if (!unit.has_value() || !up_axis.has_value()) return std::nullopt;
   if (*unit == motion::LengthUnit::kSbuNormalised && *up_axis != motion::UpAxis::kYDown) {
-    violations.Malformed("leader.up_axis",
-                         absl::StrCat("is ", v1::UpAxis_Name(leader.up_axis()),
-                                      ", wanted UP_AXIS_Y_DOWN with LENGTH_UNIT_SBU_NORMALISED"));
+    violations.Malformed("leader.up_axis", "UP_AXIS_Y_DOWN with LENGTH_UNIT_SBU_NORMALISED",
+                         v1::UpAxis_Name(leader.up_axis()));
     return std::nullopt;
   }
   return motion::Coordinates{*unit, *up_axis};
@@ -92,9 +88,10 @@ std::vector<int> ValidateJoints(const v1::Motion& leader, const engine::ModelDes
                                 Violations& violations) {
   const int count = leader.joint_names_size();
   if (count > kMaxJointNames) {
-    violations.Mismatch("leader.joint_names", absl::StrCat("has ", count, " names, wanted the ",
-                                                           model.skeleton.joint_count(),
-                                                           " joints of model ", model.name));
+    violations.Mismatch(
+        "leader.joint_names",
+        absl::StrCat("the ", model.skeleton.joint_count(), " joints of model ", model.name),
+        absl::StrCat(count, " names"));
     return {};
   }
   std::vector<int> joints;
@@ -106,12 +103,12 @@ std::vector<int> ValidateJoints(const v1::Motion& leader, const engine::ModelDes
     joints.push_back(joint);
     if (joint < 0) {
       violations.Mismatch(At("leader.joint_names", i),
-                          absl::StrCat("is ", base::Quoted(name), ", which is no joint of model ",
-                                       model.name, "; GetModel lists them"));
+                          absl::StrCat("a joint of model ", model.name),
+                          absl::StrCat(base::Quoted(name), "; GetModel lists the joints"));
     } else if (first_use[joint] >= 0) {
-      violations.Mismatch(At("leader.joint_names", i),
-                          absl::StrCat("is ", base::Quoted(name), ", which joint_names[",
-                                       first_use[joint], "] is already; wanted each joint once"));
+      violations.Mismatch(
+          At("leader.joint_names", i), "each joint once",
+          absl::StrCat(base::Quoted(name), " again after joint_names[", first_use[joint], "]"));
     } else {
       first_use[joint] = i;
       continue;
@@ -128,18 +125,19 @@ void ValidateTiming(const v1::Motion& leader, const RequestLimits& limits, Viola
   const bool rate_fits = rate >= limits.min_frame_rate_hz && rate <= limits.max_frame_rate_hz;
   if (!rate_fits) {
     violations.Malformed("leader.frame_rate_hz",
-                         absl::StrCat("is ", rate, ", wanted ", limits.min_frame_rate_hz, " to ",
-                                      limits.max_frame_rate_hz, " frames a second"));
+                         absl::StrCat(limits.min_frame_rate_hz, " to ", limits.max_frame_rate_hz,
+                                      " frames per second"),
+                         absl::StrCat(rate));
   }
   const uint32_t frames = leader.frame_count();
   if (frames < static_cast<uint32_t>(limits.min_frames)) {
-    violations.Malformed("leader.frame_count",
-                         absl::StrCat("is ", frames, ", wanted ", limits.min_frames, " or more"));
+    violations.Malformed("leader.frame_count", absl::StrCat("at least ", limits.min_frames),
+                         absl::StrCat(frames));
   } else if (rate_fits && frames > limits.max_duration_seconds * rate) {
     violations.Malformed(
         "leader.frame_count",
-        absl::StrCat("is ", frames, ", which lasts ", frames / rate, " s at ", rate,
-                     " frames a second, wanted at most ", limits.max_duration_seconds, " s"));
+        absl::StrCat("a duration of at most ", limits.max_duration_seconds, " s"),
+        absl::StrCat(frames, " frames, ", frames / rate, " s at ", rate, " frames per second"));
   }
 }
 
@@ -150,14 +148,13 @@ bool ValidateFinite(absl::string_view field,
   for (int i = 0; i < positions.size(); ++i) {
     if (std::isfinite(positions[i])) continue;
     if (++found <= kNamedValues) {
-      violations.Malformed(At(field, i),
-                           absl::StrCat("is ", positions[i], ", wanted a finite number"));
+      violations.Malformed(At(field, i), "a finite number", absl::StrCat(positions[i]));
     }
   }
   if (found > kNamedValues) {
     violations.Malformed(
-        std::string(field),
-        absl::StrCat("has ", found, " values that are not finite in all, of ", positions.size()));
+        std::string(field), "finite numbers",
+        absl::StrCat(found, " of ", positions.size(), " values that are not finite"));
   }
   return found == 0;
 }
@@ -183,13 +180,14 @@ motion::Poses ReadPositions(absl::string_view field,
     if (++too_far <= kNamedValues) {
       violations.Malformed(
           absl::StrCat(field, "[", 3 * point, "..", 3 * point + 2, "]"),
-          absl::StrCat("is (", xyz[0], ", ", xyz[1], ", ", xyz[2], "), more than ", limit,
-                       " m from the origin along an axis; is leader.unit right?"));
+          absl::StrCat("at most ", limit, " m from the origin along each axis"),
+          absl::StrCat("(", xyz[0], ", ", xyz[1], ", ", xyz[2], "); check leader.unit"));
     }
   }
   if (too_far > kNamedValues) {
     violations.Malformed(std::string(field),
-                         absl::StrCat("has ", too_far, " positions that are too far away in all"));
+                         absl::StrCat("at most ", limit, " m from the origin along each axis"),
+                         absl::StrCat(too_far, " positions farther away"));
   }
   return too_far > 0 ? motion::Poses() : world;
 }

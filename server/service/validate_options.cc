@@ -14,9 +14,8 @@ engine::Sampling ValidateSampling(const v1::SynthesizeRequest& request, const Re
   if (request.has_variety()) sampling.variety = request.variety();
   // Negated, so that NaN is rejected.
   if (!(sampling.variety >= 0 && sampling.variety <= limits.max_variety)) {
-    violations.Malformed("variety",
-                         absl::StrCat("is ", sampling.variety, ", wanted a finite value in [0, ",
-                                      limits.max_variety, "]"));
+    violations.Malformed("variety", absl::StrCat("a finite value in [0, ", limits.max_variety, "]"),
+                         absl::StrCat(sampling.variety));
   }
   return sampling;
 }
@@ -30,9 +29,8 @@ std::optional<bool> ValidateCleanUp(const v1::SynthesizeRequest& request, Violat
     case v1::CLEAN_UP_OFF:
       return false;
     default:
-      violations.Malformed("clean_up",
-                           absl::StrCat("is ", request.clean_up(),
-                                        ", wanted CLEAN_UP_ON, CLEAN_UP_OFF or no value"));
+      violations.Malformed("clean_up", "CLEAN_UP_ON, CLEAN_UP_OFF or no value",
+                           absl::StrCat(request.clean_up()));
       return std::nullopt;
   }
 }

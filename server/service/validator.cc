@@ -52,7 +52,7 @@ class Validation {
 
 void Validation::Leader() {
   if (!request_.has_leader()) {
-    violations_.Malformed("leader", "is missing");
+    violations_.Malformed("leader", "a motion", "none");
     return;
   }
   const v1::Motion& leader = request_.leader();
@@ -61,13 +61,13 @@ void Validation::Leader() {
   coordinates_ = ValidateCoordinates(leader, violations_);
 
   const bool finite = ValidateFinite("leader.positions", leader.positions(), violations_);
-  const uint64_t wanted =
+  const uint64_t expected =
       uint64_t{leader.frame_count()} * static_cast<uint64_t>(leader.joint_names_size()) * 3;
-  if (static_cast<uint64_t>(leader.positions_size()) != wanted) {
-    violations_.Malformed(
-        "leader.positions",
-        absl::StrCat("has ", leader.positions_size(), " values, wanted ", wanted, ": ",
-                     leader.frame_count(), " frames x ", leader.joint_names_size(), " joints x 3"));
+  if (static_cast<uint64_t>(leader.positions_size()) != expected) {
+    violations_.Malformed("leader.positions",
+                          absl::StrCat(expected, " values (", leader.frame_count(), " frames x ",
+                                       leader.joint_names_size(), " joints x 3)"),
+                          absl::StrCat(leader.positions_size()));
     return;
   }
   if (!finite || !coordinates_.has_value() || joints_.empty()) return;
@@ -88,8 +88,9 @@ std::optional<engine::FollowerStart> Validation::Start() {
   if (!request_.has_follower_start()) return std::nullopt;
   if (!model_.accepts_follower_start) {
     violations_.Mismatch("follower_start",
-                         absl::StrCat("is given, but model ", model_.name, " version ",
-                                      model_.version, " does not accept it"));
+                         absl::StrCat("no value for model ", model_.name, " version ",
+                                      model_.version, ", which does not accept it"),
+                         "one");
   }
   const v1::FollowerStart& start = request_.follower_start();
   if (start.has_root_position()) {
@@ -103,15 +104,16 @@ std::optional<engine::FollowerStart> Validation::Start() {
     return engine::FollowerStart{root.front(), {}};
   }
   if (!start.has_pose()) {
-    violations_.Malformed("follower_start.start", "is missing, wanted root_position or pose");
+    violations_.Malformed("follower_start.start", "root_position or pose", "neither");
     return std::nullopt;
   }
   const auto& values = start.pose().positions();
-  const int wanted = 3 * request_.leader().joint_names_size();
-  if (values.size() != wanted) {
-    violations_.Malformed("follower_start.pose.positions",
-                          absl::StrCat("has ", values.size(), " values, wanted ", wanted, ": ",
-                                       request_.leader().joint_names_size(), " joints x 3"));
+  const int expected = 3 * request_.leader().joint_names_size();
+  if (values.size() != expected) {
+    violations_.Malformed(
+        "follower_start.pose.positions",
+        absl::StrCat(expected, " values (", request_.leader().joint_names_size(), " joints x 3)"),
+        absl::StrCat(values.size()));
     return std::nullopt;
   }
   if (joints_.empty()) return std::nullopt;
@@ -139,10 +141,8 @@ std::optional<motion::Vec3> Validation::PartnerDirection() {
       return motion::Vec3{world.x / horizontal, 0, world.z / horizontal};
     }
   }
-  violations_.Malformed("partner_direction",
-                        absl::StrCat("is (", xyz[0], ", ", xyz[1], ", ", xyz[2],
-                                     "), wanted a direction that is not straight up or down, of "
-                                     "any length but 0"));
+  violations_.Malformed("partner_direction", "a direction that is neither vertical nor of length 0",
+                        absl::StrCat("(", xyz[0], ", ", xyz[1], ", ", xyz[2], ")"));
   return std::nullopt;
 }
 
@@ -156,9 +156,10 @@ void Validation::FillReplyMapping() {
   // The comparison below takes quadratic time, so a list that is too long is skipped.
   if (leader.joint_names_size() > kMaxJointNames) return;
   if (wanted.size() > leader.joint_names_size()) {
-    violations_.Malformed("reply_joint_names",
-                          absl::StrCat("has ", wanted.size(), " names, wanted at most the ",
-                                       leader.joint_names_size(), " of leader.joint_names"));
+    violations_.Malformed(
+        "reply_joint_names",
+        absl::StrCat("at most the ", leader.joint_names_size(), " names of leader.joint_names"),
+        absl::StrCat(wanted.size()));
     return;
   }
   for (const std::string& name : wanted.empty() ? leader.joint_names() : wanted) {
@@ -169,14 +170,13 @@ void Validation::FillReplyMapping() {
   for (int i = 0; i < wanted.size(); ++i) {
     const std::string field = absl::StrCat("reply_joint_names[", i, "]");
     if (std::find(known.begin(), known.end(), wanted[i]) == known.end()) {
-      violations_.Malformed(field, absl::StrCat("is ", base::Quoted(wanted[i]),
-                                                ", wanted one of leader.joint_names"));
+      violations_.Malformed(field, "one of leader.joint_names", base::Quoted(wanted[i]));
     }
     const auto first = std::find(wanted.begin(), wanted.end(), wanted[i]);
     if (first - wanted.begin() < i) {
-      violations_.Malformed(
-          field, absl::StrCat("is ", base::Quoted(wanted[i]), ", which [", first - wanted.begin(),
-                              "] is already; wanted each joint at most once"));
+      violations_.Malformed(field, "each joint at most once",
+                            absl::StrCat(base::Quoted(wanted[i]), " again after reply_joint_names[",
+                                         first - wanted.begin(), "]"));
     }
   }
 }
@@ -185,8 +185,8 @@ int Validation::ChunkFrames() {
   if (!request_.has_chunk_frames()) return limits_.default_chunk_frames;
   const uint32_t frames = request_.chunk_frames();
   if (frames < 1 || frames > static_cast<uint32_t>(limits_.max_chunk_frames)) {
-    violations_.Malformed("chunk_frames",
-                          absl::StrCat("is ", frames, ", wanted 1 to ", limits_.max_chunk_frames));
+    violations_.Malformed("chunk_frames", absl::StrCat("1 to ", limits_.max_chunk_frames),
+                          absl::StrCat(frames));
   }
   return static_cast<int>(frames);
 }
@@ -195,9 +195,8 @@ batching::Priority Validation::CallPriority() {
   const std::optional<batching::Priority> priority = PriorityOf(request_);
   if (priority.has_value()) return *priority;
   const std::string& name = v1::Priority_Name(request_.priority());
-  violations_.Malformed("priority",
-                        absl::StrCat("is ", name.empty() ? absl::StrCat(request_.priority()) : name,
-                                     ", wanted PRIORITY_INTERACTIVE, PRIORITY_BULK or no value"));
+  violations_.Malformed("priority", "PRIORITY_INTERACTIVE, PRIORITY_BULK or no value",
+                        name.empty() ? absl::StrCat(request_.priority()) : name);
   return batching::Priority::kInteractive;
 }
 

@@ -15,17 +15,18 @@ constexpr std::size_t kInMessage = 2;
 
 }  // namespace
 
-void Violations::Malformed(std::string field, std::string description) {
+void Violations::Malformed(std::string field, absl::string_view expected, absl::string_view got) {
   ++malformed_;
-  Keep(std::move(field), std::move(description));
+  Keep(std::move(field), expected, got);
 }
 
-void Violations::Mismatch(std::string field, std::string description) {
+void Violations::Mismatch(std::string field, absl::string_view expected, absl::string_view got) {
   ++mismatched_;
-  Keep(std::move(field), std::move(description));
+  Keep(std::move(field), expected, got);
 }
 
-void Violations::Keep(std::string field, std::string description) {
+void Violations::Keep(std::string field, absl::string_view expected, absl::string_view got) {
+  std::string description = absl::StrCat("expected ", expected, ", got ", got);
   // Descriptions are ASCII (see Quoted), so they can be cut anywhere.
   if (description.size() > kMaxDescriptionBytes) {
     description.resize(kMaxDescriptionBytes);
@@ -42,7 +43,8 @@ absl::Status Violations::ToStatus() const {
   const std::size_t count = malformed_ + mismatched_;
   std::string message;
   for (std::size_t i = 0; i < kept_.size() && i < kInMessage; ++i) {
-    absl::StrAppend(&message, i == 0 ? "" : "; ", kept_[i].field, ": ", kept_[i].description);
+    absl::StrAppend(&message, i == 0 ? "" : "; ", kept_[i].field,
+                    kept_[i].field.empty() ? "" : ": ", kept_[i].description);
   }
   if (count > kInMessage) absl::StrAppend(&message, "; and ", count - kInMessage, " more");
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/strings/string_view.h"
 #include "server/common/error_details.h"
 
 namespace duet::server::service {
@@ -16,10 +17,10 @@ namespace duet::server::service {
 // are counted.
 class Violations {
  public:
-  // Adds a field that is malformed for every model.
-  void Malformed(std::string field, std::string description);
+  // Adds a field that is malformed for every model: "<field>: expected <expected>, got <got>".
+  void Malformed(std::string field, absl::string_view expected, absl::string_view got);
   // Adds a field that is well formed but does not fit the model.
-  void Mismatch(std::string field, std::string description);
+  void Mismatch(std::string field, absl::string_view expected, absl::string_view got);
 
   bool empty() const { return malformed_ + mismatched_ == 0; }
 
@@ -28,7 +29,7 @@ class Violations {
   absl::Status ToStatus() const;
 
  private:
-  void Keep(std::string field, std::string description);
+  void Keep(std::string field, absl::string_view expected, absl::string_view got);
 
   std::vector<common::FieldViolation> kept_;
   std::size_t kept_bytes_ = 0;

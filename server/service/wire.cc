@@ -27,10 +27,9 @@ absl::Status ParseMessage(grpc::ByteBuffer bytes, google::protobuf::Message& mes
     }
   }
   Violations violations;
-  violations.Malformed(
-      message.GetDescriptor()->full_name(),
-      absl::StrCat("is ", bytes.Length(),
-                   " bytes that cannot be read: malformed, or a string that is not UTF-8"));
+  violations.Malformed(message.GetDescriptor()->full_name(),
+                       "a message in wire format with strings in UTF-8",
+                       absl::StrCat(bytes.Length(), " bytes that do not parse"));
   return violations.ToStatus();
 }
 

@@ -145,11 +145,9 @@ bool Surveyor::Count(const std::string& path, std::size_t& count, std::size_t li
   if (++count <= limit) return true;
   Violations violations;
   if (path.empty()) {
-    violations.Malformed("", absl::StrCat("the request has more than ", limit,
-                                          " fields that it does not know, wanted at most ", limit));
+    violations.Malformed("", absl::StrCat("at most ", limit, " unknown fields"), "more");
   } else {
-    violations.Malformed(path, absl::StrCat("comes more than ", limit, " times, wanted at most ",
-                                            limit, " in a request"));
+    violations.Malformed(path, absl::StrCat("at most ", limit, " values in a request"), "more");
   }
   too_many_ = violations.ToStatus();
   return false;

@@ -86,7 +86,7 @@ class ForeignClientTest(unittest.TestCase):
         values = sum(len(response.chunk.positions) for response in responses)
         self.assertEqual(values, FRAMES * 2 * 3)
 
-    def test_a_refusal_names_every_field(self):
+    def test_rejection_names_every_field(self):
         request = self.request()
         request.leader.frame_rate_hz = 0
         request.leader.positions[5] = math.nan
@@ -103,7 +103,7 @@ class ForeignClientTest(unittest.TestCase):
         self.assertLessEqual({"leader.frame_rate_hz", "leader.positions[5]"}, fields)
         self.assertTrue(any(field.startswith("label_vector.weights[1]") for field in fields), fields)
         for violation in violations.field_violations:
-            self.assertIn("wanted", violation.description)
+            self.assertRegex(violation.description, "^expected .*, got ")
         info = status_pb2.ErrorInfo.FromString(details["google.rpc.ErrorInfo"])
         self.assertEqual(info.domain, "duet.v1")
         self.assertEqual(info.reason, "INVALID_REQUEST")

@@ -101,7 +101,7 @@ class StatusCodesTest(unittest.TestCase):
         request.leader.frame_rate_hz = -1
         code, message = self.end_of(self.synthesize(request))
         self.assertEqual(code, "INVALID_ARGUMENT")
-        self.assertIn("leader.frame_rate_hz: is -1", message)
+        self.assertIn("leader.frame_rate_hz: expected 1 to 240 frames per second, got -1", message)
 
     def test_failed_precondition(self):
         self.serve()
@@ -179,7 +179,7 @@ class StatusCodesTest(unittest.TestCase):
                          == ("UNAVAILABLE", DRAINING), "new calls are refused")
         call.cancel()  # whoever is being answered keeps the server
 
-    def test_an_engine_that_fails_fails_that_call_alone(self):
+    def test_engine_failure_fails_only_its_call(self):
         """One batch of a good window, three that fail in their ways, and a good one."""
         server = self.serve("--workers", "1", "--max-batch-windows", "8")
         slow = self.slow_call(server)

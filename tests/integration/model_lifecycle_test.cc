@@ -243,7 +243,7 @@ TEST_F(ModelLifecycleTest, AFolderThatIsNoCheckpointShowsEverywhere) {
   ASSERT_TRUE(stub_->ListModels(&context, admin::ListModelsRequest(), &list).ok());
   ASSERT_EQ(list.skipped_folders_size(), 1);
   EXPECT_EQ(list.skipped_folders(0).folder(), "fake/02");
-  EXPECT_THAT(list.skipped_folders(0).reason(), HasSubstr("is no version"));
+  EXPECT_THAT(list.skipped_folders(0).reason(), HasSubstr("expected a version"));
   EXPECT_THAT(Metrics(), HasSubstr("duet_model_folders_skipped 1"));
   EXPECT_THAT(HttpGet(server().metrics_port(), "/readyz"), HasSubstr("skipped fake/02: is no"));
   EXPECT_EQ(server_->log.Events("folder_skipped").size(), 1u) << "once, however often it is seen";

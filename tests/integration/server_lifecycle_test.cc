@@ -124,7 +124,7 @@ TEST(LoadingTest, RefusesALabelOfAModelThatThereIsNot) {
   server.Load();
   EXPECT_THAT(server->Serve(),
               StatusIs(StatusCode::kInvalidArgument,
-                       "version_labels[1].model: expected one of: fake; got \"fak\"; did you mean "
+                       "version_labels[1].model: expected one of: fake, got \"fak\"; did you mean "
                        "fake?"));
   EXPECT_EQ(Health(server.channel, ""), "NOT_SERVING");
 }

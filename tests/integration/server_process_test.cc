@@ -176,7 +176,7 @@ TEST(ServerProcessTest, SaysWhichFoldersItSkips) {
   Process server(Flags({"--model-repository", folder.path().string()}));
   const json skipped = server.WaitForEvent("folder_skipped");
   EXPECT_EQ(skipped["folder"], "sbu/01");
-  EXPECT_THAT(skipped.value("message", ""), HasSubstr("is no version"));
+  EXPECT_THAT(skipped.value("message", ""), HasSubstr("expected a version"));
   EXPECT_FALSE(server.WaitForEvent("serving").is_null());
 }
 
@@ -338,9 +338,9 @@ TEST(ServerProcessTest, CheckConfigLoadsEverythingAndLeaves) {
       {"--check-config", "--model-repository", repository, "--version-label", "sub:stable=1"}));
   EXPECT_THAT(
       server.Rest(),
-      AllOf(HasSubstr("wrong: sbu/latest: skipped: is no version"),
+      AllOf(HasSubstr("wrong: sbu/latest: skipped: expected a version"),
             HasSubstr("wrong: sbu/2: the manifest is not good\n"), HasSubstr("ok: sbu/1\n"),
-            HasSubstr("wrong: version_labels[0].model: expected one of: sbu; got \"sub\"")));
+            HasSubstr("wrong: version_labels[0].model: expected one of: sbu, got \"sub\"")));
   EXPECT_EQ(server.Wait(), 1);
 }
 

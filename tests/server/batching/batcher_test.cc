@@ -483,7 +483,7 @@ TEST(BatcherTest, SurvivesAModelThatGivesTooFewResults) {
   Ticket ticket;
   ASSERT_THAT(batcher->Submit(ticket.Job(std::make_shared<BrokenModel>(false))), IsOk());
   EXPECT_THAT(ticket.outcome.get().result,
-              StatusIs(kInternal, HasSubstr("0 results for a batch of 1")));
+              StatusIs(kInternal, HasSubstr("expected results for 1 windows, got 0")));
 }
 
 TEST(BatcherTest, ShutdownFinishesWhatRunsAndAnswersWhatWaits) {

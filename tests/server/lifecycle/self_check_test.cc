@@ -62,7 +62,7 @@ TEST(CheckListenerTest, AnsweringServerPasses) {
 TEST(CheckListenerTest, ListenerThatDoesNotAcceptFails) {
   const Listener listener;
   EXPECT_THAT(CheckListener("127.0.0.1", listener.port(), 0.05),
-              StatusIs(StatusCode::kUnavailable, HasSubstr("connected, but nobody answers")));
+              StatusIs(StatusCode::kUnavailable, HasSubstr("connected, but got no answer")));
 }
 
 TEST(CheckListenerTest, ServerThatClosesTheConnectionPasses) {

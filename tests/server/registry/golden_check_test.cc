@@ -95,7 +95,7 @@ TEST(CheckAnswersTest, RefusesFollowersThatAreFarAwayOrNowhere) {
       return labels[3] > 0 && leader.y < 0.1f ? motion::Vec3{x, 1, 0} : leader;
     };
     EXPECT_THAT(CheckAnswers(model),
-                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("m away in frame 0")))
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("m in frame 0")))
         << x;
   }
 }

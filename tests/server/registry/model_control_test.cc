@@ -185,7 +185,7 @@ TEST_F(ModelControlTest, AReloadReportsNamesThatNoModelHas) {
   control.Reload([&](const auto& report) { reloaded.set_value(report); });
   EXPECT_THAT(
       reloaded.get_future().get()->problems,
-      ElementsAre(HasSubstr("version_policies[0].model: expected one of: fake; got \"fak\"")));
+      ElementsAre(HasSubstr("version_policies[0].model: expected one of: fake, got \"fak\"")));
 }
 
 TEST_F(ModelControlTest, LoadsAndUnloadsOneAfterTheOther) {

@@ -272,9 +272,9 @@ TEST_F(ModelManagerTest, NamesOfTheConfigurationThatNoModelHasAreReported) {
   Reload();
   EXPECT_THAT(
       manager_.UnknownNames(),
-      ElementsAre("version_labels[1].model: expected one of: first, second; got \"firs\"; did you "
+      ElementsAre("version_labels[1].model: expected one of: first, second, got \"firs\"; did you "
                   "mean first?",
-                  testing::StartsWith("version_policies[1].model: expected one of: first, second; "
+                  testing::StartsWith("version_policies[1].model: expected one of: first, second, "
                                       "got \"third\"")));
 }
 
@@ -328,7 +328,8 @@ TEST_F(ModelManagerTest, AnEmptyRepositoryChangesNothing) {
   Write("a", 1);
   Reload();
   Delete("a");
-  EXPECT_THAT(manager_.Reload(kNever), StatusIs(kFailedPrecondition, HasSubstr("holds none")));
+  EXPECT_THAT(manager_.Reload(kNever),
+              StatusIs(kFailedPrecondition, HasSubstr("the repository is empty")));
   EXPECT_EQ(Served(), "a/1");
 }
 
@@ -389,7 +390,8 @@ TEST_F(ModelManagerTest, MovesALabelAndLetsGoOfWhatItLeaves) {
   manager_.SetLabels({{"a", "stable", 3}});
   EXPECT_THAT(Reload().unloaded, ElementsAre("a/2", "a/1"));
   EXPECT_THAT(Answer({"a", {}, "stable"}), HasSubstr("a/3"));
-  EXPECT_THAT(Answer({"a", {}, "old"}), HasSubstr("labels of model a are: stable"));
+  EXPECT_THAT(Answer({"a", {}, "old"}),
+              HasSubstr("expected a label of model a (stable), got \"old\""));
 }
 
 TEST_F(ModelManagerTest, ALabelThatTheOperatorMovedStaysThere) {

@@ -44,7 +44,7 @@ std::string Answer(const ModelRegistry& registry, const ModelQuery& query) {
 
 TEST(ModelRegistryTest, HasNothingAtFirst) {
   EXPECT_THAT(ModelRegistry().List(), IsEmpty());
-  EXPECT_THAT(Answer(ModelRegistry(), {}), HasSubstr("served are: none"));
+  EXPECT_THAT(Answer(ModelRegistry(), {}), HasSubstr("expected a served model (none)"));
 }
 
 TEST(ModelRegistryTest, AnswersWithTheNewestVersionUnlessAskedForAnother) {
@@ -68,7 +68,7 @@ TEST(ModelRegistryTest, RefusesADefaultThatIsNotServed) {
   ModelRegistry registry;
   registry.Serve(Model("a", 1));
   EXPECT_THAT(registry.SetDefault("z"),
-              StatusIs(kNotFound, HasSubstr("\"z\" is not served; served are: a")));
+              StatusIs(kNotFound, HasSubstr("expected a served model (a), got \"z\"")));
   EXPECT_EQ(Answer(registry, {}), "a/1");
 }
 
@@ -95,7 +95,7 @@ TEST(ModelRegistryTest, DeletesALabel) {
   ASSERT_THAT(registry.SetLabel("a", "stable", 1), IsOk());
   EXPECT_THAT(registry.LabelledVersions("a"), ElementsAre(1));
   EXPECT_THAT(registry.DeleteLabel("a", "canary"),
-              StatusIs(kNotFound, HasSubstr("\"canary\"; it has: stable")));
+              StatusIs(kNotFound, HasSubstr("(stable), got \"canary\"")));
   EXPECT_THAT(registry.DeleteLabel("b", "stable"), StatusIs(kNotFound, HasSubstr("model \"b\"")));
   EXPECT_THAT(registry.DeleteLabel("a", "stable"), IsOk());
   EXPECT_THAT(registry.LabelledVersions("a"), IsEmpty());
@@ -111,7 +111,7 @@ TEST(ModelRegistryTest, RemovesWhatNothingNeeds) {
   EXPECT_THAT(registry.Remove("a", 3), StatusIs(kNotFound, HasSubstr("version 3")));
   EXPECT_THAT(registry.Remove("c", 1), StatusIs(kNotFound, HasSubstr("model \"c\"")));
   EXPECT_THAT(registry.Remove("b", 1), IsOk());
-  EXPECT_THAT(Answer(registry, {"b", {}, {}}), HasSubstr("served are: a"));
+  EXPECT_THAT(Answer(registry, {"b", {}, {}}), HasSubstr("expected a served model (a)"));
   EXPECT_THAT(registry.Remove("a", 2), IsOk());
   EXPECT_EQ(Answer(registry, {}), "a/1");
   ASSERT_THAT(registry.DeleteLabel("a", "stable"), IsOk());
@@ -125,13 +125,13 @@ TEST(ModelRegistryTest, NamesTheFieldThatWasNotFoundAndWhatThereIs) {
   registry.Serve(Model("b", 1));
   ASSERT_THAT(registry.SetLabel("a", "stable", 1), IsOk());
   EXPECT_EQ(Answer(registry, {"z", {}, {}}),
-            "model.name: is \"z\", which is not served; served are: a, b");
+            "model.name: expected a served model (a, b), got \"z\"");
   EXPECT_EQ(Answer(registry, {"a", 2, {}}),
-            "model.version: is 2; served versions of model a are: 3, 1");
+            "model.version: expected a served version of model a (3, 1), got 2");
   EXPECT_EQ(Answer(registry, {"a", 0, {}}),
-            "model.version: is 0; served versions of model a are: 3, 1");
+            "model.version: expected a served version of model a (3, 1), got 0");
   EXPECT_EQ(Answer(registry, {"a", {}, "canary"}),
-            "model.version_label: is \"canary\"; labels of model a are: stable");
+            "model.version_label: expected a label of model a (stable), got \"canary\"");
 }
 
 TEST(ModelRegistryTest, ShowsOnlyTheBeginningOfALongName) {

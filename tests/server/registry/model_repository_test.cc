@@ -80,12 +80,13 @@ TEST(ListCheckpointsTest, SaysWhichFoldersAreNoCheckpointsAndWhy) {
   ASSERT_THAT(listing, IsOk());
   EXPECT_THAT(listing->checkpoints, IsEmpty());
   const auto no_version = [](const std::string& name) {
-    return StartsWith("sbu/" + name + ": is no version, wanted a number of 1 or more");
+    return StartsWith("sbu/" + name + ": expected a version of at least 1");
   };
-  EXPECT_THAT(Skipped(*listing), ElementsAre("k3hi: has no folder of a version, such as 1",
-                                             no_version("-1"), no_version("0"), no_version("01"),
-                                             no_version("1.tmp"), "sbu/7: has no manifest.json",
-                                             no_version("99999999999"), no_version("v2")));
+  EXPECT_THAT(Skipped(*listing),
+              ElementsAre("k3hi: has no folder of a version, such as 1", no_version("-1"),
+                          no_version("0"), no_version("01"), no_version("1.tmp"),
+                          "sbu/7: expected a manifest.json, got none", no_version("99999999999"),
+                          no_version("v2")));
 }
 
 TEST(ListCheckpointsTest, FilesAndHiddenFoldersAreNobodysBusiness) {
@@ -187,11 +188,12 @@ TEST(LoadCheckpointTest, GivesTheModelAndWhereItCameFrom) {
 }
 
 TEST(LoadCheckpointTest, RefusesAManifestThatContradictsItsFolder) {
-  EXPECT_THAT(LoadCheckpoint("/models/sbu/3", LoaderOf("sbu", 4)).model,
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       AllOf(HasSubstr("model sbu version 4"), HasSubstr("sbu version 3"))));
+  EXPECT_THAT(
+      LoadCheckpoint("/models/sbu/3", LoaderOf("sbu", 4)).model,
+      StatusIs(absl::StatusCode::kInvalidArgument,
+               AllOf(HasSubstr("got sbu version 4"), HasSubstr("expected model sbu version 3"))));
   EXPECT_THAT(LoadCheckpoint("/models/sbu/3", LoaderOf("k3hi", 3)).model,
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("model k3hi version 3")));
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("got k3hi version 3")));
 }
 
 TEST(LoadCheckpointTest, RefusesAModelWhoseAnswersAreAbsurd) {
@@ -201,8 +203,9 @@ TEST(LoadCheckpointTest, RefusesAModelWhoseAnswersAreAbsurd) {
     model->answer = [](motion::Vec3, absl::Span<const float>) { return motion::Vec3{6e32f, 0, 0}; };
     return model;
   };
-  EXPECT_THAT(LoadCheckpoint("/models/fake/1", loader).model,
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("the weights answer")));
+  EXPECT_THAT(
+      LoadCheckpoint("/models/fake/1", loader).model,
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("weights: expected every joint")));
 }
 
 TEST(LoadCheckpointTest, PassesOnWhyALoaderFailed) {

@@ -56,7 +56,7 @@ TEST(AdmissionTest, KeepsAQuarterFreeOfBulk) {
   ASSERT_THAT(fourth, IsOk());
   EXPECT_THAT(admission.CheckShare(batching::Priority::kInteractive), IsOk());
   EXPECT_THAT(admission.CheckShare(batching::Priority::kBulk),
-              StatusIs(StatusCode::kResourceExhausted, HasSubstr("3 calls")));
+              StatusIs(StatusCode::kResourceExhausted, HasSubstr("at most 3 of this priority")));
 }
 
 TEST(AdmissionTest, DrainingAdmitsNobodyButKeepsWhoIsIn) {

@@ -302,7 +302,7 @@ absl::Status ErrorOf(SpoiledModel::Spoil spoil) {
 }
 
 TEST(ClipStreamTest, RefusesAResultOfTheWrongShape) {
-  const auto of_wrong_shape = StatusIs(kInternal, HasSubstr("wanted 40 frames of 15 joints"));
+  const auto of_wrong_shape = StatusIs(kInternal, HasSubstr("expected 40 frames of 15 joints"));
   EXPECT_THAT(ErrorOf([](motion::Poses* poses) { poses->DropFront(1); }), of_wrong_shape);
   EXPECT_THAT(ErrorOf([](motion::Poses* poses) { *poses = motion::Poses(40, 14); }),
               of_wrong_shape);

@@ -99,7 +99,7 @@ TEST(HostileClientTest, ARequestOfTinyMessagesIsRefusedBeforeItIsParsed) {
   EXPECT_FALSE(call.Read().has_value());
   const Refusal refusal = Decode(call.Finish());
   EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(refusal.Of("label_keyframes"), HasSubstr("wanted at most 65536"));
+  EXPECT_THAT(refusal.Of("label_keyframes"), HasSubstr("expected at most 65536"));
 }
 
 // A scheduler that keeps whoever asks it about bulk work waiting: that is asked when a message has
@@ -358,7 +358,7 @@ TEST(HostileClientTest, AStalledReaderLosesItsPlaceToAnotherCallOfItsClient) {
   EXPECT_TRUE(answered.ok()) << answered.error_message();
   const grpc::Status ended = idle.ReadToTheEnd();
   EXPECT_EQ(ended.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_THAT(ended.error_message(), HasSubstr("took nothing of the answer for 5 s while other"));
+  EXPECT_THAT(ended.error_message(), HasSubstr("read no reply for 5 s while other"));
 }
 
 TEST(HostileClientTest, StalledReadersMakeRoomForTheBytesOfAnotherCall) {

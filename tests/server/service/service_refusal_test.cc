@@ -104,8 +104,7 @@ TEST_P(MalformedBytesTest, AreInvalidArgumentsWithAReason) {
     EXPECT_FALSE(call.Read().has_value());
     const Refusal refusal = Decode(call.Finish());
     EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(refusal.Of("duet.v1." + message),
-                HasSubstr("bytes that cannot be read: malformed, or a string that is not UTF-8"));
+    EXPECT_THAT(refusal.Of("duet.v1." + message), HasSubstr("bytes that do not parse"));
   }
 }
 
@@ -119,7 +118,7 @@ TEST(ServiceRefusalTest, AnUnknownModelIsNamedWithThoseServed) {
   request.mutable_model()->set_name("nobody");
   const Refusal refusal = Decode(Call(running.stub(), request).status);
   EXPECT_EQ(refusal.code, StatusCode::kNotFound);
-  EXPECT_EQ(refusal.Of("model.name"), "is \"nobody\", which is not served; served are: fake");
+  EXPECT_EQ(refusal.Of("model.name"), "expected a served model (fake), got \"nobody\"");
   EXPECT_EQ(refusal.reason, "MODEL_NOT_FOUND");
 }
 
@@ -129,7 +128,8 @@ TEST(ServiceRefusalTest, AnUnknownVersionIsNamedWithThoseServed) {
   request.mutable_model()->set_version(7);
   const Refusal refusal = Decode(Call(running.stub(), request).status);
   EXPECT_EQ(refusal.code, StatusCode::kNotFound);
-  EXPECT_THAT(refusal.Of("model.version"), HasSubstr("is 7; served versions of model fake are: 1"));
+  EXPECT_THAT(refusal.Of("model.version"),
+              HasSubstr("expected a served version of model fake (1), got 7"));
 }
 
 TEST(ServiceRefusalTest, AnUnknownLabelIsNamedWithThoseThereAre) {
@@ -139,7 +139,7 @@ TEST(ServiceRefusalTest, AnUnknownLabelIsNamedWithThoseThereAre) {
   const Refusal refusal = Decode(Call(running.stub(), request).status);
   EXPECT_EQ(refusal.code, StatusCode::kNotFound);
   EXPECT_THAT(refusal.Of("model.version_label"),
-              HasSubstr("is \"canary\"; labels of model fake are: none"));
+              HasSubstr("expected a label of model fake (none), got \"canary\""));
 }
 
 TEST(ServiceRefusalTest, AVersionLabelIsFollowed) {

@@ -98,61 +98,64 @@ INSTANTIATE_TEST_SUITE_P(
     Leader, RefusalTest,
     ::testing::Values(
         Spoiled{"nan", [](Request& r) { r.mutable_leader()->set_positions(17, kNan); },
-                "leader.positions[17]", "is nan, wanted a finite number"},
+                "leader.positions[17]", "expected a finite number, got nan"},
         Spoiled{"infinite", [](Request& r) { r.mutable_leader()->set_positions(5, -kInfinity); },
-                "leader.positions[5]", "is -inf, wanted a finite number"},
+                "leader.positions[5]", "expected a finite number, got -inf"},
         Spoiled{"too_few_values",
                 [](Request& r) { r.mutable_leader()->mutable_positions()->RemoveLast(); },
-                "leader.positions", "has 1799 values, wanted 1800: 40 frames x 15 joints x 3"},
+                "leader.positions", "expected 1800 values (40 frames x 15 joints x 3), got 1799"},
         Spoiled{"too_many_values", [](Request& r) { r.mutable_leader()->add_positions(0); },
-                "leader.positions", "has 1801 values, wanted 1800"},
+                "leader.positions", "x 3), got 1801"},
         Spoiled{"no_values", [](Request& r) { r.mutable_leader()->clear_positions(); },
-                "leader.positions", "has 0 values, wanted 1800"},
+                "leader.positions", "x 3), got 0"},
         Spoiled{"one_frame",
                 [](Request& r) {
                   r.mutable_leader()->set_frame_count(1);
                   r.mutable_leader()->mutable_positions()->Truncate(kJoints * 3);
                 },
-                "leader.frame_count", "is 1, wanted 2 or more"},
+                "leader.frame_count", "expected at least 2, got 1"},
         Spoiled{"zero_frames",
                 [](Request& r) {
                   r.mutable_leader()->set_frame_count(0);
                   r.mutable_leader()->clear_positions();
                 },
-                "leader.frame_count", "is 0, wanted 2 or more"},
+                "leader.frame_count", "expected at least 2, got 0"},
         Spoiled{"no_rate", [](Request& r) { r.mutable_leader()->clear_frame_rate_hz(); },
-                "leader.frame_rate_hz", "is 0, wanted 1 to 240"},
+                "leader.frame_rate_hz", "expected 1 to 240 frames per second, got 0"},
         Spoiled{"negative_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(-15); },
-                "leader.frame_rate_hz", "is -15, wanted 1 to 240"},
+                "leader.frame_rate_hz", "expected 1 to 240 frames per second, got -15"},
         Spoiled{"high_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(240.5); },
-                "leader.frame_rate_hz", "is 240.5, wanted 1 to 240"},
+                "leader.frame_rate_hz", "frames per second, got 240.5"},
         Spoiled{"nan_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(kNan); },
-                "leader.frame_rate_hz", "is nan, wanted 1 to 240"},
+                "leader.frame_rate_hz", "expected 1 to 240 frames per second, got nan"},
         Spoiled{"infinite_rate",
                 [](Request& r) { r.mutable_leader()->set_frame_rate_hz(kInfinity); },
-                "leader.frame_rate_hz", "is inf, wanted 1 to 240"},
+                "leader.frame_rate_hz", "expected 1 to 240 frames per second, got inf"},
         Spoiled{"no_unit", [](Request& r) { r.mutable_leader()->clear_unit(); }, "leader.unit",
-                "is LENGTH_UNIT_UNSPECIFIED, wanted LENGTH_UNIT_METRES"},
+                "or LENGTH_UNIT_SBU_NORMALISED, got LENGTH_UNIT_UNSPECIFIED"},
         Spoiled{"unknown_unit",
                 [](Request& r) { r.mutable_leader()->set_unit(static_cast<v1::LengthUnit>(17)); },
-                "leader.unit", "is 17, wanted LENGTH_UNIT_METRES"},
+                "leader.unit", "or LENGTH_UNIT_SBU_NORMALISED, got 17"},
         Spoiled{"no_up_axis", [](Request& r) { r.mutable_leader()->clear_up_axis(); },
-                "leader.up_axis", "is UP_AXIS_UNSPECIFIED, wanted UP_AXIS_Y_UP"},
+                "leader.up_axis", "or UP_AXIS_Y_DOWN, got UP_AXIS_UNSPECIFIED"},
         Spoiled{"unknown_up_axis",
                 [](Request& r) { r.mutable_leader()->set_up_axis(static_cast<v1::UpAxis>(-1)); },
-                "leader.up_axis", "is -1, wanted UP_AXIS_Y_UP"},
+                "leader.up_axis", "or UP_AXIS_Y_DOWN, got -1"},
         Spoiled{"sbu_unit_with_y_up",
                 [](Request& r) { r.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED); },
-                "leader.up_axis", "is UP_AXIS_Y_UP, wanted UP_AXIS_Y_DOWN"},
+                "leader.up_axis",
+                "expected UP_AXIS_Y_DOWN with LENGTH_UNIT_SBU_NORMALISED, got UP_AXIS_Y_UP"},
         Spoiled{"far_away", [](Request& r) { r.mutable_leader()->set_positions(4, -20000); },
-                "leader.positions[3..5]", "more than 10000 m from the origin"},
+                "leader.positions[3..5]",
+                "expected at most 10000 m from the origin along each axis"},
         Spoiled{"overflowing",
                 [](Request& r) {
                   r.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED);
                   r.mutable_leader()->set_up_axis(v1::UP_AXIS_Y_DOWN);
                   r.mutable_leader()->set_positions(3, 3e38F);
                 },
-                "leader.positions[3..5]", "more than 10000 m from the origin"}),
+                "leader.positions[3..5]",
+                "expected at most 10000 m from the origin along each axis"}),
     SpoiledName);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -163,14 +166,15 @@ INSTANTIATE_TEST_SUITE_P(
                                 r.mutable_leader()->mutable_positions()->Truncate(40 * 14 * 3);
                               },
                               "leader.joint_names",
-                              "lacks right_foot; wanted all 15 joints of model fake",
+                              "expected all 15 joints of model fake, got none for right_foot",
                               kFailedPrecondition},
                       Spoiled{"none",
                               [](Request& r) {
                                 r.mutable_leader()->clear_joint_names();
                                 r.mutable_leader()->clear_positions();
                               },
-                              "leader.joint_names", "lacks head, neck, torso", kFailedPrecondition},
+                              "leader.joint_names", "got none for head, neck, torso",
+                              kFailedPrecondition},
                       Spoiled{"extra",
                               [](Request& r) {
                                 r.mutable_leader()->add_joint_names("tail");
@@ -178,15 +182,15 @@ INSTANTIATE_TEST_SUITE_P(
                                   r.mutable_leader()->add_positions(0);
                               },
                               "leader.joint_names[15]",
-                              "is \"tail\", which is no joint of model fake", kFailedPrecondition},
+                              "expected a joint of model fake, got \"tail\"", kFailedPrecondition},
                       Spoiled{"repeated",
                               [](Request& r) {
                                 r.mutable_leader()->add_joint_names("head");
                                 for (int i = 0; i < 40 * 3; ++i)
                                   r.mutable_leader()->add_positions(0);
                               },
-                              "leader.joint_names[15]",
-                              "is \"head\", which joint_names[0] is already", kFailedPrecondition},
+                              "leader.joint_names[15]", "got \"head\" again after joint_names[0]",
+                              kFailedPrecondition},
                       Spoiled{"absurdly_many",
                               [](Request& r) {
                                 r.mutable_leader()->clear_positions();
@@ -194,7 +198,8 @@ INSTANTIATE_TEST_SUITE_P(
                                   r.mutable_leader()->add_joint_names("x");
                                 r.mutable_leader()->mutable_positions()->Resize(40 * 100015 * 3, 0);
                               },
-                              "leader.joint_names", "has 100015 names, wanted the 15 joints",
+                              "leader.joint_names",
+                              "expected the 15 joints of model fake, got 100015 names",
                               kFailedPrecondition}),
     SpoiledName);
 
@@ -202,145 +207,147 @@ INSTANTIATE_TEST_SUITE_P(
     Labels, RefusalTest,
     ::testing::Values(
         Spoiled{"missing", [](Request& r) { r.clear_label_vector(); }, "label_vector",
-                "is missing, wanted label_vector or label_keyframes"},
+                "expected label_vector or label_keyframes, got neither"},
         Spoiled{"both_forms",
                 [](Request& r) {
                   AddKeyframe(r, 0);
                   AddWeight(*r.mutable_label_vector(), "kick", 1);
                 },
-                "label_keyframes", "together with label_vector, wanted one of the two"},
+                "label_keyframes", "expected label_vector or label_keyframes, got both"},
         Spoiled{"empty", [](Request& r) { r.mutable_label_vector()->clear_weights(); },
-                "label_vector.weights", "is empty, wanted a weight for at least one of kick"},
+                "label_vector.weights", "expected a weight for at least one of kick"},
         Spoiled{"unknown_class",
                 [](Request& r) { AddWeight(*r.mutable_label_vector(), "dance", 1); },
-                "label_vector.weights[1].interaction_class", "is \"dance\", wanted one of kick"},
+                "label_vector.weights[1].interaction_class", ", got \"dance\""},
         Spoiled{"unnamed_class", [](Request& r) { AddWeight(*r.mutable_label_vector(), "", 1); },
-                "label_vector.weights[1].interaction_class", "is \"\", wanted one of kick"},
+                "label_vector.weights[1].interaction_class", ", got \"\""},
         Spoiled{"repeated_class",
                 [](Request& r) { AddWeight(*r.mutable_label_vector(), "kick", 1); },
-                "label_vector.weights[1].interaction_class",
-                "is \"kick\", which weights[0] is already"},
+                "label_vector.weights[1].interaction_class", "got \"kick\" again after weights[0]"},
         Spoiled{"too_large", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", 2.5F); },
-                "label_vector.weights[1].weight", "is 2.5, wanted a finite value in [-2, 2]"},
+                "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got 2.5"},
         Spoiled{"too_small", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", -2.5F); },
-                "label_vector.weights[1].weight", "is -2.5, wanted a finite value in [-2, 2]"},
+                "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got -2.5"},
         Spoiled{"nan", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", kNan); },
-                "label_vector.weights[1].weight", "is nan, wanted a finite value in [-2, 2]"},
+                "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got nan"},
         Spoiled{"infinite",
                 [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", kInfinity); },
-                "label_vector.weights[1].weight", "is inf, wanted a finite value in [-2, 2]"},
+                "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got inf"},
         Spoiled{"absurdly_many",
                 [](Request& r) {
                   for (int i = 0; i < 1000; ++i) AddWeight(*r.mutable_label_vector(), "x", 1);
                 },
-                "label_vector.weights", "has 1001 weights, wanted at most one for each of 6"}),
+                "label_vector.weights",
+                "expected at most one weight for each of 6 classes, got 1001"}),
     SpoiledName);
 
 INSTANTIATE_TEST_SUITE_P(
     Keyframes, RefusalTest,
-    ::testing::Values(Spoiled{"past_the_end", [](Request& r) { AddKeyframe(r, 40); },
-                              "label_keyframes[0].frame", "is 40, wanted less than 40"},
-                      Spoiled{"backwards",
-                              [](Request& r) {
-                                AddKeyframe(r, 20);
-                                AddKeyframe(r, 10);
-                              },
-                              "label_keyframes[1].frame", "is 10, wanted more than 20"},
-                      Spoiled{"repeated",
-                              [](Request& r) {
-                                AddKeyframe(r, 20);
-                                AddKeyframe(r, 20);
-                              },
-                              "label_keyframes[1].frame", "is 20, wanted more than 20"},
-                      Spoiled{"empty_vector",
-                              [](Request& r) {
-                                AddKeyframe(r, 0);
-                                r.mutable_label_keyframes(0)->clear_label_vector();
-                              },
-                              "label_keyframes[0].label_vector.weights", "is empty"},
-                      Spoiled{"weight",
-                              [](Request& r) {
-                                AddKeyframe(r, 0);
-                                r.mutable_label_keyframes(0)
-                                    ->mutable_label_vector()
-                                    ->mutable_weights(0)
-                                    ->set_weight(9);
-                              },
-                              "label_keyframes[0].label_vector.weights[0].weight", "is 9, wanted"},
-                      Spoiled{"too_many",
-                              [](Request& r) {
-                                for (uint32_t i = 0; i < 4097; ++i) AddKeyframe(r, i);
-                              },
-                              "label_keyframes", "has 4097 keyframes, wanted at most 4096"}),
+    ::testing::Values(
+        Spoiled{"past_the_end", [](Request& r) { AddKeyframe(r, 40); }, "label_keyframes[0].frame",
+                "expected less than the leader's frame_count 40, got 40"},
+        Spoiled{"backwards",
+                [](Request& r) {
+                  AddKeyframe(r, 20);
+                  AddKeyframe(r, 10);
+                },
+                "label_keyframes[1].frame",
+                "expected more than the previous keyframe's 20, got 10"},
+        Spoiled{"repeated",
+                [](Request& r) {
+                  AddKeyframe(r, 20);
+                  AddKeyframe(r, 20);
+                },
+                "label_keyframes[1].frame",
+                "expected more than the previous keyframe's 20, got 20"},
+        Spoiled{"empty_vector",
+                [](Request& r) {
+                  AddKeyframe(r, 0);
+                  r.mutable_label_keyframes(0)->clear_label_vector();
+                },
+                "label_keyframes[0].label_vector.weights", "got none"},
+        Spoiled{
+            "weight",
+            [](Request& r) {
+              AddKeyframe(r, 0);
+              r.mutable_label_keyframes(0)->mutable_label_vector()->mutable_weights(0)->set_weight(
+                  9);
+            },
+            "label_keyframes[0].label_vector.weights[0].weight", ", got 9"},
+        Spoiled{"too_many",
+                [](Request& r) {
+                  for (uint32_t i = 0; i < 4097; ++i) AddKeyframe(r, i);
+                },
+                "label_keyframes", "expected at most 4096 keyframes, got 4097"}),
     SpoiledName);
 
 INSTANTIATE_TEST_SUITE_P(
     FollowerStart, RefusalTest,
     ::testing::Values(
         Spoiled{"empty", [](Request& r) { r.mutable_follower_start(); }, "follower_start.start",
-                "is missing, wanted root_position or pose"},
+                "expected root_position or pose, got neither"},
         Spoiled{"nan", [](Request& r) { SetRoot(r, 0, kNan, 0); },
-                "follower_start.root_position[1]", "is nan, wanted a finite number"},
+                "follower_start.root_position[1]", "expected a finite number, got nan"},
         Spoiled{"far_away", [](Request& r) { SetRoot(r, 0, 0, 1e6F); },
-                "follower_start.root_position[0..2]", "more than 10000 m"},
+                "follower_start.root_position[0..2]", "expected at most 10000 m"},
         Spoiled{"short_pose",
                 [](Request& r) { r.mutable_follower_start()->mutable_pose()->add_positions(1); },
-                "follower_start.pose.positions", "has 1 values, wanted 45: 15 joints x 3"},
+                "follower_start.pose.positions", "expected 45 values (15 joints x 3), got 1"},
         Spoiled{"nan_pose",
                 [](Request& r) {
                   auto* positions = r.mutable_follower_start()->mutable_pose()->mutable_positions();
                   positions->Resize(45, 0);
                   positions->Set(44, kNan);
                 },
-                "follower_start.pose.positions[44]", "is nan, wanted a finite number"}),
+                "follower_start.pose.positions[44]", "expected a finite number, got nan"}),
     SpoiledName);
 
 INSTANTIATE_TEST_SUITE_P(
     Others, RefusalTest,
     ::testing::Values(
         Spoiled{"no_chunk_frames", [](Request& r) { r.set_chunk_frames(0); }, "chunk_frames",
-                "is 0, wanted 1 to 240"},
+                "expected 1 to 240, got 0"},
         Spoiled{"many_chunk_frames", [](Request& r) { r.set_chunk_frames(241); }, "chunk_frames",
-                "is 241, wanted 1 to 240"},
+                "expected 1 to 240, got 241"},
         Spoiled{"huge_chunk_frames", [](Request& r) { r.set_chunk_frames(4294967295U); },
-                "chunk_frames", "is 4294967295, wanted 1 to 240"},
+                "chunk_frames", "expected 1 to 240, got 4294967295"},
         Spoiled{"unspecified_priority",
                 [](Request& r) { r.set_priority(v1::PRIORITY_UNSPECIFIED); }, "priority",
-                "is PRIORITY_UNSPECIFIED, wanted PRIORITY_INTERACTIVE"},
+                "or no value, got PRIORITY_UNSPECIFIED"},
         Spoiled{"unknown_priority",
                 [](Request& r) { r.set_priority(static_cast<v1::Priority>(9)); }, "priority",
-                "is 9, wanted PRIORITY_INTERACTIVE"},
+                "or no value, got 9"},
         Spoiled{"unknown_reply_joint", [](Request& r) { r.add_reply_joint_names("tail"); },
-                "reply_joint_names[0]", "is \"tail\", wanted one of leader.joint_names"},
+                "reply_joint_names[0]", "expected one of leader.joint_names, got \"tail\""},
         Spoiled{"repeated_reply_joint",
                 [](Request& r) {
                   r.add_reply_joint_names("head");
                   r.add_reply_joint_names("head");
                 },
-                "reply_joint_names[1]", "is \"head\", which [0] is already"},
+                "reply_joint_names[1]", "got \"head\" again after reply_joint_names[0]"},
         Spoiled{"too_many_reply_joints",
                 [](Request& r) {
                   for (int i = 0; i < 16; ++i) r.add_reply_joint_names("head");
                 },
-                "reply_joint_names", "has 16 names, wanted at most the 15"},
+                "reply_joint_names", "expected at most the 15 names of leader.joint_names, got 16"},
         Spoiled{"negative_variety", [](Request& r) { r.set_variety(-0.5F); }, "variety",
-                "is -0.5, wanted a finite value in [0, 2]"},
+                "expected a finite value in [0, 2], got -0.5"},
         Spoiled{"much_variety", [](Request& r) { r.set_variety(2.5F); }, "variety",
-                "is 2.5, wanted a finite value in [0, 2]"},
+                "expected a finite value in [0, 2], got 2.5"},
         Spoiled{"nan_variety", [](Request& r) { r.set_variety(kNan); }, "variety",
-                "is nan, wanted a finite value in [0, 2]"},
+                "expected a finite value in [0, 2], got nan"},
         Spoiled{"infinite_variety", [](Request& r) { r.set_variety(kInfinity); }, "variety",
-                "is inf, wanted a finite value in [0, 2]"},
+                "expected a finite value in [0, 2], got inf"},
         Spoiled{"unknown_clean_up", [](Request& r) { r.set_clean_up(static_cast<v1::CleanUp>(9)); },
-                "clean_up", "is 9, wanted CLEAN_UP_ON, CLEAN_UP_OFF or no value"},
+                "clean_up", "expected CLEAN_UP_ON, CLEAN_UP_OFF or no value, got 9"},
         Spoiled{"no_direction", [](Request& r) { SetDirection(r, 0, 0, 0); }, "partner_direction",
-                "is (0, 0, 0), wanted a direction"},
+                "expected a direction that is neither vertical nor of length 0, got (0, 0, 0)"},
         Spoiled{"vertical_direction", [](Request& r) { SetDirection(r, 0, 3, 0); },
-                "partner_direction", "is (0, 3, 0), wanted a direction that is not straight up"},
+                "partner_direction", "got (0, 3, 0)"},
         Spoiled{"nearly_vertical_direction", [](Request& r) { SetDirection(r, 1e-6F, -3, 1e-6F); },
-                "partner_direction", "wanted a direction that is not straight up"},
+                "partner_direction", "expected a direction that is neither vertical"},
         Spoiled{"nan_direction", [](Request& r) { SetDirection(r, kNan, 0, 1); },
-                "partner_direction[0]", "is nan, wanted a finite number"}),
+                "partner_direction[0]", "expected a finite number, got nan"}),
     SpoiledName);
 
 TEST(ValidateRequestTest, RefusesAnEmptyRequestByNamingAllThatIsMissing) {
@@ -374,7 +381,8 @@ TEST(ValidateRequestTest, NamesTheFirstBadValuesAndCountsAll) {
   const Refusal refusal = Decode(Validate(request).status());
   EXPECT_THAT(refusal.Fields(), ElementsAre("leader.positions[100]", "leader.positions[101]",
                                             "leader.positions[102]", "leader.positions"));
-  EXPECT_THAT(refusal.Of("leader.positions"), HasSubstr("has 800 values that are not finite"));
+  EXPECT_THAT(refusal.Of("leader.positions"),
+              HasSubstr("got 800 of 1800 values that are not finite"));
 }
 
 TEST(ValidateRequestTest, NamesTheFirstFarPositionsAndCountsAll) {
@@ -382,14 +390,15 @@ TEST(ValidateRequestTest, NamesTheFirstFarPositionsAndCountsAll) {
   for (int i = 0; i < 300; ++i) request.mutable_leader()->set_positions(i, 1e5F);
   const Refusal refusal = Decode(Validate(request).status());
   EXPECT_THAT(refusal.Fields(), SizeIs(4));
-  EXPECT_THAT(refusal.Of("leader.positions"), HasSubstr("has 100 positions that are too far"));
+  EXPECT_THAT(refusal.Of("leader.positions"), HasSubstr("got 100 positions farther away"));
 }
 
 TEST(ValidateRequestTest, RefusesMoreThanTenMinutes) {
   v1::SynthesizeRequest request = SampleRequest(9001);
   const Refusal refusal = Decode(Validate(request).status());
   EXPECT_THAT(refusal.Of("leader.frame_count"),
-              AllOf(HasSubstr("is 9001, which lasts 600.067 s"), HasSubstr("at most 600 s")));
+              AllOf(HasSubstr("expected a duration of at most 600 s"),
+                    HasSubstr("got 9001 frames, 600.067 s")));
 }
 
 TEST(ValidateRequestTest, AcceptsTenMinutesAndTwoFrames) {
@@ -404,14 +413,15 @@ TEST(ValidateRequestTest, RefusesAFollowerStartThatTheModelDoesNotAccept) {
   SetRoot(request, 0, 1, 1);
   const Refusal refusal = Decode(Validate(request, model).status());
   EXPECT_EQ(refusal.code, kFailedPrecondition);
-  EXPECT_THAT(refusal.Of("follower_start"), HasSubstr("model fake version 1 does not accept it"));
+  EXPECT_THAT(refusal.Of("follower_start"),
+              HasSubstr("model fake version 1, which does not accept it"));
 }
 
 TEST(ValidateRequestTest, EscapesAndCutsWhatCallersCallTheirJoints) {
   v1::SynthesizeRequest request = SampleRequest();
   request.mutable_leader()->set_joint_names(0, "a\nb" + std::string(100000, 'x'));
   const Refusal refusal = Decode(Validate(request).status());
-  EXPECT_THAT(refusal.Of("leader.joint_names[0]"), HasSubstr("is \"a\\nbxxx"));
+  EXPECT_THAT(refusal.Of("leader.joint_names[0]"), HasSubstr("got \"a\\nbxxx"));
   EXPECT_LT(refusal.message.size(), 1000u);
 }
 

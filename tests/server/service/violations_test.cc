@@ -25,27 +25,28 @@ TEST(ViolationsTest, NoneIsOk) { EXPECT_THAT(Violations().ToStatus(), IsOk()); }
 
 TEST(ViolationsTest, NamesEveryFieldInOrder) {
   Violations violations;
-  violations.Malformed("a", "is 1, wanted 2");
-  violations.Malformed("b[3]", "is nan");
+  violations.Malformed("a", "2", "1");
+  violations.Malformed("b[3]", "a number", "nan");
   const Refusal refusal = Decode(violations.ToStatus());
   EXPECT_EQ(refusal.code, absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(refusal.violations, ElementsAre(Pair("a", "is 1, wanted 2"), Pair("b[3]", "is nan")));
+  EXPECT_THAT(refusal.violations, ElementsAre(Pair("a", "expected 2, got 1"),
+                                              Pair("b[3]", "expected a number, got nan")));
   EXPECT_EQ(refusal.reason, "INVALID_REQUEST");
-  EXPECT_EQ(refusal.message, "a: is 1, wanted 2; b[3]: is nan");
+  EXPECT_EQ(refusal.message, "a: expected 2, got 1; b[3]: expected a number, got nan");
 }
 
-TEST(ViolationsTest, AMismatchAloneIsAFailedPrecondition) {
+TEST(ViolationsTest, OnlyMismatchesAreAFailedPrecondition) {
   Violations violations;
-  violations.Mismatch("leader.joint_names", "lacks head");
+  violations.Mismatch("leader.joint_names", "all joints", "none for head");
   const Refusal refusal = Decode(violations.ToStatus());
   EXPECT_EQ(refusal.code, absl::StatusCode::kFailedPrecondition);
   EXPECT_EQ(refusal.reason, "MODEL_MISMATCH");
 }
 
-TEST(ViolationsTest, WhatIsMalformedOutweighsAMismatch) {
+TEST(ViolationsTest, AMalformedFieldOutweighsAMismatch) {
   Violations violations;
-  violations.Mismatch("leader.joint_names", "lacks head");
-  violations.Malformed("chunk_frames", "is 0");
+  violations.Mismatch("leader.joint_names", "all joints", "none for head");
+  violations.Malformed("chunk_frames", "1", "0");
   const Refusal refusal = Decode(violations.ToStatus());
   EXPECT_EQ(refusal.code, absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(refusal.violations.size(), 2u);
@@ -54,7 +55,7 @@ TEST(ViolationsTest, WhatIsMalformedOutweighsAMismatch) {
 TEST(ViolationsTest, ManyFitIntoTrailersAndAreCounted) {
   Violations violations;
   for (int i = 0; i < 1000; ++i) {
-    violations.Malformed(absl::StrCat("field[", i, "]"), std::string(1000, 'x'));
+    violations.Malformed(absl::StrCat("field[", i, "]"), "y", std::string(1000, 'x'));
   }
   const grpc::Status status = common::ToGrpcStatus(violations.ToStatus());
   // As base64 and together with the message; clients take 8 KiB of trailers.

@@ -75,7 +75,7 @@ TEST_P(WireBombTest, IsRefusedByTheNameOfItsField) {
     const Refusal refusal = test::Decode(Survey(GetParam().bytes, block));
     EXPECT_EQ(refusal.code, absl::StatusCode::kInvalidArgument);
     EXPECT_THAT(refusal.Fields(), ElementsAre(GetParam().field));
-    EXPECT_THAT(refusal.Of(GetParam().field), HasSubstr("wanted at most "));
+    EXPECT_THAT(refusal.Of(GetParam().field), HasSubstr("expected at most "));
   }
 }
 
