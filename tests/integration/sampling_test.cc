@@ -59,7 +59,7 @@ class ClientSamplingTest : public ::testing::Test {
   SynthesisRequest request_;
 };
 
-TEST_F(ClientSamplingTest, TheSameSeedGivesTheSameBytesAndAnotherOthers) {
+TEST_F(ClientSamplingTest, SameSeedGivesTheSameBytesAndAnotherSeedDifferentOnes) {
   const auto seven = Ask(7, 1), again = Ask(7, 1), eight = Ask(8, 1);
   ASSERT_THAT(seven, IsOk());
   ASSERT_THAT(again, IsOk());

@@ -12,16 +12,16 @@ using std::chrono::seconds;
 
 constexpr common::TimePoint kNow(seconds(100));
 
-TEST(CostEstimateTest, IsABatchsShareAndEachFramesOwn) {
+TEST(CostEstimateTest, IsLinearInFrames) {
   EXPECT_DOUBLE_EQ((CostEstimate{0.5, 0.25}.Seconds(6)), 2.0);
 }
 
-TEST(BatchCostTest, KnowsNothingAtFirst) {
+TEST(BatchCostTest, IsUnknownAtFirst) {
   EXPECT_EQ(BatchCost().At(kNow).batch_seconds, 0);
   EXPECT_EQ(BatchCost().At(kNow).frame_seconds, 0);
 }
 
-TEST(BatchCostTest, IsProportionalToFramesWhileOneSizeWasSeen) {
+TEST(BatchCostTest, IsProportionalToFramesUntilSeveralSizesAreSeen) {
   BatchCost cost;
   for (int i = 0; i < 3; ++i) cost.Observe(40, 0.02, kNow);
   EXPECT_NEAR(cost.At(kNow).batch_seconds, 0, 1e-9);
@@ -31,7 +31,7 @@ TEST(BatchCostTest, IsProportionalToFramesWhileOneSizeWasSeen) {
 // What a model costs that takes 4 ms for a batch and 1 ms for each frame.
 double TrueSeconds(int frames) { return 0.004 + 0.001 * frames; }
 
-TEST(BatchCostTest, TellsTheBatchsShareFromTheFramesByBatchesOfManySizes) {
+TEST(BatchCostTest, SeparatesBatchCostFromFrameCostBySeveralSizes) {
   BatchCost cost;
   for (int i = 0; i < 20; ++i) {
     const int frames = 10 + 30 * (i % 5);
@@ -43,14 +43,14 @@ TEST(BatchCostTest, TellsTheBatchsShareFromTheFramesByBatchesOfManySizes) {
   }
 }
 
-TEST(BatchCostTest, FollowsAModelThatGetsSlower) {
+TEST(BatchCostTest, FollowsAModelThatBecomesSlower) {
   BatchCost cost;
   for (int i = 0; i < 20; ++i) cost.Observe(40, 0.02, kNow);
   for (int i = 0; i < 20; ++i) cost.Observe(40, 0.06, kNow);
   EXPECT_NEAR(cost.At(kNow).Seconds(40), 0.06, 0.002);
 }
 
-TEST(BatchCostTest, OnePauseOfTheMachineCountsAsFourTimesTheUsual) {
+TEST(BatchCostTest, OutlierCountsAtMostFourTimesTheEstimate) {
   BatchCost cost;
   for (int i = 0; i < 20; ++i) cost.Observe(40, 0.02, kNow);
   BatchCost paused = cost, slow = cost;
@@ -74,7 +74,7 @@ TEST(BatchCostTest, NeitherPartIsEverNegative) {
   EXPECT_GT(steep.At(kNow).frame_seconds, 0);
 }
 
-TEST(BatchCostTest, IsHalvedForEachSecondWithoutABatch) {
+TEST(BatchCostTest, HalvesEachSecondWithoutABatch) {
   BatchCost cost;
   cost.Observe(40, 0.02, kNow);
   EXPECT_NEAR(cost.At(kNow).Seconds(40), 0.02, 1e-9);

@@ -71,16 +71,18 @@ std::vector<std::size_t> UpTo(std::size_t count) {
   return indices;
 }
 
-TEST(DecideTest, HasNothingToDoWhenNothingWaits) {
+TEST(DecideTest, EmptyQueueNeedsNoBatch) {
   const Decision decision = Decide(QueueState(), {16}, kNow);
   EXPECT_THAT(decision.batch, IsEmpty());
   EXPECT_THAT(decision.dropped, IsEmpty());
   EXPECT_EQ(decision.look_again, TimePoint::max());
 }
 
-TEST(DecideTest, TakesAllThatWait) { EXPECT_THAT(BatchOf(Waiting(5)), ElementsAre(0, 1, 2, 3, 4)); }
+TEST(DecideTest, TakesAllWaitingWindows) {
+  EXPECT_THAT(BatchOf(Waiting(5)), ElementsAre(0, 1, 2, 3, 4));
+}
 
-TEST(DecideTest, TakesNoMoreThanABatchMayHold) {
+TEST(DecideTest, TakesAtMostAFullBatch) {
   EXPECT_THAT(BatchOf(Waiting(5), 3), ElementsAre(0, 1, 2));
   EXPECT_THAT(BatchOf(Waiting(5), 1), ElementsAre(0));
 }
@@ -93,7 +95,7 @@ TEST(DecideTest, BatchesWindowsOfAnyLengths) {
 
 // Dropping.
 
-TEST(DecideTest, DropsWhatIsCancelled) {
+TEST(DecideTest, DropsCancelledWindows) {
   QueueState state = Waiting(3);
   state.windows[1].cancelled = true;
   const Decision decision = Decide(state, {16}, kNow);
@@ -104,7 +106,7 @@ TEST(DecideTest, DropsWhatIsCancelled) {
               StatusIs(kCancelled, HasSubstr("before this window started")));
 }
 
-TEST(DecideTest, DropsWhatIsExpired) {
+TEST(DecideTest, DropsExpiredWindows) {
   WaitingWindow expired = Window();
   expired.deadline = kNow;
   const Decision decision = Decide(State({expired}), {16}, kNow);
@@ -114,7 +116,7 @@ TEST(DecideTest, DropsWhatIsExpired) {
               StatusIs(kDeadlineExceeded, HasSubstr("before this window started")));
 }
 
-TEST(DecideTest, DropsWhatCannotBeDoneInTimeAndSaysSo) {
+TEST(DecideTest, DropsWindowsThatCannotMeetTheirDeadlineWithAReason) {
   const Decision late = Decide(State({Due(milliseconds(14))}), {16}, kNow);
   EXPECT_THAT(late.batch, IsEmpty());
   ASSERT_EQ(late.dropped.size(), 1u);
@@ -124,13 +126,13 @@ TEST(DecideTest, DropsWhatCannotBeDoneInTimeAndSaysSo) {
   EXPECT_THAT(BatchOf(State({Due(milliseconds(16))})), ElementsAre(0));
 }
 
-TEST(DecideTest, AShortWindowNeedsLessTime) {
+TEST(DecideTest, ShortWindowNeedsLessTime) {
   WaitingWindow window = Due(milliseconds(12));
   window.frames = kFrames / 4;
   EXPECT_THAT(BatchOf(State({window})), ElementsAre(0));
 }
 
-TEST(DecideTest, WhileTheCostIsUnknownAWindowNeedsTimeForItsAnswerAlone) {
+TEST(DecideTest, WithUnknownCostAWindowNeedsOnlyTimeForItsReply) {
   QueueState state = State({Due(milliseconds(1))});
   state.models[0].cost = {};
   EXPECT_THAT(BatchOf(state), ElementsAre(0));
@@ -140,7 +142,7 @@ TEST(DecideTest, WhileTheCostIsUnknownAWindowNeedsTimeForItsAnswerAlone) {
 
 // Lanes.
 
-TEST(DecideTest, ShortCallsGoBeforeLongOnesAndThoseBeforeBulk) {
+TEST(DecideTest, ShortCallsPrecedeLongOnesAndThosePrecedeBulk) {
   const WaitingWindow bulk = Window(Lane::kBulk), long_call = Window(Lane::kLong),
                       short_call = Window(Lane::kShort);
   EXPECT_THAT(BatchOf(State({bulk, long_call, short_call})), ElementsAre(2));
@@ -148,7 +150,7 @@ TEST(DecideTest, ShortCallsGoBeforeLongOnesAndThoseBeforeBulk) {
   EXPECT_THAT(BatchOf(State({bulk})), ElementsAre(0));
 }
 
-TEST(DecideTest, ALowerLaneHasItsTurnAfterSevenTimesItsFrames) {
+TEST(DecideTest, LowerLaneRunsAfterSevenTimesItsFrames) {
   for (const Lane lane : {Lane::kLong, Lane::kBulk}) {
     QueueState state = State({Window(Lane::kShort), Window(lane), Window(lane)});
     int& overtaken = state.overtaken_frames[static_cast<std::size_t>(lane)];
@@ -161,13 +163,13 @@ TEST(DecideTest, ALowerLaneHasItsTurnAfterSevenTimesItsFrames) {
 
 // Models.
 
-TEST(DecideTest, ABatchHoldsWindowsOfOneModel) {
+TEST(DecideTest, BatchHoldsWindowsOfOneModel) {
   EXPECT_THAT(BatchOf(State(
                   {Window(Lane::kShort, 0), Window(Lane::kShort, 1), Window(Lane::kShort, 0)}, 2)),
               ElementsAre(0, 2));
 }
 
-TEST(DecideTest, TheModelThatHasHadLeastGoesFirst) {
+TEST(DecideTest, LeastServedModelRunsFirst) {
   QueueState state = State({Window(Lane::kShort, 0), Window(Lane::kShort, 1)}, 2);
   state.models[0].served_seconds = 2;
   state.models[1].served_seconds = 1;
@@ -176,12 +178,12 @@ TEST(DecideTest, TheModelThatHasHadLeastGoesFirst) {
   EXPECT_THAT(BatchOf(state), ElementsAre(0));
 }
 
-TEST(DecideTest, OfEqualModelsTheOneWhoseWindowCameFirst) {
+TEST(DecideTest, EqualModelsRunInOrderOfArrival) {
   EXPECT_THAT(BatchOf(State({Window(Lane::kShort, 1), Window(Lane::kShort, 0)}, 2)),
               ElementsAre(0));
 }
 
-TEST(DecideTest, LanesComeBeforeModels) {
+TEST(DecideTest, LanesTakePrecedenceOverModels) {
   QueueState state = State({Window(Lane::kBulk, 0), Window(Lane::kShort, 1)}, 2);
   state.models[1].served_seconds = 5;
   EXPECT_THAT(BatchOf(state), ElementsAre(1));
@@ -189,13 +191,13 @@ TEST(DecideTest, LanesComeBeforeModels) {
 
 // Deadlines.
 
-TEST(DecideTest, TheNearestDeadlineGoesFirst) {
+TEST(DecideTest, NearestDeadlineRunsFirst) {
   EXPECT_THAT(
       BatchOf(State({Due(milliseconds(500)), Due(milliseconds(300)), Due(milliseconds(400))}), 2),
       ElementsAre(1, 2));
 }
 
-TEST(DecideTest, AWindowWithoutADeadlineIsWantedASecondAfterItCame) {
+TEST(DecideTest, WindowWithoutADeadlineIsDueOneSecondAfterArrival) {
   WaitingWindow other = Window();
   other.deadline = other.queued_at + milliseconds(999);
   EXPECT_THAT(BatchOf(State({Window(), other}), 1), ElementsAre(1));
@@ -203,7 +205,7 @@ TEST(DecideTest, AWindowWithoutADeadlineIsWantedASecondAfterItCame) {
   EXPECT_THAT(BatchOf(State({Window(), other}), 1), ElementsAre(0));
 }
 
-TEST(DecideTest, ABatchIsKeptSmallForItsMostUrgentWindow) {
+TEST(DecideTest, MostUrgentWindowLimitsTheBatch) {
   // 10 ms and 5 ms a window: 12 take 70 ms, at 171 windows a second, 16 at 178.
   QueueState state = Waiting(15);
   state.windows.push_back(Due(milliseconds(71)));
@@ -212,7 +214,7 @@ TEST(DecideTest, ABatchIsKeptSmallForItsMostUrgentWindow) {
   EXPECT_EQ(batch.front(), 15u);
 }
 
-TEST(DecideTest, ButNotSoSmallThatThroughputFallsByMoreThanAQuarter) {
+TEST(DecideTest, UrgentWindowWaitsIfThroughputWouldFallByMoreThanAQuarter) {
   // One that can only go alone, at 67 windows a second: the 16 others go.
   QueueState state = Waiting(16);
   state.windows.insert(state.windows.begin(), Due(milliseconds(16)));
@@ -222,12 +224,12 @@ TEST(DecideTest, ButNotSoSmallThatThroughputFallsByMoreThanAQuarter) {
   EXPECT_THAT(Decide(state, {16}, kNow).dropped, IsEmpty());
 }
 
-TEST(DecideTest, TheUrgentGoAloneWhenThereAreNoOthers) {
+TEST(DecideTest, UrgentWindowsRunAloneWithoutOthers) {
   const std::vector<WaitingWindow> urgent(16, Due(milliseconds(22)));
   EXPECT_THAT(BatchOf(State(urgent)), ElementsAre(0, 1));
 }
 
-TEST(DecideTest, WhatGoesInPlaceOfTheUrgentIsDoneInTimeItself) {
+TEST(DecideTest, WindowsThatReplaceUrgentOnesMeetTheirDeadlines) {
   // The batch of the first 16 would take 90 ms; 6 of the others have that long, the longest does
   // not fit beside them.
   std::vector<WaitingWindow> windows(16, Due(milliseconds(16)));
@@ -237,7 +239,7 @@ TEST(DecideTest, WhatGoesInPlaceOfTheUrgentIsDoneInTimeItself) {
   EXPECT_THAT(BatchOf(State(windows)), ElementsAre(16, 17, 18, 19, 20, 21));
 }
 
-TEST(DecideTest, OthersGoInASmallerBatchWhereALargeOneWouldBeTooLate) {
+TEST(DecideTest, OthersRunInASmallerBatchIfALargeOneIsTooLate) {
   // 16 take 90 ms, for which nobody has time; 8 take 50 ms.
   std::vector<WaitingWindow> windows(16, Due(milliseconds(55)));
   windows[0] = Due(milliseconds(16));
@@ -246,7 +248,7 @@ TEST(DecideTest, OthersGoInASmallerBatchWhereALargeOneWouldBeTooLate) {
 
 // Lower lanes.
 
-TEST(DecideTest, ABatchOfALowerLaneIsShortWhileShortCallsCome) {
+TEST(DecideTest, LowerLaneBatchesAreShortWhileShortCallsArrive) {
   for (const Lane lane : {Lane::kLong, Lane::kBulk}) {
     QueueState state = State(std::vector<WaitingWindow>(16, Window(lane)));
     EXPECT_EQ(BatchOf(state).size(), 16u);
@@ -260,7 +262,7 @@ TEST(DecideTest, ABatchOfALowerLaneIsShortWhileShortCallsCome) {
   }
 }
 
-TEST(DecideTest, ABatchOfShortCallsIsAsLongAsItMayBe) {
+TEST(DecideTest, ShortCallBatchesUseTheFullSize) {
   QueueState state = Waiting(16);
   state.last_short = kNow;
   EXPECT_EQ(BatchOf(state).size(), 16u);
@@ -268,7 +270,7 @@ TEST(DecideTest, ABatchOfShortCallsIsAsLongAsItMayBe) {
 
 // Workers.
 
-TEST(DecideTest, FreeWorkersShareWhatWaits) {
+TEST(DecideTest, FreeWorkersShareWaitingWindows) {
   QueueState state = Waiting(8);
   state.free_workers = 2;
   EXPECT_THAT(BatchOf(state), ElementsAre(0, 1, 2, 3));
@@ -276,7 +278,7 @@ TEST(DecideTest, FreeWorkersShareWhatWaits) {
   EXPECT_THAT(BatchOf(state), ElementsAre(0, 1));
 }
 
-TEST(DecideTest, LeavesAWorkerThatIsAboutToBeFreeItsShare) {
+TEST(DecideTest, LeavesAShareForAWorkerThatIsSoonFree) {
   QueueState state = Waiting(8);
   state.busy_until = {kNow - milliseconds(3)};
   EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(4)));
@@ -287,7 +289,7 @@ TEST(DecideTest, LeavesAWorkerThatIsAboutToBeFreeItsShare) {
   EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(8)));
 }
 
-TEST(DecideTest, OtherModelsWindowsAreWorkForTheOthers) {
+TEST(DecideTest, WindowsOfOtherModelsOccupyOtherWorkers) {
   QueueState state = Waiting(4);
   state.models.resize(2, {kCost, 1});
   state.windows.resize(8, Window(Lane::kShort, 1));
@@ -308,7 +310,7 @@ QueueState WithCompany() {
 
 const BatchLimits kPatient = {16, milliseconds(50)};
 
-TEST(DecideTest, WaitsForCompanyWhileThereIsAny) {
+TEST(DecideTest, WaitsForMoreWindowsWhileWorkersAreBusy) {
   const Decision decision = Decide(WithCompany(), kPatient, kNow);
   EXPECT_THAT(decision.batch, IsEmpty());
   EXPECT_EQ(decision.look_again, kNow + milliseconds(40));
@@ -320,14 +322,14 @@ TEST(DecideTest, DoesNotWaitWithoutADelay) {
   EXPECT_THAT(Decide(WithCompany(), {16}, kNow).batch, ElementsAre(0, 1));
 }
 
-TEST(DecideTest, ALoneCallOnAnIdleServerWaitsForNobody) {
+TEST(DecideTest, SingleCallOnAnIdleServerStartsImmediately) {
   QueueState state = WithCompany();
   state.windows.resize(1);
   state.busy_until.clear();
   EXPECT_THAT(Decide(state, {16, seconds(1)}, kNow).batch, ElementsAre(0));
 }
 
-TEST(DecideTest, WaitsForThoseWhoWereThereAMomentAgo) {
+TEST(DecideTest, WaitsForRecentClients) {
   QueueState state = WithCompany();
   state.busy_until.clear();
   state.last_company = kNow - milliseconds(45);
@@ -340,13 +342,13 @@ TEST(DecideTest, AFullBatchDoesNotWait) {
   EXPECT_THAT(Decide(WithCompany(), {2, milliseconds(50)}, kNow).batch, ElementsAre(0, 1));
 }
 
-TEST(DecideTest, DoesNotWaitWhileSomethingElseDoes) {
+TEST(DecideTest, DoesNotWaitWhileOtherWindowsWait) {
   QueueState state = WithCompany();
   state.windows.push_back(Window(Lane::kBulk));
   EXPECT_THAT(Decide(state, kPatient, kNow).batch, ElementsAre(0, 1));
 }
 
-TEST(DecideTest, DoesNotWaitSoLongThatADeadlineIsMissed) {
+TEST(DecideTest, NeverWaitsPastADeadline) {
   QueueState state = WithCompany();
   // It must be done 30 ms from now, 35 ms after it came.
   state.windows[1].deadline = state.windows[1].queued_at + milliseconds(40);
@@ -418,7 +420,7 @@ void Check(const QueueState& state, const BatchLimits& limits, const Decision& d
   }
 }
 
-TEST(DecideTest, KeepsItsPromisesInEveryState) {
+TEST(DecideTest, InvariantsHoldInRandomStates) {
   std::mt19937 random(1);
   for (int i = 0; i < 20000; ++i) {
     SCOPED_TRACE("state " + std::to_string(i));

@@ -97,7 +97,7 @@ std::vector<std::string> SeeWorkers() {
   return seen;
 }
 
-TEST(BatcherTest, TheWatchdogSeesWorkersAtWorkAndIdleOnes) {
+TEST(BatcherTest, WatchdogSeesBusyAndIdleWorkers) {
   GatedModel model;
   const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
   Ticket ticket;
@@ -109,7 +109,7 @@ TEST(BatcherTest, TheWatchdogSeesWorkersAtWorkAndIdleOnes) {
   while (!::testing::Value(SeeWorkers(), ::testing::Each(""))) std::this_thread::yield();
 }
 
-TEST(BatcherTest, RefusesANewCallWhenTheQueueIsFull) {
+TEST(BatcherTest, RejectsANewCallWhenTheQueueIsFull) {
   GatedModel model;
   const auto batcher = MakeBatcher({1, 1, {4}}, common::Clock::Real());
   Ticket running, waiting, refused, continued;
@@ -143,7 +143,7 @@ TEST(BatcherTest, NeverStartsACancelledWindow) {
   EXPECT_EQ(model.started(), 1);
 }
 
-TEST(BatcherTest, TheModelSeesThatAWindowIsCancelledMeanwhile) {
+TEST(BatcherTest, ModelSeesCancellationDuringABatch) {
   const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
   const auto model = std::make_shared<FakeSynthesizer>();
   Ticket ticket;
@@ -214,7 +214,7 @@ class TimingsObserver final : public WindowObserver {
   std::promise<WindowTimings> second_;
 };
 
-TEST(BatcherTest, SaysWhereTheTimeWent) {
+TEST(BatcherTest, ReportsQueueAndComputeTime) {
   FakeClock clock;
   auto model = std::make_shared<FakeSynthesizer>();
   GatedModel gate;
@@ -282,7 +282,7 @@ class HeldWorker {
   Ticket ticket_;
 };
 
-TEST(BatcherTest, EvaluatesWhatWaitedTogether) {
+TEST(BatcherTest, EvaluatesWaitingWindowsInOneBatch) {
   CountingObserver observer;
   const auto model = std::make_shared<FakeSynthesizer>();
   {
@@ -322,7 +322,7 @@ TEST(BatcherTest, GivesEveryCallItsOwnResult) {
   }
 }
 
-TEST(BatcherTest, OneWindowFailsAlone) {
+TEST(BatcherTest, FailedWindowDoesNotFailItsBatch) {
   const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real());
   const auto model = std::make_shared<FakeSynthesizer>();
   model->window_status = [](const engine::SynthesisWindow& window) {
@@ -341,7 +341,7 @@ TEST(BatcherTest, OneWindowFailsAlone) {
   EXPECT_THAT(last.outcome.get().result, IsOk());
 }
 
-TEST(BatcherTest, NeverStartsAWindowThatCannotBeDoneInTime) {
+TEST(BatcherTest, NeverStartsAWindowThatCannotMeetItsDeadline) {
   FakeClock clock;
   CountingObserver observer;
   const auto slow = std::make_shared<FakeSynthesizer>();
@@ -365,7 +365,7 @@ TEST(BatcherTest, NeverStartsAWindowThatCannotBeDoneInTime) {
   EXPECT_THAT(sound.outcome.get().result, IsOk());
 }
 
-TEST(BatcherTest, RefusesACallWhoseTurnWouldComeTooLate) {
+TEST(BatcherTest, RejectsACallThatWouldStartTooLate) {
   FakeClock clock;
   const auto slow = std::make_shared<FakeSynthesizer>();
   slow->on_batch = [&](absl::Span<const engine::SynthesisWindow* const>) {
@@ -393,7 +393,7 @@ TEST(BatcherTest, RefusesACallWhoseTurnWouldComeTooLate) {
 
 // Delays: an hour is longer than any test; what waits for it in vain runs into the time limit.
 
-TEST(BatcherTest, ABatchWaitsForCompanyWhileAnotherWorkerIsBusy) {
+TEST(BatcherTest, BatchWaitsForMoreWindowsWhileAnotherWorkerIsBusy) {
   const auto batcher = MakeBatcher({2, 8, {2, hours(1)}}, common::Clock::Real());
   HeldWorker held(*batcher);
   const auto model = std::make_shared<FakeSynthesizer>();
@@ -404,7 +404,7 @@ TEST(BatcherTest, ABatchWaitsForCompanyWhileAnotherWorkerIsBusy) {
   EXPECT_EQ(second.outcome.get().timings.batch_size, 2);
 }
 
-TEST(BatcherTest, ABatchThatIsNotFullStartsAfterTheDelay) {
+TEST(BatcherTest, PartialBatchStartsAfterTheDelay) {
   const auto batcher = MakeBatcher({2, 8, {2, milliseconds(1)}}, common::Clock::Real());
   HeldWorker held(*batcher);
   Ticket ticket;
@@ -412,7 +412,7 @@ TEST(BatcherTest, ABatchThatIsNotFullStartsAfterTheDelay) {
   EXPECT_EQ(ticket.outcome.get().timings.batch_size, 1);
 }
 
-TEST(BatcherTest, ALoneCallOnAnIdleServerWaitsForNobody) {
+TEST(BatcherTest, SingleCallOnAnIdleServerStartsImmediately) {
   const auto batcher = MakeBatcher({2, 8, {2, hours(1)}}, common::Clock::Real());
   const auto model = std::make_shared<FakeSynthesizer>();
   for (int i = 0; i < 3; ++i) {
@@ -422,7 +422,7 @@ TEST(BatcherTest, ALoneCallOnAnIdleServerWaitsForNobody) {
   }
 }
 
-TEST(BatcherTest, TheNextWindowOfALoneCallWaitsForNobody) {
+TEST(BatcherTest, NextWindowOfASingleCallStartsImmediately) {
   const auto batcher = MakeBatcher({2, 8, {2, hours(1)}}, common::Clock::Real());
   const auto model = std::make_shared<FakeSynthesizer>();
   Ticket first, second;
@@ -441,7 +441,7 @@ TEST(BatcherTest, SurvivesAModelThatThrows) {
   EXPECT_THAT(sound.outcome.get().result, IsOk());
 }
 
-TEST(BatcherTest, AModelThatThrowsFailsItsBatchAlone) {
+TEST(BatcherTest, ExceptionFailsOnlyItsBatch) {
   const auto batcher = MakeBatcher({1, 8, {2}}, common::Clock::Real());
   HeldWorker held(*batcher);
   const auto broken_model = std::make_shared<BrokenModel>(true);
@@ -456,7 +456,7 @@ TEST(BatcherTest, AModelThatThrowsFailsItsBatchAlone) {
   for (Ticket& ticket : sound) EXPECT_THAT(ticket.outcome.get().result, IsOk());
 }
 
-TEST(BatcherTest, AWindowThatMakesTheModelThrowFailsAlone) {
+TEST(BatcherTest, WindowThatCausesAnExceptionFailsAlone) {
   const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real());
   const auto model = std::make_shared<FakeSynthesizer>();
   model->window_status = [](const engine::SynthesisWindow& window) -> absl::Status {
@@ -486,7 +486,7 @@ TEST(BatcherTest, SurvivesAModelThatGivesTooFewResults) {
               StatusIs(kInternal, HasSubstr("expected results for 1 windows, got 0")));
 }
 
-TEST(BatcherTest, ShutdownFinishesWhatRunsAndAnswersWhatWaits) {
+TEST(BatcherTest, ShutdownFinishesRunningBatchesAndRejectsWaitingWindows) {
   GatedModel model;
   Ticket running, waiting;
   std::thread opener;

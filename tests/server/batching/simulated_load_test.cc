@@ -142,7 +142,7 @@ TEST(SimulatedLoadTest, GoodputHoldsUnderTightDeadlines) {
   }
 }
 
-TEST(SimulatedLoadTest, WithoutTooManyCallsEachIsInTime) {
+TEST(SimulatedLoadTest, EveryCallMeetsItsDeadlineBelowCapacity) {
   for (const Engine& engine : {kFast, kSlow}) {
     const double offered = 0.9 * 2 * 16 / engine.Seconds(16);
     for (const double deadline : {1.0, 0.15}) {
@@ -151,7 +151,7 @@ TEST(SimulatedLoadTest, WithoutTooManyCallsEachIsInTime) {
   }
 }
 
-TEST(SimulatedLoadTest, WhatCannotComeInTimeIsRefusedRatherThanDropped) {
+TEST(SimulatedLoadTest, LateCallsAreRejectedRatherThanDropped) {
   int too_late = 0;
   const double capacity = 2 * 16 / kSlow.Seconds(16);
   const double goodput = Goodput(kSlow, 2 * capacity, 0.15, &too_late);
@@ -194,7 +194,7 @@ double MedianWait(const Engine& engine, int long_calls, Priority priority) {
   return waits[waits.size() / 2];
 }
 
-TEST(SimulatedLoadTest, LongCallsDoNotShutShortOnesOut) {
+TEST(SimulatedLoadTest, LongCallsDoNotBlockShortOnes) {
   for (const Engine& engine : {kFast, kSlow}) {
     const double idle = MedianWait(engine, 0, Priority::kInteractive);
     EXPECT_DOUBLE_EQ(idle, engine.Seconds(1));
@@ -203,7 +203,7 @@ TEST(SimulatedLoadTest, LongCallsDoNotShutShortOnesOut) {
   }
 }
 
-TEST(SimulatedLoadTest, NobodyStarvesBesideEndlessShortCalls) {
+TEST(SimulatedLoadTest, NoLaneStarvesBesideEndlessShortCalls) {
   Simulation simulation(kFast, 16);
   int bulk = 0, long_calls = 0, short_calls = 0;
   for (int i = 0; i < 20; ++i) {

@@ -65,7 +65,7 @@ TEST(WindowQueueTest, IsEmptyAtFirst) {
   EXPECT_THAT(queue.Next(kNow).batch.windows, IsEmpty());
 }
 
-TEST(WindowQueueTest, GivesAWindowOnce) {
+TEST(WindowQueueTest, ReturnsEachWindowOnce) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 2));
   for (int i = 0; i < 3; ++i) queue.Push(Job(model), kNow);
@@ -76,7 +76,7 @@ TEST(WindowQueueTest, GivesAWindowOnce) {
   EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 0u);
 }
 
-TEST(WindowQueueTest, TakesNoNewCallWhenFull) {
+TEST(WindowQueueTest, RejectsNewCallsWhenFull) {
   const Model model = NewModel();
   WindowQueue queue({2, 1, {1}});
   EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
@@ -87,7 +87,7 @@ TEST(WindowQueueTest, TakesNoNewCallWhenFull) {
   EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
-TEST(WindowQueueTest, AlwaysTakesTheNextWindowOfACallBegun) {
+TEST(WindowQueueTest, AcceptsLaterWindowsOfStartedCalls) {
   const Model model = NewModel();
   WindowQueue queue({1, 1, {1}});
   queue.Push(Job(model), kNow);
@@ -95,7 +95,7 @@ TEST(WindowQueueTest, AlwaysTakesTheNextWindowOfACallBegun) {
   EXPECT_TRUE(queue.HasRoomFor(LaterJob(model, Priority::kBulk), kNow));
 }
 
-TEST(WindowQueueTest, CallsBegunTakeNoRoomFromNewOnes) {
+TEST(WindowQueueTest, StartedCallsUseNoRoomOfNewOnes) {
   const Model model = NewModel();
   WindowQueue queue({1, 1, {1}});
   for (int i = 0; i < 66; ++i) queue.Push(LaterJob(model), kNow);
@@ -105,7 +105,7 @@ TEST(WindowQueueTest, CallsBegunTakeNoRoomFromNewOnes) {
   EXPECT_EQ(queue.size(), 67u);
 }
 
-TEST(WindowQueueTest, WhatWillNeverStartTakesNoRoom) {
+TEST(WindowQueueTest, WindowsThatNeverStartUseNoRoom) {
   const Model model = NewModel();
   WindowQueue queue({2, 1, {1}});
   WindowJob cancelled = Job(model), expired = Job(model);
@@ -120,7 +120,7 @@ TEST(WindowQueueTest, WhatWillNeverStartTakesNoRoom) {
   EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
-TEST(WindowQueueTest, KeepsAQuarterFreeOfBulk) {
+TEST(WindowQueueTest, ReservesAQuarterForInteractiveCalls) {
   const Model model = NewModel();
   WindowQueue queue({4, 1, {1}});
   for (int i = 1; i <= 3; ++i) {
@@ -178,7 +178,7 @@ TEST(WindowQueueTest, LearnsWhatABatchCosts) {
   EXPECT_NEAR(turn.batch.expected_seconds, 0.02, 1e-9);
 }
 
-TEST(WindowQueueTest, TriesAgainWhenAnEstimateIsOld) {
+TEST(WindowQueueTest, RetriesWhenAnEstimateIsOld) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 4));
   queue.Push(Job(model), kNow);
@@ -190,7 +190,7 @@ TEST(WindowQueueTest, TriesAgainWhenAnEstimateIsOld) {
   EXPECT_EQ(Serve(queue, later, milliseconds(1)).windows, 1u);
 }
 
-TEST(WindowQueueTest, FreeWorkersShareWhatWaits) {
+TEST(WindowQueueTest, FreeWorkersShareWaitingWindows) {
   const Model model = NewModel();
   WindowQueue queue(Options(2, 16));
   for (int i = 0; i < 8; ++i) queue.Push(Job(model), kNow);
@@ -202,7 +202,7 @@ TEST(WindowQueueTest, FreeWorkersShareWhatWaits) {
   EXPECT_EQ(queue.Next(kNow).batch.windows.size(), 8u) << "the other worker is busy";
 }
 
-TEST(WindowQueueTest, ALongCallGivesWayToShortOnes) {
+TEST(WindowQueueTest, LongCallYieldsToShortOnes) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 1));
   WindowJob long_call = LaterJob(model);
@@ -215,7 +215,7 @@ TEST(WindowQueueTest, ALongCallGivesWayToShortOnes) {
 }
 
 // Both ask for more than there is.
-TEST(WindowQueueTest, BulkIsSureOfAnEighth) {
+TEST(WindowQueueTest, BulkGetsAtLeastAnEighth) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 4));
   common::TimePoint now = kNow;
@@ -234,7 +234,7 @@ TEST(WindowQueueTest, BulkIsSureOfAnEighth) {
   EXPECT_NEAR(static_cast<double>(bulk) / static_cast<double>(all), 1.0 / 8, 0.002);
 }
 
-TEST(WindowQueueTest, ALaneThatWasEmptyHasNoOldClaims) {
+TEST(WindowQueueTest, EmptyLaneAccumulatesNoClaims) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 1));
   const auto serve_interactive = [&](int times) {
@@ -257,7 +257,7 @@ TEST(WindowQueueTest, ALaneThatWasEmptyHasNoOldClaims) {
 }
 
 // Two models, the second four times as slow: each gets half of the time.
-TEST(WindowQueueTest, ModelsShareTheTime) {
+TEST(WindowQueueTest, ModelsShareComputingTime) {
   const Model fast = NewModel(), slow = NewModel();
   WindowQueue queue(Options(1, 2));
   common::TimePoint now = kNow;
@@ -277,7 +277,7 @@ TEST(WindowQueueTest, ModelsShareTheTime) {
   EXPECT_NEAR(static_cast<double>(fast_time.count()), static_cast<double>(slow_time.count()), 40);
 }
 
-TEST(WindowQueueTest, AModelThatWasIdleHasNoClaimToEverything) {
+TEST(WindowQueueTest, IdleModelAccumulatesNoClaims) {
   const Model busy = NewModel(), idle = NewModel();
   WindowQueue queue(Options(1, 1));
   common::TimePoint now = kNow;
@@ -299,7 +299,7 @@ TEST(WindowQueueTest, AModelThatWasIdleHasNoClaimToEverything) {
   EXPECT_LE(of_busy, 6);
 }
 
-TEST(WindowQueueTest, LongCallsAndBulkGoInShortBatchesWhileShortCallsCome) {
+TEST(WindowQueueTest, LongCallsAndBulkRunInShortBatchesWhileShortCallsArrive) {
   const Model model = NewModel();
   for (const Priority priority : {Priority::kInteractive, Priority::kBulk}) {
     WindowQueue queue(Options(1, 16));
@@ -322,7 +322,7 @@ TEST(WindowQueueTest, LongCallsAndBulkGoInShortBatchesWhileShortCallsCome) {
   }
 }
 
-TEST(WindowQueueTest, LetsGoOfModelsThatAreGone) {
+TEST(WindowQueueTest, ReleasesRemovedModels) {
   WindowQueue queue(Options(1, 1));
   Model model = NewModel();
   const std::weak_ptr<const engine::Synthesizer> watched = model;
@@ -334,7 +334,7 @@ TEST(WindowQueueTest, LetsGoOfModelsThatAreGone) {
   EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 1u);
 }
 
-TEST(WindowQueueTest, DropsAllWithAReason) {
+TEST(WindowQueueTest, DropAllReportsTheReason) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 1));
   WindowJob expired = Job(model);
@@ -348,7 +348,7 @@ TEST(WindowQueueTest, DropsAllWithAReason) {
   EXPECT_EQ(queue.size(), 0u);
 }
 
-TEST(WindowQueueTest, WaitsForCompanyAfterABatchOfSeveral) {
+TEST(WindowQueueTest, WaitsForMoreWindowsAfterABatchOfSeveral) {
   const Model model = NewModel();
   WindowQueue queue({64, 1, {4, milliseconds(50)}});
   queue.Push(Job(model), kNow);
@@ -361,7 +361,7 @@ TEST(WindowQueueTest, WaitsForCompanyAfterABatchOfSeveral) {
   EXPECT_EQ(queue.Next(kNow + milliseconds(10)).look_again, kNow + milliseconds(50));
 }
 
-TEST(ShareOfTest, LeavesSomethingToBulkWhateverTheLimit) {
+TEST(ShareOfTest, LeavesRoomForBulkAtEveryLimit) {
   EXPECT_EQ(ShareOf(1, Priority::kBulk), 1u);
   EXPECT_EQ(ShareOf(4, Priority::kBulk), 3u);
   EXPECT_EQ(ShareOf(128, Priority::kBulk), 96u);
@@ -397,7 +397,7 @@ TEST(WindowQueueTest, AClientLeavesRoomForOthers) {
   EXPECT_TRUE(queue.HasRoomFor(JobOf(model, "other"), kNow));
 }
 
-TEST(WindowQueueTest, ABatchHoldsSomebodyOfEachClient) {
+TEST(WindowQueueTest, BatchHoldsWindowsOfEachClient) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 2));
   for (const char* client : {"a", "a", "a", "b"}) queue.Push(JobOf(model, client), kNow);
@@ -424,11 +424,11 @@ class ComesInTimeTest : public ::testing::Test {
   WindowQueue queue_{Options(1, 1)};
 };
 
-TEST_F(ComesInTimeTest, WhoeverWaitsForNobodyMayTry) {
+TEST_F(ComesInTimeTest, EmptyQueueAcceptsAnyDeadline) {
   EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(1)), now_));
 }
 
-TEST_F(ComesInTimeTest, CountsWhatWaitsBeforeIt) {
+TEST_F(ComesInTimeTest, CountsEarlierWindows) {
   for (int i = 0; i < 6; ++i) queue_.Push(Job(model_), now_);
   // 60 ms and its own 10.
   EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(71)), now_));
@@ -436,7 +436,7 @@ TEST_F(ComesInTimeTest, CountsWhatWaitsBeforeIt) {
   EXPECT_TRUE(queue_.ComesInTime(Job(model_), now_)) << "it has no deadline";
 }
 
-TEST_F(ComesInTimeTest, DoesNotCountWhatNeverRunsOrRunsLater) {
+TEST_F(ComesInTimeTest, IgnoresWindowsThatNeverRunOrRunLater) {
   queue_.Push(Job(model_), now_);
   for (int i = 0; i < 6; ++i) queue_.Push(Job(model_, Priority::kBulk), now_);
   const auto cancelled = std::make_shared<std::atomic<bool>>(true);
@@ -451,7 +451,7 @@ TEST_F(ComesInTimeTest, DoesNotCountWhatNeverRunsOrRunsLater) {
   EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(21)), now_));
 }
 
-TEST_F(ComesInTimeTest, CountsWhatRuns) {
+TEST_F(ComesInTimeTest, CountsRunningBatches) {
   queue_.Push(Job(model_), now_);
   const Turn turn = queue_.Next(now_);
   queue_.Push(Job(model_), now_);

@@ -123,14 +123,14 @@ TEST(AvailableCoresTest, ReadsVersionOneAtTheTopInsideAContainer) {
   EXPECT_EQ(system.Cores(), 1);
 }
 
-TEST(AvailableCoresTest, AQuotaOfMinusOneIsNone) {
+TEST(AvailableCoresTest, QuotaOfMinusOneMeansNoQuota) {
   FakeSystem system;
   system.SetOldCgroup("cpu", "/box");
   system.SetQuota("/box", "-1\n", "100000\n");
   EXPECT_EQ(system.Cores(), Machine());
 }
 
-TEST(AvailableCoresTest, TheCpuControllerIsNoOtherWhoseNameBeginsLikeIt) {
+TEST(AvailableCoresTest, CpuControllerIsMatchedByItsWholeName) {
   FakeSystem system;
   system.SetOldCgroup("cpuacct", "/box");
   system.SetQuota("/box", "100000\n", "100000\n");

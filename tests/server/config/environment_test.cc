@@ -17,7 +17,7 @@ TEST(EnvironmentTest, HasTheServersVariables) {
                           Pair("DUET_SERVER_MAX_CALLS", "4")));
 }
 
-TEST(EnvironmentTest, LeavesOutWhatKubernetesSetsForAServiceOfTheSameName) {
+TEST(EnvironmentTest, IgnoresVariablesThatKubernetesSetsForServices) {
   const char* variables[] = {
       "DUET_SERVER_SERVICE_HOST=10.0.0.1",        "DUET_SERVER_SERVICE_PORT=50051",
       "DUET_SERVER_SERVICE_PORT_GRPC=50051",      "DUET_SERVER_PORT=tcp://10.0.0.1:50051",

@@ -60,7 +60,7 @@ TEST(AvailableMemoryTest, ReadsTheLimitOfVersionTwo) {
   EXPECT_EQ(system.Memory(), 400 * kMebibyte);
 }
 
-TEST(AvailableMemoryTest, CountsWhereTheKernelBeginsToSlowTheProcessDown) {
+TEST(AvailableMemoryTest, SoftMemoryLimitCounts) {
   FakeSystem system;
   system.SetCgroup("0::/box\n");
   system.SetLimit("box/memory.max", "419430400\n");

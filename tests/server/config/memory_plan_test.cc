@@ -29,7 +29,7 @@ v1::ServerConfig OptionsFor(std::uint64_t memory, const v1::ServerConfig& config
   return options.ok() ? *options : v1::ServerConfig();
 }
 
-TEST(MemoryPlanTest, DefaultsFitEveryMemoryThatASmallContainerHas) {
+TEST(MemoryPlanTest, DefaultsFitSmallContainers) {
   for (std::uint64_t memory = 160; memory < 5000; memory += memory < 500 ? 8 : 100) {
     for (const int cores : {1, 2, 4}) {
       const v1::ServerConfig options = OptionsFor(memory * kMebibyte, {}, cores);
@@ -39,7 +39,7 @@ TEST(MemoryPlanTest, DefaultsFitEveryMemoryThatASmallContainerHas) {
   }
 }
 
-TEST(MemoryPlanTest, LimitsAreTheLargestWhereMemoryIsNotShort) {
+TEST(MemoryPlanTest, AmpleMemoryGetsTheLargestLimits) {
   for (const std::uint64_t memory : {2048 * kMebibyte, kUnlimitedMemory}) {
     const v1::ServerConfig options = OptionsFor(memory);
     EXPECT_EQ(options.max_calls(), 128);
@@ -50,7 +50,7 @@ TEST(MemoryPlanTest, LimitsAreTheLargestWhereMemoryIsNotShort) {
   }
 }
 
-TEST(MemoryPlanTest, ALittleMemoryShrinksBytesBeforeCallsAndRequests) {
+TEST(MemoryPlanTest, LittleMemoryReducesHeldBytesBeforeCallsAndRequests) {
   const v1::ServerConfig options = OptionsFor(400 * kMebibyte);
   EXPECT_EQ(options.max_calls(), 128);
   EXPECT_EQ(options.max_request_bytes(), 32 * kMebibyte);
@@ -71,7 +71,7 @@ TEST(MemoryPlanTest, MoreMemoryNeverMeansLowerLimits) {
   }
 }
 
-TEST(MemoryPlanTest, TooLittleMemoryGetsTheLeastLimitsAndAWarning) {
+TEST(MemoryPlanTest, TooLittleMemoryGetsTheSmallestLimitsAndAWarning) {
   const v1::ServerConfig options = OptionsFor(64 * kMebibyte);
   EXPECT_EQ(options.max_calls(), 4);
   EXPECT_EQ(options.max_request_bytes(), kMebibyte);
@@ -81,7 +81,7 @@ TEST(MemoryPlanTest, TooLittleMemoryGetsTheLeastLimitsAndAWarning) {
               ElementsAre(AllOf(HasSubstr("the limit is 67 MB"), HasSubstr("max_calls = 4"))));
 }
 
-TEST(MemoryPlanTest, AnExplicitSettingStaysAndTheOthersMakeRoom) {
+TEST(MemoryPlanTest, ExplicitSettingIsKeptAndOthersShrink) {
   v1::ServerConfig config;
   config.set_max_held_bytes(300 * kMebibyte);
   const v1::ServerConfig options = OptionsFor(800 * kMebibyte, config);
@@ -97,7 +97,7 @@ TEST(MemoryPlanTest, AnExplicitSettingStaysAndTheOthersMakeRoom) {
   EXPECT_EQ(all.max_held_bytes(), 300 * kMebibyte);
 }
 
-TEST(MemoryPlanTest, WarnsOfExplicitSettingsThatDoNotFit) {
+TEST(MemoryPlanTest, WarnsAboutExplicitSettingsThatDoNotFit) {
   v1::ServerConfig config;
   config.set_max_held_bytes(512 * kMebibyte);
   config.set_max_transport_bytes(512 * kMebibyte);
@@ -109,7 +109,7 @@ TEST(MemoryPlanTest, WarnsOfExplicitSettingsThatDoNotFit) {
                         HasSubstr("536 MB for max_transport_bytes"))));
 }
 
-TEST(MemoryPlanTest, AnExplicitLimitReplacesTheMachines) {
+TEST(MemoryPlanTest, ExplicitMemoryLimitReplacesTheMachines) {
   v1::ServerConfig config;
   config.set_memory_limit_bytes(400 * kMebibyte);
   const v1::ServerConfig options = OptionsFor(kUnlimitedMemory, config);
@@ -118,7 +118,7 @@ TEST(MemoryPlanTest, AnExplicitLimitReplacesTheMachines) {
   EXPECT_THAT(MemoryWarnings(options, 4000 * kMebibyte), IsEmpty());
 }
 
-TEST(MemoryPlanTest, WarnsOfALimitThatTheMachineDoesNotHave) {
+TEST(MemoryPlanTest, WarnsAboutALimitAboveTheMachinesMemory) {
   v1::ServerConfig config;
   config.set_memory_limit_bytes(4000 * kMebibyte);
   const v1::ServerConfig options = OptionsFor(400 * kMebibyte, config);
@@ -128,7 +128,7 @@ TEST(MemoryPlanTest, WarnsOfALimitThatTheMachineDoesNotHave) {
                           HasSubstr("the limit is 419 MB")));
 }
 
-TEST(MemoryPlanTest, ModelsThatAreLargerThanPlannedAreWarnedOf) {
+TEST(MemoryPlanTest, WarnsAboutModelsLargerThanPlanned) {
   const v1::ServerConfig options = OptionsFor(1024 * kMebibyte);
   EXPECT_THAT(MemoryWarnings(options, 1024 * kMebibyte, 80 * kMebibyte), IsEmpty());
   EXPECT_THAT(MemoryWarnings(options, 1024 * kMebibyte, 500 * kMebibyte),

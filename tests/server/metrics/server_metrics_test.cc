@@ -81,7 +81,7 @@ std::vector<std::string> Buckets(const std::string& text, const std::string& his
   return ends;
 }
 
-TEST(ServerMetricsTest, BucketsReachFromAMillisecondToAMinuteAndFromOneWindowToSixtyFour) {
+TEST(ServerMetricsTest, BucketsCoverOneMillisecondToOneMinuteAndOneToSixtyFourWindows) {
   ServerMetrics metrics;
   metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0.04, 1});
   metrics.BatchFinished({0, 0.04, 1});

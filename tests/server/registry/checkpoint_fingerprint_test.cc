@@ -65,7 +65,7 @@ long BytesRead() {
   return bytes;
 }
 
-TEST_F(CheckpointFingerprintTest, AFileThatIsUntouchedIsNotReadAgain) {
+TEST_F(CheckpointFingerprintTest, UntouchedFileIsNotReadAgain) {
   constexpr long kBytes = 1 << 22;
   WriteTestFile(weights_, std::string(kBytes, 'w'));
   const auto later = CheckpointFingerprint::Clock::now() + std::chrono::hours(1);
@@ -91,7 +91,7 @@ TEST_F(CheckpointFingerprintTest, ACopyOfTheSameContentIsNoChange) {
   EXPECT_TRUE(fingerprint.IsUntouched(folder_.path())) << "the copy's times are remembered";
 }
 
-TEST_F(CheckpointFingerprintTest, AFileMoreOrLessIsAChange) {
+TEST_F(CheckpointFingerprintTest, AddedOrRemovedFileIsAChange) {
   CheckpointFingerprint fingerprint = Fingerprint();
   WriteTestFile(folder_ / "more.safetensors", "");
   EXPECT_FALSE(fingerprint.Matches(folder_.path()));
@@ -118,7 +118,7 @@ TEST_F(CheckpointFingerprintTest, OfNothingMatchesNothing) {
 }
 
 // Opening it for reading would wait for a writer.
-TEST_F(CheckpointFingerprintTest, APipeIsNotRead) {
+TEST_F(CheckpointFingerprintTest, NamedPipeIsNotRead) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   CheckpointFingerprint fingerprint = Fingerprint();
   EXPECT_TRUE(fingerprint.Matches(folder_.path()));

@@ -86,7 +86,7 @@ TEST(CheckAnswersTest, LongWindowsAreCutShort) {
   EXPECT_THAT(CheckAnswers(model), IsOk());
 }
 
-TEST(CheckAnswersTest, RefusesFollowersThatAreFarAwayOrNowhere) {
+TEST(CheckAnswersTest, RejectsFollowersThatAreFarAwayOrNotFinite) {
   for (const float x : {9.0f, -6e32f, std::numeric_limits<float>::infinity(),
                         std::numeric_limits<float>::quiet_NaN()}) {
     FakeSynthesizer model;

@@ -111,7 +111,7 @@ TEST_F(ModelControlTest, ReloadsWhileEverythingElseGoesOn) {
   EXPECT_EQ(events_.changed, 1);
 }
 
-TEST_F(ModelControlTest, ReadsEverythingElseThatIsReloadableFirst) {
+TEST_F(ModelControlTest, ReloadsSettingsBeforeTheRepository) {
   Write("1");
   gate_.Set();
   ModelControl control(manager_, registry_, events_);
@@ -133,7 +133,7 @@ TEST_F(ModelControlTest, ReadsEverythingElseThatIsReloadableFirst) {
   EXPECT_THAT(report->loaded, ElementsAre("fake/1")) << "what failed holds up nothing";
 }
 
-TEST_F(ModelControlTest, WhatWasRefusedIsAProblemUntilItIsMended) {
+TEST_F(ModelControlTest, RejectedFileIsAProblemUntilItIsFixed) {
   Write("1");
   gate_.Set();
   ModelControl control(manager_, registry_, events_);
@@ -157,7 +157,7 @@ TEST_F(ModelControlTest, WhatWasRefusedIsAProblemUntilItIsMended) {
   EXPECT_THAT(control.problems(), ElementsAre("certificates: expired"));
 }
 
-TEST_F(ModelControlTest, ARepositoryThatCannotBeReadIsAProblemUntilItCan) {
+TEST_F(ModelControlTest, UnreadableRepositoryIsAProblemUntilItIsReadable) {
   Write("1");
   gate_.Set();
   ModelControl control(manager_, registry_, events_);
@@ -207,7 +207,7 @@ TEST_F(ModelControlTest, LoadsAndUnloadsOneAfterTheOther) {
   EXPECT_EQ(registry_.List()[0].model->description().version, 2);
 }
 
-TEST_F(ModelControlTest, WhatHasNotBegunWhenItStopsIsCancelled) {
+TEST_F(ModelControlTest, StopCancelsWorkThatHasNotStarted) {
   Write("1");
   Write("2");
   std::promise<absl::Status> first;

@@ -138,7 +138,7 @@ TEST_F(ModelManagerTest, ServesEveryVersionOfEveryModel) {
   EXPECT_EQ(Served(), "a/2 a/1 b/7");
 }
 
-TEST_F(ModelManagerTest, ASecondReloadLeavesAloneWhatHasNotChanged) {
+TEST_F(ModelManagerTest, SecondReloadSkipsUnchangedCheckpoints) {
   Write("a", 1);
   Reload();
   events_.Take();
@@ -159,7 +159,7 @@ TEST_F(ModelManagerTest, ReplacesAVersionThatHasChanged) {
       << "whoever found the old one keeps it";
 }
 
-TEST_F(ModelManagerTest, ABrokenCheckpointNeverReplacesAGoodOne) {
+TEST_F(ModelManagerTest, BrokenCheckpointNeverReplacesAGoodOne) {
   Write("a", 1, "good");
   Reload();
   events_.Take();
@@ -175,7 +175,7 @@ TEST_F(ModelManagerTest, ABrokenCheckpointNeverReplacesAGoodOne) {
   EXPECT_EQ(StatusOf("a", 1).error, "");
 }
 
-TEST_F(ModelManagerTest, ReplacesAVersionWhoseWeightsAloneHaveChanged) {
+TEST_F(ModelManagerTest, ReplacesAVersionWhoseWeightsChanged) {
   Write("a", 1);
   WriteWeights("a/1", "+old");
   Reload();
@@ -184,7 +184,7 @@ TEST_F(ModelManagerTest, ReplacesAVersionWhoseWeightsAloneHaveChanged) {
   EXPECT_EQ(Answer({}), "a/1 first+new");
 }
 
-TEST_F(ModelManagerTest, ACopyOfTheSameFilesIsNotLoadedAgain) {
+TEST_F(ModelManagerTest, IdenticalCopyIsNotLoadedAgain) {
   Write("a", 1);
   WriteWeights("a/1", "+old");
   Reload();
@@ -195,7 +195,7 @@ TEST_F(ModelManagerTest, ACopyOfTheSameFilesIsNotLoadedAgain) {
   EXPECT_THAT(events_.Take(), IsEmpty());
 }
 
-TEST_F(ModelManagerTest, TornWeightsMakeAServedVersionOutdatedUntilTheyAreMended) {
+TEST_F(ModelManagerTest, TruncatedWeightsMakeAServedVersionOutdatedUntilTheyAreFixed) {
   Write("a", 1);
   WriteWeights("a/1", "+old");
   Reload();
@@ -212,7 +212,7 @@ TEST_F(ModelManagerTest, TornWeightsMakeAServedVersionOutdatedUntilTheyAreMended
   EXPECT_THAT(events_.Take(), ElementsAre("refused a/1, served on", "loaded a/1"));
 }
 
-TEST_F(ModelManagerTest, TheErrorOfARefusedLoadGoesWithTheNextGoodOne) {
+TEST_F(ModelManagerTest, NextSuccessfulLoadClearsTheError) {
   Write("a", 1);
   Reload();
   WriteWeights("a/1", "torn");
@@ -224,7 +224,7 @@ TEST_F(ModelManagerTest, TheErrorOfARefusedLoadGoesWithTheNextGoodOne) {
   EXPECT_FALSE(StatusOf("a", 1).outdated);
 }
 
-TEST_F(ModelManagerTest, AnOutdatedVersionThatGoesIsUnloadedAndNotFailed) {
+TEST_F(ModelManagerTest, RemovedOutdatedVersionIsUnloadedAndNotFailed) {
   Write("a", 1);
   Write("a", 2);
   Reload();
@@ -264,7 +264,7 @@ TEST_F(ModelManagerTest, FilesThatChangeDuringALoadAreLoadedAgain) {
   EXPECT_EQ(Answer({}), "a/1 first+old");
 }
 
-TEST_F(ModelManagerTest, NamesOfTheConfigurationThatNoModelHasAreReported) {
+TEST_F(ModelManagerTest, ReportsConfiguredNamesThatNoModelHas) {
   Write("first", 1);
   Write("second", 1);
   manager_.SetLabels({{"first", "stable", 1}, {"firs", "canary", 1}});
@@ -287,7 +287,7 @@ TEST_F(ModelManagerTest, TriesAgainWhatDidNotLoad) {
   EXPECT_THAT(events_.Take(), ElementsAre("refused a/2", "loaded a/1", "refused a/2"));
 }
 
-TEST_F(ModelManagerTest, ForgetsWhatDidNotLoadOnceItIsGoneOrUnwanted) {
+TEST_F(ModelManagerTest, ForgetsAFailedVersionWhenItsFolderOrItsPolicyIsGone) {
   manager_.SetPolicies({{"a", 1, {}}});
   Write("a", 1);
   Write("a", 2, "bad");
@@ -302,7 +302,7 @@ TEST_F(ModelManagerTest, ForgetsWhatDidNotLoadOnceItIsGoneOrUnwanted) {
   EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
 }
 
-TEST_F(ModelManagerTest, LetsGoOfWhatIsNoLongerThereOnceItsSuccessorIs) {
+TEST_F(ModelManagerTest, UnloadsARemovedVersionAfterItsSuccessorIsServed) {
   Write("a", 1);
   Reload();
   events_.Take();
@@ -313,7 +313,7 @@ TEST_F(ModelManagerTest, LetsGoOfWhatIsNoLongerThereOnceItsSuccessorIs) {
   EXPECT_EQ(manager_.List().size(), 1u);
 }
 
-TEST_F(ModelManagerTest, TheDefaultModelIsNeverLeftWithoutAVersion) {
+TEST_F(ModelManagerTest, DefaultModelAlwaysKeepsAVersion) {
   Write("a", 1);
   Write("b", 1);
   Reload();
@@ -333,7 +333,7 @@ TEST_F(ModelManagerTest, AnEmptyRepositoryChangesNothing) {
   EXPECT_EQ(Served(), "a/1");
 }
 
-TEST_F(ModelManagerTest, ARepositoryThatCannotBeReadChangesNothing) {
+TEST_F(ModelManagerTest, UnreadableRepositoryChangesNothing) {
   Write("a", 1);
   Reload();
   Delete("");
@@ -350,7 +350,7 @@ TEST_F(ModelManagerTest, StopsBeforeTheNextCheckpoint) {
   EXPECT_EQ(Served(), "a/2");
 }
 
-TEST_F(ModelManagerTest, TheLatestVersionsAreThoseThatLoad) {
+TEST_F(ModelManagerTest, LatestVersionsCountOnlyThoseThatLoad) {
   manager_.SetPolicies({{"a", 2, {}}, {"", 1, {}}});
   for (const int version : {1, 2, 3, 10}) Write("a", version);
   for (const int version : {1, 2}) Write("b", version);
@@ -370,7 +370,7 @@ TEST_F(ModelManagerTest, NamedVersionsAreServedAlone) {
   EXPECT_EQ(Served(), "a/3 a/1");
 }
 
-TEST_F(ModelManagerTest, ALabelKeepsItsVersionWhateverThePolicySays) {
+TEST_F(ModelManagerTest, LabelledVersionStaysServedDespiteThePolicy) {
   manager_.SetPolicies({{"a", 1, {}}});
   manager_.SetLabels({{"a", "stable", 1}});
   for (const int version : {1, 2, 3}) Write("a", version);
@@ -394,7 +394,7 @@ TEST_F(ModelManagerTest, MovesALabelAndLetsGoOfWhatItLeaves) {
               HasSubstr("expected a label of model a (stable), got \"old\""));
 }
 
-TEST_F(ModelManagerTest, ALabelThatTheOperatorMovedStaysThere) {
+TEST_F(ModelManagerTest, LabelMovedByTheOperatorStays) {
   manager_.SetLabels({{"a", "stable", 1}});
   for (const int version : {1, 2}) Write("a", version);
   Reload();
@@ -405,7 +405,7 @@ TEST_F(ModelManagerTest, ALabelThatTheOperatorMovedStaysThere) {
   EXPECT_THAT(Answer({"a", {}, "mine"}), HasSubstr("a/2"));
 }
 
-TEST_F(ModelManagerTest, ALabelWhoseVersionDoesNotLoadIsTriedAgain) {
+TEST_F(ModelManagerTest, LabelOfAFailedVersionIsRetried) {
   manager_.SetLabels({{"a", "canary", 2}});
   Write("a", 1);
   Write("a", 2, "bad");
@@ -434,7 +434,7 @@ TEST_F(ModelManagerTest, LoadsAgainEvenWhatHasNotChanged) {
   EXPECT_TRUE(before.expired());
 }
 
-TEST_F(ModelManagerTest, LoadTellsWhatIsNotThereAndWhatIsBroken) {
+TEST_F(ModelManagerTest, LoadReportsMissingAndBrokenVersions) {
   Write("a", 1);
   Write("a", 2, "bad");
   EXPECT_THAT(manager_.Load("a", 3), StatusIs(kNotFound, HasSubstr("version 3 of model \"a\"")));
@@ -443,7 +443,7 @@ TEST_F(ModelManagerTest, LoadTellsWhatIsNotThereAndWhatIsBroken) {
               StatusIs(kFailedPrecondition, HasSubstr("weights: 7 bytes, wanted 9")));
 }
 
-TEST_F(ModelManagerTest, UnloadedIsUnloadedUntilItIsLoadedByName) {
+TEST_F(ModelManagerTest, UnloadedVersionStaysUnloadedUntilItIsLoadedByName) {
   for (const int version : {1, 2}) Write("a", version);
   Reload();
   events_.Take();

@@ -47,7 +47,7 @@ TEST(ModelRegistryTest, HasNothingAtFirst) {
   EXPECT_THAT(Answer(ModelRegistry(), {}), HasSubstr("expected a served model (none)"));
 }
 
-TEST(ModelRegistryTest, AnswersWithTheNewestVersionUnlessAskedForAnother) {
+TEST(ModelRegistryTest, ReturnsTheNewestVersionByDefault) {
   ModelRegistry registry;
   for (const int version : {2, 10, 9}) registry.Serve(Model("duet", version));
   EXPECT_EQ(Answer(registry, {"duet", {}, {}}), "duet/10");
@@ -55,7 +55,7 @@ TEST(ModelRegistryTest, AnswersWithTheNewestVersionUnlessAskedForAnother) {
   EXPECT_EQ(Answer(registry, {"", 9, {}}), "duet/9");
 }
 
-TEST(ModelRegistryTest, TheFirstNameIsTheDefaultUntilOneIsSet) {
+TEST(ModelRegistryTest, FirstNameIsTheDefaultUntilOneIsSet) {
   ModelRegistry registry;
   registry.Serve(Model("b", 1));
   registry.Serve(Model("a", 1));
@@ -82,7 +82,7 @@ TEST(ModelRegistryTest, FollowsLabelsWhereTheyPointNow) {
   EXPECT_EQ(Answer(registry, {"a", {}, "stable"}), "a/2");
 }
 
-TEST(ModelRegistryTest, RefusesALabelOfAVersionThatIsNotServed) {
+TEST(ModelRegistryTest, RejectsALabelOfAVersionThatIsNotServed) {
   ModelRegistry registry;
   registry.Serve(Model("a", 1));
   EXPECT_THAT(registry.SetLabel("a", "stable", 2), StatusIs(kNotFound, HasSubstr("version 2")));
@@ -118,7 +118,7 @@ TEST(ModelRegistryTest, RemovesWhatNothingNeeds) {
   EXPECT_THAT(registry.Remove("a", 1), StatusIs(kFailedPrecondition, HasSubstr("last")));
 }
 
-TEST(ModelRegistryTest, NamesTheFieldThatWasNotFoundAndWhatThereIs) {
+TEST(ModelRegistryTest, NotFoundNamesTheFieldAndTheServedValues) {
   ModelRegistry registry;
   registry.Serve(Model("a", 1));
   registry.Serve(Model("a", 3));
@@ -159,7 +159,7 @@ TEST(ModelRegistryTest, ListsByNameNewestFirst) {
   EXPECT_FALSE(models[2].is_default) << "the newest version, but of another model";
 }
 
-TEST(ModelRegistryTest, WhoeverFoundAModelKeepsItWhenItIsReplaced) {
+TEST(ModelRegistryTest, CallerKeepsAModelThatIsReplaced) {
   ModelRegistry registry;
   std::weak_ptr<const engine::Synthesizer> watched;
   {

@@ -69,7 +69,7 @@ std::vector<std::string> Skipped(const RepositoryListing& listing) {
   return skipped;
 }
 
-TEST(ListCheckpointsTest, SaysWhichFoldersAreNoCheckpointsAndWhy) {
+TEST(ListCheckpointsTest, ReportsFoldersWithoutCheckpointsWithTheReason) {
   TemporaryFolder folder;
   for (const char* version : {"0", "01", "v2", "-1", "1.tmp", "99999999999"}) {
     MakeCheckpoint(folder, std::string("sbu/") + version);
@@ -89,7 +89,7 @@ TEST(ListCheckpointsTest, SaysWhichFoldersAreNoCheckpointsAndWhy) {
                           no_version("v2")));
 }
 
-TEST(ListCheckpointsTest, FilesAndHiddenFoldersAreNobodysBusiness) {
+TEST(ListCheckpointsTest, IgnoresFilesAndHiddenFolders) {
   TemporaryFolder folder;
   WriteTestFile(folder / "README.md", "");
   MakeCheckpoint(folder, ".git/1");
@@ -116,7 +116,7 @@ TEST(ListCheckpointsTest, FollowsTheLinksOfVolumes) {
   EXPECT_EQ(ResolveCheckpoint(folder / "sbu/2"), fs::canonical(folder / "..2026_02/sbu/2"));
 }
 
-TEST(ListCheckpointsTest, AVersionMayBeAVolume) {
+TEST(ListCheckpointsTest, VersionFolderMayBeAMountedVolume) {
   TemporaryFolder folder;
   MakeCheckpoint(folder, "sbu/1/..2026_01");
   fs::create_directory_symlink("..2026_01", folder / "sbu/1/..data");
@@ -187,7 +187,7 @@ TEST(LoadCheckpointTest, GivesTheModelAndWhereItCameFrom) {
   EXPECT_GE(report.load_seconds, 0);
 }
 
-TEST(LoadCheckpointTest, RefusesAManifestThatContradictsItsFolder) {
+TEST(LoadCheckpointTest, RejectsAManifestThatContradictsItsFolder) {
   EXPECT_THAT(
       LoadCheckpoint("/models/sbu/3", LoaderOf("sbu", 4)).model,
       StatusIs(absl::StatusCode::kInvalidArgument,

@@ -44,7 +44,7 @@ TEST(AdmissionTest, AdmitsUpToItsLimitAndAgainWhenOneLeaves) {
   EXPECT_THAT(admission.Admit("a"), IsOk());
 }
 
-TEST(AdmissionTest, KeepsAQuarterFreeOfBulk) {
+TEST(AdmissionTest, ReservesAQuarterForInteractiveCalls) {
   Admission admission(Calls(4));
   admission.SetState(Admission::State::kServing);
   std::vector<ShareLease> places;

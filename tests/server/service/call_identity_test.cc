@@ -57,7 +57,7 @@ TEST(ClientTest, IsANetworkOfIpv6) {
   EXPECT_NE(ClientOf("ipv6:%5B2001:db8:1:3::9%5D:1"), "ipv6:2001:db8:1:2::/64");
 }
 
-TEST(ClientTest, OfIpv4ThatComesByIpv6IsThatOfIpv4) {
+TEST(ClientTest, Ipv4MappedAddressCountsAsIpv4) {
   EXPECT_EQ(ClientOf("ipv6:%5B::ffff:192.0.2.7%5D:4711"), "ipv4:192.0.2.7");
 }
 

@@ -26,7 +26,7 @@ struct NotingReactor {
   }
 };
 
-TEST(CallPipelineTest, ReportsACallBeforeItsCallerHasTheStatus) {
+TEST(CallPipelineTest, ReportsACallBeforeSendingItsStatus) {
   RecordingObserver observer;
   const std::vector<metrics::CallObserver*> observers = {&observer};
   CallScope scope({"service", "Method", "unary"}, {}, observers, common::Clock::Real());

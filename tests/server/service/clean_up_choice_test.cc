@@ -62,7 +62,7 @@ class Service {
   std::unique_ptr<RunningService> running_;
 };
 
-TEST(CleanUpChoiceTest, UnlessToldItFollowsWhetherTheModelSamples) {
+TEST(CleanUpChoiceTest, DefaultDependsOnWhetherTheModelSamples) {
   EXPECT_EQ(Service(SamplingDescription(), std::nullopt).Ask(v1::CLEAN_UP_UNSPECIFIED),
             v1::CLEAN_UP_ON);
   EXPECT_EQ(Service(FakeDescription(), std::nullopt).Ask(v1::CLEAN_UP_UNSPECIFIED),

@@ -136,7 +136,7 @@ TEST_F(ClipRepliesTest, WritesOneMessageAtATimeAndThenEnds) {
   EXPECT_THAT(*writer_.finished, IsOk());
 }
 
-TEST_F(ClipRepliesTest, WaitsForTheNextWindowWithoutAMessageUnderWay) {
+TEST_F(ClipRepliesTest, WaitsForTheNextWindowWithoutAPendingWrite) {
   Create(46);
   call_->Start();
   Written();
@@ -145,7 +145,7 @@ TEST_F(ClipRepliesTest, WaitsForTheNextWindowWithoutAMessageUnderWay) {
   EXPECT_TRUE(writer_.writing);
 }
 
-TEST_F(ClipRepliesTest, ARefusalComesBeforeAnyMessage) {
+TEST_F(ClipRepliesTest, RejectionPrecedesEveryMessage) {
   Create(46);
   scheduler_.Refuse(absl::ResourceExhaustedError("full"));
   call_->Start();
@@ -154,7 +154,7 @@ TEST_F(ClipRepliesTest, ARefusalComesBeforeAnyMessage) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kResourceExhausted, "full"));
 }
 
-TEST_F(ClipRepliesTest, GivesItsPlaceBackAndReportsBeforeTheCallerKnows) {
+TEST_F(ClipRepliesTest, ReleasesItsPlaceAndReportsBeforeTheStatusIsSent) {
   Create(46);
   scheduler_.Refuse(absl::ResourceExhaustedError("full"));
   EXPECT_EQ(admission_.calls(), 1u);
@@ -210,7 +210,7 @@ TEST_F(ClipRepliesTest, AnAbortWhileIdleEndsAtOnce) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, "gone"));
 }
 
-TEST_F(ClipRepliesTest, AnAbortWaitsForTheMessageUnderWay) {
+TEST_F(ClipRepliesTest, AbortWaitsForTheWriteInProgress) {
   Create(46);
   call_->Start();
   call_->Abort(absl::CancelledError("gone"));
@@ -230,7 +230,7 @@ TEST_F(ClipRepliesTest, TheFirstReasonToEndCounts) {
   EXPECT_THAT(observer_.records(), SizeIs(1));
 }
 
-TEST_F(ClipRepliesTest, AMessageThatCannotBeWrittenEndsTheCall) {
+TEST_F(ClipRepliesTest, FailedWriteEndsTheCall) {
   Create(46);
   call_->Start();
   Written(/*ok=*/false);
@@ -239,7 +239,7 @@ TEST_F(ClipRepliesTest, AMessageThatCannotBeWrittenEndsTheCall) {
   EXPECT_FALSE(scheduler_.RunNext()) << "its window was evaluated";
 }
 
-TEST_F(ClipRepliesTest, AReaderThatTakesNothingIsGivenUp) {
+TEST_F(ClipRepliesTest, StalledReaderEndsTheCall) {
   Create(46);
   call_->Start();
   clock_.Advance(std::chrono::seconds(29));
@@ -257,7 +257,7 @@ TEST_F(ClipRepliesTest, AReaderThatTakesNothingIsGivenUp) {
   EXPECT_FALSE(scheduler_.RunNext()) << "its window was evaluated";
 }
 
-TEST_F(ClipRepliesTest, AReaderThatTakesEachMessageInTimeIsNot) {
+TEST_F(ClipRepliesTest, SlowReaderWithinTheTimeLimitKeepsTheCall) {
   Create(46);
   call_->Start();
   scheduler_.RunNext();
@@ -270,7 +270,7 @@ TEST_F(ClipRepliesTest, AReaderThatTakesEachMessageInTimeIsNot) {
   EXPECT_EQ(writer_.broken_off, 0);
 }
 
-TEST_F(ClipRepliesTest, AWriteThatComesBackWhileItIsBrokenOffKeepsTheWriter) {
+TEST_F(ClipRepliesTest, WriteThatCompletesDuringAnAbortKeepsTheWriter) {
   Create(46);
   call_->Start();
   writer_.on_break_off = [this] {
@@ -282,7 +282,7 @@ TEST_F(ClipRepliesTest, AWriteThatComesBackWhileItIsBrokenOffKeepsTheWriter) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kDeadlineExceeded, testing::_));
 }
 
-TEST_F(ClipRepliesTest, ACallEndsAtItsDeadlineThoughNobodyElseEndsIt) {
+TEST_F(ClipRepliesTest, CallEndsAtItsDeadline) {
   deadline_ = clock_.Now() + std::chrono::seconds(5);
   Create(46);
   call_->Start();
@@ -296,7 +296,7 @@ TEST_F(ClipRepliesTest, ACallEndsAtItsDeadlineThoughNobodyElseEndsIt) {
   EXPECT_FALSE(scheduler_.RunNext()) << "its window was evaluated";
 }
 
-TEST_F(ClipRepliesTest, AWindowThatEndsLateFindsNobody) {
+TEST_F(ClipRepliesTest, WindowThatEndsAfterTheCallIsDiscarded) {
   auto model = std::make_shared<FakeSynthesizer>();
   // The caller goes away, writer and all, while its window is being evaluated.
   model->on_batch = [this](absl::Span<const engine::SynthesisWindow* const>) {
@@ -311,7 +311,7 @@ TEST_F(ClipRepliesTest, AWindowThatEndsLateFindsNobody) {
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, "gone"));
 }
 
-TEST_F(ClipRepliesTest, AFailedWindowEndsTheCallThoughFramesAreLeft) {
+TEST_F(ClipRepliesTest, FailedWindowEndsTheCallDespiteRemainingFrames) {
   auto model = std::make_shared<FakeSynthesizer>();
   int windows = 0;
   model->window_status = [&windows](const engine::SynthesisWindow&) {
@@ -339,7 +339,7 @@ TEST_F(ClipRepliesTest, MeasuresTheFirstChunkAndTheWhole) {
   EXPECT_DOUBLE_EQ(record.total_seconds, 0.5);
 }
 
-TEST_F(ClipRepliesTest, ACallThatSendsNoChunkHasNoFirst) {
+TEST_F(ClipRepliesTest, CallWithoutChunksReportsNoFirstChunk) {
   Create(46);
   call_->Start();
   call_->Abort(absl::CancelledError("gone"));
@@ -347,7 +347,7 @@ TEST_F(ClipRepliesTest, ACallThatSendsNoChunkHasNoFirst) {
   EXPECT_LT(observer_.WaitFor(1).first_chunk_seconds, 0);
 }
 
-TEST_F(ClipRepliesTest, GivingUpAStalledReaderFreesThePlaceAtOnce) {
+TEST_F(ClipRepliesTest, EndingAStalledCallReleasesItsPlaceImmediately) {
   Create(46);
   call_->Start();
   EXPECT_EQ(call_->waiting_since(), clock_.Now());
@@ -364,7 +364,7 @@ TEST_F(ClipRepliesTest, GivingUpAStalledReaderFreesThePlaceAtOnce) {
               StatusIs(StatusCode::kResourceExhausted, HasSubstr("while other calls")));
 }
 
-TEST_F(ClipRepliesTest, AReaderIsGivenUpOnlyOnce) {
+TEST_F(ClipRepliesTest, StalledReaderIsEndedOnlyOnce) {
   Create(46);
   call_->Start();
   EXPECT_TRUE(call_->GiveUpReader(clock_.Now(), 0).has_value());
@@ -374,7 +374,7 @@ TEST_F(ClipRepliesTest, AReaderIsGivenUpOnlyOnce) {
   Written(/*ok=*/false);
 }
 
-TEST_F(ClipRepliesTest, AReaderThatTakesItsMessagesIsNotGivenUp) {
+TEST_F(ClipRepliesTest, ActiveReaderKeepsItsCall) {
   Create(46);
   call_->Start();
   clock_.Advance(std::chrono::seconds(1));
@@ -388,7 +388,7 @@ TEST_F(ClipRepliesTest, AReaderThatTakesItsMessagesIsNotGivenUp) {
   call_->Abort(absl::CancelledError("the test is over"));
 }
 
-TEST_F(ClipRepliesTest, ACallThatWasEndedKeepsItsReasonWhenItsReaderIsGivenUp) {
+TEST_F(ClipRepliesTest, EndedCallKeepsItsReasonWhenItsReaderStalls) {
   Create(46);
   call_->Start();
   call_->Abort(absl::UnavailableError("the server is shutting down"));

@@ -99,7 +99,7 @@ TEST(ClipStreamTest, HasNothingBeforeItsFirstWindow) {
   EXPECT_EQ(stream->Take(30).kind, Kind::kPending);
 }
 
-TEST(ClipStreamTest, AClipOfOneWindowHasNotEndedBeforeThatIsDone) {
+TEST(ClipStreamTest, ClipOfOneWindowEndsWithItsWindow) {
   PuppetStream stream(40);
   ASSERT_THAT(stream->Start(), IsOk());
   EXPECT_EQ(stream->Take(40).kind, Kind::kPending);
@@ -124,7 +124,7 @@ class QuickScheduler final : public batching::WindowScheduler {
   std::size_t queued_windows() const override { return 0; }
 };
 
-TEST(ClipStreamTest, AWindowMayBeDoneBeforeItsSubmissionReturns) {
+TEST(ClipStreamTest, WindowMayCompleteBeforeItsSubmissionReturns) {
   QuickScheduler scheduler;
   ClipStreamOptions options;
   options.buffered_frames = 1000000;
@@ -178,7 +178,7 @@ TEST(ClipStreamTest, TellsHowManyWindowsTheClipHas) {
   EXPECT_EQ(stream->stats().windows, windows);
 }
 
-TEST(ClipStreamTest, AReaderThatDoesNotTakePausesTheClip) {
+TEST(ClipStreamTest, UnreadRepliesPauseTheClip) {
   constexpr int kBuffered = 50;
   PuppetStream stream(3000, kBuffered);
   ASSERT_THAT(stream->Start(), IsOk());
@@ -189,7 +189,7 @@ TEST(ClipStreamTest, AReaderThatDoesNotTakePausesTheClip) {
   EXPECT_LT(stream->stats().windows, 5);
 }
 
-TEST(ClipStreamTest, APausedClipGoesOnWhenTheReaderHasDrainedIt) {
+TEST(ClipStreamTest, PausedClipResumesWhenItsBufferIsRead) {
   constexpr int kBuffered = 50;
   PuppetStream stream(3000, kBuffered);
   ASSERT_THAT(stream->Start(), IsOk());

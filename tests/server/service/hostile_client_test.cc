@@ -91,7 +91,7 @@ void WaitForCalls(RunningService& running, std::size_t count) {
   while (running.calls().started() < count) std::this_thread::yield();
 }
 
-TEST(HostileClientTest, ARequestOfTinyMessagesIsRefusedBeforeItIsParsed) {
+TEST(HostileClientTest, RejectsARequestOfTinyMessagesBeforeParsing) {
   RunningService running;
   std::string bomb;
   for (int i = 0; i < 1 << 20; ++i) bomb.append("\x22\x02\x12\x00", 4);
@@ -143,7 +143,7 @@ std::string LargeRequest() {
   return request.SerializeAsString();
 }
 
-TEST(HostileClientTest, LargeRequestsThatAreBeingCheckedKeepNobodyWaiting) {
+TEST(HostileClientTest, ParsingLargeRequestsDelaysNoOtherCall) {
   StandingScheduler scheduler;
   RunningService::Setup setup;
   setup.scheduler = &scheduler;
@@ -174,7 +174,7 @@ TEST(HostileClientTest, EveryMethodBoundsWhatItDoesNotKnow) {
   }
 }
 
-TEST(HostileClientTest, AFullServerRefusesWithoutReadingTheRequest) {
+TEST(HostileClientTest, FullServerRejectsWithoutReadingTheRequest) {
   PuppetScheduler puppet;
   RunningService::Setup setup;
   setup.scheduler = &puppet;
@@ -187,7 +187,7 @@ TEST(HostileClientTest, AFullServerRefusesWithoutReadingTheRequest) {
   EXPECT_EQ(running.admission().calls(), 0u);
 }
 
-TEST(HostileClientTest, CallsThatSendNothingLeavePlacesToOtherClients) {
+TEST(HostileClientTest, SilentCallsLeavePlacesForOtherClients) {
   RunningService::Setup setup;
   setup.admission.max_calls = 4;
   setup.admission.client_share = 0.75;
@@ -207,7 +207,7 @@ TEST(HostileClientTest, CallsThatSendNothingLeavePlacesToOtherClients) {
   EXPECT_TRUE(synthesize("somebody else").ok());
 }
 
-TEST(HostileClientTest, ACallCancelledBeforeItsMessageIsCountedAsCancelled) {
+TEST(HostileClientTest, CallCancelledBeforeItsMessageCountsAsCancelled) {
   RunningService running;
   SilentCall call(running);
   WaitForCalls(running, 1);
@@ -216,7 +216,7 @@ TEST(HostileClientTest, ACallCancelledBeforeItsMessageIsCountedAsCancelled) {
   EXPECT_EQ(running.admission().calls(), 0u);
 }
 
-TEST(HostileClientTest, ACallWithoutAMessageIsMalformed) {
+TEST(HostileClientTest, CallWithoutAMessageIsMalformed) {
   RunningService running;
   for (const char* method : {"Synthesize", "GetModel"}) {
     SilentCall call(running, std::string("/duet.v1.MotionSynthesis/") + method);
@@ -225,7 +225,7 @@ TEST(HostileClientTest, ACallWithoutAMessageIsMalformed) {
   }
 }
 
-TEST(HostileClientTest, AMessageThatDoesNotComeIsNotWaitedFor) {
+TEST(HostileClientTest, MissingMessageEndsTheCallAfterTheTimeout) {
   FakeClock clock;
   RunningService::Setup setup;
   setup.clock = &clock;
@@ -242,7 +242,7 @@ TEST(HostileClientTest, AMessageThatDoesNotComeIsNotWaitedFor) {
   EXPECT_EQ(running.admission().calls(), 0u);
 }
 
-TEST(HostileClientTest, ACallThatWaitsForItsMessageEndsWithTheServer) {
+TEST(HostileClientTest, ShutdownEndsACallThatWaitsForItsMessage) {
   RunningService running;
   SilentCall call(running);
   while (running.calls().records().empty()) {
@@ -252,7 +252,7 @@ TEST(HostileClientTest, ACallThatWaitsForItsMessageEndsWithTheServer) {
   EXPECT_EQ(Decode(call.Finish()).code, StatusCode::kUnavailable);
 }
 
-TEST(HostileClientTest, AReaderThatNeverReadsIsGivenUp) {
+TEST(HostileClientTest, ReaderThatNeverReadsEndsTheCall) {
   FakeClock clock;
   RunningService::Setup setup;
   setup.clock = &clock;
@@ -350,7 +350,7 @@ grpc::Status TakeThePlaceOfAnIdleReader(RunningService& running, FakeClock& cloc
   return status;
 }
 
-TEST(HostileClientTest, AStalledReaderLosesItsPlaceToAnotherCallOfItsClient) {
+TEST(HostileClientTest, StalledCallYieldsItsPlaceToAnotherCallOfItsClient) {
   FakeClock clock;
   RunningService running(PlacesForIdleReaders(clock, 1));
   IdleReader idle(running);
@@ -361,7 +361,7 @@ TEST(HostileClientTest, AStalledReaderLosesItsPlaceToAnotherCallOfItsClient) {
   EXPECT_THAT(ended.error_message(), HasSubstr("read no reply for 5 s while other"));
 }
 
-TEST(HostileClientTest, StalledReadersMakeRoomForTheBytesOfAnotherCall) {
+TEST(HostileClientTest, StalledCallsReleaseBytesForAnotherCall) {
   FakeClock clock;
   RunningService::Setup setup = StandingClock(clock);
   const std::size_t bytes = SampleRequest(9000).ByteSizeLong() + 100;
@@ -398,7 +398,7 @@ struct EndOfADrain {
   IdleReader readers[2] = {IdleReader(running), IdleReader(running)};
 };
 
-TEST(HostileClientTest, AReaderThatHasStalledAtTheEndOfADrainIsToldWhy) {
+TEST(HostileClientTest, StalledReaderGetsAReasonAtTheEndOfADrain) {
   EndOfADrain drain;
   drain.running.service().FinishAborted(0);
   const grpc::Status status = drain.ReadToTheEnd();
@@ -406,7 +406,7 @@ TEST(HostileClientTest, AReaderThatHasStalledAtTheEndOfADrainIsToldWhy) {
   EXPECT_EQ(status.error_message(), "the server is shutting down");
 }
 
-TEST(HostileClientTest, AReaderThatIsSlowAtTheEndOfADrainGetsItsDetails) {
+TEST(HostileClientTest, SlowReaderGetsErrorDetailsAtTheEndOfADrain) {
   EndOfADrain drain;
   grpc::Status status;
   std::thread reading([&] { status = drain.ReadToTheEnd(); });
@@ -418,7 +418,7 @@ TEST(HostileClientTest, AReaderThatIsSlowAtTheEndOfADrainGetsItsDetails) {
   EXPECT_EQ(refusal.retry_seconds, 1);
 }
 
-TEST(HostileClientTest, NoCallLastsLongerThanTheServerAllows) {
+TEST(HostileClientTest, MaximumCallDurationEndsCalls) {
   FakeClock clock;
   PuppetScheduler puppet;
   RunningService::Setup setup;
@@ -440,7 +440,7 @@ TEST(HostileClientTest, NoCallLastsLongerThanTheServerAllows) {
   EXPECT_FALSE(puppet.RunNext()) << "its window was evaluated";
 }
 
-TEST(HostileClientTest, TheBytesOfRequestsAreSharedAndGivenBack) {
+TEST(HostileClientTest, RequestBytesAreSharedAndReleased) {
   RunningService::Setup setup;
   PuppetScheduler puppet;
   setup.scheduler = &puppet;

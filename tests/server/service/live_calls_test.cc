@@ -48,7 +48,7 @@ std::shared_ptr<FakeCall> AddCall(LiveCalls& calls, std::string client,
   return call;
 }
 
-TEST(LiveCallsTest, ACallThatComesAfterTheEndEndsAtOnce) {
+TEST(LiveCallsTest, CallAfterShutdownEndsImmediately) {
   LiveCalls calls;
   const auto before = AddCall(calls, "a", std::nullopt);
   calls.AbortAll(absl::UnavailableError("over"));
@@ -57,7 +57,7 @@ TEST(LiveCallsTest, ACallThatComesAfterTheEndEndsAtOnce) {
   EXPECT_EQ(after->aborted, absl::UnavailableError("over"));
 }
 
-TEST(LiveCallsTest, GivesUpTheReaderThatHasStalledForLongest) {
+TEST(LiveCallsTest, EndsTheCallOfTheLongestStalledReader) {
   LiveCalls calls;
   const auto late = AddCall(calls, "a", kBegin + seconds(2));
   const auto early = AddCall(calls, "a", kBegin + seconds(1));
@@ -80,7 +80,7 @@ TEST(LiveCallsTest, LeavesReadersOfOtherClientsAlone) {
   EXPECT_TRUE(other->given_up);
 }
 
-TEST(LiveCallsTest, LeavesAReaderAloneThatHasWaitedForLess) {
+TEST(LiveCallsTest, KeepsAReaderThatStalledForLessThanTheLimit) {
   LiveCalls calls;
   const auto call = AddCall(calls, "a", kBegin);
   EXPECT_EQ(calls.GiveUpSlowestReader("a", kBegin + seconds(1), 2), std::nullopt);

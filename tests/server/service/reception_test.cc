@@ -83,7 +83,7 @@ class ReceptionTest : public ::testing::Test {
   FakeReader reader_;
 };
 
-TEST_F(ReceptionTest, AMessageThatComesIsToBeAnswered) {
+TEST_F(ReceptionTest, ArrivedMessageIsHandled) {
   const auto reception = Receive(writer_);
   EXPECT_TRUE(reception->Received());
   EXPECT_FALSE(writer_.finished.has_value());
@@ -92,14 +92,14 @@ TEST_F(ReceptionTest, AMessageThatComesIsToBeAnswered) {
   EXPECT_EQ(admission_.calls(), 0u);
 }
 
-TEST_F(ReceptionTest, ACallerThatGoesAwayBeforeItsMessageIsCancelledNotMalformed) {
+TEST_F(ReceptionTest, DisconnectBeforeTheMessageIsCancelledNotMalformed) {
   const auto reception = Receive(writer_);
   reception->Lost(/*cancelled=*/true);
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kCancelled, _));
   EXPECT_EQ(admission_.calls(), 0u);
 }
 
-TEST_F(ReceptionTest, ACallThatEndsWithoutAMessageIsMalformed) {
+TEST_F(ReceptionTest, CallThatEndsWithoutAMessageIsMalformed) {
   const auto reception = Receive(writer_);
   reception->Lost(/*cancelled=*/false);
   EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kInvalidArgument, _));
@@ -116,7 +116,7 @@ TEST_F(ReceptionTest, WhatComesAfterTheEndIsNobodys) {
   EXPECT_EQ(observer_.records().size(), 1u);
 }
 
-TEST_F(ReceptionTest, AMessageThatHasComeNoLongerArrivesSlowly) {
+TEST_F(ReceptionTest, ArrivedMessageNoLongerCountsAsSlow) {
   FakeWriter other_writer;
   const auto first = Receive(writer_), second = Receive(other_writer);
   first->CheckTime(clock_.Now() + std::chrono::seconds(1));
@@ -125,7 +125,7 @@ TEST_F(ReceptionTest, AMessageThatHasComeNoLongerArrivesSlowly) {
   EXPECT_FALSE(other_writer.finished.has_value()) << "the only leave to arrive slowly was kept";
 }
 
-TEST_F(ReceptionTest, AnEndThatComesWhileTheMessageIsHandledWaitsForThat) {
+TEST_F(ReceptionTest, AbortWaitsForTheMessageBeingHandled) {
   const auto reception = Receive(writer_);
   EXPECT_TRUE(reception->Received());
   EXPECT_FALSE(reception->ended_meanwhile().has_value());
@@ -138,7 +138,7 @@ TEST_F(ReceptionTest, AnEndThatComesWhileTheMessageIsHandledWaitsForThat) {
   EXPECT_NE(scope, nullptr);
 }
 
-TEST_F(ReceptionTest, AMessageThatIsLongOnItsWayNeedsLeave) {
+TEST_F(ReceptionTest, SlowMessageNeedsAdmission) {
   FakeWriter second_writer;
   const auto first = Receive(writer_);
   const auto second = Receive(second_writer);
@@ -164,7 +164,7 @@ TEST_F(ReceptionTest, AMessageThatIsLongOnItsWayNeedsLeave) {
   EXPECT_FALSE(third_writer.finished.has_value());
 }
 
-TEST_F(ReceptionTest, AMessageThatHasComeNeedsNoMoreLeave) {
+TEST_F(ReceptionTest, ArrivedMessageNeedsNoAdmissionForSlowOnes) {
   FakeWriter second_writer;
   const auto first = Receive(writer_);
   clock_.Advance(milliseconds(100));
@@ -177,7 +177,7 @@ TEST_F(ReceptionTest, AMessageThatHasComeNeedsNoMoreLeave) {
   EXPECT_FALSE(second_writer.finished.has_value());
 }
 
-TEST_F(ReceptionTest, AMessageThatTakesTooLongIsNotWaitedFor) {
+TEST_F(ReceptionTest, MessageAfterTheTimeoutEndsTheCall) {
   const auto reception = Receive(writer_);
   clock_.Advance(milliseconds(29999));
   reception->CheckTime(clock_.Now());

@@ -51,7 +51,7 @@ class SamplingTest : public ::testing::Test {
   RunningService running_{Serve(model_)};
 };
 
-TEST_F(SamplingTest, TheSameSeedGivesTheSameBytesAndAnotherOthers) {
+TEST_F(SamplingTest, SameSeedGivesTheSameBytesAndAnotherSeedDifferentOnes) {
   const std::vector<float> seven = Ask(7, 1).Positions();
   EXPECT_EQ(Ask(7, 1).Positions(), seven);
   EXPECT_NE(Ask(8, 1).Positions(), seven);
@@ -63,7 +63,7 @@ TEST_F(SamplingTest, VarietyReachesTheModel) {
   EXPECT_NEAR(Ask(7, 2).Positions().front(), typical.front() + FakeDraw({7, 2}).x, 1e-5);
 }
 
-TEST_F(SamplingTest, AbsentFieldsAreSeedZeroAndVarietyOne) {
+TEST_F(SamplingTest, DefaultsAreSeedZeroAndVarietyOne) {
   EXPECT_EQ(Ask(std::nullopt, std::nullopt).Positions(), Ask(0, 1).Positions());
 }
 
@@ -79,7 +79,7 @@ TEST_F(SamplingTest, TheHeaderAndTheLogSayWhatWasUsed) {
   EXPECT_EQ(absent.messages.front().header().variety(), 1);
 }
 
-TEST_F(SamplingTest, AModelThatDoesNotSampleIgnoresBothAndEchoesThem) {
+TEST_F(SamplingTest, DeterministicModelIgnoresSeedAndVarietyAndEchoesThem) {
   RunningService running;
   const Reply plain = Call(running.stub(), Sampled(std::nullopt, std::nullopt));
   const Reply seeded = Call(running.stub(), Sampled(7, 2));
@@ -89,7 +89,7 @@ TEST_F(SamplingTest, AModelThatDoesNotSampleIgnoresBothAndEchoesThem) {
   EXPECT_EQ(seeded.messages.front().header().variety(), 2);
 }
 
-TEST_F(SamplingTest, TheSummaryAndTheLogSayHowUnfamiliarTheRequestIs) {
+TEST_F(SamplingTest, SummaryAndLogReportUnfamiliarity) {
   model_->unfamiliarity = [](const engine::ClipRequest& request) {
     return request.leader.frame_count() / 100.0;
   };
@@ -99,7 +99,7 @@ TEST_F(SamplingTest, TheSummaryAndTheLogSayHowUnfamiliarTheRequestIs) {
   EXPECT_EQ(running_.calls().WaitFor(1).unfamiliarity, 1.2);
 }
 
-TEST_F(SamplingTest, AModelThatDoesNotKnowSaysNothingOfUnfamiliarity) {
+TEST_F(SamplingTest, ModelWithoutStatisticsReportsNoUnfamiliarity) {
   EXPECT_FALSE(Ask(0, 1).messages.back().summary().has_unfamiliarity());
   EXPECT_FALSE(running_.calls().WaitFor(1).unfamiliarity.has_value());
 }

@@ -55,7 +55,7 @@ std::string Trailer(const grpc::ClientContext& context, const std::string& key) 
   return found == trailers.end() ? "" : std::string(found->second.data(), found->second.size());
 }
 
-TEST(ServiceRefusalTest, AMalformedRequestIsRefusedWithEveryField) {
+TEST(ServiceRefusalTest, RejectionOfAMalformedRequestListsEveryField) {
   RunningService running;
   v1::SynthesizeRequest request = SampleRequest();
   request.mutable_leader()->set_positions(0, std::numeric_limits<float>::quiet_NaN());
@@ -69,7 +69,7 @@ TEST(ServiceRefusalTest, AMalformedRequestIsRefusedWithEveryField) {
   EXPECT_EQ(running.calls().WaitFor(1).status.code(), StatusCode::kInvalidArgument);
 }
 
-TEST(ServiceRefusalTest, ASkeletonThatDoesNotFitIsAFailedPrecondition) {
+TEST(ServiceRefusalTest, UnsuitableSkeletonIsAFailedPrecondition) {
   RunningService running;
   v1::SynthesizeRequest request = SampleRequest();
   request.mutable_leader()->set_joint_names(0, "hat");
@@ -78,7 +78,7 @@ TEST(ServiceRefusalTest, ASkeletonThatDoesNotFitIsAFailedPrecondition) {
   EXPECT_THAT(refusal.Fields(), ElementsAre("leader.joint_names[0]", "leader.joint_names"));
 }
 
-TEST(ServiceRefusalTest, TheMostDetailedRefusalReachesTheClient) {
+TEST(ServiceRefusalTest, LargestRejectionReachesTheClient) {
   RunningService running;
   v1::SynthesizeRequest request;
   for (int i = 0; i < 1000; ++i) {
@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, MalformedBytesTest,
                          ::testing::Values(std::pair{"Synthesize", "SynthesizeRequest"},
                                            std::pair{"GetModel", "GetModelRequest"}));
 
-TEST(ServiceRefusalTest, AnUnknownModelIsNamedWithThoseServed) {
+TEST(ServiceRefusalTest, UnknownModelErrorListsServedModels) {
   RunningService running;
   v1::SynthesizeRequest request = SampleRequest();
   request.mutable_model()->set_name("nobody");
@@ -122,7 +122,7 @@ TEST(ServiceRefusalTest, AnUnknownModelIsNamedWithThoseServed) {
   EXPECT_EQ(refusal.reason, "MODEL_NOT_FOUND");
 }
 
-TEST(ServiceRefusalTest, AnUnknownVersionIsNamedWithThoseServed) {
+TEST(ServiceRefusalTest, UnknownVersionErrorListsServedVersions) {
   RunningService running;
   v1::SynthesizeRequest request = SampleRequest();
   request.mutable_model()->set_version(7);
@@ -132,7 +132,7 @@ TEST(ServiceRefusalTest, AnUnknownVersionIsNamedWithThoseServed) {
               HasSubstr("expected a served version of model fake (1), got 7"));
 }
 
-TEST(ServiceRefusalTest, AnUnknownLabelIsNamedWithThoseThereAre) {
+TEST(ServiceRefusalTest, UnknownLabelErrorListsLabels) {
   RunningService running;
   v1::SynthesizeRequest request = SampleRequest();
   request.mutable_model()->set_version_label("canary");
@@ -142,7 +142,7 @@ TEST(ServiceRefusalTest, AnUnknownLabelIsNamedWithThoseThereAre) {
               HasSubstr("expected a label of model fake (none), got \"canary\""));
 }
 
-TEST(ServiceRefusalTest, AVersionLabelIsFollowed) {
+TEST(ServiceRefusalTest, VersionLabelSelectsItsVersion) {
   RunningService running;
   ASSERT_TRUE(running.registry().SetLabel("fake", "stable", 1).ok());
   v1::SynthesizeRequest request = SampleRequest();
@@ -156,7 +156,7 @@ RunningService::Setup SmallRequests() {
   return setup;
 }
 
-TEST(ServiceRefusalTest, ARequestAboveTheLimitIsToldTheLimit) {
+TEST(ServiceRefusalTest, RejectionOfALargeRequestNamesTheLimit) {
   RunningService running(SmallRequests());
   EXPECT_TRUE(Call(running.stub(), SampleRequest(40)).status.ok());
   const v1::SynthesizeRequest request = SampleRequest(80);
@@ -180,7 +180,7 @@ TEST(ServiceRefusalTest, EveryMethodHasTheLimit) {
   }
 }
 
-TEST(ServiceRefusalTest, ARequestFarAboveTheLimitIsRefusedByTheTransport) {
+TEST(ServiceRefusalTest, TransportRejectsARequestFarAboveTheLimit) {
   RunningService running(SmallRequests());
   const grpc::Status status = Call(running.stub(), SampleRequest(400)).status;
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
@@ -188,7 +188,7 @@ TEST(ServiceRefusalTest, ARequestFarAboveTheLimitIsRefusedByTheTransport) {
               HasSubstr("more than twice max_request_bytes"));
 }
 
-TEST(ServiceRefusalTest, ACompressedRequestIsRefused) {
+TEST(ServiceRefusalTest, RejectsACompressedRequest) {
   RunningService running;
   TimedContext context;
   context.set_compression_algorithm(GRPC_COMPRESS_GZIP);
@@ -196,7 +196,7 @@ TEST(ServiceRefusalTest, ACompressedRequestIsRefused) {
   EXPECT_EQ(reply.status.error_code(), grpc::StatusCode::UNIMPLEMENTED);
 }
 
-TEST(ServiceRefusalTest, AFullQueueRefusesBeforeAnyHeader) {
+TEST(ServiceRefusalTest, FullQueueRejectsBeforeTheHeader) {
   PuppetService service;
   service.puppet.Refuse(absl::ResourceExhaustedError("the queue is full: 64 windows wait"));
   TimedContext context;
@@ -210,7 +210,7 @@ TEST(ServiceRefusalTest, AFullQueueRefusesBeforeAnyHeader) {
   EXPECT_EQ(service.running.admission().calls(), 0u) << "the place is free again";
 }
 
-TEST(ServiceRefusalTest, TooManyCallsAreRefusedUntilOneEnds) {
+TEST(ServiceRefusalTest, RejectsCallsAboveTheLimitUntilOneEnds) {
   RunningService::Setup setup;
   setup.admission.max_calls = 1;
   PuppetService service(setup);
@@ -231,7 +231,7 @@ TEST(ServiceRefusalTest, TooManyCallsAreRefusedUntilOneEnds) {
   EXPECT_TRUE(ReadAll(*next).status.ok());
 }
 
-TEST(ServiceRefusalTest, ARefusedRequestGivesItsPlaceBack) {
+TEST(ServiceRefusalTest, RejectedRequestReleasesItsPlace) {
   RunningService::Setup setup;
   setup.admission.max_calls = 1;
   RunningService running(setup);
@@ -266,7 +266,7 @@ INSTANTIATE_TEST_SUITE_P(Both, NotServingTest,
                                            std::pair{Admission::State::kDraining,
                                                      "SERVER_DRAINING"}));
 
-TEST(ServiceEndTest, AModelsFailureIsInternalAndKeepsItsWordsToTheLog) {
+TEST(ServiceEndTest, ModelFailureIsInternalWithDetailsOnlyInTheLog) {
   auto model = std::make_shared<FakeSynthesizer>();
   model->window_status = [](const engine::SynthesisWindow&) {
     return absl::InternalError("at::addmm in /usr/secret/generator.cc failed");
@@ -399,7 +399,7 @@ TEST(ServiceIdentityTest, KeepsTheCallersRequestIdAndTrace) {
   EXPECT_THAT(record.peer, HasSubstr("127.0.0.1"));
 }
 
-TEST(ServiceIdentityTest, MakesARequestIdWhereTheCallersIsUnfit) {
+TEST(ServiceIdentityTest, ReplacesAnInvalidRequestId) {
   RunningService running;
   TimedContext context;
   context.AddMetadata("x-request-id", std::string(129, 'x'));

@@ -26,7 +26,7 @@ TEST(SharePoolTest, GivesWhatThereIsAndNoMore) {
   EXPECT_EQ(pool.taken(), 3u);
 }
 
-TEST(SharePoolTest, ALeaseGivesBackOnceHoweverItMoves) {
+TEST(SharePoolTest, LeaseReleasesOnceWhenMoved) {
   SharePool pool(4, 1);
   {
     ShareLease first = *pool.Take("a", 3);
@@ -45,7 +45,7 @@ TEST(SharePoolTest, AloneAClientComesToHoldItsShare) {
   EXPECT_EQ(greedy.size(), 96u);
 }
 
-TEST(SharePoolTest, TwoGreedyClientsComeToHoldAlikeAndLeaveSome) {
+TEST(SharePoolTest, TwoGreedyClientsGetEqualSharesAndLeaveSomeFree) {
   SharePool pool(70, 0.75);
   std::vector<ShareLease> a, b;
   for (bool any = true; any;) {
@@ -57,7 +57,7 @@ TEST(SharePoolTest, TwoGreedyClientsComeToHoldAlikeAndLeaveSome) {
   EXPECT_EQ(b.size(), 30u);
 }
 
-TEST(SharePoolTest, WhoeverComesFindsSomethingAfterAGreedyOne) {
+TEST(SharePoolTest, NewClientGetsAShareBesideAGreedyOne) {
   SharePool pool(8, 0.75);
   const std::vector<ShareLease> greedy = TakeAll(pool, "greedy");
   for (const char* client : {"b", "c"}) {

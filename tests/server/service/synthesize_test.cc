@@ -103,7 +103,7 @@ TEST(SynthesizeTest, ChunksFollowEachOtherWithoutGaps) {
   EXPECT_THAT(reply.ChunkFrames(), Each(Le(7)));
 }
 
-TEST(SynthesizeTest, AChunkHasThirtyFramesUnlessToldOtherwise) {
+TEST(SynthesizeTest, DefaultChunkHasThirtyFrames) {
   PuppetScheduler puppet;
   RunningService::Setup setup;
   setup.scheduler = &puppet;
@@ -133,7 +133,7 @@ TEST(SynthesizeTest, TheSummaryCountsWhatWasSent) {
   EXPECT_GE(summary.compute_seconds(), 0);
 }
 
-TEST(SynthesizeTest, TheFirstChunkLeavesAfterTheFirstWindow) {
+TEST(SynthesizeTest, FirstChunkIsSentAfterTheFirstWindow) {
   PuppetScheduler puppet;
   RunningService::Setup setup;
   setup.scheduler = &puppet;
@@ -153,7 +153,7 @@ TEST(SynthesizeTest, TheFirstChunkLeavesAfterTheFirstWindow) {
   reader->Finish();
 }
 
-TEST(SynthesizeTest, TheHeaderLeavesBeforeTheFirstWindowIsEvaluated) {
+TEST(SynthesizeTest, HeaderIsSentBeforeTheFirstWindowIsEvaluated) {
   PuppetScheduler puppet;
   RunningService::Setup setup;
   setup.scheduler = &puppet;
@@ -229,7 +229,7 @@ TEST(SynthesizeTest, FollowerStartAndPartnerDirectionReachTheModel) {
   EXPECT_EQ(*seen[0].partner_direction, (motion::Vec3{0, 0, -1}));
 }
 
-TEST(SynthesizeTest, RepliesWithTheAskedForJointsInTheAskedForOrder) {
+TEST(SynthesizeTest, RepliesWithTheRequestedJointsInTheirOrder) {
   RunningService::Setup setup;
   setup.model = Echo();
   RunningService running(setup);
@@ -268,7 +268,7 @@ using UnitAndAxis = std::tuple<v1::LengthUnit, v1::UpAxis, float>;  // the unit'
 
 class CoordinatesTest : public ::testing::TestWithParam<UnitAndAxis> {};
 
-TEST_P(CoordinatesTest, TheReplyIsInTheLeadersUnitAxisAndWorld) {
+TEST_P(CoordinatesTest, ReplyHasTheLeadersUnitAxisAndOrigin) {
   const auto [unit, up_axis, metre] = GetParam();
   RunningService::Setup setup;
   setup.model = Echo();
@@ -332,7 +332,7 @@ TEST(SynthesizeTest, AnswersTwoFrames) {
   EXPECT_THAT(reply.ChunkFrames(), ElementsAre(2));
 }
 
-TEST(SynthesizeTest, AnswersTenMinutesWithinABoundedBuffer) {
+TEST(SynthesizeTest, AnswersTenMinutesWithABoundedBuffer) {
   RunningService::Setup setup;
   setup.buffered_frames = 60;
   RunningService running(setup);

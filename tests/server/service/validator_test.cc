@@ -57,7 +57,7 @@ struct Spoiled {
 
 class RefusalTest : public ::testing::TestWithParam<Spoiled> {};
 
-TEST_P(RefusalTest, NamesTheFieldWhatCameAndWhatWasWanted) {
+TEST_P(RefusalTest, ErrorNamesFieldExpectedAndActualValue) {
   v1::SynthesizeRequest request = SampleRequest();
   GetParam().spoil(request);
   const Refusal refusal = Decode(Validate(request).status());
@@ -350,7 +350,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "partner_direction[0]", "expected a finite number, got nan"}),
     SpoiledName);
 
-TEST(ValidateRequestTest, RefusesAnEmptyRequestByNamingAllThatIsMissing) {
+TEST(ValidateRequestTest, RejectionOfAnEmptyRequestNamesEveryMissingField) {
   const Refusal refusal = Decode(Validate(v1::SynthesizeRequest()).status());
   EXPECT_EQ(refusal.code, kInvalidArgument);
   EXPECT_THAT(refusal.Fields(), ElementsAre("leader", "label_vector"));
@@ -385,7 +385,7 @@ TEST(ValidateRequestTest, NamesTheFirstBadValuesAndCountsAll) {
               HasSubstr("got 800 of 1800 values that are not finite"));
 }
 
-TEST(ValidateRequestTest, NamesTheFirstFarPositionsAndCountsAll) {
+TEST(ValidateRequestTest, ListsTheFirstFarPositionsAndCountsAll) {
   v1::SynthesizeRequest request = SampleRequest();
   for (int i = 0; i < 300; ++i) request.mutable_leader()->set_positions(i, 1e5F);
   const Refusal refusal = Decode(Validate(request).status());
@@ -406,7 +406,7 @@ TEST(ValidateRequestTest, AcceptsTenMinutesAndTwoFrames) {
   EXPECT_THAT(Validate(SampleRequest(2)), IsOk());
 }
 
-TEST(ValidateRequestTest, RefusesAFollowerStartThatTheModelDoesNotAccept) {
+TEST(ValidateRequestTest, RejectsAFollowerStartThatTheModelDoesNotAccept) {
   engine::ModelDescription model = FakeDescription();
   model.accepts_follower_start = false;
   v1::SynthesizeRequest request = SampleRequest();
@@ -417,7 +417,7 @@ TEST(ValidateRequestTest, RefusesAFollowerStartThatTheModelDoesNotAccept) {
               HasSubstr("model fake version 1, which does not accept it"));
 }
 
-TEST(ValidateRequestTest, EscapesAndCutsWhatCallersCallTheirJoints) {
+TEST(ValidateRequestTest, EscapesAndTruncatesJointNames) {
   v1::SynthesizeRequest request = SampleRequest();
   request.mutable_leader()->set_joint_names(0, "a\nb" + std::string(100000, 'x'));
   const Refusal refusal = Decode(Validate(request).status());
@@ -425,7 +425,7 @@ TEST(ValidateRequestTest, EscapesAndCutsWhatCallersCallTheirJoints) {
   EXPECT_LT(refusal.message.size(), 1000u);
 }
 
-TEST(ValidateRequestTest, AManyNamedRequestIsRefusedInLinearTime) {
+TEST(ValidateRequestTest, RejectsManyJointNamesInLinearTime) {
   // Quadratic work on this would outlast the test's time limit.
   v1::SynthesizeRequest request;
   for (int i = 0; i < 300000; ++i) {
