@@ -245,7 +245,7 @@ TEST_F(ModelLifecycleTest, AFolderThatIsNoCheckpointShowsEverywhere) {
   EXPECT_EQ(list.skipped_folders(0).folder(), "fake/02");
   EXPECT_THAT(list.skipped_folders(0).reason(), HasSubstr("expected a version"));
   EXPECT_THAT(Metrics(), HasSubstr("duet_model_folders_skipped 1"));
-  EXPECT_THAT(HttpGet(server().metrics_port(), "/readyz"), HasSubstr("skipped fake/02: is no"));
+  EXPECT_THAT(HttpGet(server().metrics_port(), "/readyz"), HasSubstr("skipped fake/02: expected"));
   EXPECT_EQ(server_->log.Events("folder_skipped").size(), 1u) << "once, however often it is seen";
 }
 
