@@ -40,29 +40,4 @@ PathPosterior SumOverPaths(const ChainWeights& chain, const Rows& log_arrivals,
   return posterior;
 }
 
-std::vector<int> BestPath(const ChainWeights& chain, const Rows& log_arrivals) {
-  const Eigen::Index frames = log_arrivals.rows(), states = log_arrivals.cols();
-  const Eigen::MatrixXd log_step = chain.step.array().log();
-  Eigen::MatrixXi best_from(frames, states);
-  Eigen::VectorXd value =
-      chain.start.array().log().matrix().transpose() + log_arrivals.row(0).transpose();
-  for (Eigen::Index t = 1; t < frames; ++t) {
-    Eigen::VectorXd next(states);
-    for (Eigen::Index to = 0; to < states; ++to) {
-      Eigen::Index from = 0;
-      next(to) = (value + log_step.col(to)).maxCoeff(&from) + log_arrivals(t, to);
-      best_from(t, to) = static_cast<int>(from);
-    }
-    value = next;
-  }
-  std::vector<int> path(static_cast<size_t>(frames));
-  Eigen::Index last = 0;
-  value.maxCoeff(&last);
-  for (Eigen::Index t = frames - 1; t >= 0; --t) {
-    path[static_cast<size_t>(t)] = static_cast<int>(last);
-    if (t > 0) last = best_from(t, last);
-  }
-  return path;
-}
-
 }  // namespace duet::evaluation::baselines

@@ -31,9 +31,6 @@ struct PathPosterior {
 PathPosterior SumOverPaths(const ChainWeights& chain, const Rows& log_arrivals,
                            Eigen::MatrixXd* steps = nullptr);
 
-// The path of the largest weight (Viterbi; value iteration with max in place of log-sum-exp).
-std::vector<int> BestPath(const ChainWeights& chain, const Rows& log_arrivals);
-
 }  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_CHAIN_H_

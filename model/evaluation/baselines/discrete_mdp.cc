@@ -1,12 +1,16 @@
-#include "model/evaluation/baselines/discrete_mdp.h"
-
-#include <cmath>
-
+#include "model/evaluation/baselines/chain.h"
+#include "model/evaluation/baselines/class_models.h"
 #include "model/evaluation/baselines/kmeans.h"
+#include "model/evaluation/baselines/pose_space.h"
 
 namespace duet::evaluation::baselines {
 namespace {
 
+constexpr int kPoseStates = 16;   // clusters of follower poses
+constexpr int kLeaderStates = 8;  // clusters of leader cues
+constexpr int kComponents = 10;   // principal components in which poses and cues are clustered
+constexpr int kIterations = 30;   // gradient steps on the reward
+constexpr uint64_t kSeed = 1;
 // Pseudo-counts: unseen events stay possible.
 constexpr double kCount = 0.1;
 // Gradient ascent on the mean log-likelihood of a frame: rate, and pull towards the initial
@@ -14,52 +18,90 @@ constexpr double kCount = 0.1;
 constexpr double kRate = 0.3;
 constexpr double kPull = 0.01;
 
+// Weights of the features of arriving at a pose: how well it matches the leader's cluster, how
+// frequent the step is, how little the pose changes.
+using Weights = Eigen::Vector3d;
+
 // log p(column | row) from counts.
 Eigen::MatrixXd LogConditional(const Eigen::MatrixXd& counts) {
   const Eigen::MatrixXd padded = counts.array() + kCount;
   return (padded.array().colwise() / padded.rowwise().sum().array()).log();
 }
 
-}  // namespace
+// A training sequence as cluster indices.
+struct Demonstration {
+  std::vector<int> leader;
+  std::vector<int> pose;
+};
 
-DiscreteMdp::Counts::Counts(Eigen::Index poses, Eigen::Index leaders)
-    : together(Eigen::MatrixXd::Zero(poses, leaders)),
-      steps(Eigen::MatrixXd::Zero(poses, poses)),
-      starts(Eigen::MatrixXd::Zero(1, poses)) {}
+// How often clusters occur together.
+struct Counts {
+  Counts(Eigen::Index poses, Eigen::Index leaders)
+      : together(Eigen::MatrixXd::Zero(poses, leaders)),
+        steps(Eigen::MatrixXd::Zero(poses, poses)),
+        starts(Eigen::MatrixXd::Zero(1, poses)) {}
 
-void DiscreteMdp::Counts::Add(const Demonstration& one, double times) {
-  starts(0, one.pose[0]) += times;
-  for (size_t t = 0; t < one.pose.size(); ++t) {
-    together(one.pose[t], one.leader[t]) += times;
-    if (t > 0) steps(one.pose[t - 1], one.pose[t]) += times;
+  void Add(const Demonstration& one, double times) {
+    starts(0, one.pose[0]) += times;
+    for (size_t t = 0; t < one.pose.size(); ++t) {
+      together(one.pose[t], one.leader[t]) += times;
+      if (t > 0) steps(one.pose[t - 1], one.pose[t]) += times;
+    }
   }
-}
 
-DiscreteMdp::Tables::Tables(const Counts& counts)
-    : leader_given_pose(LogConditional(counts.together).transpose()),
-      step(LogConditional(counts.steps)),
-      start(LogConditional(counts.starts)) {}
+  Eigen::MatrixXd together;  // [pose, leader]
+  Eigen::MatrixXd steps;     // [from, to]
+  Eigen::MatrixXd starts;    // [1, pose]
+};
 
-ChainWeights DiscreteMdp::Chain(const Model& model, const Tables& tables) {
-  return {(model.weights(1) * tables.start).array().exp(),
-          (model.weights(1) * tables.step + model.weights(2) * model.effort).array().exp()};
-}
+// The features that follow from counts, as logs of smoothed conditional probabilities.
+struct Tables {
+  Tables() = default;
+  explicit Tables(const Counts& counts)
+      : leader_given_pose(LogConditional(counts.together).transpose()),
+        step(LogConditional(counts.steps)),
+        start(LogConditional(counts.starts)) {}
 
-Rows DiscreteMdp::Arrivals(const Model& model, const Tables& tables,
-                           const std::vector<int>& leader) {
-  Rows arrivals(leader.size(), model.pose_centres.rows());
+  Rows leader_given_pose;    // [leader, pose]
+  Eigen::MatrixXd step;      // [from, to]
+  Eigen::RowVectorXd start;  // [pose]
+};
+
+class DiscreteMdp : public ClassModel {
+ public:
+  explicit DiscreteMdp(const std::vector<StandardPair>& pairs);
+  Rows Predict(const StandardPair& leader) const override;
+
+ private:
+  void LearnReward(const std::vector<Demonstration>& demonstrations, const Counts& counts);
+  // Features of the demonstration minus the policy's expected features.
+  Weights Surplus(const Tables& tables, const Demonstration& one) const;
+  // How probable each pose is in each frame. `steps`: as in SumOverPaths.
+  Rows Visits(const Tables& tables, const std::vector<int>& leader,
+              Eigen::MatrixXd* steps = nullptr) const;
+
+  PoseSpace leader_, follower_;
+  Rows leader_centres_, pose_centres_;  // in the components
+  Tables tables_;
+  Eigen::MatrixXd effort_;  // [from, to] minus the squared change of pose
+  Weights weights_;
+};
+
+Rows DiscreteMdp::Visits(const Tables& tables, const std::vector<int>& leader,
+                         Eigen::MatrixXd* steps) const {
+  Rows arrivals(leader.size(), pose_centres_.rows());
   for (size_t t = 0; t < leader.size(); ++t) {
     arrivals.row(static_cast<Eigen::Index>(t)) =
-        model.weights(0) * tables.leader_given_pose.row(leader[t]);
+        weights_(0) * tables.leader_given_pose.row(leader[t]);
   }
-  return arrivals;
+  const ChainWeights chain = {(weights_(1) * tables.start).array().exp(),
+                              (weights_(1) * tables.step + weights_(2) * effort_).array().exp()};
+  return SumOverPaths(chain, arrivals, steps).states;
 }
 
-DiscreteMdp::Weights DiscreteMdp::Surplus(const Model& model, const Tables& tables,
-                                          const Demonstration& one) {
-  const ChainWeights chain = Chain(model, tables);
-  Eigen::MatrixXd steps = Eigen::MatrixXd::Zero(chain.step.rows(), chain.step.cols());
-  const Rows visits = SumOverPaths(chain, Arrivals(model, tables, one.leader), &steps).states;
+Weights DiscreteMdp::Surplus(const Tables& tables, const Demonstration& one) const {
+  Eigen::MatrixXd steps = Eigen::MatrixXd::Zero(effort_.rows(), effort_.cols());
+  const Rows visits = Visits(tables, one.leader, &steps);
   Weights surplus(0, tables.start(one.pose[0]) - visits.row(0).dot(tables.start), 0);
   for (size_t t = 0; t < one.pose.size(); ++t) {
     const auto fit = tables.leader_given_pose.row(one.leader[t]);
@@ -67,12 +109,12 @@ DiscreteMdp::Weights DiscreteMdp::Surplus(const Model& model, const Tables& tabl
     if (t > 0) steps(one.pose[t - 1], one.pose[t]) -= 1;
   }
   surplus(1) -= steps.cwiseProduct(tables.step).sum();
-  surplus(2) -= steps.cwiseProduct(model.effort).sum();
+  surplus(2) -= steps.cwiseProduct(effort_).sum();
   return surplus;
 }
 
 void DiscreteMdp::LearnReward(const std::vector<Demonstration>& demonstrations,
-                              const Counts& counts, Model* model) const {
+                              const Counts& counts) {
   // Each demonstration is explained by the counts of the others: its own would overfit.
   std::vector<Tables> others;
   double frames = 0;
@@ -83,60 +125,50 @@ void DiscreteMdp::LearnReward(const std::vector<Demonstration>& demonstrations,
     frames += static_cast<double>(one.pose.size());
   }
   const Weights initial = Weights(1, 1, 0);
-  model->weights = initial;
+  weights_ = initial;
   Weights squares = Weights::Constant(1e-12);
-  for (int iteration = 0; iteration < options_.iterations; ++iteration) {
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
     Weights gradient = Weights::Zero();
     for (size_t i = 0; i < demonstrations.size(); ++i) {
-      gradient += Surplus(*model, others[i], demonstrations[i]);
+      gradient += Surplus(others[i], demonstrations[i]);
     }
-    gradient = gradient / frames - kPull * (model->weights - initial);
+    gradient = gradient / frames - kPull * (weights_ - initial);
     squares += gradient.cwiseAbs2();
-    model->weights += kRate * gradient.cwiseQuotient(squares.cwiseSqrt());
+    weights_ += kRate * gradient.cwiseQuotient(squares.cwiseSqrt());
   }
 }
 
-void DiscreteMdp::TrainClass(int interaction_class, const std::vector<StandardPair>& pairs) {
-  Model& model = models_[static_cast<size_t>(interaction_class)];
-  const Rows cues = StackRows(pairs, [](const StandardPair& p) -> const Rows& { return p.cues; });
-  const Rows poses =
-      StackRows(pairs, [](const StandardPair& p) -> const Rows& { return p.follower; });
-  model.leader = PoseSpace(cues, options_.components);
-  model.follower = PoseSpace(poses, options_.components);
-  model.leader_centres = KMeans(model.leader.Project(cues), options_.leader_states, options_.seed);
-  model.pose_centres = KMeans(model.follower.Project(poses), options_.pose_states, options_.seed);
+DiscreteMdp::DiscreteMdp(const std::vector<StandardPair>& pairs) {
+  const Rows cues = StackCues(pairs), poses = StackFollowers(pairs);
+  leader_ = PoseSpace(cues, kComponents);
+  follower_ = PoseSpace(poses, kComponents);
+  leader_centres_ = KMeans(leader_.Project(cues), kLeaderStates, kSeed);
+  pose_centres_ = KMeans(follower_.Project(poses), kPoseStates, kSeed);
+  effort_.resize(pose_centres_.rows(), pose_centres_.rows());
+  for (Eigen::Index from = 0; from < effort_.rows(); ++from) {
+    effort_.row(from) =
+        -(pose_centres_.rowwise() - pose_centres_.row(from)).rowwise().squaredNorm();
+  }
   std::vector<Demonstration> demonstrations;
+  Counts counts(pose_centres_.rows(), leader_centres_.rows());
   for (const StandardPair& pair : pairs) {
-    demonstrations.push_back(
-        {NearestCentres(model.leader_centres, model.leader.Project(pair.cues)),
-         NearestCentres(model.pose_centres, model.follower.Project(pair.follower))});
+    demonstrations.push_back({NearestCentres(leader_centres_, leader_.Project(pair.cues)),
+                              NearestCentres(pose_centres_, follower_.Project(pair.follower))});
+    counts.Add(demonstrations.back(), 1);
   }
-  model.effort.resize(model.pose_centres.rows(), model.pose_centres.rows());
-  for (Eigen::Index from = 0; from < model.effort.rows(); ++from) {
-    model.effort.row(from) =
-        -(model.pose_centres.rowwise() - model.pose_centres.row(from)).rowwise().squaredNorm();
-  }
-  Counts counts(model.pose_centres.rows(), model.leader_centres.rows());
-  for (const Demonstration& one : demonstrations) counts.Add(one, 1);
-  model.tables = Tables(counts);
-  LearnReward(demonstrations, counts, &model);
+  tables_ = Tables(counts);
+  LearnReward(demonstrations, counts);
 }
 
-Rows DiscreteMdp::PredictClass(int interaction_class, const StandardPair& leader) const {
-  const Model& model = models_[static_cast<size_t>(interaction_class)];
-  const std::vector<int> seen =
-      NearestCentres(model.leader_centres, model.leader.Project(leader.cues));
-  const Rows arrivals = Arrivals(model, model.tables, seen);
-  if (options_.expected_pose) {
-    const Rows visits = SumOverPaths(Chain(model, model.tables), arrivals).states;
-    return model.follower.Reconstruct(visits * model.pose_centres);
-  }
-  const std::vector<int> path = BestPath(Chain(model, model.tables), arrivals);
-  Rows poses(arrivals.rows(), model.pose_centres.cols());
-  for (Eigen::Index t = 0; t < poses.rows(); ++t) {
-    poses.row(t) = model.pose_centres.row(path[static_cast<size_t>(t)]);
-  }
-  return model.follower.Reconstruct(poses);
+Rows DiscreteMdp::Predict(const StandardPair& leader) const {
+  const std::vector<int> seen = NearestCentres(leader_centres_, leader_.Project(leader.cues));
+  return follower_.Reconstruct(Visits(tables_, seen) * pose_centres_);
+}
+
+}  // namespace
+
+std::unique_ptr<ClassModel> LearnDiscreteMdp(const std::vector<StandardPair>& pairs) {
+  return std::make_unique<DiscreteMdp>(pairs);
 }
 
 }  // namespace duet::evaluation::baselines

@@ -1,27 +1,39 @@
-#include "model/evaluation/baselines/hmm.h"
+#include "model/evaluation/baselines/class_models.h"
+#include "model/evaluation/baselines/gaussian_hmm.h"
+#include "model/evaluation/baselines/pose_space.h"
 
 namespace duet::evaluation::baselines {
+namespace {
 
-void Hmm::TrainClass(int interaction_class, const std::vector<StandardPair>& pairs) {
-  Model& model = models_[static_cast<size_t>(interaction_class)];
-  model.leader =
-      PoseSpace(StackRows(pairs, [](const StandardPair& p) -> const Rows& { return p.cues; }),
-                options_.leader_components);
-  model.follower =
-      PoseSpace(StackRows(pairs, [](const StandardPair& p) -> const Rows& { return p.follower; }),
-                options_.follower_components);
-  std::vector<Rows> sequences;
-  for (const StandardPair& pair : pairs) {
-    Rows both(pair.cues.rows(), model.leader.dimensions() + model.follower.dimensions());
-    both << model.leader.Project(pair.cues), model.follower.Project(pair.follower);
-    sequences.push_back(std::move(both));
+constexpr int kLeaderComponents = 4, kFollowerComponents = 8;
+
+class Hmm : public ClassModel {
+ public:
+  explicit Hmm(const std::vector<StandardPair>& pairs)
+      : leader_(StackCues(pairs), kLeaderComponents),
+        follower_(StackFollowers(pairs), kFollowerComponents) {
+    std::vector<Rows> sequences;
+    for (const StandardPair& pair : pairs) {
+      Rows both(pair.cues.rows(), leader_.dimensions() + follower_.dimensions());
+      both << leader_.Project(pair.cues), follower_.Project(pair.follower);
+      sequences.push_back(std::move(both));
+    }
+    hmm_ = GaussianHmm(sequences, {});
   }
-  model.hmm = GaussianHmm(sequences, options_.hmm);
-}
 
-Rows Hmm::PredictClass(int interaction_class, const StandardPair& leader) const {
-  const Model& model = models_[static_cast<size_t>(interaction_class)];
-  return model.follower.Reconstruct(model.hmm.ExpectRest(model.leader.Project(leader.cues)));
+  Rows Predict(const StandardPair& leader) const override {
+    return follower_.Reconstruct(hmm_.ExpectRest(leader_.Project(leader.cues)));
+  }
+
+ private:
+  PoseSpace leader_, follower_;
+  GaussianHmm hmm_;
+};
+
+}  // namespace
+
+std::unique_ptr<ClassModel> LearnHmm(const std::vector<StandardPair>& pairs) {
+  return std::make_unique<Hmm>(pairs);
 }
 
 }  // namespace duet::evaluation::baselines

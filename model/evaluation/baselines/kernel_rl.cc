@@ -1,13 +1,23 @@
-#include "model/evaluation/baselines/kernel_rl.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "model/evaluation/baselines/chain.h"
+#include "model/evaluation/baselines/class_models.h"
+#include "model/evaluation/baselines/pose_space.h"
+
 namespace duet::evaluation::baselines {
 namespace {
 
-constexpr double kNever = -1e9;  // log weight of an excluded sample
+constexpr int kComponents = 10;
+// The most training frames to keep: of more, every second (third, ...) one, and the leader's
+// likewise.
+constexpr int kMostSamples = 400;
+// Widths of the kernels, in units of the median distance to the nearest sample of another clip.
+constexpr double kTransitionWidth = 1, kDecodingWidth = 4;
+constexpr double kVelocityWeight = 2;  // weight of the change over a step, relative to the pose
+constexpr int kDemonstrations = 8;     // clips from which the reward's weight is learnt
+constexpr double kNever = -1e9;        // log weight of an excluded sample
 // Minimum width of a kernel, relative to the root mean squared distance: otherwise repeated takes
 // of one motion would make every other motion infinitely far.
 constexpr double kLeastWidth = 0.05;
@@ -15,14 +25,6 @@ constexpr double kTiny = 1e-9;
 // Candidate weights of the reward: powers of two times that of a Gaussian of the cues' own width.
 constexpr int kLeastPower = -8, kMostPower = 4;
 constexpr int kMeanShifts = 20;
-
-// Squared distances between rows. [a rows, b rows]
-Eigen::MatrixXd SquaredDistances(const Rows& a, const Rows& b) {
-  Eigen::MatrixXd distances = -2 * a * b.transpose();
-  distances.colwise() += a.rowwise().squaredNorm();
-  distances.rowwise() += b.rowwise().squaredNorm().transpose();
-  return distances.cwiseMax(0);
-}
 
 // The median over samples of the distance to the nearest one of another clip.
 double MedianNearest(const Eigen::MatrixXd& squared, const std::vector<int>& clip) {
@@ -60,124 +62,144 @@ Rows FillBetween(const Rows& kept, Eigen::Index n, Eigen::Index rows) {
   return filled;
 }
 
-}  // namespace
+class KernelRl : public ClassModel {
+ public:
+  explicit KernelRl(const std::vector<StandardPair>& pairs);
+  Rows Predict(const StandardPair& leader) const override;
 
-void KernelRl::BuildStep(const std::vector<int>& successor, Model* model) const {
+ private:
+  void BuildStep(const std::vector<int>& successor);
+  void LearnReward(const std::vector<StandardPair>& pairs);
+  double LogLikelihood(const std::vector<StandardPair>& pairs, double weight) const;
+  // Distances between the leader's cues and each sample's. Shapes: returns [frames / stride,
+  // samples].
+  Rows Cost(const Rows& cues) const;
+  // Soft value iteration and the policy's visits, given the cost of arriving at each sample in each
+  // frame. Ignores samples of the clip `without` (-1: none).
+  PathPosterior Plan(const Rows& cost, int without) const;
+  Rows MeanShift(const Rows& visits) const;
+
+  PoseSpace leader_, follower_;
+  Eigen::Index stride_ = 1;  // frames from one sample to the next
+  Rows cues_, poses_;        // [samples, components]
+  std::vector<int> clip_;    // the sequence of each sample
+  Eigen::MatrixXd step_;     // [from, to]: transitions from samples similar to `from`
+  double pose_width_ = 1;    // median distance to the nearest sample of another clip
+  double reward_weight_ = 1;
+};
+
+void KernelRl::BuildStep(const std::vector<int>& successor) {
   // A state is a pose and its change: without the change, motion could reverse freely.
-  const Eigen::Index samples = model->poses.rows(), width = model->poses.cols();
+  const Eigen::Index samples = poses_.rows(), width = poses_.cols();
   Rows states(samples, 2 * width);
   for (Eigen::Index i = 0; i < samples; ++i) {
     const Eigen::Index next = successor[static_cast<size_t>(i)];
-    states.row(i) << model->poses.row(i),
-        options_.velocity_weight * (model->poses.row(next) - model->poses.row(i));
+    states.row(i) << poses_.row(i), kVelocityWeight * (poses_.row(next) - poses_.row(i));
   }
-  model->pose_width = MedianNearest(SquaredDistances(model->poses, model->poses), model->clip);
+  pose_width_ = MedianNearest(SquaredDistances(poses_, poses_), clip_);
   const Eigen::MatrixXd squared = SquaredDistances(states, states);
-  const double spread = options_.transition_width * MedianNearest(squared, model->clip);
+  const double spread = kTransitionWidth * MedianNearest(squared, clip_);
   Eigen::MatrixXd kernel = (-squared / (2 * spread * spread)).array().exp();
   kernel.array().colwise() /= kernel.rowwise().sum().array().eval();
-  model->step = Eigen::MatrixXd::Zero(samples, samples);
+  step_ = Eigen::MatrixXd::Zero(samples, samples);
   for (Eigen::Index like = 0; like < samples; ++like) {
-    model->step.col(successor[static_cast<size_t>(like)]) += kernel.col(like);
+    step_.col(successor[static_cast<size_t>(like)]) += kernel.col(like);
   }
 }
 
-Rows KernelRl::Cost(const Model& model, const Rows& cues) {
-  return SquaredDistances(EveryNth(model.leader.Project(cues), model.stride), model.cues);
+Rows KernelRl::Cost(const Rows& cues) const {
+  return SquaredDistances(EveryNth(leader_.Project(cues), stride_), cues_);
 }
 
-PathPosterior KernelRl::Plan(const Model& model, const Rows& cost, int without) {
+PathPosterior KernelRl::Plan(const Rows& cost, int without) const {
   Rows arrivals = -cost;
   for (Eigen::Index i = 0; i < arrivals.cols(); ++i) {
-    if (model.clip[static_cast<size_t>(i)] == without) arrivals.col(i).setConstant(kNever);
+    if (clip_[static_cast<size_t>(i)] == without) arrivals.col(i).setConstant(kNever);
   }
-  return SumOverPaths({Eigen::RowVectorXd::Ones(arrivals.cols()), model.step}, arrivals);
+  return SumOverPaths({Eigen::RowVectorXd::Ones(arrivals.cols()), step_}, arrivals);
 }
 
-void KernelRl::LearnReward(const std::vector<StandardPair>& pairs, Model* model) const {
-  const double cue_width = MedianNearest(SquaredDistances(model->cues, model->cues), model->clip);
+void KernelRl::LearnReward(const std::vector<StandardPair>& pairs) {
+  const double cue_width = MedianNearest(SquaredDistances(cues_, cues_), clip_);
   double best = -std::numeric_limits<double>::infinity();
   for (int power = kLeastPower; power <= kMostPower; ++power) {
     const double weight = std::pow(2, power) / (2 * cue_width * cue_width);
-    const double likelihood = LogLikelihood(*model, pairs, weight);
+    const double likelihood = LogLikelihood(pairs, weight);
     if (likelihood <= best) continue;
     best = likelihood;
-    model->reward_weight = weight;
+    reward_weight_ = weight;
   }
 }
 
 // The log-likelihood of the demonstrated poses, each as a sample's pose with Gaussian noise.
 // Excludes a clip's own samples, which would overfit.
-double KernelRl::LogLikelihood(const Model& model, const std::vector<StandardPair>& pairs,
-                               double weight) const {
-  const size_t stride =
-      std::max<size_t>(1, pairs.size() / static_cast<size_t>(options_.demonstrations));
-  const double precision = 1 / (2 * model.pose_width * model.pose_width);
+double KernelRl::LogLikelihood(const std::vector<StandardPair>& pairs, double weight) const {
+  const size_t stride = std::max<size_t>(1, pairs.size() / size_t{kDemonstrations});
+  const double precision = 1 / (2 * pose_width_ * pose_width_);
   double sum = 0;
   for (size_t i = 0; pairs.size() > 1 && i < pairs.size(); i += stride) {
     const int clip = static_cast<int>(i);
-    const Rows cost = weight * Cost(model, pairs[i].cues);
+    const Rows cost = weight * Cost(pairs[i].cues);
     const Rows noise =
         precision *
-        SquaredDistances(EveryNth(model.follower.Project(pairs[i].follower), model.stride),
-                         model.poses);
-    sum += Plan(model, cost + noise, clip).log_sum - Plan(model, cost, clip).log_sum;
+        SquaredDistances(EveryNth(follower_.Project(pairs[i].follower), stride_), poses_);
+    sum += Plan(cost + noise, clip).log_sum - Plan(cost, clip).log_sum;
   }
   return sum;
 }
 
-void KernelRl::TrainClass(int interaction_class, const std::vector<StandardPair>& pairs) {
-  Model& model = models_[static_cast<size_t>(interaction_class)];
-  const Rows cues = StackRows(pairs, [](const StandardPair& p) -> const Rows& { return p.cues; });
-  const Rows poses =
-      StackRows(pairs, [](const StandardPair& p) -> const Rows& { return p.follower; });
-  model.leader = PoseSpace(cues, options_.components);
-  model.follower = PoseSpace(poses, options_.components);
-  model.stride = (cues.rows() + options_.most_samples - 1) / options_.most_samples;
+KernelRl::KernelRl(const std::vector<StandardPair>& pairs) {
+  const Rows cues = StackCues(pairs), poses = StackFollowers(pairs);
+  leader_ = PoseSpace(cues, kComponents);
+  follower_ = PoseSpace(poses, kComponents);
+  stride_ = (cues.rows() + kMostSamples - 1) / kMostSamples;
   std::vector<Eigen::Index> kept;
   std::vector<int> successor;
   Eigen::Index first = 0;
   for (size_t i = 0; i < pairs.size(); ++i) {
     const Eigen::Index frames = pairs[i].cues.rows();
-    for (Eigen::Index t = 0; t < frames; t += model.stride) {
+    for (Eigen::Index t = 0; t < frames; t += stride_) {
       const int index = static_cast<int>(kept.size());
       kept.push_back(first + t);
-      model.clip.push_back(static_cast<int>(i));
+      clip_.push_back(static_cast<int>(i));
       // A clip's last pose follows itself.
-      successor.push_back(t + model.stride < frames ? index + 1 : index);
+      successor.push_back(t + stride_ < frames ? index + 1 : index);
     }
     first += frames;
   }
-  model.cues = model.leader.Project(cues(kept, Eigen::all));
-  model.poses = model.follower.Project(poses(kept, Eigen::all));
-  BuildStep(successor, &model);
-  LearnReward(pairs, &model);
+  cues_ = leader_.Project(cues(kept, Eigen::all));
+  poses_ = follower_.Project(poses(kept, Eigen::all));
+  BuildStep(successor);
+  LearnReward(pairs);
 }
 
-Rows KernelRl::MeanShift(const Model& model, const Rows& visits) const {
-  const double width = options_.decoding_width * model.pose_width;
-  Rows poses(visits.rows(), model.poses.cols());
+Rows KernelRl::MeanShift(const Rows& visits) const {
+  const double width = kDecodingWidth * pose_width_;
+  Rows poses(visits.rows(), poses_.cols());
   for (Eigen::Index t = 0; t < visits.rows(); ++t) {
     Eigen::Index likeliest = 0;
     visits.row(t).maxCoeff(&likeliest);
-    Rows pose = model.poses.row(likeliest);
+    Rows pose = poses_.row(likeliest);
     for (int i = 0; i < kMeanShifts; ++i) {
       const Eigen::RowVectorXd kernel =
-          (-SquaredDistances(pose, model.poses) / (2 * width * width)).array().exp();
+          (-SquaredDistances(pose, poses_) / (2 * width * width)).array().exp();
       const Eigen::RowVectorXd weights = kernel.cwiseProduct(visits.row(t));
-      pose = weights * model.poses / weights.sum();
+      pose = weights * poses_ / weights.sum();
     }
     poses.row(t) = pose;
   }
   return poses;
 }
 
-Rows KernelRl::PredictClass(int interaction_class, const StandardPair& leader) const {
-  const Model& model = models_[static_cast<size_t>(interaction_class)];
-  const Rows visits =
-      Plan(model, model.reward_weight * Cost(model, leader.cues), /*without=*/-1).states;
-  return model.follower.Reconstruct(
-      FillBetween(MeanShift(model, visits), model.stride, leader.cues.rows()));
+Rows KernelRl::Predict(const StandardPair& leader) const {
+  const Rows visits = Plan(reward_weight_ * Cost(leader.cues), /*without=*/-1).states;
+  return follower_.Reconstruct(FillBetween(MeanShift(visits), stride_, leader.cues.rows()));
+}
+
+}  // namespace
+
+std::unique_ptr<ClassModel> LearnKernelRl(const std::vector<StandardPair>& pairs) {
+  return std::make_unique<KernelRl>(pairs);
 }
 
 }  // namespace duet::evaluation::baselines

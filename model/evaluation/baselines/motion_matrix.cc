@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace duet::evaluation::baselines {
@@ -13,6 +15,17 @@ constexpr Eigen::Index kVelocityReach = 2;
 constexpr double kTimeWeight = 1.0;
 // Weight of one metre of the root's path, which moves all joints.
 constexpr double kWayWeight = 2.0;
+
+// A matching's cost so far and its number of matched rows.
+struct Path {
+  double cost = std::numeric_limits<double>::infinity();
+  int length = 0;
+};
+
+const Path& Cheapest(const Path& a, const Path& b, const Path& c) {
+  const Path& ab = a.cost <= b.cost ? a : b;
+  return ab.cost <= c.cost ? ab : c;
+}
 
 }  // namespace
 
@@ -104,6 +117,30 @@ Rows StretchTo(const Rows& motion, Eigen::Index frames) {
                  (at - static_cast<double>(whole)) * (motion.row(next) - motion.row(whole));
   }
   return out;
+}
+
+double TimeWarpedDistance(const Rows& a, const Rows& b) {
+  const size_t width = static_cast<size_t>(b.rows());
+  // One row of the table at a time; index 0 stands for "before the first row of b".
+  std::vector<Path> previous(width + 1), current(width + 1);
+  previous[0].cost = 0;
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    current[0] = Path{};
+    for (size_t j = 1; j <= width; ++j) {
+      const Path& from = Cheapest(previous[j - 1], previous[j], current[j - 1]);
+      const double distance = (a.row(i) - b.row(static_cast<Eigen::Index>(j) - 1)).norm();
+      current[j] = {from.cost + distance, from.length + 1};
+    }
+    std::swap(previous, current);
+  }
+  return previous[width].cost / previous[width].length;
+}
+
+Eigen::MatrixXd SquaredDistances(const Rows& a, const Rows& b) {
+  Eigen::MatrixXd distances = -2 * a * b.transpose();
+  distances.colwise() += a.rowwise().squaredNorm();
+  distances.rowwise() += b.rowwise().squaredNorm().transpose();
+  return distances.cwiseMax(0);
 }
 
 }  // namespace duet::evaluation::baselines

@@ -52,6 +52,14 @@ Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world
 // Resamples a motion linearly to another number of frames. Both numbers are at least 1.
 Rows StretchTo(const Rows& motion, Eigen::Index frames);
 
+// The mean distance of matched rows along the best monotone matching of two motions (dynamic time
+// warping: steps in either or both; first and last rows are matched). Requires the same number of
+// columns and at least one row each.
+double TimeWarpedDistance(const Rows& a, const Rows& b);
+
+// Squared distances between rows. Shapes: returns [a rows, b rows].
+Eigen::MatrixXd SquaredDistances(const Rows& a, const Rows& b);
+
 }  // namespace duet::evaluation::baselines
 
 #endif  // DUET_MODEL_EVALUATION_BASELINES_MOTION_MATRIX_H_

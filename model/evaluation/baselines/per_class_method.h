@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_EVALUATION_BASELINES_PER_CLASS_METHOD_H_
 #define DUET_MODEL_EVALUATION_BASELINES_PER_CLASS_METHOD_H_
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,29 +11,33 @@
 
 namespace duet::evaluation::baselines {
 
-// A method that learns one model for each interaction class, in the standard coordinates.
-// Subclasses implement TrainClass and PredictClass.
+// A model of one interaction class, in the standard coordinates.
+class ClassModel {
+ public:
+  virtual ~ClassModel() = default;
+  // The follower of a leader (leader.follower is empty). Shapes: returns [frames, 3 joints].
+  virtual Rows Predict(const StandardPair& leader) const = 0;
+};
+
+// A method that learns one model for each interaction class.
 class PerClassMethod : public protocol::Method {
  public:
-  explicit PerClassMethod(std::string name) : name_(std::move(name)) {}
+  // Learns a class from its pairs, of which there is at least one.
+  using Learn = std::unique_ptr<ClassModel> (*)(const std::vector<StandardPair>& pairs);
+
+  PerClassMethod(std::string name, Learn learn) : name_(std::move(name)), learn_(learn) {}
 
   std::string name() const override { return name_; }
-
-  // Errors: INVALID_ARGUMENT when a class of the data set has no training sequence.
+  // Discards the results of an earlier call. Errors: INVALID_ARGUMENT when a class of the data set
+  // has no training sequence.
   absl::Status Train(const dataset::Dataset& dataset, const std::vector<int>& train) override;
   absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const override;
 
- protected:
-  // Discards the results of an earlier Train.
-  virtual void Reset(int classes) = 0;
-  // `pairs` holds at least one sequence.
-  virtual void TrainClass(int interaction_class, const std::vector<StandardPair>& pairs) = 0;
-  // The follower of a leader (pair.follower is empty). Shapes: returns [frames, 3 joints].
-  virtual Rows PredictClass(int interaction_class, const StandardPair& leader) const = 0;
-
  private:
   std::string name_;
+  Learn learn_;
   motion::Skeleton skeleton_;
+  std::vector<std::unique_ptr<ClassModel>> models_;  // [classes]
 };
 
 }  // namespace duet::evaluation::baselines

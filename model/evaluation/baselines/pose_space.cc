@@ -9,6 +9,12 @@ namespace {
 // Components with less than this share of the strongest one's variance are rounding.
 constexpr double kNoVariance = 1e-10;
 
+Rows Stack(const std::vector<StandardPair>& pairs, Rows StandardPair::*part) {
+  std::vector<const Rows*> parts;
+  for (const StandardPair& pair : pairs) parts.push_back(&(pair.*part));
+  return StackRows(parts);
+}
+
 }  // namespace
 
 PoseSpace::PoseSpace(const Rows& rows, Eigen::Index dimensions) : mean_(rows.colwise().mean()) {
@@ -26,6 +32,24 @@ Rows PoseSpace::Project(const Rows& rows) const { return (rows.rowwise() - mean_
 
 Rows PoseSpace::Reconstruct(const Rows& components) const {
   return (components * basis_.transpose()).rowwise() + mean_;
+}
+
+Rows StackRows(const std::vector<const Rows*>& parts) {
+  Eigen::Index rows = 0;
+  for (const Rows* part : parts) rows += part->rows();
+  Rows stacked(rows, parts.front()->cols());
+  rows = 0;
+  for (const Rows* part : parts) {
+    stacked.middleRows(rows, part->rows()) = *part;
+    rows += part->rows();
+  }
+  return stacked;
+}
+
+Rows StackCues(const std::vector<StandardPair>& pairs) { return Stack(pairs, &StandardPair::cues); }
+
+Rows StackFollowers(const std::vector<StandardPair>& pairs) {
+  return Stack(pairs, &StandardPair::follower);
 }
 
 }  // namespace duet::evaluation::baselines

@@ -1,6 +1,8 @@
 #ifndef DUET_MODEL_EVALUATION_BASELINES_POSE_SPACE_H_
 #define DUET_MODEL_EVALUATION_BASELINES_POSE_SPACE_H_
 
+#include <vector>
+
 #include "model/evaluation/baselines/motion_matrix.h"
 
 namespace duet::evaluation::baselines {
@@ -22,19 +24,13 @@ class PoseSpace {
   Eigen::MatrixXd basis_;  // [values, dimensions], orthonormal columns, strongest first
 };
 
-// Rows of several matrices, one below the other. `get` picks the matrix of an element.
-template <typename Elements, typename Get>
-Rows StackRows(const Elements& elements, Get get) {
-  Eigen::Index rows = 0;
-  for (const auto& element : elements) rows += get(element).rows();
-  Rows out(rows, get(*elements.begin()).cols());
-  rows = 0;
-  for (const auto& element : elements) {
-    out.middleRows(rows, get(element).rows()) = get(element);
-    rows += get(element).rows();
-  }
-  return out;
-}
+// Rows of several matrices with the same number of columns, one below the other. Requires at least
+// one matrix.
+Rows StackRows(const std::vector<const Rows*>& parts);
+
+// The cues, or the followers, of pairs, one below the other. Requires at least one pair.
+Rows StackCues(const std::vector<StandardPair>& pairs);
+Rows StackFollowers(const std::vector<StandardPair>& pairs);
 
 }  // namespace duet::evaluation::baselines
 
