@@ -151,7 +151,7 @@ motion::Poses RunOne(const Synthesizer& model, const SynthesisWindow& window) {
   return *model.Synthesize({&window}).front();
 }
 
-TEST(CleanUpStage, IsForModelsThatSampleUnlessTheWindowSays) {
+TEST(CleanUpStage, DefaultsToModelsThatSample) {
   PipelineOptions off;
   off.clean_up = false;
   SynthesisWindow window = Leaning();
@@ -182,7 +182,7 @@ TEST(CleanUpStage, WindowsOfABatchHaveTheirOwnChoices) {
   EXPECT_EQ(*batch[3], plain);
 }
 
-TEST(CleanUpStage, AllWindowsOfAClipDoAsItsRequestSays) {
+TEST(CleanUpStage, AllWindowsOfAClipFollowItsRequest) {
   for (const std::optional<bool> wanted : {std::optional<bool>(), {true}, {false}}) {
     ClipRequest request{SwayingMotion(120, 15), 15,           LabelTrack(std::vector<float>(6, 0)),
                         std::nullopt,           std::nullopt, {{}, wanted}};

@@ -252,7 +252,7 @@ TEST(ClipSynthesis, PartnerDirectionGoesToTheFirstWindow) {
   request.partner_direction = motion::Vec3{1, 0, 0};
   const Outcome run = RunAll(FakeSynthesizer(), request);
   EXPECT_EQ(run.windows[0].partner_direction, request.partner_direction);
-  // Later windows know where the follower is.
+  // Later windows have the follower's position.
   for (std::size_t k = 1; k < run.windows.size(); ++k) {
     EXPECT_FALSE(run.windows[k].partner_direction.has_value()) << k;
   }
@@ -409,12 +409,12 @@ ModelDescription DirectedDescription() {
   return description;
 }
 
-// What a window was told of the partner's direction.
+// The partner's direction that a window receives.
 motion::Vec3 DirectionTold(const SynthesisWindow& window) {
   return window.partner_direction.value_or(motion::Vec3{0, 0, 0});
 }
 
-TEST(ClipSynthesis, EstimatesADirectionThatNobodyTells) {
+TEST(ClipSynthesis, EstimatesTheDirectionThatARequestLacks) {
   const FakeSynthesizer fake(DirectedDescription());
   const Outcome run = RunAll(fake, Request(120, 15));
   ASSERT_GT(run.windows.size(), 1u);
@@ -423,7 +423,7 @@ TEST(ClipSynthesis, EstimatesADirectionThatNobodyTells) {
   motion::Vec3 right = leader.at(0, hips.right) - leader.at(0, hips.left);
   right = right / Norm(right);
   EXPECT_LT(Distance(DirectionTold(run.windows[0]), right), 1e-3f);
-  // Later, where the follower has got to tells.
+  // Later windows use the follower's position.
   for (std::size_t i = 1; i < run.windows.size(); ++i) {
     EXPECT_FALSE(run.windows[i].partner_direction.has_value()) << i;
   }
@@ -440,7 +440,7 @@ TEST(ClipSynthesis, WhereNoWindowHasAStartEachIsEstimated) {
   }
 }
 
-TEST(ClipSynthesis, WhatTheCallerTellsIsNotEstimated) {
+TEST(ClipSynthesis, DirectionOfTheRequestOverridesTheEstimate) {
   const FakeSynthesizer fake(DirectedDescription());
   ClipRequest told = Request(30, 15);
   told.partner_direction = motion::Vec3{1, 0, 2};
@@ -450,7 +450,7 @@ TEST(ClipSynthesis, WhatTheCallerTellsIsNotEstimated) {
   EXPECT_FALSE(RunAll(fake, started).windows[0].partner_direction.has_value());
 }
 
-TEST(ClipSynthesis, AModelThatCannotEstimateIsToldNothing) {
+TEST(ClipSynthesis, ModelWithoutARegressionGetsNoDirection) {
   EXPECT_FALSE(RunAll(FakeSynthesizer(), Request(30, 15)).windows[0].partner_direction.has_value());
 }
 

@@ -27,7 +27,7 @@ motion::Poses Blended(const Pair& pair) {
   return blended;
 }
 
-TEST(CrossFade, LeavesEqualMotionsAlone) {
+TEST(CrossFade, EqualMotionsDoNotChange) {
   Pair pair;
   pair.to = pair.from;
   const motion::Poses blended = Blended(pair);

@@ -143,7 +143,7 @@ TEST(LeaderFeatures, AMirroredLeaderIsTheSame) {
     EXPECT_NEAR(other.at(name), value, 1e-5) << name;
 }
 
-TEST(LeaderFeatures, OneFrameAloneStandsStill) {
+TEST(LeaderFeatures, SingleFrameStandsStill) {
   const auto one = Measure(Standing(1));
   EXPECT_EQ(one.at("mean_joint_speed"), 0);
   EXPECT_EQ(one.at("root_path_speed"), 0);

@@ -241,7 +241,7 @@ TEST(NetworkSynthesizer, WithoutHipsTheLeaderIsNotTurned) {
   EXPECT_EQ(seen.leader.at(0, 5), window.leader.at(0, 5) - window.leader.at(0, 2));
 }
 
-TEST(NetworkSynthesizer, AWindowThatIsNotFiniteFailsAlone) {
+TEST(NetworkSynthesizer, OnlyTheWindowThatIsNotFiniteFails) {
   const auto model = Model([](Inputs inputs) {
     Answer followers = LargerAndHigher(inputs);
     (*followers)[1].at(2, 7).y = std::numeric_limits<float>::quiet_NaN();
@@ -275,7 +275,7 @@ TEST(NetworkSynthesizer, AnAnswerOfAnotherShapeIsRefused) {
   refused({motion::Poses(3, 14)}, "answered 3 frames of 14 joints, wanted 3 of 15");
 }
 
-TEST(NetworkSynthesizer, AWindowThatNobodyWantsFailsAlone) {
+TEST(NetworkSynthesizer, OnlyTheCancelledWindowFails) {
   std::vector<SynthesisWindow> windows = {Window(), Window(), Window()};
   windows[1].cancelled = std::make_shared<std::atomic<bool>>(true);
   windows[2].cancelled = std::make_shared<std::atomic<bool>>(false);

@@ -64,7 +64,7 @@ TEST(Unfamiliarity, IsMeasuredAtTheModelsRate) {
   const double far = *Unfamiliarity(model, Request(Walking(kWindow, 1 / kRate)));
   EXPECT_NEAR(*Unfamiliarity(model, Request(Walking(2 * kWindow - 1, 0.5 / kRate), 2 * kRate)), far,
               1e-3);
-  // The same frames told to be twice as fast.
+  // The same frames at twice the rate.
   EXPECT_GT(*Unfamiliarity(model, Request(Walking(kWindow, 1 / kRate), 2 * kRate)), far * 1.2);
 }
 
@@ -83,7 +83,7 @@ TEST(Unfamiliarity, IsNotKnownWhereNoNumberHoldsIt) {
   EXPECT_FALSE(Unfamiliarity(TrainedOnStanding(), Request(leader)).has_value());
 }
 
-TEST(Unfamiliarity, EverySynthesizerOfANetworkTells) {
+TEST(Unfamiliarity, EverySynthesizerOfANetworkReportsIt) {
   const auto tells = [](const ModelDescription& model) {
     const auto synthesizer = MakeSynthesizer(
         model, motion::StandardOrigin::kFirstFrame,
