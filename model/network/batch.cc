@@ -77,4 +77,12 @@ GeneratorInput MakeInput(const checkpoint::Manifest& manifest,
   return batch;
 }
 
+void AppendRows(const torch::Tensor& rows, std::vector<std::vector<float>>* out) {
+  const torch::Tensor values = rows.contiguous();
+  const float* row = values.data_ptr<float>();
+  for (int64_t i = 0; i < values.size(0); ++i, row += values.size(1)) {
+    out->emplace_back(row, row + values.size(1));
+  }
+}
+
 }  // namespace duet::network

@@ -1,4 +1,4 @@
-// tests/evaluation/judge/classifier_test.cc compares the results with LibTorch's.
+// tests/evaluation/judge/motion_classifier_test.cc compares the results with LibTorch's.
 #include "model/classifier/classifier.h"
 
 #include <cmath>

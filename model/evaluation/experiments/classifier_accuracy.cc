@@ -1,24 +1,14 @@
 #include "model/evaluation/experiments/classifier_accuracy.h"
 
-#include <algorithm>
 #include <cstddef>
 
 #include "model/evaluation/metrics/confusion.h"
 #include "model/evaluation/metrics/scores.h"
 
 namespace duet::evaluation::experiments {
-namespace {
-
-int Largest(const std::vector<float>& values) {
-  return static_cast<int>(std::max_element(values.begin(), values.end()) - values.begin());
-}
-
-}  // namespace
-
-absl::StatusOr<std::vector<double>> ClassifierAccuracy(const dataset::Dataset& dataset,
-                                                       const TrainingMaterial& material,
-                                                       const std::vector<int>& test,
-                                                       const judge::ClassifierOptions& options) {
+absl::StatusOr<std::vector<double>> ClassifierAccuracy(
+    const dataset::Dataset& dataset, const TrainingMaterial& material, const std::vector<int>& test,
+    const judge::MotionClassifierOptions& options) {
   // Synthetic pairs have their own leaders: they are added to the data set like captured ones.
   dataset::Dataset all = dataset;
   std::vector<int> train = material.captured;
@@ -29,15 +19,10 @@ absl::StatusOr<std::vector<double>> ClassifierAccuracy(const dataset::Dataset& d
   absl::StatusOr<judge::MotionClassifier> classifier =
       judge::MotionClassifier::Train(all, metrics::CapturedMotions(all, train), options);
   if (!classifier.ok()) return classifier.status();
-  const std::vector<std::vector<float>> probabilities =
-      classifier->Probabilities(all, metrics::CapturedMotions(all, test));
   metrics::Confusion confusion(dataset.class_count());
-  for (size_t i = 0; i < test.size(); ++i) {
-    confusion.Add(all.sequences[static_cast<size_t>(test[i])].interaction_class,
-                  Largest(probabilities[i]));
-  }
-  std::vector<double> accuracy;
-  for (int c = 0; c < dataset.class_count(); ++c) accuracy.push_back(confusion.ClassAccuracy(c));
+  confusion.AddLikeliest(metrics::ClassesOf(dataset, test),
+                         classifier->Probabilities(all, metrics::CapturedMotions(all, test)));
+  std::vector<double> accuracy = confusion.ClassAccuracies();
   accuracy.push_back(confusion.MeanClassAccuracy());
   return accuracy;
 }

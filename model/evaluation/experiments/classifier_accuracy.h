@@ -5,7 +5,7 @@
 
 #include "absl/status/statusor.h"
 #include "model/dataset/dataset.h"
-#include "model/evaluation/judge/classifier.h"
+#include "model/evaluation/judge/motion_classifier.h"
 
 namespace duet::evaluation::experiments {
 
@@ -17,10 +17,9 @@ struct TrainingMaterial {
 
 // Trains a classifier on the material and tests it on captured followers. Returns the accuracy of
 // each class, then their mean. Errors: those of MotionClassifier::Train.
-absl::StatusOr<std::vector<double>> ClassifierAccuracy(const dataset::Dataset& dataset,
-                                                       const TrainingMaterial& material,
-                                                       const std::vector<int>& test,
-                                                       const judge::ClassifierOptions& options);
+absl::StatusOr<std::vector<double>> ClassifierAccuracy(
+    const dataset::Dataset& dataset, const TrainingMaterial& material, const std::vector<int>& test,
+    const judge::MotionClassifierOptions& options);
 
 }  // namespace duet::evaluation::experiments
 

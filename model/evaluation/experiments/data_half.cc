@@ -64,7 +64,7 @@ absl::Status RunHalf(const dataset::Dataset& dataset, const DataHalf& half,
                      const HalfOptions& options, std::ostream* progress, Trials* trials) {
   for (int repeat = 1; repeat <= options.repeats; ++repeat) {
     for (const Condition& condition : Conditions(half, options)) {
-      judge::ClassifierOptions classifier;
+      judge::MotionClassifierOptions classifier;
       classifier.epochs = condition.epochs;
       classifier.seed = static_cast<uint64_t>(repeat);
       absl::StatusOr<std::vector<double>> accuracy =

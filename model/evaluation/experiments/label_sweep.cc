@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "model/evaluation/metrics/statistics.h"
+
 namespace duet::evaluation::experiments {
 namespace {
 
@@ -43,10 +45,6 @@ std::vector<double> Ranks(const std::vector<double>& values) {
     first = end;
   }
   return ranks;
-}
-
-double Mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 // Adds a curve's figures to the sums, which MeasureControl divides by the number of curves.
@@ -102,7 +100,7 @@ LabelControl MeasureControl(const std::vector<SweepCurve>& curves) {
 
 double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y) {
   const std::vector<double> a = Ranks(x), b = Ranks(y);
-  const double mean_a = Mean(a), mean_b = Mean(b);
+  const double mean_a = metrics::Mean(a), mean_b = metrics::Mean(b);
   double ab = 0, aa = 0, bb = 0;
   for (size_t i = 0; i < a.size(); ++i) {
     ab += (a[i] - mean_a) * (b[i] - mean_b);

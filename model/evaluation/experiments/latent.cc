@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/evaluation/experiments/synthesizer_method.h"
+#include "model/network/batch.h"
 #include "model/network/generator.h"
 #include "model/network/parameters.h"
 #include "model/network/sequence.h"
@@ -38,14 +39,6 @@ torch::Tensor MeanOverFrames(const torch::Tensor& frames, const torch::Tensor& l
   return (frames * mask).sum(0) / lengths.to(frames.dtype()).unsqueeze(1);
 }
 
-void AppendRows(const torch::Tensor& rows, metrics::FeatureSet* out) {
-  const torch::Tensor values = rows.contiguous();
-  const float* row = values.data_ptr<float>();
-  for (int64_t i = 0; i < values.size(0); ++i, row += values.size(1)) {
-    out->emplace_back(row, row + values.size(1));
-  }
-}
-
 metrics::FeatureSet Encode(const checkpoint::Manifest& manifest, network::Generator generator,
                            const dataset::Dataset& dataset,
                            const std::vector<training::Example>& examples) {
@@ -57,7 +50,7 @@ metrics::FeatureSet Encode(const checkpoint::Manifest& manifest, network::Genera
     const network::GeneratorInput input =
         training::MakeBatch(manifest, dataset, {begin, begin + static_cast<std::ptrdiff_t>(count)})
             .input;
-    AppendRows(MeanOverFrames(generator->Encode(input), input.lengths), &features);
+    network::AppendRows(MeanOverFrames(generator->Encode(input), input.lengths), &features);
   }
   return features;
 }

@@ -23,7 +23,7 @@ dataset::Dataset PairsToTell(const dataset::Dataset& dataset,
   pairs.touches = {false, false};
   pairs.sequences.clear();
   for (const metrics::ScoredMotion& answer : answers) {
-    dataset::Sequence sequence = dataset.sequences[static_cast<size_t>(answer.sequence)];
+    dataset::Sequence sequence = SequenceOf(dataset, answer);
     motion::ClipPair& pair = sequence.pair;
     const double rate = pair.leader.frame_rate_hz;
     pair.leader.poses = metrics::WithoutNoise(pair.leader.poses, rate);
@@ -45,9 +45,9 @@ std::vector<metrics::ScoredMotion> All(const dataset::Dataset& pairs) {
 
 }  // namespace
 
-judge::ClassifierOptions ToldApartOptions(uint64_t seed) {
-  judge::ClassifierOptions options;
-  options.sees = judge::JudgeSees::kBoth;
+judge::MotionClassifierOptions ToldApartOptions(uint64_t seed) {
+  judge::MotionClassifierOptions options;
+  options.sees = classifier::Sees::kBoth;
   options.body_noise = 0.01;
   options.seed = seed;
   return options;
@@ -56,21 +56,19 @@ judge::ClassifierOptions ToldApartOptions(uint64_t seed) {
 absl::StatusOr<double> ToldApart(const dataset::Dataset& dataset,
                                  const std::vector<metrics::ScoredMotion>& training_answers,
                                  const std::vector<metrics::ScoredMotion>& test_answers,
-                                 const judge::ClassifierOptions& options) {
+                                 const judge::MotionClassifierOptions& options) {
   if (test_answers.empty()) {
-    return absl::InvalidArgumentError("test answers: none, wanted one or more");
+    return absl::InvalidArgumentError("test answers: expected at least one, got none");
   }
   const dataset::Dataset training = PairsToTell(dataset, training_answers);
   const absl::StatusOr<judge::MotionClassifier> classifier =
       judge::MotionClassifier::Train(training, All(training), options);
   if (!classifier.ok()) return classifier.status();
   const dataset::Dataset test = PairsToTell(dataset, test_answers);
-  const std::vector<std::vector<float>> probabilities = classifier->Probabilities(test, All(test));
-  metrics::Confusion confusion(2);
-  for (size_t i = 0; i < probabilities.size(); ++i) {
-    const bool synthesised = probabilities[i][kSynthesised] > probabilities[i][kCaptured];
-    confusion.Add(test.sequences[i].interaction_class, synthesised ? kSynthesised : kCaptured);
-  }
+  std::vector<int> meant;
+  for (const dataset::Sequence& pair : test.sequences) meant.push_back(pair.interaction_class);
+  metrics::Confusion confusion(test.class_count());
+  confusion.AddLikeliest(meant, classifier->Probabilities(test, All(test)));
   return confusion.MeanClassAccuracy();
 }
 

@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "model/evaluation/judge/classifier.h"
+#include "model/evaluation/judge/motion_classifier.h"
 #include "model/evaluation/metrics/scores.h"
 
 namespace duet::evaluation::experiments {
 
 // Settings of told-apart classifiers. They see leader and follower, and vary people's proportions
 // less than a judge does, since a limb of a wrong length may identify an answer.
-judge::ClassifierOptions ToldApartOptions(uint64_t seed);
+judge::MotionClassifierOptions ToldApartOptions(uint64_t seed);
 
 // The balanced accuracy of a new classifier that distinguishes synthesised from captured pairs.
 // 0.5: indistinguishable; 1: always correct. It learns from answers to the training sequences and
@@ -21,7 +21,7 @@ judge::ClassifierOptions ToldApartOptions(uint64_t seed);
 absl::StatusOr<double> ToldApart(const dataset::Dataset& dataset,
                                  const std::vector<metrics::ScoredMotion>& training_answers,
                                  const std::vector<metrics::ScoredMotion>& test_answers,
-                                 const judge::ClassifierOptions& options);
+                                 const judge::MotionClassifierOptions& options);
 
 }  // namespace duet::evaluation::experiments
 

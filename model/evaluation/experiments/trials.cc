@@ -1,16 +1,15 @@
 #include "model/evaluation/experiments/trials.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+
+#include "model/evaluation/metrics/statistics.h"
 
 namespace duet::evaluation::experiments {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 double ShareAboveZero(const std::vector<double>& values) {
-  if (values.empty()) return kMissing;
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto above = std::count_if(values.begin(), values.end(), [](double v) { return v > 0; });
   return static_cast<double>(above) / static_cast<double>(values.size());
 }
@@ -36,16 +35,6 @@ Row Differences(const Row& row, const Row& base) {
 
 }  // namespace
 
-MeanAndDeviation Summarise(const std::vector<double>& values) {
-  const double count = static_cast<double>(values.size());
-  if (values.empty()) return {kMissing, kMissing};
-  double sum = 0, squares = 0;
-  for (const double value : values) sum += value;
-  const double mean = sum / count;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return {mean, values.size() < 2 ? kMissing : std::sqrt(squares / (count - 1))};
-}
-
 void Trials::Add(const std::string& row, const std::string& trial, std::vector<double> values) {
   auto found =
       std::find_if(rows_.begin(), rows_.end(), [&](const auto& one) { return one.first == row; });
@@ -58,7 +47,7 @@ TrialSummary Trials::Summary(const std::string& name, const Row& row) const {
   summary.row = name;
   for (size_t c = 0; c < columns_.size(); ++c) {
     const std::vector<double> values = Column(row, c);
-    const auto [mean, deviation] = Summarise(values);
+    const auto [mean, deviation] = metrics::Summarise(values);
     summary.means.push_back(mean);
     summary.deviations.push_back(deviation);
     summary.above_zero.push_back(ShareAboveZero(values));

@@ -9,13 +9,6 @@
 
 namespace duet::evaluation::experiments {
 
-struct MeanAndDeviation {
-  double mean = 0;
-  double deviation = 0;  // with divisor n - 1; NaN for fewer than 2 values
-};
-// NaN for no value.
-MeanAndDeviation Summarise(const std::vector<double>& values);
-
 // Figures of a row over its trials. Shapes: [columns] each.
 struct TrialSummary {
   std::string row;

@@ -1,5 +1,6 @@
 #include "model/evaluation/metrics/confusion.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 
@@ -15,6 +16,14 @@ void Confusion::Add(int meant, int taken_for) {
   ++counts_[static_cast<size_t>(meant * classes_ + taken_for)];
 }
 
+void Confusion::AddLikeliest(const std::vector<int>& meant,
+                             const std::vector<std::vector<float>>& probabilities) {
+  for (size_t i = 0; i < meant.size(); ++i) {
+    const std::vector<float>& one = probabilities[i];
+    Add(meant[i], static_cast<int>(std::max_element(one.begin(), one.end()) - one.begin()));
+  }
+}
+
 int Confusion::count(int meant, int taken_for) const {
   return counts_[static_cast<size_t>(meant * classes_ + taken_for)];
 }
@@ -28,6 +37,12 @@ int Confusion::Total(int meant) const {
 double Confusion::ClassAccuracy(int meant) const {
   const int total = Total(meant);
   return total == 0 ? kNone : static_cast<double>(count(meant, meant)) / total;
+}
+
+std::vector<double> Confusion::ClassAccuracies() const {
+  std::vector<double> accuracies;
+  for (int c = 0; c < classes_; ++c) accuracies.push_back(ClassAccuracy(c));
+  return accuracies;
 }
 
 double Confusion::Accuracy() const {

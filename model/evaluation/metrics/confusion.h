@@ -12,11 +12,16 @@ class Confusion {
 
   // Both in [0, classes).
   void Add(int meant, int taken_for);
+  // Counts the likeliest class of each motion. Shapes: meant [motions], probabilities
+  // [motions][classes].
+  void AddLikeliest(const std::vector<int>& meant,
+                    const std::vector<std::vector<float>>& probabilities);
 
-  int class_count() const { return classes_; }
   int count(int meant, int taken_for) const;
   // The share of a class's motions that were classified correctly; NaN without any.
   double ClassAccuracy(int meant) const;
+  // ClassAccuracy of every class.
+  std::vector<double> ClassAccuracies() const;
   // The share of all motions that were classified correctly; NaN without any.
   double Accuracy() const;
   // The mean of ClassAccuracy over the classes that have motions: all classes have equal weight.

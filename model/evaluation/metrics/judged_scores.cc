@@ -2,31 +2,15 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 
 #include "model/evaluation/metrics/confusion.h"
+#include "model/evaluation/metrics/statistics.h"
 
 namespace duet::evaluation::metrics {
 namespace {
 
 // Fewer motions have neither a covariance nor a pair.
 constexpr size_t kLeastMotions = 2;
-
-// A mean over the values that are not NaN.
-class Mean {
- public:
-  void Add(double value) {
-    sum_ += value;
-    ++count_;
-  }
-  double value() const {
-    return count_ == 0 ? std::numeric_limits<double>::quiet_NaN() : sum_ / count_;
-  }
-
- private:
-  double sum_ = 0;
-  int count_ = 0;
-};
 
 FeatureSet OfClass(const JudgedFold& fold, int wanted) {
   FeatureSet features;
@@ -36,23 +20,27 @@ FeatureSet OfClass(const JudgedFold& fold, int wanted) {
   return features;
 }
 
-int MostLikely(const std::vector<float>& probabilities) {
-  return static_cast<int>(std::max_element(probabilities.begin(), probabilities.end()) -
-                          probabilities.begin());
+// The mean over the folds whose two sets, selected by `select`, have enough motions.
+template <typename Select>
+absl::StatusOr<double> MeanFrechet(const std::vector<JudgedFold>& made,
+                                   const std::vector<JudgedFold>& captured, Select select) {
+  std::vector<double> distances;
+  for (size_t fold = 0; fold < made.size(); ++fold) {
+    const FeatureSet a = select(made[fold]), b = select(captured[fold]);
+    if (std::min(a.size(), b.size()) < kLeastMotions) continue;
+    absl::StatusOr<double> distance = FrechetDistance(a, b);
+    if (!distance.ok()) return distance.status();
+    distances.push_back(*distance);
+  }
+  return Mean(distances);
 }
 
 }  // namespace
 
 std::vector<double> AccuracyByClass(const std::vector<JudgedFold>& folds, int classes) {
   Confusion confusion(classes);
-  for (const JudgedFold& fold : folds) {
-    for (size_t i = 0; i < fold.classes.size(); ++i) {
-      confusion.Add(fold.classes[i], MostLikely(fold.probabilities[i]));
-    }
-  }
-  std::vector<double> accuracy;
-  for (int c = 0; c < classes; ++c) accuracy.push_back(confusion.ClassAccuracy(c));
-  return accuracy;
+  for (const JudgedFold& fold : folds) confusion.AddLikeliest(fold.classes, fold.probabilities);
+  return confusion.ClassAccuracies();
 }
 
 absl::StatusOr<std::vector<double>> FrechetByClass(const std::vector<JudgedFold>& made,
@@ -60,41 +48,28 @@ absl::StatusOr<std::vector<double>> FrechetByClass(const std::vector<JudgedFold>
                                                    int classes) {
   std::vector<double> distances;
   for (int c = 0; c < classes; ++c) {
-    Mean mean;
-    for (size_t fold = 0; fold < made.size(); ++fold) {
-      const FeatureSet a = OfClass(made[fold], c), b = OfClass(captured[fold], c);
-      if (std::min(a.size(), b.size()) < kLeastMotions) continue;
-      absl::StatusOr<double> distance = FrechetDistance(a, b);
-      if (!distance.ok()) return distance.status();
-      mean.Add(*distance);
-    }
-    distances.push_back(mean.value());
+    absl::StatusOr<double> distance =
+        MeanFrechet(made, captured, [c](const JudgedFold& fold) { return OfClass(fold, c); });
+    if (!distance.ok()) return distance.status();
+    distances.push_back(*distance);
   }
   return distances;
 }
 
 absl::StatusOr<double> PooledFrechet(const std::vector<JudgedFold>& made,
                                      const std::vector<JudgedFold>& captured) {
-  Mean mean;
-  for (size_t fold = 0; fold < made.size(); ++fold) {
-    const FeatureSet &a = made[fold].features, &b = captured[fold].features;
-    if (std::min(a.size(), b.size()) < kLeastMotions) continue;
-    absl::StatusOr<double> distance = FrechetDistance(a, b);
-    if (!distance.ok()) return distance.status();
-    mean.Add(*distance);
-  }
-  return mean.value();
+  return MeanFrechet(made, captured, [](const JudgedFold& fold) { return fold.features; });
 }
 
 std::vector<double> DiversityByClass(const std::vector<JudgedFold>& folds, int classes) {
   std::vector<double> diversities;
   for (int c = 0; c < classes; ++c) {
-    Mean mean;
+    std::vector<double> of_folds;
     for (const JudgedFold& fold : folds) {
       const FeatureSet features = OfClass(fold, c);
-      if (features.size() >= kLeastMotions) mean.Add(Diversity(features));
+      if (features.size() >= kLeastMotions) of_folds.push_back(Diversity(features));
     }
-    diversities.push_back(mean.value());
+    diversities.push_back(Mean(of_folds));
   }
   return diversities;
 }

@@ -17,10 +17,6 @@ double Distance(const dataset::Sequence& sequence, const motion::Poses& a, const
   return Afd(sequence.levelling.Invert(a), sequence.levelling.Invert(b), MetricUnit::kSbuRaw);
 }
 
-const dataset::Sequence& SequenceOf(const dataset::Dataset& dataset, const ScoredMotion& motion) {
-  return dataset.sequences[static_cast<size_t>(motion.sequence)];
-}
-
 // The mean afd between any two answers to leader `i`.
 double Spread(const dataset::Dataset& dataset, const SampledMotions& samples, size_t i) {
   double sum = 0, pairs = 0;

@@ -18,80 +18,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-const std::vector<Metric>& AllMetrics() {
-  static const auto& metrics = *new std::vector<Metric>{
-      Metric::kAfd,
-      Metric::kAfdSquared,
-      Metric::kAfdMetres,
-      Metric::kAfdSquaredMetres,
-      Metric::kRootAlignedAfd,
-      Metric::kRootAlignedAfdMetres,
-      Metric::kVelocityError,
-      Metric::kBoneLengthDrift,
-      Metric::kJitter,
-      Metric::kSkatingRatio,
-      Metric::kFootSlide,
-      Metric::kPenetrationFrequency,
-      Metric::kPenetrationDepth,
-      Metric::kJointSpeed,
-      Metric::kRangeOfMotion,
-      Metric::kFilteredJerk,
-      Metric::kLean,
-      Metric::kFacing,
-      Metric::kRootDistance,
-      Metric::kTouch,
-  };
-  return metrics;
-}
-
-std::string MetricName(Metric metric) {
-  switch (metric) {
-    case Metric::kAfd:
-      return "afd";
-    case Metric::kAfdSquared:
-      return "afd_squared";
-    case Metric::kAfdMetres:
-      return "afd_m";
-    case Metric::kAfdSquaredMetres:
-      return "afd_squared_m";
-    case Metric::kRootAlignedAfd:
-      return "root_aligned_afd";
-    case Metric::kRootAlignedAfdMetres:
-      return "root_aligned_afd_m";
-    case Metric::kVelocityError:
-      return "velocity_error";
-    case Metric::kBoneLengthDrift:
-      return "bone_length_drift";
-    case Metric::kJitter:
-      return "jitter";
-    case Metric::kSkatingRatio:
-      return "skating_ratio";
-    case Metric::kFootSlide:
-      return "foot_slide_cm";
-    case Metric::kPenetrationFrequency:
-      return "penetration_frequency";
-    case Metric::kPenetrationDepth:
-      return "penetration_depth_m";
-    case Metric::kJointSpeed:
-      return "joint_speed";
-    case Metric::kRangeOfMotion:
-      return "range_of_motion_m";
-    case Metric::kFilteredJerk:
-      return "filtered_jerk";
-    case Metric::kLean:
-      return "lean_degrees";
-    case Metric::kFacing:
-      return "facing_degrees";
-    case Metric::kRootDistance:
-      return "root_distance_m";
-    case Metric::kTouch:
-      return "touch";
-  }
-  return "";
-}
-
 std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMotion& motion) {
-  const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+  const dataset::Sequence& sequence = SequenceOf(dataset, motion);
   const motion::Skeleton& skeleton = dataset.skeleton;
   const motion::Poses& leader = sequence.pair.leader.poses;
   const motion::Poses& truth = sequence.pair.follower.poses;
@@ -125,28 +53,36 @@ std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMot
           TouchShare(leader, made, skeleton, dataset.parts)};
 }
 
-std::vector<std::vector<double>> ScoreByClass(const dataset::Dataset& dataset,
-                                              const std::vector<ScoredMotion>& motions) {
-  const size_t metrics = AllMetrics().size();
-  std::vector<std::vector<double>> sums(dataset.classes.size(), std::vector<double>(metrics));
-  std::vector<std::vector<double>> counts = sums;
+FiguresByMetric ScoreByClass(const dataset::Dataset& dataset,
+                             const std::vector<ScoredMotion>& motions) {
+  FiguresByMetric sums, counts;
+  for (const char* metric : kMetrics) sums[metric].resize(dataset.classes.size());
+  counts = sums;
   for (const ScoredMotion& motion : motions) {
-    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
-    const size_t c = static_cast<size_t>(sequence.interaction_class);
+    const auto c = static_cast<size_t>(SequenceOf(dataset, motion).interaction_class);
     const std::vector<double> scores = ScoreMotion(dataset, motion);
-    for (size_t m = 0; m < metrics; ++m) {
+    for (size_t m = 0; m < scores.size(); ++m) {
       // NaN: the motion has no such figure; without contact there is no depth.
       if (std::isnan(scores[m])) continue;
-      sums[c][m] += scores[m];
-      ++counts[c][m];
+      sums[kMetrics[m]][c] += scores[m];
+      ++counts[kMetrics[m]][c];
     }
   }
-  for (size_t c = 0; c < sums.size(); ++c) {
-    for (size_t m = 0; m < metrics; ++m) {
-      sums[c][m] = counts[c][m] == 0 ? kNone : sums[c][m] / counts[c][m];
+  for (auto& [metric, figures] : sums) {
+    for (size_t c = 0; c < figures.size(); ++c) {
+      const double count = counts[metric][c];
+      figures[c] = count == 0 ? kNone : figures[c] / count;
     }
   }
   return sums;
+}
+
+std::vector<int> ClassesOf(const dataset::Dataset& dataset, const std::vector<int>& sequences) {
+  std::vector<int> classes;
+  for (const int index : sequences) {
+    classes.push_back(dataset.sequences[static_cast<size_t>(index)].interaction_class);
+  }
+  return classes;
 }
 
 std::vector<ScoredMotion> CapturedMotions(const dataset::Dataset& dataset,

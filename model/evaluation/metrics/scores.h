@@ -1,6 +1,8 @@
 #ifndef DUET_MODEL_EVALUATION_METRICS_SCORES_H_
 #define DUET_MODEL_EVALUATION_METRICS_SCORES_H_
 
+#include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,33 +11,30 @@
 
 namespace duet::evaluation::metrics {
 
-// A figure of a synthesised follower, as the tables print it.
-enum class Metric {
-  kAfd,                   // afd: Eq. 6, SBU's raw unit
-  kAfdSquared,            // afd_squared: squared norm, raw unit squared
-  kAfdMetres,             // afd_m
-  kAfdSquaredMetres,      // afd_squared_m: m^2
-  kRootAlignedAfd,        // root_aligned_afd: raw unit
-  kRootAlignedAfdMetres,  // root_aligned_afd_m
-  kVelocityError,         // velocity_error: m/s
-  kBoneLengthDrift,       // bone_length_drift: share of the length
-  kJitter,                // jitter: m/s^3
-  kSkatingRatio,          // skating_ratio: share of steps on the floor
-  kFootSlide,             // foot_slide_cm: centimetres per frame
-  kPenetrationFrequency,  // penetration_frequency: share of frames
-  kPenetrationDepth,      // penetration_depth_m: mean over those frames
-  kJointSpeed,            // joint_speed: m/s, without noise
-  kRangeOfMotion,         // range_of_motion_m: without noise
-  kFilteredJerk,          // filtered_jerk: m/s^3, jitter without noise
-  kLean,                  // lean_degrees: hips to neck, mean over frames
-  kFacing,                // facing_degrees: angle to the leader
-  kRootDistance,          // root_distance_m: to the leader's, along the floor
-  kTouch,                 // touch: share of frames
-};
-
-const std::vector<Metric>& AllMetrics();
+// The figures of a follower as the tables print them, in this order. The names are
 // lower_snake_case, with the unit unless it is the raw one.
-std::string MetricName(Metric metric);
+inline constexpr const char* kMetrics[] = {
+    "afd",                    // Eq. 6, SBU's raw unit
+    "afd_squared",            // squared norm, raw unit squared
+    "afd_m",                  //
+    "afd_squared_m",          // m^2
+    "root_aligned_afd",       // raw unit
+    "root_aligned_afd_m",     //
+    "velocity_error",         // m/s
+    "bone_length_drift",      // share of the length
+    "jitter",                 // m/s^3
+    "skating_ratio",          // share of steps on the floor
+    "foot_slide_cm",          // centimetres per frame
+    "penetration_frequency",  // share of frames
+    "penetration_depth_m",    // mean over those frames
+    "joint_speed",            // m/s, without noise
+    "range_of_motion_m",      // without noise
+    "filtered_jerk",          // m/s^3, jitter without noise
+    "lean_degrees",           // hips to neck, mean over frames
+    "facing_degrees",         // angle to the leader
+    "root_distance_m",        // to the leader's, along the floor
+    "touch",                  // share of frames
+};
 
 // A follower for a sequence of the data set, synthesised or captured.
 struct ScoredMotion {
@@ -43,15 +42,25 @@ struct ScoredMotion {
   motion::Poses follower;  // world metres
 };
 
-// Every metric of one motion, in the order of AllMetrics. Those in the raw unit are measured in the
+inline const dataset::Sequence& SequenceOf(const dataset::Dataset& dataset,
+                                           const ScoredMotion& motion) {
+  return dataset.sequences[static_cast<size_t>(motion.sequence)];
+}
+
+// Every metric of one motion, in the order of kMetrics. Those in the raw unit are measured in the
 // world as captured, before levelling.
 std::vector<double> ScoreMotion(const dataset::Dataset& dataset, const ScoredMotion& motion);
 
-// Means over the motions of each class, in the order of AllMetrics; NaN for a class without any.
-// All motions have equal weight, except in penetration depth, which is a mean over the motions that
-// penetrate. Shapes: returns [classes][metrics].
-std::vector<std::vector<double>> ScoreByClass(const dataset::Dataset& dataset,
-                                              const std::vector<ScoredMotion>& motions);
+// Figures by the metric's name. Shapes: [classes] each.
+using FiguresByMetric = std::map<std::string, std::vector<double>>;
+
+// Every metric's means over the motions of each class; NaN for a class without any. All motions
+// have equal weight, except in penetration depth, which is a mean over the motions that penetrate.
+FiguresByMetric ScoreByClass(const dataset::Dataset& dataset,
+                             const std::vector<ScoredMotion>& motions);
+
+// The classes of sequences of the data set.
+std::vector<int> ClassesOf(const dataset::Dataset& dataset, const std::vector<int>& sequences);
 
 // The captured followers of sequences of the data set, in the same order.
 std::vector<ScoredMotion> CapturedMotions(const dataset::Dataset& dataset,

@@ -9,9 +9,9 @@
 #include "model/evaluation/experiments/data_half.h"
 #include "model/evaluation/experiments/synthesize_jobs.h"
 #include "model/evaluation/experiments/synthetic_plan.h"
-#include "model/evaluation/judge/classifier.h"
+#include "model/evaluation/judge/motion_classifier.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/fold_models.h"
+#include "model/evaluation/program/models.h"
 #include "model/evaluation/program/section_flags.h"
 #include "model/evaluation/report/metric_tables.h"
 #include "model/evaluation/report/paper_tables.h"
@@ -29,7 +29,7 @@ struct Arguments {
   bool as_served = false;
   std::vector<std::string> synthetic;
   std::string write_jobs;
-  int64_t epochs = judge::ClassifierOptions().epochs;
+  int64_t epochs = judge::MotionClassifierOptions().epochs;
   SectionFlags section = {"40_augmentation", "Synthetic motion as training material (Table 6)"};
 };
 
@@ -42,11 +42,12 @@ absl::StatusOr<std::vector<experiments::SyntheticJob>> PlanHalf(const dataset::D
                                                                 const Arguments& arguments,
                                                                 uint64_t seed) {
   if (arguments.plan.match + arguments.plan.mix < 1) {
-    return absl::InvalidArgumentError("--match and --mix: both 0, wanted a motion a class or more");
+    return absl::InvalidArgumentError(
+        "--match and --mix: expected at least one motion a class, got 0 and 0");
   }
   if (arguments.plan.mix > 0 && dataset.class_count() < 2) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--mix ", arguments.plan.mix, ": the data has one class, wanted two to mix"));
+        absl::StrCat("--mix: expected 0 for data of one class, got ", arguments.plan.mix));
   }
   experiments::SyntheticPlanOptions options = arguments.plan;
   options.seed = seed;
@@ -63,7 +64,7 @@ absl::StatusOr<experiments::DataHalf> PrepareHalf(const dataset::Dataset& datase
   absl::StatusOr<std::vector<experiments::SyntheticJob>> jobs =
       PlanHalf(dataset, half.split, arguments, seed);
   if (!jobs.ok()) return jobs.status();
-  absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> model =
+  absl::StatusOr<SharedSynthesizer> model =
       LoadFoldModel(arguments.runs, absl::StrCat("half-", seed), arguments.as_served);
   if (!model.ok()) return model.status();
   absl::StatusOr<std::vector<dataset::Sequence>> synthetic =
@@ -120,7 +121,7 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset, const Argumen
 absl::Status WriteJobs(const dataset::Dataset& dataset, const Arguments& arguments) {
   if (arguments.seeds.size() != 1) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--seeds: ", arguments.seeds.size(), " came, wanted one with --write-jobs"));
+        absl::StrCat("--seeds: expected one with --write-jobs, got ", arguments.seeds.size()));
   }
   const uint64_t seed = arguments.seeds.front();
   absl::StatusOr<dataset::Split> split = SplitInHalves(dataset, seed);
@@ -165,26 +166,30 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
   CLI::Option* runs =
       command->add_option("--runs", arguments->runs, "output of duet-train --protocol half")
           ->type_name(kRuns);
-  command->add_option("--seeds", arguments->seeds, "halves: <runs>/half-<seed>")
+  command->add_option("--seeds", arguments->seeds, "seeds of the halves; reads <runs>/half-<seed>")
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("--repeats", arguments->repeats, "classifiers trained on each half")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--epochs", arguments->epochs, "of a classifier on the captured half")
+  command->add_option("--epochs", arguments->epochs, "epochs of a classifier on the captured half")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--match", arguments->plan.match, "synthetic motions a class, one class each")
+  command
+      ->add_option("--match", arguments->plan.match,
+                   "synthetic motions per class with only its label")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
-  command->add_option("--mix", arguments->plan.mix, "synthetic motions a class, mixed with another")
+  command
+      ->add_option("--mix", arguments->plan.mix,
+                   "synthetic motions per class, mixed with another class")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   command->add_flag("--as-served", arguments->as_served,
-                    "in-process answers with constant limb lengths on the leader's floor");
+                    "finish in-process answers as a server does");
   command
       ->add_option("--synthetic", arguments->synthetic,
-                   "a set that duet batch made of --write-jobs' manifest; repeatable")
+                   "data set that duet batch made from a manifest of --write-jobs; repeatable")
       ->type_name(kSet)
       ->allow_extra_args(false);
   CLI::Option* write_jobs =

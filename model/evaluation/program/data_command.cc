@@ -36,7 +36,7 @@ void AddDataCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app->add_subcommand("data",
                                           "Tilt, noise and leaders of a data set, before and after "
-                                          "reading, and what clean-up does to it");
+                                          "reading, and the effect of clean-up");
   AddDataFlag(&arguments->data, command);
   AddSectionFlags(&arguments->section, command);
   RunWhenNamed(command, arguments, Run, chosen);

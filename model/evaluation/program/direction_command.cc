@@ -7,9 +7,8 @@
 #include "model/dataset/dataset.h"
 #include "model/evaluation/experiments/direction_errors.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/fold_judge.h"
-#include "model/evaluation/program/fold_models.h"
-#include "model/evaluation/program/named_runs.h"
+#include "model/evaluation/program/experiment.h"
+#include "model/evaluation/program/models.h"
 #include "model/evaluation/program/section_flags.h"
 #include "model/evaluation/report/direction_table.h"
 
@@ -31,17 +30,16 @@ absl::StatusOr<std::optional<engine::DirectionRegression>> ReadFold(
   if (!checkpoint.ok()) return checkpoint.status();
   const engine::ModelDescription& model = checkpoint->manifest.model;
   if (model.skeleton.joint_names == dataset.skeleton.joint_names) return model.partner_direction;
-  return absl::InvalidArgumentError(
-      absl::StrCat(run.string(), ": its ", model.skeleton.joint_count(),
-                   " joints are not the data set's ", dataset.skeleton.joint_count()));
+  return absl::InvalidArgumentError(absl::StrCat(run.string(), ": expected the data set's ",
+                                                 dataset.skeleton.joint_count(), " joints, got ",
+                                                 model.skeleton.joint_count()));
 }
 
 // The hips' row, then one for each of the runs.
 absl::StatusOr<std::vector<report::DirectionRow>> Measure(const Arguments& arguments,
                                                           const dataset::Dataset& dataset) {
-  const absl::StatusOr<std::vector<std::string>> subjects =
-      FoldSubjects(dataset, arguments.subjects);
-  if (!subjects.ok()) return subjects.status();
+  const absl::StatusOr<std::vector<Fold>> folds = LeaveOut(dataset, arguments.subjects);
+  if (!folds.ok()) return folds.status();
   std::vector<NamedRuns> runs;
   std::vector<report::DirectionRow> rows = {{"hips", {}}};
   for (const std::string& text : arguments.runs) {
@@ -50,18 +48,16 @@ absl::StatusOr<std::vector<report::DirectionRow>> Measure(const Arguments& argum
     rows.push_back({named->name, {}});
     runs.push_back(*std::move(named));
   }
-  for (const std::string& subject : *subjects) {
-    const absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
-    if (!split.ok()) return split.status();
+  for (const Fold& fold : *folds) {
     const auto add = [&](const std::optional<engine::DirectionRegression>& regression,
                          report::DirectionRow* row) {
       const std::vector<double> errors =
-          experiments::DirectionErrors(dataset, split->test, regression);
+          experiments::DirectionErrors(dataset, fold.split.test, regression);
       row->errors.insert(row->errors.end(), errors.begin(), errors.end());
     };
     add(std::nullopt, &rows[0]);
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      const auto regression = ReadFold(dataset, runs[i].folder / subject);
+      const auto regression = ReadFold(dataset, runs[i].folder / fold.subject);
       if (!regression.ok()) return regression.status();
       add(*regression, &rows[i + 1]);
     }
@@ -74,7 +70,7 @@ absl::Status Run(const Arguments& arguments) {
   if (!dataset.ok()) return dataset.status();
   if (!dataset->skeleton.hips) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--data: ", dataset->name, " has a skeleton without hips, wanted one with"));
+        absl::StrCat("--data: expected a skeleton with hips, got that of ", dataset->name));
   }
   const absl::StatusOr<std::vector<report::DirectionRow>> rows = Measure(arguments, *dataset);
   if (!rows.ok()) return rows.status();
@@ -92,7 +88,7 @@ absl::Status Run(const Arguments& arguments) {
 void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app->add_subcommand(
-      "direction", "How far off a partner is expected when a caller does not tell where");
+      "direction", "Errors of the partner's direction when a model estimates it from the leader");
   AddDataFlag(&arguments->data, command);
   command->add_option("--runs", arguments->runs, "output of duet-train --protocol loso; repeatable")
       ->type_name(kNamedRuns);

@@ -1,56 +1,59 @@
 #ifndef DUET_MODEL_EVALUATION_PROGRAM_FOLD_SCORER_H_
 #define DUET_MODEL_EVALUATION_PROGRAM_FOLD_SCORER_H_
 
-#include <functional>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "model/evaluation/metrics/sampled_scores.h"
 #include "model/evaluation/program/fold_judge.h"
-#include "model/evaluation/protocol/method.h"
-#include "model/evaluation/protocol/protocol.h"
 #include "model/evaluation/report/metric_tables.h"
 
 namespace duet::evaluation::program {
 
-// Leaves one subject out at a time and scores every method in the same folds with the same judges.
-// A method answers once; all its figures are of those answers. Reports each fold on stderr.
+// Scores the answers to the leaders of every fold's left-out subject: every row in the same folds
+// with the same judges.
 class FoldScorer {
  public:
-  // A method for the fold without a subject; its Train is called with the fold's sequences.
-  using MakeMethod =
-      std::function<absl::StatusOr<std::unique_ptr<protocol::Method>>(const std::string& subject)>;
+  // The judges' results: none; of motions; and also of motions after the noise filter.
+  enum class Judging { kNone, kPlain, kFiltered };
 
-  // `dataset` must outlive the scorer. `judged`: train a judge for each fold, which accuracy, fid
-  // and diversity need. Errors: LeaveSubjectOut's, MotionClassifier::Train's.
-  static absl::StatusOr<FoldScorer> Create(const dataset::Dataset& dataset,
-                                           const std::vector<std::string>& subjects, bool judged);
+  // `dataset` must outlive the scorer. Trains a judge for each fold unless `judging` is kNone.
+  // Errors: those of TrainFoldJudge.
+  static absl::StatusOr<FoldScorer> Create(const dataset::Dataset& dataset, std::vector<Fold> folds,
+                                           Judging judging);
 
-  absl::StatusOr<report::MethodFigures> Score(const std::string& row, const MakeMethod& make) const;
-  // The captured followers of the same tests, as a row.
+  const std::vector<Fold>& folds() const { return folds_; }
+
+  // Figures by class of one answer to each leader; those of a judge if there is one.
+  // Shapes: answers [folds], each as its fold's test sequences.
+  absl::StatusOr<report::MethodFigures> Score(
+      const std::string& row, const std::vector<std::vector<metrics::ScoredMotion>>& answers) const;
+  // The same figures of the captured followers.
   absl::StatusOr<report::MethodFigures> ScoreCaptured() const;
+
+  // Figures by class of many answers to each leader, with the names of report/sample_tables.h.
+  // Requires kFiltered. Shapes: answers [folds].
+  absl::StatusOr<report::MethodFigures> ScoreSamples(
+      const std::string& row, const std::vector<metrics::SampledMotions>& answers) const;
+  absl::StatusOr<report::MethodFigures> ScoreCapturedSamples() const;
 
   // The judges of the figures, for the settings of a section.
   std::vector<std::pair<std::string, std::string>> JudgeSettings() const;
 
  private:
-  struct Fold {
-    std::string subject;
-    dataset::Split split;
-    std::vector<judge::MotionClassifier> judge;  // one, or none
-    metrics::JudgedFold captured;                // empty without a judge
-  };
-
   explicit FoldScorer(const dataset::Dataset& dataset) : dataset_(&dataset) {}
-  absl::Status AddJudge(Fold* fold) const;
-  // Shapes: results [folds], the answers in each.
-  absl::StatusOr<report::MethodFigures> Figures(
-      const std::string& row, const std::vector<protocol::FoldResult>& results) const;
+  absl::Status AddJudge(const Fold& fold, Judging judging);
+  absl::Status AddJudged(const std::vector<metrics::SampledMotions>& answers,
+                         report::MethodFigures* figures) const;
 
   const dataset::Dataset* dataset_;
   std::vector<Fold> folds_;
+  std::vector<std::vector<metrics::ScoredMotion>> captured_;  // [folds]
+  std::vector<judge::MotionClassifier> judges_;               // [folds], or empty
+  // Of the captured followers. Shapes: as judges_; empty without the filter.
+  std::vector<metrics::JudgedFold> judged_captured_, judged_filtered_;
 };
 
 }  // namespace duet::evaluation::program

@@ -1,16 +1,18 @@
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_format.h"
 #include "model/evaluation/baselines/baselines.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/fold_scorer.h"
 #include "model/evaluation/program/model_flags.h"
-#include "model/evaluation/program/named_runs.h"
+#include "model/evaluation/protocol/protocol.h"
 #include "model/evaluation/report/metric_tables.h"
 #include "model/evaluation/report/paper_tables.h"
 
@@ -21,55 +23,77 @@ namespace {
 constexpr char kNoBaseline[] = "none";
 
 struct Arguments {
+  Arguments() { flags.starts = StartNames(); }
+
   ExperimentFlags flags;
-  std::vector<std::string> starts = StartNames();
   std::vector<std::string> baselines = {"class_mean", "frozen_first_frame"};
   std::vector<std::string> metrics = {"afd", "afd_squared"};
   std::vector<std::string> printed;
 };
 
-absl::Status AddModel(const FoldScorer& scorer, const FoldModel& model,
-                      const std::vector<std::string>& starts,
-                      std::vector<report::MethodFigures>* rows) {
-  for (const std::string& start_name : starts) {
-    const experiments::StartGiven start = ParseStart(start_name);
-    const std::string row = model.name + StartSuffix(start);
-    absl::StatusOr<report::MethodFigures> figures = scorer.Score(
-        row, [&](const std::string& subject) -> absl::StatusOr<std::unique_ptr<protocol::Method>> {
-          absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> synthesizer =
-              model.load(subject);
-          if (!synthesizer.ok()) return synthesizer.status();
-          return std::make_unique<experiments::SynthesizerMethod>(row, *synthesizer, start);
-        });
-    // A model without a start input has only one row.
-    if (absl::IsFailedPrecondition(figures.status()) && start != experiments::StartGiven::kNone) {
-      std::cerr << row << ": left out: " << figures.status().message() << "\n";
-      continue;
-    }
-    if (!figures.ok()) return figures.status();
-    rows->push_back(*std::move(figures));
+// A method for the fold without a subject.
+using MakeMethod =
+    std::function<absl::StatusOr<std::unique_ptr<protocol::Method>>(const std::string& subject)>;
+
+// Scores a method that answers once; all its figures are of those answers.
+absl::StatusOr<report::MethodFigures> ScoreMethod(const dataset::Dataset& dataset,
+                                                  const FoldScorer& scorer, const std::string& row,
+                                                  const MakeMethod& make) {
+  std::vector<std::vector<metrics::ScoredMotion>> answers;
+  for (const Fold& fold : scorer.folds()) {
+    absl::StatusOr<std::unique_ptr<protocol::Method>> method = make(fold.subject);
+    if (!method.ok()) return method.status();
+    absl::StatusOr<protocol::FoldResult> result = RunFold(dataset, fold.split, method->get());
+    if (!result.ok()) return result.status();
+    std::cerr << absl::StrFormat(
+        "%s without %s: trained in %.1f s, answered %d leaders in %.1f s\n", row, fold.subject,
+        result->train_seconds, result->motions.size(), result->predict_seconds);
+    answers.push_back(std::move(result->motions));
   }
-  return absl::OkStatus();
+  return scorer.Score(row, answers);
 }
 
-absl::StatusOr<std::vector<report::MethodFigures>> Rows(const FoldScorer& scorer,
-                                                        const std::vector<FoldModel>& models,
+absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset,
+                                                 const FoldScorer& scorer, const FoldModel& model,
+                                                 experiments::StartGiven start) {
+  const std::string row = model.name + StartSuffix(start);
+  return ScoreMethod(
+      dataset, scorer, row,
+      [&](const std::string& subject) -> absl::StatusOr<std::unique_ptr<protocol::Method>> {
+        absl::StatusOr<SharedSynthesizer> synthesizer = model.load(subject);
+        if (!synthesizer.ok()) return synthesizer.status();
+        return std::make_unique<experiments::SynthesizerMethod>(row, *synthesizer, start);
+      });
+}
+
+absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experiment,
+                                                        const FoldScorer& scorer,
                                                         const Arguments& arguments) {
   std::vector<report::MethodFigures> rows;
+  const auto add = [&rows](absl::StatusOr<report::MethodFigures> row) {
+    if (row.ok()) rows.push_back(*std::move(row));
+    return row.status();
+  };
   for (const std::string& name : arguments.baselines) {
     if (name == kNoBaseline) continue;
-    absl::StatusOr<report::MethodFigures> figures =
-        scorer.Score(name, [&](const std::string&) { return baselines::MakeBaseline(name); });
-    if (!figures.ok()) return figures.status();
-    rows.push_back(*std::move(figures));
-  }
-  for (const FoldModel& model : models) {
-    absl::Status status = AddModel(scorer, model, arguments.starts, &rows);
+    const auto make = [&name](const std::string&) { return baselines::MakeBaseline(name); };
+    absl::Status status = add(ScoreMethod(experiment.dataset, scorer, name, make));
     if (!status.ok()) return status;
   }
-  absl::StatusOr<report::MethodFigures> captured = scorer.ScoreCaptured();
-  if (!captured.ok()) return captured.status();
-  rows.push_back(*std::move(captured));
+  for (const FoldModel& model : experiment.models) {
+    for (const std::string& name : arguments.flags.starts) {
+      const experiments::StartGiven start = ParseStart(name);
+      absl::Status status = add(ScoreModel(experiment.dataset, scorer, model, start));
+      // A model without a start input has only one row.
+      if (absl::IsFailedPrecondition(status) && start != experiments::StartGiven::kNone) {
+        std::cerr << model.name << StartSuffix(start) << ": left out: " << status.message() << "\n";
+      } else if (!status.ok()) {
+        return status;
+      }
+    }
+  }
+  absl::Status status = add(scorer.ScoreCaptured());
+  if (!status.ok()) return status;
   return rows;
 }
 
@@ -116,11 +140,11 @@ bool NeedsJudge(const std::vector<std::string>& metrics) {
 absl::Status Run(const Arguments& arguments) {
   absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
   if (!experiment.ok()) return experiment.status();
-  absl::StatusOr<FoldScorer> scorer =
-      FoldScorer::Create(experiment->dataset, experiment->subjects, NeedsJudge(arguments.metrics));
+  absl::StatusOr<FoldScorer> scorer = FoldScorer::Create(
+      experiment->dataset, experiment->folds,
+      NeedsJudge(arguments.metrics) ? FoldScorer::Judging::kPlain : FoldScorer::Judging::kNone);
   if (!scorer.ok()) return scorer.status();
-  absl::StatusOr<std::vector<report::MethodFigures>> rows =
-      Rows(*scorer, experiment->models, arguments);
+  absl::StatusOr<std::vector<report::MethodFigures>> rows = Rows(*experiment, *scorer, arguments);
   if (!rows.ok()) return rows.status();
   report::ResultSection section = MakeSection(*experiment, arguments, *scorer);
   section.tables = Tables(experiment->dataset, arguments, *rows);
@@ -143,10 +167,10 @@ void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
       app->add_subcommand("folds", "Figures of models and baselines, leaving one subject out");
   AddExperimentFlags("10_folds", "Leave one subject out", &arguments->flags, command);
   AddModelFlags(ModelNeeded::kNo, &arguments->flags.models, command);
-  AddStartsFlag(&arguments->starts, command);
+  AddStartsFlag(&arguments->flags.starts, command);
   std::vector<std::string> baselines = baselines::BaselineNames();
   baselines.push_back(kNoBaseline);
-  command->add_option("--baselines", arguments->baselines, "rows beside it, or none")
+  command->add_option("--baselines", arguments->baselines, "rows of baselines; none: no such row")
       ->delimiter(',')
       ->check(CLI::IsMember(baselines))
       ->capture_default_str();

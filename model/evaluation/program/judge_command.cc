@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <numeric>
@@ -10,7 +9,8 @@
 #include "model/classifier/classifier_files.h"
 #include "model/classifier/classifier_input.h"
 #include "model/dataset/dataset.h"
-#include "model/evaluation/judge/classifier.h"
+#include "model/evaluation/judge/motion_classifier.h"
+#include "model/evaluation/metrics/confusion.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/section_flags.h"
 
@@ -21,7 +21,7 @@ struct Arguments {
   std::string data;
   std::string out;
   std::string hold_out;
-  judge::ClassifierOptions options;
+  judge::MotionClassifierOptions options;
 };
 
 // Sets the direction that a program can derive from a pair, in place of the one from a capture's
@@ -34,15 +34,11 @@ void FaceFollowers(dataset::Dataset* dataset) {
 
 double Accuracy(const judge::MotionClassifier& judge, const dataset::Dataset& dataset,
                 const std::vector<int>& sequences) {
-  const std::vector<metrics::ScoredMotion> motions = metrics::CapturedMotions(dataset, sequences);
-  const std::vector<std::vector<float>> rows = judge.Probabilities(dataset, motions);
-  int right = 0;
-  for (size_t i = 0; i < rows.size(); ++i) {
-    const auto best = std::max_element(rows[i].begin(), rows[i].end()) - rows[i].begin();
-    const auto sequence = static_cast<size_t>(motions[i].sequence);
-    right += best == dataset.sequences[sequence].interaction_class ? 1 : 0;
-  }
-  return static_cast<double>(right) / static_cast<double>(std::max<size_t>(rows.size(), 1));
+  metrics::Confusion confusion(dataset.class_count());
+  confusion.AddLikeliest(
+      metrics::ClassesOf(dataset, sequences),
+      judge.Probabilities(dataset, metrics::CapturedMotions(dataset, sequences)));
+  return confusion.Accuracy();
 }
 
 absl::Status Run(const Arguments& arguments) {
@@ -63,9 +59,9 @@ absl::Status Run(const Arguments& arguments) {
   std::cout << absl::StrFormat("trained on %d followers of %d classes\n", split.train.size(),
                                dataset->class_count());
   if (!split.test.empty()) {
-    std::cout << absl::StrFormat(
-        "of %d followers in clips of %s, which it did not see: %.1f %% in their class\n",
-        split.test.size(), arguments.hold_out, 100 * Accuracy(*judge, *dataset, split.test));
+    std::cout << absl::StrFormat("%d held-out followers of %s: %.1f %% classified correctly\n",
+                                 split.test.size(), arguments.hold_out,
+                                 100 * Accuracy(*judge, *dataset, split.test));
   }
   absl::Status status = classifier::WriteClassifier(arguments.out, judge->Parts(*dataset));
   if (status.ok()) std::cout << "wrote " << arguments.out << "\n";
@@ -79,18 +75,19 @@ void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen) {
   CLI::App* command =
       app->add_subcommand("judge", "Train a classifier of followers, for the filter of duet batch");
   AddDataFlag(&arguments->data, command);
-  command->add_option("--out", arguments->out, "folder to write it to")->required();
+  command->add_option("--out", arguments->out, "folder to write the classifier to")->required();
   command->add_option("--hold-out", arguments->hold_out,
-                      "a subject that it does not see, and is tried on");
+                      "subject held out of training; the classifier is tested on it");
   command
       ->add_option("--networks", arguments->options.members,
-                   "how many, each from a seed of its own; their probabilities are averaged")
+                   "number of networks with different seeds; their probabilities are averaged")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  command->add_option("--epochs", arguments->options.epochs, "times that each clip is seen")
+  command->add_option("--epochs", arguments->options.epochs, "training epochs")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
-  command->add_option("--seed", arguments->options.seed)->capture_default_str();
+  command->add_option("--seed", arguments->options.seed, "seed of the networks")
+      ->capture_default_str();
   RunWhenNamed(command, arguments, Run, chosen);
 }
 

@@ -10,9 +10,9 @@
 #include "absl/strings/str_join.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/experiments/latent.h"
+#include "model/evaluation/metrics/scores.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/fold_models.h"
-#include "model/evaluation/program/named_runs.h"
+#include "model/evaluation/program/models.h"
 #include "model/evaluation/program/section_flags.h"
 #include "model/evaluation/report/latent_table.h"
 
@@ -41,14 +41,6 @@ absl::StatusOr<std::vector<int>> ChooseClips(const dataset::Dataset& dataset,
   return all;
 }
 
-std::vector<int> ClassesOf(const dataset::Dataset& dataset, const std::vector<int>& sequences) {
-  std::vector<int> classes;
-  for (const int index : sequences) {
-    classes.push_back(dataset.sequences[static_cast<size_t>(index)].interaction_class);
-  }
-  return classes;
-}
-
 std::string FigureName(std::string text) {
   for (char& c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -73,7 +65,7 @@ absl::Status AddSpace(const dataset::Dataset& dataset, const FoldCheckpoint& fol
   absl::StatusOr<metrics::FeatureSet> features =
       LatentFeatures(fold.checkpoint, dataset, *clips, labels);
   if (!features.ok()) return features.status();
-  const std::vector<int> classes = ClassesOf(dataset, *clips);
+  const std::vector<int> classes = metrics::ClassesOf(dataset, *clips);
   const bool blind = labels == experiments::LatentLabels::kNone;
   const std::string name =
       absl::StrCat(fold.model, blind ? ", label withheld" : "", ", ", fold.subject);
@@ -171,15 +163,20 @@ void AddLatentCommand(CLI::App* app, ChosenCommand* chosen) {
       ->type_name(kNamedRuns)
       ->required()
       ->allow_extra_args(false);
-  command->add_option("--subjects", arguments->subjects, "folds; default: the first subject")
+  command
+      ->add_option("--subjects", arguments->subjects,
+                   "subjects whose folds to show (default: the first subject)")
       ->delimiter(',');
-  command->add_option("--clips", arguments->clips, "of the fold: test, train or all")
+  command->add_option("--clips", arguments->clips, "clips of the fold to show")
       ->check(CLI::IsMember({"test", "train", "all"}))
       ->capture_default_str();
-  command->add_option("--perplexity", arguments->perplexity, "of t-SNE; lowered for few clips")
+  command
+      ->add_option("--perplexity", arguments->perplexity,
+                   "perplexity of t-SNE; lowered for few clips")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "of t-SNE's start")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "seed of t-SNE's initial positions")
+      ->capture_default_str();
   AddSectionFlags(&arguments->section, command);
   RunWhenNamed(command, arguments, Run, chosen);
 }

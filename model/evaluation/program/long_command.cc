@@ -8,12 +8,9 @@
 #include "absl/strings/str_join.h"
 #include "model/evaluation/experiments/long_clips.h"
 #include "model/evaluation/experiments/long_leaders.h"
-#include "model/evaluation/experiments/sampled_answers.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/fold_judge.h"
 #include "model/evaluation/program/model_flags.h"
-#include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/report/long_tables.h"
 #include "model/evaluation/report/result_section.h"
 
@@ -22,24 +19,21 @@ namespace {
 
 struct Arguments {
   ExperimentFlags flags;
-  std::vector<std::string> starts = {"none", "pose"};
   std::vector<double> seconds = {60, 600};
-  experiments::AskedSamples asked;
 };
 
 // The answers of one fold's model to every leader in every class.
-absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model,
-                     const std::string& subject, double seconds, experiments::StartGiven start,
-                     const Arguments& arguments, std::vector<experiments::LongClipRow>* rows) {
-  absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
-  if (!split.ok()) return split.status();
-  absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> synthesizer = model.load(subject);
+absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, const Fold& fold,
+                     double seconds, experiments::StartGiven start,
+                     const experiments::AskedSamples& sampling,
+                     std::vector<experiments::LongClipRow>* rows) {
+  absl::StatusOr<SharedSynthesizer> synthesizer = model.load(fold.subject);
   if (!synthesizer.ok()) return synthesizer.status();
   absl::Status fits = CheckModelTakes((*synthesizer)->description(), dataset, start);
   if (!fits.ok()) return fits;
   std::vector<experiments::LongLeader> leaders;
   for (int c = 0; c < dataset.class_count(); ++c) {
-    for (auto& leader : experiments::MakeLongLeaders(dataset, split->test, c, seconds)) {
+    for (auto& leader : experiments::MakeLongLeaders(dataset, fold.split.test, c, seconds)) {
       leaders.push_back(std::move(leader));
     }
   }
@@ -47,9 +41,8 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model,
   for (const experiments::LongLeader& leader : leaders) {
     std::vector<float> labels(dataset.classes.size());
     labels[static_cast<size_t>(leader.sequence.interaction_class)] = 1;
-    asked.push_back({&leader.sequence,
-                     std::move(labels),
-                     {arguments.asked.seed + asked.size(), arguments.asked.variety}});
+    asked.push_back(
+        {&leader.sequence, std::move(labels), {sampling.seed + asked.size(), sampling.variety}});
   }
   absl::StatusOr<std::vector<motion::Poses>> followers =
       SynthesizeSequences(**synthesizer, asked, start);
@@ -60,42 +53,39 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model,
                      experiments::MeasureLongClip(dataset.skeleton, sequence.pair.leader.poses,
                                                   (*followers)[i], dataset.frame_rate_hz)});
   }
-  std::cerr << absl::StrCat(model.name, StartSuffix(start), " without ", subject, ": ",
+  std::cerr << absl::StrCat(model.name, StartSuffix(start), " without ", fold.subject, ": ",
                             leaders.size(), " leaders of ", seconds, " s\n");
   return absl::OkStatus();
 }
 
 // The same figures for captured followers of the left-out people, clip by clip.
-absl::Status AddCaptured(const dataset::Dataset& dataset, const std::string& subject,
-                         std::vector<experiments::LongClipRow>* rows) {
-  absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
-  if (!split.ok()) return split.status();
-  for (const int s : split->test) {
-    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(s)];
-    rows->push_back(
-        {"people", "clips as captured", sequence.interaction_class,
-         experiments::MeasureLongClip(dataset.skeleton, sequence.pair.leader.poses,
-                                      sequence.pair.follower.poses, dataset.frame_rate_hz)});
+std::vector<experiments::LongClipRow> CapturedRows(const Experiment& experiment) {
+  const dataset::Dataset& dataset = experiment.dataset;
+  std::vector<experiments::LongClipRow> rows;
+  for (const Fold& fold : experiment.folds) {
+    for (const int s : fold.split.test) {
+      const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(s)];
+      rows.push_back(
+          {"people", "clips as captured", sequence.interaction_class,
+           experiments::MeasureLongClip(dataset.skeleton, sequence.pair.leader.poses,
+                                        sequence.pair.follower.poses, dataset.frame_rate_hz)});
+    }
   }
-  return absl::OkStatus();
+  return rows;
 }
 
-absl::StatusOr<std::vector<report::Table>> Tables(const dataset::Dataset& dataset,
-                                                  const std::vector<FoldModel>& models,
-                                                  const std::vector<std::string>& subjects,
+absl::StatusOr<std::vector<report::Table>> Tables(const Experiment& experiment,
                                                   const Arguments& arguments) {
+  const dataset::Dataset& dataset = experiment.dataset;
+  const std::vector<experiments::LongClipRow> captured = CapturedRows(experiment);
   std::vector<report::Table> tables;
   for (const double seconds : arguments.seconds) {
-    for (const std::string& start : arguments.starts) {
-      std::vector<experiments::LongClipRow> rows;
-      for (const std::string& subject : subjects) {
-        absl::Status status = AddCaptured(dataset, subject, &rows);
-        if (!status.ok()) return status;
-      }
-      for (const FoldModel& model : models) {
-        for (const std::string& subject : subjects) {
-          absl::Status status =
-              AddFold(dataset, model, subject, seconds, ParseStart(start), arguments, &rows);
+    for (const std::string& start : arguments.flags.starts) {
+      std::vector<experiments::LongClipRow> rows = captured;
+      for (const FoldModel& model : experiment.models) {
+        for (const Fold& fold : experiment.folds) {
+          absl::Status status = AddFold(dataset, model, fold, seconds, ParseStart(start),
+                                        arguments.flags.asked, &rows);
           if (!status.ok()) return status;
         }
       }
@@ -117,18 +107,16 @@ report::ResultSection MakeSection(const Experiment& experiment, const Arguments&
       "class's clips of the left-out person one after the other. A figure is the worst over the "
       "folds. The first row, for comparison: the left-out people's own captured followers, clip by "
       "clip, a few seconds each.");
-  section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
-  section.settings.emplace_back("seed", absl::StrCat(arguments.asked.seed));
+  section.settings.emplace_back("variety", absl::StrCat(arguments.flags.asked.variety));
+  section.settings.emplace_back("seed", absl::StrCat(arguments.flags.asked.seed));
   return section;
 }
 
 absl::Status Run(const Arguments& arguments) {
   absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
   if (!experiment.ok()) return experiment.status();
-  const dataset::Dataset& dataset = experiment->dataset;
   report::ResultSection section = MakeSection(*experiment, arguments);
-  absl::StatusOr<std::vector<report::Table>> tables =
-      Tables(dataset, experiment->models, experiment->subjects, arguments);
+  absl::StatusOr<std::vector<report::Table>> tables = Tables(*experiment, arguments);
   if (!tables.ok()) return tables.status();
   section.tables = *std::move(tables);
   return FinishSection(arguments.flags.section, section);
@@ -138,13 +126,9 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddLongCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app->add_subcommand("long", "Whether followers of long clips stand, near their leaders");
-  AddExperimentFlags("16_long", "Clips of a minute and of ten", &arguments->flags, command);
-  AddModelFlags(ModelNeeded::kYes, &arguments->flags.models, command);
-  AddStartsFlag(&arguments->starts, command);
-  AddSamplingFlags(&arguments->asked, command);
-  command->add_option("--seconds", arguments->seconds, "how long leaders last")
+  CLI::App* command = app->add_subcommand("long", "Posture and place of followers in long clips");
+  AddAnswersFlags("16_long", "Clips of a minute and of ten", &arguments->flags, command);
+  command->add_option("--seconds", arguments->seconds, "lengths of the leaders, seconds")
       ->delimiter(',')
       ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str();

@@ -1,6 +1,5 @@
 #include "model/evaluation/program/model_flags.h"
 
-#include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/program/section_flags.h"
 
 namespace duet::evaluation::program {
@@ -12,7 +11,7 @@ void AddModelFlags(ModelNeeded needed, ModelChoice* models, CLI::App* command) {
       ->allow_extra_args(false);
   source->add_option("--checkpoint", models->checkpoint, "one checkpoint folder for every fold")
       ->type_name(kCheckpoint);
-  source->add_flag("--embedded", models->embedded, "the checkpoint inside this program");
+  source->add_flag("--embedded", models->embedded, "the embedded checkpoint");
   source->require_option(needed == ModelNeeded::kYes ? 1 : 0, 1);
   AddAsServedFlag(models, command);
 }
@@ -22,10 +21,21 @@ void AddAsServedFlag(ModelChoice* models, CLI::App* command) {
                     "finish the answers as a server does (default: the network's own answers)");
 }
 
+std::vector<std::string> StartNames() { return {"none", "root", "pose"}; }
+
+experiments::StartGiven ParseStart(const std::string& name) {
+  if (name == "root") return experiments::StartGiven::kRoot;
+  return name == "pose" ? experiments::StartGiven::kPose : experiments::StartGiven::kNone;
+}
+
+std::string StartSuffix(experiments::StartGiven start) {
+  if (start == experiments::StartGiven::kNone) return "";
+  return start == experiments::StartGiven::kRoot ? "+root" : "+pose";
+}
+
 void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command) {
   command
-      ->add_option("--starts", *starts,
-                   "what a model gets of the follower's first frame; a row for each")
+      ->add_option("--starts", *starts, "input about the follower's first frame; one row per value")
       ->delimiter(',')
       ->check(CLI::IsMember(StartNames()))
       ->capture_default_str();
@@ -34,7 +44,7 @@ void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command) {
 void AddVarietyFlag(float* variety, CLI::App* command) {
   command
       ->add_option("--variety", *variety,
-                   "variety of a model that samples; 0: the typical answer, 1: as varied as people")
+                   "variety of sampled answers; 0: the typical answer, 1: as varied as people")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
 }

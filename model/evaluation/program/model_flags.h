@@ -23,6 +23,12 @@ void AddModelFlags(ModelNeeded needed, ModelChoice* models, CLI::App* command);
 // --as-served
 void AddAsServedFlag(ModelChoice* models, CLI::App* command);
 
+// Values of --starts: "none", "root" and "pose". ParseStart requires one of them.
+std::vector<std::string> StartNames();
+experiments::StartGiven ParseStart(const std::string& name);
+// The suffix of a row's name: "", "+root", "+pose".
+std::string StartSuffix(experiments::StartGiven start);
+
 // --starts
 void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command);
 

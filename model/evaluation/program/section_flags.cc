@@ -7,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
-#include "model/evaluation/program/named_runs.h"
+#include "model/evaluation/program/models.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -67,13 +67,17 @@ void AddDataFlag(std::string* data, CLI::App* command) {
 }
 
 void AddSubjectsFlag(std::vector<std::string>* subjects, CLI::App* command) {
-  command->add_option("--subjects", *subjects, "left out in turn; default: every subject")
+  command
+      ->add_option("--subjects", *subjects,
+                   "subjects to leave out, one at a time (default: every subject)")
       ->delimiter(',');
 }
 
 void AddSectionFlags(SectionFlags* flags, CLI::App* command) {
   flags->command = command;
-  command->add_option("--out", flags->out, "folder of results, for scripts/make_report.py")
+  command
+      ->add_option("--out", flags->out,
+                   "folder for the results, which scripts/make_report.py reads")
       ->type_name(kResults);
   command->add_option("--id", flags->id, "id of the section")->capture_default_str();
   command->add_option("--title", flags->title, "title of the section")->capture_default_str();

@@ -12,7 +12,6 @@
 #include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/fold_judge.h"
 #include "model/evaluation/program/model_flags.h"
-#include "model/evaluation/program/named_runs.h"
 #include "model/evaluation/report/sweep_figures.h"
 
 namespace duet::evaluation::program {
@@ -20,17 +19,14 @@ namespace {
 
 struct Arguments {
   ExperimentFlags flags;
-  std::vector<std::string> starts = {"none", "pose"};
   std::vector<uint64_t> sample_seeds = {0};
-  float variety = 1;
 };
 
-// One fold: its generator, and its judge, which has not seen the left-out subject either.
+// A fold with its generator and its judge. Neither has seen the left-out subject.
 struct SweepFold {
-  std::string subject;
-  std::vector<int> test;
-  std::shared_ptr<const engine::Synthesizer> model;
-  std::vector<judge::MotionClassifier> judge;  // one
+  const Fold* fold;
+  SharedSynthesizer model;
+  judge::MotionClassifier judge;
 };
 
 // A leader's answers at every weight of every class, own and added: all with one seed, so that only
@@ -52,7 +48,7 @@ absl::Status SweepLeader(const dataset::Dataset& dataset, const SweepFold& fold,
   if (!followers.ok()) return followers.status();
   std::vector<metrics::ScoredMotion> motions;
   for (motion::Poses& follower : *followers) motions.push_back({index, std::move(follower)});
-  const auto probabilities = fold.judge.front().Probabilities(dataset, motions);
+  const auto probabilities = fold.judge.Probabilities(dataset, motions);
   auto row = probabilities.begin();
   for (int raised = 0; raised < classes; ++raised) {
     const auto end = row + static_cast<std::ptrdiff_t>(experiments::SweepWeights().size());
@@ -63,20 +59,16 @@ absl::Status SweepLeader(const dataset::Dataset& dataset, const SweepFold& fold,
 }
 
 absl::StatusOr<SweepFold> OpenFold(const dataset::Dataset& dataset, const FoldModel& model,
-                                   const std::string& subject,
-                                   const std::vector<std::string>& starts) {
-  absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
-  if (!split.ok()) return split.status();
-  absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> synthesizer = model.load(subject);
+                                   const Fold& fold, const std::vector<std::string>& starts) {
+  absl::StatusOr<SharedSynthesizer> synthesizer = model.load(fold.subject);
   if (!synthesizer.ok()) return synthesizer.status();
   for (const std::string& start : starts) {
-    absl::Status fits = experiments::SynthesizerMethod(model.name, *synthesizer, ParseStart(start))
-                            .Train(dataset, split->train);
+    absl::Status fits = CheckModelTakes((*synthesizer)->description(), dataset, ParseStart(start));
     if (!fits.ok()) return fits;
   }
-  absl::StatusOr<judge::MotionClassifier> judge = TrainFoldJudge(dataset, subject);
+  absl::StatusOr<judge::MotionClassifier> judge = TrainFoldJudge(dataset, fold);
   if (!judge.ok()) return judge.status();
-  return SweepFold{subject, split->test, *std::move(synthesizer), {*std::move(judge)}};
+  return SweepFold{&fold, *std::move(synthesizer), *std::move(judge)};
 }
 
 absl::StatusOr<std::vector<experiments::SweepCurve>> SweepFolds(const dataset::Dataset& dataset,
@@ -88,29 +80,24 @@ absl::StatusOr<std::vector<experiments::SweepCurve>> SweepFolds(const dataset::D
     // A model that does not sample has the same answer for every seed.
     const size_t seeds =
         fold.model->description().samples ? arguments.sample_seeds.size() : size_t{1};
-    for (const int index : fold.test) {
+    for (const int index : fold.fold->split.test) {
       for (size_t i = 0; i < seeds; ++i) {
-        const engine::Sampling sampling = {arguments.sample_seeds[i], arguments.variety};
+        const engine::Sampling sampling = {arguments.sample_seeds[i],
+                                           arguments.flags.asked.variety};
         absl::Status status = SweepLeader(dataset, fold, index, start, sampling, &curves);
         if (!status.ok()) return status;
       }
     }
-    std::cerr << "sweep" << StartSuffix(start) << " without " << fold.subject << ": "
-              << fold.test.size() << " leaders\n";
+    std::cerr << "sweep" << StartSuffix(start) << " without " << fold.fold->subject << ": "
+              << fold.fold->split.test.size() << " leaders\n";
   }
   return curves;
 }
 
 report::SweepNames Names(experiments::StartGiven start) {
-  switch (start) {
-    case experiments::StartGiven::kNone:
-      return {"without a start", ""};
-    case experiments::StartGiven::kRoot:
-      return {"given the first root", "_root"};
-    case experiments::StartGiven::kPose:
-      return {"given the first pose", "_pose"};
-  }
-  return {};
+  if (start == experiments::StartGiven::kNone) return {"without a start", ""};
+  const bool root = start == experiments::StartGiven::kRoot;
+  return {root ? "given the first root" : "given the first pose", root ? "_root" : "_pose"};
 }
 
 report::ResultSection MakeSection(const Experiment& experiment, const std::vector<SweepFold>& folds,
@@ -125,10 +112,9 @@ report::ResultSection MakeSection(const Experiment& experiment, const std::vecto
   section.settings.emplace_back("model", experiment.models.front().name);
   section.settings.emplace_back("seeds of a model that samples",
                                 absl::StrJoin(arguments.sample_seeds, ", "));
-  section.settings.emplace_back("variety", absl::StrCat(arguments.variety));
+  section.settings.emplace_back("variety", absl::StrCat(arguments.flags.asked.variety));
   for (const SweepFold& fold : folds) {
-    section.settings.emplace_back(absl::StrCat("judge without ", fold.subject, ", SHA-256"),
-                                  fold.judge.front().hash());
+    section.settings.push_back(JudgeSetting(*fold.fold, fold.judge));
   }
   return section;
 }
@@ -138,14 +124,14 @@ absl::Status Run(const Arguments& arguments) {
   if (!experiment.ok()) return experiment.status();
   const dataset::Dataset& dataset = experiment->dataset;
   std::vector<SweepFold> folds;
-  for (const std::string& subject : experiment->subjects) {
-    absl::StatusOr<SweepFold> fold =
-        OpenFold(dataset, experiment->models.front(), subject, arguments.starts);
-    if (!fold.ok()) return fold.status();
-    folds.push_back(*std::move(fold));
+  for (const Fold& fold : experiment->folds) {
+    absl::StatusOr<SweepFold> opened =
+        OpenFold(dataset, experiment->models.front(), fold, arguments.flags.starts);
+    if (!opened.ok()) return opened.status();
+    folds.push_back(*std::move(opened));
   }
   report::ResultSection section = MakeSection(*experiment, folds, arguments);
-  for (const std::string& name : arguments.starts) {
+  for (const std::string& name : arguments.flags.starts) {
     const experiments::StartGiven start = ParseStart(name);
     absl::StatusOr<std::vector<experiments::SweepCurve>> curves =
         SweepFolds(dataset, folds, start, arguments);
@@ -159,7 +145,7 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddSweepCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app->add_subcommand("sweep", "What raising and lowering label weights does");
+  CLI::App* command = app->add_subcommand("sweep", "Effect of raising and lowering label weights");
   AddExperimentFlags("30_sweep", "Mix, match and avoid: what label weights do", &arguments->flags,
                      command);
   ModelChoice& models = arguments->flags.models;
@@ -168,13 +154,13 @@ void AddSweepCommand(CLI::App* app, ChosenCommand* chosen) {
       ->type_name(kNamedRuns)
       ->required();
   AddAsServedFlag(&models, command);
-  AddStartsFlag(&arguments->starts, command);
+  AddStartsFlag(&arguments->flags.starts, command);
   command
       ->add_option("--sample-seeds", arguments->sample_seeds,
-                   "of a model that samples: each leader is swept with each of them")
+                   "seeds of a model that samples; each leader is swept with every seed")
       ->delimiter(',')
       ->capture_default_str();
-  AddVarietyFlag(&arguments->variety, command);
+  AddVarietyFlag(&arguments->flags.asked.variety, command);
   RunWhenNamed(command, arguments, Run, chosen);
 }
 

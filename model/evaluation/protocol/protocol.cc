@@ -28,15 +28,15 @@ absl::Status CheckAnswer(const dataset::Sequence& sequence, const motion::Poses&
   const motion::Clip& leader = sequence.pair.leader;
   if (answer.frame_count() != leader.frame_count() ||
       answer.joint_count() != leader.joint_count()) {
-    return absl::InternalError(absl::StrCat(
-        answer.frame_count(), " frames of ", answer.joint_count(), " joints came, wanted ",
-        leader.frame_count(), " of ", leader.joint_count(), " as the leader has"));
+    return absl::InternalError(absl::StrCat("answer: expected the leader's ", leader.frame_count(),
+                                            " frames of ", leader.joint_count(), " joints, got ",
+                                            answer.frame_count(), " of ", answer.joint_count()));
   }
   const absl::Span<const motion::Vec3> all = answer.all();
   if (std::all_of(all.begin(), all.end(), [](motion::Vec3 p) { return IsFinite(p); })) {
     return absl::OkStatus();
   }
-  return absl::InternalError("not finite, wanted finite positions");
+  return absl::InternalError("answer: expected finite positions, got one that is not");
 }
 
 absl::StatusOr<motion::Poses> Answer(const Method& method, const dataset::Sequence& sequence) {
@@ -51,9 +51,8 @@ absl::StatusOr<motion::Poses> Answer(const Method& method, const dataset::Sequen
 }  // namespace
 
 absl::StatusOr<FoldResult> RunFold(const dataset::Dataset& dataset, const dataset::Split& split,
-                                   const std::string& subject, Method* method) {
+                                   Method* method) {
   FoldResult result;
-  result.subject = subject;
   auto start = std::chrono::steady_clock::now();
   absl::Status status = method->Train(dataset, split.train);
   if (!status.ok()) return status;
@@ -67,34 +66,6 @@ absl::StatusOr<FoldResult> RunFold(const dataset::Dataset& dataset, const datase
   }
   result.predict_seconds = SecondsSince(start);
   return result;
-}
-
-absl::StatusOr<std::vector<FoldResult>> RunLeaveOneSubjectOut(
-    const dataset::Dataset& dataset, std::vector<std::string> subjects, Method* method,
-    const std::function<void(const FoldResult&)>& done) {
-  if (subjects.empty()) subjects = dataset.Subjects();
-  if (subjects.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(dataset.name, ": no subjects, wanted sequences that name theirs"));
-  }
-  std::vector<FoldResult> folds;
-  for (const std::string& subject : subjects) {
-    absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
-    if (!split.ok()) return split.status();
-    absl::StatusOr<FoldResult> fold = RunFold(dataset, *split, subject, method);
-    if (!fold.ok()) return fold.status();
-    if (done) done(*fold);
-    folds.push_back(*std::move(fold));
-  }
-  return folds;
-}
-
-std::vector<metrics::ScoredMotion> PoolMotions(const std::vector<FoldResult>& folds) {
-  std::vector<metrics::ScoredMotion> motions;
-  for (const FoldResult& fold : folds) {
-    motions.insert(motions.end(), fold.motions.begin(), fold.motions.end());
-  }
-  return motions;
 }
 
 }  // namespace duet::evaluation::protocol

@@ -1,10 +1,11 @@
 #include "model/evaluation/report/sample_tables.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
+
+#include "model/evaluation/metrics/statistics.h"
 
 namespace duet::evaluation::report {
 namespace {
@@ -55,19 +56,9 @@ std::vector<MetricStyle> Styles() {
   return styles;
 }
 
-double MeanOf(const std::vector<double>& values) {
-  double sum = 0, count = 0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    ++count;
-  }
-  return count == 0 ? kNone : sum / count;
-}
-
 double Figure(const MethodFigures& method, const std::string& name) {
   const auto found = method.by_metric.find(name);
-  return found == method.by_metric.end() ? kNone : MeanOf(found->second);
+  return found == method.by_metric.end() ? kNone : metrics::Mean(found->second);
 }
 
 void AddRatio(const std::string& figure, const std::string& ratio, const MethodFigures& captured,
@@ -116,17 +107,10 @@ MethodFigures MeanOfRows(const std::vector<MethodFigures>& rows) {
     for (size_t c = 0; c < values.size(); ++c) {
       std::vector<double> of_rows;
       for (const MethodFigures& row : rows) of_rows.push_back(row.by_metric.at(name)[c]);
-      values[c] = MeanOf(of_rows);
+      values[c] = metrics::Mean(of_rows);
     }
   }
   return mean;
-}
-
-double Deviation(const std::vector<double>& values) {
-  const double mean = MeanOf(values);
-  double squares = 0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
 Table EmptySummary(const std::string& title) {
@@ -169,7 +153,7 @@ Table SampleSpread(const std::vector<MethodFigures>& methods) {
     for (const Column& column : kSummary) {
       std::vector<double> values;
       for (const MethodFigures& method : group) values.push_back(Figure(method, column.figure));
-      row.values.push_back(Deviation(values));
+      row.values.push_back(metrics::Summarise(values).deviation);
     }
     table.rows.push_back(std::move(row));
   }

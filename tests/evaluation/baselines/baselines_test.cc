@@ -20,11 +20,11 @@ using testing::HasSubstr;
 double MeanAfd(const dataset::Dataset& dataset, const std::string& name) {
   auto method = MakeBaseline(name);
   EXPECT_THAT(method, IsOk());
-  const auto folds = RunLeaveOneSubjectOut(dataset, {"a"}, method->get());
-  EXPECT_THAT(folds, IsOk());
-  if (!folds.ok()) return 1e9;
-  const auto scores = ScoreByClass(dataset, PoolMotions(*folds));
-  return (scores[0][0] + scores[1][0]) / 2;
+  const auto fold = RunFold(dataset, *LeaveSubjectOut(dataset, "a"), method->get());
+  EXPECT_THAT(fold, IsOk());
+  if (!fold.ok()) return 1e9;
+  const std::vector<double> afd = ScoreByClass(dataset, fold->motions).at("afd");
+  return (afd[0] + afd[1]) / 2;
 }
 
 TEST(BaselinesTest, AreTheRowsOfTheTable) {
@@ -57,9 +57,9 @@ TEST(BaselinesTest, FrozenFirstPoseIsExactForStillFollowers) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   auto method = MakeBaseline("frozen_first_frame");
   ASSERT_THAT(method, IsOk());
-  const auto folds = RunLeaveOneSubjectOut(dataset, {"a"}, method->get());
-  ASSERT_THAT(folds, IsOk());
-  const metrics::ScoredMotion& motion = (*folds)[0].motions[0];
+  const auto fold = RunFold(dataset, *LeaveSubjectOut(dataset, "a"), method->get());
+  ASSERT_THAT(fold, IsOk());
+  const metrics::ScoredMotion& motion = fold->motions[0];
   const motion::Clip& truth = dataset.sequences[0].pair.follower;
   // The made-up leader's root never moves: the answer stands still in the world.
   for (int t : {0, 7, truth.frame_count() - 1}) {

@@ -118,7 +118,7 @@ TEST(SynthesizeJobsTest, AnswersEveryJobAndRefusesAModelOfOtherClasses) {
 TEST(ClassifierAccuracyTest, LearnsFromSyntheticMotionAlone) {
   const dataset::Dataset dataset = MadeUpPairs(8);
   const dataset::Split split = *SplitInHalves(dataset, 1);
-  judge::ClassifierOptions options;
+  judge::MotionClassifierOptions options;
   options.hidden = 8;
   options.epochs = 60;
   TrainingMaterial material;

@@ -83,9 +83,9 @@ TEST(SynthesizerMethodTest, AFoldReportsTheFailureOfTheNetwork) {
     return window.labels[1] > 0 ? absl::ResourceExhaustedError("no memory") : absl::OkStatus();
   };
   SynthesizerMethod method("ours", model, StartGiven::kNone);
-  EXPECT_THAT(RunFold(dataset, {{1, 2}, {0, 3}}, "a", &method),
+  EXPECT_THAT(RunFold(dataset, {{1, 2}, {0, 3}}, &method),
               StatusIs(absl::StatusCode::kResourceExhausted, HasSubstr("ours: 1/0: no memory")));
-  EXPECT_TRUE(RunFold(dataset, {{1, 2}, {0}}, "a", &method).ok());
+  EXPECT_TRUE(RunFold(dataset, {{1, 2}, {0}}, &method).ok());
 }
 
 }  // namespace

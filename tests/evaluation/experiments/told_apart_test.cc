@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "model/evaluation/judge/judge_input.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
 namespace duet::evaluation::experiments {
@@ -10,8 +9,8 @@ namespace {
 
 using test::MadeUpPairs;
 
-judge::ClassifierOptions Small() {
-  judge::ClassifierOptions options = ToldApartOptions(1);
+judge::MotionClassifierOptions Small() {
+  judge::MotionClassifierOptions options = ToldApartOptions(1);
   options.hidden = 12;
   options.epochs = 12;
   return options;
@@ -76,27 +75,6 @@ TEST(ToldApartTest, MissingAnswersAreRejected) {
             absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(ToldApart(dataset, answers, {}, Small()).status().code(),
             absl::StatusCode::kInvalidArgument);
-}
-
-TEST(JudgeInputTest, ShowsTheLeaderWhereBothAreSeen) {
-  const dataset::Dataset dataset = MadeUpPairs(1);
-  const motion::Skeleton& skeleton = dataset.skeleton;
-  const dataset::Sequence& sequence = dataset.sequences[0];
-  const motion::Poses follower = judge::JudgeInput(skeleton, sequence);
-  const motion::Poses both = judge::JudgeInput(skeleton, sequence, judge::JudgeSees::kBoth);
-  const int joints = skeleton.joint_count();
-  ASSERT_EQ(follower.joint_count(), 3 * joints);
-  ASSERT_EQ(both.joint_count(), 5 * joints);
-  // The leader's right hand as far from its root as in the world, and its velocity as fast.
-  const motion::Poses& leader = sequence.pair.leader.poses;
-  const int hand = skeleton.Find("right_hand");
-  for (int t = 1; t + 1 < leader.frame_count(); ++t) {
-    EXPECT_EQ(both.at(t, 2 * joints + 1), follower.at(t, 2 * joints + 1));
-    EXPECT_NEAR(Norm(both.at(t, 3 * joints + hand)),
-                Distance(leader.at(t, hand), leader.at(t, skeleton.root)), 1e-4);
-    EXPECT_NEAR(Norm(both.at(t, 4 * joints + hand)),
-                Distance(leader.at(t + 1, hand), leader.at(t - 1, hand)) * 15 / 2, 1e-3);
-  }
 }
 
 }  // namespace

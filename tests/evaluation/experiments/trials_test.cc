@@ -7,18 +7,6 @@
 namespace duet::evaluation::experiments {
 namespace {
 
-TEST(SummariseTest, MeanAndSampleDeviation) {
-  const MeanAndDeviation summary = Summarise({1, 2, 3, 6});
-  EXPECT_DOUBLE_EQ(summary.mean, 3);
-  EXPECT_DOUBLE_EQ(summary.deviation, std::sqrt(14.0 / 3));
-}
-
-TEST(SummariseTest, TooFewValuesHaveNoDeviation) {
-  EXPECT_EQ(Summarise({4}).mean, 4);
-  EXPECT_TRUE(std::isnan(Summarise({4}).deviation));
-  EXPECT_TRUE(std::isnan(Summarise({}).mean));
-}
-
 Trials ThreeTrials() {
   Trials trials({"kick", "all"});
   trials.Add("real", "1", {0.5, 0.6});

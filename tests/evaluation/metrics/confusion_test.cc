@@ -23,6 +23,15 @@ TEST(ConfusionTest, CountsAndAccuracies) {
   EXPECT_DOUBLE_EQ(confusion.MeanClassAccuracy(), 0.625);
 }
 
+TEST(ConfusionTest, CountsTheLikeliestClassOfEachMotion) {
+  Confusion confusion(2);
+  confusion.AddLikeliest({0, 1, 1}, {{0.9f, 0.1f}, {0.2f, 0.8f}, {0.5f, 0.5f}});
+  EXPECT_EQ(confusion.count(0, 0), 1);
+  EXPECT_EQ(confusion.count(1, 1), 1);
+  EXPECT_EQ(confusion.count(1, 0), 1);  // the first of equals
+  EXPECT_EQ(confusion.ClassAccuracies(), (std::vector<double>{1, 0.5}));
+}
+
 TEST(ConfusionTest, HasNoAccuracyWithoutMotions) {
   EXPECT_TRUE(std::isnan(Confusion(2).Accuracy()));
   EXPECT_TRUE(std::isnan(Confusion(2).MeanClassAccuracy()));

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "tests/evaluation/support/made_up_pairs.h"
@@ -13,25 +15,21 @@ namespace {
 using test::MadeUpPairs;
 
 size_t ColumnOf(const std::string& name) {
-  for (size_t i = 0; i < AllMetrics().size(); ++i) {
-    if (MetricName(AllMetrics()[i]) == name) return i;
-  }
-  ADD_FAILURE() << "no metric " << name;
-  return 0;
+  const auto* const found = std::find(std::begin(kMetrics), std::end(kMetrics), name);
+  EXPECT_NE(found, std::end(kMetrics)) << name;
+  return static_cast<size_t>(found - std::begin(kMetrics));
 }
 
 TEST(ScoresTest, EveryMetricHasItsName) {
-  std::set<std::string> names;
-  for (Metric metric : AllMetrics()) names.insert(MetricName(metric));
-  EXPECT_EQ(names.size(), AllMetrics().size());
-  EXPECT_EQ(names.count(""), 0u);
+  const std::set<std::string> names(std::begin(kMetrics), std::end(kMetrics));
+  EXPECT_EQ(names.size(), std::size(kMetrics));
 }
 
 TEST(ScoresTest, TheCapturedFollowerHasNoErrors) {
   const dataset::Dataset dataset = MadeUpPairs(1);
   const ScoredMotion captured = CapturedMotions(dataset, {0}).front();
   const std::vector<double> scores = ScoreMotion(dataset, captured);
-  ASSERT_EQ(scores.size(), AllMetrics().size());
+  ASSERT_EQ(scores.size(), std::size(kMetrics));
   for (const char* error : {"afd", "afd_squared", "afd_m", "root_aligned_afd", "velocity_error"}) {
     EXPECT_EQ(scores[ColumnOf(error)], 0) << error;
   }
@@ -73,21 +71,27 @@ TEST(ScoresTest, AveragesOverTheMotionsOfAClass) {
   std::vector<ScoredMotion> motions = CapturedMotions(dataset, {0, 1});
   for (motion::Vec3& p : motions[1].follower.all()) p.z += 1.28f;
   const auto by_class = ScoreByClass(dataset, motions);
-  EXPECT_NEAR(by_class[0][ColumnOf("afd_squared")], 7.5, 1e-3);
-  EXPECT_TRUE(std::isnan(by_class[1][ColumnOf("afd_squared")]));
+  EXPECT_NEAR(by_class.at("afd_squared")[0], 7.5, 1e-3);
+  EXPECT_TRUE(std::isnan(by_class.at("afd_squared")[1]));
 }
 
 TEST(ScoresTest, DepthIsAveragedOnlyOverPenetratingMotions) {
   const dataset::Dataset dataset = MadeUpPairs(2);
   std::vector<ScoredMotion> motions = CapturedMotions(dataset, {0, 1});
-  const size_t frequency = ColumnOf("penetration_frequency");
-  const size_t depth = ColumnOf("penetration_depth_m");
-  EXPECT_EQ(ScoreByClass(dataset, motions)[0][frequency], 0);
-  EXPECT_TRUE(std::isnan(ScoreByClass(dataset, motions)[0][depth]));
+  const char* const frequency = "penetration_frequency";
+  const char* const depth = "penetration_depth_m";
+  EXPECT_EQ(ScoreByClass(dataset, motions).at(frequency)[0], 0);
+  EXPECT_TRUE(std::isnan(ScoreByClass(dataset, motions).at(depth)[0]));
   // On the leader's very spot: the trunks' capsules overlap by both radii.
   motions[0].follower = dataset.sequences[0].pair.leader.poses;
-  EXPECT_NEAR(ScoreByClass(dataset, motions)[0][frequency], 0.5, 1e-6);
-  EXPECT_NEAR(ScoreByClass(dataset, motions)[0][depth], 0.22, 1e-6);
+  EXPECT_NEAR(ScoreByClass(dataset, motions).at(frequency)[0], 0.5, 1e-6);
+  EXPECT_NEAR(ScoreByClass(dataset, motions).at(depth)[0], 0.22, 1e-6);
+}
+
+TEST(ScoresTest, ClassesAreThoseOfTheSequences) {
+  const dataset::Dataset dataset = MadeUpPairs(2);
+  const int first = dataset.sequences[0].interaction_class;
+  EXPECT_EQ(ClassesOf(dataset, {3, 0}), (std::vector<int>{1 - first, first}));
 }
 
 TEST(ScoresTest, CapturedMotionsAnswerTheSameSequences) {

@@ -118,7 +118,8 @@ TEST(DirectionCommandTest, NamesARunThatIsMissingOrOfOtherJoints) {
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("nowhere/s01")));
   WriteRun(folder.path() / "tiny/s01", TinyManifest());
   EXPECT_THAT(RunCommand({"x=" + (folder / "tiny").string()}),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("tiny/s01: its 3 joints")));
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("tiny/s01: expected the data set's 15 joints, got 3")));
 }
 
 }  // namespace

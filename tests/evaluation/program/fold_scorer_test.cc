@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "model/evaluation/baselines/baselines.h"
-#include "model/evaluation/program/named_runs.h"
+#include "model/evaluation/report/sample_tables.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
 namespace duet::evaluation::program {
@@ -12,75 +11,106 @@ namespace {
 
 using test::MadeUpPairs;
 
+using ::testing::DoubleNear;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::Gt;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-// Answers what was captured: it looks the sequence up in a data set of its own.
-class Oracle : public protocol::Method {
- public:
-  explicit Oracle(const dataset::Dataset& dataset) : dataset_(dataset) {}
-  std::string name() const override { return "oracle"; }
-  absl::Status Train(const dataset::Dataset&, const std::vector<int>&) override {
-    return absl::OkStatus();
-  }
-  absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& asked) const override {
-    for (const dataset::Sequence& sequence : dataset_.sequences) {
-      if (sequence.id == asked.id) return sequence.pair.follower.poses;
-    }
-    return absl::NotFoundError(asked.id);
-  }
+using OneAnswerEach = std::vector<std::vector<metrics::ScoredMotion>>;  // [folds]
 
- private:
-  const dataset::Dataset& dataset_;
-};
+OneAnswerEach Captured(const dataset::Dataset& dataset, const FoldScorer& scorer) {
+  OneAnswerEach captured;
+  for (const Fold& fold : scorer.folds()) {
+    captured.push_back(metrics::CapturedMotions(dataset, fold.split.test));
+  }
+  return captured;
+}
 
-TEST(FoldScorer, ScoresAnOracleLikeTheCapturedFollowers) {
+TEST(FoldScorer, ScoresPerfectAnswersLikeTheCapturedFollowers) {
   const dataset::Dataset dataset = MadeUpPairs(6);
-  const absl::StatusOr<FoldScorer> scorer = FoldScorer::Create(dataset, {"a", "b"}, true);
+  const absl::StatusOr<FoldScorer> scorer =
+      FoldScorer::Create(dataset, *LeaveOut(dataset, {"a", "b"}), FoldScorer::Judging::kPlain);
   ASSERT_TRUE(scorer.ok()) << scorer.status();
-  absl::StatusOr<report::MethodFigures> oracle = scorer->Score(
-      "oracle", [&](const std::string&) { return std::make_unique<Oracle>(dataset); });
-  ASSERT_TRUE(oracle.ok()) << oracle.status();
-  EXPECT_THAT(oracle->by_metric["afd"], ElementsAre(0, 0));
-  EXPECT_THAT(oracle->by_metric[report::kFrechet], Each(::testing::DoubleNear(0, 1e-6)));
+  absl::StatusOr<report::MethodFigures> perfect =
+      scorer->Score("perfect", Captured(dataset, *scorer));
+  ASSERT_TRUE(perfect.ok()) << perfect.status();
+  EXPECT_THAT(perfect->by_metric["afd"], ElementsAre(0, 0));
+  EXPECT_THAT(perfect->by_metric[report::kFrechet], Each(DoubleNear(0, 1e-6)));
   absl::StatusOr<report::MethodFigures> captured = scorer->ScoreCaptured();
   ASSERT_TRUE(captured.ok()) << captured.status();
   // These bodies never touch: no depth, which is not a number and equals nothing.
-  EXPECT_EQ(oracle->by_metric.erase("penetration_depth_m"), 1u);
+  EXPECT_EQ(perfect->by_metric.erase("penetration_depth_m"), 1u);
   EXPECT_EQ(captured->by_metric.erase("penetration_depth_m"), 1u);
+  EXPECT_FALSE(perfect->captured);
   EXPECT_TRUE(captured->captured);
-  EXPECT_EQ(captured->by_metric, oracle->by_metric);
-  EXPECT_THAT(oracle->by_metric[report::kDiversity], Each(Gt(0)));
+  EXPECT_EQ(captured->by_metric, perfect->by_metric);
+  EXPECT_THAT(perfect->by_metric[report::kDiversity], Each(Gt(0)));
   EXPECT_THAT(scorer->JudgeSettings(), SizeIs(2));
 }
 
 TEST(FoldScorer, TrainsNoJudgeUnlessAsked) {
   const dataset::Dataset dataset = MadeUpPairs(6);
-  const absl::StatusOr<FoldScorer> scorer = FoldScorer::Create(dataset, {"a"}, false);
+  const absl::StatusOr<FoldScorer> scorer =
+      FoldScorer::Create(dataset, *LeaveOut(dataset, {"a"}), FoldScorer::Judging::kNone);
   ASSERT_TRUE(scorer.ok()) << scorer.status();
-  const absl::StatusOr<report::MethodFigures> mean = scorer->Score(
-      "mean", [](const std::string&) { return baselines::MakeBaseline("class_mean"); });
-  ASSERT_TRUE(mean.ok()) << mean.status();
-  EXPECT_EQ(mean->by_metric.count(report::kAccuracy), 0u);
-  EXPECT_THAT(mean->by_metric.at("afd"), Each(Gt(0)));
+  OneAnswerEach answers = Captured(dataset, *scorer);
+  for (metrics::ScoredMotion& motion : answers[0]) motion.follower.at(0, 0).x += 1;
+  const absl::StatusOr<report::MethodFigures> figures = scorer->Score("moved", answers);
+  ASSERT_TRUE(figures.ok()) << figures.status();
+  EXPECT_EQ(figures->by_metric.count(report::kAccuracy), 0u);
+  EXPECT_THAT(figures->by_metric.at("afd"), Each(Gt(0)));
   EXPECT_THAT(scorer->JudgeSettings(), SizeIs(0));
 }
 
-TEST(FoldScorer, UnknownSubjectIsNamed) {
-  const absl::Status status = FoldScorer::Create(MadeUpPairs(3), {"zoe"}, false).status();
+TEST(FoldScorer, ScoresManyAnswersBesideTheCapturedOnes) {
+  const dataset::Dataset dataset = MadeUpPairs(6);
+  const absl::StatusOr<FoldScorer> scorer =
+      FoldScorer::Create(dataset, *LeaveOut(dataset, {"a"}), FoldScorer::Judging::kFiltered);
+  ASSERT_TRUE(scorer.ok()) << scorer.status();
+  EXPECT_THAT(scorer->JudgeSettings(), SizeIs(1));
+  absl::StatusOr<report::MethodFigures> captured = scorer->ScoreCapturedSamples();
+  ASSERT_TRUE(captured.ok()) << captured.status();
+  EXPECT_TRUE(captured->captured);
+  EXPECT_THAT(captured->by_metric[report::kPooledFrechet], ElementsAre(DoubleNear(0, 1e-6)));
+  // Two answers to each: the captured follower moved to either side.
+  metrics::SampledMotions answers;
+  for (const float by : {-1.28f, 1.28f}) {
+    answers.push_back(metrics::CapturedMotions(dataset, scorer->folds()[0].split.test));
+    for (metrics::ScoredMotion& motion : answers.back()) {
+      for (motion::Vec3& p : motion.follower.all()) p.z += by;
+    }
+  }
+  absl::StatusOr<report::MethodFigures> made = scorer->ScoreSamples("made", {answers});
+  ASSERT_TRUE(made.ok()) << made.status();
+  const double unit = std::sqrt(15);
+  EXPECT_THAT(made->by_metric["afd"], Each(DoubleNear(unit, 1e-3)));
+  EXPECT_THAT(made->by_metric[report::kBestAnswerAfd], Each(DoubleNear(unit, 1e-3)));
+  EXPECT_THAT(made->by_metric[report::kMeanAnswerAfd], Each(DoubleNear(0, 1e-3)));
+  EXPECT_THAT(made->by_metric[report::kMultimodality], Each(DoubleNear(2 * unit, 1e-3)));
+  EXPECT_THAT(made->by_metric[report::kPooledFrechet], ElementsAre(Gt(1e-3)));
+  EXPECT_THAT(made->by_metric[report::kFilteredFrechet], ElementsAre(Gt(1e-3)));
+  EXPECT_THAT(made->by_metric[report::kDiversity], SizeIs(2));
+}
+
+TEST(LeaveOut, UnknownSubjectIsNamed) {
+  const absl::Status status = LeaveOut(MadeUpPairs(3), {"zoe"}).status();
   EXPECT_TRUE(absl::IsNotFound(status)) << status;
   EXPECT_THAT(std::string(status.message()), HasSubstr("zoe"));
 }
 
-TEST(FoldSubjects, DefaultToEverySubject) {
+TEST(LeaveOut, DefaultsToEverySubject) {
   dataset::Dataset dataset = MadeUpPairs(3);
-  EXPECT_THAT(*FoldSubjects(dataset, {"b"}), ElementsAre("b"));
-  EXPECT_THAT(*FoldSubjects(dataset, {}), ElementsAre("a", "b", "c"));
+  const auto subjects = [&dataset](const std::vector<std::string>& asked) {
+    std::vector<std::string> names;
+    for (const Fold& fold : *LeaveOut(dataset, asked)) names.push_back(fold.subject);
+    return names;
+  };
+  EXPECT_THAT(subjects({"b"}), ElementsAre("b"));
+  EXPECT_THAT(subjects({}), ElementsAre("a", "b", "c"));
   for (dataset::Sequence& sequence : dataset.sequences) sequence.subjects.clear();
-  EXPECT_TRUE(absl::IsInvalidArgument(FoldSubjects(dataset, {}).status()));
+  EXPECT_TRUE(absl::IsInvalidArgument(LeaveOut(dataset, {}).status()));
 }
 
 TEST(ParseRuns, TakesAFolderWithOrWithoutAName) {

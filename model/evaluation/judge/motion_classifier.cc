@@ -1,4 +1,4 @@
-#include "model/evaluation/judge/classifier.h"
+#include "model/evaluation/judge/motion_classifier.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,7 +6,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/sha256.h"
-#include "model/evaluation/judge/judge_input.h"
 #include "model/network/batch.h"
 #include "model/network/discriminator.h"
 #include "model/training/augment.h"
@@ -18,7 +17,7 @@ struct MotionClassifier::Model {
   std::vector<network::Discriminator> members;
   std::string hash;
   int64_t hidden = 0;  // units of each direction
-  JudgeSees sees = JudgeSees::kFollower;
+  classifier::Sees sees = classifier::Sees::kFollower;
 };
 
 namespace {
@@ -35,17 +34,19 @@ struct MotionBatch {
 // The sequence with its captured follower replaced.
 dataset::Sequence WithFollower(const dataset::Dataset& dataset,
                                const metrics::ScoredMotion& motion) {
-  dataset::Sequence sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
+  dataset::Sequence sequence = SequenceOf(dataset, motion);
   sequence.pair.follower.poses = motion.follower;
   return sequence;
 }
 
 MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
-                            const std::vector<dataset::Sequence>& sequences, JudgeSees sees) {
+                            const std::vector<dataset::Sequence>& sequences,
+                            classifier::Sees sees) {
   std::vector<motion::Poses> inputs;
   std::vector<int64_t> lengths, classes;
   for (const dataset::Sequence& sequence : sequences) {
-    inputs.push_back(JudgeInput(dataset.skeleton, sequence, sees));
+    inputs.push_back(
+        ClassifierInput(dataset.skeleton, sequence.pair, sequence.partner_direction, sees));
     lengths.push_back(sequence.pair.follower.frame_count());
     classes.push_back(sequence.interaction_class);
   }
@@ -57,7 +58,7 @@ MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
 
 std::vector<MotionBatch> TestBatches(const dataset::Dataset& dataset,
                                      const std::vector<metrics::ScoredMotion>& motions,
-                                     JudgeSees sees) {
+                                     classifier::Sees sees) {
   std::vector<MotionBatch> batches;
   for (size_t first = 0; first < motions.size(); first += kTestBatch) {
     std::vector<dataset::Sequence> sequences;
@@ -71,7 +72,7 @@ std::vector<MotionBatch> TestBatches(const dataset::Dataset& dataset,
 
 // To generalise to unseen people, the classifier must not depend on the proportions of the people
 // in the clip, nor on the clip's start and end: both are varied. These values, like the defaults of
-// ClassifierOptions, were chosen on held-back training subjects.
+// MotionClassifierOptions, were chosen on held-back training subjects.
 constexpr double kLabelSmoothing = 0.1;
 
 training::TrainingOptions::Augmentation Variations() {
@@ -102,7 +103,7 @@ dataset::Sequence Vary(const dataset::Dataset& dataset, const dataset::Sequence&
   return varied;
 }
 
-training::TrainingOptions::Optimiser OptimiserSettings(const ClassifierOptions& options) {
+training::TrainingOptions::Optimiser OptimiserSettings(const MotionClassifierOptions& options) {
   training::TrainingOptions::Optimiser settings;
   settings.learning_rate = options.learning_rate;
   settings.weight_decay = options.weight_decay;
@@ -113,7 +114,7 @@ training::TrainingOptions::Optimiser OptimiserSettings(const ClassifierOptions& 
 // The batches of one epoch: every motion once, varied, in a new random order.
 std::vector<MotionBatch> EpochBatches(const dataset::Dataset& dataset,
                                       const std::vector<dataset::Sequence>& sequences,
-                                      const ClassifierOptions& options, int64_t epoch) {
+                                      const MotionClassifierOptions& options, int64_t epoch) {
   base::Random random(options.seed, epoch);
   std::vector<dataset::Sequence> varied;
   for (const dataset::Sequence& sequence : sequences) {
@@ -132,9 +133,9 @@ std::vector<MotionBatch> EpochBatches(const dataset::Dataset& dataset,
 
 network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
                                     const std::vector<dataset::Sequence>& sequences,
-                                    const ClassifierOptions& options) {
+                                    const MotionClassifierOptions& options) {
   network::DiscriminatorOptions sizes;
-  sizes.input = 3 * JudgeParts(options.sees) * dataset.skeleton.joint_count();
+  sizes.input = 3 * classifier::InputParts(options.sees) * dataset.skeleton.joint_count();
   sizes.window_frames = dataset.LongestFrameCount();
   sizes.hidden = options.hidden;
   sizes.outputs = dataset.class_count();
@@ -173,30 +174,21 @@ absl::Status CheckMotions(const dataset::Dataset& dataset,
                           const std::vector<metrics::ScoredMotion>& motions) {
   std::vector<int> counts(dataset.classes.size());
   for (const metrics::ScoredMotion& motion : motions) {
-    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(motion.sequence)];
-    ++counts[static_cast<size_t>(sequence.interaction_class)];
+    ++counts[static_cast<size_t>(SequenceOf(dataset, motion).interaction_class)];
   }
   for (size_t c = 0; c < counts.size(); ++c) {
     if (counts[c] > 0) continue;
     return absl::InvalidArgumentError(
-        absl::StrCat("motions: none of class ", dataset.classes[c], ", wanted at least one"));
+        absl::StrCat("motions: expected at least one of class ", dataset.classes[c], ", got none"));
   }
   return absl::OkStatus();
-}
-
-void AppendRows(const torch::Tensor& rows, std::vector<std::vector<float>>* out) {
-  const torch::Tensor values = rows.contiguous();
-  const float* row = values.data_ptr<float>();
-  for (int64_t i = 0; i < values.size(0); ++i, row += values.size(1)) {
-    out->emplace_back(row, row + values.size(1));
-  }
 }
 
 }  // namespace
 
 absl::StatusOr<MotionClassifier> MotionClassifier::Train(
     const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions,
-    const ClassifierOptions& options) {
+    const MotionClassifierOptions& options) {
   absl::Status status = CheckMotions(dataset, motions);
   if (!status.ok()) return status;
   std::vector<dataset::Sequence> sequences;
@@ -207,7 +199,7 @@ absl::StatusOr<MotionClassifier> MotionClassifier::Train(
   model->sees = options.sees;
   model->hidden = options.hidden;
   for (int64_t m = 0; m < options.members; ++m) {
-    ClassifierOptions member = options;
+    MotionClassifierOptions member = options;
     member.seed = options.seed * static_cast<uint64_t>(options.members) + static_cast<uint64_t>(m);
     model->members.push_back(TrainNetwork(dataset, sequences, member));
   }
@@ -224,7 +216,7 @@ std::vector<std::vector<float>> MotionClassifier::Probabilities(
     for (network::Discriminator& network : model_->members) {
       probabilities.push_back(network->forward(batch.motion, batch.lengths).softmax(1));
     }
-    AppendRows(torch::stack(probabilities).mean(0), &rows);
+    network::AppendRows(torch::stack(probabilities).mean(0), &rows);
   }
   return rows;
 }
@@ -238,7 +230,7 @@ metrics::FeatureSet MotionClassifier::Features(
     for (network::Discriminator& network : model_->members) {
       features.push_back(network->Features(batch.motion, batch.lengths));
     }
-    AppendRows(torch::cat(features, 1), &rows);
+    network::AppendRows(torch::cat(features, 1), &rows);
   }
   return rows;
 }

@@ -1,5 +1,5 @@
-#ifndef DUET_MODEL_EVALUATION_JUDGE_CLASSIFIER_H_
-#define DUET_MODEL_EVALUATION_JUDGE_CLASSIFIER_H_
+#ifndef DUET_MODEL_EVALUATION_JUDGE_MOTION_CLASSIFIER_H_
+#define DUET_MODEL_EVALUATION_JUDGE_MOTION_CLASSIFIER_H_
 
 #include <cstdint>
 #include <memory>
@@ -8,14 +8,14 @@
 
 #include "absl/status/statusor.h"
 #include "model/classifier/classifier.h"
+#include "model/classifier/classifier_input.h"
 #include "model/dataset/dataset.h"
-#include "model/evaluation/judge/judge_input.h"
 #include "model/evaluation/metrics/features.h"
 #include "model/evaluation/metrics/scores.h"
 
 namespace duet::evaluation::judge {
 
-struct ClassifierOptions {
+struct MotionClassifierOptions {
   int64_t members = 1;  // networks with different seeds, whose probabilities are averaged
   int64_t hidden = 32;  // LSTM units of each direction, in both layers
   int64_t epochs = 20;
@@ -26,14 +26,14 @@ struct ClassifierOptions {
   // Standard deviation of one offset per joint and training motion, metres: makes the classifier
   // independent of people's proportions.
   double body_noise = 0.05;
-  JudgeSees sees = JudgeSees::kFollower;
+  classifier::Sees sees = classifier::Sees::kFollower;
   uint64_t seed = 0;
 };
 
 // Classifies a follower's motion: networks shaped like the discriminator, with one output per
 // class. A judge is such a classifier that scores synthesised motion (accuracy, FID, diversity);
 // the paper's Table 6 trains others on synthetic motion. By default it sees only the follower, in
-// the standard coordinates of its leader (judge_input.h).
+// the standard coordinates of its leader (ClassifierInput).
 //
 // Source:  paper sections 3.3 and 4 (the paper does not describe its own extractor).
 // Threads: the const functions are safe to call concurrently.
@@ -45,7 +45,7 @@ class MotionClassifier {
   // motion.
   static absl::StatusOr<MotionClassifier> Train(const dataset::Dataset& dataset,
                                                 const std::vector<metrics::ScoredMotion>& motions,
-                                                const ClassifierOptions& options);
+                                                const MotionClassifierOptions& options);
 
   // Shapes: returns [motions][classes]; every row sums to 1.
   std::vector<std::vector<float>> Probabilities(
@@ -70,4 +70,4 @@ class MotionClassifier {
 
 }  // namespace duet::evaluation::judge
 
-#endif  // DUET_MODEL_EVALUATION_JUDGE_CLASSIFIER_H_
+#endif  // DUET_MODEL_EVALUATION_JUDGE_MOTION_CLASSIFIER_H_

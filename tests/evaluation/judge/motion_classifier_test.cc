@@ -1,4 +1,4 @@
-#include "model/evaluation/judge/classifier.h"
+#include "model/evaluation/judge/motion_classifier.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ using ::testing::SizeIs;
 
 constexpr int kPairsAClass = 12;
 
-ClassifierOptions Small() {
-  ClassifierOptions options;
+MotionClassifierOptions Small() {
+  MotionClassifierOptions options;
   options.hidden = 12;
   options.epochs = 15;
   return options;
@@ -39,7 +39,7 @@ std::vector<metrics::ScoredMotion> Followers(const dataset::Dataset& dataset, bo
   return metrics::CapturedMotions(dataset, chosen);
 }
 
-MotionClassifier Trained(const dataset::Dataset& dataset, const ClassifierOptions& options) {
+MotionClassifier Trained(const dataset::Dataset& dataset, const MotionClassifierOptions& options) {
   absl::StatusOr<MotionClassifier> judge =
       MotionClassifier::Train(dataset, Followers(dataset, false), options);
   EXPECT_TRUE(judge.ok()) << judge.status();
@@ -55,7 +55,7 @@ TEST(MotionClassifier, MatchesTheClassifierWithoutLibTorch) {
     all.push_back(static_cast<int>(i));
   }
   for (const int epochs : {0, 3}) {
-    ClassifierOptions options = Small();
+    MotionClassifierOptions options = Small();
     options.epochs = epochs;  // 0: random weights
     options.members = 2;
     const MotionClassifier judge = Trained(dataset, options);
@@ -90,7 +90,7 @@ TEST(MotionClassifier, ClassifiesAnUnseenSubject) {
 
 TEST(MotionClassifier, IsDeterministic) {
   const dataset::Dataset dataset = MadeUpPairs(3);
-  ClassifierOptions options = Small();
+  MotionClassifierOptions options = Small();
   options.epochs = 2;
   const MotionClassifier a = Trained(dataset, options), b = Trained(dataset, options);
   EXPECT_THAT(a.hash(), SizeIs(64));
@@ -144,6 +144,30 @@ TEST(MotionClassifier, RefusesAClassWithoutMotion) {
   const absl::Status status = MotionClassifier::Train(dataset, motions, Small()).status();
   EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
   EXPECT_THAT(std::string(status.message()), HasSubstr("flinch"));
+}
+
+TEST(ClassifierInput, ShowsTheLeaderWhereBothAreSeen) {
+  const dataset::Dataset dataset = MadeUpPairs(1);
+  const motion::Skeleton& skeleton = dataset.skeleton;
+  const dataset::Sequence& sequence = dataset.sequences[0];
+  const motion::ClipPair& pair = sequence.pair;
+  const motion::Poses follower =
+      ClassifierInput(skeleton, pair, sequence.partner_direction, classifier::Sees::kFollower);
+  const motion::Poses both =
+      ClassifierInput(skeleton, pair, sequence.partner_direction, classifier::Sees::kBoth);
+  const int joints = skeleton.joint_count();
+  ASSERT_EQ(follower.joint_count(), 3 * joints);
+  ASSERT_EQ(both.joint_count(), 5 * joints);
+  // The leader's right hand as far from its root as in the world, and its velocity as fast.
+  const motion::Poses& leader = sequence.pair.leader.poses;
+  const int hand = skeleton.Find("right_hand");
+  for (int t = 1; t + 1 < leader.frame_count(); ++t) {
+    EXPECT_EQ(both.at(t, 2 * joints + 1), follower.at(t, 2 * joints + 1));
+    EXPECT_NEAR(Norm(both.at(t, 3 * joints + hand)),
+                Distance(leader.at(t, hand), leader.at(t, skeleton.root)), 1e-4);
+    EXPECT_NEAR(Norm(both.at(t, 4 * joints + hand)),
+                Distance(leader.at(t + 1, hand), leader.at(t - 1, hand)) * 15 / 2, 1e-3);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,31 @@
+#include "model/evaluation/metrics/statistics.h"
+
+#include <cmath>
+#include <limits>
+
+namespace duet::evaluation::metrics {
+namespace {
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+}  // namespace
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0, count = 0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return count == 0 ? kNone : sum / count;
+}
+
+MeanAndDeviation Summarise(const std::vector<double>& values) {
+  const double count = static_cast<double>(values.size());
+  if (values.empty()) return {kNone, kNone};
+  double sum = 0, squares = 0;
+  for (const double value : values) sum += value;
+  const double mean = sum / count;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return {mean, values.size() < 2 ? kNone : std::sqrt(squares / (count - 1))};
+}
+
+}  // namespace duet::evaluation::metrics

@@ -1,0 +1,20 @@
+#ifndef DUET_MODEL_EVALUATION_METRICS_STATISTICS_H_
+#define DUET_MODEL_EVALUATION_METRICS_STATISTICS_H_
+
+#include <vector>
+
+namespace duet::evaluation::metrics {
+
+// The mean of the values that are not NaN; NaN without any.
+double Mean(const std::vector<double>& values);
+
+struct MeanAndDeviation {
+  double mean = 0;
+  double deviation = 0;  // with divisor n - 1; NaN for fewer than 2 values
+};
+// NaN for no value, and where a value is NaN.
+MeanAndDeviation Summarise(const std::vector<double>& values);
+
+}  // namespace duet::evaluation::metrics
+
+#endif  // DUET_MODEL_EVALUATION_METRICS_STATISTICS_H_

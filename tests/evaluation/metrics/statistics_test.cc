@@ -1,0 +1,29 @@
+#include "model/evaluation/metrics/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace duet::evaluation::metrics {
+namespace {
+
+TEST(MeanTest, IgnoresMissingValues) {
+  EXPECT_EQ(Mean({1, std::nan(""), 4}), 2.5);
+  EXPECT_TRUE(std::isnan(Mean({std::nan("")})));
+  EXPECT_TRUE(std::isnan(Mean({})));
+}
+
+TEST(SummariseTest, MeanAndSampleDeviation) {
+  const MeanAndDeviation summary = Summarise({1, 2, 3, 6});
+  EXPECT_DOUBLE_EQ(summary.mean, 3);
+  EXPECT_DOUBLE_EQ(summary.deviation, std::sqrt(14.0 / 3));
+}
+
+TEST(SummariseTest, TooFewValuesHaveNoDeviation) {
+  EXPECT_EQ(Summarise({4}).mean, 4);
+  EXPECT_TRUE(std::isnan(Summarise({4}).deviation));
+  EXPECT_TRUE(std::isnan(Summarise({}).mean));
+}
+
+}  // namespace
+}  // namespace duet::evaluation::metrics
