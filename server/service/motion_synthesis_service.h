@@ -19,10 +19,10 @@
 #include "server/metrics/call_record.h"
 #include "server/registry/model_registry.h"
 #include "server/security/call_guard.h"
+#include "server/service/active_calls.h"
 #include "server/service/admission.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/call_reactor.h"
-#include "server/service/live_calls.h"
 #include "server/service/open_calls.h"
 #include "server/service/raw_service.h"
 #include "server/service/reception.h"
@@ -121,7 +121,7 @@ class MotionSynthesisService final : public RawService {
   const ServiceParts parts_;
   const CallPipeline pipeline_;
   OpenCalls open_calls_;
-  LiveCalls calls_;
+  ActiveCalls calls_;
   std::atomic<std::uint64_t> large_request_bytes_{0};
   common::BackgroundThread large_requests_{common::BackgroundThread::Share::kOrdinary};
 };

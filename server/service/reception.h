@@ -11,9 +11,9 @@
 #include "absl/status/status.h"
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
+#include "server/service/active_calls.h"
 #include "server/service/admission.h"
 #include "server/service/call_scope.h"
-#include "server/service/live_calls.h"
 #include "server/service/share_pool.h"
 #include "server/service/streaming_call.h"
 
@@ -59,7 +59,7 @@ class MessageSink {
 // Only the thread that ends the call uses the writer, so the writer may be destroyed after Finish.
 //
 // Threads: safe to call concurrently.
-class Reception final : public LiveCall {
+class Reception final : public ActiveCall {
  public:
   struct Parts {
     ReplyWriter* writer = nullptr;    // lives until Finish was called on it

@@ -104,7 +104,7 @@ class StreamingCall : public std::enable_shared_from_this<StreamingCall> {
   // stalled reader.
   void CheckTime(common::TimePoint now);
 
-  // See LiveCall.
+  // See ActiveCall.
   std::optional<common::TimePoint> waiting_since() const;
   std::optional<std::size_t> GiveUpReader(common::TimePoint now, double seconds);
 

@@ -1,4 +1,4 @@
-#include "server/service/live_calls.h"
+#include "server/service/active_calls.h"
 
 #include <algorithm>
 
@@ -7,14 +7,14 @@ namespace {
 
 constexpr std::size_t kFewest = 64;
 
-void RemoveDead(std::vector<std::weak_ptr<LiveCall>>& calls) {
-  const auto dead = [](const std::weak_ptr<LiveCall>& call) { return call.expired(); };
+void RemoveDead(std::vector<std::weak_ptr<ActiveCall>>& calls) {
+  const auto dead = [](const std::weak_ptr<ActiveCall>& call) { return call.expired(); };
   calls.erase(std::remove_if(calls.begin(), calls.end(), dead), calls.end());
 }
 
 }  // namespace
 
-void LiveCalls::Add(const std::shared_ptr<LiveCall>& call) {
+void ActiveCalls::Add(const std::shared_ptr<ActiveCall>& call) {
   std::optional<absl::Status> ended;
   {
     common::MutexLock lock(mutex_);
@@ -29,24 +29,24 @@ void LiveCalls::Add(const std::shared_ptr<LiveCall>& call) {
   if (ended) call->Abort(*ended);
 }
 
-void LiveCalls::AbortAll(const absl::Status& reason) {
+void ActiveCalls::AbortAll(const absl::Status& reason) {
   {
     // A call that was admitted before the server stopped admitting calls may be added after this.
     common::MutexLock lock(mutex_);
     ended_ = reason;
   }
-  for (const std::shared_ptr<LiveCall>& call : All()) call->Abort(reason);
+  for (const std::shared_ptr<ActiveCall>& call : All()) call->Abort(reason);
 }
 
-void LiveCalls::CheckTime(common::TimePoint now) {
-  for (const std::shared_ptr<LiveCall>& call : All()) call->CheckTime(now);
+void ActiveCalls::CheckTime(common::TimePoint now) {
+  for (const std::shared_ptr<ActiveCall>& call : All()) call->CheckTime(now);
 }
 
-std::optional<std::size_t> LiveCalls::GiveUpSlowestReader(const std::optional<std::string>& client,
-                                                          common::TimePoint now, double seconds) {
-  using Waiting = std::pair<common::TimePoint, std::shared_ptr<LiveCall>>;
+std::optional<std::size_t> ActiveCalls::GiveUpSlowestReader(
+    const std::optional<std::string>& client, common::TimePoint now, double seconds) {
+  using Waiting = std::pair<common::TimePoint, std::shared_ptr<ActiveCall>>;
   std::vector<Waiting> waiting;
-  for (std::shared_ptr<LiveCall>& call : All()) {
+  for (std::shared_ptr<ActiveCall>& call : All()) {
     if (client.has_value() && call->client() != *client) continue;
     const std::optional<common::TimePoint> since = call->waiting_since();
     if (since.has_value()) waiting.emplace_back(*since, std::move(call));
@@ -60,13 +60,13 @@ std::optional<std::size_t> LiveCalls::GiveUpSlowestReader(const std::optional<st
   return std::nullopt;
 }
 
-std::vector<std::shared_ptr<LiveCall>> LiveCalls::All() {
-  std::vector<std::shared_ptr<LiveCall>> alive;
+std::vector<std::shared_ptr<ActiveCall>> ActiveCalls::All() {
+  std::vector<std::shared_ptr<ActiveCall>> alive;
   common::MutexLock lock(mutex_);
   RemoveDead(calls_);
   alive.reserve(calls_.size());
-  for (const std::weak_ptr<LiveCall>& weak : calls_) {
-    if (std::shared_ptr<LiveCall> call = weak.lock()) alive.push_back(std::move(call));
+  for (const std::weak_ptr<ActiveCall>& weak : calls_) {
+    if (std::shared_ptr<ActiveCall> call = weak.lock()) alive.push_back(std::move(call));
   }
   return alive;
 }

@@ -1,4 +1,4 @@
-#include "server/service/live_calls.h"
+#include "server/service/active_calls.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using std::chrono::seconds;
 constexpr common::TimePoint kBegin{};
 
 // A call whose reader has kept a message waiting since then, or takes everything.
-class FakeCall final : public LiveCall {
+class FakeCall final : public ActiveCall {
  public:
   FakeCall(std::string client, std::optional<common::TimePoint> since)
       : client_(std::move(client)), since_(since) {}
@@ -41,15 +41,15 @@ class FakeCall final : public LiveCall {
   std::optional<common::TimePoint> since_;
 };
 
-std::shared_ptr<FakeCall> AddCall(LiveCalls& calls, std::string client,
+std::shared_ptr<FakeCall> AddCall(ActiveCalls& calls, std::string client,
                                   std::optional<common::TimePoint> since) {
   auto call = std::make_shared<FakeCall>(std::move(client), since);
   calls.Add(call);
   return call;
 }
 
-TEST(LiveCallsTest, CallAfterShutdownEndsImmediately) {
-  LiveCalls calls;
+TEST(ActiveCallsTest, CallAfterShutdownEndsImmediately) {
+  ActiveCalls calls;
   const auto before = AddCall(calls, "a", std::nullopt);
   calls.AbortAll(absl::UnavailableError("over"));
   const auto after = AddCall(calls, "a", std::nullopt);
@@ -57,8 +57,8 @@ TEST(LiveCallsTest, CallAfterShutdownEndsImmediately) {
   EXPECT_EQ(after->aborted, absl::UnavailableError("over"));
 }
 
-TEST(LiveCallsTest, EndsTheCallOfTheLongestStalledReader) {
-  LiveCalls calls;
+TEST(ActiveCallsTest, EndsTheCallOfTheLongestStalledReader) {
+  ActiveCalls calls;
   const auto late = AddCall(calls, "a", kBegin + seconds(2));
   const auto early = AddCall(calls, "a", kBegin + seconds(1));
   const auto reads = AddCall(calls, "a", std::nullopt);
@@ -71,8 +71,8 @@ TEST(LiveCallsTest, EndsTheCallOfTheLongestStalledReader) {
   EXPECT_FALSE(reads->given_up);
 }
 
-TEST(LiveCallsTest, LeavesReadersOfOtherClientsAlone) {
-  LiveCalls calls;
+TEST(ActiveCallsTest, LeavesReadersOfOtherClientsAlone) {
+  ActiveCalls calls;
   const auto other = AddCall(calls, "b", kBegin);
   EXPECT_EQ(calls.GiveUpSlowestReader("a", kBegin + seconds(9), 2), std::nullopt);
   EXPECT_FALSE(other->given_up);
@@ -80,8 +80,8 @@ TEST(LiveCallsTest, LeavesReadersOfOtherClientsAlone) {
   EXPECT_TRUE(other->given_up);
 }
 
-TEST(LiveCallsTest, KeepsAReaderThatStalledForLessThanTheLimit) {
-  LiveCalls calls;
+TEST(ActiveCallsTest, KeepsAReaderThatStalledForLessThanTheLimit) {
+  ActiveCalls calls;
   const auto call = AddCall(calls, "a", kBegin);
   EXPECT_EQ(calls.GiveUpSlowestReader("a", kBegin + seconds(1), 2), std::nullopt);
   EXPECT_FALSE(call->given_up);

@@ -1,5 +1,5 @@
-#ifndef DUET_SERVER_SERVICE_LIVE_CALLS_H_
-#define DUET_SERVER_SERVICE_LIVE_CALLS_H_
+#ifndef DUET_SERVER_SERVICE_ACTIVE_CALLS_H_
+#define DUET_SERVER_SERVICE_ACTIVE_CALLS_H_
 
 #include <cstddef>
 #include <memory>
@@ -16,9 +16,9 @@ namespace duet::server::service {
 // A call between its headers and its status.
 //
 // Threads: safe to call concurrently.
-class LiveCall {
+class ActiveCall {
  public:
-  virtual ~LiveCall() = default;
+  virtual ~ActiveCall() = default;
   // Ends the call early. The first reason counts.
   virtual void Abort(const absl::Status& reason) = 0;
   // Ends the call if a time limit has passed.
@@ -33,12 +33,12 @@ class LiveCall {
   virtual std::optional<std::size_t> GiveUpReader(common::TimePoint now, double seconds) = 0;
 };
 
-// All live calls. Does not keep them alive.
+// All active calls. Does not keep them alive.
 //
 // Threads: safe to call concurrently.
-class LiveCalls {
+class ActiveCalls {
  public:
-  void Add(const std::shared_ptr<LiveCall>& call);
+  void Add(const std::shared_ptr<ActiveCall>& call);
   // Ends all calls, and every call that is added later.
   void AbortAll(const absl::Status& reason);
   void CheckTime(common::TimePoint now);
@@ -49,15 +49,15 @@ class LiveCalls {
                                                  common::TimePoint now, double seconds);
 
  private:
-  std::vector<std::shared_ptr<LiveCall>> All();
+  std::vector<std::shared_ptr<ActiveCall>> All();
 
   common::Mutex mutex_;
   std::optional<absl::Status> ended_ DUET_GUARDED_BY(mutex_);  // why calls added later end at once
-  std::vector<std::weak_ptr<LiveCall>> calls_ DUET_GUARDED_BY(mutex_);
+  std::vector<std::weak_ptr<ActiveCall>> calls_ DUET_GUARDED_BY(mutex_);
   std::size_t look_at_ DUET_GUARDED_BY(mutex_) =
       64;  // number of calls at which ended ones are removed
 };
 
 }  // namespace duet::server::service
 
-#endif  // DUET_SERVER_SERVICE_LIVE_CALLS_H_
+#endif  // DUET_SERVER_SERVICE_ACTIVE_CALLS_H_
