@@ -15,10 +15,18 @@
 
 namespace duet::dataset {
 
+// A class that a sequence shows from frame `begin` up to frame `end`, exclusive.
+struct LabelSpan {
+  int interaction_class = 0;  // index into Dataset::classes
+  int begin = 0;
+  int end = 0;
+};
+
 // Two people captured together, assigned to leader and follower.
 struct Sequence {
   std::string id;                     // path below the data set's folder
-  int interaction_class = 0;          // index into Dataset::classes
+  int interaction_class = 0;          // index into Dataset::classes; of several, the longest
+  std::vector<LabelSpan> labels;      // on a time line; empty: one class throughout
   std::string set;                    // captured by one camera in one place; may be empty
   std::vector<std::string> subjects;  // people in it, if the data set states them
   // "index": the data set's index; "guess": a guess by its own word; "motion": the motion rule.
@@ -62,7 +70,8 @@ struct Dataset {
 //   SBU       sXXsYY/<class>/<sequence>/skeleton_pos.txt; classes 03 to 08 as kick, push,
 //             shake_hands, hug, exchange_object, punch; 15 frames per second
 //   K3HI      <class>/<sequence>.txt, 8 classes, 30 frames per second
-//   own data  dataset.json beside <class>/<sequence>.txt (docs/datasets.md)
+//   own data  dataset.json beside <class>/<sequence>.txt, or beside labels.tsv and the files that
+//             it names (docs/datasets.md)
 //
 // Levels SBU, K3HI, and your own data if its dataset.json requests it (levelling.h), set by set: a
 // set is an SBU folder sXXsYY, or otherwise the whole data set.

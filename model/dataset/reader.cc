@@ -11,6 +11,7 @@
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
 #include "model/dataset/levelling.h"
+#include "model/dataset/time_line.h"
 #include "model/formats/flat/sbu_text.h"
 
 namespace duet::dataset {
@@ -19,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMaxIndexBytes = size_t{16} << 20;
+constexpr char kTimeLines[] = "labels.tsv";
 constexpr size_t kMaxLayoutBytes = size_t{1} << 20;
 
 // A file of the data set, found but not read.
@@ -27,6 +29,7 @@ struct FoundFile {
   std::string set;
   int interaction_class = 0;
   std::vector<std::string> subjects;
+  std::vector<LabelSpan> labels;
 };
 
 // The names in a folder, sorted; hidden ones are not part of a data set.
@@ -74,7 +77,8 @@ absl::Status FindSbuSet(const fs::path& folder, const DatasetLayout& layout, con
       found->push_back({absl::StrCat(set, "/", one, "/", sequence, "/skeleton_pos.txt"),
                         set,
                         interaction_class,
-                        {set.substr(0, 3), set.substr(3, 3)}});
+                        {set.substr(0, 3), set.substr(3, 3)},
+                        {}});
     }
   }
   return absl::OkStatus();
@@ -103,8 +107,29 @@ absl::StatusOr<std::vector<FoundFile>> FindClassFiles(const fs::path& folder,
     if (!names.ok()) return names.status();
     for (const std::string& name : *names) {
       if (fs::path(name).extension() != ".txt") continue;
-      found.push_back({absl::StrCat(one, "/", name), "", static_cast<int>(i), {}});
+      found.push_back({absl::StrCat(one, "/", name), "", static_cast<int>(i), {}, {}});
     }
+  }
+  return found;
+}
+
+// The files that labels.tsv names, with their time lines.
+absl::StatusOr<std::vector<FoundFile>> FindLabelledFiles(const fs::path& folder,
+                                                         const DatasetLayout& layout) {
+  const absl::StatusOr<std::string> text =
+      base::ReadFile(folder / kTimeLines, kMaxIndexBytes, "classes on a time line");
+  if (!text.ok()) return text.status();
+  std::vector<std::string> classes;
+  for (const ClassLayout& one : layout.classes) classes.push_back(one.name);
+  absl::StatusOr<std::map<std::string, std::vector<LabelSpan>>> time_lines =
+      ParseTimeLines(*text, classes, layout.frame_rate_hz);
+  if (!time_lines.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat((folder / "").string(), time_lines.status().message()));
+  }
+  std::vector<FoundFile> found;
+  for (auto& [path, labels] : *time_lines) {
+    found.push_back({path, "", LongestClass(labels), {}, std::move(labels)});
   }
   return found;
 }
@@ -165,6 +190,21 @@ std::optional<motion::Vec3> PartnerDirection(const DatasetLayout& layout,
   return Dot(across, *layout.people_axis) < 0 ? -*layout.people_axis : *layout.people_axis;
 }
 
+// A time line must end with its sequence.
+absl::Status CheckTimeLine(const std::string& path, const DatasetLayout& layout,
+                           const Sequence& sequence) {
+  const int frames = sequence.pair.leader.frame_count();
+  for (const LabelSpan& span : sequence.labels) {
+    if (span.end <= frames) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(kTimeLines, ": to_seconds of class ",
+                     layout.classes[static_cast<size_t>(span.interaction_class)].name, " of ", path,
+                     ": expected at most ", frames / layout.frame_rate_hz,
+                     ", the sequence's length, got ", span.end / layout.frame_rate_hz));
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayout& layout,
                                       const IndexEntry& entry, const FoundFile& file) {
   const std::string path = (folder / file.id).string();
@@ -185,6 +225,8 @@ absl::StatusOr<Sequence> ReadSequence(const fs::path& folder, const DatasetLayou
   if (side == LeaderSide::kRight) std::swap(people->left, people->right);
   sequence.pair = {std::move(people->left), std::move(people->right)};
   sequence.partner_direction = PartnerDirection(layout, sequence.pair);
+  sequence.labels = file.labels;
+  if (absl::Status status = CheckTimeLine(path, layout, sequence); !status.ok()) return status;
   return sequence;
 }
 
@@ -228,7 +270,9 @@ absl::StatusOr<Dataset> ReadOwnData(const fs::path& folder, const std::string& t
     return absl::InvalidArgumentError(
         absl::StrCat((folder / "").string(), layout.status().message()));
   }
-  absl::StatusOr<std::vector<FoundFile>> files = FindClassFiles(folder, *layout);
+  absl::StatusOr<std::vector<FoundFile>> files = Exists(folder / kTimeLines)
+                                                     ? FindLabelledFiles(folder, *layout)
+                                                     : FindClassFiles(folder, *layout);
   if (!files.ok()) return files.status();
   return ReadFiles(folder, *layout, *std::move(files));
 }

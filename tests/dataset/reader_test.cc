@@ -147,6 +147,50 @@ TEST(ReadDatasetTest, ReadsOwnDataWithAnySkeleton) {
   EXPECT_FALSE(sequence.partner_direction.has_value());
 }
 
+// Two frames at 60 Hz.
+constexpr char kTwoFrames[] =
+    "1,1,0,0,2,0,0,3,0,0,4,0,0,5,0,0,6,0,0\n2,1,0,0,2,0,0,3,0,0,4,0,0,5,0,0,6,0,0\n";
+
+TEST(ReadDatasetTest, ATimeLineNamesTheSequences) {
+  CaptureFolder folder;
+  folder.Write("dataset.json", kOwnLayout);
+  folder.Write("takes/01.txt", kTwoFrames);
+  folder.Write("kick/a.txt", "is not read, because labels.tsv does not name it");
+  folder.Write("index.tsv", "path\tleader_side\ntakes/01.txt\tright\n");
+  folder.Write("labels.tsv",
+               "path\tclass\tfrom_seconds\tto_seconds\n"
+               "takes/01.txt\tkick\t0\t0.0167\ntakes/01.txt\tpunch\t0\t0.0333\n");
+  const absl::StatusOr<Dataset> dataset = ReadDataset(folder.path());
+  ASSERT_TRUE(dataset.ok()) << dataset.status();
+  ASSERT_EQ(dataset->sequences.size(), 1u);
+  const Sequence& take = dataset->sequences[0];
+  EXPECT_EQ(take.id, "takes/01.txt");
+  EXPECT_EQ(take.interaction_class, 1) << "the longest class";
+  ASSERT_EQ(take.labels.size(), 2u);
+  EXPECT_EQ(take.labels[1].interaction_class, 1);
+  EXPECT_EQ(take.labels[1].end, 2);
+}
+
+TEST(ReadDatasetTest, ATimeLineEndsWithItsSequence) {
+  CaptureFolder folder;
+  folder.Write("dataset.json", kOwnLayout);
+  folder.Write("takes/01.txt", kTwoFrames);
+  folder.Write("index.tsv", "path\tleader_side\ntakes/01.txt\tright\n");
+  folder.Write("labels.tsv",
+               "path\tclass\tfrom_seconds\tto_seconds\ntakes/01.txt\tkick\t0\t0.05\n");
+  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kInvalidArgument),
+              AllOf(HasSubstr("to_seconds of class kick of "), HasSubstr("takes/01.txt: expected"),
+                    HasSubstr("got 0.05")));
+}
+
+TEST(ReadDatasetTest, ATimeLineNamesAFileThatExists) {
+  CaptureFolder folder;
+  folder.Write("dataset.json", kOwnLayout);
+  folder.Write("labels.tsv",
+               "path\tclass\tfrom_seconds\tto_seconds\ntakes/02.txt\tkick\t0\t0.05\n");
+  EXPECT_THAT(MessageOf(folder, absl::StatusCode::kNotFound), HasSubstr("takes/02.txt"));
+}
+
 TEST(ReadDatasetTest, SetsOfDuetBatchAreReadAsTheirLayout) {
   CaptureFolder folder;
   folder.Write("dataset.json", R"({"format": "duet-batch", "format_version": 1})");
