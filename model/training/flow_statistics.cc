@@ -11,7 +11,8 @@ constexpr double kSmallestVariance = 1e-6;
 // One training follower in the standard coordinates.
 struct Follower {
   int64_t interaction_class;
-  torch::Tensor motion;  // [T, 3 J]
+  std::vector<dataset::LabelSpan> labels;  // at least one
+  torch::Tensor motion;                    // [T, 3 J]
 };
 
 std::vector<Follower> Followers(const checkpoint::Manifest& manifest,
@@ -27,8 +28,11 @@ std::vector<Follower> Followers(const checkpoint::Manifest& manifest,
           MakeFlowExample(manifest, dataset,
                           CapturedExample(dataset, sequence, StartKnowledge::kNone), smoothing)
               .target;
-      followers.push_back(
-          {sequence.interaction_class, network::PadPoses({&poses}, poses.frame_count())[0]});
+      const int frames = poses.frame_count();
+      followers.push_back({sequence.interaction_class, sequence.labels,
+                           network::PadPoses({&poses}, frames)[0]});
+      std::vector<dataset::LabelSpan>& labels = followers.back().labels;
+      if (labels.empty()) labels.push_back({sequence.interaction_class, 0, frames});
     }
   }
   return followers;
@@ -38,8 +42,10 @@ torch::Tensor ClassMeans(const std::vector<Follower>& followers, int64_t classes
   const int64_t width = followers.front().motion.size(1);
   torch::Tensor sums = torch::zeros({classes, width}), frames = torch::zeros({classes, 1});
   for (const Follower& follower : followers) {
-    sums[follower.interaction_class] += follower.motion.sum(0);
-    frames[follower.interaction_class] += follower.motion.size(0);
+    for (const dataset::LabelSpan& span : follower.labels) {
+      sums[span.interaction_class] += follower.motion.slice(0, span.begin, span.end).sum(0);
+      frames[span.interaction_class] += span.end - span.begin;
+    }
   }
   return sums / frames.clamp_min(1);
 }

@@ -8,6 +8,8 @@ namespace {
 void Read(base::ObjectReader* reader, FlowTraining* out) {
   out->dropout = reader->Number("dropout", 0, 0.95);
   out->passes = reader->Int("passes", 1, kMaxEpochs);
+  out->window_seconds = reader->Number("window_seconds", 0, 60);
+  out->stride_seconds = reader->Number("stride_seconds", 0.01, 60);
   out->target_smoothing = reader->Number("target_smoothing", 0, 100);
   out->pair_scale = reader->Number("pair_scale", 0, 0.9);
   out->unlabelled = Probability(reader, "unlabelled");
@@ -55,6 +57,8 @@ void ReadSections(base::ObjectReader* root, FlowTraining* out) {
 void Describe(const FlowTraining& f, Description* out) {
   out->insert({{"flow.dropout", Text(f.dropout)},
                {"flow.passes", Text(f.passes)},
+               {"flow.window_seconds", Text(f.window_seconds)},
+               {"flow.stride_seconds", Text(f.stride_seconds)},
                {"flow.target_smoothing", Text(f.target_smoothing)},
                {"flow.pair_scale", Text(f.pair_scale)},
                {"flow.unlabelled", Text(f.unlabelled)},

@@ -16,6 +16,8 @@ struct FlowTraining {
 
   double dropout = 0.1;
   int64_t passes = 10;            // over the data in an epoch
+  double window_seconds = 0;      // longer sequences are cut into windows; 0: never
+  double stride_seconds = 0.5;    // between the beginnings of windows
   double target_smoothing = 1;    // frames, deviation of the Gaussian over captured followers
   double pair_scale = 0.1;        // +- fraction, the same for both people
   double unlabelled = 0.12;       // fraction of clips whose label is withheld

@@ -12,6 +12,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/dataset/time_line.h"
 #include "model/engine/leader_statistics.h"
 #include "model/network/threads.h"
 #include "model/training/direction_fit.h"
@@ -52,7 +53,6 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   manifest.model.classes = dataset.classes;
   manifest.model.touching_classes = dataset.TouchingClasses();
   manifest.model.frame_rate_hz = dataset.frame_rate_hz;
-  manifest.model.window_frames = dataset.LongestFrameCount();
   SetArchitecture(ArchitectureOf(plan.options), &manifest);
   manifest.parts = dataset.parts;
   manifest.standardisation = plan.options.standardisation;
@@ -94,6 +94,37 @@ std::vector<int> HoldBack(const TrainingOptions& options, const dataset::Dataset
   return held;
 }
 
+// Appends the windows of the sequences `indices` to `cut` and replaces the indices by theirs.
+void CutAll(const dataset::Dataset& whole, int frames, int stride, std::vector<int>* indices,
+            dataset::Dataset* cut) {
+  std::vector<int> windows;
+  for (const int index : *indices) {
+    for (dataset::Sequence& window :
+         CutIntoWindows(whole.sequences[static_cast<size_t>(index)], frames, stride)) {
+      windows.push_back(static_cast<int>(cut->sequences.size()));
+      cut->sequences.push_back(std::move(window));
+    }
+  }
+  *indices = std::move(windows);
+}
+
+// The data set as the method trains on it. The sequences are held back before they are cut, so that
+// no window of a sequence for validation is trained on.
+dataset::Dataset CutIfAsked(const TrainingOptions& options, const dataset::Dataset& whole,
+                            std::vector<int>* train, std::vector<int>* validation) {
+  const auto* flow = std::get_if<FlowTraining>(&options.method);
+  if (flow == nullptr || flow->window_seconds == 0) return whole;
+  const auto frames = [&](double seconds) {
+    return std::max(2, static_cast<int>(std::lround(seconds * whole.frame_rate_hz)));
+  };
+  dataset::Dataset cut = whole;
+  cut.sequences.clear();
+  for (std::vector<int>* indices : {train, validation}) {
+    CutAll(whole, frames(flow->window_seconds), frames(flow->stride_seconds), indices, &cut);
+  }
+  return cut;
+}
+
 absl::Status Finish(const RunPlan& plan, checkpoint::Manifest manifest, const EpochReport& last,
                     EpochTrainer* trainer) {
   manifest.git_revision = kGitRevision;
@@ -125,21 +156,23 @@ fs::path CheckpointFolder(const RunPlan& plan) {
   return plan.folder / "checkpoint" / plan.model_name / absl::StrCat(plan.model_version);
 }
 
-absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& dataset, bool terminal,
+absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, bool terminal,
                          std::ostream* progress) {
-  absl::Status status = CheckAgainst(plan.options, dataset);
+  absl::Status status = CheckAgainst(plan.options, whole);
   if (!status.ok()) return status;
   if (fs::exists(CheckpointFolder(plan))) {
     *progress << plan.title << " is finished: " << CheckpointFolder(plan).string() << "\n";
     return absl::OkStatus();
   }
-  checkpoint::Manifest manifest = MakeManifest(plan, dataset);
+  std::vector<int> train = plan.train;
+  std::vector<int> validation = HoldBack(plan.options, whole, &train);
+  const dataset::Dataset dataset = CutIfAsked(plan.options, whole, &train, &validation);
+  checkpoint::Manifest manifest = MakeManifest(plan, whole);
+  manifest.model.window_frames = dataset.LongestFrameCount();
   if (status = checkpoint::CheckManifest(manifest); !status.ok()) return status;
   std::error_code error;
   fs::create_directories(plan.folder, error);
   if (error) return absl::InternalError(absl::StrCat(plan.folder.string(), ": ", error.message()));
-  std::vector<int> train = plan.train;
-  const std::vector<int> validation = HoldBack(plan.options, dataset, &train);
   if (train.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
         plan.title, ": validation holds back every sequence, wanted some to train on"));

@@ -54,6 +54,19 @@ std::vector<const motion::Poses*> Pointers(const std::vector<motion::Poses>& cli
   return pointers;
 }
 
+// Draws one of the classes on a sequence's time line, by the number of frames that each covers.
+void DrawClass(base::Random* random, dataset::Sequence* sequence) {
+  int frames = 0;
+  for (const dataset::LabelSpan& span : sequence->labels) frames += span.end - span.begin;
+  if (frames == 0) return;
+  int drawn = static_cast<int>(random->Below(frames));
+  for (const dataset::LabelSpan& span : sequence->labels) {
+    sequence->interaction_class = span.interaction_class;
+    drawn -= span.end - span.begin;
+    if (drawn < 0) return;
+  }
+}
+
 }  // namespace
 
 StartKnowledge DrawStart(const TrainingOptions::Start& start, base::Random* random) {
@@ -67,8 +80,9 @@ std::vector<dataset::Sequence> AugmentAll(const dataset::Dataset& dataset,
                                           const TrainingOptions& options, base::Random* random) {
   std::vector<dataset::Sequence> sequences;
   for (int index : train) {
-    sequences.push_back(Augment(dataset, dataset.sequences[static_cast<size_t>(index)],
-                                options.augmentation, random));
+    dataset::Sequence sequence = dataset.sequences[static_cast<size_t>(index)];
+    DrawClass(random, &sequence);
+    sequences.push_back(Augment(dataset, sequence, options.augmentation, random));
   }
   return sequences;
 }

@@ -59,6 +59,22 @@ TEST_F(RunTest, WritesACheckpointThatAnswers) {
   EXPECT_EQ(checkpoint->manifest.training.at("sequences"), "7");
 }
 
+TEST_F(RunTest, LongTakesAreTrainedOnInWindows) {
+  plan_.options = SmallFlowOptions();
+  plan_.options.epochs = 1;
+  FlowOf(&plan_.options).window_seconds = 0.4;  // 6 frames
+  FlowOf(&plan_.options).stride_seconds = 0.2;
+  for (dataset::Sequence& take : dataset_.sequences) {
+    take.labels = {{take.interaction_class, 0, 6}, {2, 4, take.pair.leader.frame_count()}};
+  }
+  ASSERT_THAT(Go(), IsOk());
+  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(checkpoint, IsOk());
+  EXPECT_EQ(checkpoint->manifest.model.window_frames, 6);
+  EXPECT_EQ(checkpoint->manifest.training.at("sequences"), "7");
+  EXPECT_EQ(checkpoint->manifest.training.at("flow.window_seconds"), "0.4");
+}
+
 TEST_F(RunTest, CheckpointHasTheStatisticsOfItsTrainingLeaders) {
   // Held-out people are not training leaders.
   for (motion::Vec3& joint : dataset_.sequences[1].pair.leader.poses.all()) joint = joint * 3;
