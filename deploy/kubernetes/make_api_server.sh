@@ -5,7 +5,7 @@
 # Needs the packages golang-go and, for the test, etcd-server. DEBIAN_MIRROR names another mirror of Debian.
 set -euo pipefail
 
-mkdir -p "${1:?make_api_server.sh: wanted a folder}"
+mkdir -p "${1:?make_api_server.sh: expected a folder}"
 out="$(realpath "$1")"
 readonly out
 work="$(mktemp -d)"

@@ -20,13 +20,13 @@ constexpr char kManifestFile[] = "manifest.json";
 
 absl::Status CheckFile(const WeightsFile& expected, std::string_view weights) {
   if (weights.size() != expected.bytes) {
-    const std::string message = absl::StrCat("weights: ", weights.size(), " bytes, wanted ",
+    const std::string message = absl::StrCat("weights: ", weights.size(), " bytes, expected ",
                                              expected.bytes, " as in manifest weights.bytes");
     return weights.size() < expected.bytes ? absl::DataLossError(message)
                                            : absl::InvalidArgumentError(message);
   }
   if (const std::string sha256 = base::Sha256Hex(weights); sha256 != expected.sha256) {
-    return absl::DataLossError(absl::StrCat("weights: SHA-256 ", sha256, ", wanted ",
+    return absl::DataLossError(absl::StrCat("weights: SHA-256 ", sha256, ", expected ",
                                             expected.sha256, " as in manifest weights.sha256"));
   }
   return absl::OkStatus();
@@ -53,13 +53,14 @@ absl::StatusOr<std::vector<Tensor>> Arrange(std::vector<Tensor> tensors,
   for (const TensorSpec& spec : specs) {
     const auto it = by_name.find(spec.name);
     if (it == by_name.end()) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          "weights: tensor \"", spec.name, "\" is missing, wanted shape ", ShapeText(spec.shape)));
+      return absl::InvalidArgumentError(absl::StrCat("weights: tensor \"", spec.name,
+                                                     "\" is missing, expected shape ",
+                                                     ShapeText(spec.shape)));
     }
     if (it->second.shape != spec.shape) {
       return absl::InvalidArgumentError(absl::StrCat(
           "weights: tensor \"", spec.name, "\" has shape ", ShapeText(it->second.shape),
-          ", wanted ", ShapeText(spec.shape), " as the manifest declares"));
+          ", expected ", ShapeText(spec.shape), " as the manifest declares"));
     }
     arranged.push_back(std::move(it->second));
     by_name.erase(it);

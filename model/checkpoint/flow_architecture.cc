@@ -57,7 +57,8 @@ void ReadFields(base::ObjectReader* reader, FlowArchitecture* out) {
   out->blocks = static_cast<int>(reader->Int("blocks", 1, kMaxBlocks));
   out->heads = static_cast<int>(reader->Int("heads", 1, kMaxUnits));
   if (reader->ok() && out->width % out->heads != 0) {
-    reader->Fail("heads", absl::StrCat(out->heads, ", wanted a divisor of the width ", out->width));
+    reader->Fail("heads",
+                 absl::StrCat(out->heads, ", expected a divisor of the width ", out->width));
   }
   out->feed_forward = static_cast<int>(reader->Int("feed_forward", 1, kMaxUnits));
   out->reach = static_cast<int>(reader->Int("reach", 1, kMaxUnits));

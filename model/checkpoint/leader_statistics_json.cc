@@ -34,7 +34,7 @@ Feature ReadFeature(base::ObjectReader* fields, const std::vector<engine::Leader
     if (one.name == feature.name) return feature;
     absl::StrAppend(&wanted, wanted.empty() ? "" : ", ", std::string(one.name));
   }
-  fields->Fail("name", absl::StrCat(json(feature.name).dump(), ", wanted one of ", wanted));
+  fields->Fail("name", absl::StrCat(json(feature.name).dump(), ", expected one of ", wanted));
   return feature;
 }
 
@@ -54,7 +54,7 @@ absl::StatusOr<engine::LeaderStatistics> ReadLeaderStatistics(const json& value,
     reader.Update(fields.Finish());
   }
   if (reader.ok() && statistics.features.empty()) {
-    reader.Fail("features", "empty, wanted at least one feature");
+    reader.Fail("features", "empty, expected at least one feature");
   }
   statistics.scale = reader.Number("scale", kLeast, kMost);
   if (absl::Status status = reader.Finish(); !status.ok()) return status;

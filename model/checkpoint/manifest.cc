@@ -49,7 +49,7 @@ constexpr char kPlainName[] = "1 to 64 letters, digits, '_', '-' or '.', the fir
 std::string ReadName(base::ObjectReader* reader, const std::string& key) {
   std::string name = reader->String(key, kMaxTextBytes);
   if (reader->ok() && !IsPlainName(name)) {
-    reader->Fail(key, absl::StrCat(json(name).dump(), ", wanted ", kPlainName));
+    reader->Fail(key, absl::StrCat(json(name).dump(), ", expected ", kPlainName));
   }
   return name;
 }
@@ -69,7 +69,7 @@ absl::StatusOr<WeightsFile> ReadWeightsFile(const json& value) {
   weights.sha256 = reader.String("sha256", kSha256HexBytes);
   const bool is_hex = weights.sha256.find_first_not_of("0123456789abcdef") == std::string::npos;
   if (reader.ok() && (!is_hex || weights.sha256.size() != kSha256HexBytes)) {
-    reader.Fail("sha256", absl::StrCat(json(weights.sha256).dump(), ", wanted ", kSha256HexBytes,
+    reader.Fail("sha256", absl::StrCat(json(weights.sha256).dump(), ", expected ", kSha256HexBytes,
                                        " digits of lower-case hex"));
   }
   if (absl::Status status = reader.Finish(); !status.ok()) return status;
@@ -102,7 +102,7 @@ std::string ReadTime(base::ObjectReader* reader, const std::string& key) {
   absl::Time time;
   std::string problem;
   if (reader->ok() && !absl::ParseTime(absl::RFC3339_full, text, &time, &problem)) {
-    reader->Fail(key, absl::StrCat(json(text).dump(), ", wanted a time as in RFC 3339"));
+    reader->Fail(key, absl::StrCat(json(text).dump(), ", expected a time as in RFC 3339"));
   }
   return text;
 }
@@ -128,7 +128,7 @@ void ReadTouchingClasses(base::ObjectReader* reader, engine::ModelDescription* m
   model->touching_classes = reader->UniqueStrings(kTouchingClasses, kMaxClasses, kMaxNameBytes);
   for (const std::string& name : model->touching_classes) {
     if (is_class(name)) continue;
-    reader->Fail(kTouchingClasses, absl::StrCat(json(name).dump(), ", wanted one of classes"));
+    reader->Fail(kTouchingClasses, absl::StrCat(json(name).dump(), ", expected one of classes"));
   }
 }
 
@@ -141,7 +141,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   model->window_frames = static_cast<int>(reader->Int("window_frames", 2, kMaxWindowFrames));
   model->classes = reader->UniqueStrings("classes", kMaxClasses, kMaxNameBytes);
   if (reader->ok() && model->classes.empty()) {
-    reader->Fail("classes", "empty, wanted at least one class");
+    reader->Fail("classes", "empty, expected at least one class");
   }
   ReadTouchingClasses(reader, model);
 }
@@ -193,7 +193,7 @@ absl::Status CheckTotalSize(const Manifest& manifest) {
   }
   if (bytes <= static_cast<double>(kMaxWeightsBytes)) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat("generator: its sizes add up to ", bytes,
-                                                 " bytes of weights, wanted at most ",
+                                                 " bytes of weights, expected at most ",
                                                  kMaxWeightsBytes));
 }
 
@@ -217,7 +217,7 @@ std::string ToPlainName(std::string_view text) {
 absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
   if (text.size() > kMaxManifestBytes) {
     return absl::InvalidArgumentError(
-        absl::StrCat("manifest: ", text.size(), " bytes, wanted at most ", kMaxManifestBytes));
+        absl::StrCat("manifest: ", text.size(), " bytes, expected at most ", kMaxManifestBytes));
   }
   const absl::StatusOr<json> root = base::ParseStrictJson(text, kMaxDepth);
   absl::StatusOr<Manifest> manifest = root.ok() ? ReadManifest(*root) : root.status();

@@ -50,12 +50,12 @@ uint64_t ReadLength(std::string_view bytes) {
 absl::StatusOr<std::string_view> HeaderOf(std::string_view bytes) {
   if (bytes.size() < kLengthBytes) {
     return absl::DataLossError(
-        absl::StrCat("safetensors: ", bytes.size(), " bytes, wanted at least ", kLengthBytes));
+        absl::StrCat("safetensors: ", bytes.size(), " bytes, expected at least ", kLengthBytes));
   }
   const uint64_t length = ReadLength(bytes);
   if (length > kMaxHeaderBytes) {
     return absl::InvalidArgumentError(
-        absl::StrCat("safetensors header: ", length, " bytes, wanted at most ", kMaxHeaderBytes));
+        absl::StrCat("safetensors header: ", length, " bytes, expected at most ", kMaxHeaderBytes));
   }
   if (length > bytes.size() - kLengthBytes) {
     return absl::DataLossError(absl::StrCat("safetensors header: ", length, " bytes declared, ",
@@ -81,7 +81,7 @@ std::vector<int64_t> ReadInts(base::ObjectReader* reader, const std::string& key
     const bool fits = item.is_number_unsigned() && item.get<uint64_t>() <= INT64_MAX &&
                       item.get<int64_t>() >= min;
     if (!fits) {
-      reader->Fail(key, absl::StrCat("wanted whole numbers from ", min, " up"));
+      reader->Fail(key, absl::StrCat("expected whole numbers from ", min, " up"));
       return {};
     }
     numbers.push_back(item.get<int64_t>());
@@ -94,14 +94,14 @@ absl::StatusOr<Entry> ReadEntry(const std::string& name, const json& value) {
   Entry entry;
   entry.name = name;
   if (const std::string dtype = reader.String("dtype", 16); reader.ok() && dtype != "F32") {
-    reader.Fail("dtype", absl::StrCat(base::Quoted(dtype), ", wanted \"F32\""));
+    reader.Fail("dtype", absl::StrCat(base::Quoted(dtype), ", expected \"F32\""));
   }
   entry.shape = ReadInts(&reader, "shape", kMaxRank, 1);
   const std::vector<int64_t> offsets = ReadInts(&reader, "data_offsets", 2, 0);
   if (absl::Status status = reader.Finish(); !status.ok()) return status;
 
   if (offsets.size() != 2 || offsets[0] > offsets[1]) {
-    reader.Fail("data_offsets", "wanted a begin and an end that is not before it");
+    reader.Fail("data_offsets", "expected a begin and an end that is not before it");
     return reader.Finish();
   }
   entry.begin = static_cast<uint64_t>(offsets[0]);
@@ -109,7 +109,7 @@ absl::StatusOr<Entry> ReadEntry(const std::string& name, const json& value) {
   uint64_t wanted = 0;
   if (!ByteCount(entry.shape, &wanted) || entry.end - entry.begin != wanted) {
     reader.Fail("data_offsets",
-                absl::StrCat(entry.end - entry.begin, " bytes, wanted those of shape [",
+                absl::StrCat(entry.end - entry.begin, " bytes, expected those of shape [",
                              absl::StrJoin(entry.shape, ", "), "]"));
     return reader.Finish();
   }
@@ -148,9 +148,9 @@ absl::Status CheckRanges(const std::vector<Entry>& entries, uint64_t data_bytes)
   uint64_t at = 0;
   for (const Entry& entry : entries) {
     if (entry.begin != at) {
-      return absl::InvalidArgumentError(absl::StrCat("tensor ", base::Quoted(entry.name),
-                                                     ".data_offsets: begins at ", entry.begin,
-                                                     ", wanted ", at, ", the end of the previous"));
+      return absl::InvalidArgumentError(
+          absl::StrCat("tensor ", base::Quoted(entry.name), ".data_offsets: begins at ",
+                       entry.begin, ", expected ", at, ", the end of the previous"));
     }
     at = entry.end;
   }
@@ -160,7 +160,7 @@ absl::Status CheckRanges(const std::vector<Entry>& entries, uint64_t data_bytes)
   }
   if (at < data_bytes) {
     return absl::InvalidArgumentError(absl::StrCat("safetensors data: ", data_bytes - at,
-                                                   " bytes after the last tensor, wanted none"));
+                                                   " bytes after the last tensor, expected none"));
   }
   return absl::OkStatus();
 }
@@ -175,7 +175,7 @@ absl::StatusOr<Tensor> ReadTensor(Entry entry, std::string_view data) {
     if (!std::isfinite(tensor.values[i])) {
       return absl::InvalidArgumentError(absl::StrCat("tensor ", base::Quoted(tensor.name),
                                                      ": value ", i, " is ", tensor.values[i],
-                                                     ", wanted finite values"));
+                                                     ", expected finite values"));
     }
   }
   return tensor;

@@ -57,7 +57,7 @@ class NetworkSynthesizer : public Synthesizer {
     if (!followers.ok()) return followers;
     if (followers->size() != inputs.size()) {
       return absl::InternalError(absl::StrCat("the network answered ", followers->size(),
-                                              " windows, wanted ", inputs.size()));
+                                              " windows, expected ", inputs.size()));
     }
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const motion::Poses &leader = inputs[i].leader, &follower = (*followers)[i];
@@ -67,7 +67,7 @@ class NetworkSynthesizer : public Synthesizer {
       }
       return absl::InternalError(absl::StrCat(
           "the network answered ", follower.frame_count(), " frames of ", follower.joint_count(),
-          " joints, wanted ", leader.frame_count(), " of ", leader.joint_count()));
+          " joints, expected ", leader.frame_count(), " of ", leader.joint_count()));
     }
     return followers;
   }

@@ -23,7 +23,7 @@ absl::Status LoadTensors(const checkpoint::Checkpoint& checkpoint,
     }
     if (it->second.sizes() != at::IntArrayRef(tensor.shape)) {
       return absl::InvalidArgumentError(absl::StrCat("tensor \"", tensor.name, "\": shape ",
-                                                     ShapeText(tensor.shape), ", wanted ",
+                                                     ShapeText(tensor.shape), ", expected ",
                                                      ShapeText(it->second.sizes())));
     }
     std::copy(tensor.values.begin(), tensor.values.end(), it->second.data_ptr<float>());

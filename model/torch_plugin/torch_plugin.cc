@@ -29,7 +29,7 @@ absl::StatusOr<TorchEngine> Open() {
   if (exported == nullptr) return absl::NotFoundError(dlerror());
   if (std::string(exported->build) != kBuildId) {
     return absl::FailedPreconditionError(absl::StrCat(path, " is of build ", exported->build,
-                                                      ", wanted this program's, ", kBuildId));
+                                                      ", expected this program's, ", kBuildId));
   }
   return exported->engine;
 }

@@ -156,7 +156,7 @@ absl::Status EpochTrainer::LoadState(const std::filesystem::path& file) {
     c10::IValue value;
     if (!archive.try_read("version", value) || value.toInt() != kStateVersion) {
       return absl::FailedPreconditionError(absl::StrCat(
-          file.string(), ": was written by another version of the trainer, wanted state version ",
+          file.string(), ": was written by another version of the trainer, expected state version ",
           kStateVersion, "; choose another folder"));
     }
     archive.read("identity", value);

@@ -29,8 +29,8 @@ std::vector<Follower> Followers(const checkpoint::Manifest& manifest,
                           CapturedExample(dataset, sequence, StartKnowledge::kNone), smoothing)
               .target;
       const int frames = poses.frame_count();
-      followers.push_back({sequence.interaction_class, sequence.labels,
-                           network::PadPoses({&poses}, frames)[0]});
+      followers.push_back(
+          {sequence.interaction_class, sequence.labels, network::PadPoses({&poses}, frames)[0]});
       std::vector<dataset::LabelSpan>& labels = followers.back().labels;
       if (labels.empty()) labels.push_back({sequence.interaction_class, 0, frames});
     }

@@ -51,7 +51,7 @@ void Read(base::ObjectReader* reader, TrainingOptions::Start* out) {
   out->root = Probability(reader, "root");
   out->pose = Probability(reader, "pose");
   if (reader->ok() && out->root + out->pose > 1) {
-    reader->Fail("pose", absl::StrCat(out->pose, ", wanted at most ", 1 - out->root,
+    reader->Fail("pose", absl::StrCat(out->pose, ", expected at most ", 1 - out->root,
                                       ": root and pose are shares of all clips"));
   }
 }
@@ -201,10 +201,11 @@ absl::Status CheckMirror(const TrainingOptions::Augmentation& augmentation,
   for (size_t joint = 0; joint < counterparts.size(); ++joint) {
     if (counterparts[joint] != static_cast<int>(joint)) return absl::OkStatus();
   }
-  return absl::InvalidArgumentError(absl::StrCat(
-      "augmentation.mirror: ", augmentation.mirror,
-      ", but no joint's name says left or right; wanted names such as left_hand and right_hand, or "
-      "augmentation.mirror=0"));
+  return absl::InvalidArgumentError(
+      absl::StrCat("augmentation.mirror: ", augmentation.mirror,
+                   ", but no joint's name says left or right; expected names such as left_hand and "
+                   "right_hand, or "
+                   "augmentation.mirror=0"));
 }
 
 }  // namespace
@@ -216,9 +217,9 @@ absl::Status CheckAgainst(const TrainingOptions& options, const dataset::Dataset
   const std::vector<std::string> subjects = dataset.Subjects();
   for (const std::string& name : options.validation.subjects) {
     if (std::find(subjects.begin(), subjects.end(), name) != subjects.end()) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat("validation.subjects: ", base::Quoted(name), ", wanted subjects of the data: ",
-                     subjects.empty() ? "it names none" : absl::StrJoin(subjects, ", ")));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "validation.subjects: ", base::Quoted(name), ", expected subjects of the data: ",
+        subjects.empty() ? "it names none" : absl::StrJoin(subjects, ", ")));
   }
   return absl::OkStatus();
 }

@@ -175,7 +175,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   if (error) return absl::InternalError(absl::StrCat(plan.folder.string(), ": ", error.message()));
   if (train.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
-        plan.title, ": validation holds back every sequence, wanted some to train on"));
+        plan.title, ": validation holds back every sequence, expected some to train on"));
   }
   manifest.model.leader_statistics = MeasureLeaders(dataset, train);
   const bool fits_direction = std::visit(

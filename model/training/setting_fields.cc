@@ -15,7 +15,7 @@ std::string OneOf(base::ObjectReader* reader, const std::string& key,
   std::string value = reader->String(key, kMaxWord);
   if (reader->ok() && std::find(choices.begin(), choices.end(), value) == choices.end()) {
     reader->Fail(
-        key, absl::StrCat(base::Quoted(value), ", wanted one of ", absl::StrJoin(choices, ", ")));
+        key, absl::StrCat(base::Quoted(value), ", expected one of ", absl::StrJoin(choices, ", ")));
   }
   return value;
 }

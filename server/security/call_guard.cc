@@ -85,7 +85,7 @@ absl::Status ToStatus(const AccessControl::Decision& decision, Role role) {
     case AccessControl::Answer::kNoCredentials:
       return Refusal(
           absl::StatusCode::kUnauthenticated,
-          "the call does not say who makes it, wanted \"authorization: Bearer TOKEN\" in "
+          "the call does not say who makes it, expected \"authorization: Bearer TOKEN\" in "
           "its metadata, or a client certificate where the server asks for one",
           common::kReasonCredentialsMissing);
     case AccessControl::Answer::kWrongToken:

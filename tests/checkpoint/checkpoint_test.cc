@@ -178,7 +178,7 @@ TEST(ParseCheckpoint, RejectsAMissingTensor) {
   std::vector<Tensor> tensors = TinyCheckpoint().tensors;
   tensors.erase(tensors.begin() + 3);
   EXPECT_THAT(ParseWith(tensors),
-              Refused("\"encoder.trunk.forward.weight_hh\" is missing, wanted shape [8, 2]"));
+              Refused("\"encoder.trunk.forward.weight_hh\" is missing, expected shape [8, 2]"));
 }
 
 TEST(ParseCheckpoint, RejectsAnUnknownTensor) {
@@ -191,7 +191,7 @@ TEST(ParseCheckpoint, RejectsAMisshapenTensor) {
   std::vector<Tensor> tensors = TinyCheckpoint().tensors;
   std::swap(tensors[3].shape[0], tensors[3].shape[1]);
   EXPECT_THAT(ParseWith(tensors), Refused("\"encoder.trunk.forward.weight_hh\" has shape [2, 8], "
-                                          "wanted [8, 2]"));
+                                          "expected [8, 2]"));
 }
 
 TEST(ParseCheckpoint, RejectsNonFiniteWeights) {

@@ -66,12 +66,12 @@ TEST(DirectionManifest, RejectsByName) {
   few.pop_back();
   many.push_back(1);
   EXPECT_THAT(refusal("/partner_direction/mean", few),
-              names("partner_direction.mean: 8 numbers, wanted 9"));
+              names("partner_direction.mean: 8 numbers, expected 9"));
   EXPECT_THAT(refusal("/partner_direction/sine", many), names("partner_direction.sine"));
   EXPECT_THAT(refusal("/partner_direction/deviation/3", 0),
-              names("partner_direction.deviation[3]: 0, wanted a number"));
+              names("partner_direction.deviation[3]: 0, expected a number"));
   EXPECT_THAT(refusal("/partner_direction/cosine/0", "x"),
-              names("partner_direction.cosine[0]: \"x\", wanted a number"));
+              names("partner_direction.cosine[0]: \"x\", expected a number"));
   EXPECT_THAT(refusal("/partner_direction/cosine/8", 1e9), names("partner_direction.cosine[8]"));
   EXPECT_THAT(refusal("/partner_direction/tangent", few),
               names("partner_direction: unknown field \"tangent\""));

@@ -91,7 +91,7 @@ TEST(FlowManifest, RejectsByName) {
   EXPECT_THAT(refusal("/generator/kind", "wave"),
               names("generator.kind: expected \"paper\" or \"flow\", got \"wave\""));
   EXPECT_THAT(refusal("/generator/kind", "paper"), names("generator.variant"));
-  EXPECT_THAT(refusal("/generator/heads", 5), names("generator.heads: 5, wanted a divisor"));
+  EXPECT_THAT(refusal("/generator/heads", 5), names("generator.heads: 5, expected a divisor"));
   EXPECT_THAT(refusal("/generator/width", 0), names("generator.width: 0, wanted"));
   EXPECT_THAT(refusal("/generator/steps", 0), names("generator.steps: 0, wanted"));
   EXPECT_THAT(refusal("/generator/offset_scale", 0), names("generator.offset_scale"));

@@ -76,7 +76,7 @@ TEST(LeaderStatisticsInManifest, RejectsByName) {
   EXPECT_THAT(refusal("/leader_statistics/more", 0),
               names("leader_statistics: unknown field \"more\""));
   EXPECT_THAT(refusal("/leader_statistics/features", json::array()),
-              names("leader_statistics.features: empty, wanted at least one feature"));
+              names("leader_statistics.features: empty, expected at least one feature"));
   EXPECT_THAT(refusal("/leader_statistics/features/1", 7),
               names("leader_statistics.features[1]: expected an object, got 7"));
   EXPECT_THAT(refusal("/leader_statistics/features/1/deviation", 0),
@@ -103,7 +103,7 @@ TEST(LeaderStatisticsInManifest, RequiresFeaturesOfTheSkeleton) {
   root["leader_statistics"]["features"][0]["name"] = "hand_reach";
   EXPECT_THAT(ParseManifest(root.dump()),
               StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("leader_statistics.features[0].name: \"hand_reach\", wanted one "
+                       HasSubstr("leader_statistics.features[0].name: \"hand_reach\", expected one "
                                  "of mean_joint_speed, highest_joint_speed")));
 }
 

@@ -157,7 +157,7 @@ TEST(Manifest, RejectsAnOversizeText) {
   std::string text = SerializeManifest(CompleteManifest());
   text.resize(kMaxManifestBytes, ' ');
   EXPECT_THAT(ParseManifest(text), IsOk());
-  EXPECT_THAT(ParseManifest(text + " "), Refused("1048577 bytes, wanted at most 1048576"));
+  EXPECT_THAT(ParseManifest(text + " "), Refused("1048577 bytes, expected at most 1048576"));
 }
 
 TEST(Manifest, RejectsRepeatedFields) {
@@ -242,7 +242,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadField{"newer_format", "/format_version", "3", "format_version: 3, wanted"},
         BadField{"format_0", "/format_version", "0", "format_version: 0, wanted"},
-        BadField{"name_empty", "/name", "\"\"", "name: \"\", wanted 1 to 64"},
+        BadField{"name_empty", "/name", "\"\"", "name: \"\", expected 1 to 64"},
         BadField{"name_leaves", "/name", "\"../x\"", "name: \"../x\""},
         BadField{"name_long", "/name",
                  "\"0123456789012345678901234567890123456789012345678901234567890123x\"", "name:"},
@@ -321,7 +321,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "\"AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA\"",
                  "lower-case hex"},
         BadField{"created_elsewhen", "/created", "\"yesterday\"",
-                 "created: \"yesterday\", wanted a time as in RFC 3339"},
+                 "created: \"yesterday\", expected a time as in RFC 3339"},
         BadField{"training_number", "/training/epochs", "7", "training.epochs: expected a string"},
         BadField{"metric_text", "/metrics/afd.kick", "\"good\"",
                  "metrics.afd.kick: expected a number"}),

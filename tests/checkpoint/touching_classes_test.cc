@@ -56,7 +56,7 @@ TEST(TouchingClassesInManifest, MustBeClasses) {
   root["touching_classes"] = {"hug", "dance"};
   EXPECT_THAT(ParseManifest(root.dump()),
               StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("touching_classes: \"dance\", wanted one of classes")));
+                       HasSubstr("touching_classes: \"dance\", expected one of classes")));
   root["touching_classes"] = {"hug", "hug"};
   EXPECT_THAT(ParseManifest(root.dump()),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("repeated")));

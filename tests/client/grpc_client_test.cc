@@ -115,7 +115,7 @@ TEST_F(GrpcClientTest, RejectionNamesEveryField) {
     rpc::v1::BadRequest bad;
     rpc::v1::BadRequest::FieldViolation* violation = bad.add_field_violations();
     violation->set_field("leader.positions[3]");
-    violation->set_description("NaN, wanted a finite value");
+    violation->set_description("NaN, expected a finite value");
     rpc::v1::Status details;
     google::protobuf::Any* any = details.add_details();
     any->set_type_url("type.googleapis.com/google.rpc.BadRequest");
@@ -124,7 +124,7 @@ TEST_F(GrpcClientTest, RejectionNamesEveryField) {
   };
   const absl::Status status = Synthesize().status();
   EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument,
-                               "refused: leader.positions[3]: NaN, wanted a finite value"));
+                               "refused: leader.positions[3]: NaN, expected a finite value"));
   ASSERT_EQ(FieldViolations(status).size(), 1u);
 }
 

@@ -29,10 +29,10 @@ rpc::v1::BadRequest TwoViolations() {
   rpc::v1::BadRequest bad;
   rpc::v1::BadRequest::FieldViolation* first = bad.add_field_violations();
   first->set_field("leader.frame_rate_hz");
-  first->set_description("0, wanted 1 to 240");
+  first->set_description("0, expected 1 to 240");
   rpc::v1::BadRequest::FieldViolation* second = bad.add_field_violations();
   second->set_field("label_vector");
-  second->set_description("empty, wanted at least one weight");
+  second->set_description("empty, expected at least one weight");
   return bad;
 }
 
@@ -51,31 +51,33 @@ TEST(FromGrpcTest, EveryFieldViolationIsNamedInTheMessage) {
   rpc::v1::Status details;
   Pack(TwoViolations(), "BadRequest", &details);
   const absl::Status status = FromGrpc(Refusal("the request is invalid", details));
-  EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument,
-                               "the request is invalid: leader.frame_rate_hz: 0, wanted 1 to 240; "
-                               "label_vector: empty, wanted at least one weight"));
+  EXPECT_THAT(status,
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       "the request is invalid: leader.frame_rate_hz: 0, expected 1 to 240; "
+                       "label_vector: empty, expected at least one weight"));
   ASSERT_THAT(FieldViolations(status), SizeIs(2));
   EXPECT_EQ(FieldViolations(status)[1].field, "label_vector");
-  EXPECT_EQ(FieldViolations(status)[1].description, "empty, wanted at least one weight");
+  EXPECT_EQ(FieldViolations(status)[1].description, "empty, expected at least one weight");
 }
 
 TEST(FromGrpcTest, ViolationsInTheMessageAreNotRepeated) {
   rpc::v1::Status details;
   Pack(TwoViolations(), "BadRequest", &details);
   const absl::Status status =
-      FromGrpc(Refusal("leader.frame_rate_hz: 0, wanted 1 to 240; and 1 more", details));
+      FromGrpc(Refusal("leader.frame_rate_hz: 0, expected 1 to 240; and 1 more", details));
   EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument,
-                               "leader.frame_rate_hz: 0, wanted 1 to 240; and 1 more: "
-                               "label_vector: empty, wanted at least one weight"));
+                               "leader.frame_rate_hz: 0, expected 1 to 240; and 1 more: "
+                               "label_vector: empty, expected at least one weight"));
 }
 
 TEST(FromGrpcTest, EmptyMessageListsTheViolations) {
   rpc::v1::Status details;
   Pack(TwoViolations(), "BadRequest", &details);
-  EXPECT_THAT(FromGrpc(Refusal("", details)),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       "leader.frame_rate_hz: 0, wanted 1 to 240; label_vector: empty, wanted at "
-                       "least one weight"));
+  EXPECT_THAT(
+      FromGrpc(Refusal("", details)),
+      StatusIs(absl::StatusCode::kInvalidArgument,
+               "leader.frame_rate_hz: 0, expected 1 to 240; label_vector: empty, expected at "
+               "least one weight"));
 }
 
 TEST(FromGrpcTest, RetryInfoAndErrorInfoAreReadable) {

@@ -155,7 +155,7 @@ class AugmentationSetTest(unittest.TestCase):
     def test_write_jobs_rejects_several_seeds(self):
         result = evaluate("--data", self.data, "--write-jobs", self.jobs, "--seeds", "1,2")
         self.assertNotEqual(result.returncode, 0)
-        self.assertIn("--seeds: 2 came, wanted one with --write-jobs", result.stderr)
+        self.assertIn("--seeds: expected one with --write-jobs, got 2", result.stderr)
         self.assertFalse(self.jobs.exists())
 
 

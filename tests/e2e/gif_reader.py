@@ -46,7 +46,7 @@ class Gif:
                 if label == 0xF9:
                     flags, hundredths, index = struct.unpack("<BHB", content)
                     transparent = index if flags & 1 else None
-                    assert flags >> 2 & 7 == 1, "wanted frames that stay"
+                    assert flags >> 2 & 7 == 1, "expected frames that stay"
                 self.repeats = self.repeats or content.startswith(b"NETSCAPE2.0")
                 continue
             assert kind == b",", kind

@@ -86,7 +86,7 @@ class ModelRepositoryTest(unittest.TestCase):
         self.assertEqual(set(models), {"sbu/1 served", "sbu/2 failed", "sbu/3 failed"})
         self.assertIn("weights", models["sbu/2 failed"])
         self.assertRegex(models["sbu/2 failed"], "the weights (do not )?answer")
-        self.assertRegex(models["sbu/3 failed"], r"weights: \d+ bytes, wanted \d+")
+        self.assertRegex(models["sbu/3 failed"], r"weights: \d+ bytes, expected \d+")
         self.assertEqual(self.synthesize(server).returncode, 0)
 
     def test_weights_that_contradict_their_manifest_are_rejected_until_fixed(self):

@@ -61,7 +61,7 @@ class Reader:
 
     def take(self, wanted=None):
         token = self.tokens[self.at]
-        assert wanted in (None, token), f"came {token} after {self.tokens[self.at - 8:self.at]}, wanted {wanted}"
+        assert wanted in (None, token), f"got {token} after {self.tokens[self.at - 8:self.at]}, expected {wanted}"
         self.at += 1
         return token
 

@@ -270,9 +270,9 @@ TEST(NetworkSynthesizer, AnAnswerOfAnotherShapeIsRefused) {
     const auto model = Model([&](Inputs) { return answer; });
     EXPECT_THAT(RunOne(*model, window), StatusIs(absl::StatusCode::kInternal, HasSubstr(why)));
   };
-  refused({}, "answered 0 windows, wanted 1");
-  refused({motion::Poses(2, 15)}, "answered 2 frames of 15 joints, wanted 3 of 15");
-  refused({motion::Poses(3, 14)}, "answered 3 frames of 14 joints, wanted 3 of 15");
+  refused({}, "answered 0 windows, expected 1");
+  refused({motion::Poses(2, 15)}, "answered 2 frames of 15 joints, expected 3 of 15");
+  refused({motion::Poses(3, 14)}, "answered 3 frames of 14 joints, expected 3 of 15");
 }
 
 TEST(NetworkSynthesizer, OnlyTheCancelledWindowFails) {

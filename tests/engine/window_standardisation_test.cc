@@ -23,7 +23,7 @@ motion::Vec3 Standard(const SynthesisWindow& window, motion::Vec3 offset) {
 }
 
 void ExpectNear(motion::Vec3 got, motion::Vec3 wanted) {
-  EXPECT_LT(Distance(got, wanted), 1e-5f) << got.x << " " << got.y << " " << got.z << ", wanted "
+  EXPECT_LT(Distance(got, wanted), 1e-5f) << got.x << " " << got.y << " " << got.z << ", expected "
                                           << wanted.x << " " << wanted.y << " " << wanted.z;
 }
 

@@ -90,7 +90,7 @@ TEST_F(PaperTrainerTest, StateOfAnotherVersionIsRejected) {
   archive.save_to((folder_ / "state").string());
   EXPECT_THAT(Make().LoadState(folder_ / "state"),
               StatusIs(absl::StatusCode::kFailedPrecondition,
-                       HasSubstr("another version of the trainer, wanted state version 2")));
+                       HasSubstr("another version of the trainer, expected state version 2")));
 }
 
 TEST_F(PaperTrainerTest, StateOfASlightlyDifferentSettingIsRejected) {

@@ -66,7 +66,7 @@ absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint&
   if (!std::holds_alternative<checkpoint::PaperArchitecture>(checkpoint.manifest.architecture)) {
     return absl::InvalidArgumentError(
         absl::StrCat("model ", checkpoint.manifest.model.name,
-                     ": samples, wanted a generator with encoders, whose latent space is shown"));
+                     ": samples, expected a generator with encoders, whose latent space is shown"));
   }
   network::Generator generator(checkpoint.manifest);
   if (status = network::LoadParameters(checkpoint, generator); !status.ok()) return status;

@@ -94,15 +94,15 @@ absl::StatusOr<std::pair<std::string, Asked>> ParseEntry(absl::string_view line)
   };
   const std::string path = text("/files/0/path"), half = text("/extra/half");
   Asked asked;
-  if (path.empty()) return absl::InvalidArgumentError("files: none came, wanted one");
+  if (path.empty()) return absl::InvalidArgumentError("files: expected one file, got none");
   if (!absl::SimpleAtoi(half, &asked.half)) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "extra: half: ", base::Quoted(half), " came, wanted a seed as --write-jobs tells it"));
+    return absl::InvalidArgumentError(absl::StrCat("extra: half: ", base::Quoted(half),
+                                                   ", expected a seed that --write-jobs wrote"));
   }
   if (entry->contains("partner_direction")) {
     asked.partner_direction = ToDirection((*entry)["partner_direction"]);
     if (!asked.partner_direction) {
-      return absl::InvalidArgumentError("partner_direction: wanted three numbers");
+      return absl::InvalidArgumentError("partner_direction: expected three numbers");
     }
   }
   return std::make_pair(path, asked);
@@ -121,7 +121,7 @@ absl::StatusOr<std::map<std::string, Asked>> ReadIndex(const fs::path& file) {
     }
     if (!index.empty() && entry->second.half != index.begin()->second.half) {
       return base::ErrorAt(file.string(), lines.number(),
-                           absl::StrCat("half: ", entry->second.half, " came, wanted ",
+                           absl::StrCat("half: ", entry->second.half, ", expected ",
                                         index.begin()->second.half, " as above"));
     }
     index.insert(*std::move(entry));
@@ -133,7 +133,7 @@ absl::Status CheckSame(const dataset::Dataset& wanted, const dataset::Dataset& c
                        const fs::path& folder) {
   const auto refuse = [&folder](absl::string_view what) {
     return absl::InvalidArgumentError(
-        absl::StrCat(folder.string(), ": wanted the ", what, " of the data"));
+        absl::StrCat(folder.string(), ": expected the ", what, " of the data"));
   };
   if (came.skeleton.joint_names != wanted.skeleton.joint_names) return refuse("joints");
   if (came.classes != wanted.classes) return refuse("classes");
@@ -179,7 +179,7 @@ absl::StatusOr<SyntheticSet> ReadSyntheticSet(const dataset::Dataset& dataset,
     const auto asked = index->find(sequence.id);
     if (asked == index->end() || index->size() != set.sequences.size()) {
       return absl::InvalidArgumentError(absl::StrCat((folder / "index.jsonl").string(), ": ",
-                                                     index->size(), " clips came, wanted the ",
+                                                     index->size(), " clips, expected the ",
                                                      set.sequences.size(), " of the folder"));
     }
     set.half = asked->second.half;

@@ -47,17 +47,17 @@ int Vote(const std::vector<int>& nearest) {
 absl::Status Check(const FeatureSet& features, const std::vector<int>& classes, int neighbours) {
   if (classes.size() != features.size()) {
     return absl::InvalidArgumentError(absl::StrCat("classes: ", classes.size(),
-                                                   ", wanted one for each of ", features.size(),
+                                                   ", expected one for each of ", features.size(),
                                                    " feature vectors"));
   }
   if (features.size() < static_cast<size_t>(neighbours) + 1) {
     return absl::InvalidArgumentError(absl::StrCat(
-        "features: ", features.size(), " vectors, wanted ", neighbours + 1, " or more"));
+        "features: ", features.size(), " vectors, expected ", neighbours + 1, " or more"));
   }
   for (const std::vector<float>& vector : features) {
     if (vector.size() == features.front().size()) continue;
     return absl::InvalidArgumentError(absl::StrCat("features: a vector of ", vector.size(),
-                                                   " values, wanted ", features.front().size(),
+                                                   " values, expected ", features.front().size(),
                                                    " as the first has"));
   }
   return absl::OkStatus();

@@ -89,12 +89,11 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset, const Argumen
                                   const experiments::Trials& trials) {
   report::ResultSection section = BeginSection(
       arguments.section,
-      "A classifier shaped like the discriminator learns to name the interaction from the "
-      "follower's motion, from half of the captured clips of each class, without and with "
-      "synthetic followers, and is tested on the captured clips of the other half. The generator "
-      "that made the synthetic followers was trained on the same training half alone, and answers "
-      "varied leaders of that half. A trial is one split and one seed of the classifier; trials of "
-      "different rows are paired.");
+      "A classifier with the architecture of the discriminator learns to classify the follower's "
+      "motion from half of the captured clips of each class, with and without synthetic followers, "
+      "and is tested on the captured clips of the other half. The generator of the synthetic "
+      "followers was trained on the same half only, and answers varied leaders of that half. A "
+      "trial is one split and one seed of the classifier; trials of different rows are paired.");
   section.text.push_back(
       "Rows take equally many training steps, since longer training alone moves the accuracy; "
       "\"longer\" rows take the steps that the larger set needs for as many epochs. \"Synthetic "

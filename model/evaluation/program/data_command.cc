@@ -20,9 +20,8 @@ absl::Status Run(const Arguments& arguments) {
   if (!dataset.ok()) return dataset.status();
   report::ResultSection section = BeginSection(
       arguments.section,
-      "What the data is like that everything else learns from and is measured on. The captures are "
-      "levelled set by set as they are read; figures in SBU's raw unit are taken in the world as "
-      "captured.");
+      "Properties of the data set for training and evaluation. Each set of captures is levelled "
+      "when it is read; figures in SBU's raw unit are measured before levelling.");
   section.tables = {report::LeanTable(*dataset), report::FloorTable(*dataset),
                     report::NoiseTable(*dataset), report::LeaderTable(*dataset),
                     report::CleanUpTable(*dataset)};

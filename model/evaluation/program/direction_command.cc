@@ -76,8 +76,9 @@ absl::Status Run(const Arguments& arguments) {
   if (!rows.ok()) return rows.status();
   report::ResultSection section = BeginSection(
       arguments.section,
-      "A caller who tells neither the partner's direction nor the follower's start leaves it to "
-      "the leader's motion. People left out of training, one at a time; lower is better.");
+      "If a request has neither a partner direction nor a follower start, the direction is "
+      "estimated from the leader's motion. Each subject is left out of training in turn; lower is "
+      "better.");
   section.tables = {report::DirectionTable(*rows)};
   section.settings = {{"data", DescribeData(*dataset)}};
   return FinishSection(arguments.section, section);

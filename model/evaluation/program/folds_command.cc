@@ -122,10 +122,10 @@ report::ResultSection MakeSection(const Experiment& experiment, const Arguments&
                                   const FoldScorer& scorer) {
   report::ResultSection section = BeginExperiment(
       arguments.flags, experiment,
-      "Each subject is left out in turn: methods learn from the sequences without that person and "
-      "answer the leaders of all those with. Figures are means over the answers of all folds; the "
-      "names of rows end in what a model was told of the follower's first frame: nothing, where "
-      "its root is (+root), or its pose (+pose).");
+      "Each subject is left out in turn: a method learns from the sequences without that subject "
+      "and answers the leaders of the others. Figures are means over the answers of all folds. The "
+      "suffix of a row names the input about the follower's first frame: none, the position of its "
+      "root (+root) or its pose (+pose).");
   for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
   return section;
 }

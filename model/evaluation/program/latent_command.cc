@@ -122,9 +122,10 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset,
       "A clip is one point: the concatenated output of the generator's encoders, averaged over the "
       "clip's frames, drawn by t-SNE. Each fold's model has a space of its own.");
   section.text.push_back(
-      "A model with a multi-hot embedding is told the class that colours the point: part of its "
-      "order is given, not learnt. The same model with the label vector withheld (all zeros) shows "
-      "what it makes of the leader alone.");
+      "A model with a multi-hot embedding receives the class that colours the point as its label, "
+      "so part of the order comes from the input. The same model with all labels zero shows what "
+      "it "
+      "infers from the leader alone.");
   section.tables = {report::LatentTable()};
   section.settings = {{"data", dataset.name},
                       {"left out", absl::StrJoin(subjects, ", ")},

@@ -80,17 +80,17 @@ report::ResultSection MakeSection(const Experiment& experiment, const Experiment
   report::ResultSection section = BeginExperiment(
       flags, experiment,
       "A model that samples answers every leader of every left-out subject several times, each "
-      "with a seed of its own; one that does not answers once. The average frame distance rewards "
-      "the mean of what may happen, so three are read side by side: of one answer, of the mean of "
-      "all answers, and of the best. Speed, range, diversity and lean are to be near the captured "
-      "followers' row, neither below nor above it. +pose: told the follower's first pose. Other "
-      "people: captured followers of training clips of the same class, drawn at random: real "
-      "motion of people who answered another leader.");
+      "time with another seed; other models answer once. The average frame distance rewards the "
+      "mean of all plausible motions, so the table gives it for one answer, for the mean of all "
+      "answers and for the best. Speed, range, diversity and lean should be close to the captured "
+      "followers' row, neither below nor above it. +pose: the input includes the follower's first "
+      "pose. Other people: captured followers of training clips of the same class, drawn at "
+      "random, who answered another leader.");
   section.settings.emplace_back("answers to a leader", absl::StrCat(flags.asked.samples));
   section.settings.emplace_back("variety", absl::StrCat(flags.asked.variety));
   section.settings.emplace_back("seed", absl::StrCat(flags.asked.seed));
   section.settings.emplace_back("direction of the partner",
-                                flags.asked.tell_direction ? "told" : "from the leader");
+                                flags.asked.tell_direction ? "in the request" : "from the leader");
   for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
   return section;
 }

@@ -105,10 +105,9 @@ report::ResultSection MakeSection(const Experiment& experiment, const std::vecto
   report::ResultSection section = BeginExperiment(
       arguments.flags, experiment,
       "Every leader of every fold's left-out subject is answered at each weight from -1 to 2 of "
-      "its own class alone, and of each other class beside its own at 1. The fold's judge, who has "
-      "not seen the left-out subject either, says how probable it finds each class. At weight 0 "
-      "of the own class the network is asked for nothing; what it answers then is its guess from "
-      "the leader.");
+      "its own class alone, and of each other class beside its own at 1. The fold's judge, trained "
+      "without the left-out subject, gives the probability of each class. At weight 0 of its own "
+      "class, the network has no label and infers the motion from the leader.");
   section.settings.emplace_back("model", experiment.models.front().name);
   section.settings.emplace_back("seeds of a model that samples",
                                 absl::StrJoin(arguments.sample_seeds, ", "));

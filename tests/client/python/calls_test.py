@@ -124,16 +124,16 @@ class Calls:
                                    timeout=support.LONGEST_CALL)
 
     def test_violations_name_frame_and_joint(self):
-        bad = support.bad_request(("leader.positions[14]", "is inf, wanted a finite number"),
+        bad = support.bad_request(("leader.positions[14]", "is inf, expected a finite number"),
                                   ("follower_start.pose.positions[4]", "is too far"))
         refusal = Failure(grpc.StatusCode.INVALID_ARGUMENT,
-                          "leader.positions[14]: is inf, wanted a finite number", bad)
+                          "leader.positions[14]: is inf, expected a finite number", bad)
         with self.assertRaises(duet.InvalidRequestError) as caught:
             self.synthesize([refusal])
         self.assertEqual(
             [(violation.field, violation.description) for violation in caught.exception.violations],
             [("leader.positions[1, 1, 2]",
-              "frame 1, joint 'left', z: is inf, wanted a finite number"),
+              "frame 1, joint 'left', z: is inf, expected a finite number"),
              ("follower_start[1, 1]", "frame 0, joint 'left', y: is too far")])
         self.assertIn("leader.positions[1, 1, 2] (frame 1, joint 'left', z): is inf",
                       str(caught.exception))

@@ -21,21 +21,21 @@ class ErrorsTest(unittest.TestCase):
     def test_error_has_every_violation(self):
         error = from_rpc_error(Refusal(
             grpc.StatusCode.INVALID_ARGUMENT, "two fields",
-            support.details(support.bad_request(("leader.unit", "0, wanted 1"), ("", "and more")),
+            support.details(support.bad_request(("leader.unit", "0, expected 1"), ("", "and more")),
                             status_pb2.ErrorInfo(reason="INVALID_REQUEST"))))
         self.assertIsInstance(error, duet.InvalidRequestError)
         self.assertIsInstance(error, ValueError)
-        self.assertEqual(error.violations, (duet.FieldViolation("leader.unit", "0, wanted 1"),
+        self.assertEqual(error.violations, (duet.FieldViolation("leader.unit", "0, expected 1"),
                                             duet.FieldViolation("", "and more")))
         self.assertEqual(error.reason, "INVALID_REQUEST")
         self.assertEqual(str(error),
-                         "INVALID_ARGUMENT: two fields: leader.unit: 0, wanted 1; and more")
+                         "INVALID_ARGUMENT: two fields: leader.unit: 0, expected 1; and more")
         self.assertTrue(error.is_permanent)
 
     def test_message_names_each_violation_once(self):
-        error = from_rpc_error(Refusal(grpc.StatusCode.INVALID_ARGUMENT, "seed: 1, wanted 2",
-                                       support.details(support.bad_request(("seed", "1, wanted 2")))))
-        self.assertEqual(error.message, "seed: 1, wanted 2")
+        error = from_rpc_error(Refusal(grpc.StatusCode.INVALID_ARGUMENT, "seed: 1, expected 2",
+                                       support.details(support.bad_request(("seed", "1, expected 2")))))
+        self.assertEqual(error.message, "seed: 1, expected 2")
 
     def test_retry_delay_is_read(self):
         code = grpc.StatusCode.RESOURCE_EXHAUSTED

@@ -152,19 +152,19 @@ TEST_F(SyntheticFilesTest, InvalidEntriesAreErrorsThatNameTheLine) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(text));
   };
   EXPECT_THAT(ReadAfter("\"half\":\"7\"", "\"hall\":\"7\""), invalid("index.jsonl:1: extra: half"));
-  EXPECT_THAT(ReadAfter("\"hall\":\"7\"", "\"half\":\"x\""), invalid("half: \"x\" came"));
+  EXPECT_THAT(ReadAfter("\"hall\":\"7\"", "\"half\":\"x\""), invalid("half: \"x\""));
   EXPECT_THAT(ReadAfter("\"half\":\"x\"", "\"half\":\"7\""), IsOk());
   EXPECT_THAT(ReadAfter("0.0,0.0,-1.0", "0.0,\"a\",-1.0"), invalid("partner_direction"));
   EXPECT_THAT(ReadAfter("0.0,\"a\",-1.0", "0.0,0.0,-1.0"), IsOk());
-  EXPECT_THAT(ReadAfter("give/give-001.txt", "give/give-009.txt"), invalid("4 clips came"));
+  EXPECT_THAT(ReadAfter("give/give-001.txt", "give/give-009.txt"), invalid("4 clips, expected"));
   EXPECT_THAT(ReadAfter("give/give-009.txt", "give/give-001.txt"), IsOk());
   const std::string index = ReadTestFile(folder_ / "set/index.jsonl");
   WriteTestFile(folder_ / "set/index.jsonl",
                 index + R"({"files":[{"path":"a"}],"extra":{"half":"8"}})" + "\n");
-  EXPECT_THAT(Read(), invalid("index.jsonl:5: half: 8 came, wanted 7"));
+  EXPECT_THAT(Read(), invalid("index.jsonl:5: half: 8, expected 7"));
   WriteTestFile(folder_ / "set/index.jsonl",
                 index + R"({"files":[{"path":"a"}],"extra":{"half":"7"}})" + "\n");
-  EXPECT_THAT(Read(), invalid("5 clips came, wanted the 4"));
+  EXPECT_THAT(Read(), invalid("5 clips, expected the 4"));
   std::filesystem::remove(folder_ / "set/index.jsonl");
   EXPECT_THAT(Read(), StatusIs(absl::StatusCode::kNotFound, HasSubstr("index.jsonl")));
 }
@@ -174,14 +174,14 @@ TEST_F(SyntheticFilesTest, RefusesSetsOfOtherData) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(what));
   };
   WriteLayout(dataset_.skeleton, 30);
-  EXPECT_THAT(Read(), wanted("wanted the frame rate of the data"));
+  EXPECT_THAT(Read(), wanted("expected the frame rate of the data"));
   motion::Skeleton other = dataset_.skeleton;
   other.joint_names[0] = "hat";
   WriteLayout(other, dataset_.frame_rate_hz);
-  EXPECT_THAT(Read(), wanted("wanted the joints of the data"));
+  EXPECT_THAT(Read(), wanted("expected the joints of the data"));
   WriteLayout(dataset_.skeleton, dataset_.frame_rate_hz);
   dataset_.classes[1] = "dodge";
-  EXPECT_THAT(Read(), wanted("wanted the classes of the data"));
+  EXPECT_THAT(Read(), wanted("expected the classes of the data"));
 }
 
 }  // namespace

@@ -41,12 +41,13 @@ TEST(NeighbourAccuracyTest, MeasuresInAllDimensions) {
 }
 
 TEST(NeighbourAccuracyTest, MismatchedSizesAreRejected) {
-  EXPECT_THAT(NeighbourAccuracy({{0}, {1}}, {0}, 1),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("wanted one for each of 2")));
+  EXPECT_THAT(
+      NeighbourAccuracy({{0}, {1}}, {0}, 1),
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected one for each of 2")));
   EXPECT_THAT(NeighbourAccuracy({{0}, {1}}, {0, 1}, 2),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("wanted 3 or more")));
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected 3 or more")));
   EXPECT_THAT(NeighbourAccuracy({{0}, {1, 2}}, {0, 1}, 1),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("wanted 1 as the first")));
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected 1 as the first")));
 }
 
 }  // namespace
