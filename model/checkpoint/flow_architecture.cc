@@ -16,6 +16,8 @@ constexpr int kMaxUnits = 4096;
 constexpr int kMaxBlocks = 64;
 constexpr int kMaxSteps = 100;
 
+constexpr char kFrameLabels[] = "frame_labels";
+
 constexpr int64_t kModulations = 4;  // shift and scale, before attention and before feed-forward
 constexpr int64_t kStartStates = 2;  // without a start, with a start
 
@@ -62,39 +64,53 @@ void ReadFields(base::ObjectReader* reader, FlowArchitecture* out) {
   }
   out->feed_forward = static_cast<int>(reader->Int("feed_forward", 1, kMaxUnits));
   out->reach = static_cast<int>(reader->Int("reach", 1, kMaxUnits));
+  // Optional: checkpoints of earlier versions do not have it.
+  out->frame_labels = reader->Has(kFrameLabels) && reader->Bool(kFrameLabels);
   out->offset_scale = reader->Number("offset_scale", 1e-6, 1e3);
   out->noise = ReadNoise(reader);
   out->steps = static_cast<int>(reader->Int("steps", 1, kMaxSteps));
   out->guidance = reader->Number("guidance", 0, 10);
+  if (reader->ok() && out->frame_labels && out->guidance != 1) {
+    reader->Fail("guidance", absl::StrCat(out->guidance, ", expected 1 with ", kFrameLabels));
+  }
   out->fade_frames = static_cast<int>(reader->Int("fade_frames", 0, kMaxUnits));
 }
 
 nlohmann::ordered_json ToJson(const FlowArchitecture& flow) {
-  return {{kArchitectureKind, FlowArchitecture::kKind},
-          {"width", flow.width},
-          {"blocks", flow.blocks},
-          {"heads", flow.heads},
-          {"feed_forward", flow.feed_forward},
-          {"reach", flow.reach},
-          {"offset_scale", flow.offset_scale},
-          {"noise",
-           {{"frame_length", flow.noise.frame_length},
-            {"constant_share", flow.noise.constant_share},
-            {"ramp_frames", flow.noise.ramp_frames},
-            {"white", flow.noise.white}}},
-          {"steps", flow.steps},
-          {"guidance", flow.guidance},
-          {"fade_frames", flow.fade_frames}};
+  nlohmann::ordered_json json = {{kArchitectureKind, FlowArchitecture::kKind},
+                                 {"width", flow.width},
+                                 {"blocks", flow.blocks},
+                                 {"heads", flow.heads},
+                                 {"feed_forward", flow.feed_forward},
+                                 {"reach", flow.reach},
+                                 {"offset_scale", flow.offset_scale},
+                                 {"noise",
+                                  {{"frame_length", flow.noise.frame_length},
+                                   {"constant_share", flow.noise.constant_share},
+                                   {"ramp_frames", flow.noise.ramp_frames},
+                                   {"white", flow.noise.white}}},
+                                 {"steps", flow.steps},
+                                 {"guidance", flow.guidance},
+                                 {"fade_frames", flow.fade_frames}};
+  if (flow.frame_labels) json[kFrameLabels] = true;
+  return json;
+}
+
+int64_t FrameFeatureCount(const Manifest& manifest, const FlowArchitecture& flow) {
+  const int64_t pose = 3 * int64_t{manifest.model.skeleton.joint_count()};
+  // Leader and velocity, positions, known offsets and their flag.
+  return 2 * pose + kPositionFeatures + pose + 1 +
+         (flow.frame_labels ? manifest.model.class_count() : 0);
 }
 
 std::vector<TensorSpec> Tensors(const Manifest& manifest, const FlowArchitecture& flow) {
   const int64_t width = flow.width, classes = manifest.model.class_count();
   const int64_t pose = 3 * int64_t{manifest.model.skeleton.joint_count()};
   std::vector<TensorSpec> specs;
-  AddLinear("frames", width, 2 * pose + kPositionFeatures + pose + 1, &specs);
+  AddLinear("frames", width, FrameFeatureCount(manifest, flow), &specs);
   specs.push_back({"sample.weight", {width, pose}});
   AddLinear("start", width, StartFeatureCount(manifest.model.skeleton), &specs);
-  specs.push_back({"label.weight", {width, classes}});
+  if (!flow.frame_labels) specs.push_back({"label.weight", {width, classes}});
   AddLinear("time.expand", width, kTimeFeatures, &specs);
   AddLinear("time.mix", width, width, &specs);
   AddLinear("condition", width, width, &specs);

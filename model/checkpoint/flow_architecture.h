@@ -24,6 +24,11 @@ struct FlowArchitecture {
   int feed_forward = 0;
   int reach = 0;  // frames; attention distinguishes distances up to this one
 
+  // Labels are an input of every frame, so that the answer follows labels that change within a
+  // window, and one evaluation of the network serves any mixture. Otherwise the network is
+  // evaluated for each class, and the answers are combined by the label weights of each frame.
+  bool frame_labels = false;
+
   // One unit of the network's output, metres. The output is an offset from a base pose.
   double offset_scale = 0;
 
@@ -46,12 +51,16 @@ inline constexpr int kTimeFeatures = 32;
 // Distances of a frame from the window's ends, and the window's length.
 inline constexpr int kPositionFeatures = 4;
 
-// The tensors, with W = width, F = feed_forward, J = joints, C = classes:
-//   frames.weight                    [W, 9 J + 5]          leader, its velocity, 4 positions, known
-//   frames.bias                      [W]                   frames' offsets, known or not
+// Values of each frame that the layer "frames" reads.
+int64_t FrameFeatureCount(const Manifest& manifest, const FlowArchitecture& flow);
+
+// The tensors, with W = width, F = feed_forward, J = joints, C = classes, L = FrameFeatureCount:
+//   frames.weight                    [W, L]                leader, its velocity, 4 positions, known
+//   frames.bias                      [W]                   frames' offsets, known or not; with
+//                                                          frame_labels, C label weights
 //   sample.weight                    [W, 3 J]
 //   start.weight, .bias              [W, StartFeatureCount], [W]
-//   label.weight                     [W, C]
+//   label.weight                     [W, C]                absent with frame_labels
 //   time.expand.weight, .bias        [W, 32], [W]
 //   time.mix, condition              [W, W], [W]           .weight, .bias, as all below
 //   block<i>.modulation              [4 W, W], [4 W]       shift, scale; of attention, feed-forward

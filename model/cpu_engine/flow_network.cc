@@ -57,7 +57,7 @@ FlowNetwork::FlowNetwork(const checkpoint::Checkpoint& checkpoint, Precision pre
   frames_ = exact("frames");
   sample_ = weights.FindLayer("sample.weight", "").Pack(Precision::kFloat32);
   start_ = exact("start");
-  label_ = weights.FindLayer("label.weight", "");
+  if (!flow_.frame_labels) label_ = weights.FindLayer("label.weight", "");
   time_expand_ = exact("time.expand");
   time_mix_ = exact("time.mix");
   condition_ = exact("condition");
@@ -131,7 +131,11 @@ void FlowNetwork::ReadWindows(absl::Span<const engine::NetworkInput> inputs, Scr
   float* const starts = scratch->Take<float>(std::ptrdiff_t{work->windows} * start_.inputs());
   float* const bases = scratch->Take<float>(std::ptrdiff_t{work->windows} * pose_);
   for (std::ptrdiff_t n = 0; n < work->windows; ++n) {
-    work->window[n] = {0, 0, rows + work->window_row[n] * features, starts + n * start_.inputs(),
+    work->window[n] = {0,
+                       0,
+                       static_cast<int>(features),
+                       rows + work->window_row[n] * features,
+                       starts + n * start_.inputs(),
                        bases + n * pose_};
     FillFlowWindow(manifest_, base_poses_, inputs[static_cast<std::size_t>(n)], &work->window[n]);
   }
@@ -144,8 +148,8 @@ void FlowNetwork::ReadTerms(absl::Span<const engine::NetworkInput> inputs, Scrat
   const int classes = manifest_.model.class_count();
   work->term = scratch->Take<FlowTerm>(std::ptrdiff_t{work->windows} * (classes + 1));
   for (int n = 0; n < work->windows; ++n) {
-    work->terms += AddFlowTerms(inputs[static_cast<std::size_t>(n)], n, classes, flow_.guidance,
-                                scratch, work->term + work->terms);
+    work->terms += AddFlowTerms(inputs[static_cast<std::size_t>(n)], n, classes, flow_, scratch,
+                                work->term + work->terms);
   }
   work->term_row = scratch->Take<int>(work->terms);
   work->told = scratch->Take<float>(std::ptrdiff_t{work->terms} * width_);

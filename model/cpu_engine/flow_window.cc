@@ -45,7 +45,8 @@ void WriteStart(const engine::NetworkInput& input, int root, int count, float* o
   for (const motion::Vec3& joint : pose) out = Write(joint - place, out);
 }
 
-// The mean pose of the classes by their mean label weights, moved to the start root if given.
+// The mean pose of the classes by their mean label weights, or of all classes alike with
+// frame_labels; moved to the start root if given.
 void WriteMeanPose(const checkpoint::Manifest& manifest, const std::vector<float>& base_poses,
                    const engine::NetworkInput& input, float* base) {
   const std::ptrdiff_t classes = manifest.model.class_count();
@@ -57,7 +58,8 @@ void WriteMeanPose(const checkpoint::Manifest& manifest, const std::vector<float
       mean += base_poses[static_cast<std::size_t>(c * width + i)];
     base[i] = mean / static_cast<float>(classes);
   }
-  for (std::ptrdiff_t i = 0; i < width; ++i) {
+  const bool weighted = !std::get<checkpoint::FlowArchitecture>(manifest.architecture).frame_labels;
+  for (std::ptrdiff_t i = 0; weighted && i < width; ++i) {
     const float mean = base[i];
     for (std::ptrdiff_t c = 0; c < classes; ++c) {
       float weight = 0;
@@ -75,7 +77,7 @@ void WriteMeanPose(const checkpoint::Manifest& manifest, const std::vector<float
   for (std::ptrdiff_t i = 0; i < width; ++i) base[i] += by[i % 3];
 }
 
-// Writes leader, velocity, positions, known offsets, and the known flag.
+// Writes leader, velocity, positions, known offsets, and the known flag: all features but labels.
 void WriteFeatures(const engine::NetworkInput& input, int frame, int told, float scale,
                    const float* base, float* out) {
   const Frame leader = input.leader[frame];
@@ -120,15 +122,25 @@ void FillFlowWindow(const checkpoint::Manifest& manifest, const std::vector<floa
     for (const motion::Vec3& joint : KnownFrame(input, known - 1)) out = Write(joint, out);
   }
   for (int t = 0; t < window->frames; ++t) {
+    float* const features = window->features + std::ptrdiff_t{t} * window->stride;
     WriteFeatures(input, t, window->known_frames, static_cast<float>(flow.offset_scale),
-                  window->base, window->features + std::ptrdiff_t{t} * (3 * width + 5));
+                  window->base, features);
+    if (!flow.frame_labels) continue;
+    const int classes = manifest.model.class_count();
+    std::copy_n(input.labels.begin() + std::ptrdiff_t{t} * classes, classes,
+                features + 3 * width + checkpoint::kPositionFeatures + 1);
   }
 }
 
-int AddFlowTerms(const engine::NetworkInput& input, int window, int classes, double guidance,
-                 Scratch::Use* scratch, FlowTerm* terms) {
+int AddFlowTerms(const engine::NetworkInput& input, int window, int classes,
+                 const checkpoint::FlowArchitecture& flow, Scratch::Use* scratch, FlowTerm* terms) {
   const int frames = input.leader.frame_count();
-  const float times = static_cast<float>(guidance);
+  if (flow.frame_labels) {
+    terms[0] = {window, kNoClass, scratch->Take<float>(frames)};
+    std::fill_n(terms[0].factor, frames, 1.0f);
+    return 1;
+  }
+  const float times = static_cast<float>(flow.guidance);
   const auto weight = [&](int frame, int label) {
     const float raw =
         input.labels[static_cast<std::size_t>(frame) * static_cast<std::size_t>(classes) +

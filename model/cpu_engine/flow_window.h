@@ -14,11 +14,12 @@ namespace duet::cpu_engine {
 struct FlowWindow {
   int frames;        // T
   int known_frames;  // number of known frames at the start of the follower
-  float* features;   // [T, 2 x 3 J + 4 + 3 J + 1] leader, velocity, positions, known, whether known
+  int stride;        // FrameFeatureCount
+  float* features;   // [T, stride] leader, velocity, positions, known, whether known; labels
   float* start;      // [StartFeatureCount]
   float* base;       // [3 J] metres
   const float* known(int frame, int width) const {  // [3 J] offset from the base
-    return features + frame * (3 * width + 5) + 2 * width + 4;
+    return features + frame * stride + 2 * width + 4;
   }
 };
 
@@ -37,8 +38,8 @@ inline constexpr int kNoClass = -1;
 
 // Writes a window's terms to `terms`, at most C + 1, and returns their number. The formula is in
 // model/network/flow_sampler.h.
-int AddFlowTerms(const engine::NetworkInput& input, int window, int classes, double guidance,
-                 Scratch::Use* scratch, FlowTerm* terms);
+int AddFlowTerms(const engine::NetworkInput& input, int window, int classes,
+                 const checkpoint::FlowArchitecture& flow, Scratch::Use* scratch, FlowTerm* terms);
 
 }  // namespace duet::cpu_engine
 

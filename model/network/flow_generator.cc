@@ -77,14 +77,16 @@ FlowContext Rows(const FlowContext& context, const torch::Tensor& rows) {
 }
 
 FlowGeneratorImpl::FlowGeneratorImpl(const checkpoint::Manifest& manifest)
-    : heads_(FlowOf(manifest).heads), reach_(FlowOf(manifest).reach) {
+    : frame_labels_(FlowOf(manifest).frame_labels),
+      heads_(FlowOf(manifest).heads),
+      reach_(FlowOf(manifest).reach) {
   for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
     by_name_[spec.name] = Add(spec.name, spec.shape);
   }
   frames_ = FindLinear("frames");
   sample_ = FindLinear("sample");
   start_ = FindLinear("start");
-  label_ = FindLinear("label");
+  if (!frame_labels_) label_ = FindLinear("label");
   time_expand_ = FindLinear("time.expand");
   time_mix_ = FindLinear("time.mix");
   condition_ = FindLinear("condition");
@@ -133,18 +135,19 @@ torch::Tensor FlowGeneratorImpl::Dropped(const torch::Tensor& values) const {
 
 FlowContext FlowGeneratorImpl::Prepare(const FlowInput& input) const {
   const int64_t frames = input.leader.size(1);
-  const torch::Tensor features =
-      torch::cat({input.leader, kVelocityScale * Velocity(input.leader),
-                  Positions(input.lengths, frames), input.known, input.is_known},
-                 2);
-  return {frames_(features), start_(input.start), Padding(input.lengths, frames)};
+  std::vector<torch::Tensor> features = {input.leader, kVelocityScale * Velocity(input.leader),
+                                         Positions(input.lengths, frames), input.known,
+                                         input.is_known};
+  if (frame_labels_) features.push_back(input.labels);
+  return {frames_(torch::cat(features, 2)), start_(input.start), Padding(input.lengths, frames)};
 }
 
 torch::Tensor FlowGeneratorImpl::forward(const FlowContext& context, const torch::Tensor& labels,
                                          const torch::Tensor& sample,
                                          const torch::Tensor& times) const {
   const torch::Tensor time = time_mix_(torch::silu(time_expand_(TimeFeatures(times))));
-  const torch::Tensor told = context.condition + label_(labels) + time;
+  torch::Tensor told = context.condition + time;
+  if (!frame_labels_) told = told + label_(labels);
   const torch::Tensor condition = torch::silu(condition_(told));
   torch::Tensor frames = Dropped(context.frames + sample_(sample) + condition.unsqueeze(1));
   for (const Block& block : blocks_) frames = Apply(block, frames, condition, context.padding);

@@ -37,8 +37,8 @@ class FlowGeneratorImpl : public torch::nn::Module {
 
   FlowContext Prepare(const FlowInput& input) const;
 
-  // Shapes: labels [N, C], all zeros for no class; sample [N, T, 3 J] at times [N] in [0, 1);
-  // returns [N, T, 3 J], undefined past a window's length.
+  // Shapes: labels [N, C], all zeros for no class, ignored with frame_labels; sample [N, T, 3 J] at
+  // times [N] in [0, 1); returns [N, T, 3 J], undefined past a window's length.
   torch::Tensor forward(const FlowContext& context, const torch::Tensor& labels,
                         const torch::Tensor& sample, const torch::Tensor& times) const;
 
@@ -77,6 +77,7 @@ class FlowGeneratorImpl : public torch::nn::Module {
                       const torch::Tensor& condition, const torch::Tensor& padding) const;
 
   std::map<std::string, torch::Tensor> by_name_;  // as registered
+  bool frame_labels_;
   Linear frames_, sample_, start_, label_, time_expand_, time_mix_, condition_, norm_, output_;
   std::vector<Block> blocks_;
   torch::Tensor base_poses_, noise_roots_;

@@ -59,7 +59,8 @@ FlowInput MakeFlowInput(const checkpoint::Manifest& manifest, const torch::Tenso
   const int64_t count = clips.leader.size(0), frames = clips.leader.size(1),
                 width = clips.leader.size(2);
   const int root = manifest.model.skeleton.root;
-  const double scale = std::get<checkpoint::FlowArchitecture>(manifest.architecture).offset_scale;
+  const auto& flow = std::get<checkpoint::FlowArchitecture>(manifest.architecture);
+  const double scale = flow.offset_scale;
   FlowInput batch{clips.leader,
                   clips.labels,
                   clips.lengths,
@@ -74,7 +75,9 @@ FlowInput MakeFlowInput(const checkpoint::Manifest& manifest, const torch::Tenso
     WriteStart(known, input, root, batch.start[n]);
     if (known.empty()) {
       torch::Tensor base =
-          MeanPose(base_poses, clips.labels[n].narrow(0, 0, input.leader.frame_count()));
+          flow.frame_labels
+              ? base_poses.mean(0)
+              : MeanPose(base_poses, clips.labels[n].narrow(0, 0, input.leader.frame_count()));
       if (input.start) base = MovedTo(input.start->root, root, base);
       batch.base[n] = base;
       continue;

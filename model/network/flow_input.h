@@ -13,7 +13,8 @@ namespace duet::network {
 //
 // Frames of a follower may be known: its start pose, or several settled frames. The base is the
 // last known frame. Without known frames it is the mean pose of the classes, weighted by their mean
-// label weights over the window, and moved to the start root if that is given. The network predicts
+// label weights over the window (with frame_labels: of all classes alike), and moved to the start
+// root if that is given. The network predicts
 // offsets from the base, in units of FlowArchitecture::offset_scale.
 struct FlowInput {
   torch::Tensor leader;    // [N, T, 3 J] metres, zero-padded

@@ -72,6 +72,13 @@ torch::Tensor Varieties(absl::Span<const engine::NetworkInput> inputs) {
   return torch::tensor(varieties).view({-1, 1, 1});
 }
 
+// Every window once, with its labels in the frames.
+GuidanceTerms OneTermEach(const FlowInput& input) {
+  const int64_t count = input.labels.size(0), frames = input.labels.size(1);
+  return {torch::arange(count), torch::zeros({count, input.labels.size(2)}),
+          torch::ones({count, frames, 1})};
+}
+
 }  // namespace
 
 GuidanceTerms MakeGuidanceTerms(const torch::Tensor& labels, const torch::Tensor& lengths,
@@ -114,7 +121,10 @@ torch::Tensor PlainAnswers(const FlowGenerator& generator,
 torch::Tensor SampleFlow(const FlowGenerator& generator,
                          const checkpoint::FlowArchitecture& architecture, const FlowInput& input,
                          const torch::Tensor& source) {
-  const GuidanceTerms terms = MakeGuidanceTerms(input.labels, input.lengths, architecture.guidance);
+  const GuidanceTerms terms =
+      architecture.frame_labels
+          ? OneTermEach(input)
+          : MakeGuidanceTerms(input.labels, input.lengths, architecture.guidance);
   const FlowContext rows = Rows(generator->Prepare(input), terms.windows);
   const torch::Tensor answer =
       TakeSteps(architecture.steps, input, source, [&](const torch::Tensor& sample, double time) {

@@ -68,7 +68,18 @@ void Keep(int first, int frames, motion::Clip* clip) {
   clip->poses.Resize(frames);
 }
 
-void Crop(base::Random* random, motion::ClipPair* pair) {
+// Frames [first, end) of the time line, as frames from `first`.
+void KeepLabels(int first, int end, std::vector<dataset::LabelSpan>* labels) {
+  std::vector<dataset::LabelSpan> kept;
+  for (const dataset::LabelSpan& span : *labels) {
+    const int from = std::max(span.begin, first), to = std::min(span.end, end);
+    if (from < to) kept.push_back({span.interaction_class, from - first, to - first});
+  }
+  *labels = std::move(kept);
+}
+
+void Crop(base::Random* random, dataset::Sequence* sequence) {
+  motion::ClipPair* pair = &sequence->pair;
   const int frames = pair->leader.frame_count();
   const int shortest = std::max(kMinCropFrames, frames / 2);
   if (frames <= shortest) return;
@@ -76,10 +87,12 @@ void Crop(base::Random* random, motion::ClipPair* pair) {
   const int first = static_cast<int>(random->Below(frames - kept + 1));
   Keep(first, kept, &pair->leader);
   Keep(first, kept, &pair->follower);
+  KeepLabels(first, first + kept, &sequence->labels);
 }
 
 // Plays both people `speed` times as fast, no longer than `longest` frames.
-void Warp(double speed, int longest, motion::ClipPair* pair) {
+void Warp(double speed, int longest, dataset::Sequence* sequence) {
+  motion::ClipPair* pair = &sequence->pair;
   const int frames = pair->leader.frame_count();
   const int warped = std::clamp(static_cast<int>(std::lround(frames / speed)), 2, longest);
   for (motion::Clip* clip : {&pair->leader, &pair->follower}) {
@@ -88,6 +101,10 @@ void Warp(double speed, int longest, motion::ClipPair* pair) {
       SampleLinear(clip->poses, t * (frames - 1.0) / (warped - 1.0), after[t]);
     }
     clip->poses = std::move(after);
+  }
+  for (dataset::LabelSpan& span : sequence->labels) {
+    span.begin = span.begin * warped / frames;
+    span.end = span.end * warped / frames;
   }
 }
 
@@ -131,10 +148,10 @@ dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequen
     Mirror(MirroredJoints(dataset.skeleton), &variant);
   }
   motion::ClipPair* pair = &variant.pair;
-  if (random->Chance(options.crop)) Crop(random, pair);
+  if (random->Chance(options.crop)) Crop(random, &variant);
   if (options.time_warp > 0) {
     Warp(std::exp(random->Uniform(-options.time_warp, options.time_warp)),
-         dataset.LongestFrameCount(), pair);
+         dataset.LongestFrameCount(), &variant);
   }
   if (options.body_scale > 0) {
     const double leader = 1 + random->Uniform(-options.body_scale, options.body_scale);

@@ -7,6 +7,7 @@
 #include "model/motion/filter.h"
 #include "model/network/batch.h"
 #include "model/training/drift.h"
+#include "model/training/frame_labels.h"
 
 namespace duet::training {
 namespace {
@@ -63,6 +64,10 @@ FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dat
   if (start == StartKnowledge::kPose && random->Chance(flow.drift.share)) {
     AddDrift(dataset.skeleton, flow.drift, random, &example.input, &example.target);
   }
+  if (flow.architecture.frame_labels) {
+    example.input.labels =
+        DrawFrameLabels(sequence, dataset.class_count(), flow.frame_labels, random);
+  }
   ScalePair(static_cast<float>(1 + random->Uniform(-flow.pair_scale, flow.pair_scale)), &example);
   return example;
 }
@@ -113,7 +118,9 @@ std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
       }
       batches.push_back(MakeFlowBatch(manifest, base_poses, examples));
       for (int64_t n = 0; n < batches.back().labels.size(0); ++n) {
-        if (random.Chance(flow.unlabelled)) batches.back().labels[n].zero_();
+        if (!random.Chance(flow.unlabelled)) continue;
+        batches.back().labels[n].zero_();
+        batches.back().input.labels[n].zero_();
       }
     }
   }

@@ -22,6 +22,12 @@ void Read(base::ObjectReader* reader, FlowTraining* out) {
   out->least_remaining = reader->Number("least_remaining", 1e-6, 1);
 }
 
+void Read(base::ObjectReader* reader, FlowTraining::FrameLabels* out) {
+  out->shift = reader->Number("shift", 0, 1000);
+  out->unlabelled = Probability(reader, "unlabelled");
+  out->avoided = Probability(reader, "avoided");
+}
+
 void Read(base::ObjectReader* reader, FlowTraining::Drift* out) {
   out->share = Probability(reader, "share");
   out->tilt = reader->Number("tilt", 0, 4);
@@ -50,6 +56,7 @@ void ReadSections(base::ObjectReader* root, FlowTraining* out) {
                 [](base::ObjectReader* reader, auto* fields) { Read(reader, fields); });
   };
   section("flow", out);
+  section("frame_labels", &out->frame_labels);
   section("drift", &out->drift);
   section("energy", &out->energy);
 }
@@ -69,6 +76,9 @@ void Describe(const FlowTraining& f, Description* out) {
                {"flow.slide_weight", Text(f.slide_weight)},
                {"flow.slide_speed", Text(f.slide_speed)},
                {"flow.least_remaining", Text(f.least_remaining)},
+               {"frame_labels.shift", Text(f.frame_labels.shift)},
+               {"frame_labels.unlabelled", Text(f.frame_labels.unlabelled)},
+               {"frame_labels.avoided", Text(f.frame_labels.avoided)},
                {"drift.share", Text(f.drift.share)},
                {"drift.tilt", Text(f.drift.tilt)},
                {"drift.bend", Text(f.drift.bend)},

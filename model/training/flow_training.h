@@ -29,6 +29,14 @@ struct FlowTraining {
   double slide_speed = 0.3;       // metres per second; a captured foot below it stands
   double least_remaining = 0.15;  // losses are divided by 1 - t, but at least by this
 
+  // Labels in training with frame_labels. By default every class of a frame has weight 1 and all
+  // others 0.
+  struct FrameLabels {
+    double shift = 0;       // frames, standard deviation of the beginning and the end of a span
+    double unlabelled = 0;  // fraction of the classes of a clip whose weight is 0 throughout
+    double avoided = 0;     // fraction of the classes of a clip that have weight -1 where absent
+  } frame_labels;
+
   // A follower that continues from its own previous answer does not start where a captured one
   // would. A fraction of the clips with a start pose therefore starts with an error and returns to
   // the captured motion. Standard deviations; 0 disables an error.

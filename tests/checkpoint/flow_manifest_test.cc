@@ -92,8 +92,8 @@ TEST(FlowManifest, RejectsByName) {
               names("generator.kind: expected \"paper\" or \"flow\", got \"wave\""));
   EXPECT_THAT(refusal("/generator/kind", "paper"), names("generator.variant"));
   EXPECT_THAT(refusal("/generator/heads", 5), names("generator.heads: 5, expected a divisor"));
-  EXPECT_THAT(refusal("/generator/width", 0), names("generator.width: 0, wanted"));
-  EXPECT_THAT(refusal("/generator/steps", 0), names("generator.steps: 0, wanted"));
+  EXPECT_THAT(refusal("/generator/width", 0), names("generator.width: expected"));
+  EXPECT_THAT(refusal("/generator/steps", 0), names("generator.steps: expected"));
   EXPECT_THAT(refusal("/generator/offset_scale", 0), names("generator.offset_scale"));
   EXPECT_THAT(refusal("/generator/noise/white", -1), names("generator.noise.white"));
   EXPECT_THAT(refusal("/generator/noise/colour", 1),
@@ -117,6 +117,24 @@ TEST(FlowManifest, SizesDetermineTheTensors) {
   EXPECT_EQ(shapes.at("base.poses"), (Shape{2, 9}));
   EXPECT_EQ(shapes.at("noise.roots"), (Shape{2, 9, 9}));
   EXPECT_EQ(shapes.count("block2.distance"), 0u);
+}
+
+TEST(FlowManifest, FrameLabelsAreAnInputOfEveryFrame) {
+  Manifest manifest = FlowManifest();
+  EXPECT_FALSE(json::parse(SerializeManifest(manifest))["generator"].contains("frame_labels"));
+  auto& flow = std::get<FlowArchitecture>(manifest.architecture);
+  flow.frame_labels = true;
+  EXPECT_THAT(ParseManifest(SerializeManifest(manifest)).status(),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("generator.guidance: 1.25, expected 1 with frame_labels")));
+  flow.guidance = 1;
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_TRUE(std::get<FlowArchitecture>(read->architecture).frame_labels);
+  std::map<std::string, std::vector<int64_t>> shapes;
+  for (const TensorSpec& spec : ExpectedTensors(*read)) shapes[spec.name] = spec.shape;
+  EXPECT_EQ(shapes.at("frames.weight"), (std::vector<int64_t>{12, 9 * 3 + 5 + 2}));
+  EXPECT_EQ(shapes.count("label.weight"), 0u);
 }
 
 }  // namespace

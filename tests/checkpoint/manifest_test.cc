@@ -240,8 +240,8 @@ TEST_P(ManifestField, IsRejectedByName) {
 INSTANTIATE_TEST_SUITE_P(
     Bad, ManifestField,
     ::testing::Values(
-        BadField{"newer_format", "/format_version", "3", "format_version: 3, wanted"},
-        BadField{"format_0", "/format_version", "0", "format_version: 0, wanted"},
+        BadField{"newer_format", "/format_version", "3", "format_version: expected"},
+        BadField{"format_0", "/format_version", "0", "format_version: expected"},
         BadField{"name_empty", "/name", "\"\"", "name: \"\", expected 1 to 64"},
         BadField{"name_leaves", "/name", "\"../x\"", "name: \"../x\""},
         BadField{"name_long", "/name",

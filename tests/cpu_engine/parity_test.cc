@@ -110,6 +110,20 @@ TEST(ParityTest, SamplingGeneratorOfOtherSizesEqualsLibTorch) {
   EXPECT_LT(FromTorch(RandomCheckpoint(FlowManifest(), 3), Precision::kFloat32), 1e-5f);
 }
 
+TEST(ParityTest, SamplingGeneratorWithFrameLabelsEqualsLibTorch) {
+  Manifest manifest = FlowManifest();
+  test::FlowOf(manifest).frame_labels = true;
+  test::FlowOf(manifest).guidance = 1;
+  const Checkpoint checkpoint = RandomCheckpoint(manifest, 3);
+  EXPECT_LT(FromTorch(checkpoint, Precision::kFloat32), 1e-5f);
+  // Labels that change within the window matter.
+  std::vector<NetworkInput> changed = {Input(manifest, 9, Told::kPose, 1)};
+  const auto network = MakeCpuNetwork(checkpoint, Precision::kFloat32);
+  const std::vector<motion::Poses> before = Answers(*network, changed);
+  changed[0].labels[5 * static_cast<std::size_t>(manifest.model.class_count())] = -1;
+  EXPECT_GT(Farthest(before, Answers(*network, changed)), 1e-4f);
+}
+
 TEST(ParityTest, WideGeneratorEqualsLibTorch) {
   Manifest manifest = PaperManifest(GeneratorVariant::kPaper, 50, true, true);
   manifest.model.window_frames = 9;
