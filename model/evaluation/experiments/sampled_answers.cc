@@ -14,8 +14,8 @@ std::vector<LabelledLeader> Ask(const dataset::Dataset& dataset, const std::vect
       const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
       std::vector<float> labels(dataset.classes.size());
       labels[static_cast<size_t>(sequence.interaction_class)] = 1;
-      leaders.push_back({&sequence, std::move(labels), SamplingOf(asked, dataset, index, n),
-                         asked.tell_direction});
+      leaders.push_back({&sequence, engine::LabelTrack(std::move(labels)),
+                         SamplingOf(asked, dataset, index, n), asked.tell_direction});
     }
   }
   return leaders;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -20,9 +21,8 @@ engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const Labelled
   const dataset::Sequence& sequence = *labelled.sequence;
   const motion::Clip& leader = sequence.pair.leader;
   const motion::Clip& follower = sequence.pair.follower;
-  engine::ClipRequest request{
-      leader.poses, leader.frame_rate_hz,       engine::LabelTrack(labelled.labels),
-      std::nullopt, sequence.partner_direction, {labelled.sampling, {}}};
+  engine::ClipRequest request{leader.poses, leader.frame_rate_hz,       labelled.labels,
+                              std::nullopt, sequence.partner_direction, {labelled.sampling, {}}};
   if (!labelled.tell_direction) request.partner_direction.reset();
   if (start == StartGiven::kNone) return request;
   request.start = engine::FollowerStart{follower.at(0, skeleton.root), {}};
@@ -102,11 +102,32 @@ absl::StatusOr<motion::Poses> SynthesizeSequence(const engine::Synthesizer& synt
                                                  const dataset::Sequence& sequence,
                                                  const std::vector<float>& labels,
                                                  StartGiven start) {
-  const LabelledLeader leader = {&sequence, labels};
+  const LabelledLeader leader = {&sequence, engine::LabelTrack(labels)};
   absl::StatusOr<std::vector<motion::Poses>> followers =
       SynthesizeSequences(synthesizer, {&leader, 1}, start);
   if (!followers.ok()) return followers.status();
   return std::move(followers->front());
+}
+
+engine::LabelTrack TimeLineLabels(const dataset::Sequence& sequence, int classes) {
+  const auto at = [&](int frame) {
+    std::vector<float> weights(static_cast<size_t>(classes));
+    for (const dataset::LabelSpan& span : sequence.labels) {
+      if (span.begin > frame || frame >= span.end) continue;
+      weights[static_cast<size_t>(span.interaction_class)] = 1;
+    }
+    return weights;
+  };
+  std::set<int> frames = {0};
+  for (const dataset::LabelSpan& span : sequence.labels) {
+    // Both sides of an edge, because weights are linear between key frames.
+    for (const int edge : {span.begin, span.end}) {
+      if (edge > 0) frames.insert({edge - 1, edge});
+    }
+  }
+  std::vector<engine::LabelKeyframe> keyframes;
+  for (const int frame : frames) keyframes.push_back({frame, at(frame)});
+  return engine::LabelTrack(std::move(keyframes));
 }
 
 absl::StatusOr<std::vector<motion::Poses>> SynthesizeSequences(

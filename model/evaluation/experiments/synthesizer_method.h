@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
+#include "model/engine/label_track.h"
 #include "model/engine/synthesizer.h"
 #include "model/evaluation/protocol/method.h"
 #include "model/motion/poses.h"
@@ -51,10 +52,13 @@ absl::StatusOr<motion::Poses> SynthesizeSequence(const engine::Synthesizer& synt
                                                  const std::vector<float>& labels,
                                                  StartGiven start);
 
-// A leader, the label vector ([classes]) to answer it with, and the sampling of the answer.
+// The classes of a sequence's time line as label weights: 1 for each class of a frame.
+engine::LabelTrack TimeLineLabels(const dataset::Sequence& sequence, int classes);
+
+// A leader, the labels to answer it with, and the sampling of the answer.
 struct LabelledLeader {
   const dataset::Sequence* sequence;
-  std::vector<float> labels;
+  engine::LabelTrack labels;
   engine::Sampling sampling = {};
   // False: the model estimates the partner's direction from the leader's motion, as for a request
   // without it.

@@ -15,6 +15,7 @@ using ChosenCommand = std::function<absl::Status()>;
 void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen);         // figures of methods by class
 void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen);       // many answers to one leader
 void AddLongCommand(CLI::App* app, ChosenCommand* chosen);          // clips of minutes
+void AddDanceCommand(CLI::App* app, ChosenCommand* chosen);         // whole takes of a dance
 void AddStripsCommand(CLI::App* app, ChosenCommand* chosen);        // pictures of answers
 void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen);     // from captured ones
 void AddSweepCommand(CLI::App* app, ChosenCommand* chosen);         // label weights

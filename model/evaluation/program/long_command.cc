@@ -41,8 +41,9 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, co
   for (const experiments::LongLeader& leader : leaders) {
     std::vector<float> labels(dataset.classes.size());
     labels[static_cast<size_t>(leader.sequence.interaction_class)] = 1;
-    asked.push_back(
-        {&leader.sequence, std::move(labels), {sampling.seed + asked.size(), sampling.variety}});
+    asked.push_back({&leader.sequence,
+                     engine::LabelTrack(std::move(labels)),
+                     {sampling.seed + asked.size(), sampling.variety}});
   }
   absl::StatusOr<std::vector<motion::Poses>> followers =
       SynthesizeSequences(**synthesizer, asked, start);

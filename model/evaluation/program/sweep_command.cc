@@ -39,8 +39,9 @@ absl::Status SweepLeader(const dataset::Dataset& dataset, const SweepFold& fold,
   std::vector<experiments::LabelledLeader> leaders;
   for (int raised = 0; raised < classes; ++raised) {
     for (const double weight : experiments::SweepWeights()) {
-      leaders.push_back(
-          {&sequence, experiments::SweepLabels(classes, own, raised, weight), sampling});
+      leaders.push_back({&sequence,
+                         engine::LabelTrack(experiments::SweepLabels(classes, own, raised, weight)),
+                         sampling});
     }
   }
   absl::StatusOr<std::vector<motion::Poses>> followers =

@@ -64,6 +64,7 @@ absl::StatusOr<nlohmann::json> RunCommand(std::vector<std::string> words) {
   ChosenCommand chosen;
   AddSamplesCommand(&app, &chosen);
   AddLongCommand(&app, &chosen);
+  AddDanceCommand(&app, &chosen);
   AddStripsCommand(&app, &chosen);
   AddToldApartCommand(&app, &chosen);
   std::reverse(words.begin(), words.end());  // as CLI11 wants them
@@ -97,6 +98,17 @@ TEST(SampleCommandsTest, LongHasARowALeader) {
               ElementsAre("people: clips as captured", "duet: idle", "duet: walk_eight",
                           "duet: dance", "duet: sit", "duet: captured"));
   EXPECT_THAT(tables[2].at("rows"), SizeIs(2 * 6));
+}
+
+TEST(SampleCommandsTest, DanceComparesWithBaselinesAndAnotherLead) {
+  const auto section = RunCommand({"dance", "--samples", "1"});
+  ASSERT_THAT(section, IsOk());
+  const nlohmann::json& table = section->at("tables").at(0);
+  EXPECT_THAT(RowNames(table), ElementsAre("first pose held", "class mean", "nearest seconds",
+                                           "captured", "duet+pose", "duet+pose, other lead"));
+  ASSERT_EQ(table.at("columns").at(0), "error");
+  EXPECT_EQ(table["rows"][3].at("values").at(0), 0);
+  EXPECT_GT(table["rows"][4].at("values").at(0), 0);
 }
 
 TEST(SampleCommandsTest, ToldApartHasAColumnAFold) {

@@ -1,0 +1,142 @@
+#include "model/evaluation/baselines/take_baselines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "model/motion/standardise.h"
+
+namespace duet::evaluation::baselines {
+namespace {
+
+constexpr double kPieceSeconds = 1, kStrideSeconds = 0.1;
+
+int Frames(const dataset::Dataset& dataset, double seconds) {
+  return std::max(1, static_cast<int>(std::lround(seconds * dataset.frame_rate_hz)));
+}
+
+motion::Poses Piece(const motion::Poses& poses, int begin, int frames) {
+  motion::Poses piece(0, poses.joint_count());
+  piece.Append(poses.frames(begin, frames));
+  return piece;
+}
+
+// The coordinates of the leader's first frame.
+motion::Standardisation FrameOf(const dataset::Dataset& dataset, const motion::Poses& leader) {
+  return {dataset.skeleton, leader, motion::YawDirection::kRemove,
+          motion::StandardOrigin::kFirstFrame};
+}
+
+// A piece of both people in the coordinates of its leader's first frame.
+struct StandardPiece {
+  motion::Poses leader, follower;
+};
+
+StandardPiece Cut(const dataset::Dataset& dataset, const motion::ClipPair& pair, int begin,
+                  int frames) {
+  const motion::Poses leader = Piece(pair.leader.poses, begin, frames);
+  const motion::Standardisation frame = FrameOf(dataset, leader);
+  return {frame.Apply(leader), frame.Apply(Piece(pair.follower.poses, begin, frames))};
+}
+
+double SquaredDistance(const motion::Poses& a, const motion::Poses& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.all().size(); ++i) {
+    const motion::Vec3 apart = a.all()[i] - b.all()[i];
+    sum += Dot(apart, apart);
+  }
+  return sum;
+}
+
+const StandardPiece& Nearest(const std::vector<StandardPiece>& pieces,
+                             const motion::Poses& leader) {
+  const StandardPiece* nearest = &pieces.front();
+  double least = std::numeric_limits<double>::infinity();
+  for (const StandardPiece& piece : pieces) {
+    const double distance = SquaredDistance(piece.leader, leader);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = &piece;
+  }
+  return *nearest;
+}
+
+int ClassAt(const dataset::Sequence& sequence, int frame) {
+  for (const dataset::LabelSpan& span : sequence.labels) {
+    if (span.begin <= frame && frame < span.end) return span.interaction_class;
+  }
+  return sequence.interaction_class;
+}
+
+// The mean pose of each class and, last, of all frames; of a class without frames that of all.
+std::vector<motion::Poses> MeanFollowers(const dataset::Dataset& dataset,
+                                         const std::vector<int>& train) {
+  const auto classes = static_cast<std::size_t>(dataset.class_count());
+  std::vector<motion::Poses> means(classes + 1, motion::Poses(1, dataset.skeleton.joint_count()));
+  std::vector<float> counts(classes + 1);
+  for (const int index : train) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<std::size_t>(index)];
+    for (int t = 0; t < sequence.pair.leader.frame_count(); ++t) {
+      const StandardPiece piece = Cut(dataset, sequence.pair, t, 1);
+      for (const std::size_t to : {static_cast<std::size_t>(ClassAt(sequence, t)), classes}) {
+        for (std::size_t j = 0; j < piece.follower.all().size(); ++j) {
+          means[to].all()[j] += piece.follower.all()[j];
+        }
+        ++counts[to];
+      }
+    }
+  }
+  for (std::size_t c = 0; c <= classes; ++c) {
+    for (motion::Vec3& joint : means[c].all()) joint = joint / std::max(counts[c], 1.0f);
+  }
+  for (std::size_t c = 0; c < classes; ++c) {
+    if (counts[c] == 0) means[c] = means[classes];
+  }
+  return means;
+}
+
+}  // namespace
+
+motion::Poses NearestSeconds(const dataset::Dataset& dataset, const std::vector<int>& train,
+                             const dataset::Sequence& take) {
+  const int frames = take.pair.leader.frame_count();
+  const int length = std::min(Frames(dataset, kPieceSeconds), frames);
+  std::vector<StandardPiece> pieces;
+  for (const int index : train) {
+    const motion::ClipPair& pair = dataset.sequences[static_cast<std::size_t>(index)].pair;
+    for (int t = 0; t + length <= pair.leader.frame_count(); t += Frames(dataset, kStrideSeconds)) {
+      pieces.push_back(Cut(dataset, pair, t, length));
+    }
+  }
+  motion::Poses follower(0, dataset.skeleton.joint_count());
+  for (int t = 0; t < frames && !pieces.empty(); t += length) {
+    const int begin = std::min(t, frames - length);
+    const motion::Poses leader = Piece(take.pair.leader.poses, begin, length);
+    const motion::Standardisation frame = FrameOf(dataset, leader);
+    const motion::Poses made = frame.Invert(Nearest(pieces, frame.Apply(leader)).follower);
+    follower.Append(made.frames(t - begin, length - (t - begin)));
+  }
+  return follower;
+}
+
+motion::Poses MeanOfClass(const dataset::Dataset& dataset, const std::vector<int>& train,
+                          const dataset::Sequence& take) {
+  const std::vector<motion::Poses> means = MeanFollowers(dataset, train);
+  motion::Poses follower(0, dataset.skeleton.joint_count());
+  for (int t = 0; t < take.pair.leader.frame_count(); ++t) {
+    const motion::Standardisation frame = FrameOf(dataset, Piece(take.pair.leader.poses, t, 1));
+    follower.Append(frame.Invert(means[static_cast<std::size_t>(ClassAt(take, t))]).all());
+  }
+  return follower;
+}
+
+motion::Poses FirstPoseHeld(const dataset::Sequence& take) {
+  motion::Poses held(0, take.pair.follower.joint_count());
+  for (int t = 0; t < take.pair.leader.frame_count(); ++t) {
+    held.Append(take.pair.follower.poses[0]);
+  }
+  return held;
+}
+
+}  // namespace duet::evaluation::baselines
