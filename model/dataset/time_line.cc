@@ -18,7 +18,7 @@ constexpr char kHeader[] = "path\tclass\tfrom_seconds\tto_seconds";
 constexpr size_t kColumns = 4;
 constexpr double kMostSeconds = 1e6;
 
-absl::Status Wrong(int line, std::string_view what) {
+absl::Status Wrong(int line, absl::string_view what) {
   return absl::InvalidArgumentError(absl::StrCat("labels.tsv: line ", line, ": ", what));
 }
 
@@ -76,7 +76,7 @@ Sequence Window(const Sequence& sequence, int begin, int frames) {
 }  // namespace
 
 absl::StatusOr<std::map<std::string, std::vector<LabelSpan>>> ParseTimeLines(
-    std::string_view text, const std::vector<std::string>& classes, double frame_rate_hz) {
+    absl::string_view text, const std::vector<std::string>& classes, double frame_rate_hz) {
   std::map<std::string, std::vector<LabelSpan>> time_lines;
   int line = 0;
   for (absl::string_view row : absl::StrSplit(text, '\n')) {
