@@ -39,9 +39,14 @@ TEST(SynthesizeSequences, AnswersClipsOfAnyLengthTogether) {
   std::vector<size_t> batches;
   FakeSynthesizer model;
   model.on_batch = [&](auto windows) { batches.push_back(windows.size()); };
-  const std::vector<LabelledLeader> leaders = {{&dataset.sequences[0], {1, 0, 0, 0, 0, 0}},
-                                               {&longer, {0, 0.5f, 0, 0, 0, 0}},
-                                               {&dataset.sequences[0], {0, 0, 0, 0, 0, -1}}};
+  const std::vector<const dataset::Sequence*> sequences = {&dataset.sequences[0], &longer,
+                                                           &dataset.sequences[0]};
+  const std::vector<std::vector<float>> labels = {
+      {1, 0, 0, 0, 0, 0}, {0, 0.5f, 0, 0, 0, 0}, {0, 0, 0, 0, 0, -1}};
+  std::vector<LabelledLeader> leaders;
+  for (size_t i = 0; i < labels.size(); ++i) {
+    leaders.push_back({sequences[i], engine::LabelTrack(labels[i])});
+  }
   const auto followers = SynthesizeSequences(model, leaders, StartGiven::kNone);
   ASSERT_TRUE(followers.ok()) << followers.status();
   EXPECT_THAT(batches, ElementsAre(3, 1));
@@ -52,10 +57,25 @@ TEST(SynthesizeSequences, AnswersClipsOfAnyLengthTogether) {
     ASSERT_EQ(follower.frame_count(), leader.frame_count());
     ASSERT_EQ(follower.joint_count(), leader.joint_count());
     for (size_t p = 0; p < leader.all().size(); ++p) {
-      const motion::Vec3 wanted = FakeAnswer(leader.all()[p], leaders[i].labels);
+      const motion::Vec3 wanted = FakeAnswer(leader.all()[p], labels[i]);
       ASSERT_NEAR(Norm(follower.all()[p] - wanted), 0, 1e-4) << i << ", " << p;
     }
   }
+}
+
+TEST(TimeLineLabels, AreOneForTheClassesOfAFrame) {
+  dataset::Sequence sequence;
+  sequence.labels = {{0, 0, 10}, {1, 5, 20}};
+  const engine::LabelTrack track = TimeLineLabels(sequence, 2);
+  const auto at = [&](int frame) {
+    std::vector<float> weights(2);
+    track.At(frame, weights.data());
+    return weights;
+  };
+  for (const int frame : {0, 4}) EXPECT_THAT(at(frame), ElementsAre(1, 0)) << frame;
+  for (const int frame : {5, 9}) EXPECT_THAT(at(frame), ElementsAre(1, 1)) << frame;
+  for (const int frame : {10, 19}) EXPECT_THAT(at(frame), ElementsAre(0, 1)) << frame;
+  EXPECT_THAT(at(20), ElementsAre(0, 0));
 }
 
 TEST(SynthesizeSequences, PassesAFailureOn) {
@@ -64,8 +84,11 @@ TEST(SynthesizeSequences, PassesAFailureOn) {
   model.window_status = [](const engine::SynthesisWindow& window) {
     return window.labels[1] > 0 ? absl::InternalError("no") : absl::OkStatus();
   };
-  const std::vector<LabelledLeader> leaders = {{&dataset.sequences[0], {1, 0, 0, 0, 0, 0}},
-                                               {&dataset.sequences[0], {0, 1, 0, 0, 0, 0}}};
+  const auto labels = [](float first, float second) {
+    return engine::LabelTrack(std::vector<float>{first, second, 0, 0, 0, 0});
+  };
+  const std::vector<LabelledLeader> leaders = {{&dataset.sequences[0], labels(1, 0)},
+                                               {&dataset.sequences[0], labels(0, 1)}};
   EXPECT_TRUE(absl::IsInternal(SynthesizeSequences(model, leaders, StartGiven::kNone).status()));
   EXPECT_TRUE(SynthesizeSequences(model, {leaders.data(), 1}, StartGiven::kNone).ok());
 }

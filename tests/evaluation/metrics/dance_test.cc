@@ -87,7 +87,7 @@ TEST(DanceTest, WalkingAroundThePartnerIsNoTurn) {
   // Always faces the partner, who stands at the origin.
   const motion::Poses circling = Animate(4, [](double s) {
     const double yaw = s * kPi / 2;
-    return Stand(RotateY({0, 0, 1}, yaw), yaw);
+    return Stand(motion::RotateY({0, 0, 1}, yaw), yaw);
   });
   EXPECT_THAT(FindTurns(Joints(), circling, Standing(4, {0, 0, 0}, 0), kRate), SizeIs(0));
 }
