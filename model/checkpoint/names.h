@@ -56,7 +56,7 @@ auto ReadNamed(base::ObjectReader* reader, const std::string& key, const Table& 
                     : left == 1 ? " or "
                                 : "");
   }
-  reader->Fail(key, absl::StrCat(base::Quoted(name), ", expected ", wanted));
+  reader->Fail(key, absl::StrCat("expected ", wanted, ", got ", base::Quoted(name)));
   return std::begin(table)->value;
 }
 

@@ -73,6 +73,7 @@ Sequence Take(int frames) {
   Sequence take;
   take.id = "take.txt";
   take.subjects = {"take"};
+  take.pair.leader.joint_names = take.pair.follower.joint_names = {"root"};
   for (int t = 0; t < frames; ++t) {
     const float x = static_cast<float>(t);
     take.pair.leader.Append({{x, 0, 0}});

@@ -108,7 +108,7 @@ TEST_F(ImportTest, ReportsAssumptionsWithTheirFlags) {
   EXPECT_EQ(Assumed("unit"), "centimetres: legs are 0.93 m long");
   EXPECT_EQ(Assumed("up axis"), "y-up");
   EXPECT_THAT(Assumed("joint map"), HasSubstr("head: Head.end (half way to it from the head's "
-                                              "joint), of 8 people"));
+                                              "joint), for 8 people"));
   EXPECT_EQ(Assumed("frame rate"), "30 frames per second, from files with 60");
   EXPECT_THAT(Assumed("leader"),
               AllOf(HasSubstr("4 pairs by who moves farther"),

@@ -132,7 +132,7 @@ motion::Poses MeanOfClass(const dataset::Dataset& dataset, const std::vector<int
 }
 
 motion::Poses FirstPoseHeld(const dataset::Sequence& take) {
-  motion::Poses held(0, take.pair.follower.joint_count());
+  motion::Poses held(0, take.pair.follower.poses.joint_count());
   for (int t = 0; t < take.pair.leader.frame_count(); ++t) {
     held.Append(take.pair.follower.poses[0]);
   }

@@ -38,12 +38,12 @@ TEST(ParseRecord, ReadsAWrittenRecord) {
 }
 
 TEST(ParseRecord, RejectsInvalidRecords) {
-  EXPECT_THAT(ParseRecord(""), StatusIs(kDataLoss, HasSubstr("no record")));
-  EXPECT_THAT(ParseRecord("{\"state\": "), StatusIs(kDataLoss, HasSubstr("no record")));
-  EXPECT_THAT(ParseRecord("[]"), StatusIs(kDataLoss, HasSubstr("no record")));
+  EXPECT_THAT(ParseRecord(""), StatusIs(kDataLoss, HasSubstr("is not a record")));
+  EXPECT_THAT(ParseRecord("{\"state\": "), StatusIs(kDataLoss, HasSubstr("is not a record")));
+  EXPECT_THAT(ParseRecord("[]"), StatusIs(kDataLoss, HasSubstr("is not a record")));
   const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
   EXPECT_THAT(ParseRecord("{\"state\": " + deep + "}"),
-              StatusIs(kDataLoss, HasSubstr("no record")));
+              StatusIs(kDataLoss, HasSubstr("is not a record")));
 }
 
 // A field of the right record that is gone or of another type: the readers would throw.

@@ -119,7 +119,7 @@ TEST_F(CommandLineTest, EveryFlagIsRead) {
                                               "--frame-rate",
                                               "30",
                                               "--unit",
-                                              "mm",
+                                              "millimetres",
                                               "--up-axis",
                                               "z-up",
                                               "--metres-per-unit",

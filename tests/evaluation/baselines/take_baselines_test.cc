@@ -10,7 +10,7 @@
 namespace duet::evaluation::baselines {
 namespace {
 
-constexpr double kRate = 15;
+constexpr double kRate = 10;
 constexpr int kFrames = 40;
 
 // The follower stands as far in front of the leader as the leader's rhythm tells.
@@ -57,14 +57,10 @@ double Farthest(const motion::Poses& a, const motion::Poses& b) {
 TEST(TakeBaselinesTest, NearestSecondsFindAKnownTakeElsewhereInTheWorld) {
   const dataset::Dataset takes = Takes();
   const dataset::Sequence take = Moved(takes.sequences[1]);
-  // Seconds are cut every tenth of a second, so that all but the last one are known exactly.
+  // Training seconds begin every tenth of a second, here at every frame.
   const motion::Poses follower = NearestSeconds(takes, {0, 1}, take);
   ASSERT_EQ(follower.frame_count(), kFrames);
-  for (int t = 0; t < 30; ++t) {
-    for (int j = 0; j < 15; ++j) {
-      EXPECT_LT(Distance(follower.at(t, j), take.pair.follower.at(t, j)), 1e-4f) << t << " " << j;
-    }
-  }
+  EXPECT_LT(Farthest(follower, take.pair.follower.poses), 1e-4);
 }
 
 TEST(TakeBaselinesTest, NearestSecondsLearnFromTrainingSequencesOnly) {
