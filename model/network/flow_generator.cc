@@ -146,8 +146,8 @@ torch::Tensor FlowGeneratorImpl::forward(const FlowContext& context, const torch
                                          const torch::Tensor& sample,
                                          const torch::Tensor& times) const {
   const torch::Tensor time = time_mix_(torch::silu(time_expand_(TimeFeatures(times))));
-  torch::Tensor told = context.condition + time;
-  if (!frame_labels_) told = told + label_(labels);
+  const torch::Tensor told =
+      (frame_labels_ ? context.condition : context.condition + label_(labels)) + time;
   const torch::Tensor condition = torch::silu(condition_(told));
   torch::Tensor frames = Dropped(context.frames + sample_(sample) + condition.unsqueeze(1));
   for (const Block& block : blocks_) frames = Apply(block, frames, condition, context.padding);
