@@ -104,7 +104,8 @@ TEST(LeaveOut, DefaultsToEverySubject) {
   dataset::Dataset dataset = MadeUpPairs(3);
   const auto subjects = [&dataset](const std::vector<std::string>& asked) {
     std::vector<std::string> names;
-    for (const Fold& fold : *LeaveOut(dataset, asked)) names.push_back(fold.subject);
+    const absl::StatusOr<std::vector<Fold>> folds = LeaveOut(dataset, asked);
+    for (const Fold& fold : *folds) names.push_back(fold.subject);
     return names;
   };
   EXPECT_THAT(subjects({"b"}), ElementsAre("b"));
