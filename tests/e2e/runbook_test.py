@@ -40,8 +40,9 @@ class RunbookTest(unittest.TestCase):
         self.assertIn("Windows that wait", named)
         self.assertEqual(named - panels, set())
 
-    def test_flags_are_the_clients(self):
+    def test_flags_are_those_of_server_and_client(self):
         known = tools.run(tools.PROGRAMS / "duet", "batch", "--help").stdout
+        known += tools.run(tools.PROGRAMS / "duet-server", "--help").stdout
         named = set(re.findall(r"`(--[a-z-]+)`", RUNBOOK))
         self.assertIn("--max-in-flight", named)
         self.assertEqual({flag for flag in named if flag not in known}, set())
