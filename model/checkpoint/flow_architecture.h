@@ -16,7 +16,7 @@ struct FlowArchitecture {
   static constexpr std::string_view kKind = "flow";
   static constexpr std::string_view kSummary = "sampling (flow matching): answers depend on a seed";
   static constexpr bool kSamples = true;
-  bool AcceptsFollowerStart() const { return true; }
+  static bool AcceptsFollowerStart() { return true; }
 
   int width = 0;
   int blocks = 0;

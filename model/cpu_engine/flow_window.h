@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_CPU_ENGINE_FLOW_WINDOW_H_
 #define DUET_MODEL_CPU_ENGINE_FLOW_WINDOW_H_
 
+#include <cstddef>
 #include <vector>
 
 #include "model/checkpoint/manifest.h"
@@ -19,7 +20,7 @@ struct FlowWindow {
   float* start;      // [StartFeatureCount]
   float* base;       // [3 J] metres
   const float* known(int frame, int width) const {  // [3 J] offset from the base
-    return features + frame * stride + 2 * width + 4;
+    return features + std::ptrdiff_t{frame} * stride + std::ptrdiff_t{2} * width + 4;
   }
 };
 

@@ -22,7 +22,8 @@ std::vector<float> DrawFrameLabels(const dataset::Sequence& sequence, int classe
   if (spans.empty()) spans.push_back({sequence.interaction_class, 0, frames});
   std::vector<float> weights(static_cast<std::size_t>(frames) * static_cast<std::size_t>(classes));
   const auto at = [&](int frame, int c) -> float& {
-    return weights[static_cast<std::size_t>(frame * classes + c)];
+    return weights[static_cast<std::size_t>(frame) * static_cast<std::size_t>(classes) +
+                   static_cast<std::size_t>(c)];
   };
   for (const dataset::LabelSpan& span : spans) {
     const int begin = Shifted(span.begin, frames, options.shift, random);

@@ -44,6 +44,7 @@ absl::Status NextWindows(const engine::Synthesizer& synthesizer,
     windows.push_back((*clips)[i].NextWindow());
   }
   std::vector<const engine::SynthesisWindow*> pointers;
+  pointers.reserve(windows.size());
   for (const engine::SynthesisWindow& window : windows) pointers.push_back(&window);
   const std::vector<engine::WindowResult> results = synthesizer.Synthesize(pointers);
   for (size_t n = 0; n < waiting.size(); ++n) {
@@ -126,6 +127,7 @@ engine::LabelTrack TimeLineLabels(const dataset::Sequence& sequence, int classes
     }
   }
   std::vector<engine::LabelKeyframe> keyframes;
+  keyframes.reserve(frames.size());
   for (const int frame : frames) keyframes.push_back({frame, at(frame)});
   return engine::LabelTrack(std::move(keyframes));
 }

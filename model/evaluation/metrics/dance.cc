@@ -54,7 +54,7 @@ std::vector<Stretch> Stretches(int frames, double pause, Predicate holds) {
   std::vector<Stretch> found;
   for (int t = 0; t < frames; ++t) {
     if (!holds(t)) continue;
-    if (found.empty() || t - found.back().second >= std::max(pause, 1.0)) found.push_back({t, t});
+    if (found.empty() || t - found.back().second >= std::max(pause, 1.0)) found.emplace_back(t, t);
     found.back().second = t + 1;
   }
   return found;
@@ -151,6 +151,7 @@ Holds MeasureHolds(const DanceJoints& joints, const motion::Poses& leader,
                    const motion::Poses& follower, double frame_rate_hz) {
   const int frames = follower.frame_count();
   std::vector<Wrists> nearest;
+  nearest.reserve(static_cast<std::size_t>(frames));
   for (int t = 0; t < frames; ++t) nearest.push_back(NearestWrists(joints, leader, follower, t));
   const auto is_held = [&](int t) {
     return nearest[static_cast<std::size_t>(t)].metres < kHeldMetres;
@@ -190,6 +191,7 @@ std::vector<double> FindSteps(const DanceJoints& joints, const motion::Poses& pe
 
 double StepSpread(const std::vector<double>& steps, const std::vector<double>& partner) {
   std::vector<double> offsets;
+  offsets.reserve(steps.size());
   for (const double step : steps) offsets.push_back(NearestTo(step, partner));
   return Summarise(offsets).deviation;
 }
