@@ -133,12 +133,12 @@ std::vector<Turn> FindTurns(const DanceJoints& joints, const motion::Poses& pers
 
 TurnMatch MatchTurns(const std::vector<Turn>& captured, const std::vector<Turn>& turns) {
   std::vector<double> delays;
-  for (const Turn& wanted : captured) {
+  for (const Turn& original : captured) {
     double nearest = kMostDelaySeconds;
     bool found = false;
     for (const Turn& turn : turns) {
-      const double delay = std::abs(turn.middle() - wanted.middle());
-      if ((turn.degrees > 0) != (wanted.degrees > 0) || delay > nearest) continue;
+      const double delay = std::abs(turn.middle() - original.middle());
+      if ((turn.degrees > 0) != (original.degrees > 0) || delay > nearest) continue;
       nearest = delay;
       found = true;
     }

@@ -26,7 +26,7 @@ absl::StatusOr<DanceJoints> FindDanceJoints(const motion::Skeleton& skeleton);
 // A rotation of a person one way, against the line between the two people.
 struct Turn {
   double begin = 0, end = 0;  // seconds
-  double degrees = 0;         // the sign tells the way
+  double degrees = 0;         // above 0: clockwise, seen from above
   double middle() const { return (begin + end) / 2; }
 };
 // The turns of `person`: of at least 230 degrees, faster than 45 degrees a second but for pauses of

@@ -59,15 +59,15 @@ Figures Measure(const dataset::Dataset& dataset, const metrics::DanceJoints& joi
   const auto turns = [&](const motion::Poses& person) {
     return metrics::FindTurns(joints, person, leader, rate);
   };
-  const std::vector<metrics::Turn> made = turns(follower), wanted = turns(captured);
-  const metrics::TurnMatch match = metrics::MatchTurns(wanted, made);
+  const std::vector<metrics::Turn> made = turns(follower), original = turns(captured);
+  const metrics::TurnMatch match = metrics::MatchTurns(original, made);
   const metrics::Holds holds = metrics::MeasureHolds(joints, leader, follower, rate);
   return {
       metrics::MeanError(follower, captured),
       metrics::RootDistance(leader, follower, dataset.skeleton),
       metrics::FacingDegrees(leader, follower, dataset.skeleton),
       static_cast<double>(made.size()),
-      wanted.empty() ? NAN : match.matched / static_cast<double>(wanted.size()),
+      original.empty() ? NAN : match.matched / static_cast<double>(original.size()),
       match.mean_delay,
       holds.share,
       holds.mean_seconds,
