@@ -69,13 +69,14 @@ void Keep(int first, int frames, motion::Clip* clip) {
 }
 
 // Frames [first, end) of the time line, as frames from `first`.
-void KeepLabels(int first, int end, std::vector<dataset::LabelSpan>* labels) {
+std::vector<dataset::LabelSpan> PartOf(const std::vector<dataset::LabelSpan>& labels, int first,
+                                       int end) {
   std::vector<dataset::LabelSpan> kept;
-  for (const dataset::LabelSpan& span : *labels) {
+  for (const dataset::LabelSpan& span : labels) {
     const int from = std::max(span.begin, first), to = std::min(span.end, end);
     if (from < to) kept.push_back({span.interaction_class, from - first, to - first});
   }
-  *labels = std::move(kept);
+  return kept;
 }
 
 void Crop(base::Random* random, dataset::Sequence* sequence) {
@@ -85,9 +86,12 @@ void Crop(base::Random* random, dataset::Sequence* sequence) {
   if (frames <= shortest) return;
   const int kept = shortest + static_cast<int>(random->Below(frames - shortest + 1));
   const int first = static_cast<int>(random->Below(frames - kept + 1));
+  std::vector<dataset::LabelSpan> labels = PartOf(sequence->labels, first, first + kept);
+  // A sequence without spans would count as one of a single class.
+  if (labels.empty() && !sequence->labels.empty()) return;
   Keep(first, kept, &pair->leader);
   Keep(first, kept, &pair->follower);
-  KeepLabels(first, first + kept, &sequence->labels);
+  sequence->labels = std::move(labels);
 }
 
 // Plays both people `speed` times as fast, no longer than `longest` frames.

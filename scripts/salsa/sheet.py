@@ -7,7 +7,7 @@ from salsa.moves import spans
 
 MOMENTS = 8
 ROWS = 12             # of a sheet; the stretches are spread evenly over all takes
-REACH_METRES = 1.0   # from the middle of the couple to the edge of a picture
+REACH_METRES = 1.0    # from the middle of the couple to the edge of a picture
 DEPTH_UP = 0.35       # the share of the depth that shows
 INCHES = 1.25
 COLOURS = {"leader": palette.LEADER["middle"], "follower": palette.FOLLOWER["middle"]}

@@ -100,6 +100,39 @@ TEST(AugmentTest, CropKeepsTheSamePartOfBothPeople) {
   EXPECT_EQ(after.pair.follower.at(0, 4), before.pair.follower.at(first, 4));
 }
 
+TEST(AugmentTest, CropAndWarpMoveTheTimeLine) {
+  const dataset::Dataset dataset = MadeUpDataset();
+  dataset::Sequence before = dataset.sequences[6];
+  const int frames = before.pair.leader.frame_count();
+  before.labels = {{1, 0, 3}};
+  TrainingOptions::Augmentation options;
+  options.crop = 1;
+  base::Random random(3, 1);
+  bool cropped = false;
+  for (int draw = 0; draw < 50; ++draw) {
+    const dataset::Sequence after = Augment(dataset, before, options, &random);
+    // A crop that would lose every class is not made.
+    ASSERT_EQ(after.labels.size(), 1u);
+    EXPECT_EQ(after.labels[0].begin, 0);
+    EXPECT_LE(after.labels[0].end, 3);
+    cropped = cropped || after.pair.leader.frame_count() < frames;
+  }
+  EXPECT_TRUE(cropped);
+
+  before.labels = {{1, frames / 2, frames}};
+  options.crop = 0;
+  options.time_warp = 0.5;
+  bool is_warped = false;
+  for (int draw = 0; draw < 20; ++draw) {
+    const dataset::Sequence after = Augment(dataset, before, options, &random);
+    const int warped = after.pair.leader.frame_count();
+    is_warped = is_warped || warped != frames;
+    EXPECT_EQ(after.labels[0].begin, frames / 2 * warped / frames);
+    EXPECT_EQ(after.labels[0].end, warped);
+  }
+  EXPECT_TRUE(is_warped);
+}
+
 TEST(AugmentTest, DoesNotCropShortClips) {
   TrainingOptions::Augmentation options;
   options.crop = 1;
