@@ -59,6 +59,10 @@ std::string DescribeModel(const ModelInfo& model) {
                   model.samples ? "vary with --seed and --variety" : "one, whatever the seed");
   if (!model.description.empty()) absl::StrAppend(&text, "\n  about     ", model.description);
   if (!model.terms.empty()) absl::StrAppend(&text, "\n  terms     ", model.terms);
+  if (model.free_for_all_uses) {
+    absl::StrAppend(&text,
+                    "\n  free      anybody may use the model and its output for any purpose");
+  }
   return text + "\n";
 }
 
@@ -79,6 +83,7 @@ json ModelJson(const ModelInfo& model) {
           {"samples", model.samples},
           {"description", model.description},
           {"terms", model.terms},
+          {"free_for_all_uses", model.free_for_all_uses},
           {"weights_sha256", model.weights_sha256}};
 }
 

@@ -177,6 +177,7 @@ absl::StatusOr<ModelInfo> FromProto(const v1::Model& model) {
   info.samples = model.samples();
   info.description = model.description();
   info.terms = model.terms();
+  info.free_for_all_uses = model.free_for_all_uses();
   info.weights_sha256 = model.weights_sha256();
   return info;
 }

@@ -33,6 +33,7 @@ constexpr int kMaxDepth = 6;
 constexpr std::size_t kSha256HexBytes = 64;
 constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kTerms[] = "terms";
+constexpr char kFreeForAllUses[] = "free_for_all_uses";
 
 // Characters that are safe in names of files, folders, tensors and metrics.
 bool IsPlain(char c) {
@@ -137,6 +138,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   model->version = static_cast<int>(reader->Int("version", 1, std::numeric_limits<int>::max()));
   model->description = reader->String("description", kMaxTextBytes);
   if (reader->Has(kTerms)) model->terms = reader->String(kTerms, kMaxTextBytes);
+  if (reader->Has(kFreeForAllUses)) model->free_for_all_uses = reader->Bool(kFreeForAllUses);
   model->frame_rate_hz = reader->Number("frame_rate_hz", 1, motion::kMaxServedFrameRateHz);
   model->window_frames = static_cast<int>(reader->Int("window_frames", 2, kMaxWindowFrames));
   model->classes = reader->UniqueStrings("classes", kMaxClasses, kMaxNameBytes);
@@ -250,6 +252,7 @@ std::string SerializeManifest(const Manifest& manifest) {
       {"metrics", manifest.metrics}};
   if (manifest.format_version > 1) root[kTouchingClasses] = model.touching_classes;
   if (!model.terms.empty()) root[kTerms] = model.terms;
+  if (model.free_for_all_uses) root[kFreeForAllUses] = true;
   if (model.leader_statistics) {
     root[kLeaderStatistics] = LeaderStatisticsToJson(*model.leader_statistics);
   }

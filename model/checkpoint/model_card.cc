@@ -102,6 +102,10 @@ std::string Figures(const Manifest& manifest) {
 }
 
 std::string Terms(const Manifest& manifest) {
+  if (manifest.model.free_for_all_uses) {
+    return absl::StrCat("Anybody may use and pass on the weights and their output for any purpose.",
+                        manifest.model.terms.empty() ? "" : " ", manifest.model.terms);
+  }
   if (!manifest.model.terms.empty()) return manifest.model.terms;
   const std::string data = Note(manifest, "data");
   return absl::StrCat("Terms: those of the data set ",

@@ -17,6 +17,8 @@ struct ModelDescription {
   int version = 0;  // 1 or more
   std::string description;
   std::string terms;           // of use; empty: not specified by the checkpoint
+  // Anybody may use and pass on the weights and their output for any purpose.
+  bool free_for_all_uses = false;
   std::string weights_sha256;  // of the weights file, lower-case hex; empty: not from a checkpoint
   motion::Skeleton skeleton;
   std::vector<std::string> classes;  // interaction classes, in the order of the label vector

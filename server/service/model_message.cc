@@ -33,6 +33,7 @@ v1::Model ToMessage(const registry::ServedModel& served) {
   message.set_samples(model.samples);
   message.set_description(model.description);
   message.set_terms(model.terms);
+  message.set_free_for_all_uses(model.free_for_all_uses);
   message.set_weights_sha256(model.weights_sha256);
   return message;
 }

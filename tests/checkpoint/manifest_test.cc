@@ -145,6 +145,23 @@ TEST(Manifest, TermsAndDigestReachTheDescription) {
   EXPECT_EQ(silent->model.terms, "");
 }
 
+TEST(Manifest, IsFreeForAllUsesOnlyIfItSaysSo) {
+  Manifest manifest = CompleteManifest();
+  const std::string silent = SerializeManifest(manifest);
+  EXPECT_THAT(silent, testing::Not(testing::HasSubstr("free_for_all_uses")));
+  ASSERT_THAT(ParseManifest(silent), IsOk());
+  EXPECT_FALSE(ParseManifest(silent)->model.free_for_all_uses);
+  manifest.model.free_for_all_uses = true;
+  const std::string free = SerializeManifest(manifest);
+  ASSERT_THAT(ParseManifest(free), IsOk());
+  EXPECT_TRUE(ParseManifest(free)->model.free_for_all_uses);
+  const std::string stated = "\"free_for_all_uses\": true";
+  ASSERT_THAT(free, testing::HasSubstr(stated));
+  std::string text = free;
+  text.replace(text.find(stated), stated.size(), "\"free_for_all_uses\": \"yes\"");
+  EXPECT_THAT(ParseManifest(text), Refused("free_for_all_uses"));
+}
+
 TEST(Manifest, TruncatedAtAnyLengthIsRejected) {
   const std::string text = SerializeManifest(CompleteManifest());
   const std::size_t last_brace = text.rfind('}');

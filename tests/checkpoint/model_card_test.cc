@@ -55,6 +55,16 @@ TEST(ModelCardTest, QuotesTheTermsOfTheManifest) {
                                          Not(HasSubstr("complete this sentence"))));
 }
 
+TEST(ModelCardTest, StatesThatAModelIsFreeForAllUses) {
+  Manifest manifest = Trained();
+  manifest.model.free_for_all_uses = true;
+  const std::string free =
+      "## Terms\n\nAnybody may use and pass on the weights and their output for any purpose.";
+  EXPECT_THAT(ModelCard(manifest), HasSubstr(free + "\n"));
+  manifest.model.terms = "Captured by the studio.";
+  EXPECT_THAT(ModelCard(manifest), HasSubstr(free + " Captured by the studio.\n"));
+}
+
 TEST(ModelCardTest, StatesWhatIsUnknown) {
   Manifest manifest = Trained();
   manifest.training.erase("people");

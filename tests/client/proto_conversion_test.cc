@@ -159,6 +159,7 @@ v1::Model GoodModel() {
   model.set_description("A model.");
   model.set_terms("For research only.");
   model.set_weights_sha256("ab12");
+  model.set_free_for_all_uses(true);
   return model;
 }
 
@@ -180,6 +181,7 @@ TEST(ModelTest, EveryFieldIsRead) {
   EXPECT_EQ(info->description, "A model.");
   EXPECT_EQ(info->terms, "For research only.");
   EXPECT_EQ(info->weights_sha256, "ab12");
+  EXPECT_TRUE(info->free_for_all_uses);
 }
 
 TEST(ModelTest, BoneWithoutAJointIsAnInternalError) {

@@ -89,6 +89,8 @@ class ModelInfo:
     weights_sha256: str = ""
     """SHA-256 of the weights file, lower-case hexadecimal; empty if the server does not report
     it."""
+    free_for_all_uses: bool = False
+    """Anybody may use and pass on the weights and their output for any purpose."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -130,7 +132,8 @@ def model_from_proto(model: model_pb2.Model) -> ModelInfo:
         joint_names=tuple(model.joint_names), bones=bones, root_joint=model.root_joint,
         frame_rate_hz=model.frame_rate_hz, window_frames=model.window_frames,
         accepts_follower_start=model.accepts_follower_start, samples=model.samples,
-        description=model.description, terms=model.terms, weights_sha256=model.weights_sha256)
+        description=model.description, terms=model.terms, weights_sha256=model.weights_sha256,
+        free_for_all_uses=model.free_for_all_uses)
 
 
 def details_from_proto(response: synthesis_pb2.GetModelResponse) -> ModelDetails:

@@ -33,6 +33,7 @@ using test::WriteTestFile;
 
 using ::testing::_;
 using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -153,6 +154,23 @@ TEST_F(ProgramTest, ListsWhichModelsSample) {
   EXPECT_THAT(out_.str(), HasSubstr("  answers   vary with --seed and --variety\n"));
   EXPECT_EQ(Run({"models", "--json"}), 0);
   EXPECT_EQ(nlohmann::json::parse(out_.str())["models"][0]["samples"], true);
+}
+
+TEST_F(ProgramTest, ListsWhichModelsAreFreeBesideTheTerms) {
+  ModelInfo model = SbuModel().model;
+  model.terms = "Made by the studio.";
+  EXPECT_CALL(*connection_, ListModels).WillRepeatedly([&] { return std::vector{model}; });
+  EXPECT_EQ(Run({"models"}), 0);
+  EXPECT_THAT(out_.str(), EndsWith("\n  terms     Made by the studio.\n"));
+  EXPECT_EQ(Run({"models", "--json"}), 0);
+  EXPECT_EQ(nlohmann::json::parse(out_.str())["models"][0]["free_for_all_uses"], false);
+  model.free_for_all_uses = true;
+  EXPECT_EQ(Run({"models"}), 0);
+  EXPECT_THAT(out_.str(),
+              EndsWith("\n  terms     Made by the studio.\n"
+                       "  free      anybody may use the model and its output for any purpose\n"));
+  EXPECT_EQ(Run({"models", "--json"}), 0);
+  EXPECT_EQ(nlohmann::json::parse(out_.str())["models"][0]["free_for_all_uses"], true);
 }
 
 TEST_F(ProgramTest, ListsModelsAsJson) {

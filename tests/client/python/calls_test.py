@@ -178,7 +178,8 @@ class Calls:
 
     def test_models_are_listed_and_described(self):
         model = {"name": "m", "version": 2, "joint_names": ["a", "b"],
-                 "bones": [{"parent_joint": 0, "child_joint": 1}], "samples": True}
+                 "bones": [{"parent_joint": 0, "child_joint": 1}], "samples": True,
+                 "free_for_all_uses": True}
         script = Script(
             Failure(UNAVAILABLE),
             synthesis_pb2.ListModelsResponse(models=[model]),
@@ -187,6 +188,7 @@ class Calls:
             get(client.list_models()), get(client.get_model("m@2"))))
         self.assertEqual([(m.name, m.version, m.bones) for m in models], [("m", 2, ((0, 1),))])
         self.assertTrue(details.model.samples)
+        self.assertTrue(details.model.free_for_all_uses)
         self.assertEqual(details.limits.max_keyframes, 5)
         self.assertEqual(script.requests[2].model.version, 2)
 
