@@ -17,6 +17,7 @@
 #include "model/evaluation/metrics/posture.h"
 #include "model/evaluation/metrics/touch.h"
 #include "model/motion/body_part.h"
+#include "model/motion/filter.h"
 #include "model/motion/resample.h"
 
 namespace duet::client::analysis {
@@ -117,7 +118,7 @@ class Measurer {
         metrics::MeasureLean(poses, skeleton_, rate, metrics::LeanFrom::kFeet);
     std::vector<double> figures = {person_.frame_count() / rate,
                                    metrics::JointSpeed(poses, rate),
-                                   metrics::JointSpeed(metrics::WithoutNoise(poses, rate), rate),
+                                   metrics::JointSpeed(motion::WithoutNoise(poses, rate), rate),
                                    metrics::RangeOfMotion(poses),
                                    metrics::Jitter(poses, rate),
                                    hips.mean_degrees,

@@ -85,6 +85,10 @@ Poses GaussianFilter(const Poses& poses, double sigma_frames) {
   return smooth;
 }
 
+Poses WithoutNoise(const Poses& poses, double frame_rate_hz) {
+  return GaussianFilter(poses, kNoiseFilterSeconds * frame_rate_hz);
+}
+
 int RepairJumps(Poses* poses) {
   const Poses before = *poses;
   const int frames = before.frame_count();

@@ -13,6 +13,12 @@ namespace duet::motion {
 // unchanged. Shapes: returns the same frames and joints.
 Poses GaussianFilter(const Poses& poses, double sigma_frames);
 
+// The standard deviation of WithoutNoise: 1.5 frames at SBU's 15 Hz.
+inline constexpr double kNoiseFilterSeconds = 0.1;
+
+// Returns the motion smoothed by a Gaussian of kNoiseFilterSeconds.
+Poses WithoutNoise(const Poses& poses, double frame_rate_hz);
+
 // Repairs single frames in which a joint jumps away and back, as when a tracker loses a hand: the
 // joint gets the median position of its neighbouring frames. Returns the number of repaired
 // positions.

@@ -54,6 +54,17 @@ TEST(GaussianFilterTest, ZeroWidthChangesNothing) {
   EXPECT_EQ(GaussianFilter(poses, -1), poses);
 }
 
+TEST(WithoutNoiseTest, FiltersTheSameTimeAtEveryRate) {
+  // A jump of 1 m in the middle of 2 s: what is left of it 0.1 s before, at 15 and at 60 Hz.
+  for (const int rate : {15, 60}) {
+    Poses jump(2 * rate, 1);
+    for (int t = rate; t < 2 * rate; ++t) jump.at(t, 0) = {1, 0, 0};
+    const float before = WithoutNoise(jump, rate).at(rate - rate / 5, 0).x;
+    EXPECT_NEAR(before, 0.03, 0.02) << rate;
+    EXPECT_GT(before, 0.005) << rate;
+  }
+}
+
 TEST(RepairJumpsTest, SpikeTakesItsNeighboursPlace) {
   Poses poses = Along({0, 0.01f, 0.02f, 0.8f, 0.04f, 0.05f, 0.06f});
   EXPECT_EQ(RepairJumps(&poses), 1);

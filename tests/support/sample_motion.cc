@@ -1,5 +1,6 @@
 #include "tests/support/sample_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -35,6 +36,24 @@ std::vector<motion::Vec3> SwayingPose(double seconds) {
 motion::Poses SwayingMotion(int frames, double frame_rate_hz) {
   motion::Poses motion(0, static_cast<int>(StandingPose().size()));
   for (int frame = 0; frame < frames; ++frame) motion.Append(SwayingPose(frame / frame_rate_hz));
+  return motion;
+}
+
+motion::Poses SteppingMotion(const std::vector<double>& steps, int frames, double frame_rate_hz) {
+  constexpr double kStepSeconds = 0.3, kStepSpeed = 1;
+  const motion::JointPair feet = *motion::SbuSkeleton().feet;
+  motion::Poses motion(0, static_cast<int>(StandingPose().size()));
+  for (int frame = 0; frame < frames; ++frame) {
+    std::vector<motion::Vec3> pose = StandingPose();
+    for (motion::Vec3& position : pose) position.y += 1.05f;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const double moving = frame / frame_rate_hz - steps[i] + kStepSeconds;
+      const int foot = i % 2 == 0 ? feet.left : feet.right;
+      pose[static_cast<std::size_t>(foot)].z -=
+          static_cast<float>(kStepSpeed * std::clamp(moving, 0.0, kStepSeconds));
+    }
+    motion.Append(pose);
+  }
   return motion;
 }
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "model/evaluation/metrics/statistics.h"
+#include "model/base/statistics.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -100,7 +100,7 @@ LabelControl MeasureControl(const std::vector<SweepCurve>& curves) {
 
 double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y) {
   const std::vector<double> a = Ranks(x), b = Ranks(y);
-  const double mean_a = metrics::Mean(a), mean_b = metrics::Mean(b);
+  const double mean_a = base::Mean(a), mean_b = base::Mean(b);
   double ab = 0, aa = 0, bb = 0;
   for (size_t i = 0; i < a.size(); ++i) {
     ab += (a[i] - mean_a) * (b[i] - mean_b);

@@ -6,6 +6,7 @@
 
 #include "model/evaluation/metrics/liveliness.h"
 #include "model/evaluation/metrics/posture.h"
+#include "model/motion/filter.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -45,7 +46,7 @@ motion::Poses Part(const motion::Poses& poses, int first, int count) {
 LongClipFigures MeasureLongClip(const motion::Skeleton& skeleton, const motion::Poses& leader,
                                 const motion::Poses& follower, double frame_rate_hz) {
   const double floor = Floor(skeleton, leader);
-  const motion::Poses calm = metrics::WithoutNoise(follower, frame_rate_hz);
+  const motion::Poses calm = motion::WithoutNoise(follower, frame_rate_hz);
   const int frames = calm.frame_count();
   const int part = std::min(frames, static_cast<int>(std::lround(kEndSeconds * frame_rate_hz)));
   const motion::Poses end = Part(follower, frames - part, part);

@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 #include "model/evaluation/metrics/confusion.h"
-#include "model/evaluation/metrics/liveliness.h"
+#include "model/motion/filter.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -26,11 +26,11 @@ dataset::Dataset PairsToTell(const dataset::Dataset& dataset,
     dataset::Sequence sequence = SequenceOf(dataset, answer);
     motion::ClipPair& pair = sequence.pair;
     const double rate = pair.leader.frame_rate_hz;
-    pair.leader.poses = metrics::WithoutNoise(pair.leader.poses, rate);
-    pair.follower.poses = metrics::WithoutNoise(pair.follower.poses, rate);
+    pair.leader.poses = motion::WithoutNoise(pair.leader.poses, rate);
+    pair.follower.poses = motion::WithoutNoise(pair.follower.poses, rate);
     sequence.interaction_class = kCaptured;
     pairs.sequences.push_back(sequence);
-    pair.follower.poses = metrics::WithoutNoise(answer.follower, rate);
+    pair.follower.poses = motion::WithoutNoise(answer.follower, rate);
     sequence.interaction_class = kSynthesised;
     pairs.sequences.push_back(std::move(sequence));
   }

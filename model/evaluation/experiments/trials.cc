@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "model/evaluation/metrics/statistics.h"
+#include "model/base/statistics.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -47,7 +47,7 @@ TrialSummary Trials::Summary(const std::string& name, const Row& row) const {
   summary.row = name;
   for (size_t c = 0; c < columns_.size(); ++c) {
     const std::vector<double> values = Column(row, c);
-    const auto [mean, deviation] = metrics::Summarise(values);
+    const auto [mean, deviation] = base::Summarise(values);
     summary.means.push_back(mean);
     summary.deviations.push_back(deviation);
     summary.above_zero.push_back(ShareAboveZero(values));

@@ -10,8 +10,9 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/angle.h"
-#include "model/evaluation/metrics/liveliness.h"
-#include "model/evaluation/metrics/statistics.h"
+#include "model/base/statistics.h"
+#include "model/motion/filter.h"
+#include "model/motion/steps.h"
 
 namespace duet::evaluation::metrics {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastTurn = 230, kTurnRate = 45, kPauseSeconds = 0.3;  // degrees
 constexpr double kMostDelaySeconds = 1.5;
 constexpr double kHeldMetres = 0.28;
-constexpr double kRestSpeed = 0.3, kMovingSpeed = 0.15;
+constexpr double kMovingSpeed = 0.15;
 
 double Degrees(double radians) { return radians * 180 / base::kPi; }
 
@@ -76,19 +77,6 @@ Wrists NearestWrists(const DanceJoints& joints, const motion::Poses& leader,
   return nearest;
 }
 
-double Speed(const motion::Poses& poses, int frame, int joint, double frame_rate_hz) {
-  return frame == 0 ? 0
-                    : Distance(poses.at(frame, joint), poses.at(frame - 1, joint)) * frame_rate_hz;
-}
-
-double NearestTo(double time, const std::vector<double>& times) {
-  double nearest = kNone;
-  for (const double other : times) {
-    if (std::isnan(nearest) || std::abs(other - time) < std::abs(nearest)) nearest = other - time;
-  }
-  return nearest;
-}
-
 }  // namespace
 
 absl::StatusOr<DanceJoints> FindDanceJoints(const motion::Skeleton& skeleton) {
@@ -97,14 +85,9 @@ absl::StatusOr<DanceJoints> FindDanceJoints(const motion::Skeleton& skeleton) {
   };
   if (!skeleton.hips) return lacks("hips");
   if (!skeleton.feet) return lacks("feet");
-  for (const char* name : {"wrist", "hand"}) {
-    const int left = skeleton.Find(absl::StrCat("left_", name));
-    const int right = skeleton.Find(absl::StrCat("right_", name));
-    if (left >= 0 && right >= 0) {
-      return DanceJoints{skeleton.root, *skeleton.hips, *skeleton.feet, {left, right}};
-    }
-  }
-  return lacks("joints left_wrist and right_wrist, or left_hand and right_hand");
+  const std::optional<motion::JointPair> hands = motion::FindHands(skeleton);
+  if (!hands) return lacks("joints left_wrist and right_wrist, or left_hand and right_hand");
+  return DanceJoints{skeleton.root, *skeleton.hips, *skeleton.feet, *hands};
 }
 
 std::vector<Turn> FindTurns(const DanceJoints& joints, const motion::Poses& person,
@@ -144,7 +127,7 @@ TurnMatch MatchTurns(const std::vector<Turn>& captured, const std::vector<Turn>&
     }
     if (found) delays.push_back(nearest);
   }
-  return {static_cast<int>(delays.size()), Mean(delays)};
+  return {static_cast<int>(delays.size()), base::Mean(delays)};
 }
 
 Holds MeasureHolds(const DanceJoints& joints, const motion::Poses& leader,
@@ -170,38 +153,16 @@ Holds MeasureHolds(const DanceJoints& joints, const motion::Poses& leader,
     }
   }
   if (holds.empty()) return {0, kNone, kNone};
-  return {held / frames, held / static_cast<double>(holds.size()) / frame_rate_hz, Mean(slips)};
-}
-
-std::vector<double> FindSteps(const DanceJoints& joints, const motion::Poses& person,
-                              double frame_rate_hz) {
-  const motion::Poses calm = WithoutNoise(person, frame_rate_hz);
-  std::vector<double> steps;
-  for (const int foot : {joints.feet.left, joints.feet.right}) {
-    for (int t = 2; t < calm.frame_count(); ++t) {
-      const double before = Speed(calm, t - 1, foot, frame_rate_hz);
-      if (before >= kRestSpeed && Speed(calm, t, foot, frame_rate_hz) < kRestSpeed) {
-        steps.push_back(t / frame_rate_hz);
-      }
-    }
-  }
-  std::sort(steps.begin(), steps.end());
-  return steps;
-}
-
-double StepSpread(const std::vector<double>& steps, const std::vector<double>& partner) {
-  std::vector<double> offsets;
-  offsets.reserve(steps.size());
-  for (const double step : steps) offsets.push_back(NearestTo(step, partner));
-  return Summarise(offsets).deviation;
+  return {held / frames, held / static_cast<double>(holds.size()) / frame_rate_hz,
+          base::Mean(slips)};
 }
 
 double BothFeetMove(const DanceJoints& joints, const motion::Poses& person, double frame_rate_hz) {
   const motion::Poses calm = WithoutNoise(person, frame_rate_hz);
   int moving = 0;
   for (int t = 1; t < calm.frame_count(); ++t) {
-    moving += Speed(calm, t, joints.feet.left, frame_rate_hz) > kMovingSpeed &&
-              Speed(calm, t, joints.feet.right, frame_rate_hz) > kMovingSpeed;
+    moving += motion::SpeedAt(calm, t, joints.feet.left, frame_rate_hz) > kMovingSpeed &&
+              motion::SpeedAt(calm, t, joints.feet.right, frame_rate_hz) > kMovingSpeed;
   }
   return calm.frame_count() < 2 ? kNone : static_cast<double>(moving) / (calm.frame_count() - 1);
 }

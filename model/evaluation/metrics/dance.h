@@ -10,7 +10,7 @@
 // Figures of a couple that dances for a whole take.
 //
 // Units: poses in world metres, y up; metres, seconds, degrees. Shapes: leader and follower have
-// equal numbers of frames and joints. A figure without events (turns, holds, steps) is NaN.
+// equal numbers of frames and joints. A figure without events (turns, holds) is NaN.
 
 namespace duet::evaluation::metrics {
 
@@ -50,12 +50,6 @@ struct Holds {
 };
 Holds MeasureHolds(const DanceJoints& joints, const motion::Poses& leader,
                    const motion::Poses& follower, double frame_rate_hz);
-
-// Seconds at which a foot comes to rest: its speed falls below 0.3 m/s.
-std::vector<double> FindSteps(const DanceJoints& joints, const motion::Poses& person,
-                              double frame_rate_hz);
-// Standard deviation of the time from each step to the nearest step of the partner, seconds.
-double StepSpread(const std::vector<double>& steps, const std::vector<double>& partner);
 
 // The share of frames in which both feet are faster than 0.15 m/s.
 double BothFeetMove(const DanceJoints& joints, const motion::Poses& person, double frame_rate_hz);

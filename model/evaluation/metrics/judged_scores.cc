@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "model/base/statistics.h"
 #include "model/evaluation/metrics/confusion.h"
-#include "model/evaluation/metrics/statistics.h"
 
 namespace duet::evaluation::metrics {
 namespace {
@@ -32,7 +32,7 @@ absl::StatusOr<double> MeanFrechet(const std::vector<JudgedFold>& made,
     if (!distance.ok()) return distance.status();
     distances.push_back(*distance);
   }
-  return Mean(distances);
+  return base::Mean(distances);
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ std::vector<double> DiversityByClass(const std::vector<JudgedFold>& folds, int c
       const FeatureSet features = OfClass(fold, c);
       if (features.size() >= kLeastMotions) of_folds.push_back(Diversity(features));
     }
-    diversities.push_back(Mean(of_folds));
+    diversities.push_back(base::Mean(of_folds));
   }
   return diversities;
 }

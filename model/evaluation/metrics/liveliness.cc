@@ -2,13 +2,7 @@
 
 #include <algorithm>
 
-#include "model/motion/filter.h"
-
 namespace duet::evaluation::metrics {
-
-motion::Poses WithoutNoise(const motion::Poses& poses, double frame_rate_hz) {
-  return GaussianFilter(poses, kNoiseFilterSeconds * frame_rate_hz);
-}
 
 double JointSpeed(const motion::Poses& poses, double frame_rate_hz) {
   const int steps = poses.frame_count() - 1, joints = poses.joint_count();

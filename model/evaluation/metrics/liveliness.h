@@ -4,17 +4,11 @@
 #include "model/motion/poses.h"
 
 // How much a body moves. Sensor noise adds apparent movement (a quarter of the 0.51 m/s in SBU), so
-// captured and synthesised motion are compared after the same filter.
+// captured and synthesised motion are compared after the same filter (motion::WithoutNoise).
 //
 // Units: poses in world metres.
 
 namespace duet::evaluation::metrics {
-
-// The filter's standard deviation: 1.5 frames at SBU's 15 Hz.
-inline constexpr double kNoiseFilterSeconds = 0.1;
-
-// Returns the motion smoothed by a Gaussian of kNoiseFilterSeconds.
-motion::Poses WithoutNoise(const motion::Poses& poses, double frame_rate_hz);
 
 // The mean speed of the joints, m/s. 0 for one frame.
 double JointSpeed(const motion::Poses& poses, double frame_rate_hz);

@@ -10,6 +10,7 @@
 #include "model/evaluation/metrics/penetration.h"
 #include "model/evaluation/metrics/posture.h"
 #include "model/evaluation/metrics/touch.h"
+#include "model/motion/filter.h"
 
 namespace duet::evaluation::metrics {
 namespace {

@@ -7,17 +7,19 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/statistics.h"
 #include "model/evaluation/baselines/take_baselines.h"
 #include "model/evaluation/metrics/dance.h"
 #include "model/evaluation/metrics/liveliness.h"
 #include "model/evaluation/metrics/penetration.h"
 #include "model/evaluation/metrics/posture.h"
-#include "model/evaluation/metrics/statistics.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/report/result_section.h"
+#include "model/motion/filter.h"
 #include "model/motion/standardise.h"
+#include "model/motion/steps.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -73,9 +75,10 @@ Figures Measure(const dataset::Dataset& dataset, const metrics::DanceJoints& joi
       holds.mean_seconds,
       holds.slip,
       metrics::BothFeetMove(joints, follower, rate),
-      metrics::StepSpread(metrics::FindSteps(joints, follower, rate),
-                          metrics::FindSteps(joints, leader, rate)),
-      metrics::JointSpeed(metrics::WithoutNoise(follower, rate), rate),
+      motion::MeasureStepTiming(motion::FindSteps(joints.feet, follower, rate),
+                                motion::FindSteps(joints.feet, leader, rate))
+          .spread,
+      metrics::JointSpeed(motion::WithoutNoise(follower, rate), rate),
       metrics::MeasureLean(follower, dataset.skeleton, rate, metrics::LeanFrom::kHips).max_degrees,
       metrics::MeasurePenetration(leader, follower, dataset.skeleton, dataset.parts).frequency};
 }
@@ -177,7 +180,7 @@ report::Table ToTable(const std::vector<Row>& rows) {
     for (size_t c = 0; c < table.columns.size(); ++c) {
       std::vector<double> values;
       for (const Figures& take : row.takes) values.push_back(take[c]);
-      means.push_back(metrics::Mean(values));
+      means.push_back(base::Mean(values));
     }
     table.rows.push_back({row.name, std::move(means)});
   }

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "model/evaluation/metrics/liveliness.h"
 #include "model/evaluation/report/sample_tables.h"
+#include "model/motion/filter.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -17,7 +17,7 @@ std::vector<ScoredMotion> Filtered(const dataset::Dataset& dataset,
                                    std::vector<ScoredMotion> motions) {
   for (ScoredMotion& motion : motions) {
     const double rate = SequenceOf(dataset, motion).pair.leader.frame_rate_hz;
-    motion.follower = metrics::WithoutNoise(motion.follower, rate);
+    motion.follower = motion::WithoutNoise(motion.follower, rate);
   }
   return motions;
 }

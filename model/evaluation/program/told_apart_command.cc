@@ -7,8 +7,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "model/base/statistics.h"
 #include "model/evaluation/experiments/told_apart.h"
-#include "model/evaluation/metrics/statistics.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/model_flags.h"
@@ -54,11 +54,11 @@ report::TableRow Row(const std::string& name, const Accuracies& accuracies) {
   for (size_t fold = 0; fold < accuracies.front().size(); ++fold) {
     std::vector<double> of_seeds;
     for (const std::vector<double>& of_folds : accuracies) of_seeds.push_back(of_folds[fold]);
-    row.values.push_back(metrics::Mean(of_seeds));
+    row.values.push_back(base::Mean(of_seeds));
   }
   std::vector<double> means;
-  for (const std::vector<double>& of_folds : accuracies) means.push_back(metrics::Mean(of_folds));
-  const metrics::MeanAndDeviation of_seeds = metrics::Summarise(means);
+  for (const std::vector<double>& of_folds : accuracies) means.push_back(base::Mean(of_folds));
+  const base::MeanAndDeviation of_seeds = base::Summarise(means);
   row.values.insert(row.values.end(), {of_seeds.mean, of_seeds.deviation});
   return row;
 }

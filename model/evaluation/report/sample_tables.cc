@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "model/evaluation/metrics/statistics.h"
+#include "model/base/statistics.h"
 
 namespace duet::evaluation::report {
 namespace {
@@ -58,7 +58,7 @@ std::vector<MetricStyle> Styles() {
 
 double Figure(const MethodFigures& method, const std::string& name) {
   const auto found = method.by_metric.find(name);
-  return found == method.by_metric.end() ? kNone : metrics::Mean(found->second);
+  return found == method.by_metric.end() ? kNone : base::Mean(found->second);
 }
 
 void AddRatio(const std::string& figure, const std::string& ratio, const MethodFigures& captured,
@@ -107,7 +107,7 @@ MethodFigures MeanOfRows(const std::vector<MethodFigures>& rows) {
     for (size_t c = 0; c < values.size(); ++c) {
       std::vector<double> of_rows;
       for (const MethodFigures& row : rows) of_rows.push_back(row.by_metric.at(name)[c]);
-      values[c] = metrics::Mean(of_rows);
+      values[c] = base::Mean(of_rows);
     }
   }
   return mean;
@@ -153,7 +153,7 @@ Table SampleSpread(const std::vector<MethodFigures>& methods) {
     for (const Column& column : kSummary) {
       std::vector<double> values;
       for (const MethodFigures& method : group) values.push_back(Figure(method, column.figure));
-      row.values.push_back(metrics::Summarise(values).deviation);
+      row.values.push_back(base::Summarise(values).deviation);
     }
     table.rows.push_back(std::move(row));
   }

@@ -123,28 +123,6 @@ TEST(DanceTest, SlipIsTheSpeedOfWristsAgainstEachOther) {
   EXPECT_NEAR(MeasureHolds(Joints(), Standing(1, {0, 0, 0}, 0), follower, kRate).slip, 0.1, 1e-3);
 }
 
-// Feet that step forward in turn, `delay` seconds late: each moves for half a second.
-motion::Poses Walking(double delay) {
-  return Animate(6, [delay](double s) {
-    std::vector<motion::Vec3> pose = Stand({0, 0, 0}, 0);
-    const double beat = std::max(s - delay, 0.0);
-    for (const int foot : {3, 4}) {
-      const double phase = beat + (foot == 4 ? 0.5 : 0);
-      pose[static_cast<std::size_t>(foot)].z -=
-          static_cast<float>(std::floor(phase) + std::min(std::fmod(phase, 1.0) / 0.5, 1.0)) * 0.5f;
-    }
-    return pose;
-  });
-}
-
-TEST(DanceTest, StepsAreFoundWhereAFootComesToRest) {
-  const std::vector<double> steps = FindSteps(Joints(), Walking(0), kRate);
-  ASSERT_GE(steps.size(), 10u);
-  for (std::size_t i = 1; i + 1 < steps.size(); ++i) EXPECT_NEAR(steps[i] - steps[i - 1], 0.5, 0.1);
-  EXPECT_LT(StepSpread(FindSteps(Joints(), Walking(0.1), kRate), steps), 0.06);
-  EXPECT_GT(StepSpread({0.1, 0.5, 1.3}, {0, 1, 2}), 0.1);
-}
-
 TEST(DanceTest, BothFeetOfOneWhoStandsOrWalksDoNotMoveTogether) {
   EXPECT_EQ(BothFeetMove(Joints(), Standing(2, {0, 0, 0}, 0), kRate), 0);
   const motion::Poses skating = Animate(2, [](double s) {

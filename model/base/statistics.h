@@ -1,9 +1,9 @@
-#ifndef DUET_MODEL_EVALUATION_METRICS_STATISTICS_H_
-#define DUET_MODEL_EVALUATION_METRICS_STATISTICS_H_
+#ifndef DUET_MODEL_BASE_STATISTICS_H_
+#define DUET_MODEL_BASE_STATISTICS_H_
 
 #include <vector>
 
-namespace duet::evaluation::metrics {
+namespace duet::base {
 
 // The mean of the values that are not NaN; NaN without any.
 double Mean(const std::vector<double>& values);
@@ -15,6 +15,6 @@ struct MeanAndDeviation {
 // NaN for no value, and where a value is NaN.
 MeanAndDeviation Summarise(const std::vector<double>& values);
 
-}  // namespace duet::evaluation::metrics
+}  // namespace duet::base
 
-#endif  // DUET_MODEL_EVALUATION_METRICS_STATISTICS_H_
+#endif  // DUET_MODEL_BASE_STATISTICS_H_

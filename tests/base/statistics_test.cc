@@ -1,10 +1,10 @@
-#include "model/evaluation/metrics/statistics.h"
+#include "model/base/statistics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace duet::evaluation::metrics {
+namespace duet::base {
 namespace {
 
 TEST(MeanTest, IgnoresMissingValues) {
@@ -26,4 +26,4 @@ TEST(SummariseTest, TooFewValuesHaveNoDeviation) {
 }
 
 }  // namespace
-}  // namespace duet::evaluation::metrics
+}  // namespace duet::base

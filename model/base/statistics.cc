@@ -1,9 +1,9 @@
-#include "model/evaluation/metrics/statistics.h"
+#include "model/base/statistics.h"
 
 #include <cmath>
 #include <limits>
 
-namespace duet::evaluation::metrics {
+namespace duet::base {
 namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
@@ -28,4 +28,4 @@ MeanAndDeviation Summarise(const std::vector<double>& values) {
   return {mean, values.size() < 2 ? kNone : std::sqrt(squares / (count - 1))};
 }
 
-}  // namespace duet::evaluation::metrics
+}  // namespace duet::base
