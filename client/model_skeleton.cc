@@ -25,6 +25,7 @@ absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model) {
   skeleton.root = skeleton.Find(model.root_joint);
   skeleton.hips = FindPair(skeleton, "left_hip", "right_hip");
   skeleton.feet = FindPair(skeleton, "left_foot", "right_foot");
+  if (!skeleton.feet) skeleton.feet = FindPair(skeleton, "left_ankle", "right_ankle");
   absl::Status status = Validate(skeleton);
   if (status.ok()) return skeleton;
   return absl::InternalError(absl::StrCat("the server's model ", model.name, "@", model.version,

@@ -36,6 +36,14 @@ TEST(ToSkeleton, FirstJointCanBeALandmark) {
   EXPECT_EQ(ToSkeleton(Model({"right_foot", "left_foot"}))->feet, (motion::JointPair{1, 0}));
 }
 
+TEST(ToSkeleton, AnklesAreTheFeetOfAModelWithToes) {
+  const auto skeleton =
+      ToSkeleton(Model({"hips", "left_ankle", "left_toe", "right_ankle", "right_toe"}));
+  EXPECT_EQ(skeleton->feet, (motion::JointPair{1, 3}));
+  EXPECT_EQ(ToSkeleton(Model({"left_foot", "left_ankle", "right_foot", "right_ankle"}))->feet,
+            (motion::JointPair{0, 2}));
+}
+
 TEST(ToSkeleton, LandmarksAreOptional) {
   const auto skeleton = ToSkeleton(Model({"thorax", "wing", "left_hip", "tail"}));
   ASSERT_THAT(skeleton, IsOk());
