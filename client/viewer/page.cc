@@ -13,6 +13,7 @@ extern const char duet_page_gif[], duet_page_gif_end[];
 extern const char duet_page_panel[], duet_page_panel_end[];
 extern const char duet_page_measures[], duet_page_measures_end[];
 extern const char duet_page_exporting[], duet_page_exporting_end[];
+extern const char duet_page_metronome[], duet_page_metronome_end[];
 extern const char duet_page_main[], duet_page_main_end[];
 }
 
@@ -49,6 +50,10 @@ absl::Status Check(const PageContent& content) {
       }
     }
   }
+  if (content.beat && !(content.beat->per_minute > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("beat: expected a rate above 0, got ", content.beat->per_minute));
+  }
   return absl::OkStatus();
 }
 
@@ -59,6 +64,7 @@ std::string Script() {
                       Embedded(duet_page_panel, duet_page_panel_end),
                       Embedded(duet_page_measures, duet_page_measures_end),
                       Embedded(duet_page_exporting, duet_page_exporting_end),
+                      Embedded(duet_page_metronome, duet_page_metronome_end),
                       Embedded(duet_page_main, duet_page_main_end));
 }
 

@@ -1,11 +1,13 @@
 #ifndef DUET_CLIENT_VIEWER_PAGE_H_
 #define DUET_CLIENT_VIEWER_PAGE_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/request.h"
+#include "model/motion/beat.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
@@ -21,13 +23,16 @@ struct PageContent {
   std::vector<WeightKeyframe> weights;
   // The pair as a binary glTF file that the page offers for download; empty for none.
   std::string glb;
+  // The beat that the page shows and, when the reader turns it on, plays as a metronome.
+  std::optional<motion::Beat> beat;
 };
 
 // Returns a self-contained HTML page that plays both characters in 3D. It fetches nothing and works
 // from a file. Its size is about 0.9 MB, mostly three.js, plus `glb` as base64.
 //
 // Errors: INVALID_ARGUMENT if leader and follower differ in joints, frames or rate, a bone names an
-//         unknown joint, there is no frame, or a position is not finite.
+//         unknown joint, there is no frame, a position is not finite, or the beat's rate is not
+//         above 0.
 absl::StatusOr<std::string> RenderPage(const PageContent& content);
 
 }  // namespace duet::client::viewer

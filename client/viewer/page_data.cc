@@ -55,6 +55,9 @@ std::string PageDataJson(const PageContent& content) {
                          {"leader", EncodePositions(leader)},
                          {"follower", EncodePositions(content.pair.follower)}};
   if (!content.glb.empty()) data["glb"] = absl::Base64Escape(content.glb);
+  if (content.beat) {
+    data["beat"] = {{"bpm", content.beat->per_minute}, {"offset", content.beat->first_seconds}};
+  }
   return SafeJson(data);
 }
 

@@ -1,5 +1,6 @@
-// Writes a viewer page of two made-up characters, for the browser test.
-//   write_test_page <file>
+// Writes a viewer page of two made-up characters, for the browser tests.
+//   write_test_page <file> [<beats per minute> <seconds of the first beat>]
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 
@@ -8,8 +9,8 @@
 #include "tests/support/sample_motion.h"
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: write_test_page <file>\n";
+  if (argc != 2 && argc != 4) {
+    std::cerr << "usage: write_test_page <file> [<BPM> <first beat>]\n";
     return 2;
   }
   duet::client::viewer::PageContent content;
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
   content.subtitle = "90 frames";
   content.glb = "glTF, in all";  // 12 bytes
   content.weights = {{0, {{"kick", 1}, {"hug", -1}}}, {60, {{"kick", -2}, {"hug", 0.5f}}}};
+  if (argc == 4) content.beat = duet::motion::Beat{std::atof(argv[2]), std::atof(argv[3])};
   const absl::StatusOr<std::string> page = duet::client::viewer::RenderPage(content);
   if (!page.ok()) {
     std::cerr << page.status() << "\n";

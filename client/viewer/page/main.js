@@ -13,6 +13,7 @@ function start() {
   const measures = new Measures(stage, motion, element('measures'));
   const film = new Film(scene, data.title);
   const gif = new Gif(scene, data.title);
+  const metronome = data.beat ? new Metronome(data.beat, player) : null;
   const showChosen = (name) => {
     for (const button of document.querySelectorAll('[data-view]')) {
       button.classList.toggle('chosen', button.dataset.view === name && name !== 'reset');
@@ -29,6 +30,7 @@ function start() {
   scene.addEventListener('frame', () => {
     measures.update(player.frame);
     panel.update();
+    if (metronome) metronome.update();
   });
   scene.addEventListener('drawn', () => {
     root.dataset.triangles = scene.triangles;
@@ -50,6 +52,8 @@ function start() {
       {id: 'save-film', key: film.possible ? 'r' : '', action: () => film.start()},
       {id: 'save-gif', key: 'g', action: () => gif.start()},
       {id: 'save-motion', action: () => saveMotion(data.glb, data.title)},
+      ...(metronome && metronome.possible
+              ? [{id: 'metronome', key: 'b', action: () => metronome.toggle()}] : []),
     ],
   });
 
