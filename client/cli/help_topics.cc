@@ -49,6 +49,9 @@ avoids it. Several labels are mixed. duet models lists the classes of each model
   --label kick=1                           a kick
   --label hug=0.7 --label push=-0.5        similar to a hug and unlike a push
   --keyframe 0:kick=1 --keyframe 30:hug=1  a kick, then a hug from frame 30
+  --beat 180 --keyframe 0b:basic --keyframe 8b:follower_turn
+                                           to music of 180 BPM: basic steps on the first beat, which
+                                           become a turn over eight beats
 )"},
       {"settings", R"(Defaults from the environment and a file.
 

@@ -71,6 +71,7 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
                       result.pair.leader.frame_count(), result.pair.leader.frame_rate_hz);
   if (synthesis.sampled) absl::StrAppend(&content.subtitle, " · seed ", result.seed);
   content.weights = KeyframesOf(synthesis.request);
+  content.beat = synthesis.beat;
   if (content.pair.leader.frame_count() <= kMostFramesToHandOut) {
     absl::StatusOr<std::string> glb = FormatPair(formats::Format::kGlb, synthesis);
     if (!glb.ok()) return glb.status();

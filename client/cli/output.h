@@ -14,6 +14,7 @@
 #include "client/result.h"
 #include "model/formats/follower_rig.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/beat.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
@@ -27,6 +28,7 @@ struct Synthesis {
   bool sampled = false;  // the model samples: the follower is one of several
   BvhArguments bvh;
   std::optional<formats::FollowerRig> follower_rig;
+  std::optional<motion::Beat> beat;
 };
 
 enum class PageAllowed { kNo, kYes };

@@ -1,5 +1,7 @@
 #include "client/cli/request_building.h"
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -37,6 +39,38 @@ absl::StatusOr<FollowerStart> ReadStart(const SynthesizeArguments& arguments,
       ReadFollowerStart(arguments.follower_start, options);
   if (!pose.ok()) return pose.status();
   return FollowerStart(*std::move(pose));
+}
+
+// The frame of a position in beats: the nearest one.
+absl::StatusOr<int> FrameAt(const motion::Beat& beat, double beats, double frame_rate_hz) {
+  const double frame = std::round(beat.SecondsAt(beats) * frame_rate_hz);
+  if (frame >= 0 && frame <= std::numeric_limits<int>::max()) return static_cast<int>(frame);
+  return absl::InvalidArgumentError(
+      absl::StrCat("--keyframe: expected a beat in the leader's motion, got ", beats, "b, at ",
+                   beat.SecondsAt(beats), " s"));
+}
+
+absl::StatusOr<std::vector<WeightKeyframe>> ToKeyframes(const SynthesizeArguments& arguments,
+                                                        const motion::Clip& leader) {
+  std::vector<WeightKeyframe> keyframes;
+  for (const KeyframeArgument& keyframe : arguments.keyframes) {
+    keyframes.push_back({keyframe.frame, keyframe.weights});
+    if (!keyframe.beats) continue;
+    const absl::StatusOr<int> frame =
+        FrameAt(*arguments.beat, *keyframe.beats, leader.frame_rate_hz);
+    if (!frame.ok()) return frame.status();
+    keyframes.back().frame = *frame;
+  }
+  return keyframes;
+}
+
+// A first beat after the end is probably in milliseconds.
+absl::Status CheckBeat(const motion::Beat& beat, const motion::Clip& leader) {
+  const double seconds = leader.frame_count() / leader.frame_rate_hz;
+  if (beat.first_seconds < seconds) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("--beat: expected the first beat within the ",
+                                                 seconds, " s of the leader's motion, got ",
+                                                 beat.first_seconds, " s"));
 }
 
 // Checks the follower's rig before the first call.
@@ -84,9 +118,15 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   absl::StatusOr<motion::Clip> leader = input->Read(options);
   if (!leader.ok()) return leader.status();
   request.leader = *std::move(leader);
+  if (arguments.beat) {
+    const absl::Status beat = CheckBeat(*arguments.beat, request.leader);
+    if (!beat.ok()) return beat;
+  }
   request.model = arguments.model;
   request.weights = arguments.weights;
-  request.keyframes = arguments.keyframes;
+  absl::StatusOr<std::vector<WeightKeyframe>> keyframes = ToKeyframes(arguments, request.leader);
+  if (!keyframes.ok()) return keyframes.status();
+  request.keyframes = *std::move(keyframes);
   return request;
 }
 

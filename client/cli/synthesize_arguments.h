@@ -10,8 +10,16 @@
 #include "client/cli/motion_arguments.h"
 #include "client/cli/server_arguments.h"
 #include "client/request.h"
+#include "model/motion/beat.h"
 
 namespace duet::client::cli {
+
+// A keyframe as the user writes it: at a frame, or at a position in beats.
+struct KeyframeArgument {
+  int frame = 0;                // unless `beats` is set
+  std::optional<double> beats;  // 0 is the first beat
+  std::vector<ClassWeight> weights;
+};
 
 // The flags of duet synthesize.
 struct SynthesizeArguments : SynthesisOptions {
@@ -21,8 +29,9 @@ struct SynthesizeArguments : SynthesisOptions {
   InputArguments input;
   ModelChoice model;
   std::vector<ClassWeight> weights;
-  std::vector<WeightKeyframe> keyframes;
-  std::string follower_start;  // empty, "X,Y,Z" or a motion file
+  std::vector<KeyframeArgument> keyframes;
+  std::optional<motion::Beat> beat;  // set if a keyframe has a position in beats
+  std::string follower_start;        // empty, "X,Y,Z" or a motion file
   std::optional<formats::Side> follower_start_side;
   int samples = 1;  // answers, with the seeds `seed`, `seed` + 1, ...
   std::vector<std::filesystem::path> outputs;

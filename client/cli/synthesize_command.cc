@@ -11,6 +11,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "client/cli/beat_report.h"
 #include "client/cli/input_flags.h"
 #include "client/cli/output.h"
 #include "client/cli/report.h"
@@ -63,7 +64,7 @@ struct Job {
 // Rejects a class that the model does not know and suggests the nearest name.
 absl::Status CheckLabels(const SynthesizeArguments& arguments, const ModelInfo& model) {
   std::vector<ClassWeight> weights = arguments.weights;
-  for (const WeightKeyframe& keyframe : arguments.keyframes) {
+  for (const KeyframeArgument& keyframe : arguments.keyframes) {
     weights.insert(weights.end(), keyframe.weights.begin(), keyframe.weights.end());
   }
   const std::vector<std::string>& known = model.interaction_classes;
@@ -114,16 +115,17 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
     if (!result.ok()) return result.status();
     const Synthesis synthesis{std::move(request), *std::move(result), job.skeleton,
                               arguments.leader,   job.sampled,        arguments.bvh,
-                              job.follower_rig};
+                              job.follower_rig,   arguments.beat};
     const absl::StatusOr<WrittenFiles> written =
         WriteAll(arguments, SampleOutputs(arguments, sample), synthesis, *environment.out);
     if (!written.ok()) return written.status();
     if (arguments.quiet) continue;
     if (arguments.json) {
       samples.push_back(SynthesisJson(synthesis, *written, job.notes));
+      if (arguments.beat) samples.back()["beat"] = BeatJson(synthesis);
     } else {
       out << (sample == 0 ? DescribeRequest(synthesis, job.notes) : "")
-          << DescribeAnswer(synthesis, *written);
+          << DescribeAnswer(synthesis, *written) << (arguments.beat ? DescribeBeat(synthesis) : "");
     }
   }
   if (!samples.empty()) out << SamplesJson(samples);

@@ -73,10 +73,19 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
           app, "--label", "CLASS[=WEIGHT]", ParseClassWeight, AppendTo(&arguments->weights),
           "Weight of an interaction class, such as kick=1 or hug=-0.5; repeatable")
           ->group(kGroup);
-  AddParsed<WeightKeyframe>(
-      app, "--keyframe", "FRAME:CLASS[=WEIGHT],...", ParseKeyframe, AppendTo(&arguments->keyframes),
-      "Weights from a frame on, for weights that change over time; repeatable")
+  AddParsed<KeyframeArgument>(
+      app, "--keyframe", "FRAME|BEATSb:CLASS[=WEIGHT],...", ParseKeyframe,
+      AppendTo(&arguments->keyframes),
+      "Weights from a frame on, for weights that change over time; with --beat also from a "
+      "position in beats, where 0b is the first beat; repeatable")
       ->excludes(label)
+      ->group(kGroup);
+  AddParsed<motion::Beat>(
+      app, "--beat", "BPM[,OFFSET]", ParseBeat,
+      [arguments](motion::Beat beat) { arguments->beat = beat; },
+      "Beat of the music, from 20 to 400 a minute, with the time of the first beat in seconds "
+      "(default: 0): reports how far steps are from it, and adds a metronome to .html")
+      ->take_last()
       ->group(kGroup);
   AddParsed<ModelChoice>(
       app, "--model", "NAME[@VERSION|:LABEL]", ParseModelChoice,
@@ -191,6 +200,16 @@ void CheckFollowerRig(const SynthesizeArguments& arguments) {
                                  })));
 }
 
+void CheckKeyframes(const SynthesizeArguments& arguments) {
+  if (arguments.beat) return;
+  for (const KeyframeArgument& keyframe : arguments.keyframes) {
+    if (!keyframe.beats) continue;
+    throw CLI::ValidationError("--keyframe",
+                               absl::StrCat("expected --beat BPM[,OFFSET] with the position ",
+                                            *keyframe.beats, "b in beats, got no --beat"));
+  }
+}
+
 // Checks flags that depend on each other.
 void CheckTogether(const SynthesizeArguments& arguments) {
   if (arguments.weights.empty() && arguments.keyframes.empty()) {
@@ -198,6 +217,7 @@ void CheckTogether(const SynthesizeArguments& arguments) {
   }
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
   CheckFollowerRig(arguments);
+  CheckKeyframes(arguments);
   if (arguments.samples > 1 && WritesToStandardOutput(arguments.outputs)) {
     throw CLI::ValidationError("--samples",
                                "cannot be used with --out -: each answer needs a file");

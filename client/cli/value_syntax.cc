@@ -6,6 +6,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "model/base/text.h"
 
 namespace duet::client::cli {
@@ -14,6 +15,19 @@ namespace {
 absl::Status Expected(absl::string_view expected, absl::string_view text) {
   return absl::InvalidArgumentError(
       absl::StrCat("expected ", expected, ", got ", base::Quoted(text)));
+}
+
+constexpr double kLeastBeatsPerMinute = 20, kMostBeatsPerMinute = 400;
+
+// "30" or "8.5b".
+bool ParsePosition(absl::string_view text, KeyframeArgument* keyframe) {
+  if (!absl::ConsumeSuffix(&text, "b")) {
+    return absl::SimpleAtoi(text, &keyframe->frame) && keyframe->frame >= 0;
+  }
+  double beats = 0;
+  if (!base::ParseNumber(text, &beats) || beats < 0) return false;
+  keyframe->beats = beats;
+  return true;
 }
 
 }  // namespace
@@ -29,19 +43,37 @@ absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text) {
   return weight;
 }
 
-absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text) {
-  constexpr char kForm[] = "FRAME:CLASS=WEIGHT,... such as 30:kick=1,hug=0";
+absl::StatusOr<KeyframeArgument> ParseKeyframe(absl::string_view text) {
+  constexpr char kForm[] =
+      "FRAME:CLASS=WEIGHT,... such as 30:kick=1,hug=0, or BEATSb:CLASS=WEIGHT,... such as "
+      "8b:kick=1";
   const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits(':', 1));
-  WeightKeyframe keyframe;
-  if (!absl::SimpleAtoi(parts.first, &keyframe.frame) || keyframe.frame < 0) {
-    return Expected(kForm, text);
-  }
+  KeyframeArgument keyframe;
+  if (!ParsePosition(parts.first, &keyframe)) return Expected(kForm, text);
   for (absl::string_view item : absl::StrSplit(parts.second, ',')) {
     absl::StatusOr<ClassWeight> weight = ParseClassWeight(item);
     if (!weight.ok()) return Expected(kForm, text);
     keyframe.weights.push_back(*std::move(weight));
   }
   return keyframe;
+}
+
+absl::StatusOr<motion::Beat> ParseBeat(absl::string_view text) {
+  const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits(',', 1));
+  motion::Beat beat;
+  if (!base::ParseNumber(parts.first, &beat.per_minute) ||
+      (absl::StrContains(text, ',') && !base::ParseNumber(parts.second, &beat.first_seconds))) {
+    return Expected("BPM or BPM,OFFSET such as 180 or 180,0.25", text);
+  }
+  if (beat.per_minute < kLeastBeatsPerMinute || beat.per_minute > kMostBeatsPerMinute) {
+    return Expected(absl::StrCat("a BPM from ", kLeastBeatsPerMinute, " to ", kMostBeatsPerMinute),
+                    text);
+  }
+  if (beat.first_seconds < -beat.period_seconds()) {
+    return Expected(absl::StrCat("an OFFSET of at least ", -beat.period_seconds(), " s (one beat)"),
+                    text);
+  }
+  return beat;
 }
 
 absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_view text) {

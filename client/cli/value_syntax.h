@@ -7,7 +7,9 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "client/batch/text_values.h"
+#include "client/cli/synthesize_arguments.h"
 #include "client/request.h"
+#include "model/motion/beat.h"
 #include "model/motion/coordinates.h"
 
 namespace duet::client::cli {
@@ -24,8 +26,11 @@ using batch::ParseSeed;
 // "kick=0.5", or "kick" for a weight of 1
 absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);
 
-// "30:kick=1,hug=0": weights at a frame
-absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text);
+// "30:kick=1,hug=0": weights at a frame; "8b:kick=1" and "8.5b:kick=1": at a position in beats
+absl::StatusOr<KeyframeArgument> ParseKeyframe(absl::string_view text);
+
+// "180", or "180,0.25" with the time of the first beat in seconds, at most one beat before 0
+absl::StatusOr<motion::Beat> ParseBeat(absl::string_view text);
 
 // "left_hand=LeftWrist": a joint of the model, and the file's joint that it is read from
 absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_view text);

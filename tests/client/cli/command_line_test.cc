@@ -193,6 +193,21 @@ TEST_F(CommandLineTest, KeyframesReplaceLabels) {
   EXPECT_EQ(arguments.keyframes[1].frame, 30);
 }
 
+TEST_F(CommandLineTest, KeyframesInBeatsRequireABeat) {
+  const SynthesizeArguments arguments =
+      Arguments(Synthesize({"--beat", "180,0.25", "--keyframe", "0:kick", "--keyframe", "8b:hug"}));
+  EXPECT_EQ(arguments.beat->per_minute, 180);
+  EXPECT_EQ(arguments.beat->first_seconds, 0.25);
+  EXPECT_EQ(arguments.keyframes[1].beats, 8);
+  ExpectRefused({"--keyframe", "0:kick", "--keyframe", "8b:hug"},
+                "--keyframe: expected --beat BPM[,OFFSET] with the position 8b in beats, got no "
+                "--beat");
+  ExpectRefused({"--keyframe", "0:kick", "--beat", "500"},
+                "--beat: expected a BPM from 20 to 400, got \"500\"");
+  EXPECT_EQ(Good({}).beat, std::nullopt);
+  ExpectUsageError({"batch", "leaders", "--beat", "180"}, "--beat");
+}
+
 TEST_F(CommandLineTest, MissingFlagIsNamed) {
   ExpectUsageError({}, "subcommand is required");
   ExpectUsageError({"synthesize", "--label", "kick=1", "--out", Out("pair.html")}, "--leader");

@@ -27,6 +27,7 @@ namespace {
 using test::IsOk;
 using test::ReadTestFile;
 using test::ServiceError;
+using test::SteppingMotion;
 using test::SwayingMotion;
 using test::TemporaryFolder;
 using test::WriteTestFile;
@@ -335,6 +336,143 @@ TEST_F(ProgramTest, PrintsASummaryAsJson) {
   EXPECT_EQ(json["cleaned_up"], false);
   EXPECT_EQ(json["seconds"]["total"], 0.034);
   EXPECT_EQ(json["files"], std::vector<std::string>{Path("pair.html")});
+}
+
+// A leader who steps every half second, and a follower who does so 0.1 s later.
+class BeatReportTest : public ProgramTest {
+ protected:
+  static constexpr int kRate = 50;
+
+  BeatReportTest() {
+    leader_.frame_rate_hz = kRate;
+    leader_.poses = SteppingMotion(Steps(0), 6 * kRate, kRate);
+    const motion::ClipPair pair{leader_, leader_};
+    EXPECT_THAT(formats::WritePair(folder_ / "leader.csv", pair, motion::SbuSkeleton()), IsOk());
+    ON_CALL(*connection_, Synthesize)
+        .WillByDefault([](const SynthesisRequest& request, const ChunkCallback&) {
+          absl::StatusOr<SynthesisResult> result = Follow(request);
+          result->pair.follower.poses = SteppingMotion(Steps(0.1), 6 * kRate, kRate);
+          return result;
+        });
+  }
+
+  // The times of nine steps.
+  static std::vector<double> Steps(double delay) {
+    std::vector<double> steps;
+    for (int i = 2; i < 11; ++i) steps.push_back(0.5 * i + delay);
+    return steps;
+  }
+
+  nlohmann::json Beat(const std::string& beat) {
+    EXPECT_EQ(Synthesize("pair.csv", {"--json", "--frame-rate", "50", "--beat", beat}), 0)
+        << err_.str();
+    return nlohmann::json::parse(out_.str())["beat"];
+  }
+};
+
+// A step is found where the foot's speed, 1 m/s, falls below 0.3 m/s after the noise filter: some
+// frames after the foot stops.
+constexpr double kFoundLate = 70, kDelay = 100, kTolerance = 15;  // ms
+
+TEST_F(BeatReportTest, MeasuresTheStepsOfBoth) {
+  const nlohmann::json beat = Beat("120");
+  EXPECT_EQ(beat["bpm"], 120);
+  EXPECT_EQ(beat["offset_seconds"], 0);
+  EXPECT_EQ(beat["leader"]["steps"], 9);
+  EXPECT_EQ(beat["follower"]["steps"], 9);
+  EXPECT_NEAR(beat["leader"]["mean_distance_ms"], kFoundLate, kTolerance);
+  EXPECT_NEAR(beat["follower"]["mean_distance_ms"], kDelay + kFoundLate, kTolerance);
+  EXPECT_LT(beat["leader"]["spread_ms"], 5);
+  EXPECT_FALSE(beat.contains("note"));
+}
+
+TEST_F(BeatReportTest, OffsetMovesTheBeats) {
+  const nlohmann::json beat = Beat("120,0.1");
+  EXPECT_NEAR(beat["follower"]["mean_distance_ms"], kFoundLate, kTolerance);
+  EXPECT_NEAR(beat["leader"]["mean_distance_ms"], kDelay - kFoundLate, kTolerance);
+}
+
+TEST_F(BeatReportTest, StepsBeforeTheMusicDoNotCount) {
+  const nlohmann::json beat = Beat("120,3");
+  EXPECT_EQ(beat["leader"]["steps"], 5);  // from 3 s
+  EXPECT_NEAR(beat["leader"]["mean_distance_ms"], kFoundLate, kTolerance);
+}
+
+TEST_F(BeatReportTest, IsPartOfTheSummary) {
+  ASSERT_EQ(Synthesize("pair.html", {"--frame-rate", "50", "--beat", "120,0.5"}), 0) << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("beat      120 BPM, first beat at 0.50 s\n"
+                                    "          leader: 9 steps, "));
+  EXPECT_THAT(out_.str(), HasSubstr("          follower: 9 steps, "));
+  EXPECT_THAT(out_.str(), HasSubstr(" ms from the nearest beat on average, spread "));
+  EXPECT_THAT(out_.str(), HasSubstr("          steps that ignore the beat: 125 ms\n"));
+  EXPECT_THAT(ReadTestFile(folder_ / "pair.html"),
+              HasSubstr("\"beat\":{\"bpm\":120.0,\"offset\":0.5}"));
+}
+
+TEST_F(BeatReportTest, EverySampleHasItsOwn) {
+  ASSERT_EQ(
+      Synthesize("pair.csv", {"--frame-rate", "50", "--beat", "120", "--samples", "2", "--json"}),
+      0)
+      << err_.str();
+  const nlohmann::json json = nlohmann::json::parse(out_.str());
+  for (const nlohmann::json& sample : json["samples"]) {
+    EXPECT_EQ(sample["beat"]["follower"]["steps"], 9);
+  }
+}
+
+TEST_F(BeatReportTest, StandingPersonHasNoSteps) {
+  ON_CALL(*connection_, Synthesize)
+      .WillByDefault([](const SynthesisRequest& request, const ChunkCallback&) {
+        absl::StatusOr<SynthesisResult> result = Follow(request);
+        result->pair.follower.poses = SteppingMotion({}, 6 * kRate, kRate);
+        return result;
+      });
+  ASSERT_EQ(Synthesize("pair.csv", {"--frame-rate", "50", "--beat", "120"}), 0) << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("          follower: no steps\n"));
+  EXPECT_TRUE(Beat("120")["follower"]["mean_distance_ms"].is_null());
+}
+
+TEST_F(BeatReportTest, ModelWithoutFeetIsReported) {
+  ModelDetails details = SbuModel();
+  for (std::string& joint : details.model.joint_names) {
+    if (joint == "left_foot") joint = "left_paw";
+  }
+  ON_CALL(*connection_, GetModel).WillByDefault(Return(details));
+  const std::vector<std::string> flags = {"--frame-rate", "50",          "--beat",
+                                          "120",          "--joint-map", "left_paw=left_foot"};
+  ASSERT_EQ(Synthesize("pair.json", flags), 0) << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("          cannot find steps: the model has no feet"));
+  std::vector<std::string> json = flags;
+  json.push_back("--json");
+  ASSERT_EQ(Synthesize("pair.json", json), 0) << err_.str();
+  const nlohmann::json beat = nlohmann::json::parse(out_.str())["beat"];
+  EXPECT_TRUE(beat["leader"].is_null());
+  EXPECT_THAT(beat["note"].get<std::string>(), HasSubstr("no feet"));
+}
+
+TEST_F(ProgramTest, SummaryWithoutABeatDoesNotMentionIt) {
+  ASSERT_EQ(Synthesize("pair.html"), 0);
+  EXPECT_THAT(out_.str(), Not(HasSubstr("beat")));
+  EXPECT_THAT(ReadTestFile(folder_ / "pair.html"), Not(HasSubstr("\"beat\":")));
+  ASSERT_EQ(Synthesize("pair.html", {"--json"}), 0);
+  EXPECT_FALSE(nlohmann::json::parse(out_.str()).contains("beat"));
+}
+
+TEST_F(ProgramTest, KeyframesInBeatsAreSentAsFrames) {
+  SynthesisRequest sent;
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillOnce([&](const SynthesisRequest& request, const ChunkCallback&) {
+        sent = request;
+        return Follow(request);
+      });
+  ASSERT_EQ(Run({"synthesize", "--leader", Path("leader.csv"), "--frame-rate", "15", "--out",
+                 Path("pair.html"), "--beat", "120,0.2", "--keyframe", "0:kick", "--keyframe",
+                 "2b:hug=0.5"}),
+            0)
+      << err_.str();
+  ASSERT_EQ(sent.keyframes.size(), 2u);
+  EXPECT_EQ(sent.keyframes[1].frame, 18);  // at 1.2 s
+  EXPECT_THAT(out_.str(), HasSubstr("reaction  at frame 0 kick 1; at frame 18 hug 0.5\n"));
 }
 
 TEST_F(ProgramTest, EachSampleIsACallWithItsOwnFiles) {

@@ -1,5 +1,10 @@
 #include "client/cli/request_building.h"
 
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/motion/coordinates.h"
@@ -10,6 +15,10 @@ namespace duet::client::cli {
 namespace {
 
 using test::IsOk;
+using test::StatusIs;
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 // What BuildRequest makes of (1, 2, 3) in a file that does not say its coordinates.
 motion::Vec3 ReadPoint(const InputArguments& input) {
@@ -42,6 +51,64 @@ TEST(BuildRequest, UnitOrAxisWithoutTheOtherUsesItsDefault) {
   ExpectPoint(input, {LengthUnit::kMillimetres, UpAxis::kYUp});
   input.unit = LengthUnit::kSbuNormalised;
   ExpectPoint(input, {LengthUnit::kSbuNormalised, UpAxis::kYDown});
+}
+
+// The request of these keyframes and this beat for a leader of 10 s at a rate.
+absl::StatusOr<SynthesisRequest> RequestToMusic(const motion::Beat& beat, double frame_rate_hz,
+                                                std::vector<KeyframeArgument> keyframes) {
+  const test::TemporaryFolder folder;
+  SynthesizeArguments arguments;
+  arguments.leader = folder / "leader.csv";
+  arguments.input.frame_rate_hz = frame_rate_hz;
+  arguments.beat = beat;
+  arguments.keyframes = std::move(keyframes);
+  std::string text = "frame,pelvis_x,pelvis_y,pelvis_z\n";
+  for (int frame = 0; frame < 10 * frame_rate_hz; ++frame) {
+    absl::StrAppend(&text, frame, ",1,2,3\n");
+  }
+  test::WriteTestFile(arguments.leader, text);
+  motion::Skeleton skeleton;
+  skeleton.joint_names = {"pelvis"};
+  return BuildRequest(arguments, skeleton, nullptr);
+}
+
+KeyframeArgument AtBeat(double beats) { return {0, beats, {{"turn", 1}}}; }
+
+std::vector<int> FramesOf(const absl::StatusOr<SynthesisRequest>& request) {
+  EXPECT_THAT(request, IsOk());
+  std::vector<int> frames;
+  for (const WeightKeyframe& keyframe : request->keyframes) frames.push_back(keyframe.frame);
+  return frames;
+}
+
+TEST(BuildRequest, BeatsBecomeTheNearestFramesAtTheLeadersRate) {
+  // Beats 0, 1, 8 and 8.5 at 180 BPM from 0.1 s: 0.1, 0.433, 2.767 and 2.933 s.
+  const std::vector<KeyframeArgument> beats = {AtBeat(0), AtBeat(1), AtBeat(8), AtBeat(8.5)};
+  EXPECT_THAT(FramesOf(RequestToMusic({180, 0.1}, 24, beats)), ElementsAre(2, 10, 66, 70));
+  EXPECT_THAT(FramesOf(RequestToMusic({180, 0.1}, 25, beats)), ElementsAre(3, 11, 69, 73));
+  EXPECT_THAT(FramesOf(RequestToMusic({180, 0.1}, 30, beats)), ElementsAre(3, 13, 83, 88));
+  EXPECT_THAT(FramesOf(RequestToMusic({180, 0.1}, 60, beats)), ElementsAre(6, 26, 166, 176));
+}
+
+TEST(BuildRequest, FramesAndBeatsMayBeMixed) {
+  const auto request = RequestToMusic({120, 0}, 30, {{60, std::nullopt, {{"kick", 1}}}, AtBeat(8)});
+  EXPECT_THAT(FramesOf(request), ElementsAre(60, 120));
+  EXPECT_EQ(request->keyframes[0].weights[0].interaction_class, "kick");
+  EXPECT_EQ(request->keyframes[1].weights[0].interaction_class, "turn");
+}
+
+TEST(BuildRequest, BeatsOutsideTheMotionAreRejected) {
+  constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+  EXPECT_THAT(
+      RequestToMusic({120, -0.25}, 30, {AtBeat(0)}),
+      StatusIs(kInvalid, HasSubstr("--keyframe: expected a beat in the leader's motion, got "
+                                   "0b, at -0.25 s")));
+  EXPECT_THAT(FramesOf(RequestToMusic({120, -0.25}, 30, {AtBeat(0.5)})), ElementsAre(0));
+  EXPECT_THAT(RequestToMusic({120, 0}, 30, {AtBeat(1e12)}),
+              StatusIs(kInvalid, HasSubstr("1e+12b")));
+  EXPECT_THAT(RequestToMusic({120, 250}, 30, {AtBeat(0)}),
+              StatusIs(kInvalid, HasSubstr("--beat: expected the first beat within the 10 s of the "
+                                           "leader's motion, got 250 s")));
 }
 
 }  // namespace

@@ -39,19 +39,59 @@ TEST(ParseClassWeightTest, RejectsOtherForms) {
 }
 
 TEST(ParseKeyframeTest, ReadsFrameAndWeights) {
-  const absl::StatusOr<WeightKeyframe> keyframe = ParseKeyframe("30:kick=1,hug=0");
+  const absl::StatusOr<KeyframeArgument> keyframe = ParseKeyframe("30:kick=1,hug=0");
   ASSERT_THAT(keyframe, IsOk());
   EXPECT_EQ(keyframe->frame, 30);
+  EXPECT_EQ(keyframe->beats, std::nullopt);
   ASSERT_THAT(keyframe->weights, SizeIs(2));
   EXPECT_EQ(keyframe->weights[1].interaction_class, "hug");
   EXPECT_EQ(keyframe->weights[1].weight, 0);
 }
 
+TEST(ParseKeyframeTest, ReadsAPositionInBeats) {
+  const absl::StatusOr<KeyframeArgument> keyframe = ParseKeyframe("8b:kick=1,hug");
+  ASSERT_THAT(keyframe, IsOk());
+  EXPECT_EQ(keyframe->beats, 8);
+  EXPECT_THAT(keyframe->weights, SizeIs(2));
+  EXPECT_EQ(ParseKeyframe("0b:kick")->beats, 0);
+  EXPECT_EQ(ParseKeyframe("8.5b:kick")->beats, 8.5);
+}
+
 TEST(ParseKeyframeTest, RejectsOtherForms) {
-  for (const char* text : {"", "30", "30:", "kick=1", "-1:kick=1", "x:kick=1",
-                           "30:kick=", "30:kick=1,", "30:,kick=1"}) {
-    EXPECT_THAT(ParseKeyframe(text), StatusIs(kInvalid, HasSubstr("expected FRAME:CLASS=WEIGHT")));
+  for (const char* text :
+       {"", "30", "30:", "kick=1", "-1:kick=1", "x:kick=1", "30:kick=", "30:kick=1,", "30:,kick=1",
+        "8.5:kick", "b:kick", "-1b:kick", "8bb:kick", "8 beats:kick", "infb:kick", "8b"}) {
+    EXPECT_THAT(ParseKeyframe(text), StatusIs(kInvalid, HasSubstr("expected FRAME:CLASS=WEIGHT")))
+        << text;
   }
+}
+
+TEST(ParseBeatTest, ReadsRateAndFirstBeat) {
+  EXPECT_EQ(ParseBeat("180")->per_minute, 180);
+  EXPECT_EQ(ParseBeat("180")->first_seconds, 0);
+  EXPECT_EQ(ParseBeat("92.5,1.25")->per_minute, 92.5);
+  EXPECT_EQ(ParseBeat("92.5,1.25")->first_seconds, 1.25);
+  EXPECT_THAT(ParseBeat("20"), IsOk());
+  EXPECT_THAT(ParseBeat("400"), IsOk());
+  EXPECT_EQ(ParseBeat("120,-0.5")->first_seconds, -0.5);  // one beat
+}
+
+TEST(ParseBeatTest, RejectsOtherForms) {
+  for (const char* text :
+       {"", "fast", "180bpm", "180,", ",1", "180,soon", "180,0,1", "nan", "inf", "180,inf"}) {
+    EXPECT_THAT(ParseBeat(text), StatusIs(kInvalid, HasSubstr("expected BPM or BPM,OFFSET")))
+        << text;
+  }
+}
+
+TEST(ParseBeatTest, RejectsRatesAndOffsetsOutOfRange) {
+  for (const char* text : {"19.9", "400.1", "0", "-180"}) {
+    EXPECT_THAT(ParseBeat(text), StatusIs(kInvalid, HasSubstr("expected a BPM from 20 to 400")))
+        << text;
+  }
+  EXPECT_THAT(ParseBeat("120,-0.51"),
+              StatusIs(kInvalid, HasSubstr("expected an OFFSET of at least -0.5 s (one beat), got "
+                                           "\"120,-0.51\"")));
 }
 
 TEST(ParseModelChoiceTest, ReadsNameVersionAndLabel) {
