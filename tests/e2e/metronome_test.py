@@ -28,7 +28,8 @@ class FakeAudio {
   resume() { this.state = 'running'; }
   suspend() { this.state = 'suspended'; }
   createOscillator() {
-    const tone = {frequency: {value: 0}, connect: (volume) => { tone.volume = volume; }, stop: () => {}};
+    const tone = {frequency: {value: 0}, stop() {}};
+    tone.connect = (volume) => { tone.volume = volume; };
     tone.start = (at) => this.clicks.push({at, tone});
     return tone;
   }
@@ -113,7 +114,8 @@ class MetronomeTest(unittest.TestCase):
     def test_clicks_on_every_beat_with_accents_on_bars(self):
         page = self.page()
         page.evaluate("playFrom(0); watch(2.7)")
-        self.assert_heard(page, [(0.5, ACCENT), (1, False), (1.5, False), (2, False), (2.5, ACCENT)])
+        self.assert_heard(page, [(0.5, ACCENT), (1, False), (1.5, False), (2, False),
+                                 (2.5, ACCENT)])
 
     def test_clicks_when_playing_starts_on_a_beat(self):
         page = self.page()
@@ -175,8 +177,8 @@ class MetronomeTest(unittest.TestCase):
         page.evaluate("playFrom(0); watch(0.375)")
         page.click("#metronome")
         self.assertEqual(page.evaluate("audio.state"), "suspended")
-        self.assertEqual(
-            page.evaluate("document.getElementById('metronome').getAttribute('aria-pressed')"), "false")
+        self.assertTrue(page.evaluate("document.getElementById('metronome')"
+                                      ".getAttribute('aria-pressed') === 'false'"))
         page.evaluate("watch(1)")
         self.assert_heard(page, [])
 

@@ -1,6 +1,6 @@
-// The beat of the music: shows it, and clicks on it while the motion plays. The browser's audio clock
-// places the clicks. On every frame they are compared with where the player will be, so they follow
-// pauses, seeking, the speed and the loop.
+// The beat of the music: shows it, and clicks on it while the motion plays. The browser's audio
+// clock places the clicks. On every frame they are compared with where the player will be, so they
+// follow pauses, seeking, the speed and the loop.
 class Metronome {
   static get LOOK_AHEAD() { return 0.25; }  // seconds; longer than a slow frame
   static get TOLERANCE() { return 0.02; }   // seconds by which frames come early or late
@@ -65,8 +65,8 @@ class Metronome {
     }
   }
 
-  // Silences the clicks to come for which `isRight` is false. While the motion plays, remembers those
-  // of the last moments: a late frame must not repeat them.
+  // Silences the clicks to come for which `isRight` is false. While the motion plays, remembers
+  // those of the last moments: a late frame must not repeat them.
   keep(isRight) {
     const now = this.audio.currentTime;
     this.clicks = this.clicks.filter((click) => {
