@@ -14,6 +14,7 @@
 #include "model/checkpoint/direction_json.h"
 #include "model/checkpoint/leader_statistics_json.h"
 #include "model/checkpoint/names.h"
+#include "model/engine/window_plan.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/skeleton_json.h"
 
@@ -33,6 +34,7 @@ constexpr int kMaxDepth = 6;
 constexpr std::size_t kSha256HexBytes = 64;
 constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kTerms[] = "terms";
+constexpr char kLookaheadFrames[] = "lookahead_frames";
 constexpr char kFreeForAllUses[] = "free_for_all_uses";
 
 // Characters that are safe in names of files, folders, tensors and metrics.
@@ -133,6 +135,13 @@ void ReadTouchingClasses(base::ObjectReader* reader, engine::ModelDescription* m
   }
 }
 
+// Windows with a lookahead share their settled frames and the lookahead, and must still advance.
+void ReadLookahead(base::ObjectReader* reader, engine::ModelDescription* model) {
+  if (!reader->Has(kLookaheadFrames)) return;
+  const int most = model->window_frames - engine::SettledOverlap(model->window_frames) - 1;
+  model->lookahead_frames = static_cast<int>(reader->Int(kLookaheadFrames, 0, std::max(0, most)));
+}
+
 void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   model->name = ReadName(reader, "name");
   model->version = static_cast<int>(reader->Int("version", 1, std::numeric_limits<int>::max()));
@@ -141,6 +150,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   if (reader->Has(kFreeForAllUses)) model->free_for_all_uses = reader->Bool(kFreeForAllUses);
   model->frame_rate_hz = reader->Number("frame_rate_hz", 1, motion::kMaxServedFrameRateHz);
   model->window_frames = static_cast<int>(reader->Int("window_frames", 2, kMaxWindowFrames));
+  ReadLookahead(reader, model);
   model->classes = reader->UniqueStrings("classes", kMaxClasses, kMaxNameBytes);
   if (reader->ok() && model->classes.empty()) {
     reader->Fail("classes", "empty, expected at least one class");
@@ -252,6 +262,7 @@ std::string SerializeManifest(const Manifest& manifest) {
       {"metrics", manifest.metrics}};
   if (manifest.format_version > 1) root[kTouchingClasses] = model.touching_classes;
   if (!model.terms.empty()) root[kTerms] = model.terms;
+  if (model.lookahead_frames > 0) root[kLookaheadFrames] = model.lookahead_frames;
   if (model.free_for_all_uses) root[kFreeForAllUses] = true;
   if (model.leader_statistics) {
     root[kLeaderStatistics] = LeaderStatisticsToJson(*model.leader_statistics);

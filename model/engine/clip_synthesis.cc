@@ -64,6 +64,9 @@ motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {
     std::abort();
   }
   state_.Add(NextWindowStart(), follower, cross_fade_);
+  if (HasNextWindow() && ContinuesFromSettledFrames(model_)) {
+    state_.DropLast(model_.lookahead_frames);
+  }
   motion::Poses frames = TakeFinalFrames();
   DropFrames();
   return frames;

@@ -16,7 +16,7 @@ struct ModelDescription {
   std::string name;
   int version = 0;  // 1 or more
   std::string description;
-  std::string terms;           // of use; empty: not specified by the checkpoint
+  std::string terms;  // of use; empty: not specified by the checkpoint
   // Anybody may use and pass on the weights and their output for any purpose.
   bool free_for_all_uses = false;
   std::string weights_sha256;  // of the weights file, lower-case hex; empty: not from a checkpoint
@@ -26,6 +26,9 @@ struct ModelDescription {
   std::vector<std::string> touching_classes;
   double frame_rate_hz = 0;  // the network's own
   int window_frames = 0;     // maximum window length that the network was trained on
+  // The last frames of a window that the next window replaces, because their leader's future was
+  // unknown. Only for models that sample. Less than the part of a window that is not settled.
+  int lookahead_frames = 0;
   bool accepts_follower_start = false;
   bool samples = false;  // results depend on Sampling
   // Statistics of the training leaders. Absent if unknown.

@@ -15,6 +15,10 @@ void WindowState::Add(int start, const motion::Poses& window, const CrossFade& c
   ++window_count_;
 }
 
+void WindowState::DropLast(int frames) {
+  follower_.Resize(std::max(0, follower_.frame_count() - frames));
+}
+
 void WindowState::DropBefore(int frame) {
   const int begin = std::clamp(frame, begin_, end());
   follower_.DropFront(begin - begin_);
@@ -26,8 +30,9 @@ bool ContinuesFromSettledFrames(const ModelDescription& model) {
 }
 
 int WindowOverlap(const ModelDescription& model) {
-  return ContinuesFromSettledFrames(model) ? SettledOverlap(model.window_frames)
-                                           : CrossFadeOverlap(model.window_frames);
+  return ContinuesFromSettledFrames(model)
+             ? SettledOverlap(model.window_frames) + model.lookahead_frames
+             : CrossFadeOverlap(model.window_frames);
 }
 
 void ContinueFrom(const WindowState& state, int frame, const ModelDescription& model,

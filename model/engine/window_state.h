@@ -38,6 +38,9 @@ class WindowState {
   // that it shares with follower() are cross-faded. Requires `window` to reach end() or beyond.
   void Add(int start, const motion::Poses& window, const CrossFade& cross_fade);
 
+  // Drops the last frames, so that the next window replaces them instead of continuing from them.
+  void DropLast(int frames);
+
   // Drops the frames before `frame`. Does nothing if they were dropped already.
   void DropBefore(int frame);
 

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
+#include "model/engine/window_plan.h"
 #include "tests/support/architectures.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
@@ -143,6 +144,19 @@ TEST(Manifest, TermsAndDigestReachTheDescription) {
   const absl::StatusOr<Manifest> silent = ParseManifest(SerializeManifest(CompleteManifest()));
   ASSERT_THAT(silent, IsOk());
   EXPECT_EQ(silent->model.terms, "");
+}
+
+TEST(Manifest, LookaheadLeavesAWindowRoomToAdvance) {
+  Manifest manifest = CompleteManifest();
+  EXPECT_THAT(SerializeManifest(manifest), testing::Not(testing::HasSubstr("lookahead")));
+  const int window = manifest.model.window_frames;
+  manifest.model.lookahead_frames = window - engine::SettledOverlap(window) - 1;
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->model.lookahead_frames, manifest.model.lookahead_frames);
+  ++manifest.model.lookahead_frames;
+  EXPECT_THAT(ParseManifest(SerializeManifest(manifest)),
+              StatusIs(absl::StatusCode::kInvalidArgument, testing::HasSubstr("lookahead_frames")));
 }
 
 TEST(Manifest, IsFreeForAllUsesOnlyIfItSaysSo) {

@@ -378,6 +378,29 @@ TEST(ClipSynthesis, SettledFramesStayAsTheWindowBeforeMadeThem) {
   }
 }
 
+TEST(ClipSynthesis, TheNextWindowReplacesTheLookahead) {
+  ModelDescription description = SamplingDescription();
+  description.lookahead_frames = 15;
+  ClipRequest request = Request(300, 15);
+  request.options.sampling = {41, 1};
+  const Outcome run = RunAll(FakeSynthesizer(description), request);
+  const std::vector<int> starts = PlanWindows(300, 46, SettledOverlap(46) + 15).starts;
+  ASSERT_EQ(run.windows.size(), starts.size());
+  for (std::size_t k = 1; k < starts.size(); ++k) {
+    EXPECT_EQ(run.windows[k].settled.frame_count(), starts[k - 1] + 46 - 15 - starts[k]) << k;
+    EXPECT_GE(run.windows[k].settled.frame_count(), 8) << k;
+  }
+  ASSERT_EQ(run.follower.frame_count(), 300);
+  for (int t = 0; t < 300; ++t) {
+    // The first window that settles the frame draws it.
+    std::size_t window = 0;
+    while (window + 1 < starts.size() && t >= starts[window] + 46 - 15) ++window;
+    const motion::Vec3 wanted = FakeAnswer(request.leader.at(t, 0), {}) +
+                                FakeDraw({WindowSeed(41, static_cast<int>(window)), 1});
+    EXPECT_LT(Distance(run.follower.at(t, 0), wanted), 1e-5f) << t;
+  }
+}
+
 TEST(ClipSynthesis, AModelThatTakesNoStartGoesOnFromNothing) {
   ModelDescription description = SamplingDescription();
   description.accepts_follower_start = false;

@@ -114,10 +114,25 @@ TEST(ContinueFromTest, SetsEverySettledFrameForASamplingModel) {
   EXPECT_EQ(window.settled, Frames(12, 8));
 }
 
+TEST(WindowStateTest, DroppedLastFramesAreThoseOfTheNextWindow) {
+  const ModelDescription model = WithStart(SamplingDescription(), true);
+  WindowState state(kJoints);
+  state.Add(0, Frames(0, 20), CrossFade(model.skeleton));
+  state.DropLast(6);
+  EXPECT_EQ(state.end(), 14);
+  state.Add(14, Frames(100, 20), CrossFade(model.skeleton));
+  EXPECT_EQ(state.end(), 34);
+  EXPECT_EQ(state.follower().at(14, 3), Frames(100, 20).at(0, 3));
+  state.DropLast(1000);
+  EXPECT_EQ(state.end(), state.begin());
+}
+
 TEST(WindowOverlapTest, IsThatOfSettledFramesOnlyIfTheModelContinuesFromThem) {
   ModelDescription model = WithStart(SamplingDescription(), true);
   EXPECT_TRUE(ContinuesFromSettledFrames(model));
   EXPECT_EQ(WindowOverlap(model), SettledOverlap(model.window_frames));
+  model.lookahead_frames = 9;
+  EXPECT_EQ(WindowOverlap(model), SettledOverlap(model.window_frames) + 9);
   model = WithStart(model, false);
   EXPECT_FALSE(ContinuesFromSettledFrames(model));
   EXPECT_EQ(WindowOverlap(model), CrossFadeOverlap(model.window_frames));
