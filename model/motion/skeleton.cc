@@ -93,6 +93,15 @@ absl::Status CheckJoint(std::string_view field, int joint, const Skeleton& skele
                                                  skeleton.joint_count() - 1, ", got ", joint));
 }
 
+std::optional<JointPair> FindHands(const Skeleton& skeleton) {
+  for (const char* name : {"wrist", "hand"}) {
+    const int left = skeleton.Find(absl::StrCat("left_", name));
+    const int right = skeleton.Find(absl::StrCat("right_", name));
+    if (left >= 0 && right >= 0) return JointPair{left, right};
+  }
+  return std::nullopt;
+}
+
 absl::Status Validate(const Skeleton& skeleton) {
   absl::Status status = CheckNames(skeleton);
   if (status.ok()) status = CheckJoint("root", skeleton.root, skeleton);

@@ -45,6 +45,9 @@ struct Skeleton {
   std::vector<int> Parents() const;
 };
 
+// The joints left_wrist and right_wrist, or else left_hand and right_hand.
+std::optional<JointPair> FindHands(const Skeleton& skeleton);
+
 // Fails with INVALID_ARGUMENT naming the field if an index is out of range, a name is empty or
 // repeated, or the bones are not a tree over all joints rooted at `root`.
 absl::Status Validate(const Skeleton& skeleton);

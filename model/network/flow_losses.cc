@@ -32,8 +32,16 @@ torch::Tensor Blocks(const torch::Tensor& motion, int64_t frames) {
   return blocks / std::sqrt(static_cast<double>(frames));
 }
 
-torch::Tensor Joints(const torch::Tensor& motion) {
-  return motion.view({motion.size(0), motion.size(1), -1, 3});
+// [..., T, J, 3] of a motion [..., T, 3 J].
+torch::Tensor Joints(const torch::Tensor& motion) { return motion.unflatten(-1, {-1, 3}); }
+
+torch::Tensor PairOf(const torch::Tensor& motion, const motion::JointPair& pair) {
+  return Joints(motion).index_select(-2, torch::tensor({int64_t{pair.left}, int64_t{pair.right}}));
+}
+
+// Vectors whose length approaches 1 where they are much longer than `scale`.
+torch::Tensor Saturated(const torch::Tensor& vectors, double scale) {
+  return vectors / (vectors.square().sum(-1, true) + scale * scale).sqrt();
 }
 
 torch::Tensor BoneLengths(const torch::Tensor& motion, const torch::Tensor& parents,
@@ -72,9 +80,12 @@ torch::Tensor SquaredBoneErrors(const torch::Tensor& predicted, const torch::Ten
 torch::Tensor SquaredSlides(const torch::Tensor& predicted, const torch::Tensor& real,
                             const torch::Tensor& lengths, const motion::JointPair& feet,
                             double still) {
-  const torch::Tensor both = torch::tensor({int64_t{feet.left}, int64_t{feet.right}});
   const auto moved = [&](const torch::Tensor& motion) {
-    return Differences(Joints(motion).index_select(2, both)).square().sum(3);
+    return Differences(motion)
+        .square()
+        .unflatten(-1, {-1, 3})
+        .sum(-1)
+        .index_select(-1, torch::tensor({int64_t{feet.left}, int64_t{feet.right}}));
   };
   const torch::Tensor stands = (moved(real) < still * still).to(predicted.dtype());
   return MeanOverFrames((moved(predicted) * stands).mean(2), lengths - 1);
@@ -104,6 +115,19 @@ torch::Tensor BlockEnergyScores(const torch::Tensor& answers, const torch::Tenso
   const torch::Tensor blocks =
       torch::div(lengths - 1 - frames, kBlockStride, "floor").add(1).clamp_min(0);
   return EnergyScores(Blocks(moves, frames), Blocks(real_moves, frames), blocks);
+}
+
+torch::Tensor FootMotions(const torch::Tensor& motion, const motion::JointPair& feet,
+                          double still) {
+  const torch::Tensor moved = Differences(PairOf(motion, feet).flatten(-2)).unflatten(-1, {-1, 3});
+  return Saturated(moved, still).flatten(-2);
+}
+
+torch::Tensor HandPlaces(const torch::Tensor& follower, const torch::Tensor& leader,
+                         const motion::JointPair& hands, double near) {
+  const torch::Tensor between =
+      PairOf(follower, hands).unsqueeze(-2) - PairOf(leader, hands).unsqueeze(-3);
+  return Saturated(between, near).flatten(-3);
 }
 
 }  // namespace duet::network

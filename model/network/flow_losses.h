@@ -52,6 +52,18 @@ torch::Tensor VelocityEnergyScores(const torch::Tensor& answers, const torch::Te
 torch::Tensor BlockEnergyScores(const torch::Tensor& answers, const torch::Tensor& real,
                                 const torch::Tensor& lengths, int64_t frames);
 
+// The velocities of both feet, each divided by the root of its squared speed plus `still` squared:
+// near 0 for a foot that stands, near a unit vector for one that moves. A score of them counts
+// whether a foot stands, where a score of positions hardly notices a slide. Shapes: motion [..., T,
+// 3 J]; returns [..., T - 1, 6]. `still` in the motion's units per frame.
+torch::Tensor FootMotions(const torch::Tensor& motion, const motion::JointPair& feet, double still);
+
+// The vectors from each hand of the leader to each hand of the follower, each divided by the root
+// of its squared length plus `near` squared: they change most where hands nearly meet. Shapes:
+// follower [..., N, T, 3 J], leader [N, T, 3 J]; returns [..., N, T, 12]. All in the same unit.
+torch::Tensor HandPlaces(const torch::Tensor& follower, const torch::Tensor& leader,
+                         const motion::JointPair& hands, double near);
+
 }  // namespace duet::network
 
 #endif  // DUET_MODEL_NETWORK_FLOW_LOSSES_H_

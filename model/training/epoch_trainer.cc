@@ -47,6 +47,14 @@ bool EpochTrainer::Finished() const {
   return may_stop && epoch_ - best_epoch_ >= options_.validation.patience;
 }
 
+absl::Status EpochTrainer::StartFrom(const checkpoint::Checkpoint& checkpoint) {
+  const absl::Status loaded = LoadWeights(checkpoint);
+  if (!loaded.ok()) return loaded;
+  average_ = Copies(generator_->parameters());
+  best_ = Copies(generator_->parameters());
+  return absl::OkStatus();
+}
+
 void EpochTrainer::UpdateAverage(double decay) {
   torch::NoGradGuard no_grad;
   const std::vector<torch::Tensor> parameters = generator_->parameters();

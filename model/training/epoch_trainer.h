@@ -51,6 +51,10 @@ class EpochTrainer {
   // True when all epochs are done or validation has stopped improving.
   bool Finished() const;
 
+  // Begins with the weights of a checkpoint instead of random ones. INVALID_ARGUMENT names a tensor
+  // that is missing or has another shape. Requires that no epoch was run.
+  absl::Status StartFrom(const checkpoint::Checkpoint& checkpoint);
+
   EpochReport RunEpoch();
 
   // Saves and restores everything that the next epoch depends on. A state of other options, data
@@ -71,6 +75,9 @@ class EpochTrainer {
   // each.
   virtual void TrainEpoch(int64_t first_step, EpochReport* report) = 0;
   virtual int64_t steps_per_epoch() const = 0;
+  // Copies the weights of a checkpoint into the generator, except what was measured on the training
+  // data. INVALID_ARGUMENT names a tensor that is missing or has another shape.
+  virtual absl::Status LoadWeights(const checkpoint::Checkpoint& checkpoint) = 0;
   // The error of the generator's answer to a captured example: AFD, metres.
   virtual double ValidationError(const Example& example) = 0;
   // State to save and restore in addition to the generator, its average and the best one.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "model/motion/skeleton.h"
 #include "model/network/batch.h"
 #include "model/network/flow_losses.h"
 #include "model/network/flow_noise.h"
@@ -44,6 +45,7 @@ FlowTrainer::FlowTrainer(const TrainingOptions& options, const checkpoint::Manif
     : EpochTrainer(options, manifest, dataset, std::move(train), std::move(validation)),
       flow_(std::get<FlowTraining>(options.method)),
       architecture_(std::get<checkpoint::FlowArchitecture>(manifest.architecture)),
+      hands_(motion::FindHands(dataset.skeleton)),
       steps_per_epoch_(StepsPerEpoch(train_.size(), options)),
       generator_(MakeGenerator(options, manifest)),
       optimiser_(options.optimiser, generator_->parameters(), steps_per_epoch_ * options.epochs) {
@@ -57,6 +59,39 @@ torch::Tensor FlowTrainer::DrawSource(const FlowBatch& batch) const {
   return network::SourceNoise(architecture_.noise, generator_->noise_roots(),
                               batch.input.known_count,
                               {torch::randn_like(batch.target), torch::randn_like(batch.target)});
+}
+
+template <typename Add>
+void FlowTrainer::AddBodyScores(const FlowBatch& batch, const torch::Tensor& answers,
+                                const Add& add, EpochReport* report) {
+  const FlowTraining::Energy& energy = flow_.energy;
+  const torch::Tensor& lengths = batch.input.lengths;
+  const motion::Skeleton& skeleton = manifest_.model.skeleton;
+  const torch::Tensor base = batch.input.base.unsqueeze(1) / architecture_.offset_scale;
+  if (energy.bone_weight > 0) {
+    const torch::Tensor all = (answers + base).flatten(0, 1);
+    const torch::Tensor real = (batch.target + base).repeat({energy.answers, 1, 1});
+    add(energy.bone_weight,
+        network::SquaredBoneErrors(all, real, lengths.repeat({energy.answers}), skeleton.bones),
+        &report->bone);
+  }
+  if (energy.feet_weight > 0 && skeleton.feet) {
+    const auto motions = [&](const torch::Tensor& motion) {
+      return network::FootMotions(motion, *skeleton.feet, StillPerFrame());
+    };
+    add(energy.feet_weight,
+        network::EnergyScores(motions(answers), motions(batch.target), lengths - 1),
+        &report->continuity);
+  }
+  if (energy.hands_weight > 0 && hands_) {
+    const double scale = architecture_.offset_scale;
+    const auto places = [&](const torch::Tensor& offsets) {
+      return network::HandPlaces(offsets + base, batch.input.leader / scale, *hands_,
+                                 energy.near_hands / scale);
+    };
+    add(energy.hands_weight, network::EnergyScores(places(answers), places(batch.target), lengths),
+        &report->reconstruction);
+  }
 }
 
 torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* report) {
@@ -80,8 +115,13 @@ torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* repor
   add(energy.block_weight,
       network::BlockEnergyScores(rate * answers, rate * batch.target, lengths, energy.block_frames),
       &report->continuity);
+  AddBodyScores(batch, answers, add, report);
   report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
   return total;
+}
+
+double FlowTrainer::StillPerFrame() const {
+  return flow_.slide_speed / manifest_.model.frame_rate_hz / architecture_.offset_scale;
 }
 
 torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* report) {
@@ -107,11 +147,9 @@ torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* rep
         &report->bone);
   }
   if (flow_.slide_weight > 0 && manifest_.model.skeleton.feet) {
-    const double still =
-        flow_.slide_speed / manifest_.model.frame_rate_hz / architecture_.offset_scale;
-    losses =
-        losses + flow_.slide_weight * network::SquaredSlides(predicted, batch.target, lengths,
-                                                             *manifest_.model.skeleton.feet, still);
+    losses = losses + flow_.slide_weight * network::SquaredSlides(predicted, batch.target, lengths,
+                                                                  *manifest_.model.skeleton.feet,
+                                                                  StillPerFrame());
   }
   const torch::Tensor total = (losses / (1 - times).clamp_min(flow_.least_remaining)).mean();
   report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
@@ -145,6 +183,14 @@ std::vector<checkpoint::Tensor> FlowTrainer::BestTensors() {
   best->SetMeasured(generator_->base_poses(), generator_->noise_roots());
   CopyBest(best.get());
   return network::StoreParameters(manifest_, best);
+}
+
+absl::Status FlowTrainer::LoadWeights(const checkpoint::Checkpoint& checkpoint) {
+  const torch::Tensor base_poses = generator_->base_poses().clone(),
+                      noise_roots = generator_->noise_roots().clone();
+  const absl::Status loaded = network::LoadParameters(checkpoint, generator_);
+  generator_->SetMeasured(base_poses, noise_roots);
+  return loaded;
 }
 
 std::vector<std::pair<std::string, torch::optim::Optimizer*>> FlowTrainer::StateOptimisers() {

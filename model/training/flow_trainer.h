@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/motion/skeleton.h"
 #include "model/network/flow_generator.h"
 #include "model/training/epoch_trainer.h"
 #include "model/training/flow_batches.h"
@@ -29,15 +30,23 @@ class FlowTrainer : public EpochTrainer {
  private:
   void TrainEpoch(int64_t first_step, EpochReport* report) override;
   int64_t steps_per_epoch() const override { return steps_per_epoch_; }
+  absl::Status LoadWeights(const checkpoint::Checkpoint& checkpoint) override;
   // The error of the typical answer: variety 0.
   double ValidationError(const Example& example) override;
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() override;
   torch::Tensor MatchingLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor EnergyLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor DrawSource(const FlowBatch& batch) const;
+  // The scores of limb lengths, feet and hands; see FlowTraining::Energy.
+  template <typename Add>
+  void AddBodyScores(const FlowBatch& batch, const torch::Tensor& answers, const Add& add,
+                     EpochReport* report);
+  // The motion of a foot, in offsets per frame, below which it stands.
+  double StillPerFrame() const;
 
   const FlowTraining& flow_;
   const checkpoint::FlowArchitecture& architecture_;
+  std::optional<motion::JointPair> hands_;
   int64_t steps_per_epoch_;
   network::FlowGenerator generator_;
   Optimiser optimiser_;

@@ -10,6 +10,7 @@ void Read(base::ObjectReader* reader, FlowTraining* out) {
   out->passes = reader->Int("passes", 1, kMaxEpochs);
   out->window_seconds = reader->Number("window_seconds", 0, 60);
   out->stride_seconds = reader->Number("stride_seconds", 0.01, 60);
+  out->lookahead_seconds = reader->Number("lookahead_seconds", 0, 60);
   out->target_smoothing = reader->Number("target_smoothing", 0, 100);
   out->pair_scale = reader->Number("pair_scale", 0, 0.9);
   out->unlabelled = Probability(reader, "unlabelled");
@@ -26,6 +27,7 @@ void Read(base::ObjectReader* reader, FlowTraining::FrameLabels* out) {
   out->shift = reader->Number("shift", 0, 1000);
   out->unlabelled = Probability(reader, "unlabelled");
   out->avoided = Probability(reader, "avoided");
+  out->exchanged = Probability(reader, "exchanged");
 }
 
 void Read(base::ObjectReader* reader, FlowTraining::Drift* out) {
@@ -46,6 +48,10 @@ void Read(base::ObjectReader* reader, FlowTraining::Energy* out) {
   out->velocity_weight = reader->Number("velocity_weight", 0, 1e6);
   out->block_weight = reader->Number("block_weight", 0, 1e6);
   out->block_frames = reader->Int("block_frames", 2, 1000);
+  out->bone_weight = reader->Number("bone_weight", 0, 1e6);
+  out->feet_weight = reader->Number("feet_weight", 0, 1e6);
+  out->hands_weight = reader->Number("hands_weight", 0, 1e6);
+  out->near_hands = reader->Number("near_hands", 1e-3, 10);
 }
 
 }  // namespace
@@ -66,6 +72,7 @@ void Describe(const FlowTraining& f, Description* out) {
                {"flow.passes", Text(f.passes)},
                {"flow.window_seconds", Text(f.window_seconds)},
                {"flow.stride_seconds", Text(f.stride_seconds)},
+               {"flow.lookahead_seconds", Text(f.lookahead_seconds)},
                {"flow.target_smoothing", Text(f.target_smoothing)},
                {"flow.pair_scale", Text(f.pair_scale)},
                {"flow.unlabelled", Text(f.unlabelled)},
@@ -79,6 +86,7 @@ void Describe(const FlowTraining& f, Description* out) {
                {"frame_labels.shift", Text(f.frame_labels.shift)},
                {"frame_labels.unlabelled", Text(f.frame_labels.unlabelled)},
                {"frame_labels.avoided", Text(f.frame_labels.avoided)},
+               {"frame_labels.exchanged", Text(f.frame_labels.exchanged)},
                {"drift.share", Text(f.drift.share)},
                {"drift.tilt", Text(f.drift.tilt)},
                {"drift.bend", Text(f.drift.bend)},
@@ -92,7 +100,11 @@ void Describe(const FlowTraining& f, Description* out) {
                {"energy.dropout", Text(f.energy.dropout)},
                {"energy.velocity_weight", Text(f.energy.velocity_weight)},
                {"energy.block_weight", Text(f.energy.block_weight)},
-               {"energy.block_frames", Text(f.energy.block_frames)}});
+               {"energy.block_frames", Text(f.energy.block_frames)},
+               {"energy.bone_weight", Text(f.energy.bone_weight)},
+               {"energy.feet_weight", Text(f.energy.feet_weight)},
+               {"energy.hands_weight", Text(f.energy.hands_weight)},
+               {"energy.near_hands", Text(f.energy.near_hands)}});
 }
 
 }  // namespace duet::training

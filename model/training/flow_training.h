@@ -15,9 +15,12 @@ struct FlowTraining {
   Architecture architecture;
 
   double dropout = 0.1;
-  int64_t passes = 10;            // over the data in an epoch
-  double window_seconds = 0;      // longer sequences are cut into windows; 0: never
-  double stride_seconds = 0.5;    // between the beginnings of windows
+  int64_t passes = 10;          // over the data in an epoch
+  double window_seconds = 0;    // longer sequences are cut into windows; 0: never
+  double stride_seconds = 0.5;  // between the beginnings of windows
+  // The last seconds of a window, which the next window replaces when both belong to a longer clip:
+  // their leader's future is unknown.
+  double lookahead_seconds = 0;
   double target_smoothing = 1;    // frames, deviation of the Gaussian over captured followers
   double pair_scale = 0.1;        // +- fraction, the same for both people
   double unlabelled = 0.12;       // fraction of clips whose label is withheld
@@ -35,6 +38,7 @@ struct FlowTraining {
     double shift = 0;       // frames, standard deviation of the beginning and the end of a span
     double unlabelled = 0;  // fraction of the classes of a clip whose weight is 0 throughout
     double avoided = 0;     // fraction of the classes of a clip that have weight -1 where absent
+    double exchanged = 0;   // fraction of the clips with another leader (exchanged_leaders.h)
   } frame_labels;
 
   // A follower that continues from its own previous answer does not start where a captured one
@@ -62,6 +66,10 @@ struct FlowTraining {
     double velocity_weight = 1;  // of the score of velocities, frame by frame
     double block_weight = 1;     // of the score of velocities over several frames together
     int64_t block_frames = 6;
+    double bone_weight = 0;    // of limb lengths
+    double feet_weight = 0;    // of the score of which feet stand
+    double hands_weight = 0;   // of the score of hands against the leader's hands
+    double near_hands = 0.15;  // metres; what counts as near in that score
   } energy;
 };
 

@@ -123,6 +123,10 @@ std::vector<std::pair<std::string, torch::Tensor>> PaperTrainer::MoreTensors() {
   return adversary_->Tensors();
 }
 
+absl::Status PaperTrainer::LoadWeights(const checkpoint::Checkpoint& checkpoint) {
+  return network::LoadParameters(checkpoint, generator_);
+}
+
 std::vector<std::pair<std::string, torch::optim::Optimizer*>> PaperTrainer::StateOptimisers() {
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> optimisers;
   if (adversary_ != nullptr) optimisers = adversary_->Optimisers();

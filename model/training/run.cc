@@ -108,6 +108,12 @@ void CutAll(const dataset::Dataset& whole, int frames, int stride, std::vector<i
   *indices = std::move(windows);
 }
 
+int LookaheadFrames(const TrainingOptions& options, double frame_rate_hz) {
+  const auto* flow = std::get_if<FlowTraining>(&options.method);
+  return flow == nullptr ? 0
+                         : static_cast<int>(std::lround(flow->lookahead_seconds * frame_rate_hz));
+}
+
 // The data set as the method trains on it. The sequences are held back before they are cut, so that
 // no window of a sequence for validation is trained on.
 dataset::Dataset CutIfAsked(const TrainingOptions& options, const dataset::Dataset& whole,
@@ -123,6 +129,36 @@ dataset::Dataset CutIfAsked(const TrainingOptions& options, const dataset::Datas
     CutAll(whole, frames(flow->window_seconds), frames(flow->stride_seconds), indices, &cut);
   }
   return cut;
+}
+
+// The checkpoint that the run begins with, noted in the manifest; an empty one if there is none.
+absl::StatusOr<checkpoint::Checkpoint> ReadFrom(const RunPlan& plan,
+                                                checkpoint::Manifest* manifest) {
+  if (plan.from.empty()) return checkpoint::Checkpoint();
+  absl::StatusOr<checkpoint::Checkpoint> from = checkpoint::ReadCheckpoint(plan.from);
+  if (!from.ok()) return from;
+  const engine::ModelDescription& model = from->manifest.model;
+  if (model.skeleton.joint_names != manifest->model.skeleton.joint_names ||
+      model.classes != manifest->model.classes) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        plan.from.string(), ": expected the joints and classes of the data (",
+        absl::StrJoin(manifest->model.skeleton.joint_names, " "), "; ",
+        absl::StrJoin(manifest->model.classes, " "), "), got ",
+        absl::StrJoin(model.skeleton.joint_names, " "), "; ", absl::StrJoin(model.classes, " ")));
+  }
+  manifest->training["from"] =
+      absl::StrCat(model.name, "@", model.version, " ", from->manifest.weights.sha256);
+  return from;
+}
+
+absl::Status StartFrom(const RunPlan& plan, const checkpoint::Checkpoint& from,
+                       EpochTrainer* trainer) {
+  if (plan.from.empty()) return absl::OkStatus();
+  const absl::Status started = trainer->StartFrom(from);
+  if (started.ok()) return started;
+  return absl::InvalidArgumentError(
+      absl::StrCat(plan.from.string(),
+                   ": expected the architecture of the options, got another: ", started.message()));
 }
 
 absl::Status Finish(const RunPlan& plan, checkpoint::Manifest manifest, const EpochReport& last,
@@ -169,6 +205,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   const dataset::Dataset dataset = CutIfAsked(plan.options, whole, &train, &validation);
   checkpoint::Manifest manifest = MakeManifest(plan, whole);
   manifest.model.window_frames = dataset.LongestFrameCount();
+  manifest.model.lookahead_frames = LookaheadFrames(plan.options, whole.frame_rate_hz);
   if (status = checkpoint::CheckManifest(manifest); !status.ok()) return status;
   std::error_code error;
   fs::create_directories(plan.folder, error);
@@ -181,11 +218,14 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   const bool fits_direction = std::visit(
       [](const auto& method) { return method.kFitsPartnerDirection; }, plan.options.method);
   if (fits_direction) manifest.model.partner_direction = FitPartnerDirection(dataset, train);
+  absl::StatusOr<checkpoint::Checkpoint> from = ReadFrom(plan, &manifest);
+  if (!from.ok()) return from.status();
   const std::unique_ptr<EpochTrainer> trainer =
       MakeTrainer(plan.options, manifest, dataset, train, validation);
   const fs::path state = plan.folder / "state";
   status = trainer->LoadState(state);
-  if (!status.ok() && !absl::IsNotFound(status)) return status;
+  if (absl::IsNotFound(status)) status = StartFrom(plan, *from, trainer.get());
+  if (!status.ok()) return status;
   RunLog log(plan.folder / "log.csv");
   if (status = log.ResumeAt(trainer->epoch()); !status.ok()) return status;
   EpochReport report;

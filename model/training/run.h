@@ -24,6 +24,9 @@ struct RunPlan {
   std::string title;  // of the progress line
   std::filesystem::path folder;
   std::vector<int> train;  // sequences of the data set
+  // Folder of a checkpoint of the same architecture, joints and classes whose weights the run
+  // begins with; empty: random weights.
+  std::filesystem::path from;
 };
 
 // Runs to the end, resuming a run that was killed. Returns immediately if the run has already

@@ -26,6 +26,7 @@ struct Arguments {
   std::string fold;
   std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
   std::vector<std::string> settings;
+  std::string from;
   int threads = 1;
 };
 
@@ -69,6 +70,7 @@ duet::training::RunPlan CommonPlan(const Arguments& arguments,
       arguments.name.empty() ? duet::checkpoint::ToPlainName(dataset.name) : arguments.name;
   plan.model_version = arguments.version;
   plan.description = arguments.description;
+  plan.from = arguments.from;
   return plan;
 }
 
@@ -152,6 +154,8 @@ void Declare(Arguments* arguments, CLI::App* app) {
   app->add_option("--config", arguments->config, "named configuration, or JSON file")
       ->capture_default_str();
   app->add_option("--set", arguments->settings, "override a setting: section.field=value");
+  app->add_option("--from", arguments->from,
+                  "checkpoint folder whose weights the training begins with (default: random)");
   app->add_option("--name", arguments->name, "name of the model (default: that of the data set)");
   app->add_option("--version-number", arguments->version, "version of the model")
       ->check(CLI::Range(1, 1000000))

@@ -48,6 +48,17 @@ TEST(Skeleton, FindsJointsByName) {
   EXPECT_EQ(SbuSkeleton().Find(""), -1);
 }
 
+TEST(Skeleton, HandsAreTheWristsIfItHasThem) {
+  Skeleton skeleton = SbuSkeleton();
+  EXPECT_EQ(FindHands(skeleton), (JointPair{5, 8}));
+  skeleton.joint_names[1] = "left_wrist";
+  EXPECT_EQ(FindHands(skeleton), (JointPair{5, 8}));  // one wrist is no pair
+  skeleton.joint_names[2] = "right_wrist";
+  EXPECT_EQ(FindHands(skeleton), (JointPair{1, 2}));
+  skeleton.joint_names[1] = skeleton.joint_names[2] = skeleton.joint_names[5] = "other";
+  EXPECT_FALSE(FindHands(skeleton).has_value());
+}
+
 TEST(Skeleton, KnowsParents) {
   EXPECT_THAT(SbuSkeleton().Parents(),
               ::testing::ElementsAre(1, 2, -1, 1, 3, 4, 1, 6, 7, 2, 9, 10, 2, 12, 13));

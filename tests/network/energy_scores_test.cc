@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "model/network/flow_losses.h"
 
 namespace duet::network {
@@ -74,6 +76,51 @@ TEST(EnergyScore, ClipShorterThanABlockScoresZero) {
   EXPECT_EQ(BlockEnergyScores(answers, real, Lengths({4, 3}), 6).abs().sum().item<float>(), 0);
   EXPECT_EQ(BlockEnergyScores(answers, real, Lengths({4, 3}), 3)[1].item<float>(), 0);
   EXPECT_NE(BlockEnergyScores(answers, real, Lengths({4, 3}), 3)[0].item<float>(), 0);
+}
+
+// A motion of one clip, two feet (or hands), given as [frames][joints].
+torch::Tensor Motion(const std::vector<std::vector<std::vector<float>>>& frames) {
+  std::vector<float> values;
+  for (const auto& frame : frames) {
+    for (const auto& joint : frame) values.insert(values.end(), joint.begin(), joint.end());
+  }
+  const int64_t count = static_cast<int64_t>(frames.size());
+  return torch::tensor(values).view({1, count, -1});
+}
+
+TEST(Slides, CountTheMotionOfFeetThatStandInTheCapture) {
+  const motion::JointPair feet = {0, 1};
+  // The left foot stands in the capture and slides by 0.5 in the answer, the right one walks.
+  const torch::Tensor real = Motion({{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}, {2, 0, 0}}});
+  const torch::Tensor slid = Motion({{{0, 0, 0}, {1, 0, 0}}, {{0.5, 0, 0}, {9, 0, 0}}});
+  EXPECT_NEAR(SquaredSlides(slid, real, Lengths({2}), feet, 0.1)[0].item<float>(), 0.5 * 0.5 / 2,
+              1e-6);  // mean of both feet
+  EXPECT_EQ(SquaredSlides(real, real, Lengths({2}), feet, 0.1)[0].item<float>(), 0);
+}
+
+TEST(FootMotions, TellAFootThatStandsFromOneThatMoves) {
+  const motion::JointPair feet = {1, 2};  // joint 0 is no foot
+  const torch::Tensor motion =
+      Motion({{{0, 0, 0}, {5, 0, 0}, {7, 0, 0}}, {{9, 9, 9}, {5, 0, 0.01}, {7, 40, 0}}});
+  const torch::Tensor motions = FootMotions(motion, feet, 1);
+  EXPECT_EQ(motions.sizes(), (std::vector<int64_t>{1, 1, 6}));
+  const float* values = motions.data_ptr<float>();
+  EXPECT_NEAR(values[2], 0.01, 1e-4);
+  EXPECT_NEAR(values[4], 1, 1e-3);
+  EXPECT_EQ(values[0] + values[1] + values[3] + values[5], 0);
+}
+
+TEST(HandPlaces, AreVectorsBetweenAllHandsThatSaturate) {
+  const motion::JointPair hands = {0, 1};
+  const torch::Tensor follower = Motion({{{0.1, 0, 0}, {100, 0, 0}}});
+  const torch::Tensor leader = Motion({{{0, 0, 0}, {0, 1, 0}}});
+  const torch::Tensor answers = torch::stack({follower, follower});
+  const torch::Tensor places = HandPlaces(answers, leader, hands, 0.1);
+  EXPECT_EQ(places.sizes(), (std::vector<int64_t>{2, 1, 1, 12}));
+  const float* values = places.data_ptr<float>();
+  EXPECT_NEAR(values[0], std::sqrt(0.5), 1e-4);                   // left to left: 0.1 apart
+  EXPECT_NEAR(values[4], -1 / std::sqrt(1 + 0.01 + 0.01), 1e-4);  // leader's right to left
+  EXPECT_NEAR(values[6], 1, 1e-4);                                // far
 }
 
 }  // namespace

@@ -75,6 +75,56 @@ TEST_F(RunTest, LongTakesAreTrainedOnInWindows) {
   EXPECT_EQ(checkpoint->manifest.training.at("flow.window_seconds"), "0.4");
 }
 
+TEST_F(RunTest, NotesTheLookaheadOfItsWindows) {
+  plan_.options = SmallFlowOptions();
+  plan_.options.epochs = 1;
+  FlowOf(&plan_.options).lookahead_seconds = 0.2;
+  ASSERT_THAT(Go(), IsOk());
+  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(checkpoint, IsOk());
+  EXPECT_EQ(checkpoint->manifest.model.lookahead_frames, 3);  // at 15 Hz
+}
+
+TEST_F(RunTest, BeginsWithTheWeightsOfACheckpoint) {
+  for (const TrainingOptions& options : {SmallOptions(), SmallFlowOptions()}) {
+    SCOPED_TRACE(std::holds_alternative<FlowTraining>(options.method));
+    plan_.options = options;
+    plan_.options.epochs = 1;
+    plan_.from.clear();
+    plan_.folder = folder_.path() / absl::StrCat("first", options.method.index());
+    ASSERT_THAT(Go(), IsOk());
+    plan_.from = CheckpointFolder(plan_);
+    plan_.folder = folder_.path() / absl::StrCat("second", options.method.index());
+    plan_.options.optimiser.learning_rate = 1e-9;  // keeps the weights
+    ASSERT_THAT(Go(), IsOk());
+    const auto first = checkpoint::ReadCheckpoint(plan_.from);
+    const auto second = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+    ASSERT_THAT(first, IsOk());
+    ASSERT_THAT(second, IsOk());
+    for (size_t i = 0; i < first->tensors.size(); ++i) {
+      const checkpoint::Tensor &before = first->tensors[i], &after = second->tensors[i];
+      for (size_t v = 0; v < before.values.size(); ++v) {
+        ASSERT_NEAR(before.values[v], after.values[v], 1e-4) << before.name;
+      }
+    }
+    EXPECT_EQ(second->manifest.training.at("from"), "made_up@1 " + first->manifest.weights.sha256);
+  }
+}
+
+TEST_F(RunTest, RejectsTheCheckpointOfAnotherModel) {
+  plan_.options.epochs = 1;
+  ASSERT_THAT(Go(), IsOk());
+  plan_.from = CheckpointFolder(plan_);
+  plan_.folder = folder_.path() / "other";
+  plan_.options = SmallFlowOptions();
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
+                             HasSubstr("expected the architecture of the options")));
+  dataset_.classes.back() = "waltz";
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("waltz")));
+  plan_.from = folder_.path() / "nowhere";
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kNotFound, HasSubstr("nowhere")));
+}
+
 TEST_F(RunTest, CheckpointHasTheStatisticsOfItsTrainingLeaders) {
   // Held-out people are not training leaders.
   for (motion::Vec3& joint : dataset_.sequences[1].pair.leader.poses.all()) joint = joint * 3;
