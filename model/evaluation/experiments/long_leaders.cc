@@ -133,6 +133,10 @@ int FrameCount(double seconds, double frame_rate_hz) {
   return static_cast<int>(std::lround(seconds * frame_rate_hz)) + 1;
 }
 
+int FadeFrames(double frame_rate_hz) {
+  return static_cast<int>(std::lround(kFadeSeconds * frame_rate_hz));
+}
+
 // Rotates and moves the clip on the floor to start as `first` does.
 motion::Poses StartLike(const motion::Skeleton& skeleton, const motion::Poses& first,
                         motion::Poses clip) {
@@ -202,7 +206,7 @@ motion::Poses LoopClips(const motion::Skeleton& skeleton, const std::vector<moti
                         double seconds, double frame_rate_hz) {
   const engine::CrossFade cross_fade(skeleton);
   const int frames = FrameCount(seconds, frame_rate_hz);
-  const int fade = static_cast<int>(std::lround(kFadeSeconds * frame_rate_hz));
+  const int fade = FadeFrames(frame_rate_hz);
   motion::Poses looped = clips.front();
   for (size_t i = 1; looped.frame_count() < frames; ++i) {
     const motion::Poses next = StartLike(skeleton, clips.front(), clips[i % clips.size()]);
@@ -210,6 +214,25 @@ motion::Poses LoopClips(const motion::Skeleton& skeleton, const std::vector<moti
     looped.Append(next.frames(fade, next.frame_count() - fade));
   }
   looped.Resize(frames);
+  return looped;
+}
+
+dataset::Sequence LoopTake(const dataset::Dataset& dataset, const dataset::Sequence& take,
+                           double seconds) {
+  dataset::Sequence looped = take;
+  looped.pair.leader.poses =
+      LoopClips(dataset.skeleton, {take.pair.leader.poses}, seconds, dataset.frame_rate_hz);
+  looped.pair.follower.poses.Resize(1);
+  looped.labels.clear();
+  const int frames = looped.pair.leader.frame_count();
+  const int step = take.pair.leader.frame_count() - FadeFrames(dataset.frame_rate_hz);
+  for (int first = 0; first < frames; first += step) {
+    for (const dataset::LabelSpan& span : take.labels) {
+      const int begin = first + span.begin;
+      const int end = std::min(first + std::min(span.end, step), frames);
+      if (begin < end) looped.labels.push_back({span.interaction_class, begin, end});
+    }
+  }
   return looped;
 }
 

@@ -27,6 +27,11 @@ motion::Poses MakeLeader(const std::string& name, double seconds, double frame_r
 motion::Poses LoopClips(const motion::Skeleton& skeleton, const std::vector<motion::Poses>& clips,
                         double seconds, double frame_rate_hz);
 
+// The take with its leader looped for `seconds` and its labels repeated. The follower has only its
+// first pose. Requires a take that is long enough for LoopClips.
+dataset::Sequence LoopTake(const dataset::Dataset& dataset, const dataset::Sequence& take,
+                           double seconds);
+
 // A long leader by name. Its follower has only a first pose.
 struct LongLeader {
   std::string name;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -7,35 +6,27 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/statistics.h"
+#include "absl/strings/str_format.h"
 #include "model/evaluation/baselines/take_baselines.h"
+#include "model/evaluation/experiments/long_leaders.h"
+#include "model/evaluation/experiments/turn_labels.h"
 #include "model/evaluation/metrics/dance.h"
-#include "model/evaluation/metrics/liveliness.h"
-#include "model/evaluation/metrics/penetration.h"
-#include "model/evaluation/metrics/posture.h"
 #include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/dance_figures.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/report/result_section.h"
-#include "model/motion/filter.h"
 #include "model/motion/standardise.h"
-#include "model/motion/steps.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-// Figures of one follower of one take, in the order of Columns().
-using Figures = std::vector<double>;
+constexpr double kPartSeconds = 60;  // of a looped take: its beginning and its end
+const std::vector<double> kTurnWeights = {-1, -0.5, 0, 0.5, 1};
 
-std::vector<std::string> Columns() {
-  return {"error",   "distance", "facing",    "turns", "matched", "delay", "held",
-          "hold, s", "slip",     "both feet", "steps", "speed",   "lean",  "overlap"};
-}
-
-// A row of the table: a way to answer takes, and its followers of all takes.
-struct Row {
-  std::string name;
-  std::vector<Figures> takes;
+struct DanceFlags : ExperimentFlags {
+  double loop_minutes = 0;
+  std::string turn_class;
 };
 
 struct Take {
@@ -51,36 +42,6 @@ std::vector<Take> TakesOf(const Experiment& experiment) {
     }
   }
   return takes;
-}
-
-Figures Measure(const dataset::Dataset& dataset, const metrics::DanceJoints& joints,
-                const dataset::Sequence& take, const motion::Poses& follower) {
-  const motion::Poses& leader = take.pair.leader.poses;
-  const motion::Poses& captured = take.pair.follower.poses;
-  const double rate = dataset.frame_rate_hz;
-  const auto turns = [&](const motion::Poses& person) {
-    return metrics::FindTurns(joints, person, leader, rate);
-  };
-  const std::vector<metrics::Turn> made = turns(follower), original = turns(captured);
-  const metrics::TurnMatch match = metrics::MatchTurns(original, made);
-  const metrics::Holds holds = metrics::MeasureHolds(joints, leader, follower, rate);
-  return {
-      metrics::MeanError(follower, captured),
-      metrics::RootDistance(leader, follower, dataset.skeleton),
-      metrics::FacingDegrees(leader, follower, dataset.skeleton),
-      static_cast<double>(made.size()),
-      original.empty() ? NAN : match.matched / static_cast<double>(original.size()),
-      match.mean_delay,
-      holds.share,
-      holds.mean_seconds,
-      holds.slip,
-      metrics::BothFeetMove(joints, follower, rate),
-      motion::MeasureStepTiming(motion::FindSteps(joints.feet, follower, rate),
-                                motion::FindSteps(joints.feet, leader, rate))
-          .spread,
-      metrics::JointSpeed(motion::WithoutNoise(follower, rate), rate),
-      metrics::MeasureLean(follower, dataset.skeleton, rate, metrics::LeanFrom::kHips).max_degrees,
-      metrics::MeasurePenetration(leader, follower, dataset.skeleton, dataset.parts).frequency};
 }
 
 // A follower of another leader, moved as if that leader began where this one does, and cut or held
@@ -99,122 +60,199 @@ motion::Poses MovedTo(const motion::Skeleton& skeleton, const dataset::Sequence&
   return frame(take.pair.leader.poses).Invert(cut);
 }
 
-// The model's answers to all takes: [takes].
-absl::StatusOr<std::vector<motion::Poses>> AnswerTakes(const Experiment& experiment,
-                                                       const FoldModel& model,
-                                                       const std::vector<Take>& takes,
-                                                       experiments::StartGiven start,
-                                                       const engine::Sampling& sampling) {
-  std::vector<motion::Poses> followers;
-  for (const Take& take : takes) {
+// Answers takes with one model and one kind of start.
+struct Dancer {
+  const Experiment& experiment;
+  const metrics::DanceJoints& joints;
+  const FoldModel& model;
+  const DanceFlags& flags;
+  experiments::StartGiven start;
+
+  std::string name() const { return absl::StrCat(model.name, StartSuffix(start)); }
+
+  engine::Sampling Sampling(int n) const {
+    return {flags.asked.seed + static_cast<uint64_t>(n), flags.asked.variety};
+  }
+
+  absl::StatusOr<motion::Poses> Answer(const Take& take, engine::LabelTrack labels,
+                                       const engine::Sampling& sampling) const {
     absl::StatusOr<SharedSynthesizer> synthesizer = model.load(take.fold->subject);
     if (!synthesizer.ok()) return synthesizer.status();
     absl::Status fits = CheckModelTakes((*synthesizer)->description(), experiment.dataset, start);
     if (!fits.ok()) return fits;
-    const experiments::LabelledLeader leader = {
-        take.sequence,
-        experiments::TimeLineLabels(*take.sequence, experiment.dataset.class_count()), sampling};
+    const experiments::LabelledLeader leader = {take.sequence, std::move(labels), sampling};
     absl::StatusOr<std::vector<motion::Poses>> answer =
         SynthesizeSequences(**synthesizer, {&leader, 1}, start);
     if (!answer.ok()) return answer.status();
-    followers.push_back(std::move(answer->front()));
+    return std::move(answer->front());
   }
-  return followers;
-}
 
-// Rows of one model with one kind of start: its answers with each seed, and the same answers beside
-// the leader of the next take.
-absl::Status AddModel(const Experiment& experiment, const metrics::DanceJoints& joints,
-                      const FoldModel& model, const ExperimentFlags& flags,
-                      const std::string& start, std::vector<Row>* rows) {
-  const std::vector<Take> takes = TakesOf(experiment);
-  const std::string name = absl::StrCat(model.name, StartSuffix(ParseStart(start)));
-  Row own = {name, {}}, chance = {absl::StrCat(name, ", other lead"), {}};
-  for (int n = 0; n < flags.asked.samples; ++n) {
-    absl::StatusOr<std::vector<motion::Poses>> followers =
-        AnswerTakes(experiment, model, takes, ParseStart(start),
-                    {flags.asked.seed + static_cast<uint64_t>(n), flags.asked.variety});
-    if (!followers.ok()) return followers.status();
+  // With the labels of the take's time line.
+  absl::StatusOr<motion::Poses> Answer(const Take& take, const engine::Sampling& sampling) const {
+    return Answer(take,
+                  experiments::TimeLineLabels(*take.sequence, experiment.dataset.class_count()),
+                  sampling);
+  }
+
+  std::vector<double> Measure(const motion::Poses& leader, const motion::Poses& follower,
+                              const motion::Poses* captured) const {
+    return MeasureDance(experiment.dataset, joints, leader, follower, captured);
+  }
+};
+
+// The answers to all takes with each seed, and the same answers beside the leader of the next take.
+absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows) {
+  const std::vector<Take> takes = TakesOf(dancer.experiment);
+  DanceRow own = {dancer.name(), {}}, chance = {absl::StrCat(dancer.name(), ", other lead"), {}};
+  for (int n = 0; n < dancer.flags.asked.samples; ++n) {
+    std::vector<motion::Poses> followers;
+    for (const Take& take : takes) {
+      absl::StatusOr<motion::Poses> follower = dancer.Answer(take, dancer.Sampling(n));
+      if (!follower.ok()) return follower.status();
+      followers.push_back(*std::move(follower));
+    }
     for (size_t i = 0; i < takes.size(); ++i) {
-      const dataset::Sequence& take = *takes[i].sequence;
-      own.takes.push_back(Measure(experiment.dataset, joints, take, (*followers)[i]));
+      const motion::ClipPair& pair = takes[i].sequence->pair;
+      own.takes.push_back(dancer.Measure(pair.leader.poses, followers[i], &pair.follower.poses));
       const size_t other = (i + 1) % takes.size();
       if (other == i) continue;
-      chance.takes.push_back(
-          Measure(experiment.dataset, joints, take,
-                  MovedTo(experiment.dataset.skeleton, take,
-                          takes[other].sequence->pair.leader.poses, (*followers)[other])));
+      const motion::Poses moved =
+          MovedTo(dancer.experiment.dataset.skeleton, *takes[i].sequence,
+                  takes[other].sequence->pair.leader.poses, followers[other]);
+      chance.takes.push_back(dancer.Measure(pair.leader.poses, moved, &pair.follower.poses));
     }
-    std::cerr << name << ": seed " << n + 1 << " of " << flags.asked.samples << "\n";
+    std::cerr << dancer.name() << ": seed " << n + 1 << " of " << dancer.flags.asked.samples
+              << "\n";
   }
   rows->push_back(std::move(own));
   if (!chance.takes.empty()) rows->push_back(std::move(chance));
   return absl::OkStatus();
 }
 
+motion::Poses Part(const motion::Poses& poses, int first, int count) {
+  motion::Poses part(0, poses.joint_count());
+  part.Append(poses.frames(first, count));
+  return part;
+}
+
+// The first and the last minute of answers to takes whose leader is looped.
+absl::Status AddLoops(const Dancer& dancer, std::vector<DanceRow>* rows) {
+  const dataset::Dataset& dataset = dancer.experiment.dataset;
+  DanceRow first = {absl::StrCat(dancer.name(), ", first minute"), {}},
+           last = {absl::StrCat(dancer.name(), ", last minute"), {}};
+  for (const Take& take : TakesOf(dancer.experiment)) {
+    const dataset::Sequence looped =
+        experiments::LoopTake(dataset, *take.sequence, 60 * dancer.flags.loop_minutes);
+    absl::StatusOr<motion::Poses> follower =
+        dancer.Answer({&looped, take.fold}, dancer.Sampling(0));
+    if (!follower.ok()) return follower.status();
+    const int part = static_cast<int>(kPartSeconds * dataset.frame_rate_hz);
+    const auto measure = [&](int begin) {
+      return dancer.Measure(Part(looped.pair.leader.poses, begin, part),
+                            Part(*follower, begin, part), nullptr);
+    };
+    first.takes.push_back(measure(0));
+    last.takes.push_back(measure(follower->frame_count() - part));
+  }
+  rows->push_back(std::move(first));
+  rows->push_back(std::move(last));
+  return absl::OkStatus();
+}
+
+// The share of stretches in which the follower turns, by the weight of the turn's class.
+absl::Status AddTurns(const Dancer& dancer, int turn_class, report::Table* table) {
+  const dataset::Dataset& dataset = dancer.experiment.dataset;
+  std::vector<double> led, not_led;
+  for (const double weight : kTurnWeights) {
+    int stretches[2] = {0, 0}, turned[2] = {0, 0};
+    for (const Take& take : TakesOf(dancer.experiment)) {
+      const experiments::TurnStretches found =
+          experiments::FindTurnStretches(*take.sequence, turn_class, dataset.frame_rate_hz);
+      for (const bool is_led : {false, true}) {
+        const std::vector<experiments::FrameSpan>& spans = is_led ? found.led : found.not_led;
+        for (int n = 0; n < dancer.flags.asked.samples; ++n) {
+          absl::StatusOr<motion::Poses> follower =
+              dancer.Answer(take,
+                            experiments::LabelsWithTurn(*take.sequence, dataset.class_count(),
+                                                        turn_class, spans, weight),
+                            dancer.Sampling(n));
+          if (!follower.ok()) return follower.status();
+          stretches[is_led] += static_cast<int>(spans.size());
+          turned[is_led] += experiments::CountTurned(
+              spans,
+              metrics::FindTurns(dancer.joints, *follower, take.sequence->pair.leader.poses,
+                                 dataset.frame_rate_hz),
+              dataset.frame_rate_hz);
+        }
+      }
+    }
+    not_led.push_back(turned[0] / static_cast<double>(stretches[0]));
+    led.push_back(turned[1] / static_cast<double>(stretches[1]));
+  }
+  table->rows.push_back({absl::StrCat(dancer.name(), ", not led"), std::move(not_led)});
+  table->rows.push_back({absl::StrCat(dancer.name(), ", led"), std::move(led)});
+  return absl::OkStatus();
+}
+
+report::Table TurnTable(const std::string& turn_class) {
+  report::Table table;
+  table.title = absl::StrCat("Turns by the weight of ", turn_class);
+  for (const double weight : kTurnWeights) {
+    table.columns.push_back(absl::StrFormat("%g", weight));
+  }
+  table.notes = {
+      "Share of stretches in which the follower turns, if the class has this weight in the stretch "
+      "and every other class has 0. Not led: stretches of 4 s without the class in the capture. "
+      "Led: the captured ones."};
+  table.decimals = 2;
+  return table;
+}
+
 void AddBaselines(const Experiment& experiment, const metrics::DanceJoints& joints,
-                  std::vector<Row>* rows) {
+                  std::vector<DanceRow>* rows) {
   const dataset::Dataset& dataset = experiment.dataset;
-  Row held = {"first pose held", {}}, mean = {"class mean", {}}, nearest = {"nearest seconds", {}},
-      captured = {"captured", {}};
+  DanceRow held = {"first pose held", {}}, mean = {"class mean", {}},
+           nearest = {"nearest seconds", {}}, captured = {"captured", {}};
   for (const Take& take : TakesOf(experiment)) {
     const std::vector<int>& train = take.fold->split.train;
-    const auto add = [&](const motion::Poses& follower, Row* row) {
-      row->takes.push_back(Measure(dataset, joints, *take.sequence, follower));
+    const motion::ClipPair& pair = take.sequence->pair;
+    const auto add = [&](const motion::Poses& follower, DanceRow* row) {
+      row->takes.push_back(
+          MeasureDance(dataset, joints, pair.leader.poses, follower, &pair.follower.poses));
     };
     add(baselines::FirstPoseHeld(*take.sequence), &held);
     add(baselines::MeanOfClass(dataset, train, *take.sequence), &mean);
     add(baselines::NearestSeconds(dataset, train, *take.sequence), &nearest);
-    add(take.sequence->pair.follower.poses, &captured);
+    add(pair.follower.poses, &captured);
   }
-  for (Row* row : {&held, &mean, &nearest, &captured}) rows->push_back(std::move(*row));
+  for (DanceRow* row : {&held, &mean, &nearest, &captured}) rows->push_back(std::move(*row));
 }
 
-// Means over the takes.
-report::Table ToTable(const std::vector<Row>& rows) {
-  report::Table table;
-  table.title = "Followers of whole takes, mean over the takes";
-  table.columns = Columns();
-  for (const Row& row : rows) {
-    std::vector<double> means;
-    for (size_t c = 0; c < table.columns.size(); ++c) {
-      std::vector<double> values;
-      for (const Figures& take : row.takes) values.push_back(take[c]);
-      means.push_back(base::Mean(values));
-    }
-    table.rows.push_back({row.name, std::move(means)});
-  }
-  table.notes = {
-      "Error: mean distance of a joint from the captured one, metres. Distance: of the roots, "
-      "metres. Facing: angle between the follower's facing direction and the leader, degrees.",
-      "Turns: rotations against the line between the people of at least 230 degrees. Matched: "
-      "share "
-      "of the captured turns with one the same way within 1.5 s. Delay: mean time between the "
-      "middles of matched turns, seconds.",
-      "Held: share of frames in which a wrist of one is less than 28 cm from a wrist of the other; "
-      "hold: mean length of a hold, seconds; slip: speed of the two wrists against each other "
-      "while "
-      "held, m/s.",
-      "Both feet: share of frames in which both are faster than 0.15 m/s. Steps: standard "
-      "deviation "
-      "of the time from a step to the leader's nearest one, seconds. Speed: of the joints without "
-      "noise, m/s. Lean: largest mean over one second of hips to neck, degrees. Overlap: share of "
-      "frames in which the bodies overlap."};
-  table.decimals = 3;
-  return table;
+absl::StatusOr<int> FindTurnClass(const DanceFlags& flags, const dataset::Dataset& dataset) {
+  const auto found = std::find(dataset.classes.begin(), dataset.classes.end(), flags.turn_class);
+  if (found != dataset.classes.end()) return static_cast<int>(found - dataset.classes.begin());
+  return absl::InvalidArgumentError(
+      absl::StrCat("--turn-class: expected a class of the data, got ", flags.turn_class));
 }
 
-absl::Status Run(const ExperimentFlags& flags) {
+absl::Status Run(const DanceFlags& flags) {
   absl::StatusOr<Experiment> experiment = OpenExperiment(flags);
   if (!experiment.ok()) return experiment.status();
   absl::StatusOr<metrics::DanceJoints> joints =
       metrics::FindDanceJoints(experiment->dataset.skeleton);
   if (!joints.ok()) return joints.status();
-  std::vector<Row> rows;
+  absl::StatusOr<int> turn_class = 0;
+  if (!flags.turn_class.empty()) turn_class = FindTurnClass(flags, experiment->dataset);
+  if (!turn_class.ok()) return turn_class.status();
+  std::vector<DanceRow> rows, loops;
+  report::Table turns = TurnTable(flags.turn_class);
   AddBaselines(*experiment, *joints, &rows);
   for (const FoldModel& model : experiment->models) {
     for (const std::string& start : flags.starts) {
-      absl::Status status = AddModel(*experiment, *joints, model, flags, start, &rows);
+      const Dancer dancer = {*experiment, *joints, model, flags, ParseStart(start)};
+      absl::Status status = AddAnswers(dancer, &rows);
+      if (status.ok() && flags.loop_minutes > 0) status = AddLoops(dancer, &loops);
+      if (status.ok() && !flags.turn_class.empty()) status = AddTurns(dancer, *turn_class, &turns);
       if (!status.ok()) return status;
     }
   }
@@ -222,18 +260,22 @@ absl::Status Run(const ExperimentFlags& flags) {
       flags, *experiment,
       "Whole takes of left-out subjects, answered with the labels of their time lines. \"Other "
       "lead\": the same answers beside the leader of the next take, as if both leaders began at "
-      "the "
-      "same place; a figure that is as good there does not depend on the leader.");
+      "the same place; a figure that is as good there does not depend on the leader.");
   section.settings.emplace_back("seeds", absl::StrCat(flags.asked.samples));
   section.settings.emplace_back("variety", absl::StrCat(flags.asked.variety));
-  section.tables = {ToTable(rows)};
+  section.tables = {DanceTable("Followers of whole takes, mean over the takes", rows)};
+  if (!loops.empty()) {
+    section.tables.push_back(DanceTable(
+        absl::StrFormat("The same leaders looped for %g minutes", flags.loop_minutes), loops));
+  }
+  if (!turns.rows.empty()) section.tables.push_back(std::move(turns));
   return FinishSection(flags.section, section);
 }
 
 }  // namespace
 
 void AddDanceCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto flags = std::make_shared<ExperimentFlags>();
+  const auto flags = std::make_shared<DanceFlags>();
   flags->starts = {"pose"};
   flags->asked.samples = 3;
   CLI::App* command = app->add_subcommand("dance", "Followers of whole takes of a couple's dance");
@@ -241,6 +283,12 @@ void AddDanceCommand(CLI::App* app, ChosenCommand* chosen) {
   command->add_option("--samples", flags->asked.samples, "answers to each take, each with its seed")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command
+      ->add_option("--loop-minutes", flags->loop_minutes,
+                   "loop the takes, and compare the first and the last minute of the answers")
+      ->check(CLI::Range(1.0, 60.0));
+  command->add_option("--turn-class", flags->turn_class,
+                      "class of a turn: measure how its weight decides that the follower turns");
   RunWhenNamed(command, flags, Run, chosen);
 }
 

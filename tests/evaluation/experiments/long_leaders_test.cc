@@ -75,6 +75,26 @@ TEST(MadeLeadersTest, MoveAsTheirNamesSay) {
   EXPECT_LT(sit.at(5 * 15, skeleton.root).y, sit.at(0, skeleton.root).y - 0.3f);
 }
 
+TEST(LoopTakeTest, RepeatsTheLabelsWithTheLeader) {
+  dataset::Dataset dataset = duet::test::MadeUpPairs(1);
+  dataset.frame_rate_hz = kRate;
+  dataset::Sequence take;
+  take.pair.leader = {dataset.skeleton.joint_names, kRate, duet::test::SwayingMotion(60, kRate)};
+  take.pair.follower = take.pair.leader;
+  take.labels = {{1, 0, 20}, {2, 30, 60}};
+  const dataset::Sequence looped = LoopTake(dataset, take, 8);
+  EXPECT_EQ(looped.pair.leader.frame_count(), 121);
+  EXPECT_EQ(looped.pair.follower.frame_count(), 1);
+  // The last half second (8 frames) of the take is faded into its next beginning.
+  ASSERT_EQ(looped.labels.size(), 5u);
+  const int begins[] = {0, 30, 52, 82, 104}, ends[] = {20, 52, 72, 104, 121};
+  for (size_t i = 0; i < looped.labels.size(); ++i) {
+    EXPECT_EQ(looped.labels[i].interaction_class, i % 2 == 0 ? 1 : 2) << i;
+    EXPECT_EQ(looped.labels[i].begin, begins[i]) << i;
+    EXPECT_EQ(looped.labels[i].end, ends[i]) << i;
+  }
+}
+
 TEST(LoopClipsTest, JoinsClipsWithoutAJump) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const motion::Poses clip = test::SwayingMotion(40, kRate);

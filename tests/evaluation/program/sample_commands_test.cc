@@ -111,6 +111,26 @@ TEST(SampleCommandsTest, DanceComparesWithBaselinesAndAnotherLead) {
   EXPECT_GT(table["rows"][4].at("values").at(0), 0);
 }
 
+TEST(SampleCommandsTest, DanceLoopsLeadersAndWeighsTurns) {
+  const auto section =
+      RunCommand({"dance", "--samples", "1", "--loop-minutes", "1.5", "--turn-class", "hug"});
+  ASSERT_THAT(section, IsOk());
+  const nlohmann::json& tables = section->at("tables");
+  ASSERT_THAT(tables, SizeIs(3));
+  EXPECT_THAT(RowNames(tables[1]),
+              ElementsAre("duet+pose, first minute", "duet+pose, last minute"));
+  EXPECT_TRUE(tables[1]["rows"][0].at("values").at(0).is_null());  // no captured follower
+  EXPECT_GT(tables[1]["rows"][1].at("values").at(1), 0);
+  EXPECT_EQ(tables[2].at("columns"), nlohmann::json({"-1", "-0.5", "0", "0.5", "1"}));
+  EXPECT_THAT(RowNames(tables[2]), ElementsAre("duet+pose, not led", "duet+pose, led"));
+}
+
+TEST(SampleCommandsTest, DanceRejectsATurnThatTheDataLacks) {
+  const auto section = RunCommand({"dance", "--samples", "1", "--turn-class", "pirouette"});
+  EXPECT_THAT(section, StatusIs(absl::StatusCode::kInvalidArgument,
+                                HasSubstr("--turn-class: expected a class of the data")));
+}
+
 TEST(SampleCommandsTest, ToldApartHasAColumnAFold) {
   const auto section = RunCommand({"told-apart", "--seeds", "1", "--starts", "none"});
   ASSERT_THAT(section, IsOk());
