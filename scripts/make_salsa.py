@@ -6,7 +6,8 @@
 
 TAKES holds `lead_NN` and `follow_NN` ([frames, joints, 3], metres, y up, one world), `joints`,
 `parents` and `fps`. GLITCHES lists frames to leave out: PERSON_NN, a tab, FIRST-LAST,... below a
-heading. --sheets writes a contact sheet of every class (needs python3-matplotlib).
+heading. --leads writes a second data set, in which the lead answers a standing person, to train a
+generator of leads. --sheets writes a contact sheet of every class (needs python3-matplotlib).
 """
 
 import argparse
@@ -16,7 +17,7 @@ from pathlib import Path
 
 import numpy
 
-from salsa import dataset_folder, moves, takes
+from salsa import dataset_folder, moves, standing, takes
 
 
 def _print_summary(prepared):
@@ -46,10 +47,12 @@ def main(arguments=None):
     parser.add_argument("--takes", type=Path, required=True, metavar="FILE.npz")
     parser.add_argument("--glitches", type=Path, metavar="FILE.tsv")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="a new folder")
+    parser.add_argument("--leads", type=Path, metavar="DIR", help="a new folder")
     parser.add_argument("--sheets", type=Path, metavar="DIR")
     options = parser.parse_args(arguments)
-    if options.out.exists():
-        parser.error(f"--out: expected a new folder, got {options.out}, which exists")
+    for flag, folder in (("--out", options.out), ("--leads", options.leads)):
+        if folder and folder.exists():
+            parser.error(f"{flag}: expected a new folder, got {folder}, which exists")
     try:
         glitches = takes.read_glitches(options.glitches) if options.glitches else {}
         prepared = takes.prepare(takes.read_archive(options.takes), glitches)
@@ -60,6 +63,9 @@ def main(arguments=None):
         parents = [int(parent) for parent in archive["parents"]]
     dataset_folder.write(prepared, parents, options.out)
     _print_summary(prepared)
+    if options.leads:
+        dataset_folder.write(prepared, parents, options.leads, "salsa_lead",
+                             lambda take: standing.leads(take, parents))
     if options.sheets:
         _write_sheets(prepared, parents, options.sheets)
     return 0
