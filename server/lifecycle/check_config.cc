@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "server/config/memory_limit.h"
 #include "server/config/memory_plan.h"
@@ -49,6 +50,10 @@ class Findings final : public registry::ModelObserver {
     if (!problems.ok()) return Problem(std::string(problems.status().message()));
     Problems(*problems);
   }
+  void LeftOut(const std::vector<std::string>& sources) {
+    if (sources.empty()) return;
+    out_ << "left out, not free for all uses: " << absl::StrJoin(sources, ", ") << "\n";
+  }
   bool all_right() const { return all_right_; }
 
  private:
@@ -63,8 +68,13 @@ void CheckModels(const v1::ServerConfig& values, const registry::ModelSource& so
   ConfigureModels(values, manager);
   const auto loaded = LoadModels(
       values, source, [] { return false; }, manager, registry);
-  findings.Problems(loaded);
-  if (loaded.ok()) findings.Problems(SettleModels(values, manager, registry));
+  if (loaded.ok()) {
+    findings.Problems(loaded->problems);
+    findings.LeftOut(loaded->left_out);
+    findings.Problems(SettleModels(values, manager, registry));
+  } else {
+    findings.Problem(std::string(loaded.status().message()));
+  }
   for (const std::string& warning :
        config::MemoryWarnings(values, config::AvailableMemory(), metrics::ResidentBytes())) {
     out << "warning: " << warning << "\n";

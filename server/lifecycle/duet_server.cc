@@ -338,10 +338,16 @@ void DuetServer::Configure(const v1::ServerConfig& settings) {
 
 absl::Status DuetServer::Load(const registry::ModelSource& source,
                               const std::function<bool()>& stop) {
-  const absl::StatusOr<std::vector<std::string>> problems =
+  const absl::StatusOr<LoadFindings> findings =
       LoadModels(settings_, source, stop, manager_, registry_);
-  if (!problems.ok()) return problems.status();
-  for (const std::string& problem : *problems) log_.Error("load_problem", {{"message", problem}});
+  if (!findings.ok()) return findings.status();
+  for (const std::string& problem : findings->problems) {
+    log_.Error("load_problem", {{"message", problem}});
+  }
+  if (!findings->left_out.empty()) {
+    log_.Info("models_left_out",
+              {{"sources", findings->left_out}, {"message", "not free for all uses"}});
+  }
   return absl::OkStatus();
 }
 

@@ -1,5 +1,8 @@
 #include "server/lifecycle/load_models.h"
 
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -11,27 +14,64 @@
 namespace duet::server::lifecycle {
 namespace {
 
-// Loads the checkpoints inside the program. The first is the default unless the operator names one.
-absl::Status LoadEmbedded(const registry::ModelSource& source, registry::ModelManager& manager,
-                          registry::ModelRegistry& registry) {
+using Model = std::shared_ptr<const engine::Synthesizer>;
+
+bool ServesOnlyFree(const v1::ServerConfig& settings) {
+  return settings.models() == v1::SERVED_MODELS_FREE;
+}
+
+// Rejects checkpoints that are not free for all uses.
+registry::ModelLoader OnlyFree(registry::ModelLoader load) {
+  return [load = std::move(load)](const std::filesystem::path& folder) -> absl::StatusOr<Model> {
+    absl::StatusOr<Model> model = load(folder);
+    if (!model.ok() || (*model)->description().free_for_all_uses) return model;
+    return absl::FailedPreconditionError(
+        "free_for_all_uses: expected true because of the setting models, got false");
+  };
+}
+
+std::string SourceOf(const Model& model) {
+  const engine::ModelDescription& description = model->description();
+  return absl::StrCat("embedded/", description.name, "/", description.version);
+}
+
+// Removes the models that are not free for all uses. Returns their sources.
+std::vector<std::string> KeepFree(std::vector<Model>& models) {
+  const auto left_out = std::stable_partition(models.begin(), models.end(), [](const Model& model) {
+    return model->description().free_for_all_uses;
+  });
+  std::vector<std::string> sources;
+  std::transform(left_out, models.end(), std::back_inserter(sources), SourceOf);
+  models.erase(left_out, models.end());
+  return sources;
+}
+
+// Loads the checkpoints inside the program. The first that the settings allow is the default unless
+// the operator names one.
+absl::StatusOr<LoadFindings> LoadEmbedded(const v1::ServerConfig& settings,
+                                          const registry::ModelSource& source,
+                                          registry::ModelManager& manager,
+                                          registry::ModelRegistry& registry) {
   const common::TimePoint begin = common::Clock::Real().Now();
-  const auto models = source.load_embedded();
+  absl::StatusOr<std::vector<Model>> models = source.load_embedded();
   const double seconds = common::SecondsBetween(begin, common::Clock::Real().Now());
+  LoadFindings findings;
   if (!models.ok()) {
     manager.Add({"embedded", models.status(), seconds});
-    return absl::OkStatus();
+    return findings;
   }
-  for (const std::shared_ptr<const engine::Synthesizer>& model : *models) {
-    const engine::ModelDescription& description = model->description();
-    registry::LoadReport report{
-        absl::StrCat("embedded/", description.name, "/", description.version), model,
-        seconds / static_cast<double>(models->size())};
+  const double seconds_each = seconds / static_cast<double>(models->size());
+  if (ServesOnlyFree(settings)) findings.left_out = KeepFree(*models);
+  for (const Model& model : *models) {
+    registry::LoadReport report{SourceOf(model), model, seconds_each};
     const absl::Status checked = registry::CheckAnswers(*model);
     if (!checked.ok()) report.model = checked;
     manager.Add(report);
   }
-  if (registry.List().empty()) return absl::OkStatus();
-  return registry.SetDefault(models->front()->description().name);
+  if (registry.List().empty()) return findings;
+  const absl::Status set = registry.SetDefault(models->front()->description().name);
+  if (!set.ok()) return set;
+  return findings;
 }
 
 }  // namespace
@@ -53,26 +93,32 @@ void ConfigureModels(const v1::ServerConfig& settings, registry::ModelManager& m
   manager.SetPolicies(std::move(policies));
 }
 
-absl::StatusOr<std::vector<std::string>> LoadModels(const v1::ServerConfig& settings,
-                                                    const registry::ModelSource& source,
-                                                    const std::function<bool()>& stop,
-                                                    registry::ModelManager& manager,
-                                                    registry::ModelRegistry& registry) {
+absl::StatusOr<LoadFindings> LoadModels(const v1::ServerConfig& settings,
+                                        const registry::ModelSource& source,
+                                        const std::function<bool()>& stop,
+                                        registry::ModelManager& manager,
+                                        registry::ModelRegistry& registry) {
   if (settings.model_repository().empty()) {
-    const absl::Status loaded = LoadEmbedded(source, manager, registry);
-    if (!loaded.ok()) return loaded;
-    return std::vector<std::string>();
+    return LoadEmbedded(settings, source, manager, registry);
   }
-  manager.UseRepository(settings.model_repository(), source.load_folder);
+  manager.UseRepository(settings.model_repository(), ServesOnlyFree(settings)
+                                                         ? OnlyFree(source.load_folder)
+                                                         : source.load_folder);
   absl::StatusOr<registry::ReloadReport> report = manager.Reload(stop);
   if (!report.ok()) return report.status();
-  return std::move(report->problems);
+  return LoadFindings{std::move(report->problems), {}};
 }
 
 absl::StatusOr<std::vector<std::string>> SettleModels(const v1::ServerConfig& settings,
                                                       registry::ModelManager& manager,
                                                       registry::ModelRegistry& registry) {
-  if (registry.List().empty()) return absl::FailedPreconditionError("no model could be loaded");
+  if (registry.List().empty()) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("no model could be loaded",
+                     ServesOnlyFree(settings)
+                         ? "; models: expected at least one that is free for all uses, got none"
+                         : ""));
+  }
   if (const std::vector<std::string> unknown = manager.UnknownNames(); !unknown.empty()) {
     return absl::InvalidArgumentError(absl::StrJoin(unknown, "\n"));
   }

@@ -128,7 +128,7 @@ TEST(ParseCommandLineTest, ReadsFlagsOfEveryKind) {
       "--drain-seconds 8 --grace-seconds 9 "
       "--clean-up off --engine torch --precision f32 --max-batch-windows 10 "
       "--version-policy sbu=latest:2 --version-policy *=1,3 "
-      "--version-policy k3hi=all --admin-listen b:2 "
+      "--version-policy k3hi=all --admin-listen b:2 --models free "
       "--max-batch-delay-seconds 0.5 --client-share 0.5 --client-key x-client "
       "--max-held-bytes 30000 --receive-timeout-seconds 11 --write-timeout-seconds 12 "
       "--max-call-seconds 13 --self-check-seconds 14 --watchdog-seconds 16 --max-slow-requests 15",
@@ -145,7 +145,7 @@ TEST(ParseCommandLineTest, ReadsFlagsOfEveryKind) {
          max_batch_windows: 10 max_batch_delay_seconds: 0.5
          version_policies { model: "sbu" latest: 2 }
          version_policies { model: "*" versions: 1 versions: 3 }
-         version_policies { model: "k3hi" } admin_listen: "b:2"
+         version_policies { model: "k3hi" } admin_listen: "b:2" models: SERVED_MODELS_FREE
          tls_certificate_file: "/c" tls_key_file: "/k" tls_client_ca_file: "/a" access_file: "/l"
          otlp_endpoint: "http://o:1" trace_ratio: 0.25 log_format: LOG_FORMAT_TEXT
          log_level: LOG_LEVEL_WARNING log_success_ratio: 0.5 log_refusals_per_second: 3
@@ -161,6 +161,7 @@ TEST(ParseCommandLineTest, ReadsFlagsOfEveryKind) {
 TEST(ParseCommandLineTest, AcceptsOnlyTheChoicesOfAnEnum) {
   EXPECT_EQ(Parse({"--clean-up", "auto"})->config.clean_up(), v1::CLEAN_UP_POLICY_AUTO);
   EXPECT_EQ(Parse({"--clean-up", "on"})->config.clean_up(), v1::CLEAN_UP_POLICY_ON);
+  EXPECT_EQ(Parse({"--models", "all"})->config.models(), v1::SERVED_MODELS_ALL);
   EXPECT_THAT(
       Parse({"--clean-up", "maybe"}),
       StatusIs(kInvalidArgument, HasSubstr("--clean-up: expected auto, on or off, got \"maybe\"")));

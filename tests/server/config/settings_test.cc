@@ -32,6 +32,7 @@ TEST(SettingsTest, DefaultsServeTheEmbeddedCheckpointOnTheWellKnownPorts) {
   EXPECT_TRUE(options->model_repository().empty());
   EXPECT_EQ(options->admin_listen(), "off");
   EXPECT_EQ(options->clean_up(), v1::CLEAN_UP_POLICY_AUTO);
+  EXPECT_EQ(options->models(), v1::SERVED_MODELS_ALL);
   EXPECT_TRUE(options->reflection());
   EXPECT_EQ(options->workers(), 4);
   EXPECT_EQ(options->threads_per_worker(), 1);
@@ -70,7 +71,8 @@ TEST(SettingsTest, ValidValuesStayAsGiven) {
          admin_listen: "0.0.0.0:7" reflection: false engine: ENGINE_TORCH precision: PRECISION_F32
          workers: 2 threads_per_worker: 3 max_calls: 5 max_queued_windows: 6 max_batch_windows: 8
          max_batch_delay_seconds: 0.25 max_request_bytes: 4096 max_transport_bytes: 10000
-         buffered_frames: 7 drain_seconds: 8.5 grace_seconds: 9 clean_up: CLEAN_UP_POLICY_OFF)",
+         buffered_frames: 7 drain_seconds: 8.5 grace_seconds: 9 clean_up: CLEAN_UP_POLICY_OFF
+         models: SERVED_MODELS_FREE)",
       /*json=*/false);
   ASSERT_THAT(given, IsOk());
   const absl::StatusOr<v1::ServerConfig> settings = ResolveSettings(*given, 4);
@@ -181,6 +183,8 @@ INSTANTIATE_TEST_SUITE_P(
                   [](v1::ServerConfig& c) { c.set_clean_up(v1::CLEAN_UP_POLICY_UNSPECIFIED); }},
         BadConfig{"clean_up: expected CLEAN_UP_POLICY_AUTO",
                   [](v1::ServerConfig& c) { c.set_clean_up(static_cast<v1::CleanUpPolicy>(9)); }},
+        BadConfig{"models: expected SERVED_MODELS_ALL or SERVED_MODELS_FREE",
+                  [](v1::ServerConfig& c) { c.set_models(v1::SERVED_MODELS_UNSPECIFIED); }},
         BadConfig{"admin_listen: expected host:port",
                   [](v1::ServerConfig& c) { c.set_admin_listen("b"); }},
         BadConfig{"version_policies[0]: expected a model's name",
