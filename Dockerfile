@@ -52,10 +52,11 @@ COPY packages/runtime.txt packages/image_root.txt packages/
 COPY scripts/install_packages.sh scripts/
 RUN scripts/install_packages.sh runtime image_root && rm -rf /var/lib/apt/lists/*
 COPY deploy/image/make_root.sh deploy/image/write_sbom.py deploy/image/
-COPY LICENSE ./
+COPY LICENSE NOTICE ./
 RUN deploy/image/make_root.sh /root-of-image packages/runtime.txt \
     && mkdir -p /root-of-image/usr/share/doc/duet \
     && cp LICENSE /root-of-image/usr/share/doc/duet/copyright \
+    && cp NOTICE /root-of-image/usr/share/doc/duet/ \
     && deploy/image/write_sbom.py --version "$VERSION" --created "$SBOM_TIME" /root-of-image \
        >/duet.spdx.json \
     && mv /duet.spdx.json /root-of-image/usr/share/doc/duet/
@@ -78,6 +79,7 @@ RUN deploy/image/write_sbom.py --version "$VERSION" --created "$SBOM_TIME" /reco
 FROM training-packages AS training
 COPY --from=training-records /duet.spdx.json /usr/share/doc/duet/
 COPY LICENSE /usr/share/doc/duet/copyright
+COPY NOTICE /usr/share/doc/duet/
 # No setuid files.
 RUN find / -xdev -type f -perm /6000 -exec chmod a-s {} +
 COPY --from=build-training /out /

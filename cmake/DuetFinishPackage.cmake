@@ -20,6 +20,7 @@ foreach(folder IN LISTS groups)
   configure_file(${CPACK_DUET_DEPLOY}/debian/changelog ${documents}/changelog.Debian COPYONLY)
   compress(${documents}/changelog.Debian)
   configure_file(${CPACK_DUET_DEPLOY}/debian/copyright ${documents}/copyright COPYONLY)
+  configure_file(${CPACK_DUET_DEPLOY}/../NOTICE ${documents}/NOTICE COPYONLY)
   configure_file(${CPACK_DUET_DEPLOY}/debian/lintian-overrides
     ${folder}/usr/share/lintian/overrides/${names_${group}} COPYONLY)
   if(group STREQUAL server)

@@ -55,6 +55,9 @@ class PackageTest(unittest.TestCase):
                      "usr/bin/duet-eval", "usr/bin/duet-import", "usr/bin/duet-keyframe",
                      "usr/lib/duet/libduet_torch_engine.so"):
             self.assertTrue((self.root / path).is_file(), path)
+        for name in self.packages:
+            self.assertIn("mocap.cs.cmu.edu",
+                          (self.root / "usr/share/doc" / name / "NOTICE").read_text())
         # What an operator changed stays on an upgrade.
         self.assertEqual(run("dpkg-deb", "-I", self.packages["duet-server"], "conffiles"),
                          "/etc/duet/server.textproto\n")
