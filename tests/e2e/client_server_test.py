@@ -71,13 +71,14 @@ class ClientServerTest(unittest.TestCase):
         models = {}
         for model in json.loads(result.stdout)["models"]:  # the newest version first
             models.setdefault(model["name"], model)
-        self.assertEqual(set(models), {"sbu", "k3hi"})
+        self.assertEqual(set(models), {"sbu", "k3hi", "salsa"})
         self.assertTrue(models["sbu"]["is_default"])
         self.assertFalse(models["k3hi"].get("is_default", False))
         self.assertEqual(set(models["sbu"]["interaction_classes"]), set(tools.CLASSES))
         self.assertIn("point", models["k3hi"]["interaction_classes"])
-        for model in models.values():
-            self.assertEqual(len(model["joint_names"]), JOINTS)
+        for name, model in models.items():
+            self.assertEqual(len(model["joint_names"]), 22 if name == "salsa" else JOINTS)
+            self.assertEqual(model["free_for_all_uses"], name == "salsa")
         for_people = tools.duet("models", "--server", self.server.address)
         self.assertIn(f"sbu@{models['sbu']['version']}, default", for_people.stdout)
         self.assertIn(f"k3hi@{models['k3hi']['version']}", for_people.stdout)

@@ -40,13 +40,14 @@ class PythonClientTest(unittest.TestCase):
     def test_models_are_listed(self):
         models = self.client.list_models()
         self.assertEqual([(model.name, model.is_default) for model in models],
-                         [("k3hi", False), ("sbu", True), ("sbu", False)])
+                         [("k3hi", False), ("salsa", False), ("sbu", True), ("sbu", False)])
         details = self.client.get_model()
         self.assertEqual(set(details.model.interaction_classes), set(tools.CLASSES))
         self.assertEqual(details.limits.max_abs_weight, 2)
         self.assertEqual(self.client.get_model("sbu@1").model.version, 1)
         for model in models:
-            self.assertIn("research", model.terms)
+            self.assertEqual(model.free_for_all_uses, model.name == "salsa")
+            self.assertIn("all uses" if model.free_for_all_uses else "research", model.terms)
             self.assertRegex(model.weights_sha256, r"^[0-9a-f]{64}$")
 
     def test_synthesize_takes_and_returns_arrays(self):

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "model/torch_engine/torch_network.h"
 #include "tests/support/sample_motion.h"
@@ -21,17 +24,21 @@ using ::testing::HasSubstr;
 
 constexpr int kPaper = 1, kSampling = 2;  // versions of sbu
 
-std::shared_ptr<const engine::Synthesizer> Embedded(int version = kPaper) {
+std::shared_ptr<const engine::Synthesizer> EmbeddedModel(const std::string& name, int version) {
   EXPECT_THAT(SetTorchThreads(1), IsOk());
   auto all = LoadEmbeddedSynthesizers();
   EXPECT_THAT(all, IsOk());
   if (!all.ok()) return nullptr;
   for (std::unique_ptr<engine::Synthesizer>& model : *all) {
-    if (model->description().name == "sbu" && model->description().version == version) {
+    if (model->description().name == name && model->description().version == version) {
       return std::move(model);
     }
   }
   return nullptr;
+}
+
+std::shared_ptr<const engine::Synthesizer> Embedded(int version = kPaper) {
+  return EmbeddedModel("sbu", version);
 }
 
 engine::SynthesisWindow MakeWindow(const engine::Synthesizer& model, int frames,
@@ -104,15 +111,29 @@ TEST(TorchSynthesizerTest, AnswerDependsOnTheSeedUnlessVarietyIsZero) {
 }
 
 TEST(TorchSynthesizerTest, K3hiIsEmbedded) {
-  const auto all = LoadEmbeddedSynthesizers();
-  ASSERT_THAT(all, IsOk());
-  ASSERT_EQ(all->size(), 3u);
-  const engine::ModelDescription& model = all->back()->description();
-  EXPECT_EQ(model.name, "k3hi");
+  const auto k3hi = EmbeddedModel("k3hi", 1);
+  ASSERT_NE(k3hi, nullptr);
+  const engine::ModelDescription& model = k3hi->description();
   EXPECT_EQ(model.frame_rate_hz, 30);
   EXPECT_THAT(model.classes, ::testing::ElementsAre("approach", "depart", "exchange_object", "kick",
                                                     "point", "punch", "push", "shake_hands"));
-  EXPECT_EQ(RunOne(*all->back(), MakeWindow(*all->back(), 60, 4)).frame_count(), 60);
+  EXPECT_EQ(RunOne(*k3hi, MakeWindow(*k3hi, 60, 4)).frame_count(), 60);
+}
+
+TEST(TorchSynthesizerTest, SalsaIsTheOnlyEmbeddedModelThatIsFreeForAllUses) {
+  const auto all = LoadEmbeddedSynthesizers();
+  ASSERT_THAT(all, IsOk());
+  std::vector<std::string> free;
+  for (const std::unique_ptr<engine::Synthesizer>& model : *all) {
+    EXPECT_NE(model->description().terms, "") << model->description().name;
+    if (model->description().free_for_all_uses) free.push_back(model->description().name);
+  }
+  EXPECT_THAT(free, ::testing::ElementsAre("salsa"));
+  const engine::ModelDescription& salsa = all->back()->description();
+  EXPECT_EQ(salsa.name, "salsa");
+  EXPECT_EQ(salsa.skeleton.joint_count(), 22);
+  EXPECT_EQ(salsa.frame_rate_hz, 30);
+  EXPECT_TRUE(salsa.samples);
 }
 
 TEST(TorchSynthesizerTest, BatchOfDifferentLengthsEqualsSingle) {

@@ -4,7 +4,7 @@ import bpy
 
 # The classes of the embedded default model, used until the user asks the server.
 CLASSES = ("kick", "push", "shake_hands", "hug", "exchange_object", "punch")
-# The joints of the embedded models, in the order of the panel.
+# The joints of the embedded default model, in the order of the panel.
 JOINTS = ("head", "neck", "torso", "left_shoulder", "left_elbow", "left_hand", "right_shoulder",
           "right_elbow", "right_hand", "left_hip", "left_knee", "left_foot", "right_hip", "right_knee",
           "right_foot")
