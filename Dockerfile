@@ -6,6 +6,9 @@
 #   docker build -t duet-training --target training .
 #   deploy/image/build.sh              the same with podman, with labels filled in
 #
+# With `--build-arg RESEARCH_WEIGHTS=OFF` (`deploy/image/build.sh --free`) an image contains only weights that
+# are free for all uses.
+#
 # The server's container runs as an unprivileged user and writes nothing; deploy/README.md has the command
 # that runs it.
 
@@ -21,6 +24,8 @@ RUN scripts/install_packages.sh build image && rm -rf /var/lib/apt/lists/*
 # The compiler cache provides unchanged objects.
 FROM tools AS build
 ARG CCACHE_DIR=/var/cache/ccache
+# OFF: without the weights that are for research only.
+ARG RESEARCH_WEIGHTS=ON
 # Additional CMake arguments.
 ARG CMAKE_FLAGS=
 # Identifies the compiler by content: all files of an image have the same time.
@@ -29,6 +34,7 @@ ENV LANG=C.UTF-8 CCACHE_DIR=$CCACHE_DIR CCACHE_BASEDIR=/src CCACHE_NOHASHDIR=1 \
 COPY . .
 RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
     cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF $CMAKE_FLAGS \
+       -DDUET_RESEARCH_WEIGHTS="$RESEARCH_WEIGHTS" \
     && cmake --build --preset release --parallel "$(scripts/build_jobs.sh)" \
        --target duet-server duet \
     && mkdir -p /out/usr/local/bin \

@@ -2,6 +2,8 @@
 # Builds an image with podman, fills in its labels from the working tree, and checks the server image's size.
 #   deploy/image/build.sh                 localhost/duet:VERSION
 #   deploy/image/build.sh training        localhost/duet-training:VERSION
+#   deploy/image/build.sh --free          localhost/duet-free:VERSION, without the weights for research only;
+#                                         with `training`, localhost/duet-training-free:VERSION
 # BASE names another base; the default is `localhost/debian:bookworm-slim` if make_base.sh made it.
 # DUET_CCACHE_DIR, a folder of this machine, is the compiler cache. Flags of `podman build` may follow the
 # target's name.
@@ -13,6 +15,11 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 readonly limit_mb=250
 
+research_weights=ON
+if [[ "${1:-}" == --free ]]; then
+  research_weights=OFF
+  shift
+fi
 target="${1:-server}"
 shift || true
 case "${target}" in
@@ -20,6 +27,7 @@ case "${target}" in
   training) name=localhost/duet-training ;;
   *) echo "build.sh: target: expected server or training, got ${target}" >&2 && exit 2 ;;
 esac
+[[ "${research_weights}" == ON ]] || name+=-free
 
 version="$(sed -n 's/^project(duet VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)"
 revision="$(git rev-parse HEAD)$(git diff --quiet HEAD || echo -dirty)"
@@ -40,7 +48,8 @@ podman build --format docker --timestamp "${epoch}" --target "${target}" \
   --build-arg "VERSION=${version}" --build-arg "REVISION=${revision}" \
   --build-arg "SOURCE=${source_url}" --build-arg "CREATED=${created}" \
   --build-arg "SBOM_TIME=$(rfc3339 "${epoch}")" \
-  "${flags[@]}" "$@" --tag "${name}:${version}" --tag "${name}:latest" .
+  "${flags[@]}" "$@" --build-arg "RESEARCH_WEIGHTS=${research_weights}" \
+  --tag "${name}:${version}" --tag "${name}:latest" .
 
 bytes="$(podman image inspect --format '{{.Size}}' "${name}:${version}")"
 echo "${name}:${version}: $((bytes / 1000000)) MB"
