@@ -7,7 +7,7 @@
 TAKES holds `lead_NN` and `follow_NN` ([frames, joints, 3], metres, y up, one world), `joints`,
 `parents` and `fps`. GLITCHES lists frames to leave out: PERSON_NN, a tab, FIRST-LAST,... below a
 heading. --leads writes a second data set, in which the lead answers a standing person, to train a
-generator of leads. --sheets writes a contact sheet of every class (needs python3-matplotlib).
+generator of leads, and that person as a leader, standing.json. --sheets writes a contact sheet of every class (needs python3-matplotlib).
 """
 
 import argparse
@@ -18,6 +18,8 @@ from pathlib import Path
 import numpy
 
 from salsa import dataset_folder, moves, standing, takes
+
+STANDING_SECONDS = 30
 
 
 def _print_summary(prepared):
@@ -66,6 +68,8 @@ def main(arguments=None):
     if options.leads:
         dataset_folder.write(prepared, parents, options.leads, "salsa_lead",
                              lambda take: standing.leads(take, parents))
+        standing.write_motion(prepared[0], parents, STANDING_SECONDS,
+                              options.leads / "standing.json")
     if options.sheets:
         _write_sheets(prepared, parents, options.sheets)
     return 0

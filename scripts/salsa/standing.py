@@ -1,8 +1,11 @@
 """A standing person for every take: whom a generator of leads takes for its leader."""
 
 import dataclasses
+import json
 
 import numpy
+
+from salsa.dataset_folder import joint_name
 
 DISTANCE_METRES = 2.0  # in front of the lead as the take begins
 
@@ -27,6 +30,17 @@ def pose(take, parents):
         places[joint] = places[parent] + length * direction / numpy.linalg.norm(direction)
     places[:, 1] -= places[:, 1].min()
     return places
+
+
+def write_motion(take, parents, seconds, path):
+    """Writes the standing person as a motion file (docs/formats.md), a leader to generate from."""
+    standing = numpy.round(pose(take, parents), 4).tolist()
+    path.write_text(json.dumps({
+        "format": "duet-motion", "version": 1, "frame_rate_hz": take.frame_rate_hz,
+        "unit": "metres", "up_axis": "y-up",
+        "joint_names": [joint_name(joint) for joint in take.joints],
+        "bones": [[parent, joint] for joint, parent in enumerate(parents) if parent >= 0],
+        "leader": [standing] * round(seconds * take.frame_rate_hz)}) + "\n", encoding="utf-8")
 
 
 def leads(take, parents):
