@@ -30,7 +30,7 @@ struct ModelInfo {
   bool accepts_follower_start = false;
   bool samples = false;  // results depend on the request's seed and variety
   std::string description;
-  std::string terms;           // terms of use of the weights; empty: not specified
+  std::string terms;  // terms of use of the weights; empty: not specified
   // Anybody may use and pass on the weights and their output for any purpose.
   bool free_for_all_uses = false;
   std::string weights_sha256;  // of the weights file, lower-case hex; empty: unknown
