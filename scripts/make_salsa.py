@@ -7,7 +7,8 @@
 TAKES holds `lead_NN` and `follow_NN` ([frames, joints, 3], metres, y up, one world), `joints`,
 `parents` and `fps`. GLITCHES lists frames to leave out: PERSON_NN, a tab, FIRST-LAST,... below a
 heading. --leads writes a second data set, in which the lead answers a standing person, to train a
-generator of leads, and that person as a leader, standing.json. --sheets writes a contact sheet of every class (needs python3-matplotlib).
+generator of leads, and that person as a leader, standing.json. --sheets writes a contact sheet of
+every class (needs python3-matplotlib).
 """
 
 import argparse
