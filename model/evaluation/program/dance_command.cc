@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "model/base/statistics.h"
 #include "model/evaluation/baselines/take_baselines.h"
 #include "model/evaluation/experiments/long_leaders.h"
 #include "model/evaluation/experiments/turn_labels.h"
@@ -22,6 +24,7 @@ namespace duet::evaluation::program {
 namespace {
 
 constexpr double kPartSeconds = 60;  // of a looped take: its beginning and its end
+constexpr int kPositionSeconds = 5, kPositions = 6;  // of a take, for the error by position
 const std::vector<double> kTurnWeights = {-1, -0.5, 0, 0.5, 1};
 
 struct DanceFlags : ExperimentFlags {
@@ -100,8 +103,51 @@ struct Dancer {
   }
 };
 
+motion::Poses Part(const motion::Poses& poses, int first, int count) {
+  motion::Poses part(0, poses.joint_count());
+  part.Append(poses.frames(first, count));
+  return part;
+}
+
+// The error of a follower in each position of its take; NaN after its end. Shapes: [kPositions].
+std::vector<double> ErrorByPosition(const motion::Poses& follower, const motion::Poses& captured,
+                                    double frame_rate_hz) {
+  const int length = static_cast<int>(kPositionSeconds * frame_rate_hz);
+  std::vector<double> errors(kPositions, std::numeric_limits<double>::quiet_NaN());
+  for (int p = 0; p < kPositions && (p + 1) * length <= follower.frame_count(); ++p) {
+    errors[static_cast<size_t>(p)] = metrics::MeanError(Part(follower, p * length, length),
+                                                        Part(captured, p * length, length));
+  }
+  return errors;
+}
+
+report::Table PositionTable() {
+  report::Table table;
+  table.title = "Error by position in the take";
+  for (int p = 0; p < kPositions; ++p) {
+    table.columns.push_back(
+        absl::StrFormat("%d to %d s", p * kPositionSeconds, (p + 1) * kPositionSeconds));
+  }
+  table.notes = {"Mean distance of a joint from the captured one, metres."};
+  table.decimals = 3;
+  return table;
+}
+
+// Means of each column, ignoring NaN. Shapes: rows [rows][columns].
+std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows) {
+  std::vector<double> means;
+  for (size_t c = 0; !rows.empty() && c < rows.front().size(); ++c) {
+    std::vector<double> values;
+    for (const std::vector<double>& row : rows) values.push_back(row[c]);
+    means.push_back(base::Mean(values));
+  }
+  return means;
+}
+
 // The answers to all takes with each seed, and the same answers beside the leader of the next take.
-absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows) {
+absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows,
+                        report::Table* positions) {
+  std::vector<std::vector<double>> errors;
   const std::vector<Take> takes = TakesOf(dancer.experiment);
   DanceRow own = {dancer.name(), {}}, chance = {absl::StrCat(dancer.name(), ", other lead"), {}};
   for (int n = 0; n < dancer.flags.asked.samples; ++n) {
@@ -113,6 +159,8 @@ absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows) {
     }
     for (size_t i = 0; i < takes.size(); ++i) {
       const motion::ClipPair& pair = takes[i].sequence->pair;
+      errors.push_back(ErrorByPosition(followers[i], pair.follower.poses,
+                                       dancer.experiment.dataset.frame_rate_hz));
       own.takes.push_back(dancer.Measure(pair.leader.poses, followers[i], &pair.follower.poses));
       const size_t other = (i + 1) % takes.size();
       if (other == i) continue;
@@ -124,15 +172,10 @@ absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows) {
     std::cerr << dancer.name() << ": seed " << n + 1 << " of " << dancer.flags.asked.samples
               << "\n";
   }
+  positions->rows.push_back({dancer.name(), ColumnMeans(errors)});
   rows->push_back(std::move(own));
   if (!chance.takes.empty()) rows->push_back(std::move(chance));
   return absl::OkStatus();
-}
-
-motion::Poses Part(const motion::Poses& poses, int first, int count) {
-  motion::Poses part(0, poses.joint_count());
-  part.Append(poses.frames(first, count));
-  return part;
 }
 
 // The first and the last minute of answers to takes whose leader is looped.
@@ -245,12 +288,12 @@ absl::Status Run(const DanceFlags& flags) {
   if (!flags.turn_class.empty()) turn_class = FindTurnClass(flags, experiment->dataset);
   if (!turn_class.ok()) return turn_class.status();
   std::vector<DanceRow> rows, loops;
-  report::Table turns = TurnTable(flags.turn_class);
+  report::Table turns = TurnTable(flags.turn_class), positions = PositionTable();
   AddBaselines(*experiment, *joints, &rows);
   for (const FoldModel& model : experiment->models) {
     for (const std::string& start : flags.starts) {
       const Dancer dancer = {*experiment, *joints, model, flags, ParseStart(start)};
-      absl::Status status = AddAnswers(dancer, &rows);
+      absl::Status status = AddAnswers(dancer, &rows, &positions);
       if (status.ok() && flags.loop_minutes > 0) status = AddLoops(dancer, &loops);
       if (status.ok() && !flags.turn_class.empty()) status = AddTurns(dancer, *turn_class, &turns);
       if (!status.ok()) return status;
@@ -264,6 +307,7 @@ absl::Status Run(const DanceFlags& flags) {
   section.settings.emplace_back("seeds", absl::StrCat(flags.asked.samples));
   section.settings.emplace_back("variety", absl::StrCat(flags.asked.variety));
   section.tables = {DanceTable("Followers of whole takes, mean over the takes", rows)};
+  if (!positions.rows.empty()) section.tables.push_back(std::move(positions));
   if (!loops.empty()) {
     section.tables.push_back(DanceTable(
         absl::StrFormat("The same leaders looped for %g minutes", flags.loop_minutes), loops));

@@ -116,13 +116,15 @@ TEST(SampleCommandsTest, DanceLoopsLeadersAndWeighsTurns) {
       RunCommand({"dance", "--samples", "1", "--loop-minutes", "1.5", "--turn-class", "hug"});
   ASSERT_THAT(section, IsOk());
   const nlohmann::json& tables = section->at("tables");
-  ASSERT_THAT(tables, SizeIs(3));
-  EXPECT_THAT(RowNames(tables[1]),
+  ASSERT_THAT(tables, SizeIs(4));
+  EXPECT_EQ(tables[1].at("columns").at(1), "5 to 10 s");
+  EXPECT_THAT(RowNames(tables[1]), ElementsAre("duet+pose"));
+  EXPECT_THAT(RowNames(tables[2]),
               ElementsAre("duet+pose, first minute", "duet+pose, last minute"));
-  EXPECT_TRUE(tables[1]["rows"][0].at("values").at(0).is_null());  // no captured follower
-  EXPECT_GT(tables[1]["rows"][1].at("values").at(1), 0);
-  EXPECT_EQ(tables[2].at("columns"), nlohmann::json({"-1", "-0.5", "0", "0.5", "1"}));
-  EXPECT_THAT(RowNames(tables[2]), ElementsAre("duet+pose, not led", "duet+pose, led"));
+  EXPECT_TRUE(tables[2]["rows"][0].at("values").at(0).is_null());  // no captured follower
+  EXPECT_GT(tables[2]["rows"][1].at("values").at(1), 0);
+  EXPECT_EQ(tables[3].at("columns"), nlohmann::json({"-1", "-0.5", "0", "0.5", "1"}));
+  EXPECT_THAT(RowNames(tables[3]), ElementsAre("duet+pose, not led", "duet+pose, led"));
 }
 
 TEST(SampleCommandsTest, DanceRejectsATurnThatTheDataLacks) {
