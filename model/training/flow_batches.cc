@@ -7,7 +7,6 @@
 #include "model/motion/filter.h"
 #include "model/network/batch.h"
 #include "model/training/drift.h"
-#include "model/training/exchanged_leaders.h"
 #include "model/training/frame_labels.h"
 
 namespace duet::training {
@@ -110,8 +109,7 @@ std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
   base::Random random(options.seed, epoch);
   std::vector<FlowBatch> batches;
   for (int64_t pass = 0; pass < flow.passes; ++pass) {
-    std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, &random);
-    ExchangeLeaders(dataset.skeleton, flow.frame_labels.exchanged, &random, &sequences);
+    const std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, &random);
     for (const std::vector<int>& piece : BatchesByLength(sequences, options.batch, &random)) {
       std::vector<FlowExample> examples;
       for (const int index : piece) {

@@ -38,7 +38,6 @@ struct FlowTraining {
     double shift = 0;       // frames, standard deviation of the beginning and the end of a span
     double unlabelled = 0;  // fraction of the classes of a clip whose weight is 0 throughout
     double avoided = 0;     // fraction of the classes of a clip that have weight -1 where absent
-    double exchanged = 0;   // fraction of the clips with another leader (exchanged_leaders.h)
   } frame_labels;
 
   // A follower that continues from its own previous answer does not start where a captured one
