@@ -67,6 +67,17 @@ synthesize() {
   echo
 }
 
+# A dance of 30 s: the lead of the sample comes, asks for two turns, and leaves. Ten frames a beat.
+dance() {
+  duet synthesize --server "${address}" --model salsa --leader samples/salsa.bvh --beat 180 \
+    --keyframe 0b:apart=1 --keyframe 5b:apart=1 --keyframe 6b:approach=1 --keyframe 11b:approach=1 \
+    --keyframe 12b:basic=1 --keyframe 27b:basic=1 --keyframe 28b:follower_turn=1 --keyframe 39b:follower_turn=1 \
+    --keyframe 40b:basic=1 --keyframe 51b:basic=1 --keyframe 52b:cross_body=1 --keyframe 67b:cross_body=1 \
+    --keyframe 68b:follower_turn=1 --keyframe 79b:follower_turn=1 --keyframe 80b:apart=1 \
+    --out "${out_dir}/dance.html" --out "${out_dir}/dance.glb"
+  echo
+}
+
 main() {
   rm -rf "${out_dir}"
   mkdir -p "${out_dir}"
@@ -80,6 +91,7 @@ main() {
   synthesize kick samples/kick.bvh kick=1
   synthesize hug samples/hug.bvh hug=1
   synthesize half_hug_half_push samples/hug.bvh hug=0.5 push=0.5
+  dance
   stop_server
   ((server_status == 0)) || fail "the server exited with status ${server_status} on SIGTERM"
 
