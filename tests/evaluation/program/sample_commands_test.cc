@@ -17,6 +17,7 @@ namespace {
 
 using test::IsOk;
 using test::RowNames;
+using test::StatusIs;
 using test::TemporaryFolder;
 
 using ::testing::ElementsAre;
