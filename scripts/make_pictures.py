@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the pictures of a server's answers: docs/images/reactions.png, and a short animation of each class in
-docs/images/reactions/. The leaders are samples/; needs chromium.
+"""Makes the pictures of a server's answers: docs/images/reactions.png, and an animation of each class and of a
+dance in docs/images/reactions/. The leaders are samples/; needs chromium.
 
     scripts/make_pictures.py build/release
 """
@@ -8,11 +8,13 @@ docs/images/reactions/. The leaders are samples/; needs chromium.
 import base64
 import os
 import pathlib
+import re
 import sys
 import tempfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 IMAGES = SOURCE / "docs" / "images"
+DEMO = SOURCE / "scripts" / "demo.sh"
 os.environ["DUET_SOURCE_DIR"] = str(SOURCE)
 os.environ["DUET_BIN_DIR"] = str(pathlib.Path(sys.argv[1]).resolve() / "bin")
 sys.path.insert(0, str(SOURCE / "tests" / "e2e"))
@@ -24,6 +26,9 @@ FILM = {"width": 360, "height": 240}
 STILL = {"width": 467, "height": 396}
 # (leader, labels, frame of the leader)
 STILLS = (("kick", {"kick": 1}, 34), ("hug", {"hug": 1}, 50), ("push", {"hug": 0.5, "push": 0.5}, 34))
+# The dance of scripts/demo.sh: its sample and its flags.
+DANCE = ("salsa", ["--model=salsa", *(f"{flag}={value}" for flag, value in
+                                      re.findall(r"(--beat|--keyframe) (\S+)", DEMO.read_text(encoding="utf-8")))])
 KEEP_BLOBS = ("(() => { const make = URL.createObjectURL; URL.createObjectURL = (blob) => {"
               " window.saved = blob; return make(blob); }; })()")
 SAVED = ("new Promise((resolve) => { const reader = new FileReader();"
@@ -31,10 +36,13 @@ SAVED = ("new Promise((resolve) => { const reader = new FileReader();"
          " reader.readAsDataURL(window.saved); })")
 
 
-def page_of(server, leader, labels, folder):
+def label_flags(labels):
+    return [f"--label={name}={weight}" for name, weight in labels.items()]
+
+
+def page_of(server, leader, flags, folder):
     """The viewer's page for a sample and its answer."""
-    file = folder / f"{leader}-{len(labels)}.html"
-    flags = [f"--label={name}={weight}" for name, weight in labels.items()]
+    file = folder / f"{leader}-{len(flags)}.html"
     tools.duet("synthesize", "--server", server.address, "--leader", tools.sample(leader), *flags,
                "--out", file).check_returncode()
     return file.as_uri()
@@ -76,9 +84,10 @@ def main():
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             for leader in tools.CLASSES:
-                save_film(chromium, page_of(server, leader, {leader: 1}, folder),
+                save_film(chromium, page_of(server, leader, label_flags({leader: 1}), folder),
                           IMAGES / "reactions" / f"{leader}.gif")
-            stills = [take_still(chromium, page_of(server, leader, labels, folder), frame)
+            save_film(chromium, page_of(server, *DANCE, folder), IMAGES / "reactions" / "dance.gif")
+            stills = [take_still(chromium, page_of(server, leader, label_flags(labels), folder), frame)
                       for leader, labels, frame in STILLS]
             save_side_by_side(chromium, stills, IMAGES / "reactions.png", folder)
     finally:

@@ -146,7 +146,7 @@ class PythonClientTest(unittest.TestCase):
             sys.executable, "-B", "-c",
             "import duet_motion as duet\nprint(len(duet.Client().list_models()))",
             env={**os.environ, "PYTHONPATH": str(PACKAGE), "DUET_SERVER": self.server.address})
-        self.assertEqual((ran.returncode, ran.stdout), (0, "3\n"), ran.stderr)
+        self.assertEqual((ran.returncode, ran.stdout), (0, "4\n"), ran.stderr)
 
     def test_killed_server_is_reported_with_its_address(self):
         server = tools.Server()
