@@ -23,7 +23,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-constexpr double kPartSeconds = 60;  // of a looped take: its beginning and its end
+constexpr double kPartSeconds = 60;                  // of a looped take: its beginning and its end
 constexpr int kPositionSeconds = 5, kPositions = 6;  // of a take, for the error by position
 const std::vector<double> kTurnWeights = {-1, -0.5, 0, 0.5, 1};
 
@@ -115,8 +115,8 @@ std::vector<double> ErrorByPosition(const motion::Poses& follower, const motion:
   const int length = static_cast<int>(kPositionSeconds * frame_rate_hz);
   std::vector<double> errors(kPositions, std::numeric_limits<double>::quiet_NaN());
   for (int p = 0; p < kPositions && (p + 1) * length <= follower.frame_count(); ++p) {
-    errors[static_cast<size_t>(p)] = metrics::MeanError(Part(follower, p * length, length),
-                                                        Part(captured, p * length, length));
+    errors[static_cast<size_t>(p)] =
+        metrics::MeanError(Part(follower, p * length, length), Part(captured, p * length, length));
   }
   return errors;
 }
