@@ -49,7 +49,7 @@ def page_of(server, leader, flags, folder):
 
 
 def save_film(chromium, url, file):
-    page = chromium.open(f"{url}#paused", **FILM)
+    page = chromium.open(f"{url}#paused", sharp=True, **FILM)
     page.evaluate(KEEP_BLOBS)
     page.press("g")
     page.wait_until("(document.documentElement.dataset.saved || '').includes('.gif')")
@@ -59,7 +59,7 @@ def save_film(chromium, url, file):
 
 def take_still(chromium, url, frame):
     """A frame as a data URL without the page's controls."""
-    page = chromium.open(f"{url}#frame={frame}&paused", **STILL)
+    page = chromium.open(f"{url}#frame={frame}&paused", sharp=True, **STILL)
     picture = page.evaluate("(() => { const stage = document.getElementById('stage'); stage.draw();"
                             " return stage.canvas.toDataURL(); })()")
     page.close()
@@ -71,7 +71,7 @@ def save_side_by_side(chromium, pictures, file, folder):
     images = "".join(f'<img src="{picture}">' for picture in pictures)
     html.write_text(f'<html data-state="ready"><body style="margin:0;display:flex">{images}',
                     encoding="utf-8")
-    page = chromium.open(html.as_uri(), STILL["width"] * len(pictures), STILL["height"])
+    page = chromium.open(html.as_uri(), STILL["width"] * len(pictures), STILL["height"], sharp=True)
     file.write_bytes(base64.b64decode(page.call("Page.captureScreenshot", format="png")["data"]))
     page.close()
 

@@ -35,9 +35,10 @@ struct ClipRequest {
 // network was trained for, spread evenly. Where the model accepts a follower start, each later
 // window starts from the pose that the one before it reached; a model that samples besides goes on
 // from all frames that the two share (SynthesisWindow::settled), since another draw would be
-// another motion, and each window has a seed of its own (WindowSeed). Overlaps are cross-faded;
-// settled frames change by no more in that than the network's answer differs from them. Frames at
-// the caller's rate are handed out as soon as no later window can change them.
+// another motion, and each window has a seed of its own (WindowSeed). The last frames of a window
+// with a lookahead (ModelDescription::lookahead_frames) are replaced by the next. Overlaps are
+// cross-faded; settled frames change by no more in that than the network's answer differs from
+// them. Frames at the caller's rate are handed out as soon as no later window can change them.
 //
 //   ClipSynthesis clip(description, std::move(request));
 //   while (clip.HasNextWindow()) {

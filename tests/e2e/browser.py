@@ -107,25 +107,26 @@ class Browser:
         target = self.call("Target.createTarget", url="about:blank", **within)["targetId"]
         return self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
 
-    def open(self, url, width=640, height=420, still=False):
-        """Opens a tab. `still`: the visitor prefers reduced motion."""
-        return Page(self, url, width, height, still)
+    def open(self, url, width=640, height=420, still=False, sharp=False):
+        """Opens a tab. `still`: the visitor prefers reduced motion. `sharp`: drawn in full size, for people."""
+        return Page(self, url, width, height, still, sharp)
 
 
 class Page:
     """A tab that has opened a URL, and has drawn it once or failed."""
 
-    def __init__(self, browser, url, width, height, still):
+    def __init__(self, browser, url, width, height, still, sharp):
         self._browser = browser
         self._session = browser.new_tab()
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height,
-                  deviceScaleFactor=SCALE, mobile=False)
+                  deviceScaleFactor=1 if sharp else SCALE, mobile=False)
         for domain in ("Page", "Runtime", "Network"):
             self.call(f"{domain}.enable")
         if still:
             self.call("Emulation.setEmulatedMedia",
                       features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
-        self.call("Page.addScriptToEvaluateOnNewDocument", source=WITHOUT_ANTIALIASING)
+        if not sharp:
+            self.call("Page.addScriptToEvaluateOnNewDocument", source=WITHOUT_ANTIALIASING)
         self.call("Page.navigate", url=url)
         # Before this event, a command may run in the blank page of a new tab.
         deadline = time.monotonic() + WAIT_SECONDS
