@@ -28,6 +28,13 @@ constexpr float kTorsoReach = 0.25f;
 constexpr float kShortestHead = 0.1f;
 constexpr float kShortestNeck = 0.05f, kLongestNeck = 0.35f;
 constexpr float kHeadRise = 0.19f;
+// Of a skeleton with several joints in the trunk: the heights of hips and chest on the way from the
+// middle of the hip joints to the neck, and that of the spine on the way to the chest; the top of
+// the head above its joint, as a fraction of the distance from hips to neck; the way of the
+// knuckles beyond the wrist, as a fraction of the forearm.
+constexpr float kHipsHeight = 0.23f, kChestHeight = 0.77f, kSpineHeight = 0.6f;
+constexpr float kHeadTopRise = 0.22f;
+constexpr float kHandReach = 0.3f;
 // Number of frames, spread over the motion, over which distances are averaged.
 constexpr int kMeasuredFrames = 100;
 
@@ -136,12 +143,37 @@ class Mapper {
     for (int joint = 0; joint < skeleton_.joint_count(); ++joint) {
       if (!Found(joint) && !IsPlaced(joint)) MapByAlias(joint);
     }
+    for (const char* side : {"left", "right"}) MapWristAndHand(side);
+  }
+
+  // Most files call the wrist a hand. A skeleton with both then has its hand at the knuckles: the
+  // base of the middle finger, the end of the file's hand, or a point beyond the wrist.
+  void MapWristAndHand(const std::string& side) {
+    const int wrist = skeleton_.Find(side + "_wrist"), hand = skeleton_.Find(side + "_hand");
+    const int elbow = skeleton_.Find(side + "_elbow");
+    if (wrist < 0 || hand < 0) return;
+    if (!Found(wrist) && Found(hand) && given_.count(hand) == 0) {
+      std::swap(found_[static_cast<size_t>(wrist)], found_[static_cast<size_t>(hand)]);
+      why_[static_cast<size_t>(wrist)] = "the file's hand begins at the wrist";
+    }
+    if (Found(hand) || !Found(wrist) || !Found(elbow)) return;
+    const BodySide of = side == "left" ? BodySide::kLeft : BodySide::kRight;
+    for (const char* end : {"handmiddle1", "middle1", "middle01", "handend", "wristend"}) {
+      if (const int index = FindUnused({of, end}); index >= 0) return Take(hand, index);
+    }
+    found_[static_cast<size_t>(hand)] =
+        Mix({{&SourceOf(wrist), 1 + kHandReach}, {&SourceOf(elbow), -kHandReach}});
+    why_[static_cast<size_t>(hand)] = "beyond the wrist, away from the elbow";
   }
 
   // Maps the joints that depend on positions, in `measured_`.
   void PlaceTrunk() {
     PlaceNeck();
     PlaceTorso();
+    PlaceInTrunk("chest", "neck", kChestHeight);
+    PlaceInTrunk("spine", "chest", kSpineHeight);
+    PlaceInTrunk("hips", "neck", kHipsHeight);
+    PlaceHeadTop();
     RaiseHead();
   }
 
@@ -359,11 +391,43 @@ class Mapper {
     }
   }
 
+  // Places a joint of the trunk that no name gives, on the way from the middle of the hip joints to
+  // the joint `end`: the nearest spine joint, or a point.
+  void PlaceInTrunk(const char* target, const char* end, float height) {
+    const int joint = skeleton_.Find(target), to = skeleton_.Find(end);
+    if (joint < 0 || Found(joint) || !Found(to) || !HasSpineEnds()) return;
+    const JointSource place = Mix({{&SourceOf(to), height},
+                                   {&SourceOf(skeleton_.hips->left), (1 - height) / 2},
+                                   {&SourceOf(skeleton_.hips->right), (1 - height) / 2}});
+    const int best = FindNearest(place, kTorsoReach * SpineLength(), IsSpine);
+    if (best >= 0) {
+      Take(joint, best);
+      return Note(target, best, "the spine joint nearest to its place");
+    }
+    found_[static_cast<size_t>(joint)] = place;
+    Note(target, "between hips and neck", "no spine joint is near");
+  }
+
+  // Above the head, in the direction from hips to neck, unless the file has an end of the head that
+  // is not the head itself.
+  void PlaceHeadTop() {
+    const int top = skeleton_.Find("head_top"), head = skeleton_.Find("head");
+    if (top < 0 || given_.count(top) > 0 || !Found(head) || !HasSpineEnds()) return;
+    const float least = kShortestHead * SpineLength();
+    if (Found(top) && MeanDistance(SourceOf(head), SourceOf(top)) >= least) return;
+    found_[static_cast<size_t>(top)] = Mix({{&SourceOf(head), 1.0f},
+                                            {&SourceOf(skeleton_.Find("neck")), kHeadTopRise},
+                                            {&SourceOf(skeleton_.hips->left), -kHeadTopRise / 2},
+                                            {&SourceOf(skeleton_.hips->right), -kHeadTopRise / 2}});
+    Note("head_top", "above the head", "the file has no end of the head");
+  }
+
   // Capture software has the head joint at the base of the skull. The skeleton's is in the middle
   // of the head: half way to its end or, in a file without that end, along the neck.
   void RaiseHead() {
     const int head = skeleton_.Find("head"), neck = skeleton_.Find("neck");
     if (!Found(head) || overridden_[static_cast<size_t>(head)] || !HasSpineEnds()) return;
+    if (skeleton_.Find("head_top") >= 0) return;  // its head is the joint at the base of the skull
     const JointSource base = SourceOf(head);
     for (const char* end : {"headend", "headtopend", "headtop"}) {
       const int index = FindUnused({BodySide::kMiddle, end});

@@ -21,7 +21,9 @@ struct AliasRow {
 const std::vector<AliasRow>& AliasTable() {
   static const auto* const kTable = new std::vector<AliasRow>{
       {"head", {"head", "skull"}},
+      {"headtop", {"headtop", "headtopend", "headend", "headnub"}},
       {"neck", {"neck", "neck1", "neck01", "lowerneck", "necklower"}},
+      {"hips", {"hips", "pelvis", "hip"}},
       {"shoulder",
        {"upperarm", "uparm", "uarm", "upperarm01", "arm", "humerus", "shldr", "shldrbend",
         "upperarmfk", "shoulder"}},
@@ -34,7 +36,8 @@ const std::vector<AliasRow>& AliasTable() {
       {"knee",
        {"knee", "shin", "calf", "lowerleg", "lowleg", "loleg", "lowerleg01", "tibia", "shinfk",
         "leg"}},
-      {"foot", {"ankle", "foot", "footfk"}}};
+      {"foot", {"ankle", "foot", "footfk"}},
+      {"toe", {"toe", "toebase", "toes", "ball", "toe0", "toe11", "bigtoe", "footend", "foot"}}};
   return *kTable;
 }
 
@@ -76,9 +79,13 @@ BodySide SideOf(absl::string_view word) {
   return BodySide::kMiddle;
 }
 
+bool IsTrunk(absl::string_view base) {
+  return base == "head" || base == "headtop" || base == "neck" || base == "hips";
+}
+
 bool IsLimbAlias(absl::string_view base) {
   for (const AliasRow& row : AliasTable()) {
-    if (absl::string_view(row.base) == "head" || absl::string_view(row.base) == "neck") continue;
+    if (IsTrunk(row.base)) continue;
     if (std::find(row.aliases.begin(), row.aliases.end(), base) != row.aliases.end()) return true;
   }
   return false;

@@ -412,6 +412,45 @@ TEST_P(Conventions, FindEveryJointWithoutAHierarchy) {
   EXPECT_THAT(map->notes, Contains(HasSubstr(std::string("torso: ") + GetParam().torso + " (")));
 }
 
+// The joints of a professional capture: wrists and hands, toes, three joints between hips and neck.
+motion::Skeleton CapturedSkeleton() {
+  motion::Skeleton skeleton;
+  skeleton.joint_names = {
+      "hips",          "spine",      "chest",       "neck",      "head",           "head_top",
+      "left_shoulder", "left_elbow", "left_wrist",  "left_hand", "right_shoulder", "right_elbow",
+      "right_wrist",   "right_hand", "left_hip",    "left_knee", "left_ankle",     "left_toe",
+      "right_hip",     "right_knee", "right_ankle", "right_toe"};
+  skeleton.hips = motion::JointPair{14, 18};
+  return skeleton;
+}
+
+TEST_P(Conventions, LeadASkeletonWithWristsAndToes) {
+  const std::string toe = GetParam().toe;
+  if (toe.empty()) return;
+  const motion::Skeleton skeleton = CapturedSkeleton();
+  const JointTree tree = MakeTree(GetParam());
+  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", tree, skeleton);
+  ASSERT_TRUE(map.ok()) << map.status();
+  const std::vector<motion::Vec3> mapped = MapPose(*map, tree, MakePose(GetParam()));
+  const auto at = [&](const char* name) {
+    return mapped[static_cast<std::size_t>(skeleton.Find(name))];
+  };
+  for (const auto& [name, wanted] :
+       std::map<const char*, motion::Vec3>{{"left_wrist", {0.72f, 1.4f, 0}},
+                                           {"right_wrist", {-0.72f, 1.4f, 0}},
+                                           {"left_ankle", {0.1f, 0.08f, 0}},
+                                           {"left_toe", {0.1f, 0.02f, 0.15f}},
+                                           {"right_toe", {-0.1f, 0.02f, 0.15f}}}) {
+    EXPECT_LT(Distance(at(name), wanted), 1e-5f) << name;
+  }
+  EXPECT_GT(at("left_hand").x, 0.75f);  // beyond the wrist
+  EXPECT_NEAR(at("hips").y, 0.99, 0.1);
+  EXPECT_LT(at("hips").y, at("chest").y);
+  EXPECT_LE(at("spine").y, at("chest").y);
+  EXPECT_LT(at("chest").y, at("neck").y);
+  EXPECT_GT(at("head_top").y, at("head").y + 0.05f);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Conventions, ::testing::ValuesIn(kConventions));
 
 TEST(JointMapping, UsesTheSkeletonsOwnNames) {
