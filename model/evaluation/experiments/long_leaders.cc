@@ -174,9 +174,9 @@ std::vector<const dataset::Sequence*> LoopableClips(const dataset::Dataset& data
   std::vector<const dataset::Sequence*> clips;
   for (const int index : sequences) {
     const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-    const motion::Clip& leader = sequence.pair.leader;
-    if (sequence.interaction_class != interaction_class) continue;
-    if (leader.frame_count() > 2 * kFadeSeconds * leader.frame_rate_hz) clips.push_back(&sequence);
+    if (sequence.interaction_class == interaction_class && IsLoopable(sequence)) {
+      clips.push_back(&sequence);
+    }
   }
   return clips;
 }
@@ -215,6 +215,11 @@ motion::Poses LoopClips(const motion::Skeleton& skeleton, const std::vector<moti
   }
   looped.Resize(frames);
   return looped;
+}
+
+bool IsLoopable(const dataset::Sequence& take) {
+  const motion::Clip& leader = take.pair.leader;
+  return leader.frame_count() > 2 * kFadeSeconds * leader.frame_rate_hz;
 }
 
 dataset::Sequence LoopTake(const dataset::Dataset& dataset, const dataset::Sequence& take,

@@ -27,8 +27,11 @@ motion::Poses MakeLeader(const std::string& name, double seconds, double frame_r
 motion::Poses LoopClips(const motion::Skeleton& skeleton, const std::vector<motion::Poses>& clips,
                         double seconds, double frame_rate_hz);
 
+// Whether a take is long enough for LoopClips.
+bool IsLoopable(const dataset::Sequence& take);
+
 // The take with its leader looped for `seconds` and its labels repeated. The follower has only its
-// first pose. Requires a take that is long enough for LoopClips.
+// first pose. Requires IsLoopable.
 dataset::Sequence LoopTake(const dataset::Dataset& dataset, const dataset::Sequence& take,
                            double seconds);
 

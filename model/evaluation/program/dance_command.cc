@@ -8,7 +8,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "model/base/statistics.h"
 #include "model/evaluation/baselines/take_baselines.h"
 #include "model/evaluation/experiments/long_leaders.h"
 #include "model/evaluation/experiments/turn_labels.h"
@@ -25,7 +24,7 @@ namespace {
 
 constexpr double kPartSeconds = 60;                  // of a looped take: its beginning and its end
 constexpr int kPositionSeconds = 5, kPositions = 6;  // of a take, for the error by position
-const std::vector<double> kTurnWeights = {-1, -0.5, 0, 0.5, 1};
+constexpr double kTurnWeights[] = {-1, -0.5, 0, 0.5, 1};
 
 struct DanceFlags : ExperimentFlags {
   double loop_minutes = 0;
@@ -133,17 +132,6 @@ report::Table PositionTable() {
   return table;
 }
 
-// Means of each column, ignoring NaN. Shapes: rows [rows][columns].
-std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows) {
-  std::vector<double> means;
-  for (size_t c = 0; !rows.empty() && c < rows.front().size(); ++c) {
-    std::vector<double> values;
-    for (const std::vector<double>& row : rows) values.push_back(row[c]);
-    means.push_back(base::Mean(values));
-  }
-  return means;
-}
-
 // The answers to all takes with each seed, and the same answers beside the leader of the next take.
 absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows,
                         report::Table* positions) {
@@ -184,6 +172,10 @@ absl::Status AddLoops(const Dancer& dancer, std::vector<DanceRow>* rows) {
   DanceRow first = {absl::StrCat(dancer.name(), ", first minute"), {}},
            last = {absl::StrCat(dancer.name(), ", last minute"), {}};
   for (const Take& take : TakesOf(dancer.experiment)) {
+    if (!experiments::IsLoopable(*take.sequence)) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "--loop-minutes: expected takes of more than a second, got ", take.sequence->id));
+    }
     const dataset::Sequence looped =
         experiments::LoopTake(dataset, *take.sequence, 60 * dancer.flags.loop_minutes);
     absl::StatusOr<motion::Poses> follower =

@@ -57,18 +57,22 @@ std::vector<double> MeasureDance(const dataset::Dataset& dataset,
       metrics::MeasurePenetration(leader, follower, dataset.skeleton, dataset.parts).frequency};
 }
 
+std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows) {
+  std::vector<double> means;
+  for (size_t c = 0; !rows.empty() && c < rows.front().size(); ++c) {
+    std::vector<double> values;
+    for (const std::vector<double>& row : rows) values.push_back(row[c]);
+    means.push_back(base::Mean(values));
+  }
+  return means;
+}
+
 report::Table DanceTable(std::string title, const std::vector<DanceRow>& rows) {
   report::Table table;
   table.title = std::move(title);
   table.columns = Columns();
   for (const DanceRow& row : rows) {
-    std::vector<double> means;
-    for (size_t c = 0; c < table.columns.size(); ++c) {
-      std::vector<double> values;
-      for (const std::vector<double>& take : row.takes) values.push_back(take[c]);
-      means.push_back(base::Mean(values));
-    }
-    table.rows.push_back({row.name, std::move(means)});
+    table.rows.push_back({row.name, ColumnMeans(row.takes)});
   }
   table.notes = {
       "Error: mean distance of a joint from the captured one, metres. Distance: of the roots, "

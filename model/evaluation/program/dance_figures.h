@@ -26,6 +26,9 @@ std::vector<double> MeasureDance(const dataset::Dataset& dataset,
                                  const metrics::DanceJoints& joints, const motion::Poses& leader,
                                  const motion::Poses& follower, const motion::Poses* captured);
 
+// The mean of each column, ignoring NaN. Shapes: rows [rows][columns]; returns [columns].
+std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows);
+
 // Means over the takes, ignoring NaN, with notes that explain the columns.
 report::Table DanceTable(std::string title, const std::vector<DanceRow>& rows);
 

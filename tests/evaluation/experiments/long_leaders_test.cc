@@ -75,6 +75,15 @@ TEST(MadeLeadersTest, MoveAsTheirNamesSay) {
   EXPECT_LT(sit.at(5 * 15, skeleton.root).y, sit.at(0, skeleton.root).y - 0.3f);
 }
 
+TEST(LoopTakeTest, NeedsMoreThanTheTwoFades) {
+  dataset::Sequence take;
+  take.pair.leader = {motion::SbuSkeleton().joint_names, kRate,
+                      duet::test::SwayingMotion(15, kRate)};
+  EXPECT_FALSE(IsLoopable(take));
+  take.pair.leader.poses = duet::test::SwayingMotion(16, kRate);
+  EXPECT_TRUE(IsLoopable(take));
+}
+
 TEST(LoopTakeTest, RepeatsTheLabelsWithTheLeader) {
   dataset::Dataset dataset = duet::test::MadeUpPairs(1);
   dataset.frame_rate_hz = kRate;
@@ -82,6 +91,7 @@ TEST(LoopTakeTest, RepeatsTheLabelsWithTheLeader) {
   take.pair.leader = {dataset.skeleton.joint_names, kRate, duet::test::SwayingMotion(60, kRate)};
   take.pair.follower = take.pair.leader;
   take.labels = {{1, 0, 20}, {2, 30, 60}};
+  ASSERT_TRUE(IsLoopable(take));
   const dataset::Sequence looped = LoopTake(dataset, take, 8);
   EXPECT_EQ(looped.pair.leader.frame_count(), 121);
   EXPECT_EQ(looped.pair.follower.frame_count(), 1);
