@@ -152,12 +152,14 @@ class Mapper {
     const int wrist = skeleton_.Find(side + "_wrist"), hand = skeleton_.Find(side + "_hand");
     const int elbow = skeleton_.Find(side + "_elbow");
     if (wrist < 0 || hand < 0) return;
-    if (!Found(wrist) && Found(hand) && given_.count(hand) == 0) {
+    const BodySide of = side == "left" ? BodySide::kLeft : BodySide::kRight;
+    if (!Found(wrist) && given_.count(hand) > 0) {
+      if (const int index = FindUnused({of, "hand"}); index >= 0) Take(wrist, index);
+    } else if (!Found(wrist) && Found(hand)) {
       std::swap(found_[static_cast<size_t>(wrist)], found_[static_cast<size_t>(hand)]);
       why_[static_cast<size_t>(wrist)] = "the file's hand begins at the wrist";
     }
     if (Found(hand) || !Found(wrist) || !Found(elbow)) return;
-    const BodySide of = side == "left" ? BodySide::kLeft : BodySide::kRight;
     for (const char* end : {"handmiddle1", "middle1", "middle01", "handend", "wristend"}) {
       if (const int index = FindUnused({of, end}); index >= 0) return Take(hand, index);
     }

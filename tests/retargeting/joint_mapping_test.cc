@@ -583,6 +583,18 @@ TEST(JointMapping, StraightensTheCharacterFromTheHierarchyOnly) {
   EXPECT_NEAR(map->straight[2].y - map->straight[9].y, 0.26, 1e-5) << "torso above the hips";
 }
 
+TEST(JointMapping, TheFilesHandIsTheWristIfTheUserNamesTheHand) {
+  motion::Skeleton skeleton;
+  skeleton.joint_names = {"left_elbow", "left_wrist", "left_hand"};
+  const std::vector<std::string> names = {"LeftForeArm", "LeftHand", "Knuckles"};
+  const std::vector<motion::Vec3> pose = {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+  const absl::StatusOr<JointMap> map =
+      MapJoints("a.bvh", names, OneFrame({names, pose}), skeleton, {{"left_hand", "Knuckles"}});
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_EQ(ApplyJointMap(*map, pose)[1].x, 2);
+  EXPECT_EQ(ApplyJointMap(*map, pose)[2].x, 3);
+}
+
 TEST(JointMapping, KeepsWristAndHandApartForASkeletonWithBoth) {
   motion::Skeleton skeleton;
   skeleton.joint_names = {"left_hand", "left_wrist"};
