@@ -22,6 +22,14 @@ class ClassWeight(_message.Message):
     weight: float
     def __init__(self, interaction_class: _Optional[str] = ..., weight: _Optional[float] = ...) -> None: ...
 
+class FrameRun(_message.Message):
+    __slots__ = ["first_frame", "frame_count"]
+    FIRST_FRAME_FIELD_NUMBER: _ClassVar[int]
+    FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
+    first_frame: int
+    frame_count: int
+    def __init__(self, first_frame: _Optional[int] = ..., frame_count: _Optional[int] = ...) -> None: ...
+
 class GetModelRequest(_message.Message):
     __slots__ = ["model"]
     MODEL_FIELD_NUMBER: _ClassVar[int]
@@ -61,18 +69,35 @@ class ListModelsResponse(_message.Message):
     def __init__(self, models: _Optional[_Iterable[_Union[_model_pb2.Model, _Mapping]]] = ...) -> None: ...
 
 class MotionChunk(_message.Message):
-    __slots__ = ["first_frame", "frame_count", "positions"]
+    __slots__ = ["first_frame", "frame_count", "positions", "rotations"]
     FIRST_FRAME_FIELD_NUMBER: _ClassVar[int]
     FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
     POSITIONS_FIELD_NUMBER: _ClassVar[int]
+    ROTATIONS_FIELD_NUMBER: _ClassVar[int]
     first_frame: int
     frame_count: int
     positions: _containers.RepeatedScalarFieldContainer[float]
-    def __init__(self, first_frame: _Optional[int] = ..., frame_count: _Optional[int] = ..., positions: _Optional[_Iterable[float]] = ...) -> None: ...
+    rotations: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, first_frame: _Optional[int] = ..., frame_count: _Optional[int] = ..., positions: _Optional[_Iterable[float]] = ..., rotations: _Optional[_Iterable[float]] = ...) -> None: ...
+
+class MotionGrade(_message.Message):
+    __slots__ = ["bad_runs", "leader_skating", "overlapping", "skating", "twisted"]
+    BAD_RUNS_FIELD_NUMBER: _ClassVar[int]
+    LEADER_SKATING_FIELD_NUMBER: _ClassVar[int]
+    OVERLAPPING_FIELD_NUMBER: _ClassVar[int]
+    SKATING_FIELD_NUMBER: _ClassVar[int]
+    TWISTED_FIELD_NUMBER: _ClassVar[int]
+    bad_runs: _containers.RepeatedCompositeFieldContainer[FrameRun]
+    leader_skating: float
+    overlapping: float
+    skating: float
+    twisted: float
+    def __init__(self, twisted: _Optional[float] = ..., skating: _Optional[float] = ..., leader_skating: _Optional[float] = ..., overlapping: _Optional[float] = ..., bad_runs: _Optional[_Iterable[_Union[FrameRun, _Mapping]]] = ...) -> None: ...
 
 class RequestLimits(_message.Message):
-    __slots__ = ["max_abs_weight", "max_chunk_frames", "max_duration_seconds", "max_frame_rate_hz", "max_label_keyframes", "max_request_bytes", "max_variety", "min_frame_rate_hz", "min_frames"]
+    __slots__ = ["max_abs_weight", "max_candidates", "max_chunk_frames", "max_duration_seconds", "max_frame_rate_hz", "max_label_keyframes", "max_request_bytes", "max_variety", "min_frame_rate_hz", "min_frames"]
     MAX_ABS_WEIGHT_FIELD_NUMBER: _ClassVar[int]
+    MAX_CANDIDATES_FIELD_NUMBER: _ClassVar[int]
     MAX_CHUNK_FRAMES_FIELD_NUMBER: _ClassVar[int]
     MAX_DURATION_SECONDS_FIELD_NUMBER: _ClassVar[int]
     MAX_FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -82,6 +107,7 @@ class RequestLimits(_message.Message):
     MIN_FRAMES_FIELD_NUMBER: _ClassVar[int]
     MIN_FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
     max_abs_weight: float
+    max_candidates: int
     max_chunk_frames: int
     max_duration_seconds: float
     max_frame_rate_hz: float
@@ -90,10 +116,23 @@ class RequestLimits(_message.Message):
     max_variety: float
     min_frame_rate_hz: float
     min_frames: int
-    def __init__(self, min_frame_rate_hz: _Optional[float] = ..., max_frame_rate_hz: _Optional[float] = ..., min_frames: _Optional[int] = ..., max_duration_seconds: _Optional[float] = ..., max_chunk_frames: _Optional[int] = ..., max_label_keyframes: _Optional[int] = ..., max_abs_weight: _Optional[float] = ..., max_request_bytes: _Optional[int] = ..., max_variety: _Optional[float] = ...) -> None: ...
+    def __init__(self, min_frame_rate_hz: _Optional[float] = ..., max_frame_rate_hz: _Optional[float] = ..., min_frames: _Optional[int] = ..., max_duration_seconds: _Optional[float] = ..., max_chunk_frames: _Optional[int] = ..., max_label_keyframes: _Optional[int] = ..., max_abs_weight: _Optional[float] = ..., max_request_bytes: _Optional[int] = ..., max_variety: _Optional[float] = ..., max_candidates: _Optional[int] = ...) -> None: ...
+
+class RigJoint(_message.Message):
+    __slots__ = ["joint", "name", "offset", "parent"]
+    JOINT_FIELD_NUMBER: _ClassVar[int]
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    OFFSET_FIELD_NUMBER: _ClassVar[int]
+    PARENT_FIELD_NUMBER: _ClassVar[int]
+    joint: int
+    name: str
+    offset: _motion_pb2.Point
+    parent: int
+    def __init__(self, name: _Optional[str] = ..., parent: _Optional[int] = ..., offset: _Optional[_Union[_motion_pb2.Point, _Mapping]] = ..., joint: _Optional[int] = ...) -> None: ...
 
 class SynthesisHeader(_message.Message):
-    __slots__ = ["clean_up", "frame_count", "frame_rate_hz", "interaction_classes", "joint_names", "model_name", "model_version", "request_id", "seed", "unit", "up_axis", "variety"]
+    __slots__ = ["candidates", "clean_up", "frame_count", "frame_rate_hz", "interaction_classes", "joint_names", "model_name", "model_version", "request_id", "rig", "seed", "unit", "up_axis", "variety"]
+    CANDIDATES_FIELD_NUMBER: _ClassVar[int]
     CLEAN_UP_FIELD_NUMBER: _ClassVar[int]
     FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
     FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -102,10 +141,12 @@ class SynthesisHeader(_message.Message):
     MODEL_NAME_FIELD_NUMBER: _ClassVar[int]
     MODEL_VERSION_FIELD_NUMBER: _ClassVar[int]
     REQUEST_ID_FIELD_NUMBER: _ClassVar[int]
+    RIG_FIELD_NUMBER: _ClassVar[int]
     SEED_FIELD_NUMBER: _ClassVar[int]
     UNIT_FIELD_NUMBER: _ClassVar[int]
     UP_AXIS_FIELD_NUMBER: _ClassVar[int]
     VARIETY_FIELD_NUMBER: _ClassVar[int]
+    candidates: int
     clean_up: CleanUp
     frame_count: int
     frame_rate_hz: float
@@ -114,30 +155,34 @@ class SynthesisHeader(_message.Message):
     model_name: str
     model_version: int
     request_id: str
+    rig: _containers.RepeatedCompositeFieldContainer[RigJoint]
     seed: int
     unit: _motion_pb2.LengthUnit
     up_axis: _motion_pb2.UpAxis
     variety: float
-    def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., frame_count: _Optional[int] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[CleanUp, str]] = ...) -> None: ...
+    def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., frame_count: _Optional[int] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[CleanUp, str]] = ..., candidates: _Optional[int] = ..., rig: _Optional[_Iterable[_Union[RigJoint, _Mapping]]] = ...) -> None: ...
 
 class SynthesisSummary(_message.Message):
-    __slots__ = ["chunk_count", "compute_seconds", "frame_count", "queue_seconds", "unfamiliarity", "window_count"]
+    __slots__ = ["chunk_count", "compute_seconds", "frame_count", "grade", "queue_seconds", "unfamiliarity", "window_count"]
     CHUNK_COUNT_FIELD_NUMBER: _ClassVar[int]
     COMPUTE_SECONDS_FIELD_NUMBER: _ClassVar[int]
     FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
+    GRADE_FIELD_NUMBER: _ClassVar[int]
     QUEUE_SECONDS_FIELD_NUMBER: _ClassVar[int]
     UNFAMILIARITY_FIELD_NUMBER: _ClassVar[int]
     WINDOW_COUNT_FIELD_NUMBER: _ClassVar[int]
     chunk_count: int
     compute_seconds: float
     frame_count: int
+    grade: MotionGrade
     queue_seconds: float
     unfamiliarity: float
     window_count: int
-    def __init__(self, frame_count: _Optional[int] = ..., chunk_count: _Optional[int] = ..., window_count: _Optional[int] = ..., queue_seconds: _Optional[float] = ..., compute_seconds: _Optional[float] = ..., unfamiliarity: _Optional[float] = ...) -> None: ...
+    def __init__(self, frame_count: _Optional[int] = ..., chunk_count: _Optional[int] = ..., window_count: _Optional[int] = ..., queue_seconds: _Optional[float] = ..., compute_seconds: _Optional[float] = ..., unfamiliarity: _Optional[float] = ..., grade: _Optional[_Union[MotionGrade, _Mapping]] = ...) -> None: ...
 
 class SynthesizeRequest(_message.Message):
-    __slots__ = ["chunk_frames", "clean_up", "follower_start", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "priority", "reply_joint_names", "seed", "variety"]
+    __slots__ = ["candidates", "chunk_frames", "clean_up", "follower_start", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "priority", "reply_joint_names", "reply_rotations", "seed", "up", "variety"]
+    CANDIDATES_FIELD_NUMBER: _ClassVar[int]
     CHUNK_FRAMES_FIELD_NUMBER: _ClassVar[int]
     CLEAN_UP_FIELD_NUMBER: _ClassVar[int]
     FOLLOWER_START_FIELD_NUMBER: _ClassVar[int]
@@ -148,8 +193,11 @@ class SynthesizeRequest(_message.Message):
     PARTNER_DIRECTION_FIELD_NUMBER: _ClassVar[int]
     PRIORITY_FIELD_NUMBER: _ClassVar[int]
     REPLY_JOINT_NAMES_FIELD_NUMBER: _ClassVar[int]
+    REPLY_ROTATIONS_FIELD_NUMBER: _ClassVar[int]
     SEED_FIELD_NUMBER: _ClassVar[int]
+    UP_FIELD_NUMBER: _ClassVar[int]
     VARIETY_FIELD_NUMBER: _ClassVar[int]
+    candidates: int
     chunk_frames: int
     clean_up: CleanUp
     follower_start: _motion_pb2.FollowerStart
@@ -160,9 +208,11 @@ class SynthesizeRequest(_message.Message):
     partner_direction: _motion_pb2.Direction
     priority: Priority
     reply_joint_names: _containers.RepeatedScalarFieldContainer[str]
+    reply_rotations: bool
     seed: int
+    up: _motion_pb2.Direction
     variety: float
-    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., chunk_frames: _Optional[int] = ..., priority: _Optional[_Union[Priority, str]] = ..., reply_joint_names: _Optional[_Iterable[str]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[CleanUp, str]] = ...) -> None: ...
+    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., chunk_frames: _Optional[int] = ..., priority: _Optional[_Union[Priority, str]] = ..., reply_joint_names: _Optional[_Iterable[str]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[CleanUp, str]] = ..., candidates: _Optional[int] = ..., reply_rotations: bool = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ...) -> None: ...
 
 class SynthesizeResponse(_message.Message):
     __slots__ = ["chunk", "header", "summary"]
