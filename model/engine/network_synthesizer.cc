@@ -1,9 +1,12 @@
 #include "model/engine/network_synthesizer.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/engine/candidates.h"
 #include "model/engine/finishing.h"
 #include "model/engine/standard_window.h"
 #include "model/engine/unfamiliarity.h"
@@ -14,6 +17,10 @@ namespace {
 
 using Windows = absl::Span<const SynthesisWindow* const>;
 
+// Most inputs of one evaluation, unless there are more windows: candidates must not multiply the
+// memory of a batch.
+constexpr std::size_t kMostTogether = 32;
+
 class NetworkSynthesizer : public Synthesizer {
  public:
   NetworkSynthesizer(ModelDescription description, motion::StandardOrigin origin,
@@ -22,7 +29,8 @@ class NetworkSynthesizer : public Synthesizer {
         origin_(origin),
         network_(std::move(network)),
         options_(options),
-        clean_up_(description_.skeleton, options.cleaning) {}
+        clean_up_(description_.skeleton, options.cleaning),
+        judge_(description_.skeleton) {}
 
   const ModelDescription& description() const override { return description_; }
 
@@ -32,15 +40,19 @@ class NetworkSynthesizer : public Synthesizer {
     std::vector<NetworkInput> inputs;
     for (const SynthesisWindow* window : windows) {
       standardisations.push_back(WindowStandardisation(description_.skeleton, *window, origin_));
-      inputs.push_back(Standardise(standardisations.back(), *window));
+      AddCandidates(Standardise(standardisations.back(), *window), Candidates(*window), &inputs);
     }
-    const absl::StatusOr<std::vector<motion::Poses>> followers = RunNetwork(inputs);
+    const absl::StatusOr<std::vector<motion::Poses>> followers = RunNetwork(inputs, windows.size());
     if (!followers.ok()) return {windows.size(), followers.status()};
     std::vector<WindowResult> results;
+    std::size_t first = 0;
     for (std::size_t i = 0; i < windows.size(); ++i) {
-      results.push_back(IsCancelled(inputs[i])
+      const std::size_t count = static_cast<std::size_t>(Candidates(*windows[i]));
+      results.push_back(IsCancelled(inputs[first])
                             ? absl::CancelledError("cancelled while it was being answered")
-                            : Finish(*windows[i], standardisations[i], (*followers)[i]));
+                            : Choose(*windows[i], standardisations[i],
+                                     absl::MakeConstSpan(*followers).subspan(first, count)));
+      first += count;
     }
     return results;
   }
@@ -50,9 +62,37 @@ class NetworkSynthesizer : public Synthesizer {
   }
 
  private:
+  int Candidates(const SynthesisWindow& window) const {
+    return description_.samples ? window.options.sampling.candidates : 1;
+  }
+
+  static void AddCandidates(NetworkInput input, int count, std::vector<NetworkInput>* inputs) {
+    const uint64_t seed = input.sampling.seed;
+    input.sampling.variety = CandidateVariety(input.sampling.variety, count);
+    for (int n = 0; n < count; ++n) {
+      input.sampling.seed = CandidateSeed(seed, n);
+      inputs->push_back(n + 1 < count ? input : std::move(input));
+    }
+  }
+
+  // Evaluates the candidates of `windows` windows.
+  absl::StatusOr<std::vector<motion::Poses>> RunNetwork(const std::vector<NetworkInput>& inputs,
+                                                        std::size_t windows) const {
+    const std::size_t most = std::max(windows, kMostTogether);
+    if (inputs.size() <= most) return RunChecked(inputs);
+    std::vector<motion::Poses> followers;
+    for (std::size_t first = 0; first < inputs.size(); first += most) {
+      absl::StatusOr<std::vector<motion::Poses>> some =
+          RunChecked(absl::MakeConstSpan(inputs).subspan(first, most));
+      if (!some.ok()) return some;
+      std::move(some->begin(), some->end(), std::back_inserter(followers));
+    }
+    return followers;
+  }
+
   // Going on with an answer of another shape would read past it.
-  absl::StatusOr<std::vector<motion::Poses>> RunNetwork(
-      const std::vector<NetworkInput>& inputs) const {
+  absl::StatusOr<std::vector<motion::Poses>> RunChecked(
+      absl::Span<const NetworkInput> inputs) const {
     absl::StatusOr<std::vector<motion::Poses>> followers = network_->Run(inputs);
     if (!followers.ok()) return followers;
     if (followers->size() != inputs.size()) {
@@ -70,6 +110,21 @@ class NetworkSynthesizer : public Synthesizer {
           " joints, expected ", leader.frame_count(), " of ", leader.joint_count()));
     }
     return followers;
+  }
+
+  // The best of a window's candidates, finished. Fails if one of them is not finite.
+  WindowResult Choose(const SynthesisWindow& window, const motion::Standardisation& standardisation,
+                      absl::Span<const motion::Poses> candidates) const {
+    if (candidates.size() == 1) return Finish(window, standardisation, candidates[0]);
+    std::vector<motion::Poses> followers;
+    for (const motion::Poses& candidate : candidates) {
+      WindowResult finished = Finish(window, standardisation, candidate);
+      if (!finished.ok()) return finished;
+      followers.push_back(*std::move(finished));
+    }
+    const int best = judge_.Best(window.leader, followers, SettledFrames(window),
+                                 description_.frame_rate_hz, window.options.sampling.variety);
+    return std::move(followers[static_cast<std::size_t>(best)]);
   }
 
   WindowResult Finish(const SynthesisWindow& window, const motion::Standardisation& standardisation,
@@ -95,6 +150,7 @@ class NetworkSynthesizer : public Synthesizer {
   const std::unique_ptr<const Network> network_;
   const PipelineOptions options_;
   const cleanup::CleanUp clean_up_;
+  const CandidateJudge judge_;
 };
 
 }  // namespace

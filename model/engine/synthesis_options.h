@@ -6,6 +6,8 @@
 
 namespace duet::engine {
 
+inline constexpr int kMostCandidates = 16, kDefaultCandidates = 1;
+
 // Selects the sample that a sampling model draws. Models that do not sample
 // (ModelDescription::samples) ignore it.
 struct Sampling {
@@ -13,6 +15,9 @@ struct Sampling {
   uint64_t seed = 0;
   // In [0, 2]. 0: the typical motion; 1: as varied as the captured motion.
   float variety = 1;
+  // Number of samples that are drawn for each window, in [1, kMostCandidates]; the best one is
+  // returned (candidates.h).
+  int candidates = kDefaultCandidates;
 };
 
 // What a caller chooses beyond leader, labels and start. The validator fills it in; ClipSynthesis

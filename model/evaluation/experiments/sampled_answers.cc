@@ -26,7 +26,8 @@ std::vector<LabelledLeader> Ask(const dataset::Dataset& dataset, const std::vect
 engine::Sampling SamplingOf(const AskedSamples& asked, const dataset::Dataset& dataset,
                             int sequence, int n) {
   const uint64_t set = asked.seed + static_cast<uint64_t>(n);
-  return {set * dataset.sequences.size() + static_cast<uint64_t>(sequence), asked.variety};
+  return {set * dataset.sequences.size() + static_cast<uint64_t>(sequence), asked.variety,
+          asked.candidates};
 }
 
 absl::StatusOr<metrics::SampledMotions> AnswerWithSamples(const engine::Synthesizer& synthesizer,

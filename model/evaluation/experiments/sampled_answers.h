@@ -16,6 +16,7 @@ struct AskedSamples {
   int samples = 10;  // answers to each leader; a model that does not sample gives one
   float variety = 1;
   uint64_t seed = 0;  // of the whole set
+  int candidates = engine::kDefaultCandidates;
   bool tell_direction = true;
 };
 

@@ -16,6 +16,7 @@ void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen);         // figures o
 void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen);       // many answers to one leader
 void AddLongCommand(CLI::App* app, ChosenCommand* chosen);          // clips of minutes
 void AddDanceCommand(CLI::App* app, ChosenCommand* chosen);         // whole takes of a dance
+void AddPlausibleCommand(CLI::App* app, ChosenCommand* chosen);     // what a viewer notices
 void AddStripsCommand(CLI::App* app, ChosenCommand* chosen);        // pictures of answers
 void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen);     // from captured ones
 void AddSweepCommand(CLI::App* app, ChosenCommand* chosen);         // label weights

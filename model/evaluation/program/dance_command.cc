@@ -73,7 +73,8 @@ struct Dancer {
   std::string name() const { return absl::StrCat(model.name, StartSuffix(start)); }
 
   engine::Sampling Sampling(int n) const {
-    return {flags.asked.seed + static_cast<uint64_t>(n), flags.asked.variety};
+    return {flags.asked.seed + static_cast<uint64_t>(n), flags.asked.variety,
+            flags.asked.candidates};
   }
 
   absl::StatusOr<motion::Poses> Answer(const Take& take, engine::LabelTrack labels,

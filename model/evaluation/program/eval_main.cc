@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   duet::evaluation::program::AddSamplesCommand(&app, &chosen);
   duet::evaluation::program::AddLongCommand(&app, &chosen);
   duet::evaluation::program::AddDanceCommand(&app, &chosen);
+  duet::evaluation::program::AddPlausibleCommand(&app, &chosen);
   duet::evaluation::program::AddStripsCommand(&app, &chosen);
   duet::evaluation::program::AddToldApartCommand(&app, &chosen);
   duet::evaluation::program::AddSweepCommand(&app, &chosen);

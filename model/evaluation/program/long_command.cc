@@ -43,7 +43,7 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, co
     labels[static_cast<size_t>(leader.sequence.interaction_class)] = 1;
     asked.push_back({&leader.sequence,
                      engine::LabelTrack(std::move(labels)),
-                     {sampling.seed + asked.size(), sampling.variety}});
+                     {sampling.seed + asked.size(), sampling.variety, sampling.candidates}});
   }
   absl::StatusOr<std::vector<motion::Poses>> followers =
       SynthesizeSequences(**synthesizer, asked, start);

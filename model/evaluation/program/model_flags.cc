@@ -51,6 +51,11 @@ void AddVarietyFlag(float* variety, CLI::App* command) {
 
 void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command) {
   AddVarietyFlag(&asked->variety, command);
+  command
+      ->add_option("--candidates", asked->candidates,
+                   "samples of each window, of which the best is taken")
+      ->check(CLI::Range(1, engine::kMostCandidates))
+      ->capture_default_str();
   command->add_option("--seed", asked->seed, "seed of the answers")->capture_default_str();
 }
 

@@ -34,7 +34,7 @@ void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command);
 
 // --variety
 void AddVarietyFlag(float* variety, CLI::App* command);
-// --variety, --seed
+// --variety, --candidates, --seed
 void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command);
 
 }  // namespace duet::evaluation::program

@@ -1,0 +1,50 @@
+#ifndef DUET_MODEL_ENGINE_CANDIDATES_H_
+#define DUET_MODEL_ENGINE_CANDIDATES_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "model/body/limbs.h"
+#include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
+
+// Several samples of one window, of which the best is returned. World metres, y up.
+namespace duet::engine {
+
+// The seed of a window's n-th candidate; that of the first is `seed`, so that one candidate is the
+// answer without candidates.
+uint64_t CandidateSeed(uint64_t seed, int n);
+
+// The variety with which the candidates of a window are drawn. Below 1, several candidates are
+// drawn with more variety than asked for, and the most typical of them is chosen: the sample
+// without any noise is no typical motion.
+float CandidateVariety(float variety, int candidates);
+
+// Chooses among the samples of a window by what a viewer would notice (model/body/grade.h) and, for
+// a variety below 1, by how far they are from the other samples.
+//
+// Cost:    linear in the frames, quadratic in the candidates.
+// Threads: const methods are safe to call concurrently.
+class CandidateJudge {
+ public:
+  // Requires a skeleton that Validate accepts. A skeleton without the joints of a measure is judged
+  // by the others.
+  explicit CandidateJudge(const motion::Skeleton& skeleton);
+
+  // The index of the best follower; the first of several. `settled`: first frames that all have in
+  // common. `variety`: of the request. Shapes: every follower is like the leader. Requires at least
+  // one.
+  int Best(const motion::Poses& leader, const std::vector<motion::Poses>& followers, int settled,
+           double frame_rate_hz, float variety) const;
+
+ private:
+  double Faults(const motion::Poses& leader, const motion::Poses& follower, int settled,
+                double frame_rate_hz) const;
+
+  motion::Skeleton skeleton_;
+  body::Body body_;
+};
+
+}  // namespace duet::engine
+
+#endif  // DUET_MODEL_ENGINE_CANDIDATES_H_
