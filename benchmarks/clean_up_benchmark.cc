@@ -50,7 +50,7 @@ BENCHMARK(BM_CleanUp)
 void BM_JointRanges(benchmark::State& state) {
   const int frames = static_cast<int>(state.range(0));
   const duet::motion::Skeleton skeleton = duet::motion::SbuSkeleton();
-  const duet::cleanup::Body body = duet::cleanup::FindBody(skeleton);
+  const duet::body::Body body = duet::body::FindBody(skeleton);
   const duet::motion::Poses follower = Person(frames, 0.6f);
   for (auto _ : state) {
     duet::motion::Poses limited = follower;

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/body/limbs.h"
 #include "model/cleanup/contacts.h"
 #include "model/cleanup/floor.h"
-#include "model/cleanup/limbs.h"
 #include "model/evaluation/metrics/displacement.h"
 #include "model/evaluation/metrics/liveliness.h"
 #include "model/evaluation/metrics/motion_quality.h"
@@ -89,12 +89,11 @@ Displacement Displace(const motion::Poses& a, const motion::Poses& b,
 // The share of the time that a foot stands, over both feet.
 double StandingShare(const motion::Clip& clip, const motion::JointPair& feet) {
   const float floor = cleanup::FloorHeight(feet, clip.poses);
-  const cleanup::Timing timing{clip.frame_rate_hz, 0};
   double standing = 0;
   for (int joint : {feet.left, feet.right}) {
     std::vector<motion::Vec3> foot;
     for (int frame = 0; frame < clip.frame_count(); ++frame) foot.push_back(clip.at(frame, joint));
-    for (const cleanup::Contact& contact : FindContacts(foot, floor, {}, timing)) {
+    for (const cleanup::Contact& contact : FindContacts(foot, floor, clip.frame_rate_hz)) {
       standing += contact.end - contact.begin;
     }
   }
@@ -137,7 +136,7 @@ class Measurer {
 
   std::vector<double> MeasureWithPartner() const {
     if (partner_ == nullptr) return {kNone, kNone, kNone, kNone, kNone};
-    const std::vector<motion::BodyPart> limbs = cleanup::LimbParts(cleanup::FindBody(skeleton_));
+    const std::vector<motion::BodyPart> limbs = body::LimbParts(body::FindBody(skeleton_));
     const motion::Poses &partner = partner_->poses, &person = person_.poses;
     const metrics::Penetration penetration =
         metrics::MeasurePenetration(partner, person, skeleton_, limbs);

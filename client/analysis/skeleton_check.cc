@@ -11,8 +11,8 @@
 #include "absl/types/span.h"
 #include "model/base/angle.h"
 #include "model/base/median.h"
+#include "model/body/limbs.h"
 #include "model/cleanup/floor.h"
-#include "model/cleanup/limbs.h"
 #include "model/dataset/posture.h"
 #include "model/motion/feet.h"
 #include "model/motion/inferred_coordinates.h"
@@ -56,7 +56,7 @@ std::string BoneName(const motion::Skeleton& skeleton, std::size_t bone) {
 class Checker {
  public:
   Checker(const motion::Clip& clip, const motion::Skeleton& skeleton)
-      : clip_(clip), skeleton_(skeleton), body_(cleanup::FindBody(skeleton)) {}
+      : clip_(clip), skeleton_(skeleton), body_(body::FindBody(skeleton)) {}
 
   std::vector<Check> Run() {
     CheckFinite();
@@ -147,9 +147,9 @@ class Checker {
   void CheckSymmetry() {
     double most = 1;
     std::string worst;
-    for (const std::vector<cleanup::Limb>* limbs : {&body_.arms, &body_.legs}) {
+    for (const std::vector<body::Limb>* limbs : {&body_.arms, &body_.legs}) {
       if (limbs->size() != 2) continue;
-      const cleanup::Limb &a = (*limbs)[0], &b = (*limbs)[1];
+      const body::Limb &a = (*limbs)[0], &b = (*limbs)[1];
       Compare({a.upper, a.middle}, {b.upper, b.middle}, &most, &worst);
       Compare({a.middle, a.end}, {b.middle, b.end}, &most, &worst);
     }
@@ -254,7 +254,7 @@ class Checker {
 
   // Distance of the middle of a limb from the line between its ends, in the direction that the hips
   // face. 0 if it is small.
-  static double BendForwards(const cleanup::Limb& limb, Vec3 facing, absl::Span<const Vec3> pose) {
+  static double BendForwards(const body::Limb& limb, Vec3 facing, absl::Span<const Vec3> pose) {
     const Vec3 upper = pose[Index(limb.upper)], along = pose[Index(limb.end)] - upper;
     const float length = Dot(along, along);
     if (!(length > 0)) return 0;
@@ -269,13 +269,13 @@ class Checker {
     double all = 0, wrong = 0;
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
       const absl::Span<const Vec3> pose = clip_.poses[frame];
-      const Vec3 facing = cleanup::Facing(*skeleton_.hips, pose);
+      const Vec3 facing = body::Facing(*skeleton_.hips, pose);
       const auto add = [&](double right_way) {
         all += std::abs(right_way);
         wrong += std::max(0.0, -right_way);
       };
-      for (const cleanup::Limb& leg : body_.legs) add(BendForwards(leg, facing, pose));
-      for (const cleanup::Limb& arm : body_.arms) add(-BendForwards(arm, facing, pose));
+      for (const body::Limb& leg : body_.legs) add(BendForwards(leg, facing, pose));
+      for (const body::Limb& arm : body_.arms) add(-BendForwards(arm, facing, pose));
     }
     if (all == 0) return std::nullopt;
     return wrong / all;
@@ -327,7 +327,7 @@ class Checker {
              std::asin(std::clamp(static_cast<double>(Dot(up, way)), -1.0, 1.0));
     };
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
-      const Vec3 facing = cleanup::Facing(*skeleton_.hips, clip_.poses[frame]);
+      const Vec3 facing = body::Facing(*skeleton_.hips, clip_.poses[frame]);
       forwards += angle(directions[Index(frame)], facing);
       sideways += angle(directions[Index(frame)], Cross(Vec3{0, 1, 0}, facing));
     }
@@ -407,7 +407,7 @@ class Checker {
 
   const motion::Clip& clip_;
   const motion::Skeleton& skeleton_;
-  cleanup::Body body_;
+  body::Body body_;
   std::vector<Check> checks_;
 };
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "absl/strings/str_format.h"
+#include "model/body/limbs.h"
 #include "model/cleanup/floor.h"
-#include "model/cleanup/limbs.h"
 #include "model/evaluation/metrics/liveliness.h"
 #include "model/evaluation/metrics/penetration.h"
 #include "model/evaluation/metrics/posture.h"
@@ -55,7 +55,7 @@ Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton) 
   quality.distance_metres = metrics::RootDistance(leader, follower, skeleton);
   quality.penetration_metres =
       metrics::MeasurePenetration(leader, follower, skeleton,
-                                  cleanup::LimbParts(cleanup::FindBody(skeleton)))
+                                  body::LimbParts(body::FindBody(skeleton)))
           .max_depth_metres;
   quality.range_of_motion_metres = metrics::RangeOfMotion(follower);
   return quality;

@@ -1,4 +1,4 @@
-#include "model/cleanup/limbs.h"
+#include "model/body/limbs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "absl/strings/match.h"
 #include "model/motion/capsules.h"
 
-namespace duet::cleanup {
+namespace duet::body {
 namespace {
 
 using motion::Vec3;
@@ -115,6 +115,27 @@ std::vector<Limb> FindArms(const motion::Skeleton& skeleton, const Tree& tree, i
   return arms;
 }
 
+// Whether the name of a joint of the limb contains `side`.
+bool IsOn(const motion::Skeleton& skeleton, const Limb& limb, const char* side) {
+  const int joints[] = {limb.upper, limb.middle, limb.end};
+  return std::any_of(std::begin(joints), std::end(joints), [&](int joint) {
+    const std::string& name = skeleton.joint_names[static_cast<std::size_t>(joint)];
+    return absl::StrContains(absl::AsciiStrToLower(name), side);
+  });
+}
+
+std::optional<motion::JointPair> FindShoulders(const motion::Skeleton& skeleton,
+                                               const std::vector<Limb>& arms) {
+  if (arms.size() != 2) return std::nullopt;
+  for (const int left : {0, 1}) {
+    const Limb &a = arms[static_cast<std::size_t>(left)],
+               &b = arms[static_cast<std::size_t>(1 - left)];
+    if (IsOn(skeleton, a, "left") && IsOn(skeleton, b, "right"))
+      return motion::JointPair{a.upper, b.upper};
+  }
+  return std::nullopt;
+}
+
 motion::BodyPart PartOf(const char* name, const Limb& limb) {
   motion::BodyPart part{name, {limb.upper, limb.middle, limb.end}};
   part.joints.insert(part.joints.end(), limb.beyond.begin(), limb.beyond.end());
@@ -140,6 +161,7 @@ Body FindBody(const motion::Skeleton& skeleton) {
   body.chest = FindChest(tree, *skeleton.hips);
   if (!body.chest) return body;
   body.arms = FindArms(skeleton, tree, *body.chest, *skeleton.hips);
+  body.shoulders = FindShoulders(skeleton, body.arms);
   body.neck = FindNeck(skeleton, tree, *body.chest);
   return body;
 }
@@ -193,4 +215,4 @@ Vec3 Facing(const motion::JointPair& hips, absl::Span<const Vec3> pose) {
   return length > 0 ? facing / length : Vec3{0, 0, 1};
 }
 
-}  // namespace duet::cleanup
+}  // namespace duet::body

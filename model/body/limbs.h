@@ -1,5 +1,5 @@
-#ifndef DUET_MODEL_CLEANUP_LIMBS_H_
-#define DUET_MODEL_CLEANUP_LIMBS_H_
+#ifndef DUET_MODEL_BODY_LIMBS_H_
+#define DUET_MODEL_BODY_LIMBS_H_
 
 #include <optional>
 #include <vector>
@@ -9,7 +9,7 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
-namespace duet::cleanup {
+namespace duet::body {
 
 // An arm or a leg: a chain of two bones, and the joints beyond their end (toes, fingers).
 struct Limb {
@@ -33,6 +33,9 @@ struct Body {
   std::optional<int> chest;
   std::vector<Limb> legs;  // left and right; none if a foot is attached by fewer than two bones
   std::vector<Limb> arms;  // chains of at least three joints from the chest, except the head's
+  // Where the arms begin. Absent unless there are two arms and the names of their joints contain
+  // "left" and "right".
+  std::optional<motion::JointPair> shoulders;
   std::optional<Neck> neck;
 };
 // Requires a skeleton that Validate accepts.
@@ -53,6 +56,6 @@ void Reach(const Limb& limb, motion::Vec3 target, motion::Vec3 forward,
 // Returns the direction in which the hips face: horizontal, of length 1. Shapes: pose [joints].
 motion::Vec3 Facing(const motion::JointPair& hips, absl::Span<const motion::Vec3> pose);
 
-}  // namespace duet::cleanup
+}  // namespace duet::body
 
-#endif  // DUET_MODEL_CLEANUP_LIMBS_H_
+#endif  // DUET_MODEL_BODY_LIMBS_H_

@@ -59,16 +59,16 @@ std::vector<Capsule> CapsulesOf(const std::vector<Bone>& bones, const std::vecto
   return capsules;
 }
 
-bool IsInside(const Limb& limb, const Bone& bone) {
+bool IsInside(const body::Limb& limb, const Bone& bone) {
   return bone.parent == limb.upper || bone.parent == limb.middle || bone.parent == limb.end ||
          std::find(limb.beyond.begin(), limb.beyond.end(), bone.parent) != limb.beyond.end();
 }
 
 // Indices of all bones except those of arms.
-std::vector<std::size_t> AllButArms(const motion::Skeleton& skeleton, const Body& body) {
+std::vector<std::size_t> AllButArms(const motion::Skeleton& skeleton, const body::Body& body) {
   std::vector<std::size_t> bones;
   for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
-    const auto inside = [&](const Limb& limb) { return IsInside(limb, skeleton.bones[b]); };
+    const auto inside = [&](const body::Limb& limb) { return IsInside(limb, skeleton.bones[b]); };
     if (std::none_of(body.arms.begin(), body.arms.end(), inside)) bones.push_back(b);
   }
   return bones;
@@ -95,15 +95,22 @@ float RoomToMake(const std::vector<Capsule>& leader, std::vector<Capsule> follow
   return static_cast<float>(room);
 }
 
-// The maximum within `reach` frames on either side.
-std::vector<float> MostAround(const std::vector<float>& track, int reach) {
-  const int frames = static_cast<int>(track.size());
-  std::vector<float> most;
-  for (int t = 0; t < frames; ++t) {
-    const auto first = track.begin() + std::max(0, t - reach);
-    most.push_back(*std::max_element(first, track.begin() + std::min(frames, t + reach + 1)));
+// The axis of the trunk, from the middle of the hips to the chest, as a capsule.
+Capsule TrunkOf(const motion::Skeleton& skeleton, const body::Body& body,
+                absl::Span<const Vec3> pose, double radius) {
+  const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
+  return {Lerp(at(skeleton.hips->left), at(skeleton.hips->right), 0.5f), at(*body.chest), radius};
+}
+
+// Trunks and heads as capsules whose distance is the smallest permitted one.
+std::vector<Capsule> Cores(const motion::Skeleton& skeleton, const body::Body& body,
+                           const CapsuleOptions& options, absl::Span<const Vec3> pose) {
+  std::vector<Capsule> cores = {TrunkOf(skeleton, body, pose, options.trunks_metres / 2)};
+  if (body.neck) {
+    const Vec3 head = pose[static_cast<std::size_t>(body.neck->head)];
+    cores.push_back({head, head, options.heads_metres / 2});
   }
-  return most;
+  return cores;
 }
 
 // The horizontal direction from leader to follower, of length 1.
@@ -127,8 +134,8 @@ Overlap DeepestOverlap(const std::vector<Capsule>& leader, const Capsule& outer,
 }
 
 // The offset by which a hand must move to resolve the arm's overlap. Uses `pose` as scratch space.
-Vec3 WayOut(const Limb& arm, double radius, const std::vector<Capsule>& leader, double allowed,
-            Vec3 backwards, std::vector<Vec3> pose) {
+Vec3 WayOut(const body::Limb& arm, double radius, const std::vector<Capsule>& leader,
+            double allowed, Vec3 backwards, std::vector<Vec3> pose) {
   const Vec3 from = pose[static_cast<std::size_t>(arm.end)];
   for (int push = 0; push < kPushes; ++push) {
     const Vec3 shoulder = pose[static_cast<std::size_t>(arm.upper)];
@@ -143,7 +150,7 @@ Vec3 WayOut(const Limb& arm, double radius, const std::vector<Capsule>& leader, 
   return pose[static_cast<std::size_t>(arm.end)] - from;
 }
 
-double RadiusOf(const Limb& arm, const motion::Skeleton& skeleton,
+double RadiusOf(const body::Limb& arm, const motion::Skeleton& skeleton,
                 const std::vector<double>& radii) {
   for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
     if (skeleton.bones[b] == Bone{arm.middle, arm.end}) return radii[b];
@@ -153,19 +160,24 @@ double RadiusOf(const Limb& arm, const motion::Skeleton& skeleton,
 
 }  // namespace
 
-void PartBodies(const motion::Skeleton& skeleton, const Body& body,
+void PartBodies(const motion::Skeleton& skeleton, const body::Body& body,
                 const std::vector<double>& radii, const motion::Poses& leader, const Touch& touch,
                 const CapsuleOptions& options, const Timing& timing, motion::Poses* follower) {
   if (!body.chest) return;
   const std::vector<std::size_t> bones = AllButArms(skeleton, body);
+  const std::vector<std::size_t> trunk_only = {0}, trunk_and_head = {0, 1};
+  const std::vector<std::size_t>& cores = body.neck ? trunk_and_head : trunk_only;
   std::vector<float> room;
   std::vector<Vec3> ways;
   for (int t = 0; t < follower->frame_count(); ++t) {
     ways.push_back(WayApart(leader.at(t, skeleton.root), follower->at(t, skeleton.root)));
-    room.push_back(RoomToMake(CapsulesOf(skeleton.bones, radii, leader[t]),
-                              CapsulesOf(skeleton.bones, radii, (*follower)[t]), bones, ways.back(),
-                              options.allowed_metres) *
-                   (1 - touch[static_cast<std::size_t>(t)]));
+    const float for_bodies = RoomToMake(CapsulesOf(skeleton.bones, radii, leader[t]),
+                                        CapsulesOf(skeleton.bones, radii, (*follower)[t]), bones,
+                                        ways.back(), options.allowed_metres);
+    const float for_cores =
+        RoomToMake(Cores(skeleton, body, options, leader[t]),
+                   Cores(skeleton, body, options, (*follower)[t]), cores, ways.back(), 0);
+    room.push_back(std::max(for_bodies * (1 - touch[static_cast<std::size_t>(t)]), for_cores));
   }
   const double smooth = timing.Frames(kBodySmoothSeconds);
   room = LowPass(MostAround(room, static_cast<int>(std::lround(smooth))), smooth);
@@ -173,15 +185,15 @@ void PartBodies(const motion::Skeleton& skeleton, const Body& body,
   ShiftBody(ways, options.fastest_metres_per_second, timing, follower);
 }
 
-void PartArms(const motion::Skeleton& skeleton, const Body& body, const std::vector<double>& radii,
-              const motion::Poses& leader, const Touch& touch, const CapsuleOptions& options,
-              const Timing& timing, motion::Poses* follower) {
-  for (const Limb& arm : body.arms) {
+void PartArms(const motion::Skeleton& skeleton, const body::Body& body,
+              const std::vector<double>& radii, const motion::Poses& leader, const Touch& touch,
+              const CapsuleOptions& options, const Timing& timing, motion::Poses* follower) {
+  for (const body::Limb& arm : body.arms) {
     const double radius = RadiusOf(arm, skeleton, radii);
     std::vector<Vec3> ways, backwards;
     for (int t = 0; t < follower->frame_count(); ++t) {
       const absl::Span<const Vec3> pose = (*follower)[t];
-      backwards.push_back(-Facing(*skeleton.hips, pose));
+      backwards.push_back(-body::Facing(*skeleton.hips, pose));
       const Vec3 way = WayOut(arm, radius, CapsulesOf(skeleton.bones, radii, leader[t]),
                               options.allowed_metres, backwards.back(), {pose.begin(), pose.end()});
       ways.push_back(way * (1 - touch[static_cast<std::size_t>(t)]));

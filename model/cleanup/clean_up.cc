@@ -7,12 +7,15 @@ namespace duet::cleanup {
 CleanUp::CleanUp(const motion::Skeleton& skeleton, const Options& options)
     : skeleton_(skeleton),
       options_(options),
-      body_(FindBody(skeleton)),
+      body_(body::FindBody(skeleton)),
       radii_(CapsuleRadii(skeleton, body_)) {}
 
 void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timing& timing,
                     motion::Poses* follower) const {
-  // The whole body first, then its limbs, so that fixed feet stay fixed.
+  // The trunk and the whole body first, then the limbs, so that fixed feet stay fixed.
+  if (options_.waist.enabled) {
+    LimitWaist(skeleton_, body_, leader, options_.waist, timing, follower);
+  }
   if (options_.upright.enabled) {
     // Each stage changes the input of the other; after the second pass little remains.
     for (int round = 0; round < 2; ++round) {
@@ -27,18 +30,19 @@ void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timin
     PartBodies(skeleton_, body_, radii_, leader, touch, options_.capsules, timing, follower);
   }
   std::optional<float> floor;
-  if (skeleton_.feet) {
-    floor = FloorHeight(*skeleton_.feet, leader);
-    if (options_.floor.enabled) StandOnFloor(skeleton_, *floor, options_.floor, timing, follower);
-    if (options_.contacts.enabled) {
-      HoldContacts(skeleton_, body_, *floor, options_.contacts, timing, follower);
-    }
+  if (skeleton_.feet) floor = FloorHeight(*skeleton_.feet, leader);
+  if (floor && options_.floor.enabled) {
+    StandOnFloor(skeleton_, *floor, options_.floor, timing, follower);
   }
   if (options_.capsules.enabled) {
     PartArms(skeleton_, body_, radii_, leader, touch, options_.capsules, timing, follower);
   }
   if (options_.joint_ranges.enabled) {
     KeepJointRanges(skeleton_, body_, floor, options_.joint_ranges, timing, follower);
+  }
+  // Last, so that standing feet stand.
+  if (floor && options_.footsteps.enabled) {
+    WalkInSteps(skeleton_, body_, *floor, options_.footsteps, timing, follower);
   }
 }
 

@@ -3,14 +3,15 @@
 
 #include <vector>
 
+#include "model/body/limbs.h"
 #include "model/cleanup/capsules.h"
-#include "model/cleanup/contacts.h"
 #include "model/cleanup/floor.h"
+#include "model/cleanup/footsteps.h"
 #include "model/cleanup/joint_ranges.h"
-#include "model/cleanup/limbs.h"
 #include "model/cleanup/spacing.h"
 #include "model/cleanup/timing.h"
 #include "model/cleanup/upright.h"
+#include "model/cleanup/waist.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
@@ -19,12 +20,13 @@
 namespace duet::cleanup {
 
 struct Options {
+  WaistOptions waist;
   UprightOptions upright;
   SpacingOptions spacing;
   CapsuleOptions capsules;
   JointRangeOptions joint_ranges;
   FloorOptions floor;
-  ContactOptions contacts;
+  FootstepOptions footsteps;
 };
 
 // Corrects one window of a follower in stages. Every stage leaves the settled frames unchanged,
@@ -45,7 +47,7 @@ class CleanUp {
  private:
   motion::Skeleton skeleton_;
   Options options_;
-  Body body_;
+  body::Body body_;
   std::vector<double> radii_;
 };
 

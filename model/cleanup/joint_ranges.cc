@@ -156,8 +156,8 @@ std::optional<Placed> PlaceAbove(float lowest, Vec3 upper, Vec3 middle, Vec3 end
 }
 
 // Returns whether a joint moved.
-bool LimitLimb(const Limb& limb, float floor, const Hinge& hinge, const JointRangeOptions& options,
-               float share, absl::Span<Vec3> pose) {
+bool LimitLimb(const body::Limb& limb, float floor, const Hinge& hinge,
+               const JointRangeOptions& options, float share, absl::Span<Vec3> pose) {
   Vec3& middle = pose[static_cast<std::size_t>(limb.middle)];
   Vec3& end = pose[static_cast<std::size_t>(limb.end)];
   const auto placed =
@@ -172,16 +172,16 @@ bool LimitLimb(const Limb& limb, float floor, const Hinge& hinge, const JointRan
 }
 
 // Rotating a limb changes its reference; after the second pass little remains.
-void LimitLimbs(const std::vector<Limb>& limbs, float floor, const Hinge& hinge,
+void LimitLimbs(const std::vector<body::Limb>& limbs, float floor, const Hinge& hinge,
                 const JointRangeOptions& options, float share, absl::Span<Vec3> pose) {
-  for (const Limb& limb : limbs) {
+  for (const body::Limb& limb : limbs) {
     if (LimitLimb(limb, floor, hinge, options, share, pose)) {
       LimitLimb(limb, floor, hinge, options, share, pose);
     }
   }
 }
 
-void LimitNeck(const Neck& neck, Vec3 up, const JointRangeOptions& options, float share,
+void LimitNeck(const body::Neck& neck, Vec3 up, const JointRangeOptions& options, float share,
                absl::Span<Vec3> pose) {
   const Vec3 base = pose[static_cast<std::size_t>(neck.base)];
   const Vec3 head = pose[static_cast<std::size_t>(neck.head)] - base;
@@ -198,7 +198,8 @@ void LimitNeck(const Neck& neck, Vec3 up, const JointRangeOptions& options, floa
 
 // The vector from the right shoulder to the left one in every frame. The hips over all frames
 // determine which arm is the left one. Shapes: returns [frames].
-std::vector<Vec3> ShouldersToTheLeft(const motion::JointPair& hips, const std::vector<Limb>& arms,
+std::vector<Vec3> ShouldersToTheLeft(const motion::JointPair& hips,
+                                     const std::vector<body::Limb>& arms,
                                      const motion::Poses& poses) {
   std::vector<Vec3> across;
   float agreement = 0;
@@ -214,8 +215,9 @@ std::vector<Vec3> ShouldersToTheLeft(const motion::JointPair& hips, const std::v
 
 }  // namespace
 
-void KeepJointRanges(const motion::Skeleton& skeleton, const Body& body, std::optional<float> floor,
-                     const JointRangeOptions& options, const Timing& timing, motion::Poses* poses) {
+void KeepJointRanges(const motion::Skeleton& skeleton, const body::Body& body,
+                     std::optional<float> floor, const JointRangeOptions& options,
+                     const Timing& timing, motion::Poses* poses) {
   if (!skeleton.hips || !body.chest) return;
   std::vector<Vec3> shoulders;
   if (body.arms.size() == 2) shoulders = ShouldersToTheLeft(*skeleton.hips, body.arms, *poses);

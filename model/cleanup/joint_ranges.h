@@ -3,18 +3,12 @@
 
 #include <optional>
 
-#include "model/cleanup/limbs.h"
+#include "model/body/limbs.h"
 #include "model/cleanup/timing.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::cleanup {
-
-// Angles up to `free` are not corrected. Corrected angles do not exceed `most`. Degrees.
-struct SoftRange {
-  double free = 0;
-  double most = 0;
-};
 
 // Active ranges of motion of adults, as mean (standard deviation) in degrees: knee flexion 142.5
 // (5.4), elbow flexion 142.9 (5.6), elbow hyperextension 0.6 (3.1), hip rotation 47 (6) in both
@@ -43,8 +37,9 @@ struct JointRangeOptions {
 //
 // Straightening a leg lengthens its reach. `floor`: height in metres, if there is a floor. A
 // correction that would move a foot more than 3 cm below it is reduced.
-void KeepJointRanges(const motion::Skeleton& skeleton, const Body& body, std::optional<float> floor,
-                     const JointRangeOptions& options, const Timing& timing, motion::Poses* poses);
+void KeepJointRanges(const motion::Skeleton& skeleton, const body::Body& body,
+                     std::optional<float> floor, const JointRangeOptions& options,
+                     const Timing& timing, motion::Poses* poses);
 
 }  // namespace duet::cleanup
 

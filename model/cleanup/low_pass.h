@@ -33,6 +33,17 @@ std::vector<Value> LowPass(const std::vector<Value>& track, double sigma_frames)
   return smooth;
 }
 
+// Returns the maximum within `reach` frames on either side.
+inline std::vector<float> MostAround(const std::vector<float>& track, int reach) {
+  const int frames = static_cast<int>(track.size());
+  std::vector<float> most;
+  for (int t = 0; t < frames; ++t) {
+    const auto first = track.begin() + std::max(0, t - reach);
+    most.push_back(*std::max_element(first, track.begin() + std::min(frames, t + reach + 1)));
+  }
+  return most;
+}
+
 }  // namespace duet::cleanup
 
 #endif  // DUET_MODEL_CLEANUP_LOW_PASS_H_

@@ -36,6 +36,12 @@ inline float SoftLimit(float value, float knee, float limit) {
   return knee + (limit - knee) * (1 - std::exp(-(value - knee) / (limit - knee)));
 }
 
+// Angles up to `free` are not corrected. Corrected angles do not exceed `most`. Degrees.
+struct SoftRange {
+  double free = 0;
+  double most = 0;
+};
+
 }  // namespace duet::cleanup
 
 #endif  // DUET_MODEL_CLEANUP_TIMING_H_

@@ -35,14 +35,14 @@ Turn TurnBack(Vec3 lean, const UprightOptions& options) {
 }
 
 // Rotates everything except the legs about the middle of the hips. Feet stay and knees follow.
-void BendAtHips(const motion::Skeleton& skeleton, const Body& body, const Turn& turn,
+void BendAtHips(const motion::Skeleton& skeleton, const body::Body& body, const Turn& turn,
                 absl::Span<Vec3> pose) {
   const auto at = [&](int joint) -> Vec3& { return pose[static_cast<std::size_t>(joint)]; };
   const Vec3 pivot = Lerp(at(skeleton.hips->left), at(skeleton.hips->right), 0.5f);
   const std::vector<Vec3> before(pose.begin(), pose.end());
   for (Vec3& joint : pose) joint = pivot + RotateAbout(joint - pivot, turn.axis, turn.radians);
-  const Vec3 forward = Facing(*skeleton.hips, pose);
-  for (const Limb& leg : body.legs) {
+  const Vec3 forward = body::Facing(*skeleton.hips, pose);
+  for (const body::Limb& leg : body.legs) {
     const auto was = [&](int joint) { return before[static_cast<std::size_t>(joint)]; };
     const Vec3 moved = at(leg.upper) - was(leg.upper);
     at(leg.middle) = was(leg.middle) + moved;
@@ -69,7 +69,7 @@ std::vector<Vec3> LastingLean(const motion::JointPair& base, int chest, const mo
   return trunk;
 }
 
-void SetTrunkUpright(const motion::Skeleton& skeleton, const Body& body,
+void SetTrunkUpright(const motion::Skeleton& skeleton, const body::Body& body,
                      const UprightOptions& options, const Timing& timing, motion::Poses* poses) {
   if (!skeleton.hips || !body.chest || body.legs.empty()) return;
   const std::vector<Vec3> lean =
@@ -81,8 +81,8 @@ void SetTrunkUpright(const motion::Skeleton& skeleton, const Body& body,
   }
 }
 
-void SetUpright(const motion::Skeleton& skeleton, const Body& body, const UprightOptions& options,
-                const Timing& timing, motion::Poses* poses) {
+void SetUpright(const motion::Skeleton& skeleton, const body::Body& body,
+                const UprightOptions& options, const Timing& timing, motion::Poses* poses) {
   if (!skeleton.feet || !body.chest) return;
   const std::vector<Vec3> lean =
       LastingLean(*skeleton.feet, *body.chest, *poses, timing.Frames(options.sigma_seconds));

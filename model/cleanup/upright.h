@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "model/cleanup/limbs.h"
+#include "model/body/limbs.h"
 #include "model/cleanup/timing.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
@@ -29,13 +29,13 @@ std::vector<motion::Vec3> LastingLean(const motion::JointPair& base, int chest,
 
 // Rotates a trunk with a lasting lean towards upright about the hips. The feet keep their
 // positions, and the knees follow. Does nothing for a skeleton without hips or legs.
-void SetTrunkUpright(const motion::Skeleton& skeleton, const Body& body,
+void SetTrunkUpright(const motion::Skeleton& skeleton, const body::Body& body,
                      const UprightOptions& options, const Timing& timing, motion::Poses* poses);
 
 // Rotates a body with a lasting lean in any direction towards upright about the point between its
 // feet. Does nothing for a skeleton without hips or feet.
-void SetUpright(const motion::Skeleton& skeleton, const Body& body, const UprightOptions& options,
-                const Timing& timing, motion::Poses* poses);
+void SetUpright(const motion::Skeleton& skeleton, const body::Body& body,
+                const UprightOptions& options, const Timing& timing, motion::Poses* poses);
 
 }  // namespace duet::cleanup
 

@@ -1,4 +1,4 @@
-#include "model/cleanup/limbs.h"
+#include "model/body/limbs.h"
 
 #include <utility>
 
@@ -6,9 +6,13 @@
 #include "model/motion/capsules.h"
 #include "tests/cleanup/bodies.h"
 
-namespace duet::cleanup {
+namespace duet::body {
 namespace {
 
+using cleanup::LargestDistance;
+using cleanup::LargestLengthChange;
+using cleanup::WithoutFeet;
+using cleanup::WithoutHips;
 using motion::Vec3;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -88,7 +92,7 @@ class ReachTest : public ::testing::Test {
  protected:
   void ReachFor(Vec3 target) { Reach(leg_, target, {0, 0, 1}, poses_[0]); }
   const Limb leg_ = FindBody(motion::SbuSkeleton()).legs[0];
-  motion::Poses poses_ = Puppet({}, 1);
+  motion::Poses poses_ = cleanup::Puppet({}, 1);
   const motion::Poses before_ = poses_;
 };
 
@@ -124,9 +128,9 @@ TEST_F(ReachTest, AStraightLegBendsForwards) {
 }
 
 TEST(Facing, IsTheDirectionOfTheHips) {
-  const Vec3 facing = Facing(*motion::SbuSkeleton().hips, Puppet({}, 1)[0]);
+  const Vec3 facing = Facing(*motion::SbuSkeleton().hips, cleanup::Puppet({}, 1)[0]);
   EXPECT_NEAR(facing.z, 1, 1e-5f);
 }
 
 }  // namespace
-}  // namespace duet::cleanup
+}  // namespace duet::body

@@ -16,8 +16,8 @@ const motion::Skeleton& Sbu() {
 
 motion::Poses Parted(motion::Poses follower, float touch = 0, int settled = 0,
                      const motion::Skeleton& skeleton = Sbu()) {
-  const Body body = FindBody(skeleton);
-  const std::vector<double> radii = CapsuleRadii(skeleton, body);
+  const Body body = body::FindBody(skeleton);
+  const std::vector<double> radii = body::CapsuleRadii(skeleton, body);
   const motion::Poses leader = Puppet();
   const Touch touches(kFrames, touch);
   PartBodies(skeleton, body, radii, leader, touches, {}, {kRate, settled}, &follower);
@@ -27,7 +27,7 @@ motion::Poses Parted(motion::Poses follower, float touch = 0, int settled = 0,
 
 // The deepest overlap with the leader, metres.
 double Depth(const motion::Poses& follower, int frame) {
-  const std::vector<double> radii = CapsuleRadii(Sbu(), FindBody(Sbu()));
+  const std::vector<double> radii = body::CapsuleRadii(Sbu(), body::FindBody(Sbu()));
   const motion::Poses leader = Puppet();
   double deepest = 0;
   for (std::size_t a = 0; a < radii.size(); ++a) {

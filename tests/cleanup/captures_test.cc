@@ -55,7 +55,7 @@ class CapturesTest : public ::testing::Test {
 // The mean way that one stage moves the joints of a captured follower, metres.
 double MeanShift(const motion::Poses& follower, const motion::Skeleton& skeleton, double rate_hz) {
   motion::Poses limited = follower;
-  KeepJointRanges(skeleton, FindBody(skeleton), std::nullopt, {}, {rate_hz, 0}, &limited);
+  KeepJointRanges(skeleton, body::FindBody(skeleton), std::nullopt, {}, {rate_hz, 0}, &limited);
   double sum = 0;
   for (std::size_t i = 0; i < follower.all().size(); ++i) {
     sum += Distance(follower.all()[i], limited.all()[i]);

@@ -55,7 +55,8 @@ TEST(CleanUp, BonesKeepTheirLengths) {
 TEST(CleanUp, EveryStageHasItsSwitch) {
   Options none;
   none.upright.enabled = none.spacing.enabled = none.capsules.enabled = false;
-  none.floor.enabled = none.contacts.enabled = none.joint_ranges.enabled = false;
+  none.waist.enabled = none.floor.enabled = none.footsteps.enabled = none.joint_ranges.enabled =
+      false;
   const motion::Poses soiled = Moved(Soiled(), {3, 0, 0});
   EXPECT_EQ(Cleaned(soiled, 0, none), soiled);
   EXPECT_EQ(Cleaned(Soiled(), 0, none), Soiled());
@@ -71,7 +72,7 @@ TEST(CleanUp, EveryStageHasItsSwitch) {
       0.01f);
   EXPECT_LT(alone([](Options* o) { o->floor.enabled = true; }, soiled).at(9, 2).y,
             soiled.at(9, 2).y - 0.05f);
-  EXPECT_NE(alone([](Options* o) { o->contacts.enabled = true; }, Moved(soiled, {0, -0.12f, 0})),
+  EXPECT_NE(alone([](Options* o) { o->footsteps.enabled = true; }, Moved(soiled, {0, -0.12f, 0})),
             Moved(soiled, {0, -0.12f, 0}));
   motion::Poses broken = Puppet();
   for (int t = 0; t < kFrames; ++t) broken.at(t, 11) += {0, 0.2f, 0.3f};  // a knee bends forwards

@@ -1,4 +1,4 @@
-#include "model/cleanup/contacts.h"
+#include "model/cleanup/footsteps.h"
 
 #include "model/authoring/puppet.h"
 #include "tests/cleanup/bodies.h"
@@ -10,9 +10,9 @@ using motion::Vec3;
 
 constexpr float kFloor = static_cast<float>(kAnkle);
 
-motion::Poses Held(motion::Poses poses, int settled = 0,
-                   const motion::Skeleton& skeleton = motion::SbuSkeleton()) {
-  HoldContacts(skeleton, FindBody(skeleton), kFloor, {}, {kRate, settled}, &poses);
+motion::Poses Walked(motion::Poses poses, int settled = 0,
+                     const motion::Skeleton& skeleton = motion::SbuSkeleton()) {
+  WalkInSteps(skeleton, body::FindBody(skeleton), kFloor, {}, {kRate, settled}, &poses);
   return poses;
 }
 
@@ -51,8 +51,8 @@ motion::Poses Walking() {
   });
 }
 
-TEST(HoldContacts, FixesASlidingFoot) {
-  const motion::Poses sliding = Sliding(), held = Held(sliding);
+TEST(WalkInSteps, FixesASlidingFoot) {
+  const motion::Poses sliding = Sliding(), held = Walked(sliding);
   for (const int foot : {11, 14}) {
     EXPECT_GT(Slide(sliding, foot, 0, kFrames - 1), 0.002);
     EXPECT_LT(Slide(held, foot, 0, kFrames - 1), 0.0002);
@@ -62,43 +62,80 @@ TEST(HoldContacts, FixesASlidingFoot) {
   EXPECT_LT(LargestDistance(held, sliding), 0.06f);
 }
 
-TEST(HoldContacts, StepsStaySteps) {
-  const motion::Poses walking = Walking(), held = Held(walking);
+TEST(WalkInSteps, StepsStaySteps) {
+  const motion::Poses walking = Walking(), held = Walked(walking);
   EXPECT_LT(LargestDistance(walking, held), 0.07f);
   EXPECT_NEAR(held.at(kFrames - 1, 11).z - held.at(0, 11).z, 0.3f, 0.02f);
   EXPECT_LT(LargestStep(held), 1.5f * LargestStep(walking));
 }
 
-TEST(HoldContacts, FeetThatStandStay) {
-  EXPECT_LT(LargestDistance(Held(Puppet()), Puppet()), 1e-4f);
+TEST(WalkInSteps, FeetThatStandStay) {
+  EXPECT_LT(LargestDistance(Walked(Puppet()), Puppet()), 1e-4f);
 }
 
-TEST(HoldContacts, AFootThatDriftsIsNotLeftBehind) {
-  const motion::Poses drifting = Changed(Puppet(), [](int t, Vec3 joint) {
-    return joint + Vec3{0.15f * static_cast<float>(t / kRate), 0, 0};
+// The speed of a foot that arrives at a frame, m/s.
+double Speed(const motion::Poses& poses, int foot, int frame) {
+  return kRate * double{Distance(poses.at(frame, foot), poses.at(frame - 1, foot))};
+}
+
+TEST(WalkInSteps, ABodyThatSlidesSteps) {
+  const motion::Poses sliding = Changed(Puppet(), [](int t, Vec3 joint) {
+    return joint + Vec3{0.3f * static_cast<float>(t / kRate), 0, 0};
   });
-  const motion::Poses held = Held(drifting);
-  EXPECT_LT(LargestDistance(held, drifting), 0.1f);
-  EXPECT_LT(LargestStep(held), 0.06f);
+  const motion::Poses walked = Walked(sliding);
+  int steps = 0;
+  for (int t = 1; t < kFrames; ++t) {
+    EXPECT_LT(std::min(Speed(walked, 11, t), Speed(walked, 14, t)), 0.05) << "frame " << t;
+    steps += std::max(Speed(walked, 11, t), Speed(walked, 14, t)) > 0.2;
+  }
+  EXPECT_GT(steps, 10);
+  EXPECT_LT(LargestDistance(walked, sliding), 0.25f);
+  EXPECT_LT(LargestLengthChange(walked, sliding), 1e-5f);
 }
 
-TEST(HoldContacts, AFootInTheAirIsFree) {
+TEST(WalkInSteps, AStepIsLifted) {
+  const motion::Poses walked = Walked(Changed(Puppet(), [](int t, Vec3 joint) {
+    return joint + Vec3{0.3f * static_cast<float>(t / kRate), 0, 0};
+  }));
+  float highest = 0;
+  for (int t = 0; t < kFrames; ++t) {
+    highest = std::max(highest, std::max(walked.at(t, 11).y, walked.at(t, 14).y) - kFloor);
+  }
+  EXPECT_GT(highest, 0.02f);
+  EXPECT_LT(highest, 0.09f);
+}
+
+// Legs cannot reach feet that are farther apart than they are long.
+TEST(WalkInSteps, TheBodySinksToFeetThatAreFarApart) {
+  motion::Poses wide = Puppet();
+  for (int t = 0; t < kFrames; ++t) {
+    wide.at(t, 11) += Vec3{0.3f, 0, 0};
+    wide.at(t, 14) += Vec3{-0.3f, 0, 0};
+  }
+  const motion::Poses walked = Walked(wide);
+  EXPECT_LT(walked.at(kFrames - 1, 2).y, wide.at(kFrames - 1, 2).y - 0.005f);
+  EXPECT_LT(Distance(walked.at(kFrames - 1, 11), wide.at(kFrames - 1, 11)), 0.02f);
+}
+
+TEST(WalkInSteps, AFootInTheAirIsFree) {
   const motion::Poses kicking = Puppet([](double t, authoring::PuppetPose* pose) {
     pose->left_foot.target = {0.12, 0.4, 0.1 + 0.02 * std::sin(3 * t)};
   });
-  const motion::Poses held = Held(kicking);
+  const motion::Poses held = Walked(kicking);
   for (int t = 0; t < kFrames; ++t) EXPECT_LT(Distance(held.at(t, 11), kicking.at(t, 11)), 1e-4f);
 }
 
-TEST(HoldContacts, ContinuesTheContactsOfSettledFrames) {
+TEST(WalkInSteps, ContinuesTheContactsOfSettledFrames) {
   const motion::Poses sliding = Sliding();
-  const motion::Poses held = Held(sliding, 15);
+  const motion::Poses held = Walked(sliding, 15);
   for (int t = 0; t < 15; ++t) EXPECT_EQ(held[t], sliding[t]);
   EXPECT_LT(Distance(held.at(16, 11), sliding.at(14, 11)), 0.002f);
   EXPECT_LT(LargestStep(held), 1.2f * LargestStep(sliding));
 }
 
-TEST(HoldContacts, NeedsLegsOfTwoBones) { EXPECT_EQ(Held(Sliding(), 0, WithoutFeet()), Sliding()); }
+TEST(WalkInSteps, NeedsLegsOfTwoBones) {
+  EXPECT_EQ(Walked(Sliding(), 0, WithoutFeet()), Sliding());
+}
 
 }  // namespace
 }  // namespace duet::cleanup

@@ -19,7 +19,7 @@ constexpr double kDegrees = 3.14159265358979 / 180;
 
 motion::Poses InRange(motion::Poses poses, int settled = 0,
                       const motion::Skeleton& skeleton = motion::SbuSkeleton()) {
-  KeepJointRanges(skeleton, FindBody(skeleton), std::nullopt, {}, {kRate, settled}, &poses);
+  KeepJointRanges(skeleton, body::FindBody(skeleton), std::nullopt, {}, {kRate, settled}, &poses);
   return poses;
 }
 
@@ -105,7 +105,7 @@ TEST(KeepJointRanges, AKneeStraightensOnlyAsFarAsTheFloorLetsTheFoot) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const auto after = [&](std::optional<float> height) {
     motion::Poses poses = before;
-    KeepJointRanges(skeleton, FindBody(skeleton), height, {}, {kRate, 0}, &poses);
+    KeepJointRanges(skeleton, body::FindBody(skeleton), height, {}, {kRate, 0}, &poses);
     return poses;
   };
   EXPECT_LT(after(std::nullopt).at(5, kFoot).y, lowest - 0.05f);
@@ -172,7 +172,8 @@ TEST(KeepJointRanges, ABodyMayFaceAnywhere) {
 TEST(KeepJointRanges, TheRightArmMayComeFirst) {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   std::reverse(skeleton.bones.begin(), skeleton.bones.end());
-  ASSERT_NE(FindBody(skeleton).arms[0].upper, FindBody(motion::SbuSkeleton()).arms[0].upper);
+  ASSERT_NE(body::FindBody(skeleton).arms[0].upper,
+            body::FindBody(motion::SbuSkeleton()).arms[0].upper);
   const motion::Poses broken = Arm(Down(0, {}), Down(60, kBackwards));
   EXPECT_EQ(InRange(broken, 0, skeleton), InRange(broken));
   EXPECT_NE(InRange(broken), broken);

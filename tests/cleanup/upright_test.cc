@@ -9,7 +9,7 @@ using motion::Vec3;
 
 motion::Poses Upright(motion::Poses poses, int settled = 0,
                       const motion::Skeleton& skeleton = motion::SbuSkeleton()) {
-  SetUpright(skeleton, FindBody(skeleton), {}, {kRate, settled}, &poses);
+  SetUpright(skeleton, body::FindBody(skeleton), {}, {kRate, settled}, &poses);
   return poses;
 }
 
@@ -75,7 +75,7 @@ motion::Poses Bent(double degrees) {
 
 double TrunkLeanDegrees(const motion::Poses& poses, int frame) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  const int chest = *FindBody(skeleton).chest;
+  const int chest = *body::FindBody(skeleton).chest;
   const Vec3 trunk =
       LastingLean(*skeleton.hips, chest, poses, 0.1)[static_cast<std::size_t>(frame)];
   return std::acos(trunk.y) * 180 / 3.14159265;
@@ -86,7 +86,7 @@ TEST(SetTrunkUpright, ALastingBendIsReducedOverFixedFeet) {
   for (const double degrees : {-70.0, 30.0, 100.0}) {
     const motion::Poses bent = Bent(degrees);
     motion::Poses upright = bent;
-    SetTrunkUpright(skeleton, FindBody(skeleton), {}, {kRate, 0}, &upright);
+    SetTrunkUpright(skeleton, body::FindBody(skeleton), {}, {kRate, 0}, &upright);
     EXPECT_GT(TrunkLeanDegrees(bent, 20), 20) << degrees;
     EXPECT_LT(TrunkLeanDegrees(upright, 20), 11.1) << degrees;
     EXPECT_LT(LargestLengthChange(upright, bent), 1e-4f);
@@ -99,10 +99,10 @@ TEST(SetTrunkUpright, ALastingBendIsReducedOverFixedFeet) {
 TEST(SetTrunkUpright, AnUprightTrunkAndSettledFramesStay) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   motion::Poses poses = Puppet();
-  SetTrunkUpright(skeleton, FindBody(skeleton), {}, {kRate, 0}, &poses);
+  SetTrunkUpright(skeleton, body::FindBody(skeleton), {}, {kRate, 0}, &poses);
   EXPECT_EQ(poses, Puppet());
   poses = Bent(40);
-  SetTrunkUpright(skeleton, FindBody(skeleton), {}, {kRate, 5}, &poses);
+  SetTrunkUpright(skeleton, body::FindBody(skeleton), {}, {kRate, 5}, &poses);
   for (int t = 0; t < 5; ++t) EXPECT_EQ(poses[t], Bent(40)[t]);
   EXPECT_NE(poses[20], Bent(40)[20]);
 }

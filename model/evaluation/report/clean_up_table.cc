@@ -21,7 +21,8 @@ constexpr double kHigh = 0.99;
 cleanup::Options NoStage() {
   cleanup::Options none;
   none.upright.enabled = none.spacing.enabled = none.capsules.enabled = false;
-  none.floor.enabled = none.contacts.enabled = none.joint_ranges.enabled = false;
+  none.waist.enabled = none.floor.enabled = none.footsteps.enabled = none.joint_ranges.enabled =
+      false;
   return none;
 }
 
@@ -34,11 +35,12 @@ cleanup::Options Only(Stage cleanup::Options::*stage) {
 
 std::vector<std::pair<std::string, cleanup::Options>> Variants() {
   return {{"captured", NoStage()},
+          {"waist", Only(&cleanup::Options::waist)},
           {"upright", Only(&cleanup::Options::upright)},
           {"spacing", Only(&cleanup::Options::spacing)},
           {"capsules", Only(&cleanup::Options::capsules)},
           {"floor", Only(&cleanup::Options::floor)},
-          {"contacts", Only(&cleanup::Options::contacts)},
+          {"footsteps", Only(&cleanup::Options::footsteps)},
           {"joint ranges", Only(&cleanup::Options::joint_ranges)},
           {"all", {}}};
 }
