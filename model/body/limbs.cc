@@ -84,12 +84,16 @@ std::optional<int> FindChest(const Tree& tree, const motion::JointPair& hips) {
   return std::nullopt;
 }
 
+// Whether the name of a joint contains `word`.
+bool IsNamed(const motion::Skeleton& skeleton, int joint, const char* word) {
+  const std::string& name = skeleton.joint_names[static_cast<std::size_t>(joint)];
+  return absl::StrContains(absl::AsciiStrToLower(name), word);
+}
+
 // The first joint of a branch with "head" in its name, the nearest to the body.
 std::optional<int> FindHead(const motion::Skeleton& skeleton, const std::vector<int>& branch) {
-  const auto head = std::find_if(branch.begin(), branch.end(), [&](int joint) {
-    const std::string& name = skeleton.joint_names[static_cast<std::size_t>(joint)];
-    return absl::StrContains(absl::AsciiStrToLower(name), "head");
-  });
+  const auto head = std::find_if(branch.begin(), branch.end(),
+                                 [&](int joint) { return IsNamed(skeleton, joint, "head"); });
   if (head == branch.end()) return std::nullopt;
   return *head;
 }
@@ -109,7 +113,10 @@ std::vector<Limb> FindArms(const motion::Skeleton& skeleton, const Tree& tree, i
     const std::vector<int> branch = tree.Branch(first);
     if (Contains(branch, hips.left) || FindHead(skeleton, branch)) continue;
     int joints = 1, end = first;
-    for (; tree.Children(end).size() == 1; ++joints) end = tree.Children(end)[0];
+    while (tree.Children(end).size() == 1 && !IsNamed(skeleton, end, "wrist")) {
+      end = tree.Children(end)[0];
+      ++joints;
+    }
     if (joints >= 3) arms.push_back(*LimbThatEndsAt(tree, end));
   }
   return arms;
@@ -118,10 +125,8 @@ std::vector<Limb> FindArms(const motion::Skeleton& skeleton, const Tree& tree, i
 // Whether the name of a joint of the limb contains `side`.
 bool IsOn(const motion::Skeleton& skeleton, const Limb& limb, const char* side) {
   const int joints[] = {limb.upper, limb.middle, limb.end};
-  return std::any_of(std::begin(joints), std::end(joints), [&](int joint) {
-    const std::string& name = skeleton.joint_names[static_cast<std::size_t>(joint)];
-    return absl::StrContains(absl::AsciiStrToLower(name), side);
-  });
+  return std::any_of(std::begin(joints), std::end(joints),
+                     [&](int joint) { return IsNamed(skeleton, joint, side); });
 }
 
 std::optional<motion::JointPair> FindShoulders(const motion::Skeleton& skeleton,

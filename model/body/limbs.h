@@ -32,7 +32,9 @@ struct Body {
   // the one nearest to the pelvis. Absent without hips.
   std::optional<int> chest;
   std::vector<Limb> legs;  // left and right; none if a foot is attached by fewer than two bones
-  std::vector<Limb> arms;  // chains of at least three joints from the chest, except the head's
+  // Chains of at least three joints from the chest to a joint with "wrist" in its name, or else to
+  // their last joint; without the head's.
+  std::vector<Limb> arms;
   // Where the arms begin. Absent unless there are two arms and the names of their joints contain
   // "left" and "right".
   std::optional<motion::JointPair> shoulders;

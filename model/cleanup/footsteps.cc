@@ -18,8 +18,8 @@ constexpr double kSmoothSeconds = 0.08;
 // A foot that lands stands where its track is in this time, on average.
 constexpr double kStandSeconds = 0.4;
 // The heights between which a standing foot is left above the floor, metres.
-constexpr float kStandsBelow = -0.005f, kStandsAbove = 0.005f;
-constexpr double kHeightSmoothSeconds = 0.06;
+constexpr float kStandsBelow = -0.005f, kStandsAbove = 0.015f;
+constexpr double kHeightSmoothSeconds = 0.03;
 // The height of a step, metres, and what a metre of way adds to it, up to the highest.
 constexpr float kLift = 0.02f, kLiftPerMetre = 0.15f, kHighestLift = 0.06f;
 // The body's part in the way of its feet, and how smoothly it follows.

@@ -69,6 +69,30 @@ TEST(FindBody, FindsLimbsAmongSpineCollarsToesAndFingers) {
   EXPECT_THAT(body.neck->branch, ElementsAre(4, 5));
 }
 
+TEST(FindBody, AnArmEndsAtItsWrist) {
+  motion::Skeleton skeleton = Tree({{"hips", -1},
+                                    {"chest", 0},
+                                    {"head", 1},
+                                    {"left_shoulder", 1},
+                                    {"left_elbow", 3},
+                                    {"left_wrist", 4},
+                                    {"left_hand", 5},
+                                    {"right_shoulder", 1},
+                                    {"right_elbow", 7},
+                                    {"right_wrist", 8},
+                                    {"right_hand", 9},
+                                    {"left_hip", 0},
+                                    {"right_hip", 0}});
+  skeleton.hips = motion::JointPair{11, 12};
+  const Body body = FindBody(skeleton);
+  ASSERT_EQ(body.arms.size(), 2u);
+  EXPECT_EQ(body.arms[0].upper, 3);
+  EXPECT_EQ(body.arms[0].end, 5);
+  EXPECT_THAT(body.arms[0].beyond, ElementsAre(6));
+  ASSERT_TRUE(body.shoulders.has_value());
+  EXPECT_EQ(*body.shoulders, (motion::JointPair{3, 7}));
+}
+
 TEST(FindBody, FindsNoLimbsInASkeletonWithoutThem) {
   EXPECT_THAT(FindBody(WithoutFeet()).legs, IsEmpty());
   EXPECT_THAT(FindBody(WithoutHips()).arms, IsEmpty());
