@@ -33,7 +33,8 @@ void BM_CleanUp(benchmark::State& state) {
   const duet::cleanup::Touch touch(static_cast<std::size_t>(frames), 0);
   for (auto _ : state) {
     duet::motion::Poses cleaned = follower;
-    clean_up.Apply(leader, touch, {kRateHz, kSettled}, &cleaned);
+    clean_up.Apply(leader, touch, duet::cleanup::Meetings(touch.size(), {1, 0.1f}),
+                   {kRateHz, kSettled}, &cleaned);
     benchmark::DoNotOptimize(cleaned);
   }
   state.SetComplexityN(frames);

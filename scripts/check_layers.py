@@ -111,7 +111,8 @@ LAYERS = (
           libraries=("rpc", "prometheus")),
     # The client.
     Layer("viewer", "client/viewer", sees=("base", "motion", "client")),
-    Layer("analysis", "client/analysis", sees=("base", "motion", "dataset", "cleanup", "metrics")),
+    Layer("analysis", "client/analysis",
+          sees=("base", "motion", "body", "dataset", "cleanup", "metrics")),
     Layer("batch flow", "client/batch/flow", sees=()),
     Layer("batch", "client/batch",
           sees=MOTION_FILES + ("messages", "dataset", "cleanup", "classifier", "metrics", "batch flow",

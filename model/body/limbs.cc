@@ -182,26 +182,28 @@ std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton, const Body& b
   return motion::CapsuleRadii(skeleton, LimbParts(body));
 }
 
-void Reach(const Limb& limb, Vec3 target, Vec3 forward, absl::Span<Vec3> pose) {
-  // Metres. A smaller bend has no direction.
-  constexpr float kClearBend = 0.02f;
+Vec3 BendOf(const Limb& limb, absl::Span<const Vec3> pose) {
+  const Vec3 upper = pose[static_cast<std::size_t>(limb.upper)];
+  const Vec3 way = pose[static_cast<std::size_t>(limb.end)] - upper;
+  const Vec3 middle = pose[static_cast<std::size_t>(limb.middle)] - upper;
+  return Norm(way) > 0 ? Across(middle, Unit(way)) : middle;
+}
+
+void ReachBent(const Limb& limb, Vec3 target, Vec3 bend, absl::Span<Vec3> pose) {
   // A straight or completely folded limb would have no bend direction.
   constexpr float kLongest = 0.999f, kShortest = 0.1f;
   const Vec3 upper = pose[static_cast<std::size_t>(limb.upper)];
   Vec3& middle = pose[static_cast<std::size_t>(limb.middle)];
   Vec3& end = pose[static_cast<std::size_t>(limb.end)];
-  const float moved = Distance(target, end);
   const float thigh = Distance(upper, middle), shin = Distance(middle, end);
-  if (moved == 0 || thigh == 0 || shin == 0 || target == upper) return;
+  if (thigh == 0 || shin == 0 || target == upper) return;
   const float now = Distance(upper, end);
   const float longest = std::max(now, kLongest * (thigh + shin));
   const float shortest = std::max(std::abs(thigh - shin), kShortest * (thigh + shin));
   const float reach =
       std::clamp(Distance(upper, target), std::min(now, shortest), std::max(now, longest));
   const Vec3 along = Unit(target - upper);
-  Vec3 bend = Across(middle - upper, along);
-  const float unclear = std::max(0.0f, kClearBend - Norm(bend));
-  bend += Across(forward, along) * (unclear * std::min(1.0f, moved / kClearBend));
+  bend = Across(bend, along);
   bend = Norm(bend) > 1e-6f ? Unit(bend) : AnyAcross(along);
   const float cosine =
       std::clamp((thigh * thigh + reach * reach - shin * shin) / (2 * thigh * reach), -1.0f, 1.0f);
@@ -210,6 +212,19 @@ void Reach(const Limb& limb, Vec3 target, Vec3 forward, absl::Span<Vec3> pose) {
   const Vec3 new_end = middle + Unit(upper + along * reach - middle) * shin;
   for (const int joint : limb.beyond) pose[static_cast<std::size_t>(joint)] += new_end - end;
   end = new_end;
+}
+
+void Reach(const Limb& limb, Vec3 target, Vec3 forward, absl::Span<Vec3> pose) {
+  // Metres. A smaller bend has no direction.
+  constexpr float kClearBend = 0.02f;
+  const Vec3 upper = pose[static_cast<std::size_t>(limb.upper)];
+  const float moved = Distance(target, pose[static_cast<std::size_t>(limb.end)]);
+  if (moved == 0 || target == upper) return;
+  const Vec3 along = Unit(target - upper);
+  Vec3 bend = Across(pose[static_cast<std::size_t>(limb.middle)] - upper, along);
+  const float unclear = std::max(0.0f, kClearBend - Norm(bend));
+  bend += Across(forward, along) * (unclear * std::min(1.0f, moved / kClearBend));
+  ReachBent(limb, target, bend, pose);
 }
 
 Vec3 Facing(const motion::JointPair& hips, absl::Span<const Vec3> pose) {

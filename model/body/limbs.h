@@ -55,6 +55,15 @@ std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton, const Body& b
 void Reach(const Limb& limb, motion::Vec3 target, motion::Vec3 forward,
            absl::Span<motion::Vec3> pose);
 
+// The same, with the middle joint on the side of `bend`: a direction that need not be perpendicular
+// to the limb.
+void ReachBent(const Limb& limb, motion::Vec3 target, motion::Vec3 bend,
+               absl::Span<motion::Vec3> pose);
+
+// Returns the offset of a limb's middle joint from the line between its ends. Near zero for a limb
+// that is nearly straight. Shapes: pose [joints].
+motion::Vec3 BendOf(const Limb& limb, absl::Span<const motion::Vec3> pose);
+
 // Returns the direction in which the hips face: horizontal, of length 1. Shapes: pose [joints].
 motion::Vec3 Facing(const motion::JointPair& hips, absl::Span<const motion::Vec3> pose);
 

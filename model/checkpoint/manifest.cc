@@ -33,6 +33,7 @@ constexpr std::size_t kMaxTextBytes = 4096;
 constexpr int kMaxDepth = 6;
 constexpr std::size_t kSha256HexBytes = 64;
 constexpr char kTouchingClasses[] = "touching_classes";
+constexpr char kHandContacts[] = "hand_contacts";
 constexpr char kTerms[] = "terms";
 constexpr char kLookaheadFrames[] = "lookahead_frames";
 constexpr char kFreeForAllUses[] = "free_for_all_uses";
@@ -135,6 +136,23 @@ void ReadTouchingClasses(base::ObjectReader* reader, engine::ModelDescription* m
   }
 }
 
+// Classes with the distance at which hands meet in them. Older checkpoints have none.
+void ReadHandContacts(base::ObjectReader* reader, engine::ModelDescription* model) {
+  constexpr double kFarthest = 1;
+  if (!reader->Has(kHandContacts)) return;
+  const json& object = reader->Object(kHandContacts);
+  base::ObjectReader fields(object, kHandContacts);
+  for (const auto& field : object.items()) {
+    if (std::find(model->classes.begin(), model->classes.end(), field.key()) ==
+        model->classes.end()) {
+      reader->Fail(kHandContacts,
+                   absl::StrCat(json(field.key()).dump(), ", expected one of classes"));
+    }
+    model->hand_contacts.push_back({field.key(), fields.Number(field.key(), 0, kFarthest)});
+  }
+  reader->Update(fields.Finish());
+}
+
 // Windows with a lookahead share their settled frames and the lookahead, and must still advance.
 void ReadLookahead(base::ObjectReader* reader, engine::ModelDescription* model) {
   if (!reader->Has(kLookaheadFrames)) return;
@@ -156,6 +174,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
     reader->Fail("classes", "empty, expected at least one class");
   }
   ReadTouchingClasses(reader, model);
+  ReadHandContacts(reader, model);
 }
 
 // Older checkpoints have none, and version 1 does not allow them.
@@ -261,6 +280,9 @@ std::string SerializeManifest(const Manifest& manifest) {
       {"training", manifest.training},
       {"metrics", manifest.metrics}};
   if (manifest.format_version > 1) root[kTouchingClasses] = model.touching_classes;
+  for (const engine::HandContact& contact : model.hand_contacts) {
+    root[kHandContacts][contact.interaction_class] = contact.metres;
+  }
   if (!model.terms.empty()) root[kTerms] = model.terms;
   if (model.lookahead_frames > 0) root[kLookaheadFrames] = model.lookahead_frames;
   if (model.free_for_all_uses) root[kFreeForAllUses] = true;

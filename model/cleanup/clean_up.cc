@@ -10,8 +10,8 @@ CleanUp::CleanUp(const motion::Skeleton& skeleton, const Options& options)
       body_(body::FindBody(skeleton)),
       radii_(CapsuleRadii(skeleton, body_)) {}
 
-void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timing& timing,
-                    motion::Poses* follower) const {
+void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
+                    const Timing& timing, motion::Poses* follower) const {
   // The trunk and the whole body first, then the limbs, so that fixed feet stay fixed.
   if (options_.waist.enabled) {
     LimitWaist(skeleton_, body_, leader, options_.waist, timing, follower);
@@ -29,6 +29,9 @@ void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timin
   if (options_.capsules.enabled) {
     PartBodies(skeleton_, body_, radii_, leader, touch, options_.capsules, timing, follower);
   }
+  if (options_.hand_contact.enabled) {
+    ApproachHand(skeleton_, body_, leader, meetings, options_.hand_contact, timing, follower);
+  }
   std::optional<float> floor;
   if (skeleton_.feet) floor = FloorHeight(*skeleton_.feet, leader);
   if (floor && options_.floor.enabled) {
@@ -40,9 +43,12 @@ void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Timin
   if (options_.joint_ranges.enabled) {
     KeepJointRanges(skeleton_, body_, floor, options_.joint_ranges, timing, follower);
   }
-  // Last, so that standing feet stand.
+  // Last, so that standing feet stand and hands meet.
   if (floor && options_.footsteps.enabled) {
     WalkInSteps(skeleton_, body_, *floor, options_.footsteps, timing, follower);
+  }
+  if (options_.hand_contact.enabled) {
+    MeetHand(skeleton_, body_, leader, meetings, options_.hand_contact, timing, follower);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "model/cleanup/capsules.h"
 #include "model/cleanup/floor.h"
 #include "model/cleanup/footsteps.h"
+#include "model/cleanup/hand_contact.h"
 #include "model/cleanup/joint_ranges.h"
 #include "model/cleanup/spacing.h"
 #include "model/cleanup/timing.h"
@@ -27,6 +28,7 @@ struct Options {
   JointRangeOptions joint_ranges;
   FloorOptions floor;
   FootstepOptions footsteps;
+  HandContactOptions hand_contact;
 };
 
 // Corrects one window of a follower in stages. Every stage leaves the settled frames unchanged,
@@ -40,9 +42,9 @@ class CleanUp {
   explicit CleanUp(const motion::Skeleton& skeleton, const Options& options = {});
 
   // The leader's feet define the floor.
-  // Shapes: `leader` like the follower; touch [frames]. At least one frame.
-  void Apply(const motion::Poses& leader, const Touch& touch, const Timing& timing,
-             motion::Poses* follower) const;
+  // Shapes: `leader` like the follower; touch, meetings [frames]. At least one frame.
+  void Apply(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
+             const Timing& timing, motion::Poses* follower) const;
 
  private:
   motion::Skeleton skeleton_;

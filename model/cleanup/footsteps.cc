@@ -28,6 +28,9 @@ constexpr double kBodySmoothSeconds = 0.2;
 // The longest reach of a leg, in lengths of the leg, and how far the body sinks for it, metres.
 constexpr float kLongestReach = 0.99f, kDeepestSink = 0.15f;
 constexpr double kSinkSmoothSeconds = 0.1;
+// A knee that is this far from the line of its leg has a direction, metres.
+constexpr float kClearBend = 0.06f;
+constexpr double kKneeSmoothSeconds = 0.1;
 
 float Float(double value) { return static_cast<float>(value); }
 
@@ -47,7 +50,8 @@ class Foot {
     Begin();
   }
 
-  bool steps() const { return steps_; }
+  // Whether it steps, or has landed in this frame.
+  bool Moves(int frame) const { return steps_ || stands_since_ == frame; }
   // How far the track is from the place where the foot stands, along the floor.
   float Stretch(int frame) const { return Norm(Level(At(track_, frame) - place_)); }
 
@@ -204,12 +208,28 @@ void StartSteps(int frame, const FootstepOptions& options, std::vector<Foot>* fe
                                 [frame](const Foot& foot) { return foot.InTheAir(frame); });
   for (Foot* foot : order) {
     if (foot->Urgency(frame) == 0) continue;
-    const bool alone =
-        std::none_of(feet->begin(), feet->end(), [](const Foot& other) { return other.steps(); });
+    const bool alone = std::none_of(feet->begin(), feet->end(),
+                                    [frame](const Foot& other) { return other.Moves(frame); });
     if (alone || jump || foot->Stretch(frame) > Float(options.stretched_metres)) {
       foot->StartStep(frame);
     }
   }
+}
+
+// The directions in which a knee points, smooth over time. A leg that is nearly straight points
+// forwards: its knee may not change sides when the leg bends. Shapes: returns [frames].
+std::vector<Vec3> KneeBends(const motion::Skeleton& skeleton, const body::Limb& leg,
+                            const Timing& timing, const motion::Poses& poses) {
+  std::vector<Vec3> bends;
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    Vec3 bend = BendOf(leg, poses[t]);
+    if (skeleton.hips) {
+      bend += body::Facing(*skeleton.hips, poses[t]) * std::max(0.0f, kClearBend - Norm(bend));
+    }
+    const float length = Norm(bend);
+    bends.push_back(length > 0 ? bend / length : bend);
+  }
+  return LowPass(bends, timing.Frames(kKneeSmoothSeconds));
 }
 
 // How far the body must sink for its legs to reach their feet.
@@ -253,8 +273,10 @@ void SinkToFeet(const body::Body& body, const std::vector<FootPath>& paths, cons
   }
   const double smooth = timing.Frames(kSinkSmoothSeconds);
   sinks = LowPass(MostAround(sinks, static_cast<int>(std::lround(2 * smooth))), smooth);
+  // What the settled frames lack must not come at once.
+  const float lacks = timing.settled > 0 ? sinks[static_cast<std::size_t>(timing.settled - 1)] : 0;
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
-    const float sink = sinks[static_cast<std::size_t>(t)];
+    const float sink = sinks[static_cast<std::size_t>(t)] - lacks * (1 - EaseIn(timing, t));
     for (Vec3& joint : (*poses)[t]) joint.y -= sink;
   }
 }
@@ -292,11 +314,11 @@ void WalkInSteps(const motion::Skeleton& skeleton, const body::Body& body, float
       joint += shifts[static_cast<std::size_t>(t)] * EaseIn(timing, t);
   }
   SinkToFeet(body, paths, timing, poses);
-  for (int t = timing.settled; t < poses->frame_count(); ++t) {
-    const std::size_t at = static_cast<std::size_t>(t);
-    const Vec3 forward = skeleton.hips ? body::Facing(*skeleton.hips, (*poses)[t]) : Vec3{};
-    for (std::size_t leg = 0; leg < paths.size(); ++leg) {
-      Reach(body.legs[leg], paths[leg].places[at], forward, (*poses)[t]);
+  for (std::size_t leg = 0; leg < paths.size(); ++leg) {
+    const std::vector<Vec3> bends = KneeBends(skeleton, body.legs[leg], timing, *poses);
+    for (int t = timing.settled; t < poses->frame_count(); ++t) {
+      const std::size_t at = static_cast<std::size_t>(t);
+      ReachBent(body.legs[leg], paths[leg].places[at], bends[at], (*poses)[t]);
     }
   }
 }

@@ -46,6 +46,25 @@ cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindo
   return touch;
 }
 
+cleanup::Meetings MeetingsOf(const ModelDescription& description, const SynthesisWindow& window) {
+  const auto& classes = description.classes;
+  cleanup::Meetings meetings(static_cast<std::size_t>(window.leader.frame_count()));
+  for (const HandContact& contact : description.hand_contacts) {
+    const std::size_t c = static_cast<std::size_t>(
+        std::find(classes.begin(), classes.end(), contact.interaction_class) - classes.begin());
+    for (std::size_t t = 0; t < meetings.size() && c < classes.size(); ++t) {
+      const float weight = std::max(0.0f, window.labels[t * classes.size() + c]);
+      meetings[t].weight += weight;
+      meetings[t].metres += weight * static_cast<float>(contact.metres);
+    }
+  }
+  for (cleanup::Meeting& meeting : meetings) {
+    if (meeting.weight > 0) meeting.metres /= meeting.weight;
+    meeting.weight = std::min(1.0f, meeting.weight);
+  }
+  return meetings;
+}
+
 int SettledFrames(const SynthesisWindow& window) {
   return std::max(window.settled.frame_count(), window.start ? 1 : 0);
 }

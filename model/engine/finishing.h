@@ -28,6 +28,10 @@ void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
 // Shapes: returns [frames].
 cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window);
 
+// Returns how much the hands are to meet in each frame: the weight of the classes with a hand
+// contact, 0 to 1, and their mean distance. Shapes: returns [frames].
+cleanup::Meetings MeetingsOf(const ModelDescription& description, const SynthesisWindow& window);
+
 // Returns the number of the window's first frames that must not change: the settled frames, or the
 // frame of the start.
 int SettledFrames(const SynthesisWindow& window);

@@ -11,6 +11,12 @@
 
 namespace duet::engine {
 
+// A class in which people meet with their hands, and the distance of the hands when they do.
+struct HandContact {
+  std::string interaction_class;
+  double metres = 0;
+};
+
 // Everything that callers need to know about a model, without its weights.
 struct ModelDescription {
   std::string name;
@@ -24,6 +30,8 @@ struct ModelDescription {
   std::vector<std::string> classes;  // interaction classes, in the order of the label vector
   // The classes in which the bodies may overlap, such as an embrace.
   std::vector<std::string> touching_classes;
+  // The classes in which a hand that the leader offers is met.
+  std::vector<HandContact> hand_contacts;
   double frame_rate_hz = 0;  // the network's own
   int window_frames = 0;     // maximum window length that the network was trained on
   // The last frames of a window that the next window replaces, because their leader's future was

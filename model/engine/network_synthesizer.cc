@@ -135,6 +135,7 @@ class NetworkSynthesizer : public Synthesizer {
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
     if (IsCleanedUp(window)) {
       clean_up_.Apply(window.leader, TouchOf(description_, window),
+                      MeetingsOf(description_, window),
                       {description_.frame_rate_hz, SettledFrames(window)}, &follower);
     }
     return follower;

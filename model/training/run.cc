@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/dataset/time_line.h"
+#include "model/engine/hand_contact_fit.h"
 #include "model/engine/leader_statistics.h"
 #include "model/network/threads.h"
 #include "model/training/direction_fit.h"
@@ -61,6 +62,28 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   manifest.training["sequences"] = absl::StrCat(plan.train.size());
   NoteData(dataset, plan.train, &manifest.training);
   return manifest;
+}
+
+// The classes in which people meet an offered hand.
+std::vector<engine::HandContact> FindHandContacts(const dataset::Dataset& dataset,
+                                                  const std::vector<int>& sequences) {
+  std::vector<engine::HandContact> contacts;
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    engine::HandContactFit fit(dataset.skeleton);
+    for (const int index : sequences) {
+      const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+      const motion::ClipPair& pair = sequence.pair;
+      const auto add = [&](const dataset::LabelSpan& span) {
+        if (span.interaction_class != c) return;
+        fit.Add(pair.leader.poses, pair.follower.poses, span.begin, span.end);
+      };
+      std::for_each(sequence.labels.begin(), sequence.labels.end(), add);
+      if (sequence.labels.empty()) add({sequence.interaction_class, 0, pair.leader.frame_count()});
+    }
+    const std::optional<double> metres = fit.Metres(dataset.frame_rate_hz);
+    if (metres) contacts.push_back({dataset.classes[static_cast<size_t>(c)], *metres});
+  }
+  return contacts;
 }
 
 engine::LeaderStatistics MeasureLeaders(const dataset::Dataset& dataset,
@@ -215,6 +238,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
         plan.title, ": validation holds back every sequence, expected some to train on"));
   }
   manifest.model.leader_statistics = MeasureLeaders(dataset, train);
+  manifest.model.hand_contacts = FindHandContacts(dataset, train);
   const bool fits_direction = std::visit(
       [](const auto& method) { return method.kFitsPartnerDirection; }, plan.options.method);
   if (fits_direction) manifest.model.partner_direction = FitPartnerDirection(dataset, train);

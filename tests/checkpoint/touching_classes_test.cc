@@ -62,5 +62,26 @@ TEST(TouchingClassesInManifest, MustBeClasses) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("repeated")));
 }
 
+TEST(HandContactsInManifest, RoundTrip) {
+  Manifest manifest = Written();
+  manifest.model.hand_contacts = {{"hug", 0.25}};
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  ASSERT_EQ(read->model.hand_contacts.size(), 1u);
+  EXPECT_EQ(read->model.hand_contacts[0].interaction_class, "hug");
+  EXPECT_EQ(read->model.hand_contacts[0].metres, 0.25);
+  EXPECT_THAT(ParseManifest(SerializeManifest(Written()))->model.hand_contacts, IsEmpty());
+}
+
+TEST(HandContactsInManifest, NamesAClassAndADistance) {
+  json root = json::parse(SerializeManifest(Written()));
+  root["hand_contacts"] = {{"bow", 0.1}};
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("hand_contacts: \"bow\"")));
+  root["hand_contacts"] = {{"hug", 3}};
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("hand_contacts.hug")));
+}
+
 }  // namespace
 }  // namespace duet::checkpoint

@@ -16,7 +16,7 @@ const motion::Skeleton& Sbu() {
 
 motion::Poses Parted(motion::Poses follower, float touch = 0, int settled = 0,
                      const motion::Skeleton& skeleton = Sbu()) {
-  const Body body = body::FindBody(skeleton);
+  const body::Body body = body::FindBody(skeleton);
   const std::vector<double> radii = body::CapsuleRadii(skeleton, body);
   const motion::Poses leader = Puppet();
   const Touch touches(kFrames, touch);
@@ -82,9 +82,16 @@ TEST(PartArms, AnArmThatReachesThroughTheLeaderIsMovedOut) {
 TEST(PartBoth, SmallOverlapsAreUnchanged) { EXPECT_EQ(Parted(Opposite(1)), Opposite(1)); }
 
 TEST(PartBoth, AnEmbraceIsUnchanged) {
-  EXPECT_EQ(Parted(Opposite(0.1f), 1), Opposite(0.1f));
+  EXPECT_EQ(Parted(Opposite(0.3f), 1), Opposite(0.3f));
   EXPECT_EQ(Parted(Stabbing(), 1), Stabbing());
   EXPECT_GT(Depth(Parted(Stabbing(), 0.7f), 20), Depth(Parted(Stabbing()), 20) + 0.02);
+}
+
+TEST(PartBodies, HeadsAndTrunksKeepApartAlsoInAnEmbrace) {
+  const motion::Poses parted = Parted(Opposite(0.1f), 1);
+  const motion::Poses leader = Puppet();
+  EXPECT_GT(Distance(parted.at(20, 0), leader.at(20, 0)), 0.19f);
+  EXPECT_LT(Distance(parted.at(20, 0), leader.at(20, 0)), 0.3f);
 }
 
 TEST(PartBoth, SettledFramesStayAndTheRestFollowsSmoothly) {

@@ -30,7 +30,8 @@ class CapturesTest : public ::testing::Test {
     motion::Poses cleaned = follower;
     const bool touches = data.touches[static_cast<std::size_t>(sequence.interaction_class)];
     const Touch touch(static_cast<std::size_t>(leader.frame_count()), touches ? 1.0f : 0.0f);
-    CleanUp(data.skeleton).Apply(leader, touch, {data.frame_rate_hz, 0}, &cleaned);
+    CleanUp(data.skeleton)
+        .Apply(leader, touch, Meetings(touch.size()), {data.frame_rate_hz, 0}, &cleaned);
     Measure(leader, follower, data, &before_);
     Measure(leader, cleaned, data, &after_);
     after_.length_change =

@@ -9,10 +9,10 @@ namespace {
 using motion::Vec3;
 
 motion::Poses Cleaned(motion::Poses follower, int settled = 0, const Options& options = {}) {
+  const std::size_t frames = static_cast<std::size_t>(follower.frame_count());
   CleanUp(motion::SbuSkeleton(), options)
-      .Apply(Puppet({}, follower.frame_count()),
-             Touch(static_cast<std::size_t>(follower.frame_count()), 0), {kRate, settled},
-             &follower);
+      .Apply(Puppet({}, follower.frame_count()), Touch(frames, 0), Meetings(frames),
+             {kRate, settled}, &follower);
   return follower;
 }
 

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/statistics.h"
 #include "model/body/grade.h"
+#include "model/body/hands.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/experiments/long_leaders.h"
 #include "model/evaluation/experiments/synthesizer_method.h"
@@ -31,8 +31,6 @@ using motion::Poses;
 
 // A clip counts as twisted from this angle between shoulders and hips on, in any frame.
 constexpr double kTwistedClipDegrees = 60;
-// A leader reaches out while a hand is at least this far from its shoulder, in lengths of the arm.
-constexpr double kReaches = 0.75;
 
 struct Arguments {
   std::string leaders;
@@ -51,7 +49,7 @@ std::vector<std::string> Columns() {
 class Measure {
  public:
   explicit Measure(const motion::Skeleton& skeleton)
-      : skeleton_(skeleton), body_(body::FindBody(skeleton)), hands_(FindHands(skeleton)) {}
+      : skeleton_(skeleton), body_(body::FindBody(skeleton)) {}
 
   bool possible() const { return body::PairMeter::CanMeasure(skeleton_, body_); }
 
@@ -80,28 +78,20 @@ class Measure {
   }
 
  private:
-  // Whether an arm of the leader is stretched out, in one frame.
-  bool Reaches(absl::Span<const motion::Vec3> pose) const {
-    return std::any_of(body_.arms.begin(), body_.arms.end(), [&](const body::Limb& arm) {
-      const auto at = [&](int joint) { return pose[static_cast<size_t>(joint)]; };
-      const double length =
-          Distance(at(arm.upper), at(arm.middle)) + Distance(at(arm.middle), at(arm.end));
-      return Distance(at(arm.upper), at(arm.end)) > kReaches * length &&
-             at(arm.end).y > Lerp(at(arm.upper), at(skeleton_.hips->left), 0.6f).y;
-    });
-  }
-
-  // The mean distance of the nearest two hands while the leader reaches out; NaN if never.
+  // The mean distance of a hand that the leader offers from the nearest hand of the follower; NaN
+  // if no hand is offered.
   double HandsApart(const Poses& leader, const Poses& follower) const {
-    if (!hands_) return NAN;
     std::vector<double> nearest;
     for (int t = 0; t < leader.frame_count(); ++t) {
-      if (!Reaches(leader[t])) continue;
-      nearest.push_back(HUGE_VAL);
-      for (const int a : {hands_->left, hands_->right}) {
-        for (const int b : {hands_->left, hands_->right}) {
-          nearest.back() =
-              std::min(nearest.back(), double{Distance(leader.at(t, a), follower.at(t, b))});
+      for (const body::Limb& arm : body_.arms) {
+        if (body::ReachTowards(arm, skeleton_.root, leader[t], follower.at(t, skeleton_.root)) <
+            body::kOffersReach) {
+          continue;
+        }
+        nearest.push_back(HUGE_VAL);
+        for (const body::Limb& other : body_.arms) {
+          nearest.back() = std::min(
+              nearest.back(), double{Distance(leader.at(t, arm.end), follower.at(t, other.end))});
         }
       }
     }
@@ -110,7 +100,6 @@ class Measure {
 
   const motion::Skeleton& skeleton_;
   body::Body body_;
-  std::optional<motion::JointPair> hands_;
 };
 
 // The motion files below a folder as leaders of a model, in the order of their paths, each cut to
@@ -226,9 +215,9 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const std::
       "in any frame. Twisted: share of frames above 45 degrees. Both feet: share of frames in "
       "which the slower ankle moves faster than 10 cm/s; leader's: the same of the leaders.",
       "Heads, trunks: share of frames in which the heads are nearer than 18 cm, the axes of the "
-      "trunks nearer than 16 cm. Hands: mean distance of the nearest two hands while an arm of the "
-      "leader is stretched out, metres. Distance: of the roots, metres. Speed: of the joints, m/s. "
-      "Lean: largest of the trunk over one second, degrees."};
+      "trunks nearer than 16 cm. Hands: mean distance of a hand that the leader reaches out from "
+      "the follower's nearest hand, metres. Distance: of the roots, metres. Speed: of the joints, "
+      "m/s. Lean: largest of the trunk over one second, degrees."};
   return table;
 }
 

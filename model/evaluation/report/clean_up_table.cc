@@ -59,7 +59,8 @@ void Add(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
   const bool touches = dataset.touches[static_cast<std::size_t>(sequence.interaction_class)];
   const cleanup::Touch touch(static_cast<std::size_t>(leader.frame_count()), touches ? 1.0f : 0.0f);
   motion::Poses cleaned = captured;
-  clean_up.Apply(leader, touch, {dataset.frame_rate_hz, 0}, &cleaned);
+  clean_up.Apply(leader, touch, cleanup::Meetings(touch.size()), {dataset.frame_rate_hz, 0},
+                 &cleaned);
   for (int t = 0; t < captured.frame_count(); ++t) {
     float farthest = 0;
     for (int j = 0; j < captured.joint_count(); ++j) {

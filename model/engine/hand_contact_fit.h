@@ -1,0 +1,36 @@
+#ifndef DUET_MODEL_ENGINE_HAND_CONTACT_FIT_H_
+#define DUET_MODEL_ENGINE_HAND_CONTACT_FIT_H_
+
+#include <optional>
+#include <vector>
+
+#include "model/body/limbs.h"
+#include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
+
+namespace duet::engine {
+
+// Finds out from captured pairs of one class whether people meet a hand that their partner offers,
+// and at what distance of the hands. World metres, y up.
+class HandContactFit {
+ public:
+  // `skeleton` must outlive the fit.
+  explicit HandContactFit(const motion::Skeleton& skeleton);
+
+  // Adds frames [begin, end) of a pair.
+  void Add(const motion::Poses& leader, const motion::Poses& follower, int begin, int end);
+
+  // The median distance of the hands that meet. Absent if the leaders offer a hand for less than
+  // 3 s, if fewer than a quarter of the offered hands are met, or
+  // without two named arms.
+  std::optional<double> Metres(double frame_rate_hz) const;
+
+ private:
+  const motion::Skeleton& skeleton_;
+  body::Body body_;
+  std::vector<double> distances_;  // of an offered hand from the nearest hand of the follower
+};
+
+}  // namespace duet::engine
+
+#endif  // DUET_MODEL_ENGINE_HAND_CONTACT_FIT_H_

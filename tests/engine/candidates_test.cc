@@ -1,0 +1,96 @@
+#include "model/engine/candidates.h"
+
+#include <set>
+
+#include "gmock/gmock.h"
+#include "model/engine/hand_contact_fit.h"
+#include "tests/cleanup/bodies.h"
+
+namespace duet::engine {
+namespace {
+
+using cleanup::Changed;
+using cleanup::kFrames;
+using cleanup::kRate;
+using cleanup::Puppet;
+using motion::Vec3;
+
+motion::Poses Away(float x, float z) {
+  return Changed(Puppet(), [x, z](int, Vec3 joint) { return joint + Vec3{x, 0, z}; });
+}
+
+int Best(const std::vector<motion::Poses>& followers, float variety, int settled = 0) {
+  return CandidateJudge(motion::SbuSkeleton()).Best(Puppet(), followers, settled, kRate, variety);
+}
+
+TEST(CandidateJudge, LeavesOutFaults) {
+  motion::Poses twisted = Away(0, 1);
+  for (int t = 0; t < kFrames; ++t) std::swap(twisted.at(t, 9), twisted.at(t, 12));
+  EXPECT_EQ(Best({twisted, Away(0, 1)}, 1), 1);
+  EXPECT_EQ(Best({Away(0.02f, 0), Away(0, 1)}, 1), 1);  // inside the leader
+  EXPECT_EQ(Best({Away(0, 1), twisted}, 1), 0);
+}
+
+TEST(CandidateJudge, TheFirstOfEquals) { EXPECT_EQ(Best({Away(0, 1), Away(1, 1)}, 1), 0); }
+
+TEST(CandidateJudge, BelowVarietyOneTheMostTypicalWins) {
+  const std::vector<motion::Poses> followers = {Away(0.9f, 1), Away(0, 1), Away(-0.1f, 1)};
+  EXPECT_EQ(Best(followers, 1), 0);
+  EXPECT_EQ(Best(followers, 0), 1);
+}
+
+TEST(CandidateJudge, JudgesNothingInSettledFrames) {
+  motion::Poses late = Away(0, 1);
+  for (int t = 0; t < 10; ++t) std::swap(late.at(t, 9), late.at(t, 12));
+  EXPECT_EQ(Best({late, Away(0, 1)}, 1, 10), 0);
+  EXPECT_EQ(Best({late, Away(0, 1)}, 1, 0), 1);
+}
+
+TEST(CandidateJudge, ASkeletonWithoutLandmarksIsNotJudged) {
+  motion::Skeleton skeleton = motion::SbuSkeleton();
+  skeleton.hips.reset();
+  EXPECT_EQ(CandidateJudge(skeleton).Best(Puppet(), {Away(0, 0), Away(0, 1)}, 0, kRate, 1), 0);
+}
+
+TEST(CandidateSeed, TheFirstIsTheRequestsAndAllDiffer) {
+  EXPECT_EQ(CandidateSeed(42, 0), 42u);
+  std::set<uint64_t> seeds;
+  for (uint64_t seed = 0; seed < 50; ++seed) {
+    for (int n = 0; n < 16; ++n) seeds.insert(CandidateSeed(seed, n));
+  }
+  EXPECT_EQ(seeds.size(), 800u);
+}
+
+TEST(CandidateVariety, RisesOnlyForSeveralBelowOne) {
+  EXPECT_EQ(CandidateVariety(0, 1), 0);
+  EXPECT_EQ(CandidateVariety(0, 4), 0.5f);
+  EXPECT_EQ(CandidateVariety(1, 4), 1);
+  EXPECT_EQ(CandidateVariety(1.5f, 4), 1.5f);
+}
+
+// A leader who stretches out a hand, and a follower whose hand is `gap` away from it.
+std::optional<double> Fitted(float gap, int frames = kFrames) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  motion::Poses leader = Puppet(), follower = Away(0, 1.2f);
+  for (int t = 0; t < kFrames; ++t) {
+    leader.at(t, 7) = leader.at(t, 2) + Vec3{0, 0.2f, 0.35f};
+    leader.at(t, 8) = leader.at(t, 2) + Vec3{0, 0.2f, 0.6f};
+    follower.at(t, 8) = leader.at(t, 8) + Vec3{0, 0, gap};
+  }
+  HandContactFit fit(skeleton);
+  fit.Add(leader, follower, 0, frames);
+  return fit.Metres(kRate);
+}
+
+TEST(HandContactFit, FindsTheDistanceOfHandsThatMeet) {
+  ASSERT_TRUE(Fitted(0.1f).has_value());
+  EXPECT_NEAR(*Fitted(0.1f), 0.1, 1e-6);
+}
+
+TEST(HandContactFit, NeedsHandsThatMeetForLongEnough) {
+  EXPECT_FALSE(Fitted(0.4f).has_value());
+  EXPECT_FALSE(Fitted(0.1f, kFrames - 5).has_value());
+}
+
+}  // namespace
+}  // namespace duet::engine
