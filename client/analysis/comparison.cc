@@ -93,7 +93,7 @@ double StandingShare(const motion::Clip& clip, const motion::JointPair& feet) {
   for (int joint : {feet.left, feet.right}) {
     std::vector<motion::Vec3> foot;
     for (int frame = 0; frame < clip.frame_count(); ++frame) foot.push_back(clip.at(frame, joint));
-    for (const cleanup::Contact& contact : FindContacts(foot, floor, clip.frame_rate_hz)) {
+    for (const cleanup::Contact& contact : cleanup::FindContacts(foot, floor, clip.frame_rate_hz)) {
       standing += contact.end - contact.begin;
     }
   }
