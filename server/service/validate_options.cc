@@ -8,6 +8,8 @@
 namespace duet::server::service {
 namespace {
 
+static_assert(RequestLimits().max_candidates == engine::kMostCandidates);
+
 int ValidateCandidates(const v1::SynthesizeRequest& request, const RequestLimits& limits,
                        Violations& violations) {
   if (!request.has_candidates()) return engine::kDefaultCandidates;
