@@ -51,6 +51,9 @@ struct SynthesisOptions {
   // How much the results of a sampling model vary between seeds: 0 returns the typical motion, 1
   // varies as much as the captured motion does. At most RequestLimits::max_variety.
   float variety = 1;
+  // Number of samples that a sampling model draws for each window; the server returns the best one
+  // (SynthesisResult::grade). More samples take longer. At most RequestLimits::max_candidates.
+  int candidates = 1;
   // Whether the server cleans up the follower: keeps it upright and on the floor, removes foot
   // sliding, keeps joints within human ranges, and resolves overlaps with the leader. Absent: the
   // server's setting. By default, the server cleans up only the results of sampling models.

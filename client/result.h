@@ -46,6 +46,7 @@ struct RequestLimits {
   int max_keyframes = 0;
   float max_abs_weight = 0;
   float max_variety = 0;
+  int max_candidates = 0;
   int64_t max_request_bytes = 0;
 };
 
@@ -62,6 +63,23 @@ struct SynthesisTimings {
   absl::Duration compute;      // in the network, total of all windows
 };
 
+// Consecutive frames.
+struct FrameRun {
+  int first_frame = 0;
+  int frame_count = 0;
+};
+
+// What a viewer would notice in a follower, measured by the server. Shares of all frames, 0 to 1; 0
+// is perfect.
+struct MotionGrade {
+  double twisted = 0;         // shoulders are turned against the hips by more than 45 degrees
+  double skating = 0;         // both ankles move faster than 10 cm/s
+  double leader_skating = 0;  // the same of the leader, for comparison
+  double overlapping = 0;     // the heads or the trunks overlap
+  // Frames that are twisted or overlap, in ascending order. At most 64; later ones are left out.
+  std::vector<FrameRun> bad_runs;
+};
+
 // A follower, the model that produced it, and the options that were used.
 struct SynthesisResult {
   motion::ClipPair pair;  // the request's leader; the follower in its joints, rate and world
@@ -71,11 +89,14 @@ struct SynthesisResult {
   std::string request_id;                        // in the server's log
   uint64_t seed = 0;                             // used by the server
   float variety = 0;                             // used by the server
+  int candidates = 1;                            // samples that the model drew for each window
   bool cleaned_up = false;                       // the server cleaned up the follower
   // Distance of the leader from the model's training data. A tenth of the training leaders have a
   // distance above 1; results for a leader far above 1 are unreliable. Absent if the model has no
   // statistics of its training data.
   std::optional<double> unfamiliarity;
+  // Absent if the model's skeleton lacks hips, shoulders or feet.
+  std::optional<MotionGrade> grade;
   int window_count = 0;  // network windows that were evaluated
   int attempt_count = 0;
   SynthesisTimings timings;

@@ -63,6 +63,7 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
   request.partner_direction = item.leader->partner_direction;
   request.seed = SeedOf(item, recipe.seed, retry);
   request.variety = recipe.variety;
+  request.candidates = recipe.candidates;
   request.priority = Priority::kBulk;
   request.request_id = RequestId(item, retry);
   return request;
@@ -76,11 +77,13 @@ RecordedAnswer ToRecorded(const Item& item, const QualityFilter& filter,
   answer.model = absl::StrCat(result.model_name, "@", result.model_version);
   answer.seed = result.seed;
   answer.variety = result.variety;
+  answer.candidates = result.candidates;
   answer.request_id = result.request_id;
   answer.keyframes = ToFrames(item.keyframes, result.pair.leader.frame_count());
   answer.frames = result.pair.follower.frame_count();
   answer.frame_rate_hz = result.pair.follower.frame_rate_hz;
   answer.quality = Measure(result.pair, skeleton);
+  answer.quality.grade = result.grade;
   if (filter.classifier != nullptr) {
     Recognise(*filter.classifier, LargestClass(item), result.pair, &answer.quality);
   }

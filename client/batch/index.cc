@@ -22,12 +22,13 @@ constexpr size_t kCausesKept = 20;
 constexpr size_t kMaxSummaryBytes = size_t{1} << 20;
 
 constexpr const char* kFields[] = {
-    "item",   "id",    "name", "leader",  "leader_sha256", "side",   "reaction",
-    "labels", "model", "seed", "variety", "request_id",    "frames", "frame_rate_hz"};
+    "item",  "id",   "name",    "leader",     "leader_sha256", "side",   "reaction",     "labels",
+    "model", "seed", "variety", "candidates", "request_id",    "frames", "frame_rate_hz"};
 constexpr const char* kFigures[] = {
     "lean_degrees",     "foot_above_floor_metres", "foot_below_floor_metres",
     "distance_metres",  "penetration_metres",      "range_of_motion_metres",
-    "recognised_class", "class_probability"};
+    "recognised_class", "class_probability",       "twisted",
+    "skating",          "leader_skating",          "overlapping"};
 
 // A field as a TSV cell, without tabs and line ends; empty if the field is missing.
 std::string Cell(const ordered_json& object, const char* name) {

@@ -54,6 +54,8 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
     const motion::Vec3& to = *leader.partner_direction;
     absl::StrAppend(&text, "direction ", to.x, ",", to.y, ",", to.z, "\n");
   }
+  // Added only if it differs from the default, so that items of earlier versions keep their ids.
+  if (recipe.candidates != 1) absl::StrAppend(&text, "candidates ", recipe.candidates, "\n");
   absl::StrAppend(&text, "seed ", leader.seed ? absl::StrCat(*leader.seed) : "", " ", recipe.seed);
   return text;
 }

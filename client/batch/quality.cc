@@ -100,6 +100,12 @@ std::vector<std::string> WhyRejected(const QualityFilter& filter, const Quality&
   if (quality.class_probability) {
     at_least("class_probability", *quality.class_probability, filter.min_class_probability);
   }
+  if (quality.grade) {
+    at_most("twisted", quality.grade->twisted, filter.max_twisted);
+    at_most("overlapping", quality.grade->overlapping, filter.max_overlapping);
+    at_most("skating_over_leader", quality.grade->skating - quality.grade->leader_skating,
+            filter.max_skating_over_leader);
+  }
   at_most("unfamiliarity", unfamiliarity, filter.max_unfamiliarity);
   return reasons;
 }

@@ -24,6 +24,7 @@ struct Quality {
   double range_of_motion_metres = 0;
   std::string recognised_class;  // empty: not classified
   std::optional<double> class_probability;
+  std::optional<MotionGrade> grade;  // of the server, at the leader's frame rate
 };
 
 // Requires at least one frame and the joints of the skeleton.

@@ -80,6 +80,9 @@ struct QualityFilter {
   std::optional<double> max_penetration_metres;
   std::optional<double> min_range_of_motion_metres;
   std::optional<double> max_unfamiliarity;
+  std::optional<double> max_twisted;
+  std::optional<double> max_overlapping;
+  std::optional<double> max_skating_over_leader;
   std::shared_ptr<const classifier::Classifier> classifier;  // null: no classifier
   std::optional<double> min_class_probability;
   int retries_per_item = 0;
@@ -103,6 +106,7 @@ struct Recipe {
   std::vector<Reaction> reactions;
   int samples = 1;
   float variety = 1;
+  int candidates = 1;
   LeaderInput input;
   QualityFilter filter;
   Output output;

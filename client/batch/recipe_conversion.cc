@@ -22,6 +22,7 @@ constexpr float kMaxAbsWeight = 2;
 constexpr uint32_t kMaxSamples = 10'000;
 constexpr uint32_t kMaxMixes = 10'000;
 constexpr uint32_t kMaxRetries = 100;
+constexpr uint32_t kMaxCandidates = 16;
 constexpr size_t kMaxGrid = 100'000;
 
 // Of the names in a message.
@@ -237,6 +238,11 @@ QualityFilter ReadFilter(const v1::QualityFilter& proto, Checker* check) {
        proto.min_range_of_motion_metres(), &filter.min_range_of_motion_metres);
   read("max_unfamiliarity", proto.has_max_unfamiliarity(), proto.max_unfamiliarity(),
        &filter.max_unfamiliarity);
+  read("max_twisted", proto.has_max_twisted(), proto.max_twisted(), &filter.max_twisted);
+  read("max_overlapping", proto.has_max_overlapping(), proto.max_overlapping(),
+       &filter.max_overlapping);
+  read("max_skating_over_leader", proto.has_max_skating_over_leader(),
+       proto.max_skating_over_leader(), &filter.max_skating_over_leader);
   if (proto.has_classifier()) {
     const double probability = proto.classifier().min_probability();
     check->Expect(probability > 0 && probability <= 1, "filter.classifier.min_probability",
@@ -331,6 +337,10 @@ absl::StatusOr<Recipe> FromProto(const v1::Recipe& proto) {
   if (proto.has_variety()) recipe.variety = proto.variety();
   check.Expect(recipe.variety >= 0 && recipe.variety <= 2, "variety", absl::StrCat(recipe.variety),
                "a number from 0 to 2");
+  if (proto.has_candidates()) {
+    check.Count("candidates", proto.candidates(), 1, kMaxCandidates);
+    recipe.candidates = static_cast<int>(proto.candidates());
+  }
   recipe.input = ReadInput(proto.input(), &check);
   recipe.filter = ReadFilter(proto.filter(), &check);
   recipe.output = ReadOutput(proto.output(), &check);

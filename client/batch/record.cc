@@ -43,6 +43,12 @@ ordered_json QualityJson(const Quality& quality) {
   object["range_of_motion_metres"] = Rounded(quality.range_of_motion_metres);
   if (!quality.recognised_class.empty()) object["recognised_class"] = quality.recognised_class;
   AddIf("class_probability", quality.class_probability, &object);
+  if (quality.grade.has_value()) {
+    object["twisted"] = Rounded(quality.grade->twisted);
+    object["skating"] = Rounded(quality.grade->skating);
+    object["leader_skating"] = Rounded(quality.grade->leader_skating);
+    object["overlapping"] = Rounded(quality.grade->overlapping);
+  }
   return object;
 }
 
@@ -79,6 +85,7 @@ ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswe
   record["model"] = answer.model;
   record["seed"] = answer.seed;
   record["variety"] = Number(answer.variety);
+  record["candidates"] = answer.candidates;
   record["request_id"] = answer.request_id;
   record["frames"] = answer.frames;
   record["frame_rate_hz"] = answer.frame_rate_hz;

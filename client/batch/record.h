@@ -32,6 +32,7 @@ struct RecordedAnswer {
   std::string model;  // name@version
   uint64_t seed = 0;
   float variety = 0;
+  int candidates = 1;
   std::string request_id;
   std::vector<WeightKeyframe> keyframes;
   int frames = 0;

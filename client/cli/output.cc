@@ -36,6 +36,7 @@ motion::Provenance ProvenanceOf(const Synthesis& synthesis) {
   provenance.model_version = result.model_version;
   provenance.seed = result.seed;
   provenance.variety = result.variety;
+  provenance.candidates = result.candidates;
   provenance.cleaned_up = result.cleaned_up;
   for (const WeightKeyframe& keyframe : KeyframesOf(synthesis.request)) {
     motion::Provenance::Labels labels;

@@ -4,6 +4,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/grade_report.h"
 #include "client/error_details.h"
 #include "model/motion/reading_setting.h"
 #include "nlohmann/json.hpp"
@@ -164,6 +165,9 @@ std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& writt
   std::vector<std::string> settings;
   if (synthesis.sampled) {
     settings.push_back(absl::StrCat("seed ", result.seed, ", variety ", result.variety));
+    if (result.candidates > 1) {
+      settings.push_back(absl::StrCat("best of ", result.candidates, " candidates"));
+    }
   }
   if (result.cleaned_up) settings.push_back("cleaned up");
   if (!settings.empty()) {
@@ -181,6 +185,7 @@ std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& writt
           "answer before you use it\n");
     }
   }
+  if (result.grade) text += DescribeGrade(*result.grade);
   if (result.attempt_count > 1) {
     absl::StrAppend(&text, "          ", Plural(result.attempt_count, "attempt"), "\n");
   }
@@ -211,6 +216,7 @@ json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
                  {"keyframes", keyframes},
                  {"seed", result.seed},
                  {"variety", result.variety},
+                 {"candidates", result.candidates},
                  {"cleaned_up", result.cleaned_up},
                  {"windows", result.window_count},
                  {"attempts", result.attempt_count},
@@ -223,6 +229,7 @@ json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
                  {"notes", all_notes},
                  {"files", files}};
   if (result.unfamiliarity) object["unfamiliarity"] = *result.unfamiliarity;
+  if (result.grade) object["grade"] = GradeJson(*result.grade);
   return object;
 }
 

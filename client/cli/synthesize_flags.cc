@@ -57,6 +57,13 @@ void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->take_last()
       ->default_str(absl::StrCat(arguments->variety))
       ->group(kGroup);
+  app->add_option("--candidates", arguments->candidates,
+                  "Number of samples that such a model draws for each window; the answer is the "
+                  "best of them. More take longer")
+      ->check(Undescribed(CLI::Range(1, 16)))
+      ->capture_default_str()
+      ->type_name("COUNT")
+      ->group(kGroup);
   app->add_option("--samples", arguments->samples,
                   "Number of answers, with the seeds SEED, SEED+1, ...; with several, each --out "
                   "pair.html becomes pair.seed0.html and so on")

@@ -139,6 +139,11 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
   }
   out.set_seed(request.seed);
   out.set_variety(request.variety);
+  if (request.candidates < 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("candidates: expected 1 or more, got ", request.candidates));
+  }
+  out.set_candidates(static_cast<uint32_t>(request.candidates));
   out.set_clean_up(ToProto(request.clean_up));
   out.set_priority(ToProto(request.priority));
   if (request.chunk_frames.has_value()) {
@@ -192,7 +197,21 @@ RequestLimits FromProto(const v1::RequestLimits& limits) {
   out.max_keyframes = static_cast<int>(limits.max_label_keyframes());
   out.max_abs_weight = limits.max_abs_weight();
   out.max_variety = limits.max_variety();
+  out.max_candidates = static_cast<int>(limits.max_candidates());
   out.max_request_bytes = static_cast<int64_t>(limits.max_request_bytes());
+  return out;
+}
+
+MotionGrade FromProto(const v1::MotionGrade& grade) {
+  MotionGrade out;
+  out.twisted = grade.twisted();
+  out.skating = grade.skating();
+  out.leader_skating = grade.leader_skating();
+  out.overlapping = grade.overlapping();
+  for (const v1::FrameRun& run : grade.bad_runs()) {
+    out.bad_runs.push_back(
+        {static_cast<int>(run.first_frame()), static_cast<int>(run.frame_count())});
+  }
   return out;
 }
 

@@ -16,6 +16,7 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request);
 // Convert protos to values. Return INTERNAL if the server's model is inconsistent.
 absl::StatusOr<ModelInfo> FromProto(const v1::Model& model);
 RequestLimits FromProto(const v1::RequestLimits& limits);
+MotionGrade FromProto(const v1::MotionGrade& grade);
 
 }  // namespace duet::client::internal
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/error_details.h"
 #include "client/internal/grpc_status.h"
+#include "client/internal/proto_conversion.h"
 
 namespace duet::client::internal {
 namespace {
@@ -31,6 +33,25 @@ bool IsBrokenConnection(const absl::Status& status) {
     default:
       return false;
   }
+}
+
+absl::Status CheckGrade(const v1::MotionGrade& grade, int frames) {
+  for (const float share :
+       {grade.twisted(), grade.skating(), grade.leader_skating(), grade.overlapping()}) {
+    // Negated, so that NaN is rejected.
+    if (!(share >= 0 && share <= 1)) {
+      return Malformed("summary.grade: expected shares from 0 to 1, got ", share);
+    }
+  }
+  for (const v1::FrameRun& run : grade.bad_runs()) {
+    if (run.frame_count() >= 1 &&
+        uint64_t{run.first_frame()} + run.frame_count() <= static_cast<uint64_t>(frames)) {
+      continue;
+    }
+    return Malformed("summary.grade.bad_runs: expected runs of the ", frames, " frames, got ",
+                     run.frame_count(), " from ", run.first_frame());
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -145,6 +166,7 @@ absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) 
     return Malformed("summary.unfamiliarity: expected a finite value of 0 or more, got ",
                      summary.unfamiliarity());
   }
+  if (absl::Status status = CheckGrade(summary.grade(), received_); !status.ok()) return status;
   summary_ = summary;
   return absl::OkStatus();
 }
@@ -173,8 +195,11 @@ SynthesisResult ReplyAssembler::TakeResult() && {
   result.request_id = header_->request_id();
   result.seed = header_->seed();
   result.variety = header_->variety();
+  // Servers without candidates draw one sample and do not set the field.
+  result.candidates = std::max(1, static_cast<int>(header_->candidates()));
   result.cleaned_up = header_->clean_up() == v1::CLEAN_UP_ON;
   if (summary_->has_unfamiliarity()) result.unfamiliarity = summary_->unfamiliarity();
+  if (summary_->has_grade()) result.grade = FromProto(summary_->grade());
   result.window_count = static_cast<int>(summary_->window_count());
   result.timings.queue = absl::Seconds(summary_->queue_seconds());
   result.timings.compute = absl::Seconds(summary_->compute_seconds());

@@ -34,6 +34,7 @@ READING = {"unit": "--unit", "up_axis": "--up-axis", "metres_per_unit": "--metre
 # The page's settings for a request, as flags of `duet`.
 ASKING = {"side": "--leader-side", **READING, "label": "--label", "keyframe": "--keyframe",
           "model": "--model", "seed": "--seed", "variety": "--variety",
+          "candidates": "--candidates",
           "follower_start": "--follower-start", "partner_direction": "--partner-direction",
           "clean_up": "--clean-up", "rig_joint_map": "--follower-rig-joint-map"}
 

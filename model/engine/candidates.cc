@@ -53,6 +53,10 @@ double FaultOf(const body::FrameMeasures& frame) {
 
 }  // namespace
 
+int CandidateCount(const ModelDescription& model, const Sampling& sampling) {
+  return model.samples ? sampling.candidates : 1;
+}
+
 uint64_t CandidateSeed(uint64_t seed, int n) {
   // Windows count upwards, so candidates count downwards from the same stream.
   return WindowSeed(seed, -n);

@@ -5,11 +5,16 @@
 #include <vector>
 
 #include "model/body/limbs.h"
+#include "model/engine/model_description.h"
+#include "model/engine/synthesis_options.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
 // Several samples of one window, of which the best is returned. World metres, y up.
 namespace duet::engine {
+
+// Number of samples that a model draws for each window: 1 if it does not sample.
+int CandidateCount(const ModelDescription& model, const Sampling& sampling);
 
 // The seed of a window's n-th candidate; that of the first is `seed`, so that one candidate is the
 // answer without candidates.

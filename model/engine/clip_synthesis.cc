@@ -27,7 +27,8 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
       plan_(PlanWindows(
           motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz),
           model_.window_frames, WindowOverlap(model_))),
-      state_(model_.skeleton.joint_count()) {}
+      state_(model_.skeleton.joint_count()),
+      grader_(ClipGrader::Create(model_.skeleton, request_.frame_rate_hz)) {}
 
 SynthesisWindow ClipSynthesis::NextWindow() const {
   const std::size_t classes = model_.classes.size();
@@ -69,7 +70,13 @@ motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {
   }
   motion::Poses frames = TakeFinalFrames();
   DropFrames();
+  if (grader_) grader_->Add(request_.leader, frames);
   return frames;
+}
+
+std::optional<body::Grade> ClipSynthesis::grade() const {
+  if (HasNextWindow() || !grader_) return std::nullopt;
+  return grader_->Get();
 }
 
 motion::Poses ClipSynthesis::TakeFinalFrames() {

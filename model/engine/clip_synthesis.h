@@ -2,9 +2,12 @@
 #define DUET_MODEL_ENGINE_CLIP_SYNTHESIS_H_
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "model/body/grade.h"
+#include "model/engine/clip_grader.h"
 #include "model/engine/cross_fade.h"
 #include "model/engine/label_track.h"
 #include "model/engine/model_description.h"
@@ -65,6 +68,10 @@ class ClipSynthesis {
   // exactly frame_count frames.
   motion::Poses Accept(const motion::Poses& follower);
 
+  // The grade of all frames that were returned, at the caller's rate. Absent before the last window
+  // was accepted, and if the model's skeleton lacks joints that the grade needs.
+  std::optional<body::Grade> grade() const;
+
  private:
   // Where a frame of the caller lies among the model's, and the reverse.
   double ToModelFrame(int frame) const { return frame * model_frames_per_frame_; }
@@ -84,7 +91,8 @@ class ClipSynthesis {
   double model_frames_per_frame_;  // model rate / caller's rate
   WindowPlan plan_;                // in model frames
   WindowState state_;
-  int next_frame_ = 0;  // the caller's next frame to hand out
+  int next_frame_ = 0;                  // the caller's next frame to hand out
+  std::unique_ptr<ClipGrader> grader_;  // null if the skeleton lacks joints
 };
 
 }  // namespace duet::engine

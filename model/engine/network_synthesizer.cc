@@ -63,7 +63,7 @@ class NetworkSynthesizer : public Synthesizer {
 
  private:
   int Candidates(const SynthesisWindow& window) const {
-    return description_.samples ? window.options.sampling.candidates : 1;
+    return CandidateCount(description_, window.options.sampling);
   }
 
   static void AddCandidates(NetworkInput input, int count, std::vector<NetworkInput>* inputs) {

@@ -21,6 +21,7 @@ struct Provenance {
   std::vector<Labels> labels;
   uint64_t seed = 0;
   float variety = 0;
+  int candidates = 1;  // files hold it only if it is not 1
   bool cleaned_up = false;
 };
 

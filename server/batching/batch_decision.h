@@ -18,7 +18,7 @@ struct WaitingWindow {
   std::size_t model = 0;  // index into QueueState::models
   Lane lane = Lane::kShort;
   std::size_t client = 0;  // index of the client among those with waiting windows
-  int frames = 0;
+  int frames = 0;          // that the model computes: those of the window, once for each candidate
   common::TimePoint queued_at;
   common::TimePoint deadline = common::TimePoint::max();
   bool cancelled = false;

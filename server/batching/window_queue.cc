@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include "model/engine/candidates.h"
+
 namespace duet::server::batching {
 namespace {
 
@@ -15,7 +17,11 @@ TimePoint After(TimePoint start, double seconds) {
          std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(seconds));
 }
 
-int FramesOf(const WindowJob& job) { return job.window.leader.frame_count(); }
+// Frames that the model computes for a window: its own, once for each candidate.
+int FramesOf(const WindowJob& job) {
+  return job.window.leader.frame_count() *
+         engine::CandidateCount(job.model->description(), job.window.options.sampling);
+}
 
 Lane LaneOf(const WindowJob& job) {
   return LaneOf(job.priority, job.call_windows, job.continues_call);

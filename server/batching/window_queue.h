@@ -35,7 +35,7 @@ struct Batch {
   double expected_seconds = 0;
   int number = 0;  // unique within a queue
 
-  int Frames() const;
+  int Frames() const;  // of all windows, once for each candidate
 };
 
 // The work that a worker gets from the queue.

@@ -33,6 +33,7 @@ struct CallRecord {
   std::string_view priority;  // "interactive", "bulk", or empty
   uint64_t seed = 0;
   float variety = 0;
+  int candidates = 0;
   bool clean_up = false;
 
   absl::Status status;  // as sent to the caller

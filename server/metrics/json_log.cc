@@ -79,6 +79,7 @@ void JsonLog::CallFinished(const CallRecord& record) {
     fields["priority"] = record.priority;
     fields["seed"] = record.seed;
     fields["variety"] = record.variety;
+    fields["candidates"] = record.candidates;
     fields["clean_up"] = record.clean_up;
     fields["frames"] = record.frames;
     fields["chunks"] = record.chunks;

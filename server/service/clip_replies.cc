@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "model/engine/candidates.h"
 #include "server/service/refusals.h"
 #include "server/service/reply_mapping.h"
 
@@ -27,6 +28,20 @@ absl::Status ToEnd(const absl::Status& error, metrics::CallRecord& record) {
   if (!IsModelFailure(error)) return error;
   record.cause = error.ToString();
   return ModelFailedRefusal(record.request_id);
+}
+
+v1::MotionGrade ToMessage(const body::Grade& grade) {
+  v1::MotionGrade message;
+  message.set_twisted(static_cast<float>(grade.twisted));
+  message.set_skating(static_cast<float>(grade.skating));
+  message.set_leader_skating(static_cast<float>(grade.leader_skating));
+  message.set_overlapping(static_cast<float>(grade.overlapping));
+  for (const body::FrameRun& run : grade.bad_runs) {
+    v1::FrameRun& added = *message.add_bad_runs();
+    added.set_first_frame(static_cast<uint32_t>(run.first));
+    added.set_frame_count(static_cast<uint32_t>(run.count));
+  }
+  return message;
 }
 
 }  // namespace
@@ -95,6 +110,7 @@ void ClipReplies::FillHeader(const metrics::CallRecord& record) {
   header.set_request_id(record.request_id);
   header.set_seed(options_.sampling.seed);
   header.set_variety(options_.sampling.variety);
+  header.set_candidates(static_cast<uint32_t>(Candidates()));
   header.set_clean_up(options_.clean_up.value_or(false) ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF);
 }
 
@@ -117,6 +133,11 @@ void ClipReplies::FillSummary(const metrics::CallRecord& record) {
   summary.set_queue_seconds(stats.queue_seconds);
   summary.set_compute_seconds(stats.compute_seconds);
   if (stats.unfamiliarity) summary.set_unfamiliarity(*stats.unfamiliarity);
+  if (stats.grade) *summary.mutable_grade() = ToMessage(*stats.grade);
+}
+
+int ClipReplies::Candidates() const {
+  return engine::CandidateCount(model_->description(), options_.sampling);
 }
 
 void ClipReplies::Report(metrics::CallRecord& record) const {
@@ -125,6 +146,7 @@ void ClipReplies::Report(metrics::CallRecord& record) const {
   record.priority = PriorityName(priority_);
   record.seed = options_.sampling.seed;
   record.variety = options_.sampling.variety;
+  record.candidates = Candidates();
   record.clean_up = options_.clean_up.value_or(false);
   const ClipStreamStats stats = stream_->stats();
   record.windows = stats.windows;

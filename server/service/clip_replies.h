@@ -37,6 +37,8 @@ class ClipReplies final : public ReplySource {
   void FillHeader(const metrics::CallRecord& record);
   void FillChunk(const ClipPart& part, CallScope& scope);
   void FillSummary(const metrics::CallRecord& record);
+  // Number of samples that the model draws for each window.
+  int Candidates() const;
 
   const std::shared_ptr<const engine::Synthesizer> model_;
   const engine::SynthesisOptions options_;

@@ -96,17 +96,19 @@ void ClipStream::OnWindow(const batching::WindowOutcome& outcome) {
   const absl::Status status = Check(outcome.result);
   motion::Poses frames;
   if (status.ok()) frames = clip_.Accept(*outcome.result);
-  if (status.ok()) KeepUnfamiliarity();
+  if (status.ok()) KeepMeasures();
   Keep(status, frames, outcome.timings);
   ScheduleIfWanted();
   on_progress_();
 }
 
-void ClipStream::KeepUnfamiliarity() {
+void ClipStream::KeepMeasures() {
   if (clip_.HasNextWindow()) return;
   const std::optional<double> unfamiliarity = model_->Unfamiliarity(clip_.request());
+  std::optional<body::Grade> grade = clip_.grade();
   common::MutexLock lock(mutex_);
   stats_.unfamiliarity = unfamiliarity;
+  stats_.grade = std::move(grade);
 }
 
 void ClipStream::Keep(const absl::Status& status, const motion::Poses& frames,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "model/body/grade.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/engine/synthesizer.h"
 #include "server/batching/window_scheduler.h"
@@ -34,6 +35,8 @@ struct ClipStreamStats {
   int peak_buffered_frames = 0;
   // engine::Synthesizer::Unfamiliarity. Set when every window has been evaluated.
   std::optional<double> unfamiliarity;
+  // engine::ClipSynthesis::grade. Set when every window has been evaluated.
+  std::optional<body::Grade> grade;
 };
 
 // The next part of a follower's motion.
@@ -85,9 +88,9 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
   void ScheduleIfWanted();
   void OnWindow(const batching::WindowOutcome& outcome);
   absl::Status Check(const engine::WindowResult& result) const;
-  // Computes the unfamiliarity after the last window, on the scheduler's thread, so that it delays
-  // only the last frames.
-  void KeepUnfamiliarity() DUET_EXCLUDES(mutex_);
+  // Measures the leader and the follower after the last window, on the scheduler's thread, so that
+  // it delays only the last frames.
+  void KeepMeasures() DUET_EXCLUDES(mutex_);
   void Keep(const absl::Status& status, const motion::Poses& frames,
             const batching::WindowTimings& timings) DUET_EXCLUDES(mutex_);
 

@@ -49,6 +49,7 @@ v1::RequestLimits ToMessage(const RequestLimits& limits) {
   message.set_max_abs_weight(limits.max_abs_weight);
   message.set_max_request_bytes(limits.max_request_bytes);
   message.set_max_variety(limits.max_variety);
+  message.set_max_candidates(static_cast<uint32_t>(limits.max_candidates));
   return message;
 }
 

@@ -18,6 +18,7 @@ struct RequestLimits {
   int max_label_keyframes = 4096;
   float max_abs_weight = 2;
   float max_variety = 2;
+  int max_candidates = 16;
   // Larger than any room, and small enough for float arithmetic on positions.
   float max_abs_coordinate_metres = 10000;
   // Set by the operator. ServerConfig has the default.

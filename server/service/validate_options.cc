@@ -1,11 +1,26 @@
 #include "server/service/validate_options.h"
 
+#include <cstdint>
 #include <optional>
 
 #include "absl/strings/str_cat.h"
 
 namespace duet::server::service {
 namespace {
+
+static_assert(RequestLimits().max_candidates == engine::kMostCandidates);
+
+int ValidateCandidates(const v1::SynthesizeRequest& request, const RequestLimits& limits,
+                       Violations& violations) {
+  if (!request.has_candidates()) return engine::kDefaultCandidates;
+  const uint32_t candidates = request.candidates();
+  if (candidates >= 1 && candidates <= static_cast<uint32_t>(limits.max_candidates)) {
+    return static_cast<int>(candidates);
+  }
+  violations.Malformed("candidates", absl::StrCat("1 to ", limits.max_candidates),
+                       absl::StrCat(candidates));
+  return engine::kDefaultCandidates;
+}
 
 engine::Sampling ValidateSampling(const v1::SynthesizeRequest& request, const RequestLimits& limits,
                                   Violations& violations) {
@@ -17,6 +32,7 @@ engine::Sampling ValidateSampling(const v1::SynthesizeRequest& request, const Re
     violations.Malformed("variety", absl::StrCat("a finite value in [0, ", limits.max_variety, "]"),
                          absl::StrCat(sampling.variety));
   }
+  sampling.candidates = ValidateCandidates(request, limits, violations);
   return sampling;
 }
 

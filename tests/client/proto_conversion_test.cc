@@ -51,6 +51,7 @@ TEST(SynthesizeRequestTest, WeightsKeepTheirOrder) {
   EXPECT_EQ(wire->priority(), v1::PRIORITY_INTERACTIVE);
   EXPECT_EQ(wire->seed(), 0u);
   EXPECT_EQ(wire->variety(), 1);
+  EXPECT_EQ(wire->candidates(), 1u);
   EXPECT_EQ(wire->clean_up(), v1::CLEAN_UP_UNSPECIFIED);
 }
 
@@ -72,6 +73,7 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   request.partner_direction = motion::Vec3{-1, 0.25f, 0.5f};
   request.seed = 18446744073709551615u;
   request.variety = 0.25f;
+  request.candidates = 4;
   request.clean_up = false;
   request.chunk_frames = 8;
   request.priority = Priority::kBulk;
@@ -84,6 +86,7 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   EXPECT_EQ(wire->partner_direction().z(), 0.5f);
   EXPECT_EQ(wire->seed(), 18446744073709551615u);
   EXPECT_EQ(wire->variety(), 0.25f);
+  EXPECT_EQ(wire->candidates(), 4u);
   EXPECT_EQ(wire->clean_up(), v1::CLEAN_UP_OFF);
   EXPECT_EQ(wire->chunk_frames(), 8u);
   EXPECT_EQ(wire->priority(), v1::PRIORITY_BULK);
@@ -123,6 +126,8 @@ TEST(SynthesizeRequestTest, ValuesThatTheProtoCannotHoldAreRejected) {
       StatusIs(kInvalid, HasSubstr("label_keyframes[0].frame: expected 0 or more, got -1")));
   EXPECT_THAT(refused([](SynthesisRequest* r) { r->chunk_frames = -8; }),
               StatusIs(kInvalid, HasSubstr("chunk_frames: expected 1 or more, got -8")));
+  EXPECT_THAT(refused([](SynthesisRequest* r) { r->candidates = 0; }),
+              StatusIs(kInvalid, HasSubstr("candidates: expected 1 or more, got 0")));
   EXPECT_THAT(refused([](SynthesisRequest* r) { r->model.version = 0; }),
               StatusIs(kInvalid, HasSubstr("model.version: expected 1 or more, got 0")));
   EXPECT_THAT(refused([](SynthesisRequest* r) {
@@ -137,6 +142,7 @@ TEST(SynthesizeRequestTest, ValuesThatTheServerValidatesAreSent) {
   request.leader.frame_rate_hz = -1;
   request.weights = {{"kick", 1000}, {"kick", 2}};
   request.variety = -1;
+  request.candidates = 1000;
   EXPECT_THAT(ToProto(request), IsOk());
 }
 
@@ -204,6 +210,7 @@ TEST(RequestLimitsTest, EveryFieldIsRead) {
   wire.set_max_label_keyframes(100);
   wire.set_max_abs_weight(2);
   wire.set_max_variety(1.5F);
+  wire.set_max_candidates(16);
   wire.set_max_request_bytes(16 << 20);
   const RequestLimits limits = FromProto(wire);
   EXPECT_EQ(limits.min_frame_rate_hz, 1);
@@ -214,6 +221,7 @@ TEST(RequestLimitsTest, EveryFieldIsRead) {
   EXPECT_EQ(limits.max_keyframes, 100);
   EXPECT_EQ(limits.max_abs_weight, 2);
   EXPECT_EQ(limits.max_variety, 1.5F);
+  EXPECT_EQ(limits.max_candidates, 16);
   EXPECT_EQ(limits.max_request_bytes, 16 << 20);
 }
 

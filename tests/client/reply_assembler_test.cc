@@ -75,8 +75,10 @@ TEST_F(ReplyAssemblerTest, AssemblesAValidReply) {
   EXPECT_EQ(result.request_id, "request-1");
   EXPECT_EQ(result.seed, 18446744073709551615u);
   EXPECT_EQ(result.variety, 0.5F);
+  EXPECT_EQ(result.candidates, 4);
   EXPECT_TRUE(result.cleaned_up);
   EXPECT_FALSE(result.unfamiliarity.has_value());
+  EXPECT_FALSE(result.grade.has_value());
   EXPECT_EQ(result.window_count, 2);
   EXPECT_EQ(result.timings.queue, absl::Milliseconds(250));
   EXPECT_EQ(result.timings.compute, absl::Milliseconds(500));
@@ -86,6 +88,36 @@ TEST_F(ReplyAssemblerTest, ReadsUnfamiliarity) {
   ASSERT_THAT(FeedSpoilt([](Reply* r) { r->back().mutable_summary()->set_unfamiliarity(1.25); }),
               IsOk());
   EXPECT_EQ(std::move(assembler_).TakeResult().unfamiliarity, 1.25);
+}
+
+TEST_F(ReplyAssemblerTest, ReadsTheGrade) {
+  ASSERT_THAT(FeedSpoilt([](Reply* r) {
+                v1::MotionGrade* grade = r->back().mutable_summary()->mutable_grade();
+                grade->set_twisted(0.25F);
+                grade->set_skating(0.5F);
+                grade->set_leader_skating(0.75F);
+                grade->set_overlapping(1);
+                grade->add_bad_runs()->set_frame_count(1);
+                grade->add_bad_runs()->set_first_frame(3);
+                grade->mutable_bad_runs(1)->set_frame_count(2);
+              }),
+              IsOk());
+  const SynthesisResult result = std::move(assembler_).TakeResult();
+  ASSERT_TRUE(result.grade.has_value());
+  EXPECT_EQ(result.grade->twisted, 0.25);
+  EXPECT_EQ(result.grade->skating, 0.5);
+  EXPECT_EQ(result.grade->leader_skating, 0.75);
+  EXPECT_EQ(result.grade->overlapping, 1);
+  ASSERT_EQ(result.grade->bad_runs.size(), 2u);
+  EXPECT_EQ(result.grade->bad_runs[0].first_frame, 0);
+  EXPECT_EQ(result.grade->bad_runs[1].first_frame, 3);
+  EXPECT_EQ(result.grade->bad_runs[1].frame_count, 2);
+}
+
+TEST_F(ReplyAssemblerTest, ServerWithoutCandidatesDrawsOne) {
+  ASSERT_THAT(FeedSpoilt([](Reply* r) { r->front().mutable_header()->clear_candidates(); }),
+              IsOk());
+  EXPECT_EQ(std::move(assembler_).TakeResult().candidates, 1);
 }
 
 TEST_F(ReplyAssemblerTest, EveryContractViolationIsReported) {
@@ -135,6 +167,21 @@ TEST_F(ReplyAssemblerTest, EveryContractViolationIsReported) {
       {"summary.unfamiliarity: expected a finite value of 0 or more, got inf",
        [](Reply* r) {
          r->back().mutable_summary()->set_unfamiliarity(std::numeric_limits<double>::infinity());
+       }},
+      {"summary.grade: expected shares from 0 to 1, got 1.5",
+       [](Reply* r) { r->back().mutable_summary()->mutable_grade()->set_twisted(1.5F); }},
+      {"summary.grade: expected shares from 0 to 1, got nan",
+       [](Reply* r) {
+         r->back().mutable_summary()->mutable_grade()->set_overlapping(
+             std::numeric_limits<float>::quiet_NaN());
+       }},
+      {"summary.grade.bad_runs: expected runs of the 5 frames, got 0 from 0",
+       [](Reply* r) { r->back().mutable_summary()->mutable_grade()->add_bad_runs(); }},
+      {"summary.grade.bad_runs: expected runs of the 5 frames, got 4294967295 from 4",
+       [](Reply* r) {
+         v1::FrameRun* run = r->back().mutable_summary()->mutable_grade()->add_bad_runs();
+         run->set_first_frame(4);
+         run->set_frame_count(4294967295u);
        }},
       {"a message after the summary", [](Reply* r) { r->push_back(r->back()); }},
       {"a message without a payload", [](Reply* r) { (*r)[1].clear_payload(); }},

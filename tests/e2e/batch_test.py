@@ -133,6 +133,9 @@ class BatchTest(unittest.TestCase):
         self.assertEqual(len(rows), len(index) + 1)
         for entry in index:
             self.assertEqual(entry["request_id"], "batch-" + entry["id"])
+            self.assertEqual(entry["candidates"], 1)
+            for share in ("twisted", "skating", "leader_skating", "overlapping"):
+                self.assertTrue(0 <= entry["quality"][share] <= 1, entry["quality"])
             for file in entry["files"]:
                 content = (out / file["path"]).read_bytes()
                 self.assertEqual(hashlib.sha256(content).hexdigest(), file["sha256"])

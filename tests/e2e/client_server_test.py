@@ -135,6 +135,26 @@ class ClientServerTest(unittest.TestCase):
             for p, q in zip(a, b):
                 self.assertLess(distance(p, q), 1e-4)
 
+    def test_best_of_several_candidates(self):
+        changed = 0
+        for seed in range(4):
+            frames = []
+            for candidates in (1, 4, 4):
+                out = self.out(f"{seed}.{len(frames)}.json")
+                result = self.good(tools.sample("hug"), "hug=1", out=out,
+                                   more=("--json", "--seed", seed, "--candidates", candidates))
+                frames.append(Pair(out).follower)
+                report = json.loads(result.stdout)
+                self.assertEqual(report["candidates"], candidates)
+                for share in ("twisted", "skating", "leader_skating", "overlapping"):
+                    self.assertTrue(0 <= report["grade"][share] <= 1, report["grade"])
+            self.assertEqual(frames[1], frames[2])
+            changed += frames[0] != frames[1]
+        self.assertGreater(changed, 0)  # the first sample is not the best for every seed
+        result = self.good(tools.sample("hug"), "hug=1", out=self.out("text.json"))
+        self.assertRegex(result.stdout, r"\n          graded: twisted \d+ %, both feet move \d+ % "
+                                        r"\(leader \d+ %\), overlapping \d+ %\n")
+
     def test_clean_up_can_be_switched_off(self):
         frames, said = {}, {}
         for choice in ("auto", "on", "off"):

@@ -65,6 +65,28 @@ class PythonClientTest(unittest.TestCase):
         np.testing.assert_array_equal(answers[0], answers[1])
         self.assertGreater(np.abs(answers[0] - answers[2]).max(), 0.01)
 
+    def test_best_of_several_candidates(self):
+        farthest = 0
+        for seed in range(4):
+            answers = [self.client.synthesize(self.hug, {"hug": 1}, seed=seed, candidates=candidates)
+                       for candidates in (1, 4, 4)]
+            self.assertEqual([answer.candidates for answer in answers], [1, 4, 4])
+            positions = [answer.follower.positions for answer in answers]
+            np.testing.assert_array_equal(positions[1], positions[2])
+            farthest = max(farthest, np.abs(positions[0] - positions[1]).max())
+        self.assertGreater(farthest, 0.01)  # the first sample is not the best for every seed
+        self.assertEqual(self.client.get_model().limits.max_candidates, 16)
+
+    def test_grade_is_returned_at_any_frame_rate(self):
+        for rate in (30, 240):
+            grade = self.client.synthesize(self.hug.resampled(rate), {"hug": 1}, seed=3).grade
+            for share in (grade.twisted, grade.skating, grade.leader_skating, grade.overlapping):
+                self.assertTrue(0 <= share <= 1, grade)
+            bad = sum(run.frame_count for run in grade.bad_runs)
+            frames = self.hug.resampled(rate).frame_count
+            self.assertTrue(max(grade.twisted, grade.overlapping) * frames - 1e-3 <= bad
+                            <= (grade.twisted + grade.overlapping) * frames + 1e-3, grade)
+
     def test_program_gives_the_same_answer(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "pair.json"

@@ -143,6 +143,25 @@ class WebTest(unittest.TestCase):
         page.click("#back-to-four")
         self.assertFalse(page.evaluate("element('four').hidden"))
 
+    def test_best_of_several_samples_and_its_grade(self):
+        grade = r"^Twisted \d+ %, both feet move \d+ % \(leader \d+ %\), overlapping \d+ %\.$"
+        page = self.open_still("#leader=hug.bvh&labels=hug:1&seed=3&candidates=4")
+        self.assertEqual(page.text("#grade"), "")
+        self.assertEqual(page.evaluate("document.querySelector('[name=candidates]').value"), "4")
+        self.react(page)
+        wanted = self.expected({"hug": 1}, seed=3, candidates=4)
+        np.testing.assert_allclose(self.shown(page), wanted, atol=1e-5)
+        self.assertRegex(page.text("#grade"), grade)
+        self.set(page, "[name=candidates]", 1)
+        self.assertEqual(page.evaluate("document.documentElement.dataset.stale"), "true")
+        self.press(page, "try-four")
+        self.assertEqual(page.text("#grade"), "")
+        captions = page.evaluate(
+            "[...document.querySelectorAll('#four figcaption p')].map((p) => p.textContent)")
+        self.assertEqual(len(captions), 4)
+        for caption in captions:
+            self.assertRegex(caption, grade)
+
     def test_link_and_reload_restore_everything(self):
         page = self.open_still()
         self.drop(page)
@@ -174,12 +193,13 @@ class WebTest(unittest.TestCase):
         self.react(page)
         wanted = self.expected({"hug": 1, "push": -0.25}, seed=3)
         np.testing.assert_allclose(self.shown(page), wanted, atol=1e-5)
-        for odd in ("#labels=hug:1e9,<b>:1&seed=-4&variety=9&side=up&model=nobody@7",
+        for odd in ("#labels=hug:1e9,<b>:1&seed=-4&variety=9&candidates=17&side=up&model=nobody@7",
                     "#key=x;hug:1&key=-1&key=3&leader=%E0%A4%A&__proto__=1&takes=1", "#=&&==&%%%"):
             with self.subTest(odd):
                 page = self.open_still(odd)
                 self.assertEqual(page.evaluate("settings.seed"), 0)
                 self.assertLessEqual(page.evaluate("settings.variety"), 2)
+                self.assertEqual(page.evaluate("settings.candidates"), 1)
                 self.assertRegex(page.evaluate("settings.model"), "^sbu@")
 
     def test_keyframes_and_direction_are_sent(self):

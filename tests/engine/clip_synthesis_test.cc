@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/body/grade.h"
+#include "model/body/limbs.h"
 #include "model/engine/window_seed.h"
 #include "model/motion/resample.h"
 #include "tests/support/fake_synthesizer.h"
@@ -329,6 +333,60 @@ TEST(ClipSynthesis, WorksWithTheShortestWindows) {
       ExpectNear(RunAll(fake, request).follower, UnwindowedAnswer(request, 15), 1e-5f);
     }
   }
+}
+
+class GradeAtRate : public ::testing::TestWithParam<double> {};
+
+TEST_P(GradeAtRate, IsThatOfTheFramesHandedOut) {
+  // Leans into the leader and away again, so that some frames overlap and others do not.
+  FakeSynthesizer fake;
+  int window = 0;
+  fake.on_batch = [&](absl::Span<const SynthesisWindow* const>) { ++window; };
+  fake.answer = [&](motion::Vec3 leader, absl::Span<const float>) {
+    return leader + motion::Vec3{0, 0, 0.4f * static_cast<float>(window % 2)};
+  };
+  const ClipRequest request = Request(static_cast<int>(8 * GetParam()), GetParam());
+  std::vector<ClipSynthesis> clips;
+  clips.emplace_back(fake.description(), request);
+  motion::Poses follower(0, kJoints);
+  while (clips.back().HasNextWindow()) {
+    EXPECT_FALSE(clips.back().grade().has_value());
+    const SynthesisWindow next = clips.back().NextWindow();
+    follower.Append(clips.back().Accept(*fake.Synthesize({&next}).front()).all());
+    // Moves the clip, which must keep its measures.
+    std::vector<ClipSynthesis> moved;
+    moved.push_back(std::move(clips.back()));
+    clips = std::move(moved);
+  }
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const body::Body body = body::FindBody(skeleton);
+  body::PairMeter meter(skeleton, body, GetParam());
+  body::GradeSum sum;
+  for (int t = 0; t < follower.frame_count(); ++t)
+    sum.Add(meter.Add(request.leader[t], follower[t]));
+  const body::Grade wanted = sum.Get();
+  const std::optional<body::Grade> grade = clips.back().grade();
+  ASSERT_TRUE(grade.has_value());
+  EXPECT_GT(grade->overlapping, 0);
+  EXPECT_LT(grade->overlapping, 1);
+  EXPECT_EQ(grade->overlapping, wanted.overlapping);
+  EXPECT_EQ(grade->twisted, wanted.twisted);
+  EXPECT_EQ(grade->skating, wanted.skating);
+  EXPECT_EQ(grade->leader_skating, wanted.leader_skating);
+  EXPECT_EQ(grade->bad_runs.size(), wanted.bad_runs.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, GradeAtRate, ::testing::Values(15, 29.97, 60, 240));
+
+TEST(ClipSynthesis, HasNoGradeWithoutHips) {
+  ModelDescription description = FakeDescription();
+  description.skeleton.hips.reset();
+  const FakeSynthesizer fake(description);
+  ClipSynthesis clip(description, Request(20, 15));
+  const SynthesisWindow window = clip.NextWindow();
+  clip.Accept(*fake.Synthesize({&window}).front());
+  EXPECT_FALSE(clip.HasNextWindow());
+  EXPECT_FALSE(clip.grade().has_value());
 }
 
 TEST(ClipSynthesis, EveryWindowHasASeedOfItsOwnAndTheRequestsVariety) {

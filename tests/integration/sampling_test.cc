@@ -1,5 +1,5 @@
-// Seed, variety and clean-up from the client library to a model that samples, over the wire and
-// back.
+// Seed, variety, candidates and clean-up from the client library to a model that samples, over the
+// wire and back.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -89,6 +89,22 @@ TEST_F(ClientSamplingTest, TheResultSaysWhetherItWasCleanedUp) {
   EXPECT_FALSE(Ask()->cleaned_up);
   request_.clean_up = true;
   EXPECT_TRUE(Ask()->cleaned_up);
+}
+
+TEST_F(ClientSamplingTest, TheResultHasCandidatesAndTheGrade) {
+  EXPECT_EQ(Ask()->candidates, 1);
+  request_.candidates = 16;
+  const auto result = Ask();
+  ASSERT_THAT(result, IsOk());
+  EXPECT_EQ(result->candidates, 16);
+  ASSERT_TRUE(result->grade.has_value());
+  EXPECT_EQ(result->grade->overlapping, 0);
+}
+
+TEST_F(ClientSamplingTest, TooManyCandidatesAreRefusedByName) {
+  request_.candidates = 17;
+  EXPECT_THAT(Ask(), StatusIs(absl::StatusCode::kInvalidArgument,
+                              HasSubstr("candidates: expected 1 to 16, got 17")));
 }
 
 TEST_F(ClientSamplingTest, TooMuchVarietyIsRefusedByName) {

@@ -119,7 +119,7 @@ class DUET_OT_react(_Working):
         scene, duet = context.scene, context.scene.duet
         ask = ["synthesize", "--server", duet.server, "--leader", motion, *recording.reading_flags(),
                *recording.label_flags(), *recording.place_flags(), "--seed", duet.seed,
-               "--variety", f"{duet.variety:.4g}", "--quiet"]
+               "--variety", f"{duet.variety:.4g}", "--candidates", str(duet.candidates), "--quiet"]
         if duet.body == "LEADER":
             rig, pair = os.path.join(folder, "rig.glb"), os.path.join(folder, "pair.glb")
             partner.export_rig(scene, duet.leader, rig)

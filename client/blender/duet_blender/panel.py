@@ -21,6 +21,7 @@ class VIEW3D_PT_duet(bpy.types.Panel):
         box.operator("duet.ask_for_classes")
         layout.prop(duet, "seed")
         layout.prop(duet, "variety")
+        layout.prop(duet, "candidates")
         layout.prop(duet, "body")
         layout.operator("duet.react", icon="ARMATURE_DATA")
         layout.operator("duet.keep", icon="PINNED")

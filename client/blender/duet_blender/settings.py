@@ -57,6 +57,10 @@ class DuetSettings(bpy.types.PropertyGroup):
                                 description="Selects an answer of a model that samples")
     variety: bpy.props.FloatProperty(name="Variety", min=0, max=2, default=1,
                                      description="0: the typical answer; 1: as varied as people")
+    candidates: bpy.props.IntProperty(
+        name="Best of", min=1, max=16, default=1,
+        description="Number of samples that the model draws for each window; the answer is the "
+                    "best of them. More take longer")
     server: bpy.props.StringProperty(name="Server", default="localhost:50051")
     program: bpy.props.StringProperty(name="Program", default="duet", subtype="FILE_PATH",
                                       description="Path of the program `duet`")

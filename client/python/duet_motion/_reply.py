@@ -15,7 +15,7 @@ import numpy as np
 from duet_motion._wire import UNITS, UP_AXES
 from duet_motion.errors import DuetError, MalformedReplyError, make_error
 from duet_motion.motion import Motion, Positions
-from duet_motion.result import FollowerChunk, SynthesisResult, Timings
+from duet_motion.result import FollowerChunk, SynthesisResult, Timings, grade_from_proto
 from duet_motion.v1 import synthesis_pb2
 
 # Codes with which a proxy or a stopping server resets streams. The service always adds a reason to
@@ -132,7 +132,17 @@ class ReplyAssembler:
                 np.isfinite(summary.unfamiliarity) and summary.unfamiliarity >= 0):
             raise _malformed("summary.unfamiliarity: expected a finite value of at least 0, got "
                              f"{summary.unfamiliarity}")
+        self._check_grade(summary.grade)
         self._summary = summary
+
+    def _check_grade(self, grade: synthesis_pb2.MotionGrade) -> None:
+        for share in (grade.twisted, grade.skating, grade.leader_skating, grade.overlapping):
+            if not 0 <= share <= 1:
+                raise _malformed(f"summary.grade: expected shares from 0 to 1, got {share}")
+        for run in grade.bad_runs:
+            if run.frame_count < 1 or run.first_frame + run.frame_count > self.received:
+                raise _malformed(f"summary.grade.bad_runs: expected runs of the {self.received} "
+                                 f"frames, got {run.frame_count} from {run.first_frame}")
 
     def end_stream(self, error: Optional[DuetError]) -> Optional[DuetError]:
         """Handles the end of a stream; returns None if the reply is complete, else its error."""
@@ -159,7 +169,10 @@ class ReplyAssembler:
             model_name=header.model_name, model_version=header.model_version,
             interaction_classes=tuple(header.interaction_classes), request_id=header.request_id,
             seed=header.seed, variety=header.variety,
+            # Servers without candidates draw one sample and do not set the field.
+            candidates=max(1, header.candidates),
             cleaned_up=header.clean_up == synthesis_pb2.CLEAN_UP_ON,
             unfamiliarity=(summary.unfamiliarity if summary.HasField("unfamiliarity") else None),
+            grade=grade_from_proto(summary.grade) if summary.HasField("grade") else None,
             window_count=summary.window_count, attempt_count=attempts,
             timings=Timings(first_chunk, total, summary.queue_seconds, summary.compute_seconds))

@@ -47,6 +47,8 @@ class SynthesisRequest:
         chunk_frames: frames per chunk of the reply. None: the server's default.
         request_id: identifies the call in the server's log. Empty: the server creates one.
         timeout: seconds for the whole call, including all its attempts. None: the client's.
+        candidates: how many samples a model that samples draws for each window, 1 to 16. The server
+            returns the one with the best grade (``SynthesisResult.grade``). More take longer.
 
     Raises:
         ValueError: an argument is invalid for every server. The message has the form
@@ -66,6 +68,7 @@ class SynthesisRequest:
     chunk_frames: Optional[int] = None
     request_id: str = ""
     timeout: Optional[float] = None
+    candidates: int = 1
 
     def __post_init__(self) -> None:
         if not isinstance(self.leader, Motion):
@@ -74,6 +77,7 @@ class SynthesisRequest:
         _check_integer("seed", self.seed, 0, 2**64 - 1)
         if finite_number(self.variety) is None:
             raise ValueError(f"variety: expected a number, got {_short(self.variety)}")
+        _check_integer("candidates", self.candidates, 1, 16)
         to_selector(self.model)
         if self.clean_up is not None and not isinstance(self.clean_up, (bool, np.bool_)):
             raise ValueError(f"clean_up: expected True, False or None, got {_short(self.clean_up)}")
@@ -126,6 +130,7 @@ def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
     out = synthesis_pb2.SynthesizeRequest(
         model=to_selector(request.model), leader=_leader(request.leader),
         seed=int(request.seed), variety=float(request.variety),
+        candidates=int(request.candidates),
         clean_up=CLEAN_UP[None if request.clean_up is None else bool(request.clean_up)],
         priority=PRIORITIES[request.priority],
         chunk_frames=None if request.chunk_frames is None else int(request.chunk_frames))

@@ -35,6 +35,32 @@ class FollowerChunk:
     """``[frames, joints, 3]`` in the leader's joints, unit and world."""
 
 
+@dataclasses.dataclass(frozen=True)
+class FrameRun:
+    """Consecutive frames."""
+
+    first_frame: int
+    frame_count: int
+
+
+@dataclasses.dataclass(frozen=True)
+class MotionGrade:
+    """What a viewer would notice in a follower: shares of its frames, 0 to 1. 0 is perfect."""
+
+    twisted: float
+    """Frames in which the shoulders are turned against the hips by more than 45 degrees."""
+    skating: float
+    """Frames in which both ankles move faster than 10 cm/s. People who step and turn do so in some
+    frames; compare it with ``leader_skating``."""
+    leader_skating: float
+    """The same share of the leader's frames."""
+    overlapping: float
+    """Frames in which the heads or the trunks overlap."""
+    bad_runs: Tuple[FrameRun, ...]
+    """The frames that are twisted or overlap, in ascending order. At most 64 runs; later ones are
+    left out."""
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class SynthesisResult:
     """A follower, with the model and settings that produced it."""
@@ -53,11 +79,16 @@ class SynthesisResult:
     """The seed that the server used."""
     variety: float
     """The variety that the server used."""
+    candidates: int
+    """Number of samples that the model drew for each window."""
     cleaned_up: bool
     """Whether the server corrected the follower, by request or by default."""
     unfamiliarity: Optional[float]
     """Distance of the leader from the training leaders; 1 is their 90th percentile. None if the
     model cannot measure it."""
+    grade: Optional[MotionGrade]
+    """What a viewer would notice in the follower. None if the model's skeleton lacks hips, shoulders
+    or feet."""
     window_count: int
     """Number of windows that the network computed."""
     attempt_count: int
@@ -105,6 +136,7 @@ class RequestLimits:
     max_keyframes: int
     max_abs_weight: float
     max_variety: float
+    max_candidates: int
     max_request_bytes: int
 
 
@@ -136,6 +168,13 @@ def model_from_proto(model: model_pb2.Model) -> ModelInfo:
         free_for_all_uses=model.free_for_all_uses)
 
 
+def grade_from_proto(grade: synthesis_pb2.MotionGrade) -> MotionGrade:
+    return MotionGrade(
+        twisted=grade.twisted, skating=grade.skating, leader_skating=grade.leader_skating,
+        overlapping=grade.overlapping,
+        bad_runs=tuple(FrameRun(run.first_frame, run.frame_count) for run in grade.bad_runs))
+
+
 def details_from_proto(response: synthesis_pb2.GetModelResponse) -> ModelDetails:
     limits = response.limits
     return ModelDetails(model_from_proto(response.model), RequestLimits(
@@ -143,4 +182,4 @@ def details_from_proto(response: synthesis_pb2.GetModelResponse) -> ModelDetails
         min_frames=limits.min_frames, max_duration_seconds=limits.max_duration_seconds,
         max_chunk_frames=limits.max_chunk_frames, max_keyframes=limits.max_label_keyframes,
         max_abs_weight=limits.max_abs_weight, max_variety=limits.max_variety,
-        max_request_bytes=limits.max_request_bytes))
+        max_candidates=limits.max_candidates, max_request_bytes=limits.max_request_bytes))

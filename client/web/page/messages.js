@@ -25,12 +25,18 @@ const MESSAGES = {
     model: [1, 'ModelSelector'], leader: [2, 'Motion'], label_vector: [3, 'LabelVector'],
     label_keyframes: [4, 'LabelKeyframe[]'], follower_start: [5, 'FollowerStart'],
     partner_direction: [9, 'Direction'], seed: [10, 'uint64'], variety: [11, 'float'],
-    clean_up: [12, 'enum'],
+    clean_up: [12, 'enum'], candidates: [13, 'uint32'],
   },
   MotionChunk: {
     first_frame: [1, 'uint32'], frame_count: [2, 'uint32'], positions: [3, 'float[]'],
   },
-  SynthesisSummary: {frame_count: [1, 'uint32'], unfamiliarity: [6, 'double']},
+  MotionGrade: {
+    twisted: [1, 'float'], skating: [2, 'float'], leader_skating: [3, 'float'],
+    overlapping: [4, 'float'],
+  },
+  SynthesisSummary: {
+    frame_count: [1, 'uint32'], unfamiliarity: [6, 'double'], grade: [7, 'MotionGrade'],
+  },
   SynthesizeResponse: {chunk: [2, 'MotionChunk'], summary: [3, 'SynthesisSummary']},
   Status: {details: [3, 'Any[]']},
   Any: {type_url: [1, 'string'], value: [2, 'bytes']},

@@ -11,7 +11,7 @@ const state = {
   samples: [],
   leader: null,    // the result of readLeader
   awaited: '',     // the name of the file that a link refers to
-  takes: [],       // answers: {seed, positions, model, version, samples, unfamiliarity, ...}
+  takes: [],       // answers: {seed, positions, model, version, samples, unfamiliarity, grade, ...}
   chosen: 0,       // the take that is downloaded
   asked: '',       // askedFor() of the takes
   call: null,      // the AbortController of the running calls
@@ -70,6 +70,8 @@ function changed() {
   element('rig-download').disabled = !answered || stale || !isRig;
   element('react').classList.toggle('primary', !answered || stale);
   element('back-to-four').hidden = state.takes.length < 2 || !element('four').hidden;
+  element('grade').textContent =
+      element('four').hidden ? describeGrade(state.takes[state.chosen]?.grade) : '';
   root.dataset.stale = stale;
   if (state.call) return;
   if (state.leader && !isAnyWeight()) tell('Set at least one reaction, then press React.');
@@ -149,7 +151,7 @@ async function ask(leader, seed, signal, show) {
     summary = summary || answer.summary;
   }
   if (!summary) throw new CallError('The reply is incomplete. Press React again.');
-  return {...take, unfamiliarity: summary.unfamiliarity ?? 0};
+  return {...take, unfamiliarity: summary.unfamiliarity ?? 0, grade: summary.grade ?? null};
 }
 
 // Requests `count` answers with the current settings and consecutive seeds. Cancels running calls.

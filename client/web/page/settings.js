@@ -5,6 +5,7 @@ const METRES = 1;
 const Y_UP = 1;
 const CLEAN_UP = {auto: 0, on: 1, off: 2};
 const MAX_WEIGHT = 2;
+const MAX_CANDIDATES = 16;
 const MAX_NAME = 120;  // characters; the gateway allows a few more
 
 const settings = {
@@ -12,8 +13,8 @@ const settings = {
   // Reading the file.
   side: 'left', unit: '', metres_per_unit: '', up_axis: '', frame_rate: '', joint_map: '',
   // The request. `labels` are the sliders' weights, `keyframes` is [{frame, weights}].
-  model: '', labels: {}, keyframes: [], seed: 0, variety: 1, start: '', direction: '',
-  clean_up: 'auto',
+  model: '', labels: {}, keyframes: [], seed: 0, variety: 1, candidates: 1, start: '',
+  direction: '', clean_up: 'auto',
   // Downloading.
   resample: '', rig_joint_map: '',
 };
@@ -90,6 +91,8 @@ function takeSetting(name, text) {
     settings.seed = Math.floor(readNumber(text, 0, Number.MAX_SAFE_INTEGER, 0));
   } else if (name === 'variety') {
     settings.variety = readNumber(text, 0, 2, 1);
+  } else if (name === 'candidates') {
+    settings.candidates = Math.floor(readNumber(text, 1, MAX_CANDIDATES, 1));
   } else if (typeof DEFAULTS[name] === 'string') {
     if (!(name in CHOICES) || CHOICES[name].includes(text)) settings[name] = text.slice(0, 2000);
   }
@@ -110,10 +113,10 @@ const isAnyWeight = () => settings.keyframes.length > 0 ||
 
 // The settings that an answer depends on, to detect whether the displayed answer is current.
 function askedFor() {
-  const {model, labels, keyframes, variety, start, direction, clean_up} = settings;
+  const {model, labels, keyframes, variety, candidates, start, direction, clean_up} = settings;
   return JSON.stringify([model, keyframes.length ? '' : writeWeights(labels),
                          keyframes.map((key) => [key.frame, writeWeights(key.weights)]), variety,
-                         start, direction, clean_up]);
+                         candidates, start, direction, clean_up]);
 }
 
 function numbers(text) {
@@ -142,7 +145,7 @@ function requestOf(leader, seed) {
     leader: {joint_names: leader.joint_names, frame_rate_hz: leader.frame_rate_hz, unit: METRES,
              up_axis: Y_UP, frame_count: leader.positions.length / leader.joint_names.length / 3,
              positions: leader.positions},
-    seed, variety: settings.variety,
+    seed, variety: settings.variety, candidates: settings.candidates,
   };
   if (settings.keyframes.length > 0) {
     request.label_keyframes = settings.keyframes.map(
@@ -171,7 +174,8 @@ function flagsOf(take) {
   const weightsOf = (weights) => Object.entries(weights).filter(([, weight]) => weight !== 0)
       .map(([name, weight]) => `${name}=${weight}`);
   const flags = {model: `${take.model}@${take.version}`, seed: String(take.seed),
-                 variety: String(settings.variety), clean_up: settings.clean_up};
+                 variety: String(settings.variety), candidates: String(settings.candidates),
+                 clean_up: settings.clean_up};
   for (const name of READING) if (settings[name] !== '') flags[name] = settings[name];
   flags.joint_map = lines(settings.joint_map);
   if (settings.keyframes.length > 0) {
@@ -200,11 +204,12 @@ function safeName(name) {
 function downloadName(take) {
   const weights = (set) => Object.entries(set).filter(([, weight]) => weight !== 0)
       .map(([name, weight]) => `${name}${weight}`);
-  const {labels, keyframes, variety} = JSON.parse(take.settings);
+  const {labels, keyframes, variety, candidates} = JSON.parse(take.settings);
   const reaction = keyframes.length
       ? keyframes.flatMap((key) => [`at${key.frame}`, ...weights(key.weights)]) : weights(labels);
   const parts = [stemOf(take.leader), `${take.model}@${take.version}`, ...reaction];
   if (take.samples && variety !== 1) parts.push(`variety${variety}`);
+  if (take.samples && candidates > 1) parts.push(`best_of${candidates}`);
   const seed = take.samples ? `_seed${take.seed}` : '';
   return safeName(`${parts.join('_')}.x`).slice(0, -2).slice(0, MAX_NAME - seed.length) + seed;
 }

@@ -38,6 +38,14 @@ function showOne(leader, follower) {
   theatre.seek(frame);
 }
 
+// Describes a MotionGrade, which leaves out figures that are 0; '' without one.
+function describeGrade(grade) {
+  if (!grade) return '';
+  const percent = (name) => `${Math.round(100 * (grade[name] ?? 0))} %`;
+  return `Twisted ${percent('twisted')}, both feet move ${percent('skating')} (leader ${
+      percent('leader_skating')}), overlapping ${percent('overlapping')}.`;
+}
+
 // Shows several answers. Calls `keep` with the index of the answer that the visitor chooses.
 function showFour(leader, takes, keep) {
   const before = stages()[0].player;
@@ -47,6 +55,9 @@ function showFour(leader, takes, keep) {
     stage.setAttribute('aria-label', `Answer ${index + 1}, seed ${take.seed}`);
     const caption = document.createElement('figcaption');
     addButton(caption, `Keep seed ${take.seed}`, () => keep(index));
+    const grade = document.createElement('p');
+    grade.textContent = describeGrade(take.grade);
+    caption.append(grade);
     cell.append(stage, caption);
     return cell;
   });

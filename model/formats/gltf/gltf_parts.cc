@@ -94,11 +94,13 @@ ordered_json Extras(const motion::Provenance& provenance) {
     for (const auto& [interaction_class, weight] : key.weights) weights[interaction_class] = weight;
     labels.push_back({{"frame", key.frame}, {"weights", std::move(weights)}});
   }
-  return {{"model", absl::StrCat(provenance.model, "@", provenance.model_version)},
-          {"labels", std::move(labels)},
-          {"seed", provenance.seed},
-          {"variety", provenance.variety},
-          {"cleaned_up", provenance.cleaned_up}};
+  ordered_json extras = {{"model", absl::StrCat(provenance.model, "@", provenance.model_version)},
+                         {"labels", std::move(labels)},
+                         {"seed", provenance.seed},
+                         {"variety", provenance.variety}};
+  if (provenance.candidates != 1) extras["candidates"] = provenance.candidates;
+  extras["cleaned_up"] = provenance.cleaned_up;
+  return extras;
 }
 
 }  // namespace duet::formats::gltf

@@ -92,6 +92,9 @@ void WriteProvenance(const motion::Provenance& provenance, UsdaWriter* out) {
   WriteLabels(provenance.labels, out);
   out->Line(absl::StrCat("uint64 seed = ", provenance.seed));
   out->Line(absl::StrCat("double variety = ", UsdNumber(static_cast<double>(provenance.variety))));
+  if (provenance.candidates != 1) {
+    out->Line(absl::StrCat("int candidates = ", provenance.candidates));
+  }
   out->Line(absl::StrCat("bool cleaned_up = ", provenance.cleaned_up ? "true" : "false"));
   out->Close();
 }

@@ -7,11 +7,13 @@
 #include <atomic>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/manifest.h"
@@ -72,10 +74,13 @@ class FakeConnection : public Connection {
     result.model_version = *request.model.version;
     result.request_id = request.request_id;
     result.seed = request.seed;
+    result.candidates = request.candidates;
+    result.grade = grade;
     return result;
   }
   std::function<absl::Status(const SynthesisRequest&, int call)> answer;
   float distance = 1;
+  std::optional<MotionGrade> grade;
   std::atomic<int> calls{0};
 };
 
@@ -188,6 +193,32 @@ TEST_F(JobTest, KeepsEveryAnswerAndListsIt) {
     EXPECT_EQ(entry.request_id(), "batch-" + entry.id());
     EXPECT_THAT(entry.leader_sha256(), SizeIs(64));
   }
+}
+
+TEST_F(JobTest, RecordsCandidatesAndTheGrade) {
+  recipe_ = absl::StrCat("candidates: 4 ", recipe_);
+  connection().grade = MotionGrade{0.125, 0.5, 0.25, 0, {}};
+  ASSERT_THAT(Run("set"), IsOk());
+  const auto record = nlohmann::json::parse(Lines("set/index.jsonl")[0]);
+  EXPECT_EQ(record["candidates"], 4);
+  EXPECT_EQ(record["quality"]["twisted"], 0.125);
+  EXPECT_EQ(record["quality"]["skating"], 0.5);
+  EXPECT_EQ(record["quality"]["leader_skating"], 0.25);
+  EXPECT_EQ(record["quality"]["overlapping"], 0);
+  const std::vector<std::string> rows = Lines("set/index.tsv");
+  EXPECT_THAT(rows[0], HasSubstr("\tvariety\tcandidates\t"));
+  EXPECT_THAT(rows[0], HasSubstr("\ttwisted\tskating\tleader_skating\toverlapping\t"));
+  EXPECT_THAT(rows[1], HasSubstr("\t0.125\t0.5\t0.25\t0.0\t"));
+}
+
+TEST_F(JobTest, RejectsAnswersByTheirGrade) {
+  recipe_.insert(recipe_.find("retries_per_item"), "max_twisted: 0.1 ");
+  connection().grade = MotionGrade{0.125, 0, 0, 0, {}};
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->set.rejected, kItems);
+  EXPECT_EQ(connection().calls, 3 * kItems);
+  EXPECT_THAT(Lines("set/rejected.tsv")[1], HasSubstr("twisted: expected at most 0.1, got 0.125"));
 }
 
 TEST_F(JobTest, UnfinishedSetHasADescription) {

@@ -82,6 +82,17 @@ TEST(Plan, GoesThroughLeadersReactionsModelsAndSamples) {
   for (size_t i = 0; i < items->size(); ++i) EXPECT_EQ((*items)[i].number, static_cast<int64_t>(i));
 }
 
+TEST(Plan, OnlySeveralCandidatesChangeTheItem) {
+  const auto id = [](const std::string& more) {
+    return (*PlanOf(kKick + more, "leader\na.bvh\n"))[0].id;
+  };
+  // The id of earlier versions, so that their sets can be continued.
+  EXPECT_EQ(id(""), "54e9b2a470fe12910b8bf016da00fb89");
+  EXPECT_EQ(id("candidates: 1"), id(""));
+  EXPECT_NE(id("candidates: 4"), id(""));
+  EXPECT_NE(id("candidates: 4"), id("candidates: 5"));
+}
+
 TEST(Plan, EveryKindOfReaction) {
   const auto items = PlanOf(R"(
     reactions { grid { axes { interaction_class: 'kick' weights: 0.5 weights: 1 }

@@ -100,6 +100,7 @@ Quality Good() {
   quality.distance_metres = 1;
   quality.penetration_metres = 0.1;
   quality.range_of_motion_metres = 0.1;
+  quality.grade = MotionGrade{0.2, 0.5, 0.25, 0.1, {}};
   return quality;
 }
 
@@ -127,14 +128,25 @@ TEST(WhyRejected, EachLimitIsCheckedSeparately) {
               ElementsAre("range_of_motion_metres: expected at least 0.2, got 0.1"));
   EXPECT_THAT(only([](QualityFilter* f) { f->max_unfamiliarity = 1.5; }),
               ElementsAre("unfamiliarity: expected at most 1.5, got 5"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_twisted = 0.1; }),
+              ElementsAre("twisted: expected at most 0.1, got 0.2"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_overlapping = 0; }),
+              ElementsAre("overlapping: expected at most 0, got 0.1"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_skating_over_leader = 0.2; }),
+              ElementsAre("skating_over_leader: expected at most 0.2, got 0.25"));
+  EXPECT_THAT(only([](QualityFilter* f) { f->max_skating_over_leader = 0.25; }), IsEmpty());
 }
 
 TEST(WhyRejected, UnknownFiguresPass) {
   QualityFilter filter;
   filter.max_lean_degrees = 1;
   filter.max_unfamiliarity = 1;
+  filter.max_twisted = 0;
+  filter.max_overlapping = 0;
+  filter.max_skating_over_leader = 0;
   Quality quality = Good();
   quality.lean_degrees.reset();
+  quality.grade.reset();
   EXPECT_THAT(WhyRejected(filter, quality, std::nullopt), IsEmpty());
 }
 

@@ -30,6 +30,7 @@ TEST(Recipe, AbsentFieldsHaveTheirDefaults) {
   ASSERT_THAT(recipe, IsOk());
   EXPECT_EQ(recipe->samples, 1);
   EXPECT_EQ(recipe->variety, 1);
+  EXPECT_EQ(recipe->candidates, 1);
   ASSERT_EQ(recipe->models.size(), 1u);
   EXPECT_EQ(recipe->models[0].name, "");
   EXPECT_EQ(recipe->output.packing, Packing::kNone);
@@ -44,13 +45,15 @@ TEST(Recipe, SideSelectsTheLeader) {
 
 TEST(Recipe, TextFormatAndJsonAreEquivalent) {
   const auto text = Parse(R"(
-    seed: 3 models: "sbu@2" variety: 0.5
+    seed: 3 models: "sbu@2" variety: 0.5 candidates: 4
     reactions { labels { weights { key: "kick" value: 1 } weights { key: "hug" value: -0.5 } } }
-    filter { max_lean_degrees: 30 retries_per_item: 2 })");
+    filter { max_lean_degrees: 30 max_twisted: 0.1 max_overlapping: 0.2
+             max_skating_over_leader: 0.3 retries_per_item: 2 })");
   const auto json = ParseRecipe(R"({
-    "seed": 3, "models": ["sbu@2"], "variety": 0.5,
+    "seed": 3, "models": ["sbu@2"], "variety": 0.5, "candidates": 4,
     "reactions": [{"labels": {"weights": {"hug": -0.5, "kick": 1}}}],
-    "filter": {"max_lean_degrees": 30, "retries_per_item": 2},
+    "filter": {"max_lean_degrees": 30, "max_twisted": 0.1, "max_overlapping": 0.2,
+               "max_skating_over_leader": 0.3, "retries_per_item": 2},
     "output": {"formats": ["FORMAT_NPY"]}})",
                                 /*json=*/true);
   ASSERT_THAT(text, IsOk());
@@ -61,7 +64,11 @@ TEST(Recipe, TextFormatAndJsonAreEquivalent) {
   EXPECT_EQ(labels[0].interaction_class, "hug");
   EXPECT_EQ(labels[0].weight, -0.5f);
   EXPECT_EQ(text->models[0].version, 2);
+  EXPECT_EQ(text->candidates, 4);
   EXPECT_EQ(text->filter.max_lean_degrees, 30);
+  EXPECT_EQ(text->filter.max_twisted, 0.1);
+  EXPECT_EQ(text->filter.max_overlapping, 0.2);
+  EXPECT_EQ(text->filter.max_skating_over_leader, 0.3);
   EXPECT_EQ(text->filter.retries_per_item, 2);
 }
 
@@ -159,6 +166,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "keyframes[0].at: expected", ", got 2"},
         BadRecipe{"samples: 0", "samples: expected a number from 1", ", got 0"},
         BadRecipe{"variety: 3", "variety: expected", ", got 3"},
+        BadRecipe{"candidates: 0", "candidates: expected a number from 1 to 16", ", got 0"},
+        BadRecipe{"candidates: 17", "candidates: expected a number from 1 to 16", ", got 17"},
+        BadRecipe{"filter { max_twisted: -1 }", "filter.max_twisted: expected", ", got -1"},
         BadRecipe{"models: 'a@0'", "models: expected", ", got \"a@0\""},
         BadRecipe{"models: 'a' models: 'a'", "models: expected", ", got a twice"},
         BadRecipe{"filter { max_lean_degrees: -1 }", "filter.max_lean_degrees: expected",

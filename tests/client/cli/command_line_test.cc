@@ -89,7 +89,7 @@ TEST_F(CommandLineTest, HelpShowsDefaults) {
        {"--server HOST:PORT=localhost:50051", "--timeout SECONDS=120", "--wait SECONDS=5",
         "--leader-side left|right=left", "--priority bulk|interactive=interactive", "else left)",
         "--clean-up auto|off|on=auto", "--seed SEED=0", "--variety VARIETY=1",
-        "--samples COUNT=1"}) {
+        "--candidates COUNT=1", "--samples COUNT=1"}) {
     EXPECT_THAT(help, HasSubstr(shown));
   }
 }
@@ -104,6 +104,7 @@ TEST_F(CommandLineTest, SynthesizeHasDefaults) {
   EXPECT_EQ(arguments.priority, Priority::kInteractive);
   EXPECT_EQ(arguments.seed, 0u);
   EXPECT_EQ(arguments.variety, 1);
+  EXPECT_EQ(arguments.candidates, 1);
   EXPECT_EQ(arguments.clean_up, std::nullopt);
   EXPECT_EQ(arguments.samples, 1);
   EXPECT_EQ(arguments.input.frame_rate_hz, std::nullopt);
@@ -140,6 +141,8 @@ TEST_F(CommandLineTest, EveryFlagIsRead) {
                                               "18446744073709551610",
                                               "--variety",
                                               "0.25",
+                                              "--candidates",
+                                              "4",
                                               "--samples",
                                               "6",
                                               "--clean-up",
@@ -174,6 +177,7 @@ TEST_F(CommandLineTest, EveryFlagIsRead) {
   EXPECT_EQ(arguments.follower_start_side, formats::Side::kRight);
   EXPECT_EQ(arguments.seed, 18446744073709551610u);
   EXPECT_EQ(arguments.variety, 0.25f);
+  EXPECT_EQ(arguments.candidates, 4);
   EXPECT_EQ(arguments.samples, 6);
   EXPECT_EQ(arguments.clean_up, false);
   EXPECT_EQ(arguments.priority, Priority::kBulk);
@@ -234,6 +238,8 @@ TEST_F(CommandLineTest, InvalidValueIsNamed) {
   ExpectRefused({"--label", "kick=1", "--seed", "-1"}, "--seed: expected a whole number");
   ExpectRefused({"--label", "kick=1", "--variety", "3"},
                 "--variety: expected a number from 0 to 2, got \"3\"");
+  ExpectRefused({"--label", "kick=1", "--candidates", "0"}, "--candidates");
+  ExpectRefused({"--label", "kick=1", "--candidates", "17"}, "--candidates");
   ExpectRefused({"--label", "kick=1", "--samples", "0"}, "--samples");
   ExpectRefused({"--label", "kick=1", "--seed", "18446744073709551610", "--samples", "7"},
                 "--samples: expected at most 6 with --seed 18446744073709551610, so that no seed "

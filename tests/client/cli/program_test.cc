@@ -72,6 +72,7 @@ absl::StatusOr<SynthesisResult> Follow(const SynthesisRequest& request) {
   result.request_id = "request-1";
   result.seed = request.seed;
   result.variety = request.variety;
+  result.candidates = request.candidates;
   result.cleaned_up = request.clean_up.value_or(false);
   result.timings.first_chunk = absl::Milliseconds(12);
   result.timings.total = absl::Milliseconds(34);
@@ -268,6 +269,8 @@ TEST_F(ProgramTest, SendsTheValuesOfTheFlags) {
                                      "7",
                                      "--variety",
                                      "0.25",
+                                     "--candidates",
+                                     "4",
                                      "--clean-up",
                                      "on"}),
             0)
@@ -282,6 +285,7 @@ TEST_F(ProgramTest, SendsTheValuesOfTheFlags) {
   EXPECT_EQ(sent.partner_direction, (motion::Vec3{1, 0, -1}));
   EXPECT_EQ(sent.seed, 7u);
   EXPECT_EQ(sent.variety, 0.25f);
+  EXPECT_EQ(sent.candidates, 4);
   EXPECT_EQ(sent.clean_up, true);
   EXPECT_EQ(sent.chunk_frames, 8);
   EXPECT_EQ(sent.request_id, "job-7");
@@ -333,6 +337,7 @@ TEST_F(ProgramTest, PrintsASummaryAsJson) {
   EXPECT_EQ(json["weights"]["kick"], 1);
   EXPECT_EQ(json["seed"], 0);
   EXPECT_EQ(json["variety"], 1);
+  EXPECT_EQ(json["candidates"], 1);
   EXPECT_EQ(json["cleaned_up"], false);
   EXPECT_EQ(json["seconds"]["total"], 0.034);
   EXPECT_EQ(json["files"], std::vector<std::string>{Path("pair.html")});
@@ -527,7 +532,9 @@ TEST_F(ProgramTest, PrintsSeedAndVarietyOfAModelThatSamples) {
   EXPECT_THAT(out_.str(), Not(HasSubstr("seed")));
   ModelDetails details = SbuModel();
   details.model.samples = true;
-  EXPECT_CALL(*connection_, GetModel).WillOnce(Return(details));
+  EXPECT_CALL(*connection_, GetModel).WillRepeatedly(Return(details));
+  ASSERT_EQ(Synthesize("pair.html", {"--seed", "7", "--candidates", "4"}), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("          seed 7, variety 1, best of 4 candidates\n"));
   ASSERT_EQ(Synthesize("pair.html", {"--seed", "7", "--variety", "0.5"}), 0);
   EXPECT_THAT(out_.str(), HasSubstr("          seed 7, variety 0.5\n"));
   EXPECT_THAT(ReadTestFile(folder_ / "pair.html"), HasSubstr("seed 7"));
@@ -547,6 +554,37 @@ TEST_F(ProgramTest, PrintsUnfamiliarityIfTheServerReportsIt) {
   ASSERT_EQ(Synthesize("pair.csv"), 0);
   EXPECT_THAT(out_.str(), HasSubstr("          unfamiliarity 1.25 (1: as the farthest tenth"));
   EXPECT_THAT(out_.str(), Not(HasSubstr("unlike")));
+}
+
+TEST_F(ProgramTest, PrintsTheGradeIfTheServerReportsIt) {
+  ASSERT_EQ(Synthesize("pair.csv", {"--json"}), 0);
+  EXPECT_FALSE(nlohmann::json::parse(out_.str()).contains("grade"));
+  ASSERT_EQ(Synthesize("pair.csv"), 0);
+  EXPECT_THAT(out_.str(), Not(HasSubstr("graded")));
+  MotionGrade grade{0, 0.21f, 0.45f, 0, {}};
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillRepeatedly([&grade](const SynthesisRequest& request, const ChunkCallback&) {
+        absl::StatusOr<SynthesisResult> result = Follow(request);
+        result->grade = grade;
+        return result;
+      });
+  ASSERT_EQ(Synthesize("pair.csv"), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("          graded: twisted 0 %, both feet move 21 % (leader 45 "
+                                    "%), overlapping 0 %\n"));
+  EXPECT_THAT(out_.str(), Not(HasSubstr("in frames")));
+  grade.overlapping = 0.35f;
+  grade.bad_runs = {{0, 1}, {3, 2}, {6, 1}, {8, 1}, {10, 1}, {12, 1}};
+  ASSERT_EQ(Synthesize("pair.csv"), 0);
+  EXPECT_THAT(out_.str(),
+              HasSubstr("          twisted or overlapping in frames 0, 3-4, 6, 8, 10, ...\n"));
+  ASSERT_EQ(Synthesize("pair.csv", {"--json"}), 0);
+  const nlohmann::json json = nlohmann::json::parse(out_.str())["grade"];
+  EXPECT_EQ(json["twisted"], 0);
+  EXPECT_EQ(json["skating"], 0.21);
+  EXPECT_EQ(json["leader_skating"], 0.45);
+  EXPECT_EQ(json["overlapping"], 0.35);
+  EXPECT_EQ(json["bad_runs"].size(), 6u);
+  EXPECT_EQ(json["bad_runs"][1], (nlohmann::json{{"first_frame", 3}, {"frame_count", 2}}));
 }
 
 TEST_F(ProgramTest, WarnsAboutAnUnfamiliarLeader) {

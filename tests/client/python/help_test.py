@@ -8,7 +8,7 @@ import support  # noqa: F401
 import duet_motion as duet
 
 # Created by the package, not by its callers.
-RESULTS = {"FieldViolation", "FollowerChunk", "ModelDetails", "ModelInfo", "MotionSet", "Outcome",
+RESULTS = {"FieldViolation", "FollowerChunk", "FrameRun", "ModelDetails", "ModelInfo", "MotionGrade", "MotionSet", "Outcome",
            "PaddedBatch", "RequestLimits", "SetItem", "SynthesisResult", "SynthesisStream", "Timings"}
 
 

@@ -30,8 +30,22 @@ class ReplyTest(unittest.TestCase):
                          ("m", 1, 3, 0.5))
         self.assertEqual((result.cleaned_up, result.unfamiliarity, result.request_id),
                          (True, 0.75, "r"))
+        self.assertEqual((result.candidates, result.grade), (4, None))
         self.assertEqual(result.timings, duet.Timings(0.1, 0.2, 0.25, 0.5))
         self.assertEqual((result.attempt_count, result.window_count), (2, 1))
+
+    def test_grade_is_returned(self):
+        runs = [synthesis_pb2.FrameRun(first_frame=1, frame_count=2)]
+        grade = synthesis_pb2.MotionGrade(twisted=0.25, skating=0.5, leader_skating=0.75,
+                                          overlapping=1, bad_runs=runs)
+        whole = support.good_reply(self.leader, size=6)
+        self.accept(*whole[:2], support.summary(self.leader, 1, grade=grade))
+        self.assertEqual(self.reply.result(1, 0, 0).grade,
+                         duet.MotionGrade(0.25, 0.5, 0.75, 1, (duet.FrameRun(1, 2),)))
+
+    def test_server_without_candidates_draws_one(self):
+        self.accept(*support.good_reply(self.leader, size=6, candidates=0))
+        self.assertEqual(self.reply.result(1, 0, 0).candidates, 1)
 
     def test_malformed_messages_are_rejected(self):
         leader, head = self.leader, support.header(self.leader)
@@ -61,6 +75,13 @@ class ReplyTest(unittest.TestCase):
                 ([*whole[:2], support.summary(leader, 2)], "chunk_count: expected 1, got 2"),
                 ([*whole[:2], support.summary(leader, 1, unfamiliarity=-1)],
                  "unfamiliarity: .* got -1"),
+                ([*whole[:2], support.summary(leader, 1, grade={"twisted": 1.5})],
+                 "summary.grade: expected shares from 0 to 1, got 1.5"),
+                ([*whole[:2], support.summary(leader, 1, grade={"skating": float("nan")})],
+                 "summary.grade: expected shares from 0 to 1, got nan"),
+                ([*whole[:2], support.summary(leader, 1, grade={"bad_runs": [
+                    {"first_frame": 5, "frame_count": 2}]})],
+                 "bad_runs: expected runs of the 6 frames, got 2 from 5"),
                 ([*whole, head], "a message after the summary")):
             with self.subTest(message=message):
                 self.reply.start_stream()

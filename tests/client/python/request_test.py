@@ -25,10 +25,11 @@ class RequestTest(unittest.TestCase):
     def test_every_field_is_sent(self):
         wire = to_proto(self.request(
             seed=2**64 - 1, variety=0.5, model="sbu@2", clean_up=False, priority="bulk",
-            chunk_frames=8, partner_direction=(0, 0, 1)))
+            chunk_frames=8, partner_direction=(0, 0, 1), candidates=4))
         self.assertEqual([(w.interaction_class, w.weight) for w in wire.label_vector.weights],
                          [("hug", 1), ("push", 0.5)])
         self.assertEqual((wire.seed, wire.variety, wire.chunk_frames), (2**64 - 1, 0.5, 8))
+        self.assertEqual(wire.candidates, 4)
         self.assertEqual((wire.model.name, wire.model.version), ("sbu", 2))
         self.assertEqual(wire.clean_up, synthesis_pb2.CLEAN_UP_OFF)
         self.assertEqual(wire.priority, synthesis_pb2.PRIORITY_BULK)
@@ -40,6 +41,7 @@ class RequestTest(unittest.TestCase):
         for field in ("label_vector", "follower_start", "partner_direction", "chunk_frames"):
             self.assertFalse(wire.HasField(field), field)
         self.assertEqual(wire.clean_up, synthesis_pb2.CLEAN_UP_UNSPECIFIED)
+        self.assertEqual(wire.candidates, 1)
 
     def test_keyframes_are_sorted_by_frame(self):
         wire = to_proto(duet.SynthesisRequest(
@@ -66,6 +68,9 @@ class RequestTest(unittest.TestCase):
                 ({"seed": 1.5}, "seed: expected an integer from 0 to .*, got 1.5"),
                 ({"seed": True}, "seed: .* got True"),
                 ({"variety": float("nan")}, "variety: expected a number, got nan"),
+                ({"candidates": 0}, "candidates: expected an integer from 1 to 16, got 0"),
+                ({"candidates": 17}, "candidates: expected an integer from 1 to 16, got 17"),
+                ({"candidates": 2.5}, "candidates: expected an integer from 1 to 16, got 2.5"),
                 ({"clean_up": "auto"}, "clean_up: expected True, False or None, got 'auto'"),
                 ({"request_id": 7}, "request_id: expected a str, got 7"),
                 ({"timeout": 0}, "timeout: expected a finite number above 0, got 0"),

@@ -44,7 +44,8 @@ def header(motion, **changes):
     values = {"model_name": "m", "model_version": 1, "joint_names": motion.joint_names,
               "frame_rate_hz": motion.frame_rate_hz, "unit": 1, "up_axis": 1,
               "frame_count": motion.frame_count, "interaction_classes": ["hug"],
-              "request_id": "r", "seed": 3, "variety": 0.5, "clean_up": 1}
+              "request_id": "r", "seed": 3, "variety": 0.5, "candidates": 4,
+              "clean_up": 1}
     return synthesis_pb2.SynthesizeResponse(
         header=synthesis_pb2.SynthesisHeader(**{**values, **changes}))
 

@@ -124,6 +124,7 @@ v1::SynthesizeResponse HeaderFor(const motion::Clip& leader, uint32_t version) {
   header->set_request_id("request-1");
   header->set_seed(18446744073709551615u);
   header->set_variety(0.5F);
+  header->set_candidates(4);
   header->set_clean_up(v1::CLEAN_UP_ON);
   return response;
 }

@@ -152,6 +152,7 @@ TEST(GltfExport, BindMatricesUndoTheRestPose) {
 
 TEST(GltfExport, StoresTheProvenanceOfTheFollower) {
   motion::Provenance provenance;
+  provenance.candidates = 4;
   provenance.model = "flow";
   provenance.model_version = 3;
   provenance.labels = {{0, {{"hug", 1}}}, {30, {{"push", -0.5f}}}};
@@ -160,6 +161,7 @@ TEST(GltfExport, StoresTheProvenanceOfTheFollower) {
   const nlohmann::json extras = json["scenes"][0]["extras"];
   EXPECT_EQ(extras["model"], "flow@3");
   EXPECT_EQ(extras["seed"], 7);
+  EXPECT_EQ(extras["candidates"], 4);
   EXPECT_EQ(extras["labels"][0]["weights"]["hug"], 1);
   EXPECT_EQ(extras["labels"][1]["frame"], 30);
   EXPECT_EQ(extras["labels"][1]["weights"]["push"], -0.5);

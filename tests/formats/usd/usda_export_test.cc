@@ -78,12 +78,13 @@ TEST(FormatUsda, ProvenanceIsCustomData) {
   provenance.labels = {{0, {{"kick", 1.0f}}}, {30, {{"hug", -0.5f}}}};
   provenance.seed = 18446744073709551615u;
   provenance.variety = 0.5f;
+  provenance.candidates = 4;
   provenance.cleaned_up = true;
   const std::string text = Export({Person(), Person()}, &provenance);
   for (const char* line :
        {"string model = \"na\\\"me@3\"", "int[] frames = [0, 30]", "double[] \"kick\" = [1, 0]",
         "double[] \"hug\" = [0, -0.5]", "uint64 seed = 18446744073709551615",
-        "double variety = 0.5", "bool cleaned_up = true"}) {
+        "double variety = 0.5", "int candidates = 4", "bool cleaned_up = true"}) {
     EXPECT_THAT(text, HasSubstr(line));
   }
   EXPECT_THAT(Export({Person(), Person()}), Not(HasSubstr("customData")));

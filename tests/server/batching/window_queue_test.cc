@@ -436,6 +436,25 @@ TEST_F(ComesInTimeTest, CountsEarlierWindows) {
   EXPECT_TRUE(queue_.ComesInTime(Job(model_), now_)) << "it has no deadline";
 }
 
+TEST_F(ComesInTimeTest, CountsEveryCandidate) {
+  const Model sampling = std::make_shared<FakeSynthesizer>(test::SamplingDescription());
+  queue_.Push(Job(sampling), now_);
+  Serve(queue_, now_, milliseconds(10));
+  const common::TimePoint now = now_ + milliseconds(10);
+  const auto due = [&](const Model& model, milliseconds left) {
+    WindowJob job = Job(model);
+    job.window.options.sampling.candidates = 4;
+    job.deadline = now + left;
+    return job;
+  };
+  queue_.Push(due(sampling, milliseconds(1000)), now);
+  // 40 ms and its own 40.
+  EXPECT_TRUE(queue_.ComesInTime(due(sampling, milliseconds(81)), now));
+  EXPECT_FALSE(queue_.ComesInTime(due(sampling, milliseconds(79)), now));
+  // A model that does not sample ignores them: 40 ms and its own 10.
+  EXPECT_TRUE(queue_.ComesInTime(due(model_, milliseconds(51)), now));
+}
+
 TEST_F(ComesInTimeTest, IgnoresWindowsThatNeverRunOrRunLater) {
   queue_.Push(Job(model_), now_);
   for (int i = 0; i < 6; ++i) queue_.Push(Job(model_, Priority::kBulk), now_);

@@ -32,6 +32,7 @@ CallRecord Record() {
   record.priority = "bulk";
   record.seed = 18446744073709551615u;
   record.variety = 0.5;
+  record.candidates = 4;
   record.clean_up = true;
   record.unfamiliarity = 1.25;
   record.frames = 300;
@@ -67,6 +68,7 @@ TEST_F(JsonLogTest, WritesACallAsOneLineOfJson) {
   EXPECT_EQ(line["priority"], "bulk");
   EXPECT_EQ(line["seed"], 18446744073709551615u);
   EXPECT_EQ(line["variety"], 0.5);
+  EXPECT_EQ(line["candidates"], 4);
   EXPECT_EQ(line["clean_up"], true);
   EXPECT_EQ(line["unfamiliarity"], 1.25);
   EXPECT_EQ(line["frames"], 300);

@@ -1,4 +1,4 @@
-// What seed and variety do on their way from the wire to the network and back.
+// What seed, variety and candidates do on their way from the wire to the network and back.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,6 +23,12 @@ using test::Reply;
 using test::RunningService;
 using test::SampleRequest;
 using test::SamplingDescription;
+
+using ::testing::AllOf;
+using ::testing::Each;
+using ::testing::Ge;
+using ::testing::Le;
+using ::testing::SizeIs;
 
 // A request of several windows.
 v1::SynthesizeRequest Sampled(std::optional<uint64_t> seed, std::optional<float> variety) {
@@ -77,6 +83,67 @@ TEST_F(SamplingTest, TheHeaderAndTheLogSayWhatWasUsed) {
   const Reply absent = Ask(std::nullopt, std::nullopt);
   EXPECT_EQ(absent.messages.front().header().seed(), 0u);
   EXPECT_EQ(absent.messages.front().header().variety(), 1);
+}
+
+TEST_F(SamplingTest, CandidatesReachEveryWindow) {
+  std::vector<int> candidates;
+  model_->on_batch = [&](absl::Span<const engine::SynthesisWindow* const> windows) {
+    for (const engine::SynthesisWindow* window : windows) {
+      candidates.push_back(window->options.sampling.candidates);
+    }
+  };
+  v1::SynthesizeRequest request = Sampled(7, 1);
+  request.set_candidates(4);
+  const Reply reply = Call(running_.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_THAT(candidates, AllOf(SizeIs(Ge(2u)), Each(4)));
+  EXPECT_EQ(reply.messages.front().header().candidates(), 4u);
+  EXPECT_EQ(running_.calls().WaitFor(1).candidates, 4);
+}
+
+TEST_F(SamplingTest, OneCandidateByDefault) {
+  EXPECT_EQ(Ask(7, 1).messages.front().header().candidates(), 1u);
+  EXPECT_EQ(running_.calls().WaitFor(1).candidates, 1);
+}
+
+TEST_F(SamplingTest, DeterministicModelHasOneCandidate) {
+  RunningService running;
+  v1::SynthesizeRequest request = Sampled(7, 1);
+  request.set_candidates(4);
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_EQ(reply.messages.front().header().candidates(), 1u);
+  EXPECT_EQ(running.calls().WaitFor(1).candidates, 1);
+}
+
+TEST_F(SamplingTest, SummaryGradesTheFollower) {
+  const v1::SynthesisSummary summary = Ask(0, 1).messages.back().summary();
+  ASSERT_TRUE(summary.has_grade());
+  for (const float share : {summary.grade().twisted(), summary.grade().skating(),
+                            summary.grade().leader_skating(), summary.grade().overlapping()}) {
+    EXPECT_THAT(share, AllOf(Ge(0), Le(1)));
+  }
+  EXPECT_EQ(summary.grade().overlapping(), 0);
+  EXPECT_EQ(summary.grade().bad_runs_size(), 0);
+}
+
+TEST_F(SamplingTest, GradeNamesTheFramesThatOverlap) {
+  model_->answer = [](motion::Vec3 leader, absl::Span<const float>) { return leader; };
+  const v1::SynthesisSummary summary = Ask(0, 0).messages.back().summary();
+  EXPECT_EQ(summary.grade().overlapping(), 1);
+  EXPECT_EQ(summary.grade().skating(), summary.grade().leader_skating());
+  ASSERT_EQ(summary.grade().bad_runs_size(), 1);
+  EXPECT_EQ(summary.grade().bad_runs(0).first_frame(), 0u);
+  EXPECT_EQ(summary.grade().bad_runs(0).frame_count(), 120u);
+}
+
+TEST_F(SamplingTest, ModelWithoutHipsHasNoGrade) {
+  engine::ModelDescription description = SamplingDescription();
+  description.skeleton.hips.reset();
+  RunningService running(Serve(std::make_shared<FakeSynthesizer>(description)));
+  const Reply reply = Call(running.stub(), Sampled(7, 1));
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_FALSE(reply.messages.back().summary().has_grade());
 }
 
 TEST_F(SamplingTest, DeterministicModelIgnoresSeedAndVarietyAndEchoesThem) {

@@ -480,6 +480,7 @@ TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
   EXPECT_EQ(response.limits().max_label_keyframes(), 4096u);
   EXPECT_EQ(response.limits().max_abs_weight(), 2);
   EXPECT_EQ(response.limits().max_variety(), 2);
+  EXPECT_EQ(response.limits().max_candidates(), 16u);
   EXPECT_EQ(response.limits().max_request_bytes(), 32u << 20);
 }
 

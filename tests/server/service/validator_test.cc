@@ -338,6 +338,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "expected a finite value in [0, 2], got nan"},
         Spoiled{"infinite_variety", [](Request& r) { r.set_variety(kInfinity); }, "variety",
                 "expected a finite value in [0, 2], got inf"},
+        Spoiled{"no_candidates", [](Request& r) { r.set_candidates(0); }, "candidates",
+                "expected 1 to 16, got 0"},
+        Spoiled{"many_candidates", [](Request& r) { r.set_candidates(17); }, "candidates",
+                "expected 1 to 16, got 17"},
+        Spoiled{"countless_candidates", [](Request& r) { r.set_candidates(4294967295u); },
+                "candidates", "expected 1 to 16, got 4294967295"},
         Spoiled{"unknown_clean_up", [](Request& r) { r.set_clean_up(static_cast<v1::CleanUp>(9)); },
                 "clean_up", "expected CLEAN_UP_ON, CLEAN_UP_OFF or no value, got 9"},
         Spoiled{"no_direction", [](Request& r) { SetDirection(r, 0, 0, 0); }, "partner_direction",
@@ -444,6 +450,7 @@ TEST(ValidateRequestTest, FillsInDefaults) {
   EXPECT_FALSE(request->clip.partner_direction.has_value());
   EXPECT_EQ(request->clip.options.sampling.seed, 0u);
   EXPECT_EQ(request->clip.options.sampling.variety, 1);
+  EXPECT_EQ(request->clip.options.sampling.candidates, 1);
   EXPECT_EQ(request->clip.options.clean_up, std::nullopt);
   EXPECT_EQ(request->reply.joint_names, FakeDescription().skeleton.joint_names);
 }
@@ -454,6 +461,7 @@ TEST(ValidateRequestTest, TakesOverWhatIsGiven) {
   request.set_priority(v1::PRIORITY_BULK);
   request.set_seed(std::numeric_limits<uint64_t>::max());
   request.set_variety(0);
+  request.set_candidates(16);
   const absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
   EXPECT_EQ(validated->chunk_frames, 7);
@@ -461,6 +469,7 @@ TEST(ValidateRequestTest, TakesOverWhatIsGiven) {
   EXPECT_EQ(validated->clip.frame_rate_hz, 15);
   EXPECT_EQ(validated->clip.options.sampling.seed, std::numeric_limits<uint64_t>::max());
   EXPECT_EQ(validated->clip.options.sampling.variety, 0);
+  EXPECT_EQ(validated->clip.options.sampling.candidates, 16);
 }
 
 TEST(ValidateRequestTest, TakesOverWhetherToCleanUp) {
