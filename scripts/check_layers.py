@@ -94,7 +94,7 @@ LAYERS = (
     Layer("server config", "server/config", sees=("base", "messages", "server common"),
           libraries=("rpc",)),
     Layer("service", "server/service",
-          sees=("base", "motion", "engine", "server common", "batching", "registry",
+          sees=("base", "motion", "retargeting", "engine", "server common", "batching", "registry",
                 "server metrics", "security"),
           libraries=("rpc", "prometheus")),
     Layer("admin", "server/admin",
