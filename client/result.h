@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/time/time.h"
 #include "model/motion/clip.h"
+#include "model/motion/joint_rotations.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
@@ -76,6 +77,8 @@ struct SynthesisResult {
   // distance above 1; results for a leader far above 1 are unreliable. Absent if the model has no
   // statistics of its training data.
   std::optional<double> unfamiliarity;
+  // The follower's joint rotations, if the request asks for them. Metres, y up.
+  std::optional<motion::JointRotations> rotations;
   int window_count = 0;  // network windows that were evaluated
   int attempt_count = 0;
   SynthesisTimings timings;
@@ -88,6 +91,8 @@ struct SynthesisResult {
 struct FollowerChunk {
   int first_frame = 0;
   motion::Poses poses;
+  // The rotations of these frames, if the request asks for them.
+  std::optional<motion::JointRotations> rotations;
 };
 
 // Called with every chunk, in frame order. Each frame is passed once, even if the call was retried.

@@ -140,6 +140,7 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
   out.set_seed(request.seed);
   out.set_variety(request.variety);
   out.set_clean_up(ToProto(request.clean_up));
+  out.set_reply_rotations(request.rotations);
   out.set_priority(ToProto(request.priority));
   if (request.chunk_frames.has_value()) {
     if (*request.chunk_frames < 1) {
