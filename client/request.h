@@ -58,6 +58,9 @@ struct SynthesisOptions {
   // sliding, keeps joints within human ranges, and resolves overlaps with the leader. Absent: the
   // server's setting. By default, the server cleans up only the results of sampling models.
   std::optional<bool> clean_up;
+  // Whether the answer has joint rotations beside the positions, for engines
+  // (SynthesisResult::rotations, FollowerChunk::rotations).
+  bool rotations = false;
   // Bulk calls yield to interactive calls, and are retried if the server is full.
   Priority priority = Priority::kInteractive;
   // Maximum number of frames in one chunk of the reply. Absent: the server's default.

@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/time/time.h"
 #include "model/motion/clip.h"
+#include "model/motion/joint_rotations.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
@@ -97,6 +98,8 @@ struct SynthesisResult {
   std::optional<double> unfamiliarity;
   // Absent if the model's skeleton lacks hips, shoulders or feet.
   std::optional<MotionGrade> grade;
+  // The follower's joint rotations, if the request asks for them. Metres, y up.
+  std::optional<motion::JointRotations> rotations;
   int window_count = 0;  // network windows that were evaluated
   int attempt_count = 0;
   SynthesisTimings timings;
@@ -109,6 +112,8 @@ struct SynthesisResult {
 struct FollowerChunk {
   int first_frame = 0;
   motion::Poses poses;
+  // The rotations of these frames, if the request asks for them.
+  std::optional<motion::JointRotations> rotations;
 };
 
 // Called with every chunk, in frame order. Each frame is passed once, even if the call was retried.

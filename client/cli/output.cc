@@ -51,7 +51,9 @@ motion::Provenance ProvenanceOf(const Synthesis& synthesis) {
 
 formats::WriteOptions WritingOf(const Synthesis& synthesis, const motion::Provenance& provenance,
                                 std::vector<std::string>* notes) {
-  return {&provenance, synthesis.bvh.metres_per_unit, synthesis.bvh.keys_per_frame, notes};
+  const std::optional<motion::JointRotations>& rotations = synthesis.result.rotations;
+  return {&provenance, synthesis.bvh.metres_per_unit, synthesis.bvh.keys_per_frame,
+          rotations ? &*rotations : nullptr, notes};
 }
 
 absl::StatusOr<std::string> FormatPair(formats::Format format, const Synthesis& synthesis) {

@@ -128,6 +128,9 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
       "auto: the server's default for the model")
       ->default_str(NameOf(kCleanUps, arguments->clean_up))
       ->group(kGroup);
+  app->add_flag("--rotations", arguments->rotations,
+                "Write the follower's joint rotations beside its positions to .json, for engines")
+      ->group(kGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->priority = priority; },
@@ -178,6 +181,13 @@ void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
   app->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
 }
 
+// "a.bvh --out b.json"
+std::string OutputsText(const SynthesizeArguments& arguments) {
+  return absl::StrJoin(
+      arguments.outputs, " --out ",
+      [](std::string* out, const std::filesystem::path& path) { out->append(path.string()); });
+}
+
 void CheckFollowerRig(const SynthesizeArguments& arguments) {
   const bool leaders = arguments.follower_rig == kLeadersRig;
   const bool names_joints = !arguments.rig_joints.empty() || !arguments.rig_joint_table.empty();
@@ -198,13 +208,25 @@ void CheckFollowerRig(const SynthesizeArguments& arguments) {
                                        });
   if (fits) return;
   throw CLI::ValidationError(
-      "--follower-rig",
-      absl::StrCat("expected ", formats::kRigExtensions, " and --out FILE with ",
-                   formats::kRigOutputExtensions, ", got ", file.string(), " and --out ",
-                   absl::StrJoin(arguments.outputs, " --out ",
-                                 [](std::string* out, const std::filesystem::path& path) {
-                                   out->append(path.string());
-                                 })));
+      "--follower-rig", absl::StrCat("expected ", formats::kRigExtensions, " and --out FILE with ",
+                                     formats::kRigOutputExtensions, ", got ", file.string(),
+                                     " and --out ", OutputsText(arguments)));
+}
+
+// Whether an output is JSON with the motion.
+bool WritesJson(const SynthesizeArguments& arguments) {
+  const auto is_json = [&arguments](const std::filesystem::path& output) {
+    if (output != kStandardStream) return formats::FormatOf(output) == formats::Format::kJson;
+    return arguments.output_format && arguments.output_format->motion == formats::Format::kJson;
+  };
+  return std::any_of(arguments.outputs.begin(), arguments.outputs.end(), is_json);
+}
+
+void CheckRotations(const SynthesizeArguments& arguments) {
+  if (!arguments.rotations || WritesJson(arguments)) return;
+  throw CLI::ValidationError("--rotations",
+                             absl::StrCat("expected --out FILE.json, which holds them, got --out ",
+                                          OutputsText(arguments)));
 }
 
 void CheckKeyframes(const SynthesizeArguments& arguments) {
@@ -224,6 +246,7 @@ void CheckTogether(const SynthesizeArguments& arguments) {
   }
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
   CheckFollowerRig(arguments);
+  CheckRotations(arguments);
   CheckKeyframes(arguments);
   if (arguments.samples > 1 && WritesToStandardOutput(arguments.outputs)) {
     throw CLI::ValidationError("--samples",

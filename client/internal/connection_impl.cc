@@ -34,7 +34,7 @@ class ReplyListener final : public StreamListener {
         done_(std::move(done)),
         now_(std::move(now)),
         start_(now_()),
-        reply_(request_.leader, no_callback_) {
+        reply_(request_.leader, no_callback_, request_.rotations) {
     reply_.StartStream();
   }
 
@@ -120,7 +120,7 @@ absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisReques
   if (!wire.ok()) return wire.status();
   const absl::Time start = environment_.now();
   const CallContext call{start + deadline_, request.request_id};
-  ReplyAssembler reply(request.leader, on_chunk);
+  ReplyAssembler reply(request.leader, on_chunk, request.rotations);
   absl::Time first_chunk = absl::InfiniteFuture();
   int attempts = 0;
   absl::Status status =

@@ -145,6 +145,7 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
   }
   out.set_candidates(static_cast<uint32_t>(request.candidates));
   out.set_clean_up(ToProto(request.clean_up));
+  out.set_reply_rotations(request.rotations);
   out.set_priority(ToProto(request.priority));
   if (request.chunk_frames.has_value()) {
     if (*request.chunk_frames < 1) {

@@ -10,6 +10,7 @@
 #include "client/error_details.h"
 #include "client/internal/grpc_status.h"
 #include "client/internal/proto_conversion.h"
+#include "client/internal/rotation_conversion.h"
 
 namespace duet::client::internal {
 namespace {
@@ -60,6 +61,7 @@ void ReplyAssembler::StartStream() {
   header_.reset();
   summary_.reset();
   follower_ = motion::Poses(0, leader_.joint_count());
+  rotations_ = {};
   received_ = 0;
   chunk_count_ = 0;
 }
@@ -97,6 +99,15 @@ absl::Status ReplyAssembler::AcceptHeader(const v1::SynthesisHeader& header) {
     return Malformed("header.frame_count: expected the leader's ", leader_.frame_count(), ", got ",
                      header.frame_count());
   }
+  if (wants_rotations_ == header.rig().empty()) {
+    return Malformed("header.rig: expected ",
+                     wants_rotations_ ? "joints for the rotations that the request asks for, got "
+                                        "none; does the server know reply_rotations?"
+                                      : "none without reply_rotations, got joints");
+  }
+  absl::StatusOr<std::vector<motion::RestJoint>> rig = ReadRig(header.rig(), leader_.joint_count());
+  if (!rig.ok()) return Malformed(rig.status().message());
+  rotations_.rig = *std::move(rig);
   header_ = header;
   return absl::OkStatus();
 }
@@ -121,6 +132,9 @@ absl::Status ReplyAssembler::CheckChunk(const v1::MotionChunk& chunk) const {
                        chunk.first_frame());
     }
   }
+  if (absl::Status status = CheckRotations(chunk, rotations_.rig.size()); !status.ok()) {
+    return Malformed(status.message(), ", in the chunk of frame ", chunk.first_frame());
+  }
   return absl::OkStatus();
 }
 
@@ -134,6 +148,7 @@ absl::Status ReplyAssembler::AcceptChunk(const v1::MotionChunk& chunk) {
     value += 3;
   }
   follower_.Append(frames.all());
+  AppendRotations(chunk, &rotations_.rotations);
   received_ += frames.frame_count();
   ++chunk_count_;
   return HandOut();
@@ -141,11 +156,19 @@ absl::Status ReplyAssembler::AcceptChunk(const v1::MotionChunk& chunk) {
 
 absl::Status ReplyAssembler::HandOut() {
   if (!on_chunk_ || received_ <= handed_out_) return absl::OkStatus();
-  FollowerChunk chunk{handed_out_, motion::Poses(0, leader_.joint_count())};
+  FollowerChunk chunk{handed_out_, motion::Poses(0, leader_.joint_count()),
+                      RotationsFrom(handed_out_)};
   chunk.poses.Append(follower_.frames(handed_out_, received_ - handed_out_));
   handed_out_ = received_;
   callback_status_ = on_chunk_(chunk);
   return callback_status_;
+}
+
+std::optional<motion::JointRotations> ReplyAssembler::RotationsFrom(int first) const {
+  if (rotations_.rig.empty()) return std::nullopt;
+  const auto begin =
+      rotations_.rotations.begin() + first * static_cast<std::ptrdiff_t>(rotations_.rig.size());
+  return motion::JointRotations{rotations_.rig, {begin, rotations_.rotations.end()}};
 }
 
 absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) {
@@ -200,6 +223,7 @@ SynthesisResult ReplyAssembler::TakeResult() && {
   result.cleaned_up = header_->clean_up() == v1::CLEAN_UP_ON;
   if (summary_->has_unfamiliarity()) result.unfamiliarity = summary_->unfamiliarity();
   if (summary_->has_grade()) result.grade = FromProto(summary_->grade());
+  if (!rotations_.rig.empty()) result.rotations = std::move(rotations_);
   result.window_count = static_cast<int>(summary_->window_count());
   result.timings.queue = absl::Seconds(summary_->queue_seconds());
   result.timings.compute = absl::Seconds(summary_->compute_seconds());

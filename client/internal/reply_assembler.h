@@ -21,9 +21,10 @@ namespace duet::client::internal {
 //          callback's own status.
 class ReplyAssembler {
  public:
-  // `leader` and `on_chunk` outlive the assembler; `on_chunk` may be empty.
-  ReplyAssembler(const motion::Clip& leader, const ChunkCallback& on_chunk)
-      : leader_(leader), on_chunk_(on_chunk) {}
+  // `leader` and `on_chunk` outlive the assembler; `on_chunk` may be empty. `rotations`: whether
+  // the request asks for them.
+  ReplyAssembler(const motion::Clip& leader, const ChunkCallback& on_chunk, bool rotations = false)
+      : leader_(leader), on_chunk_(on_chunk), wants_rotations_(rotations) {}
 
   void StartStream();
   absl::Status Accept(const v1::SynthesizeResponse& response);
@@ -45,14 +46,18 @@ class ReplyAssembler {
   absl::Status AcceptHeader(const v1::SynthesisHeader& header);
   absl::Status AcceptChunk(const v1::MotionChunk& chunk);
   absl::Status CheckChunk(const v1::MotionChunk& chunk) const;
+  // Of the frames from `first` on that have been received. Absent without a rig.
+  std::optional<motion::JointRotations> RotationsFrom(int first) const;
   absl::Status AcceptSummary(const v1::SynthesisSummary& summary);
   absl::Status HandOut();
 
   const motion::Clip& leader_;
   const ChunkCallback& on_chunk_;
+  const bool wants_rotations_;
   std::optional<v1::SynthesisHeader> header_;
   std::optional<v1::SynthesisSummary> summary_;
-  motion::Poses follower_;  // [received_, joints] of the stream in progress
+  motion::Poses follower_;            // [received_, joints] of the stream in progress
+  motion::JointRotations rotations_;  // of these frames
   int received_ = 0;
   int chunk_count_ = 0;
   int handed_out_ = 0;

@@ -282,7 +282,7 @@ absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motio
   const motion::ClipPair pair{people[0], people[1]};
   if (format == Format::kCsv) return flat::FormatCsv(pair);
   if (format == Format::kNpy) return flat::FormatNpy(pair);
-  return flat::FormatJsonMotion(pair, skeleton);
+  return flat::FormatJsonMotion(pair, skeleton, options.follower_rotations);
 }
 
 absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,

@@ -11,6 +11,7 @@
 #include "absl/strings/string_view.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
+#include "model/motion/joint_rotations.h"
 #include "model/motion/provenance.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/joint_mapping.h"
@@ -85,6 +86,8 @@ struct WriteOptions {
   // Keys per frame of a BVH, 1 to kMostBvhKeysPerFrame. Near gimbal lock, interpolated angles
   // differ from the rotation between frames; more keys reduce the difference (bvh::BvhKeys).
   int bvh_keys_per_frame = 1;
+  // Joint rotations of the follower, which .json stores beside a pair. May be null.
+  const motion::JointRotations* follower_rotations = nullptr;
   // Receives remarks on the written file. May be null.
   std::vector<std::string>* notes = nullptr;
 };

@@ -1,6 +1,9 @@
 #include "model/retargeting/pose_fitting.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "model/base/angle.h"
 
 namespace duet::retargeting {
 namespace {
@@ -37,7 +40,11 @@ Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion pre
 
 }  // namespace
 
-PoseFitter::PoseFitter(const Rig& rig, BoneLengths lengths) : rig_(rig), lengths_(lengths) {
+PoseFitter::PoseFitter(const Rig& rig, double frame_rate_hz, BoneLengths lengths)
+    : rig_(rig),
+      max_twist_(base::kRadiansPerDegree * std::min(kMaxTwist, kMaxTwistSpeed / frame_rate_hz)),
+      lengths_(lengths),
+      world_(rig.joints.size()) {
   pose_.rotations.resize(rig.joints.size());
   pose_.translations.resize(rig.joints.size());
 }
@@ -45,12 +52,11 @@ PoseFitter::PoseFitter(const Rig& rig, BoneLengths lengths) : rig_(rig), lengths
 const RigPose& PoseFitter::Fit(absl::Span<const motion::Vec3> positions) {
   const std::size_t count = rig_.joints.size();
   std::vector<Vec3d> stands_at(count);
-  std::vector<Quaternion> world(count);
   pose_.root_position = ToDouble(positions[Index(rig_.joints[0].joint)]);
   for (std::size_t j = 0; j < count; ++j) {
     const RigJoint& joint = rig_.joints[j];
     const std::size_t parent = static_cast<std::size_t>(joint.parent);
-    const Quaternion parent_world = joint.parent < 0 ? Quaternion{} : world[parent];
+    const Quaternion parent_world = joint.parent < 0 ? Quaternion{} : world_[parent];
     const Quaternion to_parent = Inverse(parent_world);
     const Vec3d above = joint.parent < 0 ? Vec3d{} : stands_at[parent];
     if (joint.parent < 0 || lengths_ == BoneLengths::kCaptured) {
@@ -64,8 +70,11 @@ const RigPose& PoseFitter::Fit(absl::Span<const motion::Vec3> positions) {
       rotation = FitBranch(joint, to_parent, rotation, positions);
     } else if (joint.kind == RigJoint::Kind::kAim) {
       rotation = FitAim(joint, stands_at[j], to_parent, rotation, positions);
+      if (!first_) {
+        rotation = to_parent * LimitTwist(joint.rest_direction, world_[j], parent_world * rotation);
+      }
     }
-    world[j] = parent_world * rotation;
+    world_[j] = parent_world * rotation;
   }
   first_ = false;
   return pose_;
@@ -98,6 +107,19 @@ Quaternion PoseFitter::FitBend(const RigJoint& joint, Vec3d direction, Vec3d nex
       {{previous, first_ ? 0 : kPreviousPrior}, {swing, swing_weight}});
   // Points exactly in the direction, with the twist of the fit.
   return ShortestArc(Rotate(fit, joint.rest_direction), direction, axis) * fit;
+}
+
+// Rotations in the world, so that a trunk that turns over in one frame does not take limbs along.
+Quaternion PoseFitter::LimitTwist(Vec3d rest_direction, Quaternion previous, Quaternion fit) const {
+  const Vec3d direction = Rotate(fit, rest_direction);
+  const Vec3d before = Rotate(previous, rest_direction);
+  const Quaternion carried =
+      ShortestArc(before, direction, Rotate(previous, HingeAxis(rest_direction))) * previous;
+  const Quaternion twist = fit * Inverse(carried);
+  const double angle = 2 * std::atan2(Dot(Vec3d{twist.x, twist.y, twist.z}, direction), twist.w);
+  const double shorter = std::remainder(angle, 2 * base::kPi);
+  if (std::abs(shorter) <= max_twist_) return fit;
+  return AxisAngle(direction, std::clamp(shorter, -max_twist_, max_twist_)) * carried;
 }
 
 }  // namespace duet::retargeting

@@ -29,11 +29,16 @@ enum class BoneLengths {
 //
 // Branching joints are rotated by Kabsch's fit over their neighbours. Every other joint is placed
 // first and then points at its child, so that varying bone lengths of a capture do not accumulate
-// along a limb. The plane of the elbow or knee defines the twist of the upper limb.
+// along a limb. The plane of the elbow or knee defines the twist of the upper limb. A nearly
+// straight limb keeps its plane; no bone turns about itself faster than kMaxTwist and
+// kMaxTwistSpeed, which moves no joint.
 class PoseFitter {
  public:
+  // Degrees per frame, and degrees per second.
+  static constexpr double kMaxTwist = 40, kMaxTwistSpeed = 800;
+
   // `rig` must outlive the fitter.
-  explicit PoseFitter(const Rig& rig, BoneLengths lengths = BoneLengths::kRigs);
+  PoseFitter(const Rig& rig, double frame_rate_hz, BoneLengths lengths = BoneLengths::kRigs);
   // positions: [skeleton joints], metres.
   const RigPose& Fit(absl::Span<const motion::Vec3> positions);
 
@@ -42,11 +47,14 @@ class PoseFitter {
                     Quaternion previous, absl::Span<const motion::Vec3> positions) const;
   Quaternion FitBend(const RigJoint& joint, Vec3d direction, Vec3d next_bone, Quaternion swing,
                      Quaternion previous) const;
+  Quaternion LimitTwist(Vec3d rest_direction, Quaternion previous, Quaternion fit) const;
 
   const Rig& rig_;
-  BoneLengths lengths_;
+  const double max_twist_;  // per frame, radians
+  const BoneLengths lengths_;
   bool first_ = true;
   RigPose pose_;
+  std::vector<Quaternion> world_;  // the joints' rotations in the world. [rig joints]
 };
 
 }  // namespace duet::retargeting

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
 
 #include "model/retargeting/foot_pose.h"
+#include "model/retargeting/rig_fitting.h"
 
 namespace duet::retargeting {
 namespace {
@@ -13,34 +13,6 @@ namespace {
 constexpr double kSamePlace = 2e-5, kNoTurn = 1e-6;
 
 std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
-
-bool IsFoot(const motion::Skeleton& skeleton, int joint) {
-  return skeleton.feet && (joint == skeleton.feet->left || joint == skeleton.feet->right);
-}
-
-// Rotates feet, which the fit leaves at rest relative to their shins.
-void TurnFeet(const motion::Skeleton& skeleton, const Rig& rig, double ankle_height,
-              RigPose* pose) {
-  std::vector<Quaternion> world(rig.joints.size());
-  std::vector<Vec3d> at(rig.joints.size());
-  for (std::size_t j = 0; j < rig.joints.size(); ++j) {
-    const RigJoint& joint = rig.joints[j];
-    const Quaternion above = joint.parent < 0 ? Quaternion{} : world[Index(joint.parent)];
-    at[j] = (joint.parent < 0 ? Vec3d{} : at[Index(joint.parent)]) +
-            Rotate(above, pose->translations[j]);
-    if (joint.kind == RigJoint::Kind::kLeaf && IsFoot(skeleton, joint.joint)) {
-      pose->rotations[j] = Inverse(above) * FootRotation(above, at[j], ankle_height);
-    }
-    world[j] = above * pose->rotations[j];
-  }
-}
-
-void KeepSigns(const RigPose& previous, RigPose* pose) {
-  for (std::size_t j = 0; j < pose->rotations.size(); ++j) {
-    Quaternion& q = pose->rotations[j];
-    if (Dot(q, previous.rotations[j]) < 0) q = {-q.w, -q.x, -q.y, -q.z};
-  }
-}
 
 }  // namespace
 
@@ -81,12 +53,10 @@ RigAnimation AnimateRig(const motion::Skeleton& skeleton, const motion::Clip& cl
   animation.frame_rate_hz = clip.frame_rate_hz;
   const double ankle_height = AnkleHeightOnFloor(skeleton, clip);
   animation.sole_depth = SoleDepth(ankle_height);
-  PoseFitter fitter(animation.rig, BoneLengths::kCaptured);
+  RigFitter fitter(skeleton, animation.rig, clip.frame_rate_hz, ankle_height,
+                   BoneLengths::kCaptured);
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
-    RigPose pose = fitter.Fit(clip.poses[frame]);
-    TurnFeet(skeleton, animation.rig, ankle_height, &pose);
-    if (frame > 0) KeepSigns(animation.frames.back(), &pose);
-    animation.frames.push_back(std::move(pose));
+    animation.frames.push_back(fitter.Fit(clip.poses[frame]));
   }
   return animation;
 }

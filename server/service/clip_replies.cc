@@ -67,9 +67,7 @@ absl::Status ClipReplies::Start(std::function<void()> on_progress) {
 NextReply ClipReplies::Next(CallScope& scope) {
   switch (next_) {
     case Part::kHeader:
-      FillHeader(scope.record());
-      next_ = Part::kFrames;
-      return {&reply_, {}};
+      return NextHeader(scope);
     case Part::kFrames:
       return NextFrames(scope);
     case Part::kEnd:
@@ -78,13 +76,30 @@ NextReply ClipReplies::Next(CallScope& scope) {
   return {nullptr, absl::OkStatus()};
 }
 
+NextReply ClipReplies::NextHeader(CallScope& scope) {
+  if (mapping_.rig) {
+    first_part_ = stream_->Take(chunk_frames_);
+    if (first_part_.kind == ClipPart::Kind::kPending) return {};
+    if (first_part_.kind == ClipPart::Kind::kFailed) {
+      return {nullptr, ToEnd(first_part_.error, scope.record())};
+    }
+    rig_ = std::make_unique<ReplyRig>(*mapping_.rig, mapping_.coordinates, mapping_.joints,
+                                      first_part_.poses);
+  }
+  FillHeader(scope.record());
+  next_ = Part::kFrames;
+  return {&reply_, {}};
+}
+
 NextReply ClipReplies::NextFrames(CallScope& scope) {
-  const ClipPart part = stream_->Take(chunk_frames_);
+  // Pending unless it is the first part of a reply with rotations.
+  ClipPart part = std::exchange(first_part_, {});
+  if (part.kind == ClipPart::Kind::kPending) part = stream_->Take(chunk_frames_);
   switch (part.kind) {
     case ClipPart::Kind::kPending:
       return {};
     case ClipPart::Kind::kFrames:
-      FillChunk(part, scope);
+      FillChunk(std::move(part), scope);
       return {&reply_, {}};
     case ClipPart::Kind::kEnd:
       FillSummary(scope.record());
@@ -111,14 +126,16 @@ void ClipReplies::FillHeader(const metrics::CallRecord& record) {
   header.set_seed(options_.sampling.seed);
   header.set_variety(options_.sampling.variety);
   header.set_candidates(static_cast<uint32_t>(Candidates()));
+  if (rig_ != nullptr) rig_->FillHeader(header);
   header.set_clean_up(options_.clean_up.value_or(false) ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF);
 }
 
-void ClipReplies::FillChunk(const ClipPart& part, CallScope& scope) {
+void ClipReplies::FillChunk(ClipPart part, CallScope& scope) {
   metrics::CallRecord& record = scope.record();
   if (record.chunks == 0) record.first_chunk_seconds = scope.ElapsedSeconds();
   v1::MotionChunk& chunk = *reply_.mutable_chunk();
   chunk.Clear();
+  if (rig_ != nullptr) rig_->AddRotations(&part.poses, chunk);
   service::FillChunk(mapping_, part.poses, record.frames, chunk);
   ++record.chunks;
   record.frames += static_cast<int>(chunk.frame_count());

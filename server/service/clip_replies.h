@@ -9,12 +9,15 @@
 #include "model/engine/synthesizer.h"
 #include "server/batching/window_scheduler.h"
 #include "server/service/clip_stream.h"
+#include "server/service/reply_rig.h"
 #include "server/service/streaming_call.h"
 #include "server/service/validator.h"
 
 namespace duet::server::service {
 
 // The replies of Synthesize: header, chunks and summary of one clip.
+//
+// With rotations, the header waits for the first frames, whose bone lengths its rig has.
 //
 // Chunks hold at most request.chunk_frames frames. Model failures become INTERNAL without details;
 // CallRecord::cause has the details for the log.
@@ -33,9 +36,10 @@ class ClipReplies final : public ReplySource {
  private:
   enum class Part { kHeader, kFrames, kEnd };
 
+  NextReply NextHeader(CallScope& scope);
   NextReply NextFrames(CallScope& scope);
   void FillHeader(const metrics::CallRecord& record);
-  void FillChunk(const ClipPart& part, CallScope& scope);
+  void FillChunk(ClipPart part, CallScope& scope);
   void FillSummary(const metrics::CallRecord& record);
   // Number of samples that the model draws for each window.
   int Candidates() const;
@@ -48,6 +52,9 @@ class ClipReplies final : public ReplySource {
   // Shared with the stream, whose last window may outlive this. Set before the first window starts.
   const std::shared_ptr<std::function<void()>> on_progress_;
   const std::shared_ptr<ClipStream> stream_;
+  // With rotations, made from the first part, which waits here while the header is sent.
+  std::unique_ptr<ReplyRig> rig_;
+  ClipPart first_part_;
   Part next_ = Part::kHeader;
   v1::SynthesizeResponse reply_;  // the last one returned
 };

@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_SERVICE_REPLY_MAPPING_H_
 #define DUET_SERVER_SERVICE_REPLY_MAPPING_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "duet/v1/synthesis.pb.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/poses.h"
+#include "server/service/reply_rig.h"
 
 namespace duet::server::service {
 
@@ -20,6 +22,8 @@ struct ReplyMapping {
   v1::LengthUnit unit = v1::LENGTH_UNIT_UNSPECIFIED;
   v1::UpAxis up_axis = v1::UP_AXIS_UNSPECIFIED;
   double frame_rate_hz = 0;
+  // The person whose rest pose the reply's rig has, if the request asks for rotations.
+  std::optional<RigSource> rig;
 };
 
 // Fills in a chunk. `poses`: in the model's joint order, world metres.

@@ -36,6 +36,7 @@ class Validation {
                                            const google::protobuf::RepeatedField<float>& values,
                                            const std::vector<int>& joints);
   void FillReplyMapping();
+  void Rotations();
   int ChunkFrames();
   batching::Priority CallPriority();
 
@@ -181,6 +182,24 @@ void Validation::FillReplyMapping() {
   }
 }
 
+void Validation::Rotations() {
+  if (!request_.reply_rotations()) return;
+  if (request_.leader().unit() == v1::LENGTH_UNIT_SBU_NORMALISED) {
+    violations_.Malformed(
+        "reply_rotations",
+        "LENGTH_UNIT_METRES or LENGTH_UNIT_MILLIMETRES in leader.unit: a unit that differs between "
+        "axes has no rotations",
+        "LENGTH_UNIT_SBU_NORMALISED");
+  }
+  if (request_.reply_joint_names_size() > 0) {
+    violations_.Malformed("reply_rotations", "no reply_joint_names: a rig needs every joint",
+                          absl::StrCat(request_.reply_joint_names_size(), " names"));
+  }
+  // Without frames, the leader has violations of its own.
+  if (leader_.frame_count() == 0) return;
+  reply_.rig = MakeRigSource(model_.skeleton, leader_, request_.leader().frame_rate_hz());
+}
+
 int Validation::ChunkFrames() {
   if (!request_.has_chunk_frames()) return limits_.default_chunk_frames;
   const uint32_t frames = request_.chunk_frames();
@@ -208,6 +227,7 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
   const std::optional<motion::Vec3> partner_direction = PartnerDirection();
   const engine::SynthesisOptions options = ValidateOptions(request_, limits_, violations_);
   FillReplyMapping();
+  Rotations();
   const int chunk_frames = ChunkFrames();
   const batching::Priority priority = CallPriority();
   if (!violations_.empty()) return violations_.ToStatus();

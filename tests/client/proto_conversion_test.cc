@@ -75,6 +75,7 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   request.variety = 0.25f;
   request.candidates = 4;
   request.clean_up = false;
+  request.rotations = true;
   request.chunk_frames = 8;
   request.priority = Priority::kBulk;
   request.model = {"dancer", 3, ""};
@@ -88,6 +89,7 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   EXPECT_EQ(wire->variety(), 0.25f);
   EXPECT_EQ(wire->candidates(), 4u);
   EXPECT_EQ(wire->clean_up(), v1::CLEAN_UP_OFF);
+  EXPECT_TRUE(wire->reply_rotations());
   EXPECT_EQ(wire->chunk_frames(), 8u);
   EXPECT_EQ(wire->priority(), v1::PRIORITY_BULK);
   EXPECT_EQ(wire->model().name(), "dancer");

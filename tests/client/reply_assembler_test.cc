@@ -84,6 +84,127 @@ TEST_F(ReplyAssemblerTest, AssemblesAValidReply) {
   EXPECT_EQ(result.timings.compute, absl::Milliseconds(500));
 }
 
+// The same reply with a rig of two joints at the leader's; frame f has x = 1 or, if odd, w = 1.
+class ReplyWithRotationsTest : public ReplyAssemblerTest {
+ protected:
+  static void AddRotations(Reply* reply) {
+    v1::SynthesisHeader& header = *reply->front().mutable_header();
+    v1::RigJoint* joint = header.add_rig();
+    joint->set_name("root");
+    joint->set_parent(-1);
+    joint = header.add_rig();
+    joint->set_name("left");
+    joint->set_joint(1);
+    joint->mutable_offset()->set_y(0.5F);
+    for (v1::SynthesizeResponse& response : *reply) {
+      if (!response.has_chunk()) continue;
+      v1::MotionChunk& chunk = *response.mutable_chunk();
+      for (uint32_t i = 0; i < 2 * chunk.frame_count(); ++i) {
+        const bool odd = (chunk.first_frame() + i / 2) % 2 == 1;
+        for (const float value : {odd ? 0.0F : 1.0F, 0.0F, 0.0F, odd ? 1.0F : 0.0F}) {
+          chunk.add_rotations(value);
+        }
+      }
+    }
+  }
+
+  absl::Status FeedWithRotations(const std::function<void(Reply*)>& spoil = nullptr) {
+    Reply reply = ReplyFor(leader_, 2);
+    AddRotations(&reply);
+    if (spoil) spoil(&reply);
+    rotating_.StartStream();
+    for (const v1::SynthesizeResponse& response : reply) {
+      absl::Status status = rotating_.Accept(response);
+      if (!status.ok()) return status;
+    }
+    return rotating_.EndStream(absl::OkStatus());
+  }
+
+  std::vector<FollowerChunk> chunks_;
+  ChunkCallback keep_ = [this](const FollowerChunk& chunk) {
+    chunks_.push_back(chunk);
+    return absl::OkStatus();
+  };
+  ReplyAssembler rotating_{leader_, keep_, /*rotations=*/true};
+};
+
+TEST_F(ReplyWithRotationsTest, AssemblesThem) {
+  ASSERT_THAT(FeedWithRotations(), IsOk());
+  ASSERT_EQ(chunks_.size(), 3u);
+  ASSERT_TRUE(chunks_[1].rotations.has_value());
+  EXPECT_EQ(chunks_[1].rotations->rig[1].name, "left");
+  ASSERT_EQ(chunks_[1].rotations->rotations.size(), 4u);
+  EXPECT_EQ(chunks_[1].rotations->rotations[0].x, 1);
+  EXPECT_EQ(chunks_[1].rotations->rotations[2].w, 1);
+  const SynthesisResult result = std::move(rotating_).TakeResult();
+  ASSERT_TRUE(result.rotations.has_value());
+  EXPECT_EQ(result.rotations->rig.size(), 2u);
+  EXPECT_EQ(result.rotations->rig[0].parent, -1);
+  EXPECT_EQ(result.rotations->rig[1].parent, 0);
+  EXPECT_EQ(result.rotations->rig[1].joint, 1);
+  EXPECT_EQ(result.rotations->rig[1].offset, (motion::Vec3{0, 0.5F, 0}));
+  EXPECT_EQ(result.rotations->rotations.size(), 10u);
+}
+
+TEST_F(ReplyWithRotationsTest, ARepeatedStreamHandsOutEachFrameOnce) {
+  Reply reply = ReplyFor(leader_, 2);
+  AddRotations(&reply);
+  rotating_.StartStream();
+  ASSERT_THAT(rotating_.Accept(reply[0]), IsOk());
+  ASSERT_THAT(rotating_.Accept(reply[1]), IsOk());
+  ASSERT_THAT(FeedWithRotations(), IsOk());
+  ASSERT_EQ(chunks_.size(), 3u);
+  EXPECT_EQ(chunks_[1].first_frame, 2);
+  EXPECT_EQ(chunks_[1].rotations->rotations.size(), 4u);
+  EXPECT_EQ(std::move(rotating_).TakeResult().rotations->rotations.size(), 10u);
+}
+
+TEST_F(ReplyWithRotationsTest, RejectsWhatIsNoRig) {
+  const auto header = [](const std::function<void(v1::SynthesisHeader*)>& spoil) {
+    return [spoil](Reply* reply) { spoil(reply->front().mutable_header()); };
+  };
+  EXPECT_THAT(FeedWithRotations(header([](auto* h) { h->clear_rig(); })),
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("header.rig: expected joints")));
+  EXPECT_THAT(
+      FeedWithRotations(header([](auto* h) { h->mutable_rig(0)->set_parent(0); })),
+      StatusIs(absl::StatusCode::kInternal, HasSubstr("rig[0].parent: expected -1, got 0")));
+  EXPECT_THAT(FeedWithRotations(header([](auto* h) { h->mutable_rig(1)->set_parent(1); })),
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("rig[1].parent: expected 0 to 0")));
+  EXPECT_THAT(FeedWithRotations(header([](auto* h) { h->mutable_rig(1)->set_joint(3); })),
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("joint: expected 0 to 2, got 3")));
+  EXPECT_THAT(FeedWithRotations(header([](auto* h) { h->mutable_rig(1)->set_name("root"); })),
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("got \"root\" again")));
+  EXPECT_THAT(
+      FeedWithRotations(header([](auto* h) {
+        h->mutable_rig(1)->mutable_offset()->set_x(std::numeric_limits<float>::infinity());
+      })),
+      StatusIs(absl::StatusCode::kInternal, HasSubstr("rig[1].offset: expected finite values")));
+}
+
+TEST_F(ReplyWithRotationsTest, RejectsWhatAreNoRotations) {
+  const auto chunk = [](const std::function<void(v1::MotionChunk*)>& spoil) {
+    return [spoil](Reply* reply) { spoil((*reply)[2].mutable_chunk()); };
+  };
+  EXPECT_THAT(FeedWithRotations(chunk([](auto* c) { c->add_rotations(0); })),
+              StatusIs(absl::StatusCode::kInternal,
+                       HasSubstr("chunk.rotations: expected 16 values for 2 frames, got 17, in the "
+                                 "chunk of frame 2")));
+  EXPECT_THAT(FeedWithRotations(chunk([](auto* c) { c->set_rotations(4, 0.5F); })),
+              StatusIs(absl::StatusCode::kInternal,
+                       HasSubstr("rotations[4..7]: expected a unit quaternion, got norm 0.5")));
+  EXPECT_THAT(FeedWithRotations(chunk(
+                  [](auto* c) { c->set_rotations(5, std::numeric_limits<float>::quiet_NaN()); })),
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("rotations[4..7]")));
+}
+
+TEST_F(ReplyAssemblerTest, RejectsRotationsThatNobodyAskedFor) {
+  EXPECT_THAT(FeedSpoilt([](Reply* r) { r->front().mutable_header()->add_rig()->set_parent(-1); }),
+              StatusIs(absl::StatusCode::kInternal, HasSubstr("none without reply_rotations")));
+  EXPECT_THAT(
+      FeedSpoilt([](Reply* r) { (*r)[1].mutable_chunk()->add_rotations(1); }),
+      StatusIs(absl::StatusCode::kInternal, HasSubstr("chunk.rotations: expected 0 values")));
+}
+
 TEST_F(ReplyAssemblerTest, ReadsUnfamiliarity) {
   ASSERT_THAT(FeedSpoilt([](Reply* r) { r->back().mutable_summary()->set_unfamiliarity(1.25); }),
               IsOk());

@@ -104,6 +104,34 @@ class PythonClientTest(unittest.TestCase):
         np.testing.assert_allclose(other.follower.converted().positions,
                                    metres.follower.positions, atol=0.02)
 
+    def test_rotations_are_in_the_leaders_unit_and_axes(self):
+        def turned(q, v):
+            return v + 2 * np.cross(q[:3], np.cross(q[:3], v) + q[3] * v)
+
+        def product(p, q):
+            return np.append(p[3] * q[:3] + q[3] * p[:3] + np.cross(p[:3], q[:3]),
+                             p[3] * q[3] - p[:3] @ q[:3])
+        for unit, up_axis, scale in (("metres", "y-up", 1), ("millimetres", "z-up", 1000),
+                                     ("metres", "y-down", 1)):
+            leader = self.hug.converted(unit, up_axis)
+            result = self.client.synthesize(leader, {"hug": 1}, rotations=True)
+            rig, rotations = result.rotations.rig, result.rotations.rotations
+            self.assertEqual(rotations.shape, (91, len(rig), 4))
+            for frame in (0, 40, 90):
+                at, world = [], []
+                for joint, q in zip(rig, rotations[frame]):
+                    place = result.follower.positions[frame, joint.joint]
+                    at.append(place if joint.parent < 0 else at[joint.parent] +
+                              turned(world[joint.parent], np.array(joint.offset)))
+                    world.append(q if joint.parent < 0 else product(world[joint.parent], q))
+                    with self.subTest(unit=unit, up_axis=up_axis, joint=joint.name, frame=frame):
+                        np.testing.assert_allclose(at[-1], place, atol=1e-4 * scale)
+        plain = self.client.synthesize(self.hug, {"hug": 1})
+        self.assertIsNone(plain.rotations)
+        unequal = dataclasses.replace(self.hug, unit="sbu-normalised", up_axis="y-down")
+        with self.assertRaisesRegex(duet.InvalidRequestError, "reply_rotations: expected LENGTH_"):
+            self.client.synthesize(unequal, {"hug": 1}, rotations=True)
+
     def test_keyframes_change_the_answer(self):
         result = self.client.synthesize(self.hug, keyframes={0: {"hug": 1}, 60: {"push": 1}})
         plain = self.client.synthesize(self.hug, {"hug": 1})

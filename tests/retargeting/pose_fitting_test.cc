@@ -43,7 +43,7 @@ TEST(PoseFitting, TurnsTheRigIntoThePoseOfEveryFrame) {
   turning.turn = 4;
   const motion::Clip clip = MakePerson(turning);
   const Rig rig = MakeRig(motion::SbuSkeleton(), clip);
-  PoseFitter fitter(rig);
+  PoseFitter fitter(rig, clip.frame_rate_hz);
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     const auto stands = Stand(rig, fitter.Fit(clip.poses[frame]), clip.joint_count());
     for (int joint = 0; joint < clip.joint_count(); ++joint) {
@@ -81,7 +81,7 @@ class Arm : public ::testing::Test {
   }
 
   const Rig rig_ = ArmRig();
-  PoseFitter fitter_{rig_};
+  PoseFitter fitter_{rig_, 30};
   Quaternion upper_, lower_;
 };
 
@@ -143,7 +143,7 @@ TEST(PoseFitting, ABranchOnOneLineTurnsNoFurtherThanItMust) {
   clip.frame_rate_hz = 30;
   clip.Append({{0, 0, 0}, {0.5f, 0, 0}, {-0.5f, 0, 0}});
   const Rig rig = MakeRig(beam, clip);
-  PoseFitter fitter(rig);
+  PoseFitter fitter(rig, clip.frame_rate_hz);
   const std::vector<motion::Vec3> upright = {{0, 0, 0}, {0, 0.5f, 0}, {0, -0.5f, 0}};
   const Quaternion quarter = AxisAngle({0, 0, 1}, kRightAngle);
   for (int frame = 0; frame < 3; ++frame) {

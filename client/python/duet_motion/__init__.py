@@ -20,8 +20,8 @@ from duet_motion.files import MotionFileError, read_motion, read_pair, write_mot
 from duet_motion.motion import Motion
 from duet_motion.options import TlsOptions
 from duet_motion.request import SynthesisRequest
-from duet_motion.result import (FollowerChunk, FrameRun, ModelDetails, ModelInfo, MotionGrade,
-                                RequestLimits, SynthesisResult, Timings)
+from duet_motion.result import (FollowerChunk, FrameRun, JointRotations, ModelDetails, ModelInfo,
+                                MotionGrade, RequestLimits, RigJoint, SynthesisResult, Timings)
 from duet_motion.retry import RetryOptions
 from duet_motion.sets import MotionSet, PaddedBatch, SetItem, pad, read_set
 
@@ -29,10 +29,11 @@ __version__ = "0.1.0"
 
 __all__ = [
     "CancelledError", "Client", "DataSetError", "DeadlineError", "DuetError", "FieldViolation",
-    "FollowerChunk", "FrameRun", "InvalidRequestError", "MalformedReplyError", "ModelDetails",
-    "ModelInfo", "ModelNotFoundError", "Motion", "MotionFileError", "MotionGrade", "MotionSet",
-    "NotPermittedError", "Outcome", "PaddedBatch", "RequestLimits", "RequestMismatchError",
-    "RetryOptions", "ServerBusyError", "SetItem", "SynthesisRequest", "SynthesisResult",
+    "FollowerChunk", "FrameRun", "InvalidRequestError", "JointRotations", "MalformedReplyError",
+    "ModelDetails", "ModelInfo", "ModelNotFoundError", "Motion", "MotionFileError", "MotionGrade",
+    "MotionSet", "NotPermittedError", "Outcome", "PaddedBatch", "RequestLimits",
+    "RequestMismatchError", "RetryOptions", "RigJoint", "ServerBusyError", "SetItem",
+    "SynthesisRequest", "SynthesisResult",
     "SynthesisStream", "Timings", "TlsOptions", "UnavailableError", "__version__", "aio", "pad",
     "read_motion", "read_pair", "read_set", "write_motion", "write_page",
 ]

@@ -122,7 +122,7 @@ class SynthesisCall:
         self.attempts = Attempts(settings, request.timeout, request.request_id)
         self._wire = to_proto(request)
         self._leader = request.leader
-        self._reply = ReplyAssembler(request.leader)
+        self._reply = ReplyAssembler(request.leader, bool(request.rotations))
         self._first_chunk: List[float] = []
         self._resumed_after = 0
 

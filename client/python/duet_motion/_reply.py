@@ -7,15 +7,17 @@ ReplyAssembler (client/internal/reply_assembler.h).
 
 from __future__ import annotations
 
-from typing import List, Optional
+from typing import List, Optional, Tuple
 
 import grpc
 import numpy as np
 
+from duet_motion._rotations import Rotations, read_rig, read_rotations
 from duet_motion._wire import UNITS, UP_AXES
 from duet_motion.errors import DuetError, MalformedReplyError, make_error
 from duet_motion.motion import Motion, Positions
-from duet_motion.result import FollowerChunk, SynthesisResult, Timings, grade_from_proto
+from duet_motion.result import (FollowerChunk, JointRotations, RigJoint, SynthesisResult, Timings,
+                                grade_from_proto)
 from duet_motion.v1 import synthesis_pb2
 
 # Codes with which a proxy or a stopping server resets streams. The service always adds a reason to
@@ -37,8 +39,9 @@ def _malformed(what: str) -> MalformedReplyError:
 class ReplyAssembler:
     """The reply of one call, over all its streams."""
 
-    def __init__(self, leader: Motion) -> None:
+    def __init__(self, leader: Motion, rotations: bool = False) -> None:
         self._leader = leader
+        self._wants_rotations = rotations
         self.handed_out = 0
         """Number of frames that the caller has, over all streams."""
         self.start_stream()
@@ -47,6 +50,8 @@ class ReplyAssembler:
         self.header: Optional[synthesis_pb2.SynthesisHeader] = None
         self._summary: Optional[synthesis_pb2.SynthesisSummary] = None
         self._chunks: List[Positions] = []
+        self._rig: Tuple[RigJoint, ...] = ()
+        self._rotations: List[Rotations] = []
         self.received = 0
 
     def accept(self, response: synthesis_pb2.SynthesizeResponse) -> Optional[FollowerChunk]:
@@ -82,16 +87,31 @@ class ReplyAssembler:
         if header.frame_count != leader.frame_count:
             raise _malformed(f"header.frame_count: expected the leader's {leader.frame_count}, got "
                              f"{header.frame_count}")
+        if self._wants_rotations != bool(header.rig):
+            wanted = ("joints for the rotations that the request asks for, got none; does the "
+                      "server know reply_rotations?" if self._wants_rotations
+                      else "none without reply_rotations, got joints")
+            raise _malformed(f"header.rig: expected {wanted}")
+        try:
+            self._rig = read_rig(header.rig, leader.joint_count)
+        except ValueError as error:
+            raise _malformed(str(error)) from error
         self.header = header
 
     def _accept_chunk(self, chunk: synthesis_pb2.MotionChunk) -> Optional[FollowerChunk]:
         positions = self._read_chunk(chunk)
+        try:
+            rotations = read_rotations(chunk, len(self._rig))
+        except ValueError as error:
+            raise _malformed(f"{error}, in the chunk of frame {chunk.first_frame}") from error
         self._chunks.append(positions)
+        self._rotations.append(rotations)
         first, self.received = self.received, self.received + chunk.frame_count
         if self.received <= self.handed_out:
             return None
-        new = FollowerChunk(max(first, self.handed_out),
-                            positions[max(self.handed_out - first, 0):])
+        known = max(self.handed_out - first, 0)
+        new = FollowerChunk(first + known, positions[known:],
+                            JointRotations(self._rig, rotations[known:]) if self._rig else None)
         self.handed_out = self.received
         return new
 
@@ -175,4 +195,6 @@ class ReplyAssembler:
             unfamiliarity=(summary.unfamiliarity if summary.HasField("unfamiliarity") else None),
             grade=grade_from_proto(summary.grade) if summary.HasField("grade") else None,
             window_count=summary.window_count, attempt_count=attempts,
-            timings=Timings(first_chunk, total, summary.queue_seconds, summary.compute_seconds))
+            timings=Timings(first_chunk, total, summary.queue_seconds, summary.compute_seconds),
+            rotations=(JointRotations(self._rig, np.concatenate(self._rotations)) if self._rig
+                       else None))

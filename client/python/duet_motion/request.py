@@ -43,6 +43,8 @@ class SynthesisRequest:
             its root joint ``[3]``, or every joint ``[joints, 3]`` in the leader's order.
         partner_direction: the horizontal direction from the leader to the follower, ``[3]`` in the
             leader's world, of any length.
+        rotations: whether the answer has joint rotations beside the positions, for engines
+            (:class:`duet_motion.JointRotations`). Not with the unit ``"sbu-normalised"``.
         priority: ``"interactive"``, or ``"bulk"``, which yields to interactive calls.
         chunk_frames: frames per chunk of the reply. None: the server's default.
         request_id: identifies the call in the server's log. Empty: the server creates one.
@@ -64,6 +66,7 @@ class SynthesisRequest:
     clean_up: Optional[bool] = None
     follower_start: Optional[npt.ArrayLike] = None
     partner_direction: Optional[npt.ArrayLike] = None
+    rotations: bool = False
     priority: str = "interactive"
     chunk_frames: Optional[int] = None
     request_id: str = ""
@@ -81,6 +84,8 @@ class SynthesisRequest:
         to_selector(self.model)
         if self.clean_up is not None and not isinstance(self.clean_up, (bool, np.bool_)):
             raise ValueError(f"clean_up: expected True, False or None, got {_short(self.clean_up)}")
+        if not isinstance(self.rotations, (bool, np.bool_)):
+            raise ValueError(f"rotations: expected True or False, got {_short(self.rotations)}")
         joints = self.leader.joint_count
         _check_points("follower_start", self.follower_start, ((3,), (joints, 3)),
                       self.leader.joint_names)
@@ -132,7 +137,7 @@ def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
         seed=int(request.seed), variety=float(request.variety),
         candidates=int(request.candidates),
         clean_up=CLEAN_UP[None if request.clean_up is None else bool(request.clean_up)],
-        priority=PRIORITIES[request.priority],
+        reply_rotations=bool(request.rotations), priority=PRIORITIES[request.priority],
         chunk_frames=None if request.chunk_frames is None else int(request.chunk_frames))
     _fill(request.labels or {}, out.label_vector)
     for frame, labels in sorted((request.keyframes or {}).items()):

@@ -6,6 +6,8 @@ import dataclasses
 from typing import Optional, Tuple
 
 import grpc
+import numpy as np
+import numpy.typing as npt
 
 from duet_motion.errors import MalformedReplyError
 from duet_motion.motion import Motion, Positions
@@ -26,6 +28,37 @@ class Timings:
     """Time in the network, over all windows."""
 
 
+@dataclasses.dataclass(frozen=True)
+class RigJoint:
+    """A joint of the follower's hierarchy in its rest pose.
+
+    Args:
+        name: unique in the rig; a joint of the follower has the same name here.
+        parent: index of the parent in the rig; -1 for the root, which is the first joint.
+        offset: from the parent at rest, in the leader's unit and axes; zero for the root.
+        joint: index in the follower's ``joint_names`` of the joint at the same position.
+    """
+
+    name: str
+    parent: int
+    offset: Tuple[float, float, float]
+    joint: int
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class JointRotations:
+    """A motion as rotations of a hierarchy, in the leader's unit and axes (docs/rotations.md).
+
+    Args:
+        rig: the joints at rest, each after its parent.
+        rotations: ``[frames, rig joints, 4]``: unit quaternions x, y, z, w, relative to the parent's;
+            the root's is its rotation in the world.
+    """
+
+    rig: Tuple[RigJoint, ...]
+    rotations: npt.NDArray[np.float32]
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class FollowerChunk:
     """Consecutive frames of the follower."""
@@ -33,6 +66,8 @@ class FollowerChunk:
     first_frame: int
     positions: Positions
     """``[frames, joints, 3]`` in the leader's joints, unit and world."""
+    rotations: Optional[JointRotations] = None
+    """The rotations of these frames, if the request asks for them."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -93,6 +128,8 @@ class SynthesisResult:
     """Number of windows that the network computed."""
     attempt_count: int
     timings: Timings
+    rotations: Optional[JointRotations] = None
+    """The follower's joint rotations, if the request asks for them."""
 
 
 @dataclasses.dataclass(frozen=True)

@@ -51,7 +51,7 @@ std::vector<BvhTrack> TracksOf(const retargeting::Rig& rig, const motion::Clip& 
                                const std::vector<int>& document_joints, std::size_t joint_count,
                                double units_per_metre) {
   std::vector<BvhTrack> tracks(joint_count);
-  retargeting::PoseFitter fitter(rig);
+  retargeting::PoseFitter fitter(rig, clip.frame_rate_hz);
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     const retargeting::RigPose& pose = fitter.Fit(clip.poses[frame]);
     tracks[0].places.push_back(pose.root_position * units_per_metre);

@@ -266,6 +266,35 @@ void AppendPerson(const char* field, const motion::Clip& clip, std::string* out)
   *out += "]";
 }
 
+Json RigJson(const std::vector<motion::RestJoint>& rig) {
+  Json joints = Json::array();
+  for (const motion::RestJoint& joint : rig) {
+    joints.push_back({{"name", joint.name},
+                      {"parent", joint.parent},
+                      {"offset", {joint.offset.x, joint.offset.y, joint.offset.z}},
+                      {"joint", joint.joint}});
+  }
+  return joints;
+}
+
+void AppendRotations(const motion::JointRotations& rotations, std::string* out) {
+  absl::StrAppend(out, ",\n\"rig\": ", RigJson(rotations.rig).dump(), ",\n\"rotations\": [");
+  const std::size_t joints = rotations.rig.size();
+  for (std::size_t i = 0; i < rotations.rotations.size(); ++i) {
+    if (i % joints == 0) *out += i == 0 ? "\n[" : "],\n[";
+    const motion::UnitQuaternion& q = rotations.rotations[i];
+    char before = '[';
+    if (i % joints > 0) *out += ", ";
+    for (float value : {q.x, q.y, q.z, q.w}) {
+      *out += before;
+      base::AppendNumber(out, value);
+      before = ',';
+    }
+    *out += ']';
+  }
+  *out += rotations.rotations.empty() ? "]" : "]]";
+}
+
 // Formats the fields before those of the people.
 std::string FormatSettings(const motion::Clip& clip, const motion::Skeleton& skeleton) {
   Json bones = Json::array();
@@ -318,10 +347,12 @@ absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
   return motion;
 }
 
-std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton) {
+std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
+                             const motion::JointRotations* rotations) {
   std::string text = FormatSettings(pair.leader, skeleton);
   AppendPerson(kPeople[0], pair.leader, &text);
   AppendPerson(kPeople[1], pair.follower, &text);
+  if (rotations != nullptr) AppendRotations(*rotations, &text);
   return text + "}\n";
 }
 

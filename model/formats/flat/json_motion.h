@@ -6,6 +6,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "model/motion/clip.h"
+#include "model/motion/joint_rotations.h"
 #include "model/motion/recorded_motion.h"
 #include "model/motion/skeleton.h"
 
@@ -28,7 +29,13 @@ absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
 
 // Writes metres, y up. Requires a pair that CheckPair accepts, or one person that CheckClip
 // accepts, with the skeleton's joints.
-std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton);
+//
+// `rotations` of the follower may be null; they add the fields
+//   "rig": [{"name": "torso", "parent": -1, "offset": [x, y, z], "joint": 2}, ...],
+//   "rotations": [[[x, y, z, w], ... rig joints], ... frames]
+// with the meaning of docs/rotations.md. ParseJsonMotion ignores them.
+std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
+                             const motion::JointRotations* rotations = nullptr);
 std::string FormatJsonMotion(const motion::Clip& person, const motion::Skeleton& skeleton);
 
 }  // namespace duet::formats::flat

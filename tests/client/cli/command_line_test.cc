@@ -106,6 +106,7 @@ TEST_F(CommandLineTest, SynthesizeHasDefaults) {
   EXPECT_EQ(arguments.variety, 1);
   EXPECT_EQ(arguments.candidates, 1);
   EXPECT_EQ(arguments.clean_up, std::nullopt);
+  EXPECT_FALSE(arguments.rotations);
   EXPECT_EQ(arguments.samples, 1);
   EXPECT_EQ(arguments.input.frame_rate_hz, std::nullopt);
   EXPECT_EQ(arguments.input.unit, std::nullopt);
@@ -253,6 +254,13 @@ TEST_F(CommandLineTest, RigRequiresAnOutputFormatWithARig) {
                 ".glb or .gltf, got rig.csv");
   ExpectRefused({"--label", "kick", "--out", Out("pair.csv"), "--follower-rig", "rig.bvh"},
                 "got rig.bvh and --out");
+}
+
+TEST_F(CommandLineTest, RotationsRequireAnOutputThatHoldsThem) {
+  EXPECT_TRUE(Good({"--rotations", "--out", Out("pair.json")}).rotations);
+  EXPECT_TRUE(Good({"--rotations", "--out", "-", "--output-format", "json"}).rotations);
+  ExpectRefused({"--label", "kick", "--rotations", "--out", Out("pair.glb")},
+                "--rotations: expected --out FILE.json, which holds them, got --out ");
 }
 
 TEST_F(CommandLineTest, UnwritableOutputsAreRejectedFirst) {

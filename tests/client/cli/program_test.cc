@@ -210,6 +210,23 @@ TEST_F(ProgramTest, TheWrittenFollowerIsTheSynthesisedOne) {
   EXPECT_NEAR(follower->at(3, 0).z, leader_.at(3, 0).z - 2, 1e-5);
 }
 
+TEST_F(ProgramTest, WritesTheFollowersRotationsToJson) {
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillOnce([&](const SynthesisRequest& request, const ChunkCallback&) {
+        EXPECT_TRUE(request.rotations);
+        SynthesisResult result = *Follow(request);
+        result.rotations.emplace();
+        result.rotations->rig = {{"torso", -1, {}, 2}};
+        result.rotations->rotations.assign(kFrames, {0, 1, 0, 0});
+        return result;
+      });
+  ASSERT_EQ(Synthesize("pair.json", {"--rotations"}), 0) << err_.str();
+  const auto document = nlohmann::json::parse(ReadTestFile(folder_ / "pair.json"));
+  EXPECT_EQ(document["rig"][0]["name"], "torso");
+  ASSERT_EQ(document["rotations"].size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(document["rotations"][3], nlohmann::json::parse("[[0.0, 1.0, 0.0, 0.0]]"));
+}
+
 // The hierarchy of a BVH, down to where the motion begins.
 std::string HierarchyOf(const std::filesystem::path& file) {
   const std::string text = ReadTestFile(file);

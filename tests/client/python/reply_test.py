@@ -88,6 +88,56 @@ class ReplyTest(unittest.TestCase):
                 with self.assertRaisesRegex(duet.MalformedReplyError, message):
                     self.accept(*responses)
 
+    def with_rotations(self, rig=None, rotations=None):
+        """A good reply with a rig of two joints; a quaternion of frame f is a turn by f / 10."""
+        responses = support.good_reply(self.leader, size=4)
+        responses[0].header.rig.extend(rig or [
+            synthesis_pb2.RigJoint(name="root", parent=-1),
+            synthesis_pb2.RigJoint(name="left", parent=0, joint=1, offset={"y": 0.5})])
+        for response in responses:
+            if response.WhichOneof("payload") == "chunk":
+                first, count = response.chunk.first_frame, response.chunk.frame_count
+                angles = np.repeat(np.arange(first, first + count) / 20, 2)
+                zeros = np.zeros_like(angles)
+                quaternions = np.stack([np.sin(angles), zeros, zeros, np.cos(angles)], axis=-1)
+                response.chunk.rotations.extend(
+                    quaternions.ravel() if rotations is None else rotations)
+        return responses
+
+    def test_rotations_are_arrays(self):
+        self.reply = ReplyAssembler(self.leader, rotations=True)
+        chunks = self.accept(*self.with_rotations())
+        self.assertEqual(chunks[2].rotations.rotations.shape, (2, 2, 4))
+        self.assertIsNone(self.reply.end_stream(None))
+        rotations = self.reply.result(1, 0.1, 0.2).rotations
+        self.assertEqual(rotations.rig, (duet.RigJoint("root", -1, (0, 0, 0), 0),
+                                         duet.RigJoint("left", 0, (0, 0.5, 0), 1)))
+        self.assertEqual(rotations.rotations.shape, (6, 2, 4))
+        np.testing.assert_allclose(rotations.rotations[5, 1], (np.sin(0.25), 0, 0, np.cos(0.25)),
+                                   rtol=1e-6)
+
+    def test_malformed_rotations_are_rejected(self):
+        def rig(**second):
+            return [synthesis_pb2.RigJoint(name="root", parent=-1),
+                    synthesis_pb2.RigJoint(**{"name": "left", "joint": 1, **second})]
+        nan = [float("nan")] * 32
+        for asked, responses, message in (
+                (True, support.good_reply(self.leader), "header.rig: expected joints"),
+                (False, self.with_rotations(), "none without reply_rotations"),
+                (True, self.with_rotations(rig()[1:]), r"rig\[0\].parent: expected -1, got 0"),
+                (True, self.with_rotations(rig(parent=1)), r"\[1\].parent: expected 0 to 0, got 1"),
+                (True, self.with_rotations(rig(joint=3)), "joint: expected 0 to 2, got 3"),
+                (True, self.with_rotations(rig(name="root")), "name: .* got 'root' again"),
+                (True, self.with_rotations(rig(offset={"x": float("inf")})), "offset: expected fin"),
+                (True, self.with_rotations(rotations=[1]),
+                 "expected 32 values for 4 frames, got 1, in the chunk of frame 0"),
+                (True, self.with_rotations(rotations=[1] * 32), r"\[0..3\]: .* got norm 2.0"),
+                (True, self.with_rotations(rotations=nan), "a unit quaternion, got norm nan")):
+            with self.subTest(message=message):
+                self.reply = ReplyAssembler(self.leader, asked)
+                with self.assertRaisesRegex(duet.MalformedReplyError, message):
+                    self.accept(*responses)
+
     def test_retried_stream_returns_each_frame_once(self):
         self.accept(*support.good_reply(self.leader, size=4)[:2])
         self.reply.start_stream()

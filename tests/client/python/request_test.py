@@ -25,7 +25,7 @@ class RequestTest(unittest.TestCase):
     def test_every_field_is_sent(self):
         wire = to_proto(self.request(
             seed=2**64 - 1, variety=0.5, model="sbu@2", clean_up=False, priority="bulk",
-            chunk_frames=8, partner_direction=(0, 0, 1), candidates=4))
+            chunk_frames=8, partner_direction=(0, 0, 1), candidates=4, rotations=True))
         self.assertEqual([(w.interaction_class, w.weight) for w in wire.label_vector.weights],
                          [("hug", 1), ("push", 0.5)])
         self.assertEqual((wire.seed, wire.variety, wire.chunk_frames), (2**64 - 1, 0.5, 8))
@@ -34,6 +34,7 @@ class RequestTest(unittest.TestCase):
         self.assertEqual(wire.clean_up, synthesis_pb2.CLEAN_UP_OFF)
         self.assertEqual(wire.priority, synthesis_pb2.PRIORITY_BULK)
         self.assertEqual(wire.partner_direction.z, 1)
+        self.assertTrue(wire.reply_rotations)
         self.assertFalse(wire.HasField("follower_start"))
 
     def test_unset_fields_stay_absent(self):
@@ -42,6 +43,7 @@ class RequestTest(unittest.TestCase):
             self.assertFalse(wire.HasField(field), field)
         self.assertEqual(wire.clean_up, synthesis_pb2.CLEAN_UP_UNSPECIFIED)
         self.assertEqual(wire.candidates, 1)
+        self.assertFalse(wire.reply_rotations)
 
     def test_keyframes_are_sorted_by_frame(self):
         wire = to_proto(duet.SynthesisRequest(
@@ -86,6 +88,7 @@ class RequestTest(unittest.TestCase):
                  r"follower_start\[1, 2\]: expected a finite float32, got nan at joint 'left'"),
                 ({"follower_start": (0, 1e300, 0)}, r"follower_start\[1\]: .* got 1e\+300$"),
                 ({"partner_direction": ("a", "b", "c")}, "partner_direction: expected real numbers"),
+                ({"rotations": 1}, "rotations: expected True or False, got 1"),
                 ({"partner_direction": 1},
                  r"partner_direction: expected the shape \(3,\), got \(\)")):
             with self.subTest(fields=fields), self.assertRaisesRegex(ValueError, message):

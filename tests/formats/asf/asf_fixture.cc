@@ -78,7 +78,7 @@ AsfFiles MakeAsfFiles(const motion::Clip& clip) {
   AsfFiles files;
   files.asf = MakeAsf(rig);
   files.amc = "#!OML:ASF person.asf\n:FULLY-SPECIFIED\n:DEGREES\n";
-  retargeting::PoseFitter fitter(rig);
+  retargeting::PoseFitter fitter(rig, clip.frame_rate_hz);
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     const retargeting::RigPose& pose = fitter.Fit(clip.poses[frame]);
     absl::StrAppend(&files.amc, frame + 1, "\nroot ", Text(pose.root_position * kUnitsPerMetre),

@@ -60,6 +60,24 @@ TEST(JsonMotion, ReadsBackAPairExactly) {
   EXPECT_EQ(document["up_axis"], "y-up");
   EXPECT_EQ(document["bones"].size(), 14u);
   EXPECT_EQ(document["bones"][0], Json({1, 0}));
+  EXPECT_FALSE(document.contains("rig"));
+  EXPECT_FALSE(document.contains("rotations"));
+}
+
+TEST(JsonMotion, WritesTheFollowersRotationsBesideThePair) {
+  const motion::ClipPair pair{test::MakePerson(), test::MakePerson()};
+  motion::JointRotations rotations;
+  rotations.rig = {{"torso", -1, {}, 2}, {"neck", 0, {0, 0.25f, 0}, 1}};
+  rotations.rotations = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}, {0.5f, 0.5f, -0.5f, 0.5f}};
+  const std::string text = FormatJsonMotion(pair, motion::SbuSkeleton(), &rotations);
+  const Json document = Json::parse(text);
+  EXPECT_EQ(document["rig"][1], Json::parse(R"({"name": "neck", "parent": 0, "joint": 1,
+                                               "offset": [0.0, 0.25, 0.0]})"));
+  EXPECT_EQ(document["rotations"],
+            Json::parse("[[[1,0,0,0], [0,1,0,0]], [[0,0,0,1], [0.5,0.5,-0.5,0.5]]]"));
+  const absl::StatusOr<motion::RecordedMotion> motion = ParseJsonMotion(text, "a.json");
+  ASSERT_TRUE(motion.ok()) << motion.status();
+  EXPECT_EQ(motion->people[1].poses, pair.follower.poses);
 }
 
 TEST(JsonMotion, HonoursUnitAndAxis) {

@@ -105,7 +105,7 @@ void AddPerson(const motion::Clip& clip, const GltfPersonOptions& options, GltfB
 
   std::vector<float> times, places;
   std::vector<std::vector<float>> turns(nodes.size());
-  retargeting::PoseFitter fitter(rig);
+  retargeting::PoseFitter fitter(rig, clip.frame_rate_hz);
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     times.push_back(static_cast<float>(2 + frame / clip.frame_rate_hz));
     retargeting::RigPose pose = fitter.Fit(clip.poses[frame]);

@@ -70,8 +70,13 @@ class ClipRepliesTest : public ::testing::Test {
  protected:
   void Create(int frames,
               std::shared_ptr<FakeSynthesizer> model = std::make_shared<FakeSynthesizer>()) {
+    Create(SampleRequest(frames), std::move(model));
+  }
+
+  void Create(const v1::SynthesizeRequest& message,
+              std::shared_ptr<FakeSynthesizer> model = std::make_shared<FakeSynthesizer>()) {
     absl::StatusOr<ValidatedRequest> request =
-        ValidateRequest(SampleRequest(frames), model->description(), RequestLimits());
+        ValidateRequest(message, model->description(), RequestLimits());
     ASSERT_THAT(request, IsOk());
     absl::StatusOr<ShareLease> place = admission_.Admit("client");
     ASSERT_THAT(place, IsOk());
@@ -121,11 +126,13 @@ TEST_F(ClipRepliesTest, WritesOneMessageAtATimeAndThenEnds) {
   call_->Start();
   ASSERT_THAT(writer_.replies, SizeIs(1));
   EXPECT_TRUE(writer_.replies[0].has_header());
+  EXPECT_EQ(writer_.replies[0].header().rig_size(), 0);
   scheduler_.RunNext();
   EXPECT_THAT(writer_.replies, SizeIs(1)) << "the header is still under way";
   Written();
   ASSERT_THAT(writer_.replies, SizeIs(2));
   EXPECT_EQ(writer_.replies[1].chunk().frame_count(), 30u);
+  EXPECT_EQ(writer_.replies[1].chunk().rotations_size(), 0);
   Written();
   EXPECT_EQ(writer_.replies[2].chunk().frame_count(), 16u);
   Written();
@@ -143,6 +150,42 @@ TEST_F(ClipRepliesTest, WaitsForTheNextWindowWithoutAPendingWrite) {
   EXPECT_FALSE(writer_.writing);
   scheduler_.RunNext();
   EXPECT_TRUE(writer_.writing);
+}
+
+TEST_F(ClipRepliesTest, RotationsMakeTheHeaderWaitForTheFirstFrames) {
+  v1::SynthesizeRequest request = SampleRequest(46);
+  request.set_reply_rotations(true);
+  Create(request);
+  call_->Start();
+  EXPECT_FALSE(writer_.writing);
+  scheduler_.RunNext();
+  ASSERT_THAT(writer_.replies, SizeIs(1));
+  const int joints = writer_.replies[0].header().rig_size();
+  EXPECT_GT(joints, 15);
+  Written();
+  Written();
+  Written();
+  ASSERT_THAT(writer_.replies, SizeIs(4));
+  EXPECT_EQ(writer_.replies[1].chunk().frame_count(), 30u);
+  EXPECT_EQ(writer_.replies[1].chunk().rotations_size(), 30 * joints * 4);
+  EXPECT_EQ(writer_.replies[2].chunk().first_frame(), 30u);
+  EXPECT_EQ(writer_.replies[2].chunk().rotations_size(), 16 * joints * 4);
+  EXPECT_EQ(writer_.replies[3].summary().frame_count(), 46u);
+}
+
+TEST_F(ClipRepliesTest, AModelThatFailsAtOnceSendsNoHeaderWithRotations) {
+  auto model = std::make_shared<FakeSynthesizer>();
+  model->window_status = [](const engine::SynthesisWindow&) {
+    return absl::InternalError("no result");
+  };
+  v1::SynthesizeRequest request = SampleRequest(46);
+  request.set_reply_rotations(true);
+  Create(request, model);
+  call_->Start();
+  scheduler_.RunNext();
+  EXPECT_THAT(writer_.replies, IsEmpty());
+  ASSERT_TRUE(writer_.finished.has_value());
+  EXPECT_EQ(writer_.finished->code(), StatusCode::kInternal);
 }
 
 TEST_F(ClipRepliesTest, RejectionPrecedesEveryMessage) {

@@ -330,6 +330,19 @@ INSTANTIATE_TEST_SUITE_P(
                   for (int i = 0; i < 16; ++i) r.add_reply_joint_names("head");
                 },
                 "reply_joint_names", "expected at most the 15 names of leader.joint_names, got 16"},
+        Spoiled{"rotations_in_an_unequal_unit",
+                [](Request& r) {
+                  r.set_reply_rotations(true);
+                  r.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED);
+                  r.mutable_leader()->set_up_axis(v1::UP_AXIS_Y_DOWN);
+                },
+                "reply_rotations", "has no rotations, got LENGTH_UNIT_SBU_NORMALISED"},
+        Spoiled{"rotations_of_some_joints",
+                [](Request& r) {
+                  r.set_reply_rotations(true);
+                  r.add_reply_joint_names("head");
+                },
+                "reply_rotations", "expected no reply_joint_names: a rig needs every joint, got 1"},
         Spoiled{"negative_variety", [](Request& r) { r.set_variety(-0.5F); }, "variety",
                 "expected a finite value in [0, 2], got -0.5"},
         Spoiled{"much_variety", [](Request& r) { r.set_variety(2.5F); }, "variety",
@@ -453,6 +466,7 @@ TEST(ValidateRequestTest, FillsInDefaults) {
   EXPECT_EQ(request->clip.options.sampling.candidates, 1);
   EXPECT_EQ(request->clip.options.clean_up, std::nullopt);
   EXPECT_EQ(request->reply.joint_names, FakeDescription().skeleton.joint_names);
+  EXPECT_FALSE(request->reply.rig.has_value());
 }
 
 TEST(ValidateRequestTest, TakesOverWhatIsGiven) {

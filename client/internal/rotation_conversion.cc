@@ -1,0 +1,86 @@
+#include "client/internal/rotation_conversion.h"
+
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "model/base/text.h"
+
+namespace duet::client::internal {
+namespace {
+
+// Of the norm from 1; rounding to float gives 1e-7.
+constexpr float kNormTolerance = 1e-3F;
+
+template <typename... Parts>
+absl::Status Invalid(const Parts&... parts) {
+  return absl::InvalidArgumentError(absl::StrCat(parts...));
+}
+
+absl::Status CheckJoint(const v1::RigJoint& joint, int index, int joint_count) {
+  const std::string field = absl::StrCat("header.rig[", index, "]");
+  const bool has_parent =
+      index == 0 ? joint.parent() == -1 : joint.parent() >= 0 && joint.parent() < index;
+  if (!has_parent) {
+    return Invalid(field, ".parent: expected ",
+                   index == 0 ? "-1" : absl::StrCat("0 to ", index - 1), ", got ", joint.parent());
+  }
+  if (joint.joint() >= static_cast<uint32_t>(joint_count)) {
+    return Invalid(field, ".joint: expected 0 to ", joint_count - 1, ", got ", joint.joint());
+  }
+  const v1::Point& offset = joint.offset();
+  if (!std::isfinite(offset.x()) || !std::isfinite(offset.y()) || !std::isfinite(offset.z())) {
+    return Invalid(field, ".offset: expected finite values, got others");
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<motion::RestJoint>> ReadRig(
+    const google::protobuf::RepeatedPtrField<v1::RigJoint>& rig, int joint_count) {
+  std::vector<motion::RestJoint> joints;
+  std::set<std::string> names;
+  for (const v1::RigJoint& joint : rig) {
+    const int index = static_cast<int>(joints.size());
+    if (absl::Status status = CheckJoint(joint, index, joint_count); !status.ok()) return status;
+    if (!names.insert(joint.name()).second) {
+      return Invalid("header.rig[", index, "].name: expected a name once, got ",
+                     base::Quoted(joint.name()), " again");
+    }
+    joints.push_back({joint.name(),
+                      joint.parent(),
+                      {joint.offset().x(), joint.offset().y(), joint.offset().z()},
+                      static_cast<int>(joint.joint())});
+  }
+  return joints;
+}
+
+absl::Status CheckRotations(const v1::MotionChunk& chunk, std::size_t rig_joints) {
+  const std::size_t wanted = std::size_t{chunk.frame_count()} * rig_joints * 4;
+  if (static_cast<std::size_t>(chunk.rotations_size()) != wanted) {
+    return Invalid("chunk.rotations: expected ", wanted, " values for ", chunk.frame_count(),
+                   " frames, got ", chunk.rotations_size());
+  }
+  for (int i = 0; i < chunk.rotations_size(); i += 4) {
+    float squares = 0;
+    for (int k = i; k < i + 4; ++k) squares += chunk.rotations(k) * chunk.rotations(k);
+    // Negated, so that NaN is rejected.
+    if (!(std::abs(std::sqrt(squares) - 1) <= kNormTolerance)) {
+      return Invalid("chunk.rotations[", i, "..", i + 3, "]: expected a unit quaternion, got norm ",
+                     std::sqrt(squares));
+    }
+  }
+  return absl::OkStatus();
+}
+
+void AppendRotations(const v1::MotionChunk& chunk, std::vector<motion::UnitQuaternion>* rotations) {
+  const float* value = chunk.rotations().data();
+  for (int i = 0; i < chunk.rotations_size(); i += 4, value += 4) {
+    rotations->push_back({value[0], value[1], value[2], value[3]});
+  }
+}
+
+}  // namespace duet::client::internal

@@ -1,0 +1,71 @@
+#include "model/retargeting/rig_fitting.h"
+
+#include <cstddef>
+#include <utility>
+
+#include "model/retargeting/foot_pose.h"
+
+namespace duet::retargeting {
+namespace {
+
+std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+
+bool IsFoot(const motion::Skeleton& skeleton, int joint) {
+  return skeleton.feet && (joint == skeleton.feet->left || joint == skeleton.feet->right);
+}
+
+void KeepSigns(const std::vector<Quaternion>& previous, std::vector<Quaternion>* rotations) {
+  for (std::size_t j = 0; j < rotations->size(); ++j) {
+    Quaternion& q = (*rotations)[j];
+    if (Dot(q, previous[j]) < 0) q = {-q.w, -q.x, -q.y, -q.z};
+  }
+}
+
+}  // namespace
+
+RigFitter::RigFitter(const motion::Skeleton& skeleton, const Rig& rig, double frame_rate_hz,
+                     double ankle_height_on_floor, BoneLengths lengths)
+    : rig_(rig), ankle_height_(ankle_height_on_floor), fitter_(rig, frame_rate_hz, lengths) {
+  for (const RigJoint& joint : rig.joints) {
+    feet_.push_back(joint.kind == RigJoint::Kind::kLeaf && IsFoot(skeleton, joint.joint));
+  }
+}
+
+const RigPose& RigFitter::Fit(absl::Span<const motion::Vec3> positions) {
+  const std::vector<Quaternion> previous = std::move(pose_.rotations);
+  pose_ = fitter_.Fit(positions);
+  TurnFeet();
+  if (!first_) KeepSigns(previous, &pose_.rotations);
+  first_ = false;
+  return pose_;
+}
+
+// The fit leaves feet at rest relative to their shins.
+void RigFitter::TurnFeet() {
+  std::vector<Quaternion> world(rig_.joints.size());
+  std::vector<Vec3d> at(rig_.joints.size());
+  for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
+    const int parent = rig_.joints[j].parent;
+    const Quaternion above = parent < 0 ? Quaternion{} : world[Index(parent)];
+    at[j] = (parent < 0 ? Vec3d{} : at[Index(parent)]) + Rotate(above, pose_.translations[j]);
+    if (feet_[j]) {
+      pose_.rotations[j] = Inverse(above) * FootRotation(above, at[j], ankle_height_);
+    }
+    world[j] = above * pose_.rotations[j];
+  }
+}
+
+std::vector<Vec3d> JointPositions(const Rig& rig, const RigPose& pose) {
+  std::vector<Vec3d> at(rig.joints.size());
+  std::vector<Quaternion> world(rig.joints.size());
+  for (std::size_t j = 0; j < rig.joints.size(); ++j) {
+    const RigJoint& joint = rig.joints[j];
+    const bool root = joint.parent < 0;
+    at[j] = root ? pose.root_position
+                 : at[Index(joint.parent)] + Rotate(world[Index(joint.parent)], joint.offset);
+    world[j] = root ? pose.rotations[j] : world[Index(joint.parent)] * pose.rotations[j];
+  }
+  return at;
+}
+
+}  // namespace duet::retargeting

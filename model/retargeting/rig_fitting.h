@@ -1,0 +1,42 @@
+#ifndef DUET_MODEL_RETARGETING_RIG_FITTING_H_
+#define DUET_MODEL_RETARGETING_RIG_FITTING_H_
+
+#include <vector>
+
+#include "absl/types/span.h"
+#include "model/motion/skeleton.h"
+#include "model/motion/vec3.h"
+#include "model/retargeting/pose_fitting.h"
+#include "model/retargeting/rig.h"
+
+namespace duet::retargeting {
+
+// Poses of a rig for files and engines, frame by frame: those of PoseFitter, with feet that stand
+// level, and with quaternions on the same side as in the frame before (q, not -q). A frame depends
+// only on itself and earlier frames.
+class RigFitter {
+ public:
+  // `rig` must outlive the fitter. `ankle_height_on_floor`: see AnkleHeightOnFloor.
+  RigFitter(const motion::Skeleton& skeleton, const Rig& rig, double frame_rate_hz,
+            double ankle_height_on_floor, BoneLengths lengths);
+  // positions: [skeleton joints], metres, y up. The result is valid until the next call.
+  const RigPose& Fit(absl::Span<const motion::Vec3> positions);
+
+ private:
+  void TurnFeet();
+
+  const Rig& rig_;
+  const double ankle_height_;
+  std::vector<bool> feet_;  // whether a rig joint is a foot without toes
+  PoseFitter fitter_;
+  bool first_ = true;
+  RigPose pose_;
+};
+
+// The positions of the rig's joints in a pose of its own bone lengths: forward kinematics. Ignores
+// translations. [rig joints]
+std::vector<Vec3d> JointPositions(const Rig& rig, const RigPose& pose);
+
+}  // namespace duet::retargeting
+
+#endif  // DUET_MODEL_RETARGETING_RIG_FITTING_H_
