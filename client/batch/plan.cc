@@ -54,6 +54,10 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
     const motion::Vec3& to = *leader.partner_direction;
     absl::StrAppend(&text, "direction ", to.x, ",", to.y, ",", to.z, "\n");
   }
+  if (recipe.input.up) {
+    const motion::Vec3& up = *recipe.input.up;
+    absl::StrAppend(&text, "up ", up.x, ",", up.y, ",", up.z, "\n");
+  }
   absl::StrAppend(&text, "seed ", leader.seed ? absl::StrCat(*leader.seed) : "", " ", recipe.seed);
   return text;
 }

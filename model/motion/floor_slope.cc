@@ -49,13 +49,15 @@ void FloorEvidence::AddFoot(const Clip& person, int joint) {
     Vec3 sum;
     int count = 0;
   };
-  std::map<std::pair<int, int>, Rests> cells;
+  std::map<std::pair<double, double>, Rests> cells;
   const auto cell = [](float metres) {
-    return static_cast<int>(std::floor(static_cast<double>(metres) / kPlaceMetres));
+    return std::floor(static_cast<double>(metres) / kPlaceMetres);
   };
   const std::vector<Vec3> means = MeanPositions(person, joint);
   for (std::size_t i = 0; i + 1 < means.size(); ++i) {
-    if (static_cast<double>(Distance(means[i], means[i + 1])) > kRestSpeed * kRestSeconds) continue;
+    // Negated, so that positions that are not finite do not rest.
+    const auto distance = static_cast<double>(Distance(means[i], means[i + 1]));
+    if (!(distance <= kRestSpeed * kRestSeconds)) continue;
     const Vec3 at = (means[i] + means[i + 1]) / 2;
     Rests& rests = cells[{cell(at.x), cell(at.z)}];
     rests.sum += at;

@@ -200,6 +200,13 @@ TEST(VerticalTest, NobodyAndWhoHasNoFeetAreNoEvidence) {
   EXPECT_EQ(evidence.Estimate().verdict, TiltVerdict::kUnknown);
 }
 
+TEST(VerticalTest, PositionsThatAreNotFiniteAreNoEvidence) {
+  Clip clip = Walking({}, EveryWay);
+  for (Vec3& joint : clip.poses.all()) joint.x = std::nanf("");
+  EXPECT_EQ(EstimateFrom({clip}).verdict, TiltVerdict::kUnknown);
+  EXPECT_EQ(EstimateFrom({clip}).places, 0);
+}
+
 TEST(VerticalTest, WhoLiesIsNoEvidence) {
   Clip lies = Standing(10, {}, {});
   for (Vec3& joint : lies.poses.all()) joint = {joint.y, joint.x, joint.z};
