@@ -1,10 +1,13 @@
 #include "client/batch/level.h"
 
+#include <cmath>
 #include <set>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "client/batch/loaded_leader.h"
 #include "client/batch/text_values.h"
+#include "model/base/angle.h"
 #include "model/base/text.h"
 
 namespace duet::client::batch {
@@ -45,6 +48,13 @@ Levelled LevelBy(const motion::VerticalEstimate& estimate) {
     return {estimate.up, absl::StrCat("levelled: ", found)};
   }
   return {std::nullopt, absl::StrCat("not levelled: ", found)};
+}
+
+Levelled LevelBy(const Level& given) {
+  if (!given.up.has_value()) return {};
+  const motion::Vec3& up = *given.up;
+  const double degrees = base::kDegreesPerRadian * std::atan2(std::hypot(up.x, up.z), up.y);
+  return {up, absl::StrFormat("levelled: tilted by %.1f degrees, as --level states", degrees)};
 }
 
 motion::VerticalEstimate EstimateVertical(const LeaderInput& input,

@@ -18,12 +18,14 @@ namespace duet::client::batch {
 inline constexpr char kLevelForm[] = "auto|off|X,Y,Z";
 absl::StatusOr<Level> ParseLevel(absl::string_view text);
 
-// What follows from an estimate: SynthesisOptions::up, and a line that says why.
+// What follows from an estimate, or from a level that is not automatic: SynthesisOptions::up, and a
+// line that says why, which is empty if levelling is off.
 struct Levelled {
   std::optional<motion::Vec3> up;
   std::string note;
 };
 Levelled LevelBy(const motion::VerticalEstimate& estimate);
+Levelled LevelBy(const Level& given);
 
 // Estimates the vertical of the camera that captured all leaders, from all people in at most the
 // first 1000 files. Files that cannot be read and bad lines are skipped: the check of the plan

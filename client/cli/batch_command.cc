@@ -171,7 +171,7 @@ absl::Status ChooseVertical(const BatchArguments& arguments, const ProgramEnviro
   const batch::Levelled levelled =
       batch::LevelBy(EstimateVertical(input, prepared->skeletons.front(), leaders->get(), stopped));
   input.up = levelled.up;
-  if (!arguments.quiet) *environment.err << "leaders " << levelled.note << "\n";
+  if (!arguments.quiet && !arguments.json) *environment.err << "leaders " << levelled.note << "\n";
   return absl::OkStatus();
 }
 

@@ -138,13 +138,12 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   absl::StatusOr<motion::Clip> leader = input->Read(options);
   if (!leader.ok()) return leader.status();
   request.leader = *std::move(leader);
-  request.up = arguments.level.up;
-  if (arguments.level.automatic) {
-    const batch::Levelled levelled =
-        batch::LevelBy(EstimateVertical(request.leader, *input, options, report.people));
-    request.up = levelled.up;
-    if (notes != nullptr) notes->push_back(levelled.note);
-  }
+  const batch::Levelled levelled =
+      arguments.level.automatic
+          ? batch::LevelBy(EstimateVertical(request.leader, *input, options, report.people))
+          : batch::LevelBy(arguments.level);
+  request.up = levelled.up;
+  if (notes != nullptr && !levelled.note.empty()) notes->push_back(levelled.note);
   if (arguments.beat) {
     const absl::Status beat = CheckBeat(*arguments.beat, request.leader);
     if (!beat.ok()) return beat;

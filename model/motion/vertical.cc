@@ -75,8 +75,8 @@ VerticalEstimate VerticalEvidence::Estimate() const {
 std::string Describe(const VerticalEstimate& estimate) {
   switch (estimate.verdict) {
     case TiltVerdict::kLevel:
-      return absl::StrFormat("level to %.1f degrees (+- %.1f)", estimate.tilt_degrees,
-                             estimate.error_degrees);
+      return absl::StrFormat("level within %g degrees (%.1f +- %.1f)", kLeastTiltDegrees,
+                             estimate.tilt_degrees, estimate.error_degrees);
     case TiltVerdict::kTilted:
       return absl::StrCat("tilted by ", DescribeTilt(estimate));
     case TiltVerdict::kUnknown:

@@ -102,7 +102,7 @@ TEST(VerticalTest, WhoWalksAboutOnALevelFloorIsLevel) {
   EXPECT_LT(estimate.tilt_degrees, 0.5);
   EXPECT_LT(estimate.error_degrees, 3);
   EXPECT_EQ(estimate.places, 18) << "nine for each foot";
-  EXPECT_THAT(Describe(estimate), StartsWith("level to 0."));
+  EXPECT_THAT(Describe(estimate), StartsWith("level within 5 degrees (0."));
 }
 
 TEST(VerticalTest, ATiltIsFoundInEveryDirection) {

@@ -82,7 +82,7 @@ void SetDirection(v1::SynthesizeRequest& request, float x, float y, float z) {
   direction.set_z(z);
 }
 
-void SetUp(v1::SynthesizeRequest& request, float x, float y, float z) {
+void SetVertical(v1::SynthesizeRequest& request, float x, float y, float z) {
   v1::Direction& up = *request.mutable_up();
   up.set_x(x);
   up.set_y(y);
@@ -356,16 +356,18 @@ INSTANTIATE_TEST_SUITE_P(
                 "partner_direction", "expected a direction that is neither vertical"},
         Spoiled{"nan_direction", [](Request& r) { SetDirection(r, kNan, 0, 1); },
                 "partner_direction[0]", "expected a finite number, got nan"},
-        Spoiled{"no_up", [](Request& r) { SetUp(r, 0, 0, 0); }, "up",
+        Spoiled{"no_up", [](Request& r) { SetVertical(r, 0, 0, 0); }, "up",
                 "expected a direction of any length but 0, less than 45 degrees from "
                 "UP_AXIS_Y_UP, got (0, 0, 0)"},
-        Spoiled{"far_up", [](Request& r) { SetUp(r, 0, 1, 1.001F); }, "up", "got (0, 1, 1.001)"},
-        Spoiled{"upside_down", [](Request& r) { SetUp(r, 0, -1, 0); }, "up", "got (0, -1, 0)"},
-        Spoiled{"infinite_up", [](Request& r) { SetUp(r, 0, kInfinity, 0); }, "up[1]",
+        Spoiled{"far_up", [](Request& r) { SetVertical(r, 0, 1, 1.001F); }, "up",
+                "got (0, 1, 1.001)"},
+        Spoiled{"upside_down", [](Request& r) { SetVertical(r, 0, -1, 0); }, "up",
+                "got (0, -1, 0)"},
+        Spoiled{"infinite_up", [](Request& r) { SetVertical(r, 0, kInfinity, 0); }, "up[1]",
                 "expected a finite number, got inf"},
         Spoiled{"direction_along_up",
                 [](Request& r) {
-                  SetUp(r, 0, 2, 1);
+                  SetVertical(r, 0, 2, 1);
                   SetDirection(r, 0, 4, 2);
                 },
                 "partner_direction", "neither vertical nor of length 0, got (0, 4, 2)"}),
@@ -554,7 +556,7 @@ v1::SynthesizeRequest TiltedRequest(const motion::Coordinates& coordinates, v1::
   const motion::Vec3 start = caller({1, 2, 3}), origin = caller({0, 0, 0});
   const motion::Vec3 up = caller({0, 1, 0}) - origin, direction = caller({3, 7, 4}) - origin;
   SetRoot(request, start.x, start.y, start.z);
-  SetUp(request, up.x, up.y, up.z);
+  SetVertical(request, up.x, up.y, up.z);
   SetDirection(request, direction.x, direction.y, direction.z);
   return request;
 }
@@ -593,7 +595,7 @@ TEST(ValidateRequestTest, LevelsAStartPose) {
   for (int joint = 0; joint < kJoints; ++joint) {
     for (const float value : {0.0F, 3.0F, 4.0F}) positions->Add(value);
   }
-  SetUp(request, 0, 4, 3);
+  SetVertical(request, 0, 4, 3);
   const absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
   EXPECT_LT(Distance(validated->clip.start->pose[5], {0, 4.8F, 1.4F}), 1e-5F);
