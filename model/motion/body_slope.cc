@@ -10,7 +10,7 @@
 namespace duet::motion {
 namespace {
 
-// All spreads are standard deviations of tangents, fitted to the captures that
+// All spreads are standard deviations of tangents, chosen on the captures that
 // docs/decisions/0062-vertical-of-a-capture.md lists.
 struct Spread {
   double forward, sideways;
