@@ -45,6 +45,10 @@ struct SynthesisOptions {
   // Without follower_start, models trained to estimate the direction derive it from the leader's
   // motion; all others use the direction in which the leader's hips face in the first frame.
   std::optional<motion::Vec3> partner_direction;
+  // The true vertical of the leader's world, for motion from a tilted camera: of any length, less
+  // than 45 degrees from +y. The server levels the whole request and returns the follower tilted
+  // like the leader. Absent: +y. motion/vertical.h estimates it from the motion.
+  std::optional<motion::Vec3> up;
   // Seed of the random sample that a sampling model draws (ModelInfo::samples). On the same server,
   // the same request with the same seed returns the same motion.
   uint64_t seed = 0;

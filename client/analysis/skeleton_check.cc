@@ -13,9 +13,9 @@
 #include "model/base/median.h"
 #include "model/body/limbs.h"
 #include "model/cleanup/floor.h"
-#include "model/dataset/posture.h"
 #include "model/motion/feet.h"
 #include "model/motion/inferred_coordinates.h"
+#include "model/motion/posture.h"
 
 namespace duet::client::analysis {
 namespace {
@@ -336,10 +336,10 @@ class Checker {
 
   void CheckUpright() {
     if (!skeleton_.feet || !skeleton_.hips) return;
-    const std::vector<Vec3> directions = dataset::StandingDirections(skeleton_, clip_.poses);
+    const std::vector<Vec3> directions = motion::StandingDirections(skeleton_, clip_.poses);
     // Frames without a direction are left out there.
     if (directions.size() != Index(clip_.frame_count())) return;
-    const dataset::Lean lean = dataset::LeanOf(dataset::RobustMean(directions));
+    const motion::Lean lean = motion::LeanOf(motion::RobustMean(directions));
     const double all = std::hypot(lean.x, lean.z);
     const auto [forwards, sideways] = LeanFromOwnView(directions);
     const bool good =

@@ -1,9 +1,11 @@
 #include "client/batch/answer.h"
 
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/error_details.h"
+#include "model/motion/levelling.h"
 
 namespace duet::client::batch {
 namespace {
@@ -19,6 +21,16 @@ std::vector<WeightKeyframe> ToFrames(const std::vector<Schedule::Keyframe>& keyf
     frames.push_back({frame, keyframe.labels});
   }
   return frames;
+}
+
+// The pair as an upright camera would have captured it.
+motion::ClipPair Upright(motion::ClipPair pair, const std::optional<motion::Vec3>& up) {
+  if (!up.has_value()) return pair;
+  const motion::Levelling levelling(*up, 0);
+  for (motion::Clip* clip : {&pair.leader, &pair.follower}) {
+    clip->poses = levelling.Apply(std::move(clip->poses));
+  }
+  return pair;
 }
 
 }  // namespace
@@ -61,6 +73,7 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
   request.keyframes = ToFrames(item.keyframes, leader.clip.frame_count());
   request.follower_start = leader.follower_start;
   request.partner_direction = item.leader->partner_direction;
+  request.up = recipe.input.up;
   request.seed = SeedOf(item, recipe.seed, retry);
   request.variety = recipe.variety;
   request.candidates = recipe.candidates;
@@ -69,9 +82,10 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
   return request;
 }
 
-RecordedAnswer ToRecorded(const Item& item, const QualityFilter& filter,
-                          const SynthesisResult& result, const LoadedLeader& leader,
-                          const motion::Skeleton& skeleton, int retry) {
+RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const SynthesisResult& result,
+                          const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry) {
+  const QualityFilter& filter = recipe.filter;
+  const motion::ClipPair level = Upright(result.pair, recipe.input.up);
   RecordedAnswer answer;
   answer.leader_sha256 = leader.sha256;
   answer.model = absl::StrCat(result.model_name, "@", result.model_version);
@@ -82,10 +96,10 @@ RecordedAnswer ToRecorded(const Item& item, const QualityFilter& filter,
   answer.keyframes = ToFrames(item.keyframes, result.pair.leader.frame_count());
   answer.frames = result.pair.follower.frame_count();
   answer.frame_rate_hz = result.pair.follower.frame_rate_hz;
-  answer.quality = Measure(result.pair, skeleton);
+  answer.quality = Measure(level, skeleton);
   answer.quality.grade = result.grade;
   if (filter.classifier != nullptr) {
-    Recognise(*filter.classifier, LargestClass(item), result.pair, &answer.quality);
+    Recognise(*filter.classifier, LargestClass(item), level, &answer.quality);
   }
   answer.unfamiliarity = result.unfamiliarity;
   answer.answers = retry + 1;

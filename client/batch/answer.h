@@ -31,10 +31,10 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
 // The request id, which is the same in every call for the item.
 std::string RequestId(const Item& item, int retry);
 
-// The index entry of an answer. Its pair has the rate of the output.
-RecordedAnswer ToRecorded(const Item& item, const QualityFilter& filter,
-                          const SynthesisResult& result, const LoadedLeader& leader,
-                          const motion::Skeleton& skeleton, int retry);
+// The index entry of an answer. Its pair has the rate of the output. Quality is measured in the
+// level world.
+RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const SynthesisResult& result,
+                          const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry);
 
 }  // namespace duet::client::batch
 

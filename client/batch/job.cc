@@ -164,7 +164,8 @@ void Job::Judge(Work work, const SynthesisResult& result) {
   const QualityFilter& filter = parts_.recipe.filter;
   const absl::StatusOr<LoadedLeader>& leader =
       work.leader->Get(parts_.recipe.input, skeleton, parts_.limits);
-  RecordedAnswer answer = ToRecorded(work.item, filter, result, *leader, skeleton, work.retry);
+  RecordedAnswer answer =
+      ToRecorded(work.item, parts_.recipe, result, *leader, skeleton, work.retry);
   answer.skeleton = skeleton_indices_[model];
   const std::vector<std::string> reasons =
       WhyRejected(filter, answer.quality, answer.unfamiliarity);

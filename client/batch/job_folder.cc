@@ -42,16 +42,27 @@ std::string ToJson(const JobIdentity& identity) {
   for (const motion::Skeleton& skeleton : identity.skeletons) {
     skeletons.push_back(SkeletonToJson(skeleton, WholeBody(skeleton)));
   }
-  const nlohmann::ordered_json object = {{"format", kFormat},
-                                         {"recipe_sha256", identity.recipe_digest},
-                                         {"models", models},
-                                         {"skeletons", skeletons},
-                                         {"shard", ShardText(identity.shard)},
-                                         {"layout", static_cast<int>(identity.layout)},
-                                         {"packing", static_cast<int>(identity.packing)},
-                                         {"shard_bytes", identity.shard_bytes},
-                                         {"description", ToJson(identity.description)}};
+  nlohmann::ordered_json object = {{"format", kFormat},
+                                   {"recipe_sha256", identity.recipe_digest},
+                                   {"models", models},
+                                   {"skeletons", skeletons},
+                                   {"shard", ShardText(identity.shard)},
+                                   {"layout", static_cast<int>(identity.layout)},
+                                   {"packing", static_cast<int>(identity.packing)},
+                                   {"shard_bytes", identity.shard_bytes},
+                                   {"description", ToJson(identity.description)}};
+  if (identity.up) object["up"] = {identity.up->x, identity.up->y, identity.up->z};
   return object.dump(2) + "\n";
+}
+
+motion::Vec3 ReadUp(base::ObjectReader* reader) {
+  std::vector<float> xyz;
+  for (const nlohmann::json& value : reader->Array("up", 3)) {
+    if (value.is_number()) xyz.push_back(value.get<float>());
+  }
+  if (xyz.size() == 3) return {xyz[0], xyz[1], xyz[2]};
+  reader->Fail("up", "expected 3 numbers");
+  return {};
 }
 
 absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
@@ -87,6 +98,7 @@ absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
     reader.Update(description.status());
     if (description.ok()) identity.description = *std::move(description);
   }
+  if (reader.Has("up")) identity.up = ReadUp(&reader);
   absl::Status status = reader.Finish();
   if (!status.ok()) return status;
   return identity;

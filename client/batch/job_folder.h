@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct JobIdentity {
   std::vector<ModelChoice> models;          // names and versions; empty before a job has begun
   std::vector<motion::Skeleton> skeletons;  // of the models
   SetDescription description;
+  std::optional<motion::Vec3> up;  // of every leader (SynthesisOptions::up)
 };
 
 // A data set's folder, held by one process.

@@ -14,17 +14,6 @@
 namespace duet::client::batch {
 namespace {
 
-formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skeleton& skeleton) {
-  formats::ReadOptions options;
-  options.format = input.format;
-  options.skeleton = skeleton;
-  options.frame_rate_hz = input.frame_rate_hz;
-  options.metres_per_unit = input.metres_per_unit;
-  options.joint_overrides = input.joint_map;
-  options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
-  return options;
-}
-
 absl::StatusOr<FollowerStart> ReadStart(const std::filesystem::path& file,
                                         const formats::ReadOptions& options) {
   absl::StatusOr<std::vector<motion::Vec3>> pose = formats::ReadFollowerStart(file, options);
@@ -124,6 +113,17 @@ absl::Status WithMendingField(const absl::Status& status) {
 }
 
 }  // namespace
+
+formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skeleton& skeleton) {
+  formats::ReadOptions options;
+  options.format = input.format;
+  options.skeleton = skeleton;
+  options.frame_rate_hz = input.frame_rate_hz;
+  options.metres_per_unit = input.metres_per_unit;
+  options.joint_overrides = input.joint_map;
+  options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
+  return options;
+}
 
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
                                         const LeaderInput& input, const motion::Skeleton& skeleton,

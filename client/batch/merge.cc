@@ -82,6 +82,12 @@ absl::StatusOr<Part> OpenPart(const fs::path& out, const JobIdentity& identity, 
     return absl::FailedPreconditionError(
         absl::StrCat(path.string(), ": expected the models of the other shards, got others"));
   }
+  if (begun.up != identity.up) {
+    return absl::FailedPreconditionError(
+        absl::StrCat(path.string(),
+                     ": expected the vertical of the other shards (input.level), got "
+                     "another: their leaders differ"));
+  }
   absl::StatusOr<JournalReader> journal = JournalReader::Open(part.folder->journal());
   if (!journal.ok()) return journal.status();
   part.journal = std::make_shared<JournalReader>(*std::move(journal));

@@ -56,6 +56,10 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
   }
   // Added only if it differs from the default, so that items of earlier versions keep their ids.
   if (recipe.candidates != 1) absl::StrAppend(&text, "candidates ", recipe.candidates, "\n");
+  if (recipe.input.up) {
+    const motion::Vec3& up = *recipe.input.up;
+    absl::StrAppend(&text, "up ", up.x, ",", up.y, ",", up.z, "\n");
+  }
   absl::StrAppend(&text, "seed ", leader.seed ? absl::StrCat(*leader.seed) : "", " ", recipe.seed);
   return text;
 }

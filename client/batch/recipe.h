@@ -60,6 +60,12 @@ struct Reaction {
 
 enum class Sides { kLeft, kRight, kBoth };
 
+// How to level leaders from a tilted camera.
+struct Level {
+  bool automatic = true;           // estimate the vertical; level if the evidence is strong
+  std::optional<motion::Vec3> up;  // the vertical, if the caller specifies it
+};
+
 struct LeaderInput {
   Sides side = Sides::kLeft;
   bool starts_as_other_person = false;
@@ -69,6 +75,9 @@ struct LeaderInput {
   std::optional<motion::UpAxis> up_axis;
   retargeting::JointOverrides joint_map;
   std::optional<formats::Format> format;
+  Level level;
+  // The vertical of every leader, for requests: of `level`, or what an automatic one found.
+  std::optional<motion::Vec3> up;
 };
 
 struct QualityFilter {

@@ -10,6 +10,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "client/batch/capture_layout.h"
+#include "client/batch/level.h"
 #include "client/batch/text_values.h"
 #include "model/base/printable.h"
 #include "model/base/text.h"
@@ -210,6 +211,13 @@ LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
     check->Expect(input.format.has_value() && formats::IsReadable(*input.format), "input.format",
                   base::Quoted(proto.format()), formats::kReadableFormatNames);
   }
+  if (proto.has_level()) {
+    const absl::StatusOr<Level> level = ParseLevel(proto.level());
+    check->Expect(level.ok(), "input.level", base::Quoted(proto.level()),
+                  "auto, off or X,Y,Z less than 45 degrees from 0,1,0");
+    if (level.ok()) input.level = *level;
+  }
+  input.up = input.level.up;
   input.joint_map.insert(proto.joint_map().begin(), proto.joint_map().end());
   return input;
 }

@@ -65,6 +65,7 @@ void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
   if (!overrides.input_format.empty()) {
     recipe->mutable_input()->set_format(overrides.input_format);
   }
+  if (!overrides.level.empty()) recipe->mutable_input()->set_level(overrides.level);
   if (overrides.frame_rate_hz) {
     recipe->mutable_output()->set_frame_rate_hz(*overrides.frame_rate_hz);
   }

@@ -16,6 +16,7 @@ struct RecipeOverrides {
   std::optional<int> retries_per_item;
   std::string input_format;  // empty: the recipe's
   std::optional<double> frame_rate_hz;
+  std::string level;  // empty: the recipe's
 };
 
 // Parses a recipe: JSON or text format. Unknown fields are rejected. Files that it names

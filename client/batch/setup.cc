@@ -26,6 +26,7 @@ JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard) {
   identity.recipe_digest = recipe.digest;
   identity.recipe_json = recipe.json;
   identity.shard = shard;
+  identity.up = recipe.input.up;
   identity.layout = recipe.output.layout;
   identity.packing = recipe.output.packing;
   identity.shard_bytes = recipe.output.shard_bytes;

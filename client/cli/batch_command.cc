@@ -13,6 +13,7 @@
 #include "client/batch/estimate.h"
 #include "client/batch/job.h"
 #include "client/batch/leader_sharing.h"
+#include "client/batch/level.h"
 #include "client/batch/merge.h"
 #include "client/batch/plan_check.h"
 #include "client/batch/setup.h"
@@ -151,12 +152,40 @@ absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
                    stopped);
 }
 
+// Chooses the vertical of the leaders if the recipe leaves it open: that which the set was begun
+// with, or for a new set that of a strong estimate.
+absl::Status ChooseVertical(const BatchArguments& arguments, const ProgramEnvironment& environment,
+                            const batch::JobIdentity& begun, const std::function<bool()>& stopped,
+                            Prepared* prepared) {
+  batch::LeaderInput& input = prepared->recipe.input;
+  if (!input.level.automatic) return absl::OkStatus();
+  if (!begun.models.empty()) {
+    input.up = begun.up;
+    return absl::OkStatus();
+  }
+  // A manifest on standard input can be read only once.
+  if (arguments.manifest == "-" && arguments.manifest_copy.empty()) return absl::OkStatus();
+  const absl::StatusOr<std::unique_ptr<batch::LeaderSource>> leaders =
+      OpenLeaders(arguments, prepared->recipe, nullptr, nullptr);
+  if (!leaders.ok()) return leaders.status();
+  const batch::Levelled levelled =
+      batch::LevelBy(EstimateVertical(input, prepared->skeletons.front(), leaders->get(), stopped));
+  input.up = levelled.up;
+  if (!arguments.quiet && !arguments.json) *environment.err << "leaders " << levelled.note << "\n";
+  return absl::OkStatus();
+}
+
 absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
                                 const ProgramEnvironment& environment, Prepared prepared) {
   const absl::StatusOr<batch::JobIdentity> begun =
       batch::ReadJobIdentity(ShardFolder(arguments.out, prepared.shard));
   absl::Status status = Prepare(arguments, environment,
                                 begun.ok() ? begun->models : std::vector<ModelChoice>(), &prepared);
+  if (status.ok()) {
+    status = ChooseVertical(
+        arguments, environment, begun.ok() ? *begun : batch::JobIdentity(), [] { return false; },
+        &prepared);
+  }
   if (!status.ok()) return status;
   const absl::StatusOr<batch::PlanCheck> check =
       Check(arguments, environment, prepared, nullptr, nullptr, [] { return false; });
@@ -180,14 +209,19 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   RunningJob running;
   const StopSignals signals([&running] { running.Stop(); });
   batch::JobFolder folder(ShardFolder(arguments.out, prepared.shard));
-  const batch::JobIdentity wanted = IdentityOf(prepared.recipe, prepared.shard);
+  batch::JobIdentity wanted = IdentityOf(prepared.recipe, prepared.shard);
   batch::JobIdentity begun;
   absl::Status status = folder.OpenForRun(wanted, &begun);
   if (status.ok()) status = Prepare(arguments, environment, begun.models, &prepared);
   if (!status.ok()) return status;
   BatchArguments repeatable = arguments;
   status = CopyManifest(folder.temporary(), environment.in, &repeatable);
+  if (status.ok()) {
+    status = ChooseVertical(
+        repeatable, environment, begun, [&running] { return running.stopped(); }, &prepared);
+  }
   if (!status.ok()) return status;
+  wanted.up = prepared.recipe.input.up;
   const absl::StatusOr<batch::JobIdentity> identity =
       GoOn(begun, WithModels(wanted, prepared.models, prepared.skeletons));
   if (!identity.ok()) return identity.status();

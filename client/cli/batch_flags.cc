@@ -2,7 +2,10 @@
 
 #include <limits>
 #include <map>
+#include <string>
+#include <utility>
 
+#include "client/batch/level.h"
 #include "client/cli/flags.h"
 #include "client/cli/server_flags.h"
 
@@ -37,6 +40,13 @@ Exit codes:
 const std::map<std::string, batch::Packing> kPackings = {
     {"none", batch::Packing::kNone}, {"npz", batch::Packing::kNpz}, {"tar", batch::Packing::kTar}};
 
+// Checks the text, which becomes part of the recipe.
+absl::StatusOr<std::string> ParseLevelText(absl::string_view text) {
+  const absl::StatusOr<batch::Level> level = batch::ParseLevel(text);
+  if (!level.ok()) return level.status();
+  return std::string(text);
+}
+
 void AddInputFlags(CLI::App* app, BatchArguments* arguments) {
   constexpr char kGroup[] = "Input";
   CLI::Option* leaders = app->add_option("leaders", arguments->leaders,
@@ -56,6 +66,13 @@ void AddInputFlags(CLI::App* app, BatchArguments* arguments) {
       ->check(Undescribed(CLI::IsMember(
           std::vector<std::string>{"amc", "bvh", "csv", "glb", "gltf", "json", "npy", "sbu"})))
       ->type_name("amc|bvh|csv|glb|gltf|json|npy|sbu")
+      ->group(kGroup);
+  AddParsed<std::string>(
+      app, "--level", batch::kLevelForm, ParseLevelText,
+      [arguments](std::string level) { arguments->overrides.level = std::move(level); },
+      "Vertical of the camera that captured all leaders, in metres, y up; auto: estimated from "
+      "all of them, which are levelled only if the evidence is strong; overrides the recipe")
+      ->take_last()
       ->group(kGroup);
   app->add_option("--limit", arguments->limit, "Make only the first items of the plan")
       ->check(Undescribed(CLI::Range(int64_t{0}, std::numeric_limits<int64_t>::max())))

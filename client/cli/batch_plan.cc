@@ -30,6 +30,8 @@ class OpenManifest final : public batch::LeaderSource {
   std::unique_ptr<batch::LeaderSource> source_;
 };
 
+}  // namespace
+
 absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(
     const BatchArguments& arguments, const batch::Recipe& recipe, std::istream* in,
     std::vector<std::string>* passed_over) {
@@ -51,8 +53,6 @@ absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(
   }
   return std::unique_ptr<batch::LeaderSource>(std::move(manifest));
 }
-
-}  // namespace
 
 absl::StatusOr<batch::Plan> MakePlan(const BatchArguments& arguments, const batch::Recipe& recipe,
                                      const std::vector<ModelInfo>& models, std::istream* in,

@@ -14,8 +14,13 @@
 
 namespace duet::client::cli {
 
-// The plan of the leaders that the flags name. A manifest "-" is read from `in`. `passed_over`,
-// which may be null, receives the files in folders that are not motions.
+// The leaders that the flags name. A manifest "-" is read from `in`. `passed_over`, which may be
+// null, receives the files in folders that are not motions.
+absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(
+    const BatchArguments& arguments, const batch::Recipe& recipe, std::istream* in,
+    std::vector<std::string>* passed_over);
+
+// The plan of the leaders that the flags name. Arguments as of OpenLeaders.
 absl::StatusOr<batch::Plan> MakePlan(const BatchArguments& arguments, const batch::Recipe& recipe,
                                      const std::vector<ModelInfo>& models, std::istream* in,
                                      std::vector<std::string>* passed_over);

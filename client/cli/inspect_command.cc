@@ -49,6 +49,15 @@ absl::Status InspectPerson(const MotionInput& input, formats::ReadOptions option
   return absl::OkStatus();
 }
 
+// Whether its people are evidence of the vertical.
+bool HasRate(const Inspection& inspection) {
+  return inspection.status.ok() && inspection.people[0].clip.frame_rate_hz > 0;
+}
+
+void AddPeople(const Inspection& inspection, motion::VerticalEvidence* evidence) {
+  for (const InspectedPerson& person : inspection.people) evidence->Add(person.clip);
+}
+
 Inspection Inspect(const std::filesystem::path& file, const InputArguments& input_arguments,
                    std::istream* in) {
   Inspection inspection;
@@ -64,10 +73,16 @@ Inspection Inspect(const std::filesystem::path& file, const InputArguments& inpu
   if (!inspection.status.ok()) return inspection;
   inspection.file = input->name();
   inspection.status = InspectPerson(*input, *options, &inspection.people[0]);
-  if (!inspection.status.ok() || inspection.people[0].report.people < 2) return inspection;
-  options->side = formats::Side::kRight;
-  inspection.people.emplace_back();
-  inspection.status = InspectPerson(*input, *options, &inspection.people[1]);
+  if (inspection.status.ok() && inspection.people[0].report.people >= 2) {
+    options->side = formats::Side::kRight;
+    inspection.people.emplace_back();
+    inspection.status = InspectPerson(*input, *options, &inspection.people[1]);
+  }
+  if (HasRate(inspection)) {
+    motion::VerticalEvidence evidence(options->skeleton);
+    AddPeople(inspection, &evidence);
+    inspection.vertical = evidence.Estimate();
+  }
   return inspection;
 }
 
@@ -75,9 +90,11 @@ ExitCode Run(const InspectArguments& arguments, const ProgramEnvironment& enviro
   const Style style = environment.OutStyle();
   ExitCode worst = kExitDone;
   nlohmann::json files = nlohmann::json::array();
+  motion::VerticalEvidence evidence(motion::SbuSkeleton());
   for (std::size_t i = 0; i < arguments.files.size(); ++i) {
     const Inspection inspection = Inspect(arguments.files[i], arguments.input, environment.in);
     worst = std::max(worst, ExitCodeFor(inspection.status));
+    if (HasRate(inspection)) AddPeople(inspection, &evidence);
     if (arguments.json) {
       files.push_back(InspectionJson(inspection));
       continue;
@@ -85,7 +102,14 @@ ExitCode Run(const InspectArguments& arguments, const ProgramEnvironment& enviro
     *environment.out << (i == 0 ? "" : "\n") << DescribeInspection(inspection, style)
                      << (inspection.status.ok() ? "" : DescribeAdvice(inspection.status));
   }
-  if (arguments.json) *environment.out << Print({{"files", files}});
+  const motion::VerticalEstimate together = evidence.Estimate();
+  if (arguments.json) {
+    *environment.out << Print({{"files", files}, {"tilt", VerticalJson(together)}});
+  } else if (arguments.files.size() > 1) {
+    *environment.out << "\n"
+                     << style.Heading("all files, if one camera captured them") << "\n"
+                     << "  tilt        " << DescribeVertical(together) << "\n";
+  }
   return worst;
 }
 

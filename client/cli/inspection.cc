@@ -167,6 +167,38 @@ json PersonJson(const InspectedPerson& person) {
 
 }  // namespace
 
+std::string DescribeVertical(const motion::VerticalEstimate& vertical) {
+  std::string text = Describe(vertical);
+  if (vertical.verdict == motion::TiltVerdict::kTilted) {
+    absl::StrAppendFormat(&text, "; --level %.3f,%.3f,%.3f", vertical.up.x, vertical.up.y,
+                          vertical.up.z);
+  }
+  return absl::StrCat(text, "; feet rest in ", vertical.places,
+                      vertical.places == 1 ? " place" : " places");
+}
+
+json VerticalJson(const motion::VerticalEstimate& vertical) {
+  const auto verdict = [&vertical] {
+    switch (vertical.verdict) {
+      case motion::TiltVerdict::kLevel:
+        return "level";
+      case motion::TiltVerdict::kTilted:
+        return "tilted";
+      case motion::TiltVerdict::kUnknown:
+        break;
+    }
+    return "unknown";
+  };
+  return {{"verdict", verdict()},
+          {"text", Describe(vertical)},
+          {"up", {vertical.up.x, vertical.up.y, vertical.up.z}},
+          {"tilt_degrees", vertical.tilt_degrees},
+          {"error_degrees", vertical.error_degrees},
+          {"deviations", vertical.deviations},
+          {"disagreement", vertical.disagreement},
+          {"places", vertical.places}};
+}
+
 std::string DescribeInspection(const Inspection& inspection, const Style& style) {
   std::string text = style.Heading(inspection.file);
   const retargeting::ReadingReport& first = inspection.people[0].report;
@@ -190,6 +222,9 @@ std::string DescribeInspection(const Inspection& inspection, const Style& style)
     absl::StrAppend(&text, repeated ? "  read as the other\n" : reading);
     if (!person.checks.empty()) absl::StrAppend(&text, DescribeChecks(person.checks, style));
   }
+  if (inspection.vertical) {
+    absl::StrAppend(&text, "  tilt        ", DescribeVertical(*inspection.vertical), "\n");
+  }
   if (!inspection.status.ok()) {
     absl::StrAppend(&text, "  ", style.Bad("cannot be read"), ": ", inspection.status.message(),
                     "\n");
@@ -210,6 +245,7 @@ json InspectionJson(const Inspection& inspection) {
     object["error"] = inspection.status.message();
     return object;
   }
+  if (inspection.vertical) object["tilt"] = VerticalJson(*inspection.vertical);
   object["frames"] = first.clip.frame_count();
   if (first.clip.frame_rate_hz > 0) {
     object["frame_rate_hz"] = first.clip.frame_rate_hz;

@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_CLI_INSPECTION_H_
 #define DUET_CLIENT_CLI_INSPECTION_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "client/cli/style.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
+#include "model/motion/vertical.h"
 #include "model/retargeting/reading_report.h"
 #include "nlohmann/json_fwd.hpp"
 
@@ -27,11 +29,17 @@ struct Inspection {
   std::string file;
   absl::Status status;
   std::vector<InspectedPerson> people;
+  // Of the camera, from all people. Absent if the file cannot be read or has no frame rate.
+  std::optional<motion::VerticalEstimate> vertical;
 };
 
 // For people, and for programs.
 std::string DescribeInspection(const Inspection& inspection, const Style& style);
 nlohmann::json InspectionJson(const Inspection& inspection);
+
+// The same for the camera's vertical, also of several files together.
+std::string DescribeVertical(const motion::VerticalEstimate& vertical);
+nlohmann::json VerticalJson(const motion::VerticalEstimate& vertical);
 
 }  // namespace duet::client::cli
 

@@ -228,6 +228,7 @@ json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
                    {"compute", absl::ToDoubleSeconds(result.timings.compute)}}},
                  {"notes", all_notes},
                  {"files", files}};
+  if (const auto& up = synthesis.request.up) object["up"] = {up->x, up->y, up->z};
   if (result.unfamiliarity) object["unfamiliarity"] = *result.unfamiliarity;
   if (result.grade) object["grade"] = GradeJson(*result.grade);
   return object;

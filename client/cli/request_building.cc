@@ -8,10 +8,13 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "client/batch/level.h"
+#include "client/batch/text_values.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/value_syntax.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"
+#include "model/motion/vertical.h"
 
 namespace duet::client::cli {
 namespace {
@@ -80,6 +83,21 @@ absl::Status CheckFollowerRig(const formats::FollowerRig& rig) {
   return MendedBy(std::move(status), motion::ReadingSetting::kRigJointMap);
 }
 
+// Everybody whom the camera captured: the leader and, in a file with two people, the other person.
+motion::VerticalEstimate EstimateVertical(const motion::Clip& leader, const MotionInput& input,
+                                          formats::ReadOptions options, int people) {
+  motion::VerticalEvidence evidence(options.skeleton);
+  evidence.Add(leader);
+  if (people >= 2) {
+    options.side = batch::OtherSide(options.side);
+    options.notes = nullptr;
+    options.report = nullptr;
+    const absl::StatusOr<motion::Clip> other = input.Read(options);
+    if (other.ok()) evidence.Add(*other);
+  }
+  return evidence.Estimate();
+}
+
 }  // namespace
 
 absl::Status CheckInputs(const SynthesizeArguments& arguments) {
@@ -115,9 +133,17 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
   options.notes = notes;
   const absl::StatusOr<MotionInput> input = MotionInput::Open(arguments.leader, in);
   if (!input.ok()) return input.status();
+  retargeting::ReadingReport report;
+  options.report = &report;
   absl::StatusOr<motion::Clip> leader = input->Read(options);
   if (!leader.ok()) return leader.status();
   request.leader = *std::move(leader);
+  const batch::Levelled levelled =
+      arguments.level.automatic
+          ? batch::LevelBy(EstimateVertical(request.leader, *input, options, report.people))
+          : batch::LevelBy(arguments.level);
+  request.up = levelled.up;
+  if (notes != nullptr && !levelled.note.empty()) notes->push_back(levelled.note);
   if (arguments.beat) {
     const absl::Status beat = CheckBeat(*arguments.beat, request.leader);
     if (!beat.ok()) return beat;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "client/batch/recipe.h"
 #include "client/cli/motion_arguments.h"
 #include "client/cli/server_arguments.h"
 #include "client/request.h"
@@ -27,6 +28,7 @@ struct SynthesizeArguments : SynthesisOptions {
   std::filesystem::path leader;
   formats::Side leader_side = kDefaultSide;
   InputArguments input;
+  batch::Level level;
   ModelChoice model;
   std::vector<ClassWeight> weights;
   std::vector<KeyframeArgument> keyframes;

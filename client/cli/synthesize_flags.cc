@@ -40,6 +40,14 @@ void AddLeaderFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->default_str(NameOf(kSides, arguments->leader_side))
       ->group(kInputGroup);
   AddInputFlags(app, &arguments->input);
+  AddParsed<batch::Level>(
+      app, "--level", batch::kLevelForm, ParseLevel,
+      [arguments](batch::Level level) { arguments->level = level; },
+      "Vertical of the leader's camera in metres, y up; auto: estimated from everybody in the "
+      "file, who are levelled only if the evidence is strong (duet inspect shows it)")
+      ->take_last()
+      ->default_str("auto")
+      ->group(kInputGroup);
 }
 
 void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {

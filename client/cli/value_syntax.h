@@ -6,6 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "client/batch/level.h"
 #include "client/batch/text_values.h"
 #include "client/cli/synthesize_arguments.h"
 #include "client/request.h"
@@ -19,6 +20,7 @@ namespace duet::client::cli {
 
 // As in recipes and manifests.
 using batch::ParseDirection;
+using batch::ParseLevel;
 using batch::ParseModelChoice;
 using batch::ParsePoint;
 using batch::ParseSeed;

@@ -85,6 +85,12 @@ void Fill(const FollowerStart& start, v1::FollowerStart* out) {
   }
 }
 
+void Fill(const motion::Vec3& direction, v1::Direction* out) {
+  out->set_x(direction.x);
+  out->set_y(direction.y);
+  out->set_z(direction.z);
+}
+
 v1::Priority ToProto(Priority priority) {
   return priority == Priority::kBulk ? v1::PRIORITY_BULK : v1::PRIORITY_INTERACTIVE;
 }
@@ -132,11 +138,9 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
     Fill(*request.follower_start, out.mutable_follower_start());
   }
   if (request.partner_direction.has_value()) {
-    v1::Direction* direction = out.mutable_partner_direction();
-    direction->set_x(request.partner_direction->x);
-    direction->set_y(request.partner_direction->y);
-    direction->set_z(request.partner_direction->z);
+    Fill(*request.partner_direction, out.mutable_partner_direction());
   }
+  if (request.up.has_value()) Fill(*request.up, out.mutable_up());
   out.set_seed(request.seed);
   out.set_variety(request.variety);
   if (request.candidates < 1) {

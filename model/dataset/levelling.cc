@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "model/dataset/posture.h"
+#include "model/motion/posture.h"
 
 namespace duet::dataset {
 namespace {

@@ -13,11 +13,11 @@
 #include "absl/strings/str_join.h"
 #include "model/base/file.h"
 #include "model/base/text.h"
-#include "model/dataset/posture.h"
 #include "model/formats/motion_file.h"
 #include "model/importing/capture.h"
 #include "model/importing/dataset_folder.h"
 #include "model/motion/inferred_coordinates.h"
+#include "model/motion/posture.h"
 
 namespace duet::importing {
 namespace {
@@ -427,14 +427,14 @@ class Importer {
   void FindLevel() {
     std::vector<motion::Vec3> directions, feet;
     for (const motion::Poses* poses : People()) {
-      for (motion::Vec3 up : dataset::StandingDirections(skeleton_.skeleton, *poses)) {
+      for (motion::Vec3 up : motion::StandingDirections(skeleton_.skeleton, *poses)) {
         directions.push_back(up);
       }
-      for (motion::Vec3 foot : dataset::LowerFeet(skeleton_.skeleton, *poses)) feet.push_back(foot);
+      for (motion::Vec3 foot : motion::LowerFeet(skeleton_.skeleton, *poses)) feet.push_back(foot);
     }
-    const dataset::Lean lean = dataset::MeanLean(directions);
+    const motion::Lean lean = motion::MeanLean(directions);
     const double degrees = std::hypot(lean.x, lean.z);
-    const double floor = dataset::HeightQuantile(feet, kFloorShare);
+    const double floor = motion::HeightQuantile(feet, kFloorShare);
     level_ =
         options_.level.value_or(degrees > kLeastLeanDegrees || std::abs(floor) > kLeastFloorMetres);
     Assume("level",

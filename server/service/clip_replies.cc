@@ -83,8 +83,8 @@ NextReply ClipReplies::NextHeader(CallScope& scope) {
     if (first_part_.kind == ClipPart::Kind::kFailed) {
       return {nullptr, ToEnd(first_part_.error, scope.record())};
     }
-    rig_ = std::make_unique<ReplyRig>(*mapping_.rig, mapping_.coordinates, mapping_.joints,
-                                      first_part_.poses);
+    rig_ = std::make_unique<ReplyRig>(*mapping_.rig, mapping_.coordinates, mapping_.levelling,
+                                      mapping_.joints, first_part_.poses);
   }
   FillHeader(scope.record());
   next_ = Part::kFrames;

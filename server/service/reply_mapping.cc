@@ -12,7 +12,9 @@ void FillChunk(const ReplyMapping& reply, const motion::Poses& poses, int first_
                                      3);
   for (int frame = 0; frame < poses.frame_count(); ++frame) {
     for (const int joint : reply.joints) {
-      const motion::Vec3 position = FromWorld(reply.coordinates, poses.at(frame, joint));
+      const motion::Vec3 level = poses.at(frame, joint);
+      const motion::Vec3 world = reply.levelling ? reply.levelling->Invert(level) : level;
+      const motion::Vec3 position = FromWorld(reply.coordinates, world);
       chunk.add_positions(position.x);
       chunk.add_positions(position.y);
       chunk.add_positions(position.z);

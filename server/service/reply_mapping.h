@@ -8,14 +8,17 @@
 #include "duet/v1/motion.pb.h"
 #include "duet/v1/synthesis.pb.h"
 #include "model/motion/coordinates.h"
+#include "model/motion/levelling.h"
 #include "model/motion/poses.h"
 #include "server/service/reply_rig.h"
 
 namespace duet::server::service {
 
-// Maps the model's follower to the caller's joints, order, unit and up axis.
+// Maps the model's follower to the caller's joints, order, unit, up axis and tilt.
 struct ReplyMapping {
   motion::Coordinates coordinates;
+  // From the caller's world to the level world of the model; absent if the caller's is level.
+  std::optional<motion::Levelling> levelling;
   std::vector<int> joints;               // for each joint of the reply, its index in the model
   std::vector<std::string> joint_names;  // of the reply
   // Those of the leader, repeated in the header.
@@ -26,7 +29,7 @@ struct ReplyMapping {
   std::optional<RigSource> rig;
 };
 
-// Fills in a chunk. `poses`: in the model's joint order, world metres.
+// Fills in a chunk. `poses`: in the model's joint order, level world metres.
 void FillChunk(const ReplyMapping& reply, const motion::Poses& poses, int first_frame,
                v1::MotionChunk& chunk);
 

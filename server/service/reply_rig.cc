@@ -19,6 +19,13 @@ retargeting::Rig RigOf(const RigSource& source, const motion::Poses& follower) {
   return rig;
 }
 
+// The rotation that Levelling::Invert applies.
+retargeting::Quaternion TiltOf(const std::optional<motion::Levelling>& levelling) {
+  if (!levelling) return {};
+  const motion::Vec3 up = levelling->up();
+  return retargeting::ShortestArc({0, 1, 0}, {up.x, up.y, up.z}, {1, 0, 0});
+}
+
 std::vector<int> Inverse(const std::vector<int>& joints) {
   std::vector<int> inverse(joints.size());
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -43,9 +50,11 @@ RigSource MakeRigSource(const motion::Skeleton& skeleton, const motion::Poses& l
 }
 
 ReplyRig::ReplyRig(const RigSource& source, const motion::Coordinates& coordinates,
+                   const std::optional<motion::Levelling>& levelling,
                    const std::vector<int>& joints, const motion::Poses& follower)
     : coordinates_(coordinates),
       to_caller_(retargeting::Inverse(retargeting::ToWorldAxes(coordinates.up_axis))),
+      tilt_(TiltOf(levelling)),
       reply_joints_(Inverse(joints)),
       rig_(RigOf(source, follower)),
       fitter_(source.skeleton, rig_, source.person.frame_rate_hz, source.ankle_height_on_floor,
@@ -72,7 +81,7 @@ void ReplyRig::AddRotations(motion::Poses* poses, v1::MotionChunk& chunk) {
     const std::vector<retargeting::Vec3d> positions = JointPositions(rig_, pose);
     for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
       poses->at(frame, rig_.joints[j].joint) = ToFloat(positions[j]);
-      const retargeting::Quaternion q = pose.rotations[j];
+      const retargeting::Quaternion q = j == 0 ? tilt_ * pose.rotations[j] : pose.rotations[j];
       const retargeting::Vec3d axis = Rotate(to_caller_, {q.x, q.y, q.z});
       for (const double value : {axis.x, axis.y, axis.z, q.w}) {
         chunk.add_rotations(static_cast<float>(value));

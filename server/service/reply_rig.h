@@ -1,11 +1,13 @@
 #ifndef DUET_SERVER_SERVICE_REPLY_RIG_H_
 #define DUET_SERVER_SERVICE_REPLY_RIG_H_
 
+#include <optional>
 #include <vector>
 
 #include "duet/v1/synthesis.pb.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
+#include "model/motion/levelling.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/rig.h"
@@ -26,14 +28,16 @@ struct RigSource {
 RigSource MakeRigSource(const motion::Skeleton& skeleton, const motion::Poses& leader,
                         double frame_rate_hz);
 
-// The joint rotations of one reply, frame by frame, in the caller's unit and up axis. The rig has
-// the leader's proportions and the bone lengths of the follower's first frame.
+// The joint rotations of one reply, frame by frame, in the caller's unit, up axis and tilt. The rig
+// has the leader's proportions and the bone lengths of the follower's first frame.
 class ReplyRig {
  public:
   // joints: for each joint of the reply, its index in the model; all of the model's, in any order.
   // Requires a unit that is the same in all directions, and a follower with at least one frame.
+  // `levelling`: from the caller's world to the follower's.
   ReplyRig(const RigSource& source, const motion::Coordinates& coordinates,
-           const std::vector<int>& joints, const motion::Poses& follower);
+           const std::optional<motion::Levelling>& levelling, const std::vector<int>& joints,
+           const motion::Poses& follower);
   ReplyRig(const ReplyRig&) = delete;
   ReplyRig& operator=(const ReplyRig&) = delete;
 
@@ -45,6 +49,7 @@ class ReplyRig {
  private:
   const motion::Coordinates coordinates_;
   const retargeting::Quaternion to_caller_;  // from the world's axes
+  const retargeting::Quaternion tilt_;       // from the follower's world to the caller's
   std::vector<int> reply_joints_;            // for each joint of the model, its index in the reply
   const retargeting::Rig rig_;
   retargeting::RigFitter fitter_;

@@ -19,6 +19,9 @@
 namespace duet::server::service {
 namespace {
 
+// The cosine of the largest angle between the true vertical and the up axis: 45 degrees.
+constexpr float kMinUprightCosine = 0.70710678f;
+
 // Validates one request. Each method adds the violations of one field.
 class Validation {
  public:
@@ -30,8 +33,13 @@ class Validation {
 
  private:
   void Leader();
+  void Up();
   std::optional<engine::FollowerStart> Start();
   std::optional<motion::Vec3> PartnerDirection();
+  // Returns a direction in metres, y up, as captured: its length is 0 if the caller's is. Absent,
+  // with violations, if it is not finite; absent if the coordinates are unknown.
+  std::optional<motion::Vec3> WorldDirection(absl::string_view field,
+                                             const v1::Direction& direction);
   std::vector<motion::Vec3> StartPositions(absl::string_view field,
                                            const google::protobuf::RepeatedField<float>& values,
                                            const std::vector<int>& joints);
@@ -48,8 +56,13 @@ class Validation {
   std::optional<motion::Coordinates> coordinates_;
   std::vector<int> joints_;  // the leader's joints in the model; empty if they do not match
   motion::Poses leader_;
+  std::optional<motion::Levelling> levelling_;  // absent if the caller's world is level
   ReplyMapping reply_;
 };
+
+std::string Text(const v1::Direction& direction) {
+  return absl::StrCat("(", direction.x(), ", ", direction.y(), ", ", direction.z(), ")");
+}
 
 void Validation::Leader() {
   if (!request_.has_leader()) {
@@ -76,12 +89,29 @@ void Validation::Leader() {
                           violations_);
 }
 
+void Validation::Up() {
+  if (!request_.has_up()) return;
+  const std::optional<motion::Vec3> up = WorldDirection("up", request_.up());
+  if (!up.has_value()) return;
+  // Negated, so that a direction of length 0 is rejected too.
+  if (!(up->y > kMinUprightCosine * Norm(*up))) {
+    violations_.Malformed(
+        "up",
+        absl::StrCat("a direction of any length but 0, less than 45 degrees from ",
+                     v1::UpAxis_Name(request_.leader().up_axis())),
+        Text(request_.up()));
+    return;
+  }
+  levelling_ = motion::Levelling(*up, 0);
+  leader_ = levelling_->Apply(std::move(leader_));
+}
+
 std::vector<motion::Vec3> Validation::StartPositions(
     absl::string_view field, const google::protobuf::RepeatedField<float>& values,
     const std::vector<int>& joints) {
   if (!ValidateFinite(field, values, violations_) || !coordinates_.has_value()) return {};
-  const motion::Poses pose =
-      ReadPositions(field, values, joints, *coordinates_, limits_, violations_);
+  motion::Poses pose = ReadPositions(field, values, joints, *coordinates_, limits_, violations_);
+  if (levelling_.has_value()) pose = levelling_->Apply(std::move(pose));
   return {pose.all().begin(), pose.all().end()};
 }
 
@@ -124,26 +154,30 @@ std::optional<engine::FollowerStart> Validation::Start() {
   return engine::FollowerStart{root, std::move(pose)};
 }
 
+std::optional<motion::Vec3> Validation::WorldDirection(absl::string_view field,
+                                                       const v1::Direction& direction) {
+  google::protobuf::RepeatedField<float> xyz;
+  for (const float value : {direction.x(), direction.y(), direction.z()}) xyz.Add(value);
+  if (!ValidateFinite(field, xyz, violations_) || !coordinates_.has_value()) return std::nullopt;
+  // Scaled first, so that the conversion loses neither tiny nor huge components.
+  const float largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
+  if (!(largest > 0)) return motion::Vec3{};
+  const motion::Vec3 unit = {xyz[0] / largest, xyz[1] / largest, xyz[2] / largest};
+  return ToWorld(*coordinates_, unit) - ToWorld(*coordinates_, {});
+}
+
 std::optional<motion::Vec3> Validation::PartnerDirection() {
   if (!request_.has_partner_direction()) return std::nullopt;
   const v1::Direction& direction = request_.partner_direction();
-  google::protobuf::RepeatedField<float> xyz;
-  for (const float value : {direction.x(), direction.y(), direction.z()}) xyz.Add(value);
-  if (!ValidateFinite("partner_direction", xyz, violations_) || !coordinates_.has_value()) {
-    return std::nullopt;
-  }
-  // Scaled first, so that the conversion loses neither tiny nor huge components.
-  const float largest = std::max({std::abs(xyz[0]), std::abs(xyz[1]), std::abs(xyz[2])});
-  if (largest > 0) {
-    const motion::Vec3 unit = {xyz[0] / largest, xyz[1] / largest, xyz[2] / largest};
-    const motion::Vec3 world = ToWorld(*coordinates_, unit) - ToWorld(*coordinates_, {});
-    const float horizontal = std::hypot(world.x, world.z);
-    if (horizontal > 1e-6F * Norm(world)) {
-      return motion::Vec3{world.x / horizontal, 0, world.z / horizontal};
-    }
+  const std::optional<motion::Vec3> captured = WorldDirection("partner_direction", direction);
+  if (!captured.has_value()) return std::nullopt;
+  const motion::Vec3 world = levelling_.has_value() ? levelling_->Apply(*captured) : *captured;
+  const float horizontal = std::hypot(world.x, world.z);
+  if (horizontal > 1e-6F * Norm(world)) {
+    return motion::Vec3{world.x / horizontal, 0, world.z / horizontal};
   }
   violations_.Malformed("partner_direction", "a direction that is neither vertical nor of length 0",
-                        absl::StrCat("(", xyz[0], ", ", xyz[1], ", ", xyz[2], ")"));
+                        Text(direction));
   return std::nullopt;
 }
 
@@ -153,6 +187,7 @@ void Validation::FillReplyMapping() {
   reply_.up_axis = leader.up_axis();
   reply_.frame_rate_hz = leader.frame_rate_hz();
   if (coordinates_.has_value()) reply_.coordinates = *coordinates_;
+  reply_.levelling = levelling_;
   const auto& wanted = request_.reply_joint_names();
   // The comparison below takes quadratic time, so a list that is too long is skipped.
   if (leader.joint_names_size() > kMaxJointNames) return;
@@ -221,6 +256,7 @@ batching::Priority Validation::CallPriority() {
 
 absl::StatusOr<ValidatedRequest> Validation::Run() {
   Leader();
+  Up();
   std::vector<engine::LabelKeyframe> labels =
       ValidateLabels(request_, model_, limits_, violations_);
   std::optional<engine::FollowerStart> start = Start();

@@ -71,6 +71,8 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   SynthesisRequest request = GoodRequest();
   request.follower_start = motion::Vec3{1, 2, 3};
   request.partner_direction = motion::Vec3{-1, 0.25f, 0.5f};
+  EXPECT_FALSE(ToProto(request)->has_up());
+  request.up = motion::Vec3{0.1f, 1, -0.2f};
   request.seed = 18446744073709551615u;
   request.variety = 0.25f;
   request.candidates = 4;
@@ -85,6 +87,9 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   EXPECT_EQ(wire->partner_direction().x(), -1);
   EXPECT_EQ(wire->partner_direction().y(), 0.25f);
   EXPECT_EQ(wire->partner_direction().z(), 0.5f);
+  EXPECT_EQ(wire->up().x(), 0.1f);
+  EXPECT_EQ(wire->up().y(), 1);
+  EXPECT_EQ(wire->up().z(), -0.2f);
   EXPECT_EQ(wire->seed(), 18446744073709551615u);
   EXPECT_EQ(wire->variety(), 0.25f);
   EXPECT_EQ(wire->candidates(), 4u);

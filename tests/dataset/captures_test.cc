@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "model/dataset/dataset.h"
-#include "model/dataset/posture.h"
+#include "model/motion/posture.h"
 #include "tests/support/data_folder.h"
 
 namespace duet::dataset {
@@ -49,7 +49,7 @@ TEST(CapturesTest, SbuFollowersStandWhereTheirDirectionPoints) {
 }
 
 // The mean lean of every leader or every follower.
-Lean LeanOfAll(const Dataset& dataset, bool leaders, bool as_captured) {
+motion::Lean LeanOfAll(const Dataset& dataset, bool leaders, bool as_captured) {
   std::vector<motion::Vec3> directions;
   for (const Sequence& one : dataset.sequences) {
     motion::Poses poses = leaders ? one.pair.leader.poses : one.pair.follower.poses;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "model/dataset/posture.h"
+#include "model/motion/posture.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::dataset {
@@ -59,7 +59,7 @@ double LargestDistance(const motion::Poses& a, const motion::Poses& b) {
   return largest;
 }
 
-Lean LeanOfLeader(const Dataset& dataset, size_t sequence) {
+motion::Lean LeanOfLeader(const Dataset& dataset, size_t sequence) {
   return MeanLean(
       StandingDirections(dataset.skeleton, dataset.sequences[sequence].pair.leader.poses));
 }
@@ -116,8 +116,8 @@ TEST(LevelSetsTest, SomebodyWhoBowsHardlyPulls) {
   }
   LevelSets(&dataset);
   LevelSets(&bowing);
-  const Lean without = LeanOf(dataset.sequences[0].levelling.up());
-  const Lean with = LeanOf(bowing.sequences[0].levelling.up());
+  const motion::Lean without = LeanOf(dataset.sequences[0].levelling.up());
+  const motion::Lean with = LeanOf(bowing.sequences[0].levelling.up());
   EXPECT_NEAR(with.z, without.z, 1);  // the mean would move by 5
 }
 

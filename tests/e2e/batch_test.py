@@ -73,6 +73,30 @@ def read_k3hi(folder):
     return found
 
 
+def write_turning_leader(path, degrees):
+    """A person who stands for a second at each of nine places and faces another way at each, as captured
+    by a camera that is tilted towards z."""
+    pose = {"head": (0, 1.48, 0), "neck": (0, 1.27, 0), "torso": (0, 1.05, 0)}
+    for side, x in (("left", -1), ("right", 1)):
+        pose.update({f"{side}_shoulder": (.15 * x, 1.27, 0), f"{side}_elbow": (.18 * x, .98, 0),
+                     f"{side}_hand": (.18 * x, .7, 0), f"{side}_hip": (.09 * x, .85, 0),
+                     f"{side}_knee": (.1 * x, .43, 0), f"{side}_foot": (.1 * x, .03, 0)})
+    tilt = math.radians(degrees)
+    rows = [",".join(["frame"] + [f"{joint}_{axis}" for joint in pose for axis in "xyz"])]
+    for frame in range(9 * 15):
+        place = frame // 15
+        yaw = 0.7 * place
+        row = [str(frame)]
+        for x, y, z in pose.values():
+            x, z = (x * math.cos(yaw) + z * math.sin(yaw) + place % 3,
+                    z * math.cos(yaw) - x * math.sin(yaw) + place // 3)
+            y, z = (y * math.cos(tilt) - z * math.sin(tilt), y * math.sin(tilt) + z * math.cos(tilt))
+            row += [f"{value:.5f}" for value in (x, y, z)]
+        rows.append(",".join(row))
+    path.write_text("# duet motion: frame_rate_hz=15 unit=metres up_axis=y-up\n" +
+                    "\n".join(rows) + "\n", encoding="utf-8")
+
+
 class BatchTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -121,6 +145,25 @@ class BatchTest(unittest.TestCase):
         result = tools.duet("batch", "verify", out)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
+
+    def test_a_job_estimates_the_vertical_once_and_keeps_it(self):
+        out, recipe, leaders = self.out(), self.recipe(), self.out("leaders")
+        leaders.mkdir()
+        write_turning_leader(leaders / "a.csv", 10)
+        first = self.batch(out, recipe, leaders=leaders)
+        self.assertRegex(first.stderr, "leaders levelled: tilted by (9|10)\\.")
+        ups = []
+        for name, degrees in (("b.csv", -10), ("c.csv", 0)):
+            ups.append(json.loads((out / ".duet-batch" / "job.json").read_text())["up"])
+            write_turning_leader(leaders / name, degrees)  # together, no longer tilted
+            self.batch(out, recipe, leaders=leaders)
+        self.assertAlmostEqual(ups[0][2], math.sin(math.radians(10)), delta=0.02)
+        self.assertEqual(ups, [ups[0]] * 2)
+        self.verified(out)
+        fresh = self.batch(self.out("fresh"), recipe, leaders=leaders)
+        self.assertNotIn("leaders levelled", fresh.stderr)
+        refused = self.batch(out, recipe, "--level", "off", code=42, leaders=leaders)
+        self.assertIn("was begun with another recipe: input.level", refused.stderr)
 
     def test_folder_becomes_a_data_set(self):
         out = self.out()

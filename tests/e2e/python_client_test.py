@@ -87,6 +87,18 @@ class PythonClientTest(unittest.TestCase):
             self.assertTrue(max(grade.twisted, grade.overlapping) * frames - 1e-3 <= bad
                             <= (grade.twisted + grade.overlapping) * frames + 1e-3, grade)
 
+    def test_a_tilted_leader_gets_the_level_answer_tilted(self):
+        angle = np.radians(12)
+        rotation = np.array([[1, 0, 0], [0, np.cos(angle), np.sin(angle)],
+                             [0, -np.sin(angle), np.cos(angle)]])
+        level = self.client.synthesize(self.hug, {"hug": 1}, seed=3).follower.positions
+        tilted = self.client.synthesize(
+            self.hug.with_positions(self.hug.positions @ rotation), {"hug": 1}, seed=3,
+            up=(0, 1, 0) @ rotation).follower.positions
+        np.testing.assert_allclose(tilted @ rotation.T, level, atol=2e-3)
+        with self.assertRaisesRegex(duet.InvalidRequestError, "up: expected a direction of any"):
+            self.client.synthesize(self.hug, {"hug": 1}, up=(1, 0, 0))
+
     def test_program_gives_the_same_answer(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "pair.json"

@@ -45,6 +45,9 @@ class SynthesisRequest:
             leader's world, of any length.
         rotations: whether the answer has joint rotations beside the positions, for engines
             (:class:`duet_motion.JointRotations`). Not with the unit ``"sbu-normalised"``.
+        up: the true vertical of the leader's world, ``[3]``, of any length but 0, for motion from a
+            tilted camera: less than 45 degrees from ``leader.up_axis``. The follower is returned
+            tilted like the leader. None: ``leader.up_axis``.
         priority: ``"interactive"``, or ``"bulk"``, which yields to interactive calls.
         chunk_frames: frames per chunk of the reply. None: the server's default.
         request_id: identifies the call in the server's log. Empty: the server creates one.
@@ -67,6 +70,7 @@ class SynthesisRequest:
     follower_start: Optional[npt.ArrayLike] = None
     partner_direction: Optional[npt.ArrayLike] = None
     rotations: bool = False
+    up: Optional[npt.ArrayLike] = None
     priority: str = "interactive"
     chunk_frames: Optional[int] = None
     request_id: str = ""
@@ -90,6 +94,7 @@ class SynthesisRequest:
         _check_points("follower_start", self.follower_start, ((3,), (joints, 3)),
                       self.leader.joint_names)
         _check_points("partner_direction", self.partner_direction, ((3,),))
+        _check_points("up", self.up, ((3,),))
         if self.priority not in PRIORITIES:
             raise ValueError(f"priority: expected one of {', '.join(PRIORITIES)}, got "
                              f"{_short(self.priority)}")
@@ -145,8 +150,9 @@ def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
     if request.follower_start is not None:
         _fill_start(request.follower_start, out.follower_start)
     if request.partner_direction is not None:
-        x, y, z = _floats(request.partner_direction)
-        out.partner_direction.CopyFrom(motion_pb2.Direction(x=x, y=y, z=z))
+        out.partner_direction.CopyFrom(_direction(request.partner_direction))
+    if request.up is not None:
+        out.up.CopyFrom(_direction(request.up))
     return out
 
 
@@ -169,6 +175,11 @@ def _fill_start(start: npt.ArrayLike, out: motion_pb2.FollowerStart) -> None:
         out.root_position.CopyFrom(motion_pb2.Point(x=values[0], y=values[1], z=values[2]))
     else:
         out.pose.positions.extend(values)
+
+
+def _direction(values: npt.ArrayLike) -> motion_pb2.Direction:
+    x, y, z = _floats(values)
+    return motion_pb2.Direction(x=x, y=y, z=z)
 
 
 def _floats(values: npt.ArrayLike) -> list[float]:

@@ -24,6 +24,7 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen);  // the paper
 void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6 and 7
 void AddDataCommand(CLI::App* app, ChosenCommand* chosen);          // tilt, noise and leaders
 void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen);     // where the partner is
+void AddTiltCommand(CLI::App* app, ChosenCommand* chosen);          // of a camera, and levelling
 void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen);         // for duet batch's filter
 
 }  // namespace duet::evaluation::program

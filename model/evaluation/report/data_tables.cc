@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/dataset/posture.h"
 #include "model/evaluation/metrics/motion_quality.h"
 #include "model/motion/filter.h"
+#include "model/motion/posture.h"
 
 namespace duet::evaluation::report {
 namespace {
@@ -69,13 +69,13 @@ void Append(const std::vector<motion::Vec3>& more, std::vector<motion::Vec3>* al
   all->insert(all->end(), more.begin(), more.end());
 }
 
-dataset::Lean LeanOf(const motion::Skeleton& skeleton, const Sequences& sequences,
-                     motion::Clip motion::ClipPair::*person, World world) {
+motion::Lean LeanOf(const motion::Skeleton& skeleton, const Sequences& sequences,
+                    motion::Clip motion::ClipPair::*person, World world) {
   std::vector<motion::Vec3> directions;
   for (const dataset::Sequence* one : sequences) {
-    Append(dataset::StandingDirections(skeleton, In(world, *one, one->pair.*person)), &directions);
+    Append(motion::StandingDirections(skeleton, In(world, *one, one->pair.*person)), &directions);
   }
-  return dataset::MeanLean(directions);
+  return motion::MeanLean(directions);
 }
 
 std::vector<motion::Vec3> FeetOf(const motion::Skeleton& skeleton, const Sequences& sequences,
@@ -83,7 +83,7 @@ std::vector<motion::Vec3> FeetOf(const motion::Skeleton& skeleton, const Sequenc
   std::vector<motion::Vec3> feet;
   for (const dataset::Sequence* one : sequences) {
     for (const motion::Clip* clip : {&one->pair.leader, &one->pair.follower}) {
-      Append(dataset::LowerFeet(skeleton, In(world, *one, *clip)), &feet);
+      Append(motion::LowerFeet(skeleton, In(world, *one, *clip)), &feet);
     }
   }
   return feet;
@@ -127,7 +127,7 @@ Table LeanTable(const dataset::Dataset& dataset) {
     TableRow row = {group.name, {static_cast<double>(group.sequences.size())}};
     for (const World world : {World::kCaptured, World::kLevel}) {
       for (const auto person : {&motion::ClipPair::leader, &motion::ClipPair::follower}) {
-        const dataset::Lean lean = LeanOf(dataset.skeleton, group.sequences, person, world);
+        const motion::Lean lean = LeanOf(dataset.skeleton, group.sequences, person, world);
         row.values.insert(row.values.end(), {lean.x, lean.z});
       }
     }
@@ -149,10 +149,9 @@ Table FloorTable(const dataset::Dataset& dataset) {
     TableRow row = {group.name, {}};
     for (const World world : {World::kCaptured, World::kLevel}) {
       const std::vector<motion::Vec3> feet = FeetOf(dataset.skeleton, group.sequences, world);
-      const dataset::Lean lean = dataset::FloorLean(feet);
-      row.values.insert(
-          row.values.end(),
-          {lean.x, lean.z, kCentimetres * dataset::HeightQuantile(feet, kFloorShare)});
+      const motion::Lean lean = motion::FloorLean(feet);
+      row.values.insert(row.values.end(),
+                        {lean.x, lean.z, kCentimetres * motion::HeightQuantile(feet, kFloorShare)});
     }
     table.rows.push_back(std::move(row));
   }

@@ -177,6 +177,24 @@ class JobTest : public ::testing::Test {
   std::atomic<Job*> job_{nullptr};
 };
 
+TEST_F(JobTest, EveryRequestHasTheVerticalOfTheJobWhichRecordsIt) {
+  recipe_ = absl::StrCat(kRecipe, " input { level: \"0.25,1,0.125\" }");
+  connection().answer = [](const SynthesisRequest& request, int) {
+    EXPECT_EQ(request.up, (motion::Vec3{0.25f, 1, 0.125f}));
+    return absl::OkStatus();
+  };
+  ASSERT_THAT(Run("tilted"), IsOk());
+  EXPECT_EQ(connection().calls, kItems);
+  EXPECT_EQ(ReadJobIdentity(folder_ / "tilted")->up, (motion::Vec3{0.25f, 1, 0.125f}));
+  recipe_ = kRecipe;
+  connection().answer = nullptr;
+  ASSERT_THAT(Run("level"), IsOk());
+  EXPECT_EQ(ReadJobIdentity(folder_ / "level")->up, std::nullopt);
+  EXPECT_NE(Lines("tilted/index.jsonl")[0].substr(0, 60),
+            Lines("level/index.jsonl")[0].substr(0, 60))
+      << "other ids";
+}
+
 TEST_F(JobTest, KeepsEveryAnswerAndListsIt) {
   const auto report = Run("set");
   ASSERT_THAT(report, IsOk());

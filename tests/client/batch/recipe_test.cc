@@ -43,6 +43,19 @@ TEST(Recipe, SideSelectsTheLeader) {
   EXPECT_EQ(Parse("input { side: SIDE_BOTH }")->input.side, Sides::kBoth);
 }
 
+TEST(Recipe, LevelIsAVerticalOrItsAbsence) {
+  EXPECT_TRUE(Parse("")->input.level.automatic);
+  EXPECT_TRUE(Parse("input { level: \"auto\" }")->input.level.automatic);
+  EXPECT_FALSE(Parse("input { level: \"off\" }")->input.level.automatic);
+  EXPECT_EQ(Parse("input { level: \"off\" }")->input.up, std::nullopt);
+  EXPECT_EQ(Parse("input { level: \"0,2,0.5\" }")->input.up, (motion::Vec3{0, 2, 0.5f}));
+  EXPECT_THAT(Parse("input { level: \"0,1,2\" }"),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("input.level: expected auto, off or X,Y,Z less than 45 degrees "
+                                 "from 0,1,0, got \"0,1,2\"")));
+  EXPECT_NE(Parse("input { level: \"off\" }")->digest, Parse("")->digest);
+}
+
 TEST(Recipe, TextFormatAndJsonAreEquivalent) {
   const auto text = Parse(R"(
     seed: 3 models: "sbu@2" variety: 0.5 candidates: 4

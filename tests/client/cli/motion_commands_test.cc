@@ -12,6 +12,7 @@
 #include "model/motion/skeleton.h"
 #include "nlohmann/json.hpp"
 #include "tests/formats/asf/asf_fixture.h"
+#include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
@@ -129,6 +130,22 @@ TEST_F(MotionCommandsTest, InspectPrintsJson) {
   EXPECT_EQ(person["joints"][0]["parts"], json::parse(R"([{"joint": "head", "weight": 1.0}])"));
   EXPECT_EQ(person["checks"][1]["name"], "size");
   EXPECT_EQ(person["checks"][1]["good"], true);
+}
+
+TEST_F(MotionCommandsTest, InspectPrintsTheTiltOfEachFileAndOfAllTogether) {
+  const motion::Clip tilted{leader_.joint_names, 15,
+                            test::Tilted(test::TurningMotion(15), {0, 1, 0.2f})};
+  ASSERT_THAT(formats::WritePair(folder_ / "tilted.csv", {tilted, tilted}, motion::SbuSkeleton()),
+              IsOk());
+  ASSERT_EQ(Run({"inspect", Path("tilted.csv"), Path("one.bvh")}), 0);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("  tilt        tilted by 11."), HasSubstr("; --level "),
+                                HasSubstr("; feet rest in "),
+                                HasSubstr("all files, if one camera captured them\n  tilt ")));
+  const json report = RunJson({"inspect", "--json", Path("tilted.csv"), Path("one.bvh")});
+  EXPECT_EQ(report["files"][0]["tilt"]["verdict"], "tilted");
+  EXPECT_NEAR(report["files"][0]["tilt"]["up"][2], 0.196, 0.02);
+  EXPECT_EQ(report["files"][1]["tilt"]["verdict"], "unknown");
+  EXPECT_GT(report["tilt"]["places"], 0);
 }
 
 TEST_F(MotionCommandsTest, InspectNamesWhatIsMissing) {

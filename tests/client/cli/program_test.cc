@@ -258,6 +258,44 @@ TEST_F(ProgramTest, WritesTheFollowerOnAGltfRigBesideThePair) {
   EXPECT_TRUE(Exists("pair.gltf") && Exists("pair.follower.gltf"));
 }
 
+TEST_F(ProgramTest, LevelsATiltedLeaderIfTheEvidenceIsStrong) {
+  const motion::Vec3 up = {0, 1, 0.2f};
+  const motion::Clip tilted{leader_.joint_names, 15, test::Tilted(test::TurningMotion(15), up)};
+  ASSERT_THAT(formats::WritePair(folder_ / "tilted.csv", {tilted, tilted}, motion::SbuSkeleton()),
+              IsOk());
+  std::optional<motion::Vec3> sent;
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillRepeatedly([&](const SynthesisRequest& request, const ChunkCallback&) {
+        sent = request.up;
+        return Follow(request);
+      });
+  const auto run = [&](const std::string& leader, std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"synthesize", "--leader", Path(leader), "--label", "kick", "--out",
+                                 Path("pair.json")});
+    EXPECT_EQ(Run(flags), 0) << err_.str();
+  };
+  run("tilted.csv", {});
+  ASSERT_TRUE(sent.has_value());
+  EXPECT_LT(Distance(*sent, up / Norm(up)), 0.03f);
+  EXPECT_THAT(out_.str(), HasSubstr("          levelled: tilted by 11."));
+  run("tilted.csv", {"--json"});
+  EXPECT_NEAR(nlohmann::json::parse(out_.str())["up"][2], 0.196, 0.02);
+  run("tilted.csv", {"--level", "off"});
+  EXPECT_EQ(sent, std::nullopt);
+  EXPECT_THAT(out_.str(), Not(HasSubstr("levelled")));
+  run("leader.csv", {"--level", "auto"});
+  EXPECT_EQ(sent, std::nullopt);
+  EXPECT_THAT(out_.str(), HasSubstr("not levelled: "));
+  run("leader.csv", {"--level", "0.1,1,0"});
+  EXPECT_EQ(sent, (motion::Vec3{0.1f, 1, 0}));
+  EXPECT_THAT(out_.str(), HasSubstr("levelled: tilted by 5.7 degrees, as --level states"));
+}
+
+TEST_F(ProgramTest, RejectsAVerticalThatIsFarFromYUp) {
+  EXPECT_EQ(Synthesize("pair.json", {"--level", "1,0,0"}), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("--level: expected auto, off or X,Y,Z less than 45 degrees"));
+}
+
 TEST_F(ProgramTest, SendsTheValuesOfTheFlags) {
   SynthesisRequest sent;
   EXPECT_CALL(*connection_, GetModel(Field(&ModelChoice::name, "sbu")));

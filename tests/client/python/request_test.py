@@ -25,7 +25,8 @@ class RequestTest(unittest.TestCase):
     def test_every_field_is_sent(self):
         wire = to_proto(self.request(
             seed=2**64 - 1, variety=0.5, model="sbu@2", clean_up=False, priority="bulk",
-            chunk_frames=8, partner_direction=(0, 0, 1), candidates=4, rotations=True))
+            chunk_frames=8, partner_direction=(0, 0, 1), candidates=4, rotations=True,
+            up=(0.25, 0, 1)))
         self.assertEqual([(w.interaction_class, w.weight) for w in wire.label_vector.weights],
                          [("hug", 1), ("push", 0.5)])
         self.assertEqual((wire.seed, wire.variety, wire.chunk_frames), (2**64 - 1, 0.5, 8))
@@ -35,11 +36,12 @@ class RequestTest(unittest.TestCase):
         self.assertEqual(wire.priority, synthesis_pb2.PRIORITY_BULK)
         self.assertEqual(wire.partner_direction.z, 1)
         self.assertTrue(wire.reply_rotations)
+        self.assertEqual((wire.up.x, wire.up.y, wire.up.z), (0.25, 0, 1))
         self.assertFalse(wire.HasField("follower_start"))
 
     def test_unset_fields_stay_absent(self):
         wire = to_proto(duet.SynthesisRequest(support.leader()))
-        for field in ("label_vector", "follower_start", "partner_direction", "chunk_frames"):
+        for field in ("label_vector", "follower_start", "partner_direction", "up", "chunk_frames"):
             self.assertFalse(wire.HasField(field), field)
         self.assertEqual(wire.clean_up, synthesis_pb2.CLEAN_UP_UNSPECIFIED)
         self.assertEqual(wire.candidates, 1)
@@ -89,6 +91,8 @@ class RequestTest(unittest.TestCase):
                 ({"follower_start": (0, 1e300, 0)}, r"follower_start\[1\]: .* got 1e\+300$"),
                 ({"partner_direction": ("a", "b", "c")}, "partner_direction: expected real numbers"),
                 ({"rotations": 1}, "rotations: expected True or False, got 1"),
+                ({"up": (0, 1)}, r"up: expected the shape \(3,\), got \(2,\)"),
+                ({"up": (0, np.nan, 0)}, r"up\[1\]: expected a finite float32, got nan"),
                 ({"partner_direction": 1},
                  r"partner_direction: expected the shape \(3,\), got \(\)")):
             with self.subTest(fields=fields), self.assertRaisesRegex(ValueError, message):

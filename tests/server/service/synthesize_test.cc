@@ -12,6 +12,7 @@
 #include <tuple>
 #include <vector>
 
+#include "model/motion/levelling.h"
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
@@ -227,6 +228,37 @@ TEST(SynthesizeTest, FollowerStartAndPartnerDirectionReachTheModel) {
   EXPECT_EQ(seen[0].start->root, (motion::Vec3{0, 0, -2}));
   ASSERT_TRUE(seen[0].partner_direction.has_value());
   EXPECT_EQ(*seen[0].partner_direction, (motion::Vec3{0, 0, -1}));
+}
+
+// Rotates the leader into the world of a camera whose vertical is `up`.
+void Tilt(motion::Vec3 up, v1::SynthesizeRequest* request) {
+  const motion::Levelling levelling(up, 0);
+  auto& positions = *request->mutable_leader()->mutable_positions();
+  for (int i = 0; i < positions.size(); i += 3) {
+    const motion::Vec3 tilted =
+        levelling.Invert({positions[i], positions[i + 1], positions[i + 2]});
+    positions[i] = tilted.x, positions[i + 1] = tilted.y, positions[i + 2] = tilted.z;
+  }
+  request->mutable_up()->set_x(up.x);
+  request->mutable_up()->set_y(up.y);
+  request->mutable_up()->set_z(up.z);
+}
+
+TEST(SynthesizeTest, ATiltedLeaderGetsTheLevelAnswerTiltedLikeTheLeader) {
+  RunningService running((RunningService::Setup()));
+  const std::vector<float> level = Call(running.stub(), SampleRequest(30)).Positions();
+  v1::SynthesizeRequest request = SampleRequest(30);
+  const motion::Vec3 up = {0.1F, 1, 0.15F};
+  Tilt(up, &request);
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  const std::vector<float> tilted = reply.Positions();
+  ASSERT_EQ(tilted.size(), level.size());
+  const motion::Levelling levelling(up, 0);
+  for (std::size_t i = 0; i < level.size(); i += 3) {
+    const motion::Vec3 back = levelling.Apply({tilted[i], tilted[i + 1], tilted[i + 2]});
+    ASSERT_LT(Distance(back, {level[i], level[i + 1], level[i + 2]}), 1e-4F) << i;
+  }
 }
 
 TEST(SynthesizeTest, RepliesWithTheRequestedJointsInTheirOrder) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/motion/levelling.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
@@ -79,6 +80,13 @@ void SetDirection(v1::SynthesizeRequest& request, float x, float y, float z) {
   direction.set_x(x);
   direction.set_y(y);
   direction.set_z(z);
+}
+
+void SetVertical(v1::SynthesizeRequest& request, float x, float y, float z) {
+  v1::Direction& up = *request.mutable_up();
+  up.set_x(x);
+  up.set_y(y);
+  up.set_z(z);
 }
 
 void AddKeyframe(v1::SynthesizeRequest& request, uint32_t frame) {
@@ -366,7 +374,22 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"nearly_vertical_direction", [](Request& r) { SetDirection(r, 1e-6F, -3, 1e-6F); },
                 "partner_direction", "expected a direction that is neither vertical"},
         Spoiled{"nan_direction", [](Request& r) { SetDirection(r, kNan, 0, 1); },
-                "partner_direction[0]", "expected a finite number, got nan"}),
+                "partner_direction[0]", "expected a finite number, got nan"},
+        Spoiled{"no_up", [](Request& r) { SetVertical(r, 0, 0, 0); }, "up",
+                "expected a direction of any length but 0, less than 45 degrees from "
+                "UP_AXIS_Y_UP, got (0, 0, 0)"},
+        Spoiled{"far_up", [](Request& r) { SetVertical(r, 0, 1, 1.001F); }, "up",
+                "got (0, 1, 1.001)"},
+        Spoiled{"upside_down", [](Request& r) { SetVertical(r, 0, -1, 0); }, "up",
+                "got (0, -1, 0)"},
+        Spoiled{"infinite_up", [](Request& r) { SetVertical(r, 0, kInfinity, 0); }, "up[1]",
+                "expected a finite number, got inf"},
+        Spoiled{"direction_along_up",
+                [](Request& r) {
+                  SetVertical(r, 0, 2, 1);
+                  SetDirection(r, 0, 4, 2);
+                },
+                "partner_direction", "neither vertical nor of length 0, got (0, 4, 2)"}),
     SpoiledName);
 
 TEST(ValidateRequestTest, RejectionOfAnEmptyRequestNamesEveryMissingField) {
@@ -535,6 +558,77 @@ TEST(ValidateRequestTest, ConvertsUnitAndUpAxisToTheWorld) {
   EXPECT_LT(Distance(validated->clip.leader.at(0, 0), expected), 1e-6F);
   EXPECT_LT(Distance(validated->clip.start->root, expected), 1e-6F);
   EXPECT_TRUE(validated->clip.start->pose.empty());
+}
+
+// A request in coordinates whose vertical leans by 10 degrees, of the leader of SampleRequest.
+v1::SynthesizeRequest TiltedRequest(const motion::Coordinates& coordinates, v1::LengthUnit unit,
+                                    v1::UpAxis up_axis) {
+  const motion::Levelling levelling({0.1F, 1, 0.15F}, 0);
+  const auto caller = [&](motion::Vec3 level) {
+    return FromWorld(coordinates, levelling.Invert(level));
+  };
+  v1::SynthesizeRequest request = SampleRequest();
+  v1::Motion& leader = *request.mutable_leader();
+  leader.set_unit(unit);
+  leader.set_up_axis(up_axis);
+  for (int i = 0; i < leader.positions_size(); i += 3) {
+    float* xyz = leader.mutable_positions()->mutable_data() + i;
+    const motion::Vec3 position = caller({xyz[0], xyz[1], xyz[2]});
+    xyz[0] = position.x, xyz[1] = position.y, xyz[2] = position.z;
+  }
+  const motion::Vec3 start = caller({1, 2, 3}), origin = caller({0, 0, 0});
+  const motion::Vec3 up = caller({0, 1, 0}) - origin, direction = caller({3, 7, 4}) - origin;
+  SetRoot(request, start.x, start.y, start.z);
+  SetVertical(request, up.x, up.y, up.z);
+  SetDirection(request, direction.x, direction.y, direction.z);
+  return request;
+}
+
+TEST(ValidateRequestTest, LevelsEveryPositionAndDirectionInEveryUnitAndAxis) {
+  using motion::LengthUnit;
+  using motion::UpAxis;
+  const absl::StatusOr<ValidatedRequest> level = Validate(SampleRequest());
+  ASSERT_THAT(level, IsOk());
+  const struct {
+    motion::Coordinates coordinates;
+    v1::LengthUnit unit;
+    v1::UpAxis axis;
+  } cases[] = {
+      {{LengthUnit::kMetres, UpAxis::kYUp}, v1::LENGTH_UNIT_METRES, v1::UP_AXIS_Y_UP},
+      {{LengthUnit::kMillimetres, UpAxis::kZUp}, v1::LENGTH_UNIT_MILLIMETRES, v1::UP_AXIS_Z_UP},
+      {{LengthUnit::kSbuNormalised, UpAxis::kYDown},
+       v1::LENGTH_UNIT_SBU_NORMALISED,
+       v1::UP_AXIS_Y_DOWN}};
+  for (const auto& one : cases) {
+    const absl::StatusOr<ValidatedRequest> tilted =
+        Validate(TiltedRequest(one.coordinates, one.unit, one.axis));
+    ASSERT_THAT(tilted, IsOk());
+    for (int i = 0; i < level->clip.leader.frame_count() * kJoints; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      ASSERT_LT(Distance(tilted->clip.leader.all()[at], level->clip.leader.all()[at]), 1e-4F) << i;
+    }
+    EXPECT_LT(Distance(tilted->clip.start->root, {1, 2, 3}), 1e-4F);
+    EXPECT_LT(Distance(*tilted->clip.partner_direction, {0.6F, 0, 0.8F}), 1e-4F);
+  }
+}
+
+TEST(ValidateRequestTest, LevelsAStartPose) {
+  v1::SynthesizeRequest request = SampleRequest();
+  auto* positions = request.mutable_follower_start()->mutable_pose()->mutable_positions();
+  for (int joint = 0; joint < kJoints; ++joint) {
+    for (const float value : {0.0F, 3.0F, 4.0F}) positions->Add(value);
+  }
+  SetVertical(request, 0, 4, 3);
+  const absl::StatusOr<ValidatedRequest> validated = Validate(request);
+  ASSERT_THAT(validated, IsOk());
+  EXPECT_LT(Distance(validated->clip.start->pose[5], {0, 4.8F, 1.4F}), 1e-5F);
+  EXPECT_EQ(validated->clip.start->root, validated->clip.start->pose[2]);
+}
+
+TEST(ValidateRequestTest, WithoutUpNothingIsLevelled) {
+  const absl::StatusOr<ValidatedRequest> validated = Validate(SampleRequest());
+  ASSERT_THAT(validated, IsOk());
+  EXPECT_FALSE(validated->reply.levelling.has_value());
 }
 
 TEST(ValidateRequestTest, ReadsAStartPoseInTheLeadersJointOrder) {

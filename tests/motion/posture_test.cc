@@ -1,60 +1,58 @@
-#include "model/dataset/posture.h"
+#include "model/motion/posture.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-namespace duet::dataset {
+namespace duet::motion {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 // Root, neck and two feet.
-motion::Skeleton Figure() {
-  motion::Skeleton skeleton;
+Skeleton Figure() {
+  Skeleton skeleton;
   skeleton.joint_names = {"root", "neck", "left_foot", "right_foot"};
   skeleton.bones = {{0, 1}, {0, 2}, {0, 3}};
-  skeleton.feet = motion::JointPair{2, 3};
+  skeleton.feet = JointPair{2, 3};
   return skeleton;
 }
 
 TEST(StandingDirectionsTest, PointFromTheFeetToTheNeck) {
-  const motion::Poses poses(4, {{9, 9, 9}, {1, 3, 0}, {0, 0, 1}, {2, 0, -1}});
-  EXPECT_THAT(StandingDirections(Figure(), poses), ElementsAre(motion::Vec3{0, 1, 0}));
-  motion::Skeleton neckless = Figure();
+  const Poses poses(4, {{9, 9, 9}, {1, 3, 0}, {0, 0, 1}, {2, 0, -1}});
+  EXPECT_THAT(StandingDirections(Figure(), poses), ElementsAre(Vec3{0, 1, 0}));
+  Skeleton neckless = Figure();
   neckless.joint_names[1] = "head";
-  const motion::Poses leaning(4, {{1, 2, 2}, {9, 9, 9}, {0, 0, 0}, {2, 0, 0}});
-  const motion::Vec3 up = StandingDirections(neckless, leaning)[0];
+  const Poses leaning(4, {{1, 2, 2}, {9, 9, 9}, {0, 0, 0}, {2, 0, 0}});
+  const Vec3 up = StandingDirections(neckless, leaning)[0];
   EXPECT_NEAR(up.y, std::sqrt(0.5), 1e-6);
   EXPECT_NEAR(up.z, std::sqrt(0.5), 1e-6);
 }
 
 TEST(StandingDirectionsTest, NeedFeetAndABody) {
-  motion::Skeleton footless = Figure();
+  Skeleton footless = Figure();
   footless.feet.reset();
-  EXPECT_THAT(StandingDirections(footless, motion::Poses(3, 4)), IsEmpty());
-  EXPECT_THAT(LowerFeet(footless, motion::Poses(3, 4)), IsEmpty());
-  EXPECT_THAT(StandingDirections(Figure(), motion::Poses(3, 4)), IsEmpty());
+  EXPECT_THAT(StandingDirections(footless, Poses(3, 4)), IsEmpty());
+  EXPECT_THAT(LowerFeet(footless, Poses(3, 4)), IsEmpty());
+  EXPECT_THAT(StandingDirections(Figure(), Poses(3, 4)), IsEmpty());
 }
 
 TEST(LowerFeetTest, AreTheLowerOfBothInEachFrame) {
-  const motion::Poses poses(
-      4, {{}, {}, {1, 0.1f, 2}, {3, 0.2f, 4}, {}, {}, {5, 0.3f, 6}, {7, 0.2f, 8}});
-  EXPECT_THAT(LowerFeet(Figure(), poses),
-              ElementsAre(motion::Vec3{1, 0.1f, 2}, motion::Vec3{7, 0.2f, 8}));
+  const Poses poses(4, {{}, {}, {1, 0.1f, 2}, {3, 0.2f, 4}, {}, {}, {5, 0.3f, 6}, {7, 0.2f, 8}});
+  EXPECT_THAT(LowerFeet(Figure(), poses), ElementsAre(Vec3{1, 0.1f, 2}, Vec3{7, 0.2f, 8}));
 }
 
 TEST(RobustMeanTest, IsHardlyMovedByFarPoints) {
-  const motion::Vec3 mean =
+  const Vec3 mean =
       RobustMean({{0, 1, 0}, {0.01f, 1, 0}, {-0.01f, 1, 0}, {0, 1, 0.01f}, {5, 0, 0}});
   EXPECT_LT(Distance(mean, {0, 1, 0}), 0.02);
 }
 
 TEST(RobustMeanTest, IsTheMeanOfWhatLiesTogether) {
   EXPECT_LT(Distance(RobustMean({{0, 1, 0}, {1, 1, 0}, {0, 3, 0}, {1, 3, 0}}), {0.5f, 2, 0}), 1e-6);
-  EXPECT_EQ(RobustMean({{1, 2, 3}, {1, 2, 3}}), (motion::Vec3{1, 2, 3}));
-  EXPECT_EQ(RobustMean({}), (motion::Vec3{}));
+  EXPECT_EQ(RobustMean({{1, 2, 3}, {1, 2, 3}}), (Vec3{1, 2, 3}));
+  EXPECT_EQ(RobustMean({}), (Vec3{}));
 }
 
 TEST(LeanTest, IsTowardsXAndZInDegrees) {
@@ -66,7 +64,7 @@ TEST(LeanTest, IsTowardsXAndZInDegrees) {
 }
 
 TEST(FloorLeanTest, IsThatOfThePlaneOfMostPoints) {
-  std::vector<motion::Vec3> feet;
+  std::vector<Vec3> feet;
   for (int i = 0; i < 10; ++i) {
     for (int k = 0; k < 10; ++k) {
       const auto x = static_cast<float>(i), z = static_cast<float>(k);
@@ -84,11 +82,11 @@ TEST(FloorLeanTest, OfNoPlaneIsLevel) {
 }
 
 TEST(HeightQuantileTest, IsTheHeightThatAShareIsBelow) {
-  const std::vector<motion::Vec3> points = {{0, 4, 0}, {0, 0, 0}, {0, 3, 0}, {0, 1, 0}, {0, 2, 0}};
+  const std::vector<Vec3> points = {{0, 4, 0}, {0, 0, 0}, {0, 3, 0}, {0, 1, 0}, {0, 2, 0}};
   EXPECT_EQ(HeightQuantile(points, 0), 0);
   EXPECT_EQ(HeightQuantile(points, 0.25), 1);
   EXPECT_EQ(HeightQuantile(points, 1), 4);
 }
 
 }  // namespace
-}  // namespace duet::dataset
+}  // namespace duet::motion

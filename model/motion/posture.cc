@@ -1,4 +1,4 @@
-#include "model/dataset/posture.h"
+#include "model/motion/posture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "model/base/angle.h"
 #include "model/base/median.h"
 
-namespace duet::dataset {
+namespace duet::motion {
 namespace {
 
 // Distance up to which points have full weight, times the median one. Planes: Huber's 1.345 sigma.
@@ -25,12 +25,12 @@ struct Plane {
   double slope_z = 0;
   double height = 0;
 
-  double Residual(motion::Vec3 point) const {
+  double Residual(Vec3 point) const {
     return point.y - (slope_x * point.x + slope_z * point.z + height);
   }
 };
 
-motion::Vec3 Mean(const std::vector<motion::Vec3>& points, const std::vector<double>& weights) {
+Vec3 Mean(const std::vector<Vec3>& points, const std::vector<double>& weights) {
   double x = 0, y = 0, z = 0, sum = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     x += weights[i] * points[i].x;
@@ -42,11 +42,11 @@ motion::Vec3 Mean(const std::vector<motion::Vec3>& points, const std::vector<dou
 }
 
 // Weighted least squares about the weighted mean; horizontal if the points are on a line.
-Plane FitPlane(const std::vector<motion::Vec3>& points, const std::vector<double>& weights) {
-  const motion::Vec3 mean = Mean(points, weights);
+Plane FitPlane(const std::vector<Vec3>& points, const std::vector<double>& weights) {
+  const Vec3 mean = Mean(points, weights);
   double xx = 0, xz = 0, zz = 0, xy = 0, zy = 0, sum = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const motion::Vec3 p = points[i] - mean;
+    const Vec3 p = points[i] - mean;
     xx += weights[i] * p.x * p.x;
     xz += weights[i] * p.x * p.z;
     zz += weights[i] * p.z * p.z;
@@ -70,37 +70,39 @@ std::vector<double> HuberWeights(std::vector<double> residuals, double reach) {
 
 }  // namespace
 
-std::vector<motion::Vec3> StandingDirections(const motion::Skeleton& skeleton,
-                                             const motion::Poses& poses) {
-  std::vector<motion::Vec3> directions;
-  if (!skeleton.feet) return directions;
+Vec3 FromFeet(const Skeleton& skeleton, const Poses& poses, int frame) {
   const int neck = skeleton.Find("neck");
   const int top = neck < 0 ? skeleton.root : neck;
+  return poses.at(frame, top) -
+         (poses.at(frame, skeleton.feet->left) + poses.at(frame, skeleton.feet->right)) / 2;
+}
+
+std::vector<Vec3> StandingDirections(const Skeleton& skeleton, const Poses& poses) {
+  std::vector<Vec3> directions;
+  if (!skeleton.feet) return directions;
   for (int t = 0; t < poses.frame_count(); ++t) {
-    const motion::Vec3 feet =
-        (poses.at(t, skeleton.feet->left) + poses.at(t, skeleton.feet->right)) / 2;
-    const motion::Vec3 body = poses.at(t, top) - feet;
+    const Vec3 body = FromFeet(skeleton, poses, t);
     const float length = Norm(body);
     if (length > 0) directions.push_back(body / length);
   }
   return directions;
 }
 
-std::vector<motion::Vec3> LowerFeet(const motion::Skeleton& skeleton, const motion::Poses& poses) {
-  std::vector<motion::Vec3> feet;
+std::vector<Vec3> LowerFeet(const Skeleton& skeleton, const Poses& poses) {
+  std::vector<Vec3> feet;
   if (!skeleton.feet) return feet;
   for (int t = 0; t < poses.frame_count(); ++t) {
-    const motion::Vec3& left = poses.at(t, skeleton.feet->left);
-    const motion::Vec3& right = poses.at(t, skeleton.feet->right);
+    const Vec3& left = poses.at(t, skeleton.feet->left);
+    const Vec3& right = poses.at(t, skeleton.feet->right);
     feet.push_back(left.y < right.y ? left : right);
   }
   return feet;
 }
 
-motion::Vec3 RobustMean(const std::vector<motion::Vec3>& points) {
+Vec3 RobustMean(const std::vector<Vec3>& points) {
   if (points.empty()) return {};
   std::vector<double> weights(points.size(), 1);
-  motion::Vec3 mean;
+  Vec3 mean;
   for (int step = 0; step < kMeanSteps; ++step) {
     mean = Mean(points, weights);
     for (std::size_t i = 0; i < points.size(); ++i) weights[i] = Distance(points[i], mean);
@@ -109,17 +111,17 @@ motion::Vec3 RobustMean(const std::vector<motion::Vec3>& points) {
   return mean;
 }
 
-Lean LeanOf(motion::Vec3 up) {
+Lean LeanOf(Vec3 up) {
   return {std::atan2(up.x, up.y) * base::kDegreesPerRadian,
           std::atan2(up.z, up.y) * base::kDegreesPerRadian};
 }
 
-Lean MeanLean(const std::vector<motion::Vec3>& directions) {
+Lean MeanLean(const std::vector<Vec3>& directions) {
   if (directions.empty()) return {};
   return LeanOf(Mean(directions, std::vector<double>(directions.size(), 1)));
 }
 
-Lean FloorLean(const std::vector<motion::Vec3>& points) {
+Lean FloorLean(const std::vector<Vec3>& points) {
   if (points.empty()) return {};
   std::vector<double> weights(points.size(), 1);
   Plane plane;
@@ -134,13 +136,13 @@ Lean FloorLean(const std::vector<motion::Vec3>& points) {
           -std::atan(plane.slope_z) * base::kDegreesPerRadian};
 }
 
-float HeightQuantile(const std::vector<motion::Vec3>& points, double share) {
+float HeightQuantile(const std::vector<Vec3>& points, double share) {
   std::vector<float> heights;
   heights.reserve(points.size());
-  for (const motion::Vec3& point : points) heights.push_back(point.y);
+  for (const Vec3& point : points) heights.push_back(point.y);
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(heights.size() - 1));
   std::nth_element(heights.begin(), heights.begin() + rank, heights.end());
   return heights[static_cast<std::size_t>(rank)];
 }
 
-}  // namespace duet::dataset
+}  // namespace duet::motion

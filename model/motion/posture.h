@@ -1,5 +1,5 @@
-#ifndef DUET_MODEL_DATASET_POSTURE_H_
-#define DUET_MODEL_DATASET_POSTURE_H_
+#ifndef DUET_MODEL_MOTION_POSTURE_H_
+#define DUET_MODEL_MOTION_POSTURE_H_
 
 #include <vector>
 
@@ -12,37 +12,40 @@
 //
 // Units: world metres, y up.
 
-namespace duet::dataset {
+namespace duet::motion {
+
+// From the middle of the feet to the neck; to the root if the skeleton has no joint "neck".
+// Requires feet.
+Vec3 FromFeet(const Skeleton& skeleton, const Poses& poses, int frame);
 
 // The direction of length 1 from the middle of the feet to the neck, in every frame; to the root if
 // the skeleton has no joint "neck". Omits frames in which the two coincide. Empty for a skeleton
 // without feet.
-std::vector<motion::Vec3> StandingDirections(const motion::Skeleton& skeleton,
-                                             const motion::Poses& poses);
+std::vector<Vec3> StandingDirections(const Skeleton& skeleton, const Poses& poses);
 
 // The lower foot of every frame; empty for a skeleton without feet.
-std::vector<motion::Vec3> LowerFeet(const motion::Skeleton& skeleton, const motion::Poses& poses);
+std::vector<Vec3> LowerFeet(const Skeleton& skeleton, const Poses& poses);
 
 // A mean that is robust to outliers: points farther from it than twice the median distance have
 // proportionally smaller weights (Huber). The origin if there are no points.
-motion::Vec3 RobustMean(const std::vector<motion::Vec3>& points);
+Vec3 RobustMean(const std::vector<Vec3>& points);
 
 // The lean of a direction from +y towards +x and towards +z. Unit: degrees.
 struct Lean {
   double x = 0;
   double z = 0;
 };
-Lean LeanOf(motion::Vec3 up);
+Lean LeanOf(Vec3 up);
 // The lean of the mean of directions.
-Lean MeanLean(const std::vector<motion::Vec3>& directions);
+Lean MeanLean(const std::vector<Vec3>& directions);
 
 // Fits the plane y = a x + b z + c to points by least squares with Huber's weights, and returns the
 // lean of its normal in degrees. {0, 0} if the points do not define a plane.
-Lean FloorLean(const std::vector<motion::Vec3>& points);
+Lean FloorLean(const std::vector<Vec3>& points);
 
 // The quantile `share` (0 to 1) of the points' heights. Requires at least one point.
-float HeightQuantile(const std::vector<motion::Vec3>& points, double share);
+float HeightQuantile(const std::vector<Vec3>& points, double share);
 
-}  // namespace duet::dataset
+}  // namespace duet::motion
 
-#endif  // DUET_MODEL_DATASET_POSTURE_H_
+#endif  // DUET_MODEL_MOTION_POSTURE_H_
