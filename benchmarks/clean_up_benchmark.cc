@@ -55,7 +55,7 @@ void BM_JointRanges(benchmark::State& state) {
   const duet::motion::Poses follower = Person(frames, 0.6f);
   for (auto _ : state) {
     duet::motion::Poses limited = follower;
-    KeepJointRanges(skeleton, body, std::nullopt, {}, {kRateHz, kSettled}, &limited);
+    duet::cleanup::KeepJointRanges(skeleton, body, std::nullopt, {}, {kRateHz, kSettled}, &limited);
     benchmark::DoNotOptimize(limited);
   }
 }

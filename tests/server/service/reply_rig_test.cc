@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,14 +32,16 @@ struct Reply {
   v1::MotionChunk chunk;
 };
 
-Reply Answer(const Coordinates& coordinates, motion::Poses follower) {
+Reply Answer(const Coordinates& coordinates, motion::Poses follower,
+             const std::optional<motion::Levelling>& levelling = {}) {
   ReplyMapping mapping;
   mapping.coordinates = coordinates;
+  mapping.levelling = levelling;
   for (int joint = kSkeleton.joint_count() - 1; joint >= 0; --joint) {
     mapping.joints.push_back(joint);
   }
   const RigSource source = MakeRigSource(kSkeleton, test::SwayingMotion(40, kRate), kRate);
-  ReplyRig rig(source, coordinates, mapping.joints, follower);
+  ReplyRig rig(source, coordinates, levelling, mapping.joints, follower);
   Reply reply;
   rig.FillHeader(reply.header);
   rig.AddRotations(&follower, reply.chunk);
@@ -98,6 +101,14 @@ TEST_P(ReplyRigTest, ForwardKinematicsGivesThePositions) {
   const Reply reply = Answer(GetParam(), test::SwayingMotion(40, kRate));
   ASSERT_EQ(reply.chunk.rotations_size(), 40 * reply.header.rig_size() * 4);
   EXPECT_LT(WorstDistance(reply), 1e-5 * Scale());
+}
+
+TEST_P(ReplyRigTest, ForwardKinematicsGivesThePositionsOfATiltedWorld) {
+  const Reply reply =
+      Answer(GetParam(), test::SwayingMotion(40, kRate), motion::Levelling({0.2f, 1, -0.1f}, 0));
+  EXPECT_LT(WorstDistance(reply), 1e-5 * Scale());
+  const Reply level = Answer(GetParam(), test::SwayingMotion(40, kRate));
+  EXPECT_GT(Norm(Position(reply, 5, 0) - Position(level, 5, 0)), 0.05 * Scale());
 }
 
 TEST_P(ReplyRigTest, QuaternionsHaveLengthOneAndKeepTheirSigns) {
