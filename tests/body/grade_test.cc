@@ -1,6 +1,7 @@
 #include "model/body/grade.h"
 
 #include "gmock/gmock.h"
+#include "model/authoring/puppet.h"
 #include "model/body/hands.h"
 #include "tests/cleanup/bodies.h"
 

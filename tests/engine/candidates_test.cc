@@ -3,6 +3,7 @@
 #include <set>
 
 #include "gmock/gmock.h"
+#include "model/authoring/puppet.h"
 #include "model/engine/hand_contact_fit.h"
 #include "tests/cleanup/bodies.h"
 

@@ -21,8 +21,8 @@ constexpr double kHigh = 0.99;
 cleanup::Options NoStage() {
   cleanup::Options none;
   none.upright.enabled = none.spacing.enabled = none.capsules.enabled = false;
-  none.waist.enabled = none.floor.enabled = none.footsteps.enabled = none.joint_ranges.enabled =
-      false;
+  none.waist.enabled = none.hand_contact.enabled = none.floor.enabled = none.footsteps.enabled =
+      none.joint_ranges.enabled = false;
   return none;
 }
 

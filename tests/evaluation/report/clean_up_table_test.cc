@@ -20,7 +20,7 @@ TableRow Row(const Table& table, const std::string& name) {
 TEST(CleanUpTableTest, HasARowForEachStageAndNoneMovesCaptures) {
   const Table table = CleanUpTable(MadeUpPairs(2));
   ASSERT_EQ(table.columns.size(), 5u);
-  EXPECT_EQ(table.rows.size(), 8u);
+  EXPECT_EQ(table.rows.size(), 9u);
   const TableRow captured = Row(table, "captured");
   for (int column = 0; column < 3; ++column) EXPECT_EQ(captured.values[column], 0) << column;
 }
@@ -34,7 +34,7 @@ TEST(CleanUpTableTest, OnlyTheFloorStageLowersAFloatingFollower) {
   EXPECT_EQ(Row(table, "floor").values[0], 100);
   EXPECT_NEAR(Row(table, "floor").values[1], 47, 2);
   EXPECT_GT(Row(table, "all").values[1], 40);
-  EXPECT_LT(Row(table, "contacts").values[1], 1);
+  EXPECT_LT(Row(table, "footsteps").values[1], 1);
 }
 
 TEST(CleanUpTableTest, AKneeThatBendsForwardsCountsAsOutOfRange) {
