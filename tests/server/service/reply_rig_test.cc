@@ -108,7 +108,7 @@ TEST_P(ReplyRigTest, ForwardKinematicsGivesThePositionsOfATiltedWorld) {
       Answer(GetParam(), test::SwayingMotion(40, kRate), motion::Levelling({0.2f, 1, -0.1f}, 0));
   EXPECT_LT(WorstDistance(reply), 1e-5 * Scale());
   const Reply level = Answer(GetParam(), test::SwayingMotion(40, kRate));
-  EXPECT_GT(Norm(Position(reply, 5, 0) - Position(level, 5, 0)), 0.05 * Scale());
+  EXPECT_GT(Norm(Position(reply, 5, 0) - Position(level, 5, 0)), 0.03 * Scale());
 }
 
 TEST_P(ReplyRigTest, QuaternionsHaveLengthOneAndKeepTheirSigns) {
