@@ -31,7 +31,7 @@ def generated():
     subprocess.run(["protoc", f"-I{PROTO}", f"--python_out={folder}", f"--grpc_python_out={folder}",
                     f"--plugin=protoc-gen-grpc_python={plugin}", *protos], check=True)
     sys.path.insert(0, folder)
-    from duet.v1 import model_pb2, synthesis_pb2, synthesis_pb2_grpc
+    from duet.v1 import model_pb2, reaction_pb2, synthesis_pb2, synthesis_pb2_grpc
     return model_pb2, synthesis_pb2, synthesis_pb2_grpc
 
 
@@ -60,7 +60,7 @@ class Service(synthesis_pb2_grpc.MotionSynthesisServicer):
             model_name=self.model.name, model_version=1, joint_names=motion.joint_names,
             frame_rate_hz=motion.frame_rate_hz, unit=motion.unit, up_axis=motion.up_axis,
             frame_count=motion.frame_count, interaction_classes=self.model.interaction_classes,
-            request_id="eager", variety=1, clean_up=synthesis_pb2.CLEAN_UP_OFF))
+            request_id="eager", variety=1, clean_up=reaction_pb2.CLEAN_UP_OFF))
         chunks = range(0, motion.frame_count, 30)
         for first in chunks:
             part = follower[first:first + 30]

@@ -14,7 +14,8 @@ plugin="$(command -v grpc_python_plugin)" || {
 
 made="$(mktemp -d)"
 trap 'rm -rf "${made}"' EXIT
-messages=(duet/v1/motion.proto duet/v1/model.proto duet/v1/synthesis.proto duet/rpc/v1/status.proto)
+messages=(duet/v1/motion.proto duet/v1/model.proto duet/v1/reaction.proto duet/v1/live.proto
+  duet/v1/synthesis.proto duet/rpc/v1/status.proto)
 protoc -Iproto --python_out="${made}" --pyi_out="${made}" "${messages[@]}"
 protoc -Iproto --grpc_python_out="${made}" --plugin=protoc-gen-grpc_python="${plugin}" \
   duet/v1/synthesis.proto

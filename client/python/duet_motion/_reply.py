@@ -18,7 +18,7 @@ from duet_motion.errors import DuetError, MalformedReplyError, make_error
 from duet_motion.motion import Motion, Positions
 from duet_motion.result import (FollowerChunk, JointRotations, RigJoint, SynthesisResult, Timings,
                                 grade_from_proto)
-from duet_motion.v1 import synthesis_pb2
+from duet_motion.v1 import reaction_pb2, synthesis_pb2
 
 # Codes with which a proxy or a stopping server resets streams. The service always adds a reason to
 # these codes.
@@ -155,7 +155,7 @@ class ReplyAssembler:
         self._check_grade(summary.grade)
         self._summary = summary
 
-    def _check_grade(self, grade: synthesis_pb2.MotionGrade) -> None:
+    def _check_grade(self, grade: reaction_pb2.MotionGrade) -> None:
         for share in (grade.twisted, grade.skating, grade.leader_skating, grade.overlapping):
             if not 0 <= share <= 1:
                 raise _malformed(f"summary.grade: expected shares from 0 to 1, got {share}")
@@ -191,7 +191,7 @@ class ReplyAssembler:
             seed=header.seed, variety=header.variety,
             # Servers without candidates draw one sample and do not set the field.
             candidates=max(1, header.candidates),
-            cleaned_up=header.clean_up == synthesis_pb2.CLEAN_UP_ON,
+            cleaned_up=header.clean_up == reaction_pb2.CLEAN_UP_ON,
             unfamiliarity=(summary.unfamiliarity if summary.HasField("unfamiliarity") else None),
             grade=grade_from_proto(summary.grade) if summary.HasField("grade") else None,
             window_count=summary.window_count, attempt_count=attempts,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from duet_motion.v1 import motion_pb2, synthesis_pb2
+from duet_motion.v1 import motion_pb2, reaction_pb2, synthesis_pb2
 
 UNITS = {
     "metres": motion_pb2.LENGTH_UNIT_METRES,
@@ -19,7 +19,7 @@ PRIORITIES = {
     "bulk": synthesis_pb2.PRIORITY_BULK,
 }
 CLEAN_UP = {
-    None: synthesis_pb2.CLEAN_UP_UNSPECIFIED,
-    True: synthesis_pb2.CLEAN_UP_ON,
-    False: synthesis_pb2.CLEAN_UP_OFF,
+    None: reaction_pb2.CLEAN_UP_UNSPECIFIED,
+    True: reaction_pb2.CLEAN_UP_ON,
+    False: reaction_pb2.CLEAN_UP_OFF,
 }

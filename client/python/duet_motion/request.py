@@ -13,7 +13,7 @@ import numpy.typing as npt
 from duet_motion._wire import CLEAN_UP, PRIORITIES, UNITS, UP_AXES
 from duet_motion.motion import (Motion, checked_array, checked_number, finite_number,
                                first_not_finite)
-from duet_motion.v1 import model_pb2, motion_pb2, synthesis_pb2
+from duet_motion.v1 import model_pb2, motion_pb2, reaction_pb2, synthesis_pb2
 
 Labels = Mapping[str, float]
 """Weights by interaction class, from -2 to 2: 1 requests a class, 0 is neutral, -1 avoids it."""
@@ -163,7 +163,7 @@ def _leader(leader: Motion) -> motion_pb2.Motion:
         positions=_floats(leader.positions))
 
 
-def _fill(labels: Labels, vector: synthesis_pb2.LabelVector) -> None:
+def _fill(labels: Labels, vector: reaction_pb2.LabelVector) -> None:
     """Leaves the vector absent if there are no labels, so that the server reports them missing."""
     for interaction_class, weight in labels.items():
         vector.weights.add(interaction_class=interaction_class, weight=float(weight))

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from duet_motion.errors import MalformedReplyError
 from duet_motion.motion import Motion, Positions
-from duet_motion.v1 import model_pb2, synthesis_pb2
+from duet_motion.v1 import model_pb2, reaction_pb2, synthesis_pb2
 
 
 @dataclasses.dataclass(frozen=True)
@@ -205,7 +205,7 @@ def model_from_proto(model: model_pb2.Model) -> ModelInfo:
         free_for_all_uses=model.free_for_all_uses)
 
 
-def grade_from_proto(grade: synthesis_pb2.MotionGrade) -> MotionGrade:
+def grade_from_proto(grade: reaction_pb2.MotionGrade) -> MotionGrade:
     return MotionGrade(
         twisted=grade.twisted, skating=grade.skating, leader_skating=grade.leader_skating,
         overlapping=grade.overlapping,

@@ -8,7 +8,7 @@ import grpc
 import numpy as np
 from duet_motion._reply import ReplyAssembler
 from duet_motion.errors import make_error
-from duet_motion.v1 import synthesis_pb2
+from duet_motion.v1 import reaction_pb2, synthesis_pb2
 
 
 class ReplyTest(unittest.TestCase):
@@ -35,8 +35,8 @@ class ReplyTest(unittest.TestCase):
         self.assertEqual((result.attempt_count, result.window_count), (2, 1))
 
     def test_grade_is_returned(self):
-        runs = [synthesis_pb2.FrameRun(first_frame=1, frame_count=2)]
-        grade = synthesis_pb2.MotionGrade(twisted=0.25, skating=0.5, leader_skating=0.75,
+        runs = [reaction_pb2.FrameRun(first_frame=1, frame_count=2)]
+        grade = reaction_pb2.MotionGrade(twisted=0.25, skating=0.5, leader_skating=0.75,
                                           overlapping=1, bad_runs=runs)
         whole = support.good_reply(self.leader, size=6)
         self.accept(*whole[:2], support.summary(self.leader, 1, grade=grade))

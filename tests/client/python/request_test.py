@@ -6,7 +6,7 @@ import support
 import duet_motion as duet
 import numpy as np
 from duet_motion.request import to_proto, to_selector
-from duet_motion.v1 import motion_pb2, synthesis_pb2
+from duet_motion.v1 import motion_pb2, reaction_pb2, synthesis_pb2
 
 
 class RequestTest(unittest.TestCase):
@@ -32,7 +32,7 @@ class RequestTest(unittest.TestCase):
         self.assertEqual((wire.seed, wire.variety, wire.chunk_frames), (2**64 - 1, 0.5, 8))
         self.assertEqual(wire.candidates, 4)
         self.assertEqual((wire.model.name, wire.model.version), ("sbu", 2))
-        self.assertEqual(wire.clean_up, synthesis_pb2.CLEAN_UP_OFF)
+        self.assertEqual(wire.clean_up, reaction_pb2.CLEAN_UP_OFF)
         self.assertEqual(wire.priority, synthesis_pb2.PRIORITY_BULK)
         self.assertEqual(wire.partner_direction.z, 1)
         self.assertTrue(wire.reply_rotations)
@@ -43,7 +43,7 @@ class RequestTest(unittest.TestCase):
         wire = to_proto(duet.SynthesisRequest(support.leader()))
         for field in ("label_vector", "follower_start", "partner_direction", "up", "chunk_frames"):
             self.assertFalse(wire.HasField(field), field)
-        self.assertEqual(wire.clean_up, synthesis_pb2.CLEAN_UP_UNSPECIFIED)
+        self.assertEqual(wire.clean_up, reaction_pb2.CLEAN_UP_UNSPECIFIED)
         self.assertEqual(wire.candidates, 1)
         self.assertFalse(wire.reply_rotations)
 

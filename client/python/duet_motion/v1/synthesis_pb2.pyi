@@ -1,34 +1,17 @@
+from duet_motion.v1 import live_pb2 as _live_pb2
 from duet_motion.v1 import model_pb2 as _model_pb2
 from duet_motion.v1 import motion_pb2 as _motion_pb2
+from duet_motion.v1 import reaction_pb2 as _reaction_pb2
 from google.protobuf.internal import containers as _containers
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
 from google.protobuf import message as _message
 from typing import ClassVar as _ClassVar, Iterable as _Iterable, Mapping as _Mapping, Optional as _Optional, Union as _Union
 
-CLEAN_UP_OFF: CleanUp
-CLEAN_UP_ON: CleanUp
-CLEAN_UP_UNSPECIFIED: CleanUp
 DESCRIPTOR: _descriptor.FileDescriptor
 PRIORITY_BULK: Priority
 PRIORITY_INTERACTIVE: Priority
 PRIORITY_UNSPECIFIED: Priority
-
-class ClassWeight(_message.Message):
-    __slots__ = ["interaction_class", "weight"]
-    INTERACTION_CLASS_FIELD_NUMBER: _ClassVar[int]
-    WEIGHT_FIELD_NUMBER: _ClassVar[int]
-    interaction_class: str
-    weight: float
-    def __init__(self, interaction_class: _Optional[str] = ..., weight: _Optional[float] = ...) -> None: ...
-
-class FrameRun(_message.Message):
-    __slots__ = ["first_frame", "frame_count"]
-    FIRST_FRAME_FIELD_NUMBER: _ClassVar[int]
-    FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
-    first_frame: int
-    frame_count: int
-    def __init__(self, first_frame: _Optional[int] = ..., frame_count: _Optional[int] = ...) -> None: ...
 
 class GetModelRequest(_message.Message):
     __slots__ = ["model"]
@@ -43,20 +26,6 @@ class GetModelResponse(_message.Message):
     limits: RequestLimits
     model: _model_pb2.Model
     def __init__(self, model: _Optional[_Union[_model_pb2.Model, _Mapping]] = ..., limits: _Optional[_Union[RequestLimits, _Mapping]] = ...) -> None: ...
-
-class LabelKeyframe(_message.Message):
-    __slots__ = ["frame", "label_vector"]
-    FRAME_FIELD_NUMBER: _ClassVar[int]
-    LABEL_VECTOR_FIELD_NUMBER: _ClassVar[int]
-    frame: int
-    label_vector: LabelVector
-    def __init__(self, frame: _Optional[int] = ..., label_vector: _Optional[_Union[LabelVector, _Mapping]] = ...) -> None: ...
-
-class LabelVector(_message.Message):
-    __slots__ = ["weights"]
-    WEIGHTS_FIELD_NUMBER: _ClassVar[int]
-    weights: _containers.RepeatedCompositeFieldContainer[ClassWeight]
-    def __init__(self, weights: _Optional[_Iterable[_Union[ClassWeight, _Mapping]]] = ...) -> None: ...
 
 class ListModelsRequest(_message.Message):
     __slots__ = []
@@ -80,28 +49,16 @@ class MotionChunk(_message.Message):
     rotations: _containers.RepeatedScalarFieldContainer[float]
     def __init__(self, first_frame: _Optional[int] = ..., frame_count: _Optional[int] = ..., positions: _Optional[_Iterable[float]] = ..., rotations: _Optional[_Iterable[float]] = ...) -> None: ...
 
-class MotionGrade(_message.Message):
-    __slots__ = ["bad_runs", "leader_skating", "overlapping", "skating", "twisted"]
-    BAD_RUNS_FIELD_NUMBER: _ClassVar[int]
-    LEADER_SKATING_FIELD_NUMBER: _ClassVar[int]
-    OVERLAPPING_FIELD_NUMBER: _ClassVar[int]
-    SKATING_FIELD_NUMBER: _ClassVar[int]
-    TWISTED_FIELD_NUMBER: _ClassVar[int]
-    bad_runs: _containers.RepeatedCompositeFieldContainer[FrameRun]
-    leader_skating: float
-    overlapping: float
-    skating: float
-    twisted: float
-    def __init__(self, twisted: _Optional[float] = ..., skating: _Optional[float] = ..., leader_skating: _Optional[float] = ..., overlapping: _Optional[float] = ..., bad_runs: _Optional[_Iterable[_Union[FrameRun, _Mapping]]] = ...) -> None: ...
-
 class RequestLimits(_message.Message):
-    __slots__ = ["max_abs_weight", "max_candidates", "max_chunk_frames", "max_duration_seconds", "max_frame_rate_hz", "max_label_keyframes", "max_request_bytes", "max_variety", "min_frame_rate_hz", "min_frames"]
+    __slots__ = ["max_abs_weight", "max_candidates", "max_chunk_frames", "max_delay_frames", "max_duration_seconds", "max_frame_rate_hz", "max_label_keyframes", "max_plan_frames", "max_request_bytes", "max_variety", "min_frame_rate_hz", "min_frames"]
     MAX_ABS_WEIGHT_FIELD_NUMBER: _ClassVar[int]
     MAX_CANDIDATES_FIELD_NUMBER: _ClassVar[int]
     MAX_CHUNK_FRAMES_FIELD_NUMBER: _ClassVar[int]
+    MAX_DELAY_FRAMES_FIELD_NUMBER: _ClassVar[int]
     MAX_DURATION_SECONDS_FIELD_NUMBER: _ClassVar[int]
     MAX_FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
     MAX_LABEL_KEYFRAMES_FIELD_NUMBER: _ClassVar[int]
+    MAX_PLAN_FRAMES_FIELD_NUMBER: _ClassVar[int]
     MAX_REQUEST_BYTES_FIELD_NUMBER: _ClassVar[int]
     MAX_VARIETY_FIELD_NUMBER: _ClassVar[int]
     MIN_FRAMES_FIELD_NUMBER: _ClassVar[int]
@@ -109,14 +66,16 @@ class RequestLimits(_message.Message):
     max_abs_weight: float
     max_candidates: int
     max_chunk_frames: int
+    max_delay_frames: int
     max_duration_seconds: float
     max_frame_rate_hz: float
     max_label_keyframes: int
+    max_plan_frames: int
     max_request_bytes: int
     max_variety: float
     min_frame_rate_hz: float
     min_frames: int
-    def __init__(self, min_frame_rate_hz: _Optional[float] = ..., max_frame_rate_hz: _Optional[float] = ..., min_frames: _Optional[int] = ..., max_duration_seconds: _Optional[float] = ..., max_chunk_frames: _Optional[int] = ..., max_label_keyframes: _Optional[int] = ..., max_abs_weight: _Optional[float] = ..., max_request_bytes: _Optional[int] = ..., max_variety: _Optional[float] = ..., max_candidates: _Optional[int] = ...) -> None: ...
+    def __init__(self, min_frame_rate_hz: _Optional[float] = ..., max_frame_rate_hz: _Optional[float] = ..., min_frames: _Optional[int] = ..., max_duration_seconds: _Optional[float] = ..., max_chunk_frames: _Optional[int] = ..., max_label_keyframes: _Optional[int] = ..., max_abs_weight: _Optional[float] = ..., max_request_bytes: _Optional[int] = ..., max_variety: _Optional[float] = ..., max_candidates: _Optional[int] = ..., max_delay_frames: _Optional[int] = ..., max_plan_frames: _Optional[int] = ...) -> None: ...
 
 class RigJoint(_message.Message):
     __slots__ = ["joint", "name", "offset", "parent"]
@@ -147,7 +106,7 @@ class SynthesisHeader(_message.Message):
     UP_AXIS_FIELD_NUMBER: _ClassVar[int]
     VARIETY_FIELD_NUMBER: _ClassVar[int]
     candidates: int
-    clean_up: CleanUp
+    clean_up: _reaction_pb2.CleanUp
     frame_count: int
     frame_rate_hz: float
     interaction_classes: _containers.RepeatedScalarFieldContainer[str]
@@ -160,7 +119,7 @@ class SynthesisHeader(_message.Message):
     unit: _motion_pb2.LengthUnit
     up_axis: _motion_pb2.UpAxis
     variety: float
-    def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., frame_count: _Optional[int] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[CleanUp, str]] = ..., candidates: _Optional[int] = ..., rig: _Optional[_Iterable[_Union[RigJoint, _Mapping]]] = ...) -> None: ...
+    def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., frame_count: _Optional[int] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., rig: _Optional[_Iterable[_Union[RigJoint, _Mapping]]] = ...) -> None: ...
 
 class SynthesisSummary(_message.Message):
     __slots__ = ["chunk_count", "compute_seconds", "frame_count", "grade", "queue_seconds", "unfamiliarity", "window_count"]
@@ -174,11 +133,11 @@ class SynthesisSummary(_message.Message):
     chunk_count: int
     compute_seconds: float
     frame_count: int
-    grade: MotionGrade
+    grade: _reaction_pb2.MotionGrade
     queue_seconds: float
     unfamiliarity: float
     window_count: int
-    def __init__(self, frame_count: _Optional[int] = ..., chunk_count: _Optional[int] = ..., window_count: _Optional[int] = ..., queue_seconds: _Optional[float] = ..., compute_seconds: _Optional[float] = ..., unfamiliarity: _Optional[float] = ..., grade: _Optional[_Union[MotionGrade, _Mapping]] = ...) -> None: ...
+    def __init__(self, frame_count: _Optional[int] = ..., chunk_count: _Optional[int] = ..., window_count: _Optional[int] = ..., queue_seconds: _Optional[float] = ..., compute_seconds: _Optional[float] = ..., unfamiliarity: _Optional[float] = ..., grade: _Optional[_Union[_reaction_pb2.MotionGrade, _Mapping]] = ...) -> None: ...
 
 class SynthesizeRequest(_message.Message):
     __slots__ = ["candidates", "chunk_frames", "clean_up", "follower_start", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "priority", "reply_joint_names", "reply_rotations", "seed", "up", "variety"]
@@ -199,10 +158,10 @@ class SynthesizeRequest(_message.Message):
     VARIETY_FIELD_NUMBER: _ClassVar[int]
     candidates: int
     chunk_frames: int
-    clean_up: CleanUp
+    clean_up: _reaction_pb2.CleanUp
     follower_start: _motion_pb2.FollowerStart
-    label_keyframes: _containers.RepeatedCompositeFieldContainer[LabelKeyframe]
-    label_vector: LabelVector
+    label_keyframes: _containers.RepeatedCompositeFieldContainer[_reaction_pb2.LabelKeyframe]
+    label_vector: _reaction_pb2.LabelVector
     leader: _motion_pb2.Motion
     model: _model_pb2.ModelSelector
     partner_direction: _motion_pb2.Direction
@@ -212,7 +171,7 @@ class SynthesizeRequest(_message.Message):
     seed: int
     up: _motion_pb2.Direction
     variety: float
-    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., chunk_frames: _Optional[int] = ..., priority: _Optional[_Union[Priority, str]] = ..., reply_joint_names: _Optional[_Iterable[str]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[CleanUp, str]] = ..., candidates: _Optional[int] = ..., reply_rotations: bool = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ...) -> None: ...
+    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[_reaction_pb2.LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[_reaction_pb2.LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., chunk_frames: _Optional[int] = ..., priority: _Optional[_Union[Priority, str]] = ..., reply_joint_names: _Optional[_Iterable[str]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., reply_rotations: bool = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ...) -> None: ...
 
 class SynthesizeResponse(_message.Message):
     __slots__ = ["chunk", "header", "summary"]
@@ -225,7 +184,4 @@ class SynthesizeResponse(_message.Message):
     def __init__(self, header: _Optional[_Union[SynthesisHeader, _Mapping]] = ..., chunk: _Optional[_Union[MotionChunk, _Mapping]] = ..., summary: _Optional[_Union[SynthesisSummary, _Mapping]] = ...) -> None: ...
 
 class Priority(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
-    __slots__ = []
-
-class CleanUp(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = []

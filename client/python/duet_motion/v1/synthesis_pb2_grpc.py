@@ -2,6 +2,7 @@
 """Client and server classes corresponding to protobuf-defined services."""
 import grpc
 
+from duet_motion.v1 import live_pb2 as duet_dot_v1_dot_live__pb2
 from duet_motion.v1 import synthesis_pb2 as duet_dot_v1_dot_synthesis__pb2
 
 
@@ -29,9 +30,6 @@ class MotionSynthesisStub(object):
     long to arrive, if the caller stops reading the response, and if the call
     exceeds the server's maximum call duration. ErrorInfo contains the reason.
     INTERNAL             The model failed. The message contains no internal details.
-
-    A bidirectional method for live sessions, in which the caller sends leader frames as they are
-    captured, will be added to this service. It will reuse SynthesizeResponse.
     """
 
     def __init__(self, channel):
@@ -44,6 +42,11 @@ class MotionSynthesisStub(object):
                 '/duet.v1.MotionSynthesis/Synthesize',
                 request_serializer=duet_dot_v1_dot_synthesis__pb2.SynthesizeRequest.SerializeToString,
                 response_deserializer=duet_dot_v1_dot_synthesis__pb2.SynthesizeResponse.FromString,
+                )
+        self.SynthesizeLive = channel.stream_stream(
+                '/duet.v1.MotionSynthesis/SynthesizeLive',
+                request_serializer=duet_dot_v1_dot_live__pb2.SynthesizeLiveRequest.SerializeToString,
+                response_deserializer=duet_dot_v1_dot_live__pb2.SynthesizeLiveResponse.FromString,
                 )
         self.ListModels = channel.unary_unary(
                 '/duet.v1.MotionSynthesis/ListModels',
@@ -81,14 +84,22 @@ class MotionSynthesisServicer(object):
     long to arrive, if the caller stops reading the response, and if the call
     exceeds the server's maximum call duration. ErrorInfo contains the reason.
     INTERNAL             The model failed. The message contains no internal details.
-
-    A bidirectional method for live sessions, in which the caller sends leader frames as they are
-    captured, will be added to this service. It will reuse SynthesizeResponse.
     """
 
     def Synthesize(self, request, context):
         """Synthesizes a follower for a leader and streams its motion: one header, then chunks in frame
         order, then one summary. A stream without a summary is incomplete, even if its status is OK.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def SynthesizeLive(self, request_iterator, context):
+        """Synthesizes a follower while the leader still moves. The caller sends one LiveStart, then leader
+        frames as they are captured; the server answers each frame when it arrives. The session ends
+        when the caller closes its side: the server sends the frames that are still due, then one
+        summary. The server keeps nothing afterwards: a caller resumes an interrupted session on any
+        server with LiveStart.history.
         """
         context.set_code(grpc.StatusCode.UNIMPLEMENTED)
         context.set_details('Method not implemented!')
@@ -115,6 +126,11 @@ def add_MotionSynthesisServicer_to_server(servicer, server):
                     servicer.Synthesize,
                     request_deserializer=duet_dot_v1_dot_synthesis__pb2.SynthesizeRequest.FromString,
                     response_serializer=duet_dot_v1_dot_synthesis__pb2.SynthesizeResponse.SerializeToString,
+            ),
+            'SynthesizeLive': grpc.stream_stream_rpc_method_handler(
+                    servicer.SynthesizeLive,
+                    request_deserializer=duet_dot_v1_dot_live__pb2.SynthesizeLiveRequest.FromString,
+                    response_serializer=duet_dot_v1_dot_live__pb2.SynthesizeLiveResponse.SerializeToString,
             ),
             'ListModels': grpc.unary_unary_rpc_method_handler(
                     servicer.ListModels,
@@ -157,9 +173,6 @@ class MotionSynthesis(object):
     long to arrive, if the caller stops reading the response, and if the call
     exceeds the server's maximum call duration. ErrorInfo contains the reason.
     INTERNAL             The model failed. The message contains no internal details.
-
-    A bidirectional method for live sessions, in which the caller sends leader frames as they are
-    captured, will be added to this service. It will reuse SynthesizeResponse.
     """
 
     @staticmethod
@@ -176,6 +189,23 @@ class MotionSynthesis(object):
         return grpc.experimental.unary_stream(request, target, '/duet.v1.MotionSynthesis/Synthesize',
             duet_dot_v1_dot_synthesis__pb2.SynthesizeRequest.SerializeToString,
             duet_dot_v1_dot_synthesis__pb2.SynthesizeResponse.FromString,
+            options, channel_credentials,
+            insecure, call_credentials, compression, wait_for_ready, timeout, metadata)
+
+    @staticmethod
+    def SynthesizeLive(request_iterator,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.stream_stream(request_iterator, target, '/duet.v1.MotionSynthesis/SynthesizeLive',
+            duet_dot_v1_dot_live__pb2.SynthesizeLiveRequest.SerializeToString,
+            duet_dot_v1_dot_live__pb2.SynthesizeLiveResponse.FromString,
             options, channel_credentials,
             insecure, call_credentials, compression, wait_for_ready, timeout, metadata)
 
