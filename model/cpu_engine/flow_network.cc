@@ -98,9 +98,9 @@ FlowNetwork::Work FlowNetwork::Prepare(absl::Span<const engine::NetworkInput> in
   work.sample = scratch->Take<float>(rows * pose_);
   work.answer = scratch->Take<float>(rows * pose_);
   for (int n = 0; n < work.windows; ++n) {
-    const engine::Sampling& sampling = inputs[static_cast<std::size_t>(n)].sampling;
-    noise_.Fill(sampling.seed, sampling.variety, work.window[n].known_frames, work.window[n].frames,
-                scratch, work.sample + std::ptrdiff_t{work.window_row[n]} * pose_);
+    noise_.Fill(inputs[static_cast<std::size_t>(n)].sampling, work.window[n].known_frames,
+                work.window[n].frames, scratch,
+                work.sample + std::ptrdiff_t{work.window_row[n]} * pose_);
   }
   work.condition = scratch->Take<float>(terms * width_);
   work.time = scratch->Take<float>(width_);

@@ -7,6 +7,7 @@
 #include "model/checkpoint/flow_architecture.h"
 #include "model/cpu_engine/kernels/packed_matrix.h"
 #include "model/cpu_engine/scratch.h"
+#include "model/engine/synthesis_options.h"
 
 namespace duet::cpu_engine {
 
@@ -21,9 +22,10 @@ class FlowNoise {
   FlowNoise(const checkpoint::FlowArchitecture::Noise& options, const std::vector<float>& roots,
             int width, int frames);
 
-  // Writes the noise of one window, [frames, width]: it depends only on `seed`, and is multiplied
-  // by `variety`. A frame does not depend on the number of frames after it.
-  void Fill(uint64_t seed, float variety, int known_frames, int frames, Scratch::Use* scratch,
+  // Writes the noise of one window, [frames, width]: it depends only on the seed, and on the index
+  // of the first frame where that is set, and is multiplied by the variety. A frame does not depend
+  // on the number of frames after it.
+  void Fill(const engine::Sampling& sampling, int known_frames, int frames, Scratch::Use* scratch,
             float* out) const;
 
  private:
@@ -33,11 +35,21 @@ class FlowNoise {
     kernels::PackedMatrix over_joints;  // [width, width]
   };
 
+  // Independent normal numbers, and those that are smooth in time. Shapes: [frames, width] each.
+  struct Drawn {
+    const float* smooth;
+    const float* white;
+  };
+  Drawn DrawWindow(uint64_t seed, bool known, int frames, Scratch::Use* scratch) const;
+  Drawn DrawFrames(uint64_t seed, int64_t first, bool known, int frames,
+                   Scratch::Use* scratch) const;
+
   // The deviation of frame `frame`, as a fraction of the full deviation.
   float Ramp(int frame, int known_frames) const;
 
   checkpoint::FlowArchitecture::Noise options_;
   int width_, frames_;
+  std::vector<float> smoothing_;  // of an endless motion
   State states_[2];
 };
 

@@ -1,8 +1,12 @@
 #include "model/network/flow_noise.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
+#include "model/base/angle.h"
 #include "model/base/random.h"
+#include "model/engine/frame_noise.h"
 
 namespace duet::network {
 namespace {
@@ -12,6 +16,38 @@ constexpr double kRidge = 1e-4;
 
 void Fill(int64_t count, base::Random* random, float* out) {
   for (int64_t i = 0; i < count; ++i) out[i] = static_cast<float>(random->StandardNormal());
+}
+
+// The normal numbers of frame `frame` of an endless motion: [2, W], those that become smooth first.
+torch::Tensor FrameNormals(uint64_t seed, int64_t frame, int64_t width) {
+  torch::Tensor uniform = torch::empty({2 * width, 2}, torch::kFloat64);
+  engine::FrameUniforms(seed, frame,
+                        {uniform.data_ptr<double>(), static_cast<std::size_t>(4 * width)});
+  const torch::Tensor radius = torch::sqrt(-2 * torch::log(uniform.select(1, 0)));
+  const torch::Tensor angle = 2 * base::kPi * uniform.select(1, 1);
+  return (radius * torch::cos(angle)).to(torch::kFloat32).view({2, width});
+}
+
+// Draws the numbers of a window of an endless motion, the n-th of its batch.
+void DrawEndless(const engine::NetworkInput& input, int64_t n, double frame_length,
+                 NoiseNumbers* numbers) {
+  const std::vector<float> weights = engine::SmoothingWeights(frame_length);
+  const int64_t taps = static_cast<int64_t>(weights.size()), frames = input.leader.frame_count();
+  const int64_t width = numbers->white.size(2), first = *input.sampling.first_frame - taps / 2;
+  std::vector<torch::Tensor> rows;
+  for (int64_t row = 0; row < frames + taps - 1; ++row) {
+    rows.push_back(FrameNormals(input.sampling.seed, first + row, width));
+  }
+  const torch::Tensor drawn = torch::stack(rows);  // [rows, 2, W]
+  for (int64_t k = 0; k < taps; ++k) {
+    numbers->smooth[n].narrow(0, 0, frames) +=
+        weights[static_cast<std::size_t>(k)] * drawn.select(1, 0).narrow(0, k, frames);
+  }
+  numbers->white[n].narrow(0, 0, frames).copy_(
+      drawn.select(1, 1).narrow(0, taps / 2, frames));
+  numbers->endless[n].fill_(true);
+  numbers->constant[n][0].copy_(
+      FrameNormals(input.sampling.seed, engine::kEveryFrame, width)[0]);
 }
 
 // [T, T] lower-triangular: the root of constant + (1 - constant) exp(-(distance / length)^2 / 2).
@@ -32,15 +68,21 @@ torch::Tensor Ramp(const torch::Tensor& known_count, int64_t frames, int ramp_fr
 
 }  // namespace
 
-NoiseNumbers DrawNoise(absl::Span<const engine::NetworkInput> inputs) {
+NoiseNumbers DrawNoise(absl::Span<const engine::NetworkInput> inputs, double frame_length) {
   int64_t frames = 0;
   for (const engine::NetworkInput& input : inputs) {
     frames = std::max<int64_t>(frames, input.leader.frame_count());
   }
   const int64_t width = 3 * int64_t{inputs.front().leader.joint_count()};
   const std::vector<int64_t> shape = {static_cast<int64_t>(inputs.size()), frames, width};
-  NoiseNumbers numbers{torch::zeros(shape), torch::zeros(shape)};
+  NoiseNumbers numbers{torch::zeros(shape), torch::zeros(shape),
+                       torch::zeros({shape[0], 1, 1}, torch::kBool),
+                       torch::zeros({shape[0], 1, width})};
   for (std::size_t n = 0; n < inputs.size(); ++n) {
+    if (inputs[n].sampling.first_frame.has_value()) {
+      DrawEndless(inputs[n], static_cast<int64_t>(n), frame_length, &numbers);
+      continue;
+    }
     base::Random random(inputs[n].sampling.seed, 0);
     const int64_t first = static_cast<int64_t>(n) * frames * width;
     const int64_t count = inputs[n].leader.frame_count() * width;
@@ -55,8 +97,15 @@ torch::Tensor SourceNoise(const checkpoint::FlowArchitecture::Noise& options,
                           const NoiseNumbers& numbers) {
   const int64_t frames = numbers.smooth.size(1);
   const auto smooth = [&](double constant, int64_t state) {
-    const torch::Tensor root = FrameRoot(frames, options.frame_length, constant);
-    return torch::matmul(torch::matmul(root, numbers.smooth), roots[state]);
+    torch::Tensor smoothed =
+        torch::matmul(FrameRoot(frames, options.frame_length, constant), numbers.smooth);
+    if (numbers.endless.defined()) {
+      smoothed = torch::where(numbers.endless,
+                              std::sqrt(constant) * numbers.constant +
+                                  std::sqrt(1 - constant) * numbers.smooth,
+                              smoothed);
+    }
+    return torch::matmul(smoothed, roots[state]);
   };
   const torch::Tensor told = (known_count > 0).view({-1, 1, 1});
   const torch::Tensor ramp = Ramp(known_count, frames, options.ramp_frames);

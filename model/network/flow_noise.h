@@ -11,12 +11,17 @@ namespace duet::network {
 
 // Standard normal numbers, [N, T, 3 J] each.
 struct NoiseNumbers {
-  torch::Tensor smooth;  // becomes smooth in time
+  torch::Tensor smooth;  // becomes smooth in time, or is so in windows of an endless motion
   torch::Tensor white;   // stays as it is
+  // Which windows belong to an endless motion (Sampling::first_frame), and the numbers that are the
+  // same in all of its frames: [N, 1, 1] of bool and [N, 1, 3 J]. Undefined if there are none.
+  torch::Tensor endless = {};
+  torch::Tensor constant = {};
 };
 
-// Draws each window's numbers only from its Sampling::seed, with the same result on every compiler.
-NoiseNumbers DrawNoise(absl::Span<const engine::NetworkInput> inputs);
+// Draws each window's numbers only from its Sampling::seed and first_frame, with the same result on
+// every compiler. `frame_length`: of the architecture's noise.
+NoiseNumbers DrawNoise(absl::Span<const engine::NetworkInput> inputs, double frame_length);
 
 // The source of sampling: offsets that are smooth in time and have the joint covariance of the
 // training followers. After known frames their deviation grows with the distance from the last one;

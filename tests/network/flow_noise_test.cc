@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 #include "tests/network/flow_test_support.h"
 
 namespace duet::network {
@@ -58,12 +61,51 @@ TEST(DrawNoiseTest, DependsOnlyOnTheSeedOfEachWindow) {
   std::vector<engine::NetworkInput> inputs = {FlowWindow(manifest, 9), FlowWindow(manifest, 4)};
   inputs[0].sampling.seed = 11;
   inputs[1].sampling.seed = 12;
-  const NoiseNumbers both = DrawNoise(inputs);
-  const NoiseNumbers second = DrawNoise({&inputs[1], 1});
+  const NoiseNumbers both = DrawNoise(inputs, 4);
+  const NoiseNumbers second = DrawNoise({&inputs[1], 1}, 4);
   EXPECT_TRUE(torch::equal(both.smooth[1].narrow(0, 0, 4), second.smooth[0]));
   EXPECT_TRUE(torch::equal(both.white[1].narrow(0, 0, 4), second.white[0]));
   EXPECT_FALSE(torch::equal(both.smooth[0].narrow(0, 0, 4), second.smooth[0]));
   EXPECT_FALSE(torch::equal(second.smooth[0], second.white[0]));
+}
+
+TEST(DrawNoiseTest, AFrameOfAnEndlessMotionHasTheSameNoiseInEveryWindow) {
+  const checkpoint::Manifest manifest = SmallFlowManifest();
+  std::vector<engine::NetworkInput> inputs = {FlowWindow(manifest, 9), FlowWindow(manifest, 9)};
+  for (engine::NetworkInput& input : inputs) input.sampling.seed = 11;
+  inputs[0].sampling.first_frame = 1000;
+  inputs[1].sampling.first_frame = 1003;
+  const NoiseNumbers numbers = DrawNoise(inputs, 4);
+  EXPECT_TRUE(torch::allclose(numbers.smooth[0].narrow(0, 3, 6), numbers.smooth[1].narrow(0, 0, 6)));
+  EXPECT_TRUE(torch::equal(numbers.white[0].narrow(0, 3, 6), numbers.white[1].narrow(0, 0, 6)));
+  EXPECT_TRUE(torch::equal(numbers.constant[0], numbers.constant[1]));
+  EXPECT_FALSE(torch::equal(numbers.white[0], numbers.white[1]));
+}
+
+TEST(SourceNoiseTest, EndlessNoiseHasTheDeviationAndTheCovarianceOfWindows) {
+  checkpoint::FlowArchitecture::Noise options = test::SmallFlow().noise;
+  options.white = 0;
+  const checkpoint::Manifest manifest = SmallFlowManifest();
+  std::vector<engine::NetworkInput> inputs(200, FlowWindow(manifest, 9));
+  for (std::size_t n = 0; n < inputs.size(); ++n) {
+    inputs[n].sampling.seed = n;
+    inputs[n].sampling.first_frame = 5;
+  }
+  const NoiseNumbers numbers = DrawNoise(inputs, options.frame_length);
+  const int64_t width = numbers.white.size(2);
+  const torch::Tensor roots = torch::eye(width).expand({2, width, width});
+  for (const int64_t told : {0, 4}) {
+    const torch::Tensor noise =
+        SourceNoise(options, roots, torch::full({200}, told, torch::kInt64), numbers);
+    const double constant = told == 0 ? options.constant_share : 0;
+    const double apart = 2 / options.frame_length;
+    const double covariance = constant + (1 - constant) * std::exp(-0.5 * apart * apart);
+    const double ramp = told == 0 ? 1 : 6.0 / 8 * 4.0 / 8;
+    const double ramp = told == 0 ? 1 : 6.0 / 8 * 4.0 / 8;
+    EXPECT_NEAR((noise.select(1, 8) * noise.select(1, 6)).mean().item<double>(),
+                ramp * covariance, 0.05)
+        << told;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,255 @@
+#include "model/engine/live_synthesis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <utility>
+
+#include "model/engine/direction_estimate.h"
+#include "model/engine/window_state.h"
+#include "model/motion/limb_lengths.h"
+#include "model/motion/resample.h"
+
+namespace duet::engine {
+namespace {
+
+using motion::Poses;
+using motion::Vec3;
+
+// Frames of a spline after the one that a time falls in.
+constexpr int kFramesAfter = 2;
+// So that a frame that coincides with a model frame is not missed because of rounding.
+constexpr double kEpsilon = 1e-6;
+// The leader's velocity is that of its last frames, and falls by a factor of e in each of these
+// times after the newest one.
+constexpr double kVelocitySeconds = 0.1;
+constexpr double kRestSeconds = 0.15;
+// How long a plan takes to leave the frames that were sent from the plan before it.
+constexpr double kJoinSeconds = 0.15;
+
+// 1 to 0 with level ends.
+float Fall(double t) {
+  const float at = static_cast<float>(std::clamp(t, 0.0, 1.0));
+  return 1 - at * at * (3 - 2 * at);
+}
+
+// Frames [0, end) of `poses`, so that a spline does not read what came later.
+Poses Until(const Poses& poses, int end) {
+  Poses until(0, poses.joint_count());
+  until.Append(poses.frames(0, std::min(end, poses.frame_count())));
+  return until;
+}
+
+}  // namespace
+
+bool AnswersLive(const ModelDescription& model) { return ContinuesFromSettledFrames(model); }
+
+LiveSynthesis::LiveSynthesis(ModelDescription model, LiveRequest request)
+    : model_(std::move(model)),
+      request_(std::move(request)),
+      timing_(model_, request_.frame_rate_hz, request_.delay_frames),
+      replay_end_(request_.first_frame + request_.leader.frame_count()),
+      leader_(0, model_.skeleton.joint_count()),
+      follower_(0, model_.skeleton.joint_count()),
+      leader_begin_(request_.first_frame),
+      follower_begin_(request_.first_frame) {
+  leader_.Append(request_.leader.all());
+  follower_.Append(request_.follower.all());
+  request_.leader = request_.follower = {};
+}
+
+void LiveSynthesis::AddLeader(const Poses& frames) { leader_.Append(frames.all()); }
+
+void LiveSynthesis::ChangeLabels(int frame, int ease_frames, const std::vector<float>& weights) {
+  request_.labels.Change(frame, ease_frames, weights);
+}
+
+int LiveSynthesis::DueEnd() const {
+  return next_leader_frame() - (ended_ ? 0 : timing_.delay_frames());
+}
+
+int LiveSynthesis::JoinFrame(int evaluation) const {
+  // An evaluation before the first regular one: the leader ended within the delay.
+  return std::max(0, evaluation - timing_.delay_frames());
+}
+
+std::optional<int> LiveSynthesis::NextEvaluation() const {
+  if (pending_) return pending_;
+  const int newest = next_leader_frame() - 1;
+  return evaluation_ ? FurtherEvaluation(newest) : FirstEvaluation(newest);
+}
+
+std::optional<int> LiveSynthesis::FirstEvaluation(int newest) const {
+  if (next_follower_frame() >= DueEnd() || newest < 0) return std::nullopt;
+  if (newest < timing_.delay_frames()) return newest;
+  // The plan that was held when the last frame was sent, unless the next one has its own.
+  return timing_.EvaluationNotAfter(
+      std::min(newest, next_follower_frame() + timing_.delay_frames()));
+}
+
+std::optional<int> LiveSynthesis::FurtherEvaluation(int newest) const {
+  const int next = timing_.EvaluationAfter(*evaluation_);
+  if (next > newest) return std::nullopt;
+  if (next < replay_end_) return next;
+  // The frames before the evaluation must be answered by the plan held.
+  const int reach = std::min(newest, PlannedEnd() + timing_.delay_frames());
+  return std::max(next, timing_.EvaluationNotAfter(std::max(next, reach)));
+}
+
+int LiveSynthesis::PlannedEnd() const {
+  const int last = plan_begin_ + plan_.frame_count() - 1 - kFramesAfter;
+  return static_cast<int>(std::floor(timing_.ToCallerFrame(last) + kEpsilon)) + 1;
+}
+
+LiveFrames LiveSynthesis::TakeDue() const {
+  if (!evaluation_ || pending_) return {next_follower_frame(), Poses(0, leader_.joint_count())};
+  int end = std::min(DueEnd(), PlannedEnd());
+  if (const std::optional<int> next = NextEvaluation()) end = std::min(end, JoinFrame(*next));
+  return Sample(end - next_follower_frame());
+}
+
+LiveFrames LiveSynthesis::Plan(int count) const {
+  if (!evaluation_) return {next_follower_frame(), Poses(0, leader_.joint_count())};
+  return Sample(std::min(count, PlannedEnd() - next_follower_frame()));
+}
+
+LiveFrames LiveSynthesis::Sample(int count) const {
+  LiveFrames frames{next_follower_frame(), Poses(std::max(0, count), leader_.joint_count())};
+  for (int i = 0; i < count; ++i) SampleJoined(frames.first + i, frames.poses[i]);
+  return frames;
+}
+
+void LiveSynthesis::SamplePlan(int frame, absl::Span<Vec3> pose) const {
+  SampleCubic(plan_, timing_.ToModelFrame(frame) - plan_begin_, pose);
+}
+
+void LiveSynthesis::SampleJoined(int frame, absl::Span<Vec3> pose) const {
+  SamplePlan(frame, pose);
+  if (offset_.empty()) return;
+  const double frames = kJoinSeconds * request_.frame_rate_hz;
+  const float weight = Fall((frame - join_frame_ + 1) / (frames + 1));
+  for (std::size_t j = 0; j < pose.size(); ++j) pose[j] += offset_[j] * weight;
+}
+
+void LiveSynthesis::Settle(const Poses& frames) {
+  follower_.Append(frames.all());
+  DropOldFrames();
+}
+
+bool LiveSynthesis::NeedsWindow() const { return NextEvaluation().has_value(); }
+
+SynthesisWindow LiveSynthesis::NextWindow() {
+  pending_ = NextEvaluation();
+  const int join = JoinFrame(*pending_);
+  const int settled_end = join > 0 ? timing_.ModelFrameAt(join - 1) + 1 : 0;
+  const int known = static_cast<int>(std::ceil(timing_.ToModelFrame(follower_begin_) - kEpsilon));
+  const int begin = std::max({0, settled_end - timing_.past_frames(),
+                              std::min(known, settled_end - 1)});
+  const int frames =
+      std::min(settled_end - begin + timing_.future_frames(), model_.window_frames);
+  window_begin_ = begin;
+  SynthesisWindow window;
+  window.leader = WindowLeader(begin, frames, *pending_);
+  const std::size_t classes = model_.classes.size();
+  window.labels.resize(static_cast<std::size_t>(frames) * classes);
+  for (int t = 0; t < frames; ++t) {
+    request_.labels.At(timing_.ToCallerFrame(begin + t),
+                       window.labels.data() + static_cast<std::size_t>(t) * classes);
+  }
+  if (settled_end > begin) {
+    window.settled = WindowFollower(begin, settled_end, join);
+    const absl::Span<const Vec3> pose = window.settled[0];
+    window.start = FollowerStart{window.settled.at(0, model_.skeleton.root),
+                                 {pose.begin(), pose.end()}};
+  } else {
+    window.start = request_.start;
+    window.partner_direction = request_.partner_direction;
+    if (!window.start && !window.partner_direction && model_.partner_direction) {
+      window.partner_direction =
+          EstimatePartnerDirection(*model_.partner_direction, model_.skeleton, window.leader);
+    }
+  }
+  window.options = request_.options;
+  window.options.sampling.first_frame = begin;
+  return window;
+}
+
+void LiveSynthesis::Accept(const Poses& follower) {
+  // Only an engine that violates its contract gets here. Continuing would read past its result.
+  if (!pending_ || follower.joint_count() != leader_.joint_count() ||
+      follower.frame_count() <= kFramesAfter) {
+    std::abort();
+  }
+  if (evaluation_) skipped_frames_ += *pending_ - timing_.EvaluationAfter(*evaluation_);
+  evaluation_ = std::exchange(pending_, std::nullopt);
+  plan_ = follower;
+  join_frame_ = JoinFrame(*evaluation_);
+  plan_begin_ = window_begin_;
+  KeepOffset();
+}
+
+void LiveSynthesis::KeepOffset() {
+  offset_.clear();
+  const int last = join_frame_ - 1 - follower_begin_;
+  if (last < 0) return;
+  offset_.resize(static_cast<std::size_t>(leader_.joint_count()));
+  SamplePlan(join_frame_ - 1, absl::MakeSpan(offset_));
+  const absl::Span<const Vec3> sent = follower_[last];
+  for (std::size_t j = 0; j < offset_.size(); ++j) offset_[j] = sent[j] - offset_[j];
+}
+
+Poses LiveSynthesis::WindowLeader(int begin, int frames, int newest) const {
+  const int last = newest - leader_begin_;  // the newest frame in `known`
+  const Poses known = Until(leader_, last + 1);
+  const int back = std::min(
+      last, std::max(1, static_cast<int>(std::lround(kVelocitySeconds * request_.frame_rate_hz))));
+  Poses leader(frames, known.joint_count());
+  Poses resting(0, known.joint_count());
+  int known_frames = 0;
+  for (int t = 0; t < frames; ++t) {
+    const double frame = timing_.ToCallerFrame(begin + t) - leader_begin_;
+    SampleLinear(known, frame, leader[t]);
+    if (frame <= last + kEpsilon) {
+      ++known_frames;
+      continue;
+    }
+    const double seconds = (frame - last) / request_.frame_rate_hz;
+    const double coasting = kRestSeconds * (1 - std::exp(-seconds / kRestSeconds));
+    const float steps =
+        back == 0 ? 0 : static_cast<float>(coasting * request_.frame_rate_hz / back);
+    std::vector<Vec3> pose(known[last].begin(), known[last].end());
+    for (std::size_t j = 0; j < pose.size(); ++j) {
+      pose[j] += (known[last][j] - known[last - back][j]) * steps;
+    }
+    resting.Append(pose);
+  }
+  if (resting.empty()) return leader;
+  const Poses newest_pose(known.joint_count(), {known[last].begin(), known[last].end()});
+  SetBoneLengths(model_.skeleton, MedianBoneLengths(model_.skeleton, newest_pose), &resting);
+  std::copy(resting.all().begin(), resting.all().end(), leader[known_frames].begin());
+  return leader;
+}
+
+Poses LiveSynthesis::WindowFollower(int begin, int end, int join) const {
+  const Poses sent = Until(follower_, join - follower_begin_);
+  Poses settled(end - begin, sent.joint_count());
+  for (int t = begin; t < end; ++t) {
+    SampleCubic(sent, timing_.ToCallerFrame(t) - follower_begin_, settled[t - begin]);
+  }
+  return settled;
+}
+
+void LiveSynthesis::DropOldFrames() {
+  const int keep = next_follower_frame() - timing_.history_frames();
+  const auto drop = [keep](Poses* poses, int* begin) {
+    const int count = std::clamp(keep - *begin, 0, poses->frame_count());
+    poses->DropFront(count);
+    *begin += count;
+  };
+  drop(&leader_, &leader_begin_);
+  drop(&follower_, &follower_begin_);
+  request_.labels.DropBefore(keep);
+}
+
+}  // namespace duet::engine

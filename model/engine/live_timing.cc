@@ -1,0 +1,63 @@
+#include "model/engine/live_timing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::engine {
+namespace {
+
+// So that a frame that coincides with a model frame is not missed because of rounding.
+constexpr double kEpsilon = 1e-6;
+// Evaluations a second are no more than this, whatever the model's rate.
+constexpr double kMostEvaluationsHz = 15;
+constexpr double kPastSeconds = 1.5;
+// The plan covers frames that the server has to skip, and the provisional frames that callers get.
+constexpr double kFutureSeconds = 0.8;
+// A spline's neighbours, and rounding at either end.
+constexpr int kMarginFrames = 4;
+
+}  // namespace
+
+LiveTiming::LiveTiming(const ModelDescription& model, double frame_rate_hz, int delay_frames)
+    : delay_frames_(delay_frames),
+      model_frames_per_frame_(model.frame_rate_hz / frame_rate_hz),
+      model_frames_between_(std::max(
+          1, static_cast<int>(std::lround(model.frame_rate_hz / kMostEvaluationsHz)))) {
+  const double delay = std::ceil(delay_frames * model_frames_per_frame_);
+  const double wanted = std::ceil(kFutureSeconds * model.frame_rate_hz);
+  // At least the frames that are due until the next evaluation.
+  const double due = delay + model_frames_between_ + std::ceil(model_frames_per_frame_);
+  future_ = static_cast<int>(std::max(wanted + delay, due)) + kMarginFrames;
+  past_ = std::clamp(static_cast<int>(kPastSeconds * model.frame_rate_hz), 2,
+                     std::max(2, model.window_frames - future_));
+}
+
+int LiveTiming::ModelFrameAt(int frame) const {
+  return static_cast<int>(std::floor(ToModelFrame(frame) + kEpsilon));
+}
+
+int LiveTiming::history_frames() const {
+  const double between = model_frames_between_ / model_frames_per_frame_;
+  return static_cast<int>(std::ceil(past_ / model_frames_per_frame_ + between)) + delay_frames_ +
+         2 * kMarginFrames;
+}
+
+bool LiveTiming::IsEvaluation(int frame) const {
+  if (frame <= delay_frames_) return frame == delay_frames_;
+  return ModelFrameAt(frame) / model_frames_between_ !=
+         ModelFrameAt(frame - 1) / model_frames_between_;
+}
+
+int LiveTiming::EvaluationAfter(int frame) const {
+  int next = std::max(frame + 1, delay_frames_);
+  while (!IsEvaluation(next)) ++next;
+  return next;
+}
+
+int LiveTiming::EvaluationNotAfter(int frame) const {
+  int last = frame;
+  while (!IsEvaluation(last)) --last;
+  return last;
+}
+
+}  // namespace duet::engine

@@ -1,0 +1,225 @@
+#include "model/engine/live_synthesis.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/sample_motion.h"
+
+namespace duet::engine {
+namespace {
+
+using motion::Poses;
+using test::FakeSynthesizer;
+using test::SwayingMotion;
+
+constexpr int kJoints = 15;
+constexpr double kRate = 30;
+
+LiveRequest Request(int delay = 0, double rate = kRate) {
+  return {rate, delay, LabelTrack(std::vector<float>(6, 0)), {}, {}, {}};
+}
+
+Poses Frames(const Poses& poses, int first, int count) {
+  Poses frames(0, poses.joint_count());
+  frames.Append(poses.frames(first, count));
+  return frames;
+}
+
+// A live session whose windows a fake answers at once.
+class Session {
+ public:
+  explicit Session(LiveRequest request = Request())
+      : fake_(test::SamplingDescription()), live_(fake_.description(), std::move(request)) {}
+
+  // Sends frames, one by one or together, and takes all that becomes final.
+  void Send(const Poses& frames, bool together = false) {
+    if (together) {
+      live_.AddLeader(frames);
+      return Advance();
+    }
+    for (int t = 0; t < frames.frame_count(); ++t) {
+      live_.AddLeader(Frames(frames, t, 1));
+      Advance();
+    }
+  }
+  void End() {
+    live_.EndLeader();
+    Advance();
+  }
+  void Advance() {
+    for (;;) {
+      const LiveFrames due = live_.TakeDue();
+      if (due.poses.frame_count() > 0) {
+        EXPECT_EQ(due.first, live_.next_follower_frame());
+        follower_.Append(due.poses.all());
+        live_.Settle(due.poses);
+      } else if (live_.NeedsWindow()) {
+        windows_.push_back(live_.NextWindow());
+        live_.Accept(*fake_.Synthesize({&windows_.back()}).front());
+      } else {
+        return;
+      }
+    }
+  }
+
+  const Poses& follower() const { return follower_; }
+  const std::vector<SynthesisWindow>& windows() const { return windows_; }
+  LiveSynthesis& live() { return live_; }
+  FakeSynthesizer& fake() { return fake_; }
+
+ private:
+  FakeSynthesizer fake_;
+  LiveSynthesis live_;
+  Poses follower_{0, kJoints};
+  std::vector<SynthesisWindow> windows_;
+};
+
+TEST(LiveSynthesisTest, EveryFrameIsFinalWhenItsDelayHasPassed) {
+  for (const double rate : {8.0, 15.0, 24.0, 30.0, 60.0, 90.0}) {
+    for (const int delay : {0, 1, 5, 10}) {
+      const Poses leader = SwayingMotion(200, rate);
+      Session session(Request(delay, rate));
+      for (int t = 0; t < leader.frame_count(); ++t) {
+        session.Send(Frames(leader, t, 1));
+        ASSERT_EQ(session.follower().frame_count(), std::max(0, t + 1 - delay)) << rate;
+      }
+      session.End();
+      EXPECT_EQ(session.follower().frame_count(), leader.frame_count());
+      EXPECT_TRUE(session.live().done());
+      EXPECT_EQ(session.live().skipped_frames(), 0);
+    }
+  }
+}
+
+TEST(LiveSynthesisTest, ALeaderThatEndsWithinTheDelayIsAnswered) {
+  Session session(Request(/*delay=*/10));
+  session.Send(SwayingMotion(4, kRate));
+  EXPECT_EQ(session.follower().frame_count(), 0);
+  session.End();
+  EXPECT_EQ(session.follower().frame_count(), 4);
+}
+
+TEST(LiveSynthesisTest, FinalFramesDoNotDependOnTheLeadersFuture) {
+  for (const int delay : {0, 3}) {
+    const Poses leader = SwayingMotion(120, kRate);
+    Poses altered = leader;
+    constexpr int kSame = 70;
+    for (motion::Vec3& joint : altered.all().subspan(kSame * kJoints)) {
+      joint += motion::Vec3{1, 0, 2};
+    }
+    Session one(Request(delay)), other(Request(delay));
+    one.Send(leader);
+    other.Send(altered);
+    EXPECT_EQ(Frames(one.follower(), 0, kSame - delay), Frames(other.follower(), 0, kSame - delay));
+    EXPECT_NE(Frames(one.follower(), 0, kSame - delay + 8),
+              Frames(other.follower(), 0, kSame - delay + 8));
+  }
+}
+
+TEST(LiveSynthesisTest, AResumedSessionContinuesWithTheSameFrames) {
+  for (const double rate : {10.0, 15.0, 25.0, 30.0, 72.0}) {
+    for (const int delay : {0, 4}) {
+      const Poses leader = SwayingMotion(400, rate);
+      Session whole(Request(delay, rate));
+      whole.Send(leader);
+      whole.End();
+      for (const int next : {1, 2, 7, 30, 201, 202, 203, 204}) {
+        // Frames that were sent and not answered when the connection broke.
+        for (const int unanswered : {0, 1, 6}) {
+          LiveRequest request = Request(delay, rate);
+          request.first_frame = std::max(0, next - whole.live().history_frames());
+          request.leader = Frames(leader, request.first_frame,
+                                  next + delay + unanswered - request.first_frame);
+          request.follower =
+              Frames(whole.follower(), request.first_frame, next - request.first_frame);
+          Session resumed(std::move(request));
+          resumed.Advance();
+          EXPECT_EQ(resumed.follower().frame_count(), unanswered);
+          resumed.Send(Frames(leader, next + delay + unanswered, 60));
+          const int count = resumed.follower().frame_count();
+          EXPECT_EQ(resumed.follower(), Frames(whole.follower(), next, count))
+              << rate << " Hz, delay " << delay << ", resumed at " << next;
+        }
+      }
+    }
+  }
+}
+
+TEST(LiveSynthesisTest, OfFramesThatQueueOnlyTheNewestIsEvaluated) {
+  Session session;
+  session.Send(SwayingMotion(30, kRate));
+  const std::size_t before = session.windows().size();
+  session.Send(SwayingMotion(8, kRate), /*together=*/true);
+  EXPECT_EQ(session.windows().size(), before + 1);
+  EXPECT_EQ(session.follower().frame_count(), 38);
+  EXPECT_GT(session.live().skipped_frames(), 0);
+}
+
+TEST(LiveSynthesisTest, ABacklogBeyondThePlanIsAnsweredPlanByPlan) {
+  Session session;
+  session.Send(SwayingMotion(30, kRate));
+  session.Send(SwayingMotion(300, kRate), /*together=*/true);
+  EXPECT_EQ(session.follower().frame_count(), 330);
+}
+
+TEST(LiveSynthesisTest, ThePlanGoesOnFromTheFinalFrames) {
+  Session session;
+  session.Send(SwayingMotion(41, kRate));
+  const LiveFrames plan = session.live().Plan(12);
+  EXPECT_EQ(plan.first, 41);
+  ASSERT_EQ(plan.poses.frame_count(), 12);
+  const motion::Vec3 last = session.follower().at(40, 0);
+  EXPECT_LT(Distance(plan.poses.at(0, 0), last), 0.1f);
+  EXPECT_EQ(session.live().Plan(1000).poses.frame_count() < 60, true);
+}
+
+TEST(LiveSynthesisTest, WindowsContinueFromTheLastFrames) {
+  Session session;
+  session.Send(SwayingMotion(200, kRate));
+  const SynthesisWindow& window = session.windows().back();
+  ASSERT_TRUE(window.start.has_value());
+  EXPECT_EQ(window.settled.frame_count(), 22);
+  EXPECT_LE(window.leader.frame_count(), session.fake().description().window_frames);
+  // Evaluated at leader frame 198, whose model frame is 99; settled are model frames 77 to 98.
+  EXPECT_EQ(window.options.sampling.first_frame, 77);
+  EXPECT_LT(Distance(window.settled.at(21, 0), session.follower().at(196, 0)), 1e-6f);
+}
+
+TEST(LiveSynthesisTest, TheUnknownLeaderComesToRestWithItsLimbLengths) {
+  Session session;
+  Poses walking = SwayingMotion(60, kRate);
+  for (int t = 0; t < 60; ++t) {
+    for (motion::Vec3& joint : walking[t]) joint.z += 0.05f * static_cast<float>(t);
+  }
+  session.Send(walking);
+  const Poses& leader = session.windows().back().leader;
+  const int last = leader.frame_count() - 1;
+  const int newest = session.windows().back().settled.frame_count();
+  EXPECT_GT(leader.at(newest + 1, 0).z - leader.at(newest, 0).z, 0.03f);
+  EXPECT_LT(leader.at(last, 0).z - leader.at(last - 1, 0).z, 0.005f);
+}
+
+TEST(LiveSynthesisTest, LabelsChangeFromTheFrameTold) {
+  Session session;
+  session.Send(SwayingMotion(30, kRate));
+  session.live().ChangeLabels(30, 0, {1, 0, 0, 0, 0, 0});
+  session.Send(SwayingMotion(30, kRate));
+  const SynthesisWindow& window = session.windows().back();  // from model frame 7 on
+  const int begin = static_cast<int>(*window.options.sampling.first_frame);
+  EXPECT_EQ(window.labels[static_cast<std::size_t>(14 - begin) * 6], 0);
+  EXPECT_EQ(window.labels[static_cast<std::size_t>(15 - begin) * 6], 1);
+}
+
+TEST(LiveSynthesisTest, MemoryIsBoundedByTheHistory) {
+  Session session;
+  session.Send(SwayingMotion(3000, kRate));
+  EXPECT_LE(session.windows().back().leader.frame_count(), 46);
+  EXPECT_EQ(session.live().next_follower_frame(), 3000);
+}
+
+}  // namespace
+}  // namespace duet::engine
