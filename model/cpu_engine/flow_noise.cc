@@ -134,10 +134,9 @@ void FlowNoise::Fill(const engine::Sampling& sampling, int known_frames, int fra
     return;
   }
   const bool known = known_frames > 0;
-  const Drawn drawn =
-      sampling.first_frame.has_value()
-          ? DrawFrames(sampling.seed, *sampling.first_frame, known, frames, scratch)
-          : DrawWindow(sampling.seed, known, frames, scratch);
+  const Drawn drawn = sampling.first_frame.has_value()
+                          ? DrawFrames(sampling.seed, *sampling.first_frame, known, frames, scratch)
+                          : DrawWindow(sampling.seed, known, frames, scratch);
   states_[known ? 1 : 0].over_joints.Multiply(frames, drawn.smooth, out);
   const float white = static_cast<float>(options_.white);
   for (int t = 0; t < frames; ++t) {

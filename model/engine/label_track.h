@@ -19,8 +19,8 @@ class LabelTrack {
   // Keyframes in strictly increasing frame order, at least one.
   explicit LabelTrack(std::vector<LabelKeyframe> keyframes);
 
-  // Changes the weights linearly from those at `frame`, at least 0, to `weights` within `ease_frames`
-  // frames; with 0, they apply from `frame` on. Keyframes after `frame` are dropped.
+  // Changes the weights linearly from those at `frame`, at least 0, to `weights` within
+  // `ease_frames` frames; with 0, they apply from `frame` on. Keyframes after `frame` are dropped.
   void Change(int frame, int ease_frames, std::vector<float> weights);
   // Drops keyframes that have no effect from `frame` on.
   void DropBefore(int frame);

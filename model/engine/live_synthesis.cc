@@ -144,10 +144,9 @@ SynthesisWindow LiveSynthesis::NextWindow() {
   const int join = JoinFrame(*pending_);
   const int settled_end = join > 0 ? timing_.ModelFrameAt(join - 1) + 1 : 0;
   const int known = static_cast<int>(std::ceil(timing_.ToModelFrame(follower_begin_) - kEpsilon));
-  const int begin = std::max({0, settled_end - timing_.past_frames(),
-                              std::min(known, settled_end - 1)});
-  const int frames =
-      std::min(settled_end - begin + timing_.future_frames(), model_.window_frames);
+  const int begin =
+      std::max({0, settled_end - timing_.past_frames(), std::min(known, settled_end - 1)});
+  const int frames = std::min(settled_end - begin + timing_.future_frames(), model_.window_frames);
   window_begin_ = begin;
   SynthesisWindow window;
   window.leader = WindowLeader(begin, frames, *pending_);
@@ -160,8 +159,8 @@ SynthesisWindow LiveSynthesis::NextWindow() {
   if (settled_end > begin) {
     window.settled = WindowFollower(begin, settled_end, join);
     const absl::Span<const Vec3> pose = window.settled[0];
-    window.start = FollowerStart{window.settled.at(0, model_.skeleton.root),
-                                 {pose.begin(), pose.end()}};
+    window.start =
+        FollowerStart{window.settled.at(0, model_.skeleton.root), {pose.begin(), pose.end()}};
   } else {
     window.start = request_.start;
     window.partner_direction = request_.partner_direction;

@@ -68,9 +68,14 @@ class LiveSynthesis {
   LiveSynthesis(ModelDescription model, LiveRequest request);
 
   int history_frames() const { return timing_.history_frames(); }
+  int delay_frames() const { return timing_.delay_frames(); }
   // The next leader frame to add, and the next follower frame that is not final.
   int next_leader_frame() const { return leader_begin_ + leader_.frame_count(); }
   int next_follower_frame() const { return follower_begin_ + follower_.frame_count(); }
+  // The newest leader frame, [joints]; empty before the first.
+  absl::Span<const motion::Vec3> newest_leader() const {
+    return leader_.empty() ? absl::Span<const motion::Vec3>() : leader_[leader_.frame_count() - 1];
+  }
 
   // Adds leader frames that follow those added before. Not after EndLeader.
   void AddLeader(const motion::Poses& frames);
@@ -134,7 +139,7 @@ class LiveSynthesis {
   std::optional<int> evaluation_;  // of the plan held
   motion::Poses plan_;             // at the model's rate
   int plan_begin_ = 0;
-  int join_frame_ = 0;             // the first frame that the plan may change
+  int join_frame_ = 0;  // the first frame that the plan may change
   // From the plan to the frame before join_frame_, as it was sent: [joints], empty without one. It
   // is added to the frames of the plan with a weight that falls to 0, so that they continue from
   // frames between two model frames.

@@ -21,8 +21,8 @@ constexpr int kMarginFrames = 4;
 LiveTiming::LiveTiming(const ModelDescription& model, double frame_rate_hz, int delay_frames)
     : delay_frames_(delay_frames),
       model_frames_per_frame_(model.frame_rate_hz / frame_rate_hz),
-      model_frames_between_(std::max(
-          1, static_cast<int>(std::lround(model.frame_rate_hz / kMostEvaluationsHz)))) {
+      model_frames_between_(
+          std::max(1, static_cast<int>(std::lround(model.frame_rate_hz / kMostEvaluationsHz)))) {
   const double delay = std::ceil(delay_frames * model_frames_per_frame_);
   const double wanted = std::ceil(kFutureSeconds * model.frame_rate_hz);
   // At least the frames that are due until the next evaluation.

@@ -18,8 +18,8 @@ struct Sampling {
   // Number of samples that are drawn for each window, in [1, kMostCandidates]; the best one is
   // returned (candidates.h).
   int candidates = kDefaultCandidates;
-  // Set for a window of an endless motion: the index of the window's first frame in it. The noise of
-  // a frame is then the same in every window that contains the frame (frame_noise.h).
+  // Set for a window of an endless motion: the index of the window's first frame in it. The noise
+  // of a frame is then the same in every window that contains the frame (frame_noise.h).
   std::optional<int64_t> first_frame = std::nullopt;
 };
 

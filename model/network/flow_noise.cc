@@ -43,11 +43,9 @@ void DrawEndless(const engine::NetworkInput& input, int64_t n, double frame_leng
     numbers->smooth[n].narrow(0, 0, frames) +=
         weights[static_cast<std::size_t>(k)] * drawn.select(1, 0).narrow(0, k, frames);
   }
-  numbers->white[n].narrow(0, 0, frames).copy_(
-      drawn.select(1, 1).narrow(0, taps / 2, frames));
+  numbers->white[n].narrow(0, 0, frames).copy_(drawn.select(1, 1).narrow(0, taps / 2, frames));
   numbers->endless[n].fill_(true);
-  numbers->constant[n][0].copy_(
-      FrameNormals(input.sampling.seed, engine::kEveryFrame, width)[0]);
+  numbers->constant[n][0].copy_(FrameNormals(input.sampling.seed, engine::kEveryFrame, width)[0]);
 }
 
 // [T, T] lower-triangular: the root of constant + (1 - constant) exp(-(distance / length)^2 / 2).
@@ -100,10 +98,10 @@ torch::Tensor SourceNoise(const checkpoint::FlowArchitecture::Noise& options,
     torch::Tensor smoothed =
         torch::matmul(FrameRoot(frames, options.frame_length, constant), numbers.smooth);
     if (numbers.endless.defined()) {
-      smoothed = torch::where(numbers.endless,
-                              std::sqrt(constant) * numbers.constant +
-                                  std::sqrt(1 - constant) * numbers.smooth,
-                              smoothed);
+      smoothed = torch::where(
+          numbers.endless,
+          std::sqrt(constant) * numbers.constant + std::sqrt(1 - constant) * numbers.smooth,
+          smoothed);
     }
     return torch::matmul(smoothed, roots[state]);
   };

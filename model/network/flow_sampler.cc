@@ -139,9 +139,9 @@ torch::Tensor AnswerWindows(const FlowGenerator& generator, const checkpoint::Ma
                             absl::Span<const engine::NetworkInput> inputs) {
   const FlowInput input = MakeFlowInput(manifest, generator->base_poses(), inputs);
   const auto& architecture = std::get<checkpoint::FlowArchitecture>(manifest.architecture);
-  const torch::Tensor source = SourceNoise(architecture.noise, generator->noise_roots(),
-                                           input.known_count,
-                                           DrawNoise(inputs, architecture.noise.frame_length));
+  const torch::Tensor source =
+      SourceNoise(architecture.noise, generator->noise_roots(), input.known_count,
+                  DrawNoise(inputs, architecture.noise.frame_length));
   return SampleFlow(generator, architecture, input, Varieties(inputs) * source);
 }
 

@@ -150,7 +150,7 @@ Indices Decider::WantedFirst(Lane lane, std::size_t model) const {
     if (Window(i).lane == lane && Window(i).model == model) line.push_back(i);
   }
   const auto wanted_at = [&](std::size_t i) {
-    return std::min(Window(i).deadline, Window(i).queued_at + kPatience);
+    return std::min({Window(i).deadline, Window(i).due, Window(i).queued_at + kPatience});
   };
   std::stable_sort(line.begin(), line.end(),
                    [&](std::size_t a, std::size_t b) { return wanted_at(a) < wanted_at(b); });

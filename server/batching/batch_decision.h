@@ -22,6 +22,7 @@ struct WaitingWindow {
   common::TimePoint queued_at;
   common::TimePoint deadline = common::TimePoint::max();
   bool cancelled = false;
+  common::TimePoint due = common::TimePoint::max();  // see WindowJob
 };
 
 // The input of a decision about one model.
@@ -78,12 +79,11 @@ struct Decision {
 //    times as many frames as its next batch holds. No lane starves.
 // 3. Within the lane, choose the model whose windows have used the least computing time.
 // 4. Choose windows of the clients in rounds: one window of each client, then the second of each,
-// and
-//    so on. Within a client and within a round, the order is by urgency: the deadline, or one
-//    second after arrival if that is earlier. Take at most max_windows, and no more than let all
-//    workers finish at about the same time. While short calls arrive, a batch of a lower lane takes
-//    no longer than three of its windows would take alone, because the next short call waits for
-//    it.
+//    and so on. Within a client and within a round, the order is by urgency: the earliest of the
+//    deadline, the time at which it is due, and one second after arrival. Take at most
+//    max_windows, and no more than let all workers finish at about the same time. While short calls
+//    arrive, a batch of a lower lane takes no longer than three of its windows would take alone,
+//    because the next short call waits for it.
 // 5. Reduce the batch so that its most urgent window finishes in time, unless that costs more than
 // a
 //    quarter of the throughput. In that case, take as many windows as finish in time.

@@ -145,7 +145,7 @@ QueueState WindowQueue::StateAt(TimePoint now) const {
   for (const auto& [job, queued_at] : waiting_) {
     const std::size_t client = clients.emplace(job.client, clients.size()).first->second;
     state.windows.push_back({index[job.model.get()], LaneOf(job), client, FramesOf(job), queued_at,
-                             job.deadline, IsCancelled(job)});
+                             job.deadline, IsCancelled(job), job.due});
   }
   state.overtaken_frames = overtaken_frames_;
   state.free_workers = options_.workers - static_cast<int>(running_.size());

@@ -32,6 +32,9 @@ struct WindowJob {
   engine::SynthesisWindow window;
   Priority priority = Priority::kInteractive;
   common::TimePoint deadline = common::TimePoint::max();
+  // When the result is wanted, if that is earlier than one second from now. Unlike the deadline, a
+  // window that misses it is still evaluated.
+  common::TimePoint due = common::TimePoint::max();
   // Required. Set by the owner when the result is not needed any more. A model that has started
   // stops soon.
   std::shared_ptr<const std::atomic<bool>> cancelled;

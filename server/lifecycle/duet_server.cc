@@ -191,6 +191,7 @@ service::ServiceParts DuetServer::Parts() {
   parts.buffered_frames = static_cast<int>(settings_.buffered_frames());
   parts.write_timeout_seconds = settings_.write_timeout_seconds();
   parts.max_call_seconds = settings_.max_call_seconds();
+  parts.live_idle_seconds = settings_.live_idle_seconds();
   parts.client_key = settings_.client_key();
   parts.clean_up = CleanUpOf(settings_);
   return parts;

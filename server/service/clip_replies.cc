@@ -11,23 +11,14 @@
 namespace duet::server::service {
 namespace {
 
-// True if a window failed because of the model, not because of the caller or the server's state.
-bool IsModelFailure(const absl::Status& status) {
-  return !absl::IsCancelled(status) && !absl::IsDeadlineExceeded(status) &&
-         !absl::IsUnavailable(status);
+// The status that ends the call after one of its windows failed.
+absl::Status EndAfter(const absl::Status& error, metrics::CallRecord& record) {
+  return WindowFailure(error, record.request_id, &record.cause);
 }
 
 ClipStreamOptions WithPriority(ClipStreamOptions options, batching::Priority priority) {
   options.priority = priority;
   return options;
-}
-
-// The status that ends the call after `error`, for the caller.
-absl::Status ToEnd(const absl::Status& error, metrics::CallRecord& record) {
-  if (absl::IsUnavailable(error)) return DrainingRefusal();
-  if (!IsModelFailure(error)) return error;
-  record.cause = error.ToString();
-  return ModelFailedRefusal(record.request_id);
 }
 
 v1::MotionGrade ToMessage(const body::Grade& grade) {
@@ -81,7 +72,7 @@ NextReply ClipReplies::NextHeader(CallScope& scope) {
     first_part_ = stream_->Take(chunk_frames_);
     if (first_part_.kind == ClipPart::Kind::kPending) return {};
     if (first_part_.kind == ClipPart::Kind::kFailed) {
-      return {nullptr, ToEnd(first_part_.error, scope.record())};
+      return {nullptr, EndAfter(first_part_.error, scope.record())};
     }
     rig_ = std::make_unique<ReplyRig>(*mapping_.rig, mapping_.coordinates, mapping_.levelling,
                                       mapping_.joints, first_part_.poses);
@@ -108,7 +99,7 @@ NextReply ClipReplies::NextFrames(CallScope& scope) {
     case ClipPart::Kind::kFailed:
       break;
   }
-  return {nullptr, ToEnd(part.error, scope.record())};
+  return {nullptr, EndAfter(part.error, scope.record())};
 }
 
 void ClipReplies::FillHeader(const metrics::CallRecord& record) {

@@ -1,8 +1,9 @@
 #include "server/service/clip_stream.h"
 
 #include <algorithm>
-#include <string>
 #include <utility>
+
+#include "server/service/window_check.h"
 
 namespace duet::server::service {
 
@@ -93,7 +94,8 @@ absl::Status ClipStream::ScheduleNext(bool continues_call) {
 
 void ClipStream::OnWindow(const batching::WindowOutcome& outcome) {
   if (cancelled_->load(std::memory_order_acquire)) return;
-  const absl::Status status = Check(outcome.result);
+  const absl::Status status =
+      CheckWindow(outcome.result, expected_frames_, model_->description().skeleton.joint_count());
   motion::Poses frames;
   if (status.ok()) frames = clip_.Accept(*outcome.result);
   if (status.ok()) KeepMeasures();
@@ -123,23 +125,6 @@ void ClipStream::Keep(const absl::Status& status, const motion::Poses& frames,
   taken_ = 0;
   ready_.Append(frames.all());
   stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, ready_.frame_count());
-}
-
-absl::Status ClipStream::Check(const engine::WindowResult& result) const {
-  if (!result.ok()) return result.status();
-  const absl::Span<const motion::Vec3> positions = result->all();
-  const int joints = model_->description().skeleton.joint_count();
-  if (result->joint_count() != joints || result->frame_count() != expected_frames_ ||
-      positions.size() % static_cast<std::size_t>(joints) != 0) {
-    return absl::InternalError("model: expected " + std::to_string(expected_frames_) +
-                               " frames of " + std::to_string(joints) + " joints, got " +
-                               std::to_string(positions.size()) + " positions in frames of " +
-                               std::to_string(result->joint_count()) + " joints");
-  }
-  if (!std::all_of(positions.begin(), positions.end(), motion::IsFinite)) {
-    return absl::InternalError("model: expected finite positions, got one that is not finite");
-  }
-  return absl::OkStatus();
 }
 
 }  // namespace duet::server::service

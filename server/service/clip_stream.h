@@ -87,7 +87,6 @@ class ClipStream : public std::enable_shared_from_this<ClipStream> {
   absl::Status ScheduleNext(bool continues_call);
   void ScheduleIfWanted();
   void OnWindow(const batching::WindowOutcome& outcome);
-  absl::Status Check(const engine::WindowResult& result) const;
   // Measures the leader and the follower after the last window, on the scheduler's thread, so that
   // it delays only the last frames.
   void KeepMeasures() DUET_EXCLUDES(mutex_);

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "model/engine/live_synthesis.h"
+
 namespace duet::server::service {
 
 registry::ModelQuery ToQuery(const v1::ModelSelector& selector) {
@@ -35,6 +37,7 @@ v1::Model ToMessage(const registry::ServedModel& served) {
   message.set_terms(model.terms);
   message.set_free_for_all_uses(model.free_for_all_uses);
   message.set_weights_sha256(model.weights_sha256);
+  message.set_answers_live(engine::AnswersLive(model));
   return message;
 }
 
@@ -50,6 +53,8 @@ v1::RequestLimits ToMessage(const RequestLimits& limits) {
   message.set_max_request_bytes(limits.max_request_bytes);
   message.set_max_variety(limits.max_variety);
   message.set_max_candidates(static_cast<uint32_t>(limits.max_candidates));
+  message.set_max_delay_frames(static_cast<uint32_t>(limits.max_delay_frames));
+  message.set_max_plan_frames(static_cast<uint32_t>(limits.max_plan_frames));
   return message;
 }
 

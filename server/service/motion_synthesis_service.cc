@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -10,10 +11,13 @@
 #include "server/common/activity.h"
 #include "server/service/call_deadline.h"
 #include "server/service/clip_replies.h"
+#include "server/service/live_replies.h"
 #include "server/service/model_message.h"
 #include "server/service/priority_message.h"
 #include "server/service/refusals.h"
+#include "server/service/validate_live.h"
 #include "server/service/validator.h"
+#include "server/service/violations.h"
 #include "server/service/wire.h"
 
 namespace duet::server::service {
@@ -23,6 +27,7 @@ constexpr metrics::MethodInfo Method(std::string_view name, std::string_view typ
   return {MotionSynthesisService::kServiceName, name, type};
 }
 constexpr metrics::MethodInfo kSynthesize = Method("Synthesize", "server_stream");
+constexpr metrics::MethodInfo kSynthesizeLive = Method("SynthesizeLive", "bidi_stream");
 constexpr metrics::MethodInfo kListModels = Method("ListModels", "unary");
 constexpr metrics::MethodInfo kGetModel = Method("GetModel", "unary");
 
@@ -54,8 +59,12 @@ MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
     : parts_(std::move(parts)),
       pipeline_(parts_.limits.max_request_bytes, parts_.client_key, parts_.observers, *parts_.clock,
                 parts_.guard, security::Role::kSynthesise, parts_.trace_ratio) {
-  Serve("/duet.v1.MotionSynthesis/Synthesize",
-        [this](Context* context) { return Synthesize(context); });
+  Serve("/duet.v1.MotionSynthesis/Synthesize", [this](Context* context) {
+    return OpenStream(context, kSynthesize, &MotionSynthesisService::Handle);
+  });
+  Serve("/duet.v1.MotionSynthesis/SynthesizeLive", [this](Context* context) {
+    return OpenStream(context, kSynthesizeLive, &MotionSynthesisService::HandleLive);
+  });
   ServeUnary<v1::ListModelsRequest>(
       "/duet.v1.MotionSynthesis/ListModels", kListModels,
       [this](const v1::ListModelsRequest&) -> absl::StatusOr<v1::ListModelsResponse> {
@@ -66,8 +75,10 @@ MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
       [this](const v1::GetModelRequest& request) { return Get(request); });
 }
 
-RawService::Reactor* MotionSynthesisService::Synthesize(Context* context) {
-  OpenedCall opened = pipeline_.Open(*context, kSynthesize);
+RawService::Reactor* MotionSynthesisService::OpenStream(Context* context,
+                                                        const metrics::MethodInfo& method,
+                                                        Begun begin) {
+  OpenedCall opened = pipeline_.Open(*context, method);
   auto* reactor = new CallReactor(*context, open_calls_);
   absl::StatusOr<ShareLease> place =
       opened.status.ok() ? Admit(opened.client) : absl::StatusOr<ShareLease>(opened.status);
@@ -86,8 +97,10 @@ RawService::Reactor* MotionSynthesisService::Synthesize(Context* context) {
   }
   reactor->Receive(
       Receive(std::move(opened), *std::move(place), *reactor),
-      [this](CallReactor& received_by, const std::shared_ptr<Reception>& reception,
-             grpc::ByteBuffer bytes) { Handle(received_by, reception, std::move(bytes)); });
+      [this, begin](CallReactor& received_by, const std::shared_ptr<Reception>& reception,
+                    grpc::ByteBuffer bytes) {
+        (this->*begin)(received_by, reception, std::move(bytes));
+      });
   return reactor;
 }
 
@@ -223,32 +236,108 @@ absl::StatusOr<MotionSynthesisService::Prepared> MotionSynthesisService::Prepare
   if (!place.ok()) return place;
   const absl::Status room = parts_.scheduler->CheckRoom(priority, reception.client());
   if (!room.ok()) return QueueRefusal(room);
-  registry::FindResult found = parts_.registry->Find(ToQuery(request.model()));
-  if (const auto* not_found = std::get_if<registry::ModelNotFound>(&found)) {
-    return ModelNotFoundRefusal(*not_found);
-  }
-  auto& served = std::get<registry::ServedModel>(found);
-  const engine::ModelDescription& model = served.model->description();
+  absl::StatusOr<registry::ServedModel> served = FindModel(request.model());
+  if (!served.ok()) return served.status();
+  const engine::ModelDescription& model = served->model->description();
   absl::StatusOr<ValidatedRequest> validated = ValidateRequest(request, model, parts_.limits);
   if (!validated.ok()) return validated.status();
   const absl::Status frames = reception.HoldFrames(validated->clip.leader.frame_count());
   if (!frames.ok()) return frames;
   std::optional<bool>& clean_up = validated->clip.options.clean_up;
-  if (!clean_up.has_value()) clean_up = parts_.clean_up.value_or(model.cleaned_up_by_default());
+  if (!clean_up.has_value()) clean_up = CleansUp(model);
   ClipStreamOptions options;
   options.deadline = DeadlineOf(context, *parts_.clock, parts_.max_call_seconds);
   options.buffered_frames = parts_.buffered_frames;
   options.client = reception.client();
+  StreamingCall::Parts call = CallParts(reception, options.deadline);
+  call.held_bytes = std::move(held);
+  return Prepared{std::move(call),
+                  std::make_unique<ClipReplies>(std::move(served->model), *std::move(validated),
+                                                std::move(options), *parts_.scheduler)};
+}
+
+absl::StatusOr<registry::ServedModel> MotionSynthesisService::FindModel(
+    const v1::ModelSelector& selector) const {
+  registry::FindResult found = parts_.registry->Find(ToQuery(selector));
+  if (const auto* not_found = std::get_if<registry::ModelNotFound>(&found)) {
+    return ModelNotFoundRefusal(*not_found);
+  }
+  return std::get<registry::ServedModel>(std::move(found));
+}
+
+bool MotionSynthesisService::CleansUp(const engine::ModelDescription& model) const {
+  return parts_.clean_up.value_or(model.cleaned_up_by_default());
+}
+
+StreamingCall::Parts MotionSynthesisService::CallParts(Reception& reception,
+                                                       common::TimePoint deadline) const {
   StreamingCall::Parts call;
   call.place = reception.TakePlace();
-  call.held_bytes = std::move(held);
   call.scope = reception.TakeScope();
-  call.deadline = options.deadline;
+  call.deadline = deadline;
   call.write_timeout_seconds = parts_.write_timeout_seconds;
   call.clock = parts_.clock;
-  return Prepared{std::move(call),
-                  std::make_unique<ClipReplies>(std::move(served.model), *std::move(validated),
-                                                std::move(options), *parts_.scheduler)};
+  return call;
+}
+
+void MotionSynthesisService::HandleLive(CallReactor& reactor,
+                                        const std::shared_ptr<Reception>& reception,
+                                        grpc::ByteBuffer bytes) {
+  CountIfLarge(bytes);
+  v1::SynthesizeLiveRequest request;
+  absl::Status read = pipeline_.Read(std::move(bytes), request);
+  if (read.ok() && !request.has_start()) {
+    Violations violations;
+    violations.Malformed("payload", "start in the first message",
+                         request.has_frames()         ? "frames"
+                         : request.has_label_change() ? "label_change"
+                                                      : "none");
+    read = violations.ToStatus();
+  }
+  if (!read.ok()) return reception->Refuse(read);
+  absl::StatusOr<PreparedLive> prepared =
+      PrepareLive(reactor.context(), *reception, std::move(*request.mutable_start()));
+  if (!prepared.ok()) return reception->Refuse(prepared.status());
+  reactor.Run(
+      StreamingCall::Create(std::move(prepared->call), std::move(prepared->replies), reactor),
+      prepared->session);
+  // Weak: the reception holds the session.
+  prepared->session->Read([weak = std::weak_ptr<Reception>(reception)](double timeout_seconds) {
+    const std::shared_ptr<Reception> alive = weak.lock();
+    return alive != nullptr && alive->ReadNext(timeout_seconds);
+  });
+}
+
+absl::StatusOr<MotionSynthesisService::PreparedLive> MotionSynthesisService::PrepareLive(
+    const Context& context, Reception& reception, v1::LiveStart start) {
+  absl::StatusOr<registry::ServedModel> served = FindModel(start.model());
+  if (!served.ok()) return served.status();
+  const engine::ModelDescription& model = served->model->description();
+  absl::StatusOr<ValidatedLiveStart> valid =
+      ValidateLiveStart(std::move(start), model, parts_.limits);
+  if (!valid.ok()) return valid.status();
+  engine::SynthesisOptions& options = valid->live.options;
+  if (!options.clean_up.has_value()) options.clean_up = CleansUp(model);
+  const engine::SynthesisOptions chosen = options;
+  v1::LiveHeader header = MakeLiveHeader(model, *valid);
+  LiveSessionParts parts;
+  parts.model = served->model;
+  parts.scheduler = parts_.scheduler;
+  parts.admission = parts_.admission;
+  parts.clock = parts_.clock;
+  parts.limits = parts_.limits;
+  // A session lasts as long as its caller wants.
+  parts.deadline = DeadlineOf(context, *parts_.clock, std::numeric_limits<double>::infinity());
+  parts.client = reception.client();
+  parts.idle_seconds = parts_.live_idle_seconds;
+  parts.buffered_frames = parts_.buffered_frames;
+  const common::TimePoint deadline = parts.deadline;
+  auto session = std::make_shared<LiveSession>(std::move(parts), *std::move(valid));
+  const absl::Status frames = reception.HoldFrames(session->history_frames());
+  if (!frames.ok()) return frames;
+  auto replies = std::make_unique<LiveReplies>(session, std::move(header), std::move(served->model),
+                                               chosen, *parts_.clock);
+  return PreparedLive{CallParts(reception, deadline), std::move(session), std::move(replies)};
 }
 
 template <typename Request, typename Answer>
@@ -294,12 +383,10 @@ v1::ListModelsResponse MotionSynthesisService::List() const {
 
 absl::StatusOr<v1::GetModelResponse> MotionSynthesisService::Get(
     const v1::GetModelRequest& request) const {
-  const registry::FindResult found = parts_.registry->Find(ToQuery(request.model()));
-  if (const auto* not_found = std::get_if<registry::ModelNotFound>(&found)) {
-    return ModelNotFoundRefusal(*not_found);
-  }
+  const absl::StatusOr<registry::ServedModel> found = FindModel(request.model());
+  if (!found.ok()) return found.status();
   v1::GetModelResponse response;
-  *response.mutable_model() = ToMessage(std::get<registry::ServedModel>(found));
+  *response.mutable_model() = ToMessage(*found);
   *response.mutable_limits() = ToMessage(parts_.limits);
   return response;
 }

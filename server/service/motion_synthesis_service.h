@@ -23,6 +23,7 @@
 #include "server/service/admission.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/call_reactor.h"
+#include "server/service/live_session.h"
 #include "server/service/open_calls.h"
 #include "server/service/raw_service.h"
 #include "server/service/reception.h"
@@ -47,6 +48,7 @@ struct ServiceParts {
   // enforces both.
   double write_timeout_seconds = std::numeric_limits<double>::infinity();
   double max_call_seconds = std::numeric_limits<double>::infinity();
+  double live_idle_seconds = 60;       // see LiveSessionParts
   std::string client_key;              // see IdentifyCall
   security::CallGuard guard{nullptr};  // without an access list, every caller is allowed
   // Fraction of calls without a trace for which a sampled trace is started. Absent: none.
@@ -84,7 +86,12 @@ class MotionSynthesisService final : public RawService {
  private:
   using Context = grpc::CallbackServerContext;
 
-  Reactor* Synthesize(Context* context);
+  // Handles the first message of a call; see CallReactor.
+  using Begun = void (MotionSynthesisService::*)(CallReactor& reactor,
+                                                 const std::shared_ptr<Reception>& reception,
+                                                 grpc::ByteBuffer bytes);
+  // Opens and admits a call of a method that streams its replies.
+  Reactor* OpenStream(Context* context, const metrics::MethodInfo& method, Begun begin);
   void CountIfLarge(const grpc::ByteBuffer& bytes);
   // Handles a message. Large messages are handled on a thread of their own, because they would
   // occupy one of gRPC's few threads.
@@ -97,6 +104,23 @@ class MotionSynthesisService final : public RawService {
   void Begin(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
              grpc::ByteBuffer bytes, ShareLease held,
              std::shared_ptr<TransportQuota::Received> received);
+  // Parses the first message of a live session and starts the session.
+  void HandleLive(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
+                  grpc::ByteBuffer bytes);
+  // A session that was found valid, with its replies.
+  struct PreparedLive {
+    StreamingCall::Parts call;
+    std::shared_ptr<LiveSession> session;
+    std::unique_ptr<ReplySource> replies;
+  };
+  absl::StatusOr<PreparedLive> PrepareLive(const Context& context, Reception& reception,
+                                           v1::LiveStart start);
+  // Finds the model that a request selects.
+  absl::StatusOr<registry::ServedModel> FindModel(const v1::ModelSelector& selector) const;
+  // Whether followers of a model are cleaned up if the request does not specify it.
+  bool CleansUp(const engine::ModelDescription& model) const;
+  // What every streaming call holds until it ends.
+  StreamingCall::Parts CallParts(Reception& reception, common::TimePoint deadline) const;
   // A Synthesize call that was found valid.
   struct Prepared {
     StreamingCall::Parts call;

@@ -111,4 +111,13 @@ absl::Status ModelFailedRefusal(const std::string& request_id) {
   return status;
 }
 
+absl::Status WindowFailure(const absl::Status& error, const std::string& request_id,
+                           std::string* cause) {
+  if (absl::IsUnavailable(error)) return DrainingRefusal();
+  // The caller's doing, not the model's.
+  if (absl::IsCancelled(error) || absl::IsDeadlineExceeded(error)) return error;
+  *cause = error.ToString();
+  return ModelFailedRefusal(request_id);
+}
+
 }  // namespace duet::server::service

@@ -42,6 +42,12 @@ absl::Status ModelNotFoundRefusal(const registry::ModelNotFound& not_found);
 // INTERNAL: the model failed. The message has no details; the log has them under the request ID.
 absl::Status ModelFailedRefusal(const std::string& request_id);
 
+// The status with which a call ends after one of its windows failed with `error`: UNAVAILABLE
+// during shutdown, INTERNAL if the model failed, else `error`. `cause` gets the details of a model
+// failure.
+absl::Status WindowFailure(const absl::Status& error, const std::string& request_id,
+                           std::string* cause);
+
 }  // namespace duet::server::service
 
 #endif  // DUET_SERVER_SERVICE_REFUSALS_H_

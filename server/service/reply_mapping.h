@@ -29,6 +29,15 @@ struct ReplyMapping {
   std::optional<RigSource> rig;
 };
 
+// Appends the positions of frames, as the caller gets them. `poses`: in the model's joint order,
+// level world metres.
+void AppendPositions(const ReplyMapping& reply, const motion::Poses& poses,
+                     google::protobuf::RepeatedField<float>* positions);
+// The reverse: the frames that a caller got, in the model's joint order, level world metres.
+// Requires every joint of the model in the reply.
+motion::Poses FromPositions(const ReplyMapping& reply,
+                            const google::protobuf::RepeatedField<float>& positions);
+
 // Fills in a chunk. `poses`: in the model's joint order, level world metres.
 void FillChunk(const ReplyMapping& reply, const motion::Poses& poses, int first_frame,
                v1::MotionChunk& chunk);

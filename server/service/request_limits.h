@@ -19,6 +19,10 @@ struct RequestLimits {
   float max_abs_weight = 2;
   float max_variety = 2;
   int max_candidates = 16;
+  int max_delay_frames = 10;
+  int max_plan_frames = 30;
+  // Of the frames in one message of a live session.
+  double max_live_seconds = 10;
   // Larger than any room, and small enough for float arithmetic on positions.
   float max_abs_coordinate_metres = 10000;
   // Set by the operator. ServerConfig has the default.

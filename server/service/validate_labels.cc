@@ -17,6 +17,41 @@ namespace {
 // whole.
 constexpr int kMaxExtraWeights = 64;
 
+std::vector<engine::LabelKeyframe> ReadKeyframes(const v1::SynthesizeRequest& request,
+                                                 uint32_t frames,
+                                                 const engine::ModelDescription& model,
+                                                 const RequestLimits& limits,
+                                                 Violations& violations) {
+  std::vector<engine::LabelKeyframe> keyframes;
+  if (request.label_keyframes_size() > limits.max_label_keyframes) {
+    violations.Malformed("label_keyframes",
+                         absl::StrCat("at most ", limits.max_label_keyframes, " keyframes"),
+                         absl::StrCat(request.label_keyframes_size()));
+    return keyframes;
+  }
+  for (int i = 0; i < request.label_keyframes_size(); ++i) {
+    const v1::LabelKeyframe& keyframe = request.label_keyframes(i);
+    const std::string at = absl::StrCat("label_keyframes[", i, "]");
+    if (keyframe.frame() >= frames) {
+      violations.Malformed(absl::StrCat(at, ".frame"),
+                           absl::StrCat("less than ", frames, ", the number of frames"),
+                           absl::StrCat(keyframe.frame()));
+    }
+    if (i > 0 && keyframe.frame() <= request.label_keyframes(i - 1).frame()) {
+      violations.Malformed(absl::StrCat(at, ".frame"),
+                           absl::StrCat("more than the previous keyframe's ",
+                                        request.label_keyframes(i - 1).frame()),
+                           absl::StrCat(keyframe.frame()));
+    }
+    keyframes.push_back({static_cast<int>(std::min(keyframe.frame(), frames)),
+                         ReadLabelVector(absl::StrCat(at, ".label_vector"), keyframe.label_vector(),
+                                         model, limits, violations)});
+  }
+  return keyframes;
+}
+
+}  // namespace
+
 std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVector& label_vector,
                                    const engine::ModelDescription& model,
                                    const RequestLimits& limits, Violations& violations) {
@@ -65,42 +100,8 @@ std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVect
   return weights;
 }
 
-std::vector<engine::LabelKeyframe> ReadKeyframes(const v1::SynthesizeRequest& request,
-                                                 const engine::ModelDescription& model,
-                                                 const RequestLimits& limits,
-                                                 Violations& violations) {
-  std::vector<engine::LabelKeyframe> keyframes;
-  if (request.label_keyframes_size() > limits.max_label_keyframes) {
-    violations.Malformed("label_keyframes",
-                         absl::StrCat("at most ", limits.max_label_keyframes, " keyframes"),
-                         absl::StrCat(request.label_keyframes_size()));
-    return keyframes;
-  }
-  const uint32_t frames = request.leader().frame_count();
-  for (int i = 0; i < request.label_keyframes_size(); ++i) {
-    const v1::LabelKeyframe& keyframe = request.label_keyframes(i);
-    const std::string at = absl::StrCat("label_keyframes[", i, "]");
-    if (keyframe.frame() >= frames) {
-      violations.Malformed(absl::StrCat(at, ".frame"),
-                           absl::StrCat("less than the leader's frame_count ", frames),
-                           absl::StrCat(keyframe.frame()));
-    }
-    if (i > 0 && keyframe.frame() <= request.label_keyframes(i - 1).frame()) {
-      violations.Malformed(absl::StrCat(at, ".frame"),
-                           absl::StrCat("more than the previous keyframe's ",
-                                        request.label_keyframes(i - 1).frame()),
-                           absl::StrCat(keyframe.frame()));
-    }
-    keyframes.push_back({static_cast<int>(std::min(keyframe.frame(), frames)),
-                         ReadLabelVector(absl::StrCat(at, ".label_vector"), keyframe.label_vector(),
-                                         model, limits, violations)});
-  }
-  return keyframes;
-}
-
-}  // namespace
-
 std::vector<engine::LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& request,
+                                                  uint32_t frames,
                                                   const engine::ModelDescription& model,
                                                   const RequestLimits& limits,
                                                   Violations& violations) {
@@ -112,7 +113,7 @@ std::vector<engine::LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& r
     violations.Malformed("label_vector", "label_vector or label_keyframes", "neither");
   }
   std::vector<engine::LabelKeyframe> keyframes;
-  if (has_keyframes) keyframes = ReadKeyframes(request, model, limits, violations);
+  if (has_keyframes) keyframes = ReadKeyframes(request, frames, model, limits, violations);
   if (request.has_label_vector()) {
     keyframes.push_back(
         {0, ReadLabelVector("label_vector", request.label_vector(), model, limits, violations)});

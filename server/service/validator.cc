@@ -26,8 +26,12 @@ constexpr float kMinUprightCosine = 0.70710678f;
 class Validation {
  public:
   Validation(const v1::SynthesizeRequest& request, const engine::ModelDescription& model,
-             const RequestLimits& limits)
-      : request_(request), model_(model), limits_(limits) {}
+             const RequestLimits& limits, const RequestForm& form)
+      : request_(request),
+        model_(model),
+        limits_(limits),
+        label_frames_(form.label_frames),
+        violations_(form.prefix) {}
 
   absl::StatusOr<ValidatedRequest> Run();
 
@@ -51,6 +55,7 @@ class Validation {
   const v1::SynthesizeRequest& request_;
   const engine::ModelDescription& model_;
   const RequestLimits& limits_;
+  const uint32_t label_frames_;
   Violations violations_;
 
   std::optional<motion::Coordinates> coordinates_;
@@ -258,7 +263,7 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
   Leader();
   Up();
   std::vector<engine::LabelKeyframe> labels =
-      ValidateLabels(request_, model_, limits_, violations_);
+      ValidateLabels(request_, label_frames_, model_, limits_, violations_);
   std::optional<engine::FollowerStart> start = Start();
   const std::optional<motion::Vec3> partner_direction = PartnerDirection();
   const engine::SynthesisOptions options = ValidateOptions(request_, limits_, violations_);
@@ -280,7 +285,14 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
 absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
                                                  const engine::ModelDescription& model,
                                                  const RequestLimits& limits) {
-  return Validation(request, model, limits).Run();
+  return ValidateRequest(request, model, limits, {"", request.leader().frame_count()});
+}
+
+absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
+                                                 const engine::ModelDescription& model,
+                                                 const RequestLimits& limits,
+                                                 const RequestForm& form) {
+  return Validation(request, model, limits, form).Run();
 }
 
 }  // namespace duet::server::service

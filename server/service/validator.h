@@ -1,7 +1,8 @@
 #ifndef DUET_SERVER_SERVICE_VALIDATOR_H_
 #define DUET_SERVER_SERVICE_VALIDATOR_H_
 
-#include <optional>
+#include <cstdint>
+#include <string>
 
 #include "absl/status/statusor.h"
 #include "duet/v1/synthesis.pb.h"
@@ -26,6 +27,17 @@ struct ValidatedRequest {
 absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
                                                  const engine::ModelDescription& model,
                                                  const RequestLimits& limits);
+
+// Like ValidateRequest, for requests whose leader has other limits than RequestLimits says, or
+// none. Label keyframes lie before frame `label_frames`. Violations have the given prefix.
+struct RequestForm {
+  std::string prefix;
+  uint32_t label_frames = 0;
+};
+absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
+                                                 const engine::ModelDescription& model,
+                                                 const RequestLimits& limits,
+                                                 const RequestForm& form);
 
 }  // namespace duet::server::service
 

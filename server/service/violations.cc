@@ -26,6 +26,7 @@ void Violations::Mismatch(std::string field, absl::string_view expected, absl::s
 }
 
 void Violations::Keep(std::string field, absl::string_view expected, absl::string_view got) {
+  field.insert(0, prefix_);
   std::string description = absl::StrCat("expected ", expected, ", got ", got);
   // Descriptions are ASCII (see Quoted), so they can be cut anywhere.
   if (description.size() > kMaxDescriptionBytes) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -17,6 +18,9 @@ namespace duet::server::service {
 // are counted.
 class Violations {
  public:
+  // `prefix`: precedes every field, such as "start.".
+  explicit Violations(std::string prefix = "") : prefix_(std::move(prefix)) {}
+
   // Adds a field that is malformed for every model: "<field>: expected <expected>, got <got>".
   void Malformed(std::string field, absl::string_view expected, absl::string_view got);
   // Adds a field that is well formed but does not fit the model.
@@ -31,6 +35,7 @@ class Violations {
  private:
   void Keep(std::string field, absl::string_view expected, absl::string_view got);
 
+  const std::string prefix_;
   std::vector<common::FieldViolation> kept_;
   std::size_t kept_bytes_ = 0;
   std::size_t malformed_ = 0;

@@ -132,8 +132,8 @@ TEST(LiveSynthesisTest, AResumedSessionContinuesWithTheSameFrames) {
         for (const int unanswered : {0, 1, 6}) {
           LiveRequest request = Request(delay, rate);
           request.first_frame = std::max(0, next - whole.live().history_frames());
-          request.leader = Frames(leader, request.first_frame,
-                                  next + delay + unanswered - request.first_frame);
+          request.leader =
+              Frames(leader, request.first_frame, next + delay + unanswered - request.first_frame);
           request.follower =
               Frames(whole.follower(), request.first_frame, next - request.first_frame);
           Session resumed(std::move(request));

@@ -76,7 +76,8 @@ TEST(DrawNoiseTest, AFrameOfAnEndlessMotionHasTheSameNoiseInEveryWindow) {
   inputs[0].sampling.first_frame = 1000;
   inputs[1].sampling.first_frame = 1003;
   const NoiseNumbers numbers = DrawNoise(inputs, 4);
-  EXPECT_TRUE(torch::allclose(numbers.smooth[0].narrow(0, 3, 6), numbers.smooth[1].narrow(0, 0, 6)));
+  EXPECT_TRUE(
+      torch::allclose(numbers.smooth[0].narrow(0, 3, 6), numbers.smooth[1].narrow(0, 0, 6)));
   EXPECT_TRUE(torch::equal(numbers.white[0].narrow(0, 3, 6), numbers.white[1].narrow(0, 0, 6)));
   EXPECT_TRUE(torch::equal(numbers.constant[0], numbers.constant[1]));
   EXPECT_FALSE(torch::equal(numbers.white[0], numbers.white[1]));
@@ -102,8 +103,8 @@ TEST(SourceNoiseTest, EndlessNoiseHasTheDeviationAndTheCovarianceOfWindows) {
     const double covariance = constant + (1 - constant) * std::exp(-0.5 * apart * apart);
     const double ramp = told == 0 ? 1 : 6.0 / 8 * 4.0 / 8;
     const double ramp = told == 0 ? 1 : 6.0 / 8 * 4.0 / 8;
-    EXPECT_NEAR((noise.select(1, 8) * noise.select(1, 6)).mean().item<double>(),
-                ramp * covariance, 0.05)
+    EXPECT_NEAR((noise.select(1, 8) * noise.select(1, 6)).mean().item<double>(), ramp * covariance,
+                0.05)
         << told;
   }
 }

@@ -14,8 +14,9 @@ class Bone(_message.Message):
     def __init__(self, parent_joint: _Optional[int] = ..., child_joint: _Optional[int] = ...) -> None: ...
 
 class Model(_message.Message):
-    __slots__ = ["accepts_follower_start", "bones", "description", "frame_rate_hz", "free_for_all_uses", "interaction_classes", "is_default", "joint_names", "name", "root_joint", "samples", "terms", "version", "version_labels", "weights_sha256", "window_frames"]
+    __slots__ = ["accepts_follower_start", "answers_live", "bones", "description", "frame_rate_hz", "free_for_all_uses", "interaction_classes", "is_default", "joint_names", "name", "root_joint", "samples", "terms", "version", "version_labels", "weights_sha256", "window_frames"]
     ACCEPTS_FOLLOWER_START_FIELD_NUMBER: _ClassVar[int]
+    ANSWERS_LIVE_FIELD_NUMBER: _ClassVar[int]
     BONES_FIELD_NUMBER: _ClassVar[int]
     DESCRIPTION_FIELD_NUMBER: _ClassVar[int]
     FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -32,6 +33,7 @@ class Model(_message.Message):
     WEIGHTS_SHA256_FIELD_NUMBER: _ClassVar[int]
     WINDOW_FRAMES_FIELD_NUMBER: _ClassVar[int]
     accepts_follower_start: bool
+    answers_live: bool
     bones: _containers.RepeatedCompositeFieldContainer[Bone]
     description: str
     frame_rate_hz: float
@@ -47,7 +49,7 @@ class Model(_message.Message):
     version_labels: _containers.RepeatedScalarFieldContainer[str]
     weights_sha256: str
     window_frames: int
-    def __init__(self, name: _Optional[str] = ..., version: _Optional[int] = ..., version_labels: _Optional[_Iterable[str]] = ..., is_default: bool = ..., interaction_classes: _Optional[_Iterable[str]] = ..., joint_names: _Optional[_Iterable[str]] = ..., bones: _Optional[_Iterable[_Union[Bone, _Mapping]]] = ..., root_joint: _Optional[str] = ..., frame_rate_hz: _Optional[float] = ..., window_frames: _Optional[int] = ..., accepts_follower_start: bool = ..., description: _Optional[str] = ..., samples: bool = ..., terms: _Optional[str] = ..., weights_sha256: _Optional[str] = ..., free_for_all_uses: bool = ...) -> None: ...
+    def __init__(self, name: _Optional[str] = ..., version: _Optional[int] = ..., version_labels: _Optional[_Iterable[str]] = ..., is_default: bool = ..., interaction_classes: _Optional[_Iterable[str]] = ..., joint_names: _Optional[_Iterable[str]] = ..., bones: _Optional[_Iterable[_Union[Bone, _Mapping]]] = ..., root_joint: _Optional[str] = ..., frame_rate_hz: _Optional[float] = ..., window_frames: _Optional[int] = ..., accepts_follower_start: bool = ..., description: _Optional[str] = ..., samples: bool = ..., terms: _Optional[str] = ..., weights_sha256: _Optional[str] = ..., free_for_all_uses: bool = ..., answers_live: bool = ...) -> None: ...
 
 class ModelSelector(_message.Message):
     __slots__ = ["name", "version", "version_label"]

@@ -1,0 +1,327 @@
+#include "server/service/live_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "server/service/refusals.h"
+#include "server/service/violations.h"
+#include "server/service/window_check.h"
+#include "server/service/wire.h"
+
+namespace duet::server::service {
+namespace {
+
+// Far above ten seconds of any skeleton at any rate.
+constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 20;
+constexpr double kMaxGapSeconds = 2;
+// While more leader frames than this many seconds wait for an answer, none are read.
+constexpr double kMaxUnansweredSeconds = 2;
+constexpr std::size_t kMaxWaitingNotices = 16;
+
+absl::Status MalformedMessage(const char* got) {
+  Violations violations;
+  violations.Malformed("payload", "frames or label_change", got);
+  return violations.ToStatus();
+}
+
+}  // namespace
+
+LiveSession::LiveSession(LiveSessionParts parts, ValidatedLiveStart start)
+    : parts_(std::move(parts)),
+      format_(std::move(start.reply)),
+      plan_frames_(start.plan_frames),
+      frame_rate_hz_(start.live.frame_rate_hz),
+      first_frame_(start.live.first_frame + start.live.follower.frame_count()),
+      history_frames_(
+          engine::LiveTiming(parts_.model->description(), frame_rate_hz_, start.live.delay_frames)
+              .history_frames()),
+      cancelled_(std::make_shared<std::atomic<bool>>(false)),
+      live_(parts_.model->description(), std::move(start.live)),
+      arrival_(parts_.clock->Now()) {}
+
+void LiveSession::Start(std::function<void()> on_progress) {
+  on_progress_ = std::move(on_progress);
+  Work();
+}
+
+void LiveSession::Read(std::function<bool(double)> read_next) {
+  {
+    common::MutexLock lock(mutex_);
+    read_next_ = std::move(read_next);
+  }
+  ReadOn();
+}
+
+void LiveSession::OnMessage(grpc::ByteBuffer bytes) {
+  absl::Status status;
+  if (bytes.Length() > kMaxMessageBytes) {
+    status = TooLargeRefusal(bytes.Length(), kMaxMessageBytes);
+  } else {
+    v1::SynthesizeLiveRequest message;
+    status = ParseMessage(std::move(bytes), message);
+    if (status.ok()) status = Handle(message);
+  }
+  {
+    common::MutexLock lock(mutex_);
+    reading_ = false;
+    if (error_.ok()) error_ = status;
+  }
+  Work();
+  on_progress_();
+}
+
+void LiveSession::OnEndOfMessages() {
+  {
+    common::MutexLock lock(mutex_);
+    reading_ = false;
+    ended_ = true;
+    live_.EndLeader();
+  }
+  Work();
+  on_progress_();
+}
+
+absl::Status LiveSession::Handle(const v1::SynthesizeLiveRequest& message) {
+  switch (message.payload_case()) {
+    case v1::SynthesizeLiveRequest::kFrames:
+      return AddFrames(message.frames());
+    case v1::SynthesizeLiveRequest::kLabelChange:
+      return ChangeLabels(message.label_change());
+    case v1::SynthesizeLiveRequest::kStart:
+      return MalformedMessage("a second start");
+    case v1::SynthesizeLiveRequest::PAYLOAD_NOT_SET:
+      break;
+  }
+  return MalformedMessage("none");
+}
+
+absl::Status LiveSession::AddFrames(const v1::LeaderFrames& frames) {
+  absl::StatusOr<motion::Poses> poses = ReadLeaderFrames(frames, format_, parts_.limits);
+  if (!poses.ok()) return poses.status();
+  common::MutexLock lock(mutex_);
+  arrival_ = parts_.clock->Now();
+  capture_seconds_ = frames.capture_seconds();
+  return AddPoses(static_cast<int>(frames.first_frame()), *std::move(poses));
+}
+
+absl::Status LiveSession::AddPoses(int first, motion::Poses poses) {
+  const int next = live_.next_leader_frame(), end = first + poses.frame_count();
+  const int late = std::min(next, end) - first, gap = first - next;
+  if (end > kMaxLiveFrames || gap > kMaxGapSeconds * frame_rate_hz_) {
+    Violations violations("frames.");
+    violations.Malformed(
+        "first_frame",
+        absl::StrCat("at most ", next, " and ", kMaxGapSeconds,
+                     " s of missing frames; after a longer gap, start again with the history"),
+        absl::StrCat(first));
+    return violations.ToStatus();
+  }
+  if (late > 0) {
+    stats_.late_frames += late;
+    Notify(v1::LIVE_NOTICE_KIND_LATE, first, late);
+    poses.DropFront(late);
+  }
+  if (gap > 0) {
+    stats_.gap_frames += gap;
+    Notify(v1::LIVE_NOTICE_KIND_GAP_FILLED, next, gap);
+    FillGap(gap, poses);
+  }
+  live_.AddLeader(poses);
+  return absl::OkStatus();
+}
+
+void LiveSession::FillGap(int count, const motion::Poses& next) {
+  const int joints = next.joint_count();
+  // Before the first frame there is nothing to interpolate from.
+  const absl::Span<const motion::Vec3> after = next[0];
+  const absl::Span<const motion::Vec3> before =
+      live_.newest_leader().empty() ? after : live_.newest_leader();
+  motion::Poses gap(count, joints);
+  for (int t = 0; t < count; ++t) {
+    const float at = static_cast<float>(t + 1) / static_cast<float>(count + 1);
+    for (int j = 0; j < joints; ++j) {
+      const auto joint = static_cast<std::size_t>(j);
+      gap.at(t, j) = Lerp(before[joint], after[joint], at);
+    }
+  }
+  live_.AddLeader(gap);
+}
+
+absl::Status LiveSession::ChangeLabels(const v1::LabelChange& change) {
+  common::MutexLock lock(mutex_);
+  const int next = std::max(0, live_.next_leader_frame() - live_.delay_frames());
+  const absl::StatusOr<ValidatedLabelChange> valid =
+      ReadLabelChange(change, next, frame_rate_hz_, parts_.model->description(), parts_.limits);
+  if (!valid.ok()) return valid.status();
+  live_.ChangeLabels(valid->frame, valid->ease_frames, valid->weights);
+  return absl::OkStatus();
+}
+
+void LiveSession::Notify(v1::LiveNoticeKind kind, int first, int count) {
+  v1::LiveNotice notice;
+  notice.set_kind(kind);
+  if (count > 0) {
+    notice.mutable_frames()->set_first_frame(static_cast<uint32_t>(first));
+    notice.mutable_frames()->set_frame_count(static_cast<uint32_t>(count));
+  }
+  notices_.push_back(std::move(notice));
+}
+
+void LiveSession::Work() {
+  std::optional<batching::WindowJob> job;
+  {
+    common::MutexLock lock(mutex_);
+    if (!told_draining_ && parts_.admission->state() == Admission::State::kDraining) {
+      told_draining_ = true;
+      Notify(v1::LIVE_NOTICE_KIND_DRAINING, 0, 0);
+    }
+    if (!in_flight_ && error_.ok() && !cancelled_->load(std::memory_order_acquire)) {
+      KeepDueFrames();
+      if (live_.NeedsWindow()) job = NextJob();
+    }
+  }
+  if (job) Schedule(*std::move(job));
+  ReadOn();
+}
+
+void LiveSession::KeepDueFrames() {
+  for (;;) {
+    const engine::LiveFrames due = live_.TakeDue();
+    if (due.poses.frame_count() == 0) return;
+    google::protobuf::RepeatedField<float> sent;
+    AppendPositions(format_, due.poses, &sent);
+    live_.Settle(FromPositions(format_, sent));
+    ready_.Add(sent.begin(), sent.end());
+    stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, waiting_frames());
+  }
+}
+
+batching::WindowJob LiveSession::NextJob() {
+  in_flight_ = true;
+  batching::WindowJob job;
+  job.model = parts_.model;
+  job.window = live_.NextWindow();
+  job.window.cancelled = cancelled_;
+  job.priority = batching::Priority::kInteractive;
+  job.deadline = parts_.deadline;
+  job.due = arrival_ + std::chrono::duration_cast<common::TimePoint::duration>(
+                           std::chrono::duration<double>(1 / frame_rate_hz_));
+  job.cancelled = cancelled_;
+  job.continues_call = stats_.windows > 0;
+  job.client = parts_.client;
+  job.done = [self = shared_from_this()](const batching::WindowOutcome& outcome) {
+    self->OnWindow(outcome);
+  };
+  window_frames_ = job.window.leader.frame_count();
+  return job;
+}
+
+void LiveSession::Schedule(batching::WindowJob job) {
+  const absl::Status scheduled = parts_.scheduler->Submit(std::move(job));
+  if (scheduled.ok()) return;
+  common::MutexLock lock(mutex_);
+  in_flight_ = false;
+  if (error_.ok()) error_ = QueueRefusal(scheduled);
+}
+
+void LiveSession::OnWindow(const batching::WindowOutcome& outcome) {
+  if (cancelled_->load(std::memory_order_acquire)) return;
+  {
+    common::MutexLock lock(mutex_);
+    in_flight_ = false;
+    const absl::Status status = Accept(outcome);
+    if (error_.ok() && !status.ok()) {
+      error_ = status;
+      window_failed_ = true;
+    }
+  }
+  Work();
+  on_progress_();
+}
+
+absl::Status LiveSession::Accept(const batching::WindowOutcome& outcome) {
+  stats_.queue_seconds += outcome.timings.queue_seconds;
+  stats_.compute_seconds += outcome.timings.compute_seconds;
+  const absl::Status status = CheckWindow(outcome.result, window_frames_,
+                                          parts_.model->description().skeleton.joint_count());
+  if (!status.ok()) return status;
+  ++stats_.windows;
+  live_.Accept(*outcome.result);
+  const int skipped = live_.skipped_frames() - stats_.skipped_frames;
+  if (skipped > 0) {
+    Notify(v1::LIVE_NOTICE_KIND_SKIPPED, live_.next_follower_frame() - skipped, skipped);
+    stats_.skipped_frames += skipped;
+  }
+  return status;
+}
+
+bool LiveSession::WantsMessage() const {
+  const int unanswered = live_.next_leader_frame() - live_.next_follower_frame();
+  return read_next_ != nullptr && !reading_ && !ended_ && error_.ok() &&
+         waiting_frames() < parts_.buffered_frames && notices_.size() < kMaxWaitingNotices &&
+         unanswered <= kMaxUnansweredSeconds * frame_rate_hz_ + live_.delay_frames();
+}
+
+void LiveSession::ReadOn() {
+  std::function<bool(double)> read_next;
+  {
+    common::MutexLock lock(mutex_);
+    if (!WantsMessage()) return;
+    reading_ = true;
+    read_next = read_next_;
+  }
+  // False if the call has ended: then no message is wanted any more.
+  read_next(parts_.idle_seconds);
+}
+
+int LiveSession::waiting_frames() const {
+  return ready_.size() / (3 * static_cast<int>(format_.joints.size()));
+}
+
+LiveOutput LiveSession::Take() {
+  LiveOutput output;
+  {
+    common::MutexLock lock(mutex_);
+    if (!notices_.empty()) {
+      output.notice = std::move(notices_.front());
+      notices_.erase(notices_.begin());
+    } else if (!ready_.empty()) {
+      output.frames.emplace();
+      FillFrames(&*output.frames);
+      output.arrival = arrival_;
+    } else if (!error_.ok()) {
+      output.error = error_;
+      output.window_failed = window_failed_;
+    } else {
+      output.end = ended_ && !in_flight_ && live_.done();
+    }
+  }
+  if (output.notice || output.frames) ReadOn();
+  return output;
+}
+
+void LiveSession::FillFrames(v1::FollowerFrames* frames) {
+  const int count = waiting_frames();
+  frames->set_first_frame(static_cast<uint32_t>(live_.next_follower_frame() - count));
+  frames->set_frame_count(static_cast<uint32_t>(count));
+  frames->mutable_positions()->Swap(&ready_);
+  if (plan_frames_ > 0) {
+    AppendPositions(format_, live_.Plan(plan_frames_).poses, frames->mutable_plan_positions());
+  }
+  frames->set_leader_frame(static_cast<uint32_t>(live_.next_leader_frame() - 1));
+  frames->set_capture_seconds(capture_seconds_);
+}
+
+void LiveSession::Cancel() { cancelled_->store(true, std::memory_order_release); }
+
+LiveStats LiveSession::stats() const {
+  common::MutexLock lock(mutex_);
+  return stats_;
+}
+
+}  // namespace duet::server::service
