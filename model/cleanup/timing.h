@@ -11,6 +11,9 @@ struct Timing {
   double frame_rate_hz = 0;
   // Number of first frames that are final. No stage changes them.
   int settled = 0;
+  // How long corrections take to apply in full after the settled frames. Windows that follow one
+  // another within this time need a shorter one: each of them would begin anew.
+  double ease_seconds = 1.0 / 3;
 
   double Frames(double seconds) const { return seconds * frame_rate_hz; }
 };
@@ -22,12 +25,11 @@ inline float SmoothStep(double t) {
 }
 
 // Returns the fraction of a correction that applies to a frame: 0 in settled frames, then rising to
-// 1 within a third of a second, so that the motion is continuous between windows. 1 if there are no
+// 1 within Timing::ease_seconds, so that the motion is continuous between windows. 1 if there are no
 // settled frames.
 inline float EaseIn(const Timing& timing, int frame) {
-  constexpr double kSeconds = 1.0 / 3;
   if (timing.settled == 0) return 1;
-  return SmoothStep((frame - timing.settled + 1) / (timing.Frames(kSeconds) + 1));
+  return SmoothStep((frame - timing.settled + 1) / (timing.Frames(timing.ease_seconds) + 1));
 }
 
 // Returns `value` up to `knee`; above, a smooth function that stays below `limit`.

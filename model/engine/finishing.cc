@@ -7,6 +7,13 @@
 #include "model/motion/limb_lengths.h"
 
 namespace duet::engine {
+namespace {
+
+// Windows of an endless motion follow one another within a few frames.
+constexpr double kEndlessEaseSeconds = 0.1;
+
+}  // namespace
+
 absl::Status CheckFinite(const motion::Poses& follower) {
   if (std::all_of(follower.all().begin(), follower.all().end(), motion::IsFinite)) {
     return absl::OkStatus();
@@ -67,6 +74,12 @@ cleanup::Meetings MeetingsOf(const ModelDescription& description, const Synthesi
 
 int SettledFrames(const SynthesisWindow& window) {
   return std::max(window.settled.frame_count(), window.start ? 1 : 0);
+}
+
+cleanup::Timing CleanUpTiming(const ModelDescription& description, const SynthesisWindow& window) {
+  cleanup::Timing timing{description.frame_rate_hz, SettledFrames(window)};
+  if (window.options.sampling.first_frame) timing.ease_seconds = kEndlessEaseSeconds;
+  return timing;
 }
 
 }  // namespace duet::engine

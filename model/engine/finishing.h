@@ -36,6 +36,9 @@ cleanup::Meetings MeetingsOf(const ModelDescription& description, const Synthesi
 // frame of the start.
 int SettledFrames(const SynthesisWindow& window);
 
+// Returns how clean-up treats the window's frames.
+cleanup::Timing CleanUpTiming(const ModelDescription& description, const SynthesisWindow& window);
+
 }  // namespace duet::engine
 
 #endif  // DUET_MODEL_ENGINE_FINISHING_H_

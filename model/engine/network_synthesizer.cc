@@ -136,7 +136,7 @@ class NetworkSynthesizer : public Synthesizer {
     if (IsCleanedUp(window)) {
       clean_up_.Apply(window.leader, TouchOf(description_, window),
                       MeetingsOf(description_, window),
-                      {description_.frame_rate_hz, SettledFrames(window)}, &follower);
+                      CleanUpTiming(description_, window), &follower);
     }
     return follower;
   }

@@ -15,7 +15,8 @@ std::vector<LabelledLeader> Ask(const dataset::Dataset& dataset, const std::vect
       std::vector<float> labels(dataset.classes.size());
       labels[static_cast<size_t>(sequence.interaction_class)] = 1;
       leaders.push_back({&sequence, engine::LabelTrack(std::move(labels)),
-                         SamplingOf(asked, dataset, index, n), asked.tell_direction});
+                         SamplingOf(asked, dataset, index, n), asked.tell_direction,
+                         asked.live_delay});
     }
   }
   return leaders;

@@ -2,6 +2,7 @@
 #define DUET_MODEL_EVALUATION_EXPERIMENTS_SAMPLED_ANSWERS_H_
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -18,6 +19,7 @@ struct AskedSamples {
   uint64_t seed = 0;  // of the whole set
   int candidates = engine::kDefaultCandidates;
   bool tell_direction = true;
+  std::optional<int> live_delay = std::nullopt;  // see LabelledLeader
 };
 
 // The sampling of the n-th answer to a sequence. No two leaders share a seed: with common noise

@@ -5,10 +5,12 @@
 #include <iterator>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/engine/clip_synthesis.h"
+#include "model/evaluation/experiments/live_clip.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -32,16 +34,28 @@ engine::ClipRequest MakeRequest(const motion::Skeleton& skeleton, const Labelled
   return request;
 }
 
+using AnyClip = std::variant<engine::ClipSynthesis, LiveClip>;
+
+AnyClip MakeClip(const engine::ModelDescription& model, const LabelledLeader& leader,
+                 StartGiven start) {
+  engine::ClipRequest request = MakeRequest(model.skeleton, leader, start);
+  if (!leader.live_delay) return engine::ClipSynthesis(model, std::move(request));
+  return LiveClip(model, std::move(request), *leader.live_delay);
+}
+
+bool HasNextWindow(const AnyClip& clip) {
+  return std::visit([](const auto& any) { return any.HasNextWindow(); }, clip);
+}
+
 // Evaluates the next window of every clip that is not finished, all together.
-absl::Status NextWindows(const engine::Synthesizer& synthesizer,
-                         std::vector<engine::ClipSynthesis>* clips,
+absl::Status NextWindows(const engine::Synthesizer& synthesizer, std::vector<AnyClip>* clips,
                          std::vector<motion::Poses>* followers) {
   std::vector<size_t> waiting;
   std::vector<engine::SynthesisWindow> windows;
   for (size_t i = 0; i < clips->size(); ++i) {
-    if (!(*clips)[i].HasNextWindow()) continue;
+    if (!HasNextWindow((*clips)[i])) continue;
     waiting.push_back(i);
-    windows.push_back((*clips)[i].NextWindow());
+    windows.push_back(std::visit([](auto& clip) { return clip.NextWindow(); }, (*clips)[i]));
   }
   std::vector<const engine::SynthesisWindow*> pointers;
   pointers.reserve(windows.size());
@@ -49,7 +63,9 @@ absl::Status NextWindows(const engine::Synthesizer& synthesizer,
   const std::vector<engine::WindowResult> results = synthesizer.Synthesize(pointers);
   for (size_t n = 0; n < waiting.size(); ++n) {
     if (!results[n].ok()) return results[n].status();
-    (*followers)[waiting[n]].Append((*clips)[waiting[n]].Accept(*results[n]).all());
+    const motion::Poses frames = std::visit(
+        [&](auto& clip) { return clip.Accept(*results[n]); }, (*clips)[waiting[n]]);
+    (*followers)[waiting[n]].Append(frames.all());
   }
   return absl::OkStatus();
 }
@@ -58,13 +74,15 @@ absl::Status SynthesizeTogether(const engine::Synthesizer& synthesizer,
                                 absl::Span<const LabelledLeader> leaders, StartGiven start,
                                 std::vector<motion::Poses>* followers) {
   const engine::ModelDescription& model = synthesizer.description();
-  std::vector<engine::ClipSynthesis> clips;
   for (const LabelledLeader& leader : leaders) {
-    clips.emplace_back(model, MakeRequest(model.skeleton, leader, start));
+    if (!leader.live_delay || engine::AnswersLive(model)) continue;
+    return absl::FailedPreconditionError(
+        absl::StrCat("model ", model.name, ": does not answer live"));
   }
+  std::vector<AnyClip> clips;
+  for (const LabelledLeader& leader : leaders) clips.push_back(MakeClip(model, leader, start));
   std::vector<motion::Poses> made(clips.size(), motion::Poses(0, model.skeleton.joint_count()));
-  while (std::any_of(clips.begin(), clips.end(),
-                     [](const engine::ClipSynthesis& clip) { return clip.HasNextWindow(); })) {
+  while (std::any_of(clips.begin(), clips.end(), HasNextWindow)) {
     absl::Status status = NextWindows(synthesizer, &clips, &made);
     if (!status.ok()) return status;
   }

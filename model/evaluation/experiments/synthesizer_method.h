@@ -2,6 +2,7 @@
 #define DUET_MODEL_EVALUATION_EXPERIMENTS_SYNTHESIZER_METHOD_H_
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,8 @@ struct LabelledLeader {
   // False: the model estimates the partner's direction from the leader's motion, as for a request
   // without it.
   bool tell_direction = true;
+  // Answered live, with so many frames of delay. Absent: with the whole leader known.
+  std::optional<int> live_delay = std::nullopt;
 };
 
 // The same for many leaders, with several windows per evaluation of the network: much faster than

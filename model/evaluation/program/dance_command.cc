@@ -83,7 +83,8 @@ struct Dancer {
     if (!synthesizer.ok()) return synthesizer.status();
     absl::Status fits = CheckModelTakes((*synthesizer)->description(), experiment.dataset, start);
     if (!fits.ok()) return fits;
-    const experiments::LabelledLeader leader = {take.sequence, std::move(labels), sampling};
+    const experiments::LabelledLeader leader = {take.sequence, std::move(labels), sampling, true,
+                                                 flags.asked.live_delay};
     absl::StatusOr<std::vector<motion::Poses>> answer =
         SynthesizeSequences(**synthesizer, {&leader, 1}, start);
     if (!answer.ok()) return answer.status();
@@ -299,6 +300,7 @@ absl::Status Run(const DanceFlags& flags) {
       "the same place; a figure that is as good there does not depend on the leader.");
   section.settings.emplace_back("seeds", absl::StrCat(flags.asked.samples));
   section.settings.emplace_back("variety", absl::StrCat(flags.asked.variety));
+  section.settings.emplace_back("live", LiveText(flags.asked));
   section.tables = {DanceTable("Followers of whole takes, mean over the takes", rows)};
   if (!positions.rows.empty()) section.tables.push_back(std::move(positions));
   if (!loops.empty()) {

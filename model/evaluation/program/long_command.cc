@@ -43,7 +43,9 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, co
     labels[static_cast<size_t>(leader.sequence.interaction_class)] = 1;
     asked.push_back({&leader.sequence,
                      engine::LabelTrack(std::move(labels)),
-                     {sampling.seed + asked.size(), sampling.variety, sampling.candidates}});
+                     {sampling.seed + asked.size(), sampling.variety, sampling.candidates},
+                     true,
+                     sampling.live_delay});
   }
   absl::StatusOr<std::vector<motion::Poses>> followers =
       SynthesizeSequences(**synthesizer, asked, start);
@@ -109,6 +111,7 @@ report::ResultSection MakeSection(const Experiment& experiment, const Arguments&
       "comparison, is of the captured followers of the left-out subjects, in clips of a few "
       "seconds.");
   section.settings.emplace_back("variety", absl::StrCat(arguments.flags.asked.variety));
+  section.settings.emplace_back("live", LiveText(arguments.flags.asked));
   section.settings.emplace_back("seed", absl::StrCat(arguments.flags.asked.seed));
   return section;
 }

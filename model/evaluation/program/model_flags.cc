@@ -57,6 +57,16 @@ void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command) {
       ->check(CLI::Range(1, engine::kMostCandidates))
       ->capture_default_str();
   command->add_option("--seed", asked->seed, "seed of the answers")->capture_default_str();
+  command
+      ->add_option("--live", asked->live_delay,
+                   "answer as in a live session, this number of leader frames later; without it, the "
+                   "whole leader is known")
+      ->type_name("FRAMES")
+      ->check(CLI::Range(0, 10));
+}
+
+std::string LiveText(const experiments::AskedSamples& asked) {
+  return asked.live_delay ? absl::StrCat(*asked.live_delay, " frames of delay") : "no";
 }
 
 }  // namespace duet::evaluation::program

@@ -34,8 +34,11 @@ void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command);
 
 // --variety
 void AddVarietyFlag(float* variety, CLI::App* command);
-// --variety, --candidates, --seed
+// --variety, --candidates, --seed, --live
 void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command);
+
+// How the answers were asked for, for a section's settings: "no", or the delay of a live session.
+std::string LiveText(const experiments::AskedSamples& asked);
 
 }  // namespace duet::evaluation::program
 

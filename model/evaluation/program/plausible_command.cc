@@ -158,7 +158,9 @@ absl::StatusOr<std::vector<double>> ClassFigures(const Arguments& arguments,
       const uint64_t seed = arguments.asked.seed + asked.size() * 1000 + static_cast<uint64_t>(n);
       asked.push_back({&leader,
                        engine::LabelTrack(weights),
-                       {seed, arguments.asked.variety, arguments.asked.candidates}});
+                       {seed, arguments.asked.variety, arguments.asked.candidates},
+                       true,
+                       arguments.asked.live_delay});
     }
     absl::StatusOr<std::vector<Poses>> followers =
         SynthesizeSequences(synthesizer, asked, experiments::StartGiven::kNone);
@@ -233,6 +235,7 @@ absl::Status Run(const Arguments& arguments) {
   section.settings.emplace_back("seeds", absl::StrCat(arguments.asked.samples));
   section.settings.emplace_back("candidates", absl::StrCat(arguments.asked.candidates));
   section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
+  section.settings.emplace_back("live", LiveText(arguments.asked));
   for (const FoldModel& model : *models) {
     absl::StatusOr<SharedSynthesizer> synthesizer = model.load("");
     if (!synthesizer.ok()) return synthesizer.status();

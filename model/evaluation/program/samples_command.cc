@@ -88,6 +88,7 @@ report::ResultSection MakeSection(const Experiment& experiment, const Experiment
       "random, who answered another leader.");
   section.settings.emplace_back("answers to a leader", absl::StrCat(flags.asked.samples));
   section.settings.emplace_back("variety", absl::StrCat(flags.asked.variety));
+  section.settings.emplace_back("live", LiveText(flags.asked));
   section.settings.emplace_back("seed", absl::StrCat(flags.asked.seed));
   section.settings.emplace_back("direction of the partner",
                                 flags.asked.tell_direction ? "in the request" : "from the leader");

@@ -1,0 +1,43 @@
+#include "model/evaluation/experiments/live_clip.h"
+
+#include <utility>
+
+namespace duet::evaluation::experiments {
+
+LiveClip::LiveClip(const engine::ModelDescription& model, engine::ClipRequest request,
+                   int delay_frames)
+    : leader_(std::move(request.leader)),
+      live_(model, {request.frame_rate_hz, delay_frames, std::move(request.labels),
+                    std::move(request.start), request.partner_direction, request.options}) {
+  motion::Poses none(0, leader_.joint_count());
+  Advance(&none);
+}
+
+motion::Poses LiveClip::Accept(const motion::Poses& follower) {
+  live_.Accept(follower);
+  motion::Poses final_frames(0, leader_.joint_count());
+  Advance(&final_frames);
+  return final_frames;
+}
+
+void LiveClip::Advance(motion::Poses* final_frames) {
+  for (;;) {
+    const engine::LiveFrames due = live_.TakeDue();
+    if (due.poses.frame_count() > 0) {
+      final_frames->Append(due.poses.all());
+      live_.Settle(due.poses);
+      continue;
+    }
+    if (live_.NeedsWindow()) return;
+    if (next_frame_ == leader_.frame_count()) {
+      if (live_.done()) return;
+      live_.EndLeader();
+      continue;
+    }
+    live_.AddLeader(motion::Poses(
+        leader_.joint_count(), {leader_[next_frame_].begin(), leader_[next_frame_].end()}));
+    ++next_frame_;
+  }
+}
+
+}  // namespace duet::evaluation::experiments

@@ -1,0 +1,35 @@
+#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_LIVE_CLIP_H_
+#define DUET_MODEL_EVALUATION_EXPERIMENTS_LIVE_CLIP_H_
+
+#include "model/engine/clip_synthesis.h"
+#include "model/engine/live_synthesis.h"
+#include "model/engine/model_description.h"
+#include "model/engine/synthesizer.h"
+#include "model/motion/poses.h"
+
+namespace duet::evaluation::experiments {
+
+// A clip whose leader arrives frame by frame, as in a live session. Has the methods of
+// ClipSynthesis, so that both run in the same loop.
+class LiveClip {
+ public:
+  // Requires engine::AnswersLive(model).
+  LiveClip(const engine::ModelDescription& model, engine::ClipRequest request, int delay_frames);
+
+  bool HasNextWindow() const { return live_.NeedsWindow(); }
+  engine::SynthesisWindow NextWindow() { return live_.NextWindow(); }
+  // Returns the frames that became final until the next window.
+  motion::Poses Accept(const motion::Poses& follower);
+
+ private:
+  // Adds leader frames until a window is needed, and takes what becomes final.
+  void Advance(motion::Poses* final_frames);
+
+  motion::Poses leader_;
+  int next_frame_ = 0;  // of the leader
+  engine::LiveSynthesis live_;
+};
+
+}  // namespace duet::evaluation::experiments
+
+#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_LIVE_CLIP_H_
