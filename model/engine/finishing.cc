@@ -10,7 +10,7 @@ namespace duet::engine {
 namespace {
 
 // Windows of an endless motion follow one another within a few frames.
-constexpr double kEndlessEaseSeconds = 0.1;
+constexpr double kEndlessEaseSeconds = 0;
 
 }  // namespace
 

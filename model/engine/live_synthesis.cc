@@ -25,14 +25,9 @@ constexpr double kEpsilon = 1e-6;
 // times after the newest one.
 constexpr double kVelocitySeconds = 0.1;
 constexpr double kRestSeconds = 0.15;
-// How long a plan takes to leave the frames that were sent from the plan before it.
-constexpr double kJoinSeconds = 0.15;
-
-// 1 to 0 with level ends.
-float Fall(double t) {
-  const float at = static_cast<float>(std::clamp(t, 0.0, 1.0));
-  return 1 - at * at * (3 - 2 * at);
-}
+// The time in which a plan leaves the place and the velocity of the frames that were sent from the
+// plan before it, as a critically damped spring does.
+constexpr double kJoinSeconds = 0.06;
 
 // Frames [0, end) of `poses`, so that a spline does not read what came later.
 Poses Until(const Poses& poses, int end) {
@@ -115,8 +110,12 @@ LiveFrames LiveSynthesis::Plan(int count) const {
 }
 
 LiveFrames LiveSynthesis::Sample(int count) const {
-  LiveFrames frames{next_follower_frame(), Poses(std::max(0, count), leader_.joint_count())};
-  for (int i = 0; i < count; ++i) SampleJoined(frames.first + i, frames.poses[i]);
+  LiveFrames frames{next_follower_frame(), Poses(0, leader_.joint_count())};
+  Poses pose(1, leader_.joint_count());
+  for (int i = 0; i < count; ++i) {
+    SampleJoined(frames.first + i, &pose);
+    frames.poses.Append(pose.all());
+  }
   return frames;
 }
 
@@ -124,12 +123,19 @@ void LiveSynthesis::SamplePlan(int frame, absl::Span<Vec3> pose) const {
   SampleCubic(plan_, timing_.ToModelFrame(frame) - plan_begin_, pose);
 }
 
-void LiveSynthesis::SampleJoined(int frame, absl::Span<Vec3> pose) const {
-  SamplePlan(frame, pose);
-  if (offset_.empty()) return;
-  const double frames = kJoinSeconds * request_.frame_rate_hz;
-  const float weight = Fall((frame - join_frame_ + 1) / (frames + 1));
-  for (std::size_t j = 0; j < pose.size(); ++j) pose[j] += offset_[j] * weight;
+void LiveSynthesis::SampleJoined(int frame, Poses* pose) const {
+  SamplePlan(frame, (*pose)[0]);
+  if (!offset_.empty()) {
+    const double frames = kJoinSeconds * request_.frame_rate_hz, since = frame - join_frame_ + 1;
+    const double fall = std::exp(-since / frames);
+    const float place = static_cast<float>((1 + since / frames) * fall);
+    const float velocity = static_cast<float>(since * fall);
+    for (std::size_t j = 0; j < offset_.size(); ++j) {
+      (*pose)[0][j] += offset_[j] * place + velocity_offset_[j] * velocity;
+    }
+  }
+  // Interpolation and offsets shorten limbs, and later plans continue from these.
+  SetBoneLengths(model_.skeleton, bone_lengths_, pose);
 }
 
 void LiveSynthesis::Settle(const Poses& frames) {
@@ -185,6 +191,8 @@ void LiveSynthesis::Accept(const Poses& follower) {
   plan_ = follower;
   join_frame_ = JoinFrame(*evaluation_);
   plan_begin_ = window_begin_;
+  bone_lengths_ = MedianBoneLengths(
+      model_.skeleton, Poses(plan_.joint_count(), {plan_[0].begin(), plan_[0].end()}));
   KeepOffset();
 }
 
@@ -192,10 +200,18 @@ void LiveSynthesis::KeepOffset() {
   offset_.clear();
   const int last = join_frame_ - 1 - follower_begin_;
   if (last < 0) return;
-  offset_.resize(static_cast<std::size_t>(leader_.joint_count()));
-  SamplePlan(join_frame_ - 1, absl::MakeSpan(offset_));
+  const std::size_t joints = static_cast<std::size_t>(leader_.joint_count());
+  std::vector<Vec3> before(joints), after(joints);
+  SamplePlan(join_frame_ - 1, absl::MakeSpan(before));
+  SamplePlan(join_frame_, absl::MakeSpan(after));
+  offset_.resize(joints);
+  velocity_offset_.assign(joints, Vec3{});
   const absl::Span<const Vec3> sent = follower_[last];
-  for (std::size_t j = 0; j < offset_.size(); ++j) offset_[j] = sent[j] - offset_[j];
+  for (std::size_t j = 0; j < joints; ++j) {
+    offset_[j] = sent[j] - before[j];
+    if (last == 0) continue;
+    velocity_offset_[j] = (sent[j] - follower_[last - 1][j]) - (after[j] - before[j]);
+  }
 }
 
 Poses LiveSynthesis::WindowLeader(int begin, int frames, int newest) const {

@@ -118,7 +118,7 @@ class LiveSynthesis {
   int PlannedEnd() const;
   // A frame of the plan held, without and with what remains of the plan before it.
   void SamplePlan(int frame, absl::Span<motion::Vec3> pose) const;
-  void SampleJoined(int frame, absl::Span<motion::Vec3> pose) const;
+  void SampleJoined(int frame, motion::Poses* pose) const;
   LiveFrames Sample(int count) const;
 
   motion::Poses WindowLeader(int begin, int frames, int newest) const;
@@ -140,10 +140,11 @@ class LiveSynthesis {
   motion::Poses plan_;             // at the model's rate
   int plan_begin_ = 0;
   int join_frame_ = 0;  // the first frame that the plan may change
-  // From the plan to the frame before join_frame_, as it was sent: [joints], empty without one. It
-  // is added to the frames of the plan with a weight that falls to 0, so that they continue from
-  // frames between two model frames.
-  std::vector<motion::Vec3> offset_;
+  std::vector<float> bone_lengths_;  // of the plan
+  // From the plan to the frame before join_frame_, as it was sent, and from the plan's velocity there
+  // to that of the frames sent, a frame: [joints], empty without such a frame. Both are added to the
+  // plan with weights that fall to 0, so that place and velocity are continuous.
+  std::vector<motion::Vec3> offset_, velocity_offset_;
 
   std::optional<int> pending_;  // the evaluation of NextWindow
   int window_begin_ = 0;        // the model frame at which its window begins
