@@ -43,9 +43,11 @@ int LiveTiming::history_frames() const {
 }
 
 bool LiveTiming::IsEvaluation(int frame) const {
-  if (frame <= delay_frames_) return frame == delay_frames_;
-  return ModelFrameAt(frame) / model_frames_between_ !=
-         ModelFrameAt(frame - 1) / model_frames_between_;
+  const int answered = frame - delay_frames_;
+  if (answered <= 1) return answered >= 0;
+  // When the frame before has completed a model frame, the plan continues exactly from there.
+  return ModelFrameAt(answered - 1) / model_frames_between_ !=
+         ModelFrameAt(answered - 2) / model_frames_between_;
 }
 
 int LiveTiming::EvaluationAfter(int frame) const {

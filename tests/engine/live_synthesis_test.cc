@@ -184,9 +184,9 @@ TEST(LiveSynthesisTest, WindowsContinueFromTheLastFrames) {
   ASSERT_TRUE(window.start.has_value());
   EXPECT_EQ(window.settled.frame_count(), 22);
   EXPECT_LE(window.leader.frame_count(), session.fake().description().window_frames);
-  // Evaluated at leader frame 198, whose model frame is 99; settled are model frames 77 to 98.
-  EXPECT_EQ(window.options.sampling.first_frame, 77);
-  EXPECT_LT(Distance(window.settled.at(21, 0), session.follower().at(196, 0)), 1e-6f);
+  // Evaluated at leader frame 199, after frame 198 completed model frame 99; settled are 78 to 99.
+  EXPECT_EQ(window.options.sampling.first_frame, 78);
+  EXPECT_LT(Distance(window.settled.at(21, 0), session.follower().at(198, 0)), 1e-6f);
 }
 
 TEST(LiveSynthesisTest, TheUnknownLeaderComesToRestWithItsLimbLengths) {
@@ -208,7 +208,7 @@ TEST(LiveSynthesisTest, LabelsChangeFromTheFrameTold) {
   session.Send(SwayingMotion(30, kRate));
   session.live().ChangeLabels(30, 0, {1, 0, 0, 0, 0, 0});
   session.Send(SwayingMotion(30, kRate));
-  const SynthesisWindow& window = session.windows().back();  // from model frame 7 on
+  const SynthesisWindow& window = session.windows().back();  // the last one
   const int begin = static_cast<int>(*window.options.sampling.first_frame);
   EXPECT_EQ(window.labels[static_cast<std::size_t>(14 - begin) * 6], 0);
   EXPECT_EQ(window.labels[static_cast<std::size_t>(15 - begin) * 6], 1);
