@@ -12,6 +12,17 @@ CleanUp::CleanUp(const motion::Skeleton& skeleton, const Options& options)
 
 void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
                     const Timing& timing, motion::Poses* follower) const {
+  CorrectBody(leader, touch, meetings, timing, follower);
+  PlaceFeetAndHands(leader, meetings, timing, follower);
+}
+
+std::optional<float> CleanUp::Floor(const motion::Poses& leader) const {
+  if (!skeleton_.feet) return std::nullopt;
+  return FloorHeight(*skeleton_.feet, leader);
+}
+
+void CleanUp::CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
+                          const Timing& timing, motion::Poses* follower) const {
   // The trunk and the whole body first, then the limbs, so that fixed feet stay fixed.
   if (options_.waist.enabled) {
     LimitWaist(skeleton_, body_, leader, options_.waist, timing, follower);
@@ -32,8 +43,7 @@ void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Meeti
   if (options_.hand_contact.enabled) {
     ApproachHand(skeleton_, body_, leader, meetings, options_.hand_contact, timing, follower);
   }
-  std::optional<float> floor;
-  if (skeleton_.feet) floor = FloorHeight(*skeleton_.feet, leader);
+  const std::optional<float> floor = Floor(leader);
   if (floor && options_.floor.enabled) {
     StandOnFloor(skeleton_, *floor, options_.floor, timing, follower);
   }
@@ -43,7 +53,12 @@ void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Meeti
   if (options_.joint_ranges.enabled) {
     KeepJointRanges(skeleton_, body_, floor, options_.joint_ranges, timing, follower);
   }
+}
+
+void CleanUp::PlaceFeetAndHands(const motion::Poses& leader, const Meetings& meetings,
+                                const Timing& timing, motion::Poses* follower) const {
   // Last, so that standing feet stand and hands meet.
+  const std::optional<float> floor = Floor(leader);
   if (floor && options_.footsteps.enabled) {
     WalkInSteps(skeleton_, body_, *floor, options_.footsteps, timing, follower);
   }

@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_CLEANUP_CLEAN_UP_H_
 #define DUET_MODEL_CLEANUP_CLEAN_UP_H_
 
+#include <optional>
 #include <vector>
 
 #include "model/body/limbs.h"
@@ -46,7 +47,17 @@ class CleanUp {
   void Apply(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
              const Timing& timing, motion::Poses* follower) const;
 
+  // The two parts of Apply, for a caller who changes the follower between them: trunk, place, arms
+  // and joints; then feet that stand and hands that meet.
+  void CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
+                   const Timing& timing, motion::Poses* follower) const;
+  void PlaceFeetAndHands(const motion::Poses& leader, const Meetings& meetings,
+                         const Timing& timing, motion::Poses* follower) const;
+
  private:
+  // Absent for a skeleton without feet.
+  std::optional<float> Floor(const motion::Poses& leader) const;
+
   motion::Skeleton skeleton_;
   Options options_;
   body::Body body_;

@@ -27,6 +27,8 @@ constexpr float kBodyShare = 0.25f;
 constexpr double kBodySmoothSeconds = 0.2;
 // The longest reach of a leg, in lengths of the leg, and how far the body sinks for it, metres.
 constexpr float kLongestReach = 0.99f, kDeepestSink = 0.15f;
+// It does not sink until its hips are lower above the foot than this, in lengths of the leg.
+constexpr float kLowestHips = 0.8f;
 constexpr double kSinkSmoothSeconds = 0.1;
 // A knee that is this far from the line of its leg has a direction, metres.
 constexpr float kClearBend = 0.06f;
@@ -67,7 +69,8 @@ class Foot {
     if (steps_) return 0;
     if (InTheAir(frame)) return 1 + Stretch(frame);
     const bool rested = frame - stands_since_ >= timing_.Frames(options_.shortest_stand_seconds);
-    const float stretch = Stretch(frame);
+    const int ahead = static_cast<int>(std::lround(timing_.Frames(timing_.anticipation_seconds)));
+    const float stretch = std::max(Stretch(frame), Stretch(frame + ahead));
     const float enough = Float(options_.farthest_metres) * (TrackSteps(frame) ? 0.5f : 1.0f);
     return rested && stretch > enough ? stretch : 0;
   }
@@ -244,7 +247,8 @@ float Sink(const body::Body& body, const std::vector<FootPath>& paths, std::size
     const Vec3 way = paths[leg].places[frame] - at(limb.upper);
     const float across = Norm(Level(way)), reach = kLongestReach * length;
     const float deepest = across < reach ? std::sqrt(reach * reach - across * across) : 0;
-    sink = std::max(sink, std::min(kDeepestSink, -way.y - deepest));
+    const float room = std::max(0.0f, -way.y - kLowestHips * length);
+    sink = std::max(sink, std::min({kDeepestSink, room, -way.y - deepest}));
   }
   return sink;
 }

@@ -14,6 +14,9 @@ struct Timing {
   // How long corrections take to apply in full after the settled frames. Windows that follow one
   // another within this time need a shorter one: each of them would begin anew.
   double ease_seconds = 1.0 / 3;
+  // How far a foot looks ahead for a reason to step. Such windows would put off every step that
+  // begins later than that.
+  double anticipation_seconds = 0;
 
   double Frames(double seconds) const { return seconds * frame_rate_hz; }
 };
@@ -25,8 +28,8 @@ inline float SmoothStep(double t) {
 }
 
 // Returns the fraction of a correction that applies to a frame: 0 in settled frames, then rising to
-// 1 within Timing::ease_seconds, so that the motion is continuous between windows. 1 if there are no
-// settled frames.
+// 1 within Timing::ease_seconds, so that the motion is continuous between windows. 1 if there are
+// no settled frames.
 inline float EaseIn(const Timing& timing, int frame) {
   if (timing.settled == 0) return 1;
   return SmoothStep((frame - timing.settled + 1) / (timing.Frames(timing.ease_seconds) + 1));

@@ -92,7 +92,7 @@ FlowNoise::Drawn FlowNoise::DrawWindow(uint64_t seed, bool known, int frames,
   return {smooth, drawn + count};
 }
 
-FlowNoise::Drawn FlowNoise::DrawFrames(uint64_t seed, int64_t first, bool known, int frames,
+FlowNoise::Drawn FlowNoise::DrawFrames(uint64_t seed, int64_t first, int known_frames, int frames,
                                        Scratch::Use* scratch) const {
   const int taps = static_cast<int>(smoothing_.size()), reach = taps / 2;
   const int rows = frames + 2 * reach;
@@ -108,7 +108,7 @@ FlowNoise::Drawn FlowNoise::DrawFrames(uint64_t seed, int64_t first, bool known,
   for (int row = 0; row < rows; ++row) draw(first - reach + row, drawn + row * per_frame);
   float* const constant = scratch->Take<float>(per_frame);
   draw(engine::kEveryFrame, constant);
-  const double share = known ? 0 : options_.constant_share;
+  const double share = known_frames > 0 ? 0 : options_.constant_share;
   const float whole = static_cast<float>(std::sqrt(share));
   const float moving = static_cast<float>(std::sqrt(1 - share));
   float* const smooth = scratch->Take<float>(std::ptrdiff_t{frames} * width_);
@@ -124,7 +124,18 @@ FlowNoise::Drawn FlowNoise::DrawFrames(uint64_t seed, int64_t first, bool known,
     std::copy_n(drawn + (t + reach) * per_frame + width_, width_,
                 white + std::ptrdiff_t{t} * width_);
   }
+  if (known_frames > 0) LeaveKnown(known_frames, frames, smooth);
   return {smooth, white};
+}
+
+void FlowNoise::LeaveKnown(int known_frames, int frames, float* smooth) const {
+  float* const last = smooth + std::ptrdiff_t{known_frames - 1} * width_;
+  for (int t = 0; t < frames; ++t) {
+    if (t == known_frames - 1) continue;
+    const float share = engine::SmoothCovariance(options_.frame_length, t - known_frames + 1);
+    for (int i = 0; i < width_; ++i) smooth[std::ptrdiff_t{t} * width_ + i] -= share * last[i];
+  }
+  std::fill_n(last, width_, 0.0f);
 }
 
 void FlowNoise::Fill(const engine::Sampling& sampling, int known_frames, int frames,
@@ -133,14 +144,14 @@ void FlowNoise::Fill(const engine::Sampling& sampling, int known_frames, int fra
     std::fill_n(out, std::ptrdiff_t{frames} * width_, 0.0f);
     return;
   }
-  const bool known = known_frames > 0;
-  const Drawn drawn = sampling.first_frame.has_value()
-                          ? DrawFrames(sampling.seed, *sampling.first_frame, known, frames, scratch)
-                          : DrawWindow(sampling.seed, known, frames, scratch);
+  const bool known = known_frames > 0, endless = sampling.first_frame.has_value();
+  const Drawn drawn =
+      endless ? DrawFrames(sampling.seed, *sampling.first_frame, known_frames, frames, scratch)
+              : DrawWindow(sampling.seed, known, frames, scratch);
   states_[known ? 1 : 0].over_joints.Multiply(frames, drawn.smooth, out);
   const float white = static_cast<float>(options_.white);
   for (int t = 0; t < frames; ++t) {
-    const float ramp = Ramp(t, known_frames);
+    const float ramp = endless ? 1 : Ramp(t, known_frames);
     for (std::ptrdiff_t i = std::ptrdiff_t{t} * width_; i < std::ptrdiff_t{t + 1} * width_; ++i) {
       out[i] = sampling.variety * (ramp * out[i] + white * drawn.white[i]);
     }

@@ -41,8 +41,11 @@ class FlowNoise {
     const float* white;
   };
   Drawn DrawWindow(uint64_t seed, bool known, int frames, Scratch::Use* scratch) const;
-  Drawn DrawFrames(uint64_t seed, int64_t first, bool known, int frames,
+  // Of an endless motion. After known frames: what the last of them does not determine.
+  Drawn DrawFrames(uint64_t seed, int64_t first, int known_frames, int frames,
                    Scratch::Use* scratch) const;
+  // Subtracts what the last known frame says about every frame. Shapes: smooth [frames, width].
+  void LeaveKnown(int known_frames, int frames, float* smooth) const;
 
   // The deviation of frame `frame`, as a fraction of the full deviation.
   float Ramp(int frame, int known_frames) const;

@@ -1,7 +1,9 @@
 #include "model/engine/finishing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "model/motion/feet.h"
 #include "model/motion/limb_lengths.h"
@@ -11,6 +13,9 @@ namespace {
 
 // Windows of an endless motion follow one another within a few frames.
 constexpr double kEndlessEaseSeconds = 0;
+constexpr double kEndlessAnticipationSeconds = 0.2;
+// The time of the spring that joins a window to the frames that were sent.
+constexpr double kJoinSeconds = 0.1;
 
 }  // namespace
 
@@ -37,6 +42,34 @@ void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
   const motion::Vec3 lift{
       0, LowestFoot(*skeleton.feet, window.leader) - LowestFoot(*skeleton.feet, *follower), 0};
   for (motion::Vec3& position : follower->all()) position += lift;
+}
+
+void JoinSent(const ModelDescription& description, const SynthesisWindow& window,
+              motion::Poses* follower) {
+  if (window.sent.empty()) return;
+  const int first = window.settled.frame_count(), end = first + window.sent.frame_count();
+  const int joints = follower->joint_count();
+  const motion::Poses planned = *follower;
+  std::copy(window.sent.all().begin(), window.sent.all().end(), (*follower)[first].begin());
+  const std::vector<float> lengths = MedianBoneLengths(description.skeleton, planned);
+  motion::Poses joined(0, joints);
+  for (int t = end; t < follower->frame_count(); ++t) {
+    const float since =
+        static_cast<float>((t - end + 1) / (kJoinSeconds * description.frame_rate_hz));
+    const float fall = std::exp(-since), place = (1 + since) * fall;
+    const float velocity =
+        since * fall * static_cast<float>(kJoinSeconds * description.frame_rate_hz);
+    std::vector<motion::Vec3> pose(planned[t].begin(), planned[t].end());
+    for (int j = 0; j < joints; ++j) {
+      const motion::Vec3 offset = follower->at(end - 1, j) - planned.at(end - 1, j);
+      const motion::Vec3 before =
+          end < 2 ? offset : follower->at(end - 2, j) - planned.at(end - 2, j);
+      pose[static_cast<std::size_t>(j)] += offset * place + (offset - before) * velocity;
+    }
+    joined.Append(pose);
+  }
+  SetBoneLengths(description.skeleton, lengths, &joined);
+  std::copy(joined.all().begin(), joined.all().end(), (*follower)[end].begin());
 }
 
 cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window) {
@@ -76,9 +109,13 @@ int SettledFrames(const SynthesisWindow& window) {
   return std::max(window.settled.frame_count(), window.start ? 1 : 0);
 }
 
-cleanup::Timing CleanUpTiming(const ModelDescription& description, const SynthesisWindow& window) {
-  cleanup::Timing timing{description.frame_rate_hz, SettledFrames(window)};
-  if (window.options.sampling.first_frame) timing.ease_seconds = kEndlessEaseSeconds;
+cleanup::Timing FeetTiming(const ModelDescription& description, const SynthesisWindow& window) {
+  cleanup::Timing timing{description.frame_rate_hz,
+                         SettledFrames(window) + window.sent.frame_count()};
+  if (window.options.sampling.first_frame) {
+    timing.ease_seconds = kEndlessEaseSeconds;
+    timing.anticipation_seconds = kEndlessAnticipationSeconds;
+  }
   return timing;
 }
 

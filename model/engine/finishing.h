@@ -24,6 +24,14 @@ void KeepLimbLengths(const motion::Skeleton& skeleton, const SynthesisWindow& wi
 void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,
                 motion::Poses* follower);
 
+// Replaces the frames of SynthesisWindow::sent, and lets the frames after them leave the last one's
+// place and velocity as a critically damped spring does, with their own limb lengths.
+void JoinSent(const ModelDescription& description, const SynthesisWindow& window,
+              motion::Poses* follower);
+
+// Returns how clean-up places the feet: from the frames that were sent on.
+cleanup::Timing FeetTiming(const ModelDescription& description, const SynthesisWindow& window);
+
 // Returns how far the bodies may overlap in each frame: the weight of the touching classes, 0 to 1.
 // Shapes: returns [frames].
 cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window);
@@ -35,9 +43,6 @@ cleanup::Meetings MeetingsOf(const ModelDescription& description, const Synthesi
 // Returns the number of the window's first frames that must not change: the settled frames, or the
 // frame of the start.
 int SettledFrames(const SynthesisWindow& window);
-
-// Returns how clean-up treats the window's frames.
-cleanup::Timing CleanUpTiming(const ModelDescription& description, const SynthesisWindow& window);
 
 }  // namespace duet::engine
 

@@ -21,12 +21,15 @@ using motion::Vec3;
 constexpr int kFramesAfter = 2;
 // So that a frame that coincides with a model frame is not missed because of rounding.
 constexpr double kEpsilon = 1e-6;
+// Plans that follow one another add up their noise. With this share of it, followers move as much
+// as those of clips (docs/results: duet-eval plausible --live).
+constexpr float kVarietyShare = 0.85f;
 // The leader's velocity is that of its last frames, and falls by a factor of e in each of these
 // times after the newest one.
 constexpr double kVelocitySeconds = 0.1;
 constexpr double kRestSeconds = 0.15;
-// The time in which a plan leaves the place and the velocity of the frames that were sent from the
-// plan before it, as a critically damped spring does.
+// The time in which a plan leaves the place of a frame between two model frames that was sent from
+// the plan before it.
 constexpr double kJoinSeconds = 0.06;
 
 // Frames [0, end) of `poses`, so that a spline does not read what came later.
@@ -129,10 +132,7 @@ void LiveSynthesis::SampleJoined(int frame, Poses* pose) const {
     const double frames = kJoinSeconds * request_.frame_rate_hz, since = frame - join_frame_ + 1;
     const double fall = std::exp(-since / frames);
     const float place = static_cast<float>((1 + since / frames) * fall);
-    const float velocity = static_cast<float>(since * fall);
-    for (std::size_t j = 0; j < offset_.size(); ++j) {
-      (*pose)[0][j] += offset_[j] * place + velocity_offset_[j] * velocity;
-    }
+    for (std::size_t j = 0; j < offset_.size(); ++j) (*pose)[0][j] += offset_[j] * place;
   }
   // Interpolation and offsets shorten limbs, and later plans continue from these.
   SetBoneLengths(model_.skeleton, bone_lengths_, pose);
@@ -148,11 +148,12 @@ bool LiveSynthesis::NeedsWindow() const { return NextEvaluation().has_value(); }
 SynthesisWindow LiveSynthesis::NextWindow() {
   pending_ = NextEvaluation();
   const int join = JoinFrame(*pending_);
-  const int settled_end = join > 0 ? timing_.ModelFrameAt(join - 1) + 1 : 0;
+  const int sent_end = join > 0 ? timing_.ModelFrameAt(join - 1) + 1 : 0;
+  const int settled_end = std::max(std::min(1, sent_end), sent_end - timing_.remade_frames());
   const int known = static_cast<int>(std::ceil(timing_.ToModelFrame(follower_begin_) - kEpsilon));
   const int begin =
       std::max({0, settled_end - timing_.past_frames(), std::min(known, settled_end - 1)});
-  const int frames = std::min(settled_end - begin + timing_.future_frames(), model_.window_frames);
+  const int frames = std::min(sent_end - begin + timing_.future_frames(), model_.window_frames);
   window_begin_ = begin;
   SynthesisWindow window;
   window.leader = WindowLeader(begin, frames, *pending_);
@@ -164,6 +165,7 @@ SynthesisWindow LiveSynthesis::NextWindow() {
   }
   if (settled_end > begin) {
     window.settled = WindowFollower(begin, settled_end, join);
+    window.sent = WindowFollower(settled_end, sent_end, join);
     const absl::Span<const Vec3> pose = window.settled[0];
     window.start =
         FollowerStart{window.settled.at(0, model_.skeleton.root), {pose.begin(), pose.end()}};
@@ -176,6 +178,7 @@ SynthesisWindow LiveSynthesis::NextWindow() {
     }
   }
   window.options = request_.options;
+  window.options.sampling.variety *= kVarietyShare;
   window.options.sampling.first_frame = begin;
   return window;
 }
@@ -191,8 +194,8 @@ void LiveSynthesis::Accept(const Poses& follower) {
   plan_ = follower;
   join_frame_ = JoinFrame(*evaluation_);
   plan_begin_ = window_begin_;
-  bone_lengths_ = MedianBoneLengths(
-      model_.skeleton, Poses(plan_.joint_count(), {plan_[0].begin(), plan_[0].end()}));
+  bone_lengths_ = MedianBoneLengths(model_.skeleton,
+                                    Poses(plan_.joint_count(), {plan_[0].begin(), plan_[0].end()}));
   KeepOffset();
 }
 
@@ -201,17 +204,9 @@ void LiveSynthesis::KeepOffset() {
   const int last = join_frame_ - 1 - follower_begin_;
   if (last < 0) return;
   const std::size_t joints = static_cast<std::size_t>(leader_.joint_count());
-  std::vector<Vec3> before(joints), after(joints);
-  SamplePlan(join_frame_ - 1, absl::MakeSpan(before));
-  SamplePlan(join_frame_, absl::MakeSpan(after));
   offset_.resize(joints);
-  velocity_offset_.assign(joints, Vec3{});
-  const absl::Span<const Vec3> sent = follower_[last];
-  for (std::size_t j = 0; j < joints; ++j) {
-    offset_[j] = sent[j] - before[j];
-    if (last == 0) continue;
-    velocity_offset_[j] = (sent[j] - follower_[last - 1][j]) - (after[j] - before[j]);
-  }
+  SamplePlan(join_frame_ - 1, absl::MakeSpan(offset_));
+  for (std::size_t j = 0; j < joints; ++j) offset_[j] = follower_[last][j] - offset_[j];
 }
 
 Poses LiveSynthesis::WindowLeader(int begin, int frames, int newest) const {

@@ -139,12 +139,11 @@ class LiveSynthesis {
   std::optional<int> evaluation_;  // of the plan held
   motion::Poses plan_;             // at the model's rate
   int plan_begin_ = 0;
-  int join_frame_ = 0;  // the first frame that the plan may change
+  int join_frame_ = 0;               // the first frame that the plan may change
   std::vector<float> bone_lengths_;  // of the plan
-  // From the plan to the frame before join_frame_, as it was sent, and from the plan's velocity there
-  // to that of the frames sent, a frame: [joints], empty without such a frame. Both are added to the
-  // plan with weights that fall to 0, so that place and velocity are continuous.
-  std::vector<motion::Vec3> offset_, velocity_offset_;
+  // From the plan to the frame before join_frame_, as it was sent: [joints], empty without such a
+  // frame. It is added to the plan with a weight that falls to 0.
+  std::vector<motion::Vec3> offset_;
 
   std::optional<int> pending_;  // the evaluation of NextWindow
   int window_begin_ = 0;        // the model frame at which its window begins

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/engine/window_plan.h"
+
 namespace duet::engine {
 namespace {
 
@@ -10,7 +12,10 @@ namespace {
 constexpr double kEpsilon = 1e-6;
 // Evaluations a second are no more than this, whatever the model's rate.
 constexpr double kMostEvaluationsHz = 15;
-constexpr double kPastSeconds = 1.5;
+// How much of what was sent each plan makes anew, to continue from there. The frames right after
+// settled ones hardly leave them, and clean-up eases in over this time: a motion of such frames
+// alone would drift.
+constexpr double kRemadeSeconds = 0.4;
 // The plan covers frames that the server has to skip, and the provisional frames that callers get.
 constexpr double kFutureSeconds = 0.8;
 // A spline's neighbours, and rounding at either end.
@@ -27,9 +32,9 @@ LiveTiming::LiveTiming(const ModelDescription& model, double frame_rate_hz, int 
   const double wanted = std::ceil(kFutureSeconds * model.frame_rate_hz);
   // At least the frames that are due until the next evaluation.
   const double due = delay + model_frames_between_ + std::ceil(model_frames_per_frame_);
+  remade_ = static_cast<int>(std::lround(kRemadeSeconds * model.frame_rate_hz));
   future_ = static_cast<int>(std::max(wanted + delay, due)) + kMarginFrames;
-  past_ = std::clamp(static_cast<int>(kPastSeconds * model.frame_rate_hz), 2,
-                     std::max(2, model.window_frames - future_));
+  past_ = SettledOverlap(model.window_frames);
 }
 
 int LiveTiming::ModelFrameAt(int frame) const {
@@ -38,8 +43,8 @@ int LiveTiming::ModelFrameAt(int frame) const {
 
 int LiveTiming::history_frames() const {
   const double between = model_frames_between_ / model_frames_per_frame_;
-  return static_cast<int>(std::ceil(past_ / model_frames_per_frame_ + between)) + delay_frames_ +
-         2 * kMarginFrames;
+  return static_cast<int>(std::ceil((past_ + remade_) / model_frames_per_frame_ + between)) +
+         delay_frames_ + 2 * kMarginFrames;
 }
 
 bool LiveTiming::IsEvaluation(int frame) const {

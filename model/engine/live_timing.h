@@ -19,8 +19,10 @@ class LiveTiming {
   int ModelFrameAt(int frame) const;
 
   int delay_frames() const { return delay_frames_; }
-  // Model frames of the follower's past, and of its future, in one window.
+  // Model frames in one window: of the follower's past that it continues from, of what was sent and
+  // is made anew, and of the future.
   int past_frames() const { return past_; }
+  int remade_frames() const { return remade_; }
   int future_frames() const { return future_; }
   // Number of the caller's last frames that an evaluation may read, of both motions.
   int history_frames() const;
@@ -37,7 +39,7 @@ class LiveTiming {
   int delay_frames_;
   double model_frames_per_frame_;  // model rate / caller's rate
   int model_frames_between_;       // evaluations
-  int past_, future_;
+  int past_, remade_, future_;
 };
 
 }  // namespace duet::engine

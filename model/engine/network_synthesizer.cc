@@ -133,10 +133,16 @@ class NetworkSynthesizer : public Synthesizer {
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
     if (options_.keep_limb_lengths) KeepLimbLengths(description_.skeleton, window, &follower);
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
-    if (IsCleanedUp(window)) {
-      clean_up_.Apply(window.leader, TouchOf(description_, window),
-                      MeetingsOf(description_, window),
-                      CleanUpTiming(description_, window), &follower);
+    const bool cleans = IsCleanedUp(window);
+    const cleanup::Meetings meetings = MeetingsOf(description_, window);
+    if (cleans) {
+      clean_up_.CorrectBody(window.leader, TouchOf(description_, window), meetings,
+                            {description_.frame_rate_hz, SettledFrames(window)}, &follower);
+    }
+    JoinSent(description_, window, &follower);
+    if (cleans) {
+      clean_up_.PlaceFeetAndHands(window.leader, meetings, FeetTiming(description_, window),
+                                  &follower);
     }
     return follower;
   }

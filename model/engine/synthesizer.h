@@ -37,6 +37,9 @@ struct SynthesisWindow {
   // first of them is the start's pose. Empty: only the start is known. Sampling models continue
   // from these frames; others read only the start.
   motion::Poses settled;
+  // The frames after the settled ones that the caller already has. The network makes them anew, and
+  // the follower continues from the last of them. Empty for clips.
+  motion::Poses sent;
   SynthesisOptions options;
   // Set, at any time and from any thread, when the result is not needed any more. The result may
   // then be CANCELLED. Null: never cancelled.

@@ -64,6 +64,17 @@ torch::Tensor Ramp(const torch::Tensor& known_count, int64_t frames, int ramp_fr
   return (since.to(torch::kFloat32) / ramp_frames).clamp(1.0 / ramp_frames, 1).unsqueeze(2);
 }
 
+// The noise of windows of an endless motion without what their last known frame determines
+// (engine::SmoothCovariance). Shapes: smooth [N, T, W], known_count [N].
+torch::Tensor LeaveKnown(const torch::Tensor& smooth, const torch::Tensor& known_count,
+                         double length) {
+  const torch::Tensor last = (known_count - 1).clamp(0).view({-1, 1, 1});
+  const torch::Tensor known = smooth.gather(1, last.expand({smooth.size(0), 1, smooth.size(2)}));
+  const torch::Tensor distance =
+      (torch::arange(smooth.size(1)).view({1, -1, 1}) - last).to(torch::kFloat32) / length;
+  return smooth - torch::exp(-0.5 * distance * distance) * known;
+}
+
 }  // namespace
 
 NoiseNumbers DrawNoise(absl::Span<const engine::NetworkInput> inputs, double frame_length) {
@@ -98,15 +109,17 @@ torch::Tensor SourceNoise(const checkpoint::FlowArchitecture::Noise& options,
     torch::Tensor smoothed =
         torch::matmul(FrameRoot(frames, options.frame_length, constant), numbers.smooth);
     if (numbers.endless.defined()) {
-      smoothed = torch::where(
-          numbers.endless,
-          std::sqrt(constant) * numbers.constant + std::sqrt(1 - constant) * numbers.smooth,
-          smoothed);
+      const torch::Tensor endless =
+          state == 0
+              ? std::sqrt(constant) * numbers.constant + std::sqrt(1 - constant) * numbers.smooth
+              : LeaveKnown(numbers.smooth, known_count, options.frame_length);
+      smoothed = torch::where(numbers.endless, endless, smoothed);
     }
     return torch::matmul(smoothed, roots[state]);
   };
   const torch::Tensor told = (known_count > 0).view({-1, 1, 1});
-  const torch::Tensor ramp = Ramp(known_count, frames, options.ramp_frames);
+  torch::Tensor ramp = Ramp(known_count, frames, options.ramp_frames);
+  if (numbers.endless.defined()) ramp = torch::where(numbers.endless, torch::ones({}), ramp);
   return torch::where(told, ramp * smooth(0, 1), smooth(options.constant_share, 0)) +
          options.white * numbers.white;
 }

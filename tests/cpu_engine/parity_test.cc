@@ -133,6 +133,17 @@ TEST(ParityTest, EmbeddedCheckpointsEqualLibTorch) {
   }
 }
 
+TEST(ParityTest, WindowsOfAnEndlessMotionEqualLibTorch) {
+  const Checkpoint checkpoint = RandomCheckpoint(FlowManifest(), 3);
+  std::vector<NetworkInput> inputs = Inputs(checkpoint.manifest);
+  for (NetworkInput& input : inputs) input.sampling.first_frame = 1000;
+  EXPECT_LT(FromTorch(checkpoint, Precision::kFloat32, inputs), 1e-5f);
+  const auto network = MakeCpuNetwork(checkpoint, Precision::kFloat32);
+  const std::vector<motion::Poses> endless = Answers(*network, inputs);
+  for (NetworkInput& input : inputs) input.sampling.first_frame = 1001;
+  EXPECT_GT(Farthest(endless, Answers(*network, inputs)), 1e-3f);
+}
+
 TEST(ParityTest, EveryVariantOfThePaperGeneratorEqualsLibTorch) {
   uint64_t seed = 1;
   for (const GeneratorVariant variant :

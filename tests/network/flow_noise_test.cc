@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "model/engine/frame_noise.h"
 #include "tests/network/flow_test_support.h"
 
 namespace duet::network {
@@ -83,11 +84,11 @@ TEST(DrawNoiseTest, AFrameOfAnEndlessMotionHasTheSameNoiseInEveryWindow) {
   EXPECT_FALSE(torch::equal(numbers.white[0], numbers.white[1]));
 }
 
-TEST(SourceNoiseTest, EndlessNoiseHasTheDeviationAndTheCovarianceOfWindows) {
+TEST(SourceNoiseTest, EndlessNoiseHasTheCovarianceThatTheLastKnownFrameLeaves) {
   checkpoint::FlowArchitecture::Noise options = test::SmallFlow().noise;
   options.white = 0;
   const checkpoint::Manifest manifest = SmallFlowManifest();
-  std::vector<engine::NetworkInput> inputs(200, FlowWindow(manifest, 9));
+  std::vector<engine::NetworkInput> inputs(400, FlowWindow(manifest, 9));
   for (std::size_t n = 0; n < inputs.size(); ++n) {
     inputs[n].sampling.seed = n;
     inputs[n].sampling.first_frame = 5;
@@ -95,16 +96,17 @@ TEST(SourceNoiseTest, EndlessNoiseHasTheDeviationAndTheCovarianceOfWindows) {
   const NoiseNumbers numbers = DrawNoise(inputs, options.frame_length);
   const int64_t width = numbers.white.size(2);
   const torch::Tensor roots = torch::eye(width).expand({2, width, width});
+  const auto smooth = [&](int frames) {
+    return double{engine::SmoothCovariance(options.frame_length, frames)};
+  };
   for (const int64_t told : {0, 4}) {
     const torch::Tensor noise =
-        SourceNoise(options, roots, torch::full({200}, told, torch::kInt64), numbers);
-    const double constant = told == 0 ? options.constant_share : 0;
-    const double apart = 2 / options.frame_length;
-    const double covariance = constant + (1 - constant) * std::exp(-0.5 * apart * apart);
-    const double ramp = told == 0 ? 1 : 6.0 / 8 * 4.0 / 8;
-    const double ramp = told == 0 ? 1 : 6.0 / 8 * 4.0 / 8;
-    EXPECT_NEAR((noise.select(1, 8) * noise.select(1, 6)).mean().item<double>(), ramp * covariance,
-                0.05)
+        SourceNoise(options, roots, torch::full({400}, told, torch::kInt64), numbers);
+    // Between frames 8 and 6; frame 3 is the last known one.
+    const double wanted = told == 0
+                              ? options.constant_share + (1 - options.constant_share) * smooth(2)
+                              : smooth(2) - smooth(5) * smooth(3);
+    EXPECT_NEAR((noise.select(1, 8) * noise.select(1, 6)).mean().item<double>(), wanted, 0.05)
         << told;
   }
 }

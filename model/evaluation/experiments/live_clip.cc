@@ -34,8 +34,8 @@ void LiveClip::Advance(motion::Poses* final_frames) {
       live_.EndLeader();
       continue;
     }
-    live_.AddLeader(motion::Poses(
-        leader_.joint_count(), {leader_[next_frame_].begin(), leader_[next_frame_].end()}));
+    live_.AddLeader(motion::Poses(leader_.joint_count(),
+                                  {leader_[next_frame_].begin(), leader_[next_frame_].end()}));
     ++next_frame_;
   }
 }

@@ -63,8 +63,8 @@ absl::Status NextWindows(const engine::Synthesizer& synthesizer, std::vector<Any
   const std::vector<engine::WindowResult> results = synthesizer.Synthesize(pointers);
   for (size_t n = 0; n < waiting.size(); ++n) {
     if (!results[n].ok()) return results[n].status();
-    const motion::Poses frames = std::visit(
-        [&](auto& clip) { return clip.Accept(*results[n]); }, (*clips)[waiting[n]]);
+    const motion::Poses frames =
+        std::visit([&](auto& clip) { return clip.Accept(*results[n]); }, (*clips)[waiting[n]]);
     (*followers)[waiting[n]].Append(frames.all());
   }
   return absl::OkStatus();

@@ -84,7 +84,7 @@ struct Dancer {
     absl::Status fits = CheckModelTakes((*synthesizer)->description(), experiment.dataset, start);
     if (!fits.ok()) return fits;
     const experiments::LabelledLeader leader = {take.sequence, std::move(labels), sampling, true,
-                                                 flags.asked.live_delay};
+                                                flags.asked.live_delay};
     absl::StatusOr<std::vector<motion::Poses>> answer =
         SynthesizeSequences(**synthesizer, {&leader, 1}, start);
     if (!answer.ok()) return answer.status();

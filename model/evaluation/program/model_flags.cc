@@ -58,9 +58,10 @@ void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command) {
       ->capture_default_str();
   command->add_option("--seed", asked->seed, "seed of the answers")->capture_default_str();
   command
-      ->add_option("--live", asked->live_delay,
-                   "answer as in a live session, this number of leader frames later; without it, the "
-                   "whole leader is known")
+      ->add_option(
+          "--live", asked->live_delay,
+          "answer as in a live session, this number of leader frames later; without it, the "
+          "whole leader is known")
       ->type_name("FRAMES")
       ->check(CLI::Range(0, 10));
 }
