@@ -1,19 +1,17 @@
-#!/usr/bin/env python3
-"""Plays a motion file in real time as the leader of a live session, and prints when each answer
-comes.
+"""Plays a motion file in real time as the leader of a live session: live.py LEADER CLASS
 
-    live.py ../../../samples/hug.bvh hug
+    python3 examples/live.py samples/hug.bvh hug
 """
 
+import argparse
 import asyncio
 import statistics
-import sys
 
 import duet_motion as duet
 
 
 async def play(session, leader):
-    """Sends the frames when a camera would."""
+    """Sends each frame when a camera would."""
     clock = asyncio.get_running_loop()
     start = clock.time()
     for index, frame in enumerate(leader.positions):
@@ -22,20 +20,29 @@ async def play(session, leader):
     await session.finish()
 
 
-async def main(leader_file, interaction_class):
-    leader = duet.read_motion(leader_file)
+async def follow(server, leader, interaction_class):
     latencies = []
-    async with duet.aio.Client() as client:
+    async with duet.aio.Client(server) as client:
         async with client.live(leader.joint_names, leader.frame_rate_hz, {interaction_class: 1},
                                on_notice=print) as session:
             playing = asyncio.create_task(play(session, leader))
             async for part in session:
+                print(f"frame {part.first_frame} after {1000 * part.latency:.1f} ms")
                 latencies.append(part.latency)
-                print(f"frame {part.first_frame}: {1000 * part.latency:.1f} ms")
             await playing
-        print(f"{session.summary.frame_count} frames, "
-              f"median {1000 * statistics.median(latencies):.1f} ms")
+    print(f"done: {session.summary.frame_count} frames, the median came after "
+          f"{1000 * statistics.median(latencies):.1f} ms")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("leader")
+    parser.add_argument("interaction_class")
+    parser.add_argument("--server", help="host:port (default: DUET_SERVER, or localhost:50051)")
+    options = parser.parse_args()
+    leader = duet.read_motion(options.leader)
+    asyncio.run(follow(options.server, leader, options.interaction_class))
 
 
 if __name__ == "__main__":
-    asyncio.run(main(*sys.argv[1:]))
+    main()
