@@ -100,6 +100,8 @@ main() {
   echo
   echo "Open a page in any browser (drag to orbit, space to play):"
   find "$(pwd)/${out_dir}" -name '*.html' | sort | sed 's,^,  file://,'
+  echo "Be the leader yourself, in a browser at http://127.0.0.1:8080/spar (client/web/README.md):"
+  echo "  ${bin_dir}/duet-server & DUET_PROGRAM=${bin_dir}/duet client/web/gateway.py"
   echo "Blender, three.js and game engines open the .glb (see docs/formats.md)."
 }
 

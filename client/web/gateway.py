@@ -24,11 +24,13 @@ import conversions  # noqa: E402
 import duet_motion as duet  # noqa: E402
 import element  # noqa: E402
 import grpc_web  # noqa: E402
+import live_socket  # noqa: E402
 import serving  # noqa: E402
 import uploads  # noqa: E402
 from aiohttp import web  # noqa: E402
 
 SAMPLES = HERE.parents[1] / "samples"
+VIEWER = HERE.parent / "viewer" / "page"
 TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".bvh": "text/plain"}
 
 
@@ -38,6 +40,7 @@ class Gateway:
     def __init__(self, program, channel):
         self._program = program
         self._channel = channel
+        self.live = live_socket.LiveSockets(channel)
         self._uploads = uploads.Uploads()
 
     def routes(self):
@@ -51,11 +54,14 @@ class Gateway:
                 if file.suffix in TYPES:
                     files[prefix + file.name] = (TYPES[file.suffix],
                                                  file.read_text(encoding="utf-8"))
+        files["/metronome.js"] = (TYPES[".js"], (VIEWER / "metronome.js").read_text("utf-8"))
         files["/"] = files["/index.html"]
+        files["/spar"] = files["/spar.html"]
         routes = {path: {"GET": functools.partial(send_text, kind, text)}
                   for path, (kind, text) in files.items()}
         for path in grpc_web.METHODS:
             routes[path] = {"POST": self.call}
+        routes["/live"] = {"GET": self.live.answer}
         routes["/read"] = {"POST": self.read}
         routes["/write"] = {"POST": self.write}
         routes["/write_on_rig"] = {"POST": self.write_on_rig}
@@ -113,7 +119,8 @@ class Gateway:
 
 
 async def send_text(kind, text, request):
-    return web.Response(text=text, content_type=kind, charset="utf-8", headers=serving.HEADERS)
+    headers = serving.page_headers(request) if kind == TYPES[".html"] else serving.HEADERS
+    return web.Response(text=text, content_type=kind, charset="utf-8", headers=headers)
 
 
 async def send_download(request, file):
@@ -137,9 +144,10 @@ async def run(options):
     # An open channel can prevent the process from ending.
     channel = grpc_web.connect(options.server, tls)
     try:
-        server = serving.Server(Gateway(program, channel).routes(),
+        gateway = Gateway(program, channel)
+        server = serving.Server(gateway.routes(),
                                 serving.allowed_hosts(options.listen, options.host))
-        await serving.serve(server, options.listen, started)
+        await serving.serve(server, options.listen, started, gateway.live.close)
     finally:
         await channel.close()
 

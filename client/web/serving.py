@@ -14,15 +14,18 @@ HEADER_SECONDS = 10
 IDLE_SECONDS = 30
 REQUEST_SECONDS = 660
 SHUTDOWN_SECONDS = 5
+# No content from other origins, and no framing by other pages.
+POLICY = ("default-src 'self'; img-src 'self' data: blob:; frame-ancestors 'none'; "
+          "base-uri 'none'; form-action 'none'")
 HEADERS = {
-    # No content from other origins, and no framing by other pages.
-    "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; "
-                               "frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
+    "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
     "Cache-Control": "no-cache",
     "Server": "duet-gateway",
 }
+WEB_SOCKETS = ("/live",)  # the paths at which a connection may become a WebSocket
+TIME_LIMIT = "duet.time_limit"  # key of a request
 THIS_MACHINE = ("localhost", "127.0.0.1", "[::1]")
 
 LOG = logging.getLogger("duet.gateway")
@@ -129,7 +132,8 @@ class Server(web.Server):
     async def _handle(self, request):
         request.protocol.begin()
         try:
-            async with asyncio.timeout(REQUEST_SECONDS):
+            async with asyncio.timeout(REQUEST_SECONDS) as limit:
+                request[TIME_LIMIT] = limit
                 return await self._answer(request)
         except TimeoutError:
             if request.transport:
@@ -192,8 +196,30 @@ def check_framing(request):
         raise Rejected(411, "Transfer-Encoding: expected none, got one; send a Content-Length")
     if request.method != "POST" and request.headers.get("Content-Length", "0").strip("0"):
         raise Rejected(400, f"body: expected none with {request.method}, got one")
-    if "Upgrade" in request.headers:
+    if "Upgrade" in request.headers and request.path not in WEB_SOCKETS:
         raise Rejected(400, "Upgrade: expected none, got one")
+
+
+def check_upgrade(request):
+    """Refuses a request for a WebSocket that is not one. aiohttp checks the key and version."""
+    names = {part.strip().lower() for part in request.headers.get("Connection", "").split(",")}
+    if (request.method != "GET" or "upgrade" not in names
+            or request.headers.get("Upgrade", "").lower() != "websocket"):
+        raise Rejected(426, "Upgrade: expected websocket, got something else",
+                       Upgrade="websocket", Connection="Upgrade")
+
+
+def without_time_limit(request):
+    """Lifts the time limit of a request that lasts as long as its visitor stays."""
+    request[TIME_LIMIT].reschedule(None)
+
+
+def page_headers(request):
+    """The headers of a page. Not every browser takes a WebSocket of the page's own host as
+    'self'."""
+    host = request.headers["Host"]  # Server._check has accepted it
+    return {**HEADERS, "Content-Security-Policy":
+            f"{POLICY}; connect-src 'self' ws://{host} wss://{host}"}
 
 
 def host_name(host):
@@ -215,8 +241,9 @@ def allowed_hosts(listen, names):
     return [*THIS_MACHINE, *own, *names]
 
 
-async def serve(server, listen, started):
-    """Serves until SIGINT or SIGTERM. Calls `started` with the address once it listens."""
+async def serve(server, listen, started, stopping):
+    """Serves until SIGINT or SIGTERM. Calls `started` with the address once it listens, and awaits
+    `stopping` before it waits for the requests being answered."""
     host, _, port = listen.rpartition(":")
     if not port.isdecimal():
         raise ValueError(f"--listen: expected HOST:PORT, got {listen!r}")
@@ -230,5 +257,6 @@ async def serve(server, listen, started):
                           shutdown_timeout=SHUTDOWN_SECONDS, backlog=128).start()
         started(runner.addresses[0])
         await stop.wait()
+        await stopping()
     finally:
         await runner.cleanup()

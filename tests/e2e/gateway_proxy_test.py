@@ -89,6 +89,21 @@ class GatewayProxyTest(unittest.TestCase):
                                             **ALLOWED))
         self.assertEqual(status, 200, body)
 
+    def test_live_session_passes_through(self):
+        key = base64.b64encode(b"0123456789abcdef")
+        ask = (b"GET /live HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\n"
+               b"Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+               b"Sec-WebSocket-Key: " + key + b"\r\n\r\n")
+        with self.connect() as connection:
+            connection.sendall(allowed(ask))
+            self.assertTrue(connection.recv(4096).startswith(b"HTTP/1.1 101 "))
+            connection.sendall(b"\x82\x80" + bytes(4))  # the leader ends before it starts
+            found = read_all(connection)
+        self.assertIn(b'{"code": 3, ', found)
+        [(status, _, _)] = self.ask(ask)
+        self.assertEqual(status, 401)
+        self.victim()
+
     def test_password_is_required(self):
         for headers in ({}, {"Authorization": "Basic ZHVldDpvcGVu"}):
             [(status, _, _)] = self.ask(post("/read?name=a.bvh", b"x", **headers))

@@ -315,6 +315,44 @@ class PythonClientTest(unittest.TestCase):
             self.assertEqual(sorted(rows["interaction_class"]), sorted(tools.CLASSES))
             self.assertEqual(rows["follower_5"].shape[1:], (15, 3))
         self.assertIn("frames 0 to", self.example("stream.py", tools.sample("kick"), "kick"))
+        self.assertIn("done: 91 frames", self.example("live.py", tools.sample("hug"), "hug"))
+
+    def live(self, address, between=lambda frame: None):
+        """A live session that sends a frame when the one before it is answered. Calls `between`
+        before each frame. Returns the follower and the session."""
+        async def run():
+            async with duet.aio.Client(address, wait=tools.RUN_SECONDS) as client:
+                session = client.live(self.hug.joint_names, self.hug.frame_rate_hz, {"hug": 1},
+                                      seed=3)
+                found = []
+                async with session:
+                    for index, frame in enumerate(self.hug.positions):
+                        between(index)
+                        await session.send(frame)
+                        part = await session.__anext__()
+                        self.assertEqual(part.first_frame, index)
+                        found.append(part.positions)
+                    await session.finish()
+                    self.assertEqual([part async for part in session], [])
+                return np.concatenate(found), session
+
+        return asyncio.run(run())
+
+    def test_live_session_goes_on_with_the_same_frames_after_a_restart(self):
+        wanted, session = self.live(self.server.address)
+        self.assertEqual(wanted.shape, self.hug.positions.shape)
+        self.assertEqual((session.summary.frame_count, session.summary.resume_count), (91, 0))
+        servers = [tools.Server(port=tools.free_port())]
+        self.addCleanup(lambda: servers[-1].stop())
+
+        def restart(frame):
+            if frame == 60:
+                servers[-1].kill()
+                servers.append(tools.Server(port=servers[-1].port))
+
+        found, session = self.live(servers[0].address, restart)
+        self.assertEqual(session.summary.resume_count, 1)
+        np.testing.assert_array_equal(found, wanted)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,8 @@ from duet_motion.errors import (CancelledError, DeadlineError, DuetError, FieldV
                                 NotPermittedError, RequestMismatchError, ServerBusyError,
                                 UnavailableError)
 from duet_motion.files import MotionFileError, read_motion, read_pair, write_motion, write_page
+from duet_motion.live import (LiveHeader, LiveNotice, LivePart, LiveRequest,
+                              LiveSummary)
 from duet_motion.motion import Motion
 from duet_motion.options import TlsOptions
 from duet_motion.request import SynthesisRequest
@@ -29,7 +31,8 @@ __version__ = "0.1.0"
 
 __all__ = [
     "CancelledError", "Client", "DataSetError", "DeadlineError", "DuetError", "FieldViolation",
-    "FollowerChunk", "FrameRun", "InvalidRequestError", "JointRotations", "MalformedReplyError",
+    "FollowerChunk", "FrameRun", "InvalidRequestError", "JointRotations", "LiveHeader", "LiveNotice",
+    "LivePart", "LiveRequest", "LiveSummary", "MalformedReplyError",
     "ModelDetails", "ModelInfo", "ModelNotFoundError", "Motion", "MotionFileError", "MotionGrade",
     "MotionSet", "NotPermittedError", "Outcome", "PaddedBatch", "RequestLimits",
     "RequestMismatchError", "RetryOptions", "RigJoint", "ServerBusyError", "SetItem",

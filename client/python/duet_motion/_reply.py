@@ -25,13 +25,13 @@ from duet_motion.v1 import reaction_pb2, synthesis_pb2
 _RESETS = (grpc.StatusCode.INTERNAL, grpc.StatusCode.UNKNOWN, grpc.StatusCode.CANCELLED)
 
 
-def _is_broken_connection(error: DuetError) -> bool:
+def is_broken_connection(error: DuetError) -> bool:
     if error.code is grpc.StatusCode.UNAVAILABLE:
         return True
     return error.code in _RESETS and not error.reason
 
 
-def _malformed(what: str) -> MalformedReplyError:
+def malformed(what: str) -> MalformedReplyError:
     return MalformedReplyError(grpc.StatusCode.INTERNAL,
                                f"the server's reply is malformed: {what}")
 
@@ -60,7 +60,7 @@ class ReplyAssembler:
         Raises MalformedReplyError if the message violates the API.
         """
         if self._summary is not None:
-            raise _malformed("a message after the summary")
+            raise malformed("a message after the summary")
         kind = response.WhichOneof("payload")
         if kind == "header":
             self._accept_header(response.header)
@@ -69,33 +69,33 @@ class ReplyAssembler:
         elif kind == "summary":
             self._accept_summary(response.summary)
         else:
-            raise _malformed("a message without a payload")
+            raise malformed("a message without a payload")
         return None
 
     def _accept_header(self, header: synthesis_pb2.SynthesisHeader) -> None:
         leader = self._leader
         if self.header is not None:
-            raise _malformed("a second header")
+            raise malformed("a second header")
         if tuple(header.joint_names) != leader.joint_names:
-            raise _malformed("header.joint_names: expected the leader's, got others")
+            raise malformed("header.joint_names: expected the leader's, got others")
         if header.frame_rate_hz != leader.frame_rate_hz:
-            raise _malformed("header.frame_rate_hz: expected the leader's "
+            raise malformed("header.frame_rate_hz: expected the leader's "
                              f"{leader.frame_rate_hz}, got {header.frame_rate_hz}")
         if (header.unit, header.up_axis) != (UNITS[leader.unit], UP_AXES[leader.up_axis]):
-            raise _malformed(f"header.unit and up_axis: expected {leader.unit} and "
+            raise malformed(f"header.unit and up_axis: expected {leader.unit} and "
                              f"{leader.up_axis}, got {header.unit} and {header.up_axis}")
         if header.frame_count != leader.frame_count:
-            raise _malformed(f"header.frame_count: expected the leader's {leader.frame_count}, got "
+            raise malformed(f"header.frame_count: expected the leader's {leader.frame_count}, got "
                              f"{header.frame_count}")
         if self._wants_rotations != bool(header.rig):
             wanted = ("joints for the rotations that the request asks for, got none; does the "
                       "server know reply_rotations?" if self._wants_rotations
                       else "none without reply_rotations, got joints")
-            raise _malformed(f"header.rig: expected {wanted}")
+            raise malformed(f"header.rig: expected {wanted}")
         try:
             self._rig = read_rig(header.rig, leader.joint_count)
         except ValueError as error:
-            raise _malformed(str(error)) from error
+            raise malformed(str(error)) from error
         self.header = header
 
     def _accept_chunk(self, chunk: synthesis_pb2.MotionChunk) -> Optional[FollowerChunk]:
@@ -103,7 +103,7 @@ class ReplyAssembler:
         try:
             rotations = read_rotations(chunk, len(self._rig))
         except ValueError as error:
-            raise _malformed(f"{error}, in the chunk of frame {chunk.first_frame}") from error
+            raise malformed(f"{error}, in the chunk of frame {chunk.first_frame}") from error
         self._chunks.append(positions)
         self._rotations.append(rotations)
         first, self.received = self.received, self.received + chunk.frame_count
@@ -117,40 +117,40 @@ class ReplyAssembler:
 
     def _read_chunk(self, chunk: synthesis_pb2.MotionChunk) -> Positions:
         if self.header is None:
-            raise _malformed("a chunk before the header")
+            raise malformed("a chunk before the header")
         if chunk.first_frame != self.received:
-            raise _malformed(f"chunk.first_frame: expected {self.received}, got "
+            raise malformed(f"chunk.first_frame: expected {self.received}, got "
                              f"{chunk.first_frame}")
         left = self._leader.frame_count - self.received
         if not 1 <= chunk.frame_count <= left:
-            raise _malformed(f"chunk.frame_count: expected 1 to {left}, got {chunk.frame_count}")
+            raise malformed(f"chunk.frame_count: expected 1 to {left}, got {chunk.frame_count}")
         shape = (chunk.frame_count, self._leader.joint_count, 3)
         if len(chunk.positions) != np.prod(shape):
-            raise _malformed(f"chunk.positions: expected {np.prod(shape)} values for "
+            raise malformed(f"chunk.positions: expected {np.prod(shape)} values for "
                              f"{chunk.frame_count} frames, got {len(chunk.positions)}")
         positions = np.array(chunk.positions, dtype=np.float32).reshape(shape)
         finite = np.isfinite(positions.ravel())
         if not finite.all():
             bad = int(np.argmin(finite))
-            raise _malformed(f"chunk.positions[{bad}]: expected a finite value, got "
+            raise malformed(f"chunk.positions[{bad}]: expected a finite value, got "
                              f"{chunk.positions[bad]} in the chunk of frame {chunk.first_frame}")
         return positions
 
     def _accept_summary(self, summary: synthesis_pb2.SynthesisSummary) -> None:
         if self.header is None:
-            raise _malformed("a summary before the header")
+            raise malformed("a summary before the header")
         if self.received != self._leader.frame_count:
-            raise _malformed(f"a summary after {self.received} of {self._leader.frame_count} "
+            raise malformed(f"a summary after {self.received} of {self._leader.frame_count} "
                              "frames")
         if summary.frame_count != self.received:
-            raise _malformed(f"summary.frame_count: expected {self.received}, got "
+            raise malformed(f"summary.frame_count: expected {self.received}, got "
                              f"{summary.frame_count}")
         if summary.chunk_count != len(self._chunks):
-            raise _malformed(f"summary.chunk_count: expected {len(self._chunks)}, got "
+            raise malformed(f"summary.chunk_count: expected {len(self._chunks)}, got "
                              f"{summary.chunk_count}")
         if summary.HasField("unfamiliarity") and not (
                 np.isfinite(summary.unfamiliarity) and summary.unfamiliarity >= 0):
-            raise _malformed("summary.unfamiliarity: expected a finite value of at least 0, got "
+            raise malformed("summary.unfamiliarity: expected a finite value of at least 0, got "
                              f"{summary.unfamiliarity}")
         self._check_grade(summary.grade)
         self._summary = summary
@@ -158,15 +158,15 @@ class ReplyAssembler:
     def _check_grade(self, grade: reaction_pb2.MotionGrade) -> None:
         for share in (grade.twisted, grade.skating, grade.leader_skating, grade.overlapping):
             if not 0 <= share <= 1:
-                raise _malformed(f"summary.grade: expected shares from 0 to 1, got {share}")
+                raise malformed(f"summary.grade: expected shares from 0 to 1, got {share}")
         for run in grade.bad_runs:
             if run.frame_count < 1 or run.first_frame + run.frame_count > self.received:
-                raise _malformed(f"summary.grade.bad_runs: expected runs of the {self.received} "
+                raise malformed(f"summary.grade.bad_runs: expected runs of the {self.received} "
                                  f"frames, got {run.frame_count} from {run.first_frame}")
 
     def end_stream(self, error: Optional[DuetError]) -> Optional[DuetError]:
         """Handles the end of a stream; returns None if the reply is complete, else its error."""
-        if error is not None and not _is_broken_connection(error):
+        if error is not None and not is_broken_connection(error):
             return error
         if self._summary is not None:
             return None  # the reply was complete before the stream broke

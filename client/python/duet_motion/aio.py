@@ -1,4 +1,4 @@
-"""The asyncio version of :mod:`duet_motion.client`, with the same methods.
+"""The asyncio version of :mod:`duet_motion.client`: the same methods, and live sessions.
 
 >>> async with duet.aio.Client("localhost:50051") as client:
 ...     result = await client.synthesize(leader, labels={"hug": 1})
@@ -19,8 +19,11 @@ import grpc.aio
 
 from duet_motion import _channel, batch
 from duet_motion._call import Attempts, SynthesisCall
+from duet_motion._live_call import LiveCall
+from duet_motion._session import LiveSession
 from duet_motion._signature import spelled_out
 from duet_motion.errors import CancelledError, DuetError, from_rpc_error
+from duet_motion.live import LiveRequest
 from duet_motion.request import SynthesisRequest, to_selector
 from duet_motion.result import (FollowerChunk, ModelDetails, ModelInfo, SynthesisResult,
                          details_from_proto, model_from_proto)
@@ -111,8 +114,18 @@ class Client(_channel.Connected):
         """
         return self._stream(SynthesisCall(request, self._settings))
 
+    def live_request(self, request: LiveRequest) -> LiveSession:
+        """Answers a leader while it still moves. Use the session with ``async with``.
+
+        Args:
+            request: the request.
+        """
+        return LiveSession(self._stub, self._channel, self._closed,
+                           LiveCall(request, self._settings), max(self._settings.wait, 1.0))
+
     synthesize = spelled_out(synthesize_request, SynthesisRequest, "synthesize")
     stream = spelled_out(stream_request, SynthesisRequest, "stream")
+    live = spelled_out(live_request, LiveRequest, "live")
 
     def synthesize_many(self, requests: Iterable[SynthesisRequest], *,
                         concurrency: int = 4) -> AsyncIterator[batch.Outcome]:

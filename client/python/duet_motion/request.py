@@ -79,47 +79,49 @@ class SynthesisRequest:
 
     def __post_init__(self) -> None:
         if not isinstance(self.leader, Motion):
-            raise ValueError(f"leader: expected a duet_motion.Motion, got {_short(self.leader)}")
-        self._check_labels()
-        _check_integer("seed", self.seed, 0, 2**64 - 1)
+            raise ValueError(f"leader: expected a duet_motion.Motion, got {short(self.leader)}")
+        check_weights(self.labels, self.keyframes)
+        check_integer("seed", self.seed, 0, 2**64 - 1)
         if finite_number(self.variety) is None:
-            raise ValueError(f"variety: expected a number, got {_short(self.variety)}")
-        _check_integer("candidates", self.candidates, 1, 16)
+            raise ValueError(f"variety: expected a number, got {short(self.variety)}")
+        check_integer("candidates", self.candidates, 1, 16)
         to_selector(self.model)
         if self.clean_up is not None and not isinstance(self.clean_up, (bool, np.bool_)):
-            raise ValueError(f"clean_up: expected True, False or None, got {_short(self.clean_up)}")
+            raise ValueError(f"clean_up: expected True, False or None, got {short(self.clean_up)}")
         if not isinstance(self.rotations, (bool, np.bool_)):
-            raise ValueError(f"rotations: expected True or False, got {_short(self.rotations)}")
+            raise ValueError(f"rotations: expected True or False, got {short(self.rotations)}")
         joints = self.leader.joint_count
-        _check_points("follower_start", self.follower_start, ((3,), (joints, 3)),
+        check_points("follower_start", self.follower_start, ((3,), (joints, 3)),
                       self.leader.joint_names)
-        _check_points("partner_direction", self.partner_direction, ((3,),))
-        _check_points("up", self.up, ((3,),))
+        check_points("partner_direction", self.partner_direction, ((3,),))
+        check_points("up", self.up, ((3,),))
         if self.priority not in PRIORITIES:
             raise ValueError(f"priority: expected one of {', '.join(PRIORITIES)}, got "
-                             f"{_short(self.priority)}")
+                             f"{short(self.priority)}")
         if self.chunk_frames is not None:
-            _check_integer("chunk_frames", self.chunk_frames, 1, 2**32 - 1)
+            check_integer("chunk_frames", self.chunk_frames, 1, 2**32 - 1)
         if not isinstance(self.request_id, str):
-            raise ValueError(f"request_id: expected a str, got {_short(self.request_id)}")
+            raise ValueError(f"request_id: expected a str, got {short(self.request_id)}")
         if self.timeout is not None:
             checked_number("timeout", self.timeout, above=0)
 
-    def _check_labels(self) -> None:
-        _check_labels("labels", {} if self.labels is None else self.labels)
-        keyframes = {} if self.keyframes is None else self.keyframes
-        if not isinstance(keyframes, Mapping):
-            raise ValueError("keyframes: expected labels by frame, such as {0: {'hug': 1}}, got "
-                             f"{_short(keyframes)}")
-        for frame, labels in keyframes.items():
-            _check_integer("keyframes: frame", frame, 0, 2**32 - 1)
-            _check_labels(f"keyframes[{frame}]", labels)
+
+def check_weights(labels: Optional[Labels], keyframes: Optional[Mapping[int, Labels]]) -> None:
+    """Raises ValueError if the labels or the keyframes of a request are malformed."""
+    check_labels("labels", {} if labels is None else labels)
+    keyframes = {} if keyframes is None else keyframes
+    if not isinstance(keyframes, Mapping):
+        raise ValueError("keyframes: expected labels by frame, such as {0: {'hug': 1}}, got "
+                         f"{short(keyframes)}")
+    for frame, weights in keyframes.items():
+        check_integer("keyframes: frame", frame, 0, 2**32 - 1)
+        check_labels(f"keyframes[{frame}]", weights)
 
 
 def to_selector(model: str) -> model_pb2.ModelSelector:
     """Parses ``NAME``, ``NAME@VERSION`` or ``NAME:LABEL``."""
     if not isinstance(model, str):
-        raise ValueError(f"model: expected a str, got {_short(model)}")
+        raise ValueError(f"model: expected a str, got {short(model)}")
     selector = model_pb2.ModelSelector()
     if "@" in model:
         selector.name, _, version = model.partition("@")
@@ -144,15 +146,15 @@ def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
         clean_up=CLEAN_UP[None if request.clean_up is None else bool(request.clean_up)],
         reply_rotations=bool(request.rotations), priority=PRIORITIES[request.priority],
         chunk_frames=None if request.chunk_frames is None else int(request.chunk_frames))
-    _fill(request.labels or {}, out.label_vector)
+    fill(request.labels or {}, out.label_vector)
     for frame, labels in sorted((request.keyframes or {}).items()):
-        _fill(labels, out.label_keyframes.add(frame=int(frame)).label_vector)
+        fill(labels, out.label_keyframes.add(frame=int(frame)).label_vector)
     if request.follower_start is not None:
-        _fill_start(request.follower_start, out.follower_start)
+        fill_start(request.follower_start, out.follower_start)
     if request.partner_direction is not None:
-        out.partner_direction.CopyFrom(_direction(request.partner_direction))
+        out.partner_direction.CopyFrom(direction(request.partner_direction))
     if request.up is not None:
-        out.up.CopyFrom(_direction(request.up))
+        out.up.CopyFrom(direction(request.up))
     return out
 
 
@@ -160,58 +162,58 @@ def _leader(leader: Motion) -> motion_pb2.Motion:
     return motion_pb2.Motion(
         joint_names=leader.joint_names, frame_rate_hz=leader.frame_rate_hz,
         unit=UNITS[leader.unit], up_axis=UP_AXES[leader.up_axis], frame_count=leader.frame_count,
-        positions=_floats(leader.positions))
+        positions=floats(leader.positions))
 
 
-def _fill(labels: Labels, vector: reaction_pb2.LabelVector) -> None:
+def fill(labels: Labels, vector: reaction_pb2.LabelVector) -> None:
     """Leaves the vector absent if there are no labels, so that the server reports them missing."""
     for interaction_class, weight in labels.items():
         vector.weights.add(interaction_class=interaction_class, weight=float(weight))
 
 
-def _fill_start(start: npt.ArrayLike, out: motion_pb2.FollowerStart) -> None:
-    values = _floats(start)
+def fill_start(start: npt.ArrayLike, out: motion_pb2.FollowerStart) -> None:
+    values = floats(start)
     if np.ndim(start) == 1:
         out.root_position.CopyFrom(motion_pb2.Point(x=values[0], y=values[1], z=values[2]))
     else:
         out.pose.positions.extend(values)
 
 
-def _direction(values: npt.ArrayLike) -> motion_pb2.Direction:
-    x, y, z = _floats(values)
+def direction(values: npt.ArrayLike) -> motion_pb2.Direction:
+    x, y, z = floats(values)
     return motion_pb2.Direction(x=x, y=y, z=z)
 
 
-def _floats(values: npt.ArrayLike) -> list[float]:
+def floats(values: npt.ArrayLike) -> list[float]:
     flat: list[float] = np.asarray(values, dtype=np.float32).ravel().tolist()
     return flat
 
 
-def _check_labels(name: str, labels: Labels) -> None:
+def check_labels(name: str, labels: Labels) -> None:
     if not isinstance(labels, Mapping):
         raise ValueError(f"{name}: expected weights by class, such as {{'hug': 1}}, got "
-                         f"{_short(labels)}")
+                         f"{short(labels)}")
     for interaction_class, weight in labels.items():
         if not isinstance(interaction_class, str):
             raise ValueError(f"{name}: expected classes of type str, got "
-                             f"{_short(interaction_class)}")
+                             f"{short(interaction_class)}")
         if finite_number(weight) is None:
             raise ValueError(f"{name}[{interaction_class!r}]: expected a finite number, got "
-                             f"{_short(weight)}")
+                             f"{short(weight)}")
 
 
-def _check_integer(name: str, value: object, least: int, most: int) -> None:
+def check_integer(name: str, value: object, least: int, most: int) -> None:
     if (not isinstance(value, numbers.Integral) or isinstance(value, bool)
             or not least <= int(value) <= most):
-        raise ValueError(f"{name}: expected an integer from {least} to {most}, got {_short(value)}")
+        raise ValueError(f"{name}: expected an integer from {least} to {most}, got {short(value)}")
 
 
-def _short(value: object) -> str:
+def short(value: object) -> str:
     """The value, shortened to one line."""
     return reprlib.repr(value)
 
 
-def _check_points(name: str, values: Optional[npt.ArrayLike], shapes: tuple[tuple[int, ...], ...],
+def check_points(name: str, values: Optional[npt.ArrayLike], shapes: tuple[tuple[int, ...], ...],
                   joint_names: tuple[str, ...] = ()) -> None:
     if values is None:
         return

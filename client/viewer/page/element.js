@@ -95,11 +95,11 @@ class DuetMotion extends HTMLElement {
   attributeChangedCallback(name, before, value) {
     if (name === 'src' && this.connected) this.load();
     if (name === 'controls') this.parts.controls.hidden = value === null;
-    if (this.player) this.follow(name, value);
+    if (this.player) this.apply(name, value);
   }
 
   // Applies an attribute.
-  follow(name, value) {
+  apply(name, value) {
     if (name === 'frame' && value !== null) this.seek(Number(value) || 0);
     if (name === 'paused') this.player.playing = value === null;
     if (name === 'once') this.player.looping = value === null;
@@ -155,7 +155,7 @@ class DuetMotion extends HTMLElement {
     const player = this.player = new Player(this.shown);
     player.playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
     for (const name of ['paused', 'once', 'speed', 'frame', 'view']) {
-      if (this.hasAttribute(name)) this.follow(name, this.getAttribute(name));
+      if (this.hasAttribute(name)) this.apply(name, this.getAttribute(name));
     }
     this.said = player.playing;
     this.parts.time.max = player.last;
@@ -256,6 +256,19 @@ class DuetMotion extends HTMLElement {
     const {follower} = this.shown.people;
     if (!follower) return;
     follower.set(positions, first * this.shown.joints.length * 3);
+    this.touch();
+  }
+
+  // Shows a person's pose, Float32Array [joints, 3], in a motion of one frame: for motion that
+  // arrives while it is shown.
+  setPose(person, positions) {
+    this.shown.people[person].set(positions);
+    this.touch();
+  }
+
+  // Moves camera and lights so that they show the floor around (x, z) as they showed the motion.
+  follow(x, z) {
+    if (this.stage) this.stage.moveTo(x, z);
     this.touch();
   }
 

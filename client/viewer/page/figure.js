@@ -29,7 +29,7 @@ class Figure {
   // Radii in metres by joint name; joints with unknown names get slender limbs.
   static radius(name) {
     const table = [
-      [/head/, 0.05], [/neck/, 0.047], [/shoulder|clavicle/, 0.052], [/elbow/, 0.041],
+      [/head_top/, 0.02], [/head/, 0.05], [/neck/, 0.047], [/shoulder|clavicle/, 0.052], [/elbow/, 0.041],
       [/hand|wrist/, 0.036], [/torso|spine|chest/, 0.066], [/hip|pelvis|root/, 0.072],
       [/knee/, 0.054], [/foot|ankle|toe/, 0.043],
     ];

@@ -1,6 +1,8 @@
 // As kUsualAnkleHeight in model/retargeting/foot_pose.h, metres.
 const USUAL_ANKLE_HEIGHT = 0.06;
 
+const ALIASES = {torso: 'spine', left_foot: 'left_ankle', right_foot: 'right_ankle'};
+
 // The motion of one character or two. Pages contain positions [frames, joints, 3] in metres, y up,
 // as base64 of little-endian float32.
 class Motion {
@@ -55,9 +57,10 @@ class Motion {
     return (this.frames - 1) / this.frameRate;
   }
 
-  // A joint's index by name, or -1.
+  // A joint's index by name, or -1. Skeletons with more joints name some of them otherwise.
   find(joint) {
-    return this.joints.indexOf(joint);
+    const index = this.joints.indexOf(joint);
+    return index < 0 && joint in ALIASES ? this.joints.indexOf(ALIASES[joint]) : index;
   }
 
   // Writes the pose at a fractional frame into `out` [joints] of THREE.Vector3.

@@ -110,7 +110,8 @@ class Scenery {
     const rim = new THREE.DirectionalLight(0xbcd4ff, 0.38);
     rim.position.copy(centre).add(new THREE.Vector3(-1, 0.9, -1.2));
     rim.target.position.copy(centre);
-    this.scene.add(key, key.target, rim, rim.target);
+    this.lights = [key, key.target, rim, rim.target];
+    this.scene.add(...this.lights);
   }
 
   addFloor() {

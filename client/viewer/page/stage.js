@@ -7,6 +7,7 @@ class Stage {
     this.scenery = new Scenery(motion, this.renderer, 2048);
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.05, 400);
     this.controls = makeControls(this.camera, canvas, this.scenery.reach);
+    this.moved = new THREE.Vector3();  // from the motion's own place
   }
 
   get scene() {
@@ -20,10 +21,19 @@ class Stage {
   // Moves the camera so that the whole motion is in view.
   view(name) {
     const direction = viewDirection(name, this.motion.axis());
-    this.controls.target.copy(this.scenery.box.getCenter(new THREE.Vector3()));
+    this.controls.target.copy(this.scenery.box.getCenter(new THREE.Vector3())).add(this.moved);
     this.camera.position.copy(this.controls.target)
         .addScaledVector(direction, fittingDistance(this.scenery.box, direction, this.camera));
     this.controls.update();
+  }
+
+  // Moves camera and lights from the middle of the motion to (x, z).
+  moveTo(x, z) {
+    const centre = this.scenery.box.getCenter(new THREE.Vector3());
+    const by = new THREE.Vector3(x - centre.x, 0, z - centre.z).sub(this.moved);
+    this.moved.add(by);
+    for (const thing of [this.camera, ...this.scenery.lights]) thing.position.add(by);
+    this.controls.target.add(by);
   }
 
   // Fits the picture to the canvas. Returns whether that changed its size.

@@ -7,7 +7,7 @@ const MESSAGES = {
   Model: {
     name: [1, 'string'], version: [2, 'uint32'], is_default: [4, 'bool'],
     interaction_classes: [5, 'string[]'], joint_names: [6, 'string[]'], bones: [7, 'Bone[]'],
-    accepts_follower_start: [11, 'bool'], samples: [13, 'bool'],
+    accepts_follower_start: [11, 'bool'], samples: [13, 'bool'], answers_live: [17, 'bool'],
   },
   ListModelsRequest: {},
   ListModelsResponse: {models: [1, 'Model[]']},
@@ -18,9 +18,11 @@ const MESSAGES = {
   ClassWeight: {interaction_class: [1, 'string'], weight: [2, 'float']},
   LabelVector: {weights: [1, 'ClassWeight[]']},
   LabelKeyframe: {frame: [1, 'uint32'], label_vector: [2, 'LabelVector']},
+  FrameRun: {first_frame: [1, 'uint32'], frame_count: [2, 'uint32']},
+  Pose: {positions: [1, 'float[]']},
   Point: {x: [1, 'float'], y: [2, 'float'], z: [3, 'float']},
   Direction: {x: [1, 'float'], y: [2, 'float'], z: [3, 'float']},
-  FollowerStart: {root_position: [1, 'Point']},
+  FollowerStart: {root_position: [1, 'Point'], pose: [2, 'Pose']},
   SynthesizeRequest: {
     model: [1, 'ModelSelector'], leader: [2, 'Motion'], label_vector: [3, 'LabelVector'],
     label_keyframes: [4, 'LabelKeyframe[]'], follower_start: [5, 'FollowerStart'],
@@ -38,6 +40,37 @@ const MESSAGES = {
     frame_count: [1, 'uint32'], unfamiliarity: [6, 'double'], grade: [7, 'MotionGrade'],
   },
   SynthesizeResponse: {chunk: [2, 'MotionChunk'], summary: [3, 'SynthesisSummary']},
+  LiveHistory: {
+    first_frame: [1, 'uint32'], follower_frame_count: [2, 'uint32'],
+    follower_positions: [3, 'float[]'],
+  },
+  LiveStart: {
+    model: [1, 'ModelSelector'], leader: [2, 'Motion'], label_vector: [3, 'LabelVector'],
+    follower_start: [5, 'FollowerStart'], seed: [7, 'uint64'], delay_frames: [12, 'uint32'],
+    plan_frames: [13, 'uint32'], history: [14, 'LiveHistory'],
+  },
+  LeaderFrames: {
+    first_frame: [1, 'uint32'], frame_count: [2, 'uint32'], positions: [3, 'float[]'],
+    capture_seconds: [4, 'double'],
+  },
+  LabelChange: {label_vector: [2, 'LabelVector'], ease_frames: [3, 'uint32']},
+  SynthesizeLiveRequest: {
+    start: [1, 'LiveStart'], frames: [2, 'LeaderFrames'], label_change: [3, 'LabelChange'],
+  },
+  LiveHeader: {
+    model_name: [1, 'string'], model_version: [2, 'uint32'], first_frame: [14, 'uint32'],
+    history_frames: [15, 'uint32'],
+  },
+  FollowerFrames: {
+    first_frame: [1, 'uint32'], frame_count: [2, 'uint32'], positions: [3, 'float[]'],
+    plan_positions: [4, 'float[]'], capture_seconds: [6, 'double'],
+  },
+  LiveNotice: {kind: [1, 'enum'], frames: [2, 'FrameRun']},
+  LiveSummary: {frame_count: [1, 'uint32']},
+  SynthesizeLiveResponse: {
+    header: [1, 'LiveHeader'], frames: [2, 'FollowerFrames'], notice: [3, 'LiveNotice'],
+    summary: [4, 'LiveSummary'],
+  },
   Status: {details: [3, 'Any[]']},
   Any: {type_url: [1, 'string'], value: [2, 'bytes']},
   FieldViolation: {field: [1, 'string'], description: [2, 'string']},

@@ -8,13 +8,14 @@ import support  # noqa: F401
 import duet_motion as duet
 
 # Created by the package, not by its callers.
-RESULTS = {"FieldViolation", "FollowerChunk", "FrameRun", "ModelDetails", "ModelInfo", "MotionGrade", "MotionSet", "Outcome",
+RESULTS = {"FieldViolation", "FollowerChunk", "FrameRun", "LiveHeader",
+           "LiveNotice", "LivePart", "LiveSession", "LiveSummary", "ModelDetails", "ModelInfo", "MotionGrade", "MotionSet", "Outcome",
            "PaddedBatch", "RequestLimits", "SetItem", "SynthesisResult", "SynthesisStream", "Timings"}
 
 
 def public_callables():
     for home, prefix in ((duet, "duet"), (duet.aio, "duet.aio")):
-        for name in duet.__all__ if home is duet else ("Client",):
+        for name in duet.__all__ if home is duet else ("Client", "LiveSession"):
             thing = getattr(home, name)
             if inspect.isclass(thing):
                 if name not in RESULTS and not issubclass(thing, Exception):

@@ -25,7 +25,7 @@ except ImportError as error:
 
 import duet_motion as duet  # noqa: E402
 from duet_motion.rpc.v1 import status_pb2  # noqa: E402
-from duet_motion.v1 import synthesis_pb2, synthesis_pb2_grpc  # noqa: E402
+from duet_motion.v1 import live_pb2, synthesis_pb2, synthesis_pb2_grpc  # noqa: E402
 
 JOINTS = ("root", "left", "right")
 # Backoff too short to matter, and an upper bound for calls that should finish immediately.
@@ -210,3 +210,87 @@ class Together(synthesis_pb2_grpc.MotionSynthesisServicer):
             context.abort(grpc.StatusCode.INVALID_ARGUMENT, "seed: 3")
         motion = leader(request.leader.frame_count)
         yield from good_reply(motion, seed=request.seed)
+
+
+class Mirror(synthesis_pb2_grpc.MotionSynthesisServicer):
+    """Answers live sessions: the follower is the leader moved by a metre. Records what each stream
+    sent, as `streams`, lists of requests.
+
+    `scripts` has one dict for each stream; later streams have none. `after`: number of final frames
+    in the stream until the script acts. `act`: a Failure that ends the stream, "end" (without a
+    summary), "drain" (a notice; the stream goes on), "hang" (nothing more is sent), or a message to
+    send. `header`: changed fields of the header. `extra`: messages to send behind the header.
+    """
+
+    HISTORY = 4
+
+    def __init__(self, *scripts):
+        self._scripts, self.streams, self.metadata = list(scripts), [], []
+
+    def SynthesizeLive(self, requests, context):
+        script = self._scripts.pop(0) if self._scripts else {}
+        received = []
+        self.streams.append(received)
+        self.metadata.append(dict(context.invocation_metadata()))
+        start = self._take(requests, received).start
+        poses = np.float32(start.leader.positions).reshape(-1, len(JOINTS), 3)
+        first = start.history.first_frame
+        leader = {first + index: pose for index, pose in enumerate(poses)}
+        done = begun = first + start.history.follower_frame_count
+        yield live_header(start, begun, history_frames=self.HISTORY, **script.get("header", {}))
+        yield from script.get("extra", ())
+        for message in requests:
+            received.append(message)
+            if message.HasField("frames"):
+                block = np.float32(message.frames.positions).reshape(-1, len(JOINTS), 3)
+                leader.update(enumerate(block, message.frames.first_frame))
+            while done + start.delay_frames in leader:
+                if script.get("after") == done - begun:
+                    act = script["act"]
+                    if isinstance(act, Failure):
+                        context.set_trailing_metadata(act.details)
+                        context.abort(act.code, act.message)
+                    elif act == "end":
+                        return
+                    elif act == "hang":
+                        ended = threading.Event()
+                        context.add_callback(ended.set)
+                        ended.wait(LONGEST_CALL)
+                        return
+                    yield live_notice(4) if act == "drain" else act
+                yield live_frames(start, done, leader, message.frames.capture_seconds)
+                done += 1
+        while done in leader:  # half-closed
+            yield live_frames(start, done, leader, 0)
+            done += 1
+        yield live_pb2.SynthesizeLiveResponse(summary=live_pb2.LiveSummary(
+            frame_count=done - begun, window_count=3, queue_seconds=0.25, compute_seconds=0.5))
+
+    def _take(self, requests, received):
+        received.append(next(requests))
+        return received[-1]
+
+
+def live_header(start, first, **changes):
+    leader = start.leader
+    values = {"model_name": "m", "model_version": 1, "joint_names": leader.joint_names,
+              "frame_rate_hz": leader.frame_rate_hz, "unit": leader.unit,
+              "up_axis": leader.up_axis, "interaction_classes": ["hug"], "request_id": "r",
+              "seed": start.seed, "variety": 0.5, "clean_up": 1, "candidates": 4,
+              "delay_frames": start.delay_frames, "first_frame": first}
+    return live_pb2.SynthesizeLiveResponse(header=live_pb2.LiveHeader(**{**values, **changes}))
+
+
+def live_frames(start, frame, leader, capture_seconds):
+    pose = leader[frame] + np.float32([1, 0, 0])
+    return live_pb2.SynthesizeLiveResponse(frames=live_pb2.FollowerFrames(
+        first_frame=frame, frame_count=1, positions=pose.ravel().tolist(),
+        plan_positions=np.tile(pose.ravel(), start.plan_frames).tolist(),
+        leader_frame=max(leader), capture_seconds=capture_seconds, server_seconds=0.125))
+
+
+def live_notice(kind, first=0, count=0):
+    notice = live_pb2.LiveNotice(kind=kind)
+    if count:
+        notice.frames.first_frame, notice.frames.frame_count = first, count
+    return live_pb2.SynthesizeLiveResponse(notice=notice)

@@ -1,0 +1,290 @@
+"""A live session, independent of its transport: what to send, what to resume from, what arrived."""
+
+from __future__ import annotations
+
+import collections
+from typing import Deque, Iterable, List, Optional, Tuple
+
+import grpc
+import numpy as np
+
+from duet_motion._call import Attempts, CallSettings
+from duet_motion._fields import with_joint_names
+from duet_motion._labels import LabelTrack
+from duet_motion._live_reply import LiveReply
+from duet_motion._wire import CLEAN_UP, UNITS, UP_AXES
+from duet_motion.errors import DuetError, make_error
+from duet_motion.live import LiveHeader, LiveNotice, LivePart, LiveRequest, LiveSummary
+from duet_motion.motion import Positions
+from duet_motion.request import Labels, direction, fill, fill_start, floats, to_selector
+from duet_motion.result import FrameRun
+from duet_motion.retry import is_retryable
+from duet_motion.v1 import live_pb2, motion_pb2, reaction_pb2
+
+# Leader frames in one message, so that no message exceeds the server's limit.
+_BLOCK_FRAMES = 32
+_NOTICES = {
+    live_pb2.LIVE_NOTICE_KIND_GAP_FILLED: "gap_filled",
+    live_pb2.LIVE_NOTICE_KIND_LATE: "late",
+    live_pb2.LIVE_NOTICE_KIND_SKIPPED: "skipped",
+    live_pb2.LIVE_NOTICE_KIND_DRAINING: "draining",
+}
+
+
+class _Frames:
+    """Consecutive frames, of which the first are forgotten."""
+
+    def __init__(self) -> None:
+        self._poses: Deque[Positions] = collections.deque()
+        self.first = 0
+        self.end = 0
+        """The index after the last frame."""
+
+    def extend(self, poses: Iterable[Positions]) -> None:
+        self._poses.extend(poses)
+        self.end = self.first + len(self._poses)
+
+    def forget(self, before: int) -> None:
+        while self._poses and self.first < before:
+            self._poses.popleft()
+            self.first += 1
+
+    def values(self, first: int, end: int) -> List[float]:
+        """The values of frames first to before end."""
+        poses = [self._poses[frame - self.first] for frame in range(first, end)]
+        return floats(np.stack(poses)) if poses else []
+
+
+class LiveCall:
+    """The state of a session over all its streams.
+
+    The last ``LiveHeader.history_frames`` frames of both motions are kept to resume, and the leader
+    frames that are not answered.
+    """
+
+    def __init__(self, request: LiveRequest, settings: CallSettings) -> None:
+        self.request = request
+        self.motion = request.leader()
+        self._settings = settings
+        self.attempts = Attempts(settings, request_id=request.request_id)
+        self._labels = LabelTrack(request.keyframes or {0: request.labels or {}})
+        self._leader, self._follower = _Frames(), _Frames()
+        self._captures: Deque[float] = collections.deque()  # of the leader frames kept
+        self._outbox: Deque[live_pb2.SynthesizeLiveRequest] = collections.deque()
+        self._reply = LiveReply(self.motion, 0)
+        self._has_stream = False
+        self.header: Optional[LiveHeader] = None
+        self.summary: Optional[LiveSummary] = None
+        self.is_finished = False
+        self.is_draining = False
+        self._progressed = False
+        self._totals = {kind: 0 for kind in _NOTICES.values()}
+        self._resumes = 0
+
+    @property
+    def sent(self) -> int:
+        """Number of leader frames so far."""
+        return self._leader.end
+
+    @property
+    def unanswered(self) -> int:
+        """Number of leader frames whose follower frames have not arrived."""
+        return self._leader.end - self._follower.end
+
+    @property
+    def is_owed(self) -> bool:
+        """Whether the server must send something now."""
+        return (self._reply.header is None or self.is_finished
+                or self.unanswered > self.request.delay)
+
+    def now(self) -> float:
+        """Seconds on the session's clock."""
+        return self._settings.environment.now()
+
+    def add(self, frames: Positions, capture_seconds: float) -> None:
+        """Adds leader frames ``[frames, joints, 3]``, the last of them captured at
+        ``capture_seconds``."""
+        first = self._leader.end
+        self._leader.extend(frames)
+        last = len(frames) - 1
+        self._captures.extend(capture_seconds - (last - index) / self.motion.frame_rate_hz
+                              for index in range(len(frames)))
+        if self._has_stream:
+            self._send_frames(first)
+
+    def change_labels(self, labels: Labels, ease_frames: int) -> int:
+        """Changes the labels from the first frame that is not final on; returns that frame."""
+        frame = max(self._leader.end - self.request.delay, 0)
+        self._labels.change(frame, labels, ease_frames)
+        self._labels.since(self._history_start())
+        if self._has_stream:
+            message = live_pb2.LabelChange(frame=frame, ease_frames=ease_frames)
+            fill(labels, message.label_vector)
+            self._outbox.append(live_pb2.SynthesizeLiveRequest(label_change=message))
+        return frame
+
+    def begin(self) -> None:
+        """Starts a stream."""
+        self.attempts.begin()
+        self._progressed = self.is_draining = False
+        end = self._resumed_from()
+        self._reply = LiveReply(self.motion, end)
+        start = self._start(end)
+        self._outbox.clear()
+        self._outbox.append(live_pb2.SynthesizeLiveRequest(start=start))
+        self._has_stream = True
+        self._send_frames(end + self.request.delay if end else 0)
+
+    def next_message(self) -> Optional[live_pb2.SynthesizeLiveRequest]:
+        """The next message of this stream; None if there is none yet."""
+        return self._outbox.popleft() if self._outbox else None
+
+    def accept(self, response: live_pb2.SynthesizeLiveResponse) -> Optional[LivePart]:
+        """Accepts a message and returns its frames that the caller does not have yet, if any."""
+        kind = response.WhichOneof("payload")
+        self._reply.check_order(kind)
+        if kind == "header":
+            self._accept_header(response.header)
+        elif kind == "frames":
+            return self._accept_frames(response.frames)
+        elif kind == "notice":
+            self._accept_notice(response.notice)
+        else:
+            self._accept_summary(response.summary)
+        return None
+
+    def wait_after(self, error: Optional[DuetError]) -> Optional[float]:
+        """Handles the end of a stream, with ``error`` or without one. Returns None if the session
+        is complete, else the seconds until the next attempt. Raises the error of a failed call."""
+        self._has_stream = False
+        answered = self._reply.header is not None
+        ended = self._reply.end(error)
+        if ended is None:
+            return None
+        if self._follower.end and ended.code is grpc.StatusCode.NOT_FOUND:
+            assert self.header is not None
+            raise make_error(
+                grpc.StatusCode.ABORTED,
+                f"the session broke off after {self._follower.end} frames and cannot be resumed: "
+                f"{self.header.model_name}@{self.header.model_version} is no longer served")
+        if self._progressed and is_retryable(ended):
+            # The interruption begins now; the first attempt to resume follows at once.
+            self.attempts = Attempts(self._settings, request_id=self.request.request_id)
+            return 0.0
+        return self.attempts.wait_after(with_joint_names(ended, self.motion), answered)
+
+    def _resumed_from(self) -> int:
+        """The follower's first frame in a new stream. Frames that were final only because the
+        leader had ended are synthesised again."""
+        return max(min(self._follower.end, self._leader.end - self.request.delay), 0)
+
+    def _history_start(self) -> int:
+        kept = self.header.history_frames if self.header else self._leader.end
+        return max(self._resumed_from() - kept, 0)
+
+    def _start(self, end: int) -> live_pb2.LiveStart:
+        request, header = self.request, self.header
+        first = self._history_start()
+        start = live_pb2.LiveStart(
+            model=to_selector(request.model), leader=motion_pb2.Motion(
+                joint_names=self.motion.joint_names, frame_rate_hz=self.motion.frame_rate_hz,
+                unit=UNITS[self.motion.unit], up_axis=UP_AXES[self.motion.up_axis]),
+            seed=int(request.seed), variety=float(request.variety),
+            candidates=int(request.candidates),
+            clean_up=CLEAN_UP[None if request.clean_up is None else bool(request.clean_up)],
+            delay_frames=int(request.delay), plan_frames=int(request.plan))
+        self._fill_labels(start, first)
+        if request.partner_direction is not None:
+            start.partner_direction.CopyFrom(direction(request.partner_direction))
+        if request.up is not None:
+            start.up.CopyFrom(direction(request.up))
+        if not end:
+            if request.follower_start is not None:
+                fill_start(request.follower_start, start.follower_start)
+            return start
+        assert header is not None
+        # One follower must not mix the answers of two versions.
+        start.model.Clear()
+        start.model.name, start.model.version = header.model_name, header.model_version
+        start.leader.frame_count = end + request.delay - first
+        start.leader.positions.extend(self._leader.values(first, end + request.delay))
+        start.history.first_frame = first
+        start.history.follower_frame_count = end - first
+        start.history.follower_positions.extend(self._follower.values(first, end))
+        return start
+
+    def _fill_labels(self, start: live_pb2.LiveStart, first: int) -> None:
+        keys = self._labels.since(first)
+        if len(keys) == 1:
+            fill(keys[0][1], start.label_vector)
+            return
+        for frame, labels in keys:
+            fill(labels, start.label_keyframes.add(frame=frame).label_vector)
+
+    def _send_frames(self, first: int) -> None:
+        for begin in range(first, self._leader.end, _BLOCK_FRAMES):
+            end = min(begin + _BLOCK_FRAMES, self._leader.end)
+            self._outbox.append(live_pb2.SynthesizeLiveRequest(frames=live_pb2.LeaderFrames(
+                first_frame=begin, frame_count=end - begin,
+                positions=self._leader.values(begin, end), capture_seconds=self._capture(end - 1))))
+
+    def _capture(self, frame: int) -> float:
+        """When a leader frame was captured; frames that are not kept are as old as the oldest."""
+        return self._captures[max(frame - self._leader.first, 0)]
+
+    def _accept_header(self, header: live_pb2.LiveHeader) -> None:
+        self._reply.accept_header(header)
+        if self.header is not None:
+            self._resumes += 1
+            self._notify(LiveNotice("resumed"))
+            return
+        self.header = LiveHeader(
+            model_name=header.model_name, model_version=header.model_version,
+            interaction_classes=tuple(header.interaction_classes), request_id=header.request_id,
+            seed=header.seed, variety=header.variety, candidates=max(1, header.candidates),
+            delay=header.delay_frames, cleaned_up=header.clean_up == reaction_pb2.CLEAN_UP_ON,
+            history_frames=header.history_frames)
+
+    def _accept_frames(self, frames: live_pb2.FollowerFrames) -> Optional[LivePart]:
+        positions = self._reply.accept_frames(frames, self._leader.end)
+        plan = self._reply.poses("frames.plan_positions", frames.plan_positions)
+        known = max(self._follower.end - frames.first_frame, 0)
+        new = positions[known:]
+        if not len(new):
+            return None
+        self._progressed = True
+        captured = self._capture(frames.leader_frame)
+        first = self._follower.end
+        self._follower.extend(new)
+        self._forget()
+        return LivePart(first, new, plan, frames.leader_frame, captured,
+                        self.now() - captured, frames.server_seconds)
+
+    def _forget(self) -> None:
+        first = self._history_start()
+        self._follower.forget(first)
+        before = self._leader.first
+        self._leader.forget(first)
+        for _ in range(self._leader.first - before):
+            self._captures.popleft()
+
+    def _accept_notice(self, notice: live_pb2.LiveNotice) -> None:
+        kind = _NOTICES.get(notice.kind)
+        if kind is None:
+            return  # of a later version of the API
+        self.is_draining = self.is_draining or kind == "draining"
+        self._totals[kind] += notice.frames.frame_count
+        run = FrameRun(notice.frames.first_frame, notice.frames.frame_count)
+        self._notify(LiveNotice(kind, None if kind == "draining" else run))
+
+    def _notify(self, notice: LiveNotice) -> None:
+        if self.request.on_notice is not None:
+            self.request.on_notice(notice)
+
+    def _accept_summary(self, summary: live_pb2.LiveSummary) -> None:
+        self._reply.accept_summary(summary)
+        self.summary = LiveSummary(
+            frame_count=self._follower.end, gap_frames=self._totals["gap_filled"],
+            late_frames=self._totals["late"], skipped_frames=self._totals["skipped"],
+            resume_count=self._resumes, window_count=summary.window_count,
+            queue_seconds=summary.queue_seconds, compute_seconds=summary.compute_seconds)

@@ -1,0 +1,206 @@
+'use strict';
+// The leader of the Spar page. It stands, breathes, walks, bends and plays clips; every change is
+// blended.
+const BLEND_SECONDS = 0.2;
+const WALK_SPEED = 1.15;     // metres a second
+const BACK_SPEED = 0.8;
+const TURN_SPEED = 1.9;      // radians a second
+const EASE_SECONDS = 0.16;   // until walking and turning have their speed
+const STEP_SECONDS = 0.92;   // for a left and a right step
+const STANCE = 0.58;         // share of a step in which the foot stands
+const MAX_BEND = 0.75;       // radians
+
+// A piece of motion, relative to where its first frame stands: poses [joints, 3] at `frameRate`.
+// `loops`: it repeats, and drifts nowhere. `turns`: the leader looks where it ends.
+class Clip {
+  constructor(body, name, poses, frameRate, {loops = false, turns = false} = {}) {
+    Object.assign(this, {name, frameRate, loops, turns});
+    const first = body.place(poses[0]);
+    this.poses = poses.map((pose) => unplaced(pose, first));
+    const drift = body.place(this.poses[this.poses.length - 1]);
+    drift.yaw = Math.atan2(Math.sin(drift.yaw), Math.cos(drift.yaw));
+    if (!loops) return;
+    this.poses = this.poses.map((pose, i) => {
+      const share = i / (poses.length - 1);
+      return unplaced(pose, {x: drift.x * share, z: drift.z * share, yaw: drift.yaw * share});
+    });
+  }
+
+  get seconds() { return (this.poses.length - 1) / this.frameRate; }
+
+  // The pose at a time, interpolated.
+  at(seconds) {
+    const length = this.poses.length - 1;
+    const frame = this.loops ? (seconds * this.frameRate) % length
+                             : clamp(seconds * this.frameRate, 0, length);
+    const before = Math.min(Math.floor(frame), length - 1);
+    const [a, b] = [this.poses[before], this.poses[before + 1]];
+    return a.map((value, i) => mix(value, b[i], frame - before));
+  }
+}
+
+class Leader {
+  // `rest`: a standing pose, [joints, 3].
+  constructor(body, rest) {
+    this.body = body;
+    this.rest = unplaced(rest, body.place(rest));
+    this.root = {x: 0, z: 0, yaw: 0};
+    this.time = 0;
+    this.step = 0;               // phase of the steps
+    this.speed = this.spin = 0;  // forward in metres a second, to the left in radians a second
+    this.wanted = {forward: 0, left: 0};  // -1 to 1, by keys
+    this.lean = {forward: 0, left: 0};    // radians, by dragging
+    this.bent = {forward: 0, left: 0, forwardSpeed: 0, leftSpeed: 0};
+    this.clip = null;
+    this.clipTime = 0;
+    this.tempo = 1;              // speed of clips
+    this.offset = new Float32Array(this.rest.length);  // from what it does to what it shows
+    this.offsetTime = BLEND_SECONDS;
+    this.shown = this.source();
+    this.unbent = this.world = placed(this.shown, this.root);
+  }
+
+  // Starts a clip, or ends one with null, blended.
+  // `over`: the time since the clip should have begun, in seconds of the clip.
+  play(clip, over = 0) {
+    if (this.clip) {
+      const here = this.body.place(this.source());
+      this.root = placeWithin(this.root, {...here, yaw: this.clip.turns ? here.yaw : 0});
+    }
+    const world = this.unbent;
+    this.clip = clip;
+    this.clipTime = over;
+    this.rebase(world);
+  }
+
+  // Continues from a pose in the world, and forgets it within BLEND_SECONDS.
+  rebase(world) {
+    const now = unplaced(world, this.root);
+    this.offset = this.source().map((value, i) => now[i] - value);
+    this.offsetTime = 0;
+  }
+
+  // The pose in the world, Float32Array [joints, 3].
+  get pose() { return this.world; }
+
+  advance(seconds) {
+    this.time += seconds;
+    this.walk(seconds);
+    this.bendOn(seconds);
+    if (this.clip) {
+      this.clipTime += seconds * this.tempo;
+      if (!this.clip.loops && this.clipTime >= this.clip.seconds) {
+        const over = this.clipTime - this.clip.seconds;
+        this.clipTime = this.clip.seconds;
+        this.ended?.(this.clip, over);
+      }
+    }
+    this.offsetTime += seconds;
+    const left = 1 - smooth(this.offsetTime / BLEND_SECONDS);
+    this.shown = this.source();
+    if (left > 0) this.shown = this.shown.map((value, i) => value + this.offset[i] * left);
+    this.unbent = placed(this.shown, this.root);
+    this.world = placed(this.finish(this.shown), this.root);
+  }
+
+  walk(seconds) {
+    const {forward, left} = this.wanted;
+    const ease = 1 - Math.exp(-seconds / EASE_SECONDS);
+    const still = this.clip ? 0 : 1;
+    this.speed = mix(this.speed, still * forward * (forward > 0 ? WALK_SPEED : BACK_SPEED), ease);
+    this.spin = mix(this.spin, still * left * TURN_SPEED, ease);
+    this.root.yaw += this.spin * seconds;
+    this.root.x += Math.sin(this.root.yaw) * this.speed * seconds;
+    this.root.z += Math.cos(this.root.yaw) * this.speed * seconds;
+    if (this.effort > 0.02) this.step = (this.step + seconds / STEP_SECONDS) % 1;
+  }
+
+  // From 0, standing, to 1, walking.
+  get effort() {
+    return clamp(Math.abs(this.speed) / 0.5 + Math.abs(this.spin) / 1.2, 0, 1);
+  }
+
+  // Follows the visitor's hand like a spring.
+  bendOn(seconds) {
+    for (const way of ['forward', 'left']) {
+      for (let rest = seconds; rest > 0; rest -= 0.008) {
+        const dt = Math.min(rest, 0.008);
+        const pull = 160 * (this.lean[way] - this.bent[way]) - 20 * this.bent[`${way}Speed`];
+        this.bent[`${way}Speed`] += pull * dt;
+        this.bent[way] += this.bent[`${way}Speed`] * dt;
+      }
+      this.bent[way] = clamp(this.bent[way], -MAX_BEND, MAX_BEND);
+    }
+  }
+
+  // What it does now, relative to its root.
+  source() {
+    return this.clip ? this.clip.at(this.clipTime) : this.locomotion();
+  }
+
+  locomotion() {
+    const {body, rest, effort} = this;
+    const pose = rest.slice();
+    const turn = 2 * Math.PI;
+    this.breathe(pose, 1 - effort);
+    const beat = Math.sin(turn * this.step);
+    body.shift(pose, [-0.022 * effort * beat, 0.016 * effort * Math.cos(2 * turn * this.step) - 0.022 * effort,
+                      0.03 * this.speed]);
+    body.sides.forEach((side, i) => {
+      const phase = (this.step + 0.5 * i) % 1;
+      const {along, lift} = this.footOf(phase);
+      for (const joint of [side.foot, side.toe]) {
+        if (joint < 0) continue;
+        const place = body.at(pose, joint);
+        body.put(pose, joint, add(place, [0, lift * effort, along - 0.3 * effort * place[2]]));
+      }
+      this.swing(pose, side, Math.cos(turn * (phase - 0.05)) * clamp(this.speed, -1, 1) * 0.42);
+    });
+    const twist = turning([0, 1, 0], 0.07 * clamp(this.speed, -1, 1) * Math.cos(turn * this.step));
+    body.turn(pose, body.upper, body.hips(pose), twist);
+    for (const side of body.sides) body.reach(pose, side, rest);
+    return pose;
+  }
+
+  // The foot's way along the walk and its height, metres: back with the floor, then forward.
+  footOf(phase) {
+    const reach = this.speed * STANCE * STEP_SECONDS / 2;
+    if (phase < STANCE) return {along: mix(reach, -reach, phase / STANCE), lift: 0};
+    const share = (phase - STANCE) / (1 - STANCE);
+    return {along: mix(-reach, reach, smooth(share)), lift: 0.085 * Math.sin(Math.PI * share)};
+  }
+
+  // Swings an arm about its shoulder and bends its elbow a little.
+  swing(pose, {shoulder, elbow, hands}, angle) {
+    const {body} = this;
+    body.turn(pose, [elbow, ...hands], body.at(pose, shoulder), turning([1, 0, 0], angle));
+    const bend = turning([1, 0, 0], -0.25 * Math.abs(angle) - 0.12 * this.effort);
+    body.turn(pose, hands, body.at(pose, elbow), bend);
+  }
+
+  // Breath, and the weight from foot to foot.
+  breathe(pose, share) {
+    const {body, time} = this;
+    const breath = Math.sin(time * 1.7) * share;
+    const sway = (Math.sin(time * 0.55) + 0.4 * Math.sin(time * 0.31 + 1)) * share;
+    body.shift(pose, [0.02 * sway, -0.004 - 0.003 * breath, 0.005 * Math.sin(time * 0.7) * share]);
+    const above = body.upper.filter((joint) => joint !== body.waist);
+    body.moveAll(pose, above, (place) => add(place, [0, 0.006 * breath, -0.003 * breath]));
+    body.turn(pose, body.upper, body.hips(pose), turning([0, 1, 0], 0.035 * Math.sin(time * 0.43) * share));
+    for (const {shoulder, elbow, hands} of body.sides) {
+      body.turn(pose, [elbow, ...hands], body.at(pose, shoulder), turning([1, 0, 0], -0.03 - 0.03 * breath));
+    }
+  }
+
+  // Bends the pose; the feet stay.
+  finish(shown) {
+    const {body, rest, bent} = this;
+    if (Math.hypot(bent.forward, bent.left) < 1e-3) return shown;
+    const pose = shown.slice();
+    body.bend(pose, bent.forward, bent.left);
+    body.shift(pose, [-0.12 * Math.sin(bent.left), -0.05 * (1 - Math.cos(2 * bent.forward)),
+                      -0.2 * Math.sin(bent.forward)]);
+    for (const side of body.sides) body.reach(pose, side, rest);
+    return pose;
+  }
+}

@@ -1,0 +1,121 @@
+'use strict';
+// What the keys 1 to 6 throw: the samples, or the figures of a dance.
+
+const BEAT_FRAMES = 10;   // of samples/salsa.bvh
+const BAR_BEATS = 8;
+const DANCE_BPM = 180;
+// Figures of samples/salsa.bvh in beats. The basic step repeats between the others.
+const FIGURES = [
+  {name: 'basic step', label: 'basic', from: 16, to: 24, loops: true},
+  {name: 'turn the follower', label: 'follower_turn', from: 28, to: 36},
+  {name: 'cross body lead', label: 'cross_body', from: 52, to: 60},
+  {name: 'step apart', label: 'apart', from: 80, to: 88},
+];
+
+async function sampleOf(name, joints) {
+  const response = await fetch(`/samples/${name}.bvh`);
+  if (!response.ok) throw new CallError(await messageIn(response));
+  return readBvh(await response.text(), joints);
+}
+
+// {rest, moves, isDance}, where moves are [{name, label, clip}], or null if no sample has the
+// model's joints.
+async function movesFor(model, samples, body) {
+  const joints = model.joint_names;
+  if (model.interaction_classes.includes('basic') && samples.includes('salsa')) {
+    const dance = await sampleOf('salsa', joints);
+    return dance && danceOf(dance, body, model.bones);
+  }
+  const names = model.interaction_classes.filter((name) => samples.includes(name)).slice(0, 9);
+  const motions = await Promise.all(names.map((name) => sampleOf(name, joints)));
+  if (!motions.length || motions.includes(null)) return null;
+  return {
+    isDance: false, rest: motions[0].frames[0],
+    moves: names.map((name, i) => ({
+      name: name.replaceAll('_', ' '), label: name,
+      clip: new Clip(body, name, motions[i].frames, motions[i].frameRate),
+    })),
+  };
+}
+
+function danceOf({frames, frameRate}, body, bones) {
+  const moves = FIGURES.map(({name, label, from, to, loops = false}) => ({
+    name, label,
+    clip: new Clip(body, name, frames.slice(from * BEAT_FRAMES, to * BEAT_FRAMES + 1), frameRate,
+                   {loops, turns: true}),
+  }));
+  return {isDance: true, rest: standing(frames[0], body, bones), moves};
+}
+
+// The direction of the bone to each joint of a person who stands, ready to hold hands, and looks
+// along +z, the left side at +x.
+const STANDING = [
+  [/shoulder/, [1, 0.5, 0]], [/hip$/, [1, -0.3, 0]], [/elbow/, [0.14, -1, -0.08]],
+  [/wrist|hand/, [0.05, -0.55, 1]], [/knee/, [0.05, -1, 0.16]], [/ankle|foot/, [0.02, -1, -0.12]],
+  [/toe/, [0.1, -0.4, 1]], [/head/, [0, 1, 0.12]], [/./, [0, 1, 0]],
+];
+
+// A standing pose with the limbs of another pose, the lowest joint as high as there.
+function standing(like, body, bones) {
+  const pose = new Float32Array(like.length);
+  for (const {parent_joint: parent = 0, child_joint: child = 0} of bones) {
+    const name = body.names[child];
+    const [, [x, ...rest]] = STANDING.find(([pattern]) => pattern.test(name));
+    const direction = [name.startsWith('right') ? -x : x, ...rest];
+    const length = norm(sub(body.at(like, child), body.at(like, parent)));
+    body.put(pose, child, add(body.at(pose, parent), direction, length / norm(direction)));
+  }
+  const lowest = (one) => one.reduce((least, value, i) => (i % 3 === 1 ? Math.min(least, value) : least), Infinity);
+  const up = lowest(like) - lowest(pose);
+  return pose.map((value, i) => (i % 3 === 1 ? value + up : value));
+}
+
+// Chooses the leader's next clip.
+class Choreography {
+  constructor(leader, {moves, isDance}) {
+    Object.assign(this, {leader, moves, isDance});
+    this.current = null;   // the move being done
+    this.queued = null;
+    this.beats = {frame: 0, playing: false, looping: false, speed: 1, last: Infinity,
+                  motion: {frameRate: BEAT_FRAMES * DANCE_BPM / 60}};
+    leader.ended = (clip, over) => this.next(over);
+  }
+
+  // Throws a move; a figure of a dance waits for the next bar. Returns whether it began.
+  choose(move) {
+    if (!this.isDance || !this.current) {
+      this.beats.frame = 0;
+      return this.begin(move, 0);
+    }
+    // The basic step, again: stop dancing.
+    if (move === this.current && move.clip.loops) return this.begin(null, 0);
+    this.queued = move;
+    return false;
+  }
+
+  begin(move, over) {
+    this.current = move;
+    this.queued = null;
+    this.leader.play(move && move.clip, over);
+    this.began?.(move);
+    return true;
+  }
+
+  next(over) {
+    this.begin(this.queued ?? (this.isDance ? this.moves[0] : null), over);
+  }
+
+  // Moves the leader; called for every step of time.
+  advance(seconds) {
+    const {leader, beats, current} = this;
+    const bar = BAR_BEATS * BEAT_FRAMES / beats.motion.frameRate;
+    const before = leader.clipTime;
+    beats.speed = leader.tempo;
+    beats.playing = this.isDance && Boolean(current);
+    if (beats.playing) beats.frame += seconds * leader.tempo * beats.motion.frameRate;
+    leader.advance(seconds);
+    const over = leader.clipTime % bar;
+    if (this.queued && current === this.current && current?.clip.loops
+        && Math.floor(leader.clipTime / bar) > Math.floor(before / bar)) this.next(over);
+  }
+}

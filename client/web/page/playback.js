@@ -1,0 +1,75 @@
+'use strict';
+// The follower between the frames that have arrived, and the recording of both people.
+
+const SETTLE_SECONDS = 0.08;   // in which a plan that was shown gives way to the final frames
+const RECORDED_FRAMES = 900;
+
+// Shows the follower at any time, counted in frames. Frames that are not final yet come from the
+// newest plan.
+class Playback {
+  constructor() { this.clear(); }
+
+  clear() {
+    this.store = null;
+    this.plan = [];
+    this.planFirst = 0;
+    this.last = null;      // {time, pose} without the offset
+    this.offset = null;
+    this.carried = this.shown ?? null;
+  }
+
+  take(store, part) {
+    this.store = store;
+    this.plan = part.plan;
+    this.planFirst = part.first + part.poses.length;
+  }
+
+  frame(index) {
+    const {store, plan} = this;
+    if (index < store.end) return store.get(Math.max(index, store.first));
+    return plan[Math.min(index - this.planFirst, plan.length - 1)] ?? store.get(store.end - 1);
+  }
+
+  at(time) {
+    const before = Math.floor(time);
+    const [a, b] = [this.frame(before), this.frame(before + 1)];
+    return a.map((value, i) => mix(value, b[i], time - before));
+  }
+
+  // The pose to show at a time, or null before the first frame. `seconds` since the last call.
+  show(time, seconds) {
+    if (!this.store) return this.shown ?? null;
+    const pose = this.at(Math.max(0, time));
+    // What was shown for the last time, if it is known better now, and what a session before showed.
+    const [was, is] = this.carried ? [this.carried, pose]
+        : this.last ? [this.last.pose, this.at(this.last.time)] : [pose, pose];
+    const left = Math.exp(-seconds / SETTLE_SECONDS);
+    this.offset = pose.map((_, i) => ((this.offset?.[i] ?? 0) + was[i] - is[i]) * left);
+    this.carried = null;
+    this.last = {time: Math.max(0, time), pose};
+    this.shown = pose.map((value, i) => value + this.offset[i]);
+    return this.shown;
+  }
+}
+
+// The last frames of both people.
+class Recording {
+  constructor() { this.pairs = []; }
+
+  get frames() { return this.pairs.length; }
+
+  add(leader, follower) {
+    if (!leader || !follower) return;
+    this.pairs.push([leader, follower]);
+    if (this.pairs.length > RECORDED_FRAMES) this.pairs.shift();
+  }
+
+  // "duet-motion" JSON.
+  write(joints, frameRate) {
+    const nest = (who) => this.pairs.map((pair) => joints.map(
+        (_, joint) => Array.from(pair[who].subarray(joint * 3, joint * 3 + 3))));
+    return JSON.stringify({format: 'duet-motion', version: 1, unit: 'metres', up_axis: 'y-up',
+                           joint_names: joints, frame_rate_hz: frameRate, leader: nest(0),
+                           follower: nest(1)});
+  }
+}

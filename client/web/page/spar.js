@@ -1,0 +1,461 @@
+'use strict';
+// The Spar page: the visitor is the leader, and the server answers while they move.
+
+const root = document.documentElement;
+const element = (id) => document.getElementById(id);
+const FRAME_RATE = 30;
+const PLAN_FRAMES = 8;
+const LONGEST_STEP = 0.25;    // seconds; a tab that slept does not catch up
+const HIDDEN_SECONDS = 2;     // a hidden page ends its session
+const LATE_SECONDS = 1.5;     // in which the slowest answer decides how far behind it is shown
+const PIXELS_TO_BEND = 220;
+const CAMERA_SECONDS = 0.7;
+const SLOW_SECONDS = 0.05;    // between two pictures, on average; below, the picture gets coarser
+const COARSEST = 0.5;         // pixels of the picture for each of the screen, along one axis
+const KEYS = {ArrowUp: 'forward', ArrowDown: 'back', ArrowLeft: 'left', ArrowRight: 'right',
+              w: 'forward', s: 'back', a: 'left', d: 'right'};
+
+const spar = {
+  models: [], samples: [], model: null, body: null, leader: null, choreography: null,
+  metronome: null, session: null, playback: new Playback(), recording: new Recording(),
+  strip: new Strip(element('strip'), element('figures')), weights: {}, held: new Set(),
+  elapsed: 0,      // seconds since the last frame was sent
+  poses: [],       // the leader's last frames, for the recording: [index, pose]
+  lates: [],       // [time, frames] by which answers were late
+  behind: 2,       // frames by which the follower is shown late
+  seen: false,     // the follower has arrived
+};
+const stage = element('stage');
+
+function tell(text, failed = false) {
+  element('status').textContent = text;
+  element('status').classList.toggle('failed', failed);
+  root.dataset.failed = failed;
+}
+
+function tellAway(text) {
+  element('away').textContent = text;
+  element('away').hidden = !text;
+}
+
+const attempt = (act) => async (...all) => {
+  try {
+    await act(...all);
+  } catch (error) {
+    tell(error.message, true);
+  }
+};
+
+const nameOf = (model) => `${model.name}@${model.version}`;
+
+// The session.
+
+function connect() {
+  spar.session?.close();
+  const {model} = spar;
+  const on = {
+    restart() {
+      spar.playback.clear();
+      Object.assign(spar, {elapsed: 0, poses: [], lates: []});
+    },
+    state(name, message) {
+      root.dataset.session = name;
+      if (name === 'open') {
+        tellAway('');
+        if (spar.wasAway) spar.strip.note('resumed');
+        spar.wasAway = false;
+      } else if (name === 'away') {
+        spar.wasAway = true;
+        tellAway(`The server is away${message ? ` (${message})` : ''}. Your partner returns when it does.`);
+      } else {
+        tellAway(`The server rejected the session: ${message}`);
+      }
+    },
+    notice(kind, count) {
+      if (kind === NOTICE.skipped) spar.strip.note('skipped', count);
+    },
+    frames: takeFrames,
+  };
+  spar.session = new LiveSession({
+    model: nameOf(model), joints: model.joint_names, frameRate: FRAME_RATE, weights: spar.weights,
+    delay: Number(element('delay').value), plan: PLAN_FRAMES, seed: 0,
+    acceptsStart: model.accepts_follower_start,
+  }, on);
+}
+
+// The leader's time in frames.
+const frameNow = () => spar.session.leader.end - 1 + spar.elapsed * FRAME_RATE;
+
+function takeFrames(part) {
+  const {session, strip} = spar;
+  spar.playback.take(session.follower, part);
+  strip.add(1000 * part.latency);
+  spar.lates.push([performance.now(), frameNow() - (part.first + part.poses.length - 1)]);
+  part.poses.forEach((pose, i) => {
+    while (spar.poses.length && spar.poses[0][0] < part.first + i) spar.poses.shift();
+    if (spar.poses[0]?.[0] === part.first + i) spar.recording.add(spar.poses.shift()[1], pose);
+  });
+  root.dataset.frames = session.follower.end;
+  root.dataset.recorded = spar.recording.frames;
+}
+
+// Changes the labels. `weights` of the classes that are not named are 0.
+function setWeights(weights) {
+  spar.weights = Object.fromEntries(spar.model.interaction_classes.map(
+      (name) => [name, weights[name] ?? 0]));
+  for (const label of element('labels').children) {
+    setSlider(label, spar.weights[label.querySelector('input').name]);
+  }
+  spar.session?.changeLabels(spar.weights, Number(element('ease').value));
+}
+
+// The model.
+
+async function chooseModel(model) {
+  const body = new Body(model.joint_names);
+  const moves = await movesFor(model, spar.samples, body);
+  if (!moves) throw new Error(`${nameOf(model)}: this page has no moves for its joints.`);
+  spar.session?.close();
+  spar.session = null;
+  const leader = new Leader(body, moves.rest);
+  const choreography = new Choreography(leader, moves);
+  Object.assign(spar, {model, body, leader, choreography, recording: new Recording(), seen: false});
+  spar.playback = new Playback();
+  choreography.began = (move) => {
+    if (move && element('follow').checked) setWeights({[move.label]: 1});
+    showMoves();
+  };
+  showStage();
+  showSliders(model.interaction_classes);
+  makeMoves();
+  showMusic();
+  element('help').textContent = moves.isDance
+      ? 'Keys 1 to 4 dance: press 1 for the basic step, and the others for figures. Arrows walk. Drag to bend.'
+      : `Keys 1 to ${moves.moves.length} throw a move. Arrows walk. Drag to bend.`;
+  const calm = model.interaction_classes.find((name) => ['apart', 'shake_hands'].includes(name));
+  setWeights({[calm ?? moves.moves[0].label]: 1});
+  connect();
+}
+
+function showStage() {
+  const {model, leader} = spar;
+  const joints = model.joint_names;
+  const bones = model.bones.map(({parent_joint: a, child_joint: b}) => [a ?? 0, b ?? 0]);
+  const partner = placed(leader.pose, {x: 0, z: 1.1, yaw: Math.PI});
+  stage.motion = {joints, bones, frameRate: FRAME_RATE, frames: 1,
+                  leader: Float32Array.from(leader.pose), follower: partner};
+  if (!stage.stage) throw new Error('This browser shows no WebGL.');
+  for (const {path} of Object.values(stage.people)) path.visible = false;
+  stage.show('follower', false);
+  Object.assign(spar, {camera: {x: 0, z: 0.55}, partner});
+  // The left button bends the leader, so the right one turns the view.
+  const {mouseButtons} = stage.stage.controls;
+  Object.assign(mouseButtons, {RIGHT: mouseButtons.LEFT, LEFT: null});
+}
+
+function showSliders(classes) {
+  element('labels').replaceChildren(...classes.map((name) => {
+    const slider = makeSlider(name, -1, 1);
+    setSlider(slider, 0);
+    joinSlider(slider, (weight) => {
+      spar.weights = {...spar.weights, [name]: weight};
+      spar.session?.changeLabels(spar.weights, Number(element('ease').value));
+    });
+    return slider;
+  }));
+}
+
+function makeMoves() {
+  element('moves').replaceChildren(...spar.choreography.moves.map((move, i) => {
+    const button = document.createElement('button');
+    button.type = 'button';
+    const key = document.createElement('kbd');
+    key.textContent = i + 1;
+    button.append(key, move.name);
+    button.addEventListener('click', () => throwMove(i));
+    return button;
+  }));
+  const again = document.createElement('button');
+  Object.assign(again, {type: 'button', id: 'again'});
+  again.append(Object.assign(document.createElement('kbd'), {textContent: 'R'}), 'start over');
+  again.addEventListener('click', attempt(() => chooseModel(spar.model)));
+  element('moves').append(again);
+  showMoves();
+}
+
+function showMoves() {
+  const {moves, current, queued} = spar.choreography;
+  moves.forEach((move, i) => {
+    const button = element('moves').children[i];
+    button.setAttribute('aria-pressed', move === current);
+    button.classList.toggle('queued', move === queued);
+  });
+  root.dataset.move = current?.label ?? '';
+}
+
+function throwMove(index) {
+  const move = spar.choreography.moves[index];
+  if (move) spar.choreography.choose(move);
+  showMoves();
+}
+
+function showMusic() {
+  const {isDance, beats} = spar.choreography;
+  element('beat').hidden = !isDance;
+  if (!isDance) {
+    if (spar.metronome?.on) spar.metronome.toggle();
+    spar.metronome = null;
+    return;
+  }
+  spar.metronome = new Metronome({bpm: DANCE_BPM, offset: 0}, beats);
+  setTempo();
+}
+
+function setTempo() {
+  spar.leader.tempo = Number(element('tempo').value);
+  element('bpm').textContent = `${Math.round(DANCE_BPM * spar.leader.tempo)} BPM`;
+}
+
+// Time.
+
+function advance(seconds) {
+  const {choreography, leader, session} = spar;
+  const frame = 1 / FRAME_RATE;
+  const poses = [];
+  for (let left = seconds; left > 0;) {
+    const step = Math.min(left, Math.max(frame - spar.elapsed, 1e-6));
+    choreography.advance(step);
+    spar.elapsed += step;
+    left -= step;
+    if (spar.elapsed < frame - 1e-6) continue;
+    spar.elapsed = 0;
+    poses.push(Float32Array.from(leader.pose));
+  }
+  if (!poses.length || !session) return;
+  poses.forEach((pose, i) => spar.poses.push([session.leader.end + i, pose]));
+  if (spar.poses.length > 2 * RECORDED_FRAMES) spar.poses.splice(0, RECORDED_FRAMES);
+  session.add(poses, performance.now() / 1000);
+}
+
+function showFollower(seconds) {
+  const now = performance.now();
+  spar.lates = spar.lates.filter(([time]) => now - time < 1000 * LATE_SECONDS);
+  if (spar.lates.length) {
+    const wanted = Math.max(...spar.lates.map(([, late]) => late)) + 0.25;
+    spar.behind += clamp(wanted - spar.behind, -seconds, 8 * seconds);
+  }
+  const pose = spar.session && spar.playback.show(frameNow() - spar.behind, seconds);
+  if (!pose) return;
+  stage.setPose('follower', pose);
+  if (!spar.seen) stage.show('follower', true);
+  spar.seen = true;
+  spar.partner = pose;
+}
+
+// Keeps both people in view.
+function moveCamera(seconds) {
+  const [a, b] = [spar.body.hips(spar.leader.pose), spar.body.hips(spar.partner)];
+  const share = 1 - Math.exp(-seconds / CAMERA_SECONDS);
+  spar.camera = {x: mix(spar.camera.x, (a[0] + b[0]) / 2, share),
+                 z: mix(spar.camera.z, (a[2] + b[2]) / 2, share)};
+  stage.follow(spar.camera.x, spar.camera.z);
+}
+
+// Slow computers get a coarser picture, so that frames are sent and answered in time.
+function watchSpeed(seconds) {
+  spar.pace = mix(spar.pace ?? 0, seconds, Math.min(1, seconds));
+  const {renderer} = stage.stage;
+  const ratio = renderer.getPixelRatio();
+  if (spar.pace < SLOW_SECONDS || ratio <= COARSEST) return;
+  renderer.setPixelRatio(Math.max(COARSEST, ratio * 0.75));
+  stage.draw();  // the new picture is empty
+  spar.pace = 0;
+}
+
+let before = null;
+function tick(now) {
+  requestAnimationFrame(tick);
+  const seconds = before === null ? 0 : Math.min((now - before) / 1000, LONGEST_STEP);
+  before = now;
+  if (!spar.leader || seconds <= 0) return;
+  advance(seconds);
+  stage.setPose('leader', spar.leader.pose);
+  showFollower(seconds);
+  moveCamera(seconds);
+  watchSpeed(seconds);
+  spar.metronome?.update();
+  spar.strip.draw(now);
+}
+
+// Keys, mouse, touch.
+
+function steer() {
+  const sum = (plus, minus) => Number(spar.held.has(plus)) - Number(spar.held.has(minus));
+  spar.leader.wanted = {forward: sum('forward', 'back'), left: sum('left', 'right')};
+  for (const button of element('steer').children) {
+    button.classList.toggle('held', spar.held.has(button.dataset.way));
+  }
+}
+
+function hold(way, isHeld) {
+  if (isHeld) spar.held.add(way);
+  else spar.held.delete(way);
+  if (!spar.leader) return;
+  // Whoever walks stops what they do.
+  if (isHeld && spar.choreography.current) spar.choreography.begin(null, 0);
+  steer();
+}
+
+function connectKeys() {
+  window.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.target.matches('input[type=number], select')) return;
+    const way = KEYS[event.key];
+    const isRange = event.target.matches('input');
+    if (way && !(isRange && event.key.startsWith('Arrow'))) {
+      event.preventDefault();
+      if (!event.repeat) hold(way, true);
+    } else if (/^[1-9]$/.test(event.key) && !event.repeat) {
+      throwMove(Number(event.key) - 1);
+    } else if (event.key === 'r') {
+      element('again').click();
+    } else if (event.key === 'b' && spar.metronome?.possible) {
+      spar.metronome.toggle();
+    }
+  });
+  window.addEventListener('keyup', ({key}) => {
+    if (KEYS[key]) hold(KEYS[key], false);
+  });
+  window.addEventListener('blur', () => {
+    spar.held.clear();
+    if (spar.leader) steer();
+  });
+  // After a mouse, arrows walk again.
+  window.addEventListener('pointerup', ({target}) => {
+    if (target.matches?.('input[type=range], input[type=checkbox], button')) target.blur();
+  });
+  for (const button of element('steer').children) {
+    const {way} = button.dataset;
+    button.addEventListener('pointerdown', (event) => {
+      event.stopPropagation();
+      button.setPointerCapture(event.pointerId);
+      hold(way, true);
+    });
+    for (const name of ['pointerup', 'pointercancel']) {
+      button.addEventListener(name, () => hold(way, false));
+    }
+    button.addEventListener('keydown', ({key}) => { if (key === ' ') hold(way, true); });
+    button.addEventListener('keyup', ({key}) => { if (key === ' ') hold(way, false); });
+  }
+}
+
+// Dragging bends the leader towards where the pointer goes, as the visitor sees it.
+function connectDragging() {
+  const scene = element('scene');
+  let from = null;
+  const isBending = ({button, pointerType, isPrimary}) => isPrimary
+      && (pointerType === 'touch' || button === 0);
+  const stop = () => {
+    from = null;
+    scene.classList.remove('bending');
+    if (spar.leader) spar.leader.lean = {forward: 0, left: 0};
+  };
+  stage.addEventListener('pointerdown', (event) => {
+    if (!isBending(event)) {
+      stop();  // a second finger turns the view
+      return;
+    }
+    from = [event.clientX, event.clientY];
+    stage.setPointerCapture(event.pointerId);
+    scene.classList.add('bending');
+  });
+  stage.addEventListener('pointermove', (event) => {
+    if (!from || !event.isPrimary || !spar.leader) return;
+    const [x, y] = [event.clientX - from[0], event.clientY - from[1]];
+    // Across the view and into it, turned to the leader's own directions.
+    const {camera, controls} = stage.stage;
+    const view = Math.atan2(controls.target.x - camera.position.x, controls.target.z - camera.position.z);
+    const turn = view - spar.leader.root.yaw;
+    const [across, ahead] = [-x / PIXELS_TO_BEND, -y / PIXELS_TO_BEND];
+    spar.leader.lean = {
+      forward: clamp(ahead * Math.cos(turn) - across * Math.sin(turn), -0.4, MAX_BEND),
+      left: clamp(ahead * Math.sin(turn) + across * Math.cos(turn), -0.6, 0.6),
+    };
+  });
+  for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) stage.addEventListener(name, stop);
+  // One finger bends, so the view must not turn with it.
+  stage.addEventListener('touchstart', (event) => {
+    if (event.touches.length < 2) event.stopPropagation();
+  }, {capture: true});
+  scene.addEventListener('contextmenu', (event) => event.preventDefault());
+}
+
+function connectControls() {
+  element('model').addEventListener('change', attempt(
+      () => chooseModel(spar.models.find((model) => nameOf(model) === element('model').value))));
+  element('delay').addEventListener('change', connect);
+  element('tempo').addEventListener('input', setTempo);
+  element('metronome').addEventListener('click', () => spar.metronome?.toggle());
+  for (const button of element('records').children) {
+    button.addEventListener('click', attempt(() => record(button.dataset.format)));
+  }
+  // A hidden page draws nothing, so it sends nothing either.
+  let hiding = null;
+  document.addEventListener('visibilitychange', () => {
+    clearTimeout(hiding);
+    if (document.hidden) {
+      hiding = setTimeout(() => spar.session?.close(), 1000 * HIDDEN_SECONDS);
+    } else if (spar.session && !spar.session.socket) {
+      connect();
+    }
+  });
+}
+
+async function record(format) {
+  const {recording, model} = spar;
+  if (recording.frames < 2) throw new Error('There is nothing to record yet.');
+  tell('Writing the file …');
+  const query = new URLSearchParams({format, name: `spar_${model.name}@${model.version}`});
+  await save(await fetch(`/write?${query}`, {
+    method: 'POST', body: recording.write(model.joint_names, FRAME_RATE)}));
+}
+
+async function start() {
+  const response = await fetch('/about.json');
+  if (!response.ok) throw new CallError(await messageIn(response));
+  spar.samples = (await response.json()).samples;
+  const answers = callServer('ListModels', 'ListModelsRequest', {}, 'ListModelsResponse');
+  for await (const answer of answers) {
+    spar.models = answer.models.filter((model) => model.answers_live);
+  }
+  if (!spar.models.length) throw new Error('it serves no model that answers live.');
+  element('model').replaceChildren(...spar.models.map((model) => new Option(nameOf(model))));
+  const asked = new URLSearchParams(location.search).get('model');
+  const model = spar.models.find((one) => [nameOf(one), one.name].includes(asked))
+      ?? spar.models.find((one) => one.is_default) ?? spar.models[0];
+  element('model').value = nameOf(model);
+  connectKeys();
+  connectDragging();
+  connectControls();
+  await chooseModel(model);
+  requestAnimationFrame(tick);
+  root.dataset.state = 'ready';
+}
+
+// Until the server is there.
+async function begin() {
+  for (;;) {
+    try {
+      await start();
+      tellAway('');
+      return;
+    } catch (error) {
+      tellAway(`The server does not respond: ${error.message}`);
+      root.dataset.state = 'failed';
+      if (spar.models.length) return;
+      await new Promise((resolve) => setTimeout(resolve, 2000));
+    }
+  }
+}
+
+begin();

@@ -1,0 +1,269 @@
+"""The Spar page of client/web in a real browser, through the gateway, against a real server."""
+
+import io
+import json
+import os
+import sys
+import unittest
+import zipfile
+
+import gateways
+import tools
+from browser import Browser
+
+gateways.skip_without_modules()
+sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
+os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
+
+import numpy as np  # noqa: E402
+
+# From then on, the page's time passes only with PASS. Frames are sent as usual.
+FREEZE = "window.pass = advance; advance = () => {}; undefined"
+PASS = "(() => {{ for (let i = 0; i < {steps}; ++i) pass(1 / 60); }})()"
+POSE = "Array.from(spar.leader.pose)"
+TARGETS = """[...document.querySelectorAll('button, select, input[type=number]')]
+    .filter((item) => item.offsetParent !== null)
+    .map((item) => [item.id || item.textContent.trim(),
+                    item.getBoundingClientRect().width, item.getBoundingClientRect().height])"""
+NAMELESS = """[...document.querySelectorAll('input, select, button')].filter((item) =>
+    !(item.labels?.length || item.getAttribute('aria-label') || item.textContent.trim()))
+    .map((item) => item.outerHTML)"""
+
+
+class SparTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.port = tools.free_port()
+        cls.server = tools.Server(port=cls.port)
+        cls.addClassCleanup(lambda: cls.server.stop())
+        cls.gateway = gateways.Gateway(cls.server.address)
+        cls.addClassCleanup(cls.gateway.stop)
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def setUp(self):
+        self.browser.forget()
+
+    def open(self, query="", width=420, height=420, frozen=False):
+        page = self.browser.open(f"{self.gateway.url}/spar{query}", width=width, height=height)
+        self.addCleanup(page.close)
+        self.assertEqual(page.state()["state"], "ready", page.text("#away"))
+        page.wait_until("spar.seen")
+        if frozen:
+            page.evaluate(FREEZE)
+        return page
+
+    def pass_time(self, page, seconds):
+        page.evaluate(PASS.format(steps=round(60 * seconds)))
+
+    def pose(self, page):
+        return np.reshape(page.evaluate(POSE), (-1, 3))
+
+    def weights(self, page):
+        return {name: weight for name, weight in page.evaluate("spar.weights").items() if weight}
+
+    def test_follower_answers_without_errors(self):
+        page = self.open()
+        page.wait_until("document.documentElement.dataset.frames > 30")
+        shown = np.reshape(page.evaluate("Array.from(stage.motion.people.follower)"), (15, 3))
+        distance = np.linalg.norm((shown - self.pose(page)).mean(axis=0)[[0, 2]])
+        self.assertTrue(0.15 < distance < 3, distance)
+        page.wait_until("/Half within \\d+ ms/.test(element('figures').textContent)")
+        self.assertTrue(page.evaluate("element('away').hidden"))
+        self.assertEqual(page.events("Runtime.exceptionThrown"), [])
+        self.assertEqual([event for event in page.events("Runtime.consoleAPICalled")
+                          if event["type"] == "error"], [])
+        for url in (event["request"]["url"] for event in page.events("Network.requestWillBeSent")):
+            self.assertTrue(url.startswith((self.gateway.url, "data:", "blob:")), url)
+
+    def test_both_people_are_visible(self):
+        page = self.open(width=1000, height=700)
+        page.wait_until("document.documentElement.dataset.frames > 20")
+        picture = page.picture()
+        area = {"left": 0, "right": 0.6, "top": 0.05, "bottom": 0.8}
+        self.assertGreater(picture.count(tools.is_leader_orange, **area), 1000)
+        self.assertGreater(picture.count(tools.is_follower_teal, **area), 1000)
+
+    def test_keys_throw_moves_that_begin_and_end_blended(self):
+        page = self.open(frozen=True)
+        classes = page.evaluate("spar.model.interaction_classes")
+        for key, name in enumerate(classes, 1):
+            with self.subTest(name):
+                page.press(str(key))
+                self.assertEqual(page.state()["move"], name)
+                self.assertEqual(self.weights(page), {name: 1})
+                fastest = page.evaluate("""(() => {
+                  let [before, most] = [Array.from(spar.leader.pose), 0];
+                  for (let i = 0; i < 240; ++i) {
+                    pass(1 / 60);
+                    const now = Array.from(spar.leader.pose);
+                    most = Math.max(most, ...now.map((value, k) => Math.abs(value - before[k])));
+                    before = now;
+                  }
+                  return 60 * most;
+                })()""")
+                self.assertTrue(0.3 < fastest < 12, fastest)  # metres a second
+                self.assertEqual(page.state()["move"], "")
+
+    def test_limbs_keep_their_lengths(self):
+        page = self.open(frozen=True)
+        stretched = page.evaluate("""(() => {
+          const {leader, body, model} = spar;
+          const length = (pose, {parent_joint: a = 0, child_joint: b = 0}) =>
+              norm(sub(body.at(pose, a), body.at(pose, b)));
+          let most = 0;
+          const look = (steps) => {
+            for (let i = 0; i < steps; ++i) {
+              pass(1 / 60);
+              for (const bone of model.bones) {
+                most = Math.max(most, Math.abs(length(leader.pose, bone) / length(leader.rest, bone) - 1));
+              }
+            }
+          };
+          look(60);
+          leader.wanted = {forward: 1, left: 0.5};
+          look(120);
+          leader.wanted = {forward: 0, left: 0};
+          leader.lean = {forward: 0.7, left: 0.5};
+          look(120);
+          return most;
+        })()""")
+        self.assertLess(stretched, 0.12)
+
+    def test_arrows_walk_and_turn(self):
+        page = self.open(frozen=True)
+        for key, way in (("ArrowUp", "forward"), ("ArrowDown", "back"), ("ArrowLeft", "left")):
+            with self.subTest(key):
+                before = page.evaluate("({...spar.leader.root})")
+                page.call("Input.dispatchKeyEvent", type="keyDown", key=key)
+                self.assertEqual(page.evaluate("[...spar.held]"), [way])
+                self.pass_time(page, 1)
+                page.call("Input.dispatchKeyEvent", type="keyUp", key=key)
+                after = page.evaluate("({...spar.leader.root})")
+                ahead = ((after["x"] - before["x"]) * np.sin(before["yaw"])
+                         + (after["z"] - before["z"]) * np.cos(before["yaw"]))
+                if way == "left":
+                    self.assertGreater(after["yaw"] - before["yaw"], 1)
+                else:
+                    self.assertTrue(0.5 < ahead * (1 if way == "forward" else -1) < 4, ahead)
+                self.pass_time(page, 1)
+
+    def test_dragging_bends_the_leader_and_lets_go(self):
+        page = self.open(frozen=True)
+        head = page.evaluate("spar.body.names.indexOf('head')")
+        upright = self.pose(page)[head]
+        page.mouse("mousePressed", 200, 100)
+        page.mouse("mouseMoved", 320, 60)
+        self.assertGreater(np.hypot(*page.evaluate("Object.values(spar.leader.lean)")), 0.3)
+        self.pass_time(page, 1)
+        bent = self.pose(page)[head]
+        self.assertGreater(np.linalg.norm((bent - upright)[[0, 2]]), 0.1)
+        page.mouse("mouseReleased", 320, 60, buttons=0)
+        self.pass_time(page, 2)
+        self.assertLess(np.linalg.norm((self.pose(page)[head] - upright)[[0, 2]]), 0.1)
+
+    def test_sliders_change_the_labels(self):
+        page = self.open()
+        page.evaluate("""(() => {
+          window.sent = [];
+          const send = spar.session.send.bind(spar.session);
+          spar.session.send = (message) => { window.sent.push(message); send(message); };
+          const slider = document.querySelector('#labels input[name=hug]');
+          slider.value = 0.5;
+          slider.dispatchEvent(new Event('input', {bubbles: true}));
+        })()""")
+        change = page.evaluate("window.sent.find((message) => message.label_change).label_change")
+        self.assertEqual(change["ease_frames"], 9)
+        weights = {one["interaction_class"]: one["weight"]
+                   for one in change["label_vector"]["weights"]}
+        self.assertEqual(weights["hug"], 0.5)
+        page.evaluate("element('follow').click()")
+        page.press("1")
+        self.assertEqual(self.weights(page)["hug"], 0.5)
+
+    def test_server_that_goes_is_announced_and_its_return_resumes(self):
+        page = self.open()
+        page.wait_until("document.documentElement.dataset.frames > 30")
+        self.server.kill()
+        page.wait_until("!element('away').hidden")
+        self.assertIn("The server is away", page.text("#away"))
+        type(self).server = tools.Server(port=self.port)
+        page.wait_until("element('away').hidden")
+        page.wait_until("spar.strip.counts.resumed > 0")
+        before = int(page.state()["recorded"])
+        page.wait_until(f"Number(document.documentElement.dataset.recorded) > {before + 10}")
+
+    def test_short_interruption_loses_no_frame(self):
+        page = self.open()
+        page.wait_until("document.documentElement.dataset.frames > 30")
+        page.evaluate("window.started = spar.session.leader; spar.session.socket.close()")
+        end = page.evaluate("spar.session.follower.end")
+        page.wait_until(f"spar.strip.counts.resumed > 0 && spar.session.follower.end > {end + 10}")
+        self.assertTrue(page.evaluate("spar.session.leader === window.started"))
+
+    def test_last_seconds_are_saved_as_a_file(self):
+        page = self.open()
+        page.wait_until("document.documentElement.dataset.recorded > 20")
+        page.evaluate("""window.bodies = [];
+          const fetched = window.fetch;
+          window.fetch = async (...all) => {
+            const response = await fetched(...all);
+            window.bodies.push(Array.from(new Uint8Array(await response.clone().arrayBuffer())));
+            return response;
+          }; undefined""")
+        for kind, name in (("glb", "spar_sbu@2.glb"), ("bvh", "spar_sbu@2.zip")):
+            page.evaluate(f"record({json.dumps(kind)})")
+            self.assertEqual(page.state()["downloaded"], name)
+            data = bytes(page.evaluate("window.bodies.pop()"))
+            if kind == "glb":
+                self.assertEqual(data[:4], b"glTF")
+            else:
+                self.assertEqual(len(zipfile.ZipFile(io.BytesIO(data)).namelist()), 2)
+
+    def test_dance_keeps_the_beat(self):
+        page = self.open("?model=salsa", frozen=True)
+        self.assertFalse(page.evaluate("element('beat').hidden"))
+        page.press("1")
+        self.assertEqual(page.state()["move"], "basic")
+        page.press("2")
+        self.assertEqual(page.state()["move"], "basic")  # the turn waits for the bar
+        self.pass_time(page, 2.9)
+        self.assertEqual(page.state()["move"], "follower_turn")
+        self.assertEqual(self.weights(page), {"follower_turn": 1})
+        self.pass_time(page, 8 / 3)
+        self.assertEqual(page.state()["move"], "basic")
+        # A clip begins on the first beat of a bar.
+        apart = page.evaluate("""(() => {
+          const {leader, choreography} = spar;
+          return Math.abs(choreography.beats.frame / 30 % (8 / 3) - leader.clipTime % (8 / 3));
+        })()""")
+        self.assertLess(apart, 0.02)
+        page.press("1")
+        self.assertEqual(page.state()["move"], "")
+
+    def test_models_that_answer_live_can_be_chosen(self):
+        page = self.open()
+        names = page.evaluate("[...element('model').options].map((option) => option.value)")
+        self.assertEqual(names, ["salsa@1", "sbu@2"])
+        page.evaluate("chooseModel(spar.models[0])")
+        page.wait_until("spar.seen")
+        self.assertEqual(page.evaluate("spar.session.settings.model"), "salsa@1")
+
+    def test_every_control_works_on_a_phone_and_has_a_name(self):
+        page = self.open(width=375, height=720, frozen=True)
+        self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth"), 375)
+        for what, width, height in page.evaluate(TARGETS):
+            self.assertGreaterEqual(min(width, height), 40, what)
+        self.assertEqual(page.evaluate(NAMELESS), [])
+        page.click("#moves button:nth-child(2)")
+        self.assertEqual(page.state()["move"], "push")
+        box = page.evaluate("(({x, y}) => [x, y])(document.querySelector("
+                            "'#steer [data-way=forward]').getBoundingClientRect())")
+        page.mouse("mousePressed", box[0] + 20, box[1] + 20)
+        self.assertEqual(page.evaluate("[...spar.held]"), ["forward"])
+        page.mouse("mouseReleased", box[0] + 20, box[1] + 20, buttons=0)
+        self.assertEqual(page.evaluate("[...spar.held]"), [])
+
+
+if __name__ == "__main__":
+    tools.main()
