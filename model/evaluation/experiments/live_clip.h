@@ -1,7 +1,10 @@
 #ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_LIVE_CLIP_H_
 #define DUET_MODEL_EVALUATION_EXPERIMENTS_LIVE_CLIP_H_
 
+#include <vector>
+
 #include "model/engine/clip_synthesis.h"
+#include "model/engine/label_track.h"
 #include "model/engine/live_synthesis.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
@@ -22,11 +25,16 @@ class LiveClip {
   motion::Poses Accept(const motion::Poses& follower);
 
  private:
+  std::vector<float> WeightsAt(int frame);
+  // Adds the next leader frame, with a change of the labels if they change there.
+  void AddFrame();
   // Adds leader frames until a window is needed, and takes what becomes final.
   void Advance(motion::Poses* final_frames);
 
   motion::Poses leader_;
   int next_frame_ = 0;  // of the leader
+  engine::LabelTrack labels_;
+  std::vector<float> weights_;  // of the last frame
   engine::LiveSynthesis live_;
 };
 

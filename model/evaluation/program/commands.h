@@ -25,6 +25,7 @@ void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6
 void AddDataCommand(CLI::App* app, ChosenCommand* chosen);          // tilt, noise and leaders
 void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen);     // where the partner is
 void AddTiltCommand(CLI::App* app, ChosenCommand* chosen);          // of a camera, and levelling
+void AddLiveCommand(CLI::App* app, ChosenCommand* chosen);          // reactions of live followers
 void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen);         // for duet batch's filter
 
 }  // namespace duet::evaluation::program

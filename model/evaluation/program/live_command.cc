@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "model/base/statistics.h"
+#include "model/dataset/dataset.h"
+#include "model/evaluation/experiments/live_reaction.h"
+#include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/model_flags.h"
+#include "model/evaluation/program/section_flags.h"
+#include "model/evaluation/report/result_section.h"
+
+namespace duet::evaluation::program {
+namespace {
+
+struct Arguments {
+  std::string data;
+  ModelChoice models;
+  std::vector<int> delays = {0, 2, 5, 10};
+  uint64_t seed = 0;
+  SectionFlags section;
+};
+
+double Milliseconds(std::vector<double> seconds, double share) {
+  if (seconds.empty()) return NAN;
+  std::sort(seconds.begin(), seconds.end());
+  return 1000 * seconds[static_cast<size_t>(share * static_cast<double>(seconds.size() - 1))];
+}
+
+report::TableRow Row(const std::string& name, const experiments::LiveFigures& figures,
+                     double whole_jerk) {
+  const double clips = figures.clips;
+  return {name,
+          {Milliseconds(figures.reaction_seconds, 0.5), Milliseconds(figures.reaction_seconds, 0.9),
+           100 * static_cast<double>(figures.reaction_seconds.size()) / clips,
+           Milliseconds(figures.label_seconds, 0.5), Milliseconds(figures.label_seconds, 0.9),
+           figures.speed, figures.jerk / whole_jerk}};
+}
+
+absl::StatusOr<report::Table> ModelTable(const Arguments& arguments,
+                                         const dataset::Dataset& dataset, const FoldModel& model) {
+  absl::StatusOr<SharedSynthesizer> synthesizer = model.load("");
+  if (!synthesizer.ok()) return synthesizer.status();
+  std::vector<int> sequences(dataset.sequences.size());
+  std::iota(sequences.begin(), sequences.end(), 0);
+  report::Table table;
+  table.title = absl::StrCat(model.name, ": reactions to ", sequences.size(), " leaders");
+  table.columns = {"reaction", "90 %", "react %", "label", "90 %, label", "speed", "jerk"};
+  table.decimals = 2;
+  const auto measure = [&](std::optional<int> delay) {
+    return experiments::MeasureLiveReaction(**synthesizer, dataset, sequences, arguments.seed,
+                                            delay);
+  };
+  const absl::StatusOr<experiments::LiveFigures> whole = measure(std::nullopt);
+  if (!whole.ok()) return whole.status();
+  table.rows.push_back(Row("whole leader known", *whole, whole->jerk));
+  for (const int delay : arguments.delays) {
+    const absl::StatusOr<experiments::LiveFigures> live = measure(delay);
+    if (!live.ok()) return live.status();
+    table.rows.push_back(Row(absl::StrCat("live, delay ", delay), *live, whole->jerk));
+  }
+  const std::vector<double> captured = experiments::CapturedReactions(dataset, sequences);
+  table.notes = {
+      absl::StrCat(
+          "Milliseconds. Reaction: from the moment at which a leader who stood for two seconds has "
+          "moved by 5 cm, until the follower parts by 5 cm from one with the same seed whose "
+          "leader "
+          "goes on standing: median, and the value of 90 % of the clips; react: in how many clips "
+          "it "
+          "does. Captured followers leave their first pose ",
+          std::llround(Milliseconds(captured, 0.5)), " ms (median) after their leaders."),
+      "Label: from a change to another class, until the follower of a standing leader parts by 5 "
+      "cm "
+      "from one with the old class. Speed: of the joints, m/s. Jerk: mean of the joints, as a "
+      "multiple of the first row's. Delay: in frames of 1/30 s."};
+  return table;
+}
+
+absl::Status Run(const Arguments& arguments) {
+  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
+  if (!dataset.ok()) return dataset.status();
+  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
+  if (!models.ok()) return models.status();
+  report::ResultSection section = BeginSection(
+      arguments.section,
+      "How fast live followers react, at 30 frames per second, and how smoothly they move beside "
+      "followers of leaders who are known from the start. FID and the other figures of live "
+      "answers: "
+      "duet-eval samples, plausible and dance with --live.");
+  section.settings.emplace_back("data", DescribeData(*dataset));
+  section.settings.emplace_back("seed", absl::StrCat(arguments.seed));
+  for (const FoldModel& model : *models) {
+    absl::StatusOr<report::Table> table = ModelTable(arguments, *dataset, model);
+    if (!table.ok()) return table.status();
+    section.tables.push_back(*std::move(table));
+  }
+  return FinishSection(arguments.section, section);
+}
+
+}  // namespace
+
+void AddLiveCommand(CLI::App* app, ChosenCommand* chosen) {
+  const auto arguments = std::make_shared<Arguments>();
+  arguments->models.as_served = true;
+  CLI::App* command = app->add_subcommand("live", "How fast and how smoothly live followers react");
+  arguments->section.id = "21_live";
+  arguments->section.title = "Live followers";
+  AddDataFlag(&arguments->data, command);
+  AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
+  command->add_option("--delays", arguments->delays, "delays in frames, one row each")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 10))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "seed of the answers")->capture_default_str();
+  AddSectionFlags(&arguments->section, command);
+  RunWhenNamed(command, arguments, Run, chosen);
+}
+
+}  // namespace duet::evaluation::program
