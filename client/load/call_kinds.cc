@@ -6,26 +6,9 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "client/internal/proto_conversion.h"
-#include "model/motion/clip.h"
 
 namespace duet::client::load {
 namespace {
-
-motion::Clip SwayingLeader(const ModelInfo& model, int frames) {
-  motion::Clip leader;
-  leader.joint_names = model.joint_names;
-  leader.frame_rate_hz = model.frame_rate_hz;
-  const int joints = leader.joint_count();
-  leader.poses = motion::Poses(frames, joints);
-  for (int t = 0; t < frames; ++t) {
-    for (int j = 0; j < joints; ++j) {
-      const float phase = 0.2F * static_cast<float>(t) + static_cast<float>(j);
-      leader.at(t, j) = {0.2F * std::sin(phase), 0.1F * static_cast<float>(j),
-                         0.2F * std::cos(phase)};
-    }
-  }
-  return leader;
-}
 
 // Whether the server rejects a call of this kind because of its content.
 absl::Status Try(const Client& client, const SynthesisRequest& request) {
@@ -61,6 +44,22 @@ absl::StatusOr<CallKind> FindKind(const Client& client, const CallMix& mix, cons
 }
 
 }  // namespace
+
+motion::Clip SwayingLeader(const ModelInfo& model, int frames) {
+  motion::Clip leader;
+  leader.joint_names = model.joint_names;
+  leader.frame_rate_hz = model.frame_rate_hz;
+  const int joints = leader.joint_count();
+  leader.poses = motion::Poses(frames, joints);
+  for (int t = 0; t < frames; ++t) {
+    for (int j = 0; j < joints; ++j) {
+      const float phase = 0.2F * static_cast<float>(t) + static_cast<float>(j);
+      leader.at(t, j) = {0.2F * std::sin(phase), 0.1F * static_cast<float>(j),
+                         0.2F * std::cos(phase)};
+    }
+  }
+  return leader;
+}
 
 absl::StatusOr<std::vector<CallKind>> FindKinds(const Client& client, const CallMix& mix) {
   std::vector<CallKind> kinds;

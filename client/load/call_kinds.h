@@ -7,6 +7,8 @@
 #include "absl/status/statusor.h"
 #include "client/client.h"
 #include "client/request.h"
+#include "client/result.h"
+#include "model/motion/clip.h"
 
 namespace duet::client::load {
 
@@ -32,6 +34,9 @@ struct CallKind {
   double weight = 1;
   std::string request;  // a serialised duet.v1.SynthesizeRequest
 };
+
+// A leader of `frames` frames: a figure that sways, in the model's joints, at its rate.
+motion::Clip SwayingLeader(const ModelInfo& model, int frames);
 
 // Resolves the models at the server, and tries a call of each kind, so that rejections are known
 // before measuring. The leader is generated: a figure that sways, in the model's joints. Its motion

@@ -8,7 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
-#include "client/internal/connect.h"
+#include "client/load/channels.h"
 #include "duet/v1/synthesis.pb.h"
 #include "grpcpp/client_context.h"
 #include "grpcpp/generic/generic_stub.h"
@@ -161,22 +161,9 @@ class GrpcTarget final : public Target {
 
 absl::StatusOr<std::unique_ptr<Target>> ConnectTarget(const ClientOptions& options, int connections,
                                                       const std::vector<std::string>& requests) {
-  ClientOptions own = options;
-  own.own_connection = true;
-  std::vector<std::shared_ptr<grpc::Channel>> channels;
-  const auto end = std::chrono::system_clock::now() + absl::ToChronoMicroseconds(options.deadline);
-  for (int i = 0; i < connections; ++i) {
-    absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = internal::OpenChannel(own);
-    if (!channel.ok()) return channel.status();
-    (*channel)->GetState(true);
-    channels.push_back(*std::move(channel));
-  }
-  for (const auto& channel : channels) {
-    if (channel->WaitForConnected(end)) continue;
-    return absl::UnavailableError(absl::StrCat("no connection to ", options.server_address,
-                                               " within ", absl::FormatDuration(options.deadline)));
-  }
-  return std::make_unique<GrpcTarget>(channels, requests, options);
+  const auto channels = OpenChannels(options, connections);
+  if (!channels.ok()) return channels.status();
+  return std::make_unique<GrpcTarget>(*channels, requests, options);
 }
 
 }  // namespace duet::client::load

@@ -17,13 +17,17 @@ struct KindName {
   double share = 1;  // of all calls
 };
 
-// The measurements of a server, step by step.
-struct Report {
+// What every report begins with.
+struct ReportHead {
   std::string title;
   std::string program;  // "duet-load 1.0.0"
   std::string time;     // start, in UTC
   std::string server;
   std::vector<std::pair<std::string, std::string>> settings;  // flags and their values
+};
+
+// The measurements of a server, step by step.
+struct Report : ReportHead {
   std::vector<KindName> kinds;
   std::vector<Measurement> steps;
 };

@@ -1,25 +1,11 @@
+#include "client/load/report_json.h"
+
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <string>
 
 #include "client/load/figures.h"
-#include "client/load/report.h"
 
 namespace duet::client::load {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json Distribution(const LogHistogram& histogram, double unit) {
-  Json json;
-  json["count"] = histogram.count();
-  if (histogram.count() == 0) return json;
-  json["mean"] = histogram.mean() / unit;
-  for (const NamedPercentile& percentile : kPercentiles) {
-    json[std::string(percentile.name)] = In(unit, histogram.Percentile(percentile.percent));
-  }
-  return json;
-}
 
 Json ToJson(const Answered& answered) {
   Json json;
@@ -48,19 +34,6 @@ Json Timeline(const Measurement& measurement) {
     second += ToSeconds(measurement.interval_length);
   }
   return timeline;
-}
-
-// The whole distribution, [percentile, milliseconds] each: twenty steps for each tenfold fewer
-// calls beyond the percentile, to the slowest call.
-Json Percentiles(const LogHistogram& histogram) {
-  Json percentiles = Json::array();
-  if (histogram.count() == 0) return percentiles;
-  const double nines = std::log10(static_cast<double>(histogram.count()));
-  for (double x = 0; x <= nines + 1e-9; x += 0.05) {
-    const double percent = 100 * (1 - std::pow(10, -x));
-    percentiles.push_back({percent, In(kMillisecond, histogram.Percentile(percent))});
-  }
-  return percentiles;
 }
 
 Json ToJson(const Measurement& step, const std::vector<KindName>& kinds) {
@@ -105,17 +78,48 @@ Json ToJson(const Measurement& step, const std::vector<KindName>& kinds) {
 
 }  // namespace
 
-std::string ToJson(const Report& report) {
+Json Distribution(const LogHistogram& histogram, double unit) {
   Json json;
-  json["program"] = report.program;
-  json["title"] = report.title;
-  json["time"] = report.time;
-  json["server"] = report.server;
+  json["count"] = histogram.count();
+  if (histogram.count() == 0) return json;
+  json["mean"] = histogram.mean() / unit;
+  for (const NamedPercentile& percentile : kPercentiles) {
+    json[std::string(percentile.name)] = In(unit, histogram.Percentile(percentile.percent));
+  }
+  return json;
+}
+
+Json Percentiles(const LogHistogram& histogram) {
+  Json percentiles = Json::array();
+  if (histogram.count() == 0) return percentiles;
+  const double nines = std::log10(static_cast<double>(histogram.count()));
+  for (double x = 0; x <= nines + 1e-9; x += 0.05) {
+    const double percent = 100 * (1 - std::pow(10, -x));
+    percentiles.push_back({percent, In(kMillisecond, histogram.Percentile(percent))});
+  }
+  return percentiles;
+}
+
+Json ToJson(const ReportHead& head) {
+  Json json;
+  json["program"] = head.program;
+  json["title"] = head.title;
+  json["time"] = head.time;
+  json["server"] = head.server;
   json["settings"] = Json::object();
-  for (const auto& [name, value] : report.settings) json["settings"][name] = value;
+  for (const auto& [name, value] : head.settings) json["settings"][name] = value;
+  return json;
+}
+
+std::string Dump(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string ToJson(const Report& report) {
+  Json json = ToJson(static_cast<const ReportHead&>(report));
   json["steps"] = Json::array();
   for (const Measurement& step : report.steps) json["steps"].push_back(ToJson(step, report.kinds));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return Dump(json);
 }
 
 }  // namespace duet::client::load

@@ -20,11 +20,30 @@ constexpr int kPushes = 5;
 // Metres. A shorter offset has no direction.
 constexpr float kNoDirection = 1e-4f;
 
-// A bone's capsule in one frame.
+// Two bounding spheres that are nearer than this count as touching, whatever rounding says; metres.
+constexpr float kRounding = 1e-5f;
+
+// A bone's capsule in one frame, with its bounding sphere.
 struct Capsule {
+  Capsule(Vec3 a, Vec3 b, double metres)
+      : from(a),
+        to(b),
+        radius(metres),
+        middle((a + b) * 0.5f),
+        reach(Distance(a, b) * 0.5f + static_cast<float>(metres)) {}
+
+  void Move(Vec3 way) {
+    from += way;
+    to += way;
+    middle += way;
+  }
+
   Vec3 from, to;
-  double radius = 0;
+  double radius;
+  Vec3 middle;
+  float reach;
 };
+using Capsules = std::vector<Capsule>;
 
 // An overlap of two capsules beyond the limit, and the direction in which the follower leaves it.
 struct Overlap {
@@ -32,16 +51,14 @@ struct Overlap {
   Vec3 out;  // of length 1
 };
 
-// Whether the bounding spheres of two capsules overlap.
-bool MayTouch(const Capsule& a, const Capsule& b) {
-  const Vec3 apart = (a.from + a.to - b.from - b.to) * 0.5f;
-  const float reach = (Distance(a.from, a.to) + Distance(b.from, b.to)) * 0.5f +
-                      static_cast<float>(a.radius + b.radius);
-  return Dot(apart, apart) < reach * reach;
+// Whether two capsules may overlap by more than `depth`: their bounding spheres do.
+bool MayOverlap(const Capsule& a, const Capsule& b, double depth) {
+  const float reach = a.reach + b.reach - static_cast<float>(depth) + kRounding;
+  const Vec3 apart = a.middle - b.middle;
+  return reach > 0 && Dot(apart, apart) < reach * reach;
 }
 
 Overlap FindOverlap(const Capsule& leader, const Capsule& follower, double allowed) {
-  if (!MayTouch(leader, follower)) return {};
   const motion::ClosestPoints closest =
       motion::FindClosestPoints(leader.from, leader.to, follower.from, follower.to);
   const double depth = leader.radius + follower.radius - allowed - closest.distance;
@@ -49,14 +66,25 @@ Overlap FindOverlap(const Capsule& leader, const Capsule& follower, double allow
   return {depth, (closest.on_b - closest.on_a) / static_cast<float>(closest.distance)};
 }
 
-std::vector<Capsule> CapsulesOf(const std::vector<Bone>& bones, const std::vector<double>& radii,
-                                absl::Span<const Vec3> pose) {
-  std::vector<Capsule> capsules;
-  for (std::size_t b = 0; b < bones.size(); ++b) {
-    capsules.push_back({pose[static_cast<std::size_t>(bones[b].parent)],
-                        pose[static_cast<std::size_t>(bones[b].child)], radii[b]});
+// A bone and the radius of its capsule.
+struct Part {
+  Bone bone;
+  double radius;
+};
+using Parts = std::vector<Part>;
+
+// Appends the capsules of a pose.
+void AddCapsules(const Parts& parts, absl::Span<const Vec3> pose, Capsules* capsules) {
+  for (const Part& part : parts) {
+    capsules->emplace_back(pose[static_cast<std::size_t>(part.bone.parent)],
+                           pose[static_cast<std::size_t>(part.bone.child)], part.radius);
   }
-  return capsules;
+}
+
+Parts AllParts(const motion::Skeleton& skeleton, const std::vector<double>& radii) {
+  Parts parts;
+  for (std::size_t b = 0; b < radii.size(); ++b) parts.push_back({skeleton.bones[b], radii[b]});
+  return parts;
 }
 
 bool IsInside(const body::Limb& limb, const Bone& bone) {
@@ -64,33 +92,29 @@ bool IsInside(const body::Limb& limb, const Bone& bone) {
          std::find(limb.beyond.begin(), limb.beyond.end(), bone.parent) != limb.beyond.end();
 }
 
-// Indices of all bones except those of arms.
-std::vector<std::size_t> AllButArms(const motion::Skeleton& skeleton, const body::Body& body) {
-  std::vector<std::size_t> bones;
-  for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
-    const auto inside = [&](const body::Limb& limb) { return IsInside(limb, skeleton.bones[b]); };
-    if (std::none_of(body.arms.begin(), body.arms.end(), inside)) bones.push_back(b);
-  }
-  return bones;
+Parts AllButArms(const body::Body& body, Parts parts) {
+  const auto of_arm = [&](const Part& part) {
+    return std::any_of(body.arms.begin(), body.arms.end(),
+                       [&](const body::Limb& arm) { return IsInside(arm, part.bone); });
+  };
+  parts.erase(std::remove_if(parts.begin(), parts.end(), of_arm), parts.end());
+  return parts;
 }
 
-// The distance along `way` after which none of these bones of the two people overlap.
-float RoomToMake(const std::vector<Capsule>& leader, std::vector<Capsule> follower,
-                 const std::vector<std::size_t>& bones, Vec3 way, double allowed) {
+// The distance along `way` after which no capsules of the two people overlap. Moves the follower's.
+float RoomToMake(const Capsules& leader, Vec3 way, double allowed, Capsules* follower) {
   double room = 0;
   for (int push = 0; push < kPushes; ++push) {
     double deepest = 0;
-    for (const std::size_t a : bones) {
-      for (const std::size_t b : bones) {
-        deepest = std::max(deepest, FindOverlap(leader[a], follower[b], allowed).depth);
+    for (const Capsule& a : leader) {
+      for (const Capsule& b : *follower) {
+        if (!MayOverlap(a, b, allowed + deepest)) continue;
+        deepest = std::max(deepest, FindOverlap(a, b, allowed).depth);
       }
     }
     if (deepest == 0) break;
     room += deepest;
-    for (const std::size_t b : bones) {
-      follower[b].from += way * static_cast<float>(deepest);
-      follower[b].to += way * static_cast<float>(deepest);
-    }
+    for (Capsule& capsule : *follower) capsule.Move(way * static_cast<float>(deepest));
   }
   return static_cast<float>(room);
 }
@@ -102,15 +126,13 @@ Capsule TrunkOf(const motion::Skeleton& skeleton, const body::Body& body,
   return {Lerp(at(skeleton.hips->left), at(skeleton.hips->right), 0.5f), at(*body.chest), radius};
 }
 
-// Trunks and heads as capsules whose distance is the smallest permitted one.
-std::vector<Capsule> Cores(const motion::Skeleton& skeleton, const body::Body& body,
-                           const CapsuleOptions& options, absl::Span<const Vec3> pose) {
-  std::vector<Capsule> cores = {TrunkOf(skeleton, body, pose, options.trunks_metres / 2)};
-  if (body.neck) {
-    const Vec3 head = pose[static_cast<std::size_t>(body.neck->head)];
-    cores.push_back({head, head, options.heads_metres / 2});
-  }
-  return cores;
+// Appends trunk and head as capsules whose distance is the smallest permitted one.
+void AddCores(const motion::Skeleton& skeleton, const body::Body& body,
+              const CapsuleOptions& options, absl::Span<const Vec3> pose, Capsules* cores) {
+  cores->push_back(TrunkOf(skeleton, body, pose, options.trunks_metres / 2));
+  if (!body.neck) return;
+  const Vec3 head = pose[static_cast<std::size_t>(body.neck->head)];
+  cores->emplace_back(head, head, options.heads_metres / 2);
 }
 
 // The horizontal direction from leader to follower, of length 1.
@@ -121,21 +143,22 @@ Vec3 WayApart(Vec3 leader, Vec3 follower) {
 }
 
 // The deepest overlap of the arm's two bones with the leader, the outer bone first.
-Overlap DeepestOverlap(const std::vector<Capsule>& leader, const Capsule& outer,
-                       const Capsule& inner, double allowed) {
+Overlap DeepestOverlap(absl::Span<const Capsule> leader, const Capsule& outer, const Capsule& inner,
+                       double allowed) {
   Overlap deepest;
   for (const Capsule& capsule : leader) {
-    for (const Capsule& bone : {outer, inner}) {
-      const Overlap overlap = FindOverlap(capsule, bone, allowed);
+    for (const Capsule* bone : {&outer, &inner}) {
+      if (!MayOverlap(capsule, *bone, allowed + deepest.depth)) continue;
+      const Overlap overlap = FindOverlap(capsule, *bone, allowed);
       if (overlap.depth > deepest.depth && overlap.out != Vec3{}) deepest = overlap;
     }
   }
   return deepest;
 }
 
-// The offset by which a hand must move to resolve the arm's overlap. Uses `pose` as scratch space.
-Vec3 WayOut(const body::Limb& arm, double radius, const std::vector<Capsule>& leader,
-            double allowed, Vec3 backwards, std::vector<Vec3> pose) {
+// The offset by which a hand must move to resolve the arm's overlap. Moves the arm.
+Vec3 WayOut(const body::Limb& arm, double radius, absl::Span<const Capsule> leader, double allowed,
+            Vec3 backwards, absl::Span<Vec3> pose) {
   const Vec3 from = pose[static_cast<std::size_t>(arm.end)];
   for (int push = 0; push < kPushes; ++push) {
     const Vec3 shoulder = pose[static_cast<std::size_t>(arm.upper)];
@@ -144,8 +167,7 @@ Vec3 WayOut(const body::Limb& arm, double radius, const std::vector<Capsule>& le
     const Overlap overlap =
         DeepestOverlap(leader, {elbow, hand, radius}, {shoulder, elbow, radius}, allowed);
     if (overlap.depth <= 0) break;
-    Reach(arm, hand + overlap.out * static_cast<float>(overlap.depth), backwards,
-          absl::MakeSpan(pose));
+    Reach(arm, hand + overlap.out * static_cast<float>(overlap.depth), backwards, pose);
   }
   return pose[static_cast<std::size_t>(arm.end)] - from;
 }
@@ -164,19 +186,29 @@ void PartBodies(const motion::Skeleton& skeleton, const body::Body& body,
                 const std::vector<double>& radii, const motion::Poses& leader, const Touch& touch,
                 const CapsuleOptions& options, const Timing& timing, motion::Poses* follower) {
   if (!body.chest) return;
-  const std::vector<std::size_t> bones = AllButArms(skeleton, body);
-  const std::vector<std::size_t> trunk_only = {0}, trunk_and_head = {0, 1};
-  const std::vector<std::size_t>& cores = body.neck ? trunk_and_head : trunk_only;
+  const Parts parts = AllButArms(body, AllParts(skeleton, radii));
+  const std::size_t frames = static_cast<std::size_t>(follower->frame_count());
   std::vector<float> room;
   std::vector<Vec3> ways;
+  room.reserve(frames);
+  ways.reserve(frames);
+  Capsules of_leader, of_follower;  // reused, so that a frame allocates nothing
+  const auto start = [&] {
+    of_leader.clear();
+    of_follower.clear();
+  };
   for (int t = 0; t < follower->frame_count(); ++t) {
+    const absl::Span<const Vec3> led = leader[t], followed = (*follower)[t];
     ways.push_back(WayApart(leader.at(t, skeleton.root), follower->at(t, skeleton.root)));
-    const float for_bodies = RoomToMake(CapsulesOf(skeleton.bones, radii, leader[t]),
-                                        CapsulesOf(skeleton.bones, radii, (*follower)[t]), bones,
-                                        ways.back(), options.allowed_metres);
-    const float for_cores =
-        RoomToMake(Cores(skeleton, body, options, leader[t]),
-                   Cores(skeleton, body, options, (*follower)[t]), cores, ways.back(), 0);
+    start();
+    AddCapsules(parts, led, &of_leader);
+    AddCapsules(parts, followed, &of_follower);
+    const float for_bodies =
+        RoomToMake(of_leader, ways.back(), options.allowed_metres, &of_follower);
+    start();
+    AddCores(skeleton, body, options, led, &of_leader);
+    AddCores(skeleton, body, options, followed, &of_follower);
+    const float for_cores = RoomToMake(of_leader, ways.back(), 0, &of_follower);
     room.push_back(std::max(for_bodies * (1 - touch[static_cast<std::size_t>(t)]), for_cores));
   }
   const double smooth = timing.Frames(kBodySmoothSeconds);
@@ -188,14 +220,22 @@ void PartBodies(const motion::Skeleton& skeleton, const body::Body& body,
 void PartArms(const motion::Skeleton& skeleton, const body::Body& body,
               const std::vector<double>& radii, const motion::Poses& leader, const Touch& touch,
               const CapsuleOptions& options, const Timing& timing, motion::Poses* follower) {
+  const Parts parts = AllParts(skeleton, radii);
+  Capsules of_leader;  // [frames, parts]
+  of_leader.reserve(static_cast<std::size_t>(leader.frame_count()) * parts.size());
+  for (int t = 0; t < leader.frame_count(); ++t) AddCapsules(parts, leader[t], &of_leader);
+  std::vector<Vec3> tried;  // a pose; reused, so that a frame allocates nothing
   for (const body::Limb& arm : body.arms) {
     const double radius = RadiusOf(arm, skeleton, radii);
     std::vector<Vec3> ways, backwards;
     for (int t = 0; t < follower->frame_count(); ++t) {
       const absl::Span<const Vec3> pose = (*follower)[t];
+      tried.assign(pose.begin(), pose.end());
       backwards.push_back(-body::Facing(*skeleton.hips, pose));
-      const Vec3 way = WayOut(arm, radius, CapsulesOf(skeleton.bones, radii, leader[t]),
-                              options.allowed_metres, backwards.back(), {pose.begin(), pose.end()});
+      const auto capsules = absl::MakeConstSpan(of_leader).subspan(
+          static_cast<std::size_t>(t) * parts.size(), parts.size());
+      const Vec3 way = WayOut(arm, radius, capsules, options.allowed_metres, backwards.back(),
+                              absl::MakeSpan(tried));
       ways.push_back(way * (1 - touch[static_cast<std::size_t>(t)]));
     }
     ways = LowPass(ways, timing.Frames(kArmSmoothSeconds));

@@ -33,13 +33,15 @@ struct Pair {
 std::vector<float> Offers(const motion::Skeleton& skeleton, const body::Limb& arm,
                           const motion::Poses& leader, const Meetings& meetings,
                           const HandContactOptions& options, const motion::Poses& follower) {
-  std::vector<float> offers;
+  std::vector<float> offers(static_cast<std::size_t>(follower.frame_count()));
   for (int t = 0; t < follower.frame_count(); ++t) {
+    const float weight = meetings[static_cast<std::size_t>(t)].weight;
+    if (weight == 0) continue;
     const double reach =
         body::ReachTowards(arm, skeleton.root, leader[t], follower.at(t, skeleton.root));
     const float offered =
         SmoothStep((reach - options.answers_reach) / (options.meets_reach - options.answers_reach));
-    offers.push_back(offered * meetings[static_cast<std::size_t>(t)].weight);
+    offers[static_cast<std::size_t>(t)] = offered * weight;
   }
   return offers;
 }
@@ -113,6 +115,7 @@ void ApproachHand(const motion::Skeleton& skeleton, const body::Body& body,
   const auto pair = FindPair(skeleton, body, leader, meetings, options, *follower);
   if (!pair) return;
   std::vector<Vec3> shifts;
+  shifts.reserve(pair->offers.size());
   for (int t = 0; t < follower->frame_count(); ++t) {
     const std::size_t at = static_cast<std::size_t>(t);
     const Vec3 target = Target(*pair, leader[t], meetings[at].metres, (*follower)[t]);
@@ -130,6 +133,7 @@ void MeetHand(const motion::Skeleton& skeleton, const body::Body& body, const mo
   const auto pair = FindPair(skeleton, body, leader, meetings, options, *follower);
   if (!pair) return;
   std::vector<Vec3> ways;
+  ways.reserve(pair->offers.size());
   for (int t = 0; t < follower->frame_count(); ++t) {
     const std::size_t at = static_cast<std::size_t>(t);
     const Vec3 target = Target(*pair, leader[t], meetings[at].metres, (*follower)[t]);

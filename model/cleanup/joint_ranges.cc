@@ -93,25 +93,39 @@ Bend Limited(Bend bend, float turn_degrees, const JointRangeOptions& options) {
 // The weight of the correction of a limb whose direction has this cosine with its rest direction.
 float Certainty(float cosine) { return SmoothStep((cosine - kFadesTo) / (kFadesFrom - kFadesTo)); }
 
-// The corrected direction of the outer bone. `inner`, `outer` and the result have length 1.
-Vec3 RightDirection(Vec3 inner, Vec3 outer, const Hinge& hinge, const JointRangeOptions& options,
-                    float share) {
-  share *= Certainty(Dot(hinge.rest, inner));
+// What the direction of an outer bone is corrected by; the part that applies is chosen last,
+// because a leg may try several.
+struct DirectionFix {
+  Vec3 inner, ahead, aside;  // orthonormal
+  Bend bend, limited;
+  float certainty = 0;
+
+  // The corrected direction of the outer bone, of length 1.
+  Vec3 At(float share) const {
+    share *= certainty;
+    const Bend now{bend.ahead + (limited.ahead - bend.ahead) * share,
+                   bend.aside + (limited.aside - bend.aside) * share};
+    const float angle = std::hypot(now.ahead, now.aside);
+    if (angle < kNoDirection) return inner;
+    const Vec3 way = (ahead * now.ahead + aside * now.aside) / angle;
+    return inner * std::cos(angle * kRadiansPerDegree) + way * std::sin(angle * kRadiansPerDegree);
+  }
+};
+
+// Absent if the outer bone is within its range. `inner` and `outer` have length 1.
+std::optional<DirectionFix> FindFix(Vec3 inner, Vec3 outer, const Hinge& hinge,
+                                    const JointRangeOptions& options) {
+  const float certainty = Certainty(Dot(hinge.rest, inner));
   const float cosine = Dot(inner, outer);
   const Vec3 across = outer - inner * cosine;
   const float sine = Norm(across);
-  if (share == 0 || sine < kNoDirection) return outer;
+  if (certainty == 0 || sine < kNoDirection) return std::nullopt;
   const Vec3 ahead = Swing(hinge.rest, inner, hinge.bend), aside = Cross(inner, ahead);
   const float degrees = std::atan2(sine, cosine) / kRadiansPerDegree;
   const Bend bend{Dot(across, ahead) / sine * degrees, Dot(across, aside) / sine * degrees};
   const Bend limited = Limited(bend, hinge.turn_degrees, options);
-  if (limited.ahead == bend.ahead && limited.aside == bend.aside) return outer;
-  const Bend now{bend.ahead + (limited.ahead - bend.ahead) * share,
-                 bend.aside + (limited.aside - bend.aside) * share};
-  const float angle = std::hypot(now.ahead, now.aside);
-  if (angle < kNoDirection) return inner;
-  const Vec3 way = (ahead * now.ahead + aside * now.aside) / angle;
-  return inner * std::cos(angle * kRadiansPerDegree) + way * std::sin(angle * kRadiansPerDegree);
+  if (limited.ahead == bend.ahead && limited.aside == bend.aside) return std::nullopt;
+  return DirectionFix{inner, ahead, aside, bend, limited, certainty};
 }
 
 // The corrected positions of a limb's middle and end.
@@ -120,34 +134,52 @@ struct Placed {
 };
 
 // Limits the bend of a limb, then rotates the limb so that its end keeps its direction from the
-// upper joint. Absent if the limb is within its range.
-std::optional<Placed> PlaceLimb(Vec3 upper, Vec3 middle, Vec3 end, const Hinge& hinge,
-                                const JointRangeOptions& options, float share) {
-  const float thigh = Distance(upper, middle), shin = Distance(middle, end);
-  const float reach = Distance(upper, end);
-  if (std::min({thigh, shin, reach}) < kNoDirection) return std::nullopt;
-  const Vec3 inner = (middle - upper) / thigh, outer = (end - middle) / shin;
-  const Vec3 right = RightDirection(inner, outer, hinge, options, share);
-  if (right == outer) return std::nullopt;
-  const Vec3 bent = inner * thigh + right * shin;
-  const float bent_reach = Norm(bent);
-  if (bent_reach < kNoDirection) return std::nullopt;
-  const Vec3 to = (end - upper) / reach;
-  return Placed{upper + Swing(bent / bent_reach, to, inner) * thigh, upper + to * bent_reach};
-}
+// upper joint.
+class LimbFix {
+ public:
+  // Absent if the limb is within its range.
+  static std::optional<LimbFix> Find(Vec3 upper, Vec3 middle, Vec3 end, const Hinge& hinge,
+                                     const JointRangeOptions& options) {
+    const float thigh = Distance(upper, middle), shin = Distance(middle, end);
+    const float reach = Distance(upper, end);
+    if (std::min({thigh, shin, reach}) < kNoDirection) return std::nullopt;
+    const Vec3 outer = (end - middle) / shin;
+    const auto direction = FindFix((middle - upper) / thigh, outer, hinge, options);
+    if (!direction) return std::nullopt;
+    return LimbFix(upper, outer, (end - upper) / reach, thigh, shin, *direction);
+  }
+
+  // Absent if this share of the correction moves nothing.
+  std::optional<Placed> Place(float share) const {
+    if (share == 0) return std::nullopt;
+    const Vec3 right = direction_.At(share);
+    if (right == outer_) return std::nullopt;
+    const Vec3 bent = direction_.inner * thigh_ + right * shin_;
+    const float reach = Norm(bent);
+    if (reach < kNoDirection) return std::nullopt;
+    return Placed{upper_ + Swing(bent / reach, to_, direction_.inner) * thigh_,
+                  upper_ + to_ * reach};
+  }
+
+ private:
+  LimbFix(Vec3 upper, Vec3 outer, Vec3 to, float thigh, float shin, const DirectionFix& direction)
+      : upper_(upper), outer_(outer), to_(to), thigh_(thigh), shin_(shin), direction_(direction) {}
+
+  Vec3 upper_, outer_, to_;
+  float thigh_, shin_;
+  DirectionFix direction_;
+};
 
 // Reduces the correction of a leg, which reaches farther when it straightens, so that its end is
 // not below `lowest`.
-std::optional<Placed> PlaceAbove(float lowest, Vec3 upper, Vec3 middle, Vec3 end,
-                                 const Hinge& hinge, const JointRangeOptions& options,
-                                 float share) {
-  std::optional<Placed> placed = PlaceLimb(upper, middle, end, hinge, options, share);
+std::optional<Placed> PlaceAbove(float lowest, const LimbFix& fix, float share) {
+  std::optional<Placed> placed = fix.Place(share);
   if (!placed.has_value() || placed->end.y >= lowest) return placed;
   placed.reset();
   float above = 0, below = share;
   for (int halving = 0; halving < kHalvings; ++halving) {
     const float tried = (above + below) / 2;
-    const auto next = PlaceLimb(upper, middle, end, hinge, options, tried);
+    const auto next = fix.Place(tried);
     const bool stays = !next.has_value() || next->end.y >= lowest;
     (stays ? above : below) = tried;
     if (stays) placed = next;
@@ -160,9 +192,10 @@ bool LimitLimb(const body::Limb& limb, float floor, const Hinge& hinge,
                const JointRangeOptions& options, float share, absl::Span<Vec3> pose) {
   Vec3& middle = pose[static_cast<std::size_t>(limb.middle)];
   Vec3& end = pose[static_cast<std::size_t>(limb.end)];
-  const auto placed =
-      PlaceAbove(std::min(floor - kSink, end.y), pose[static_cast<std::size_t>(limb.upper)], middle,
-                 end, hinge, options, share);
+  const auto fix =
+      LimbFix::Find(pose[static_cast<std::size_t>(limb.upper)], middle, end, hinge, options);
+  if (!fix.has_value()) return false;
+  const auto placed = PlaceAbove(std::min(floor - kSink, end.y), *fix, share);
   if (!placed.has_value()) return false;
   const Vec3 moved = placed->end - end;
   for (const int joint : limb.beyond) pose[static_cast<std::size_t>(joint)] += moved;

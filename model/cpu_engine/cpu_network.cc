@@ -75,7 +75,7 @@ class CpuNetwork : public engine::Network {
 }  // namespace
 
 kernels::Precision BestPrecision() {
-  return kernels::HasBf16() ? kernels::Precision::kBfloat16 : kernels::Precision::kFloat32;
+  return kernels::IsBf16Faster() ? kernels::Precision::kBfloat16 : kernels::Precision::kFloat32;
 }
 
 std::unique_ptr<const engine::Network> MakeCpuNetwork(const checkpoint::Checkpoint& checkpoint,

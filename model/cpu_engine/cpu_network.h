@@ -10,7 +10,7 @@
 
 namespace duet::cpu_engine {
 
-// bfloat16 if the processor has instructions that multiply it, else float32.
+// bfloat16 if this processor multiplies it faster (kernels::IsBf16Faster), else float32.
 kernels::Precision BestPrecision();
 
 // Runs a checkpoint's generator, of any architecture, in this project's own kernels.

@@ -81,13 +81,18 @@ EpochReport EpochTrainer::RunEpoch() {
   report.validation_afd_pose = manifest_.model.accepts_follower_start
                                    ? Validate(StartKnowledge::kPose)
                                    : std::numeric_limits<double>::quiet_NaN();
-  if (validation_.empty() || report.validation_afd < best_afd_) {
-    best_afd_ = report.validation_afd;
-    best_epoch_ = epoch_;
-    CopyInto(average_, best_);
-  }
+  Choose(report.validation_afd);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
+}
+
+void EpochTrainer::Choose(double afd) {
+  // Until an epoch may result, the last one stands in, and patience does not begin.
+  const bool chooses = !validation_.empty() && MayBeBest(epoch_ - 1);
+  if (chooses && !(afd < best_afd_)) return;
+  if (chooses) best_afd_ = afd;
+  best_epoch_ = epoch_;
+  CopyInto(average_, best_);
 }
 
 double EpochTrainer::Validate(StartKnowledge start) {

@@ -26,6 +26,9 @@ struct EpochReport {
   double continuity = 0;  // sampling generator: error of differences of successive frames
   double adversarial = 0;
   double discriminator = 0;
+  // Sampling generator: the losses are energy scores of whole answers (energy.from), on another
+  // scale than those of the epochs before.
+  bool whole_answers = false;
   double validation_afd = 0;       // metres, without a follower start
   double validation_afd_pose = 0;  // with the follower's first pose; NaN if the model accepts none
   double seconds = 0;
@@ -46,6 +49,7 @@ class EpochTrainer {
   EpochTrainer(const EpochTrainer&) = delete;
   EpochTrainer& operator=(const EpochTrainer&) = delete;
 
+  virtual int64_t steps_per_epoch() const = 0;
   // Number of completed epochs.
   int64_t epoch() const { return epoch_; }
   // True when all epochs are done or validation has stopped improving.
@@ -57,13 +61,19 @@ class EpochTrainer {
 
   EpochReport RunEpoch();
 
+  // The epoch whose generator results, from 1, and its validation error without a follower start;
+  // infinite without validation.
+  int64_t best_epoch() const { return best_epoch_; }
+  double best_afd() const { return best_afd_; }
+
   // Saves and restores everything that the next epoch depends on. A state of other options, data
   // or version is FAILED_PRECONDITION. The file is trusted: load only files of your own runs.
   absl::Status SaveState(const std::filesystem::path& file);
   absl::Status LoadState(const std::filesystem::path& file);
 
   // The resulting generator, in the order of ExpectedTensors: that of the epoch with the best
-  // validation error, or without validation of the last epoch; averaged if so configured.
+  // validation error among those that may result, or without validation of the last epoch;
+  // averaged if so configured.
   virtual std::vector<checkpoint::Tensor> BestTensors() = 0;
 
  protected:
@@ -74,7 +84,9 @@ class EpochTrainer {
   // Runs the steps of one epoch, from step number `first_step` on, and calls UpdateAverage after
   // each.
   virtual void TrainEpoch(int64_t first_step, EpochReport* report) = 0;
-  virtual int64_t steps_per_epoch() const = 0;
+  // Whether an epoch, counted from 0, may result. A method that trains in parts rules out the
+  // epochs before the last part: they do not yet have what that part teaches.
+  virtual bool MayBeBest(int64_t /*epoch*/) const { return true; }
   // Copies the weights of a checkpoint into the generator, except what was measured on the training
   // data. INVALID_ARGUMENT names a tensor that is missing or has another shape.
   virtual absl::Status LoadWeights(const checkpoint::Checkpoint& checkpoint) = 0;
@@ -96,6 +108,9 @@ class EpochTrainer {
 
  private:
   double Validate(StartKnowledge start);
+  // Keeps the weights of the epoch that has just ended if they are the best so far. `afd`: its
+  // validation error.
+  void Choose(double afd);
   std::string Identity() const;
   std::vector<std::pair<std::string, torch::Tensor>> StateTensors();
 

@@ -89,6 +89,11 @@ FlowBatch MakeFlowBatch(const checkpoint::Manifest& manifest, const torch::Tenso
   return batch;
 }
 
+int64_t BatchesPerPass(const TrainingOptions& options, size_t sequences) {
+  const int64_t batches = (static_cast<int64_t>(sequences) + options.batch - 1) / options.batch;
+  return std::max<int64_t>(1, batches);
+}
+
 }  // namespace
 
 FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
@@ -100,6 +105,16 @@ FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset:
           frame.Apply(motion::GaussianFilter(example.target, smoothing))};
 }
 
+int64_t PassesPerEpoch(const TrainingOptions& options, size_t sequences) {
+  const auto& flow = std::get<FlowTraining>(options.method);
+  const int64_t steps = BatchesPerPass(options, sequences) * options.epochs;  // of one pass each
+  return std::max(flow.passes, (flow.least_steps + steps - 1) / steps);
+}
+
+int64_t StepsPerEpoch(const TrainingOptions& options, size_t sequences) {
+  return BatchesPerPass(options, sequences) * PassesPerEpoch(options, sequences);
+}
+
 std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
                                        const dataset::Dataset& dataset,
                                        const torch::Tensor& base_poses,
@@ -108,7 +123,8 @@ std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
   const auto& flow = std::get<FlowTraining>(options.method);
   base::Random random(options.seed, epoch);
   std::vector<FlowBatch> batches;
-  for (int64_t pass = 0; pass < flow.passes; ++pass) {
+  const int64_t passes = PassesPerEpoch(options, train.size());
+  for (int64_t pass = 0; pass < passes; ++pass) {
     const std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, &random);
     for (const std::vector<int>& piece : BatchesByLength(sequences, options.batch, &random)) {
       std::vector<FlowExample> examples;

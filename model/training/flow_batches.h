@@ -25,6 +25,11 @@ struct FlowExample {
 FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                             const Example& example, double smoothing);
 
+// The passes of an epoch over `sequences` training sequences, and the steps that it takes: as set,
+// or as many more as the run needs for its least number of steps. Require a FlowTraining.
+int64_t PassesPerEpoch(const TrainingOptions& options, size_t sequences);
+int64_t StepsPerEpoch(const TrainingOptions& options, size_t sequences);
+
 // The batches of one epoch: every training sequence once in every pass, augmented, with no start,
 // the root, the first pose or several known frames. Depends only on options, data and epoch.
 // Shapes: base_poses [C, 3 J]. Requires a FlowTraining.

@@ -14,11 +14,6 @@
 namespace duet::training {
 namespace {
 
-int64_t StepsPerEpoch(size_t count, const TrainingOptions& options) {
-  const int64_t batches = (static_cast<int64_t>(count) + options.batch - 1) / options.batch;
-  return batches * std::get<FlowTraining>(options.method).passes;
-}
-
 network::FlowGenerator MakeGenerator(const TrainingOptions& options,
                                      const checkpoint::Manifest& manifest) {
   torch::manual_seed(options.seed);
@@ -46,7 +41,7 @@ FlowTrainer::FlowTrainer(const TrainingOptions& options, const checkpoint::Manif
       flow_(std::get<FlowTraining>(options.method)),
       architecture_(std::get<checkpoint::FlowArchitecture>(manifest.architecture)),
       hands_(motion::FindHands(dataset.skeleton)),
-      steps_per_epoch_(StepsPerEpoch(train_.size(), options)),
+      steps_per_epoch_(StepsPerEpoch(options, train_.size())),
       generator_(MakeGenerator(options, manifest)),
       optimiser_(options.optimiser, generator_->parameters(), steps_per_epoch_ * options.epochs) {
   const FlowStatistics statistics =
@@ -156,9 +151,17 @@ torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* rep
   return total;
 }
 
+bool FlowTrainer::ScoresAnswers(int64_t epoch) const {
+  return static_cast<double>(epoch) >= flow_.energy.from * static_cast<double>(options_.epochs);
+}
+
+bool FlowTrainer::MayBeBest(int64_t epoch) const {
+  return ScoresAnswers(epoch) || !ScoresAnswers(options_.epochs - 1);
+}
+
 void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
-  const bool is_energy =
-      static_cast<double>(epoch()) >= flow_.energy.from * static_cast<double>(options_.epochs);
+  const bool is_energy = ScoresAnswers(epoch());
+  report->whole_answers = is_energy;
   generator_->set_dropout(is_energy ? flow_.energy.dropout : flow_.dropout);
   int64_t step = first_step;
   for (const FlowBatch& batch :

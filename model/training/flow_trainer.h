@@ -27,9 +27,13 @@ class FlowTrainer : public EpochTrainer {
 
   std::vector<checkpoint::Tensor> BestTensors() override;
 
+  int64_t steps_per_epoch() const override { return steps_per_epoch_; }
+
  private:
   void TrainEpoch(int64_t first_step, EpochReport* report) override;
-  int64_t steps_per_epoch() const override { return steps_per_epoch_; }
+  bool MayBeBest(int64_t epoch) const override;
+  // Whether an epoch, counted from 0, is in the part that scores whole answers.
+  bool ScoresAnswers(int64_t epoch) const;
   absl::Status LoadWeights(const checkpoint::Checkpoint& checkpoint) override;
   // The error of the typical answer: variety 0.
   double ValidationError(const Example& example) override;

@@ -5,9 +5,12 @@
 namespace duet::training {
 namespace {
 
+constexpr int64_t kMostSteps = 100000000;
+
 void Read(base::ObjectReader* reader, FlowTraining* out) {
   out->dropout = reader->Number("dropout", 0, 0.95);
   out->passes = reader->Int("passes", 1, kMaxEpochs);
+  out->least_steps = reader->Int("least_steps", 0, kMostSteps);
   out->window_seconds = reader->Number("window_seconds", 0, 60);
   out->stride_seconds = reader->Number("stride_seconds", 0.01, 60);
   out->lookahead_seconds = reader->Number("lookahead_seconds", 0, 60);
@@ -69,6 +72,7 @@ void ReadSections(base::ObjectReader* root, FlowTraining* out) {
 void Describe(const FlowTraining& f, Description* out) {
   out->insert({{"flow.dropout", Text(f.dropout)},
                {"flow.passes", Text(f.passes)},
+               {"flow.least_steps", Text(f.least_steps)},
                {"flow.window_seconds", Text(f.window_seconds)},
                {"flow.stride_seconds", Text(f.stride_seconds)},
                {"flow.lookahead_seconds", Text(f.lookahead_seconds)},

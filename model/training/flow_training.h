@@ -15,7 +15,8 @@ struct FlowTraining {
   Architecture architecture;
 
   double dropout = 0.1;
-  int64_t passes = 10;          // over the data in an epoch
+  int64_t passes = 10;          // over the data in an epoch, at least
+  int64_t least_steps = 0;      // of a run; few clips get more passes until they reach it
   double window_seconds = 0;    // longer sequences are cut into windows; 0: never
   double stride_seconds = 0.5;  // between the beginnings of windows
   // The last seconds of a window, which the next window replaces when both belong to a longer clip:

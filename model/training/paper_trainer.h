@@ -35,9 +35,10 @@ class PaperTrainer : public EpochTrainer {
   network::Generator Best();
   std::vector<checkpoint::Tensor> BestTensors() override;
 
+  int64_t steps_per_epoch() const override { return steps_per_epoch_; }
+
  private:
   void TrainEpoch(int64_t first_step, EpochReport* report) override;
-  int64_t steps_per_epoch() const override { return steps_per_epoch_; }
   absl::Status LoadWeights(const checkpoint::Checkpoint& checkpoint) override;
   double ValidationError(const Example& example) override;
   std::vector<std::pair<std::string, torch::Tensor>> MoreTensors() override;

@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "model/dataset/time_line.h"
 #include "model/engine/hand_contact_fit.h"
@@ -188,12 +189,37 @@ absl::Status Finish(const RunPlan& plan, checkpoint::Manifest manifest, const Ep
                     EpochTrainer* trainer) {
   manifest.git_revision = kGitRevision;
   manifest.metrics["training.reconstruction"] = last.reconstruction;
-  if (!std::isnan(last.validation_afd)) manifest.metrics["validation.afd"] = last.validation_afd;
+  if (std::isfinite(trainer->best_afd())) {
+    manifest.metrics["validation.afd"] = trainer->best_afd();
+    manifest.metrics["validation.epoch"] = static_cast<double>(trainer->best_epoch());
+  }
   std::error_code error;
   fs::create_directories(CheckpointFolder(plan).parent_path(), error);
   std::vector<checkpoint::Tensor> tensors = trainer->BestTensors();
   return checkpoint::WriteCheckpoint(CheckpointFolder(plan),
                                      {std::move(manifest), std::move(tensors)});
+}
+
+// How long the run will be: settings and data decide it together.
+void ShowLength(const RunPlan& plan, size_t sequences, const EpochTrainer& trainer,
+                std::ostream* progress) {
+  *progress << plan.title << ": " << sequences << " sequences, "
+            << plan.options.epochs * trainer.steps_per_epoch() << " steps\n";
+}
+
+// Explains the jump of the loss where it happens.
+void ShowChangeOfLoss(const RunPlan& plan, const EpochReport& report, bool terminal,
+                      std::ostream* progress) {
+  *progress << (terminal ? "\n" : "") << plan.title << ": from epoch " << report.epoch
+            << " the loss is the score of whole answers (energy.from), on another scale than "
+               "before\n";
+}
+
+void ShowBest(const RunPlan& plan, const EpochTrainer& trainer, std::ostream* progress) {
+  if (!std::isfinite(trainer.best_afd())) return;
+  *progress << plan.title << ": epoch " << trainer.best_epoch() << " of " << trainer.epoch()
+            << " is kept: least error on what was held back, "
+            << absl::StrFormat("%.4f m", trainer.best_afd()) << "\n";
 }
 
 void Show(const RunPlan& plan, const EpochReport& report, bool terminal, std::ostream* progress) {
@@ -252,8 +278,10 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   if (!status.ok()) return status;
   RunLog log(plan.folder / "log.csv");
   if (status = log.ResumeAt(trainer->epoch()); !status.ok()) return status;
+  ShowLength(plan, train.size(), *trainer, progress);
   EpochReport report;
   while (!trainer->Finished()) {
+    const bool first = report.epoch == 0, scored = report.whole_answers;
     report = trainer->RunEpoch();
     if (!std::isfinite(report.generator)) {
       return absl::InternalError(
@@ -264,8 +292,12 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
     // row.
     if (status = log.Append(report); !status.ok()) return status;
     if (status = trainer->SaveState(state); !status.ok()) return status;
+    if (report.whole_answers && !scored && !first) {
+      ShowChangeOfLoss(plan, report, terminal, progress);
+    }
     Show(plan, report, terminal, progress);
   }
+  ShowBest(plan, *trainer, progress);
   return Finish(plan, manifest, report, trainer.get());
 }
 

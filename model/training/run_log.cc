@@ -13,7 +13,7 @@ namespace {
 
 constexpr char kColumns[] =
     "epoch,generator,reconstruction,bone,continuity,adversarial,discriminator,validation_afd,"
-    "validation_afd_pose,seconds";
+    "validation_afd_pose,seconds,whole_answers";
 constexpr int kBarWidth = 24;
 
 std::string Optional(double value) {
@@ -21,9 +21,10 @@ std::string Optional(double value) {
 }
 
 std::string Row(const EpochReport& r) {
-  return absl::StrFormat("%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%s,%s,%.3f", r.epoch, r.generator,
+  return absl::StrFormat("%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%s,%s,%.3f,%d", r.epoch, r.generator,
                          r.reconstruction, r.bone, r.continuity, r.adversarial, r.discriminator,
-                         Optional(r.validation_afd), Optional(r.validation_afd_pose), r.seconds);
+                         Optional(r.validation_afd), Optional(r.validation_afd_pose), r.seconds,
+                         r.whole_answers ? 1 : 0);
 }
 
 absl::Status WriteText(const std::filesystem::path& file, const std::string& text,

@@ -11,6 +11,9 @@ LOSSES = {"generator": "generator, weighted sum", "reconstruction": "reconstruct
 SMOOTHING = "Strong lines are means over nine epochs, faint ones the epochs."
 RUNNING_MEAN = 9  # epochs
 VALIDATION = "validation_afd"
+# 1 in the epochs whose losses are scores of whole answers, on another scale than before; only one of
+# these epochs can become the checkpoint.
+SCORED = "whole_answers"
 
 
 class LogError(ValueError):
@@ -111,6 +114,14 @@ def _least(values):
     return min((i for i, v in enumerate(values) if not math.isnan(v)), key=values.__getitem__)
 
 
+def _scored_from(log):
+    """The first epoch that scored whole answers after one that did not; None without a change."""
+    scored = log.columns.get(SCORED, [])
+    changes = [epoch for epoch, before, now in zip(log.epochs[1:], scored, scored[1:])
+               if not before and now]
+    return changes[0] if changes else None
+
+
 def _loss_figures(section_id, runs):
     smooth = {"log_y": True, "running_mean": RUNNING_MEAN}
     label = "mean loss of an epoch (logarithmic)"
@@ -118,8 +129,13 @@ def _loss_figures(section_id, runs):
         name, log = runs[0]
         series = [_series(text, log, _loss(log, column)) for column, text in LOSSES.items()
                   if _loss(log, column)]
-        yield (f"{section_id}_losses", f"Every loss of the run by epoch. {SMOOTHING}",
-               _line_plot(f"Losses of {name}", label, series, **smooth))
+        caption, change = f"Every loss of the run by epoch. {SMOOTHING}", _scored_from(log)
+        if change is not None:
+            caption += (" From the dotted line on, the losses are scores of whole answers, on "
+                        "another scale than before.")
+        yield (f"{section_id}_losses", caption,
+               _line_plot(f"Losses of {name}", label, series, **smooth,
+                          marked_x=[] if change is None else [change]))
         return
     for column, text in LOSSES.items():
         series = [_series(name, log, _loss(log, column)) for name, log in runs
@@ -128,10 +144,19 @@ def _loss_figures(section_id, runs):
                _line_plot(f"Loss: {text}", label, series, **smooth))
 
 
+def _best(log):
+    """The index of the epoch with the least validation error among those that may be kept."""
+    errors = log.find(VALIDATION)
+    scored = log.columns.get(SCORED, [])
+    if any(scored):
+        errors = [error if now else math.nan for error, now in zip(errors, scored)]
+    return _least(errors)
+
+
 def _validation_figure(section_id, runs):
     validated = [(name, log) for name, log in runs if log.find(VALIDATION)]
     one = len(runs) == 1
-    marked = [log.epochs[_least(log.find(VALIDATION))] for _, log in validated] if one else []
+    marked = [log.epochs[_best(log)] for _, log in validated] if one else []
     caption = ("Average frame distance on clips that the run held back, by epoch"
                + ("; the dotted line marks the least." if one else "."))
     plot = _line_plot("Average frame distance on the validation clips", "average frame distance",
@@ -144,7 +169,7 @@ def _curve_tables(runs):
     took, reached = [], []
     for name, log in runs:
         seconds, validation = log.find("seconds"), log.find(VALIDATION)
-        best = _least(validation) if validation else None
+        best = _best(log) if validation else None
         last = [log.find(column)[-1] if log.find(column) else None
                 for column in ("reconstruction", "bone")]
         took.append((name, [log.epochs[-1],

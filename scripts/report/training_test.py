@@ -62,6 +62,17 @@ class TrainingTest(unittest.TestCase):
                                                    "y": [0.9, 0.5, 0.6]})
         self.assertEqual(validation["marked_x"], [2])
 
+    def test_epochs_that_score_whole_answers_are_told_apart(self):
+        log = self.log("epoch,generator,validation_afd,whole_answers\n1,6,0.3,0\n2,5,0.2,0\n"
+                       "3,19,0.5,1\n4,18,0.4,1\n")
+        section = training.curves("c", "Curves", [("s01", log)])
+        check_section(section)
+        losses, validation = (figure["plot"] for figure in section["figures"])
+        self.assertEqual(losses["marked_x"], [3])
+        self.assertIn("From the dotted line on", section["figures"][0]["caption"])
+        # Only these epochs can become the checkpoint.
+        self.assertEqual(validation["marked_x"], [4])
+
     def test_several_runs_have_a_figure_for_each_loss(self):
         section = training.curves("c", "Curves", self.two_runs())
         names = [figure["name"] for figure in section["figures"]]

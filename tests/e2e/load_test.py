@@ -103,6 +103,37 @@ class LoadTest(unittest.TestCase):
         # The last call is due 8/4 s after the first.
         self.assertGreater(step["seconds"], 1.999)
 
+    def test_live_sessions_lose_and_double_no_frame(self):
+        server = self.serve()
+        report = self.load(server, "--live", "1,3", "--rate", "15", "--seconds", "3", "--leader",
+                           tools.sample("hug"), "--leader", tools.sample("kick"), "--jitter", "20",
+                           "--loss", "0.05", "--stall", "300", "--delay", "1", "--plan", "5",
+                           "--html", self.folder / "live.html")
+        self.assertEqual([step["sessions"] for step in report["live"]], [1, 3])
+        for step in report["live"]:
+            self.assertEqual(step["ended"], {"OK": step["sessions"]})
+            self.assertEqual((step["lost"], step["doubled"], step["refused"]), (0, 0, 0))
+            self.assertEqual(step["answered"], step["sent"])
+            self.assertGreater(step["sent"], 0.7 * 45 * step["sessions"])
+            self.assertEqual(step["first_frame_ms"]["count"], step["sessions"])
+        # The frames that were lost on the way, over both steps.
+        self.assertGreater(sum(step["interpolated"] for step in report["live"]), 0)
+        chromium = browser.Browser()
+        self.addCleanup(chromium.close)
+        page = chromium.open((self.folder / "live.html").as_uri())
+        self.assertEqual(page.text("h1"), report["title"])
+        titles = page.evaluate("[...document.querySelectorAll('svg')].map((s) => s.ariaLabel)")
+        self.assertEqual(titles[:2], ["Latency by percentile", "Latency by sessions"])
+        self.assertNotIn("NaN", page.evaluate("document.body.innerHTML"))
+        self.assertNotIn("undefined", page.evaluate("document.body.innerText"))
+        self.assertEqual(page.events("Runtime.exceptionThrown"), [])
+
+    def test_live_sessions_beyond_the_limit_are_refused(self):
+        server = self.serve("--max-calls", "2", "--client-share", "1")
+        step = self.load(server, "--live", "4", "--rate", "10", "--seconds", "2")["live"][0]
+        self.assertEqual(step["ended"], {"OK": 2, "RESOURCE_EXHAUSTED": 2})
+        self.assertEqual(step["refused"], 2)
+
     def test_rejections_are_counted_by_status(self):
         server = self.serve("--max-calls", "2", "--client-share", "1")
         report = self.load(server, "--callers", "8", "--calls", "40", "--frames", "460",

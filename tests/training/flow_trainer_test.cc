@@ -144,6 +144,49 @@ TEST_F(FlowTrainerTest, EpochUsesEverySequenceInEveryPass) {
   EXPECT_EQ(clips, 3 * static_cast<int64_t>(dataset_.sequences.size()));
 }
 
+TEST_F(FlowTrainerTest, FewClipsGetMorePassesUntilTheLeastSteps) {
+  // 7 sequences in batches of 3: 3 steps a pass; 4 epochs.
+  FlowOf(&options_).passes = 2;
+  FlowOf(&options_).least_steps = 24;
+  EXPECT_EQ(PassesPerEpoch(options_, 7), 2);
+  EXPECT_EQ(StepsPerEpoch(options_, 7), 6);
+  FlowOf(&options_).least_steps = 25;
+  EXPECT_EQ(PassesPerEpoch(options_, 7), 3);
+  EXPECT_EQ(StepsPerEpoch(options_, 7), 9);
+  EXPECT_EQ(Make().steps_per_epoch(), 9);
+  EXPECT_EQ(Sample(0).size(), 9u);
+  EXPECT_EQ(PassesPerEpoch(options_, 300), 2);  // enough as they are
+}
+
+TEST_F(FlowTrainerTest, KeepsTheBestOfTheEpochsThatScoreWholeAnswers) {
+  options_.epochs = 6;
+  options_.optimiser.learning_rate = 0;  // all epochs are equally good: the first choice stays
+  FlowOf(&options_).energy.from = 0.5;
+  FlowTrainer trainer = Make({0});
+  std::vector<int64_t> best;
+  std::vector<bool> scored;
+  while (!trainer.Finished()) {
+    scored.push_back(trainer.RunEpoch().whole_answers);
+    best.push_back(trainer.best_epoch());
+  }
+  EXPECT_EQ(scored, (std::vector<bool>{false, false, false, true, true, true}));
+  EXPECT_EQ(best, (std::vector<int64_t>{1, 2, 3, 4, 4, 4}));
+  FlowOf(&options_).energy.from = 1;
+  FlowTrainer matching = Make({0});
+  while (!matching.Finished()) matching.RunEpoch();
+  EXPECT_EQ(matching.best_epoch(), 1);
+}
+
+TEST_F(FlowTrainerTest, PatienceBeginsWithTheEpochsThatMayResult) {
+  options_.epochs = 8;
+  options_.optimiser.learning_rate = 0;
+  options_.validation.patience = 1;
+  FlowOf(&options_).energy.from = 0.5;
+  FlowTrainer trainer = Make({0});
+  while (!trainer.Finished()) trainer.RunEpoch();
+  EXPECT_EQ(trainer.epoch(), 6);  // the fifth is the best, and the sixth does not improve
+}
+
 TEST_F(FlowTrainerTest, DrawsEveryKindOfStartWithItsProbability) {
   options_.start = {0.25, 0.5};
   FlowOf(&options_).several_known = 0.5;

@@ -4,6 +4,8 @@
 
 #include <sstream>
 
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
 #include "model/engine/leader_statistics.h"
 #include "model/torch_engine/torch_synthesizer.h"
 #include "model/training/named_configs.h"
@@ -196,10 +198,35 @@ TEST_F(RunTest, ValidatesOnHeldOutSubjects) {
   ASSERT_THAT(Go(), IsOk());
   const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
   ASSERT_THAT(checkpoint, IsOk());
-  EXPECT_GT(checkpoint->manifest.metrics.at("validation.afd"), 0);
+  const auto& metrics = checkpoint->manifest.metrics;
+  EXPECT_GT(metrics.at("validation.afd"), 0);
+  EXPECT_GE(metrics.at("validation.epoch"), 1);
+  EXPECT_THAT(progress_.str(), HasSubstr(absl::StrFormat(
+                                   "all: epoch %.0f of 4 is kept: least error on what was held "
+                                   "back, %.4f m\n",
+                                   metrics.at("validation.epoch"), metrics.at("validation.afd"))));
   plan_.folder = folder_.path() / "nothing_left";
   plan_.options.validation.subjects = {"s01", "s02"};
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("every sequence")));
+}
+
+TEST_F(RunTest, TellsItsLengthAndWhyTheLossJumps) {
+  plan_.options = SmallFlowOptions();  // 4 epochs of 2 passes of 3 steps
+  FlowOf(&plan_.options).energy.from = 0.5;
+  ASSERT_THAT(Go(), IsOk());
+  EXPECT_THAT(progress_.str(), HasSubstr("all: 7 sequences, 24 steps\n"));
+  EXPECT_THAT(progress_.str(), HasSubstr("left\nall: from epoch 3 the loss is the score of whole "
+                                         "answers (energy.from), on another scale than before\n"
+                                         "all [############"));
+  EXPECT_THAT(progress_.str(), Not(HasSubstr("from epoch 4")));
+  EXPECT_THAT(progress_.str(), Not(HasSubstr("held back")));
+  const std::string log = ReadTestFile(plan_.folder / "log.csv");
+  EXPECT_THAT(log, HasSubstr(",seconds,whole_answers\n1,"));
+  std::vector<std::string> rows = absl::StrSplit(log, '\n', absl::SkipEmpty());
+  ASSERT_EQ(rows.size(), 5u);
+  for (size_t epoch = 1; epoch <= 4; ++epoch) {
+    EXPECT_EQ(rows[epoch].back(), epoch <= 2 ? '0' : '1') << epoch;
+  }
 }
 
 TEST_F(RunTest, UnknownSubjectIsRejectedBeforeAnythingIsWritten) {

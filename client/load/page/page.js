@@ -94,15 +94,67 @@ function drawOverTime(parent, step) {
       line('not answered', (i) => i.not_answered / length)] });
 }
 
+// Live sessions.
+
+const SHOWN_LIVE = ['p50', 'p99', 'p99.9', 'max'];
+
+function drawLatency(parent, report) {
+  const nines = ([percentile, ms]) => [-Math.log10(1 - percentile / 100), ms];
+  const series = report.live.map((step) => (
+    { name: step.load, points: step.latency_percentiles.map(nines) }));
+  const most = Math.max(0, ...series.flatMap(({ points }) => points.map((point) => point[0])));
+  const ticks = [0, 50, 90, 99, 99.9, 99.99, 99.999].map((p) => [nines([p])[0], String(p)]);
+  drawChart(parent, { title: 'Latency by percentile', xLabel: 'percentile', yLabel: 'milliseconds',
+    logY: true, series, xTicks: ticks.filter(([x]) => x <= most + 1e-9) });
+  if (report.live.length < 2) return;
+  drawChart(parent, { title: 'Latency by sessions', xLabel: 'sessions', yLabel: 'milliseconds',
+    logX: true, logY: true,
+    xTicks: report.live.map((step) => [step.sessions, String(step.sessions)]),
+    series: SHOWN_LIVE.map((name) => (
+      { name, points: report.live.map((step) => [step.sessions, step.latency_ms[name]]) })) });
+}
+
+function drawLatencyOverTime(parent, step) {
+  drawChart(parent, { title: `${step.load}: latency over time`, xLabel: 'seconds',
+    yLabel: 'milliseconds', logY: true,
+    series: ['p50', 'p99', 'max'].map((name) => (
+      { name, points: step.timeline.map((i) => [i.second, i[`${name}_ms`]]) })) });
+}
+
+function drawLive(report) {
+  add(document.body, 'p', {}, `${report.model}, delay ${report.delay_frames} frames. Latency runs `
+    + 'from when a leader frame was due to be sent to the arrival of the final follower frame of '
+    + 'the same instant.');
+  const charts = add(document.body, 'div', { class: 'charts' });
+  drawLatency(charts, report);
+  for (const step of report.live) if (step.timeline.length > 1) drawLatencyOverTime(charts, step);
+  for (const [caption, figure, what] of [['Latency, milliseconds', 'latency_ms', 'frames'],
+    ['At the server, milliseconds', 'at_server_ms', 'messages'],
+    ['First frame, milliseconds', 'first_frame_ms', 'sessions']]) {
+    addTable(caption, ['load', what, ...PERCENTILES], report.live.map((step) => [step.load,
+      step[figure].count, ...PERCENTILES.map((name) => short(step[figure][name]))]));
+  }
+  const counts = ['sent', 'answered', 'late', 'missed', 'skipped', 'interpolated', 'dropped', 'lost',
+    'doubled'];
+  addTable('Frames', ['load', ...counts], report.live.map((step) => (
+    [step.load, ...counts.map((name) => step[name])])));
+  addTable('Sessions', ['load', 'status', 'sessions'], report.live.flatMap((step) => (
+    Object.entries(step.ended).map(([code, count]) => [step.load, code, count]))));
+}
+
 function drawReport(report) {
   document.title = report.title;
   add(document.body, 'h1', {}, report.title);
   add(document.body, 'p', { class: 'faint' }, `${report.program}, ${report.time}. `
     + Object.entries(report.settings).map(([name, value]) => `--${name} ${value}`).join('  '));
-  for (const step of report.steps) {
+  for (const step of report.live || report.steps) {
     if (step.not_kept_up) {
       add(document.body, 'p', { class: 'warning' }, `${step.load}: ${step.not_kept_up}`);
     }
+  }
+  if (report.live) {
+    drawLive(report);
+    return;
   }
   add(document.body, 'p', {}, 'Times run from when a call was due, not from when it was sent.');
   const charts = add(document.body, 'div', { class: 'charts' });

@@ -18,7 +18,8 @@ using cli::AddChoice;
 using cli::AddParsed;
 using cli::Undescribed;
 
-constexpr char kLoadGroup[] = "Load", kCallGroup[] = "Calls", kOutputGroup[] = "Output";
+constexpr char kLoadGroup[] = "Load", kLiveGroup[] = "Live sessions", kCallGroup[] = "Calls",
+               kOutputGroup[] = "Output";
 
 const std::map<std::string, ArrivalKind> kArrivals = {{"poisson", ArrivalKind::kPoisson},
                                                       {"constant", ArrivalKind::kConstant}};
@@ -26,19 +27,21 @@ const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::k
                                                      {"bulk", Priority::kBulk}};
 
 constexpr char kFooter[] = R"(
-Measures a server under load: callers that each call again after an answer (--callers), or calls
-at a rate that is independent of the answers (--rate). Several values make several steps. Every
-time runs from when a call was due. Calls are not retried.
+Measures a server under load: callers that each call again after an answer (--callers), calls at a
+rate that is independent of the answers (--rate), or live sessions that send a frame whenever a
+camera would (--live). Several values make several steps. Every time runs from when a call or a
+frame was due. Calls are not retried, and sessions not resumed.
 
 Exit codes:
   0   done
-  1   no call was answered
+  1   no call and no session was answered
   2   the command line is invalid
   42  the server rejects the calls, or a file cannot be written
 
 Examples:
   duet-load --server lab:50051 --callers 1,8,64
   duet-load --rate 50,100,200 --frames 46=9,460 --seconds 30 --html load.html
+  duet-load --live 20,50 --leader samples/hug.bvh --jitter 15 --loss 0.01 --html live.html
 )";
 
 absl::Status Expected(absl::string_view expected, absl::string_view text) {
@@ -126,6 +129,71 @@ void AddLoad(CLI::App* app, LoadArguments* arguments) {
       ->group(kLoadGroup);
 }
 
+// A flag in milliseconds.
+CLI::Option* AddMilliseconds(CLI::App* app, const char* name, Duration* time, const char* text) {
+  return app
+      ->add_option_function<double>(
+          name, [time](double milliseconds) { *time = Seconds(milliseconds / 1000); }, text)
+      ->check(Undescribed(CLI::Range(0.0, 60000.0)))
+      ->type_name("MS")
+      ->group(kLiveGroup);
+}
+
+void AddLive(CLI::App* app, LoadArguments* arguments) {
+  CLI::Option* live =
+      app->add_option(
+             "--live", arguments->live,
+             "Live sessions side by side; --rate is then their frames a second, default 30")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(Undescribed(CLI::Range(1, 100000)))
+          ->type_name("N[,N...]")
+          ->group(kLiveGroup);
+  for (const char* other :
+       {"--callers", "--calls", "--arrivals", "--max-in-flight", "--background-callers", "--frames",
+        "--priority", "--csv", "--records"}) {
+    live->excludes(app->get_option(other));
+  }
+  app->add_option(
+         "--leader", arguments->leaders,
+         "Motion file of a leader, which plays forwards and backwards; repeatable: sessions "
+         "take them in turn (default: a generated one)")
+      ->check(Undescribed(CLI::ExistingFile))
+      ->needs(live)
+      ->allow_extra_args(false)
+      ->type_name("FILE")
+      ->group(kLiveGroup);
+  app->add_option("--delay", arguments->live_content.delay_frames,
+                  "Later leader frames that the server waits for")
+      ->check(Undescribed(CLI::Range(0, 10)))
+      ->capture_default_str()
+      ->needs(live)
+      ->type_name("FRAMES")
+      ->group(kLiveGroup);
+  app->add_option("--plan", arguments->live_content.plan_frames,
+                  "Provisional frames in each message")
+      ->check(Undescribed(CLI::Range(0, 30)))
+      ->capture_default_str()
+      ->needs(live)
+      ->type_name("FRAMES")
+      ->group(kLiveGroup);
+  LiveConditions* conditions = &arguments->live_conditions;
+  AddMilliseconds(app, "--jitter", &conditions->jitter,
+                  "Send each frame up to this long after it was due")
+      ->needs(live);
+  app->add_option("--loss", conditions->loss, "Share of the frames that are never sent")
+      ->check(Undescribed(CLI::Range(0.0, 0.9)))
+      ->needs(live)
+      ->type_name("SHARE")
+      ->group(kLiveGroup);
+  AddMilliseconds(app, "--stall", &conditions->stall,
+                  "Once in each session: send nothing for this long, then everything held back")
+      ->needs(live);
+  app->add_flag("--in-step", arguments->in_step, "Send the frames of all sessions at the same time")
+      ->needs(live)
+      ->group(kLiveGroup);
+}
+
 void AddBackground(CLI::App* app, LoadArguments* arguments) {
   CLI::Option* callers = app->add_option("--background-callers", arguments->background_callers,
                                          "Callers that call continuously and are not measured")
@@ -210,6 +278,10 @@ std::vector<Step> LoadArguments::Steps() const {
   return steps;
 }
 
+double LoadArguments::LiveRate() const {
+  return rates.empty() ? LiveOptions().frame_rate_hz : rates.front();
+}
+
 void AddLoadFlags(CLI::App* app, LoadArguments* arguments) {
   app->footer(kFooter);
   app->get_formatter()->column_width(34);
@@ -224,6 +296,7 @@ void AddLoadFlags(CLI::App* app, LoadArguments* arguments) {
   AddBackground(app, arguments);
   AddCalls(app, arguments);
   AddOutputs(app, arguments);
+  AddLive(app, arguments);
   app->add_flag("--man", arguments->manual_page, "Print the manual page");
   app->add_option("--completion", arguments->completion, "Print the completion script of a shell")
       ->check(Undescribed(CLI::IsMember(std::vector<std::string>{"bash", "zsh", "fish"})))

@@ -14,6 +14,8 @@
 #include "client/cli/server_arguments.h"
 #include "client/load/arrivals.h"
 #include "client/load/call_kinds.h"
+#include "client/load/live_content.h"
+#include "client/load/live_options.h"
 #include "client/load/load_options.h"
 #include "client/load/measurement.h"
 
@@ -35,6 +37,11 @@ struct LoadArguments {
   int background_callers = 0;
   int background_frames = 9000;
   std::optional<ModelChoice> background_model;  // absent: as the measured calls
+  std::vector<int> live;                        // live sessions in place of calls; a step each
+  LiveContent live_content;
+  LiveConditions live_conditions;
+  bool in_step = false;
+  std::vector<std::filesystem::path> leaders;  // of live sessions; none: generated
   std::string title;
   std::filesystem::path csv, json, html, records;
   bool quiet = false;
@@ -42,6 +49,8 @@ struct LoadArguments {
   std::string completion;  // a shell
 
   std::vector<Step> Steps() const;
+  // Frames a second of live sessions.
+  double LiveRate() const;
 };
 
 // duet-load's command line: the source of parsing, help, completion and the manual page.

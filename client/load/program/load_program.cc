@@ -17,14 +17,15 @@
 #include "client/load/call_kinds.h"
 #include "client/load/generator.h"
 #include "client/load/grpc_target.h"
+#include "client/load/program/live_run.h"
 #include "client/load/program/load_flags.h"
+#include "client/load/program/report_files.h"
 #include "client/load/report.h"
 #include "model/base/file.h"
 
 namespace duet::client::load::program {
 namespace {
 
-constexpr char kStandardOutput[] = "-";
 constexpr double kMostIntervals = 300;  // of a timeline: as many as a chart can show
 
 // Uses the client's retries; measured calls have one attempt.
@@ -51,7 +52,7 @@ class LoadRun {
   absl::Status Run(std::vector<std::pair<std::string, std::string>> settings) {
     absl::Status status = Prepare();
     if (!status.ok()) return status;
-    report_.settings = std::move(settings);
+    static_cast<ReportHead&>(report_) = MakeHead(arguments_, "Load", std::move(settings));
     for (const Step& step : arguments_.Steps()) {
       if (environment_.stopped()) break;
       if (!arguments_.quiet) *environment_.err << "duet-load: " << StepName(step) << std::endl;
@@ -83,11 +84,6 @@ class LoadRun {
   }
 
   void Describe(const std::vector<CallKind>& kinds) {
-    report_.title = arguments_.title.empty() ? absl::StrCat("Load on ", arguments_.server.address)
-                                             : arguments_.title;
-    report_.program = "duet-load " DUET_VERSION;
-    report_.time = absl::FormatTime("%Y-%m-%d %H:%M:%S UTC", absl::Now(), absl::UTCTimeZone());
-    report_.server = arguments_.server.address;
     double sum = 0;
     for (const CallKind& kind : kinds) sum += kind.weight;
     weights_.clear();
@@ -130,18 +126,12 @@ class LoadRun {
   }
 
   absl::Status WriteReports() {
-    if (arguments_.json == kStandardOutput) {
-      *environment_.out << ToJson(report_);
-    } else {
-      *environment_.out << ToText(report_);
-    }
-    const std::pair<std::filesystem::path, std::string (*)(const Report&)> files[] = {
-        {arguments_.json, ToJson}, {arguments_.csv, ToCsv}, {arguments_.html, ToPage}};
-    for (const auto& [path, write] : files) {
-      if (path.empty() || path == kStandardOutput) continue;
-      absl::Status status = base::WriteFile(path, write(report_));
-      if (!status.ok()) return status;
-    }
+    absl::Status status = WriteReport(ToText(report_),
+                                      {{arguments_.json, [this] { return ToJson(report_); }},
+                                       {arguments_.csv, [this] { return ToCsv(report_); }},
+                                       {arguments_.html, [this] { return ToPage(report_); }}},
+                                      environment_.out);
+    if (!status.ok()) return status;
     records_.flush();
     if (records_.is_open() && !records_) {
       return absl::InvalidArgumentError(
@@ -157,6 +147,31 @@ class LoadRun {
   std::ofstream records_;
   Report report_;
 };
+
+// Runs live sessions and writes their report. Sets `answered` if any was.
+absl::Status RunLiveLoad(const LoadArguments& arguments, const LoadEnvironment& environment,
+                         std::vector<std::pair<std::string, std::string>> settings,
+                         bool* answered) {
+  const ReportHead head = MakeHead(arguments, "Live sessions", std::move(settings));
+  absl::StatusOr<LiveReport> report = RunLiveSteps(arguments, environment);
+  if (!report.ok()) return report.status();
+  static_cast<ReportHead&>(*report) = head;
+  for (const LiveMeasurement& step : report->steps) *answered = *answered || step.answered > 0;
+  return WriteReport(ToText(*report),
+                     {{arguments.json, [&] { return ToJson(*report); }},
+                      {arguments.html, [&] { return ToPage(*report); }}},
+                     environment.out);
+}
+
+// Runs calls and writes their report. Sets `answered` if any was.
+absl::Status RunCallLoad(const LoadArguments& arguments, const LoadEnvironment& environment,
+                         std::vector<std::pair<std::string, std::string>> settings,
+                         bool* answered) {
+  LoadRun run(arguments, environment);
+  absl::Status status = run.Run(std::move(settings));
+  *answered = run.HasAnswers();
+  return status;
+}
 
 }  // namespace
 
@@ -177,15 +192,17 @@ int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironm
                                             : cli::CompletionScript(app, parsed.completion));
     return cli::kExitDone;
   }
-  LoadRun run(parsed, environment);
-  const absl::Status status = run.Run(GivenFlags(app));
+  bool answered = false;
+  const absl::Status status = (parsed.live.empty() ? RunCallLoad : RunLiveLoad)(
+      parsed, environment, GivenFlags(app), &answered);
   if (!status.ok()) {
     *environment.err << "duet-load: " << status.message() << " ("
                      << absl::StatusCodeToString(status.code()) << ")\n";
     return cli::ExitCodeFor(status);
   }
-  if (run.HasAnswers()) return cli::kExitDone;
-  *environment.err << "duet-load: no call was answered\n";
+  if (answered) return cli::kExitDone;
+  *environment.err << "duet-load: no " << (parsed.live.empty() ? "call" : "session")
+                   << " was answered\n";
   return cli::kExitRetry;
 }
 

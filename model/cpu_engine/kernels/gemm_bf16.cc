@@ -159,6 +159,8 @@ bool HasBf16() {
          __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
 }
 
+bool IsBf16Faster() { return HasAmx() || (HasBf16() && !__builtin_cpu_is("intel")); }
+
 #else
 
 namespace {
@@ -171,6 +173,8 @@ void PackRows(const Rows& inputs, uint16_t* panels) { PackRowsBf16Portable(input
 }  // namespace
 
 bool HasBf16() { return false; }
+
+bool IsBf16Faster() { return false; }
 
 #endif
 

@@ -77,6 +77,41 @@ TEST(LoadFlagsTest, InvalidMixesNameTheExpectedForm) {
   }
 }
 
+TEST(LoadFlagsTest, ReadsLiveSessions) {
+  const LoadArguments parsed =
+      Parse({"--live", "20,50", "--rate", "25", "--jitter", "15", "--loss", "0.02", "--stall",
+             "500", "--in-step", "--delay", "2", "--plan", "5"});
+  EXPECT_THAT(parsed.live, ::testing::ElementsAre(20, 50));
+  EXPECT_EQ(parsed.LiveRate(), 25);
+  EXPECT_EQ(parsed.live_conditions.jitter, std::chrono::milliseconds(15));
+  EXPECT_EQ(parsed.live_conditions.loss, 0.02);
+  EXPECT_EQ(parsed.live_conditions.stall, std::chrono::milliseconds(500));
+  EXPECT_TRUE(parsed.in_step);
+  EXPECT_EQ(parsed.live_content.delay_frames, 2);
+  EXPECT_EQ(parsed.live_content.plan_frames, 5);
+  EXPECT_EQ(Parse({"--live", "1"}).LiveRate(), 30);
+}
+
+TEST(LoadFlagsTest, LiveSessionsHaveTheirOwnFlags) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--live", "1", "--callers", "1"},
+                                             {"--live", "1", "--frames", "46"},
+                                             {"--live", "1", "--csv", "x.csv"},
+                                             {"--live", "1", "--delay", "11"},
+                                             {"--live", "1", "--leader", "/nowhere/hug.bvh"},
+                                             {"--jitter", "5"},
+                                             {"--in-step"}}) {
+    EXPECT_EQ(RunWith(arguments).code, cli::kExitUsage) << arguments[0] << arguments.back();
+  }
+  const Ran rates = RunWith({"--live", "1", "--rate", "25,30"});
+  EXPECT_EQ(rates.code, cli::kExitBadInput);
+  EXPECT_THAT(rates.err, HasSubstr("--rate: expected one rate with --live, got 2"));
+  EXPECT_THAT(RunWith({"--live", "1", "--rate", "500"}).err,
+              HasSubstr("--rate: expected 1 to 240 with --live, got 500"));
+  EXPECT_THAT(RunWith({"--live", "1", "--model", "sbu,k3hi"}).err,
+              HasSubstr("--model: expected one model with --live, got 2"));
+}
+
 TEST(LoadFlagsTest, GivenFlagsAreListed) {
   CLI::App app;
   LoadArguments parsed;

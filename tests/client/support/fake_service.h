@@ -10,6 +10,7 @@
 #include "grpcpp/security/server_credentials.h"
 #include "grpcpp/server.h"
 #include "grpcpp/server_context.h"
+#include "grpcpp/support/sync_stream.h"
 
 namespace duet::test {
 
@@ -24,6 +25,10 @@ class FakeService final : public v1::MotionSynthesis::Service {
   std::function<grpc::Status(grpc::ServerContext*, const v1::SynthesizeRequest&,
                              grpc::ServerWriter<v1::SynthesizeResponse>*)>
       on_synthesize;
+  std::function<grpc::Status(
+      grpc::ServerContext*,
+      grpc::ServerReaderWriter<v1::SynthesizeLiveResponse, v1::SynthesizeLiveRequest>*)>
+      on_live;
 
   grpc::Status ListModels(grpc::ServerContext* context, const v1::ListModelsRequest*,
                           v1::ListModelsResponse* response) override {
@@ -32,6 +37,12 @@ class FakeService final : public v1::MotionSynthesis::Service {
   grpc::Status Synthesize(grpc::ServerContext* context, const v1::SynthesizeRequest* request,
                           grpc::ServerWriter<v1::SynthesizeResponse>* writer) override {
     return on_synthesize(context, *request, writer);
+  }
+  grpc::Status SynthesizeLive(
+      grpc::ServerContext* context,
+      grpc::ServerReaderWriter<v1::SynthesizeLiveResponse, v1::SynthesizeLiveRequest>* stream)
+      override {
+    return on_live(context, stream);
   }
 };
 

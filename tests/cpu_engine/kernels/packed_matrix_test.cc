@@ -6,11 +6,17 @@
 #include <cstring>
 
 #include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "model/cpu_engine/kernels/gemm_bf16_amx.h"
 #include "model/cpu_engine/kernels/gemm_bf16_portable.h"
 #include "tests/cpu_engine/kernels/every_target.h"
 
 namespace duet::cpu_engine::kernels {
 namespace {
+
+TEST(Bf16, IsPreferredOnlyWhereTheProcessorMultipliesIt) {
+  EXPECT_TRUE(HasBf16() || !IsBf16Faster());
+  EXPECT_TRUE(!HasAmx() || IsBf16Faster());
+}
 
 class PackedMatrixTest : public EveryTarget {};
 DUET_FOR_EVERY_TARGET(PackedMatrixTest);

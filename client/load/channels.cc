@@ -1,0 +1,33 @@
+#include "client/load/channels.h"
+
+#include <chrono>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
+#include "client/internal/connect.h"
+
+namespace duet::client::load {
+
+absl::StatusOr<std::vector<std::shared_ptr<grpc::Channel>>> OpenChannels(
+    const ClientOptions& options, int connections) {
+  ClientOptions own = options;
+  own.own_connection = true;
+  std::vector<std::shared_ptr<grpc::Channel>> channels;
+  const auto end = std::chrono::system_clock::now() + absl::ToChronoMicroseconds(options.deadline);
+  for (int i = 0; i < connections; ++i) {
+    absl::StatusOr<std::shared_ptr<grpc::Channel>> channel = internal::OpenChannel(own);
+    if (!channel.ok()) return channel.status();
+    (*channel)->GetState(true);
+    channels.push_back(*std::move(channel));
+  }
+  for (const auto& channel : channels) {
+    if (channel->WaitForConnected(end)) continue;
+    return absl::UnavailableError(absl::StrCat("no connection to ", options.server_address,
+                                               " within ", absl::FormatDuration(options.deadline)));
+  }
+  return channels;
+}
+
+}  // namespace duet::client::load

@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "model/evaluation/program/commands.h"
+#include "model/motion/coordinates.h"
+#include "tests/dataset/capture_folder.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::evaluation::program {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+using test::TemporaryFolder;
+
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::vector<motion::Vec3> AsCaptured(std::vector<motion::Vec3> pose, motion::Vec3 at) {
+  for (motion::Vec3& p : pose) {
+    p = FromWorld({motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown}, p + at);
+  }
+  return pose;
+}
+
+// Four clips of kicks, whose followers stand a metre away, and of pushes, two metres away.
+void WriteCaptures(const dataset::CaptureFolder& folder) {
+  for (const char* interaction_class : {"03", "04"}) {
+    const float away = std::string(interaction_class) == "03" ? 1 : 2;
+    for (int clip = 1; clip <= 4; ++clip) {
+      std::string text;
+      for (int t = 0; t < 20; ++t) {
+        const double seconds = (1 + 0.1 * clip) * t / 15;
+        text += dataset::CaptureLine(t + 1, AsCaptured(test::SwayingPose(seconds), {-1, 0, 0}),
+                                     AsCaptured(test::SwayingPose(2 * seconds), {away - 1, 0, 0}));
+      }
+      folder.Write("s01s02/" + std::string(interaction_class) + "/00" + std::to_string(clip) +
+                       "/skeleton_pos.txt",
+                   text);
+    }
+  }
+}
+
+class JudgeCommandTest : public ::testing::Test {
+ protected:
+  absl::Status Run(std::vector<std::string> words) {
+    WriteCaptures(captures_);
+    words.insert(words.begin(), {"judge", "--data", captures_.path().string(), "--out",
+                                 (folder_ / "judge").string()});
+    CLI::App app;
+    ChosenCommand chosen;
+    AddJudgeCommand(&app, &chosen);
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    try {
+      app.parse(words);
+    } catch (const CLI::ParseError& error) {
+      return absl::InvalidArgumentError(error.what());
+    }
+    ::testing::internal::CaptureStdout();
+    absl::Status status = chosen();
+    out_ = ::testing::internal::GetCapturedStdout();
+    return status;
+  }
+
+  dataset::CaptureFolder captures_;
+  TemporaryFolder folder_;
+  std::string out_;
+};
+
+TEST_F(JudgeCommandTest, PartsTellWhetherClassesCanBeToldApart) {
+  ASSERT_THAT(Run({"--parts", "2", "--epochs", "30"}), IsOk());
+  EXPECT_THAT(out_, HasSubstr("kick: 4 of 4 recognised\npush: 4 of 4 recognised\n"
+                              "100.0 % of the held-out followers classified correctly\n"
+                              "trained on 8 followers of "));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "judge" / "judge.json"));
+}
+
+TEST_F(JudgeCommandTest, PartsTellWhatTheOthersAreTakenFor) {
+  // An untrained judge takes everything for one class.
+  ASSERT_THAT(Run({"--parts", "4", "--epochs", "0"}), IsOk());
+  EXPECT_THAT(out_, ContainsRegex("kick: [0-4] of 4 recognised; [1-4] taken for [a-z_]+"));
+  EXPECT_THAT(out_, Not(HasSubstr("100.0 %")));
+}
+
+TEST_F(JudgeCommandTest, PartsAndPeopleExcludeEachOther) {
+  EXPECT_THAT(Run({"--parts", "2", "--hold-out", "s01"}),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("--parts")));
+}
+
+}  // namespace
+}  // namespace duet::evaluation::program
