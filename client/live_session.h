@@ -100,6 +100,9 @@ struct LiveCallbacks {
   std::function<absl::Status(const LiveFrames&)> on_frames;
   // Optional.
   std::function<void(const LiveNotice&)> on_notice;
+  // Optional. Called last, when the session has ended: with OK after Finish, otherwise with the
+  // reason, which Send and Finish return too.
+  std::function<void(const absl::Status&)> on_end;
 };
 
 // A session that Client::StartLive began.
