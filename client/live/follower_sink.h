@@ -25,9 +25,13 @@ class FollowerSink {
   // Must return quickly: the session waits. An error ends the session.
   virtual absl::Status Accept(const LiveFrames& frames) = 0;
 
+  // A leader frame that was sent. Default: nothing.
+  virtual void AcceptLeader(const LeaderFrame& /*frame*/) {}
+
   // Called once, after the last frame; also if the session failed after Start. Returns what was
-  // written, one line each for the summary: file names, or counts of packets.
-  virtual absl::StatusOr<std::vector<std::string>> Finish() = 0;
+  // written, one line each for the summary: file names, or counts of packets. `info` is what the
+  // server chose, empty if the session never began.
+  virtual absl::StatusOr<std::vector<std::string>> Finish(const LiveInfo& info) = 0;
 };
 
 }  // namespace duet::client::live

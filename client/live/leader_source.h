@@ -57,6 +57,10 @@ class LeaderSource {
   // Makes Open and Next return soon. Called when the user interrupts the program.
   virtual void Stop() = 0;
 
+  // Whether frames arrive at their own time, so that the session has to keep up. Otherwise, each
+  // frame is sent when the one before it was answered, and none is skipped.
+  virtual bool IsLive() const { return true; }
+
   // What the user may want to know about how the source was read, one line each: joints that were
   // chosen, duplicates, gaps. Called after the last Next. Default: nothing.
   virtual std::vector<std::string> Notes() const { return {}; }
