@@ -132,6 +132,7 @@ void LiveSessionImpl::Read() {
   bool over = false;
   while (!over && status.ok()) {
     status = RunUntilBroken();
+    status.Update(rejected_);
     const Lock lock(mutex_);
     over = abandoned_ || (finishing_ && state_.IsComplete());
   }
@@ -190,7 +191,7 @@ AttemptEnd LiveSessionImpl::RunStream() {
   }
   absl::Status ended = CloseStream();
   Lock lock(mutex_);
-  if (!rejected_.ok()) return rejected_;
+  if (!rejected_.ok()) return absl::OkStatus();  // whatever its code, it is not retried
   if (abandoned_ || (finishing_ && state_.IsComplete())) return absl::OkStatus();
   const bool was_open = state_.is_open();
   if (absl::IsNotFound(ended) && broken_) {
