@@ -45,7 +45,9 @@ absl::Status LiveRun::RunSession(const Client& client, const LiveRequest& reques
       client.StartLive(request, std::move(callbacks));
   if (!session.ok()) return session.status();
   report_.info = (*session)->info();
+  SetSession(session->get());
   absl::Status followed = Follow(session->get());
+  SetSession(nullptr);
   // The frames that are due arrive even if the source failed.
   const absl::StatusOr<LiveSummary> summary = (*session)->Finish();
   if (!summary.ok()) return summary.status();
@@ -53,6 +55,17 @@ absl::Status LiveRun::RunSession(const Client& client, const LiveRequest& reques
   report_.totals = Progress(absl::InfinitePast());
   report_.leader_frames = summary->leader_frames;
   return followed;
+}
+
+void LiveRun::SetSession(LiveSession* session) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  session_ = session;
+}
+
+absl::Status LiveRun::ChangeLabels(const LabelCommand& labels) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (session_ != nullptr) return session_->ChangeLabels(labels.weights, labels.ease);
+  return absl::FailedPreconditionError("labels: expected a session, got none yet or none any more");
 }
 
 absl::Status LiveRun::Follow(LiveSession* session) {

@@ -63,12 +63,17 @@ class LiveRun {
   // Errors: those of the source, the session and the sinks; the first of them.
   absl::StatusOr<LiveReport> Run(const Client& client, LiveRequest request);
 
+  // Changes the labels from the next frame on. May be called by any thread, while Run runs. Errors:
+  // FAILED_PRECONDITION if the session has not begun or is over; those of LiveSession.
+  absl::Status ChangeLabels(const LabelCommand& labels);
+
  private:
   absl::Status RunSession(const Client& client, const LiveRequest& request);
   absl::Status Follow(LiveSession* session);
   absl::Status Send(LiveSession* session, const LeaderFrame& frame);
   void WaitForAnswers();
   void End();
+  void SetSession(LiveSession* session);
   absl::Status Accept(const LiveFrames& frames);
   void Count(const LiveNotice& notice);
   LiveProgress Progress(absl::Time since) const;
@@ -82,6 +87,7 @@ class LiveRun {
 
   std::mutex mutex_;  // of everything below, and of the sinks
   std::condition_variable answered_;
+  LiveSession* session_ = nullptr;  // while frames are sent
   absl::Time begin_;
   LatencyLog latencies_;
   std::deque<absl::Time> captured_;  // of the leader frames from first_captured_ on
