@@ -82,11 +82,21 @@ void CaptureStream::NoteError(const absl::Status& status) {
   if (errors_.insert(message).second) notes_.push_back(std::move(message));
 }
 
+void CaptureStream::NoteEvent(const ClockEvent& event) {
+  // These are rare, and people see them.
+  const bool is_long =
+      event.kind == ClockEvent::Kind::kHeld || event.kind == ClockEvent::Kind::kResumed;
+  const int count = is_long ? 0 : ++noted_events_[event.kind];
+  if (count > kMaxNotesOfAKind) return;
+  notes_.push_back(
+      absl::StrCat(Describe(event), count == kMaxNotesOfAKind ? "; others are only counted" : ""));
+}
+
 std::vector<std::string> CaptureStream::TakeNotes() {
-  std::vector<std::string> notes = std::exchange(notes_, {});
   if (clock_.has_value()) {
-    for (const ClockEvent& event : clock_->TakeEvents()) notes.push_back(Describe(event));
+    for (const ClockEvent& event : clock_->TakeEvents()) NoteEvent(event);
   }
+  std::vector<std::string> notes = std::exchange(notes_, {});
   if (notes.size() > kMaxNotes) notes.resize(kMaxNotes);
   return notes;
 }

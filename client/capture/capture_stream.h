@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -28,6 +29,7 @@ namespace duet::client::capture {
 class CaptureStream {
  public:
   static constexpr double kSenderSilence = 2;  // seconds
+  static constexpr int kMaxNotesOfAKind = 3;
 
   // rate_hz: of the output; 0: measured in the first second, whose frames are not passed on.
   CaptureStream(std::function<std::unique_ptr<StreamReader>()> make_reader, double rate_hz);
@@ -43,8 +45,9 @@ class CaptureStream {
   double NextDue() const;
 
   int64_t frame_count() const { return frame_count_; }  // that arrived
-  // What the user should know, in words: notes of the reader, events of the clock, and the first
-  // datagrams that were not understood. Each is returned once; the number is bounded.
+  // What the user should know, in words: notes of the reader, events of the clock, and the kinds of
+  // datagrams that were not understood. Each is returned once. Of events that a bad network repeats
+  // all the time, the first kMaxNotesOfAKind are returned; Summary counts all of them.
   std::vector<std::string> TakeNotes();
   // Totals in words: "900 frames; 3 duplicates, ...".
   std::string Summary() const;
@@ -61,6 +64,7 @@ class CaptureStream {
 
   void ReceiveFrame(CaptureFrame frame, double now);
   void NoteError(const absl::Status& status);
+  void NoteEvent(const ClockEvent& event);
 
   const std::function<std::unique_ptr<StreamReader>()> make_reader_;
   const std::vector<std::string> joint_names_;
@@ -73,6 +77,7 @@ class CaptureStream {
   bool other_senders_ = false;
   int64_t frame_count_ = 0, rejected_ = 0;
   std::set<std::string> errors_;  // that were noted
+  std::map<ClockEvent::Kind, int> noted_events_;
   std::vector<std::string> notes_;
 };
 

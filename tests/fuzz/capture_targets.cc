@@ -14,6 +14,7 @@
 #include "client/capture/capture_address.h"
 #include "client/capture/capture_stream.h"
 #include "client/capture/stream_reader.h"
+#include "model/motion/vec3.h"
 
 namespace duet::fuzz {
 namespace {

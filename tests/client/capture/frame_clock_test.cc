@@ -312,6 +312,23 @@ TEST(CaptureStreamTest, IgnoresASecondSenderUntilTheFirstIsSilent) {
   EXPECT_EQ(heights.back(), 2.0f);
 }
 
+TEST(CaptureStreamTest, FrequentEventsAreOnlyCounted) {
+  CaptureStream stream(MakeVmcReader, 30);
+  int notes = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double now = i / 30.0;
+    stream.Receive(Hips(static_cast<float>(now), 1), "a", now);
+    stream.Receive(Hips(static_cast<float>(now), 1), "a", now);
+    while (stream.Next(now)) {
+    }
+    for (const std::string& note : stream.TakeNotes()) {
+      if (note.find("duplicate") != std::string::npos) ++notes;
+    }
+  }
+  EXPECT_EQ(notes, CaptureStream::kMaxNotesOfAKind);
+  EXPECT_THAT(stream.Summary(), HasSubstr(" duplicates"));
+}
+
 TEST(CaptureStreamTest, SaysOnceWhatItDoesNotUnderstand) {
   CaptureStream stream(MakeVmcReader, 30);
   for (int i = 0; i < 100; ++i) stream.Receive("MXTP02", "a", i);
