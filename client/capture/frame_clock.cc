@@ -162,6 +162,8 @@ std::optional<TimedFrame> FrameClock::Next(double now) {
       return EmitWaiting();
     }
     if (front.seconds > DueTime()) return FillGap(now);
+    // Held frames took its place; those after it are waited for again.
+    EndHold();
     left_ = std::move(waiting_.front());
     waiting_.pop_front();
   }

@@ -139,6 +139,21 @@ TEST_F(FrameClockTest, HoldsThePoseInLongerGapsAtTheRate) {
   EXPECT_EQ(frames_.size(), 112u);
 }
 
+TEST_F(FrameClockTest, FramesAfterALongGapAreUsedThoughTheyAreLaterThanTheSmallestDelay) {
+  ArriveInTime(0, 5);
+  for (double now = 0.105; now < 2; now += 0.001) Take(now);
+  clock_.TakeEvents();
+  for (int i = 100; i < 150; ++i) {
+    const double arrival = i * kPeriod + 0.012;
+    for (double now = arrival - kPeriod + 0.001; now < arrival; now += 0.001) Take(now);
+    Arrive(i * kPeriod, arrival);
+  }
+  EXPECT_THAT(Events(), ElementsAre(Kind::kResumed));
+  EXPECT_EQ(frames_.back().source, Source::kCaptured);
+  EXPECT_NEAR(At(frames_.size() - 1), 149 * kPeriod, 1e-3);
+  EXPECT_EQ(frames_.size(), 150u);
+}
+
 TEST_F(FrameClockTest, JitterOfTheNetworkDoesNotReachTheFrames) {
   base::Random random(3);
   std::vector<std::pair<double, double>> arrivals;  // now, captured
