@@ -18,7 +18,7 @@ constexpr int kStaleFrames = 4;
 constexpr double kGapPeriods = 1.5;
 // The part of the output's period by which a sample's time may differ from the output's: of frames
 // with times, and of frames with the times of their arrival, which are no better than the network.
-constexpr double kSnapTimed = 0.1, kSnapArrived = 0.5;
+constexpr double kSnapTimed = 0.2, kSnapArrived = 0.5;
 // The part of that difference by which the output's phase follows.
 constexpr double kPhaseGain = 0.1;
 constexpr std::size_t kRecentTimes = 64;
