@@ -176,6 +176,8 @@ TEST_F(FrameClockTest, JitterOfTheNetworkDoesNotReachTheFrames) {
   for (std::size_t i = 0; i < 500; ++i) {
     EXPECT_NEAR(At(i), static_cast<double>(i) * kPeriod + offset, 0.002) << i;
   }
+  // Whatever the delay of a frame, it was captured the smallest delay before its arrival.
+  EXPECT_NEAR(frames_[400].capture_seconds, 400 * kPeriod + 0.005, 0.002);
   EXPECT_EQ(clock_.counts().late, 0);
   EXPECT_EQ(clock_.counts().jumps, 0);
 }

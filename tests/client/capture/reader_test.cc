@@ -192,6 +192,25 @@ TEST(Lz4FrameTest, RejectsContentAboveTheLimit) {
   EXPECT_FALSE(DecompressLz4Frame(test::StoredLz4Frame("12345"), 4).ok());
 }
 
+TEST(Lz4FrameTest, RejectsMatchesBeforeTheContent) {
+  const auto frame = [](char distance) {
+    std::string bytes(
+        "\x04\x22\x4d\x18\x60\x70\x73\x06\0\0\0\x10"
+        "a",
+        13);
+    bytes += distance;
+    return bytes + std::string(
+                       "\0\x10"
+                       "z\0\0\0\0",
+                       7);
+  };
+  EXPECT_EQ(DecompressLz4Frame(frame(1), 100).value(), "aaaaaz");
+  for (const char distance : {'\0', '\2'}) {
+    EXPECT_THAT(std::string(DecompressLz4Frame(frame(distance), 100).status().message()),
+                HasSubstr("one before its start"));
+  }
+}
+
 TEST(Lz4FrameTest, RejectsFramesCutAnywhere) {
   const std::string bytes = absl::HexStringToBytes(kLz4Frame);
   for (std::size_t size = 0; size < bytes.size(); ++size) {

@@ -107,6 +107,27 @@ TEST(VmcReaderTest, AFrameEndsWhenAllBonesOfTheFramesBeforeAreThere) {
   EXPECT_EQ(second[0].sender_seconds, 2.0);
 }
 
+TEST(VmcReaderTest, AfterALostDatagramAFrameStillEndsWithItsLastOne) {
+  VmcReader reader;
+  std::vector<test::VmcBone> upper = RestBones();
+  const std::vector<test::VmcBone> lower(upper.begin() + 14, upper.end());
+  upper.resize(14);
+  const test::VmcFrame legs = {std::nullopt, lower};
+  const auto frames = ReadAll(&reader, {{1.0f, upper},
+                                        legs,
+                                        {2.0f, upper},
+                                        legs,
+                                        {3.0f, upper},  // the legs are lost
+                                        {4.0f, upper},
+                                        legs,
+                                        {5.0f, upper},
+                                        legs});
+  ASSERT_THAT(frames, SizeIs(5));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].sender_seconds, static_cast<double>(i) + 1);
+  }
+}
+
 TEST(VmcReaderTest, ARepeatedBoneEndsAFrameWithoutATime) {
   VmcReader reader;
   const auto frames =
