@@ -52,7 +52,9 @@ LiveStrip::Kind StripKind(const LiveArguments& arguments, const ProgramEnvironme
 absl::StatusOr<live::LiveReport> RunSession(const LiveArguments& arguments, const Client& client,
                                             const motion::Skeleton& skeleton, Stopper* stopper,
                                             const ProgramEnvironment& environment) {
-  absl::StatusOr<LiveInput> input = OpenSource(arguments, skeleton, environment);
+  LiveStrip strip(StripKind(arguments, environment), *environment.err);
+  absl::StatusOr<LiveInput> input = OpenSource(
+      arguments, skeleton, environment, [&strip](const std::string& note) { strip.Show(note); });
   if (!input.ok()) return input.status();
   std::vector<std::unique_ptr<live::FollowerSink>> sinks;
   std::vector<live::FollowerSink*> ends;
@@ -63,7 +65,6 @@ absl::StatusOr<live::LiveReport> RunSession(const LiveArguments& arguments, cons
     sinks.push_back(*std::move(sink));
     ends.push_back(sinks.back().get());
   }
-  LiveStrip strip(StripKind(arguments, environment), *environment.err);
   live::LiveRun run(input->source.get(), std::move(ends),
                     {[&strip](const live::LiveProgress& progress) { strip.Show(progress); },
                      [&strip](const LiveNotice& notice) { strip.Show(notice); }});
@@ -119,7 +120,12 @@ While a file plays, labels can be typed: hug=1 kick=0 ease=0.3, then Enter. Ctrl
 motion: the frames that are due arrive, and files are written. A second Ctrl-C ends the program at
 once.
 
-Example:
+Motion capture (--from vmc://, xsens:// or rokoko://, with [HOST][:PORT]) is received over UDP: VMC,
+Xsens MVN and Rokoko Studio. --frame-rate states the rate; otherwise the first second measures it.
+--to vmc://HOST[:PORT] sends the follower to Unity, Unreal, Godot or Blender.
+
+Examples:
+  duet live --from vmc://:39539 --label hug=1 --to vmc://127.0.0.1:39540
   duet live --from walk.bvh --realtime --label hug=1 --to follower.bvh --to pair.html
 )";
 

@@ -15,10 +15,11 @@ namespace {
 
 void AddSourceFlags(CLI::App* app, LiveArguments* arguments) {
   app->add_option("--from", arguments->from,
-                  "Leader: a motion file that synthesize reads, or - for lines of JSON on standard "
-                  "input")
+                  "Leader: a motion file that synthesize reads, - for lines of JSON on standard "
+                  "input, or motion capture over UDP: vmc://, xsens:// or rokoko://, with "
+                  "[HOST][:PORT]")
       ->required()
-      ->type_name("FILE|-")
+      ->type_name("FILE|-|ADDRESS")
       ->group(kInputGroup);
   app->add_flag("--realtime", arguments->realtime,
                 "Play the file at its frame rate, and take standard input as it comes; otherwise "
@@ -59,11 +60,11 @@ void AddReactionFlags(CLI::App* app, LiveArguments* arguments) {
 void AddSinkFlags(CLI::App* app, LiveArguments* arguments) {
   app->add_option("--to", arguments->to,
                   "Where the follower goes: a motion file (.bvh, .glb, .gltf, .usda, .csv, .npy or "
-                  ".json), a page with both people (.html), or - for lines of JSON on standard "
-                  "output; repeatable")
+                  ".json), a page with both people (.html), - for lines of JSON on standard "
+                  "output, or vmc://HOST[:PORT] for game engines and Blender; repeatable")
       ->required()
       ->allow_extra_args(false)
-      ->type_name("FILE|-")
+      ->type_name("FILE|-|ADDRESS")
       ->group(kOutputGroup);
   AddBvhFlags(app, &arguments->bvh);
   app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
@@ -79,6 +80,9 @@ void CheckTogether(const LiveArguments& arguments) {
     if (!keyframe.beats) continue;
     throw CLI::ValidationError("--keyframe", absl::StrCat("expected a frame, got the position ",
                                                           *keyframe.beats, "b in beats"));
+  }
+  if (const absl::Status status = CheckSource(arguments.from); !status.ok()) {
+    throw CLI::ValidationError("--from", std::string(status.message()));
   }
   const auto outs = std::count(arguments.to.begin(), arguments.to.end(), kStandardStream);
   if (outs > 1) throw CLI::ValidationError("--to", "expected - once, got it twice");

@@ -117,6 +117,8 @@ void LiveStrip::Show(const LiveNotice& notice) {
   }
 }
 
+void LiveStrip::Show(const std::string& note) { Print(absl::StrCat("duet: ", note)); }
+
 void LiveStrip::Print(const std::string& line) {
   if (kind_ == Kind::kNone) return;
   const std::lock_guard<std::mutex> lock(mutex_);

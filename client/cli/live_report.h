@@ -25,6 +25,8 @@ class LiveStrip {
 
   // Redraws at most four times a second.
   void Show(const live::LiveProgress& progress);
+  // Prints what a source does.
+  void Show(const std::string& note);
   // Prints what happened to the connection.
   void Show(const LiveNotice& notice);
   // Ends the line. Nothing may follow.

@@ -4,15 +4,21 @@
 
 namespace duet::client::live {
 
-absl::StatusOr<std::unique_ptr<VmcSink>> VmcSink::Create(const capture::CaptureAddress& address) {
-  const std::string name = FormatCaptureAddress(address);
-  if (address.protocol != capture::CaptureProtocol::kVmc || address.host.empty()) {
-    return absl::InvalidArgumentError(absl::StrCat("--to: expected vmc://HOST[:PORT], got ", name));
+absl::Status VmcSink::Check(const capture::CaptureAddress& address) {
+  if (address.protocol == capture::CaptureProtocol::kVmc && !address.host.empty()) {
+    return absl::OkStatus();
   }
+  return absl::InvalidArgumentError(
+      absl::StrCat("expected vmc://HOST[:PORT], got ", FormatCaptureAddress(address)));
+}
+
+absl::StatusOr<std::unique_ptr<VmcSink>> VmcSink::Create(const capture::CaptureAddress& address) {
+  absl::Status status = Check(address);
+  if (!status.ok()) return status;
   absl::StatusOr<capture::UdpSender> sender =
       capture::UdpSender::Connect(address.host, address.port);
   if (!sender.ok()) return sender.status();
-  return std::unique_ptr<VmcSink>(new VmcSink(name, *std::move(sender)));
+  return std::unique_ptr<VmcSink>(new VmcSink(FormatCaptureAddress(address), *std::move(sender)));
 }
 
 absl::Status VmcSink::Start(const LeaderFormat& format) {

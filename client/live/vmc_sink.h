@@ -16,8 +16,9 @@ namespace duet::client::live {
 // not there yet misses frames; the session goes on.
 class VmcSink final : public FollowerSink {
  public:
-  // Errors: INVALID_ARGUMENT for another protocol, an address without a host or one that cannot be
-  // resolved.
+  // INVALID_ARGUMENT for another protocol, or an address without a host.
+  static absl::Status Check(const capture::CaptureAddress& address);
+  // Errors: those of Check; INVALID_ARGUMENT for a host that cannot be resolved.
   static absl::StatusOr<std::unique_ptr<VmcSink>> Create(const capture::CaptureAddress& address);
 
   absl::Status Start(const LeaderFormat& format) override;
