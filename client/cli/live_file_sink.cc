@@ -66,7 +66,9 @@ absl::StatusOr<std::vector<std::string>> LiveFileSink::Finish(const LiveInfo& in
   if (!written.ok()) return NotWritten(written.status());
   std::vector<std::string> lines;
   for (const std::filesystem::path& file : written->files) lines.push_back(file.string());
-  lines.insert(lines.end(), written->notes.begin(), written->notes.end());
+  for (const std::string& note : written->notes) {
+    lines.push_back(absl::StrCat(path_.filename().string(), ": ", note));
+  }
   return lines;
 }
 

@@ -29,7 +29,7 @@ std::string DescribeLosses(const live::LiveProgress& totals) {
     parts.push_back(absl::StrCat(Frames(totals.gap_frames, " missing leader"), " interpolated"));
   }
   if (totals.late_frames > 0) {
-    parts.push_back(absl::StrCat(Frames(totals.late_frames, " leader"), " too late, dropped"));
+    parts.push_back(absl::StrCat(Frames(totals.late_frames, " late leader"), " dropped"));
   }
   if (totals.skipped_frames > 0) {
     parts.push_back(absl::StrCat(Frames(totals.skipped_frames, " follower"),
