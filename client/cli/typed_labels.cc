@@ -2,10 +2,10 @@
 
 #include <optional>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
+#include "client/cli/motion_arguments.h"
 #include "client/cli/value_syntax.h"
 #include "model/base/text.h"
 
@@ -33,7 +33,7 @@ absl::StatusOr<live::LabelCommand> ParseTypedLabels(const std::string& line) {
 TypedLabels::TypedLabels(const LiveArguments& arguments, const ProgramEnvironment& environment,
                          live::LiveRun* run)
     : run_(run), err_(*environment.err) {
-  if (arguments.leader.empty() || !environment.in_is_terminal) return;
+  if (arguments.from == kStandardStream || !environment.in_is_terminal) return;
   if (!environment.in_descriptor.has_value()) return;
   lines_ = live::ReadLinesOf(*environment.in_descriptor);
   reader_ = std::thread([this] { Read(); });
