@@ -33,4 +33,9 @@ void Client::SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& 
   connection_->SynthesizeAsync(std::move(request), done);
 }
 
+absl::StatusOr<std::unique_ptr<LiveSession>> Client::StartLive(const LiveRequest& request,
+                                                               LiveCallbacks callbacks) const {
+  return connection_->StartLive(request, std::move(callbacks));
+}
+
 }  // namespace duet::client

@@ -6,6 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/connection.h"
+#include "client/live_session.h"
 #include "client/options.h"
 #include "client/request.h"
 #include "client/result.h"
@@ -53,6 +54,10 @@ class Client {
   // connection, so `done` should return quickly. Destroying the last copy of a Client waits for
   // calls in progress, so `done` must not hold a copy.
   void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) const;
+  // Begins a live session, in which the follower answers a leader who still moves
+  // (client/live_session.h). Blocks until the server has accepted it.
+  absl::StatusOr<std::unique_ptr<LiveSession>> StartLive(const LiveRequest& request,
+                                                         LiveCallbacks callbacks) const;
 
  private:
   std::shared_ptr<Connection> connection_;

@@ -2,10 +2,12 @@
 #define DUET_CLIENT_CONNECTION_H_
 
 #include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/live_session.h"
 #include "client/request.h"
 #include "client/result.h"
 
@@ -30,6 +32,11 @@ class Connection {
   // Makes one attempt. The default implementation blocks and calls `done` before it returns.
   virtual void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) {
     done(Synthesize(request, nullptr));
+  }
+  // The default implementation returns UNIMPLEMENTED, for connections without live sessions.
+  virtual absl::StatusOr<std::unique_ptr<LiveSession>> StartLive(const LiveRequest& /*request*/,
+                                                                 LiveCallbacks /*callbacks*/) {
+    return absl::UnimplementedError("this connection has no live sessions");
   }
 };
 

@@ -38,9 +38,8 @@ using FollowerStart = std::variant<motion::Vec3, std::vector<motion::Vec3>>;
 
 enum class Priority { kInteractive, kBulk };
 
-// What a caller chooses beyond model, leader, weights and start. Every field has a default.
-// docs/guides/add_a_request_field.md describes how to add a field.
-struct SynthesisOptions {
+// How a follower reacts, beyond model, leader, weights and start. Every field has a default.
+struct ReactionOptions {
   // Direction from the leader to the follower; y is ignored. Absent: towards follower_start.
   // Without follower_start, models trained to estimate the direction derive it from the leader's
   // motion; all others use the direction in which the leader's hips face in the first frame.
@@ -62,6 +61,13 @@ struct SynthesisOptions {
   // sliding, keeps joints within human ranges, and resolves overlaps with the leader. Absent: the
   // server's setting. By default, the server cleans up only the results of sampling models.
   std::optional<bool> clean_up;
+  // ID of the call in the server's log. Empty: the server generates one.
+  std::string request_id;
+};
+
+// What a caller chooses of the answer to a whole clip. Every field has a default.
+// docs/guides/add_a_request_field.md describes how to add a field.
+struct SynthesisOptions : ReactionOptions {
   // Whether the answer has joint rotations beside the positions, for engines
   // (SynthesisResult::rotations, FollowerChunk::rotations).
   bool rotations = false;
@@ -69,8 +75,6 @@ struct SynthesisOptions {
   Priority priority = Priority::kInteractive;
   // Maximum number of frames in one chunk of the reply. Absent: the server's default.
   std::optional<int> chunk_frames;
-  // ID of the call in the server's log. Empty: the server generates one.
-  std::string request_id;
 };
 
 // A request to synthesize a follower. The options are a base, so that they can be collected and

@@ -7,6 +7,7 @@
 #include "client/cli/convert_command.h"
 #include "client/cli/help_command.h"
 #include "client/cli/inspect_command.h"
+#include "client/cli/live_command.h"
 #include "client/cli/man_command.h"
 #include "client/cli/models_command.h"
 #include "client/cli/stdio_command.h"
@@ -17,9 +18,9 @@ namespace duet::client::cli {
 namespace {
 
 constexpr Command (*kCommands[])(CLI::App* program) = {
-    AddModelsCommand,  AddSynthesizeCommand, AddBatchCommand,      AddInspectCommand,
-    AddConvertCommand, AddViewCommand,       AddCompareCommand,    AddAdminCommand,
-    AddStdioCommand,   AddHelpCommand,       AddCompletionCommand, AddManCommand};
+    AddModelsCommand,  AddSynthesizeCommand, AddLiveCommand,    AddBatchCommand, AddInspectCommand,
+    AddConvertCommand, AddViewCommand,       AddCompareCommand, AddAdminCommand, AddStdioCommand,
+    AddHelpCommand,    AddCompletionCommand, AddManCommand};
 
 }  // namespace
 

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   setenv("GRPC_VERBOSITY", "NONE", 0);
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   return duet::client::cli::RunProgram(
-      arguments, {duet::client::Client::Create, &std::cout, &std::cerr, &std::cin,
-                  isatty(STDERR_FILENO) == 1, isatty(STDOUT_FILENO) == 1, Variable});
+      arguments,
+      {duet::client::Client::Create, &std::cout, &std::cerr, &std::cin, isatty(STDERR_FILENO) == 1,
+       isatty(STDOUT_FILENO) == 1, isatty(STDIN_FILENO) == 1, STDIN_FILENO, Variable});
 }

@@ -161,6 +161,19 @@ absl::StatusOr<WrittenFiles> WriteOutput(const std::filesystem::path& output,
   return WrittenFiles{{output}, {}};
 }
 
+absl::StatusOr<WrittenFiles> WriteFollower(const std::filesystem::path& output,
+                                           const Synthesis& synthesis) {
+  if (IsPage(output)) return WriteOutput(output, synthesis);
+  const motion::Provenance provenance = ProvenanceOf(synthesis);
+  WrittenFiles written;
+  absl::StatusOr<std::vector<std::filesystem::path>> files =
+      formats::WritePeople(output, *formats::FormatOf(output), {synthesis.result.pair.follower},
+                           synthesis.skeleton, WritingOf(synthesis, provenance, &written.notes));
+  if (!files.ok()) return files.status();
+  written.files = *std::move(files);
+  return written;
+}
+
 absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis) {
   if (!format.motion.has_value()) return RenderSynthesis(synthesis);
   return FormatPair(*format.motion, synthesis);

@@ -44,7 +44,10 @@ struct WrittenFiles {
 // Writes the pair as the extension says, whole files or none, and returns them (.bvh makes two).
 absl::StatusOr<WrittenFiles> WriteOutput(const std::filesystem::path& output,
                                          const Synthesis& synthesis);
-// The same as bytes, for a pipe.
+// Writes only the follower, as one file; a page shows both.
+absl::StatusOr<WrittenFiles> WriteFollower(const std::filesystem::path& output,
+                                           const Synthesis& synthesis);
+// The pair as bytes, for a pipe.
 absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis);
 
 // Writes all of it. ABORTED where it does not arrive: a full disk, a reader that went.

@@ -23,6 +23,9 @@ struct ProgramEnvironment {
   std::istream* in = nullptr;    // what `-` reads; null: no standard input
   bool err_is_terminal = false;  // then progress is updated in place and coloured
   bool out_is_terminal = false;  // then output is coloured
+  bool in_is_terminal = false;
+  // The file descriptor of `in`, for reading that a signal can interrupt. Absent in tests.
+  std::optional<int> in_descriptor = std::nullopt;
   Variables variables = [](const std::string&) { return std::nullopt; };
   std::function<absl::StatusOr<std::unique_ptr<AdminClient>>(const ClientOptions&)> connect_admin =
       AdminClient::Create;

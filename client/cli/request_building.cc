@@ -1,5 +1,6 @@
 #include "client/cli/request_building.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -8,10 +9,13 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/batch/level.h"
 #include "client/batch/text_values.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/value_syntax.h"
+#include "model/base/nearest.h"
+#include "model/base/text.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/vertical.h"
@@ -116,19 +120,51 @@ absl::Status CheckInputs(const SynthesizeArguments& arguments) {
       absl::StrCat("--follower-start: ", status.message(), "; expected a motion file or X,Y,Z"));
 }
 
-absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
-                                              const motion::Skeleton& skeleton,
-                                              std::vector<std::string>* notes, std::istream* in) {
-  absl::StatusOr<formats::ReadOptions> read_options = ToReadOptions(arguments.input, skeleton);
-  if (!read_options.ok()) return read_options.status();
-  formats::ReadOptions options = *std::move(read_options);
+absl::Status CheckLabels(const SynthesizeArguments& arguments, const ModelInfo& model) {
+  std::vector<ClassWeight> weights = arguments.weights;
+  for (const KeyframeArgument& keyframe : arguments.keyframes) {
+    weights.insert(weights.end(), keyframe.weights.begin(), keyframe.weights.end());
+  }
+  const std::vector<std::string>& known = model.interaction_classes;
+  for (const ClassWeight& weight : weights) {
+    const std::string& name = weight.interaction_class;
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(arguments.keyframes.empty() ? "--label" : "--keyframe",
+                     ": class: expected one of ", model.name, " (", absl::StrJoin(known, ", "),
+                     "), got ", base::Quoted(name), base::DidYouMean(name, known)));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<SynthesisRequest> BuildReaction(const SynthesizeArguments& arguments,
+                                               const motion::Skeleton& skeleton) {
+  const absl::StatusOr<formats::ReadOptions> options = ToReadOptions(arguments.input, skeleton);
+  if (!options.ok()) return options.status();
   SynthesisRequest request;
   static_cast<SynthesisOptions&>(request) = arguments;
   if (!arguments.follower_start.empty()) {
-    absl::StatusOr<FollowerStart> start = ReadStart(arguments, options);
+    absl::StatusOr<FollowerStart> start = ReadStart(arguments, *options);
     if (!start.ok()) return start.status();
     request.follower_start = *std::move(start);
   }
+  request.model = arguments.model;
+  request.weights = arguments.weights;
+  for (const KeyframeArgument& keyframe : arguments.keyframes) {
+    request.keyframes.push_back({keyframe.frame, keyframe.weights});
+  }
+  return request;
+}
+
+absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& arguments,
+                                              const motion::Skeleton& skeleton,
+                                              std::vector<std::string>* notes, std::istream* in) {
+  absl::StatusOr<SynthesisRequest> reaction = BuildReaction(arguments, skeleton);
+  if (!reaction.ok()) return reaction.status();
+  SynthesisRequest request = *std::move(reaction);
+  absl::StatusOr<formats::ReadOptions> read_options = ToReadOptions(arguments.input, skeleton);
+  if (!read_options.ok()) return read_options.status();
+  formats::ReadOptions options = *std::move(read_options);
   options.side = arguments.leader_side;
   options.notes = notes;
   const absl::StatusOr<MotionInput> input = MotionInput::Open(arguments.leader, in);
@@ -148,8 +184,6 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
     const absl::Status beat = CheckBeat(*arguments.beat, request.leader);
     if (!beat.ok()) return beat;
   }
-  request.model = arguments.model;
-  request.weights = arguments.weights;
   absl::StatusOr<std::vector<WeightKeyframe>> keyframes = ToKeyframes(arguments, request.leader);
   if (!keyframes.ok()) return keyframes.status();
   request.keyframes = *std::move(keyframes);

@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "client/cli/synthesize_arguments.h"
 #include "client/request.h"
+#include "client/result.h"
 #include "model/formats/follower_rig.h"
 #include "model/motion/skeleton.h"
 
@@ -16,6 +17,13 @@ namespace duet::client::cli {
 // Checks that the files of the flags exist and have a known format. Needs no skeleton, so that a
 // wrong name is rejected before the first call to the server.
 absl::Status CheckInputs(const SynthesizeArguments& arguments);
+
+// Rejects a class that the model does not know and suggests the nearest name.
+absl::Status CheckLabels(const SynthesizeArguments& arguments, const ModelInfo& model);
+
+// Builds a request without a leader, from flags without positions in beats.
+absl::StatusOr<SynthesisRequest> BuildReaction(const SynthesizeArguments& arguments,
+                                               const motion::Skeleton& skeleton);
 
 // Builds the request that the flags describe, with the motions of their files in the skeleton's
 // joints. `notes` receives the choices that were made while reading the leader. A leader `-` is

@@ -1,6 +1,5 @@
 #include "client/cli/synthesize_command.h"
 
-#include <algorithm>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -10,7 +9,6 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "client/cli/beat_report.h"
 #include "client/cli/input_flags.h"
 #include "client/cli/output.h"
@@ -19,8 +17,6 @@
 #include "client/cli/server_options.h"
 #include "client/cli/synthesize_flags.h"
 #include "client/model_skeleton.h"
-#include "model/base/nearest.h"
-#include "model/base/text.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
@@ -60,24 +56,6 @@ struct Job {
   std::optional<formats::FollowerRig> follower_rig;
   std::vector<std::string> notes;  // about how the leader was read
 };
-
-// Rejects a class that the model does not know and suggests the nearest name.
-absl::Status CheckLabels(const SynthesizeArguments& arguments, const ModelInfo& model) {
-  std::vector<ClassWeight> weights = arguments.weights;
-  for (const KeyframeArgument& keyframe : arguments.keyframes) {
-    weights.insert(weights.end(), keyframe.weights.begin(), keyframe.weights.end());
-  }
-  const std::vector<std::string>& known = model.interaction_classes;
-  for (const ClassWeight& weight : weights) {
-    const std::string& name = weight.interaction_class;
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat(arguments.keyframes.empty() ? "--label" : "--keyframe",
-                     ": class: expected one of ", model.name, " (", absl::StrJoin(known, ", "),
-                     "), got ", base::Quoted(name), base::DidYouMean(name, known)));
-  }
-  return absl::OkStatus();
-}
 
 absl::StatusOr<Job> PrepareJob(const SynthesizeArguments& arguments, const Client& client,
                                std::istream* in) {

@@ -12,6 +12,7 @@
 #include "client/cli/flags.h"
 #include "client/cli/input_flags.h"
 #include "client/cli/output.h"
+#include "client/cli/reaction_flags.h"
 #include "client/cli/server_flags.h"
 #include "client/cli/value_syntax.h"
 #include "model/formats/follower_rig.h"
@@ -22,10 +23,6 @@ namespace {
 const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::kInteractive},
                                                      {"bulk", Priority::kBulk}};
 
-// "auto" leaves the choice to the server.
-const std::map<std::string, std::optional<bool>> kCleanUps = {
-    {"auto", std::nullopt}, {"on", true}, {"off", false}};
-
 void AddLeaderFlags(CLI::App* app, SynthesizeArguments* arguments) {
   app->add_option("--leader", arguments->leader,
                   "Motion of the leader: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt; "
@@ -33,125 +30,50 @@ void AddLeaderFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->required()
       ->type_name("FILE")
       ->group(kInputGroup);
-  AddChoice<formats::Side>(
-      app, "--leader-side", kSides,
-      [arguments](formats::Side side) { arguments->leader_side = side; },
-      "The person who leads in a file with two people")
-      ->default_str(NameOf(kSides, arguments->leader_side))
-      ->group(kInputGroup);
-  AddInputFlags(app, &arguments->input);
-  AddParsed<batch::Level>(
-      app, "--level", batch::kLevelForm, ParseLevel,
-      [arguments](batch::Level level) { arguments->level = level; },
-      "Vertical of the leader's camera in metres, y up; auto: estimated from everybody in the "
-      "file, who are levelled only if the evidence is strong (duet inspect shows it)")
-      ->take_last()
-      ->default_str("auto")
-      ->group(kInputGroup);
-}
-
-void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  constexpr char kGroup[] = "Reaction";
-  AddParsed<uint64_t>(
-      app, "--seed", "SEED", ParseSeed, [arguments](uint64_t seed) { arguments->seed = seed; },
-      "Seed of a model that samples; the same seed gives the same answer")
-      ->take_last()
-      ->default_str(absl::StrCat(arguments->seed))
-      ->group(kGroup);
-  AddParsed<float>(
-      app, "--variety", "VARIETY", ParseVariety,
-      [arguments](float variety) { arguments->variety = variety; },
-      "Variety of such answers, from 0 (typical) over 1 (as varied as people) to 2")
-      ->take_last()
-      ->default_str(absl::StrCat(arguments->variety))
-      ->group(kGroup);
-  app->add_option("--candidates", arguments->candidates,
-                  "Number of samples that such a model draws for each window; the answer is the "
-                  "best of them. More take longer")
-      ->check(Undescribed(CLI::Range(1, 16)))
-      ->capture_default_str()
-      ->type_name("COUNT")
-      ->group(kGroup);
-  app->add_option("--samples", arguments->samples,
-                  "Number of answers, with the seeds SEED, SEED+1, ...; with several, each --out "
-                  "pair.html becomes pair.seed0.html and so on")
-      ->check(Undescribed(CLI::Range(1, 1000)))
-      ->capture_default_str()
-      ->type_name("COUNT")
-      ->group(kGroup);
+  AddReadingFlags(app, arguments);
 }
 
 void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  constexpr char kGroup[] = "Reaction";
-  CLI::Option* label =
-      AddParsed<ClassWeight>(
-          app, "--label", "CLASS[=WEIGHT]", ParseClassWeight, AppendTo(&arguments->weights),
-          "Weight of an interaction class, such as kick=1 or hug=-0.5; repeatable")
-          ->group(kGroup);
+  CLI::Option* label = AddLabelFlag(app, arguments);
   AddParsed<KeyframeArgument>(
       app, "--keyframe", "FRAME|BEATSb:CLASS[=WEIGHT],...", ParseKeyframe,
       AppendTo(&arguments->keyframes),
       "Weights from a frame on, for weights that change over time; with --beat also from a "
       "position in beats, where 0b is the first beat; repeatable")
       ->excludes(label)
-      ->group(kGroup);
+      ->group(kReactionGroup);
   AddParsed<motion::Beat>(
       app, "--beat", "BPM[,OFFSET]", ParseBeat,
       [arguments](motion::Beat beat) { arguments->beat = beat; },
       "Beat of the music, from 20 to 400 a minute, with the time of the first beat in seconds "
       "(default: 0): reports how far steps are from it, and adds a metronome to .html")
       ->take_last()
-      ->group(kGroup);
-  AddParsed<ModelChoice>(
-      app, "--model", "NAME[@VERSION|:LABEL]", ParseModelChoice,
-      [arguments](ModelChoice choice) { arguments->model = std::move(choice); },
-      "Model to use (default: the server's default model)")
-      ->take_last()
-      ->group(kGroup);
-  app->add_option("--follower-start", arguments->follower_start,
-                  "Start of the follower: a motion file (its first frame), or X,Y,Z of the root "
-                  "joint in metres, y up")
-      ->type_name("FILE|X,Y,Z")
-      ->group(kGroup);
-  AddChoice<formats::Side>(
-      app, "--follower-start-side", kSides,
-      [arguments](formats::Side side) { arguments->follower_start_side = side; },
-      absl::StrCat(
-          "The person in a --follower-start file with two people (default: in the leader's "
-          "file, the other person; else ",
-          NameOf(kSides, kDefaultSide), ")"))
-      ->group(kGroup);
-  AddParsed<motion::Vec3>(
-      app, "--partner-direction", "X,Y,Z", ParseDirection,
-      [arguments](motion::Vec3 direction) { arguments->partner_direction = direction; },
-      "Horizontal direction from the leader to the follower (default: towards --follower-start, "
-      "else the model's estimate from the leader)")
-      ->take_last()
-      ->group(kGroup);
+      ->group(kReactionGroup);
+  AddModelFlag(app, arguments);
+  AddStartFlags(app, arguments);
   AddSamplingFlags(app, arguments);
-  AddChoice<std::optional<bool>>(
-      app, "--clean-up", kCleanUps,
-      [arguments](std::optional<bool> clean_up) { arguments->clean_up = clean_up; },
-      "Correct the follower: upright, feet still, joints within human ranges, outside the leader; "
-      "auto: the server's default for the model")
-      ->default_str(NameOf(kCleanUps, arguments->clean_up))
-      ->group(kGroup);
+  app->add_option("--samples", arguments->samples,
+                  "Number of answers, with the seeds SEED, SEED+1, ...; with several, each --out "
+                  "pair.html becomes pair.seed0.html and so on")
+      ->check(Undescribed(CLI::Range(1, 1000)))
+      ->capture_default_str()
+      ->type_name("COUNT")
+      ->group(kReactionGroup);
+  AddCleanUpFlag(app, arguments);
   app->add_flag("--rotations", arguments->rotations,
                 "Write the follower's joint rotations beside its positions to .json, for engines")
-      ->group(kGroup);
+      ->group(kReactionGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->priority = priority; },
       "bulk calls yield to interactive calls, and wait if the server is full")
       ->default_str(NameOf(kPriorities, arguments->priority))
-      ->group(kGroup);
+      ->group(kReactionGroup);
   app->add_option("--chunk-frames", arguments->chunk_frames, "Frames in each chunk of the reply")
       ->check(Undescribed(CLI::Range(1, 100000)))
       ->type_name("FRAMES")
-      ->group(kGroup);
-  app->add_option("--request-id", arguments->request_id, "Name of the call in the server's log")
-      ->type_name("ID")
-      ->group(kGroup);
+      ->group(kReactionGroup);
+  AddRequestIdFlag(app, arguments);
 }
 
 void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/internal/grpc_status.h"
+#include "client/internal/live_session_impl.h"
 #include "client/internal/proto_conversion.h"
 
 namespace duet::client::internal {
@@ -151,6 +152,12 @@ void ConnectionImpl::SynthesizeAsync(SynthesisRequest request, const SynthesisCa
   const CallContext call{Deadline(), request.request_id};
   stub_->Start(call, *wire,
                std::make_unique<ReplyListener>(std::move(request), done, environment_.now));
+}
+
+absl::StatusOr<std::unique_ptr<LiveSession>> ConnectionImpl::StartLive(const LiveRequest& request,
+                                                                       LiveCallbacks callbacks) {
+  return LiveSessionImpl::Start(stub_, request, std::move(callbacks),
+                                {deadline_, wait_, server_address_, retry_, environment_});
 }
 
 absl::Status ConnectionImpl::RunStream(const CallContext& call,

@@ -25,6 +25,8 @@ class ConnectionImpl final : public Connection {
   absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request,
                                              const ChunkCallback& on_chunk) override;
   void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) override;
+  absl::StatusOr<std::unique_ptr<LiveSession>> StartLive(const LiveRequest& request,
+                                                         LiveCallbacks callbacks) override;
 
  private:
   RetryLimits Limits(const CallContext& call) const;

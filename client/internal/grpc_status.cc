@@ -41,6 +41,20 @@ absl::Status AppendMessage(const absl::Status& status, std::string_view more) {
       status, absl::Status(status.code(), absl::StrCat(status.message(), std::string(more))));
 }
 
+bool IsBrokenConnection(const absl::Status& status) {
+  switch (status.code()) {
+    case absl::StatusCode::kOk:
+    case absl::StatusCode::kUnavailable:
+      return true;
+    case absl::StatusCode::kInternal:
+    case absl::StatusCode::kUnknown:
+    case absl::StatusCode::kCancelled:
+      return ErrorReason(status).empty();
+    default:
+      return false;
+  }
+}
+
 absl::Status FromGrpc(const grpc::Status& status) {
   if (status.ok()) return absl::OkStatus();
   absl::Status result(static_cast<absl::StatusCode>(status.error_code()), status.error_message());

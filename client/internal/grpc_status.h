@@ -18,6 +18,10 @@ absl::Status AppendMessage(const absl::Status& status, std::string_view more);
 // Returns `to` with the payloads of `from`.
 absl::Status WithPayloadsOf(const absl::Status& from, absl::Status to);
 
+// Returns true if the connection failed, rather than the service. A proxy or a crashing server
+// resets streams with various codes; errors of the service itself always carry an ErrorInfo.
+bool IsBrokenConnection(const absl::Status& status);
+
 }  // namespace duet::client::internal
 
 #endif  // DUET_CLIENT_INTERNAL_GRPC_STATUS_H_

@@ -42,6 +42,26 @@ class GrpcResponseStream final : public ResponseStream {
   std::unique_ptr<grpc::ClientReader<v1::SynthesizeResponse>> reader_;
 };
 
+class GrpcLiveStream final : public LiveStream {
+ public:
+  GrpcLiveStream(v1::MotionSynthesis::Stub& stub, const CallContext& call,
+                 const std::string& authorization) {
+    Prepare(call, authorization, &context_);
+    stream_ = stub.SynthesizeLive(&context_);
+  }
+
+  bool Write(const v1::SynthesizeLiveRequest& request) override { return stream_->Write(request); }
+  bool WritesDone() override { return stream_->WritesDone(); }
+  bool Read(v1::SynthesizeLiveResponse* response) override { return stream_->Read(response); }
+  void Cancel() override { context_.TryCancel(); }
+  absl::Status Finish() override { return FromGrpc(stream_->Finish()); }
+
+ private:
+  grpc::ClientContext context_;
+  std::unique_ptr<grpc::ClientReaderWriter<v1::SynthesizeLiveRequest, v1::SynthesizeLiveResponse>>
+      stream_;
+};
+
 // A stream in progress. Each event of its completion queue makes it take one step.
 class ListenedStream {
  public:
@@ -177,6 +197,10 @@ class GrpcStub final : public Stub {
              std::unique_ptr<StreamListener> listener) override {
     std::call_once(first_start_, [this] { streams_ = std::make_unique<StreamThread>(); });
     streams_->Start(*stub_, call, authorization_, request, std::move(listener));
+  }
+
+  std::unique_ptr<LiveStream> SynthesizeLive(const CallContext& call) override {
+    return std::make_unique<GrpcLiveStream>(*stub_, call, authorization_);
   }
 
  private:

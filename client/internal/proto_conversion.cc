@@ -6,28 +6,10 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/types/span.h"
+#include "client/internal/reaction_conversion.h"
 
 namespace duet::client::internal {
 namespace {
-
-void AppendPositions(absl::Span<const motion::Vec3> points,
-                     google::protobuf::RepeatedField<float>* positions) {
-  positions->Reserve(positions->size() + static_cast<int>(points.size()) * 3);
-  for (const motion::Vec3& point : points) {
-    positions->AddAlreadyReserved(point.x);
-    positions->AddAlreadyReserved(point.y);
-    positions->AddAlreadyReserved(point.z);
-  }
-}
-
-void Fill(const std::vector<ClassWeight>& weights, v1::LabelVector* labels) {
-  for (const ClassWeight& weight : weights) {
-    v1::ClassWeight* out = labels->add_weights();
-    out->set_interaction_class(weight.interaction_class);
-    out->set_weight(weight.weight);
-  }
-}
 
 absl::Status FillLeader(const motion::Clip& clip, v1::Motion* leader) {
   if (clip.joint_names.empty()) {
@@ -59,45 +41,8 @@ absl::Status FillLeader(const motion::Clip& clip, v1::Motion* leader) {
   return absl::OkStatus();
 }
 
-absl::Status FillLabels(const SynthesisRequest& request, v1::SynthesizeRequest* out) {
-  if (!request.weights.empty()) Fill(request.weights, out->mutable_label_vector());
-  for (size_t i = 0; i < request.keyframes.size(); ++i) {
-    const WeightKeyframe& keyframe = request.keyframes[i];
-    if (keyframe.frame < 0) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("label_keyframes[", i, "].frame: expected 0 or more, got ", keyframe.frame));
-    }
-    v1::LabelKeyframe* added = out->add_label_keyframes();
-    added->set_frame(static_cast<uint32_t>(keyframe.frame));
-    Fill(keyframe.weights, added->mutable_label_vector());
-  }
-  return absl::OkStatus();
-}
-
-void Fill(const FollowerStart& start, v1::FollowerStart* out) {
-  if (const motion::Vec3* root = std::get_if<motion::Vec3>(&start)) {
-    out->mutable_root_position()->set_x(root->x);
-    out->mutable_root_position()->set_y(root->y);
-    out->mutable_root_position()->set_z(root->z);
-  } else {
-    AppendPositions(std::get<std::vector<motion::Vec3>>(start),
-                    out->mutable_pose()->mutable_positions());
-  }
-}
-
-void Fill(const motion::Vec3& direction, v1::Direction* out) {
-  out->set_x(direction.x);
-  out->set_y(direction.y);
-  out->set_z(direction.z);
-}
-
 v1::Priority ToProto(Priority priority) {
   return priority == Priority::kBulk ? v1::PRIORITY_BULK : v1::PRIORITY_INTERACTIVE;
-}
-
-v1::CleanUp ToProto(std::optional<bool> clean_up) {
-  if (!clean_up.has_value()) return v1::CLEAN_UP_UNSPECIFIED;
-  return *clean_up ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF;
 }
 
 bool HasJoint(const v1::Bone& bone, int joints) {
@@ -132,23 +77,12 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
   if (!model.ok()) return model.status();
   *out.mutable_model() = *std::move(model);
   absl::Status status = FillLeader(request.leader, out.mutable_leader());
-  if (status.ok()) status = FillLabels(request, &out);
+  if (status.ok()) status = FillLabels(request.weights, request.keyframes, &out);
+  if (status.ok()) status = FillReaction(request, &out);
   if (!status.ok()) return status;
   if (request.follower_start.has_value()) {
     Fill(*request.follower_start, out.mutable_follower_start());
   }
-  if (request.partner_direction.has_value()) {
-    Fill(*request.partner_direction, out.mutable_partner_direction());
-  }
-  if (request.up.has_value()) Fill(*request.up, out.mutable_up());
-  out.set_seed(request.seed);
-  out.set_variety(request.variety);
-  if (request.candidates < 1) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("candidates: expected 1 or more, got ", request.candidates));
-  }
-  out.set_candidates(static_cast<uint32_t>(request.candidates));
-  out.set_clean_up(ToProto(request.clean_up));
   out.set_reply_rotations(request.rotations);
   out.set_priority(ToProto(request.priority));
   if (request.chunk_frames.has_value()) {

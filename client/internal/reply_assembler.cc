@@ -20,22 +20,6 @@ absl::Status Malformed(const Parts&... parts) {
   return absl::InternalError(absl::StrCat("the server's reply is malformed: ", parts...));
 }
 
-// Returns true if the connection failed, rather than the service. A proxy or a crashing server
-// resets streams with various codes; errors of the service itself always carry an ErrorInfo.
-bool IsBrokenConnection(const absl::Status& status) {
-  switch (status.code()) {
-    case absl::StatusCode::kOk:
-    case absl::StatusCode::kUnavailable:
-      return true;
-    case absl::StatusCode::kInternal:
-    case absl::StatusCode::kUnknown:
-    case absl::StatusCode::kCancelled:
-      return ErrorReason(status).empty();
-    default:
-      return false;
-  }
-}
-
 absl::Status CheckGrade(const v1::MotionGrade& grade, int frames) {
   for (const float share :
        {grade.twisted(), grade.skating(), grade.leader_skating(), grade.overlapping()}) {

@@ -7,6 +7,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "duet/v1/live.pb.h"
 #include "duet/v1/synthesis.pb.h"
 
 namespace duet::client::internal {
@@ -39,6 +40,23 @@ class StreamListener {
   virtual void OnEnd(const absl::Status& status) = 0;
 };
 
+// A live session's stream in progress. Threads: one may write while another one reads; Cancel may
+// be called by any thread.
+class LiveStream {
+ public:
+  virtual ~LiveStream() = default;
+  // Blocks while the server does not read. Returns false if the stream has ended.
+  virtual bool Write(const v1::SynthesizeLiveRequest& request) = 0;
+  // Ends the leader's motion. No Write may follow.
+  virtual bool WritesDone() = 0;
+  // Returns false at the end of the stream, whether it succeeded or failed.
+  virtual bool Read(v1::SynthesizeLiveResponse* response) = 0;
+  // Ends the stream early; Read and Write return false soon after.
+  virtual void Cancel() = 0;
+  // Returns the final status. Call once, after Read returned false and the last Write returned.
+  virtual absl::Status Finish() = 0;
+};
+
 // The methods of duet.v1.MotionSynthesis: proto in, proto out, one attempt. Statuses carry their
 // google.rpc details as payloads (client/error_details.h).
 class Stub {
@@ -53,6 +71,7 @@ class Stub {
   // The asynchronous variant of Synthesize. Does not block.
   virtual void Start(const CallContext& context, const v1::SynthesizeRequest& request,
                      std::unique_ptr<StreamListener> listener) = 0;
+  virtual std::unique_ptr<LiveStream> SynthesizeLive(const CallContext& context) = 0;
 };
 
 }  // namespace duet::client::internal

@@ -20,6 +20,8 @@ OFFERS = {
     "duet synthesize --leader": {"--leader", "--leader-side"},
     "duet synthesize --leader-side ": {"left", "right"},
     "duet synthesize --priority b": {"bulk"},
+    "duet li": {"live"},
+    "duet live --clean-up o": {"on", "off"},
     "duet convert --out ki": {"kick.csv", "kick.json"},
     "duet inspect kick.c": {"kick.csv"},
     "duet batch me": {"merge"},

@@ -46,7 +46,7 @@ class FlagsTest(unittest.TestCase):
             self.assertEqual(result.stdout, f"{program} {version}\n")
 
     def test_flags_of_the_client_are_documented(self):
-        client = ("synthesize", "models", "inspect", "convert", "view", "compare", "man")
+        client = ("synthesize", "live", "models", "inspect", "convert", "view", "compare", "man")
         for document, commands in (("client", client), ("batch", ("batch",)), ("models", ("admin",))):
             documented = (tools.SOURCE / "docs" / f"{document}.md").read_text(encoding="utf-8")
             if document == "models":  # docs/client.md documents the common flags

@@ -15,6 +15,7 @@
 #include "absl/strings/numbers.h"
 #include "model/base/random.h"
 #include "tests/fuzz/batch_targets.h"
+#include "tests/fuzz/capture_targets.h"
 #include "tests/fuzz/checkpoint_targets.h"
 #include "tests/fuzz/motion_targets.h"
 #include "tests/fuzz/mutation.h"
@@ -64,12 +65,15 @@ constexpr Target kTargets[] = {
     {"npy", Npy},
     {"recipe_json", RecipeJson},
     {"recipe_text", RecipeText},
+    {"rokoko", Rokoko},
     {"safetensors", Safetensors},
     {"sbu_text", SbuText},
     {"server_config_json", ServerConfigJson},
     {"server_config_text", ServerConfigText},
     {"synthesis_fields", SynthesisFields},
     {"synthesis_request", SynthesisRequest},
+    {"vmc", Vmc},
+    {"xsens", Xsens},
 };
 
 fs::path FuzzFolder() {

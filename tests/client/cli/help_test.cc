@@ -120,17 +120,20 @@ TEST(CommandTable, ListsEveryCommandAndFlag) {
   const std::vector<CommandEntry> commands = ListCommands(line.app());
   std::vector<std::string> names;
   for (const CommandEntry& command : commands) names.push_back(command.name);
-  EXPECT_THAT(names, ElementsAre("", "models", "synthesize", "batch", "batch merge", "batch verify",
-                                 "inspect", "convert", "view", "compare", "admin", "admin models",
-                                 "admin reload", "admin load", "admin unload", "admin label",
-                                 "stdio", "help", "completion", "man"));
+  EXPECT_THAT(names,
+              ElementsAre("", "models", "synthesize", "live", "batch", "batch merge",
+                          "batch verify", "inspect", "convert", "view", "compare", "admin",
+                          "admin models", "admin reload", "admin load", "admin unload",
+                          "admin label", "stdio", "help", "completion", "man"));
   EXPECT_THAT(FlagOf(commands[2], "--leader-side").choices, ElementsAre("left", "right"));
   EXPECT_EQ(FlagOf(commands[2], "--leader-side").default_value, "left");
   EXPECT_TRUE(FlagOf(commands[2], "--leader").takes_file);
   EXPECT_TRUE(FlagOf(commands[2], "--leader").is_required);
   EXPECT_FALSE(FlagOf(commands[2], "--joint-map").takes_file);
   EXPECT_EQ(FlagOf(commands[2], "--quiet").form, "");
-  EXPECT_TRUE(FlagOf(commands[6], "files").is_argument);
+  EXPECT_THAT(FlagOf(commands[3], "--clean-up").choices, ElementsAre("auto", "off", "on"));
+  EXPECT_TRUE(FlagOf(commands[3], "--from").is_required);
+  EXPECT_TRUE(FlagOf(commands[7], "files").is_argument);
 }
 
 TEST(Completion, CompletesEveryFlag) {
@@ -164,7 +167,7 @@ TEST(ManualPage, EveryPageIsWrittenToAFolder) {
   }
   EXPECT_THAT(
       names, AllOf(Contains("duet.1"), Contains("duet-inspect.1"), Contains("duet-batch-merge.1")));
-  EXPECT_EQ(names.size(), 20u);
+  EXPECT_EQ(names.size(), 21u);
 }
 
 }  // namespace

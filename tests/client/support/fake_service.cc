@@ -22,6 +22,8 @@ FakeServer::~FakeServer() {
   server_->Shutdown(std::chrono::system_clock::now());
 }
 
+void FakeServer::Kill() { server_->Shutdown(std::chrono::system_clock::now()); }
+
 void FakeServer::SetServing(bool serving) {
   server_->GetHealthCheckService()->SetServingStatus(serving);
 }

@@ -56,6 +56,8 @@ class FakeServer {
   FakeService& service() { return service_; }
   // What the health service says of the server as a whole; true at first.
   void SetServing(bool serving);
+  // Ends the server at once, and with it all calls.
+  void Kill();
   std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
 
  private:

@@ -81,6 +81,12 @@ void FakeStub::Start(const client::internal::CallContext& context,
   listener->OnEnd(stream->Finish());
 }
 
+std::unique_ptr<client::internal::LiveStream> FakeStub::SynthesizeLive(
+    const client::internal::CallContext&) {
+  ADD_FAILURE() << "SynthesizeLive was not expected";
+  return nullptr;
+}
+
 client::internal::RetryEnvironment FakeTime::Environment() {
   return {[this] { return now; },
           [this](absl::Duration wait) {

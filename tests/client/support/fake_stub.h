@@ -32,6 +32,9 @@ class FakeStub : public client::internal::Stub {
 
   void Start(const client::internal::CallContext& context, const v1::SynthesizeRequest& request,
              std::unique_ptr<client::internal::StreamListener> listener) override;
+  // Live sessions are tested with a FakeServer.
+  std::unique_ptr<client::internal::LiveStream> SynthesizeLive(
+      const client::internal::CallContext& context) override;
 
   std::vector<absl::StatusOr<v1::ListModelsResponse>> list_models;
   std::vector<absl::StatusOr<v1::GetModelResponse>> get_model;

@@ -1,0 +1,134 @@
+#include "client/cli/live_ends.h"
+
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "client/capture/capture_address.h"
+#include "client/cli/live_file_sink.h"
+#include "client/cli/motion_input.h"
+#include "client/cli/output.h"
+#include "client/cli/request_building.h"
+#include "client/live/capture_source.h"
+#include "client/live/clip_source.h"
+#include "client/live/json_lines_sink.h"
+#include "client/live/json_lines_source.h"
+#include "client/live/line_reader.h"
+#include "client/live/vmc_sink.h"
+#include "model/formats/motion_file.h"
+
+namespace duet::client::cli {
+namespace {
+
+LiveRequest ToLiveRequest(SynthesisRequest request, const LiveArguments& arguments) {
+  LiveRequest live;
+  static_cast<ReactionOptions&>(live) = request;
+  live.model = std::move(request.model);
+  live.weights = std::move(request.weights);
+  live.keyframes = std::move(request.keyframes);
+  live.follower_start = std::move(request.follower_start);
+  live.delay_frames = arguments.delay_frames;
+  live.plan_frames = arguments.plan_frames;
+  return live;
+}
+
+absl::StatusOr<LiveInput> OpenFile(const LiveArguments& arguments,
+                                   const motion::Skeleton& skeleton) {
+  std::vector<std::string> notes;
+  absl::StatusOr<SynthesisRequest> request = BuildRequest(arguments, skeleton, &notes);
+  if (!request.ok()) return request.status();
+  LiveInput input;
+  input.source = std::make_unique<live::ClipSource>(std::move(request->leader), arguments.realtime,
+                                                    std::move(notes));
+  input.request = ToLiveRequest(*std::move(request), arguments);
+  return input;
+}
+
+absl::StatusOr<LiveInput> OpenStandardInput(const LiveArguments& arguments,
+                                            const motion::Skeleton& skeleton,
+                                            const ProgramEnvironment& environment) {
+  if (environment.in == nullptr) {
+    return absl::InvalidArgumentError("--from -: expected a standard input, got none");
+  }
+  absl::StatusOr<SynthesisRequest> request = BuildReaction(arguments, skeleton);
+  if (!request.ok()) return request.status();
+  absl::StatusOr<retargeting::JointOverrides> joints =
+      ReadJoints(arguments.input.joints, arguments.input.joint_table);
+  if (!joints.ok()) return joints.status();
+  LiveInput input;
+  input.source = std::make_unique<live::JsonLinesSource>(
+      environment.in_descriptor.has_value() ? live::ReadLinesOf(*environment.in_descriptor)
+                                            : live::ReadLinesOf(*environment.in),
+      live::JsonLinesOptions{skeleton, *std::move(joints), arguments.realtime});
+  input.request = ToLiveRequest(*std::move(request), arguments);
+  return input;
+}
+
+absl::StatusOr<LiveInput> OpenCapture(const LiveArguments& arguments,
+                                      const motion::Skeleton& skeleton,
+                                      std::function<void(const std::string&)> on_note) {
+  absl::StatusOr<SynthesisRequest> request = BuildReaction(arguments, skeleton);
+  if (!request.ok()) return request.status();
+  absl::StatusOr<retargeting::JointOverrides> joints =
+      ReadJoints(arguments.input.joints, arguments.input.joint_table);
+  if (!joints.ok()) return joints.status();
+  absl::StatusOr<capture::CaptureAddress> address = capture::ParseCaptureAddress(arguments.from);
+  if (!address.ok()) return address.status();
+  absl::StatusOr<std::unique_ptr<live::CaptureSource>> source =
+      live::CaptureSource::Create({*std::move(address), arguments.input.frame_rate_hz.value_or(0),
+                                   skeleton, *std::move(joints), std::move(on_note)});
+  if (!source.ok()) return source.status();
+  LiveInput input;
+  input.source = *std::move(source);
+  input.request = ToLiveRequest(*std::move(request), arguments);
+  return input;
+}
+
+}  // namespace
+
+bool IsFile(const std::string& value) {
+  return value != kStandardStream && !capture::IsCaptureAddress(value);
+}
+
+absl::Status CheckSource(const std::string& from) {
+  if (!capture::IsCaptureAddress(from)) return absl::OkStatus();
+  return capture::ParseCaptureAddress(from).status();
+}
+
+absl::StatusOr<LiveInput> OpenSource(const LiveArguments& arguments,
+                                     const motion::Skeleton& skeleton,
+                                     const ProgramEnvironment& environment,
+                                     std::function<void(const std::string&)> on_note) {
+  if (capture::IsCaptureAddress(arguments.from)) {
+    return OpenCapture(arguments, skeleton, std::move(on_note));
+  }
+  if (!IsFile(arguments.from)) return OpenStandardInput(arguments, skeleton, environment);
+  return OpenFile(arguments, skeleton);
+}
+
+absl::Status CheckSink(const std::string& to, const std::string& from) {
+  if (capture::IsCaptureAddress(to)) {
+    const absl::StatusOr<capture::CaptureAddress> address = capture::ParseCaptureAddress(to);
+    return address.ok() ? live::VmcSink::Check(*address) : address.status();
+  }
+  if (!IsFile(to)) return absl::OkStatus();
+  if (formats::FormatOf(to) == formats::Format::kSbuText) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(to, ": expected a format that can hold one person, got SBU text"));
+  }
+  return CheckOutput(to, IsFile(from) ? from : "");
+}
+
+absl::StatusOr<std::unique_ptr<live::FollowerSink>> OpenSink(
+    const std::string& to, const LiveArguments& arguments, const motion::Skeleton& skeleton,
+    const ProgramEnvironment& environment) {
+  if (capture::IsCaptureAddress(to)) {
+    const absl::StatusOr<capture::CaptureAddress> address = capture::ParseCaptureAddress(to);
+    if (!address.ok()) return address.status();
+    return live::VmcSink::Create(*address);
+  }
+  if (!IsFile(to)) return std::make_unique<live::JsonLinesSink>(*environment.out);
+  return std::make_unique<LiveFileSink>(to, arguments, skeleton);
+}
+
+}  // namespace duet::client::cli

@@ -1,0 +1,118 @@
+#include "client/cli/reaction_flags.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/flags.h"
+#include "client/cli/input_flags.h"
+#include "client/cli/value_syntax.h"
+
+namespace duet::client::cli {
+namespace {
+
+// "auto" leaves the choice to the server.
+const std::map<std::string, std::optional<bool>> kCleanUps = {
+    {"auto", std::nullopt}, {"on", true}, {"off", false}};
+
+}  // namespace
+
+void AddReadingFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  AddChoice<formats::Side>(
+      app, "--leader-side", kSides,
+      [arguments](formats::Side side) { arguments->leader_side = side; },
+      "The person who leads in a file with two people")
+      ->default_str(NameOf(kSides, arguments->leader_side))
+      ->group(kInputGroup);
+  AddInputFlags(app, &arguments->input);
+  AddParsed<batch::Level>(
+      app, "--level", batch::kLevelForm, ParseLevel,
+      [arguments](batch::Level level) { arguments->level = level; },
+      "Vertical of the leader's camera in metres, y up; auto: estimated from everybody in the "
+      "file, who are levelled only if the evidence is strong (duet inspect shows it)")
+      ->take_last()
+      ->default_str("auto")
+      ->group(kInputGroup);
+}
+
+CLI::Option* AddLabelFlag(CLI::App* app, SynthesizeArguments* arguments) {
+  return AddParsed<ClassWeight>(
+             app, "--label", "CLASS[=WEIGHT]", ParseClassWeight, AppendTo(&arguments->weights),
+             "Weight of an interaction class, such as kick=1 or hug=-0.5; repeatable")
+      ->group(kReactionGroup);
+}
+
+void AddModelFlag(CLI::App* app, SynthesizeArguments* arguments) {
+  AddParsed<ModelChoice>(
+      app, "--model", "NAME[@VERSION|:LABEL]", ParseModelChoice,
+      [arguments](ModelChoice choice) { arguments->model = std::move(choice); },
+      "Model to use (default: the server's default model)")
+      ->take_last()
+      ->group(kReactionGroup);
+}
+
+void AddStartFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  app->add_option("--follower-start", arguments->follower_start,
+                  "Start of the follower: a motion file (its first frame), or X,Y,Z of the root "
+                  "joint in metres, y up")
+      ->type_name("FILE|X,Y,Z")
+      ->group(kReactionGroup);
+  AddChoice<formats::Side>(
+      app, "--follower-start-side", kSides,
+      [arguments](formats::Side side) { arguments->follower_start_side = side; },
+      absl::StrCat(
+          "The person in a --follower-start file with two people (default: in the leader's "
+          "file, the other person; else ",
+          NameOf(kSides, kDefaultSide), ")"))
+      ->group(kReactionGroup);
+  AddParsed<motion::Vec3>(
+      app, "--partner-direction", "X,Y,Z", ParseDirection,
+      [arguments](motion::Vec3 direction) { arguments->partner_direction = direction; },
+      "Horizontal direction from the leader to the follower (default: towards --follower-start, "
+      "else the model's estimate from the leader)")
+      ->take_last()
+      ->group(kReactionGroup);
+}
+
+void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {
+  AddParsed<uint64_t>(
+      app, "--seed", "SEED", ParseSeed, [arguments](uint64_t seed) { arguments->seed = seed; },
+      "Seed of a model that samples; the same seed gives the same answer")
+      ->take_last()
+      ->default_str(absl::StrCat(arguments->seed))
+      ->group(kReactionGroup);
+  AddParsed<float>(
+      app, "--variety", "VARIETY", ParseVariety,
+      [arguments](float variety) { arguments->variety = variety; },
+      "Variety of such answers, from 0 (typical) over 1 (as varied as people) to 2")
+      ->take_last()
+      ->default_str(absl::StrCat(arguments->variety))
+      ->group(kReactionGroup);
+  app->add_option("--candidates", arguments->candidates,
+                  "Number of samples that such a model draws for each window; the answer is the "
+                  "best of them. More take longer")
+      ->check(Undescribed(CLI::Range(1, 16)))
+      ->capture_default_str()
+      ->type_name("COUNT")
+      ->group(kReactionGroup);
+}
+
+void AddCleanUpFlag(CLI::App* app, SynthesizeArguments* arguments) {
+  AddChoice<std::optional<bool>>(
+      app, "--clean-up", kCleanUps,
+      [arguments](std::optional<bool> clean_up) { arguments->clean_up = clean_up; },
+      "Correct the follower: upright, feet still, joints within human ranges, outside the leader; "
+      "auto: the server's default for the model")
+      ->default_str(NameOf(kCleanUps, arguments->clean_up))
+      ->group(kReactionGroup);
+}
+
+void AddRequestIdFlag(CLI::App* app, SynthesizeArguments* arguments) {
+  app->add_option("--request-id", arguments->request_id, "Name of the call in the server's log")
+      ->type_name("ID")
+      ->group(kReactionGroup);
+}
+
+}  // namespace duet::client::cli

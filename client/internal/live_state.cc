@@ -1,0 +1,383 @@
+#include "client/internal/live_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/internal/proto_conversion.h"
+#include "client/internal/reaction_conversion.h"
+
+namespace duet::client::internal {
+namespace {
+
+// Longer gaps are an error of the server, which would end the session.
+constexpr double kLongestGapSeconds = 2;
+// Leader frames that may wait for an answer: the longest outage that a session survives.
+constexpr double kLongestBacklogSeconds = 120;
+constexpr absl::Duration kLongestEase = absl::Seconds(10);
+
+template <typename... Parts>
+absl::Status Malformed(const Parts&... parts) {
+  return absl::InternalError(absl::StrCat("the server's answer is malformed: ", parts...));
+}
+
+std::vector<WeightKeyframe> FirstLabels(const LiveRequest& request) {
+  if (!request.keyframes.empty()) return request.keyframes;
+  return {{0, request.weights}};
+}
+
+v1::SynthesizeLiveRequest FramesMessage(int first_frame, int frame_count,
+                                        absl::Span<const motion::Vec3> positions,
+                                        double capture_seconds) {
+  v1::SynthesizeLiveRequest message;
+  v1::LeaderFrames* frames = message.mutable_frames();
+  frames->set_first_frame(static_cast<uint32_t>(first_frame));
+  frames->set_frame_count(static_cast<uint32_t>(frame_count));
+  AppendPositions(positions, frames->mutable_positions());
+  frames->set_capture_seconds(capture_seconds);
+  return message;
+}
+
+// Requires whole frames.
+motion::Poses ToPoses(const google::protobuf::RepeatedField<float>& values, int joints) {
+  std::vector<motion::Vec3> positions(static_cast<size_t>(values.size()) / 3);
+  const float* value = values.data();
+  for (motion::Vec3& position : positions) {
+    position = {value[0], value[1], value[2]};
+    value += 3;
+  }
+  return {joints, std::move(positions)};
+}
+
+bool AllFinite(const google::protobuf::RepeatedField<float>& values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](float value) { return std::isfinite(value); });
+}
+
+LiveInfo ToInfo(const v1::LiveHeader& header) {
+  LiveInfo info;
+  info.model_name = header.model_name();
+  info.model_version = static_cast<int>(header.model_version());
+  info.interaction_classes = {header.interaction_classes().begin(),
+                              header.interaction_classes().end()};
+  info.seed = header.seed();
+  info.variety = header.variety();
+  info.candidates = std::max(1, static_cast<int>(header.candidates()));
+  info.cleaned_up = header.clean_up() == v1::CLEAN_UP_ON;
+  info.delay_frames = static_cast<int>(header.delay_frames());
+  info.request_id = header.request_id();
+  return info;
+}
+
+std::optional<LiveNotice::Kind> ToKind(v1::LiveNoticeKind kind) {
+  switch (kind) {
+    case v1::LIVE_NOTICE_KIND_GAP_FILLED:
+      return LiveNotice::Kind::kGapFilled;
+    case v1::LIVE_NOTICE_KIND_LATE:
+      return LiveNotice::Kind::kLate;
+    case v1::LIVE_NOTICE_KIND_SKIPPED:
+      return LiveNotice::Kind::kSkipped;
+    case v1::LIVE_NOTICE_KIND_DRAINING:
+      return LiveNotice::Kind::kDraining;
+    default:  // of a newer server
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<LiveState> LiveState::Create(LiveRequest request) {
+  v1::LiveStart start;
+  absl::StatusOr<v1::ModelSelector> model = ToProto(request.model);
+  if (!model.ok()) return model.status();
+  *start.mutable_model() = *std::move(model);
+  if (request.joint_names.empty()) {
+    return absl::InvalidArgumentError("leader.joint_names: expected the model's joints, got none");
+  }
+  if (request.delay_frames < 0 || request.plan_frames < 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("delay_frames and plan_frames: expected 0 or more, got ", request.delay_frames,
+                     " and ", request.plan_frames));
+  }
+  absl::Status status = FillLabels(request.weights, request.keyframes, &start);
+  if (status.ok()) status = FillReaction(request, &start);
+  if (!status.ok()) return status;
+  v1::Motion* leader = start.mutable_leader();
+  leader->mutable_joint_names()->Assign(request.joint_names.begin(), request.joint_names.end());
+  leader->set_frame_rate_hz(request.frame_rate_hz);
+  leader->set_unit(v1::LENGTH_UNIT_METRES);
+  leader->set_up_axis(v1::UP_AXIS_Y_UP);
+  if (request.follower_start.has_value()) {
+    Fill(*request.follower_start, start.mutable_follower_start());
+  }
+  start.set_delay_frames(static_cast<uint32_t>(request.delay_frames));
+  start.set_plan_frames(static_cast<uint32_t>(request.plan_frames));
+  return LiveState(std::move(request), std::move(start));
+}
+
+LiveState::LiveState(LiveRequest request, v1::LiveStart start)
+    : request_(std::move(request)),
+      start_(std::move(start)),
+      leader_(static_cast<int>(request_.joint_names.size())),
+      follower_(static_cast<int>(request_.joint_names.size())),
+      labels_(FirstLabels(request_)) {}
+
+absl::Status LiveState::CheckIndices(int first_frame, size_t points) const {
+  const size_t joints = request_.joint_names.size();
+  if (points == 0 || points % joints != 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("frames.positions: expected a multiple of ", joints, " points, got ", points));
+  }
+  const auto frames = static_cast<int64_t>(points / joints);
+  if (first_frame < 0 || first_frame + frames > std::numeric_limits<int>::max()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("frames.first_frame: expected 0 or more, got ", first_frame));
+  }
+  const double rate = request_.frame_rate_hz;
+  const int missing = first_frame - leader_.end();
+  if (missing > 0 && (leader_.end() == 0 || missing > kLongestGapSeconds * rate)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "frames.first_frame: expected ", leader_.end(),
+        leader_.end() == 0 ? "" : absl::StrCat(" or at most ", kLongestGapSeconds, " s later"),
+        ", got ", first_frame));
+  }
+  if (static_cast<double>(first_frame + frames - delivered_) > kLongestBacklogSeconds * rate) {
+    return absl::ResourceExhaustedError(absl::StrCat(
+        "frames: expected at most ", kLongestBacklogSeconds, " s of frames without an answer, got ",
+        leader_.end() - delivered_, " frames; send them at their frame rate"));
+  }
+  return absl::OkStatus();
+}
+
+// The server does the same; here it is for the history of a resumed session.
+void LiveState::FillGap(int first_frame, absl::Span<const motion::Vec3> next,
+                        double capture_seconds) {
+  const int missing = first_frame - leader_.end();
+  if (missing <= 0) return;
+  const int last = leader_.end() - 1;
+  const std::vector<motion::Vec3> before(leader_[last].begin(), leader_[last].end());
+  const double before_seconds = capture_seconds_.back();
+  for (int i = 1; i <= missing; ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(missing + 1);
+    std::vector<motion::Vec3> pose(before.size());
+    for (size_t joint = 0; joint < pose.size(); ++joint) {
+      pose[joint] = before[joint] + (next[joint] - before[joint]) * share;
+    }
+    leader_.Append(pose);
+    capture_seconds_.push_back(before_seconds +
+                               (capture_seconds - before_seconds) * static_cast<double>(share));
+  }
+}
+
+absl::StatusOr<v1::SynthesizeLiveRequest> LiveState::AddFrames(
+    int first_frame, absl::Span<const motion::Vec3> positions, double capture_seconds) {
+  absl::Status status = CheckIndices(first_frame, positions.size());
+  if (!status.ok()) return status;
+  const size_t joints = request_.joint_names.size();
+  const int frames = static_cast<int>(positions.size() / joints);
+  FillGap(first_frame, positions.subspan(0, joints), capture_seconds);
+  const int known = std::clamp(leader_.end() - first_frame, 0, frames);
+  leader_.Append(positions.subspan(static_cast<size_t>(known) * joints));
+  capture_seconds_.resize(static_cast<size_t>(leader_.end() - capture_first_), capture_seconds);
+  summary_.leader_frames = leader_.end();
+  return FramesMessage(first_frame, frames, positions, capture_seconds);
+}
+
+absl::StatusOr<v1::SynthesizeLiveRequest> LiveState::ChangeLabels(
+    const std::vector<ClassWeight>& weights, absl::Duration ease) {
+  if (weights.empty()) {
+    return absl::InvalidArgumentError("label_change.label_vector: expected a weight, got none");
+  }
+  if (ease < absl::ZeroDuration() || ease > kLongestEase) {
+    return absl::InvalidArgumentError(absl::StrCat("label_change.ease: expected 0 to ",
+                                                   absl::FormatDuration(kLongestEase), ", got ",
+                                                   absl::FormatDuration(ease)));
+  }
+  const int frame = std::max(0, leader_.end() - request_.delay_frames);
+  const auto ease_frames =
+      static_cast<int>(std::floor(absl::ToDoubleSeconds(ease) * request_.frame_rate_hz + 1e-9));
+  labels_.Change(frame, weights, ease_frames);
+  labels_changed_ = true;
+  v1::SynthesizeLiveRequest message;
+  v1::LabelChange* change = message.mutable_label_change();
+  change->set_frame(static_cast<uint32_t>(frame));
+  Fill(weights, change->mutable_label_vector());
+  change->set_ease_frames(static_cast<uint32_t>(ease_frames));
+  return message;
+}
+
+v1::LiveStart LiveState::StartWithHistory(int answered, int first) {
+  v1::LiveStart start = start_;
+  if (info_.has_value()) {
+    // So that all frames come from the same version, cleaned up in the same way.
+    start.mutable_model()->set_name(info_->model_name);
+    start.mutable_model()->set_version(static_cast<uint32_t>(info_->model_version));
+    start.set_clean_up(info_->cleaned_up ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF);
+  }
+  if (labels_changed_ || start.label_keyframes_size() > 0) {
+    start.clear_label_vector();
+    start.clear_label_keyframes();
+    for (const WeightKeyframe& keyframe : labels_.From(first)) {
+      // Cannot fail: the frame is not negative.
+      Fill(keyframe, 0, start.add_label_keyframes()).IgnoreError();
+    }
+  }
+  if (answered == 0) return start;
+  start.clear_follower_start();
+  const int leaders = answered + request_.delay_frames - first;
+  start.mutable_leader()->set_frame_count(static_cast<uint32_t>(leaders));
+  AppendPositions(leader_.Frames(first, leaders), start.mutable_leader()->mutable_positions());
+  v1::LiveHistory* history = start.mutable_history();
+  history->set_first_frame(static_cast<uint32_t>(first));
+  history->set_follower_frame_count(static_cast<uint32_t>(answered - first));
+  AppendPositions(follower_.Frames(first, answered - first), history->mutable_follower_positions());
+  return start;
+}
+
+std::deque<v1::SynthesizeLiveRequest> LiveState::BeginStream() {
+  is_open_ = has_summary_ = false;
+  // At the end of the leader's motion, the server also answers frames within the delay, which the
+  // history may not hold.
+  const int answered = std::min(delivered_, std::max(0, leader_.end() - request_.delay_frames));
+  const int first = std::max(0, answered - history_frames_);
+  next_frame_ = answered;
+  std::deque<v1::SynthesizeLiveRequest> messages(1);
+  *messages[0].mutable_start() = StartWithHistory(answered, first);
+  const int sent = answered == 0 ? 0 : answered + request_.delay_frames;
+  for (int frame = sent; frame < leader_.end(); ++frame) {
+    messages.push_back(FramesMessage(
+        frame, 1, leader_[frame], capture_seconds_[static_cast<size_t>(frame - capture_first_)]));
+  }
+  return messages;
+}
+
+absl::StatusOr<LiveAnswer> LiveState::Accept(const v1::SynthesizeLiveResponse& response) {
+  if (has_summary_) return Malformed("a message after the summary");
+  if (response.has_header()) {
+    absl::Status status = AcceptHeader(response.header());
+    if (!status.ok()) return status;
+    return LiveAnswer{};
+  }
+  if (!is_open_) return Malformed("expected a header first, got another message");
+  switch (response.payload_case()) {
+    case v1::SynthesizeLiveResponse::kFrames:
+      return AcceptFrames(response.frames());
+    case v1::SynthesizeLiveResponse::kNotice:
+      return AcceptNotice(response.notice());
+    case v1::SynthesizeLiveResponse::kSummary: {
+      has_summary_ = true;
+      return LiveAnswer{};
+    }
+    default:
+      return Malformed("a message without a payload");
+  }
+}
+
+absl::Status LiveState::AcceptHeader(const v1::LiveHeader& header) {
+  if (is_open_) return Malformed("a second header");
+  if (!std::equal(header.joint_names().begin(), header.joint_names().end(),
+                  request_.joint_names.begin(), request_.joint_names.end())) {
+    return Malformed("header.joint_names differ from the leader's");
+  }
+  if (header.frame_rate_hz() != request_.frame_rate_hz) {
+    return Malformed("header.frame_rate_hz: expected the leader's ", request_.frame_rate_hz,
+                     ", got ", header.frame_rate_hz());
+  }
+  if (header.unit() != v1::LENGTH_UNIT_METRES || header.up_axis() != v1::UP_AXIS_Y_UP) {
+    return Malformed("header.unit and up_axis: expected metres, y up, got ",
+                     v1::LengthUnit_Name(header.unit()), ", ", v1::UpAxis_Name(header.up_axis()));
+  }
+  if (header.first_frame() != static_cast<uint32_t>(next_frame_)) {
+    return Malformed("header.first_frame: expected ", next_frame_, ", got ", header.first_frame());
+  }
+  if (header.delay_frames() != start_.delay_frames()) {
+    return Malformed("header.delay_frames: expected the request's ", start_.delay_frames(),
+                     ", got ", header.delay_frames());
+  }
+  is_open_ = true;
+  history_frames_ = static_cast<int>(std::min<uint32_t>(header.history_frames(), 100000));
+  if (info_.has_value()) {
+    ++summary_.resumed;
+  } else {
+    info_ = ToInfo(header);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status LiveState::CheckFrames(const v1::FollowerFrames& frames) const {
+  if (frames.first_frame() != static_cast<uint32_t>(next_frame_)) {
+    return Malformed("frames.first_frame: expected ", next_frame_, ", got ", frames.first_frame());
+  }
+  const int left = leader_.end() - next_frame_;
+  if (frames.frame_count() < 1 || frames.frame_count() > static_cast<uint32_t>(left)) {
+    return Malformed("frames.frame_count: expected 1 to ", left, ", got ", frames.frame_count());
+  }
+  const size_t width = request_.joint_names.size() * 3;
+  if (static_cast<size_t>(frames.positions_size()) != frames.frame_count() * width) {
+    return Malformed("frames.positions: expected ", frames.frame_count() * width, " values for ",
+                     frames.frame_count(), " frames, got ", frames.positions_size());
+  }
+  const auto planned = static_cast<size_t>(frames.plan_positions_size());
+  if (planned % width != 0 || planned / width > static_cast<size_t>(request_.plan_frames)) {
+    return Malformed("frames.plan_positions: expected at most ", request_.plan_frames,
+                     " frames of ", width, " values, got ", planned, " values");
+  }
+  if (!AllFinite(frames.positions()) || !AllFinite(frames.plan_positions())) {
+    return Malformed("frames.positions: expected finite values, got another from frame ",
+                     next_frame_, " on");
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<LiveAnswer> LiveState::AcceptFrames(const v1::FollowerFrames& frames) {
+  absl::Status status = CheckFrames(frames);
+  if (!status.ok()) return status;
+  const int joints = static_cast<int>(request_.joint_names.size());
+  LiveFrames out;
+  out.poses = ToPoses(frames.positions(), joints);
+  out.plan = ToPoses(frames.plan_positions(), joints);
+  out.leader_frame = static_cast<int>(frames.leader_frame());
+  out.capture_seconds = frames.capture_seconds();
+  out.server_time = absl::Seconds(frames.server_seconds());
+  next_frame_ += out.poses.frame_count();
+  // A resumed stream may begin with frames that the caller has.
+  const int known = out.poses.frame_count() - std::max(0, next_frame_ - delivered_);
+  out.poses.DropFront(std::min(known, out.poses.frame_count()));
+  if (out.poses.empty()) return LiveAnswer{};
+  out.first_frame = delivered_;
+  delivered_ = next_frame_;
+  summary_.follower_frames = delivered_;
+  follower_.Append(out.poses.all());
+  Prune();
+  return LiveAnswer{std::move(out), std::nullopt};
+}
+
+absl::StatusOr<LiveAnswer> LiveState::AcceptNotice(const v1::LiveNotice& notice) {
+  const std::optional<LiveNotice::Kind> kind = ToKind(notice.kind());
+  if (!kind.has_value()) return LiveAnswer{};
+  LiveNotice out;
+  out.kind = *kind;
+  out.frames = {static_cast<int>(notice.frames().first_frame()),
+                static_cast<int>(notice.frames().frame_count())};
+  const int count = std::max(0, out.frames.frame_count);
+  if (out.kind == LiveNotice::Kind::kGapFilled) summary_.gap_frames += count;
+  if (out.kind == LiveNotice::Kind::kLate) summary_.late_frames += count;
+  if (out.kind == LiveNotice::Kind::kSkipped) summary_.skipped_frames += count;
+  return LiveAnswer{std::nullopt, std::move(out)};
+}
+
+void LiveState::Prune() {
+  const int first = delivered_ - request_.delay_frames - history_frames_;
+  follower_.DropBefore(first);
+  leader_.DropBefore(first);
+  if (capture_first_ == leader_.first()) return;
+  capture_seconds_.erase(capture_seconds_.begin(),
+                         capture_seconds_.begin() + (leader_.first() - capture_first_));
+  capture_first_ = leader_.first();
+}
+
+}  // namespace duet::client::internal

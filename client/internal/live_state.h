@@ -1,0 +1,92 @@
+#ifndef DUET_CLIENT_INTERNAL_LIVE_STATE_H_
+#define DUET_CLIENT_INTERNAL_LIVE_STATE_H_
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+#include "client/internal/frame_log.h"
+#include "client/internal/label_track.h"
+#include "client/live_session.h"
+#include "duet/v1/live.pb.h"
+#include "model/motion/vec3.h"
+
+namespace duet::client::internal {
+
+// What an answer of the server means for the caller.
+struct LiveAnswer {
+  std::optional<LiveFrames> frames;
+  std::optional<LiveNotice> notice;
+};
+
+// The state of a live session over all its streams: what was sent, what arrived, and what a stream
+// has to begin with so that the session goes on where the last one broke.
+//
+// Threads: the owner locks. No method blocks.
+class LiveState {
+ public:
+  // Errors: INVALID_ARGUMENT, naming the field, for values that the proto cannot represent.
+  static absl::StatusOr<LiveState> Create(LiveRequest request);
+
+  // The leader moves on. Each returns the message that tells the server, if a stream is open.
+  absl::StatusOr<v1::SynthesizeLiveRequest> AddFrames(int first_frame,
+                                                      absl::Span<const motion::Vec3> positions,
+                                                      double capture_seconds);
+  absl::StatusOr<v1::SynthesizeLiveRequest> ChangeLabels(const std::vector<ClassWeight>& weights,
+                                                         absl::Duration ease);
+
+  // Begins a stream, and returns its first messages: the start with the history, then the leader's
+  // frames since.
+  std::deque<v1::SynthesizeLiveRequest> BeginStream();
+
+  // Reads a message of the stream. INTERNAL if it violates the contract.
+  absl::StatusOr<LiveAnswer> Accept(const v1::SynthesizeLiveResponse& response);
+
+  // Whether the server owes frames for what was added.
+  bool IsDue() const { return delivered_ < leader_.end() - request_.delay_frames; }
+  // Whether the session is over if the leader has ended: the stream has its summary and owes
+  // nothing, or every leader frame is answered.
+  bool IsComplete() const { return (has_summary_ && !IsDue()) || delivered_ >= leader_.end(); }
+  // Whether the stream has its header.
+  bool is_open() const { return is_open_; }
+  // Number of final frames so far.
+  int delivered() const { return delivered_; }
+  // Absent before the first header.
+  const std::optional<LiveInfo>& info() const { return info_; }
+  const LiveSummary& summary() const { return summary_; }
+
+ private:
+  LiveState(LiveRequest request, v1::LiveStart start);
+
+  absl::Status CheckIndices(int first_frame, size_t points) const;
+  void FillGap(int first_frame, absl::Span<const motion::Vec3> next, double capture_seconds);
+  v1::LiveStart StartWithHistory(int answered, int first);
+  absl::Status AcceptHeader(const v1::LiveHeader& header);
+  absl::Status CheckFrames(const v1::FollowerFrames& frames) const;
+  absl::StatusOr<LiveAnswer> AcceptFrames(const v1::FollowerFrames& frames);
+  absl::StatusOr<LiveAnswer> AcceptNotice(const v1::LiveNotice& notice);
+  void Prune();
+
+  LiveRequest request_;
+  v1::LiveStart start_;  // without history
+  FrameLog leader_, follower_;
+  std::vector<double> capture_seconds_;  // of the leader's frames from capture_first_ on
+  int capture_first_ = 0;
+  LabelTrack labels_;
+  bool labels_changed_ = false;
+  std::optional<LiveInfo> info_;
+  LiveSummary summary_;
+  int history_frames_ = 0;
+  int delivered_ = 0;  // follower frames that the caller has
+  // Of the stream in progress.
+  bool is_open_ = false, has_summary_ = false;
+  int next_frame_ = 0;
+};
+
+}  // namespace duet::client::internal
+
+#endif  // DUET_CLIENT_INTERNAL_LIVE_STATE_H_

@@ -1,0 +1,191 @@
+#include "client/live/json_lines_source.h"
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/time/clock.h"
+#include "model/base/strict_json.h"
+
+namespace duet::client::live {
+namespace {
+
+constexpr int kMaxDepth = 4;
+constexpr std::size_t kMaxJoints = 1000, kMaxNameBytes = 200;
+constexpr double kMaxFrameRate = 1000, kMaxPosition = 1e6, kMaxWeight = 1e3;
+constexpr double kLongestEaseSeconds = 10;
+constexpr int64_t kMaxFrame = int64_t{1} << 40;
+constexpr int64_t kMaxIndex = int64_t{1} << 30;
+
+std::optional<float> ParseMetresPerUnit(absl::string_view name) {
+  static const auto& units = *new std::map<std::string, float>{
+      {"m", 1.0F}, {"metres", 1.0F}, {"cm", 0.01F}, {"mm", 0.001F}, {"millimetres", 0.001F}};
+  const auto found = units.find(std::string(name));
+  return found == units.end() ? std::nullopt : std::optional<float>(found->second);
+}
+
+std::optional<motion::UpAxis> ParseUp(absl::string_view name) {
+  if (name == "y") return motion::UpAxis::kYUp;
+  if (name == "z") return motion::UpAxis::kZUp;
+  if (name == "-y") return motion::UpAxis::kYDown;
+  return motion::ParseUpAxis(name);
+}
+
+absl::StatusOr<motion::Vec3> ReadPoint(const nlohmann::json& row, std::size_t index) {
+  const auto is_coordinate = [](const nlohmann::json& value) {
+    return value.is_number() && std::abs(value.get<double>()) <= kMaxPosition;
+  };
+  if (row.is_array() && row.size() == 3 && is_coordinate(row[0]) && is_coordinate(row[1]) &&
+      is_coordinate(row[2])) {
+    return motion::Vec3{row[0].get<float>(), row[1].get<float>(), row[2].get<float>()};
+  }
+  return absl::InvalidArgumentError(absl::StrCat("positions[", index,
+                                                 "]: expected three numbers, got ",
+                                                 row.is_array() ? row.dump() : base::Shown(row)));
+}
+
+}  // namespace
+
+absl::Status JsonLinesSource::InLine(const absl::Status& status) const {
+  return absl::Status(status.code(),
+                      absl::StrCat("standard input: line ", line_, ": ", status.message()));
+}
+
+absl::StatusOr<std::optional<nlohmann::json>> JsonLinesSource::NextObject() {
+  for (;;) {
+    ++line_;
+    absl::StatusOr<std::optional<std::string>> line = lines_->Next();
+    if (!line.ok()) return InLine(line.status());
+    if (!line->has_value()) return std::nullopt;
+    const absl::string_view text = absl::StripAsciiWhitespace(**line);
+    if (text.empty()) continue;
+    absl::StatusOr<nlohmann::json> object =
+        base::ParseStrictJson(std::string_view(text.data(), text.size()), kMaxDepth);
+    if (!object.ok()) return InLine(object.status());
+    return *std::move(object);
+  }
+}
+
+absl::StatusOr<LeaderFormat> JsonLinesSource::Open() {
+  absl::StatusOr<std::optional<nlohmann::json>> object = NextObject();
+  if (!object.ok()) return object.status();
+  if (!object->has_value()) {
+    return absl::InvalidArgumentError(
+        "standard input: expected a line with \"joints\" and \"rate\", got no data");
+  }
+  absl::StatusOr<LeaderFormat> format = ReadFormat(**object);
+  if (!format.ok()) return InLine(format.status());
+  return format;
+}
+
+absl::StatusOr<LeaderFormat> JsonLinesSource::ReadFormat(const nlohmann::json& object) {
+  base::ObjectReader reader(object, "");
+  joint_names_ = reader.UniqueStrings("joints", kMaxJoints, kMaxNameBytes);
+  frame_rate_hz_ = reader.Number("rate", 1, kMaxFrameRate);
+  if (reader.Has("unit")) {
+    metres_per_unit_ = reader.Choice<float>("unit", ParseMetresPerUnit, "m, cm or mm");
+  }
+  if (reader.Has("up")) {
+    coordinates_.up_axis = reader.Choice<motion::UpAxis>("up", ParseUp, "y, z or -y");
+  }
+  absl::Status status = reader.Finish();
+  if (!status.ok()) return status;
+  return LeaderFormat{options_.skeleton.joint_names, frame_rate_hz_};
+}
+
+absl::StatusOr<std::optional<LeaderEvent>> JsonLinesSource::Next() {
+  absl::StatusOr<std::optional<nlohmann::json>> object = NextObject();
+  if (!object.ok()) return object.status();
+  if (!object->has_value()) return std::nullopt;
+  absl::StatusOr<LeaderEvent> event =
+      (*object)->contains("labels") ? ReadLabels(**object) : ReadFrame(**object);
+  if (!event.ok()) return InLine(event.status());
+  return *std::move(event);
+}
+
+absl::StatusOr<LeaderEvent> JsonLinesSource::ReadLabels(const nlohmann::json& object) {
+  base::ObjectReader reader(object, "");
+  LabelCommand command;
+  const nlohmann::json& labels = reader.Object("labels");
+  base::ObjectReader weights(labels, "labels");
+  for (const auto& [name, value] : labels.items()) {
+    command.weights.push_back(
+        {name, static_cast<float>(weights.Number(name, -kMaxWeight, kMaxWeight))});
+  }
+  if (reader.Has("ease")) {
+    command.ease = absl::Seconds(reader.Number("ease", 0, kLongestEaseSeconds));
+  }
+  absl::Status status = reader.Finish();
+  if (status.ok()) status = weights.Finish();
+  if (status.ok() && command.weights.empty()) {
+    status = absl::InvalidArgumentError("labels: expected at least one class, got none");
+  }
+  if (!status.ok()) return status;
+  return command;
+}
+
+absl::StatusOr<LeaderEvent> JsonLinesSource::ReadFrame(const nlohmann::json& object) {
+  base::ObjectReader reader(object, "");
+  const nlohmann::json& rows = reader.Array("positions", kMaxJoints);
+  std::optional<int64_t> number;
+  std::optional<double> time;
+  if (reader.Has("frame")) number = reader.Int("frame", 0, kMaxFrame);
+  if (reader.Has("t")) time = reader.Number("t", -1e12, 1e12);
+  absl::Status status = reader.Finish();
+  if (!status.ok()) return status;
+  absl::StatusOr<std::vector<motion::Vec3>> pose = ReadPositions(rows);
+  if (!pose.ok()) return pose.status();
+  if (!map_.has_value()) {
+    status = MapJoints(*pose);
+    if (!status.ok()) return status;
+    first_frame_ = number;
+    first_time_ = time;
+  }
+  int64_t index = next_index_;
+  if (number.has_value() && first_frame_.has_value()) {
+    index = *number - *first_frame_;
+  } else if (time.has_value() && first_time_.has_value()) {
+    index = std::llround((*time - *first_time_) * frame_rate_hz_);
+  }
+  if (index < 0 || index > kMaxIndex) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("frame: expected an index from the first frame's on, got frame ", index));
+  }
+  next_index_ = static_cast<int>(index) + 1;
+  return LeaderFrame{static_cast<int>(index), retargeting::ApplyJointMap(*map_, *pose),
+                     absl::Now()};
+}
+
+absl::StatusOr<std::vector<motion::Vec3>> JsonLinesSource::ReadPositions(
+    const nlohmann::json& rows) {
+  if (rows.size() != joint_names_.size()) {
+    return absl::InvalidArgumentError(absl::StrCat("positions: expected ", joint_names_.size(),
+                                                   " points, one for each joint, got ",
+                                                   rows.size()));
+  }
+  std::vector<motion::Vec3> pose;
+  for (std::size_t joint = 0; joint < rows.size(); ++joint) {
+    const absl::StatusOr<motion::Vec3> point = ReadPoint(rows[joint], joint);
+    if (!point.ok()) return point.status();
+    pose.push_back(motion::ToWorld(coordinates_, *point * metres_per_unit_));
+  }
+  return pose;
+}
+
+absl::Status JsonLinesSource::MapJoints(const std::vector<motion::Vec3>& pose) {
+  const motion::Poses first(static_cast<int>(pose.size()), pose);
+  absl::StatusOr<retargeting::JointMap> map =
+      retargeting::MapJoints("joints", joint_names_, first, options_.skeleton, options_.joints);
+  if (!map.ok()) return map.status();
+  map_ = *std::move(map);
+  return absl::OkStatus();
+}
+
+std::vector<std::string> JsonLinesSource::Notes() const {
+  return map_.has_value() ? map_->notes : std::vector<std::string>();
+}
+
+}  // namespace duet::client::live

@@ -1,0 +1,75 @@
+#ifndef DUET_CLIENT_LIVE_JSON_LINES_SOURCE_H_
+#define DUET_CLIENT_LIVE_JSON_LINES_SOURCE_H_
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/live/leader_source.h"
+#include "client/live/line_reader.h"
+#include "model/motion/coordinates.h"
+#include "model/motion/skeleton.h"
+#include "model/retargeting/joint_mapping.h"
+#include "nlohmann/json.hpp"
+
+namespace duet::client::live {
+
+// How JSON lines are read.
+struct JsonLinesOptions {
+  motion::Skeleton skeleton;  // the model's
+  retargeting::JointOverrides joints;
+  bool is_live = false;  // see LeaderSource::IsLive
+};
+
+// A leader as lines of JSON. The first line describes the frames:
+//
+//   {"joints": ["head", ...], "rate": 30, "unit": "m", "up": "y"}
+//
+// `unit` is m, cm or mm (default: m), `up` is y, z or -y (default: y). Joints are found by name, as
+// in motion files. Then one line for each frame, and one for each change of the labels:
+//
+//   {"positions": [[x, y, z], ...], "frame": 17, "t": 0.567}
+//   {"labels": {"hug": 1, "kick": -0.5}, "ease": 0.3}
+//
+// `frame` is the frame's index; without it, `t`, the time of capture in seconds, determines the
+// nearest index. Without both, frames are counted. The first frame is index 0, whatever its number
+// or time. `ease` is in seconds; the default is 0. Empty lines are ignored.
+//
+// Errors: INVALID_ARGUMENT naming the line, the field, the expected value and the actual one.
+class JsonLinesSource final : public LeaderSource {
+ public:
+  JsonLinesSource(std::unique_ptr<LineReader> lines, JsonLinesOptions options)
+      : lines_(std::move(lines)), options_(std::move(options)) {}
+
+  absl::StatusOr<LeaderFormat> Open() override;
+  absl::StatusOr<std::optional<LeaderEvent>> Next() override;
+  void Stop() override { lines_->Stop(); }
+  bool IsLive() const override { return options_.is_live; }
+  std::vector<std::string> Notes() const override;
+
+ private:
+  absl::StatusOr<std::optional<nlohmann::json>> NextObject();
+  absl::StatusOr<LeaderFormat> ReadFormat(const nlohmann::json& object);
+  absl::StatusOr<LeaderEvent> ReadFrame(const nlohmann::json& object);
+  absl::StatusOr<LeaderEvent> ReadLabels(const nlohmann::json& object);
+  absl::StatusOr<std::vector<motion::Vec3>> ReadPositions(const nlohmann::json& rows);
+  absl::Status MapJoints(const std::vector<motion::Vec3>& pose);
+  absl::Status InLine(const absl::Status& status) const;
+
+  std::unique_ptr<LineReader> lines_;
+  const JsonLinesOptions options_;
+  int line_ = 0;
+  std::vector<std::string> joint_names_;
+  double frame_rate_hz_ = 0;
+  float metres_per_unit_ = 1;
+  motion::Coordinates coordinates_;
+  std::optional<retargeting::JointMap> map_;  // after the first frame
+  int next_index_ = 0;
+  std::optional<int64_t> first_frame_;  // the first frame's number
+  std::optional<double> first_time_;    // and time
+};
+
+}  // namespace duet::client::live
+
+#endif  // DUET_CLIENT_LIVE_JSON_LINES_SOURCE_H_

@@ -1,0 +1,71 @@
+#ifndef DUET_CLIENT_LIVE_LEADER_SOURCE_H_
+#define DUET_CLIENT_LIVE_LEADER_SOURCE_H_
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "client/request.h"
+#include "model/motion/vec3.h"
+
+namespace duet::client::live {
+
+// The joints and the frame rate of all frames of a source.
+struct LeaderFormat {
+  std::vector<std::string> joint_names;  // every joint of the model, in any order
+  double frame_rate_hz = 0;
+};
+
+// One frame of the leader.
+struct LeaderFrame {
+  // Counted from 0, in steps of 1 / frame_rate_hz. Sources without indices of their own count their
+  // frames. Skipped indices mean lost frames. A repeated index is a frame that is too late.
+  int index = 0;
+  std::vector<motion::Vec3> positions;  // [joint_names]; metres, y up
+  // When it was captured, by this machine's clock. Latency is measured from this time.
+  absl::Time captured;
+};
+
+// New labels, from the next frame on.
+struct LabelCommand {
+  std::vector<ClassWeight> weights;
+  absl::Duration ease;  // until the new weights apply in full
+};
+
+using LeaderEvent = std::variant<LeaderFrame, LabelCommand>;
+
+// What `duet live --from` reads: a file played in time, standard input, or a capture protocol.
+//
+// Threads: Open and Next are called by one thread. Stop may be called by any thread, at any time
+//          and several times.
+class LeaderSource {
+ public:
+  virtual ~LeaderSource() = default;
+
+  // Blocks until the joints and the frame rate are known. Called once, before Next.
+  //
+  // Errors: INVALID_ARGUMENT for input that is malformed; UNAVAILABLE if Stop was called first;
+  //         those of the system, such as a port that is in use.
+  virtual absl::StatusOr<LeaderFormat> Open() = 0;
+
+  // Blocks until the next event. Absent: the leader has ended, or Stop was called.
+  virtual absl::StatusOr<std::optional<LeaderEvent>> Next() = 0;
+
+  // Makes Open and Next return soon. Called when the user interrupts the program.
+  virtual void Stop() = 0;
+
+  // Whether frames arrive at their own time, so that the session has to keep up. Otherwise, each
+  // frame is sent when the one before it was answered, and none is skipped.
+  virtual bool IsLive() const { return true; }
+
+  // What the user may want to know about how the source was read, one line each: joints that were
+  // chosen, duplicates, gaps. Called after the last Next. Default: nothing.
+  virtual std::vector<std::string> Notes() const { return {}; }
+};
+
+}  // namespace duet::client::live
+
+#endif  // DUET_CLIENT_LIVE_LEADER_SOURCE_H_

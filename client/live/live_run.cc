@@ -1,0 +1,167 @@
+#include "client/live/live_run.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "absl/time/clock.h"
+
+namespace duet::client::live {
+namespace {
+
+double SecondsOf(absl::Time time) { return absl::ToDoubleSeconds(time - absl::UnixEpoch()); }
+
+}  // namespace
+
+absl::StatusOr<LiveReport> LiveRun::Run(const Client& client, LiveRequest request) {
+  absl::StatusOr<LeaderFormat> format = source_->Open();
+  if (!format.ok()) return format.status();
+  request.joint_names = format->joint_names;
+  request.frame_rate_hz = report_.frame_rate_hz = format->frame_rate_hz;
+  delay_frames_ = request.delay_frames;
+  for (FollowerSink* sink : sinks_) {
+    absl::Status status = sink->Start(*format);
+    if (!status.ok()) return status;
+  }
+  absl::Status status = RunSession(client, request);
+  report_.notes = source_->Notes();
+  status.Update(FinishSinks());
+  if (!status.ok()) return status;
+  return report_;
+}
+
+absl::Status LiveRun::RunSession(const Client& client, const LiveRequest& request) {
+  LiveCallbacks callbacks;
+  callbacks.on_frames = [this](const LiveFrames& frames) { return Accept(frames); };
+  callbacks.on_notice = [this](const LiveNotice& notice) { Count(notice); };
+  callbacks.on_end = [this](const absl::Status&) { End(); };
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    begin_ = absl::Now();
+  }
+  absl::StatusOr<std::unique_ptr<LiveSession>> session =
+      client.StartLive(request, std::move(callbacks));
+  if (!session.ok()) return session.status();
+  report_.info = (*session)->info();
+  SetSession(session->get());
+  absl::Status followed = Follow(session->get());
+  SetSession(nullptr);
+  // The frames that are due arrive even if the source failed.
+  const absl::StatusOr<LiveSummary> summary = (*session)->Finish();
+  if (!summary.ok()) return summary.status();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  report_.totals = Progress(absl::InfinitePast());
+  report_.leader_frames = summary->leader_frames;
+  return followed;
+}
+
+void LiveRun::SetSession(LiveSession* session) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  session_ = session;
+}
+
+absl::Status LiveRun::ChangeLabels(const LabelCommand& labels) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (session_ != nullptr) return session_->ChangeLabels(labels.weights, labels.ease);
+  return absl::FailedPreconditionError("labels: expected a session, got none yet or none any more");
+}
+
+absl::Status LiveRun::Follow(LiveSession* session) {
+  for (;;) {
+    absl::StatusOr<std::optional<LeaderEvent>> event = source_->Next();
+    if (!event.ok()) return event.status();
+    if (!event->has_value()) return absl::OkStatus();
+    absl::Status status;
+    if (const auto* frame = std::get_if<LeaderFrame>(&**event)) {
+      status = Send(session, *frame);
+    } else {
+      const auto& labels = std::get<LabelCommand>(**event);
+      status = session->ChangeLabels(labels.weights, labels.ease);
+    }
+    if (!status.ok()) return status;
+    if (!source_->IsLive()) WaitForAnswers();
+  }
+}
+
+absl::Status LiveRun::Send(LiveSession* session, const LeaderFrame& frame) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    // Frames of a gap count from the capture of the frame that ends it.
+    while (sent_end_ <= frame.index) {
+      captured_.push_back(frame.captured);
+      ++sent_end_;
+    }
+    for (FollowerSink* sink : sinks_) sink->AcceptLeader(frame);
+  }
+  return session->Send(frame.index, frame.positions, SecondsOf(frame.captured));
+}
+
+void LiveRun::WaitForAnswers() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  answered_.wait(lock, [this] { return ended_ || answered_end_ >= sent_end_ - delay_frames_; });
+}
+
+// Finish returns why the session has ended.
+void LiveRun::End() {
+  source_->Stop();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ended_ = true;
+  answered_.notify_all();
+}
+
+absl::Status LiveRun::Accept(const LiveFrames& frames) {
+  const absl::Time now = absl::Now();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (int i = 0; i < frames.poses.frame_count(); ++i) {
+    // The last frames of a motion do not wait for later ones.
+    const int waited_for = std::min(frames.first_frame + i + delay_frames_, sent_end_ - 1);
+    while (first_captured_ < waited_for && captured_.size() > 1) {
+      captured_.pop_front();
+      ++first_captured_;
+    }
+    if (!captured_.empty()) latencies_.Add(now, now - captured_.front());
+  }
+  answered_end_ = frames.first_frame + frames.poses.frame_count();
+  absl::Status status;
+  for (FollowerSink* sink : sinks_) status.Update(sink->Accept(frames));
+  answered_.notify_all();
+  if (observer_.on_progress) observer_.on_progress(Progress(now - kLatencySpan));
+  return status;
+}
+
+void LiveRun::Count(const LiveNotice& notice) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  LiveProgress& totals = report_.totals;
+  if (notice.kind == LiveNotice::Kind::kGapFilled) totals.gap_frames += notice.frames.frame_count;
+  if (notice.kind == LiveNotice::Kind::kLate) totals.late_frames += notice.frames.frame_count;
+  if (notice.kind == LiveNotice::Kind::kSkipped) {
+    totals.skipped_frames += notice.frames.frame_count;
+  }
+  if (notice.kind == LiveNotice::Kind::kResumed) ++totals.resumed;
+  if (observer_.on_notice) observer_.on_notice(notice);
+}
+
+// Requires the lock.
+LiveProgress LiveRun::Progress(absl::Time since) const {
+  LiveProgress progress = report_.totals;
+  progress.time = absl::Now() - begin_;
+  progress.frames = answered_end_;
+  progress.latency = latencies_.Since(since);
+  return progress;
+}
+
+absl::Status LiveRun::FinishSinks() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  absl::Status status;
+  for (FollowerSink* sink : sinks_) {
+    const absl::StatusOr<std::vector<std::string>> written = sink->Finish(report_.info);
+    status.Update(written.status());
+    if (!written.ok()) continue;
+    report_.written.insert(report_.written.end(), written->begin(), written->end());
+  }
+  return status;
+}
+
+}  // namespace duet::client::live

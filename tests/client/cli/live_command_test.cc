@@ -1,0 +1,332 @@
+// duet live in one process: real files and streams, a server that mirrors the leader.
+#include "client/cli/live_command.h"
+
+#include <memory>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "client/cli/live_report.h"
+#include "client/cli/program.h"
+#include "client/cli/typed_labels.h"
+#include "client/internal/connect.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/formats/motion_file.h"
+#include "model/motion/skeleton.h"
+#include "nlohmann/json.hpp"
+#include "tests/client/support/fake_service.h"
+#include "tests/client/support/live_mirror.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client::cli {
+namespace {
+
+using nlohmann::json;
+using test::FakeServer;
+using test::IsOk;
+using test::LiveMirror;
+using test::LiveServerStream;
+using test::ReadTestFile;
+using test::StatusIs;
+using test::SwayingMotion;
+using test::SwayingPose;
+using test::TemporaryFolder;
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr int kFrames = 20;
+
+// Describes a model itself, and leaves live sessions to a real connection.
+class ModelConnection final : public Connection {
+ public:
+  explicit ModelConnection(std::shared_ptr<Connection> live) : live_(std::move(live)) {}
+  absl::StatusOr<std::vector<ModelInfo>> ListModels() override {
+    return absl::UnimplementedError("");
+  }
+  absl::StatusOr<ModelDetails> GetModel(const ModelChoice&) override {
+    ModelDetails details;
+    details.model.name = "dancer";
+    details.model.version = 3;
+    details.model.interaction_classes = {"kick", "hug"};
+    details.model.joint_names = motion::SbuSkeleton().joint_names;
+    details.model.bones = motion::SbuSkeleton().bones;
+    details.model.root_joint = "torso";
+    return details;
+  }
+  absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest&,
+                                             const ChunkCallback&) override {
+    return absl::UnimplementedError("");
+  }
+  absl::StatusOr<std::unique_ptr<LiveSession>> StartLive(const LiveRequest& request,
+                                                         LiveCallbacks callbacks) override {
+    return live_->StartLive(request, std::move(callbacks));
+  }
+
+ private:
+  const std::shared_ptr<Connection> live_;
+};
+
+class LiveCommandTest : public ::testing::Test {
+ protected:
+  LiveCommandTest() {
+    server_.service().on_live = [this](grpc::ServerContext* context, LiveServerStream* stream) {
+      return mirror_.Run(context, stream);
+    };
+    leader_.joint_names = motion::SbuSkeleton().joint_names;
+    leader_.frame_rate_hz = 15;
+    leader_.poses = SwayingMotion(kFrames, 15);
+    EXPECT_THAT(formats::WritePeople(folder_ / "leader.csv", formats::Format::kCsv, {leader_},
+                                     motion::SbuSkeleton()),
+                IsOk());
+  }
+
+  // duet live --label hug=0 ...
+  int Run(const std::vector<std::string>& more) {
+    out_.str("");
+    err_.str("");
+    std::vector<std::string> arguments = {"live", "--server", server_.address()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    if (!labelled_) arguments.insert(arguments.end(), {"--label", "hug=0"});
+    ProgramEnvironment environment{
+        [](const ClientOptions& options) -> absl::StatusOr<Client> {
+          absl::StatusOr<std::shared_ptr<Connection>> live = internal::Connect(options);
+          if (!live.ok()) return live.status();
+          return Client(std::make_shared<ModelConnection>(*std::move(live)));
+        },
+        &out_, &err_, &in_};
+    environment.err_is_terminal = terminal_;
+    return RunProgram(arguments, environment);
+  }
+
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string Leader() const { return Path("leader.csv"); }
+
+  // JSON lines of the leader's frames [0, frames).
+  std::string Lines(int frames) const {
+    std::string lines = json({{"joints", leader_.joint_names}, {"rate", 15}}).dump() + "\n";
+    for (int frame = 0; frame < frames; ++frame) {
+      json rows = json::array();
+      for (const motion::Vec3& point : leader_.poses[frame]) {
+        rows.push_back({point.x, point.y, point.z});
+      }
+      absl::StrAppend(&lines, json({{"positions", rows}}).dump(), "\n");
+    }
+    return lines;
+  }
+
+  motion::Clip ReadFollower(const std::string& name) const {
+    absl::StatusOr<motion::Clip> clip = formats::ReadLeader(folder_ / name);
+    EXPECT_THAT(clip, IsOk());
+    return clip.ok() ? *std::move(clip) : motion::Clip();
+  }
+
+  TemporaryFolder folder_;
+  motion::Clip leader_;
+  LiveMirror mirror_;  // outlives the server
+  FakeServer server_;
+  bool terminal_ = false, labelled_ = false;
+  std::istringstream in_;
+  std::ostringstream out_, err_;
+};
+
+TEST_F(LiveCommandTest, AFileIsAnsweredIntoFiles) {
+  ASSERT_EQ(Run({"--from", Leader(), "--to", Path("follower.csv"), "--to", Path("f.bvh"), "--to",
+                 Path("pair.html"), "--seed", "7", "--delay", "2"}),
+            0)
+      << err_.str();
+  const motion::Clip follower = ReadFollower("follower.csv");
+  ASSERT_EQ(follower.frame_count(), kFrames);
+  EXPECT_EQ(follower.frame_rate_hz, 15);
+  EXPECT_NEAR(follower.at(19, 3).x, leader_.at(19, 3).x + 1, 1e-4);
+  EXPECT_EQ(ReadFollower("f.bvh").frame_count(), kFrames);
+  EXPECT_THAT(ReadTestFile(folder_ / "pair.html"), HasSubstr("leader"));
+  EXPECT_THAT(out_.str(),
+              AllOf(HasSubstr("model     dancer@3, seed 7, delay 2 frames\n"),
+                    HasSubstr("20 follower frames at 15 Hz\n"), HasSubstr("latency   p50 "),
+                    HasSubstr(absl::StrCat("wrote     ", Path("follower.csv"), "\n")),
+                    Not(HasSubstr("losses")), Not(HasSubstr("resumed"))));
+  EXPECT_EQ(err_.str(), "");
+  const v1::LiveStart start = mirror_.starts().at(0);
+  EXPECT_EQ(start.seed(), 7u);
+  EXPECT_EQ(start.delay_frames(), 2u);
+  EXPECT_EQ(start.leader().frame_rate_hz(), 15);
+}
+
+TEST_F(LiveCommandTest, FlagsReachTheServer) {
+  labelled_ = true;
+  ASSERT_EQ(Run({"--from",
+                 Leader(),
+                 "--to",
+                 Path("follower.json"),
+                 "--keyframe",
+                 "0:hug=1",
+                 "--keyframe",
+                 "10:hug=0,kick=1",
+                 "--plan",
+                 "5",
+                 "--variety",
+                 "0.5",
+                 "--candidates",
+                 "3",
+                 "--clean-up",
+                 "off",
+                 "--follower-start",
+                 "0,1,2",
+                 "--partner-direction",
+                 "0,0,1",
+                 "--model",
+                 "dancer@3",
+                 "--json"}),
+            0)
+      << err_.str();
+  const v1::LiveStart start = mirror_.starts().at(0);
+  ASSERT_EQ(start.label_keyframes_size(), 2);
+  EXPECT_EQ(start.label_keyframes(1).frame(), 10u);
+  EXPECT_EQ(start.plan_frames(), 5u);
+  EXPECT_EQ(start.variety(), 0.5);
+  EXPECT_EQ(start.candidates(), 3u);
+  EXPECT_EQ(start.clean_up(), v1::CLEAN_UP_OFF);
+  EXPECT_EQ(start.follower_start().root_position().z(), 2);
+  EXPECT_EQ(start.partner_direction().z(), 1);
+  EXPECT_EQ(start.model().version(), 3u);
+  const json report = json::parse(out_.str());
+  EXPECT_EQ(report["follower_frames"], kFrames);
+  EXPECT_EQ(report["skipped_frames"], 0);
+  EXPECT_EQ(report["written"][0], Path("follower.json"));
+}
+
+TEST_F(LiveCommandTest, LinesInLinesOut) {
+  in_.str(Lines(kFrames));
+  ASSERT_EQ(Run({"--from", "-", "--to", "-"}), 0) << err_.str();
+  const std::vector<std::string> lines = absl::StrSplit(out_.str(), '\n', absl::SkipEmpty());
+  ASSERT_EQ(lines.size(), kFrames + 1u);
+  EXPECT_EQ(json::parse(lines[0])["rate"], 15);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const json line = json::parse(lines[static_cast<size_t>(frame) + 1]);
+    EXPECT_EQ(line["frame"], frame);
+    EXPECT_NEAR(line["positions"][2][0].get<float>(), leader_.at(frame, 2).x + 1, 1e-4);
+  }
+  EXPECT_THAT(err_.str(), HasSubstr("wrote     standard output: 20 frames\n"));
+}
+
+TEST_F(LiveCommandTest, AnInputThatEndsEarlyIsAnsweredSoFar) {
+  in_.str(Lines(7));
+  ASSERT_EQ(Run({"--from", "-", "--to", Path("follower.csv")}), 0) << err_.str();
+  EXPECT_EQ(ReadFollower("follower.csv").frame_count(), 7);
+  in_.clear();
+  in_.str(Lines(0));
+  ASSERT_EQ(Run({"--from", "-", "--to", Path("none.csv")}), 0) << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("none.csv: not written, no frames\n"));
+}
+
+TEST_F(LiveCommandTest, AMalformedLineIsNamedAndTheFramesBeforeItAreWritten) {
+  in_.str(Lines(7) + "{\"positions\": 3}\n");
+  EXPECT_EQ(Run({"--from", "-", "--to", Path("follower.csv")}), kExitBadInput);
+  EXPECT_THAT(err_.str(), HasSubstr("standard input: line 9: positions: expected"));
+  EXPECT_EQ(ReadFollower("follower.csv").frame_count(), 7);
+}
+
+TEST_F(LiveCommandTest, InterruptionsAreReported) {
+  mirror_.before_frame = [](int stream, int frame) {
+    return stream == 0 && frame == 8 ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "gone")
+                                     : grpc::Status::OK;
+  };
+  ASSERT_EQ(Run({"--from", Leader(), "--to", Path("follower.csv")}), 0) << err_.str();
+  EXPECT_EQ(ReadFollower("follower.csv").frame_count(), kFrames);
+  EXPECT_THAT(out_.str(), HasSubstr("resumed   1 time, without losing a frame\n"));
+  EXPECT_EQ(err_.str(),
+            "duet: the session's stream ended after 8 frames: gone; resuming\n"
+            "duet: resumed\n");
+  EXPECT_EQ(Run({"--from", Leader(), "--to", Path("follower.csv"), "--quiet"}), 0);
+  EXPECT_EQ(out_.str() + err_.str(), "");
+}
+
+TEST_F(LiveCommandTest, ATerminalShowsFiguresInPlace) {
+  terminal_ = true;
+  ASSERT_EQ(Run({"--from", Leader(), "--to", Path("follower.csv")}), 0) << err_.str();
+  EXPECT_THAT(err_.str(), AllOf(StartsWith("\r"), HasSubstr(" s, 1 frames, latency p50 "),
+                                HasSubstr("gaps 0, late 0, skipped 0"), HasSubstr("\x1b[K")));
+  ASSERT_EQ(Run({"--from", Leader(), "--to", Path("follower.csv"), "--quiet"}), 0);
+  EXPECT_EQ(err_.str(), "");
+}
+
+TEST_F(LiveCommandTest, UsageErrorsAreFoundBeforeTheServerIsCalled) {
+  const auto refuses = [this](std::vector<std::string> arguments, const std::string& error) {
+    EXPECT_EQ(Run(arguments), kExitUsage);
+    EXPECT_THAT(err_.str(), HasSubstr(error));
+  };
+  refuses({"--to", "-"}, "--from is required");
+  refuses({"--from", "-"}, "--to is required");
+  refuses({"--from", "-", "--to", "-", "--to", "-"}, "--to: expected - once, got it twice");
+  refuses({"--from", "-", "--to", "-", "--json"}, "--json: cannot be used with --to -");
+  refuses({"--from", "-", "--to", Path("a.mov")}, "extension");
+  refuses({"--from", "-", "--to", Path("a.txt")}, "expected a format that can hold one person");
+  refuses({"--from", Leader(), "--to", Leader()}, "would replace the file that is read");
+  refuses({"--from", "-", "--to", "-", "--delay", "11"}, "--delay");
+  refuses({"--from", "-", "--to", "-", "--plan", "31"}, "--plan");
+  labelled_ = true;
+  refuses({"--from", "-", "--to", "-"}, "--label or --keyframe is required");
+  refuses({"--from", "-", "--to", "-", "--keyframe", "8b:hug"},
+          "--keyframe: expected a frame, got the position 8b in beats");
+  EXPECT_THAT(mirror_.starts(), IsEmpty());
+}
+
+TEST_F(LiveCommandTest, InvalidInputsAreNamed) {
+  EXPECT_EQ(Run({"--from", Path("none.bvh"), "--to", "-"}), kExitBadInput);
+  EXPECT_THAT(err_.str(), HasSubstr("none.bvh: no such file"));
+  labelled_ = true;
+  EXPECT_EQ(Run({"--from", Leader(), "--to", "-", "--label", "hugg=1"}), kExitBadInput);
+  EXPECT_THAT(err_.str(), HasSubstr("hugg"));
+  EXPECT_THAT(mirror_.starts(), IsEmpty());
+}
+
+TEST(TypedLabelsTest, ParsesWeightsAndEase) {
+  const auto labels = ParseTypedLabels(" hug=1  kick=-0.5 ease=0.3 ");
+  ASSERT_THAT(labels, IsOk());
+  ASSERT_EQ(labels->weights.size(), 2u);
+  EXPECT_EQ(labels->weights[1].weight, -0.5F);
+  EXPECT_NEAR(absl::ToDoubleSeconds(labels->ease), 0.3, 1e-6);
+  EXPECT_EQ(ParseTypedLabels("hug")->weights[0].weight, 1);
+  for (const char* line : {"", "ease=1", "hug=much", "hug=1 ease=11", "hug=1 ease=-1"}) {
+    EXPECT_THAT(ParseTypedLabels(line),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected")))
+        << line;
+  }
+}
+
+TEST(LiveReportTest, LossesAreInWords) {
+  live::LiveReport report;
+  report.info.model_name = "sbu";
+  report.info.model_version = 2;
+  report.frame_rate_hz = 30;
+  report.totals.time = absl::Seconds(12.3);
+  report.totals.frames = 362;
+  report.totals.latency = {absl::Milliseconds(2), absl::Milliseconds(8)};
+  report.totals.gap_frames = 3;
+  report.totals.late_frames = 1;
+  report.totals.skipped_frames = 2;
+  report.totals.resumed = 2;
+  EXPECT_EQ(DescribeLive(report),
+            "model     sbu@2, seed 0, delay 0 frames\n"
+            "live      12.3 s, 362 follower frames at 30 Hz\n"
+            "latency   p50 2.0 ms, p99 8.0 ms\n"
+            "losses    3 missing leader frames interpolated; 1 late leader frame dropped; 2 "
+            "follower frames from an older plan, because the server could not keep up\n"
+            "resumed   2 times, without losing a frame\n");
+  EXPECT_EQ(ProgressLine(report.totals),
+            "12.3 s, 362 frames, latency p50 2.0 ms, p99 8.0 ms, gaps 3, late 1, skipped 2, "
+            "resumed 2");
+}
+
+}  // namespace
+}  // namespace duet::client::cli

@@ -1,0 +1,93 @@
+#include "client/live/line_reader.h"
+
+#include <unistd.h>
+
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::client::live {
+namespace {
+
+using test::StatusIs;
+
+using ::testing::HasSubstr;
+
+// A pipe whose ends a test closes.
+class Pipe {
+ public:
+  Pipe() { EXPECT_EQ(pipe(ends_), 0); }
+  ~Pipe() {
+    CloseWriter();
+    close(ends_[0]);
+  }
+  void Write(const std::string& text) const {
+    EXPECT_EQ(write(ends_[1], text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  void CloseWriter() {
+    if (ends_[1] >= 0) close(ends_[1]);
+    ends_[1] = -1;
+  }
+  int reader() const { return ends_[0]; }
+
+ private:
+  int ends_[2] = {-1, -1};
+};
+
+std::optional<std::string> NextOf(LineReader& lines) {
+  const auto line = lines.Next();
+  EXPECT_TRUE(line.ok()) << line.status();
+  return line.ok() ? *line : std::nullopt;
+}
+
+TEST(LineReaderTest, ReadsLinesAsTheyArrive) {
+  Pipe pipe;
+  const auto lines = ReadLinesOf(pipe.reader());
+  pipe.Write("one\ntw");
+  EXPECT_EQ(NextOf(*lines), "one");
+  pipe.Write("o\n\nthree");
+  EXPECT_EQ(NextOf(*lines), "two");
+  EXPECT_EQ(NextOf(*lines), "");
+  pipe.CloseWriter();
+  EXPECT_EQ(NextOf(*lines), "three");  // without an end
+  EXPECT_EQ(NextOf(*lines), std::nullopt);
+}
+
+TEST(LineReaderTest, StopInterruptsAReaderThatWaits) {
+  Pipe pipe;
+  const auto lines = ReadLinesOf(pipe.reader());
+  pipe.Write("half a li");
+  std::thread stopper([&lines] { lines->Stop(); });
+  EXPECT_EQ(NextOf(*lines), std::nullopt);
+  stopper.join();
+  EXPECT_EQ(NextOf(*lines), std::nullopt);
+}
+
+TEST(LineReaderTest, ALineIsNotEndless) {
+  std::istringstream in(std::string(kMaxLineBytes + 1, 'x') + "\n");
+  EXPECT_THAT(ReadLinesOf(in)->Next(),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("at most 1048576 bytes")));
+  Pipe pipe;
+  std::thread writer([&pipe] { pipe.Write(std::string(kMaxLineBytes + 100000, 'x')); });
+  EXPECT_THAT(ReadLinesOf(pipe.reader())->Next(),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("at most 1048576 bytes")));
+  std::string rest(200000, ' ');
+  while (read(pipe.reader(), rest.data(), rest.size()) == static_cast<ssize_t>(rest.size())) {
+  }
+  writer.join();
+}
+
+TEST(LineReaderTest, StreamsHaveLinesToo) {
+  std::istringstream in("one\ntwo");
+  const auto lines = ReadLinesOf(in);
+  EXPECT_EQ(NextOf(*lines), "one");
+  lines->Stop();
+  EXPECT_EQ(NextOf(*lines), std::nullopt);
+}
+
+}  // namespace
+}  // namespace duet::client::live

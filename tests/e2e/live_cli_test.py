@@ -1,0 +1,162 @@
+"""duet live from a file and from lines of JSON, with a real server."""
+
+import contextlib
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import tools
+
+FRAMES = 91  # of the sample
+
+
+def live(*arguments, lines=None):
+    """Runs duet live, with lines of JSON as standard input."""
+    text = None if lines is None else "".join(json.dumps(line) + "\n" for line in lines)
+    return tools.run(tools.PROGRAMS / "duet", "live", "--label", "hug=1", *arguments, input=text)
+
+
+def frames_of(text):
+    """The positions of each frame on standard output, in order and without gaps."""
+    head, *frames = [json.loads(line) for line in text.splitlines()]
+    assert head["rate"] == 30, head
+    assert [frame["frame"] for frame in frames] == list(range(len(frames)))
+    return [frame["positions"] for frame in frames]
+
+
+def difference(a, b):
+    """The largest one of two motions, in metres."""
+    return max(abs(x - y) for p, q in zip(a, b) for u, v in zip(p, q) for x, y in zip(u, v))
+
+
+class LiveCliTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = tools.Server()
+        cls.folder = tempfile.TemporaryDirectory()
+        pair = pathlib.Path(cls.folder.name) / "pair.json"
+        result = tools.duet("synthesize", "--server", cls.server.address, "--leader",
+                            tools.sample("hug"), "--label", "hug=1", "--quiet", "--out", pair)
+        assert result.returncode == 0, result.stderr
+        motion = json.loads(pair.read_text(encoding="utf-8"))
+        cls.leader = [{"joints": motion["joint_names"], "rate": 30, "unit": "m", "up": "y"}]
+        cls.leader += [{"positions": positions} for positions in motion["leader"]]
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+        cls.server.stop()
+
+    def run_live(self, *arguments, lines=None, code=0):
+        result = live("--server", self.server.address, *arguments, lines=lines)
+        self.assertEqual(result.returncode, code, result.stderr)
+        return result
+
+    def test_a_file_is_played_in_real_time(self):
+        follower = pathlib.Path(self.folder.name) / "follower.bvh"
+        page = follower.with_name("pair.html")
+        begin = time.monotonic()
+        result = self.run_live("--from", tools.sample("hug"), "--realtime", "--to", follower,
+                               "--to", page, "--json")
+        self.assertGreater(time.monotonic() - begin, (FRAMES - 1) / 30)
+        self.assertIn(f"Frames: {FRAMES}\n", follower.read_text(encoding="utf-8"))
+        self.assertIn("<html", page.read_text(encoding="utf-8"))
+        summary = json.loads(result.stdout)
+        self.assertEqual((summary["leader_frames"], summary["follower_frames"]), (FRAMES, FRAMES))
+        self.assertEqual(summary["gap_frames"] + summary["resumed"], 0)
+        self.assertGreater(summary["latency_ms"]["p50"], 0)
+        self.assertEqual(result.stderr, "")  # the line with figures is for terminals
+
+    def test_lines_of_json_are_answered_as_the_file_is(self):
+        ours = frames_of(self.run_live("--from", "-", "--to", "-", lines=self.leader).stdout)
+        theirs = frames_of(self.run_live("--from", tools.sample("hug"), "--to", "-").stdout)
+        self.assertEqual((len(ours), len(theirs)), (FRAMES, FRAMES))
+        self.assertLess(difference(ours, theirs), 0.001)
+
+    def test_labels_change_from_the_next_frame_on(self):
+        changed = list(self.leader)
+        changed.insert(51, {"labels": {"hug": 0, "kick": 1}, "ease": 0.3})
+        before = frames_of(self.run_live("--from", "-", "--to", "-", lines=self.leader).stdout)
+        after = frames_of(self.run_live("--from", "-", "--to", "-", lines=changed).stdout)
+        self.assertEqual(before[:50], after[:50])
+        self.assertGreater(difference(before[50:], after[50:]), 0.01)
+
+    def test_standard_input_may_end_early(self):
+        follower = pathlib.Path(self.folder.name) / "early.bvh"
+        self.run_live("--from", "-", "--to", follower, "--delay", "3", lines=self.leader[:21])
+        self.assertIn("Frames: 20\n", follower.read_text(encoding="utf-8"))
+        empty = follower.with_name("empty.bvh")
+        self.assertIn("no frames", self.run_live("--from", "-", "--to", empty,
+                                                 lines=self.leader[:1]).stdout)
+        self.assertFalse(empty.exists())
+        self.assertIn("got no data", self.run_live("--from", "-", "--to", empty, lines=[],
+                                                   code=42).stderr)
+
+    def test_a_malformed_line_is_named_and_the_frames_before_it_are_written(self):
+        lines = self.leader[:11] + [{"positions": [[0, 1]]}]
+        result = self.run_live("--from", "-", "--to", "-", lines=lines, code=42)
+        self.assertIn("line 12", result.stderr)
+        self.assertEqual(len(frames_of(result.stdout)), 10)
+
+    def test_an_interrupt_ends_the_motion_and_writes_the_files(self):
+        follower = pathlib.Path(self.folder.name) / "interrupted.json"
+        with subprocess.Popen(
+                [tools.PROGRAMS / "duet", "live", "--server", self.server.address, "--label",
+                 "hug=1", "--from", tools.sample("hug"), "--realtime", "--to", "-", "--to",
+                 follower], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            lines = [process.stdout.readline() for _ in range(11)]
+            process.send_signal(signal.SIGINT)
+            rest, errors = process.communicate(timeout=tools.RUN_SECONDS)
+        self.assertEqual(process.returncode, 0, errors)
+        count = len(frames_of("".join(lines) + rest))
+        self.assertTrue(10 <= count < FRAMES, count)
+        motion = json.loads(follower.read_text(encoding="utf-8"))
+        self.assertEqual(len(motion["leader"]), count)
+
+    def test_a_terminal_shows_figures_and_takes_labels(self):
+        terminal, end = os.openpty()
+        with subprocess.Popen(
+                [tools.PROGRAMS / "duet", "live", "--server", self.server.address, "--label",
+                 "hug=1", "--from", tools.sample("hug"), "--realtime", "--to", "-"],
+                stdin=end, stdout=subprocess.PIPE, stderr=end, text=True) as process:
+            os.close(end)
+            lines = [process.stdout.readline() for _ in range(31)]
+            os.write(terminal, b"hug=0 kick=1\nkick=hard\n")
+            ours = frames_of("".join(lines) + process.stdout.read())
+            process.wait(tools.RUN_SECONDS)
+        shown = b""
+        with contextlib.suppress(OSError):  # the other end is closed
+            while part := os.read(terminal, 65536):
+                shown += part
+        os.close(terminal)
+        self.assertEqual(process.returncode, 0, shown)
+        self.assertRegex(shown, rb"\r[0-9.]+ s, \d+ frames, latency p50 [0-9.]+ ms, p99")
+        self.assertIn(b"expected CLASS or CLASS=WEIGHT", shown)
+        theirs = frames_of(self.run_live("--from", tools.sample("hug"), "--to", "-").stdout)
+        self.assertGreater(difference(ours[60:], theirs[60:]), 0.01)
+
+    def test_another_server_takes_over(self):
+        first, second = tools.Server(), tools.Server()
+        try:
+            with subprocess.Popen(
+                    [tools.PROGRAMS / "duet", "live", "--server",
+                     f"ipv4:{first.address},{second.address}", "--label", "hug=1", "--from",
+                     tools.sample("hug"), "--realtime", "--to", "-"],
+                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                lines = [process.stdout.readline() for _ in range(31)]
+                first.kill()
+                rest, errors = process.communicate(timeout=tools.RUN_SECONDS)
+            self.assertEqual(process.returncode, 0, errors)
+            self.assertEqual(len(frames_of("".join(lines) + rest)), FRAMES)
+            self.assertIn("resumed", errors)
+        finally:
+            second.stop()
+
+
+if __name__ == "__main__":
+    tools.main()
