@@ -104,9 +104,13 @@ absl::Status LiveSession::AddFrames(const v1::LeaderFrames& frames) {
   absl::StatusOr<motion::Poses> poses = ReadLeaderFrames(frames, format_, parts_.limits);
   if (!poses.ok()) return poses.status();
   common::MutexLock lock(mutex_);
-  arrival_ = parts_.clock->Now();
-  capture_seconds_ = frames.capture_seconds();
-  return AddPoses(static_cast<int>(frames.first_frame()), *std::move(poses));
+  const int newest = live_.next_leader_frame();
+  absl::Status added = AddPoses(static_cast<int>(frames.first_frame()), *std::move(poses));
+  if (live_.next_leader_frame() > newest) {
+    arrival_ = parts_.clock->Now();
+    capture_seconds_ = frames.capture_seconds();
+  }
+  return added;
 }
 
 absl::Status LiveSession::AddPoses(int first, motion::Poses poses) {
@@ -158,7 +162,25 @@ absl::Status LiveSession::ChangeLabels(const v1::LabelChange& change) {
   const absl::StatusOr<ValidatedLabelChange> valid =
       ReadLabelChange(change, next, frame_rate_hz_, parts_.model->description(), parts_.limits);
   if (!valid.ok()) return valid.status();
+  absl::Status announced = Announce(valid->frame, next);
+  if (!announced.ok()) return announced;
   live_.ChangeLabels(valid->frame, valid->ease_frames, valid->weights);
+  return absl::OkStatus();
+}
+
+absl::Status LiveSession::Announce(int frame, int next) {
+  // As LabelTrack: later changes are dropped, earlier ones apply by now.
+  while (!announced_.empty() && announced_.back() >= frame) announced_.pop_back();
+  while (!announced_.empty() && announced_.front() <= next) announced_.pop_front();
+  if (announced_.size() >= static_cast<std::size_t>(parts_.limits.max_label_keyframes)) {
+    Violations violations("label_change.");
+    violations.Malformed("frame",
+                         absl::StrCat("at most ", parts_.limits.max_label_keyframes,
+                                      " changes of frames that are not final"),
+                         absl::StrCat(announced_.size() + 1));
+    return violations.ToStatus();
+  }
+  announced_.push_back(frame);
   return absl::OkStatus();
 }
 

@@ -5,6 +5,7 @@
 #include <grpcpp/support/byte_buffer.h>
 
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -90,6 +91,8 @@ class LiveSession final : public MessageSink, public std::enable_shared_from_thi
   absl::Status AddFrames(const v1::LeaderFrames& frames) DUET_EXCLUDES(mutex_);
   absl::Status AddPoses(int first, motion::Poses poses) DUET_REQUIRES(mutex_);
   absl::Status ChangeLabels(const v1::LabelChange& change) DUET_EXCLUDES(mutex_);
+  // Counts a change of labels from `frame` on, so that a caller cannot announce any number of them.
+  absl::Status Announce(int frame, int next) DUET_REQUIRES(mutex_);
   // Interpolates the `count` leader frames before `next`.
   void FillGap(int count, const motion::Poses& next) DUET_REQUIRES(mutex_);
   void Notify(v1::LiveNoticeKind kind, int first, int count) DUET_REQUIRES(mutex_);
@@ -116,6 +119,7 @@ class LiveSession final : public MessageSink, public std::enable_shared_from_thi
 
   mutable common::Mutex mutex_;
   engine::LiveSynthesis live_ DUET_GUARDED_BY(mutex_);
+  std::deque<int> announced_ DUET_GUARDED_BY(mutex_);  // frames of changes to come, ascending
   bool in_flight_ DUET_GUARDED_BY(mutex_) = false;
   int window_frames_ DUET_GUARDED_BY(mutex_) = 0;  // of the window in flight
   std::function<bool(double)> read_next_ DUET_GUARDED_BY(mutex_);

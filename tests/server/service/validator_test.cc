@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
     Keyframes, RefusalTest,
     ::testing::Values(
         Spoiled{"past_the_end", [](Request& r) { AddKeyframe(r, 40); }, "label_keyframes[0].frame",
-                "expected less than the leader's frame_count 40, got 40"},
+                "expected less than 40, the number of frames, got 40"},
         Spoiled{"backwards",
                 [](Request& r) {
                   AddKeyframe(r, 20);

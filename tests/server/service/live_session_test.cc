@@ -1,0 +1,563 @@
+#include "server/service/live_session.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/service/wire.h"
+#include "tests/server/support/fake_clock.h"
+#include "tests/server/support/puppet_scheduler.h"
+#include "tests/server/support/refusal.h"
+#include "tests/server/support/sample_request.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::server::service {
+namespace {
+
+using test::AddWeight;
+using test::Decode;
+using test::FakeClock;
+using test::FakeSynthesizer;
+using test::IsOk;
+using test::PuppetScheduler;
+using test::SampleRequest;
+using test::StatusIs;
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+using absl::StatusCode;
+using Message = v1::SynthesizeLiveRequest;
+
+constexpr int kRate = 15, kValues = 45;  // of a frame
+constexpr double kIdleSeconds = 7;
+
+// Frames [first, first + count) of a leader who sways.
+Message Frames(int first, int count) {
+  static const motion::Poses leader = test::SwayingMotion(400, kRate);
+  Message message;
+  v1::LeaderFrames& frames = *message.mutable_frames();
+  frames.set_first_frame(static_cast<uint32_t>(first));
+  frames.set_frame_count(static_cast<uint32_t>(count));
+  for (const motion::Vec3& position : leader.frames(first, count)) {
+    frames.add_positions(position.x);
+    frames.add_positions(position.y);
+    frames.add_positions(position.z);
+  }
+  frames.set_capture_seconds(first + count - 1);
+  return message;
+}
+
+Message LabelChange(float kick) {
+  Message message;
+  AddWeight(*message.mutable_label_change()->mutable_label_vector(), "kick", kick);
+  return message;
+}
+
+// What a caller took.
+struct Taken {
+  std::vector<v1::LiveNotice> notices;
+  std::vector<v1::FollowerFrames> parts;
+  std::vector<float> positions;
+  bool end = false;
+  absl::Status error;
+  bool window_failed = false;
+
+  int frames() const { return static_cast<int>(positions.size()) / kValues; }
+};
+
+class LiveSessionTest : public ::testing::Test {
+ protected:
+  void SetUp() override { admission_.SetState(Admission::State::kServing); }
+
+  void Create(uint32_t delay = 0, uint32_t plan = 0) {
+    v1::LiveStart start;
+    v1::SynthesizeRequest sample = SampleRequest(2);
+    *start.mutable_leader() = sample.leader();
+    start.mutable_leader()->clear_positions();
+    start.mutable_leader()->set_frame_count(0);
+    *start.mutable_label_vector() = sample.label_vector();
+    start.set_delay_frames(delay);
+    start.set_plan_frames(plan);
+    start.set_seed(3);
+    absl::StatusOr<ValidatedLiveStart> valid =
+        ValidateLiveStart(start, model_->description(), RequestLimits());
+    ASSERT_THAT(valid, IsOk());
+    LiveSessionParts parts;
+    parts.model = model_;
+    parts.scheduler = &scheduler_;
+    parts.admission = &admission_;
+    parts.clock = &clock_;
+    parts.client = "client";
+    parts.idle_seconds = kIdleSeconds;
+    parts.buffered_frames = buffered_frames_;
+    session_ = std::make_shared<LiveSession>(std::move(parts), *std::move(valid));
+    reads_ = 0;
+    session_->Start([this] { ++progress_; });
+    session_->Read([this](double timeout_seconds) {
+      EXPECT_EQ(timeout_seconds, kIdleSeconds);
+      ++reads_;
+      return true;
+    });
+  }
+
+  // Delivers the message that the session is reading.
+  void Send(const Message& message) { SendBytes(SerializeMessage(message)); }
+  void SendBytes(grpc::ByteBuffer bytes) {
+    ASSERT_GE(reads_, 1) << "the session reads no message";
+    --reads_;
+    session_->OnMessage(std::move(bytes));
+    EXPECT_LE(reads_, 1) << "one message at a time";
+  }
+  void End() {
+    ASSERT_GE(reads_, 1);
+    --reads_;
+    session_->OnEndOfMessages();
+  }
+
+  void RunAll() {
+    while (scheduler_.queued_windows() > 0) scheduler_.RunNext();
+  }
+
+  Taken Take() {
+    Taken taken;
+    for (;;) {
+      LiveOutput output = session_->Take();
+      if (output.notice) {
+        taken.notices.push_back(*output.notice);
+      } else if (output.frames) {
+        taken.positions.insert(taken.positions.end(), output.frames->positions().begin(),
+                               output.frames->positions().end());
+        EXPECT_EQ(output.frames->first_frame(), static_cast<uint32_t>(answered_));
+        answered_ += static_cast<int>(output.frames->frame_count());
+        taken.parts.push_back(*std::move(output.frames));
+      } else {
+        taken.end = output.end;
+        taken.error = output.error;
+        taken.window_failed = output.window_failed;
+        return taken;
+      }
+    }
+  }
+
+  FakeClock clock_;
+  Admission admission_{[] {
+    AdmissionLimits limits;
+    limits.max_calls = 4;
+    return limits;
+  }()};
+  PuppetScheduler scheduler_;
+  std::shared_ptr<FakeSynthesizer> model_ =
+      std::make_shared<FakeSynthesizer>(test::SamplingDescription());
+  int buffered_frames_ = 240;
+  std::atomic<int> reads_{0}, progress_{0};
+  int answered_ = 0;
+  std::shared_ptr<LiveSession> session_;
+};
+
+TEST_F(LiveSessionTest, EachFrameIsAnsweredInOrder) {
+  Create(/*delay=*/0, /*plan=*/2);
+  for (int t = 0; t < 60; ++t) {
+    Send(Frames(t, 1));
+    RunAll();
+    const Taken taken = Take();
+    ASSERT_THAT(taken.parts, SizeIs(1)) << t;
+    EXPECT_THAT(taken.notices, IsEmpty());
+    EXPECT_FALSE(taken.end);
+    EXPECT_EQ(taken.frames(), 1);
+    EXPECT_EQ(taken.parts[0].leader_frame(), static_cast<uint32_t>(t));
+    EXPECT_EQ(taken.parts[0].capture_seconds(), t);
+    EXPECT_EQ(taken.parts[0].plan_positions_size(), 2 * kValues);
+  }
+  End();
+  EXPECT_TRUE(Take().end);
+  EXPECT_GT(session_->stats().windows, 10);
+  EXPECT_EQ(session_->stats().queue_seconds, 0.25 * session_->stats().windows);
+  EXPECT_EQ(session_->stats().compute_seconds, 0.5 * session_->stats().windows);
+}
+
+TEST_F(LiveSessionTest, OneWindowAtATimeAndProgressIsReported) {
+  Create();
+  for (int t = 0; t < 9; ++t) Send(Frames(t, 1));
+  EXPECT_EQ(scheduler_.queued_windows(), 1);
+  EXPECT_EQ(scheduler_.NextPriority(), batching::Priority::kInteractive);
+  EXPECT_EQ(scheduler_.NextClient(), "client");
+  EXPECT_EQ(Take().frames(), 0);
+  const int before = progress_;
+  scheduler_.RunNext();
+  EXPECT_GT(progress_, before);
+  EXPECT_GT(Take().frames(), 0);
+}
+
+TEST_F(LiveSessionTest, FramesThatWaitForTheDelayAreAnsweredAtTheEnd) {
+  Create(/*delay=*/3);
+  Send(Frames(0, 10));
+  RunAll();
+  EXPECT_EQ(Take().frames(), 7);
+  End();
+  RunAll();
+  const Taken rest = Take();
+  EXPECT_EQ(answered_, 10);
+  EXPECT_TRUE(rest.end);
+}
+
+TEST_F(LiveSessionTest, AnEmptySessionEnds) {
+  Create();
+  EXPECT_FALSE(Take().end);
+  End();
+  EXPECT_TRUE(Take().end);
+  EXPECT_EQ(reads_, 0) << "nothing is read after the last message";
+}
+
+TEST_F(LiveSessionTest, MissingFramesAreInterpolated) {
+  Message filled = Frames(9, 32);
+  for (int t = 0; t < 2; ++t) {
+    const Message before = Frames(8, 1), after = Frames(11, 1);
+    const float at = static_cast<float>(t + 1) / 3;
+    for (int i = 0; i < kValues; ++i) {
+      const float a = before.frames().positions(i), b = after.frames().positions(i);
+      filled.mutable_frames()->set_positions(t * kValues + i, a + (b - a) * at);
+    }
+  }
+  std::vector<Taken> both;
+  for (const bool gap : {false, true}) {
+    Create();
+    answered_ = 0;
+    Send(Frames(0, 9));
+    RunAll();
+    Send(gap ? Frames(11, 30) : filled);
+    RunAll();
+    both.push_back(Take());
+    EXPECT_EQ(both.back().frames(), 41);
+    EXPECT_EQ(session_->stats().gap_frames, gap ? 2 : 0);
+  }
+  EXPECT_EQ(both[0].frames(), both[1].frames());
+  for (int i = 0; i < 41 * kValues; ++i) {
+    ASSERT_NEAR(both[0].positions[i], both[1].positions[i], 1e-4) << i;
+  }
+  const auto told = std::find_if(
+      both[1].notices.begin(), both[1].notices.end(), [](const v1::LiveNotice& notice) {
+        return notice.kind() == v1::LIVE_NOTICE_KIND_GAP_FILLED;
+      });
+  ASSERT_NE(told, both[1].notices.end());
+  const v1::LiveNotice& notice = *told;
+  EXPECT_EQ(notice.frames().first_frame(), 9);
+  EXPECT_EQ(notice.frames().frame_count(), 2);
+}
+
+TEST_F(LiveSessionTest, AGapBeforeTheFirstFrameHoldsIt) {
+  Create();
+  Send(Frames(4, 1));
+  RunAll();
+  EXPECT_EQ(Take().frames(), 5);
+  EXPECT_EQ(session_->stats().gap_frames, 4);
+}
+
+TEST_F(LiveSessionTest, TooLongAGapEndsTheSessionAfterItsFrames) {
+  Create();
+  Send(Frames(0, 3));
+  RunAll();
+  Send(Frames(3 + 2 * kRate + 1, 1));
+  const Taken taken = Take();
+  EXPECT_EQ(taken.frames(), 3);
+  EXPECT_THAT(Decode(taken.error).Fields(), ElementsAre("frames.first_frame"));
+  EXPECT_FALSE(taken.window_failed);
+  EXPECT_EQ(reads_, 0);
+}
+
+TEST_F(LiveSessionTest, TheLongestGapIsFilled) {
+  Create();
+  Send(Frames(0, 3));
+  RunAll();
+  Send(Frames(3 + 2 * kRate, 1));
+  RunAll();
+  const Taken taken = Take();
+  EXPECT_THAT(taken.error, IsOk());
+  EXPECT_EQ(taken.frames(), 3 + 2 * kRate + 1);
+}
+
+TEST_F(LiveSessionTest, LateFramesAreDroppedAndAreNotTheNewest) {
+  Create();
+  Send(Frames(0, 10));
+  clock_.Advance(std::chrono::milliseconds(500));
+  Send(Frames(2, 3));
+  RunAll();
+  LiveOutput output = session_->Take();
+  ASSERT_TRUE(output.notice.has_value());
+  EXPECT_EQ(output.notice->kind(), v1::LIVE_NOTICE_KIND_LATE);
+  EXPECT_EQ(output.notice->frames().first_frame(), 2);
+  EXPECT_EQ(output.notice->frames().frame_count(), 3);
+  while ((output = session_->Take()).notice) {
+  }
+  ASSERT_TRUE(output.frames.has_value());
+  EXPECT_EQ(output.frames->frame_count(), 10);
+  EXPECT_EQ(output.frames->leader_frame(), 9);
+  EXPECT_EQ(output.frames->capture_seconds(), 9);
+  EXPECT_EQ(output.arrival, clock_.Now() - std::chrono::milliseconds(500));
+  EXPECT_EQ(session_->stats().late_frames, 3);
+}
+
+TEST_F(LiveSessionTest, AMessageMayBePartlyLate) {
+  Create();
+  Send(Frames(0, 10));
+  Send(Frames(8, 5));
+  RunAll();
+  EXPECT_EQ(Take().frames(), 13);
+  EXPECT_EQ(session_->stats().late_frames, 2);
+}
+
+TEST_F(LiveSessionTest, SkippedEvaluationsAreTold) {
+  Create();
+  Send(Frames(0, 1));
+  for (int t = 1; t < 16; ++t) Send(Frames(t, 1));
+  RunAll();
+  const Taken taken = Take();
+  EXPECT_EQ(taken.frames(), 16);
+  int skipped = 0;
+  for (const v1::LiveNotice& notice : taken.notices) {
+    EXPECT_EQ(notice.kind(), v1::LIVE_NOTICE_KIND_SKIPPED);
+    skipped += static_cast<int>(notice.frames().frame_count());
+    EXPECT_LE(notice.frames().first_frame() + notice.frames().frame_count(), 16);
+  }
+  EXPECT_GT(skipped, 0);
+  EXPECT_EQ(session_->stats().skipped_frames, skipped);
+}
+
+TEST_F(LiveSessionTest, AFailedWindowEndsTheSession) {
+  Create();
+  Send(Frames(0, 1));
+  RunAll();
+  Send(Frames(1, 10));
+  scheduler_.FailNext(absl::InternalError("of the engine"));
+  const Taken taken = Take();
+  EXPECT_GE(taken.frames(), 1) << "what was final before";
+  EXPECT_THAT(taken.error, StatusIs(StatusCode::kInternal, "of the engine"));
+  EXPECT_TRUE(taken.window_failed);
+  EXPECT_EQ(scheduler_.queued_windows(), 0);
+}
+
+TEST_F(LiveSessionTest, AWindowThatIsNotFiniteEndsTheSession) {
+  model_->answer = [](motion::Vec3, absl::Span<const float>) {
+    return motion::Vec3{std::numeric_limits<float>::quiet_NaN(), 0, 0};
+  };
+  Create();
+  Send(Frames(0, 1));
+  RunAll();
+  const Taken taken = Take();
+  EXPECT_EQ(taken.frames(), 0);
+  EXPECT_THAT(taken.error, StatusIs(StatusCode::kInternal, ::testing::_));
+  EXPECT_TRUE(taken.window_failed);
+}
+
+TEST_F(LiveSessionTest, AFullQueueEndsTheSessionWithItsOwnCode) {
+  Create();
+  scheduler_.Refuse(absl::ResourceExhaustedError("full"));
+  Send(Frames(0, 1));
+  const Taken taken = Take();
+  EXPECT_EQ(taken.error.code(), StatusCode::kResourceExhausted);
+  EXPECT_FALSE(taken.window_failed);
+  EXPECT_GT(progress_, 0);
+}
+
+TEST_F(LiveSessionTest, NothingIsReadWhileTheReaderDoesNotTakeFrames) {
+  buffered_frames_ = 20;
+  Create();
+  int sent = 0;
+  while (reads_ > 0 && sent < 100) {
+    Send(Frames(sent++, 1));
+    RunAll();
+  }
+  EXPECT_GE(sent, 20);
+  EXPECT_LE(sent, 21) << "one was being read while a window was in flight";
+  EXPECT_EQ(session_->stats().peak_buffered_frames, sent);
+  EXPECT_EQ(Take().frames(), sent);
+  EXPECT_EQ(reads_, 1);
+}
+
+TEST_F(LiveSessionTest, NothingIsReadWhileTwoSecondsAreUnanswered) {
+  for (const int delay : {0, 5}) {
+    Create(static_cast<uint32_t>(delay));
+    answered_ = 0;
+    int sent = 0;
+    while (reads_ > 0 && sent < 100) Send(Frames(sent++, 1));
+    EXPECT_EQ(sent, 2 * kRate + delay + 1);
+    RunAll();
+    EXPECT_EQ(reads_, 1);
+    EXPECT_EQ(Take().frames(), sent - delay);
+  }
+}
+
+TEST_F(LiveSessionTest, NothingIsReadWhileManyNoticesWait) {
+  Create();
+  Send(Frames(0, 1));
+  RunAll();
+  int late = 0;
+  while (reads_ > 0 && late < 100) {
+    Send(Frames(0, 1));
+    ++late;
+  }
+  EXPECT_EQ(late, 16);
+  EXPECT_THAT(Take().notices, SizeIs(16));
+  EXPECT_EQ(reads_, 1);
+}
+
+TEST_F(LiveSessionTest, ACancelledSessionStartsNoMoreWindows) {
+  Create();
+  Send(Frames(0, 1));
+  session_->Cancel();
+  EXPECT_FALSE(scheduler_.RunNext()) << "the window in flight is dropped";
+  Send(Frames(1, 5));
+  EXPECT_EQ(scheduler_.queued_windows(), 0);
+  EXPECT_EQ(Take().frames(), 0);
+}
+
+TEST_F(LiveSessionTest, AServerThatDrainsSaysSoOnce) {
+  Create();
+  Send(Frames(0, 1));
+  admission_.SetState(Admission::State::kDraining);
+  for (int t = 1; t < 20; ++t) {
+    Send(Frames(t, 1));
+    RunAll();
+  }
+  const Taken taken = Take();
+  EXPECT_EQ(taken.frames(), 20) << "it is answered as before";
+  ASSERT_FALSE(taken.notices.empty());
+  const auto draining =
+      std::count_if(taken.notices.begin(), taken.notices.end(), [](const v1::LiveNotice& notice) {
+        return notice.kind() == v1::LIVE_NOTICE_KIND_DRAINING && !notice.has_frames();
+      });
+  EXPECT_EQ(draining, 1);
+}
+
+TEST_F(LiveSessionTest, InvalidMessagesEndTheSession) {
+  Message second_start;
+  second_start.mutable_start();
+  for (const auto& [message, got] :
+       {std::pair<Message, std::string>{second_start, "got a second start"},
+        {Message(), "got none"}}) {
+    Create();
+    Send(message);
+    const Taken taken = Take();
+    EXPECT_EQ(Decode(taken.error).code, StatusCode::kInvalidArgument);
+    EXPECT_THAT(Decode(taken.error).Of("payload"), HasSubstr(got));
+    EXPECT_EQ(reads_, 0);
+  }
+}
+
+TEST_F(LiveSessionTest, MalformedAndLargeBytesEndTheSession) {
+  Create();
+  const grpc::Slice garbage(std::string(100, '\xff'));
+  SendBytes(grpc::ByteBuffer(&garbage, 1));
+  EXPECT_EQ(Take().error.code(), StatusCode::kInvalidArgument);
+  Create();
+  const grpc::Slice large(std::string((1 << 20) + 1, '\0'));
+  SendBytes(grpc::ByteBuffer(&large, 1));
+  EXPECT_FALSE(Take().error.ok());
+  EXPECT_EQ(reads_, 0);
+}
+
+TEST_F(LiveSessionTest, ALabelChangeCountsFromTheNextFrame) {
+  std::vector<float> weights;  // of the last frame of each window
+  model_->on_batch = [&](absl::Span<const engine::SynthesisWindow* const> windows) {
+    const std::vector<float>& labels = windows[0]->labels;
+    weights.push_back(labels[labels.size() - 6]);
+  };
+  Create();
+  Send(Frames(0, 8));
+  RunAll();
+  EXPECT_EQ(weights.back(), 1);
+  Send(LabelChange(-0.5F));
+  Send(Frames(8, 8));
+  RunAll();
+  EXPECT_EQ(weights.back(), -0.5F);
+  EXPECT_THAT(Take().error, IsOk());
+}
+
+TEST_F(LiveSessionTest, ALabelChangeOfAFinalFrameIsRefused) {
+  Create(/*delay=*/2);
+  Send(Frames(0, 10));
+  Message change = LabelChange(0);
+  change.mutable_label_change()->set_frame(8);
+  Send(change);
+  RunAll();
+  EXPECT_THAT(Take().error, IsOk());
+  change.mutable_label_change()->set_frame(7);
+  Send(change);
+  EXPECT_THAT(Decode(Take().error).Fields(), ElementsAre("label_change.frame"));
+}
+
+TEST_F(LiveSessionTest, AnnouncedLabelChangesAreBounded) {
+  Create();
+  const int most = RequestLimits().max_label_keyframes;
+  for (int round = 0; round < 2; ++round) {  // the second replaces the first
+    for (int i = 0; i < most; ++i) {
+      Message change = LabelChange(0.5F);
+      change.mutable_label_change()->set_frame(static_cast<uint32_t>(10 + 2 * i));
+      Send(change);
+    }
+  }
+  EXPECT_THAT(Take().error, IsOk());
+  Message change = LabelChange(0.5F);
+  change.mutable_label_change()->set_frame(static_cast<uint32_t>(20 + 2 * most));
+  Send(change);
+  EXPECT_THAT(Decode(Take().error).Fields(), ElementsAre("label_change.frame"));
+}
+
+TEST_F(LiveSessionTest, LabelChangesThatApplyAreNotCounted) {
+  Create();
+  const int most = RequestLimits().max_label_keyframes;
+  for (int i = 0; i < most + 10; ++i) Send(LabelChange(0.5F));
+  EXPECT_THAT(Take().error, IsOk());
+}
+
+TEST_F(LiveSessionTest, MessagesWindowsAndTheReaderRunAtTheSameTime) {
+  constexpr int kFrames = 300;
+  buffered_frames_ = 10;
+  Create();
+  std::atomic<bool> over{false};
+  std::thread windows([&] {
+    while (!over) {
+      if (scheduler_.queued_windows() > 0) {
+        scheduler_.RunNext();
+      } else {
+        std::this_thread::yield();
+      }
+    }
+  });
+  std::thread messages([&] {
+    for (int t = 0; t < kFrames && !over;) {
+      if (reads_ > 0) {
+        Send(Frames(t++, 1));
+      } else {
+        std::this_thread::yield();
+      }
+    }
+    while (reads_ == 0 && !over) std::this_thread::yield();
+    End();
+  });
+  Taken last;
+  do {
+    last = Take();
+    EXPECT_THAT(last.error, IsOk());
+    std::this_thread::yield();
+  } while (!last.end && last.error.ok());
+  messages.join();
+  over = true;
+  windows.join();
+  EXPECT_EQ(answered_, kFrames);
+}
+
+}  // namespace
+}  // namespace duet::server::service

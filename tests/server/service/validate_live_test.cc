@@ -1,0 +1,371 @@
+#include "server/service/validate_live.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <string>
+
+#include "tests/server/support/refusal.h"
+#include "tests/server/support/sample_request.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::server::service {
+namespace {
+
+using test::AddWeight;
+using test::Decode;
+using test::IsOk;
+using test::Refusal;
+using test::SampleRequest;
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
+
+constexpr int kJoints = 15;
+constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
+constexpr auto kFailedPrecondition = absl::StatusCode::kFailedPrecondition;
+const float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// A start that resumes at frame 108: 10 frames of the leader from frame 100 on, 8 of the follower.
+v1::LiveStart Resumed() {
+  const v1::SynthesizeRequest sample = SampleRequest(10);
+  v1::LiveStart start;
+  *start.mutable_leader() = sample.leader();
+  *start.mutable_label_vector() = sample.label_vector();
+  start.set_delay_frames(2);
+  start.set_plan_frames(30);
+  v1::LiveHistory& history = *start.mutable_history();
+  history.set_first_frame(100);
+  history.set_follower_frame_count(8);
+  for (int i = 0; i < 8 * kJoints * 3; ++i) {
+    history.add_follower_positions(sample.leader().positions(i));
+  }
+  return start;
+}
+
+v1::LiveStart New() {
+  v1::LiveStart start = Resumed();
+  start.clear_history();
+  start.mutable_leader()->clear_positions();
+  start.mutable_leader()->set_frame_count(0);
+  return start;
+}
+
+absl::StatusOr<ValidatedLiveStart> Validate(
+    const v1::LiveStart& start,
+    const engine::ModelDescription& model = test::SamplingDescription()) {
+  return ValidateLiveStart(start, model, RequestLimits());
+}
+
+TEST(ValidateLiveStartTest, NewSession) {
+  const absl::StatusOr<ValidatedLiveStart> valid = Validate(New());
+  ASSERT_THAT(valid, IsOk());
+  EXPECT_EQ(valid->live.frame_rate_hz, 15);
+  EXPECT_EQ(valid->live.delay_frames, 2);
+  EXPECT_EQ(valid->plan_frames, 30);
+  EXPECT_EQ(valid->live.first_frame, 0);
+  EXPECT_EQ(valid->live.leader.frame_count(), 0);
+  EXPECT_EQ(valid->live.follower.frame_count(), 0);
+}
+
+TEST(ValidateLiveStartTest, ResumedSession) {
+  const v1::LiveStart start = Resumed();
+  const absl::StatusOr<ValidatedLiveStart> valid = Validate(start);
+  ASSERT_THAT(valid, IsOk());
+  EXPECT_EQ(valid->live.first_frame, 100);
+  EXPECT_EQ(valid->live.leader.frame_count(), 10);
+  ASSERT_EQ(valid->live.follower.frame_count(), 8);
+  EXPECT_EQ(valid->live.follower[7][2].y, start.history().follower_positions((7 * 15 + 2) * 3 + 1));
+}
+
+TEST(ValidateLiveStartTest, HistoryIsReadInTheCallersUnitAndOrder) {
+  v1::LiveStart start = Resumed();
+  const absl::StatusOr<ValidatedLiveStart> metres = Validate(start);
+  start.mutable_leader()->set_unit(v1::LENGTH_UNIT_MILLIMETRES);
+  for (float& value : *start.mutable_leader()->mutable_positions()) value *= 1000;
+  for (float& value : *start.mutable_history()->mutable_follower_positions()) value *= 1000;
+  const auto swap = [](google::protobuf::RepeatedField<float>& positions) {
+    for (int first = 0; first < positions.size(); first += kJoints * 3) {
+      for (int i = 0; i < 3; ++i) positions.SwapElements(first + i, first + 3 + i);
+    }
+  };
+  start.mutable_leader()->mutable_joint_names()->SwapElements(0, 1);
+  swap(*start.mutable_leader()->mutable_positions());
+  swap(*start.mutable_history()->mutable_follower_positions());
+  const absl::StatusOr<ValidatedLiveStart> other = Validate(start);
+  ASSERT_THAT(metres, IsOk());
+  ASSERT_THAT(other, IsOk());
+  for (int j = 0; j < kJoints; ++j) {
+    EXPECT_NEAR(other->live.follower[3][j].x, metres->live.follower[3][j].x, 1e-5);
+    EXPECT_NEAR(other->live.leader[3][j].z, metres->live.leader[3][j].z, 1e-5);
+  }
+}
+
+TEST(ValidateLiveStartTest, ModelThatDoesNotContinueIsRefused) {
+  const Refusal refusal = Decode(Validate(New(), test::FakeDescription()).status());
+  EXPECT_EQ(refusal.code, kFailedPrecondition);
+  EXPECT_THAT(refusal.Fields(), ElementsAre("start.model"));
+  EXPECT_THAT(refusal.Of("start.model"), HasSubstr("answers live"));
+}
+
+TEST(ValidateLiveStartTest, KeyframesMayLieBeyondTheLeader) {
+  v1::LiveStart start = New();
+  start.clear_label_vector();
+  for (const uint32_t frame : {0U, 5000U}) {
+    v1::LabelKeyframe& keyframe = *start.add_label_keyframes();
+    keyframe.set_frame(frame);
+    AddWeight(*keyframe.mutable_label_vector(), "hug", 1);
+  }
+  EXPECT_THAT(Validate(start), IsOk());
+  start.mutable_label_keyframes(1)->set_frame(uint32_t{kMaxLiveFrames});
+  EXPECT_THAT(Decode(Validate(start).status()).Fields(),
+              ElementsAre("start.label_keyframes[1].frame"));
+}
+
+TEST(ValidateLiveStartTest, LimitsAreIncluded) {
+  v1::LiveStart start = New();
+  start.mutable_leader()->set_frame_rate_hz(20);
+  start.set_delay_frames(10);  // half a second
+  start.set_candidates(16);
+  EXPECT_THAT(Validate(start), IsOk());
+  EXPECT_THAT(Validate(Resumed()), IsOk());
+}
+
+TEST(ValidateLiveStartTest, EveryInvalidFieldIsNamed) {
+  v1::LiveStart start = Resumed();
+  start.set_plan_frames(31);
+  start.set_delay_frames(11);
+  start.mutable_history()->add_follower_positions(0);
+  EXPECT_THAT(Decode(Validate(start).status()).Fields(),
+              UnorderedElementsAre("start.plan_frames", "start.delay_frames",
+                                   "start.history.follower_positions"));
+}
+
+// One way to spoil a good message, and what the refusal must say.
+template <typename Message>
+struct Spoiled {
+  std::string name;
+  std::function<void(Message&)> spoil;
+  std::string field;
+  std::string description;  // a part of it
+  absl::StatusCode code = kInvalidArgument;
+
+  friend void PrintTo(const Spoiled& spoiled, std::ostream* out) { *out << spoiled.name; }
+};
+
+template <typename Message>
+void ExpectRefused(const absl::Status& status, const Spoiled<Message>& spoiled) {
+  const Refusal refusal = Decode(status);
+  EXPECT_EQ(refusal.code, spoiled.code) << refusal.message;
+  EXPECT_THAT(refusal.Fields(), ElementsAre(spoiled.field)) << "exactly this field";
+  EXPECT_THAT(refusal.Of(spoiled.field), HasSubstr(spoiled.description));
+}
+
+template <typename Message>
+std::string NameOf(const ::testing::TestParamInfo<Spoiled<Message>>& info) {
+  return info.param.name;
+}
+
+using Start = v1::LiveStart;
+class StartRefusalTest : public ::testing::TestWithParam<Spoiled<Start>> {};
+
+TEST_P(StartRefusalTest, NamesTheField) {
+  Start start = Resumed();
+  GetParam().spoil(start);
+  ExpectRefused(Validate(start).status(), GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Start, StartRefusalTest,
+    ::testing::Values(
+        Spoiled<Start>{"no_labels", [](Start& s) { s.clear_label_vector(); }, "start.label_vector",
+                       ""},
+        Spoiled<Start>{"rate", [](Start& s) { s.mutable_leader()->set_frame_rate_hz(241); },
+                       "start.leader.frame_rate_hz", "got 241"},
+        Spoiled<Start>{"unit", [](Start& s) { s.mutable_leader()->clear_unit(); },
+                       "start.leader.unit", "expected"},
+        Spoiled<Start>{"up_axis", [](Start& s) { s.mutable_leader()->clear_up_axis(); },
+                       "start.leader.up_axis", "expected"},
+        Spoiled<Start>{"nan", [](Start& s) { s.mutable_leader()->set_positions(7, kNan); },
+                       "start.leader.positions[7]", "finite"},
+        Spoiled<Start>{"positions", [](Start& s) { s.mutable_leader()->add_positions(0); },
+                       "start.leader.positions", "got 451"},
+        Spoiled<Start>{"variety", [](Start& s) { s.set_variety(2.5F); }, "start.variety", "2.5"},
+        Spoiled<Start>{"candidates", [](Start& s) { s.set_candidates(17); }, "start.candidates",
+                       "17"},
+        Spoiled<Start>{"delay", [](Start& s) { s.set_delay_frames(11); }, "start.delay_frames",
+                       "expected 0 to 10, got 11"},
+        Spoiled<Start>{"delay_seconds", [](Start& s) { s.set_delay_frames(8); },
+                       "start.delay_frames", "expected at most 0.5 s, got 8 frames"},
+        Spoiled<Start>{"plan", [](Start& s) { s.set_plan_frames(31); }, "start.plan_frames",
+                       "expected 0 to 30, got 31"}),
+    NameOf<Start>);
+
+INSTANTIATE_TEST_SUITE_P(
+    History, StartRefusalTest,
+    ::testing::Values(
+        Spoiled<Start>{
+            "start_too",
+            [](Start& s) { s.mutable_follower_start()->mutable_root_position()->set_x(1); },
+            "start.follower_start", "no value together with history"},
+        Spoiled<Start>{
+            "first",
+            [](Start& s) { s.mutable_history()->set_first_frame(uint32_t{kMaxLiveFrames}); },
+            "start.history.first_frame", "less than 1073741824"},
+        Spoiled<Start>{"none", [](Start& s) { s.mutable_history()->clear_follower_frame_count(); },
+                       "start.history.follower_frame_count", "expected 1 to 10, the frames"},
+        Spoiled<Start>{"more_than_leader",
+                       [](Start& s) { s.mutable_history()->set_follower_frame_count(11); },
+                       "start.history.follower_frame_count", "got 11"},
+        Spoiled<Start>{"huge",
+                       [](Start& s) { s.mutable_history()->set_follower_frame_count(0xFFFFFFFF); },
+                       "start.history.follower_frame_count", "got 4294967295"},
+        Spoiled<Start>{"values", [](Start& s) { s.mutable_history()->add_follower_positions(0); },
+                       "start.history.follower_positions", "expected 360 values (8 frames x 15"},
+        Spoiled<Start>{"nan",
+                       [](Start& s) { s.mutable_history()->set_follower_positions(9, kNan); },
+                       "start.history.follower_positions[9]", "finite"},
+        Spoiled<Start>{"far",
+                       [](Start& s) { s.mutable_history()->set_follower_positions(9, 20000); },
+                       "start.history.follower_positions[9..11]", ""}),
+    NameOf<Start>);
+
+TEST(ValidateLiveStartTest, MoreThanTenSecondsOfHistory) {
+  v1::LiveStart start = New();
+  *start.mutable_leader() = SampleRequest(151).leader();
+  EXPECT_THAT(Decode(Validate(start).status()).Fields(), ElementsAre("start.leader.frame_count"));
+  *start.mutable_leader() = SampleRequest(150).leader();
+  EXPECT_THAT(Validate(start), IsOk());
+}
+
+using Frames = v1::LeaderFrames;
+class FramesRefusalTest : public ::testing::TestWithParam<Spoiled<Frames>> {};
+
+Frames GoodFrames(int count = 4) {
+  Frames frames;
+  frames.set_first_frame(12);
+  frames.set_frame_count(static_cast<uint32_t>(count));
+  *frames.mutable_positions() = SampleRequest(count).leader().positions();
+  return frames;
+}
+
+absl::StatusOr<motion::Poses> Read(const Frames& frames) {
+  return ReadLeaderFrames(frames, Validate(New())->reply, RequestLimits());
+}
+
+TEST(ReadLeaderFramesTest, ReadsUpToTenSeconds) {
+  for (const int count : {1, 4, 150}) {
+    const absl::StatusOr<motion::Poses> poses = Read(GoodFrames(count));
+    ASSERT_THAT(poses, IsOk());
+    EXPECT_EQ(poses->frame_count(), count);
+  }
+}
+
+TEST_P(FramesRefusalTest, NamesTheField) {
+  Frames frames = GoodFrames();
+  GetParam().spoil(frames);
+  ExpectRefused(Read(frames).status(), GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Frames, FramesRefusalTest,
+    ::testing::Values(
+        Spoiled<Frames>{"none",
+                        [](Frames& f) {
+                          f.clear_frame_count();
+                          f.clear_positions();
+                        },
+                        "frames.frame_count", "expected 1 to 150, got 0"},
+        Spoiled<Frames>{"too_many", [](Frames& f) { f = GoodFrames(151); }, "frames.frame_count",
+                        "got 151"},
+        Spoiled<Frames>{"first", [](Frames& f) { f.set_first_frame(uint32_t{kMaxLiveFrames}); },
+                        "frames.first_frame", "less than 1073741824"},
+        Spoiled<Frames>{"values", [](Frames& f) { f.mutable_positions()->RemoveLast(); },
+                        "frames.positions",
+                        "expected 180 values (4 frames x 15 joints x 3), got 179"},
+        Spoiled<Frames>{"nan", [](Frames& f) { f.set_positions(50, kNan); }, "frames.positions[50]",
+                        "finite"},
+        Spoiled<Frames>{"far", [](Frames& f) { f.set_positions(50, -20000); },
+                        "frames.positions[48..50]", ""}),
+    NameOf<Frames>);
+
+TEST(ReadLeaderFramesTest, EveryInvalidFieldIsNamed) {
+  Frames frames;
+  frames.set_frame_count(0xFFFFFFFF);
+  frames.set_first_frame(0xFFFFFFFF);
+  EXPECT_THAT(Decode(Read(frames).status()).Fields(),
+              UnorderedElementsAre("frames.frame_count", "frames.first_frame", "frames.positions"));
+}
+
+using Change = v1::LabelChange;
+class ChangeRefusalTest : public ::testing::TestWithParam<Spoiled<Change>> {};
+
+constexpr int kNext = 40;
+
+absl::StatusOr<ValidatedLabelChange> Read(const Change& change) {
+  return ReadLabelChange(change, kNext, 15, test::SamplingDescription(), RequestLimits());
+}
+
+Change GoodChange() {
+  Change change;
+  AddWeight(*change.mutable_label_vector(), "kick", -0.5F);
+  return change;
+}
+
+TEST(ReadLabelChangeTest, DefaultsToTheNextFrame) {
+  const absl::StatusOr<ValidatedLabelChange> valid = Read(GoodChange());
+  ASSERT_THAT(valid, IsOk());
+  EXPECT_EQ(valid->frame, kNext);
+  EXPECT_EQ(valid->ease_frames, 0);
+  EXPECT_EQ(*std::min_element(valid->weights.begin(), valid->weights.end()), -0.5F);
+}
+
+TEST(ReadLabelChangeTest, LimitsAreIncluded) {
+  Change change = GoodChange();
+  change.set_frame(kNext);
+  change.set_ease_frames(150);
+  const absl::StatusOr<ValidatedLabelChange> valid = Read(change);
+  ASSERT_THAT(valid, IsOk());
+  EXPECT_EQ(valid->ease_frames, 150);
+  change.set_frame(kMaxLiveFrames - 1);
+  EXPECT_THAT(Read(change), IsOk());
+}
+
+TEST_P(ChangeRefusalTest, NamesTheField) {
+  Change change = GoodChange();
+  GetParam().spoil(change);
+  ExpectRefused(Read(change).status(), GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Change, ChangeRefusalTest,
+    ::testing::Values(
+        Spoiled<Change>{"final", [](Change& c) { c.set_frame(kNext - 1); }, "label_change.frame",
+                        "expected at least 40, the first frame that is not final"},
+        Spoiled<Change>{"far", [](Change& c) { c.set_frame(0xFFFFFFFF); }, "label_change.frame",
+                        "got 4294967295"},
+        Spoiled<Change>{"ease", [](Change& c) { c.set_ease_frames(151); },
+                        "label_change.ease_frames", "expected at most 150"},
+        Spoiled<Change>{"no_weights", [](Change& c) { c.clear_label_vector(); },
+                        "label_change.label_vector.weights", "at least one"},
+        Spoiled<Change>{"class",
+                        [](Change& c) { AddWeight(*c.mutable_label_vector(), "tango", 1); },
+                        "label_change.label_vector.weights[1].interaction_class", "tango"},
+        Spoiled<Change>{
+            "nan",
+            [](Change& c) { c.mutable_label_vector()->mutable_weights(0)->set_weight(kNan); },
+            "label_change.label_vector.weights[0].weight", "nan"},
+        Spoiled<Change>{
+            "weight",
+            [](Change& c) { c.mutable_label_vector()->mutable_weights(0)->set_weight(2.5F); },
+            "label_change.label_vector.weights[0].weight", "2.5"}),
+    NameOf<Change>);
+
+}  // namespace
+}  // namespace duet::server::service
