@@ -205,6 +205,45 @@ TEST(DecideTest, WindowWithoutADeadlineIsDueOneSecondAfterArrival) {
   EXPECT_THAT(BatchOf(State({Window(), other}), 1), ElementsAre(0));
 }
 
+// One without a deadline whose result is wanted so long after now.
+WaitingWindow WantedIn(milliseconds left) {
+  WaitingWindow window = Window();
+  window.due = kNow + left;
+  return window;
+}
+
+TEST(DecideTest, WindowThatIsDueSoonestRunsFirst) {
+  EXPECT_THAT(BatchOf(State({Window(), WantedIn(milliseconds(33)), WantedIn(milliseconds(20))}), 2),
+              ElementsAre(2, 1));
+}
+
+TEST(DecideTest, DueWindowsDoNotStarveOnesThatWaitedASecond) {
+  WaitingWindow old = Window();
+  old.queued_at = kNow - seconds(1);
+  EXPECT_THAT(BatchOf(State({WantedIn(milliseconds(1)), old}), 1), ElementsAre(1));
+}
+
+TEST(DecideTest, TheEarlierOfDeadlineAndDueTimeCounts) {
+  WaitingWindow both = Due(milliseconds(300));
+  both.due = kNow + milliseconds(500);
+  EXPECT_THAT(BatchOf(State({WantedIn(milliseconds(400)), both}), 1), ElementsAre(1));
+  both.deadline = kNow + seconds(10);
+  EXPECT_THAT(BatchOf(State({WantedIn(milliseconds(400)), both}), 1), ElementsAre(0));
+}
+
+TEST(DecideTest, WindowThatMissesItsDueTimeIsStillEvaluated) {
+  for (const milliseconds left : {milliseconds(1), milliseconds(0), milliseconds(-60000)}) {
+    const Decision decision = Decide(State({WantedIn(left)}), {16}, kNow);
+    EXPECT_THAT(decision.batch, ElementsAre(0)) << left.count() << " ms";
+    EXPECT_THAT(decision.dropped, IsEmpty());
+  }
+}
+
+TEST(DecideTest, DueTimesDoNotShortenBatches) {
+  std::vector<WaitingWindow> windows(16, WantedIn(milliseconds(-5)));
+  EXPECT_THAT(BatchOf(State(windows)), ElementsAreArray(UpTo(16)));
+}
+
 TEST(DecideTest, MostUrgentWindowLimitsTheBatch) {
   // 10 ms and 5 ms a window: 12 take 70 ms, at 171 windows a second, 16 at 178.
   QueueState state = Waiting(15);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/fake_synthesizer.h"
@@ -405,6 +406,26 @@ TEST(WindowQueueTest, BatchHoldsWindowsOfEachClient) {
   ASSERT_EQ(turn.batch.windows.size(), 2u);
   EXPECT_EQ(turn.batch.windows[0].job.client, "a");
   EXPECT_EQ(turn.batch.windows[1].job.client, "b");
+}
+
+TEST(WindowQueueTest, OrdersWindowsByTheTimeAtWhichTheyAreDueAndDropsNone) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 1));
+  for (const milliseconds left : {milliseconds(33), milliseconds(-500), milliseconds(10)}) {
+    WindowJob job = Job(model);
+    job.due = kNow + left;
+    queue.Push(std::move(job), kNow);
+  }
+  std::vector<common::TimePoint> order;
+  // Long after every one of them was due.
+  for (const common::TimePoint now : {kNow, kNow + seconds(2), kNow + seconds(3)}) {
+    const Turn turn = queue.Next(now);
+    EXPECT_THAT(turn.dropped, IsEmpty());
+    ASSERT_EQ(turn.batch.windows.size(), 1u);
+    order.push_back(turn.batch.windows[0].job.due);
+    queue.Finished(turn.batch, now);
+  }
+  EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
 }
 
 // A queue of a model whose windows take 10 ms each.
