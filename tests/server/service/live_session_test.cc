@@ -247,10 +247,10 @@ TEST_F(LiveSessionTest, MissingFramesAreInterpolated) {
   for (int i = 0; i < 41 * kValues; ++i) {
     ASSERT_NEAR(both[0].positions[i], both[1].positions[i], 1e-4) << i;
   }
-  const auto told = std::find_if(
-      both[1].notices.begin(), both[1].notices.end(), [](const v1::LiveNotice& notice) {
-        return notice.kind() == v1::LIVE_NOTICE_KIND_GAP_FILLED;
-      });
+  const auto told = std::find_if(both[1].notices.begin(), both[1].notices.end(),
+                                 [](const v1::LiveNotice& notice) {
+                                   return notice.kind() == v1::LIVE_NOTICE_KIND_GAP_FILLED;
+                                 });
   ASSERT_NE(told, both[1].notices.end());
   const v1::LiveNotice& notice = *told;
   EXPECT_EQ(notice.frames().first_frame(), 9);
