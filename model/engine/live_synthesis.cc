@@ -157,12 +157,7 @@ SynthesisWindow LiveSynthesis::NextWindow() {
   window_begin_ = begin;
   SynthesisWindow window;
   window.leader = WindowLeader(begin, frames, *pending_);
-  const std::size_t classes = model_.classes.size();
-  window.labels.resize(static_cast<std::size_t>(frames) * classes);
-  for (int t = 0; t < frames; ++t) {
-    request_.labels.At(timing_.ToCallerFrame(begin + t),
-                       window.labels.data() + static_cast<std::size_t>(t) * classes);
-  }
+  window.labels = WindowLabels(begin, frames, join);
   if (settled_end > begin) {
     window.settled = WindowFollower(begin, settled_end, join);
     window.sent = WindowFollower(settled_end, sent_end, join);
@@ -207,6 +202,17 @@ void LiveSynthesis::KeepOffset() {
   offset_.resize(joints);
   SamplePlan(join_frame_ - 1, absl::MakeSpan(offset_));
   for (std::size_t j = 0; j < joints; ++j) offset_[j] = follower_[last][j] - offset_[j];
+}
+
+std::vector<float> LiveSynthesis::WindowLabels(int begin, int frames, int join) const {
+  const std::size_t classes = model_.classes.size();
+  std::vector<float> labels(static_cast<std::size_t>(frames) * classes);
+  for (int t = 0; t < frames; ++t) {
+    // Later changes may not be known yet. Those up to the frame that joins are: it is not final.
+    const double frame = std::min<double>(timing_.ToCallerFrame(begin + t), join);
+    request_.labels.At(frame, labels.data() + static_cast<std::size_t>(t) * classes);
+  }
+  return labels;
 }
 
 Poses LiveSynthesis::WindowLeader(int begin, int frames, int newest) const {

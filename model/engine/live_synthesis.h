@@ -43,9 +43,10 @@ bool AnswersLive(const ModelDescription& model);
 //
 // Follower frame n is final when leader frame n + delay is there. At certain leader frames
 // (LiveTiming) the network plans the follower for the next second from the last 1.5 s of both
-// motions. It sees the leader's future as a motion that comes to rest. Final frames are taken from
-// the newest plan. If leader frames arrive faster than plans are made, the due frames come from the
-// plan that is held, and only the newest evaluation is made.
+// motions. It sees the leader's future as a motion that comes to rest, and labels that stay as they
+// are at the first frame that the plan may change. Final frames are taken from the newest plan. If
+// leader frames arrive faster than plans are made, the due frames come from the plan that is held,
+// and only the newest evaluation is made.
 //
 //   LiveSynthesis live(description, request);
 //   live.AddLeader(frames);                       // as they arrive
@@ -121,6 +122,7 @@ class LiveSynthesis {
   void SampleJoined(int frame, motion::Poses* pose) const;
   LiveFrames Sample(int count) const;
 
+  std::vector<float> WindowLabels(int begin, int frames, int join) const;
   motion::Poses WindowLeader(int begin, int frames, int newest) const;
   motion::Poses WindowFollower(int begin, int end, int join) const;
   void KeepOffset();

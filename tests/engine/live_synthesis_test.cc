@@ -79,8 +79,9 @@ class Session {
 };
 
 TEST(LiveSynthesisTest, EveryFrameIsFinalWhenItsDelayHasPassed) {
-  for (const double rate : {8.0, 15.0, 24.0, 30.0, 60.0, 90.0}) {
+  for (const double rate : {1.0, 3.0, 8.0, 15.0, 24.0, 30.0, 60.0, 90.0, 240.0}) {
     for (const int delay : {0, 1, 5, 10}) {
+      if (delay > 0.5 * rate) continue;
       const Poses leader = SwayingMotion(200, rate);
       Session session(Request(delay, rate));
       for (int t = 0; t < leader.frame_count(); ++t) {
@@ -149,6 +150,46 @@ TEST(LiveSynthesisTest, AResumedSessionContinuesWithTheSameFrames) {
   }
 }
 
+TEST(LiveSynthesisTest, ASessionResumedAtALabelChangeContinuesWithTheSameFrames) {
+  const std::vector<float> none(6, 0), hug = {0, 0, 0, 1, 0, 0};
+  for (const int delay : {0, 3}) {
+    for (const int change : {40, 41, 42, 43}) {
+      for (const int ease : {0, 7}) {
+        const Poses leader = SwayingMotion(120, kRate);
+        Session whole(Request(delay));
+        whole.Send(Frames(leader, 0, change + delay));
+        whole.live().ChangeLabels(change, ease, hug);
+        whole.Send(Frames(leader, change + delay, 120 - change - delay));
+        for (int next = change; next < change + 4; ++next) {
+          LiveRequest request = Request(delay);
+          request.labels = LabelTrack(none);
+          request.labels.Change(change, ease, hug);
+          request.first_frame = std::max(0, next - whole.live().history_frames());
+          request.leader = Frames(leader, request.first_frame, next + delay - request.first_frame);
+          request.follower =
+              Frames(whole.follower(), request.first_frame, next - request.first_frame);
+          Session resumed(std::move(request));
+          resumed.Send(Frames(leader, next + delay, 20));
+          EXPECT_EQ(resumed.follower(), Frames(whole.follower(), next, 20))
+              << "delay " << delay << ", change at " << change << ", resumed at " << next;
+        }
+      }
+    }
+  }
+}
+
+TEST(LiveSynthesisTest, FinalFramesDoNotDependOnLaterLabels) {
+  Session plain;
+  LiveRequest request = Request();
+  request.labels = LabelTrack(
+      std::vector<LabelKeyframe>{{40, std::vector<float>(6, 0)}, {41, {1, 0, 0, 0, 0, 0}}});
+  Session announced(std::move(request));
+  plain.Send(SwayingMotion(60, kRate));
+  announced.Send(SwayingMotion(60, kRate));
+  EXPECT_EQ(Frames(plain.follower(), 0, 41), Frames(announced.follower(), 0, 41));
+  EXPECT_NE(Frames(plain.follower(), 41, 3), Frames(announced.follower(), 41, 3));
+}
+
 TEST(LiveSynthesisTest, OfFramesThatQueueOnlyTheNewestIsEvaluated) {
   Session session;
   session.Send(SwayingMotion(30, kRate));
@@ -182,11 +223,14 @@ TEST(LiveSynthesisTest, WindowsContinueFromTheLastFrames) {
   session.Send(SwayingMotion(200, kRate));
   const SynthesisWindow& window = session.windows().back();
   ASSERT_TRUE(window.start.has_value());
-  EXPECT_EQ(window.settled.frame_count(), 22);
   EXPECT_LE(window.leader.frame_count(), session.fake().description().window_frames);
-  // Evaluated at leader frame 199, after frame 198 completed model frame 99; settled are 78 to 99.
-  EXPECT_EQ(window.options.sampling.first_frame, 78);
-  EXPECT_LT(Distance(window.settled.at(21, 0), session.follower().at(198, 0)), 1e-6f);
+  // Evaluated at leader frame 199, after frame 198 completed model frame 99; settled are 86 to 93,
+  // and 94 to 99 are made anew.
+  EXPECT_EQ(window.settled.frame_count(), 8);
+  EXPECT_EQ(window.sent.frame_count(), 6);
+  EXPECT_EQ(window.options.sampling.first_frame, 86);
+  EXPECT_LT(Distance(window.settled.at(7, 0), session.follower().at(186, 0)), 1e-6f);
+  EXPECT_LT(Distance(window.sent.at(5, 0), session.follower().at(198, 0)), 1e-6f);
 }
 
 TEST(LiveSynthesisTest, TheUnknownLeaderComesToRestWithItsLimbLengths) {
@@ -198,7 +242,8 @@ TEST(LiveSynthesisTest, TheUnknownLeaderComesToRestWithItsLimbLengths) {
   session.Send(walking);
   const Poses& leader = session.windows().back().leader;
   const int last = leader.frame_count() - 1;
-  const int newest = session.windows().back().settled.frame_count();
+  const int newest =
+      session.windows().back().settled.frame_count() + session.windows().back().sent.frame_count();
   EXPECT_GT(leader.at(newest + 1, 0).z - leader.at(newest, 0).z, 0.03f);
   EXPECT_LT(leader.at(last, 0).z - leader.at(last - 1, 0).z, 0.005f);
 }
@@ -207,7 +252,7 @@ TEST(LiveSynthesisTest, LabelsChangeFromTheFrameTold) {
   Session session;
   session.Send(SwayingMotion(30, kRate));
   session.live().ChangeLabels(30, 0, {1, 0, 0, 0, 0, 0});
-  session.Send(SwayingMotion(30, kRate));
+  session.Send(SwayingMotion(10, kRate));
   const SynthesisWindow& window = session.windows().back();  // the last one
   const int begin = static_cast<int>(*window.options.sampling.first_frame);
   EXPECT_EQ(window.labels[static_cast<std::size_t>(14 - begin) * 6], 0);
