@@ -135,7 +135,8 @@ def sample_request(protos, frames, rate=15.0):
 
 def load_protos(folder):
     subprocess.run(["protoc", f"-I{SOURCE / 'proto'}", f"--python_out={folder}",
-                    "duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/synthesis.proto"],
+                    "duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/reaction.proto",
+                    "duet/v1/live.proto", "duet/v1/synthesis.proto"],
                    check=True)
     sys.path.insert(0, folder)
     from duet.v1 import motion_pb2, synthesis_pb2  # pylint: disable=import-outside-toplevel

@@ -118,7 +118,8 @@ class EngineGuidesTest(unittest.TestCase):
 
     def test_messages_for_unity_are_made(self):
         tools.run("protoc", f"--csharp_out={self.folder}", f"-I{tools.SOURCE / 'proto'}",
-                  *(f"duet/v1/{name}.proto" for name in ("motion", "model", "synthesis")),
+                  *(f"duet/v1/{name}.proto" for name in ("motion", "model", "reaction", "live",
+                                                         "synthesis")),
                   ).check_returncode()
         made = "".join(path.read_text(encoding="utf-8") for path in self.folder.glob("*.cs"))
         # What the page's call uses is there, by these names.

@@ -11,7 +11,8 @@ try:
 except ImportError as error:
     tools.skip(f"{error}; install the package python3-grpcio")
 
-PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/synthesis.proto",
+PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/reaction.proto",
+          "duet/v1/live.proto", "duet/v1/synthesis.proto",
           "duet/rpc/v1/status.proto")
 FRAMES = 40
 

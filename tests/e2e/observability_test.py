@@ -20,7 +20,8 @@ try:
 except ImportError as error:
     tools.skip(f"{error}; install the package python3-grpcio")
 
-PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/synthesis.proto")
+PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/reaction.proto",
+          "duet/v1/live.proto", "duet/v1/synthesis.proto")
 RULES = tools.SOURCE / "deploy" / "prometheus"
 TRACE, PARENT = "4bf92f3577b34da6a3ce929d0e0e4736", "00f067aa0ba902b7"  # the W3C's own example
 

@@ -20,7 +20,8 @@ except ImportError as error:
 if shutil.which("openssl") is None:
     tools.skip("no openssl; install the package openssl")
 
-PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/synthesis.proto",
+PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/reaction.proto",
+          "duet/v1/live.proto", "duet/v1/synthesis.proto",
           "duet/rpc/v1/status.proto")
 
 

@@ -17,7 +17,8 @@ try:
 except ImportError as error:
     tools.skip(f"{error}; install the package python3-grpcio")
 
-PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/synthesis.proto")
+PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/reaction.proto",
+          "duet/v1/live.proto", "duet/v1/synthesis.proto")
 FAKE_SERVER = tools.PROGRAMS.parent / "tests" / "duet-fake-server"
 JOINTS = ("head neck torso left_shoulder left_elbow left_hand right_shoulder right_elbow right_hand "
           "left_hip left_knee left_foot right_hip right_knee right_foot").split()
