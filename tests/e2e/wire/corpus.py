@@ -25,6 +25,8 @@ def requests_of_methods(source):
     version, label = message(f1=SPARE, f2=1), message(f1=SPARE, f2="blue", f3=1)
     return {
         SYNTHESIZE: synthesize,
+        # The fields that a LiveStart and a clip's request share have the same numbers.
+        f"{SYNTHESIS}/SynthesizeLive": [message(f1=synthesize[0]), message(f2=message(f2=1))],
         f"{SYNTHESIS}/ListModels": [b""],
         f"{SYNTHESIS}/GetModel": [message(f1=message(f1="sbu", f2=2)),
                                   message(f1=message(f1=SPARE, f3="blue")), b""],
