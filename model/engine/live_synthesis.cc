@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "model/engine/direction_estimate.h"
+#include "model/engine/resting_leader.h"
 #include "model/engine/window_state.h"
 #include "model/motion/limb_lengths.h"
 #include "model/motion/resample.h"
@@ -24,10 +25,6 @@ constexpr double kEpsilon = 1e-6;
 // Plans that follow one another add up their noise. With this share of it, followers move as much
 // as those of clips (docs/results: duet-eval plausible --live).
 constexpr float kVarietyShare = 0.85f;
-// The leader's velocity is that of its last frames, and falls by a factor of e in each of these
-// times after the newest one.
-constexpr double kVelocitySeconds = 0.1;
-constexpr double kRestSeconds = 0.15;
 // The time in which a plan leaves the place of a frame between two model frames that was sent from
 // the plan before it.
 constexpr double kJoinSeconds = 0.06;
@@ -218,32 +215,17 @@ std::vector<float> LiveSynthesis::WindowLabels(int begin, int frames, int join) 
 Poses LiveSynthesis::WindowLeader(int begin, int frames, int newest) const {
   const int last = newest - leader_begin_;  // the newest frame in `known`
   const Poses known = Until(leader_, last + 1);
-  const int back = std::min(
-      last, std::max(1, static_cast<int>(std::lround(kVelocitySeconds * request_.frame_rate_hz))));
   Poses leader(frames, known.joint_count());
-  Poses resting(0, known.joint_count());
-  int known_frames = 0;
+  std::vector<double> unknown;  // seconds after the newest frame
   for (int t = 0; t < frames; ++t) {
     const double frame = timing_.ToCallerFrame(begin + t) - leader_begin_;
     SampleLinear(known, frame, leader[t]);
-    if (frame <= last + kEpsilon) {
-      ++known_frames;
-      continue;
-    }
-    const double seconds = (frame - last) / request_.frame_rate_hz;
-    const double coasting = kRestSeconds * (1 - std::exp(-seconds / kRestSeconds));
-    const float steps =
-        back == 0 ? 0 : static_cast<float>(coasting * request_.frame_rate_hz / back);
-    std::vector<Vec3> pose(known[last].begin(), known[last].end());
-    for (std::size_t j = 0; j < pose.size(); ++j) {
-      pose[j] += (known[last][j] - known[last - back][j]) * steps;
-    }
-    resting.Append(pose);
+    if (frame > last + kEpsilon) unknown.push_back((frame - last) / request_.frame_rate_hz);
   }
-  if (resting.empty()) return leader;
-  const Poses newest_pose(known.joint_count(), {known[last].begin(), known[last].end()});
-  SetBoneLengths(model_.skeleton, MedianBoneLengths(model_.skeleton, newest_pose), &resting);
-  std::copy(resting.all().begin(), resting.all().end(), leader[known_frames].begin());
+  if (unknown.empty()) return leader;
+  const Poses resting = ComeToRest(model_.skeleton, known, request_.frame_rate_hz, unknown);
+  std::copy(resting.all().begin(), resting.all().end(),
+            leader[frames - resting.frame_count()].begin());
   return leader;
 }
 

@@ -59,6 +59,15 @@ motion::Poses TakePoses(const torch::Tensor& batch, int64_t clip, int frames) {
   return poses;
 }
 
+std::vector<motion::Poses> TakeAll(const torch::Tensor& batch,
+                                   absl::Span<const engine::NetworkInput> inputs) {
+  std::vector<motion::Poses> followers;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    followers.push_back(TakePoses(batch, static_cast<int64_t>(i), inputs[i].leader.frame_count()));
+  }
+  return followers;
+}
+
 GeneratorInput MakeInput(const checkpoint::Manifest& manifest,
                          absl::Span<const engine::NetworkInput> inputs) {
   std::vector<const motion::Poses*> leaders;

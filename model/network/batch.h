@@ -21,6 +21,10 @@ torch::Tensor PadPoses(const std::vector<const motion::Poses*>& clips, int64_t f
 // The first `frames` frames of one clip of a batch [N, T, 3 J].
 motion::Poses TakePoses(const torch::Tensor& batch, int64_t clip, int frames);
 
+// Each input's own frames of a batch of answers [N, T, 3 J].
+std::vector<motion::Poses> TakeAll(const torch::Tensor& batch,
+                                   absl::Span<const engine::NetworkInput> inputs);
+
 // Appends the rows of a tensor [N, M] to `out`.
 void AppendRows(const torch::Tensor& rows, std::vector<std::vector<float>>* out);
 

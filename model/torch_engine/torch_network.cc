@@ -28,17 +28,6 @@ absl::StatusOr<std::vector<motion::Poses>> Guarded(
   }
 }
 
-// Each input's own frames of a batch of answers [N, T, 3 J].
-std::vector<motion::Poses> TakeAll(const torch::Tensor& batch,
-                                   absl::Span<const engine::NetworkInput> inputs) {
-  std::vector<motion::Poses> followers;
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    followers.push_back(
-        network::TakePoses(batch, static_cast<int64_t>(i), inputs[i].leader.frame_count()));
-  }
-  return followers;
-}
-
 torch::Tensor Answer(const checkpoint::Manifest& manifest, network::Generator generator,
                      absl::Span<const engine::NetworkInput> inputs) {
   return generator->forward(network::MakeInput(manifest, inputs));
@@ -71,7 +60,7 @@ class TorchNetwork : public engine::Network {
 
   absl::StatusOr<std::vector<motion::Poses>> Run(
       absl::Span<const engine::NetworkInput> inputs) const override {
-    return Guarded([&] { return TakeAll(Answer(manifest_, generator_, inputs), inputs); });
+    return Guarded([&] { return network::TakeAll(Answer(manifest_, generator_, inputs), inputs); });
   }
 
  private:

@@ -8,6 +8,8 @@
 #include "model/network/batch.h"
 #include "model/training/drift.h"
 #include "model/training/frame_labels.h"
+#include "model/training/live_leader.h"
+#include "model/training/own_history.h"
 
 namespace duet::training {
 namespace {
@@ -69,6 +71,9 @@ FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dat
         DrawFrameLabels(sequence, dataset.class_count(), flow.frame_labels, random);
   }
   ScalePair(static_cast<float>(1 + random->Uniform(-flow.pair_scale, flow.pair_scale)), &example);
+  if (flow.live.share > 0 && random->Chance(flow.live.share)) {
+    HideFuture(dataset.skeleton, manifest.model.frame_rate_hz, flow.live, random, &example);
+  }
   return example;
 }
 
@@ -119,7 +124,8 @@ std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
                                        const dataset::Dataset& dataset,
                                        const torch::Tensor& base_poses,
                                        const std::vector<int>& train,
-                                       const TrainingOptions& options, int64_t epoch) {
+                                       const TrainingOptions& options, int64_t epoch,
+                                       const Answer& answer) {
   const auto& flow = std::get<FlowTraining>(options.method);
   base::Random random(options.seed, epoch);
   std::vector<FlowBatch> batches;
@@ -131,6 +137,9 @@ std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
       for (const int index : piece) {
         examples.push_back(DrawExample(manifest, dataset, sequences[static_cast<size_t>(index)],
                                        options, &random));
+      }
+      if (answer && flow.own.share > 0) {
+        ContinueOwnMotion(dataset.skeleton, flow.own, answer, &random, &examples);
       }
       batches.push_back(MakeFlowBatch(manifest, base_poses, examples));
       for (int64_t n = 0; n < batches.back().labels.size(0); ++n) {

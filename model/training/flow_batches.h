@@ -3,6 +3,7 @@
 
 #include <torch/torch.h>
 
+#include <functional>
 #include <vector>
 
 #include "model/network/flow_input.h"
@@ -30,14 +31,19 @@ FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset:
 int64_t PassesPerEpoch(const TrainingOptions& options, size_t sequences);
 int64_t StepsPerEpoch(const TrainingOptions& options, size_t sequences);
 
+// Answers of the network in training: one follower for each input, with its seed.
+using Answer = std::function<std::vector<motion::Poses>(absl::Span<const engine::NetworkInput>)>;
+
 // The batches of one epoch: every training sequence once in every pass, augmented, with no start,
-// the root, the first pose or several known frames. Depends only on options, data and epoch.
+// the root, the first pose or several known frames. Depends only on options, data, epoch and, if
+// `answer` is not null, on the network: clips may then continue its own motion (own_history.h).
 // Shapes: base_poses [C, 3 J]. Requires a FlowTraining.
 std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
                                        const dataset::Dataset& dataset,
                                        const torch::Tensor& base_poses,
                                        const std::vector<int>& train,
-                                       const TrainingOptions& options, int64_t epoch);
+                                       const TrainingOptions& options, int64_t epoch,
+                                       const Answer& answer);
 
 }  // namespace duet::training
 

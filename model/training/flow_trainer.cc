@@ -163,14 +163,22 @@ void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
   const bool is_energy = ScoresAnswers(epoch());
   report->whole_answers = is_energy;
   generator_->set_dropout(is_energy ? flow_.energy.dropout : flow_.dropout);
+  Answer answer;
+  if (is_energy) answer = [this](const auto inputs) { return AnswerNow(inputs); };
   int64_t step = first_step;
-  for (const FlowBatch& batch :
-       SampleFlowEpoch(manifest_, dataset_, generator_->base_poses(), train_, options_, epoch())) {
+  for (const FlowBatch& batch : SampleFlowEpoch(manifest_, dataset_, generator_->base_poses(),
+                                                train_, options_, epoch(), answer)) {
     (is_energy ? EnergyLoss(batch, report) : MatchingLoss(batch, report)).backward();
     optimiser_.Step(step);
     UpdateAverage(AverageDecay(options_.optimiser.average_decay, step));
     ++step;
   }
+}
+
+std::vector<motion::Poses> FlowTrainer::AnswerNow(
+    absl::Span<const engine::NetworkInput> inputs) const {
+  const torch::NoGradGuard no_grad;
+  return network::TakeAll(network::AnswerWindows(generator_, manifest_, inputs), inputs);
 }
 
 double FlowTrainer::ValidationError(const Example& example) {

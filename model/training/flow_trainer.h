@@ -38,6 +38,8 @@ class FlowTrainer : public EpochTrainer {
   // The error of the typical answer: variety 0.
   double ValidationError(const Example& example) override;
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() override;
+  // Answers of the network as it is now.
+  std::vector<motion::Poses> AnswerNow(absl::Span<const engine::NetworkInput> inputs) const;
   torch::Tensor MatchingLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor EnergyLoss(const FlowBatch& batch, EpochReport* report);
   torch::Tensor DrawSource(const FlowBatch& batch) const;

@@ -43,6 +43,19 @@ void Read(base::ObjectReader* reader, FlowTraining::Drift* out) {
   out->frames = reader->Int("frames", 1, 1000);
 }
 
+void Read(base::ObjectReader* reader, FlowTraining::Live* out) {
+  out->share = Probability(reader, "share");
+  out->remade_seconds = reader->Number("remade_seconds", 0, 60);
+  out->delay_seconds = reader->Number("delay_seconds", 0, 60);
+  out->future_seconds = reader->Number("future_seconds", 0.1, 60);
+}
+
+void Read(base::ObjectReader* reader, FlowTraining::Own* out) {
+  out->share = Probability(reader, "share");
+  out->most_frames = reader->Int("most_frames", 1, 1000);
+  out->return_frames = reader->Int("return_frames", 1, 1000);
+}
+
 void Read(base::ObjectReader* reader, FlowTraining::Energy* out) {
   out->from = Probability(reader, "from");
   out->answers = reader->Int("answers", 2, 64);
@@ -66,6 +79,8 @@ void ReadSections(base::ObjectReader* root, FlowTraining* out) {
   section("flow", out);
   section("frame_labels", &out->frame_labels);
   section("drift", &out->drift);
+  section("live", &out->live);
+  section("own", &out->own);
   section("energy", &out->energy);
 }
 
@@ -97,6 +112,13 @@ void Describe(const FlowTraining& f, Description* out) {
                {"drift.height", Text(f.drift.height)},
                {"drift.joints", Text(f.drift.joints)},
                {"drift.frames", Text(f.drift.frames)},
+               {"live.share", Text(f.live.share)},
+               {"live.remade_seconds", Text(f.live.remade_seconds)},
+               {"live.delay_seconds", Text(f.live.delay_seconds)},
+               {"live.future_seconds", Text(f.live.future_seconds)},
+               {"own.share", Text(f.own.share)},
+               {"own.most_frames", Text(f.own.most_frames)},
+               {"own.return_frames", Text(f.own.return_frames)},
                {"energy.from", Text(f.energy.from)},
                {"energy.answers", Text(f.energy.answers)},
                {"energy.dropout", Text(f.energy.dropout)},

@@ -55,6 +55,23 @@ struct FlowTraining {
     int64_t frames = 20;  // from the last known frame until the captured motion is reached
   } drift;
 
+  // A fraction of the clips is trained as a live session answers them (live_leader.h): the leader's
+  // future is unknown.
+  struct Live {
+    double share = 0;             // of the clips
+    double remade_seconds = 0.4;  // from the last known frame to the present, at most
+    double delay_seconds = 0.35;  // of the leader that is known after the present, at most
+    double future_seconds = 1;    // of the window after the present
+  } live;
+
+  // Clips with several known frames may continue the network's own motion (own_history.h). Applies
+  // to the last part of a run, described below.
+  struct Own {
+    double share = 0;            // of the clips with several known frames
+    int64_t most_frames = 12;    // of the network's own, at most
+    int64_t return_frames = 20;  // from the last known frame until the captured motion is reached
+  } own;
+
   // The last part of a run trains whole answers, in the number of steps that sampling uses, by the
   // energy score: near the captured motion, and as varied as captured motions are.
   struct Energy {

@@ -26,7 +26,8 @@ class FlowTrainerTest : public ::testing::Test {
     return {options_, manifest_, dataset_, AllOf(dataset_), std::move(validation)};
   }
   std::vector<FlowBatch> Sample(int64_t epoch) {
-    return SampleFlowEpoch(manifest_, dataset_, base_poses_, AllOf(dataset_), options_, epoch);
+    return SampleFlowEpoch(manifest_, dataset_, base_poses_, AllOf(dataset_), options_, epoch,
+                           nullptr);
   }
 
   dataset::Dataset dataset_ = MadeUpDataset();
@@ -60,6 +61,26 @@ TEST_F(FlowTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
   resumed.RunEpoch();
   EXPECT_TRUE(Equal(resumed.BestTensors(), straight.BestTensors()));
   EXPECT_TRUE(resumed.Finished());
+}
+
+TEST_F(FlowTrainerTest, ResumedRunOfOwnMotionAndLiveClipsIsTheSame) {
+  options_.start = {0, 1};
+  FlowOf(&options_).several_known = 1;
+  FlowOf(&options_).own.share = FlowOf(&options_).live.share = 0.5;
+  FlowOf(&options_).energy.from = 0;
+  FlowTrainer straight = Make();
+  const double first = straight.RunEpoch().generator;
+  ASSERT_THAT(straight.SaveState(folder_ / "state"), IsOk());
+  straight.RunEpoch();
+  FlowTrainer resumed = Make();
+  ASSERT_THAT(resumed.LoadState(folder_ / "state"), IsOk());
+  resumed.RunEpoch();
+  EXPECT_TRUE(Equal(resumed.BestTensors(), straight.BestTensors()));
+  for (double* share : {&FlowOf(&options_).own.share, &FlowOf(&options_).live.share}) {
+    *share = 0;
+    EXPECT_NE(Make().RunEpoch().generator, first);
+    *share = 0.5;
+  }
 }
 
 TEST_F(FlowTrainerTest, StateOfAnotherRunIsRejected) {
