@@ -17,6 +17,7 @@ constexpr int kMaxBlocks = 64;
 constexpr int kMaxSteps = 100;
 
 constexpr char kFrameLabels[] = "frame_labels";
+constexpr char kHiddenFrames[] = "hidden_frames";
 
 constexpr int64_t kModulations = 4;  // shift and scale, before attention and before feed-forward
 constexpr int64_t kStartStates = 2;  // without a start, with a start
@@ -64,8 +65,9 @@ void ReadFields(base::ObjectReader* reader, FlowArchitecture* out) {
   }
   out->feed_forward = static_cast<int>(reader->Int("feed_forward", 1, kMaxUnits));
   out->reach = static_cast<int>(reader->Int("reach", 1, kMaxUnits));
-  // Optional: checkpoints of earlier versions do not have it.
+  // Optional: checkpoints of earlier versions do not have them.
   out->frame_labels = reader->Has(kFrameLabels) && reader->Bool(kFrameLabels);
+  out->hidden_frames = reader->Has(kHiddenFrames) && reader->Bool(kHiddenFrames);
   out->offset_scale = reader->Number("offset_scale", 1e-6, 1e3);
   out->noise = ReadNoise(reader);
   out->steps = static_cast<int>(reader->Int("steps", 1, kMaxSteps));
@@ -93,6 +95,7 @@ nlohmann::ordered_json ToJson(const FlowArchitecture& flow) {
                                  {"guidance", flow.guidance},
                                  {"fade_frames", flow.fade_frames}};
   if (flow.frame_labels) json[kFrameLabels] = true;
+  if (flow.hidden_frames) json[kHiddenFrames] = true;
   return json;
 }
 
@@ -100,7 +103,7 @@ int64_t FrameFeatureCount(const Manifest& manifest, const FlowArchitecture& flow
   const int64_t pose = 3 * int64_t{manifest.model.skeleton.joint_count()};
   // Leader and velocity, positions, known offsets and their flag.
   return 2 * pose + kPositionFeatures + pose + 1 +
-         (flow.frame_labels ? manifest.model.class_count() : 0);
+         (flow.frame_labels ? manifest.model.class_count() : 0) + (flow.hidden_frames ? 1 : 0);
 }
 
 std::vector<TensorSpec> Tensors(const Manifest& manifest, const FlowArchitecture& flow) {

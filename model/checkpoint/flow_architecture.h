@@ -29,6 +29,10 @@ struct FlowArchitecture {
   // evaluated for each class, and the answers are combined by the label weights of each frame.
   bool frame_labels = false;
 
+  // Whether the network reads which of the leader's frames are a guess
+  // (NetworkInput::hidden_frames). It then serves live sessions and clips alike.
+  bool hidden_frames = false;
+
   // One unit of the network's output, metres. The output is an offset from a base pose.
   double offset_scale = 0;
 
@@ -57,7 +61,8 @@ int64_t FrameFeatureCount(const Manifest& manifest, const FlowArchitecture& flow
 // The tensors, with W = width, F = feed_forward, J = joints, C = classes, L = FrameFeatureCount:
 //   frames.weight                    [W, L]                leader, its velocity, 4 positions, known
 //   frames.bias                      [W]                   frames' offsets, known or not; with
-//                                                          frame_labels, C label weights
+//                                                          frame_labels, C label weights; with
+//                                                          hidden_frames, whether hidden
 //   sample.weight                    [W, 3 J]
 //   start.weight, .bias              [W, StartFeatureCount], [W]
 //   label.weight                     [W, C]                absent with frame_labels

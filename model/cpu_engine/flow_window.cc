@@ -77,7 +77,8 @@ void WriteMeanPose(const checkpoint::Manifest& manifest, const std::vector<float
   for (std::ptrdiff_t i = 0; i < width; ++i) base[i] += by[i % 3];
 }
 
-// Writes leader, velocity, positions, known offsets, and the known flag: all features but labels.
+// Writes leader, velocity, positions, known offsets, and the known flag: the features that every
+// network reads.
 void WriteFeatures(const engine::NetworkInput& input, int frame, int told, float scale,
                    const float* base, float* out) {
   const Frame leader = input.leader[frame];
@@ -125,10 +126,14 @@ void FillFlowWindow(const checkpoint::Manifest& manifest, const std::vector<floa
     float* const features = window->features + std::ptrdiff_t{t} * window->stride;
     WriteFeatures(input, t, window->known_frames, static_cast<float>(flow.offset_scale),
                   window->base, features);
-    if (!flow.frame_labels) continue;
-    const int classes = manifest.model.class_count();
-    std::copy_n(input.labels.begin() + std::ptrdiff_t{t} * classes, classes,
-                features + 3 * width + checkpoint::kPositionFeatures + 1);
+    if (flow.frame_labels) {
+      const int classes = manifest.model.class_count();
+      std::copy_n(input.labels.begin() + std::ptrdiff_t{t} * classes, classes,
+                  features + 3 * width + checkpoint::kPositionFeatures + 1);
+    }
+    if (flow.hidden_frames) {
+      features[window->stride - 1] = t >= window->frames - input.hidden_frames ? 1.0f : 0.0f;
+    }
   }
 }
 

@@ -16,9 +16,9 @@ struct FlowWindow {
   int frames;        // T
   int known_frames;  // number of known frames at the start of the follower
   int stride;        // FrameFeatureCount
-  float* features;   // [T, stride] leader, velocity, positions, known, whether known; labels
-  float* start;      // [StartFeatureCount]
-  float* base;       // [3 J] metres
+  float* features;  // [T, stride] leader, velocity, positions, known, whether known; labels; hidden
+  float* start;     // [StartFeatureCount]
+  float* base;      // [3 J] metres
   const float* known(int frame, int width) const {  // [3 J] offset from the base
     return features + std::ptrdiff_t{frame} * stride + std::ptrdiff_t{2} * width + 4;
   }

@@ -22,9 +22,9 @@ using motion::Vec3;
 constexpr int kFramesAfter = 2;
 // So that a frame that coincides with a model frame is not missed because of rounding.
 constexpr double kEpsilon = 1e-6;
-// Plans that follow one another add up their noise. With this share of it, followers move as much
-// as those of clips (docs/results: duet-eval plausible --live).
-constexpr float kVarietyShare = 0.85f;
+// Plans that follow one another add up their noise. With this share of it, the joints of live
+// followers move about as fast as captured ones (docs/results: duet-eval samples, dance --live).
+constexpr float kVarietyShare = 0.92f;
 // The time in which a plan leaves the place of a frame between two model frames that was sent from
 // the plan before it.
 constexpr double kJoinSeconds = 0.06;
@@ -153,7 +153,7 @@ SynthesisWindow LiveSynthesis::NextWindow() {
   const int frames = std::min(sent_end - begin + timing_.future_frames(), model_.window_frames);
   window_begin_ = begin;
   SynthesisWindow window;
-  window.leader = WindowLeader(begin, frames, *pending_);
+  window.leader = WindowLeader(begin, frames, *pending_, &window.hidden_frames);
   window.labels = WindowLabels(begin, frames, join);
   if (settled_end > begin) {
     window.settled = WindowFollower(begin, settled_end, join);
@@ -212,7 +212,7 @@ std::vector<float> LiveSynthesis::WindowLabels(int begin, int frames, int join) 
   return labels;
 }
 
-Poses LiveSynthesis::WindowLeader(int begin, int frames, int newest) const {
+Poses LiveSynthesis::WindowLeader(int begin, int frames, int newest, int* hidden) const {
   const int last = newest - leader_begin_;  // the newest frame in `known`
   const Poses known = Until(leader_, last + 1);
   Poses leader(frames, known.joint_count());
@@ -222,6 +222,7 @@ Poses LiveSynthesis::WindowLeader(int begin, int frames, int newest) const {
     SampleLinear(known, frame, leader[t]);
     if (frame > last + kEpsilon) unknown.push_back((frame - last) / request_.frame_rate_hz);
   }
+  *hidden = static_cast<int>(unknown.size());
   if (unknown.empty()) return leader;
   const Poses resting = ComeToRest(model_.skeleton, known, request_.frame_rate_hz, unknown);
   std::copy(resting.all().begin(), resting.all().end(),

@@ -123,7 +123,7 @@ class LiveSynthesis {
   LiveFrames Sample(int count) const;
 
   std::vector<float> WindowLabels(int begin, int frames, int join) const;
-  motion::Poses WindowLeader(int begin, int frames, int newest) const;
+  motion::Poses WindowLeader(int begin, int frames, int newest, int* hidden) const;
   motion::Poses WindowFollower(int begin, int end, int join) const;
   void KeepOffset();
   void DropOldFrames();

@@ -17,6 +17,7 @@ namespace duet::engine {
 // (window_standardisation.h), metres.
 struct NetworkInput {
   motion::Poses leader;       // [frames, joints]
+  int hidden_frames = 0;      // see SynthesisWindow
   std::vector<float> labels;  // [frames, classes]
   std::optional<FollowerStart> start;
   Sampling sampling;

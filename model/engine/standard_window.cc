@@ -6,6 +6,7 @@ NetworkInput Standardise(const motion::Standardisation& standardisation,
                          const SynthesisWindow& window) {
   NetworkInput input;
   input.leader = standardisation.Apply(window.leader);
+  input.hidden_frames = window.hidden_frames;
   input.labels = window.labels;
   input.sampling = window.options.sampling;
   input.settled = standardisation.Apply(window.settled);

@@ -27,7 +27,10 @@ struct FollowerStart {
 // One network evaluation: at most window_frames frames at the model's frame rate and in its joint
 // order. World metres, y up.
 struct SynthesisWindow {
-  motion::Poses leader;       // [frames, joints], 2 frames or more
+  motion::Poses leader;  // [frames, joints], 2 frames or more
+  // The number of frames at the window's end in which the leader is a guess, because the true
+  // motion is not known yet. 0 for clips.
+  int hidden_frames = 0;
   std::vector<float> labels;  // [frames, classes]
   std::optional<FollowerStart> start;
   // Horizontal direction from the leader to the follower. Absent: towards `start`; without a start,

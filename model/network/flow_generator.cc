@@ -38,7 +38,7 @@ torch::Tensor InitialValue(const std::string& name, const std::vector<int64_t>& 
 torch::Tensor Positions(const torch::Tensor& lengths, int64_t frames) {
   const torch::Tensor length = lengths.to(torch::kFloat32).unsqueeze(1);
   const torch::Tensor frame =
-      torch::arange(frames, torch::kFloat32).unsqueeze(0).expand({lengths.size(0), frames});
+      torch::arange(frames, length.options()).unsqueeze(0).expand({lengths.size(0), frames});
   return torch::stack({frame / kPositionFrames, frame / length, (length - frame) / kPositionFrames,
                        (length / kPositionFrames).expand_as(frame)},
                       2);
@@ -51,14 +51,15 @@ torch::Tensor Velocity(const torch::Tensor& motion) {
 }
 
 torch::Tensor TimeFeatures(const torch::Tensor& times) {
-  const torch::Tensor frequency =
-      torch::exp(torch::linspace(0, std::log(kHighestFrequency), kTimeFrequencies));
+  const torch::Tensor frequency = torch::exp(
+      torch::linspace(0, std::log(kHighestFrequency), kTimeFrequencies, times.options()));
   const torch::Tensor angle = times.unsqueeze(1) * frequency.unsqueeze(0);
   return torch::cat({torch::sin(angle), torch::cos(angle)}, 1);
 }
 
 torch::Tensor Padding(const torch::Tensor& lengths, int64_t frames) {
-  const torch::Tensor is_padding = torch::arange(frames).unsqueeze(0) >= lengths.unsqueeze(1);
+  const torch::Tensor is_padding =
+      torch::arange(frames, lengths.options()).unsqueeze(0) >= lengths.unsqueeze(1);
   return (is_padding.to(torch::kFloat32) * kFarBelow).view({-1, 1, 1, frames});
 }
 
@@ -78,6 +79,7 @@ FlowContext Rows(const FlowContext& context, const torch::Tensor& rows) {
 
 FlowGeneratorImpl::FlowGeneratorImpl(const checkpoint::Manifest& manifest)
     : frame_labels_(FlowOf(manifest).frame_labels),
+      hidden_frames_(FlowOf(manifest).hidden_frames),
       heads_(FlowOf(manifest).heads),
       reach_(FlowOf(manifest).reach) {
   for (const checkpoint::TensorSpec& spec : ExpectedTensors(manifest)) {
@@ -139,6 +141,7 @@ FlowContext FlowGeneratorImpl::Prepare(const FlowInput& input) const {
                                          Positions(input.lengths, frames), input.known,
                                          input.is_known};
   if (frame_labels_) features.push_back(input.labels);
+  if (hidden_frames_) features.push_back(input.is_hidden);
   return {frames_(torch::cat(features, 2)), start_(input.start), Padding(input.lengths, frames)};
 }
 
@@ -173,7 +176,7 @@ torch::Tensor FlowGeneratorImpl::Attend(const Block& block, const torch::Tensor&
                                 .view({count, length, 3, heads_, size})
                                 .permute({2, 0, 3, 1, 4})
                                 .reshape({3, count * heads_, length, size});
-  const torch::Tensor frame = torch::arange(length);
+  const torch::Tensor frame = torch::arange(length, frames.options().dtype(torch::kInt64));
   const torch::Tensor distance =
       (frame.unsqueeze(0) - frame.unsqueeze(1)).clamp(-reach_, reach_).add(reach_).flatten();
   const torch::Tensor bias =

@@ -50,6 +50,7 @@ class FlowGeneratorImpl : public torch::nn::Module {
   void SetMeasured(const torch::Tensor& base_poses, const torch::Tensor& noise_roots);
   const torch::Tensor& base_poses() const { return base_poses_; }
   const torch::Tensor& noise_roots() const { return noise_roots_; }
+  torch::Device device() const { return base_poses_.device(); }
 
   // All tensors by their names in ExpectedTensors: views without gradient, to read or to fill.
   std::map<std::string, torch::Tensor> tensors() const;
@@ -77,7 +78,7 @@ class FlowGeneratorImpl : public torch::nn::Module {
                       const torch::Tensor& condition, const torch::Tensor& padding) const;
 
   std::map<std::string, torch::Tensor> by_name_;  // as registered
-  bool frame_labels_;
+  bool frame_labels_, hidden_frames_;
   Linear frames_, sample_, start_, label_, time_expand_, time_mix_, condition_, norm_, output_;
   std::vector<Block> blocks_;
   torch::Tensor base_poses_, noise_roots_;

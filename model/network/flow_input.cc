@@ -53,6 +53,12 @@ torch::Tensor MovedTo(const motion::Vec3& root, int root_joint, const torch::Ten
 
 }  // namespace
 
+FlowInput FlowInput::To(const torch::Device& device) const {
+  return {leader.to(device),   labels.to(device),      lengths.to(device),
+          start.to(device),    base.to(device),        known.to(device),
+          is_known.to(device), known_count.to(device), is_hidden.to(device)};
+}
+
 FlowInput MakeFlowInput(const checkpoint::Manifest& manifest, const torch::Tensor& base_poses,
                         absl::Span<const engine::NetworkInput> inputs) {
   const GeneratorInput clips = MakeInput(manifest, inputs);
@@ -68,9 +74,12 @@ FlowInput MakeFlowInput(const checkpoint::Manifest& manifest, const torch::Tenso
                   torch::zeros({count, width}),
                   torch::zeros({count, frames, width}),
                   torch::zeros({count, frames, 1}),
-                  torch::zeros({count}, torch::kInt64)};
+                  torch::zeros({count}, torch::kInt64),
+                  torch::zeros({count, frames, 1})};
   for (int64_t n = 0; n < count; ++n) {
     const engine::NetworkInput& input = inputs[static_cast<std::size_t>(n)];
+    const int64_t length = input.leader.frame_count();
+    batch.is_hidden[n].slice(0, std::max<int64_t>(0, length - input.hidden_frames), length) = 1;
     const motion::Poses known = KnownFrames(input);
     WriteStart(known, input, root, batch.start[n]);
     if (known.empty()) {

@@ -25,6 +25,9 @@ struct FlowInput {
   torch::Tensor known;     // [N, T, 3 J] the known frames' offsets from the base; 0 elsewhere
   torch::Tensor is_known;  // [N, T, 1] 1 where a frame is known
   torch::Tensor known_count;  // [N] int64
+  torch::Tensor is_hidden;    // [N, T, 1] 1 where the leader is a guess
+
+  FlowInput To(const torch::Device& device) const;
 };
 
 // Shapes: base_poses [C, 3 J] metres, the mean pose of each class. Requires a FlowArchitecture.

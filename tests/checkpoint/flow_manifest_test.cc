@@ -58,6 +58,18 @@ TEST(FlowManifest, RoundTrip) {
   EXPECT_TRUE(read->model.accepts_follower_start);
 }
 
+TEST(FlowManifest, HiddenFramesAreAnotherFeatureOfEveryFrame) {
+  Manifest manifest = FlowManifest();
+  auto& flow = std::get<FlowArchitecture>(manifest.architecture);
+  const int64_t without = FrameFeatureCount(manifest, flow);
+  EXPECT_FALSE(json::parse(SerializeManifest(manifest))["generator"].contains("hidden_frames"));
+  flow.hidden_frames = true;
+  EXPECT_EQ(FrameFeatureCount(manifest, flow), without + 1);
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_TRUE(std::get<FlowArchitecture>(read->architecture).hidden_frames);
+}
+
 TEST(FlowManifest, PaperGeneratorDoesNotSample) {
   Manifest manifest = TinyManifest();
   manifest.weights = FlowManifest().weights;

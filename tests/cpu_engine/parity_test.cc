@@ -178,6 +178,19 @@ TEST(ParityTest, SamplingGeneratorWithFrameLabelsEqualsLibTorch) {
   EXPECT_GT(Farthest(before, Answers(*network, changed)), 1e-4f);
 }
 
+TEST(ParityTest, SamplingGeneratorThatReadsHiddenFramesEqualsLibTorch) {
+  Manifest manifest = FlowManifest();
+  test::FlowOf(manifest).hidden_frames = true;
+  const Checkpoint checkpoint = RandomCheckpoint(manifest, 3);
+  std::vector<NetworkInput> inputs = {Input(manifest, 9, Told::kPose, 1),
+                                      Input(manifest, 5, Told::kPose, 2)};
+  const auto network = MakeCpuNetwork(checkpoint, Precision::kFloat32);
+  const std::vector<motion::Poses> before = Answers(*network, inputs);
+  inputs[0].hidden_frames = 4;
+  EXPECT_GT(Farthest(before, Answers(*network, inputs)), 1e-4f);
+  EXPECT_LT(FromTorch(checkpoint, Precision::kFloat32, inputs), 1e-5f);
+}
+
 TEST(ParityTest, WideGeneratorEqualsLibTorch) {
   Manifest manifest = PaperManifest(GeneratorVariant::kPaper, 50, true, true);
   manifest.model.window_frames = 9;

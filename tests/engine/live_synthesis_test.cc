@@ -248,6 +248,16 @@ TEST(LiveSynthesisTest, TheUnknownLeaderComesToRestWithItsLimbLengths) {
   EXPECT_LT(leader.at(last, 0).z - leader.at(last - 1, 0).z, 0.005f);
 }
 
+TEST(LiveSynthesisTest, WindowsSpecifyHowManyFramesOfTheLeaderAreAGuess) {
+  Session session;
+  session.Send(SwayingMotion(60, kRate));
+  const SynthesisWindow& window = session.windows().back();
+  const int known = window.settled.frame_count() + window.sent.frame_count();
+  EXPECT_GT(window.hidden_frames, 0);
+  EXPECT_LE(window.hidden_frames, window.leader.frame_count() - known);
+  EXPECT_GE(window.hidden_frames, window.leader.frame_count() - known - 3);
+}
+
 TEST(LiveSynthesisTest, LabelsChangeFromTheFrameTold) {
   Session session;
   session.Send(SwayingMotion(30, kRate));
