@@ -35,8 +35,13 @@ torch::Tensor Blocks(const torch::Tensor& motion, int64_t frames) {
 // [..., T, J, 3] of a motion [..., T, 3 J].
 torch::Tensor Joints(const torch::Tensor& motion) { return motion.unflatten(-1, {-1, 3}); }
 
+// Joint indices, on the device of the motion that they select from.
+torch::Tensor Indices(const std::vector<int64_t>& joints, const torch::Tensor& motion) {
+  return torch::tensor(joints).to(motion.device());
+}
+
 torch::Tensor PairOf(const torch::Tensor& motion, const motion::JointPair& pair) {
-  return Joints(motion).index_select(-2, torch::tensor({int64_t{pair.left}, int64_t{pair.right}}));
+  return Joints(motion).index_select(-2, Indices({pair.left, pair.right}, motion));
 }
 
 // Vectors whose length approaches 1 where they are much longer than `scale`.
@@ -71,7 +76,7 @@ torch::Tensor SquaredBoneErrors(const torch::Tensor& predicted, const torch::Ten
     from.push_back(bone.parent);
     to.push_back(bone.child);
   }
-  const torch::Tensor parents = torch::tensor(from), children = torch::tensor(to);
+  const torch::Tensor parents = Indices(from, real), children = Indices(to, real);
   const torch::Tensor errors =
       BoneLengths(predicted, parents, children) - BoneLengths(real, parents, children);
   return MeanOverFrames(errors.square().mean(2), lengths);
@@ -85,7 +90,7 @@ torch::Tensor SquaredSlides(const torch::Tensor& predicted, const torch::Tensor&
         .square()
         .unflatten(-1, {-1, 3})
         .sum(-1)
-        .index_select(-1, torch::tensor({int64_t{feet.left}, int64_t{feet.right}}));
+        .index_select(-1, Indices({feet.left, feet.right}, motion));
   };
   const torch::Tensor stands = (moved(real) < still * still).to(predicted.dtype());
   return MeanOverFrames((moved(predicted) * stands).mean(2), lengths - 1);
@@ -111,7 +116,7 @@ torch::Tensor VelocityEnergyScores(const torch::Tensor& answers, const torch::Te
 torch::Tensor BlockEnergyScores(const torch::Tensor& answers, const torch::Tensor& real,
                                 const torch::Tensor& lengths, int64_t frames) {
   const torch::Tensor moves = Differences(answers), real_moves = Differences(real);
-  if (real_moves.size(1) < frames) return torch::zeros({real.size(0)});
+  if (real_moves.size(1) < frames) return torch::zeros({real.size(0)}, real.options());
   const torch::Tensor blocks =
       torch::div(lengths - 1 - frames, kBlockStride, "floor").add(1).clamp_min(0);
   return EnergyScores(Blocks(moves, frames), Blocks(real_moves, frames), blocks);

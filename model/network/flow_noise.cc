@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "model/base/angle.h"
@@ -48,8 +51,11 @@ void DrawEndless(const engine::NetworkInput& input, int64_t n, double frame_leng
   numbers->constant[n][0].copy_(FrameNormals(input.sampling.seed, engine::kEveryFrame, width)[0]);
 }
 
+// The roots that were computed last, because every batch needs one again.
+constexpr std::size_t kMostRoots = 256;
+
 // [T, T] lower-triangular: the root of constant + (1 - constant) exp(-(distance / length)^2 / 2).
-torch::Tensor FrameRoot(int64_t frames, double length, double constant) {
+torch::Tensor ComputeFrameRoot(int64_t frames, double length, double constant) {
   const torch::Tensor frame = torch::arange(frames, torch::kFloat64);
   const torch::Tensor distance = (frame.unsqueeze(0) - frame.unsqueeze(1)) / length;
   const torch::Tensor kernel = constant + (1 - constant) * torch::exp(-0.5 * distance * distance) +
@@ -57,9 +63,18 @@ torch::Tensor FrameRoot(int64_t frames, double length, double constant) {
   return torch::linalg_cholesky(kernel).to(torch::kFloat32);
 }
 
+torch::Tensor FrameRoot(int64_t frames, double length, double constant,
+                        const torch::Device& device) {
+  thread_local std::map<std::tuple<int64_t, double, double, std::string>, torch::Tensor> roots;
+  if (roots.size() >= kMostRoots) roots.clear();
+  torch::Tensor& root = roots[{frames, length, constant, device.str()}];
+  if (!root.defined()) root = ComputeFrameRoot(frames, length, constant).to(device);
+  return root;
+}
+
 // [N, T, 1] fraction of the full deviation: it grows from the last known frame.
 torch::Tensor Ramp(const torch::Tensor& known_count, int64_t frames, int ramp_frames) {
-  const torch::Tensor frame = torch::arange(frames).unsqueeze(0);
+  const torch::Tensor frame = torch::arange(frames, known_count.options()).unsqueeze(0);
   const torch::Tensor since = frame - known_count.unsqueeze(1) + 2;
   return (since.to(torch::kFloat32) / ramp_frames).clamp(1.0 / ramp_frames, 1).unsqueeze(2);
 }
@@ -71,11 +86,19 @@ torch::Tensor LeaveKnown(const torch::Tensor& smooth, const torch::Tensor& known
   const torch::Tensor last = (known_count - 1).clamp(0).view({-1, 1, 1});
   const torch::Tensor known = smooth.gather(1, last.expand({smooth.size(0), 1, smooth.size(2)}));
   const torch::Tensor distance =
-      (torch::arange(smooth.size(1)).view({1, -1, 1}) - last).to(torch::kFloat32) / length;
+      (torch::arange(smooth.size(1), last.options()).view({1, -1, 1}) - last).to(torch::kFloat32) /
+      length;
   return smooth - torch::exp(-0.5 * distance * distance) * known;
 }
 
 }  // namespace
+
+NoiseNumbers NoiseNumbers::To(const torch::Device& device) const {
+  const auto moved = [&](const torch::Tensor& tensor) {
+    return tensor.defined() ? tensor.to(device) : tensor;
+  };
+  return {moved(smooth), moved(white), moved(endless), moved(constant)};
+}
 
 NoiseNumbers DrawNoise(absl::Span<const engine::NetworkInput> inputs, double frame_length) {
   int64_t frames = 0;
@@ -101,13 +124,24 @@ NoiseNumbers DrawNoise(absl::Span<const engine::NetworkInput> inputs, double fra
   return numbers;
 }
 
+NoiseNumbers RandomNumbers(const torch::Tensor& motion, const torch::Tensor& endless,
+                           double frame_length) {
+  NoiseNumbers numbers{torch::randn_like(motion), torch::randn_like(motion)};
+  if (!endless.defined()) return numbers;
+  const torch::Tensor root = FrameRoot(motion.size(1), frame_length, 0, motion.device());
+  numbers.smooth = torch::where(endless, torch::matmul(root, numbers.smooth), numbers.smooth);
+  numbers.endless = endless;
+  numbers.constant = torch::randn_like(motion.narrow(1, 0, 1));
+  return numbers;
+}
+
 torch::Tensor SourceNoise(const checkpoint::FlowArchitecture::Noise& options,
                           const torch::Tensor& roots, const torch::Tensor& known_count,
                           const NoiseNumbers& numbers) {
   const int64_t frames = numbers.smooth.size(1);
   const auto smooth = [&](double constant, int64_t state) {
-    torch::Tensor smoothed =
-        torch::matmul(FrameRoot(frames, options.frame_length, constant), numbers.smooth);
+    torch::Tensor smoothed = torch::matmul(
+        FrameRoot(frames, options.frame_length, constant, roots.device()), numbers.smooth);
     if (numbers.endless.defined()) {
       const torch::Tensor endless =
           state == 0
@@ -119,7 +153,7 @@ torch::Tensor SourceNoise(const checkpoint::FlowArchitecture::Noise& options,
   };
   const torch::Tensor told = (known_count > 0).view({-1, 1, 1});
   torch::Tensor ramp = Ramp(known_count, frames, options.ramp_frames);
-  if (numbers.endless.defined()) ramp = torch::where(numbers.endless, torch::ones({}), ramp);
+  if (numbers.endless.defined()) ramp = torch::where(numbers.endless, torch::ones_like(ramp), ramp);
   return torch::where(told, ramp * smooth(0, 1), smooth(options.constant_share, 0)) +
          options.white * numbers.white;
 }

@@ -17,11 +17,18 @@ struct NoiseNumbers {
   // same in all of its frames: [N, 1, 1] of bool and [N, 1, 3 J]. Undefined if there are none.
   torch::Tensor endless = {};
   torch::Tensor constant = {};
+
+  NoiseNumbers To(const torch::Device& device) const;
 };
 
 // Draws each window's numbers only from its Sampling::seed and first_frame, with the same result on
 // every compiler. `frame_length`: of the architecture's noise.
 NoiseNumbers DrawNoise(absl::Span<const engine::NetworkInput> inputs, double frame_length);
+
+// The same for training: drawn from LibTorch's generator, shaped like `motion` [N, T, 3 J].
+// `endless` [N, 1, 1] of bool, or undefined if there are none.
+NoiseNumbers RandomNumbers(const torch::Tensor& motion, const torch::Tensor& endless,
+                           double frame_length);
 
 // The source of sampling: offsets that are smooth in time and have the joint covariance of the
 // training followers. After known frames their deviation grows with the distance from the last one;

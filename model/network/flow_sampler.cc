@@ -26,7 +26,7 @@ struct Terms {
 // The guided answer to every window: [N, T, 3 J].
 torch::Tensor Guided(const FlowGenerator& generator, const FlowContext& rows,
                      const GuidanceTerms& terms, const torch::Tensor& sample, double time) {
-  const torch::Tensor times = torch::full({terms.windows.size(0)}, time);
+  const torch::Tensor times = torch::full({terms.windows.size(0)}, time, sample.options());
   const torch::Tensor answers =
       generator->forward(rows, terms.labels, sample.index_select(0, terms.windows), times);
   return torch::zeros_like(sample).index_add_(0, terms.windows, terms.factors * answers);
@@ -50,7 +50,8 @@ torch::Tensor TakeSteps(int steps, const FlowInput& input, const torch::Tensor& 
 
 // [N, T, 1] 1 in the last known frame, falling to 0 along half a cosine; 0 without known frames.
 torch::Tensor Fade(const FlowInput& input, int fade_frames) {
-  const torch::Tensor frame = torch::arange(input.leader.size(1)).unsqueeze(0);
+  const torch::Tensor frame =
+      torch::arange(input.leader.size(1), input.known_count.options()).unsqueeze(0);
   const torch::Tensor since =
       (frame - input.known_count.unsqueeze(1) + 1).clamp(0, fade_frames + 1);
   const torch::Tensor fade =
@@ -75,14 +76,16 @@ torch::Tensor Varieties(absl::Span<const engine::NetworkInput> inputs) {
 // Every window once, with its labels in the frames.
 GuidanceTerms OneTermEach(const FlowInput& input) {
   const int64_t count = input.labels.size(0), frames = input.labels.size(1);
-  return {torch::arange(count), torch::zeros({count, input.labels.size(2)}),
-          torch::ones({count, frames, 1})};
+  const torch::TensorOptions like = input.labels.options();
+  return {torch::arange(count, input.lengths.options()),
+          torch::zeros({count, input.labels.size(2)}, like), torch::ones({count, frames, 1}, like)};
 }
 
 }  // namespace
 
-GuidanceTerms MakeGuidanceTerms(const torch::Tensor& labels, const torch::Tensor& lengths,
-                                double guidance) {
+GuidanceTerms MakeGuidanceTerms(const torch::Tensor& window_labels,
+                                const torch::Tensor& window_lengths, double guidance) {
+  const torch::Tensor labels = window_labels.cpu(), lengths = window_lengths.cpu();
   const int64_t count = labels.size(0), frames = labels.size(1), classes = labels.size(2);
   const torch::Tensor one_class = torch::eye(classes), no_class = torch::zeros({classes});
   Terms terms;
@@ -98,23 +101,27 @@ GuidanceTerms MakeGuidanceTerms(const torch::Tensor& labels, const torch::Tensor
       terms.AddUnlessZero(n, one_class[k], padded(weights.select(1, k)));
     }
   }
-  return {torch::tensor(terms.windows), torch::stack(terms.labels), torch::stack(terms.factors)};
+  const torch::Device device = window_labels.device();
+  return {torch::tensor(terms.windows).to(device), torch::stack(terms.labels).to(device),
+          torch::stack(terms.factors).to(device)};
 }
 
 torch::Tensor PlainAnswers(const FlowGenerator& generator,
                            const checkpoint::FlowArchitecture& architecture, const FlowInput& input,
                            const torch::Tensor& labels, const torch::Tensor& source) {
-  const torch::Tensor rows = torch::arange(source.size(1)).repeat({source.size(0)});
+  const torch::Tensor rows =
+      torch::arange(source.size(1), input.lengths.options()).repeat({source.size(0)});
   const FlowContext context = Rows(generator->Prepare(input), rows);
   const torch::Tensor row_labels = labels.index_select(0, rows);
   FlowInput row_input = input;
   row_input.known = input.known.index_select(0, rows);
   row_input.is_known = input.is_known.index_select(0, rows);
-  const torch::Tensor answers = TakeSteps(
-      architecture.steps, row_input, source.flatten(0, 1),
-      [&](const torch::Tensor& sample, double time) {
-        return generator->forward(context, row_labels, sample, torch::full({sample.size(0)}, time));
-      });
+  const torch::Tensor answers =
+      TakeSteps(architecture.steps, row_input, source.flatten(0, 1),
+                [&](const torch::Tensor& sample, double time) {
+                  return generator->forward(context, row_labels, sample,
+                                            torch::full({sample.size(0)}, time, sample.options()));
+                });
   return answers.view_as(source);
 }
 
@@ -137,12 +144,13 @@ torch::Tensor SampleFlow(const FlowGenerator& generator,
 
 torch::Tensor AnswerWindows(const FlowGenerator& generator, const checkpoint::Manifest& manifest,
                             absl::Span<const engine::NetworkInput> inputs) {
-  const FlowInput input = MakeFlowInput(manifest, generator->base_poses(), inputs);
+  const torch::Device device = generator->device();
+  const FlowInput input = MakeFlowInput(manifest, generator->base_poses().cpu(), inputs).To(device);
   const auto& architecture = std::get<checkpoint::FlowArchitecture>(manifest.architecture);
   const torch::Tensor source =
       SourceNoise(architecture.noise, generator->noise_roots(), input.known_count,
-                  DrawNoise(inputs, architecture.noise.frame_length));
-  return SampleFlow(generator, architecture, input, Varieties(inputs) * source);
+                  DrawNoise(inputs, architecture.noise.frame_length).To(device));
+  return SampleFlow(generator, architecture, input, Varieties(inputs).to(device) * source).cpu();
 }
 
 }  // namespace duet::network

@@ -43,7 +43,8 @@ torch::Tensor SampleFlow(const FlowGenerator& generator,
                          const checkpoint::FlowArchitecture& architecture, const FlowInput& input,
                          const torch::Tensor& source);
 
-// Answers windows of any lengths with the seed and variety of each: [N, T, 3 J] metres.
+// Answers windows of any lengths with the seed and variety of each, on the generator's device.
+// Returns [N, T, 3 J] in the processor's memory, metres.
 torch::Tensor AnswerWindows(const FlowGenerator& generator, const checkpoint::Manifest& manifest,
                             absl::Span<const engine::NetworkInput> inputs);
 

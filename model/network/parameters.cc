@@ -26,7 +26,7 @@ absl::Status LoadTensors(const checkpoint::Checkpoint& checkpoint,
                                                      ShapeText(tensor.shape), ", expected ",
                                                      ShapeText(it->second.sizes())));
     }
-    std::copy(tensor.values.begin(), tensor.values.end(), it->second.data_ptr<float>());
+    it->second.copy_(torch::from_blob(const_cast<float*>(tensor.values.data()), tensor.shape));
     wanted.erase(it);
   }
   if (wanted.empty()) return absl::OkStatus();

@@ -3,7 +3,7 @@
 namespace duet::network {
 
 torch::Tensor FrameMask(const torch::Tensor& lengths, int64_t frames) {
-  return torch::arange(frames).unsqueeze(1) < lengths.unsqueeze(0);
+  return torch::arange(frames, lengths.options()).unsqueeze(1) < lengths.unsqueeze(0);
 }
 
 torch::Tensor ReversedRows(const torch::Tensor& lengths, int64_t frames) {

@@ -47,6 +47,12 @@ bool EpochTrainer::Finished() const {
   return may_stop && epoch_ - best_epoch_ >= options_.validation.patience;
 }
 
+absl::Status EpochTrainer::UseDevice(const std::string& device) {
+  if (device == "cpu") return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("device: expected cpu for the paper's generator, got ", device));
+}
+
 absl::Status EpochTrainer::StartFrom(const checkpoint::Checkpoint& checkpoint) {
   const absl::Status loaded = LoadWeights(checkpoint);
   if (!loaded.ok()) return loaded;
@@ -58,13 +64,9 @@ absl::Status EpochTrainer::StartFrom(const checkpoint::Checkpoint& checkpoint) {
 void EpochTrainer::UpdateAverage(double decay) {
   torch::NoGradGuard no_grad;
   const std::vector<torch::Tensor> parameters = generator_->parameters();
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    if (decay > 0) {
-      average_[i].mul_(decay).add_(parameters[i], 1 - decay);
-    } else {
-      average_[i].copy_(parameters[i]);
-    }
-  }
+  if (decay == 0) return CopyInto(parameters, average_);
+  at::_foreach_mul_(average_, decay);
+  at::_foreach_add_(average_, parameters, 1 - decay);
 }
 
 EpochReport EpochTrainer::RunEpoch() {

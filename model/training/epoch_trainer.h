@@ -55,6 +55,10 @@ class EpochTrainer {
   // True when all epochs are done or validation has stopped improving.
   bool Finished() const;
 
+  // Trains on a device of LibTorch: "cpu" or "cuda". INVALID_ARGUMENT if the method cannot.
+  // Requires that the device exists and that nothing else was called before.
+  virtual absl::Status UseDevice(const std::string& device);
+
   // Begins with the weights of a checkpoint instead of random ones. INVALID_ARGUMENT names a tensor
   // that is missing or has another shape. Requires that no epoch was run.
   absl::Status StartFrom(const checkpoint::Checkpoint& checkpoint);

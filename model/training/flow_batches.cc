@@ -9,7 +9,6 @@
 #include "model/training/drift.h"
 #include "model/training/frame_labels.h"
 #include "model/training/live_leader.h"
-#include "model/training/own_history.h"
 
 namespace duet::training {
 namespace {
@@ -56,10 +55,13 @@ FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dat
                         const dataset::Sequence& sequence, const TrainingOptions& options,
                         base::Random* random) {
   const auto& flow = std::get<FlowTraining>(options.method);
-  const StartKnowledge start = DrawStart(options.start, random);
+  const bool live = flow.live.share > 0 && random->Chance(flow.live.share);
+  const bool goes_on = live && random->Chance(flow.live.several_known);
+  const StartKnowledge start = goes_on ? StartKnowledge::kPose : DrawStart(options.start, random);
   FlowExample example = MakeFlowExample(
       manifest, dataset, CapturedExample(dataset, sequence, start), flow.target_smoothing);
-  if (start == StartKnowledge::kPose && random->Chance(flow.several_known)) {
+  example.live = live;
+  if (goes_on || (start == StartKnowledge::kPose && random->Chance(flow.several_known))) {
     TellSeveral(example.target, random, &example.input);
   }
   Disturb(flow.known_noise, random, &example.input);
@@ -71,27 +73,8 @@ FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dat
         DrawFrameLabels(sequence, dataset.class_count(), flow.frame_labels, random);
   }
   ScalePair(static_cast<float>(1 + random->Uniform(-flow.pair_scale, flow.pair_scale)), &example);
-  if (flow.live.share > 0 && random->Chance(flow.live.share)) {
-    HideFuture(dataset.skeleton, manifest.model.frame_rate_hz, flow.live, random, &example);
-  }
+  if (live) HideFuture(dataset.skeleton, manifest.model.frame_rate_hz, flow.live, random, &example);
   return example;
-}
-
-FlowBatch MakeFlowBatch(const checkpoint::Manifest& manifest, const torch::Tensor& base_poses,
-                        const std::vector<FlowExample>& examples) {
-  std::vector<engine::NetworkInput> inputs;
-  std::vector<const motion::Poses*> targets;
-  for (const FlowExample& example : examples) {
-    inputs.push_back(example.input);
-    targets.push_back(&example.target);
-  }
-  FlowBatch batch;
-  batch.input = network::MakeFlowInput(manifest, base_poses, inputs);
-  batch.labels = batch.input.labels.select(1, 0).clone();
-  batch.target =
-      (network::PadPoses(targets, batch.input.leader.size(1)) - batch.input.base.unsqueeze(1)) /
-      std::get<checkpoint::FlowArchitecture>(manifest.architecture).offset_scale;
-  return batch;
 }
 
 int64_t BatchesPerPass(const TrainingOptions& options, size_t sequences) {
@@ -120,32 +103,48 @@ int64_t StepsPerEpoch(const TrainingOptions& options, size_t sequences) {
   return BatchesPerPass(options, sequences) * PassesPerEpoch(options, sequences);
 }
 
-std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
-                                       const dataset::Dataset& dataset,
-                                       const torch::Tensor& base_poses,
-                                       const std::vector<int>& train,
-                                       const TrainingOptions& options, int64_t epoch,
-                                       const Answer& answer) {
+FlowBatch MakeFlowBatch(const checkpoint::Manifest& manifest, const torch::Tensor& base_poses,
+                        const std::vector<FlowExample>& examples) {
+  std::vector<engine::NetworkInput> inputs;
+  std::vector<const motion::Poses*> targets;
+  for (const FlowExample& example : examples) {
+    inputs.push_back(example.input);
+    targets.push_back(&example.target);
+  }
+  FlowBatch batch;
+  batch.input = network::MakeFlowInput(manifest, base_poses, inputs);
+  batch.labels = batch.input.labels.select(1, 0).clone();
+  batch.target =
+      (network::PadPoses(targets, batch.input.leader.size(1)) - batch.input.base.unsqueeze(1)) /
+      std::get<checkpoint::FlowArchitecture>(manifest.architecture).offset_scale;
+  const bool has_live = std::any_of(examples.begin(), examples.end(),
+                                    [](const FlowExample& example) { return example.live; });
+  if (has_live) batch.live = torch::zeros({batch.target.size(0), 1, 1}, torch::kBool);
+  for (std::size_t n = 0; n < examples.size(); ++n) {
+    const auto row = static_cast<int64_t>(n);
+    if (has_live) batch.live[row].fill_(examples[n].live);
+    if (!examples[n].unlabelled) continue;
+    batch.labels[row].zero_();
+    batch.input.labels[row].zero_();
+  }
+  return batch;
+}
+
+FlowEpoch DrawFlowEpoch(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
+                        const std::vector<int>& train, const TrainingOptions& options,
+                        int64_t epoch) {
   const auto& flow = std::get<FlowTraining>(options.method);
   base::Random random(options.seed, epoch);
-  std::vector<FlowBatch> batches;
+  FlowEpoch batches;
   const int64_t passes = PassesPerEpoch(options, train.size());
   for (int64_t pass = 0; pass < passes; ++pass) {
     const std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, &random);
     for (const std::vector<int>& piece : BatchesByLength(sequences, options.batch, &random)) {
-      std::vector<FlowExample> examples;
+      std::vector<FlowExample>& examples = batches.emplace_back();
       for (const int index : piece) {
         examples.push_back(DrawExample(manifest, dataset, sequences[static_cast<size_t>(index)],
                                        options, &random));
-      }
-      if (answer && flow.own.share > 0) {
-        ContinueOwnMotion(dataset.skeleton, flow.own, answer, &random, &examples);
-      }
-      batches.push_back(MakeFlowBatch(manifest, base_poses, examples));
-      for (int64_t n = 0; n < batches.back().labels.size(0); ++n) {
-        if (!random.Chance(flow.unlabelled)) continue;
-        batches.back().labels[n].zero_();
-        batches.back().input.labels[n].zero_();
+        examples.back().unlabelled = random.Chance(flow.unlabelled);
       }
     }
   }

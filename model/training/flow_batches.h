@@ -16,12 +16,15 @@ struct FlowBatch {
   network::FlowInput input;
   torch::Tensor labels;  // [N, C] the class, or zeros if it is withheld
   torch::Tensor target;  // [N, T, 3 J] offsets from input.base, in offset_scale metres
+  torch::Tensor live;    // [N, 1, 1] of bool: see FlowExample; undefined if none is live
 };
 
 // A captured example in the standard coordinates, its follower smoothed.
 struct FlowExample {
   engine::NetworkInput input;
   motion::Poses target;
+  bool unlabelled = false;  // the label is withheld from the network
+  bool live = false;        // a window of a live session, whose noise belongs to an endless motion
 };
 FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
                             const Example& example, double smoothing);
@@ -31,19 +34,17 @@ FlowExample MakeFlowExample(const checkpoint::Manifest& manifest, const dataset:
 int64_t PassesPerEpoch(const TrainingOptions& options, size_t sequences);
 int64_t StepsPerEpoch(const TrainingOptions& options, size_t sequences);
 
-// Answers of the network in training: one follower for each input, with its seed.
-using Answer = std::function<std::vector<motion::Poses>(absl::Span<const engine::NetworkInput>)>;
+// The clips of one epoch in batches: every training sequence once in every pass, augmented, with no
+// start, the root, the first pose or several known frames. Depends only on options, data and epoch.
+// Requires a FlowTraining.
+using FlowEpoch = std::vector<std::vector<FlowExample>>;
+FlowEpoch DrawFlowEpoch(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
+                        const std::vector<int>& train, const TrainingOptions& options,
+                        int64_t epoch);
 
-// The batches of one epoch: every training sequence once in every pass, augmented, with no start,
-// the root, the first pose or several known frames. Depends only on options, data, epoch and, if
-// `answer` is not null, on the network: clips may then continue its own motion (own_history.h).
 // Shapes: base_poses [C, 3 J]. Requires a FlowTraining.
-std::vector<FlowBatch> SampleFlowEpoch(const checkpoint::Manifest& manifest,
-                                       const dataset::Dataset& dataset,
-                                       const torch::Tensor& base_poses,
-                                       const std::vector<int>& train,
-                                       const TrainingOptions& options, int64_t epoch,
-                                       const Answer& answer);
+FlowBatch MakeFlowBatch(const checkpoint::Manifest& manifest, const torch::Tensor& base_poses,
+                        const std::vector<FlowExample>& examples);
 
 }  // namespace duet::training
 

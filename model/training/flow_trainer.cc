@@ -10,6 +10,7 @@
 #include "model/network/losses.h"
 #include "model/network/parameters.h"
 #include "model/training/flow_statistics.h"
+#include "model/training/own_history.h"
 
 namespace duet::training {
 namespace {
@@ -47,13 +48,20 @@ FlowTrainer::FlowTrainer(const TrainingOptions& options, const checkpoint::Manif
   const FlowStatistics statistics =
       MeasureFollowers(manifest, dataset, train_, flow_.target_smoothing);
   generator_->SetMeasured(statistics.base_poses, statistics.noise_roots);
+  base_poses_ = generator_->base_poses().clone();
   Begin(generator_.get());
 }
 
+absl::Status FlowTrainer::UseDevice(const std::string& device) {
+  generator_->to(torch::Device(device));
+  Begin(generator_.get());
+  return absl::OkStatus();
+}
+
 torch::Tensor FlowTrainer::DrawSource(const FlowBatch& batch) const {
-  return network::SourceNoise(architecture_.noise, generator_->noise_roots(),
-                              batch.input.known_count,
-                              {torch::randn_like(batch.target), torch::randn_like(batch.target)});
+  return network::SourceNoise(
+      architecture_.noise, generator_->noise_roots(), batch.input.known_count,
+      network::RandomNumbers(batch.target, batch.live, architecture_.noise.frame_length));
 }
 
 template <typename Add>
@@ -96,11 +104,11 @@ torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* repor
   for (int64_t a = 0; a < energy.answers; ++a) sources.push_back(DrawSource(batch));
   const torch::Tensor answers = network::PlainAnswers(generator_, architecture_, batch.input,
                                                       batch.labels, torch::stack(sources));
-  torch::Tensor total = torch::zeros({});
+  torch::Tensor total = torch::zeros({}, batch.target.options());
   const auto add = [&](double weight, const torch::Tensor& scores, double* mean) {
     const torch::Tensor loss = scores.mean();
     total = total + weight * loss;
-    *mean += loss.item<double>() / static_cast<double>(steps_per_epoch_);
+    means_.Add(mean, loss);
   };
   add(1, network::EnergyScores(answers, batch.target, lengths), &report->reconstruction);
   const double rate = kVelocityScale;
@@ -111,7 +119,7 @@ torch::Tensor FlowTrainer::EnergyLoss(const FlowBatch& batch, EpochReport* repor
       network::BlockEnergyScores(rate * answers, rate * batch.target, lengths, energy.block_frames),
       &report->continuity);
   AddBodyScores(batch, answers, add, report);
-  report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
+  means_.Add(&report->generator, total);
   return total;
 }
 
@@ -122,14 +130,14 @@ double FlowTrainer::StillPerFrame() const {
 torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* report) {
   const torch::Tensor& lengths = batch.input.lengths;
   const torch::Tensor noise = DrawSource(batch);
-  const torch::Tensor times = torch::rand({batch.target.size(0)});
+  const torch::Tensor times = torch::rand({batch.target.size(0)}, batch.target.options());
   const torch::Tensor sample = torch::lerp(noise, batch.target, times.view({-1, 1, 1}));
   const torch::Tensor predicted =
       generator_->forward(generator_->Prepare(batch.input), batch.labels, sample, times);
-  torch::Tensor losses = torch::zeros({batch.target.size(0)});
+  torch::Tensor losses = torch::zeros_like(times);
   const auto add = [&](double weight, const torch::Tensor& loss, double* mean) {
     losses = losses + weight * loss;
-    *mean += loss.mean().item<double>() / static_cast<double>(steps_per_epoch_);
+    means_.Add(mean, loss.mean());
   };
   add(1, network::SquaredErrors(predicted, batch.target, lengths), &report->reconstruction);
   add(flow_.difference_weight, network::SquaredDifferenceErrors(predicted, batch.target, lengths),
@@ -147,7 +155,7 @@ torch::Tensor FlowTrainer::MatchingLoss(const FlowBatch& batch, EpochReport* rep
                                                                   StillPerFrame());
   }
   const torch::Tensor total = (losses / (1 - times).clamp_min(flow_.least_remaining)).mean();
-  report->generator += total.item<double>() / static_cast<double>(steps_per_epoch_);
+  means_.Add(&report->generator, total);
   return total;
 }
 
@@ -159,20 +167,46 @@ bool FlowTrainer::MayBeBest(int64_t epoch) const {
   return ScoresAnswers(epoch) || !ScoresAnswers(options_.epochs - 1);
 }
 
+FlowEpoch FlowTrainer::TakeEpoch() {
+  const auto draw = [this](int64_t number) {
+    return DrawFlowEpoch(manifest_, dataset_, train_, options_, number);
+  };
+  FlowEpoch taken = drawn_epoch_ == epoch() && drawn_.valid() ? drawn_.get() : draw(epoch());
+  drawn_epoch_ = epoch() + 1;
+  if (drawn_epoch_ < options_.epochs) {
+    drawn_ = std::async(std::launch::async, draw, drawn_epoch_);
+  }
+  return taken;
+}
+
+FlowBatch FlowTrainer::NextBatch(base::Random* random, std::vector<FlowExample>* examples) const {
+  if (ScoresAnswers(epoch()) && flow_.own.share > 0) {
+    ContinueOwnMotion(
+        dataset_.skeleton, flow_.own, [this](const auto inputs) { return AnswerNow(inputs); },
+        random, examples);
+  }
+  FlowBatch batch = MakeFlowBatch(manifest_, base_poses_, *examples);
+  batch.input = batch.input.To(generator_->device());
+  batch.labels = batch.labels.to(generator_->device());
+  batch.target = batch.target.to(generator_->device());
+  if (batch.live.defined()) batch.live = batch.live.to(generator_->device());
+  return batch;
+}
+
 void FlowTrainer::TrainEpoch(int64_t first_step, EpochReport* report) {
   const bool is_energy = ScoresAnswers(epoch());
   report->whole_answers = is_energy;
   generator_->set_dropout(is_energy ? flow_.energy.dropout : flow_.dropout);
-  Answer answer;
-  if (is_energy) answer = [this](const auto inputs) { return AnswerNow(inputs); };
+  base::Random random(options_.seed, epoch() + options_.epochs);  // not that of the epoch's clips
   int64_t step = first_step;
-  for (const FlowBatch& batch : SampleFlowEpoch(manifest_, dataset_, generator_->base_poses(),
-                                                train_, options_, epoch(), answer)) {
+  for (std::vector<FlowExample>& examples : TakeEpoch()) {
+    const FlowBatch batch = NextBatch(&random, &examples);
     (is_energy ? EnergyLoss(batch, report) : MatchingLoss(batch, report)).backward();
     optimiser_.Step(step);
     UpdateAverage(AverageDecay(options_.optimiser.average_decay, step));
     ++step;
   }
+  means_.Write(steps_per_epoch_);
 }
 
 std::vector<motion::Poses> FlowTrainer::AnswerNow(
@@ -191,7 +225,7 @@ double FlowTrainer::ValidationError(const Example& example) {
 
 std::vector<checkpoint::Tensor> FlowTrainer::BestTensors() {
   network::FlowGenerator best(manifest_);
-  best->SetMeasured(generator_->base_poses(), generator_->noise_roots());
+  best->SetMeasured(base_poses_, generator_->noise_roots());
   CopyBest(best.get());
   return network::StoreParameters(manifest_, best);
 }

@@ -1,6 +1,8 @@
 #ifndef DUET_MODEL_TRAINING_FLOW_TRAINER_H_
 #define DUET_MODEL_TRAINING_FLOW_TRAINER_H_
 
+#include <future>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "model/network/flow_generator.h"
 #include "model/training/epoch_trainer.h"
 #include "model/training/flow_batches.h"
+#include "model/training/loss_means.h"
 #include "model/training/optimiser.h"
 
 namespace duet::training {
@@ -28,6 +31,7 @@ class FlowTrainer : public EpochTrainer {
   std::vector<checkpoint::Tensor> BestTensors() override;
 
   int64_t steps_per_epoch() const override { return steps_per_epoch_; }
+  absl::Status UseDevice(const std::string& device) override;
 
  private:
   void TrainEpoch(int64_t first_step, EpochReport* report) override;
@@ -38,6 +42,10 @@ class FlowTrainer : public EpochTrainer {
   // The error of the typical answer: variety 0.
   double ValidationError(const Example& example) override;
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() override;
+  // The clips of the current epoch. Those of the next one are drawn meanwhile, on another thread.
+  FlowEpoch TakeEpoch();
+  // A batch on the network's device. Its clips may first continue the network's own motion.
+  FlowBatch NextBatch(base::Random* random, std::vector<FlowExample>* examples) const;
   // Answers of the network as it is now.
   std::vector<motion::Poses> AnswerNow(absl::Span<const engine::NetworkInput> inputs) const;
   torch::Tensor MatchingLoss(const FlowBatch& batch, EpochReport* report);
@@ -55,7 +63,11 @@ class FlowTrainer : public EpochTrainer {
   std::optional<motion::JointPair> hands_;
   int64_t steps_per_epoch_;
   network::FlowGenerator generator_;
+  torch::Tensor base_poses_;  // the generator's, in the processor's memory
   Optimiser optimiser_;
+  LossMeans means_;
+  int64_t drawn_epoch_ = -1;
+  std::future<FlowEpoch> drawn_;  // last: its thread reads the other members
 };
 
 }  // namespace duet::training

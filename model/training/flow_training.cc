@@ -45,6 +45,7 @@ void Read(base::ObjectReader* reader, FlowTraining::Drift* out) {
 
 void Read(base::ObjectReader* reader, FlowTraining::Live* out) {
   out->share = Probability(reader, "share");
+  out->several_known = Probability(reader, "several_known");
   out->remade_seconds = reader->Number("remade_seconds", 0, 60);
   out->delay_seconds = reader->Number("delay_seconds", 0, 60);
   out->future_seconds = reader->Number("future_seconds", 0.1, 60);
@@ -113,6 +114,7 @@ void Describe(const FlowTraining& f, Description* out) {
                {"drift.joints", Text(f.drift.joints)},
                {"drift.frames", Text(f.drift.frames)},
                {"live.share", Text(f.live.share)},
+               {"live.several_known", Text(f.live.several_known)},
                {"live.remade_seconds", Text(f.live.remade_seconds)},
                {"live.delay_seconds", Text(f.live.delay_seconds)},
                {"live.future_seconds", Text(f.live.future_seconds)},

@@ -59,6 +59,7 @@ struct FlowTraining {
   // future is unknown.
   struct Live {
     double share = 0;             // of the clips
+    double several_known = 0.8;   // of these: fraction with several known frames of the follower
     double remade_seconds = 0.4;  // from the last known frame to the present, at most
     double delay_seconds = 0.35;  // of the leader that is known after the present, at most
     double future_seconds = 1;    // of the window after the present

@@ -49,6 +49,7 @@ void HideFuture(const motion::Skeleton& skeleton, double frame_rate_hz,
   Shorten(frames, example);
   if (now < frames) KeepLabels(now, frames, &input.labels);
   if (newest + 1 >= frames) return;
+  input.hidden_frames = frames - newest - 1;
   std::vector<double> unknown;
   for (int t = newest + 1; t < frames; ++t) unknown.push_back((t - newest) / frame_rate_hz);
   input.leader.Resize(newest + 1);

@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_TRAINING_OWN_HISTORY_H_
 #define DUET_MODEL_TRAINING_OWN_HISTORY_H_
 
+#include <functional>
 #include <vector>
 
 #include "model/base/random.h"
@@ -9,6 +10,9 @@
 #include "model/training/flow_training.h"
 
 namespace duet::training {
+
+// Answers of the network in training: one follower for each input, with its seed.
+using Answer = std::function<std::vector<motion::Poses>(absl::Span<const engine::NetworkInput>)>;
 
 // Lets examples continue from the network's own motion, as in long clips and live sessions, instead
 // of a captured one. Of the examples with several known frames, each with probability `own.share`:

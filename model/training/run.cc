@@ -272,6 +272,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   if (!from.ok()) return from.status();
   const std::unique_ptr<EpochTrainer> trainer =
       MakeTrainer(plan.options, manifest, dataset, train, validation);
+  if (status = trainer->UseDevice(plan.device); !status.ok()) return status;
   const fs::path state = plan.folder / "state";
   status = trainer->LoadState(state);
   if (absl::IsNotFound(status)) status = StartFrom(plan, *from, trainer.get());

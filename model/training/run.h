@@ -27,6 +27,8 @@ struct RunPlan {
   // Folder of a checkpoint of the same architecture, joints and classes whose weights the run
   // begins with; empty: random weights.
   std::filesystem::path from;
+  // LibTorch's device: "cpu" or "cuda". Only sampling generators train on "cuda".
+  std::string device = "cpu";
 };
 
 // Runs to the end, resuming a run that was killed. Returns immediately if the run has already

@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/checkpoint/manifest.h"
+#include "model/network/device.h"
 #include "model/network/exceptions.h"
 #include "model/training/named_configs.h"
 #include "model/training/run.h"
@@ -28,6 +29,7 @@ struct Arguments {
   std::vector<std::string> settings;
   std::string from;
   int threads = 1;
+  std::string device = "cpu";
 };
 
 absl::StatusOr<std::string> ReadConfig(const std::string& config) {
@@ -71,6 +73,7 @@ duet::training::RunPlan CommonPlan(const Arguments& arguments,
   plan.model_version = arguments.version;
   plan.description = arguments.description;
   plan.from = arguments.from;
+  plan.device = arguments.device;
   return plan;
 }
 
@@ -129,6 +132,9 @@ absl::Status Train(const Arguments& arguments) {
   if (absl::Status status = duet::training::SetTrainingThreads(arguments.threads); !status.ok()) {
     return status;
   }
+  if (absl::Status status = duet::network::CheckDevice(arguments.device); !status.ok()) {
+    return status;
+  }
   absl::StatusOr<duet::training::TrainingOptions> options = ReadOptions(arguments);
   if (!options.ok()) return options.status();
   absl::StatusOr<duet::dataset::Dataset> dataset = duet::dataset::ReadDataset(arguments.data);
@@ -172,6 +178,10 @@ void Declare(Arguments* arguments, CLI::App* app) {
       ->capture_default_str();
   app->add_option("--threads", arguments->threads, "number of LibTorch threads")
       ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app->add_option("--device", arguments->device,
+                  "cpu, or cuda with a LibTorch that supports it (sampling generators only)")
+      ->check(CLI::IsMember({"cpu", "cuda"}))
       ->capture_default_str();
 }
 

@@ -93,13 +93,16 @@ TEST(SourceNoiseTest, EndlessNoiseHasTheCovarianceThatTheLastKnownFrameLeaves) {
     inputs[n].sampling.seed = n;
     inputs[n].sampling.first_frame = 5;
   }
-  const NoiseNumbers numbers = DrawNoise(inputs, options.frame_length);
-  const int64_t width = numbers.white.size(2);
+  const NoiseNumbers drawn = DrawNoise(inputs, options.frame_length);
+  const int64_t width = drawn.white.size(2);
   const torch::Tensor roots = torch::eye(width).expand({2, width, width});
+  torch::manual_seed(1);
+  const NoiseNumbers random = RandomNumbers(drawn.white, drawn.endless, options.frame_length);
   const auto smooth = [&](int frames) {
     return double{engine::SmoothCovariance(options.frame_length, frames)};
   };
-  for (const int64_t told : {0, 4}) {
+  for (const auto& [told, numbers] :
+       {std::pair<int64_t, NoiseNumbers>(0, drawn), {4, drawn}, {0, random}, {4, random}}) {
     const torch::Tensor noise =
         SourceNoise(options, roots, torch::full({400}, told, torch::kInt64), numbers);
     // Between frames 8 and 6; frame 3 is the last known one.

@@ -26,8 +26,12 @@ class FlowTrainerTest : public ::testing::Test {
     return {options_, manifest_, dataset_, AllOf(dataset_), std::move(validation)};
   }
   std::vector<FlowBatch> Sample(int64_t epoch) {
-    return SampleFlowEpoch(manifest_, dataset_, base_poses_, AllOf(dataset_), options_, epoch,
-                           nullptr);
+    std::vector<FlowBatch> batches;
+    for (const auto& examples :
+         DrawFlowEpoch(manifest_, dataset_, AllOf(dataset_), options_, epoch)) {
+      batches.push_back(MakeFlowBatch(manifest_, base_poses_, examples));
+    }
+    return batches;
   }
 
   dataset::Dataset dataset_ = MadeUpDataset();
@@ -228,6 +232,17 @@ TEST_F(FlowTrainerTest, DrawsEveryKindOfStartWithItsProbability) {
   EXPECT_NEAR(poses / clips, 0.5, 0.08);
   EXPECT_NEAR(several / clips, 0.25, 0.08);
   EXPECT_NEAR(unlabelled / clips, 0.2, 0.08);
+}
+
+TEST_F(FlowTrainerTest, LiveClipsHaveSeveralKnownFramesAndHideTheLeadersFuture) {
+  options_.start = {0, 0};
+  FlowOf(&options_).live.share = FlowOf(&options_).live.several_known = 1;
+  FlowOf(&options_).live.delay_seconds = 0;
+  for (const FlowBatch& batch : Sample(0)) {
+    EXPECT_TRUE(batch.live.all().item<bool>());
+    EXPECT_GE(batch.input.known_count.min().item<int64_t>(), 2);
+    EXPECT_TRUE(batch.input.is_hidden.any().item<bool>());
+  }
 }
 
 TEST_F(FlowTrainerTest, KnownFramesAreThoseOfTheTarget) {

@@ -51,6 +51,7 @@ TEST(HideFuture, LeaderIsTrueUntilNowAndComesToRest) {
   const motion::Poses& leader = example.input.leader;
   EXPECT_EQ(leader.frame_count(), kKnown + 15);  // a second of future
   EXPECT_EQ(CommonFrames(leader, captured.input.leader), kKnown);
+  EXPECT_EQ(example.input.hidden_frames, 15);
   const int last = leader.frame_count() - 1;
   EXPECT_LT(Distance(leader.at(last, 0), leader.at(last - 1, 0)), 1e-3f);
 }

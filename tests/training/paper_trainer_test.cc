@@ -63,6 +63,13 @@ TEST_F(PaperTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
   EXPECT_TRUE(resumed.Finished());
 }
 
+TEST_F(PaperTrainerTest, TrainsOnlyOnTheProcessor) {
+  PaperTrainer trainer = Make();
+  EXPECT_THAT(trainer.UseDevice("cpu"), IsOk());
+  EXPECT_THAT(trainer.UseDevice("cuda"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("device: expected cpu")));
+}
+
 TEST_F(PaperTrainerTest, ResumesWithABinaryDiscriminatorToo) {
   PaperOf(&options_).discriminator.binary = true;
   PaperTrainer straight = Make();
