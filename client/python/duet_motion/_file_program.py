@@ -13,9 +13,11 @@ from duet_motion import _program
 from duet_motion._file_options import MotionFileError, Path, ReadOptions
 from duet_motion.motion import Motion
 
-_FLAGS = {"frame_rate_hz": "--frame-rate", "unit": "--unit", "up_axis": "--up-axis",
-          "metres_per_unit": "--metres-per-unit", "resample_hz": "--resample",
-          "joint_map": "--joint-map", "side": "--side"}
+# The flags of options with one value, and all flags.
+_VALUES = {"side": "--side", "frame_rate_hz": "--frame-rate", "unit": "--unit",
+           "up_axis": "--up-axis", "metres_per_unit": "--metres-per-unit",
+           "resample_hz": "--resample"}
+_FLAGS = {**_VALUES, "joint_map": "--joint-map"}
 # A message, its status code, and the advice that follows.
 _FAILURE = re.compile(r"(?P<message>.*?)(?: \([A-Z_]+\))?"
                       r"(?:\n(?:Specify it with (?P<flag>--[\w-]+)|Run with --help|Trying again).*)?",
@@ -25,10 +27,10 @@ _FAILURE = re.compile(r"(?P<message>.*?)(?: \([A-Z_]+\))?"
 def read(path: Path, options: ReadOptions) -> List[Motion]:
     """The people of a file."""
     arguments: List[str] = []
-    for name in ("side", "frame_rate_hz", "unit", "up_axis", "metres_per_unit", "resample_hz"):
-        value = getattr(options, name)
+    for argument, flag in _VALUES.items():
+        value = getattr(options, argument)
         if value not in (None, ""):
-            arguments += [_FLAGS[name], str(value)]
+            arguments += [flag, str(value)]
     for joint, name in options.joint_map.items():
         arguments += [_FLAGS["joint_map"], f"{joint}={name}"]
     answer = json.loads(run("convert", _word(path), *arguments, "--out", "-",
