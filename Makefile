@@ -63,7 +63,9 @@ docs: ## Build the API reference from headers and proto files: build/docs/html/i
 
 .PHONY: python
 python: ## Build the Python package: wheel and sdist in build/python
-	@scripts/install_packages.sh test
+	@scripts/install_packages.sh build test
+	@cmake --preset release -DDUET_PYTHON_EXTENSION=ON >/dev/null
+	@JOBS=$(JOBS) scripts/build.sh $(BUILD) duet_python_module
 	@scripts/build_python.sh
 
 .PHONY: site

@@ -1,7 +1,6 @@
 #include "client/cli/convert_command.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -19,7 +18,6 @@
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
 #include "client/cli/report.h"
-#include "model/motion/motion_limits.h"
 #include "model/motion/resample.h"
 #include "model/motion/sbu.h"
 #include "nlohmann/json.hpp"
@@ -83,26 +81,6 @@ absl::Status ChoosePeople(const std::optional<People>& wanted, Clips* people) {
   return absl::OkStatus();
 }
 
-// Resamples by a spline, from the first frame to the last one within the motion.
-absl::Status Resample(double rate_hz, motion::Clip* clip) {
-  absl::Status status = motion::CheckFrameRate("--resample", rate_hz);
-  if (!status.ok()) return status;
-  const double step = clip->frame_rate_hz / rate_hz;
-  const double frames = std::floor((clip->frame_count() - 1) / step + 1e-6) + 1;
-  if (frames > motion::kMaxMotionFrames) {
-    return absl::InvalidArgumentError(absl::StrCat("--resample: expected at most ",
-                                                   motion::kMaxMotionFrames, " frames, got ",
-                                                   frames, " at ", rate_hz, " Hz"));
-  }
-  motion::Poses poses(static_cast<int>(frames), clip->joint_count());
-  for (int frame = 0; frame < poses.frame_count(); ++frame) {
-    SampleCubic(clip->poses, frame * step, poses[frame]);
-  }
-  clip->poses = std::move(poses);
-  clip->frame_rate_hz = rate_hz;
-  return absl::OkStatus();
-}
-
 absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std::istream* in) {
   absl::Status status = CheckInput(arguments.file, arguments.input.format);
   if (!status.ok()) return status;
@@ -115,7 +93,7 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   if (!options.ok()) return options.status();
   const absl::StatusOr<MotionInput> input = MotionInput::Open(arguments.file, in);
   if (!input.ok()) return input.status();
-  absl::StatusOr<ReadPeople> read = ReadAllPeople(*input, *options);
+  absl::StatusOr<formats::ReadPeople> read = ReadAllPeople(*input, *options);
   if (!read.ok()) return read.status();
   conversion.source = input->name();
   conversion.people = std::move(read->people);
@@ -123,7 +101,9 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   conversion.source_rate_hz = conversion.people[0].frame_rate_hz;
   status = ChoosePeople(arguments.people, &conversion.people);
   for (motion::Clip& person : conversion.people) {
-    if (status.ok() && arguments.resample_hz) status = Resample(*arguments.resample_hz, &person);
+    if (status.ok() && arguments.resample_hz) {
+      status = motion::ResampleByRate("--resample", *arguments.resample_hz, &person);
+    }
   }
   if (!status.ok()) return status;
   return conversion;

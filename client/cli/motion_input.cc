@@ -54,25 +54,10 @@ absl::StatusOr<motion::Clip> MotionInput::Read(const formats::ReadOptions& optio
                               : formats::ReadLeader(name_, options);
 }
 
-absl::StatusOr<ReadPeople> ReadAllPeople(const MotionInput& input,
-                                         const formats::ReadOptions& options) {
-  ReadPeople read;
-  retargeting::ReadingReport report;
-  formats::ReadOptions first = options;
-  first.side = formats::Side::kLeft;
-  first.notes = &read.notes;
-  first.report = &report;
-  absl::StatusOr<motion::Clip> person = input.Read(first);
-  if (!person.ok()) return person.status();
-  read.people.push_back(*std::move(person));
-  if (report.people < 2) return read;
-  formats::ReadOptions second = options;
-  second.side = formats::Side::kRight;
-  second.notes = nullptr;
-  person = input.Read(second);
-  if (!person.ok()) return person.status();
-  read.people.push_back(*std::move(person));
-  return read;
+absl::StatusOr<formats::ReadPeople> ReadAllPeople(const MotionInput& input,
+                                                  const formats::ReadOptions& options) {
+  return formats::ReadAllPeople(
+      [&input](const formats::ReadOptions& person) { return input.Read(person); }, options);
 }
 
 absl::StatusOr<retargeting::JointOverrides> ReadJoints(retargeting::JointOverrides joints,
@@ -116,14 +101,7 @@ absl::Status CheckInput(const std::filesystem::path& path,
                         kStandardInput, ": format: expected --input-format, got none")),
                     motion::ReadingSetting::kFormat);
   }
-  absl::Status status = CheckExists(path);
-  if (std::error_code error; std::filesystem::is_directory(path, error)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path.string(), ": expected a motion file, got a folder"));
-  }
-  if (!status.ok() || format.has_value() || formats::IsReadable(path)) return status;
-  return MendedBy(formats::UnknownExtension(path, formats::kReadableExtensions),
-                  motion::ReadingSetting::kFormat);
+  return formats::CheckReadable(path, format);
 }
 
 }  // namespace duet::client::cli

@@ -5,12 +5,12 @@
 #include <istream>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/cli/motion_arguments.h"
 #include "model/formats/motion_file.h"
+#include "model/formats/people.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
@@ -33,13 +33,8 @@ class MotionInput {
   std::optional<std::string> content_;  // of standard input
 };
 
-// All people of a file, at most two.
-struct ReadPeople {
-  std::vector<motion::Clip> people;
-  std::vector<std::string> notes;  // on how the first was read
-};
-absl::StatusOr<ReadPeople> ReadAllPeople(const MotionInput& input,
-                                         const formats::ReadOptions& options);
+absl::StatusOr<formats::ReadPeople> ReadAllPeople(const MotionInput& input,
+                                                  const formats::ReadOptions& options);
 
 // `joints` and those of a table file, which `joints` override. `table_file` may be empty.
 absl::StatusOr<retargeting::JointOverrides> ReadJoints(retargeting::JointOverrides joints,

@@ -11,6 +11,7 @@
 #include "client/viewer/page.h"
 #include "model/base/file.h"
 #include "model/formats/motion_file.h"
+#include "model/formats/people.h"
 
 namespace duet::client::cli {
 namespace {
@@ -128,12 +129,8 @@ absl::Status CheckOutput(const std::filesystem::path& output, const std::filesys
     return formats::UnknownExtension(
         output, absl::StrCat(page_allowed ? ".html, " : "", formats::kWritableExtensions));
   }
+  if (absl::Status status = formats::CheckFolderOf(output); !status.ok()) return status;
   std::error_code error;
-  const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder, error)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(output.string(), ": there is no folder ", folder.string()));
-  }
   if (std::filesystem::equivalent(output, input, error)) {
     return absl::InvalidArgumentError(
         absl::StrCat(output.string(), ": would replace the file that is read"));

@@ -77,14 +77,14 @@ class TakeReader {
 
   absl::StatusOr<Take> Read(const TakeFiles& files, formats::Side leader_side) {
     Take take{files.name, files.files, {}, {}, {}};
-    absl::StatusOr<ReadPeople> people = ReadFile(files.files[0]);
+    absl::StatusOr<formats::ReadPeople> people = ReadFile(files.files[0]);
     if (!people.ok()) return people.status();
     take.notes = std::move(people->notes);
     const bool alone = people->people.size() < 2;
     const std::size_t leader = !alone && leader_side == formats::Side::kRight ? 1 : 0;
     take.leader = std::move(people->people[leader]);
     if (files.files.size() > 1) {
-      absl::StatusOr<ReadPeople> other = ReadFile(files.files[1]);
+      absl::StatusOr<formats::ReadPeople> other = ReadFile(files.files[1]);
       if (!other.ok()) return other.status();
       take.follower = std::move(other->people[0]);
       Match(&take);
@@ -95,7 +95,7 @@ class TakeReader {
   }
 
  private:
-  absl::StatusOr<ReadPeople> ReadFile(const fs::path& file) {
+  absl::StatusOr<formats::ReadPeople> ReadFile(const fs::path& file) {
     absl::Status status = CheckInput(file, options_.format);
     if (!status.ok()) return status;
     const absl::StatusOr<MotionInput> input = MotionInput::Open(file, in_);

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "model/motion/motion_limits.h"
 
 namespace duet::motion {
 namespace {
@@ -57,6 +61,25 @@ Poses Resample(const Poses& poses, double from_hz, double to_hz) {
   Poses out(ResampledFrameCount(poses.frame_count(), from_hz, to_hz), poses.joint_count());
   for (int t = 0; t < out.frame_count(); ++t) SampleLinear(poses, t * from_hz / to_hz, out[t]);
   return out;
+}
+
+absl::Status ResampleByRate(absl::string_view field, double rate_hz, Clip* clip) {
+  absl::Status status = CheckFrameRate(field, rate_hz);
+  if (!status.ok()) return status;
+  const double step = clip->frame_rate_hz / rate_hz;
+  const double frames = std::floor((clip->frame_count() - 1) / step + kFrameTolerance) + 1;
+  if (frames > kMaxMotionFrames) {
+    return absl::InvalidArgumentError(absl::StrCat(field, ": expected at most ", kMaxMotionFrames,
+                                                   " frames, got ", frames, " at ", rate_hz,
+                                                   " Hz"));
+  }
+  Poses poses(static_cast<int>(frames), clip->joint_count());
+  for (int frame = 0; frame < poses.frame_count(); ++frame) {
+    SampleCubic(clip->poses, frame * step, poses[frame]);
+  }
+  clip->poses = std::move(poses);
+  clip->frame_rate_hz = rate_hz;
+  return absl::OkStatus();
 }
 
 }  // namespace duet::motion

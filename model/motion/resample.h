@@ -1,7 +1,10 @@
 #ifndef DUET_MODEL_MOTION_RESAMPLE_H_
 #define DUET_MODEL_MOTION_RESAMPLE_H_
 
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
 #include "absl/types/span.h"
+#include "model/motion/clip.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 
@@ -22,6 +25,13 @@ void SampleCubic(const Poses& poses, double frame, absl::Span<Vec3> out);
 
 // A whole motion at another rate, interpolated linearly, with ResampledFrameCount frames.
 Poses Resample(const Poses& poses, double from_hz, double to_hz);
+
+// A clip at another rate, interpolated by the spline, from its first frame to the last one that is
+// not after its end.
+//
+// Errors: INVALID_ARGUMENT naming `field`, where the rate comes from, for a rate that no motion has
+//         or that makes more than kMaxMotionFrames frames.
+absl::Status ResampleByRate(absl::string_view field, double rate_hz, Clip* clip);
 
 }  // namespace duet::motion
 

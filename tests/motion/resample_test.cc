@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/status_matchers.h"
 
 namespace duet::motion {
 namespace {
@@ -115,6 +117,27 @@ TEST(Resample, SamplesEveryFrame) {
   for (int t = 0; t < 25; ++t) {
     EXPECT_LT(Distance(out.at(t, 0), Line(static_cast<float>(t) / 24)), 1e-5f) << t;
   }
+}
+
+TEST(ResampleByRate, EndsWithinTheMotion) {
+  Clip clip{{"a", "b"}, 30, Motion(32, 30, Line)};
+  ASSERT_THAT(ResampleByRate("rate", 15, &clip), test::IsOk());
+  EXPECT_EQ(clip.frame_rate_hz, 15);
+  ASSERT_EQ(clip.frame_count(), 16);  // the end lies between two frames
+  EXPECT_LT(Distance(clip.at(15, 0), Line(1)), 1e-5f);
+  ASSERT_THAT(ResampleByRate("rate", 0.5, &clip), test::IsOk());
+  EXPECT_EQ(clip.frame_count(), 1);
+}
+
+TEST(ResampleByRate, RejectsRatesThatNoMotionHas) {
+  Clip clip{{"a", "b"}, 1, Motion(1000, 1, Line)};
+  EXPECT_THAT(ResampleByRate("rate", 2000, &clip),
+              test::StatusIs(absl::StatusCode::kInvalidArgument,
+                             ::testing::HasSubstr("rate: frame rate: expected more than 0")));
+  EXPECT_THAT(ResampleByRate("rate", 1000, &clip),
+              test::StatusIs(absl::StatusCode::kInvalidArgument,
+                             "rate: expected at most 200000 frames, got 999001 at 1000 Hz"));
+  EXPECT_EQ(clip.frame_count(), 1000);
 }
 
 }  // namespace

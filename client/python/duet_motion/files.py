@@ -1,29 +1,27 @@
-"""Motion files, read and written by the program `duet`.
+"""Motion files, read and written without a server.
 
-`duet convert` detects a file's unit, up axis and joints (docs/formats.md), and exchanges motions
-with this module as JSON. No server is involved. The program is not part of the wheel;
+The file's unit, up axis and joints are detected (docs/formats.md). The extension module of the
+wheel does that in this process. Where it is missing, the program `duet` does, as for pages;
 ``DUET_PROGRAM`` names it if it is not on the PATH.
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import pathlib
 import tempfile
-from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple, Union
 
-from duet_motion import _program
+from duet_motion import _file_extension, _file_program
+from duet_motion._file_options import MotionFileError, Path, ReadOptions, checked_options
 from duet_motion.motion import Motion
 from duet_motion.result import SynthesisResult
 
-Path = Union[str, "os.PathLike[str]"]
+__all__ = ["MotionFileError", "read_motion", "read_pair", "write_motion", "write_page"]
+
 Shown = Union[Motion, Tuple[Motion, Motion], SynthesisResult]
-
-
-class MotionFileError(ValueError):
-    """A motion file cannot be read or written. The message is from the program and names the file,
-    the line, what was expected and what was found."""
 
 
 def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float] = None,
@@ -45,11 +43,12 @@ def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float
 
     Raises:
         MotionFileError: the file cannot be read.
-        FileNotFoundError: the program `duet` is missing; the message explains how to install it.
+        ValueError: an argument is invalid.
+        FileNotFoundError: the package has no extension module and the program `duet` is missing; the
+            message explains how to install it.
     """
-    motions = _read(path, ["--side", side], frame_rate_hz, unit, up_axis, metres_per_unit,
-                    joint_map, resample_hz)
-    return motions[0]
+    return _read(path, checked_options(side, frame_rate_hz, unit, up_axis, metres_per_unit,
+                                       joint_map, resample_hz))[0]
 
 
 def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = "",
@@ -69,9 +68,11 @@ def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = 
 
     Raises:
         MotionFileError: the file cannot be read, or has one person.
-        FileNotFoundError: the program `duet` is missing.
+        ValueError: an argument is invalid.
+        FileNotFoundError: see :func:`read_motion`.
     """
-    motions = _read(path, [], frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz)
+    motions = _read(path, checked_options(None, frame_rate_hz, unit, up_axis, metres_per_unit,
+                                          joint_map, resample_hz))
     if len(motions) != 2:
         raise MotionFileError(f"{os.fspath(path)}: expected two people, got one")
     return motions[0], motions[1]
@@ -90,11 +91,13 @@ def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None) 
     Raises:
         ValueError: the two differ in joints, rate or number of frames, unit or axis.
         MotionFileError: the file cannot be written.
+        FileNotFoundError: see :func:`read_motion`.
     """
-    shown: Shown = leader if follower is None else (leader, follower)
-    with tempfile.TemporaryDirectory() as folder:
-        source = _write_json(pathlib.Path(folder) / "motion.json", shown)
-        _run("convert", str(source), "--out", os.fspath(path), "--quiet")
+    document = _to_json(leader if follower is None else (leader, follower))
+    if not _file_extension.missing:
+        return _file_extension.write(document, path)
+    with _in_place_of_the_extension():
+        _file_program.write(document, path)
 
 
 def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> None:
@@ -110,35 +113,36 @@ def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> Non
         FileNotFoundError: the program `duet` is missing.
     """
     with tempfile.TemporaryDirectory() as folder:
-        arguments = [f"{name}={_write_json(pathlib.Path(folder) / f'{index}.json', shown)}"
-                     for index, (name, shown) in enumerate(motions.items())]
+        arguments = []
+        for index, (name, shown) in enumerate(motions.items()):
+            source = pathlib.Path(folder) / f"{index}.json"
+            source.write_text(_to_json(shown), encoding="utf-8")
+            arguments.append(f"{name}={source}")
         if title:
             arguments += ["--title", title]
-        _run("view", *arguments, "--out", os.fspath(path), "--quiet")
+        _file_program.run("view", *arguments, "--out", os.fspath(path), "--quiet")
 
 
-def _read(path: Path, arguments: List[str], frame_rate_hz: Optional[float], unit: str, up_axis: str,
-          metres_per_unit: Optional[float], joint_map: Optional[Mapping[str, str]],
-          resample_hz: Optional[float]) -> List[Motion]:
-    flags = {"--frame-rate": frame_rate_hz, "--unit": unit, "--up-axis": up_axis,
-             "--metres-per-unit": metres_per_unit, "--resample": resample_hz}
-    for flag, value in flags.items():
-        if value not in (None, ""):
-            arguments += [flag, str(value)]
-    for joint, name in (joint_map or {}).items():
-        arguments += ["--joint-map", f"{joint}={name}"]
-    answer = json.loads(_run("convert", os.fspath(path), *arguments, "--out", "-",
-                             "--output-format", "json", "--quiet"))
-    return [_from_json(answer, role) for role in ("leader", "follower") if role in answer]
+def _read(path: Path, options: ReadOptions) -> List[Motion]:
+    if not _file_extension.missing:
+        return _file_extension.read(path, options)
+    with _in_place_of_the_extension():
+        return _file_program.read(path, options)
 
 
-def _from_json(answer: Dict[str, Any], role: str) -> Motion:
-    return Motion(answer[role], answer["joint_names"], answer["frame_rate_hz"], answer["unit"],
-                  answer["up_axis"])
+@contextlib.contextmanager
+def _in_place_of_the_extension() -> Iterator[None]:
+    """Adds to the error of a missing program why it is needed."""
+    try:
+        yield
+    except FileNotFoundError as error:
+        raise FileNotFoundError(
+            f"{error}. A wheel for this system and Python needs no program for motions; this one has "
+            f"no extension module: {_file_extension.missing}") from None
 
 
-def _write_json(path: pathlib.Path, shown: Shown) -> pathlib.Path:
-    """Writes one person or two as a "duet-motion" file (docs/formats.md)."""
+def _to_json(shown: Shown) -> str:
+    """One person or two as a "duet-motion" document (docs/formats.md)."""
     if isinstance(shown, SynthesisResult):
         shown = (shown.leader, shown.follower)
     people = (shown,) if isinstance(shown, Motion) else shown
@@ -153,12 +157,4 @@ def _write_json(path: pathlib.Path, shown: Shown) -> pathlib.Path:
         "unit": first.unit, "up_axis": first.up_axis, "joint_names": first.joint_names}
     for role, person in zip(("leader", "follower"), people):
         document[role] = person.positions.tolist()
-    path.write_text(json.dumps(document, allow_nan=False), encoding="utf-8")
-    return path
-
-
-def _run(*arguments: str) -> str:
-    try:
-        return _program.run(*arguments)
-    except _program.CommandFailed as error:
-        raise MotionFileError(str(error)) from None
+    return json.dumps(document, allow_nan=False)

@@ -54,10 +54,16 @@ class Motion:
     def __init__(self, positions: npt.ArrayLike, joint_names: Sequence[str], frame_rate_hz: float,
                  unit: str = "metres", up_axis: str = "y-up") -> None:
         names = _checked_names(joint_names)
-        values = {"positions": _checked_positions(positions, names), "joint_names": names,
+        kept = _checked_positions(positions, names).astype(np.float32)
+        self._keep(kept, names, frame_rate_hz, unit, up_axis)
+
+    def _keep(self, positions: Positions, joint_names: Tuple[str, ...], frame_rate_hz: float,
+              unit: str, up_axis: str) -> None:
+        positions.setflags(write=False)
+        values = {"positions": positions, "joint_names": joint_names,
                   "frame_rate_hz": checked_number("frame_rate_hz", frame_rate_hz, above=0),
-                  "unit": _checked_choice("unit", unit, UNITS),
-                  "up_axis": _checked_choice("up_axis", up_axis, UP_AXES)}
+                  "unit": checked_choice("unit", unit, UNITS),
+                  "up_axis": checked_choice("up_axis", up_axis, UP_AXES)}
         for name, value in values.items():
             object.__setattr__(self, name, value)
 
@@ -155,8 +161,8 @@ class Motion:
                 :func:`duet_motion.read_motion` converts from it.
         """
         for name in (self.unit, unit):
-            _checked_choice("unit", name, _METRES)
-        _checked_choice("up_axis", up_axis, UP_AXES)
+            checked_choice("unit", name, _METRES)
+        checked_choice("up_axis", up_axis, UP_AXES)
         turn = _TO_Y_UP[self.up_axis] @ _TO_Y_UP[up_axis].T
         scale = _METRES[self.unit] / _METRES[unit]
         return dataclasses.replace(self, positions=self.positions @ turn * scale, unit=unit,
@@ -171,6 +177,15 @@ class Motion:
     def __repr__(self) -> str:
         return (f"Motion({self.frame_count} frames at {self.frame_rate_hz:g} Hz, "
                 f"{self.joint_count} joints, {self.unit}, {self.up_axis})")
+
+
+def adopt(positions: Positions, joint_names: Sequence[str], frame_rate_hz: float) -> Motion:
+    """A motion in metres, y up, like the constructor's but without a copy: the caller gives up
+    ``positions``."""
+    motion = Motion.__new__(Motion)
+    names = _checked_names(joint_names)
+    motion._keep(_checked_positions(positions, names), names, frame_rate_hz, "metres", "y-up")
+    return motion
 
 
 def place(frame: int, joint: str, axis: int) -> str:
@@ -214,7 +229,7 @@ def finite_number(value: object) -> Optional[float]:
 def first_not_finite(array: npt.NDArray[Any]) -> Optional[Tuple[int, ...]]:
     """The index of the first value that is not finite as float32; None if all are."""
     with np.errstate(over="ignore"):
-        finite = np.isfinite(array.astype(np.float32))
+        finite = np.isfinite(array.astype(np.float32, copy=False))
     if finite.all():
         return None
     return tuple(int(at) for at in np.argwhere(~finite)[0])
@@ -247,7 +262,7 @@ def _checked_names(names: Sequence[str]) -> Tuple[str, ...]:
     return tuple(str(name) for name in kept)
 
 
-def _checked_positions(given: npt.ArrayLike, names: Tuple[str, ...]) -> Positions:
+def _checked_positions(given: npt.ArrayLike, names: Tuple[str, ...]) -> npt.NDArray[Any]:
     array = checked_array("positions", given)
     if array.ndim != 3 or array.shape[2] != 3 or not array.shape[1]:
         raise ValueError(f"positions: expected the shape (frames, joints, 3), got {array.shape}")
@@ -259,12 +274,11 @@ def _checked_positions(given: npt.ArrayLike, names: Tuple[str, ...]) -> Position
         frame, joint, axis = found
         raise ValueError(f"positions[{frame}, {joint}, {axis}]: expected a finite float32, got "
                          f"{array[found]} at {place(frame, names[joint], axis)}")
-    kept = array.astype(np.float32)
-    kept.setflags(write=False)
-    return kept
+    return array
 
 
-def _checked_choice(field: str, value: object, choices: Iterable[str]) -> str:
+def checked_choice(field: str, value: object, choices: Iterable[str]) -> str:
+    """Returns ``value`` if it is one of the choices, or raises ValueError."""
     if isinstance(value, str) and value in choices:
         return value
     raise ValueError(f"{field}: expected one of {', '.join(choices)}, got {reprlib.repr(value)}")

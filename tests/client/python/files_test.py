@@ -1,5 +1,6 @@
-"""Reading and writing motion files through the program `duet`."""
+"""Reading and writing motion files, through the program `duet` and in the extension module."""
 
+import contextlib
 import os
 import pathlib
 import tempfile
@@ -9,14 +10,20 @@ from unittest import mock
 import support
 import duet_motion as duet
 import numpy as np
+from duet_motion import _file_extension, _file_program
 
-PROGRAM = pathlib.Path(os.environ.get("DUET_BIN_DIR", support.SOURCE / "build/release/bin")) / "duet"
+PROGRAM = support.PROGRAMS / "duet"
 HUG = support.SOURCE / "samples" / "hug.bvh"
 
 
 @unittest.skipUnless(PROGRAM.exists(), f"no program at {PROGRAM}; build it, or set DUET_BIN_DIR")
 class FilesTest(unittest.TestCase):
+    """Without the extension module."""
+
+    MISSING = "no module named _motion_files"
+
     def setUp(self):
+        self.enterContext(mock.patch.object(_file_extension, "missing", self.MISSING))
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
@@ -39,6 +46,19 @@ class FilesTest(unittest.TestCase):
         self.assertEqual(duet.read_motion(HUG, resample_hz=15).frame_count, 46)
         swapped = duet.read_motion(HUG, joint_map={"left_hand": "right_hand"})
         np.testing.assert_array_equal(swapped.joint("left_hand"), self.hug.joint("right_hand"))
+
+    def test_invalid_arguments_name_their_field(self):
+        for arguments, message in (
+                ({"side": "both"}, "side: expected one of left, right, got 'both'"),
+                ({"unit": "feet"}, "unit: expected one of metres, .*, got 'feet'"),
+                ({"up_axis": "up"}, "up_axis: expected one of y-up, .*, got 'up'"),
+                ({"frame_rate_hz": 0}, "frame_rate_hz: expected a finite number above 0, got 0"),
+                ({"metres_per_unit": -1}, "metres_per_unit: expected a finite number .*, got -1"),
+                ({"resample_hz": "fast"}, "resample_hz: expected a finite number .*, got 'fast'"),
+                ({"joint_map": {"head": ""}}, "joint_map: expected names .*, got {'head': ''}"),
+                ({"joint_map": {"head": 3}}, "joint_map: expected names .*, got {'head': 3}")):
+            with self.assertRaisesRegex(ValueError, f"^{message}"):
+                duet.read_motion(HUG, **arguments)
 
     def test_json_and_csv_round_trip_is_exact(self):
         for name in ("pair.json", "pair.csv"):
@@ -78,15 +98,56 @@ class FilesTest(unittest.TestCase):
             duet.read_pair(self.folder / "one.json")
         with self.assertRaisesRegex(ValueError, "follower.frame_count: expected the leader's 91, got 90"):
             duet.write_motion(self.folder / "x.json", self.hug, self.other.frames(1))
-        with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):
-            with self.assertRaisesRegex(FileNotFoundError, "program 'no-such-duet'.*DUET_PROG"):
-                duet.read_motion(HUG)
+        with self.assertRaisesRegex(duet.MotionFileError, "x.csv: there is no folder .*absent$"):
+            duet.write_motion(self.folder / "absent" / "x.csv", self.hug)
+
+    def test_errors_name_the_argument_that_helps(self):
+        duet.write_motion(self.folder / "one.npy", self.hug)
+        with self.assertRaisesRegex(duet.MotionFileError, r"one.npy: frame rate: expected one, got "
+                                    r"none in the file\nSpecify it with frame_rate_hz\.$"):
+            duet.read_motion(self.folder / "one.npy")
+        (self.folder / "one.fbx").touch()
+        with self.assertRaisesRegex(duet.MotionFileError, r'one.fbx: extension: .*, got "\.fbx"$'):
+            duet.read_motion(self.folder / "one.fbx")
+        with self.assertRaisesRegex(duet.MotionFileError, "^resample_hz: .* got 2000$"):
+            duet.read_motion(HUG, resample_hz=2000)
+
+    def test_file_name_may_look_like_a_flag(self):
+        self.enterContext(contextlib.chdir(self.folder))
+        duet.write_motion("--out.csv", self.hug)
+        self.assertEqual(duet.read_motion("--out.csv").frame_count, 91)
 
     def test_configuration_file_is_ignored(self):
         settings = self.folder / "config"
         settings.write_text("resample = 10\n", encoding="utf-8")
         with mock.patch.dict(os.environ, {"DUET_CONFIG": str(settings)}):
             self.assertEqual(duet.read_motion(HUG).frame_rate_hz, 30)
+
+    def test_missing_program_explains_what_to_install(self):
+        with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):
+            for use in (lambda: duet.read_motion(HUG),
+                        lambda: duet.write_motion(self.folder / "x.csv", self.hug)):
+                with self.assertRaisesRegex(FileNotFoundError,
+                                            "program 'no-such-duet'.*DUET_PROG.*: no module named"):
+                    use()
+
+
+@unittest.skipIf(_file_extension.missing, f"{_file_extension.missing}; build duet_python_module")
+class ExtensionFilesTest(FilesTest):
+    """With the extension module, which needs no program but for pages."""
+
+    MISSING = ""
+
+    def setUp(self):
+        super().setUp()
+        self.enterContext(mock.patch.object(_file_program, "read", side_effect=AssertionError))
+        self.enterContext(mock.patch.object(_file_program, "write", side_effect=AssertionError))
+
+    def test_missing_program_explains_what_to_install(self):
+        with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):
+            self.assertEqual(duet.read_motion(HUG).frame_count, 91)
+            with self.assertRaisesRegex(FileNotFoundError, "program 'no-such-duet'.*DUET_PROG"):
+                duet.write_page(self.folder / "x.html", {"hug": self.hug})
 
 
 if __name__ == "__main__":

@@ -1,0 +1,129 @@
+#include "client/python/extension/motion_files.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "model/base/text.h"
+#include "model/formats/motion_file.h"
+#include "model/formats/people.h"
+#include "model/motion/coordinates.h"
+#include "model/motion/reading_setting.h"
+#include "model/motion/recorded_motion.h"
+#include "model/motion/resample.h"
+#include "model/motion/skeleton.h"
+
+namespace duet::client::python::extension {
+namespace {
+
+using Clips = std::vector<motion::Clip>;
+
+// Sets `value` to the parsed text. INVALID_ARGUMENT for a text that is not one of `known`.
+template <typename Value, typename Parse>
+absl::Status Choose(absl::string_view field, const std::string& text, Parse parse,
+                    absl::string_view known, std::optional<Value>* value) {
+  if (text.empty()) return absl::OkStatus();
+  *value = parse(text);
+  if (value->has_value()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(field, ": expected ", known, ", got ", base::Quoted(text)));
+}
+
+std::optional<formats::Side> ParseSide(absl::string_view name) {
+  if (name == "left") return formats::Side::kLeft;
+  if (name == "right") return formats::Side::kRight;
+  return std::nullopt;
+}
+
+absl::StatusOr<formats::ReadOptions> OptionsOf(const ReadArguments& arguments) {
+  std::optional<motion::LengthUnit> unit;
+  std::optional<motion::UpAxis> up_axis;
+  absl::Status status =
+      Choose("unit", arguments.unit, motion::ParseLengthUnit, motion::kLengthUnitNames, &unit);
+  status.Update(
+      Choose("up_axis", arguments.up_axis, motion::ParseUpAxis, motion::kUpAxisNames, &up_axis));
+  if (!status.ok()) return status;
+  formats::ReadOptions options;
+  options.coordinates = motion::StatedCoordinates(unit, up_axis);
+  options.frame_rate_hz = arguments.frame_rate_hz;
+  options.metres_per_unit = arguments.metres_per_unit;
+  options.joint_overrides = arguments.joint_map;
+  return options;
+}
+
+// Keeps the person at a side. A file of one person is valid for both sides.
+absl::Status KeepSide(const std::string& side, Clips* people) {
+  std::optional<formats::Side> kept;
+  absl::Status status = Choose("side", side, ParseSide, "left or right", &kept);
+  if (!status.ok() || !kept.has_value()) return status;
+  if (*kept == formats::Side::kRight && people->size() > 1) std::swap((*people)[0], (*people)[1]);
+  people->resize(1);
+  return absl::OkStatus();
+}
+
+// The argument for a setting; empty if the package has none.
+absl::string_view ArgumentFor(motion::ReadingSetting setting) {
+  switch (setting) {
+    case motion::ReadingSetting::kFrameRate:
+      return "frame_rate_hz";
+    case motion::ReadingSetting::kMetresPerUnit:
+      return "metres_per_unit";
+    case motion::ReadingSetting::kJointMap:
+      return "joint_map";
+    case motion::ReadingSetting::kFormat:
+    case motion::ReadingSetting::kRigJointMap:
+      return "";
+  }
+  return "";
+}
+
+}  // namespace
+
+absl::StatusOr<Clips> ReadMotion(const std::filesystem::path& file,
+                                 const ReadArguments& arguments) {
+  const absl::StatusOr<formats::ReadOptions> options = OptionsOf(arguments);
+  if (!options.ok()) return options.status();
+  absl::Status status = formats::CheckReadable(file, std::nullopt);
+  if (!status.ok()) return status;
+  absl::StatusOr<formats::ReadPeople> read = formats::ReadAllPeople(
+      [&file](const formats::ReadOptions& person) { return formats::ReadLeader(file, person); },
+      *options);
+  if (!read.ok()) return read.status();
+  status = KeepSide(arguments.side, &read->people);
+  for (motion::Clip& person : read->people) {
+    if (status.ok() && arguments.resample_hz) {
+      status = motion::ResampleByRate("resample_hz", *arguments.resample_hz, &person);
+    }
+  }
+  if (status.ok()) status = CheckPeople(read->people, options->skeleton);
+  if (!status.ok()) return status;
+  return std::move(read->people);
+}
+
+absl::Status WriteMotion(const std::string& document, const std::filesystem::path& file) {
+  if (!formats::IsWritable(file)) {
+    return formats::UnknownExtension(file, formats::kWritableExtensions);
+  }
+  absl::Status status = formats::CheckFolderOf(file);
+  if (!status.ok()) return status;
+  formats::ReadOptions options;
+  options.format = formats::Format::kJson;
+  const absl::StatusOr<formats::ReadPeople> read = formats::ReadAllPeople(
+      [&document](const formats::ReadOptions& person) {
+        return formats::ParseLeader(document, "motion", person);
+      },
+      options);
+  if (!read.ok()) return read.status();
+  return formats::WritePeople(file, *formats::FormatOf(file), read->people, options.skeleton)
+      .status();
+}
+
+std::string DescribeError(const absl::Status& error) {
+  std::string text(error.message());
+  const std::optional<motion::ReadingSetting> setting = motion::MendingSetting(error);
+  const absl::string_view argument = setting.has_value() ? ArgumentFor(*setting) : "";
+  if (!argument.empty()) absl::StrAppend(&text, "\nSpecify it with ", argument, ".");
+  return text;
+}
+
+}  // namespace duet::client::python::extension
