@@ -25,7 +25,7 @@ class Layer:
 
 
 MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format",
-                "gltf format", "asf format", "usd format", "formats")
+                "gltf format", "asf format", "usd format", "research format", "formats")
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
 MEASURING = ("metrics", "protocol", "baselines", "judge", "experiments")
 SERVER = ("server common", "batching", "registry", "server metrics", "security", "tracing",
@@ -42,9 +42,11 @@ LAYERS = (
     Layer("gltf format", "model/formats/gltf", sees=("base", "motion", "retargeting")),
     Layer("asf format", "model/formats/asf", sees=("base", "motion", "retargeting")),
     Layer("usd format", "model/formats/usd", sees=("base", "motion", "retargeting")),
+    Layer("research format", "model/formats/research",
+          sees=("base", "motion", "retargeting", "flat formats")),
     Layer("formats", "model/formats",
           sees=("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format",
-                "asf format", "usd format")),
+                "asf format", "usd format", "research format")),
     Layer("authoring", "model/authoring", sees=("base", "motion", "retargeting", "bvh format")),
     Layer("dataset", "model/dataset", sees=MOTION_FILES),
     Layer("importing", "model/importing", sees=MOTION_FILES + ("dataset",)),

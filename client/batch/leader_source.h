@@ -22,11 +22,11 @@ class LeaderSource {
   virtual absl::StatusOr<std::optional<LeaderEntry>> Next() = 0;
 };
 
-// Files, folders (all motion files below, by name; .txt and .json files that hold something else
-// are skipped and added to `passed_over`, which may be null) and patterns ("walks/*.bvh"; * and ?
-// within one part of a path). Files of a folder are named by their path in it, other files by their
-// own name. With `format`, a file may have any extension, and files of a folder or a pattern any
-// extension that is not that of another format.
+// Files, folders (all motion files below, by name; .txt, .json and .npz files that hold something
+// else are skipped and added to `passed_over`, which may be null) and patterns ("walks/*.bvh"; *
+// and ? within one part of a path). Files of a folder are named by their path in it, other files by
+// their own name. With `format`, a file may have any extension, and files of a folder or a pattern
+// any extension that is not that of another format.
 //
 // Errors: NOT_FOUND for missing inputs; INVALID_ARGUMENT for a file of unknown format, for two
 // leaders

@@ -121,6 +121,8 @@ formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skele
   options.frame_rate_hz = input.frame_rate_hz;
   options.metres_per_unit = input.metres_per_unit;
   options.joint_overrides = input.joint_map;
+  options.layout = input.layout;
+  options.body_model = input.body_model;
   options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
   return options;
 }

@@ -75,6 +75,8 @@ struct LeaderInput {
   std::optional<motion::UpAxis> up_axis;
   retargeting::JointOverrides joint_map;
   std::optional<formats::Format> format;
+  std::optional<formats::research::Layout> layout;
+  std::filesystem::path body_model;
   Level level;
   // The vertical of every leader, for requests: of `level`, or what an automatic one found.
   std::optional<motion::Vec3> up;

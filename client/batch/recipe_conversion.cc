@@ -211,6 +211,11 @@ LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
     check->Expect(input.format.has_value() && formats::IsReadable(*input.format), "input.format",
                   base::Quoted(proto.format()), formats::kReadableFormatNames);
   }
+  if (proto.has_layout()) {
+    input.layout = formats::research::ParseLayout(proto.layout());
+    check->Expect(input.layout.has_value(), "input.layout", base::Quoted(proto.layout()),
+                  formats::research::kLayoutNames);
+  }
   if (proto.has_level()) {
     const absl::StatusOr<Level> level = ParseLevel(proto.level());
     check->Expect(level.ok(), "input.level", base::Quoted(proto.level()),

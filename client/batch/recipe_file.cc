@@ -65,6 +65,7 @@ void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
   if (!overrides.input_format.empty()) {
     recipe->mutable_input()->set_format(overrides.input_format);
   }
+  if (!overrides.layout.empty()) recipe->mutable_input()->set_layout(overrides.layout);
   if (!overrides.level.empty()) recipe->mutable_input()->set_level(overrides.level);
   if (overrides.frame_rate_hz) {
     recipe->mutable_output()->set_frame_rate_hz(*overrides.frame_rate_hz);
@@ -84,6 +85,22 @@ absl::Status TakeJointTable(const std::filesystem::path& folder, v1::LeaderInput
   input->clear_joint_map_file();
   input->mutable_joint_map()->insert(table->begin(), table->end());  // keeps existing entries
   return absl::OkStatus();
+}
+
+// Replaces the path of the body model by its digest. Returns the path; empty if there is none.
+absl::StatusOr<std::filesystem::path> TakeBodyModel(const std::filesystem::path& folder,
+                                                    const RecipeOverrides& overrides,
+                                                    v1::Recipe* recipe) {
+  std::filesystem::path path = overrides.body_model;
+  if (path.empty() && !recipe->input().body_model().empty()) {
+    path = folder / recipe->input().body_model();
+  }
+  if (path.empty()) return path;
+  const absl::StatusOr<std::string> content =
+      base::ReadFile(path, formats::kMaxBodyModelBytes, "a body model");
+  if (!content.ok()) return content.status();
+  recipe->mutable_input()->set_body_model(base::Sha256Hex(*content));
+  return path;
 }
 
 // Reads the classifier that the recipe names, and replaces its path by its digest.
@@ -112,9 +129,13 @@ absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
     status = classifier.status();
   }
   if (!status.ok()) return status;
+  const absl::StatusOr<std::filesystem::path> body_model =
+      TakeBodyModel(folder, overrides, &parsed);
+  if (!body_model.ok()) return body_model.status();
   Apply(overrides, &parsed);
   absl::StatusOr<Recipe> recipe = FromProto(parsed);
   if (!recipe.ok()) return recipe;
+  recipe->input.body_model = *body_model;
   recipe->digest = Digest(parsed);
   recipe->json = ToJson(parsed);
   recipe->filter.classifier = *std::move(classifier);

@@ -63,9 +63,19 @@ void AddInputFlags(CLI::App* app, BatchArguments* arguments) {
       ->group(kGroup);
   app->add_option("--input-format", arguments->overrides.input_format,
                   "Format of every leader; overrides the extension and the recipe")
-      ->check(Undescribed(CLI::IsMember(
-          std::vector<std::string>{"amc", "bvh", "csv", "glb", "gltf", "json", "npy", "sbu"})))
-      ->type_name("amc|bvh|csv|glb|gltf|json|npy|sbu")
+      ->check(Undescribed(CLI::IsMember(std::vector<std::string>{"amc", "bvh", "csv", "glb", "gltf",
+                                                                 "json", "npy", "npz", "sbu"})))
+      ->type_name("amc|bvh|csv|glb|gltf|json|npy|npz|sbu")
+      ->group(kGroup);
+  app->add_option("--layout", arguments->overrides.layout,
+                  "Layout of .npy leaders of research; overrides the recipe")
+      ->check(Undescribed(CLI::IsMember(std::vector<std::string>{
+          "humanml3d", "humanml3d-263", "inter-x", "intergen", "intergen-262"})))
+      ->type_name("humanml3d|humanml3d-263|inter-x|intergen|intergen-262")
+      ->group(kGroup);
+  app->add_option("--body-model", arguments->overrides.body_model,
+                  "Body model of .npz leaders; overrides the recipe")
+      ->type_name("FILE")
       ->group(kGroup);
   AddParsed<std::string>(
       app, "--level", batch::kLevelForm, ParseLevelText,

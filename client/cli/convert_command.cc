@@ -18,12 +18,17 @@
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
 #include "client/cli/report.h"
+#include "model/formats/research/body_joints.h"
+#include "model/formats/research/layout.h"
 #include "model/motion/resample.h"
 #include "model/motion/sbu.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
 namespace {
+
+using formats::Format;
+using formats::research::Layout;
 
 // Which people of a file with two people to convert.
 enum class People { kLeft, kRight, kBoth };
@@ -35,6 +40,7 @@ struct ConvertArguments {
   std::optional<double> resample_hz;
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // for standard output
+  std::optional<Layout> output_layout;        // of .npy
   BvhArguments bvh;
   bool json = false;
   bool quiet = false;
@@ -43,7 +49,6 @@ struct ConvertArguments {
 const std::map<std::string, People> kPeople = {
     {"both", People::kBoth}, {"left", People::kLeft}, {"right", People::kRight}};
 
-using formats::Format;
 using Clips = std::vector<motion::Clip>;
 using Paths = std::vector<std::filesystem::path>;
 
@@ -81,6 +86,22 @@ absl::Status ChoosePeople(const std::optional<People>& wanted, Clips* people) {
   return absl::OkStatus();
 }
 
+// The skeleton in which a motion is read. A layout is written from the body joints that the file
+// has, from joints with toes, or from those of the default skeleton.
+motion::Skeleton SkeletonFor(const std::optional<Layout>& layout, const MotionInput& input,
+                             formats::ReadOptions options) {
+  motion::Skeleton skeleton = options.skeleton;
+  if (!layout) return skeleton;
+  retargeting::ReadingReport report;
+  options.report = &report;
+  options.skeleton = formats::research::DetailedSkeleton();
+  const absl::Status detailed = input.Read(options).status();
+  if (formats::research::HasBodyJoints(report.file_joints)) {
+    return formats::research::BodySkeleton();
+  }
+  return detailed.ok() ? options.skeleton : skeleton;
+}
+
 absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std::istream* in) {
   absl::Status status = CheckInput(arguments.file, arguments.input.format);
   if (!status.ok()) return status;
@@ -88,11 +109,14 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   conversion.skeleton = motion::SbuSkeleton();
   conversion.writing.bvh_metres_per_unit = arguments.bvh.metres_per_unit;
   conversion.writing.bvh_keys_per_frame = arguments.bvh.keys_per_frame;
-  const absl::StatusOr<formats::ReadOptions> options =
+  conversion.writing.layout = arguments.output_layout;
+  absl::StatusOr<formats::ReadOptions> options =
       ToReadOptions(arguments.input, conversion.skeleton);
   if (!options.ok()) return options.status();
   const absl::StatusOr<MotionInput> input = MotionInput::Open(arguments.file, in);
   if (!input.ok()) return input.status();
+  conversion.skeleton = SkeletonFor(arguments.output_layout, *input, *options);
+  options->skeleton = conversion.skeleton;
   absl::StatusOr<formats::ReadPeople> read = ReadAllPeople(*input, *options);
   if (!read.ok()) return read.status();
   conversion.source = input->name();
@@ -110,11 +134,17 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
 }
 
 // The largest error of a motion that was written as `content`, in a format that Duet reads.
-absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const Clips& people,
+absl::StatusOr<double> ErrorOf(const std::string& content, Format format, Clips people,
                                const Conversion& conversion) {
   formats::ReadOptions options;
   options.format = format;
-  options.skeleton = conversion.skeleton;
+  if (const std::optional<Layout>& layout = conversion.writing.layout) {
+    absl::StatusOr<Clips> bodies = formats::research::ToLayout(*layout, people, nullptr);
+    if (!bodies.ok()) return bodies.status();
+    people = formats::research::KeptBy(*layout, *bodies);
+    options.layout = layout;
+  }
+  options.skeleton = options.layout ? formats::research::BodySkeleton() : conversion.skeleton;
   options.frame_rate_hz = people[0].frame_rate_hz;
   // SBU text always has the coordinates of the format.
   if (format != Format::kSbuText) options.coordinates = motion::Coordinates{};
@@ -133,6 +163,16 @@ absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const 
     }
   }
   return largest;
+}
+
+std::vector<std::string> MissingIn(Layout layout) {
+  if (layout == Layout::kHumanMl3dFeatures) {
+    return {"the last frame", "the person's place and heading at the start"};
+  }
+  if (layout == Layout::kInterGenFeatures) {
+    return {"the last frame", "the first person's place and heading at the start"};
+  }
+  return {"joint names", "the frame rate"};
 }
 
 std::vector<std::string> MissingIn(Format format, double rate_hz) {
@@ -171,7 +211,9 @@ absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesyste
   const absl::StatusOr<std::vector<std::string>> contents =
       FormatFiles(conversion, format, &written.largest_error_metres);
   if (!contents.ok()) return contents.status();
-  written.missing = MissingIn(format, conversion.people[0].frame_rate_hz);
+  const std::optional<Layout>& layout = conversion.writing.layout;
+  written.missing =
+      layout ? MissingIn(*layout) : MissingIn(format, conversion.people[0].frame_rate_hz);
   if (output == kStandardStream) {
     if (contents->size() > 1) {
       return absl::InvalidArgumentError(
@@ -270,6 +312,12 @@ void CheckTogether(const ConvertArguments& arguments) {
                                "html is not a motion format. Use duet view to make a page");
   }
   for (const std::filesystem::path& output : arguments.outputs) {
+    const bool is_npy = output == kStandardStream ? arguments.output_format->motion == Format::kNpy
+                                                  : formats::FormatOf(output) == Format::kNpy;
+    if (arguments.output_layout && !is_npy) {
+      throw CLI::ValidationError("--output-layout",
+                                 absl::StrCat("expected --out FILE.npy, got ", output.string()));
+    }
     const absl::Status status = CheckOutput(output, arguments.file, PageAllowed::kNo);
     if (!status.ok()) throw CLI::ValidationError("--out", std::string(status.message()));
   }
@@ -278,8 +326,8 @@ void CheckTogether(const ConvertArguments& arguments) {
 void AddFlags(CLI::App* command, ConvertArguments* arguments) {
   command
       ->add_option("file", arguments->file,
-                   "Motion: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt; - for standard "
-                   "input")
+                   "Motion: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
+                   "standard input")
       ->required()
       ->type_name("FILE");
   AddChoice<People>(
@@ -304,6 +352,7 @@ void AddFlags(CLI::App* command, ConvertArguments* arguments) {
       ->type_name("HZ")
       ->group(kOutputGroup);
   AddOutputFormatFlag(command, &arguments->output_format);
+  AddOutputLayoutFlag(command, &arguments->output_layout);
   AddBvhFlags(command, &arguments->bvh);
   command->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
   command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);

@@ -11,16 +11,23 @@ namespace duet::client::cli {
 namespace {
 
 using formats::Format;
+using formats::research::Layout;
 
 const std::map<std::string, Format> kInputFormats = {
-    {"amc", Format::kAmc}, {"bvh", Format::kBvh},    {"csv", Format::kCsv},
-    {"glb", Format::kGlb}, {"gltf", Format::kGltf},  {"json", Format::kJson},
-    {"npy", Format::kNpy}, {"sbu", Format::kSbuText}};
+    {"amc", Format::kAmc}, {"bvh", Format::kBvh},   {"csv", Format::kCsv},
+    {"glb", Format::kGlb}, {"gltf", Format::kGltf}, {"json", Format::kJson},
+    {"npy", Format::kNpy}, {"npz", Format::kNpz},   {"sbu", Format::kSbuText}};
 
 const std::map<std::string, OutputFormat> kOutputFormats = {
     {"bvh", {Format::kBvh}},   {"csv", {Format::kCsv}},     {"glb", {Format::kGlb}},
     {"gltf", {Format::kGltf}}, {"html", {std::nullopt}},    {"json", {Format::kJson}},
     {"npy", {Format::kNpy}},   {"sbu", {Format::kSbuText}}, {"usda", {Format::kUsda}}};
+
+const std::map<std::string, Layout> kLayouts = {{"humanml3d", Layout::kHumanMl3d},
+                                                {"humanml3d-263", Layout::kHumanMl3dFeatures},
+                                                {"inter-x", Layout::kInterX},
+                                                {"intergen", Layout::kInterGen},
+                                                {"intergen-262", Layout::kInterGenFeatures}};
 
 const std::map<std::string, double> kBvhUnits = {{"centimetres", formats::kCentimetre},
                                                  {"metres", 1}};
@@ -57,6 +64,14 @@ void AddInputFlags(CLI::App* app, InputArguments* input) {
       ->check(AboveZero())
       ->type_name("METRES")
       ->group(kInputGroup);
+  AddChoice<Layout>(
+      app, "--layout", kLayouts, [input](Layout layout) { input->layout = layout; },
+      "Meaning of a .npy array of research: positions of 22 joints, or features")
+      ->group(kInputGroup);
+  app->add_option("--body-model", input->body_model,
+                  "Body model of .npz motions (AMASS, SMPL): an .npz with its joint regressor")
+      ->type_name("FILE")
+      ->group(kInputGroup);
   AddParsed<std::pair<std::string, std::string>>(
       app, "--joint-map", "MODEL_JOINT=FILE_JOINT", ParseJointPair,
       [input](std::pair<std::string, std::string> joints) { input->joints.insert(joints); },
@@ -72,6 +87,13 @@ void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format) {
   AddChoice<OutputFormat>(
       app, "--output-format", kOutputFormats, [format](OutputFormat chosen) { *format = chosen; },
       "Format of standard output (--out -)")
+      ->group(kOutputGroup);
+}
+
+void AddOutputLayoutFlag(CLI::App* app, std::optional<Layout>* layout) {
+  AddChoice<Layout>(
+      app, "--output-layout", kLayouts, [layout](Layout chosen) { *layout = chosen; },
+      "Layout of --out FILE.npy: 22 joints of a body model at the rate of the data set")
       ->group(kOutputGroup);
 }
 

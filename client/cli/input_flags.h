@@ -15,6 +15,9 @@ void AddInputFlags(CLI::App* app, InputArguments* input);
 // --output-format, of what goes to standard output.
 void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format);
 
+// --output-layout, of .npy.
+void AddOutputLayoutFlag(CLI::App* app, std::optional<formats::research::Layout>* layout);
+
 // --bvh-unit and --bvh-keys-per-frame, of what is written.
 void AddBvhFlags(CLI::App* app, BvhArguments* bvh);
 

@@ -115,10 +115,9 @@ ExitCode Run(const InspectArguments& arguments, const ProgramEnvironment& enviro
 
 void AddFlags(CLI::App* command, InspectArguments* arguments) {
   command
-      ->add_option(
-          "files", arguments->files,
-          "Motions: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt; - for standard "
-          "input")
+      ->add_option("files", arguments->files,
+                   "Motions: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
+                   "standard input")
       ->required()
       ->type_name("FILE");
   AddInputFlags(command, &arguments->input);

@@ -23,6 +23,8 @@ struct InputArguments {
   std::optional<double> metres_per_unit;
   retargeting::JointOverrides joints;
   std::filesystem::path joint_table;  // a file of joints, which `joints` override
+  std::optional<formats::research::Layout> layout;
+  std::filesystem::path body_model;
 };
 
 // The kind of output: a motion, or an HTML page.

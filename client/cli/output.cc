@@ -53,8 +53,15 @@ motion::Provenance ProvenanceOf(const Synthesis& synthesis) {
 formats::WriteOptions WritingOf(const Synthesis& synthesis, const motion::Provenance& provenance,
                                 std::vector<std::string>* notes) {
   const std::optional<motion::JointRotations>& rotations = synthesis.result.rotations;
-  return {&provenance, synthesis.bvh.metres_per_unit, synthesis.bvh.keys_per_frame,
-          rotations ? &*rotations : nullptr, notes};
+  formats::WriteOptions writing;
+  writing.provenance = &provenance;
+  writing.bvh_metres_per_unit = synthesis.bvh.metres_per_unit;
+  writing.bvh_keys_per_frame = synthesis.bvh.keys_per_frame;
+  writing.follower_rotations = rotations ? &*rotations : nullptr;
+  writing.rotation_form = synthesis.rotation_form;
+  writing.layout = synthesis.layout;
+  writing.notes = notes;
+  return writing;
 }
 
 absl::StatusOr<std::string> FormatPair(formats::Format format, const Synthesis& synthesis) {

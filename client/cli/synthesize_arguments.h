@@ -37,8 +37,10 @@ struct SynthesizeArguments : SynthesisOptions {
   std::optional<formats::Side> follower_start_side;
   int samples = 1;  // answers, with the seeds `seed`, `seed` + 1, ...
   std::vector<std::filesystem::path> outputs;
-  std::optional<OutputFormat> output_format;  // for standard output
+  std::optional<OutputFormat> output_format;               // for standard output
+  std::optional<formats::research::Layout> output_layout;  // of .npy
   BvhArguments bvh;
+  formats::flat::RotationForm rotation_form = formats::flat::RotationForm::kQuaternions;
   std::string follower_rig;                // empty, kLeadersRig or a file
   retargeting::JointOverrides rig_joints;  // if it is a file
   std::filesystem::path rig_joint_table;   // a file of joints, which `rig_joints` override

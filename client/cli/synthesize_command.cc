@@ -91,9 +91,17 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
     request.seed = SeedOf(arguments, sample);
     absl::StatusOr<SynthesisResult> result = client.Synthesize(request);
     if (!result.ok()) return result.status();
-    const Synthesis synthesis{std::move(request), *std::move(result), job.skeleton,
-                              arguments.leader,   job.sampled,        arguments.bvh,
-                              job.follower_rig,   arguments.beat};
+    Synthesis synthesis;
+    synthesis.request = std::move(request);
+    synthesis.result = *std::move(result);
+    synthesis.skeleton = job.skeleton;
+    synthesis.leader_file = arguments.leader;
+    synthesis.sampled = job.sampled;
+    synthesis.bvh = arguments.bvh;
+    synthesis.rotation_form = arguments.rotation_form;
+    synthesis.layout = arguments.output_layout;
+    synthesis.follower_rig = job.follower_rig;
+    synthesis.beat = arguments.beat;
     const absl::StatusOr<WrittenFiles> written =
         WriteAll(arguments, SampleOutputs(arguments, sample), synthesis, *environment.out);
     if (!written.ok()) return written.status();

@@ -23,10 +23,15 @@ namespace {
 const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::kInteractive},
                                                      {"bulk", Priority::kBulk}};
 
+using formats::flat::RotationForm;
+
+const std::map<std::string, RotationForm> kRotationForms = {
+    {"6d", RotationForm::kSixNumbers}, {"quaternion", RotationForm::kQuaternions}};
+
 void AddLeaderFlags(CLI::App* app, SynthesizeArguments* arguments) {
   app->add_option("--leader", arguments->leader,
-                  "Motion of the leader: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt; "
-                  "- for standard input")
+                  "Motion of the leader: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU "
+                  ".txt; - for standard input")
       ->required()
       ->type_name("FILE")
       ->group(kInputGroup);
@@ -63,6 +68,12 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
   app->add_flag("--rotations", arguments->rotations,
                 "Write the follower's joint rotations beside its positions to .json, for engines")
       ->group(kReactionGroup);
+  AddChoice<RotationForm>(
+      app, "--rotation-form", kRotationForms,
+      [arguments](RotationForm form) { arguments->rotation_form = form; },
+      "Quaternions, or the first two columns of each rotation's matrix (6D)")
+      ->default_str("quaternion")
+      ->group(kReactionGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->priority = priority; },
@@ -87,6 +98,7 @@ void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->type_name("FILE")
       ->group(kOutputGroup);
   AddOutputFormatFlag(app, &arguments->output_format);
+  AddOutputLayoutFlag(app, &arguments->output_layout);
   AddBvhFlags(app, &arguments->bvh);
   app->add_option(
          "--follower-rig", arguments->follower_rig,
@@ -143,17 +155,26 @@ void CheckFollowerRig(const SynthesizeArguments& arguments) {
                                      " and --out ", OutputsText(arguments)));
 }
 
-// Whether an output is JSON with the motion.
-bool WritesJson(const SynthesizeArguments& arguments) {
-  const auto is_json = [&arguments](const std::filesystem::path& output) {
-    if (output != kStandardStream) return formats::FormatOf(output) == formats::Format::kJson;
-    return arguments.output_format && arguments.output_format->motion == formats::Format::kJson;
+// Whether an output has this format.
+bool Writes(formats::Format format, const SynthesizeArguments& arguments) {
+  const auto has_format = [&arguments, format](const std::filesystem::path& output) {
+    if (output != kStandardStream) return formats::FormatOf(output) == format;
+    return arguments.output_format && arguments.output_format->motion == format;
   };
-  return std::any_of(arguments.outputs.begin(), arguments.outputs.end(), is_json);
+  return std::any_of(arguments.outputs.begin(), arguments.outputs.end(), has_format);
+}
+
+void CheckLayout(const SynthesizeArguments& arguments) {
+  if (!arguments.output_layout || Writes(formats::Format::kNpy, arguments)) return;
+  throw CLI::ValidationError("--output-layout", absl::StrCat("expected --out FILE.npy, got --out ",
+                                                             OutputsText(arguments)));
 }
 
 void CheckRotations(const SynthesizeArguments& arguments) {
-  if (!arguments.rotations || WritesJson(arguments)) return;
+  if (arguments.rotation_form != RotationForm::kQuaternions && !arguments.rotations) {
+    throw CLI::ValidationError("--rotation-form", "is only valid with --rotations");
+  }
+  if (!arguments.rotations || Writes(formats::Format::kJson, arguments)) return;
   throw CLI::ValidationError("--rotations",
                              absl::StrCat("expected --out FILE.json, which holds them, got --out ",
                                           OutputsText(arguments)));
@@ -177,6 +198,7 @@ void CheckTogether(const SynthesizeArguments& arguments) {
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
   CheckFollowerRig(arguments);
   CheckRotations(arguments);
+  CheckLayout(arguments);
   CheckKeyframes(arguments);
   if (arguments.samples > 1 && WritesToStandardOutput(arguments.outputs)) {
     throw CLI::ValidationError("--samples",

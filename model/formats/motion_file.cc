@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/types/span.h"
 #include "model/base/file.h"
@@ -21,6 +22,9 @@
 #include "model/formats/gltf/gltf_document.h"
 #include "model/formats/gltf/gltf_export.h"
 #include "model/formats/gltf/gltf_import.h"
+#include "model/formats/research/layout.h"
+#include "model/formats/research/npz_archive.h"
+#include "model/formats/research/smpl_motion.h"
 #include "model/formats/usd/usda_export.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/motion_limits.h"
@@ -67,6 +71,15 @@ void WarnOfUpAxis(const motion::Clip& clip, const ReadOptions& options) {
       "specify the up axis");
   if (options.notes != nullptr) options.notes->push_back(warning);
   if (options.report != nullptr) options.report->remarks.push_back(warning);
+}
+
+// Names the layouts of research where an array is not one of positions of the skeleton's joints.
+absl::Status WithLayoutHint(const absl::Status& status) {
+  if (!absl::StrContains(status.message(), ": shape: ")) return status;
+  return absl::Status(
+      status.code(),
+      absl::StrCat(status.message(), "; for an array of research, specify its layout (",
+                   research::kLayoutNames, ")"));
 }
 
 void ReportCoordinates(const motion::Coordinates& coordinates, Origin unit, Origin up_axis,
@@ -183,6 +196,57 @@ absl::StatusOr<motion::Clip> ReadAmcPerson(const std::string& text, const Source
   return FromAmc(*skeleton, *motion, source.name, amc);
 }
 
+absl::StatusOr<motion::Clip> ReadNpyPerson(const std::string& content, const std::string& source,
+                                           const ReadOptions& options) {
+  std::string why;
+  const std::optional<research::Layout> layout =
+      options.layout.has_value() ? options.layout : research::GuessLayout(content, &why);
+  if (!layout.has_value()) {
+    const absl::StatusOr<motion::RecordedMotion> motion =
+        flat::ParseNpy(content, source, options.skeleton.joint_names);
+    if (!motion.ok()) return WithLayoutHint(motion.status());
+    return ToSkeleton(*motion, source, options);
+  }
+  const std::string rate = absl::StrCat(research::FrameRateOf(*layout), " Hz");
+  if (options.report != nullptr) {
+    options.report->layout = Setting{std::string(research::LayoutName(*layout)),
+                                     why.empty() ? Origin::kGiven : Origin::kGuessed, why};
+  }
+  if (options.notes != nullptr && !why.empty()) {
+    options.notes->push_back(
+        absl::StrCat("layout: ", research::LayoutName(*layout), " (", why, ")"));
+  }
+  const absl::StatusOr<motion::RecordedMotion> motion =
+      research::ParseNpyOf(*layout, content, source);
+  if (!motion.ok()) return motion.status();
+  absl::StatusOr<motion::Clip> clip = ToSkeleton(*motion, source, options);
+  if (!clip.ok()) return clip;
+  clip->frame_rate_hz = research::FrameRateOf(*layout);
+  if (options.report != nullptr) {
+    options.report->frame_rate = Setting{rate, Origin::kDefault, "the rate of the layout"};
+  }
+  return clip;
+}
+
+absl::StatusOr<motion::Clip> ReadNpzPerson(const std::string& content, const std::string& source,
+                                           const ReadOptions& options) {
+  const absl::StatusOr<research::NpzArchive> motion = research::NpzArchive::Parse(content, source);
+  if (!motion.ok()) return motion.status();
+  if (options.body_model.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        source,
+        ": body model: expected the .npz of the motion's body model, got none; specify it "
+        "(--body-model FILE)"));
+  }
+  const absl::StatusOr<std::string> bytes =
+      base::ReadFile(options.body_model, kMaxBodyModelBytes, "a body model");
+  if (!bytes.ok()) return bytes.status();
+  const absl::StatusOr<research::NpzArchive> model =
+      research::NpzArchive::Parse(*bytes, options.body_model.string());
+  if (!model.ok()) return model.status();
+  return research::FromSmpl(*motion, *model, CharacterOptionsOf(options));
+}
+
 const char* FormatTitle(Format format) {
   switch (format) {
     case Format::kSbuText:
@@ -200,6 +264,8 @@ const char* FormatTitle(Format format) {
       return "JSON";
     case Format::kNpy:
       return "NPY";
+    case Format::kNpz:
+      return "NPZ of a body model";
     case Format::kUsda:
       return "USD";
   }
@@ -213,10 +279,11 @@ absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& conten
   if (format == Format::kAmc) return ReadAmcPerson(content, source, options);
   if (format == Format::kSbuText) return ReadSbuPerson(content, source.name, options);
   if (format == Format::kBvh) return ReadBvhPerson(content, source.name, options);
-  absl::StatusOr<motion::RecordedMotion> motion =
-      format == Format::kCsv   ? flat::ParseCsv(content, source.name)
-      : format == Format::kNpy ? flat::ParseNpy(content, source.name, options.skeleton.joint_names)
-                               : flat::ParseJsonMotion(content, source.name);
+  if (format == Format::kNpz) return ReadNpzPerson(content, source.name, options);
+  if (format == Format::kNpy) return ReadNpyPerson(content, source.name, options);
+  absl::StatusOr<motion::RecordedMotion> motion = format == Format::kCsv
+                                                      ? flat::ParseCsv(content, source.name)
+                                                      : flat::ParseJsonMotion(content, source.name);
   if (!motion.ok()) return motion.status();
   return ToSkeleton(*motion, source.name, options);
 }
@@ -268,6 +335,12 @@ absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motio
         format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText);
   }
   if (format == Format::kUsda) return usd::FormatUsda(people, skeleton, options.provenance);
+  if (format == Format::kNpy && options.layout.has_value()) {
+    const absl::StatusOr<std::vector<motion::Clip>> bodies =
+        research::ToLayout(*options.layout, people, options.notes);
+    if (!bodies.ok()) return bodies.status();
+    return FormatNpyOf(*options.layout, *bodies);
+  }
   if (people.size() == 1) {
     return format == Format::kBvh   ? FormatBvhPerson(people[0], skeleton, options)
            : format == Format::kCsv ? flat::FormatCsv(people[0])
@@ -282,7 +355,7 @@ absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motio
   const motion::ClipPair pair{people[0], people[1]};
   if (format == Format::kCsv) return flat::FormatCsv(pair);
   if (format == Format::kNpy) return flat::FormatNpy(pair);
-  return flat::FormatJsonMotion(pair, skeleton, options.follower_rotations);
+  return flat::FormatJsonMotion(pair, skeleton, options.follower_rotations, options.rotation_form);
 }
 
 absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,
@@ -323,7 +396,8 @@ std::optional<Format> ParseFormat(absl::string_view name) {
   static const auto& formats = *new std::map<absl::string_view, Format>{
       {"sbu", Format::kSbuText}, {"bvh", Format::kBvh}, {"gltf", Format::kGltf},
       {"glb", Format::kGlb},     {"amc", Format::kAmc}, {"csv", Format::kCsv},
-      {"json", Format::kJson},   {"npy", Format::kNpy}, {"usda", Format::kUsda}};
+      {"json", Format::kJson},   {"npy", Format::kNpy}, {"npz", Format::kNpz},
+      {"usda", Format::kUsda}};
   const auto found = formats.find(name);
   return found == formats.end() ? std::nullopt : std::optional<Format>(found->second);
 }
@@ -335,7 +409,7 @@ bool IsReadable(const fs::path& path) {
   return format.has_value() && IsReadable(*format);
 }
 
-bool IsWritable(Format format) { return format != Format::kAmc; }
+bool IsWritable(Format format) { return format != Format::kAmc && format != Format::kNpz; }
 
 bool IsWritable(const fs::path& path) {
   const std::optional<Format> format = FormatOf(path);

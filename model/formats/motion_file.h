@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_FORMATS_MOTION_FILE_H_
 #define DUET_MODEL_FORMATS_MOTION_FILE_H_
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,6 +10,8 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "model/formats/flat/rotation_form.h"
+#include "model/formats/research/layout.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/joint_rotations.h"
@@ -25,7 +28,9 @@
 //   .amc    joint angles, with the skeleton in an .asf file in the same folder
 //   .csv    positions by column, one or two people
 //   .json   positions, one or two people
-//   .npy    positions as an array, [frames, joints, 3] or [2, frames, joints, 3]
+//   .npy    positions as an array, [frames, joints, 3] or [2, frames, joints, 3]; or an array of
+//           research (ReadOptions::layout)
+//   .npz    poses of a body model (SMPL, AMASS), with the model in a file of its own; read only
 //   .usda   an animated skeleton per person; written, not read
 
 namespace duet::formats {
@@ -35,7 +40,10 @@ namespace duet::formats {
 enum class Side { kLeft, kRight };
 
 // kGlb is binary glTF. A reader distinguishes the two by their first bytes.
-enum class Format { kSbuText, kBvh, kGltf, kGlb, kAmc, kCsv, kJson, kNpy, kUsda };
+enum class Format { kSbuText, kBvh, kGltf, kGlb, kAmc, kCsv, kJson, kNpy, kNpz, kUsda };
+
+// SMPL-X with all its shapes, uncompressed.
+inline constexpr std::size_t kMaxBodyModelBytes = std::size_t{1} << 30;
 
 struct ReadOptions {
   // Overrides the file's extension.
@@ -43,7 +51,8 @@ struct ReadOptions {
   Side side = Side::kLeft;
   // The joints to return, in their order.
   motion::Skeleton skeleton = motion::SbuSkeleton();
-  // Overrides the file's frame rate. Required for .npy; the default for SBU text is 15 Hz.
+  // Overrides the file's frame rate. Required for .npy without a layout; the default for SBU text
+  // is 15 Hz, and that of a layout is its data set's.
   std::optional<double> frame_rate_hz;
   // Overrides the file's coordinates. Defaults: SBU text has the data set's normalised unit; CSV
   // and JSON have what they state, or metres, y up; NPY has metres, y up.
@@ -52,6 +61,11 @@ struct ReadOptions {
   // inferred (model/motion/inferred_coordinates.h).
   std::optional<double> metres_per_unit;
   retargeting::JointOverrides joint_overrides;
+  // The meaning of a .npy array. If absent, research::GuessLayout; if that has none, positions of
+  // the skeleton's joints.
+  std::optional<research::Layout> layout;
+  // The body model of .npz motions (research/smpl_body.h).
+  std::filesystem::path body_model;
   // Receives the decisions (unit, up axis, torso joint) as text. May be null.
   std::vector<std::string>* notes = nullptr;
   // Receives the decisions with all details, also if reading fails. May be null.
@@ -88,6 +102,10 @@ struct WriteOptions {
   int bvh_keys_per_frame = 1;
   // Joint rotations of the follower, which .json stores beside a pair. May be null.
   const motion::JointRotations* follower_rotations = nullptr;
+  // How .json stores them.
+  flat::RotationForm rotation_form = flat::RotationForm::kQuaternions;
+  // The layout of .npy: the joints of a body model at the layout's rate (research/layout.h).
+  std::optional<research::Layout> layout;
   // Receives remarks on the written file. May be null.
   std::vector<std::string>* notes = nullptr;
 };
@@ -115,10 +133,10 @@ absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion
 
 // The format of an extension; absent if the extension is unknown.
 std::optional<Format> FormatOf(const std::filesystem::path& path);
-// Parses a name: "bvh", "gltf", "glb", "usda", "amc", "csv", "json", "npy" or "sbu".
+// Parses a name: "bvh", "gltf", "glb", "usda", "amc", "csv", "json", "npy", "npz" or "sbu".
 std::optional<Format> ParseFormat(absl::string_view name);
 // The names of the formats that can be read.
-inline constexpr char kReadableFormatNames[] = "amc, bvh, csv, glb, gltf, json, npy or sbu";
+inline constexpr char kReadableFormatNames[] = "amc, bvh, csv, glb, gltf, json, npy, npz or sbu";
 bool IsWritable(Format format);
 bool IsReadable(Format format);
 
@@ -129,7 +147,7 @@ bool IsReadable(const std::filesystem::path& path);
 inline constexpr char kWritableExtensions[] =
     ".glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt (SBU text)";
 inline constexpr char kReadableExtensions[] =
-    ".txt (SBU text), .bvh, .gltf, .glb, .amc (beside its .asf), .csv, .npy or .json";
+    ".txt (SBU text), .bvh, .gltf, .glb, .amc (beside its .asf), .csv, .npy, .npz or .json";
 // INVALID_ARGUMENT "path: extension: expected <known>, got ...".
 absl::Status UnknownExtension(const std::filesystem::path& path, absl::string_view known);
 

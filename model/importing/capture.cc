@@ -26,7 +26,8 @@ constexpr double kLegTolerance = 1.5;
 
 bool HasHierarchy(formats::Format format) {
   return format == formats::Format::kBvh || format == formats::Format::kGltf ||
-         format == formats::Format::kGlb || format == formats::Format::kAmc;
+         format == formats::Format::kGlb || format == formats::Format::kAmc ||
+         format == formats::Format::kNpz;
 }
 
 absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side,
@@ -36,6 +37,8 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
   read.skeleton = options.skeleton;
   read.joint_overrides = options.joint_overrides;
   read.frame_rate_hz = options.frame_rate_hz;
+  read.layout = options.layout;
+  read.body_model = options.body_model;
   read.notes = options.notes;
   const std::optional<formats::Format> format = formats::FormatOf(path);
   if (format.has_value() && HasHierarchy(*format)) {
@@ -49,7 +52,7 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
       person.status().code(),
       absl::StrCat(person.status().message(),
                    "; NPY states neither frame rate nor joints: specify --frame-rate, and "
-                   "--skeleton unless they are the 15 joints of SBU"));
+                   "--skeleton unless they are the 15 joints of SBU, or --layout"));
 }
 
 // Resamples the whole duration, as the engine does with leaders.

@@ -8,6 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "model/formats/research/layout.h"
 #include "model/importing/pairing.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
@@ -25,8 +26,10 @@ struct Capture {
 struct CaptureOptions {
   motion::Skeleton skeleton;
   retargeting::JointOverrides joint_overrides;
-  std::optional<double> frame_rate_hz;  // overrides the files' own
-  bool unit_is_given = false;           // ignore the unit that a file states
+  std::optional<double> frame_rate_hz;              // overrides the files' own
+  std::optional<formats::research::Layout> layout;  // of .npy
+  std::filesystem::path body_model;                 // of .npz
+  bool unit_is_given = false;                       // ignore the unit that a file states
   // Receives one note for each choice between several joints. May be null.
   std::vector<std::string>* notes = nullptr;
 };

@@ -136,7 +136,8 @@ absl::StatusOr<motion::Skeleton> NamedSkeleton(const motion::RecordedMotion& mot
 
 absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file, const std::string& root) {
   const std::string extension = absl::AsciiStrToLower(file.extension().string());
-  if (extension == ".txt" || extension == ".npy") return motion::SbuSkeleton();
+  if (extension == ".txt" || extension == ".npy" || extension == ".npz")
+    return motion::SbuSkeleton();
   const absl::StatusOr<std::string> text =
       base::ReadFile(file, motion::kMaxMotionFileBytes, "a motion");
   if (!text.ok()) return text.status();

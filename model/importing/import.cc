@@ -14,6 +14,7 @@
 #include "model/base/file.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
+#include "model/formats/research/smpl_motion.h"
 #include "model/importing/capture.h"
 #include "model/importing/dataset_folder.h"
 #include "model/motion/inferred_coordinates.h"
@@ -49,6 +50,12 @@ bool IsHidden(const fs::path& path) {
   return false;
 }
 
+// Body models may be in the folder of the motions.
+bool IsMotion(const fs::path& path) {
+  return formats::IsReadable(path) && (formats::FormatOf(path) != formats::Format::kNpz ||
+                                       formats::research::MayBeSmplMotion(path));
+}
+
 // The motion files below a folder, and the number of other files by extension.
 struct Listing {
   std::vector<std::string> motions;
@@ -62,7 +69,7 @@ absl::StatusOr<Listing> ListMotions(const fs::path& folder) {
   for (; !error && it != end; it.increment(error)) {
     const fs::path path = it->path().lexically_relative(folder);
     if (IsHidden(path) || !it->is_regular_file(error)) continue;
-    if (formats::IsReadable(path)) {
+    if (IsMotion(it->path())) {
       listing.motions.push_back(path.generic_string());
     } else if (path != kTableName) {
       ++listing.others[path.extension().string()];
@@ -175,8 +182,12 @@ class Importer {
 
   absl::Status ReadPairs() {
     std::vector<std::string> notes;
-    const CaptureOptions options = {skeleton_.skeleton, options_.joint_overrides,
-                                    options_.frame_rate_hz, options_.metres_per_unit.has_value(),
+    const CaptureOptions options = {skeleton_.skeleton,
+                                    options_.joint_overrides,
+                                    options_.frame_rate_hz,
+                                    options_.layout,
+                                    options_.body_model,
+                                    options_.metres_per_unit.has_value(),
                                     &notes};
     for (const PairFiles& files : pairs_) {
       absl::StatusOr<Capture> capture = ReadCapture(options_.from, files, options);

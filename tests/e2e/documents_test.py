@@ -1,6 +1,6 @@
-"""The tour, the cookbook, the guide to batches and the page on rotations do what they say: their
-commands and their Python run as they are printed, against a real server that they find by
-DUET_SERVER, as they say."""
+"""The tour, the cookbook, the guides to batches and to the layouts of research, and the page on
+rotations do what they say: their commands and their Python run as they are printed, against a real
+server that they find by DUET_SERVER, as they say."""
 
 import importlib.util
 import os
@@ -55,6 +55,9 @@ class DocumentsTest(unittest.TestCase):
 
     def test_the_forward_kinematics_of_rotations(self):
         self.assertEqual(self.run_blocks("rotations.md"), 2)
+
+    def test_the_layouts_of_research(self):
+        self.assertEqual(self.run_blocks("guides/research_layouts.md"), 7)
 
     def test_from_leaders_to_a_training_set(self):
         self.assertGreaterEqual(self.run_blocks("batch.md", leaders=("hug", "kick", "push")), 3)

@@ -12,6 +12,8 @@ Broken Csv(absl::string_view input);
 Broken Gltf(absl::string_view input);
 Broken JsonMotion(absl::string_view input);
 Broken Npy(absl::string_view input);
+Broken ResearchNpy(absl::string_view input);  // a byte that chooses the layout, then the array
+Broken SmplNpz(absl::string_view input);      // an archive that is both motion and body model
 Broken SbuText(absl::string_view input);
 Broken AsfAmc(absl::string_view input);  // skeleton, NUL, motion
 Broken Keyframes(absl::string_view input);

@@ -22,7 +22,8 @@ def read(path: Path, options: ReadOptions) -> List[Motion]:
         people = _motion_files.read(
             path, side=options.side, frame_rate_hz=options.frame_rate_hz, unit=options.unit,
             up_axis=options.up_axis, metres_per_unit=options.metres_per_unit,
-            joint_map=options.joint_map, resample_hz=options.resample_hz)
+            joint_map=options.joint_map, resample_hz=options.resample_hz, layout=options.layout,
+            body_model=options.body_model)
     except _motion_files.Error as error:
         raise MotionFileError(str(error)) from None
     return [adopt(np.asarray(person.positions), person.joint_names, person.frame_rate_hz)

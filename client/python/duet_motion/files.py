@@ -27,12 +27,13 @@ Shown = Union[Motion, Tuple[Motion, Motion], SynthesisResult]
 def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float] = None,
                 unit: str = "", up_axis: str = "", metres_per_unit: Optional[float] = None,
                 joint_map: Optional[Mapping[str, str]] = None,
-                resample_hz: Optional[float] = None) -> Motion:
+                resample_hz: Optional[float] = None, layout: str = "",
+                body_model: Optional[Path] = None) -> Motion:
     """Reads the motion of one person from a file, in metres, y up, in the joints of Duet's
     skeleton.
 
     Args:
-        path: .bvh, .gltf, .glb, .amc, .csv, .npy, .json or SBU .txt.
+        path: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU .txt.
         side: ``"left"`` or ``"right"``: the person in a file with two.
         frame_rate_hz: frames per second; overrides the file's.
         unit: ``"metres"``, ``"millimetres"`` or ``"sbu-normalised"``; overrides the file's.
@@ -40,6 +41,9 @@ def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float
         metres_per_unit: metres in one unit of the file, for BVH, glTF and ASF.
         joint_map: from joints of Duet to joints of the file, for names that are not recognised.
         resample_hz: frames per second of the result; the motion keeps its speed.
+        layout: the meaning of a .npy array of research: ``"humanml3d"``, ``"humanml3d-263"``,
+            ``"intergen"``, ``"intergen-262"`` or ``"inter-x"`` (docs/guides/research_layouts.md).
+        body_model: the .npz of the body model of a .npz motion (AMASS, SMPL).
 
     Raises:
         MotionFileError: the file cannot be read.
@@ -48,13 +52,13 @@ def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float
             message explains how to install it.
     """
     return _read(path, checked_options(side, frame_rate_hz, unit, up_axis, metres_per_unit,
-                                       joint_map, resample_hz))[0]
+                                       joint_map, resample_hz, layout, body_model))[0]
 
 
 def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = "",
               up_axis: str = "", metres_per_unit: Optional[float] = None,
               joint_map: Optional[Mapping[str, str]] = None,
-              resample_hz: Optional[float] = None) -> Tuple[Motion, Motion]:
+              resample_hz: Optional[float] = None, layout: str = "") -> Tuple[Motion, Motion]:
     """Reads both people from a file, leader first, like :func:`read_motion`.
 
     Args:
@@ -65,6 +69,7 @@ def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = 
         metres_per_unit: metres in one unit of the file, for BVH, glTF and ASF.
         joint_map: from joints of Duet to joints of the file.
         resample_hz: frames per second of the result; the motion keeps its speed.
+        layout: the meaning of a .npy array of research, as for :func:`read_motion`.
 
     Raises:
         MotionFileError: the file cannot be read, or has one person.
@@ -72,13 +77,14 @@ def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = 
         FileNotFoundError: see :func:`read_motion`.
     """
     motions = _read(path, checked_options(None, frame_rate_hz, unit, up_axis, metres_per_unit,
-                                          joint_map, resample_hz))
+                                          joint_map, resample_hz, layout, None))
     if len(motions) != 2:
         raise MotionFileError(f"{os.fspath(path)}: expected two people, got one")
     return motions[0], motions[1]
 
 
-def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None) -> None:
+def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None, *,
+                 layout: str = "") -> None:
     """Writes one person or two. Two people as .bvh are written to ``NAME.leader.bvh`` and
     ``NAME.follower.bvh``.
 
@@ -87,6 +93,8 @@ def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None) 
         leader: the first person, or the only one.
         follower: the second person, with the leader's joints, rate, number of frames, unit and
             axis.
+        layout: of a .npy array of research: 22 joints at the rate of the data set, or its features
+            (docs/guides/research_layouts.md).
 
     Raises:
         ValueError: the two differ in joints, rate or number of frames, unit or axis.
@@ -94,10 +102,10 @@ def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None) 
         FileNotFoundError: see :func:`read_motion`.
     """
     document = _to_json(leader if follower is None else (leader, follower))
-    if not _file_extension.missing:
+    if not _file_extension.missing and not layout:
         return _file_extension.write(document, path)
     with _in_place_of_the_extension():
-        _file_program.write(document, path)
+        _file_program.write(document, path, layout)
 
 
 def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> None:

@@ -58,6 +58,14 @@ class JointRotations:
     rig: Tuple[RigJoint, ...]
     rotations: npt.NDArray[np.float32]
 
+    @property
+    def rotations_6d(self) -> npt.NDArray[np.float32]:
+        """``[frames, rig joints, 6]``: the first two columns of each rotation's matrix, one after
+        the other (Zhou et al. 2019)."""
+        x, y, z, w = np.moveaxis(self.rotations, -1, 0)
+        return np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y),
+                         2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)], axis=-1)
+
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class FollowerChunk:

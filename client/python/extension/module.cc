@@ -56,18 +56,21 @@ PYBIND11_MODULE(_motion_files, module) {
       [error](const std::filesystem::path& path, const std::string& side,
               std::optional<double> frame_rate_hz, const std::string& unit,
               const std::string& up_axis, std::optional<double> metres_per_unit,
-              const retargeting::JointOverrides& joint_map, std::optional<double> resample_hz) {
+              const retargeting::JointOverrides& joint_map, std::optional<double> resample_hz,
+              const std::string& layout, const std::string& body_model) {
         absl::StatusOr<std::vector<motion::Clip>> people;
         {
           const py::gil_scoped_release release;
           people = ReadMotion(
-              path, {side, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz});
+              path, {side, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz,
+                     layout, body_model});
         }
         if (!people.ok()) Raise(error, people.status());
         return *std::move(people);
       },
       py::arg("path"), py::kw_only(), py::arg("side"), py::arg("frame_rate_hz"), py::arg("unit"),
-      py::arg("up_axis"), py::arg("metres_per_unit"), py::arg("joint_map"), py::arg("resample_hz"));
+      py::arg("up_axis"), py::arg("metres_per_unit"), py::arg("joint_map"), py::arg("resample_hz"),
+      py::arg("layout"), py::arg("body_model"));
 
   module.def(
       "write",

@@ -7,6 +7,7 @@
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
 #include "model/formats/people.h"
+#include "model/formats/research/layout.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/recorded_motion.h"
@@ -42,8 +43,11 @@ absl::StatusOr<formats::ReadOptions> OptionsOf(const ReadArguments& arguments) {
       Choose("unit", arguments.unit, motion::ParseLengthUnit, motion::kLengthUnitNames, &unit);
   status.Update(
       Choose("up_axis", arguments.up_axis, motion::ParseUpAxis, motion::kUpAxisNames, &up_axis));
-  if (!status.ok()) return status;
   formats::ReadOptions options;
+  status.Update(Choose("layout", arguments.layout, formats::research::ParseLayout,
+                       formats::research::kLayoutNames, &options.layout));
+  if (!status.ok()) return status;
+  options.body_model = arguments.body_model;
   options.coordinates = motion::StatedCoordinates(unit, up_axis);
   options.frame_rate_hz = arguments.frame_rate_hz;
   options.metres_per_unit = arguments.metres_per_unit;

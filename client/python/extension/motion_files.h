@@ -25,6 +25,8 @@ struct ReadArguments {
   std::optional<double> metres_per_unit;
   retargeting::JointOverrides joint_map;
   std::optional<double> resample_hz;
+  std::string layout;
+  std::string body_model;
 };
 
 // Reads one person or two, in metres, y up, in the joints of Duet's skeleton.

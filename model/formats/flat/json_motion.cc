@@ -1,5 +1,6 @@
 #include "model/formats/flat/json_motion.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -277,20 +278,32 @@ Json RigJson(const std::vector<motion::RestJoint>& rig) {
   return joints;
 }
 
-void AppendRotations(const motion::JointRotations& rotations, std::string* out) {
-  absl::StrAppend(out, ",\n\"rig\": ", RigJson(rotations.rig).dump(), ",\n\"rotations\": [");
+// [1, 2, 3]
+template <std::size_t size>
+void AppendNumbers(const std::array<float, size>& values, std::string* out) {
+  char before = '[';
+  for (float value : values) {
+    *out += before;
+    base::AppendNumber(out, value);
+    before = ',';
+  }
+  *out += ']';
+}
+
+void AppendRotations(const motion::JointRotations& rotations, RotationForm form, std::string* out) {
+  const bool six = form == RotationForm::kSixNumbers;
+  absl::StrAppend(out, ",\n\"rig\": ", RigJson(rotations.rig).dump(), ",\n\"",
+                  six ? "rotations_6d" : "rotations", "\": [");
   const std::size_t joints = rotations.rig.size();
   for (std::size_t i = 0; i < rotations.rotations.size(); ++i) {
     if (i % joints == 0) *out += i == 0 ? "\n[" : "],\n[";
     const motion::UnitQuaternion& q = rotations.rotations[i];
-    char before = '[';
     if (i % joints > 0) *out += ", ";
-    for (float value : {q.x, q.y, q.z, q.w}) {
-      *out += before;
-      base::AppendNumber(out, value);
-      before = ',';
+    if (six) {
+      AppendNumbers(SixNumbers(q), out);
+    } else {
+      AppendNumbers(std::array<float, 4>{q.x, q.y, q.z, q.w}, out);
     }
-    *out += ']';
   }
   *out += rotations.rotations.empty() ? "]" : "]]";
 }
@@ -348,11 +361,11 @@ absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
 }
 
 std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
-                             const motion::JointRotations* rotations) {
+                             const motion::JointRotations* rotations, RotationForm form) {
   std::string text = FormatSettings(pair.leader, skeleton);
   AppendPerson(kPeople[0], pair.leader, &text);
   AppendPerson(kPeople[1], pair.follower, &text);
-  if (rotations != nullptr) AppendRotations(*rotations, &text);
+  if (rotations != nullptr) AppendRotations(*rotations, form, &text);
   return text + "}\n";
 }
 

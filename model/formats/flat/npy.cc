@@ -1,51 +1,26 @@
 #include "model/formats/flat/npy.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
+#include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_split.h"
-#include "absl/strings/strip.h"
+#include "absl/types/span.h"
 #include "model/base/text.h"
+#include "model/formats/flat/npy_array.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {
 namespace {
 
-constexpr absl::string_view kMagic("\x93NUMPY", 6);
-// Magic, version and header length end on a multiple of this.
-constexpr std::size_t kAlignment = 64;
-constexpr std::size_t kMaxHeaderBytes = 4096;
-
-static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are copied as they are");
-
-struct Header {
-  std::string descr;
-  std::string fortran_order;
-  std::vector<int> shape;
-};
-
-// The value of `key` in the header's dictionary: the text up to its comma or closing bracket.
-absl::string_view DictValue(absl::string_view dict, absl::string_view key) {
-  const std::size_t at = dict.find(absl::StrCat("'", key, "':"));
-  if (at == absl::string_view::npos) return {};
-  absl::string_view value = absl::StripLeadingAsciiWhitespace(dict.substr(at + key.size() + 3));
-  const bool tuple = !value.empty() && value[0] == '(';
-  value = value.substr(0, value.find_first_of(tuple ? ")" : ",}"));
-  return absl::StripAsciiWhitespace(tuple ? value.substr(1) : value);
-}
-
 class NpyParser {
  public:
-  NpyParser(absl::string_view bytes, absl::string_view source) : bytes_(bytes), source_(source) {}
+  NpyParser(NpyHeader header, absl::string_view source)
+      : bytes_(header.values), source_(source), header_(std::move(header)) {}
 
   absl::StatusOr<motion::RecordedMotion> Parse(const std::vector<std::string>& joint_names) {
-    absl::Status status = ParseHeader();
-    if (status.ok()) status = CheckHeader(static_cast<int>(joint_names.size()));
+    absl::Status status = CheckHeader(static_cast<int>(joint_names.size()));
     if (!status.ok()) return status;
     motion::RecordedMotion motion;
     const int frames = header_.shape[header_.shape.size() - 3];
@@ -62,43 +37,6 @@ class NpyParser {
  private:
   absl::Status Error(absl::string_view message) const {
     return absl::InvalidArgumentError(absl::StrCat(source_, ": ", message));
-  }
-
-  absl::Status ParseHeader() {
-    if (!absl::ConsumePrefix(&bytes_, kMagic) || bytes_.size() < 4) {
-      return Error("expected a NumPy array, got a file that does not start with \\x93NUMPY");
-    }
-    const int version = static_cast<unsigned char>(bytes_[0]);
-    if (version < 1 || version > 3) {
-      return Error(absl::StrCat("format version: expected 1 to 3, got ", version));
-    }
-    const std::size_t length_bytes = version == 1 ? 2 : 4;
-    if (bytes_.size() < 2 + length_bytes)
-      return Error("header: expected its length, got the end of the file");
-    uint32_t length = 0;
-    std::memcpy(&length, bytes_.data() + 2, length_bytes);
-    bytes_.remove_prefix(2 + length_bytes);
-    if (length > kMaxHeaderBytes || length > bytes_.size()) {
-      return Error(absl::StrCat("header: expected at most ",
-                                std::min(kMaxHeaderBytes, bytes_.size()), " bytes, got ", length));
-    }
-    const absl::string_view dict = bytes_.substr(0, length);
-    bytes_.remove_prefix(length);
-    header_.descr = std::string(DictValue(dict, "descr"));
-    header_.fortran_order = std::string(DictValue(dict, "fortran_order"));
-    return ParseShape(DictValue(dict, "shape"));
-  }
-
-  absl::Status ParseShape(absl::string_view tuple) {
-    for (absl::string_view field : absl::StrSplit(tuple, ',')) {
-      if (absl::StripAsciiWhitespace(field).empty()) continue;
-      int size = 0;
-      if (!base::ParseInteger(field, &size)) {
-        return Error(absl::StrCat("shape: expected whole numbers, got ", base::Quoted(tuple)));
-      }
-      header_.shape.push_back(size);
-    }
-    return absl::OkStatus();
   }
 
   absl::Status CheckHeader(int joints) const {
@@ -159,46 +97,32 @@ class NpyParser {
 
   absl::string_view bytes_;
   absl::string_view source_;
-  Header header_;
+  NpyHeader header_;
 };
 
-void AppendPositions(const motion::Clip& clip, std::string* out) {
-  out->append(reinterpret_cast<const char*>(clip.poses.all().data()),
-              clip.poses.all().size() * sizeof(motion::Vec3));
-}
-
-// Formats everything before the values. `people` is the text of the first dimension.
-std::string FormatHeader(absl::string_view people, const motion::Clip& clip) {
-  std::string dict = absl::StrCat("{'descr': '<f4', 'fortran_order': False, 'shape': (", people,
-                                  clip.frame_count(), ", ", clip.joint_count(), ", 3), }");
-  const std::size_t before = kMagic.size() + 4;
-  dict.append(kAlignment - (before + dict.size() + 1) % kAlignment, ' ');
-  dict.push_back('\n');
-  std::string bytes(kMagic);
-  bytes.append(
-      {'\x01', '\x00', static_cast<char>(dict.size() & 0xff), static_cast<char>(dict.size() >> 8)});
-  bytes += dict;
-  return bytes;
+// The positions of all frames and joints, one after the other.
+absl::Span<const float> Values(absl::Span<const motion::Vec3> positions) {
+  return {reinterpret_cast<const float*>(positions.data()), 3 * positions.size()};
 }
 
 }  // namespace
 
 absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::string_view source,
                                                 const std::vector<std::string>& joint_names) {
-  return NpyParser(bytes, source).Parse(joint_names);
+  absl::StatusOr<NpyHeader> header = ParseNpyHeader(bytes, source);
+  if (!header.ok()) return header.status();
+  return NpyParser(*std::move(header), source).Parse(joint_names);
 }
 
 std::string FormatNpy(const motion::ClipPair& pair) {
-  std::string bytes = FormatHeader("2, ", pair.leader);
-  AppendPositions(pair.leader, &bytes);
-  AppendPositions(pair.follower, &bytes);
-  return bytes;
+  std::vector<motion::Vec3> both(pair.leader.poses.all().begin(), pair.leader.poses.all().end());
+  both.insert(both.end(), pair.follower.poses.all().begin(), pair.follower.poses.all().end());
+  return FormatNpyArray({2, pair.leader.frame_count(), pair.leader.joint_count(), 3}, Values(both));
 }
 
 std::string FormatNpy(const motion::Clip& person) {
-  std::string bytes = FormatHeader("", person);
-  AppendPositions(person, &bytes);
-  return bytes;
+  return FormatNpyArray({person.frame_count(), person.joint_count(), 3},
+                        Values(person.poses.all()));
 }
 
 }  // namespace duet::formats::flat

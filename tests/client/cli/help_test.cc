@@ -65,14 +65,14 @@ TEST(Help, ListsReadableAndWritableFormats) {
     }
   }
   for (const char* extension :
-       {".gltf", ".glb", ".usda", ".bvh", ".amc", ".csv", ".json", ".npy", ".txt"}) {
+       {".gltf", ".glb", ".usda", ".bvh", ".amc", ".csv", ".json", ".npy", ".npz", ".txt"}) {
     ASSERT_TRUE(told.count(extension)) << extension;
     const std::string file = absl::StrCat("a", extension);
     EXPECT_EQ(told[extension].first, formats::IsReadable(std::filesystem::path(file))) << extension;
     EXPECT_EQ(told[extension].second, formats::IsWritable(std::filesystem::path(file)))
         << extension;
   }
-  EXPECT_EQ(told.size(), 9u);
+  EXPECT_EQ(told.size(), 10u);
 }
 
 TEST(Help, SuggestsTheNearestTopic) {

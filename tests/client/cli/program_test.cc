@@ -235,9 +235,11 @@ std::string HierarchyOf(const std::filesystem::path& file) {
 
 TEST_F(ProgramTest, WritesTheFollowerOnTheLeadersRig) {
   motion::Clip slower = leader_;
-  ASSERT_THAT(formats::WritePair(folder_ / "rig.bvh", {slower, slower}, motion::SbuSkeleton(),
-                                 {nullptr, 1}),
-              IsOk());
+  formats::WriteOptions metres;
+  metres.bvh_metres_per_unit = 1;
+  ASSERT_THAT(
+      formats::WritePair(folder_ / "rig.bvh", {slower, slower}, motion::SbuSkeleton(), metres),
+      IsOk());
   ASSERT_EQ(Run({"synthesize", "--leader", Path("rig.leader.bvh"), "--label", "kick=1",
                  "--follower-rig", "leader", "--out", Path("pair.bvh"), "--out", Path("pair.glb")}),
             0)

@@ -116,6 +116,12 @@ class ReplyTest(unittest.TestCase):
         np.testing.assert_allclose(rotations.rotations[5, 1], (np.sin(0.25), 0, 0, np.cos(0.25)),
                                    rtol=1e-6)
 
+    def test_rotations_have_the_columns_of_their_matrices(self):
+        quarter = np.sqrt(0.5)
+        quaternions = np.float32([[[0, 0, 0, 1], [0, 0, quarter, quarter]]])
+        six = duet.JointRotations((), quaternions).rotations_6d
+        np.testing.assert_allclose(six, [[[1, 0, 0, 0, 1, 0], [0, 1, 0, -1, 0, 0]]], atol=1e-6)
+
     def test_malformed_rotations_are_rejected(self):
         def rig(**second):
             return [synthesis_pb2.RigJoint(name="root", parent=-1),
