@@ -176,7 +176,8 @@ class Sheet {
     for (size_t i = 0; i < identity_.models.size(); ++i) {
       if (ModelText(identity_.models[i]) != model) continue;
       const motion::Skeleton& skeleton = identity_.skeletons[i];
-      const absl::StatusOr<motion::ClipPair> pair = ReadStoredPair(items_, record, place, skeleton);
+      const auto read = [&](size_t file) { return items_.Read(record, place, file); };
+      const absl::StatusOr<motion::ClipPair> pair = ReadStoredPair(read, record, skeleton);
       return pair.ok() ? PoseStrip(*pair, skeleton) : unread(pair.status().message());
     }
     return unread(model + " is not a model of the job");

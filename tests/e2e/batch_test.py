@@ -195,6 +195,27 @@ class BatchTest(unittest.TestCase):
         (out / "far" / "push-kick-s1.npy").write_bytes(b"changed")
         self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
 
+    def test_items_are_viewed_in_any_state_of_a_set(self):
+        page = self.folder / "item.html"
+        for name, flags in (("loose", ()), ("waiting", ("--pack", "tar", "--limit", "3")),
+                            ("packed", ("--pack", "npz"))):
+            with self.subTest(name):
+                out = self.out(name)
+                self.batch(out, self.recipe(), *flags)
+                entry = entries(out)[2]
+                for item in (entry["name"], str(entry["item"]), entry["files"][0]["path"]):
+                    viewed = tools.duet("view", out, item, "--out", page)
+                    self.assertEqual(viewed.returncode, 0, viewed.stderr)
+                    self.assertIn(f"shown     {entry['name']} of", viewed.stdout)
+                    self.assertIn(entry["name"], page.read_text(encoding="utf-8"))
+                    page.unlink()
+        shutil.rmtree(out / ".duet-batch")  # a copy
+        self.assertEqual(tools.duet("view", out, "0", "--out", page).returncode, 0)
+        refused = tools.duet("view", out, "no such", "--out", page)
+        self.assertEqual(refused.returncode, 42, refused.stderr)
+        self.assertIn('expected the name or the number of an item', refused.stderr)
+        self.assertEqual(tools.duet("view", out, "--out", page).returncode, 2)
+
     def test_files_without_motion_are_skipped(self):
         leaders, out = self.out("leaders"), self.out()
         leaders.mkdir()
