@@ -16,7 +16,9 @@ struct RecipeOverrides {
   std::optional<int> retries_per_item;
   std::string input_format;  // empty: the recipe's
   std::optional<double> frame_rate_hz;
-  std::string level;  // empty: the recipe's
+  std::string level;                 // empty: the recipe's
+  std::optional<double> validation;  // Splits
+  std::optional<double> test;
 };
 
 // Parses a recipe: JSON or text format. Unknown fields are rejected. Files that it names

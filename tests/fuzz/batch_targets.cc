@@ -93,8 +93,9 @@ Broken BatchJournal(absl::string_view input) {
   });
   if (!each.ok() || visited != journal->count()) return "a journal's records are not all there";
   client::batch::JobIdentity identity;
+  client::batch::WrittenSetFiles files(Folder().path(), Folder().path() / "set");
   const absl::StatusOr<client::batch::SetCounts> counts =
-      WriteIndex(*journal, identity, {}, {}, Folder().path(), Folder().path());
+      WriteIndex(*journal, identity, {}, {}, &files);
   if (!counts.ok()) return CheckRefusal(counts.status(), {kDataLoss});
   return counts->done + counts->rejected + counts->failed == visited ? "" : "records are lost";
 }
