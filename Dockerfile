@@ -51,7 +51,7 @@ RUN --mount=type=cache,id=duet-ccache,target=/var/cache/ccache \
 
 # The server image's root, with only the packages' files, and its bill of materials.
 FROM ${BASE} AS root
-ARG VERSION=0.1.0
+ARG VERSION=1.0.0
 ARG SBOM_TIME=1970-01-01T00:00:00Z
 WORKDIR /src
 COPY packages/runtime.txt packages/image_root.txt packages/
@@ -75,7 +75,7 @@ RUN /tmp/install/scripts/install_packages.sh runtime training \
     && rm -rf /tmp/install /var/lib/apt/lists/* /var/cache/apt/* /var/log/apt /var/log/dpkg.log
 
 FROM root AS training-records
-ARG VERSION=0.1.0
+ARG VERSION=1.0.0
 ARG SBOM_TIME=1970-01-01T00:00:00Z
 COPY --from=training-packages /var/lib/dpkg/status /records/var/lib/dpkg/status
 COPY --from=training-packages /usr/share/doc /records/usr/share/doc
@@ -89,7 +89,7 @@ COPY NOTICE /usr/share/doc/duet/
 # No setuid files.
 RUN find / -xdev -type f -perm /6000 -exec chmod a-s {} +
 COPY --from=build-training /out /
-ARG VERSION=0.1.0
+ARG VERSION=1.0.0
 ARG REVISION=unknown
 ARG SOURCE=unknown
 ARG CREATED=1970-01-01T00:00:00Z
@@ -107,7 +107,7 @@ ENTRYPOINT ["duet-train"]
 FROM scratch AS server
 COPY --from=root /root-of-image /
 COPY --from=build /out /
-ARG VERSION=0.1.0
+ARG VERSION=1.0.0
 ARG REVISION=unknown
 ARG SOURCE=unknown
 ARG CREATED=1970-01-01T00:00:00Z

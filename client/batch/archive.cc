@@ -48,11 +48,15 @@ class TarHeader {
   std::array<char, kBlock> bytes_;
 };
 
-// A motion in JSON becomes <name>.motion.json, because <name>.json is its record.
-std::string NameInTar(const std::string& path) {
-  absl::string_view stem = path;
-  return absl::ConsumeSuffix(&stem, ".json") ? absl::StrCat(stem, ".motion.json") : path;
+// "<length of all of this> path=<name>\n"
+std::string PaxPath(const std::string& name) {
+  const std::string rest = absl::StrCat(" path=", name, "\n");
+  size_t length = rest.size() + 1;
+  while (absl::StrCat(length).size() + rest.size() != length) ++length;
+  return absl::StrCat(length, rest);
 }
+
+uint64_t WholeBlocks(uint64_t bytes) { return (bytes + kBlock - 1) / kBlock * kBlock; }
 
 class TarArchive final : public Archive {
  public:
@@ -62,7 +66,7 @@ class TarArchive final : public Archive {
     return AddMember(NameInTar(path), content);
   }
   absl::Status AddRecord(const std::string& name, absl::string_view record) override {
-    return AddMember(name + ".json", record);
+    return AddMember(RecordNameInTar(name), record);
   }
   absl::Status Finish() override { return file_->Append(std::string(2 * kBlock, '\0')); }
 
@@ -82,14 +86,6 @@ class TarArchive final : public Archive {
     return file_->Append(std::string(kBlock - beyond, '\0'));
   }
 
-  // "<length of all of this> path=<name>\n"
-  static std::string PaxPath(const std::string& name) {
-    const std::string rest = absl::StrCat(" path=", name, "\n");
-    size_t length = rest.size() + 1;
-    while (absl::StrCat(length).size() + rest.size() != length) ++length;
-    return absl::StrCat(length, rest);
-  }
-
   DurableFile* file_;
 };
 
@@ -105,6 +101,7 @@ uint64_t FromLittle(absl::string_view bytes, size_t at, size_t count) {
 }
 
 constexpr uint64_t kZipMember = 0x04034b50;
+constexpr uint64_t kZipHeaderBytes = 30;  // before the name
 
 class ZipArchive final : public Archive {
  public:
@@ -260,6 +257,23 @@ absl::StatusOr<std::optional<ArchiveMember>> ArchiveReader::NextOfZip(const std:
   const bool skipped = !wanted.empty() && member.path != wanted;
   if (skipped ? !Skip(bytes) : !Read(bytes, &member.content)) return Damaged();
   return std::optional<ArchiveMember>(std::move(member));
+}
+
+std::string NameInTar(const std::string& path) {
+  absl::string_view stem = path;
+  return absl::ConsumeSuffix(&stem, ".json") ? absl::StrCat(stem, ".motion.json") : path;
+}
+
+std::string RecordNameInTar(const std::string& name) { return name + ".json"; }
+
+uint64_t MemberHeaderBytes(Packing packing, const std::string& name) {
+  if (packing != Packing::kTar) return kZipHeaderBytes + name.size();
+  if (name.size() <= kUstarName) return kBlock;
+  return 2 * kBlock + WholeBlocks(PaxPath(name).size());
+}
+
+uint64_t MemberContentBytes(Packing packing, uint64_t bytes) {
+  return packing == Packing::kTar ? WholeBlocks(bytes) : bytes;
 }
 
 std::unique_ptr<Archive> MakeArchive(Packing packing, DurableFile* file) {

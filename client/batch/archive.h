@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_BATCH_ARCHIVE_H_
 #define DUET_CLIENT_BATCH_ARCHIVE_H_
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -34,6 +35,13 @@ class Archive {
 // Source: PKZIP application note 6.3.3, stored members.
 // `file` outlives the archive.
 std::unique_ptr<Archive> MakeArchive(Packing packing, DurableFile* file);
+
+// The names of an item's file and of its record in a tar.
+std::string NameInTar(const std::string& path);
+std::string RecordNameInTar(const std::string& name);
+// Bytes of a member before its content, and of its content with padding.
+uint64_t MemberHeaderBytes(Packing packing, const std::string& name);
+uint64_t MemberContentBytes(Packing packing, uint64_t bytes);
 
 // A member of a shard.
 struct ArchiveMember {

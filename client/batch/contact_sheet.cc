@@ -54,24 +54,6 @@ std::string Escaped(absl::string_view text) {
                              {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
 }
 
-// The class of the largest weight, over all keyframes if there are any.
-std::string ClassOf(const ordered_json& record) {
-  std::string best = "none";
-  double largest = 0;
-  const auto look = [&](const ordered_json& labels) {
-    for (const auto& [name, weight] : labels.items()) {
-      if (weight.get<double>() <= largest) continue;
-      largest = weight.get<double>();
-      best = name;
-    }
-  };
-  if (record.contains("labels")) look(record["labels"]);
-  if (record.contains("keyframes")) {
-    for (const ordered_json& keyframe : record["keyframes"]) look(keyframe["labels"]);
-  }
-  return best;
-}
-
 // "kick 1, hug 0.5", one keyframe after the other.
 std::string LabelsText(const ordered_json& record) {
   const auto text = [](const ordered_json& labels) {
@@ -118,7 +100,7 @@ class Sheet {
     if (!parsed.ok()) return parsed.status();
     const ordered_json& record = *parsed;
     if (record["state"] != kDone) return absl::OkStatus();
-    Sample& sample = samples_[ClassOf(record)];
+    Sample& sample = samples_[LargestClass(record)];
     ++sample.items;
     ++total_;
     sample.kept.emplace(record["id"].get<std::string>(), entry);
@@ -176,7 +158,8 @@ class Sheet {
     for (size_t i = 0; i < identity_.models.size(); ++i) {
       if (ModelText(identity_.models[i]) != model) continue;
       const motion::Skeleton& skeleton = identity_.skeletons[i];
-      const absl::StatusOr<motion::ClipPair> pair = ReadStoredPair(items_, record, place, skeleton);
+      const auto read = [&](size_t file) { return items_.Read(record, place, file); };
+      const absl::StatusOr<motion::ClipPair> pair = ReadStoredPair(read, record, skeleton);
       return pair.ok() ? PoseStrip(*pair, skeleton) : unread(pair.status().message());
     }
     return unread(model + " is not a model of the job");

@@ -1,8 +1,8 @@
 #include "client/batch/dataset_json.h"
 
-#include <algorithm>
-
 #include "client/batch/capture_layout.h"
+#include "client/batch/item_table.h"
+#include "client/batch/split.h"
 #include "client/batch/text_values.h"
 #include "duet/batch/v1/batch.pb.h"
 #include "model/motion/coordinates.h"
@@ -63,6 +63,7 @@ ordered_json ModelsJson(const JobIdentity& identity) {
     const DescribedModel about = i < described.size() ? described[i] : DescribedModel();
     AddText("weights_sha256", about.weights_sha256, &model);
     AddText("terms", about.terms, &model);
+    if (about.free_for_all_uses) model["free_for_all_uses"] = *about.free_for_all_uses;
     AddText("description", about.description, &model);
     model["interaction_classes"] = about.interaction_classes;
     model["skeleton"] = skeletons[i];
@@ -71,16 +72,6 @@ ordered_json ModelsJson(const JobIdentity& identity) {
     array.push_back(std::move(model));
   }
   return array;
-}
-
-std::vector<std::string> AllClasses(const SetDescription& description) {
-  std::vector<std::string> all;
-  for (const DescribedModel& model : description.models) {
-    for (const std::string& name : model.interaction_classes) {
-      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
-    }
-  }
-  return all;
 }
 
 std::vector<std::string> EndingsOf(Format format) {
@@ -132,6 +123,17 @@ ordered_json RatesJson(const std::map<double, int64_t>& items_by_rate) {
   return array;
 }
 
+ordered_json SplitsJson(const SetDescription& description, const DoneItems& done) {
+  ordered_json array = ordered_json::array();
+  for (const std::string& name : SplitNames(description.splits)) {
+    ordered_json split = {
+        {"name", name}, {"items", done.items_of(name)}, {"table", TablePath(name)}};
+    if (!done.shards_of(name).empty()) split["shards"] = done.shards_of(name);
+    array.push_back(std::move(split));
+  }
+  return array;
+}
+
 std::optional<double> CommonRate(const SetDescription& description, const DoneItems& done) {
   if (description.frame_rate_hz) return description.frame_rate_hz;
   if (done.items_by_rate().size() != 1) return std::nullopt;
@@ -143,9 +145,19 @@ std::optional<double> CommonRate(const SetDescription& description, const DoneIt
 void DoneItems::Add(const ordered_json& record) {
   frames_ += record["frames"].get<uint64_t>();
   ++items_by_rate_[record["frame_rate_hz"].get<double>()];
+  const auto named = record.find("split");
+  OfSplit& split = splits_[named == record.end() ? kTrain : named->get<std::string>()];
+  ++split.items;
   const auto shard = record.find("shard");
-  if (shard == record.end()) return;
-  if (shards_.empty() || shards_.back() != *shard) shards_.push_back(*shard);
+  if (shard == record.end() || !known_shards_.insert(shard->get<std::string>()).second) return;
+  shards_.push_back(*shard);
+  split.shards.push_back(*shard);
+}
+
+const DoneItems::OfSplit& DoneItems::Of(const std::string& split) const {
+  static const OfSplit* const kNothing = new OfSplit;
+  const auto found = splits_.find(split);
+  return found == splits_.end() ? *kNothing : found->second;
 }
 
 std::vector<int> SkeletonIndices(const std::vector<motion::Skeleton>& skeletons) {
@@ -181,6 +193,7 @@ std::string DatasetJson(const JobIdentity& identity, const SetCounts& counts, in
   dataset["layout"] = LayoutName(identity.layout);
   dataset["packing"] = PackingName(identity.packing);
   if (packed) dataset["shards"] = done.shards();
+  dataset["splits"] = SplitsJson(identity.description, done);
   return dataset.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,23 @@ class DoneItems {
   uint64_t frames() const { return frames_; }
   const std::map<double, int64_t>& items_by_rate() const { return items_by_rate_; }
   const std::vector<std::string>& shards() const { return shards_; }  // in the order of the items
+  int64_t items_of(const std::string& split) const { return Of(split).items; }
+  const std::vector<std::string>& shards_of(const std::string& split) const {
+    return Of(split).shards;
+  }
 
  private:
+  struct OfSplit {
+    int64_t items = 0;
+    std::vector<std::string> shards;
+  };
+  const OfSplit& Of(const std::string& split) const;
+
   uint64_t frames_ = 0;
   std::map<double, int64_t> items_by_rate_;  // Hz
   std::vector<std::string> shards_;
+  std::set<std::string> known_shards_;
+  std::map<std::string, OfSplit> splits_;
 };
 
 // The index of each model's skeleton in dataset.json. Equal skeletons have the same index.

@@ -67,9 +67,11 @@ std::vector<FailureCause> FailureCauses::Largest(size_t count) const {
   return causes;
 }
 
-absl::Status FailureTable::Open() {
-  absl::Status status = file_.Open();
-  return status.ok() ? file_.Append("leader\titems\tcode\tmessage\tnames\n") : status;
+absl::Status FailureTable::Open(SetFiles* files) {
+  absl::StatusOr<std::unique_ptr<SetFile>> file = files->Begin("failed.tsv");
+  if (!file.ok()) return file.status();
+  file_ = *std::move(file);
+  return file_->Append("leader\titems\tcode\tmessage\tnames\n");
 }
 
 absl::Status FailureTable::Add(const ordered_json& record) {
@@ -90,16 +92,16 @@ absl::Status FailureTable::WriteLeader() {
     const auto items = static_cast<int64_t>(names.size());
     causes_.Add(leader_, error.first, error.second, items, 1);
     if (!status.ok()) continue;
-    status = file_.Append(absl::StrCat(Cell(leader_), "\t", items, "\t", error.first, "\t",
-                                       Cell(error.second), "\t", absl::StrJoin(names, ","), "\n"));
+    status = file_->Append(absl::StrCat(Cell(leader_), "\t", items, "\t", error.first, "\t",
+                                        Cell(error.second), "\t", absl::StrJoin(names, ","), "\n"));
   }
   names_.clear();
   return status;
 }
 
-absl::Status FailureTable::Finish(const std::filesystem::path& out) {
+absl::Status FailureTable::Finish() {
   absl::Status status = WriteLeader();
-  return status.ok() ? file_.Finish(out / "failed.tsv") : status;
+  return status.ok() ? file_->Finish() : status;
 }
 
 }  // namespace duet::client::batch

@@ -2,8 +2,8 @@
 #define DUET_CLIENT_BATCH_FAILURES_H_
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -11,7 +11,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
-#include "client/batch/durable_file.h"
+#include "client/batch/set_file.h"
 
 namespace duet::client::batch {
 
@@ -43,18 +43,16 @@ class FailureCauses {
 // come leader by leader.
 class FailureTable {
  public:
-  explicit FailureTable(const std::filesystem::path& temporary) : file_(temporary / "failed.tsv") {}
-
-  absl::Status Open();
+  absl::Status Open(SetFiles* files);
   // `record`: of an item that failed.
   absl::Status Add(const nlohmann::ordered_json& record);
-  absl::Status Finish(const std::filesystem::path& out);
+  absl::Status Finish();
   const FailureCauses& causes() const { return causes_; }
 
  private:
   absl::Status WriteLeader();
 
-  DurableFile file_;
+  std::unique_ptr<SetFile> file_;
   FailureCauses causes_;
   // For the current leader: code and message to the items' names.
   std::string leader_;

@@ -1,13 +1,17 @@
 #include "client/batch/index.h"
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "client/batch/capture_layout.h"
+#include "client/batch/dataset_card.h"
 #include "client/batch/dataset_json.h"
-#include "client/batch/durable_file.h"
+#include "client/batch/failures.h"
+#include "client/batch/item_table.h"
 #include "client/batch/parse_record.h"
 #include "client/batch/record.h"
 #include "client/batch/text_values.h"
@@ -24,12 +28,6 @@ constexpr size_t kMaxSummaryBytes = size_t{1} << 20;
 constexpr const char* kFields[] = {
     "item",  "id",   "name",    "leader",     "leader_sha256", "side",   "reaction",     "labels",
     "model", "seed", "variety", "candidates", "request_id",    "frames", "frame_rate_hz"};
-constexpr const char* kFigures[] = {
-    "lean_degrees",     "foot_above_floor_metres", "foot_below_floor_metres",
-    "distance_metres",  "penetration_metres",      "range_of_motion_metres",
-    "recognised_class", "class_probability",       "twisted",
-    "skating",          "leader_skating",          "overlapping"};
-
 // A field as a TSV cell, without tabs and line ends; empty if the field is missing.
 std::string Cell(const ordered_json& object, const char* name) {
   const auto found = object.find(name);
@@ -54,14 +52,14 @@ std::vector<std::string> CommonCells(const ordered_json& record) {
     cells.push_back(absl::string_view(field) == "labels" ? LabelsCell(record)
                                                          : Cell(record, field));
   }
-  for (const char* figure : kFigures) cells.push_back(Cell(record["quality"], figure));
+  for (const char* figure : kQualityFields) cells.push_back(Cell(record["quality"], figure));
   cells.push_back(Cell(record, "unfamiliarity"));
   return cells;
 }
 
 std::vector<std::string> CommonHeader() {
   std::vector<std::string> header(std::begin(kFields), std::end(kFields));
-  header.insert(header.end(), std::begin(kFigures), std::end(kFigures));
+  header.insert(header.end(), std::begin(kQualityFields), std::end(kQualityFields));
   header.emplace_back("unfamiliarity");
   return header;
 }
@@ -83,32 +81,19 @@ uint64_t BytesOf(const ordered_json& record) {
 // The files with one line for each item.
 class IndexWriter {
  public:
-  IndexWriter(const JobIdentity& identity, const ShardList& shards,
-              const std::filesystem::path& temporary)
+  IndexWriter(const JobIdentity& identity, const ShardList& shards)
       : captures_(CapturesOf(identity.layout) != nullptr),
-        packing_(identity.packing),
+        identity_(identity),
         shards_(shards),
-        json_(temporary / "index.jsonl"),
-        tsv_(temporary / "index.tsv"),
-        rejected_(temporary / "rejected.tsv"),
-        failed_(temporary) {}
+        tables_(identity, shards) {}
 
-  absl::Status Open() {
-    std::vector<std::string> header = CommonHeader();
-    absl::Status status = json_.Open();
-    status.Update(tsv_.Open());
-    status.Update(rejected_.Open());
-    status.Update(failed_.Open());
-    if (!status.ok()) return status;
-    std::vector<std::string> rejected = header;
-    rejected.insert(rejected.end(), {"answers", "reasons", "extra"});
-    status.Update(rejected_.Append(Row(rejected)));
-    if (packing_ != Packing::kNone) header.emplace_back("shard");
-    // The columns that readers of captures need.
-    if (captures_) header.insert(header.end(), {"path", "leader_side"});
-    header.insert(header.end(), {"files", "sha256", "extra"});
-    status.Update(tsv_.Append(Row(header)));
-    return status;
+  absl::Status Open(SetFiles* files) {
+    absl::Status status = Begin("index.jsonl", files, &json_);
+    if (status.ok()) status = Begin("index.tsv", files, &tsv_);
+    if (status.ok()) status = Begin("rejected.tsv", files, &rejected_);
+    if (status.ok()) status = failed_.Open(files);
+    if (status.ok()) status = tables_.Open(files);
+    return status.ok() ? WriteHeaders() : status;
   }
 
   absl::Status Add(const JournalEntry& entry) {
@@ -122,12 +107,13 @@ class IndexWriter {
     return record["state"] == kDone ? AddDone(entry.item, &record) : AddRejected(record);
   }
 
-  absl::Status Finish(const std::filesystem::path& out) {
-    absl::Status status = rejected_.Finish(out / "rejected.tsv");
-    status.Update(failed_.Finish(out));
+  absl::Status Finish() {
+    absl::Status status = rejected_->Finish();
+    status.Update(failed_.Finish());
     counts_.failures = failed_.causes().Largest(kCausesKept);
-    status.Update(tsv_.Finish(out / "index.tsv"));
-    status.Update(json_.Finish(out / "index.jsonl"));
+    status.Update(tables_.Finish());
+    status.Update(tsv_->Finish());
+    status.Update(json_->Finish());
     return status;
   }
 
@@ -135,12 +121,32 @@ class IndexWriter {
   const DoneItems& done() const { return done_; }
 
  private:
+  static absl::Status Begin(const char* name, SetFiles* files, std::unique_ptr<SetFile>* file) {
+    absl::StatusOr<std::unique_ptr<SetFile>> begun = files->Begin(name);
+    if (begun.ok()) *file = *std::move(begun);
+    return begun.status();
+  }
+
+  absl::Status WriteHeaders() {
+    std::vector<std::string> header = CommonHeader();
+    std::vector<std::string> rejected = header;
+    rejected.insert(rejected.end(), {"answers", "reasons", "extra"});
+    absl::Status status = rejected_->Append(Row(rejected));
+    if (identity_.packing != Packing::kNone) header.emplace_back("shard");
+    // The columns that readers of captures need.
+    if (captures_) header.insert(header.end(), {"path", "leader_side"});
+    header.insert(header.end(), {"files", "sha256", "extra"});
+    status.Update(tsv_->Append(Row(header)));
+    return status;
+  }
+
   absl::Status AddDone(int64_t item, ordered_json* record) {
     ++counts_.done;
     counts_.bytes += BytesOf(*record);
-    const std::string line = IndexLine(item, packing_, shards_, record);
+    absl::Status status = tables_.Add(item, *record);
+    const std::string line = IndexLine(item, identity_, shards_, record);
     std::vector<std::string> cells = CommonCells(*record);
-    if (packing_ != Packing::kNone) cells.push_back(Cell(*record, "shard"));
+    if (identity_.packing != Packing::kNone) cells.push_back(Cell(*record, "shard"));
     done_.Add(*record);
     if (captures_) {
       cells.push_back(FileCells(*record, "path").front());
@@ -149,8 +155,8 @@ class IndexWriter {
     cells.push_back(absl::StrJoin(FileCells(*record, "path"), ","));
     cells.push_back(absl::StrJoin(FileCells(*record, "sha256"), ","));
     cells.push_back(Cell(*record, "extra"));
-    absl::Status status = json_.Append(line + "\n");
-    status.Update(tsv_.Append(Row(cells)));
+    status.Update(json_->Append(line + "\n"));
+    status.Update(tsv_->Append(Row(cells)));
     return status;
   }
 
@@ -162,13 +168,14 @@ class IndexWriter {
     for (const ordered_json& reason : record["reasons"]) reasons.push_back(reason);
     cells.push_back(absl::StrJoin(reasons, "; "));
     cells.push_back(Cell(record, "extra"));
-    return rejected_.Append(Row(cells));
+    return rejected_->Append(Row(cells));
   }
 
   bool captures_;  // in a layout of captures
-  Packing packing_;
+  const JobIdentity& identity_;
   const ShardList& shards_;
-  DurableFile json_, tsv_, rejected_;
+  std::unique_ptr<SetFile> json_, tsv_, rejected_;
+  ItemTables tables_;
   FailureTable failed_;
   SetCounts counts_;
   DoneItems done_;
@@ -197,28 +204,35 @@ std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
 
 }  // namespace
 
-std::string IndexLine(int64_t item, Packing packing, const ShardList& shards,
+std::string IndexLine(int64_t item, const JobIdentity& identity, const ShardList& shards,
                       ordered_json* record) {
+  const std::string split = SplitOfRecord(identity.description.splits, *record);
   const size_t shard = shards.ShardOf(item);
-  if (shard != ShardList::kNone) (*record)["shard"] = ShardName(packing, shard);
+  if (shard != ShardList::kNone) (*record)["shard"] = shards.NameOf(shard, identity.packing);
+  if (!split.empty()) (*record)["split"] = split;
   return Line(*record);
 }
 
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
                                      const ShardList& shards, const PlannedItems& planned,
-                                     const std::filesystem::path& temporary,
-                                     const std::filesystem::path& out) {
-  IndexWriter writer(identity, shards, temporary);
-  absl::Status status = writer.Open();
-  if (!status.ok()) return status;
-  status = journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry); });
-  if (status.ok()) status = writer.Finish(out);
-  if (!status.ok()) return status;
-  status = ReplaceDurably(
-      out / "dataset.json",
-      DatasetJson(identity, writer.counts(), planned.count, writer.done(), !shards.empty()));
-  if (!status.ok()) return status;
-  status = ReplaceDurably(out / "summary.json", SummaryJson(identity, writer.counts(), planned));
+                                     SetFiles* files) {
+  IndexWriter writer(identity, shards);
+  absl::Status status = writer.Open(files);
+  if (status.ok()) {
+    status = journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry); });
+  }
+  if (status.ok()) status = writer.Finish();
+  if (status.ok() && !HasForeignCard(files->out())) {
+    status = files->Put(kCardFile, DatasetCard(identity, writer.counts(), writer.done()));
+  }
+  if (status.ok()) {
+    status = files->Put("dataset.json", DatasetJson(identity, writer.counts(), planned.count,
+                                                    writer.done(), !shards.empty()));
+  }
+  // Last: its presence means that the others are there.
+  if (status.ok()) {
+    status = files->Put("summary.json", SummaryJson(identity, writer.counts(), planned));
+  }
   if (!status.ok()) return status;
   return writer.counts();
 }

@@ -133,7 +133,7 @@ absl::StatusOr<std::string> ItemReader::ReadShard(const ordered_json& record, si
   const std::string path = recorded["path"];
   const size_t shard = shards_->ShardOf(record["item"].get<int64_t>());
   if (shard == ShardList::kNone) return absl::NotFoundError(path + ": is not in any shard");
-  const fs::path archive = out_ / ShardName(packing_, shard);
+  const fs::path archive = out_ / shards_->NameOf(shard, packing_);
   absl::StatusOr<std::optional<ArchiveMember>> member = ArchiveReader(archive).Find(path);
   if (!member.ok()) return member.status();
   if (member->has_value() && base::Sha256Hex((*member)->content) == recorded["sha256"]) {

@@ -320,8 +320,8 @@ absl::StatusOr<JobReport> Job::Finish() {
   if (!shards.ok()) return shards.status();
   report.packed = !shards->empty();
   const PlannedItems planned{report.planned, fed_ && parts_.whole_plan};
-  absl::StatusOr<SetCounts> counts =
-      WriteIndex(*journal, identity, *shards, planned, folder.temporary(), folder.out());
+  WrittenSetFiles files(folder.temporary(), folder.out());
+  absl::StatusOr<SetCounts> counts = WriteIndex(*journal, identity, *shards, planned, &files);
   if (!counts.ok()) return counts.status();
   report.set = *counts;
   return report;

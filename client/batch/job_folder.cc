@@ -146,9 +146,7 @@ absl::Status JobFolder::Take() {
   if (!status.ok()) return status;
   fs::remove_all(temporary(), error);
   // Temporary files of a process that was killed.
-  for (const char* name : {"contact_sheet.html", "dataset.json", "summary.json"}) {
-    fs::remove(out_ / absl::StrCat(name, ".partial"), error);
-  }
+  fs::remove(out_ / "contact_sheet.html.partial", error);
   fs::create_directory(temporary(), error);
   return error ? CannotWrite(temporary(), error.value()) : absl::OkStatus();
 }

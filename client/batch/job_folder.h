@@ -32,8 +32,8 @@ struct JobIdentity {
 
 // A data set's folder, held by one process.
 //
-//   <out>/                     the data set: files, dataset.json, index.tsv, index.jsonl,
-//                              rejected.tsv, failed.tsv, summary.json
+//   <out>/                     the data set: files, README.md, dataset.json, items/, index.tsv,
+//                              index.jsonl, rejected.tsv, failed.tsv, summary.json
 //   <out>/.duet-batch/         job.json, recipe.json, command.json, journal, shards, damage, lock;
 //                              temporary files; items that wait to be packed
 class JobFolder {

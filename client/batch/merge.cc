@@ -174,8 +174,9 @@ class Merger {
     }
     if (!status.ok()) return status;
     if (!shards.ok()) return shards.status();
-    absl::StatusOr<SetCounts> counts = WriteIndex(*journal, identity_, *shards, {planned_, true},
-                                                  folder_.temporary(), folder_.out());
+    WrittenSetFiles files(folder_.temporary(), folder_.out());
+    absl::StatusOr<SetCounts> counts =
+        WriteIndex(*journal, identity_, *shards, {planned_, true}, &files);
     if (!counts.ok()) return counts.status();
     report_.set = *counts;
     report_.planned = planned_;

@@ -76,7 +76,8 @@ absl::Status AddRest(const JournalReader& journal, const JobIdentity& identity, 
     if (known.ShardOf(entry.item) != ShardList::kNone) return absl::OkStatus();
     const absl::StatusOr<ordered_json> record = ParseRecord(entry.record);
     if (record.ok() && IsDone(*record)) {
-      list->Add(entry.item, BytesOf(*record), identity.shard_bytes);
+      list->Add(entry.item, BytesOf(*record), identity.shard_bytes,
+                SplitOfRecord(identity.description.splits, *record));
     }
     return record.status();
   });
@@ -113,7 +114,7 @@ class Packer {
   absl::Status PackOne(size_t number) {
     const PackedShard& shard = list_.shards()[number];
     if (shard.items.empty()) return absl::OkStatus();
-    const fs::path file = folder_.out() / ShardName(packing_, number);
+    const fs::path file = folder_.out() / list_.NameOf(number, packing_);
     if (LooksWhole(shard, file) && !IsDamaged(shard, file)) {
       // The run was stopped between the shard and the list, or an earlier version wrote no list.
       if (!shard.sha256.empty()) return absl::OkStatus();
@@ -192,7 +193,8 @@ class Packer {
     absl::StatusOr<std::string> digest = base::Sha256HexOfFile(file);
     if (!digest.ok()) return digest.status();
     std::error_code error;
-    list_.Set(number, {std::move(items), fs::file_size(file, error), *std::move(digest)});
+    list_.Set(number, {std::move(items), fs::file_size(file, error), *std::move(digest),
+                       list_.shards()[number].split});
     return list_.Commit();
   }
 

@@ -69,7 +69,8 @@ constexpr Field kOfRejected[] = {{"reasons", IsTexts, "an array of texts"}};
 constexpr Field kWhereGiven[] = {{"skeleton", IsCount, "an index"},
                                  {"labels", IsNumbers, "an object of numbers"},
                                  {"keyframes", IsKeyframes, "an array of labels"},
-                                 {"shard", IsText, "a text"}};
+                                 {"shard", IsText, "a text"},
+                                 {"split", IsText, "a text"}};
 
 absl::Status CheckFields(const ordered_json& record, absl::Span<const Field> fields,
                          bool must_be_there) {

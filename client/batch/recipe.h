@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "client/batch/split.h"
 #include "client/request.h"
 #include "model/classifier/classifier.h"
 #include "model/formats/motion_file.h"
@@ -121,6 +122,7 @@ struct Recipe {
   LeaderInput input;
   QualityFilter filter;
   Output output;
+  Splits splits;
   // Digest of everything above in hex. Recipes with the same digest are equal.
   std::string digest;
   // Everything above as one JSON object with the proto's field names. Files that the recipe names

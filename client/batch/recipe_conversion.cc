@@ -322,6 +322,18 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
   return output;
 }
 
+Splits ReadSplits(const v1::Splits& proto, Checker* check) {
+  const auto share = [check](const char* name, double value) {
+    check->Expect(value >= 0 && value < 1, absl::StrCat("splits.", name), absl::StrCat(value),
+                  "0 or more, below 1");
+    return value;
+  };
+  const Splits splits = {share("validation", proto.validation()), share("test", proto.test())};
+  check->Expect(splits.validation + splits.test < 1, "splits",
+                absl::StrCat(splits.validation + splits.test), "less than 1 together");
+  return splits;
+}
+
 void ReadModels(const v1::Recipe& proto, Checker* check, Recipe* recipe) {
   check->Different("models", proto.models());
   for (const std::string& name : proto.models()) {
@@ -357,6 +369,7 @@ absl::StatusOr<Recipe> FromProto(const v1::Recipe& proto) {
   recipe.input = ReadInput(proto.input(), &check);
   recipe.filter = ReadFilter(proto.filter(), &check);
   recipe.output = ReadOutput(proto.output(), &check);
+  recipe.splits = ReadSplits(proto.splits(), &check);
   if (!check.status().ok()) return check.status();
   return recipe;
 }

@@ -70,6 +70,8 @@ void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
   if (overrides.frame_rate_hz) {
     recipe->mutable_output()->set_frame_rate_hz(*overrides.frame_rate_hz);
   }
+  if (overrides.validation) recipe->mutable_splits()->set_validation(*overrides.validation);
+  if (overrides.test) recipe->mutable_splits()->set_test(*overrides.test);
 }
 
 // Merges the joint map file that the recipe names into its joint map.

@@ -19,6 +19,8 @@ struct RecipeOverrides {
   std::string level;       // empty: the recipe's
   std::string layout;      // the same
   std::string body_model;  // the same; relative to the working directory
+  std::optional<double> validation;  // Splits
+  std::optional<double> test;
 };
 
 // Parses a recipe: JSON or text format. Unknown fields are rejected. Files that it names

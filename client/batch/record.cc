@@ -128,6 +128,30 @@ ordered_json FailedRecord(const Item& item, const absl::Status& error) {
   return record;
 }
 
+std::string LargestClass(const ordered_json& record) {
+  std::string best = "none";
+  double largest = 0;
+  const auto look = [&](const ordered_json& labels) {
+    for (const auto& [name, weight] : labels.items()) {
+      if (weight.get<double>() <= largest) continue;
+      largest = weight.get<double>();
+      best = name;
+    }
+  };
+  if (record.contains("labels")) look(record["labels"]);
+  if (record.contains("keyframes")) {
+    for (const ordered_json& keyframe : record["keyframes"]) look(keyframe["labels"]);
+  }
+  return best;
+}
+
+std::string SplitOfRecord(const Splits& splits, const ordered_json& record) {
+  if (!splits.any()) return "";
+  const auto leader = record.find("leader_sha256");
+  const bool known = leader != record.end() && leader->is_string();
+  return SplitOf(splits, known ? leader->get<std::string>() : "");
+}
+
 std::string Line(const ordered_json& record) {
   return record.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }

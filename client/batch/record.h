@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "client/batch/plan.h"
 #include "client/batch/quality.h"
+#include "client/batch/split.h"
 #include "client/request.h"
 
 namespace duet::client::batch {
@@ -19,6 +20,14 @@ namespace duet::client::batch {
 inline constexpr char kDone[] = "done";
 inline constexpr char kRejected[] = "rejected";
 inline constexpr char kFailed[] = "failed";
+
+// The figures of Quality, in the order of the columns of tables.
+inline constexpr char kRecognisedClass[] = "recognised_class";
+inline constexpr const char* kQualityFields[] = {
+    "lean_degrees",    "foot_above_floor_metres", "foot_below_floor_metres",
+    "distance_metres", "penetration_metres",      "range_of_motion_metres",
+    kRecognisedClass,  "class_probability",       "twisted",
+    "skating",         "leader_skating",          "overlapping"};
 
 struct RecordedFile {
   std::string path;
@@ -50,6 +59,13 @@ nlohmann::ordered_json DoneRecord(const Item& item, const RecordedAnswer& answer
 nlohmann::ordered_json RejectedRecord(const Item& item, const RecordedAnswer& answer,
                                       const std::vector<std::string>& reasons);
 nlohmann::ordered_json FailedRecord(const Item& item, const absl::Status& error);
+
+// The class of the largest weight of a record, over all keyframes if there are any; "none" without
+// a weight above 0.
+std::string LargestClass(const nlohmann::ordered_json& record);
+
+// The split of the item; empty if the set is not divided.
+std::string SplitOfRecord(const Splits& splits, const nlohmann::ordered_json& record);
 
 // The record as one line, without newline. Bytes that are not UTF-8 become the replacement
 // character.

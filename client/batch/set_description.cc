@@ -1,5 +1,6 @@
 #include "client/batch/set_description.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "absl/strings/str_cat.h"
@@ -18,10 +19,12 @@ constexpr size_t kMaxClasses = 256;
 constexpr size_t kMaxTextBytes = 1 << 20;
 
 nlohmann::ordered_json ModelJson(const DescribedModel& model) {
-  return {
+  nlohmann::ordered_json json = {
       {"weights_sha256", model.weights_sha256}, {"terms", model.terms},
       {"description", model.description},       {"interaction_classes", model.interaction_classes},
       {"frame_rate_hz", model.frame_rate_hz},   {"samples", model.samples}};
+  if (model.free_for_all_uses) json["free_for_all_uses"] = *model.free_for_all_uses;
+  return json;
 }
 
 DescribedModel ReadModel(const nlohmann::json& json, base::ObjectReader* parent) {
@@ -33,11 +36,31 @@ DescribedModel ReadModel(const nlohmann::json& json, base::ObjectReader* parent)
   model.interaction_classes = reader.Strings("interaction_classes", kMaxClasses);
   model.frame_rate_hz = reader.Number("frame_rate_hz", 0, std::numeric_limits<double>::max());
   model.samples = reader.Bool("samples");
+  if (reader.Has("free_for_all_uses")) model.free_for_all_uses = reader.Bool("free_for_all_uses");
   parent->Update(reader.Finish());
   return model;
 }
 
+Splits ReadSplits(const nlohmann::json& json, base::ObjectReader* parent) {
+  base::ObjectReader reader(json, "splits");
+  Splits splits;
+  splits.validation = reader.Number("validation", 0, 1);
+  splits.test = reader.Number("test", 0, 1);
+  parent->Update(reader.Finish());
+  return splits;
+}
+
 }  // namespace
+
+std::vector<std::string> AllClasses(const SetDescription& description) {
+  std::vector<std::string> all;
+  for (const DescribedModel& model : description.models) {
+    for (const std::string& name : model.interaction_classes) {
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+    }
+  }
+  return all;
+}
 
 std::string FormatName(Format format) {
   // The enums have the same order; the proto's begins at 1.
@@ -45,8 +68,13 @@ std::string FormatName(Format format) {
 }
 
 DescribedModel Describe(const ModelInfo& model) {
-  return {model.weights_sha256,      model.terms,         model.description,
-          model.interaction_classes, model.frame_rate_hz, model.samples};
+  return {model.weights_sha256,
+          model.terms,
+          model.free_for_all_uses,
+          model.description,
+          model.interaction_classes,
+          model.frame_rate_hz,
+          model.samples};
 }
 
 nlohmann::ordered_json ToJson(const SetDescription& description) {
@@ -56,6 +84,10 @@ nlohmann::ordered_json ToJson(const SetDescription& description) {
   for (const Format format : description.formats) formats.push_back(FormatName(format));
   nlohmann::ordered_json json = {{"models", models}, {"formats", formats}};
   if (description.frame_rate_hz) json["frame_rate_hz"] = *description.frame_rate_hz;
+  if (description.splits.any()) {
+    json["splits"] = {{"validation", description.splits.validation},
+                      {"test", description.splits.test}};
+  }
   return json;
 }
 
@@ -74,6 +106,9 @@ absl::StatusOr<SetDescription> SetDescriptionFromJson(const nlohmann::json& json
   }
   if (reader.Has("frame_rate_hz")) {
     description.frame_rate_hz = reader.Number("frame_rate_hz", 0, motion::kMaxFrameRateHz);
+  }
+  if (reader.Has("splits")) {
+    description.splits = ReadSplits(reader.Object("splits"), &reader);
   }
   absl::Status status = reader.Finish();
   if (!status.ok()) return status;

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/batch/recipe.h"
+#include "client/batch/split.h"
 #include "client/result.h"
 
 namespace duet::client::batch {
@@ -16,6 +17,7 @@ namespace duet::client::batch {
 struct DescribedModel {
   std::string weights_sha256;
   std::string terms;
+  std::optional<bool> free_for_all_uses;  // absent in sets begun by a version that did not ask
   std::string description;
   std::vector<std::string> interaction_classes;
   double frame_rate_hz = 0;
@@ -28,7 +30,11 @@ struct SetDescription {
   std::vector<DescribedModel> models;  // as JobIdentity::models; empty: not known
   std::vector<Format> formats;
   std::optional<double> frame_rate_hz;  // of every item
+  Splits splits;
 };
+
+// The classes of all models, each once, in the order of the models.
+std::vector<std::string> AllClasses(const SetDescription& description);
 
 // "FORMAT_NPY": its name in proto/duet/batch/v1/batch.proto.
 std::string FormatName(Format format);

@@ -32,6 +32,7 @@ JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard) {
   identity.shard_bytes = recipe.output.shard_bytes;
   identity.description.formats = recipe.output.formats;
   identity.description.frame_rate_hz = RateOf(recipe.output);
+  identity.description.splits = recipe.splits;
   return identity;
 }
 

@@ -12,7 +12,9 @@ namespace {
 using nlohmann::json;
 
 std::string ToJson(const PackedShard& shard) {
-  return json({{"items", shard.items}, {"bytes", shard.bytes}, {"sha256", shard.sha256}}).dump();
+  json object = {{"items", shard.items}, {"bytes", shard.bytes}, {"sha256", shard.sha256}};
+  if (!shard.split.empty()) object["split"] = shard.split;
+  return object.dump();
 }
 
 bool IsRange(const json& range) {
@@ -25,7 +27,7 @@ absl::StatusOr<PackedShard> FromJson(const std::string& text) {
   const absl::Status damaged = absl::DataLossError("is not a shard");
   if (!object.is_object() || !object.contains("items") || !object.contains("bytes") ||
       !object.contains("sha256") || !object["bytes"].is_number_unsigned() ||
-      !object["sha256"].is_string()) {
+      !object["sha256"].is_string() || (object.contains("split") && !object["split"].is_string())) {
     return damaged;
   }
   PackedShard shard;
@@ -35,13 +37,15 @@ absl::StatusOr<PackedShard> FromJson(const std::string& text) {
   }
   shard.bytes = object["bytes"];
   shard.sha256 = object["sha256"];
+  shard.split = object.value("split", "");
   return shard;
 }
 
 }  // namespace
 
-std::string ShardName(Packing packing, size_t number) {
-  return absl::StrFormat("set-%06d.%s", number, packing == Packing::kTar ? "tar" : "npz");
+std::string ShardName(Packing packing, size_t number, const std::string& split) {
+  return absl::StrFormat("set-%s%s%06d.%s", split, split.empty() ? "" : "-", number,
+                         packing == Packing::kTar ? "tar" : "npz");
 }
 
 absl::StatusOr<ShardList> ShardList::Open(const std::filesystem::path& file) {
@@ -85,18 +89,19 @@ size_t ShardList::ShardOf(int64_t item) const {
   return item <= range.last ? range.shard : kNone;
 }
 
-void ShardList::Add(int64_t item, uint64_t bytes, uint64_t shard_bytes) {
-  if (filling_ == kNone || (filled_bytes_ > 0 && filled_bytes_ + bytes > shard_bytes)) {
+void ShardList::Add(int64_t item, uint64_t bytes, uint64_t shard_bytes, const std::string& split) {
+  Filling& filling = filling_[split];
+  if (filling.shard == kNone || (filling.bytes > 0 && filling.bytes + bytes > shard_bytes)) {
     const auto unused = std::find_if(shards_.begin(), shards_.end(),
                                      [](const PackedShard& shard) { return shard.items.empty(); });
-    filling_ = static_cast<size_t>(unused - shards_.begin());
+    filling = {static_cast<size_t>(unused - shards_.begin()), 0};
     if (unused == shards_.end()) shards_.emplace_back();
-    shards_[filling_] = {};
-    changed_.push_back(filling_);
-    filled_bytes_ = 0;
+    shards_[filling.shard] = {};
+    shards_[filling.shard].split = split;
+    changed_.push_back(filling.shard);
   }
-  filled_bytes_ += bytes;
-  auto& items = shards_[filling_].items;
+  filling.bytes += bytes;
+  auto& items = shards_[filling.shard].items;
   if (items.empty() || items.back().second + 1 != item) items.emplace_back(item, item);
   items.back().second = item;
 }

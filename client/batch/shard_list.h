@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,19 +29,21 @@ struct PackedShard {
   // Digest of the file; empty before it is written.
   uint64_t bytes = 0;
   std::string sha256;
+  // Of all its items; empty if the set is not divided.
+  std::string split;
 };
 
-// "set-000003.tar"
-std::string ShardName(Packing packing, size_t number);
+// "set-000003.tar", "set-train-000003.tar"
+std::string ShardName(Packing packing, size_t number, const std::string& split = "");
 
 class ShardList {
  public:
   // Reads `file`; a missing list is empty. Errors: those of JournalReader::Open.
   static absl::StatusOr<ShardList> Open(const std::filesystem::path& file);
 
-  // Adds an item that is in no shard to the new shard, and begins another one if it would exceed
-  // `shard_bytes`. Call in the order of the items.
-  void Add(int64_t item, uint64_t bytes, uint64_t shard_bytes);
+  // Adds an item that is in no shard to the new shard of its split, and begins another one if it
+  // would exceed `shard_bytes`. Call in the order of the items.
+  void Add(int64_t item, uint64_t bytes, uint64_t shard_bytes, const std::string& split = "");
   // Replaces a shard.
   void Set(size_t number, PackedShard shard);
   // Writes the changes of Add and Set to disk. ABORTED as in durable_file.h.
@@ -53,6 +56,9 @@ class ShardList {
   static constexpr size_t kNone = static_cast<size_t>(-1);
   // The number of the shard that an item is in.
   size_t ShardOf(int64_t item) const;
+  std::string NameOf(size_t number, Packing packing) const {
+    return ShardName(packing, number, shards_[number].split);
+  }
 
  private:
   struct Range {
@@ -65,8 +71,11 @@ class ShardList {
   std::vector<PackedShard> shards_;
   std::vector<Range> ranges_;  // of all shards, in increasing order
   std::vector<size_t> changed_;
-  size_t filling_ = kNone;
-  uint64_t filled_bytes_ = 0;
+  struct Filling {
+    size_t shard = kNone;
+    uint64_t bytes = 0;
+  };
+  std::map<std::string, Filling> filling_;  // by split
 };
 
 }  // namespace duet::client::batch

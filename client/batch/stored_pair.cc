@@ -10,16 +10,15 @@
 
 namespace duet::client::batch {
 
-absl::StatusOr<motion::ClipPair> ReadStoredPair(const ItemReader& items,
-                                                const nlohmann::ordered_json& record,
-                                                const SpoolPlace& place,
-                                                const motion::Skeleton& skeleton) {
+absl::StatusOr<motion::ClipPair> ReadStoredPair(
+    const std::function<absl::StatusOr<std::string>(size_t)>& read,
+    const nlohmann::ordered_json& record, const motion::Skeleton& skeleton) {
   const std::filesystem::path first = record["files"][0]["path"].get<std::string>();
   // BVH has one file for each person.
   const bool apart = first.extension() == ".bvh";
-  const absl::StatusOr<std::string> content = items.Read(record, place, 0);
+  const absl::StatusOr<std::string> content = read(0);
   if (!content.ok()) return content.status();
-  const absl::StatusOr<std::string> other = apart ? items.Read(record, place, 1) : content;
+  const absl::StatusOr<std::string> other = apart ? read(1) : content;
   if (!other.ok()) return other.status();
   // Only layouts of captures keep the leader on its side.
   const bool leader_right = first.extension() == ".txt" && record["side"] == "right";

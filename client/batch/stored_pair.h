@@ -1,20 +1,22 @@
 #ifndef DUET_CLIENT_BATCH_STORED_PAIR_H_
 #define DUET_CLIENT_BATCH_STORED_PAIR_H_
 
+#include <cstddef>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "absl/status/statusor.h"
-#include "client/batch/item_files.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::batch {
 
-// Reads the pair of an item from the first file of its record. Errors name the file.
-absl::StatusOr<motion::ClipPair> ReadStoredPair(const ItemReader& items,
-                                                const nlohmann::ordered_json& record,
-                                                const SpoolPlace& place,
-                                                const motion::Skeleton& skeleton);
+// Reads the pair of an item from the first file of its record. `read`: returns the content of a
+// file of the record by its number. Errors name the file.
+absl::StatusOr<motion::ClipPair> ReadStoredPair(
+    const std::function<absl::StatusOr<std::string>(size_t)>& read,
+    const nlohmann::ordered_json& record, const motion::Skeleton& skeleton);
 
 }  // namespace duet::client::batch
 

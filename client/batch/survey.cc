@@ -153,7 +153,7 @@ absl::StatusOr<const std::set<int64_t>*> Surveyor::BadItemsOf(size_t number) {
   const auto known = bad_.find(number);
   if (known != bad_.end()) return &known->second;
   const PackedShard& shard = survey_.shards.shards()[number];
-  const fs::path file = folder_.out() / ShardName(identity_.packing, number);
+  const fs::path file = folder_.out() / survey_.shards.NameOf(number, identity_.packing);
   std::set<int64_t>& bad = bad_[number];
   if (LooksWhole(shard, file)) return &bad;
   absl::StatusOr<std::set<int64_t>> found = FindBadItems(survey_.journal, shard, file);

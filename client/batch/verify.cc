@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 constexpr size_t kProblemsKept = 100;
+constexpr char kIndexFile[] = "index.jsonl";  // which is compared line by line
 
 void AddProblem(absl::string_view problem, VerifyReport* report) {
   ++report->problem_count;
@@ -119,11 +120,12 @@ class JournalVerifier {
   JournalVerifier(const JobFolder& folder, const JobIdentity& identity,
                   const JournalReader& journal, const ShardList& shards)
       : folder_(folder),
+        identity_(identity),
         packing_(identity.packing),
         journal_(journal),
         shards_(shards),
         files_(folder.items(identity.packing), folder.spool()),
-        index_(folder.out() / "index.jsonl") {}
+        index_(folder.out() / kIndexFile) {}
 
   absl::StatusOr<VerifyReport> VerifyAll() {
     if (!index_) Problem("index.jsonl: no such file");
@@ -143,6 +145,7 @@ class JournalVerifier {
       Problem(planned.status().message());
     } else {
       report_.missing = std::max<int64_t>(0, planned->count - journal_.count());
+      CompareFiles(*planned);
     }
     return std::move(report_);
   }
@@ -174,12 +177,25 @@ class JournalVerifier {
     return absl::OkStatus();
   }
 
+  // The files beside the index that follow from the journal. A journal that cannot be read has been
+  // reported already.
+  void CompareFiles(const PlannedItems& planned) {
+    ComparedSetFiles files(folder_.out());
+    (void)WriteIndex(journal_, identity_, shards_, planned, &files);
+    for (const std::string& file : files.missing()) {
+      if (file != kIndexFile) Problem(absl::StrCat(file, ": no such file"));
+    }
+    for (const std::string& file : files.different()) {
+      if (file != kIndexFile) Problem(absl::StrCat(file, ": is not what the journal says"));
+    }
+  }
+
   void CheckIndexLine(int64_t item, ordered_json* record) {
     if (!index_ || index_differs_) return;
     std::string line;
     ++index_line_;
     const bool same =
-        std::getline(index_, line) && line == IndexLine(item, packing_, shards_, record);
+        std::getline(index_, line) && line == IndexLine(item, identity_, shards_, record);
     if (!same) IndexDiffers();
   }
 
@@ -192,7 +208,7 @@ class JournalVerifier {
   absl::Status CheckShard(size_t number) {
     const PackedShard& shard = shards_.shards()[number];
     if (shard.items.empty()) return absl::OkStatus();
-    const std::string name = ShardName(packing_, number);
+    const std::string name = shards_.NameOf(number, packing_);
     const fs::path file = folder_.out() / name;
     const absl::StatusOr<std::string> digest = base::Sha256HexOfFile(file);
     if (digest.ok() && *digest == shard.sha256) return absl::OkStatus();
@@ -224,6 +240,7 @@ class JournalVerifier {
   }
 
   const JobFolder& folder_;
+  const JobIdentity& identity_;
   const Packing packing_;
   const JournalReader& journal_;
   const ShardList& shards_;

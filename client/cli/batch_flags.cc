@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -103,7 +104,7 @@ void AddInputFlags(CLI::App* app, BatchArguments* arguments) {
 }
 
 void AddOutputFlags(CLI::App* app, BatchArguments* arguments) {
-  constexpr char kGroup[] = "Output";
+  static constexpr char kGroup[] = "Output";
   app->add_option("--out", arguments->out, "Folder of the data set")
       ->type_name("FOLDER")
       ->group(kGroup);
@@ -117,6 +118,17 @@ void AddOutputFlags(CLI::App* app, BatchArguments* arguments) {
       ->check(AboveZero())
       ->type_name("HZ")
       ->group(kGroup);
+  const auto add_share = [app](const char* flag, const char* what, std::optional<double>* share) {
+    app->add_option(flag, *share, what)
+        ->check(Undescribed(CLI::Range(0.0, 1.0)))
+        ->type_name("SHARE")
+        ->group(kGroup);
+  };
+  add_share("--validation",
+            "Share of leaders whose items are for validation, 0 to below 1; overrides the recipe",
+            &arguments->overrides.validation);
+  add_share("--test", "Share of leaders whose items are for testing; overrides the recipe",
+            &arguments->overrides.test);
   app->add_option("--retries-per-item", arguments->overrides.retries_per_item,
                   "Other seeds to try if the filter rejects an answer; overrides the recipe")
       ->check(Undescribed(CLI::Range(0, 100)))

@@ -1,18 +1,23 @@
 #include "client/cli/view_command.h"
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "client/batch/set_item.h"
 #include "client/cli/flags.h"
 #include "client/cli/input_flags.h"
 #include "client/cli/output.h"
 #include "client/cli/take.h"
 #include "client/cli/take_flags.h"
 #include "client/viewer/gallery.h"
+#include "client/viewer/page.h"
 #include "model/base/file.h"
 #include "model/motion/skeleton.h"
 
@@ -28,6 +33,11 @@ struct ViewArguments {
 
 constexpr std::size_t kMostNamesInTitle = 3;
 
+constexpr char kSetFooter[] = R"(
+An item of a data set: its folder, and the item's name or number.
+  duet view set hug-kick --out page.html
+)";
+
 std::string TitleOf(const std::vector<Take>& takes) {
   std::vector<std::string> names;
   for (const Take& take : takes) {
@@ -40,7 +50,7 @@ std::string TitleOf(const std::vector<Take>& takes) {
   return title;
 }
 
-std::string Describe(const std::vector<Take>& takes, const std::filesystem::path& out) {
+std::string Describe(const std::vector<Take>& takes) {
   std::string text;
   for (const Take& take : takes) {
     absl::StrAppend(&text, "shown     ", take.name, ": ",
@@ -51,10 +61,53 @@ std::string Describe(const std::vector<Take>& takes, const std::filesystem::path
                     take.follower ? "" : " (one person)", "\n");
     for (const std::string& note : take.notes) absl::StrAppend(&text, "          ", note, "\n");
   }
-  return absl::StrCat(text, "wrote     ", out.string(), "\n");
+  return text;
+}
+
+// "duet view SET ITEM"
+bool IsOfSet(const ViewArguments& arguments) { return batch::IsSet(arguments.takes.takes.front()); }
+
+absl::Status Write(const ViewArguments& arguments, const std::string& page,
+                   const std::string& report, const ProgramEnvironment& environment) {
+  const bool to_stream = arguments.out == kStandardStream;
+  const absl::Status status = to_stream ? WriteToStream(page, *environment.out)
+                                        : NotWritten(base::WriteFile(arguments.out, page));
+  if (status.ok() && !arguments.quiet) {
+    (to_stream ? *environment.err : *environment.out)
+        << report << "wrote     " << arguments.out.string() << "\n";
+  }
+  return status;
+}
+
+std::string Subtitle(const nlohmann::ordered_json& record) {
+  std::string text =
+      absl::StrFormat("%s \u00b7 %d frames at %g Hz", record["model"].get<std::string>(),
+                      record["frames"].get<int64_t>(), record["frame_rate_hz"].get<double>());
+  if (record.contains("seed")) absl::StrAppend(&text, " \u00b7 seed ", record["seed"].dump());
+  if (record.contains("split")) {
+    absl::StrAppend(&text, " \u00b7 ", record["split"].get<std::string>());
+  }
+  return text;
+}
+
+absl::Status ViewItem(const ViewArguments& arguments, const ProgramEnvironment& environment) {
+  const std::string& set = arguments.takes.takes.front();
+  absl::StatusOr<batch::SetItem> item = batch::ReadSetItem(set, arguments.takes.takes.back());
+  if (!item.ok()) return item.status();
+  const std::string name = item->record["name"];
+  viewer::PageContent content;
+  content.pair = std::move(item->pair);
+  content.bones = item->skeleton.bones;
+  content.title = arguments.title.empty() ? name : arguments.title;
+  content.subtitle = Subtitle(item->record);
+  content.weights = batch::WeightsOf(item->record);
+  const absl::StatusOr<std::string> page = RenderPage(content);
+  if (!page.ok()) return page.status();
+  return Write(arguments, *page, absl::StrCat("shown     ", name, " of ", set, "\n"), environment);
 }
 
 absl::Status Run(const ViewArguments& arguments, const ProgramEnvironment& environment) {
+  if (IsOfSet(arguments)) return ViewItem(arguments, environment);
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const absl::StatusOr<std::vector<Take>> takes =
       ReadTakes(arguments.takes, skeleton, environment.in);
@@ -69,18 +122,13 @@ absl::Status Run(const ViewArguments& arguments, const ProgramEnvironment& envir
       absl::StrCat(takes->size(), takes->size() == 1 ? " motion" : " motions side by side");
   const absl::StatusOr<std::string> page = RenderGallery(content);
   if (!page.ok()) return page.status();
-  const bool to_stream = arguments.out == kStandardStream;
-  const absl::Status status = to_stream ? WriteToStream(*page, *environment.out)
-                                        : NotWritten(base::WriteFile(arguments.out, *page));
-  if (!status.ok()) return status;
-  if (!arguments.quiet) {
-    (to_stream ? *environment.err : *environment.out) << Describe(*takes, arguments.out);
-  }
-  return absl::OkStatus();
+  return Write(arguments, *page, Describe(*takes), environment);
 }
 
 void AddFlags(CLI::App* command, ViewArguments* arguments) {
-  command->add_option("files", arguments->takes.takes, "Motions to show, at most 12")
+  command
+      ->add_option("files", arguments->takes.takes,
+                   "Motions to show, at most 12; or a data set of duet batch and one of its items")
       ->required()
       ->expected(1, 12)
       ->type_name("[NAME=]FILE");
@@ -93,8 +141,13 @@ void AddFlags(CLI::App* command, ViewArguments* arguments) {
       ->type_name("TEXT")
       ->group(kOutputGroup);
   command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
-  command->footer(kTakesFooter);
+  command->footer(absl::StrCat(kTakesFooter, kSetFooter));
   command->callback([arguments] {
+    if (IsOfSet(*arguments) && arguments->takes.takes.size() != 2) {
+      throw CLI::ValidationError(
+          "files", absl::StrCat("expected SET ITEM, got ", arguments->takes.takes.size(),
+                                " words that begin with a data set"));
+    }
     CheckTakes(arguments->takes);
     CheckPage("--out", arguments->out);
   });

@@ -2,7 +2,7 @@
 """Writes the bill of materials of an image, SPDX 2.3 in JSON: Duet and every Debian package in dpkg's
 records, with version, source package and the licences that its copyright file declares.
 
-    write_sbom.py --version 0.1.0 --created 2026-01-01T00:00:00Z ROOT >duet.spdx.json
+    write_sbom.py --version 1.0.0 --created 2026-01-01T00:00:00Z ROOT >duet.spdx.json
 
 ROOT is the image's root: `var/lib/dpkg/status.d` (a record for each package) or `var/lib/dpkg/status`.
 The same root and arguments give the same bytes.

@@ -18,7 +18,7 @@ import unittest
 KILLS = int(sys.argv.pop(1)) if sys.argv[1:] and sys.argv[1].isdigit() else 4
 
 import tools  # noqa: E402
-from batch_test import digests, entries  # noqa: E402
+from batch_test import digests, entries, rows_of  # noqa: E402
 
 RECIPE = """
 seed: 7
@@ -27,7 +27,9 @@ samples: 2
 output { formats: FORMAT_NPY %s }
 """
 PACKINGS = {"none": "", "tar": "packing: PACKING_TAR shard_bytes: 60000",
-            "npz": "packing: PACKING_NPZ shard_bytes: 60000"}
+            "npz": "packing: PACKING_NPZ shard_bytes: 60000",
+            # Two of the three leaders are in the split "test" or "validation".
+            "split": "packing: PACKING_TAR shard_bytes: 60000 } splits { validation: 0.4 test: 0.2"}
 
 
 def change(path, at):
@@ -92,9 +94,16 @@ class BatchRepairTest(unittest.TestCase):
                     os.truncate(files[2], 1000)
                     change(out / ".duet-batch" / "journal", 3000)
                     change(out / "index.jsonl", 200)
+                    change(out / "items" / "train.csv", 300)
+                    (out / "README.md").unlink()
+                    os.truncate(out / "dataset.json", 100)
                     found = self.run_in_folder(tools.PROGRAMS / "duet", "batch", "verify", out,
                                                code=42)
                     self.assertIn("verify --repair", found.stderr)
+                    for problem in ("items/train.csv: is not what the journal says",
+                                    "README.md: no such file",
+                                    "dataset.json: is not what the journal says"):
+                        self.assertIn(problem, found.stderr)
                     if again == "rerun":
                         self.run_in_folder(*self.command(out.name, packing))
                     else:  # the command of the last run, from wherever this is started
@@ -127,10 +136,14 @@ class BatchRepairTest(unittest.TestCase):
                 self.check_whole(out, packing)
 
     def test_killed_packing_is_repeated(self):
-        for packing in ("tar", "npz"):
-            # The list of shards, the first shard, one in the middle; all of them and no index.
-            for moment in (".duet-batch/shards", f"set-000000.{packing}", f"set-000004.{packing}",
-                           "contact_sheet.html"):
+        for packing, first, middle in (("tar", "set-000000.tar", "set-000004.tar"),
+                                       ("npz", "set-000000.npz", "set-000004.npz"),
+                                       ("split", "set-validation-000000.tar",
+                                        "set-test-000004.tar")):
+            # The list of shards, the first shard, one in the middle; all of them and no index; the
+            # first table and no index.
+            for moment in (".duet-batch/shards", first, middle, "contact_sheet.html",
+                           "items/train.csv"):
                 with self.subTest(packing, moment=moment):
                     out = self.folder / f"{packing}-{moment.replace('/', '_')}"
                     client = subprocess.Popen(self.command(out.name, packing), cwd=self.folder)
@@ -158,6 +171,7 @@ class BatchRepairTest(unittest.TestCase):
                 self.run_in_folder(tools.PROGRAMS / "duet", "batch", "verify", out)
                 shutil.copy(tools.sample("push"), mended)
                 self.run_in_folder(*command, "--retry-failed")
+                self.assertEqual(len(rows_of(out)), 36)
                 after = digests(out)
                 self.assertEqual({name: after[name] for name in before}, before)
                 index = entries(out)

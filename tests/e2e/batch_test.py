@@ -31,6 +31,14 @@ try:
     import numpy
 except ImportError:
     numpy = None
+try:
+    import pandas
+except ImportError:
+    pandas = None
+try:
+    import yaml
+except ImportError:
+    yaml = None
 
 KILLS = int(sys.argv.pop(1)) if sys.argv[1:] and sys.argv[1].isdigit() else 6
 
@@ -56,6 +64,20 @@ def digests(folder):
 def entries(folder):
     lines = (folder / "index.jsonl").read_text(encoding="utf-8").splitlines()
     return [json.loads(line) for line in lines]
+
+
+def rows_of(folder):
+    """The rows of all tables, and the bytes that each names: checked against its digest."""
+    rows = []
+    for table in sorted((folder / "items").glob("*.csv")):
+        with open(table, encoding="utf-8", newline="") as file:
+            rows += csv.DictReader(file)
+    for row in rows:
+        with open(folder / (row["shard"] or row["path"]), "rb") as file:
+            file.seek(int(row["offset"]))
+            digest = hashlib.sha256(file.read(int(row["bytes"]))).hexdigest()
+        assert digest == row["sha256"], row
+    return rows
 
 
 def read_k3hi(folder):
@@ -194,6 +216,112 @@ class BatchTest(unittest.TestCase):
         self.verified(out)
         (out / "far" / "push-kick-s1.npy").write_bytes(b"changed")
         self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
+
+    def test_each_split_has_its_table_its_shards_and_its_leaders(self):
+        digest = {name: hashlib.sha256(tools.sample(name).read_bytes()).hexdigest()
+                  for name in ("kick", "hug", "push")}
+        expected = {value: "test" if int(value[:8], 16) / 2**32 < 0.2 else
+                    "validation" if int(value[:8], 16) / 2**32 >= 0.6 else "train"
+                    for value in digest.values()}
+        for packing in ("none", "tar", "npz"):
+            with self.subTest(packing):
+                out = self.out(packing)
+                self.batch(out, self.recipe(), "--pack", packing, "--validation", "0.4", "--test",
+                           "0.2")
+                rows = rows_of(out)
+                self.assertEqual({row["leader_sha256"]: row["split"] for row in rows}, expected)
+                index = {entry["id"]: entry for entry in entries(out)}
+                self.assertEqual(sorted(index), sorted(row["id"] for row in rows))
+                for row in rows:
+                    self.check_row(row, index[row["id"]])
+                description = json.loads((out / "dataset.json").read_text(encoding="utf-8"))
+                self.assertEqual({split["name"]: split["items"] for split in description["splits"]},
+                                 collections.Counter(row["split"] for row in rows))
+                self.assertIs(description["models"][0]["free_for_all_uses"], False)
+                for split in description["splits"]:
+                    for shard in split.get("shards", ()):
+                        self.assertIn(f"set-{split['name']}-", shard)
+                        self.assertEqual({row["split"] for row in rows if row["shard"] == shard},
+                                         {split["name"]})
+                self.verified(out)
+
+    def check_row(self, row, entry):
+        """A row of a table says what the index says."""
+        self.assertEqual(row["split"], entry["split"])
+        self.assertEqual(row["interaction_class"], max(entry["labels"], key=entry["labels"].get))
+        self.assertEqual({name: float(row[f"label_{name}"]) for name in entry["labels"]},
+                         entry["labels"])
+        self.assertEqual(int(row["seed"]), entry["seed"])
+        self.assertEqual(float(row["distance_metres"]), entry["quality"]["distance_metres"])
+        self.assertEqual(row["sha256"], entry["files"][0]["sha256"])
+
+    def test_tar_members_are_grouped_as_webdataset_groups_them(self):
+        out = self.out()
+        self.batch(out, self.recipe("packing: PACKING_TAR formats: FORMAT_JSON formats: FORMAT_BVH"))
+        samples = []
+        with tarfile.open(out / "set-000000.tar", "r|") as archive:
+            for member in archive:
+                # The key ends at the first dot of the last part of the path.
+                key, extension = re.fullmatch(r"((?:.*/|)[^.]+)[.]([^/]*)", member.name).groups()
+                if not samples or samples[-1][0] != key:
+                    samples.append((key, []))
+                samples[-1][1].append(extension)
+        self.assertEqual([key for key, _ in samples], [entry["name"] for entry in entries(out)])
+        for _, extensions in samples:
+            self.assertEqual(extensions, ["npy", "motion.json", "leader.bvh", "follower.bvh",
+                                          "json"])
+
+    def test_the_card_states_terms_and_names_the_tables(self):
+        card = (self.whole / "README.md").read_text(encoding="utf-8")
+        self.assertIn("**not free for all uses.**", card)
+        self.assertIn("research", card)
+        if yaml is not None:
+            metadata = yaml.safe_load(card.split("---\n")[1])
+            self.assertEqual((metadata["license"], metadata["license_name"]),
+                             ("other", "terms-of-the-models"))
+            self.assertEqual(metadata["configs"],
+                             [{"config_name": "default",
+                               "data_files": [{"split": "train", "path": "items/train.csv"}]}])
+            with open(self.whole / "items" / "train.csv", encoding="utf-8") as table:
+                self.assertEqual([feature["name"] for feature in
+                                  metadata["dataset_info"]["features"]],
+                                 next(csv.reader(table)))
+        if pandas is not None:
+            table = pandas.read_csv(self.whole / "items" / "train.csv")
+            self.assertEqual([str(table[name].dtype) for name in
+                              ("free_for_all_uses", "label_hug", "seed", "offset")],
+                             ["bool", "float64", "int64", "int64"])
+
+    def test_a_card_of_the_user_is_kept(self):
+        out = self.out()
+        out.mkdir()
+        (out / "README.md").write_text("# Our walks\n", encoding="utf-8")
+        self.batch(out, self.recipe(), "--limit", "2")
+        self.assertEqual((out / "README.md").read_text(encoding="utf-8"), "# Our walks\n")
+        self.verified(out)
+        (out / "README.md").unlink()
+        self.assertIn("README.md: no such file", self.verified(out, 42).stderr)
+
+    def test_items_are_viewed_in_any_state_of_a_set(self):
+        page = self.folder / "item.html"
+        for name, flags in (("loose", ()), ("waiting", ("--pack", "tar", "--limit", "3")),
+                            ("packed", ("--pack", "npz"))):
+            with self.subTest(name):
+                out = self.out(name)
+                self.batch(out, self.recipe(), *flags)
+                entry = entries(out)[2]
+                for item in (entry["name"], str(entry["item"]), entry["files"][0]["path"]):
+                    viewed = tools.duet("view", out, item, "--out", page)
+                    self.assertEqual(viewed.returncode, 0, viewed.stderr)
+                    self.assertIn(f"shown     {entry['name']} of", viewed.stdout)
+                    self.assertIn(entry["name"], page.read_text(encoding="utf-8"))
+                    page.unlink()
+        shutil.rmtree(out / ".duet-batch")  # a copy
+        self.assertEqual(tools.duet("view", out, "0", "--out", page).returncode, 0)
+        refused = tools.duet("view", out, "no such", "--out", page)
+        self.assertEqual(refused.returncode, 42, refused.stderr)
+        self.assertIn('expected the name or the number of an item', refused.stderr)
+        self.assertEqual(tools.duet("view", out, "--out", page).returncode, 2)
 
     def test_files_without_motion_are_skipped(self):
         leaders, out = self.out("leaders"), self.out()

@@ -1,6 +1,6 @@
-"""The tour, the cookbook, the guides to batches and to the layouts of research, and the page on
-rotations do what they say: their commands and their Python run as they are printed, against a real
-server that they find by DUET_SERVER, as they say."""
+"""The tour, the cookbook, the guides to batches, to training and to the layouts of research, and the
+page on rotations do what they say: their commands and their Python run as they are printed, against a
+real server that they find by DUET_SERVER, as they say."""
 
 import importlib.util
 import os
@@ -27,14 +27,16 @@ class DocumentsTest(unittest.TestCase):
         text = (tools.SOURCE / "docs" / name).read_text(encoding="utf-8")
         blocks = BLOCK.findall(text)
         with tempfile.TemporaryDirectory() as folder, tools.running_server() as server:
-            for shared in ("samples", "recipes"):
+            for shared in ("samples", "recipes", "client"):
                 pathlib.Path(folder, shared).symlink_to(tools.SOURCE / shared)
             pathlib.Path(folder, "walks").mkdir()
             for leader in leaders:
                 shutil.copy(tools.sample(leader), pathlib.Path(folder, "walks"))
             environment = {
                 **os.environ, "DUET_SERVER": server.address, "DUET_CONFIG": "",
-                "PATH": f"{tools.PROGRAMS}:{os.environ['PATH']}",
+                # `python3` is the one that runs this test and has the modules.
+                "PATH": os.pathsep.join((str(tools.PROGRAMS), str(pathlib.Path(sys.executable).parent),
+                                         os.environ["PATH"])),
                 "PYTHONPATH": str(tools.SOURCE / "client" / "python")}
             for language, block in blocks:
                 with self.subTest(block=block.splitlines()[0]):
@@ -58,6 +60,11 @@ class DocumentsTest(unittest.TestCase):
 
     def test_the_layouts_of_research(self):
         self.assertEqual(self.run_blocks("guides/research_layouts.md"), 7)
+
+    def test_from_a_data_set_to_training(self):
+        if importlib.util.find_spec("pandas") is None:
+            tools.skip("no Python module pandas; install the package python3-pandas")
+        self.assertGreaterEqual(self.run_blocks("guides/data_set_to_training.md"), 5)
 
     def test_from_leaders_to_a_training_set(self):
         self.assertGreaterEqual(self.run_blocks("batch.md", leaders=("hug", "kick", "push")), 3)

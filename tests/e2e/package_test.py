@@ -14,6 +14,9 @@ import unittest
 
 import tools
 
+sys.path.insert(0, str(tools.SOURCE / "scripts"))
+import check_version  # noqa: E402
+
 BUILD, CPACK = sys.argv[1:]
 del sys.argv[1:]
 
@@ -39,7 +42,9 @@ class PackageTest(unittest.TestCase):
 
     def test_each_package_has_its_files_and_only_their_dependencies(self):
         self.assertEqual(sorted(self.packages), ["duet", "duet-server", "duet-training"])
+        version = check_version.project_version(tools.SOURCE)
         for name, package in self.packages.items():
+            self.assertEqual(run("dpkg-deb", "-f", package, "Version").strip(), f"{version}-1")
             needed = run("dpkg-deb", "-f", package, "Depends")
             training = name == "duet-training"
             self.assertEqual("libgrpc++1.51" in needed, not training, name)

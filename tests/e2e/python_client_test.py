@@ -10,6 +10,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import xml.etree.ElementTree
 
 import tools
 
@@ -256,6 +257,30 @@ class PythonClientTest(unittest.TestCase):
         self.assertEqual(ran.returncode, 0, ran.stderr)
         errors = [float(error) for error in re.findall(r": ([\d.]+) m", ran.stdout)]
         self.assertLess(errors[-1], 0.8 * errors[0])
+
+    def test_training_example_recognises_the_classes_of_a_leader_that_it_never_saw(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "set"
+            recipe = pathlib.Path(folder) / "recipe.textproto"
+            recipe.write_text("seed: 7 reactions { each_class {} } samples: 8 splits { test: 0.3 } "
+                              "output { formats: FORMAT_NPY packing: PACKING_TAR }",
+                              encoding="utf-8")
+            leaders = [tools.sample(name) for name in ("kick", "hug", "push", "punch")]
+            tools.duet("batch", *leaders, "--recipe", recipe, "--out", out, "--server",
+                       self.server.address, "--quiet").check_returncode()
+            picture = pathlib.Path(folder) / "learned.svg"
+            command = [sys.executable, "-B", PACKAGE / "examples" / "train_on_set.py", out, "--out",
+                       picture]
+            ran = tools.run(*command)
+            self.assertEqual(ran.returncode, 0, ran.stderr)
+            share = int(re.search(r"\((\d+) %\)", ran.stdout)[1])
+            self.assertGreater(share, 50, ran.stdout)  # chance is 17
+            self.assertEqual(xml.etree.ElementTree.parse(picture).getroot().tag,
+                             "{http://www.w3.org/2000/svg}svg")
+            (out / "items" / "test.csv").write_text("id\n", encoding="utf-8")
+            refused = tools.run(*command)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn("expected items in the splits train and test", refused.stderr)
 
     def test_synthesize_many_gives_the_same_answers(self):
         requests = [duet.SynthesisRequest(self.hug, {name: 1}, priority="bulk")

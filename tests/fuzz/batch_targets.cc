@@ -18,6 +18,8 @@
 #include "client/batch/journal.h"
 #include "client/batch/manifest.h"
 #include "client/batch/recipe_file.h"
+#include "client/batch/set_file.h"
+#include "client/batch/set_item.h"
 #include "client/batch/verify.h"
 #include "model/base/sha256.h"
 #include "tests/fuzz/promises.h"
@@ -93,8 +95,9 @@ Broken BatchJournal(absl::string_view input) {
   });
   if (!each.ok() || visited != journal->count()) return "a journal's records are not all there";
   client::batch::JobIdentity identity;
+  client::batch::WrittenSetFiles files(Folder().path(), Folder().path() / "set");
   const absl::StatusOr<client::batch::SetCounts> counts =
-      WriteIndex(*journal, identity, {}, {}, Folder().path(), Folder().path());
+      WriteIndex(*journal, identity, {}, {}, &files);
   if (!counts.ok()) return CheckRefusal(counts.status(), {kDataLoss});
   return counts->done + counts->rejected + counts->failed == visited ? "" : "records are lost";
 }
@@ -104,11 +107,16 @@ Broken BatchFolder(absl::string_view input) {
   fs::create_directory(Folder() / ".duet-batch");
   test::WriteTestFile(Folder() / ".duet-batch/job.json", Std(files[0]));
   test::WriteTestFile(Folder() / "summary.json", Std(files[1]));
+  test::WriteTestFile(Folder() / "dataset.json", Std(files[1]));
   test::WriteTestFile(Folder() / "index.jsonl", Std(files[2]));
   Broken broken =
       CheckRefusal(client::batch::ReadJobIdentity(Folder().path()).status(), {kFailedPrecondition});
   if (broken.empty()) {
     broken = CheckRefusal(client::batch::ReadPlanned(Folder().path()).status(), {kDataLoss});
+  }
+  if (broken.empty()) {
+    broken = CheckRefusal(client::batch::ReadSetItem(Folder().path(), "0").status(),
+                          {kDataLoss, kNotFound, kInvalidArgument});
   }
   if (!broken.empty()) return broken;
   return CheckRefusal(client::batch::Verify(Folder().path()).status(), {kDataLoss, kNotFound});

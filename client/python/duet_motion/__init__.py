@@ -27,7 +27,7 @@ from duet_motion.result import (FollowerChunk, FrameRun, JointRotations, ModelDe
 from duet_motion.retry import RetryOptions
 from duet_motion.sets import MotionSet, PaddedBatch, SetItem, pad, read_set
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 __all__ = [
     "CancelledError", "Client", "DataSetError", "DeadlineError", "DuetError", "FieldViolation",

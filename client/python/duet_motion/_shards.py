@@ -12,7 +12,8 @@ import pathlib
 import struct
 import tarfile
 import zipfile
-from typing import Any, Dict, Iterator, List, Mapping, Sequence, Tuple, overload
+from typing import (Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple,
+                    overload)
 
 import numpy as np
 import numpy.typing as npt
@@ -29,16 +30,19 @@ class DataSetError(ValueError):
 class Records(Sequence[Mapping[str, Any]]):
     """The lines of ``index.jsonl``, parsed on access because a set can have millions."""
 
-    def __init__(self, path: pathlib.Path) -> None:
+    def __init__(self, path: pathlib.Path,
+                 wanted: Optional[Callable[[Mapping[str, Any]], bool]] = None) -> None:
+        """``wanted`` selects records; None: all of them."""
         self._path = path
         begins: List[int] = []
         at = 0
         with path.open("rb") as file:
             for line in file:
-                if line.strip():
+                if line.strip() and (wanted is None or wanted(self._parse(line, at))):
                     begins.append(at)
                 at += len(line)
         self._begins = np.array(begins, dtype=np.int64)
+        self._all = wanted is None
 
     def __len__(self) -> int:
         return len(self._begins)
@@ -58,6 +62,9 @@ class Records(Sequence[Mapping[str, Any]]):
         return record
 
     def __iter__(self) -> Iterator[Mapping[str, Any]]:
+        if not self._all:
+            yield from (self[at] for at in range(len(self)))
+            return
         with self._path.open("rb") as file:
             for line in file:
                 if line.strip():

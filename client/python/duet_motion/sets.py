@@ -75,7 +75,8 @@ class MotionSet(Sequence[SetItem]):
     threads and processes, so PyTorch's ``DataLoader`` accepts it directly.
     """
 
-    def __init__(self, path: Path, frame_rate_hz: Optional[float] = None) -> None:
+    def __init__(self, path: Path, frame_rate_hz: Optional[float] = None,
+                 split: Optional[str] = None) -> None:
         self.path = pathlib.Path(path)
         """The set's folder."""
         self.frame_rate_hz = (None if frame_rate_hz is None else
@@ -85,11 +86,15 @@ class MotionSet(Sequence[SetItem]):
         if not index.is_file():
             raise DataSetError(f"{self.path}: expected a data set of duet batch, got no "
                                "index.jsonl in it")
-        self.records: Sequence[Mapping[str, Any]] = Records(index)
+        self.split = split
+        """The split whose items these are; None: all items."""
+        self.records: Sequence[Mapping[str, Any]] = Records(
+            index, None if split is None else lambda record: bool(record.get("split", "train") == split))
         """The record of each item, in order."""
         self.description: Mapping[str, Any] = _read_description(self.path)
         """``dataset.json``: counts, models and their terms, skeletons (docs/batch.md). Empty if the
         set has no such file."""
+        self._check_split()
         self._skeletons = _skeletons(self.path, self.description)
         self.interaction_classes = self._classes()
         """Every class with weights in any item, in the order of the label vector."""
@@ -141,6 +146,12 @@ class MotionSet(Sequence[SetItem]):
             raise DataSetError(f"{self.path}: expected one skeleton, got {len(self._skeletons)}; "
                                "use item.leader.joint_names")
         return self._skeletons[0]
+
+    def _check_split(self) -> None:
+        names = [split["name"] for split in self.description.get("splits", ({"name": "train"},))]
+        if self.split is not None and self.split not in names:
+            raise DataSetError(f"{self.path}: split: expected {' or '.join(names)}, got "
+                               f"{self.split!r}")
 
     def _classes(self) -> Tuple[str, ...]:
         classes = self.description.get("interaction_classes")
@@ -223,19 +234,22 @@ class MotionSet(Sequence[SetItem]):
         return np.stack(columns, axis=1).astype(np.float32)
 
 
-def read_set(path: Path, *, frame_rate_hz: Optional[float] = None) -> MotionSet:
+def read_set(path: Path, *, frame_rate_hz: Optional[float] = None,
+             split: Optional[str] = None) -> MotionSet:
     """Opens a data set of `duet batch`: loose files, or npz or tar shards.
 
     Args:
         path: the set's folder, which contains ``index.jsonl``.
         frame_rate_hz: frames per second of every item after linear resampling at the same speed.
             None: each item keeps its rate.
+        split: "train", "validation" or "test": only the items of this split. None: all items.
 
     Raises:
-        DataSetError: the folder contains no data set, or one of a later format.
+        DataSetError: the folder contains no data set, or one of a later format, or the set has no
+            such split.
         ValueError: the rate is invalid.
     """
-    return MotionSet(path, frame_rate_hz)
+    return MotionSet(path, frame_rate_hz, split)
 
 
 def pad(items: Sequence[SetItem], frames: Optional[int] = None) -> PaddedBatch:

@@ -255,8 +255,9 @@ TEST_F(ContactSheetTest, ALeaderOnTheRightOfACaptureLeads) {
   record["files"][0]["path"] = "clip.txt";
   record["side"] = "right";
   Sign(&record);
-  const auto read =
-      ReadStoredPair(ItemReader(folder_.path(), ""), record, {}, motion::SbuSkeleton());
+  const ItemReader items(folder_.path(), "");
+  const auto read = ReadStoredPair([&](size_t file) { return items.Read(record, {}, file); },
+                                   record, motion::SbuSkeleton());
   ASSERT_THAT(read, IsOk());
   EXPECT_LT(Distance(read->leader.at(2, 3), pair.leader.at(2, 3)), 1e-4f);
   EXPECT_LT(Distance(read->follower.at(2, 3), pair.follower.at(2, 3)), 1e-4f);

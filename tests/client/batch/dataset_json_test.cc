@@ -38,6 +38,7 @@ ModelInfo Model(const std::string& name, std::vector<std::string> classes) {
   model.frame_rate_hz = 15;
   model.samples = true;
   model.terms = "For research only.";
+  model.free_for_all_uses = true;
   model.weights_sha256 = "ab" + name;
   return model;
 }
@@ -94,6 +95,7 @@ TEST(DatasetJson, ParsesAsTheProtoMessage) {
   EXPECT_EQ(dataset.models(1).name(), "two@2");
   EXPECT_EQ(dataset.models(1).skeleton(), 1u);
   EXPECT_EQ(dataset.models(1).terms(), "For research only.");
+  EXPECT_TRUE(dataset.models(1).free_for_all_uses());
   EXPECT_EQ(dataset.models(1).weights_sha256(), "abtwo");
   EXPECT_TRUE(dataset.models(1).samples());
   EXPECT_THAT(dataset.interaction_classes(), ElementsAre("kick", "hug", "wave"));
@@ -138,6 +140,26 @@ TEST(DatasetJson, NamesTheShardsOfAPackedSet) {
   EXPECT_THAT(Parsed(DatasetJson(identity, {}, 0, done, false)).shards(), IsEmpty());
 }
 
+TEST(DatasetJson, SplitsHaveTheirItemsTablesAndShards) {
+  Recipe recipe = WithFormats({Format::kNpy});
+  recipe.splits = {0, 0.5};
+  const JobIdentity identity =
+      WithModels(IdentityOf(recipe, {}), {Model("one", {"kick"})}, {Stick()});
+  DoneItems done;
+  for (const char* split : {"train", "test", "train"}) {
+    nlohmann::ordered_json record = Done(30, 60, std::string("set-") + split + ".tar");
+    record["split"] = split;
+    done.Add(record);
+  }
+  const v1::Dataset dataset = Parsed(DatasetJson(identity, {}, 0, done, true));
+  ASSERT_EQ(dataset.splits_size(), 2);
+  EXPECT_EQ(dataset.splits(0).name(), "train");
+  EXPECT_EQ(dataset.splits(0).items(), 2u);
+  EXPECT_EQ(dataset.splits(0).table(), "items/train.csv");
+  EXPECT_THAT(dataset.splits(1).shards(), ElementsAre("set-test.tar"));
+  EXPECT_THAT(dataset.shards(), ElementsAre("set-train.tar", "set-test.tar"));
+}
+
 TEST(DatasetJson, CapturesHaveTheirUnitAndRate) {
   Recipe recipe = WithFormats({});
   recipe.output.layout = Layout::kK3hi;
@@ -162,11 +184,14 @@ TEST(SetDescriptionJson, IsReadBackAsItWas) {
   description.models = {Describe(Model("one", {"kick"}))};
   description.formats = {Format::kCsv, Format::kUsda};
   description.frame_rate_hz = 12.5;
+  description.splits = {0.25, 0.5};
   const nlohmann::json json = ToJson(description);
   const absl::StatusOr<SetDescription> read = SetDescriptionFromJson(json);
   ASSERT_THAT(read, IsOk());
   EXPECT_EQ(nlohmann::json(ToJson(*read)), json);
   EXPECT_EQ(read->models[0].weights_sha256, "abone");
+  EXPECT_EQ(read->models[0].free_for_all_uses, true);
+  EXPECT_EQ(read->splits.test, 0.5);
   nlohmann::json bad = json;
   bad["formats"] = {"FORMAT_FBX"};
   EXPECT_THAT(SetDescriptionFromJson(bad),

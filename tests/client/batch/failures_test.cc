@@ -30,14 +30,15 @@ auto Cause(const std::string& message, int64_t items, int64_t leaders) {
 
 TEST(FailureTable, HasARowForEachLeaderAndCause) {
   const test::TemporaryFolder folder;
-  FailureTable table(folder.path());
-  ASSERT_THAT(table.Open(), IsOk());
+  WrittenSetFiles files(folder.path(), folder.path());
+  FailureTable table;
+  ASSERT_THAT(table.Open(&files), IsOk());
   for (const char* name : {"a-kick", "a-hug"}) {
     ASSERT_THAT(table.Add(Failed("a.bvh", name, "walks/a.bvh: no such file")), IsOk());
   }
   ASSERT_THAT(table.Add(Failed("a.bvh", "a-push", "no\tpushes\n")), IsOk());
   ASSERT_THAT(table.Add(Failed("b.bvh", "b-kick", "walks/b.bvh: no such file")), IsOk());
-  ASSERT_THAT(table.Finish(folder.path()), IsOk());
+  ASSERT_THAT(table.Finish(), IsOk());
   EXPECT_EQ(test::ReadTestFile(folder / "failed.tsv"),
             "leader\titems\tcode\tmessage\tnames\n"
             "a.bvh\t1\tNOT_FOUND\tno pushes \ta-push\n"

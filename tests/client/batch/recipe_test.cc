@@ -106,6 +106,17 @@ TEST(Recipe, RateFlagChangesTheDigest) {
             ParseRecipe("output { formats: FORMAT_NPY frame_rate_hz: 30 }", false)->digest);
 }
 
+TEST(Recipe, FlagsOverrideTheSplits) {
+  RecipeOverrides overrides;
+  overrides.test = 0.25;
+  const std::string recipe = std::string(kOutput) + " splits { validation: 0.1 test: 0.5 }";
+  const auto split = ParseRecipe(recipe, false, "", overrides);
+  ASSERT_THAT(split, IsOk());
+  EXPECT_EQ(split->splits.validation, 0.1);
+  EXPECT_EQ(split->splits.test, 0.25);
+  EXPECT_NE(split->digest, ParseRecipe(recipe, false)->digest);
+}
+
 TEST(ReadRecipe, ReadsAJointMapFile) {
   const test::TemporaryFolder folder;
   const std::string output = "output { formats: FORMAT_NPY } ";
@@ -206,6 +217,12 @@ INSTANTIATE_TEST_SUITE_P(
                   "output.formats: expected none", ", got some"},
         BadRecipe{"output { layout: LAYOUT_K3HI packing: PACKING_TAR }",
                   "output.packing: expected none", ", got one"},
+        BadRecipe{"output { formats: FORMAT_NPY } splits { test: 1 }", "splits.test: expected",
+                  "got 1"},
+        BadRecipe{"output { formats: FORMAT_NPY } splits { validation: -0.5 }",
+                  "splits.validation: expected 0 or more, below 1", "got -0.5"},
+        BadRecipe{"output { formats: FORMAT_NPY } splits { validation: 0.5 test: 0.5 }",
+                  "splits: expected less than 1 together", "got 1"},
         BadRecipe{"output { layout: LAYOUT_K3HI frame_rate_hz: 30 }",
                   "output.frame_rate_hz: expected none", ", got one"},
         BadRecipe{"output { formats: FORMAT_NPY formats: FORMAT_NPY }", "formats: expected",

@@ -48,12 +48,28 @@ TEST_F(ShardListTest, FillsShardsInTheOrderOfTheItems) {
   EXPECT_EQ(again.ShardOf(7), ShardList::kNone);
 }
 
+TEST_F(ShardListTest, ShardHasTheItemsOfOneSplit) {
+  ShardList list = Open();
+  for (const int64_t item : {0, 1, 2, 3}) {
+    list.Add(item, 40, 100, item % 2 == 0 ? "train" : "test");
+  }
+  list.Add(4, 40, 100, "train");
+  ASSERT_THAT(list.Commit(), IsOk());
+  const ShardList again = Open();
+  ASSERT_EQ(again.shards().size(), 3u);
+  EXPECT_THAT(again.shards()[0].items, ElementsAre(Pair(0, 0), Pair(2, 2)));
+  EXPECT_EQ(again.NameOf(0, Packing::kTar), "set-train-000000.tar");
+  EXPECT_THAT(again.shards()[1].items, ElementsAre(Pair(1, 1), Pair(3, 3)));
+  EXPECT_EQ(again.NameOf(1, Packing::kNpz), "set-test-000001.npz");
+  EXPECT_EQ(again.NameOf(again.ShardOf(4), Packing::kTar), "set-train-000002.tar");
+}
+
 TEST_F(ShardListTest, LaterItemsGoToNewShards) {
   ShardList list = Open();
   list.Add(0, 10, 100);
   list.Add(2, 10, 100);
   ASSERT_THAT(list.Commit(), IsOk());
-  list.Set(0, {list.shards()[0].items, 20, "digest"});
+  list.Set(0, {list.shards()[0].items, 20, "digest", ""});
   ASSERT_THAT(list.Commit(), IsOk());
   ShardList later = Open();
   later.Add(1, 10, 100);

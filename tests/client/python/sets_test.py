@@ -82,6 +82,31 @@ class SetsTest(unittest.TestCase):
                     member.size = len(data)
                     archive.addfile(member, io.BytesIO(data))
 
+    def test_split_selects_its_items(self):
+        self.write()
+        index = self.folder / "index.jsonl"
+        lines = [json.loads(line) for line in index.read_text(encoding="utf-8").splitlines()]
+        for line, split in zip(lines, ("train", "test", "train")):
+            line["split"] = split
+        index.write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
+        (self.folder / "dataset.json").write_text(
+            json.dumps({**DESCRIPTION, "splits": [{"name": "train"}, {"name": "test"}]}),
+            encoding="utf-8")
+        train = duet.read_set(self.folder, split="train")
+        self.assertEqual([item.name for item in train], [ITEMS[0].name, ITEMS[2].name])
+        self.assertEqual(train[-1].name, ITEMS[2].name)
+        self.assertEqual([item.name for item in duet.read_set(self.folder, split="test")],
+                         [ITEMS[1].name])
+        self.assertEqual(len(duet.read_set(self.folder)), 3)
+        with self.assertRaisesRegex(duet.DataSetError, "split: expected train or test, got 'dev'"):
+            duet.read_set(self.folder, split="dev")
+
+    def test_set_without_splits_is_for_training(self):
+        self.write()
+        self.assertEqual(len(duet.read_set(self.folder, split="train")), len(ITEMS))
+        with self.assertRaises(duet.DataSetError):
+            duet.read_set(self.folder, split="test")
+
     def test_every_packing_is_read_alike(self):
         for packing in ("none", "npz", "tar"):
             with self.subTest(packing=packing):

@@ -1,0 +1,40 @@
+"""Every program, the metrics and the Python package state the version of CMakeLists.txt."""
+
+import re
+import sys
+import unittest
+import urllib.request
+
+import tools
+
+sys.path.insert(0, str(tools.SOURCE / "scripts"))
+import check_version  # noqa: E402
+
+PROGRAMS = ("duet", "duet-server", "duet-train", "duet-eval", "duet-import", "duet-keyframe",
+            "duet-load")
+
+
+class VersionTest(unittest.TestCase):
+    version = check_version.project_version(tools.SOURCE)
+
+    def test_programs_print_it(self):
+        for program in PROGRAMS:
+            with self.subTest(program):
+                printed = tools.run(tools.PROGRAMS / program, "--version")
+                self.assertEqual((printed.returncode, printed.stdout.strip()),
+                                 (0, f"{program} {self.version}"))
+
+    def test_manual_pages_name_it(self):
+        page = tools.run(tools.PROGRAMS / "duet", "man").stdout
+        self.assertIn(f'"duet {self.version}"', page)
+
+    def test_the_server_reports_it_as_a_metric(self):
+        with tools.running_server(metrics="127.0.0.1:0") as server:
+            address = f"http://127.0.0.1:{server.metrics_port}/metrics"
+            page = urllib.request.urlopen(address, timeout=60).read().decode()
+        self.assertEqual(re.findall(r'^duet_build_info\{version="([^"]*)"\} 1$', page, re.M),
+                         [self.version])
+
+
+if __name__ == "__main__":
+    tools.main()
