@@ -1,7 +1,8 @@
 'use strict';
 // The follower's start: a place on the floor, and optionally a direction. The visitor drags a marker
-// in the scene, moves it by keys, or fills in fields. A place is sent as the root's position. A
-// direction needs a whole pose: that of the shown answer's first frame, else the leader's.
+// in the scene, moves it by keys, or fills in fields. The marker shows a pose, which is sent and met
+// exactly: that of the shown answer's first frame, else the leader's. A place that is only filled in
+// is sent as the root's position, which leaves the pose to the model and is met within decimetres.
 const RING_METRES = 0.3;
 const ARROW_METRES = 0.55;
 const STEP_METRES = 0.05;
@@ -74,16 +75,20 @@ function startMessage(motion) {
   return {pose: {positions: turned(pose, heading, [0, 0, 0], root)}};
 }
 
+function setStart(root, degrees, pose) {
+  settings.start = root.map((value) => rounded(value)).join(', ');
+  settings.pose = Array.from(pose, (value) => rounded(value));
+  settings.turn = String(rounded(((degrees + 180) % 360 + 360) % 360 - 180, 1));
+}
+
 function moveStart(x, z) {
-  const {root} = startNow(state.leader);
-  settings.start = [x, root[1], z].map((value) => rounded(value)).join(', ');
+  const {root, heading, pose} = startNow(state.leader);
+  setStart([x, root[1], z], heading, pose);
 }
 
 function turnStart(degrees) {
   const {root, pose} = startNow(state.leader);
-  settings.start = root.map((value) => rounded(value)).join(', ');
-  settings.pose = Array.from(pose, (value) => rounded(value));
-  settings.turn = String(rounded(((degrees + 180) % 360 + 360) % 360 - 180, 1));
+  setStart(root, degrees, pose);
 }
 
 function freeStart() {

@@ -70,7 +70,7 @@ function connectUndo(history) {
     else return;
     event.preventDefault();
   });
-  for (const kind of ['change', 'pointerdown', 'focusin']) {
+  for (const kind of ['change', 'pointerdown']) {
     window.addEventListener(kind, () => history.endGesture(), true);
   }
 }
