@@ -126,8 +126,11 @@ class ToolsTest(StudioTest):
         page = self.open_still(HUG, width=1200, height=900)
         self.press(page, "show-eight")
         before = page.evaluate("seedsOf(state.takes)")
+        shown = "Array.from(theatre.motion.people.follower)"
+        follower = page.evaluate(shown)
         page.evaluate("settings.candidates = 99; react(8)")
         page.wait_until("document.documentElement.dataset.failed === 'true'")
+        self.assertEqual(page.evaluate(shown), follower)
         self.assertIn("candidates", page.text("#problems"))
         self.assertEqual(page.evaluate("[seedsOf(state.takes), gallery.thumbnails.length]"),
                          [before, 8])
@@ -213,10 +216,16 @@ class ToolsTest(StudioTest):
         # The knob turns it; the pose is then the shown one.
         before = page.evaluate("startNow(state.leader).heading")
         knob = page.evaluate(IN_MARKER.format(part="knob"))
-        ring = page.evaluate(IN_MARKER.format(part="ring"))
-        page.drag(knob, (2 * ring[0] - knob[0], 2 * ring[1] - knob[1]))
+        aside = page.evaluate("""(() => {
+          const {root: [x, y, z], heading} = startNow(state.leader);
+          const [right, ahead] = [Math.sin(radians(heading + 90)), Math.cos(radians(heading + 90))];
+          const box = theatre.getBoundingClientRect();
+          const [left, top] = theatre.project(x + 0.55 * right, theatre.floorHeight, z + 0.55 * ahead);
+          return [box.left + left, box.top + top];
+        })()""")
+        page.drag(knob, aside)
         after = float(page.evaluate("settings.turn"))
-        self.assertAlmostEqual(abs((after - before + 180) % 360 - 180), 180, delta=45)
+        self.assertAlmostEqual((after - before) % 360, 90, delta=3)
         wanted = np.reshape(page.evaluate(
             "Array.from(startMessage(state.leader.motion).pose.positions)"), (15, 3))
         self.react(page)
@@ -345,7 +354,9 @@ class ToolsTest(StudioTest):
                       "changed('test')")
         self.press(page, "show-eight")
         page.click("#answers .answer:nth-child(2)")
-        page.evaluate("turnStart(170); keepFrames(20);"
+        page.evaluate("keepFrames(30); turnStart(170)")
+        self.assertEqual(page.evaluate("settings.keep"), 0)
+        page.evaluate("keepFrames(20);"
                       "state.rig = {name: 'rig.bvh', bytes: new Uint8Array([1, 2, 255]).buffer};"
                       "changed('test')")
         name, text = self.save_session(page)

@@ -88,7 +88,7 @@ async function react(count) {
     if (call.signal.aborted) return;
     call.abort();
     state.call = null;
-    showGallery(choose);
+    showAnswer();
     tellError(error);
   }
 }

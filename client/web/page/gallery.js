@@ -26,12 +26,12 @@ function galleryOrder(takes, order) {
   return indices.sort((a, b) => (faultsOf(takes[a]) - faultsOf(takes[b])) || a - b);
 }
 
-// The two worst faults of a grade in percent, [[name, percent], ...]; none below 1 %.
-function worstFaults(grade) {
+// The worst fault of a grade in percent, [name, percent]; ['', 0] if all are below 1 %.
+function worstFault(grade) {
   const {twisted = 0, overlapping = 0, skating = 0, leader_skating: leaders = 0} = grade;
   return [['overlap', overlapping], ['twist', twisted], ['slide', Math.max(0, skating - leaders)]]
-      .map(([name, share]) => [name, Math.round(100 * share)]).filter(([, percent]) => percent > 0)
-      .sort(([, a], [, b]) => b - a).slice(0, 2);
+      .map(([name, share]) => [name, Math.round(100 * share)])
+      .reduce((worst, fault) => (fault[1] > worst[1] ? fault : worst), ['', 0]);
 }
 
 function makeTile(text) {
@@ -47,10 +47,9 @@ function makeTile(text) {
 
 function addGrade(tile, grade) {
   const list = Object.assign(document.createElement('span'), {className: 'grade'});
-  const faults = worstFaults(grade);
-  const worst = faults[0]?.[1] ?? 0;
-  list.classList.add(worst > 25 ? 'bad' : worst > 5 ? 'fair' : 'good');
-  list.textContent = faults.map(([name, percent]) => `${name} ${percent} %`).join(', ') || 'no faults';
+  const [name, percent] = worstFault(grade);
+  list.classList.add(percent > 25 ? 'bad' : percent > 5 ? 'fair' : 'good');
+  list.textContent = name ? `${name} ${percent} %` : 'no faults';
   tile.append(list);
 }
 

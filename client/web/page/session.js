@@ -3,7 +3,7 @@
 // Reading is strict: an unknown, missing or malformed field is an error that names it.
 const SESSION_FORMAT = 'duet-session';
 const SESSION_VERSION = 1;
-const MAX_SESSION_BYTES = 2 ** 26;
+const MAX_SESSION_BYTES = 2 ** 27;  // the longest leader and its answer at 240 Hz need 80 MB
 const MAX_SESSION_FRAMES = 240 * 600;
 
 function toBase64(bytes) {
