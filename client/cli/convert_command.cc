@@ -18,6 +18,8 @@
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
 #include "client/cli/report.h"
+#include "client/cli/rig_flags.h"
+#include "model/base/file.h"
 #include "model/formats/research/body_joints.h"
 #include "model/formats/research/layout.h"
 #include "model/motion/resample.h"
@@ -42,6 +44,7 @@ struct ConvertArguments {
   std::optional<OutputFormat> output_format;  // for standard output
   std::optional<Layout> output_layout;        // of .npy
   BvhArguments bvh;
+  RigArguments rig;
   bool json = false;
   bool quiet = false;
 };
@@ -63,6 +66,7 @@ struct Conversion {
   std::vector<std::string> notes;
   double source_rate_hz = 0;
   formats::WriteOptions writing;
+  std::optional<formats::FollowerRig> rig;
 };
 
 struct Written {
@@ -130,6 +134,14 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
     }
   }
   if (!status.ok()) return status;
+  if (!arguments.rig.file.empty() && conversion.people.size() > 1) {
+    return absl::InvalidArgumentError(
+        "--side: expected left or right with --rig for a file with two people, got both");
+  }
+  absl::StatusOr<std::optional<formats::FollowerRig>> rig =
+      ReadRigArguments(arguments.rig, conversion.skeleton);
+  if (!rig.ok()) return rig.status();
+  conversion.rig = *std::move(rig);
   return conversion;
 }
 
@@ -205,8 +217,24 @@ absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversio
   return contents;
 }
 
+absl::StatusOr<Written> WriteOntoRig(const Conversion& conversion,
+                                     const std::filesystem::path& output, Format format) {
+  Written written;
+  formats::WriteOptions writing = conversion.writing;
+  writing.notes = &written.notes;
+  const absl::StatusOr<std::string> content =
+      formats::FormatOntoRig(conversion.people[0], *conversion.rig, format, writing);
+  if (!content.ok()) return content.status();
+  absl::Status status = base::WriteFile(output, *content);
+  if (!status.ok()) return NotWritten(status);
+  written.files = {output};
+  written.largest_error_metres.reset();
+  return written;
+}
+
 absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesystem::path& output,
                               Format format, std::ostream& out) {
+  if (conversion.rig) return WriteOntoRig(conversion, output, format);
   Written written;
   const absl::StatusOr<std::vector<std::string>> contents =
       FormatFiles(conversion, format, &written.largest_error_metres);
@@ -261,7 +289,10 @@ std::string Describe(const Conversion& conversion, const std::vector<Written>& w
       absl::StrAppend(
           &text, "wrote     ",
           output.files[i] == kStandardStream ? "standard output" : output.files[i].string(),
-          i == 0 ? absl::StrCat(" (", DescribeExactness(output), ")") : "", "\n");
+          i > 0            ? ""
+          : conversion.rig ? absl::StrCat(" (on the rig of ", conversion.rig->file.string(), ")")
+                           : absl::StrCat(" (", DescribeExactness(output), ")"),
+          "\n");
     }
     for (const std::string& note : output.notes) absl::StrAppend(&text, "          ", note, "\n");
   }
@@ -321,6 +352,7 @@ void CheckTogether(const ConvertArguments& arguments) {
     const absl::Status status = CheckOutput(output, arguments.file, PageAllowed::kNo);
     if (!status.ok()) throw CLI::ValidationError("--out", std::string(status.message()));
   }
+  CheckRigFlags(arguments.rig, arguments.outputs);
 }
 
 void AddFlags(CLI::App* command, ConvertArguments* arguments) {
@@ -354,6 +386,7 @@ void AddFlags(CLI::App* command, ConvertArguments* arguments) {
   AddOutputFormatFlag(command, &arguments->output_format);
   AddOutputLayoutFlag(command, &arguments->output_layout);
   AddBvhFlags(command, &arguments->bvh);
+  AddRigFlags(command, &arguments->rig);
   command->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
   command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
   command->callback([arguments] { CheckTogether(*arguments); });

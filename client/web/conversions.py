@@ -18,41 +18,36 @@ from serving import HEADERS, Refused, shown
 PROGRAMS_AT_A_TIME = 4
 PROGRAM_SECONDS = 60         # processor time, and time of a conversion
 PROGRAM_BYTES = 2**30
-SYNTHESIS_SECONDS = 150      # time of a call to the server and of writing its result
 CHUNK_BYTES = 2**18
 MAX_NAME_BYTES = 150         # without the extension; file systems allow 255
 MAX_SETTINGS_BYTES = 2**16
 FILE_NAME = re.compile(r"[A-Za-z0-9_][\w@.+-]*", re.ASCII)
 VALUE = re.compile(r"[^\0-\x1f\x7f]{1,200}")
-POINT = re.compile(r"[-+0-9.eE]+(,[-+0-9.eE]+){2}")
 FORMATS = {"glb": "model/gltf-binary", "gltf": "model/gltf+json", "usda": "text/plain",
            "bvh": "text/plain", "html": "text/html", "csv": "text/csv",
            "json": "application/json"}
 # The page's settings for reading a file, as flags of `duet`.
 READING = {"unit": "--unit", "up_axis": "--up-axis", "metres_per_unit": "--metres-per-unit",
            "frame_rate": "--frame-rate", "joint_map": "--joint-map"}
-# The page's settings for a request, as flags of `duet`.
-ASKING = {"side": "--leader-side", **READING, "label": "--label", "keyframe": "--keyframe",
-          "model": "--model", "seed": "--seed", "variety": "--variety",
-          "candidates": "--candidates",
-          "follower_start": "--follower-start", "partner_direction": "--partner-direction",
-          "clean_up": "--clean-up", "rig_joint_map": "--follower-rig-joint-map"}
+# The page's settings for a rig's file, as flags of `duet convert`.
+RIG = {"side": "--rig-side", "up_axis": "--rig-up-axis",
+       "metres_per_unit": "--rig-metres-per-unit", "joint_map": "--rig-joint-map",
+       "resample": "--resample"}
 
 
 class Duet:
-    """Runs the program `duet`. `server` has its flags for the server."""
+    """Runs the program `duet`."""
 
-    def __init__(self, server=()):
+    def __init__(self):
         name = os.environ.get("DUET_PROGRAM", "duet")
         self._program = shutil.which(name)
         if self._program is None:
             raise FileNotFoundError(f"DUET_PROGRAM: expected the program duet, got {name!r}, which "
                                     "does not exist; put duet on the PATH, or set its path")
         self._program = os.path.abspath(self._program)
-        self._server = server
         self._free = asyncio.Semaphore(PROGRAMS_AT_A_TIME)
 
-    async def run(self, folder, *arguments, seconds=PROGRAM_SECONDS):
+    async def run(self, folder, *arguments):
         """Runs the program in a folder and returns its output.
 
         Raises:
@@ -65,11 +60,11 @@ class Duet:
                 stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
                 env={**os.environ, "DUET_CONFIG": "", "NO_COLOR": "1"})
             try:
-                async with asyncio.timeout(seconds):
+                async with asyncio.timeout(PROGRAM_SECONDS):
                     out, told = await process.communicate()
             except TimeoutError:
-                raise Refused(422, f"file: expected one that takes at most {seconds} s, got one "
-                                   "that takes longer") from None
+                raise Refused(422, f"file: expected one that takes at most {PROGRAM_SECONDS} s, "
+                                   "got one that takes longer") from None
             finally:
                 if process.returncode is None:
                     process.kill()
@@ -105,19 +100,14 @@ class Duet:
         files = sorted(out.iterdir())
         return files[0] if len(files) == 1 else await asyncio.to_thread(packed, files, stem)
 
-    async def write_on_rig(self, folder, leader, rig, kind, stem, settings, authorization):
-        """Synthesises a follower on a rig: `rig` is "leader" or a file. Returns the file."""
+    async def write_on_rig(self, folder, pair, rig, kind, stem, settings):
+        """Converts the follower of a pair in "duet-motion" JSON to a file on a rig. Returns it."""
         out = folder / "out"
         out.mkdir()
-        token = []
-        if authorization.startswith("Bearer "):
-            (folder / "token").touch(0o600)
-            (folder / "token").write_text(authorization.removeprefix("Bearer "), encoding="utf-8")
-            token = ["--token-file", "token"]
-        await self.run(folder, "synthesize", *self._server, *token, f"--leader={leader}",
-                       f"--follower-rig={rig}", *flags_of(settings, ASKING), "--out",
-                       f"out/{stem}.{kind}", "--quiet", seconds=SYNTHESIS_SECONDS)
-        return out / f"{stem}.follower.{kind}"
+        file = f"out/{stem}.follower.{kind}"
+        await self.run(folder, "convert", pair, "--side", "right", f"--rig={rig}",
+                       *flags_of(settings, RIG), "--out", file, "--quiet")
+        return folder / file
 
 
 @contextlib.contextmanager
@@ -152,9 +142,6 @@ def flags_of(settings, table):
             if not isinstance(value, str) or not VALUE.fullmatch(value):
                 raise Refused(400, f"{name}: expected at most 200 printable characters, got "
                                    f"{shown(str(value))}")
-            # The program would read any other value as the name of a file on this machine.
-            if name == "follower_start" and not POINT.fullmatch(value):
-                raise Refused(400, f"follower_start: expected X,Y,Z in metres, got {shown(value)}")
             flags.append(f"{table[name]}={value}")
     return flags
 

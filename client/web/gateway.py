@@ -93,19 +93,18 @@ class Gateway:
             return await send_download(request, file)
 
     async def write_on_rig(self, request):
-        """Synthesises the follower on a rig. The body is a line of JSON with settings, the leader's
-        file and optionally a rig's (conversions.take_apart)."""
+        """Writes the follower of a pair on a rig. The body is a line of JSON with settings, the pair
+        in "duet-motion" JSON and the rig's file (conversions.take_apart)."""
         async with self._received(request, "body") as folder:
             settings, paths = await asyncio.to_thread(conversions.take_apart, folder / "body",
                                                       folder)
             settings.pop("files")
             stem = conversions.file_name(settings.pop("name", "reaction"))
             kind = conversions.format_of(settings.pop("format", ""))
-            if not paths:
-                raise serving.Refused(400, "files: expected the leader's, got none")
-            file = await self._program.write_on_rig(
-                folder, paths[0], paths[1] if len(paths) > 1 else "leader", kind, stem, settings,
-                request.headers.get("Authorization", ""))
+            if len(paths) != 2:
+                raise serving.Refused(400, "files: expected the pair's and the rig's, got "
+                                           f"{len(paths)}")
+            file = await self._program.write_on_rig(folder, *paths, kind, stem, settings)
             return await send_download(request, file)
 
     @contextlib.asynccontextmanager
@@ -132,10 +131,7 @@ async def send_download(request, file):
 
 async def run(options):
     tls = duet.TlsOptions.from_files(ca=options.tls_ca) if options.tls_ca else None
-    flags = [f"--server={options.server}"]
-    if options.tls_ca:
-        flags.append(f"--tls-ca={pathlib.Path(options.tls_ca).resolve()}")
-    program = conversions.Duet(flags)
+    program = conversions.Duet()
 
     def started(address):
         host = f"[{address[0]}]" if ":" in address[0] else address[0]

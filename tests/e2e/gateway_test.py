@@ -299,34 +299,67 @@ class GatewayTest(unittest.TestCase):
         self.assertEqual(json.loads(body)["frame_rate_hz"], 60)
         self.assertEqual(len(json.loads(body)["leader"]), 2 * len(motion["leader"]) - 1)
 
-    def test_follower_is_written_on_the_leaders_rig(self):
-        leader = tools.sample("hug").read_bytes()
-        for others in ([], [("rig.bvh", leader)]):
-            head = {"name": "hug_seed1", "format": "bvh", "seed": "1", "label": ["hug=1"],
-                    "files": [{"name": name, "bytes": len(data)}
-                              for name, data in (("hug.bvh", leader), *others)]}
-            body = b"\n".join([json.dumps(head).encode(),
-                               b"".join([leader, *(data for _, data in others)])])
-            status, headers, body = self.ask("/write_on_rig", body)
-            self.assertEqual(status, 200, body)
-            self.assertEqual(headers["content-disposition"],
-                             'attachment; filename="hug_seed1.follower.bvh"')
-            self.assertEqual(joints_of(body), joints_of(leader))
+    def write_on_rig(self, pair, rig, **settings):
+        """The answer to /write_on_rig for two files, (name, bytes)."""
+        head = {"name": "hug_seed1", "format": "bvh", **settings,
+                "files": [{"name": name, "bytes": len(data)} for name, data in (pair, rig)]}
+        return self.ask("/write_on_rig", json.dumps(head).encode() + b"\n" + pair[1] + rig[1])
 
-    def test_settings_cannot_name_local_files(self):
+    def test_follower_is_written_on_a_rig(self):
         leader = tools.sample("hug").read_bytes()
-        for start in ("/etc/passwd", "0/leader.bvh", "1,2,/etc/passwd"):
-            head = {"name": "x", "format": "bvh", "label": ["hug=1"], "follower_start": start,
-                    "files": [{"name": "hug.bvh", "bytes": len(leader)}]}
-            status, _, body = self.ask("/write_on_rig", json.dumps(head).encode() + b"\n" + leader)
-            self.assertEqual(status, 400)
-            self.assertIn("follower_start: expected X,Y,Z", message_of(body))
+        pair = ("pair.json", self.pair())
+        status, headers, body = self.write_on_rig(pair, ("hug.bvh", leader), side="left")
+        self.assertEqual(status, 200, body)
+        self.assertEqual(headers["content-disposition"],
+                         'attachment; filename="hug_seed1.follower.bvh"')
+        self.assertEqual(joints_of(body), joints_of(leader))
+        # The motion is that of the pair: its follower is the leader 1 m away.
+        offset = [float(value) for value in last_frame(body)[:3]]
+        expected = [float(value) for value in last_frame(leader)[:3]]
+        self.assertAlmostEqual(offset[0] - expected[0], 100, delta=0.5)  # centimetres
+        strange = leader.replace(b"JOINT left_hand", b"JOINT Flipper")
+        status, _, body = self.write_on_rig(pair, ("rig.bvh", strange))
+        self.assertEqual(status, 422)
+        self.assertIn("left_hand", message_of(body))
+        status, _, body = self.write_on_rig(pair, ("rig.bvh", strange),
+                                            joint_map=["left_hand=Flipper"])
+        self.assertEqual((status, b"Flipper" in body), (200, True), body[:200])
+
+    def test_invalid_requests_for_a_rig_are_rejected(self):
+        leader = ("hug.bvh", tools.sample("hug").read_bytes())
+        pair = ("pair.json", self.pair())
+        for settings, status, words in (({"follower_start": "/etc/passwd"}, 400, "settings: expected "),
+                                        ({"joint_map": ["a\nb"]}, 400, "joint_map: expected "),
+                                        ({"side": "up"}, 422, "--rig-side"),
+                                        ({"format": "csv"}, 422, "--out: expected .bvh")):
+            with self.subTest(settings=settings):
+                found, _, body = self.write_on_rig(pair, leader, **settings)
+                self.assertEqual(found, status, body)
+                self.assertIn(words, message_of(body))
+        for first, second, words in ((pair, ("rig.bvh", b"junk"), "rig.bvh"),
+                                     (("pair.json", b"{}"), leader, "pair.json")):
+            status, _, body = self.write_on_rig(first, second)
+            self.assertEqual(status, 422, body[:100])
+            self.assertIn(words, message_of(body))
+        one = {"name": "x", "format": "bvh", "files": [{"name": "pair.json", "bytes": 0}]}
+        status, _, body = self.ask("/write_on_rig", json.dumps(one).encode() + b"\n")
+        self.assertEqual((status, message_of(body)),
+                         (400, "files: expected the pair's and the rig's, got 1"))
+
+    def pair(self):
+        """A pair in "duet-motion" JSON: the sample hug, and the same 1 m further along x."""
+        status, _, body = self.ask("/read?name=hug.bvh", tools.sample("hug").read_bytes())
+        self.assertEqual(status, 200, body)
+        motion = json.loads(body)["motion"]
+        motion["follower"] = [[[x + 1, y, z] for x, y, z in pose] for pose in motion["leader"]]
+        return json.dumps(motion).encode()
 
     def test_messages_do_not_reveal_paths(self):
         for path, body in (("/read?name=junk.bvh", b"junk"), ("/write?format=glb", b"{}"),
                            ("/write?format=html", b"{}"), ("/write_on_rig", json.dumps(
-                               {"label": ["hug=1"], "format": "bvh",
-                                "files": [{"name": "a.bvh", "bytes": 1}]}).encode() + b"\nx")):
+                               {"format": "bvh", "files": [{"name": name, "bytes": 1} for name in
+                                                           ("a.json", "b.bvh")]}).encode() +
+                            b"\nxy")):
             status, _, body = self.ask(path, body)
             self.assertEqual(status, 422)
             self.assertNotIn(tempfile.gettempdir(), message_of(body))
@@ -381,6 +414,10 @@ class GatewayTest(unittest.TestCase):
                            env={**os.environ, "DUET_PROGRAM": "/nowhere/duet"})
         self.assertEqual(result.returncode, 1)
         self.assertIn("DUET_PROGRAM: expected the program duet", result.stderr)
+
+
+def last_frame(bvh):
+    return bvh.split(b"\n")[-2 if bvh.endswith(b"\n") else -1].split()
 
 
 def joints_of(bvh):

@@ -1,38 +1,16 @@
-"""The page of client/web in a real browser, through the gateway, against a real server."""
+"""The page of client/web in a real browser, through the gateway, against a real server: what one
+person does with one file (studio_test.py tests the tools around it)."""
 
 import json
-import os
 import re
-import sys
-import unittest
 
-import gateways
-import tools
-from browser import Browser
+from studio_pages import FOLLOWER, StudioTest  # before modules that it makes available
 
-gateways.skip_without_modules()
-sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
-os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
-
-import duet_motion as duet  # noqa: E402
 import numpy as np  # noqa: E402
+import tools  # noqa: E402
 from duet_motion.rpc.v1 import status_pb2  # noqa: E402
 from duet_motion.v1 import synthesis_pb2  # noqa: E402
 
-# Drops a file on the page like a visitor; its text comes from the URL `fetched`.
-DROP = """(async () => {{
-  const text = await (await fetch({fetched})).text();
-  const transfer = new DataTransfer();
-  transfer.items.add(new File([text], {name}));
-  window.dispatchEvent(new DragEvent('drop', {{dataTransfer: transfer, cancelable: true}}));
-}})()"""
-# Sets a field like a visitor, by its selector.
-SET = """(() => {{
-  const field = document.querySelector({selector});
-  field.value = {value};
-  field.dispatchEvent(new Event('input', {{bubbles: true}}));
-}})()"""
-FOLLOWER = "Array.from(state.takes[state.chosen].positions)"
 # All visible controls, as [name, width, height].
 TARGETS = """[...document.querySelectorAll(
         'button, select, input:not([type=file]), summary, .button')]
@@ -45,60 +23,7 @@ NAMELESS = """[...document.querySelectorAll('input, select, textarea, button')].
     .map((item) => item.outerHTML)"""
 
 
-class WebTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
-        cls.gateway = gateways.Gateway(cls.server.address)
-        cls.addClassCleanup(cls.gateway.stop)
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
-
-    def setUp(self):
-        self.browser.forget()
-
-    def open(self, address="", **size):
-        page = self.browser.open(f"{self.gateway.url}/{address}", **size)
-        self.assertEqual(page.state()["state"], "ready", page.text("#status"))
-        return page
-
-    def open_still(self, address="", **size):
-        """Opens the page without animation: it draws only when something changed."""
-        return self.open(address, still=True, **size)
-
-    def drop(self, page, name="visitor's hug.bvh", fetched="/samples/hug.bvh"):
-        page.evaluate(DROP.format(name=json.dumps(name), fetched=json.dumps(fetched)))
-        page.wait_until("state.leader || document.documentElement.dataset.failed === 'true'")
-
-    def set(self, page, selector, value):
-        page.evaluate(SET.format(selector=json.dumps(selector), value=json.dumps(str(value))))
-
-    def label(self, page, name, weight):
-        self.set(page, f"#labels input[name={name}]", weight)
-
-    def press(self, page, button):
-        """Presses a button, and waits for the answers."""
-        before = int(page.state().get("answers", 0))
-        page.evaluate(f"element({json.dumps(button)}).click()")
-        page.wait_until(f"Number(document.documentElement.dataset.answers) > {before} || "
-                        "document.documentElement.dataset.failed === 'true'")
-        self.assertEqual(page.state()["failed"], "false", page.text("#status"))
-
-    def react(self, page):
-        self.press(page, "react")
-
-    def shown(self, page, frames=91):
-        return np.reshape(page.evaluate(FOLLOWER), (frames, 15, 3))
-
-    def expected(self, labels=None, **settings):
-        with duet.Client(self.server.address) as client:
-            if labels is not None:
-                classes = client.get_model().model.interaction_classes
-                settings["labels"] = {name: labels.get(name, 0) for name in classes}
-            return client.synthesize(duet.read_motion(tools.sample("hug")),
-                                     **settings).follower.positions
-
+class WebTest(StudioTest):
     def test_dropped_file_is_answered_only_after_react(self):
         page = self.open_still()
         self.drop(page)
@@ -120,29 +45,6 @@ class WebTest(unittest.TestCase):
         self.press(page, "another")
         np.testing.assert_allclose(self.shown(page), self.expected({"hug": 1}, seed=1), atol=1e-5)
 
-    def test_show_four_and_keep_one(self):
-        page = self.open_still(width=1000, height=700)
-        self.drop(page)
-        self.label(page, "hug", 1)
-        self.press(page, "try-four")
-        self.assertEqual(page.evaluate(
-            "[...document.querySelectorAll('#four figcaption button')].map((b) => b.textContent)"),
-            [f"Keep seed {seed}" for seed in range(4)])
-        page.evaluate("seekAll(45)")
-        page.wait_until("fourStages().every((stage) => stage.frame === 45)")
-        picture = page.picture()
-        for left in (0, 0.32):
-            for top in (0, 0.45):
-                corner = {"left": left, "right": left + 0.3, "top": top, "bottom": top + 0.4}
-                self.assertGreater(picture.count(tools.is_leader_orange, **corner), 60)
-                self.assertGreater(picture.count(tools.is_follower_teal, **corner), 60)
-        page.evaluate("document.querySelectorAll('#four figcaption button')[2].click()")
-        page.wait_until("element('four').hidden")
-        self.assertIn("seed=2", page.evaluate("location.hash"))
-        np.testing.assert_allclose(self.shown(page), self.expected({"hug": 1}, seed=2), atol=1e-5)
-        page.click("#back-to-four")
-        self.assertFalse(page.evaluate("element('four').hidden"))
-
     def test_best_of_several_samples_and_its_grade(self):
         grade = r"^Twisted \d+ %, both feet move \d+ % \(leader \d+ %\), overlapping \d+ %\.$"
         page = self.open_still("#leader=hug.bvh&labels=hug:1&seed=3&candidates=4")
@@ -154,13 +56,10 @@ class WebTest(unittest.TestCase):
         self.assertRegex(page.text("#grade"), grade)
         self.set(page, "[name=candidates]", 1)
         self.assertEqual(page.evaluate("document.documentElement.dataset.stale"), "true")
-        self.press(page, "try-four")
-        self.assertEqual(page.text("#grade"), "")
-        captions = page.evaluate(
-            "[...document.querySelectorAll('#four figcaption p')].map((p) => p.textContent)")
-        self.assertEqual(len(captions), 4)
-        for caption in captions:
-            self.assertRegex(caption, grade)
+        self.press(page, "show-eight")
+        for index in range(8):
+            page.evaluate(f"choose({index})")
+            self.assertRegex(page.text("#grade"), grade)
 
     def test_link_and_reload_restore_everything(self):
         page = self.open_still()
@@ -169,14 +68,14 @@ class WebTest(unittest.TestCase):
         self.set(page, "[name=seed]", 5)
         self.set(page, "[name=variety]", 0.5)
         self.set(page, "[name=start]", "0, 0.9, 1.2")
-        self.press(page, "try-four")
-        page.evaluate("document.querySelectorAll('#four figcaption button')[1].click()")
-        page.wait_until("element('four').hidden && document.documentElement.dataset.kept >= 3")
+        self.press(page, "show-eight")
+        page.evaluate("choose(state.chosen === 1 ? 2 : 1)")
+        page.evaluate("choose(1)")
         before, link = self.shown(page), page.evaluate("location.hash")
         for part in ("labels=hug:1", "seed=6", "variety=0.5", "start=0, 0.9, 1.2", "model=sbu@"):
             self.assertIn(part, link.replace("%20", " "))
         again = self.open_still(link)  # the same browser
-        self.assertEqual(again.evaluate("state.takes.length"), 4)
+        self.assertEqual(again.evaluate("[state.takes.length, state.chosen]"), [8, 1])
         np.testing.assert_array_equal(self.shown(again), before)
         self.assertEqual(again.evaluate("document.querySelector('[name=start]').value"),
                          "0, 0.9, 1.2")
@@ -210,9 +109,11 @@ class WebTest(unittest.TestCase):
             for name, weight in weights.items():
                 self.label(page, name, weight)
             page.evaluate("element('add-key').click()")
+            page.wait_until("theatre.frame === frameNow()")
         self.set(page, "[name=direction]", "0,0,1")
         self.set(page, "[name=clean_up]", "off")
-        self.assertEqual(page.evaluate("[...document.querySelectorAll('#keyframes li')].length"), 2)
+        self.assertEqual(page.evaluate("settings.curves.push"), [[0, 1], [60, 0]])
+        self.assertEqual(page.evaluate("settings.curves.hug"), [[0, 0], [60, 1]])
         self.react(page)
         classes = page.evaluate("state.model.interaction_classes")
         frames = {frame: {name: weights.get(name, 0) for name in classes}
@@ -238,20 +139,23 @@ class WebTest(unittest.TestCase):
     def test_every_control_works_on_a_phone_and_by_keyboard(self):
         page = self.open_still("#leader=hug.bvh&labels=hug:1", width=375, height=720)
         page.evaluate("for (const part of document.querySelectorAll('details')) part.open = true")
-        self.press(page, "try-four")
+        self.press(page, "show-eight")
+        page.evaluate("setPoint(settings, 'hug', 30, 1); changed('test'); timeline.select('hug', 30)")
         self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth"), 375)
         for what, width, height in page.evaluate(TARGETS):
             self.assertGreaterEqual(height, 40, what)
             self.assertGreaterEqual(width, 40, what)
         self.assertEqual(page.evaluate(NAMELESS), [])
         reached = set()
-        for _ in range(120):
+        for _ in range(160):
             page.call("Input.dispatchKeyEvent", type="keyDown", key="Tab", windowsVirtualKeyCode=9)
             page.call("Input.dispatchKeyEvent", type="keyUp", key="Tab", windowsVirtualKeyCode=9)
             reached.add(page.evaluate(
                 "document.activeElement.id || document.activeElement.textContent"))
-        self.assertLessEqual({"file", "react", "try-four", "play", "scrub", "Keep seed 3", "share",
-                              "rig-download"} - reached, set())
+        chosen = page.evaluate("gallery.tiles[0].textContent")
+        self.assertLessEqual({"undo", "open", "save", "place", "play", "scrub", "keep", "keep-here",
+                              chosen, "point-frame", "point-remove", "add-key", "file", "react",
+                              "show-eight", "share", "rig-download"} - reached, set())
 
     def test_plays_until_paused(self):
         page = self.open(width=500, height=500)

@@ -272,6 +272,30 @@ class DuetMotion extends HTMLElement {
     this.touch();
   }
 
+  // The height of the floor, metres.
+  get floorHeight() { return this.stage ? this.stage.scenery.floor : 0; }
+
+  // Where a point of the world is drawn: [x, y, depth], pixels from the element's top left corner.
+  // A depth above 1 is behind the camera.
+  project(x, y, z) {
+    const {camera} = this.stage;
+    camera.updateMatrixWorld();
+    const point = new THREE.Vector3(x, y, z).project(camera);
+    return [(point.x + 1) / 2 * this.clientWidth, (1 - point.y) / 2 * this.clientHeight, point.z];
+  }
+
+  // The place on the floor, [x, z], that is drawn at a pixel of the element; null above the horizon.
+  floorAt(x, y) {
+    const {camera} = this.stage;
+    camera.updateMatrixWorld();
+    const at = new THREE.Vector2(2 * x / this.clientWidth - 1, 1 - 2 * y / this.clientHeight);
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(at, camera);
+    const floor = new THREE.Plane(new THREE.Vector3(0, 1, 0), -this.floorHeight);
+    const point = caster.ray.intersectPlane(floor, new THREE.Vector3());
+    return point ? [point.x, point.z] : null;
+  }
+
   resize() {
     if (!this.stage || !this.clientWidth || !this.stage.resize()) return;
     if (this.view) this.stage.view(this.view);

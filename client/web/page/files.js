@@ -37,41 +37,56 @@ function nested({joint_names}, values) {
           (frame * joints + joint) * 3, (frame * joints + joint) * 3 + 3))));
 }
 
-async function download(kind) {
+// The shown pair as "duet-motion" JSON.
+function pairJson() {
   const take = state.takes[state.chosen];
   const {motion} = state.leader;
-  const query = new URLSearchParams({format: kind, name: downloadName(take)});
-  if (settings.resample !== '') query.set('resample', settings.resample);
-  await save(await fetch(`/write?${query}`, {
-    method: 'POST', body: JSON.stringify({
-      format: 'duet-motion', version: 1, unit: 'metres', up_axis: 'y-up',
-      joint_names: motion.joint_names, frame_rate_hz: motion.frame_rate_hz,
-      leader: nested(motion, motion.positions), follower: nested(motion, take.positions)}),
-  }));
+  return JSON.stringify({
+    format: 'duet-motion', version: 1, unit: 'metres', up_axis: 'y-up',
+    joint_names: motion.joint_names, frame_rate_hz: motion.frame_rate_hz,
+    leader: nested(motion, motion.positions), follower: nested(motion, take.positions)});
 }
 
-// The follower of the answer on a rig. The gateway synthesises it again with --follower-rig.
+async function download(kind) {
+  const query = new URLSearchParams({format: kind, name: downloadName(state.takes[state.chosen])});
+  if (settings.resample !== '') query.set('resample', settings.resample);
+  await save(await fetch(`/write?${query}`, {method: 'POST', body: pairJson()}));
+}
+
+// The settings for the rig's file: for the leader's own, those for reading it.
+function rigSettings() {
+  if (state.rig) return {joint_map: lines(settings.rig_joint_map)};
+  const chosen = {joint_map: lines(settings.joint_map)};
+  for (const name of ['side', 'up_axis', 'metres_per_unit']) {
+    if (settings[name] !== '') chosen[name] = settings[name];
+  }
+  return chosen;
+}
+
+// The shown follower on a rig: the leader's own or another file's.
 async function downloadOnRig() {
-  const take = state.takes[state.chosen];
-  const other = element('rig-choice').value === 'file' ? element('rig-file').files[0] : null;
-  const rigName = other ? other.name : state.leader.name;
-  const kind = /\.bvh$/i.test(rigName) ? 'bvh' : 'glb';
-  const files = [{name: safeName(state.leader.name), bytes: state.leader.bytes.byteLength}];
-  if (other) files.push({name: safeName(other.name), bytes: other.size});
-  const head = {...flagsOf(take), format: kind, name: downloadName(take), files};
-  if (other) head.rig_joint_map = lines(settings.rig_joint_map);
+  const {name, bytes} = state.rig ?? state.leader;
+  const pair = new Blob([pairJson()]);
+  const head = {
+    ...rigSettings(), format: /\.bvh$/i.test(name) ? 'bvh' : 'glb',
+    name: downloadName(state.takes[state.chosen]),
+    ...(settings.resample !== '' && {resample: settings.resample}),
+    files: [{name: 'pair.json', bytes: pair.size}, {name: safeName(name), bytes: bytes.byteLength}],
+  };
   tell('Writing the follower on the rig …');
   await save(await fetch('/write_on_rig', {
-    method: 'POST',
-    body: new Blob([JSON.stringify(head), '\n', state.leader.bytes, ...(other ? [other] : [])]),
-  }));
+    method: 'POST', body: new Blob([JSON.stringify(head), '\n', pair, bytes])}));
 }
 
 async function save(response) {
   if (!response.ok) throw new CallError(await messageIn(response));
   const name = /filename="([^"]+)"/.exec(response.headers.get('Content-Disposition'))[1];
+  saveBlob(await response.blob(), name);
+}
+
+function saveBlob(blob, name) {
   const link = Object.assign(document.createElement('a'),
-                             {href: URL.createObjectURL(await response.blob()), download: name});
+                             {href: URL.createObjectURL(blob), download: name});
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60000);
   root.dataset.downloaded = name;

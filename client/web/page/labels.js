@@ -1,5 +1,5 @@
 'use strict';
-// The sliders of the interaction classes, and the key frames made from them.
+// The sliders of the interaction classes.
 
 // A slider and a number field for the same value.
 function makeSlider(name, least, most) {
@@ -33,61 +33,39 @@ function setSlider(label, value) {
   for (const input of label.querySelectorAll('input')) input.value = value;
 }
 
-// One slider for each class of the model.
+// One slider for each class of the model. A slider of a class with a curve shows the weight in the
+// current frame, and sets a point there.
 function showSliders(classes, changed) {
   const sliders = classes.map((name) => {
     const slider = makeSlider(name, -1, 1);
-    setSlider(slider, settings.labels[name] ?? 0);
     joinSlider(slider, (weight) => {
-      settings.labels[name] = weight;
-      changed();
+      if (curveOf(settings, name).length > 0) setPoint(settings, name, frameNow(), weight);
+      else settings.labels[name] = weight;
+      changed(`weight of ${name.replaceAll('_', ' ')}`);
     });
     return slider;
   });
   element('labels').replaceChildren(...sliders);
+  followFrame();
 }
 
-function setLabels(weights) {
-  settings.labels = {...weights};
+// Shows the weights in the current frame, except in the field that the visitor fills in.
+function followFrame() {
   for (const label of element('labels').children) {
-    setSlider(label, weights[label.querySelector('input').name] ?? 0);
+    const {name} = label.querySelector('input');
+    const isCurved = curveOf(settings, name).length > 0;
+    label.classList.toggle('curved', isCurved);
+    const weight = rounded(weightAt(settings, name, frameNow()), 2);
+    for (const input of label.querySelectorAll('input')) {
+      if (document.activeElement !== input || input.type === 'range') input.value = weight;
+    }
   }
 }
 
-function describeWeights(weights) {
-  const parts = Object.entries(weights).filter(([, weight]) => weight !== 0)
-      .map(([name, weight]) => `${name.replaceAll('_', ' ')} ${weight}`);
-  return parts.join(', ') || 'neutral';
-}
-
-function showKeyframes(changed) {
-  const items = settings.keyframes.map(({frame, weights}) => {
-    const item = document.createElement('li');
-    addButton(item, `frame ${frame}: ${describeWeights(weights)}`, () => {
-      seekAll(frame);
-      setLabels(weights);
-      changed();
-    });
-    const remove = addButton(item, '×', () => {
-      settings.keyframes = settings.keyframes.filter((key) => key.frame !== frame);
-      showKeyframes(changed);
-      changed();
-      element('add-key').focus();
-    });
-    remove.className = 'remove';
-    remove.setAttribute('aria-label', `Remove the key frame at ${frame}`);
-    return item;
-  });
-  element('keyframes').replaceChildren(...items);
-  element('add-key').textContent = items.length ? 'Add or replace the key frame here'
-                                                : 'Add a key frame here';
-  if (items.length) element('keys').open = true;
-}
-
-function connectKeyframes(changed) {
-  element('add-key').addEventListener('click', () => {
-    addKeyframe(Math.round(theatre.player.frame), {...settings.labels});
-    showKeyframes(changed);
-    changed();
-  });
+// Adds a point to the curve of every class in the current frame, with the weight that it has there.
+function keyAll(classes) {
+  const frame = frameNow();
+  for (const [name, weight] of Object.entries(weightsAt(settings, classes, frame))) {
+    setPoint(settings, name, frame, rounded(weight, 2));
+  }
 }

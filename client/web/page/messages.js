@@ -7,7 +7,8 @@ const MESSAGES = {
   Model: {
     name: [1, 'string'], version: [2, 'uint32'], is_default: [4, 'bool'],
     interaction_classes: [5, 'string[]'], joint_names: [6, 'string[]'], bones: [7, 'Bone[]'],
-    accepts_follower_start: [11, 'bool'], samples: [13, 'bool'], answers_live: [17, 'bool'],
+    root_joint: [8, 'string'], accepts_follower_start: [11, 'bool'], samples: [13, 'bool'],
+    answers_live: [17, 'bool'],
   },
   ListModelsRequest: {},
   ListModelsResponse: {models: [1, 'Model[]']},

@@ -1,9 +1,7 @@
 'use strict';
-// Connects the page's parts: leader, settings, answers, downloads.
+// Connects the page's parts: leader, settings, answers, timeline, sessions, downloads.
 const root = document.documentElement;
 const element = (id) => document.getElementById(id);
-const SIDE_BY_SIDE = 4;
-const UNFAMILIAR = 1.5;  // SynthesisSummary.unfamiliarity above this gets a warning
 
 const state = {
   models: [],      // as ListModels describes them
@@ -12,8 +10,9 @@ const state = {
   leader: null,    // the result of readLeader
   awaited: '',     // the name of the file that a link refers to
   takes: [],       // answers: {seed, positions, model, version, samples, unfamiliarity, grade, ...}
-  chosen: 0,       // the take that is downloaded
+  chosen: 0,       // the take that is shown and downloaded
   asked: '',       // askedFor() of the takes
+  rig: null,       // {name, bytes} of the rig's file; null: the leader's own
   call: null,      // the AbortController of the running calls
   answers: 0,
 };
@@ -51,32 +50,76 @@ const attempt = (act) => async (...all) => {
 
 const nameOf = (model) => `${model.name}@${model.version}`;
 const modelNamed = (name) => state.models.find((model) => nameOf(model) === name);
-
 const seedsOf = (takes) => takes.map((take) => take.seed);
 
-// Updates address and buttons after a change of the settings.
-function changed() {
+const undoHistory = new UndoHistory(() => showWork(), () => showUndo(undoHistory));
+const timeline = new Timeline((what) => changed(what), () => undoHistory.endGesture());
+const marker = new StartMarker(element('start-marker'), () => {
+  showFields();
+  changed('follower\'s start');
+}, () => undoHistory.endGesture());
+
+// Records a change of the work, which `what` describes, and updates everything that shows it.
+function changed(what) {
+  undoHistory.record(what);
   history.replaceState(null, '', addressOf(settings));
-  const ready = Boolean(state.leader) && isAnyWeight();
-  for (const id of ['react', 'try-four', 'another']) element(id).disabled = !ready;
-  element('add-key').disabled = element('reread').disabled = !state.leader;
-  const answered = state.takes.length > 0;
+  showButtons();
+  showKeep();
+  timeline.draw();
+  followFrame();
+  marker.draw();
+}
+
+function isStale() {
   const isOther = state.model.samples && !seedsOf(state.takes).includes(settings.seed);
-  const stale = answered && (state.asked !== askedFor() || isOther);
+  return state.takes.length > 0 && (state.asked !== askedFor() || isOther);
+}
+
+function showButtons() {
+  const ready = Boolean(state.leader) && isAnyWeight();
+  for (const id of ['react', 'show-eight', 'another']) element(id).disabled = !ready;
+  for (const id of ['add-key', 'reread', 'save', 'place']) element(id).disabled = !state.leader;
+  element('place').hidden = !state.leader || !state.model.accepts_follower_start;
+  const answered = state.takes.length > 0;
+  const stale = isStale();
   for (const button of element('downloads').children) button.disabled = !answered;
-  const rigName = element('rig-choice').value === 'file' ? element('rig-file').files[0]?.name
-                                                         : state.leader?.name;
-  const isRig = /\.(bvh|glb|gltf)$/i.test(rigName ?? '');
-  element('rig-download').disabled = !answered || stale || !isRig;
-  element('react').classList.toggle('primary', !answered || stale);
-  element('back-to-four').hidden = state.takes.length < 2 || !element('four').hidden;
-  element('grade').textContent =
-      element('four').hidden ? describeGrade(state.takes[state.chosen]?.grade) : '';
+  const rigName = (state.rig ?? state.leader)?.name ?? '';
+  element('rig-download').disabled = !answered || !/\.(bvh|glb|gltf)$/i.test(rigName);
+  element('rig-choice').value = state.rig ? 'file' : element('rig-choice').value;
+  element('rig-name').textContent = state.rig?.name ?? '';
+  const isKept = settings.keep > 0 && state.takes[state.chosen]?.kept !== settings.keep;
+  element('react').classList.toggle('primary', !answered || stale || isKept);
+  element('grade').textContent = describeGrade(state.takes[state.chosen]?.grade);
   root.dataset.stale = stale;
+  tellNext(answered, stale, isKept);
+}
+
+// Says what to do next.
+function tellNext(answered, stale, isKept) {
   if (state.call) return;
   if (state.leader && !isAnyWeight()) tell('Set at least one reaction, then press React.');
   else if (state.leader && !answered) tell('Press React.');
+  else if (isKept) tell(`Frames 0 to ${settings.keep - 1} stay. React samples the rest again.`);
   else if (stale) tell('The settings have changed: press React.');
+}
+
+// Shows how much of the answer stays.
+function showKeep() {
+  const isPossible = state.takes.length > 0 && state.model.accepts_follower_start;
+  const most = Math.max(1, (state.leader?.motion.frames ?? 2) - 1);
+  if (state.leader && settings.keep > most) settings.keep = most;
+  const {keep} = settings;
+  element('keep').disabled = element('keep-here').disabled = !isPossible;
+  element('keep').max = most + 1;  // as the timeline, so that both are aligned
+  element('keep').value = keep;
+  element('keep').style.setProperty('--share', keep / (most + 1));
+  element('keep').setAttribute('aria-valuetext', keep > 0 ? `frames 0 to ${keep - 1}` : 'nothing');
+  element('kept').value = keep > 0 ? `0 to ${keep - 1}` : 'nothing';
+}
+
+function keepFrames(count) {
+  settings.keep = Math.max(0, Math.min(count, state.leader.motion.frames - 1));
+  changed('frames to keep');
 }
 
 function showFields() {
@@ -85,154 +128,108 @@ function showFields() {
     if (field.name in settings && field.type !== 'file') field.value = settings[field.name];
   }
   setSlider(document.querySelector('[name=variety]').parentElement, settings.variety);
+  element('turn').value = settings.turn;
 }
 
 function showModel() {
   state.model = modelNamed(settings.model);
   showSliders(state.model.interaction_classes, changed);
+  timeline.build(state.model.interaction_classes);
   for (const part of document.querySelectorAll('.sampling')) part.hidden = !state.model.samples;
-  element('start-field').hidden = !state.model.accepts_follower_start;
+  for (const part of document.querySelectorAll('.starting')) {
+    part.hidden = !state.model.accepts_follower_start;
+  }
+  if (!state.model.accepts_follower_start) placeStart(false);
+}
+
+function showAnswer() {
+  showMotion(state.leader, state.takes[state.chosen]?.positions);
+  showGallery(choose);
 }
 
 function showLeader() {
-  const {name, notes, motion} = state.leader;
-  showOne(state.leader, state.takes[state.chosen]?.positions);
+  const {leader} = state;
+  element('empty').hidden = Boolean(leader);
+  element('timeline').hidden = element('curves').hidden = !leader;
+  element('leader-name').textContent = '';
+  element('notes').replaceChildren();
+  if (!leader) {
+    showNothing();
+    showGallery(choose);
+    placeStart(false);
+    return;
+  }
+  const {name, notes, motion} = leader;
   element('scrub').max = motion.frames - 1;
-  element('empty').hidden = true;
-  element('transport').hidden = false;
+  showAnswer();
   element('leader-name').textContent = `${name}: ${motion.frames} frames at ` +
                                        `${Math.round(motion.frame_rate_hz * 100) / 100} Hz`;
   element('notes').replaceChildren(...notes.map(
       (note) => Object.assign(document.createElement('li'), {textContent: note})));
+  if (isCurved(settings)) element('curves').open = true;
   root.dataset.frames = motion.frames;
 }
 
-// Loads a leader. It makes no call to the server; React does.
-async function takeLeader(name, bytes) {
-  tell(`Reading ${name} …`);
+// Shows everything anew, after undo or an opened session.
+function showWork() {
   stopCalls();
-  const {leader: last} = state;
-  if (last && (last.name !== name || last.file !== fingerprint(bytes))) {
-    // The settings for reading the previous file do not apply to this one.
-    for (const setting of READING) settings[setting] = DEFAULTS[setting];
-    settings.keyframes = [];
-    showFields();
-    showKeyframes(changed);
-  }
-  const leader = await readLeader(name, bytes);
-  Object.assign(state, {leader, takes: [], chosen: 0, asked: '', awaited: ''});
-  Object.assign(settings, {leader: name, file: leader.file});
-  showLeader();
-  changed();
-  await keepWork();
-}
-
-function stopCalls() {
-  state.call?.abort();
-  state.call = null;
-}
-
-// Requests one answer. Calls `show` with each chunk.
-async function ask(leader, seed, signal, show) {
-  const {motion} = leader;
-  const positions = new Float32Array(motion.positions.length);
-  const take = {
-    seed, positions, leader: leader.name, settings: JSON.stringify(settings),
-    model: state.model.name, version: state.model.version, samples: Boolean(state.model.samples),
-  };
-  let summary = null;
-  for await (const answer of callServer('Synthesize', 'SynthesizeRequest', requestOf(motion, seed),
-                                        'SynthesizeResponse', signal)) {
-    if (answer.chunk) {
-      const first = answer.chunk.first_frame ?? 0;
-      positions.set(answer.chunk.positions, first * motion.joint_names.length * 3);
-      show?.(first, answer.chunk.positions);
-    }
-    summary = summary || answer.summary;
-  }
-  if (!summary) throw new CallError('The reply is incomplete. Press React again.');
-  return {...take, unfamiliarity: summary.unfamiliarity ?? 0, grade: summary.grade ?? null};
-}
-
-// Requests `count` answers with the current settings and consecutive seeds. Cancels running calls.
-async function react(count) {
-  stopCalls();
-  const call = state.call = new AbortController();
-  const {leader} = state;
-  const asked = askedFor();
-  const begun = performance.now();
-  const seeds = Array.from({length: count}, (_, index) => settings.seed + index);
-  tell(count === 1 ? 'Waiting for the server …'
-                   : `Waiting for seeds ${seeds[0]} to ${seeds[count - 1]} …`);
-  try {
-    const show = count === 1 ? (first, positions) => theatre.takeFrames(first, positions) : null;
-    const takes = await Promise.all(seeds.map((seed) => ask(leader, seed, call.signal, show)));
-    if (call.signal.aborted) return;
-    state.call = null;
-    Object.assign(state, {takes, chosen: 0, asked});
-    await finish((performance.now() - begun) / 1000);
-  } catch (error) {
-    if (call.signal.aborted) return;
-    call.abort();
-    state.call = null;
-    tellError(error);
-  }
-}
-
-async function finish(seconds) {
-  const {takes, leader} = state;
-  if (takes.length === 1) showOne(leader, takes[0].positions);
-  else showFour(leader, takes, keep);
-  changed();
-  const far = takes.some((take) => take.unfamiliarity > UNFAMILIAR)
-      ? ' This leader is unlike the training data. Check the answer before you use it.' : '';
-  const seeds = seedsOf(takes);
-  const what = !takes[0].samples ? 'one answer' : takes.length === 1 ? `seed ${seeds[0]}`
-      : `seeds ${seeds[0]} to ${seeds[seeds.length - 1]}: keep one`;
-  tell(`Answered in ${seconds.toFixed(2)} s, ${what}.${far}`);
-  state.answers += 1;
-  root.dataset.answers = state.answers;
-  await keepWork();
-}
-
-// Keeps one of several answers.
-async function keep(index) {
-  state.chosen = index;
-  settings.seed = state.takes[index].seed;
-  showOne(state.leader, state.takes[index].positions);
   showFields();
-  changed();
-  tell(`Kept seed ${settings.seed}.`);
-  element('back-to-four').focus();
-  await keepWork();
+  showModel();
+  showLeader();
+  showRig();
+  changed('');
+  if (state.leader) keepWork();
+  tellShown();
 }
 
-function connectFiles() {
-  const take = attempt(async (file) => {
-    if (file) await takeLeader(file.name, await file.arrayBuffer());
+function tellShown() {
+  if (state.takes.length > 0 && root.dataset.stale === 'false') {
+    tell(state.model.samples ? `Seed ${settings.seed}.` : 'One answer.');
+  }
+}
+
+// Shows or hides the marker of the follower's start.
+function placeStart(shown) {
+  element('start-marker').toggleAttribute('hidden', !shown);
+  element('place').setAttribute('aria-pressed', shown);
+  if (!shown) return;
+  seekAll(0);
+  marker.draw();
+}
+
+function connectStart() {
+  const isShown = () => !element('start-marker').hasAttribute('hidden');
+  element('place').addEventListener('click', () => {
+    placeStart(!isShown());
+    if (isShown()) marker.ring.focus({preventScroll: true});
   });
-  element('file').addEventListener('change', () => take(element('file').files[0]));
-  window.addEventListener('dragover', (event) => {
-    event.preventDefault();
-    document.body.classList.add('dragging');
+  element('turn').addEventListener('change', () => {
+    const {value} = element('turn');
+    if (!state.leader || !element('turn').checkValidity()) return;
+    if (value === '') Object.assign(settings, {turn: '', pose: []});
+    else turnStart(Number(value));
+    showFields();
+    changed('follower\'s start');
   });
-  window.addEventListener('dragleave', () => document.body.classList.remove('dragging'));
-  window.addEventListener('drop', (event) => {
-    event.preventDefault();
-    document.body.classList.remove('dragging');
-    take(event.dataTransfer.files[0]);
+  element('free-start').addEventListener('click', () => {
+    freeStart();
+    showFields();
+    changed('follower\'s start');
   });
-  element('reread').addEventListener('click', attempt(
-      () => takeLeader(state.leader.name, state.leader.bytes)));
-  element('rig-choice').addEventListener('change', () => {
-    element('rig-other').hidden = element('rig-choice').value !== 'file';
-    changed();
+}
+
+function connectTimeline() {
+  element('keep').addEventListener('input', () => keepFrames(Number(element('keep').value)));
+  element('keep-here').addEventListener('click', () => keepFrames(frameNow() + 1));
+  element('add-key').addEventListener('click', () => {
+    keyAll(state.model.interaction_classes);
+    element('curves').open = true;
+    changed('key all classes');
   });
-  element('rig-file').addEventListener('change', () => {
-    element('rig-name').textContent = element('rig-file').files[0]?.name ?? '';
-    changed();
+  element('clear-curves').addEventListener('click', () => {
+    settings.curves = {};
+    changed('clear the curves');
   });
-  element('rig-download').addEventListener('click', attempt(downloadOnRig));
 }
 
 function connectSettings() {
@@ -242,41 +239,28 @@ function connectSettings() {
     settings[target.name] = typeof DEFAULTS[target.name] === 'number' ? Number(target.value)
                                                                       : target.value;
     if (target.name === 'model') showModel();
-    changed();
+    changed(target.name.replaceAll('_', ' '));
   });
   joinSlider(document.querySelector('[name=variety]').parentElement, (variety) => {
     settings.variety = variety;
-    changed();
-  });
-  element('react').addEventListener('click', () => react(1));
-  element('try-four').addEventListener('click', () => react(SIDE_BY_SIDE));
-  element('another').addEventListener('click', () => {
-    settings.seed += Math.max(1, element('four').hidden ? 1 : state.takes.length);
-    showFields();
-    react(element('four').hidden ? 1 : SIDE_BY_SIDE);
-  });
-  element('back-to-four').addEventListener('click', () => {
-    showFour(state.leader, state.takes, keep);
-    changed();
-    tell('Keep one of the four.');
-    element('four').querySelectorAll('figcaption button')[state.chosen].focus();
+    changed('variety');
   });
   element('share').addEventListener('click', attempt(async () => {
-    changed();
     if (!navigator.clipboard) {
       throw new Error('The browser does not allow copying. Copy the address of this page.');
     }
     await navigator.clipboard.writeText(location.href);
     tell('The link is copied. It contains the settings and the file\'s name, but not the file.');
   }));
-  connectKeyframes(changed);
 }
 
 async function takeSample(name) {
   const response = await fetch(`/samples/${name}.bvh`);
   if (!response.ok) throw new CallError(await messageIn(response));
   // The sample's own class is a useful first setting.
-  if (!isAnyWeight() && state.model.interaction_classes.includes(name)) setLabels({[name]: 1});
+  if (!isAnyWeight() && state.model.interaction_classes.includes(name)) {
+    settings.labels = {[name]: 1};
+  }
   await takeLeader(`${name}.bvh`, await response.arrayBuffer());
 }
 
@@ -290,8 +274,10 @@ async function restore() {
       await takeLeader(name, kept.leader.bytes);
       return;
     }
-    Object.assign(state, kept.asked === askedFor() ? kept : {leader: kept.leader});
+    const {leader, rig = null} = kept;
+    Object.assign(state, kept.asked === askedFor() ? {...kept, rig} : {leader, rig});
     showLeader();
+    showRig();
     return;
   }
   if (state.samples.includes(stemOf(name))) {
@@ -309,12 +295,22 @@ async function takeLink() {
   if (!modelNamed(wanted)) settings.model = nameOf(standard);
   showFields();
   showModel();
-  showKeyframes(changed);
   await restore();
-  changed();
+  if (state.takes.length === 0) settings.keep = 0;
+  undoHistory.endGesture();
+  changed('open link');
   if (wanted && wanted !== settings.model) {
     tell(`The server has no model ${wanted}; using ${settings.model} instead.`, true);
   }
+}
+
+// What moves with the frame on display.
+function followStage() {
+  const frame = frameNow();
+  timeline.showFrame(frame);
+  if (isCurved(settings)) followFrame();
+  drawGallery();
+  marker.draw();
 }
 
 async function start() {
@@ -333,9 +329,15 @@ async function start() {
   for (const kind of about.formats) {
     addButton(element('downloads'), kind.toUpperCase(), attempt(() => download(kind)));
   }
-  connectStages();
+  connectStage(followStage);
   connectFiles();
   connectSettings();
+  connectAsking();
+  connectGallery(choose);
+  connectTimeline();
+  connectStart();
+  connectUndo(undoHistory);
+  connectKeys();
   await takeLink();
   window.addEventListener('hashchange', attempt(async () => {
     stopCalls();

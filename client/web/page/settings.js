@@ -6,15 +6,18 @@ const Y_UP = 1;
 const CLEAN_UP = {auto: 0, on: 1, off: 2};
 const MAX_WEIGHT = 2;
 const MAX_CANDIDATES = 16;
+const MAX_POSE = 300;
 const MAX_NAME = 120;  // characters; the gateway allows a few more
 
 const settings = {
   leader: '', file: '',  // the name and the fingerprint of the leader's file
   // Reading the file.
   side: 'left', unit: '', metres_per_unit: '', up_axis: '', frame_rate: '', joint_map: '',
-  // The request. `labels` are the sliders' weights, `keyframes` is [{frame, weights}].
-  model: '', labels: {}, keyframes: [], seed: 0, variety: 1, candidates: 1, start: '',
-  direction: '', clean_up: 'auto',
+  // The request. `labels` are the sliders' weights, `curves` those that change (curves.js), `start`
+  // is the place of the follower's root, `turn` its direction in degrees with the pose `pose`
+  // (start.js), and `keep` the number of frames of the answer to keep (asking.js).
+  model: '', labels: {}, curves: {}, seed: 0, variety: 1, candidates: 1, start: '', turn: '',
+  pose: [], direction: '', clean_up: 'auto', keep: 0,
   // Downloading.
   resample: '', rig_joint_map: '',
 };
@@ -50,8 +53,8 @@ function addressOf(all) {
   for (const [name, value] of Object.entries(all)) {
     if (name === 'labels') {
       if (writeWeights(value)) add(name, writeWeights(value));
-    } else if (name === 'keyframes') {
-      for (const {frame, weights} of value) add('key', `${frame};${writeWeights(weights)}`);
+    } else if (name === 'curves') {
+      for (const [of, points] of Object.entries(value)) add('curve', writeCurve(of, points));
     } else if (String(value) !== String(DEFAULTS[name])) {
       add(name, String(value));
     }
@@ -67,6 +70,7 @@ function readNumber(text, least, most, otherwise) {
 // Replaces all settings by those of an address.
 function takeAddress(hash) {
   Object.assign(settings, structuredClone(DEFAULTS));
+  const keyframes = [];
   for (const part of hash.replace(/^#/, '').split('&')) {
     const equals = part.indexOf('=');
     if (equals < 0) continue;
@@ -77,16 +81,35 @@ function takeAddress(hash) {
     } catch {
       continue;  // a truncated link
     }
-    takeSetting(name, text);
+    if (name === 'key') keyframes.push(text.split(';'));
+    else takeSetting(name, text);
+  }
+  takeKeyframes(keyframes);
+}
+
+// The key frames of older links: weights of all classes in a frame.
+function takeKeyframes(keyframes) {
+  const keys = keyframes.map(([frame, text]) => [frame === '' ? -1 : Number(frame),
+                                                 readWeights(text ?? '')])
+      .filter(([frame]) => Number.isSafeInteger(frame) && frame >= 0);
+  const names = new Set(keys.flatMap(([, weights]) => Object.keys(weights)));
+  for (const [frame, weights] of keys) {
+    for (const name of names) setPoint(settings, name, frame, weights[name] ?? 0);
   }
 }
 
 function takeSetting(name, text) {
   if (name === 'labels') {
     settings.labels = readWeights(text);
-  } else if (name === 'key') {
-    const [frame, weights] = text.split(';');
-    addKeyframe(frame === '' ? -1 : Number(frame), readWeights(weights ?? ''));
+  } else if (name === 'curve') {
+    readCurve(text);
+  } else if (name === 'pose') {
+    const values = text.split(',').map(Number);
+    if (values.length <= MAX_POSE && values.every(Number.isFinite)) settings.pose = values;
+  } else if (name === 'turn') {
+    if (readNumber(text, -360, 360, null) !== null) settings.turn = text;
+  } else if (name === 'keep') {
+    settings.keep = Math.floor(readNumber(text, 0, 1e6, 0));
   } else if (name === 'seed') {
     settings.seed = Math.floor(readNumber(text, 0, Number.MAX_SAFE_INTEGER, 0));
   } else if (name === 'variety') {
@@ -101,22 +124,17 @@ function takeSetting(name, text) {
 // The settings for reading the file, for comparison.
 const readingOf = (all) => JSON.stringify(READING.map((name) => all[name]));
 
-// Sets or replaces the weights at a frame.
-function addKeyframe(frame, weights) {
-  if (!Number.isInteger(frame) || frame < 0) return;
-  const others = settings.keyframes.filter((key) => key.frame !== frame);
-  settings.keyframes = [...others, {frame, weights}].sort((a, b) => a.frame - b.frame);
-}
-
-const isAnyWeight = () => settings.keyframes.length > 0 ||
+const isAnyWeight = () => isCurved(settings) ||
     Object.values(settings.labels).some((weight) => weight !== 0);
 
 // The settings that an answer depends on, to detect whether the displayed answer is current.
 function askedFor() {
-  const {model, labels, keyframes, variety, candidates, start, direction, clean_up} = settings;
-  return JSON.stringify([model, keyframes.length ? '' : writeWeights(labels),
-                         keyframes.map((key) => [key.frame, writeWeights(key.weights)]), variety,
-                         candidates, start, direction, clean_up]);
+  const {model, labels, curves, variety, candidates, start, turn, pose, direction, clean_up} =
+      settings;
+  const constant = Object.entries(labels).filter(([name]) => !curves[name]);
+  const curved = Object.entries(curves).sort(([a], [b]) => (a < b ? -1 : 1));
+  return JSON.stringify([model, writeWeights(Object.fromEntries(constant.sort())), curved, variety,
+                         candidates, start, turn, turn === '' ? [] : pose, direction, clean_up]);
 }
 
 function numbers(text) {
@@ -139,54 +157,34 @@ function selectorOf(model) {
   return version ? {name, version: Number(version)} : {name};
 }
 
-function requestOf(leader, seed) {
+// The request for an answer to the leader's motion. `kept`: null, or the first frames of an answer
+// to keep, {frames, positions}; the request is then about the leader from the last of them on.
+function requestOf(leader, seed, kept) {
+  const values = leader.joint_names.length * 3;
+  const first = kept ? kept.frames - 1 : 0;
+  const classes = state.model.interaction_classes;
   const request = {
     model: selectorOf(settings.model),
     leader: {joint_names: leader.joint_names, frame_rate_hz: leader.frame_rate_hz, unit: METRES,
-             up_axis: Y_UP, frame_count: leader.positions.length / leader.joint_names.length / 3,
-             positions: leader.positions},
+             up_axis: Y_UP, frame_count: leader.frames - first,
+             positions: leader.positions.subarray(first * values)},
     seed, variety: settings.variety, candidates: settings.candidates,
   };
-  if (settings.keyframes.length > 0) {
-    request.label_keyframes = settings.keyframes.map(
-        ({frame, weights}) => ({frame, label_vector: messageOf(fullWeights(weights))}));
+  if (classes.some((name) => curveOf(settings, name).length > 0)) {
+    request.label_keyframes = labelKeyframes(settings, classes, first, leader.frames).map(
+        ({frame, weights}) => ({frame, label_vector: messageOf(weights)}));
   } else {
-    request.label_vector = messageOf(fullWeights(settings.labels));
+    request.label_vector = messageOf(weightsAt(settings, classes, 0));
   }
-  if (settings.start) {
-    request.follower_start = {root_position: pointOf('Follower starts at', settings.start)};
-  }
+  const start = kept
+      ? {pose: {positions: kept.positions.subarray(first * values, (first + 1) * values)}}
+      : startMessage(leader);
+  if (start) request.follower_start = start;
   if (settings.direction) {
     request.partner_direction = pointOf('Direction to the follower', settings.direction);
   }
   if (settings.clean_up !== 'auto') request.clean_up = CLEAN_UP[settings.clean_up];
   return request;
-}
-
-// A weight for every class of the model, because a label vector needs at least one.
-function fullWeights(weights) {
-  return Object.fromEntries(state.model.interaction_classes.map(
-      (name) => [name, weights[name] ?? 0]));
-}
-
-// The settings as flags of `duet synthesize`, which the gateway runs.
-function flagsOf(take) {
-  const weightsOf = (weights) => Object.entries(weights).filter(([, weight]) => weight !== 0)
-      .map(([name, weight]) => `${name}=${weight}`);
-  const flags = {model: `${take.model}@${take.version}`, seed: String(take.seed),
-                 variety: String(settings.variety), candidates: String(settings.candidates),
-                 clean_up: settings.clean_up};
-  for (const name of READING) if (settings[name] !== '') flags[name] = settings[name];
-  flags.joint_map = lines(settings.joint_map);
-  if (settings.keyframes.length > 0) {
-    flags.keyframe = settings.keyframes.map(({frame, weights}) => `${frame}:${
-        weightsOf(fullWeights(weights)).join(',') || `${state.model.interaction_classes[0]}=0`}`);
-  } else {
-    flags.label = weightsOf(settings.labels);
-  }
-  if (settings.start) flags.follower_start = settings.start.replaceAll(' ', '');
-  if (settings.direction) flags.partner_direction = settings.direction.replaceAll(' ', '');
-  return flags;
 }
 
 const lines = (text) => text.split('\n').map((line) => line.trim()).filter(Boolean);
@@ -203,10 +201,13 @@ function safeName(name) {
 // The name of a download without extension: leader, model, labels and seed of the answer.
 function downloadName(take) {
   const weights = (set) => Object.entries(set).filter(([, weight]) => weight !== 0)
-      .map(([name, weight]) => `${name}${weight}`);
-  const {labels, keyframes, variety, candidates} = JSON.parse(take.settings);
-  const reaction = keyframes.length
-      ? keyframes.flatMap((key) => [`at${key.frame}`, ...weights(key.weights)]) : weights(labels);
+      .map(([name, weight]) => `${name}${Number(weight.toFixed(2))}`);
+  const all = JSON.parse(take.settings);
+  const {labels, curves, variety, candidates} = all;
+  const names = Object.keys({...labels, ...curves});
+  const reaction = isCurved(all)
+      ? labelKeyframes(all, names, 0, Infinity).flatMap(
+          (key) => [`at${key.frame}`, ...weights(key.weights)]) : weights(labels);
   const parts = [stemOf(take.leader), `${take.model}@${take.version}`, ...reaction];
   if (take.samples && variety !== 1) parts.push(`variety${variety}`);
   if (take.samples && candidates > 1) parts.push(`best_of${candidates}`);

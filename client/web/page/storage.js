@@ -26,12 +26,12 @@ async function inStore(mode, act) {
   }
 }
 
-// Stores the leader, {name, file, bytes, motion, notes, reading}, and the answers. The page also
+// Stores the leader, {name, file, bytes, motion, notes, reading}, the answers and the rig. The page also
 // works if the browser stores nothing (a private window, a full disk).
 async function keepWork() {
-  const {leader, takes, chosen, asked} = state;
+  const {leader, takes, chosen, asked, rig} = state;
   try {
-    await inStore('readwrite', (store) => store.put({leader, takes, chosen, asked}, 'current'));
+    await inStore('readwrite', (store) => store.put({leader, takes, chosen, asked, rig}, 'current'));
     root.dataset.kept = Number(root.dataset.kept ?? 0) + 1;
   } catch (error) {
     console.warn(`The browser cannot store this page's work: ${error}`);

@@ -318,6 +318,46 @@ TEST_F(MotionCommandsTest, ConvertTakesOnePersonOrBoth) {
               HasSubstr("--side: expected left or right for a file with one person, got both"));
 }
 
+TEST_F(MotionCommandsTest, ConvertWritesAPersonOntoARig) {
+  WriteTestFile(folder_ / "rig.bvh", absl::StrReplaceAll(ReadTestFile(folder_ / "one.bvh"),
+                                                         {{"JOINT left_hand", "JOINT Flipper"}}));
+  ASSERT_EQ(Run({"convert", Path("pair.csv"), "--side", "right", "--rig", Path("rig.bvh"),
+                 "--rig-joint-map", "left_hand=Flipper", "--out", Path("on_rig.bvh")}),
+            0)
+      << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("on the rig of " + Path("rig.bvh")));
+  const std::string written = ReadTestFile(folder_ / "on_rig.bvh");
+  EXPECT_THAT(written, AllOf(HasSubstr("JOINT Flipper"), Not(HasSubstr("JOINT left_hand"))));
+  formats::ReadOptions options;
+  options.joint_overrides = {{"left_hand", "Flipper"}};
+  EXPECT_LT(LargestDistance(Read("on_rig.bvh", options), follower_), 0.05);
+  // Half the size of a unit halves the rig.
+  ASSERT_EQ(Run({"convert", Path("pair.csv"), "--side", "right", "--rig", Path("one.bvh"),
+                 "--rig-metres-per-unit", "0.005", "--out", Path("half.glb")}),
+            0)
+      << err_.str();
+  EXPECT_GT(LargestDistance(Read("half.glb"), follower_), 0.3);
+}
+
+TEST_F(MotionCommandsTest, InvalidUseOfARigIsReported) {
+  const auto fails = [this](const Strings& more, int code, const std::string& message) {
+    Strings arguments = {"convert", Path("pair.csv")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(Run(arguments), code) << out_.str();
+    EXPECT_THAT(err_.str(), HasSubstr(message));
+  };
+  const std::string rig = Path("one.bvh");
+  fails({"--rig", rig, "--out", Path("a.bvh")}, 42, "--side: expected left or right with --rig");
+  fails({"--rig", rig, "--side", "left", "--out", Path("a.csv")}, 2,
+        "--out: expected .bvh, .glb or .gltf with --rig");
+  fails({"--rig", Path("one.csv"), "--side", "left", "--out", Path("a.bvh")}, 2,
+        "--rig: expected a .bvh, .amc, .glb or .gltf");
+  fails({"--rig-joint-map", "head=Top", "--side", "left", "--out", Path("a.bvh")}, 2, "--rig");
+  fails({"--rig", Path("absent.bvh"), "--side", "left", "--out", Path("a.bvh")}, 42, "absent.bvh");
+  fails({"--rig", rig, "--rig-joint-map", "head=Nobody", "--side", "left", "--out", Path("a.bvh")},
+        42, "Nobody");
+}
+
 TEST_F(MotionCommandsTest, ResampleKeepsTheDurationAndFrameRateChangesIt) {
   ASSERT_EQ(Run({"convert", Path("one.csv"), "--resample", "15", "--out", Path("slow.csv")}), 0);
   const motion::Clip resampled = Read("slow.csv");

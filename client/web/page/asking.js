@@ -1,0 +1,142 @@
+'use strict';
+// Asks the server for answers. Part of the current answer can be kept: `settings.keep` frames from
+// its beginning stay, and the server answers the rest of the leader, starting from the last pose
+// that stays. (The contract has a start for the follower, and no end: only a beginning can be kept.)
+const GALLERY_SIZE = 8;
+const UNFAMILIAR = 1.5;  // SynthesisSummary.unfamiliarity above this gets a warning
+
+function stopCalls() {
+  state.call?.abort();
+  state.call = null;
+}
+
+// The frames of the chosen answer that stay, {frames, positions}; null if all are sampled.
+function keptFrames() {
+  const take = state.takes[state.chosen];
+  if (!take || settings.keep === 0 || !state.model.accepts_follower_start) return null;
+  const frames = Math.min(settings.keep, state.leader.motion.frames - 1);
+  return {frames, positions: take.positions};
+}
+
+// Requests one answer. Calls `show` with each chunk.
+async function ask(leader, seed, kept, signal, show) {
+  const {motion} = leader;
+  const values = motion.joint_names.length * 3;
+  const offset = kept ? kept.frames - 1 : 0;  // of the reply's frames
+  const positions = new Float32Array(motion.positions.length);
+  if (kept) positions.set(kept.positions.subarray(0, kept.frames * values));
+  const take = {
+    seed, positions, leader: leader.name, settings: JSON.stringify(settings),
+    model: state.model.name, version: state.model.version, samples: Boolean(state.model.samples),
+    kept: kept?.frames ?? 0,
+  };
+  let summary = null;
+  for await (const answer of callServer('Synthesize', 'SynthesizeRequest',
+                                        requestOf(motion, seed, kept), 'SynthesizeResponse', signal)) {
+    if (answer.chunk) {
+      const first = offset + (answer.chunk.first_frame ?? 0);
+      // The reply's first frame is the last one that stays.
+      const known = kept && first < kept.frames ? (kept.frames - first) * values : 0;
+      const fresh = answer.chunk.positions.slice(known);
+      positions.set(fresh, first * values + known);
+      show?.(first + known / values, fresh);
+    }
+    summary = summary || answer.summary;
+  }
+  if (!summary) throw new CallError('The reply is incomplete. Press React again.');
+  return {...take, unfamiliarity: summary.unfamiliarity ?? 0, grade: summary.grade ?? null};
+}
+
+function tellWaiting(seeds) {
+  tell(seeds.length === 1 ? 'Waiting for the server …'
+                          : `Waiting for seeds ${seeds[0]} to ${seeds[seeds.length - 1]} …`);
+}
+
+// The first seed of `count` answers. A gallery is asked again with the same seeds, whichever of its
+// answers is chosen.
+function firstSeed(count) {
+  const seeds = seedsOf(state.takes);
+  return count > 1 && seeds.length > 1 && seeds.includes(settings.seed) ? Math.min(...seeds)
+                                                                       : settings.seed;
+}
+
+// Requests `count` answers with the current settings and consecutive seeds. Cancels running calls.
+// If one fails, the answers of before stay.
+async function react(count) {
+  stopCalls();
+  const call = state.call = new AbortController();
+  const {leader} = state;
+  const [asked, kept, begun] = [askedFor(), keptFrames(), performance.now()];
+  const first = firstSeed(count);
+  const seeds = Array.from({length: count}, (_, index) => first + index);
+  tellWaiting(seeds);
+  if (count > 1) awaitGallery(seeds);
+  try {
+    const show = count === 1 ? (first, positions) => theatre.takeFrames(first, positions) : null;
+    const takes = await Promise.all(seeds.map(async (seed, index) => {
+      const take = await ask(leader, seed, kept, call.signal, show);
+      if (!call.signal.aborted && count > 1) arriveInGallery(index);
+      return take;
+    }));
+    if (call.signal.aborted) return;
+    state.call = null;
+    const chosen = galleryOrder(takes, gallery.order)[0];
+    Object.assign(state, {takes, chosen, asked});
+    settings.seed = takes[chosen].seed;
+    await finish((performance.now() - begun) / 1000, seeds);
+  } catch (error) {
+    if (call.signal.aborted) return;
+    call.abort();
+    state.call = null;
+    showAnswer();
+    tellError(error);
+  }
+}
+
+function describeSeeds(seeds, take) {
+  if (!take.samples) return 'one answer';
+  return seeds.length === 1 ? `seed ${seeds[0]}`
+                            : `seeds ${seeds[0]} to ${seeds[seeds.length - 1]}: choose one`;
+}
+
+async function finish(seconds, seeds) {
+  const {takes, chosen} = state;
+  showFields();
+  showAnswer();
+  changed(takes.length > 1 ? 'show eight' : 'react');
+  const far = takes.some((take) => take.unfamiliarity > UNFAMILIAR)
+      ? ' This leader is unlike the training data. Check the answer before you use it.' : '';
+  const {kept} = takes[chosen];
+  const stays = kept > 0 ? ` Frames 0 to ${kept - 1} are as before.` : '';
+  tell(`Answered in ${seconds.toFixed(2)} s, ${describeSeeds(seeds, takes[chosen])}.${stays}${far}`);
+  if (takes.length > 1 && !matchMedia('(min-width: 761px)').matches) {
+    element('gallery').scrollIntoView({block: 'nearest'});
+  }
+  state.answers += 1;
+  root.dataset.answers = state.answers;
+  await keepWork();
+}
+
+// Shows another answer of the gallery.
+async function choose(index) {
+  if (index === state.chosen) return;
+  state.chosen = index;
+  settings.seed = state.takes[index].seed;
+  showMotion(state.leader, state.takes[index].positions);
+  showChoice();
+  showFields();
+  changed(`choose seed ${settings.seed}`);
+  tell(`Seed ${settings.seed}.`);
+  await keepWork();
+}
+
+function connectAsking() {
+  element('react').addEventListener('click', () => react(1));
+  element('show-eight').addEventListener('click', () => react(GALLERY_SIZE));
+  element('another').addEventListener('click', () => {
+    const count = state.takes.length > 1 ? GALLERY_SIZE : 1;
+    const {takes} = state;
+    settings.seed = takes.length > 0 ? Math.max(...seedsOf(takes)) + 1 : settings.seed + 1;
+    react(count);
+  });
+}

@@ -1,0 +1,474 @@
+"""The studio's tools in a real browser against a real server: gallery, curves, start, keeping a
+beginning, undo, sessions, rigs."""
+
+import json
+import pathlib
+import re
+import tempfile
+
+from studio_pages import FOLLOWER, StudioTest  # before modules that it makes available
+
+import duet_motion as duet  # noqa: E402
+import numpy as np  # noqa: E402
+import studio_minutes  # noqa: E402
+import tools  # noqa: E402
+
+HUG = "#leader=hug.bvh&labels=hug:1"
+FRAMES = 91
+TORSO = 2
+# The pixel of a weight at a frame in the lane of a class.
+IN_LANE = """(() => {{
+  const lane = timeline.laneOf({name});
+  lane.svg.scrollIntoView({{block: 'center'}});
+  const box = lane.svg.getBoundingClientRect();
+  return [box.left + lane.x({frame}), box.top + lane.y({weight})];
+}})()"""
+# The pixel in the middle of an element of the start's marker.
+IN_MARKER = """(() => {{
+  const box = document.querySelector('#start-marker .{part}').getBoundingClientRect();
+  return [box.left + box.width / 2, box.top + box.height / 2];
+}})()"""
+# Replaces saving by keeping the text.
+CATCH_SAVED = """window.saved = [];
+  saveBlob = async (blob, name) => { window.saved.push([name, await blob.text()]); }; undefined"""
+# Whether a tile shows both people.
+TILE_COLOURS = """gallery.tiles.map((tile) => {
+  const canvas = tile.querySelector('canvas');
+  const {data} = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  let [leader, follower] = [0, 0];
+  for (let i = 0; i < data.length; i += 4) {
+    if (data[i] > 200 && data[i + 2] < 120) ++leader;
+    if (data[i] < 110 && data[i + 1] > 150) ++follower;
+  }
+  return [leader, follower];
+})"""
+
+
+class ToolsTest(StudioTest):
+    def key(self, page, key, modifiers=0):
+        """A real key stroke; modifiers: 2 is Ctrl, 8 is Shift."""
+        for kind in ("keyDown", "keyUp"):
+            page.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=modifiers,
+                      text=key if len(key) == 1 and kind == "keyDown" and not modifiers else "")
+        page.next_frame()
+
+    def in_lane(self, page, name, frame, weight):
+        return page.evaluate(IN_LANE.format(name=json.dumps(name), frame=frame, weight=weight))
+
+    def open_curves(self, page):
+        page.click("#curves summary")
+        page.wait_until("element('curves').open && timeline.lanes[0].width > 0")
+
+    def choose_file(self, page, selector, path):
+        document = page.call("DOM.getDocument")["root"]["nodeId"]
+        node = page.call("DOM.querySelector", nodeId=document, selector=selector)["nodeId"]
+        page.call("DOM.setFileInputFiles", nodeId=node, files=[str(path)])
+
+    def save_session(self, page):
+        page.evaluate(CATCH_SAVED)
+        self.key(page, "s", modifiers=2)
+        page.wait_until("window.saved.length > 0")
+        return page.evaluate("window.saved.pop()")
+
+    def open_text(self, page, text, name="work.session.json"):
+        """Opens a text as a file; returns what the page tells of it."""
+        page.evaluate("tell('opening')")
+        page.evaluate(f"attempt(takeFile)(new File([{json.dumps(text)}], {json.dumps(name)}))")
+        return page.text("#status")
+
+    # Gallery.
+
+    def test_gallery_shows_eight_answers_with_the_best_first(self):
+        page = self.open_still(HUG, width=1200, height=900)
+        self.press(page, "show-eight")
+        takes = page.evaluate("state.takes.map(({seed, grade}) => ({seed, grade}))")
+        self.assertEqual([take["seed"] for take in takes], list(range(8)))
+
+        def faults(take):
+            grade = take["grade"]
+            return (grade.get("twisted", 0) + grade.get("overlapping", 0) +
+                    max(0, grade.get("skating", 0) - grade.get("leader_skating", 0)))
+        order = [take["seed"] for take in sorted(takes, key=faults)]
+        seeds = "gallery.tiles.map((tile) => Number(/\\d+/.exec(tile.textContent)[0]))"
+        self.assertEqual(page.evaluate(seeds), order)
+        self.assertEqual(page.evaluate("settings.seed"), order[0])
+        for leader, follower in page.evaluate(TILE_COLOURS):
+            self.assertGreater(leader, 50)
+            self.assertGreater(follower, 50)
+        self.set(page, "#order", "seed")
+        page.evaluate("element('order').dispatchEvent(new Event('change'))")
+        self.assertEqual(page.evaluate(seeds), list(range(8)))
+
+    def test_gallery_is_chosen_from_by_mouse_and_keys(self):
+        page = self.open_still(HUG, width=1200, height=900)
+        self.press(page, "show-eight")
+        seeds = page.evaluate("gallery.tiles.map((tile) => Number(/\\d+/.exec(tile.textContent)[0]))")
+        page.click("#answers .answer:nth-child(4)")
+        self.assertEqual(page.evaluate("settings.seed"), seeds[3])
+        np.testing.assert_allclose(self.shown(page), self.expected({"hug": 1}, seed=seeds[3]),
+                                   atol=1e-5)
+        np.testing.assert_allclose(  # the scene shows it, too
+            np.reshape(page.evaluate("Array.from(theatre.motion.people.follower)"), (91, 15, 3)),
+            self.shown(page), atol=1e-6)
+        for key, place in (("ArrowRight", 4), ("End", 7), ("ArrowRight", 0), ("6", 5)):
+            self.key(page, key)
+            self.assertEqual(page.evaluate("settings.seed"), seeds[place], key)
+            self.assertTrue(page.evaluate(
+                f"document.activeElement === gallery.tiles[{place}] && "
+                f"document.activeElement.getAttribute('aria-checked') === 'true'"), key)
+        # Another gallery has the next seeds; the same one has the same seeds.
+        self.press(page, "show-eight")
+        self.assertEqual(page.evaluate("seedsOf(state.takes)"), list(range(8)))
+        self.press(page, "another")
+        self.assertEqual(page.evaluate("seedsOf(state.takes)"), list(range(8, 16)))
+
+    def test_failed_gallery_keeps_the_answers_of_before(self):
+        page = self.open_still(HUG, width=1200, height=900)
+        self.press(page, "show-eight")
+        before = page.evaluate("seedsOf(state.takes)")
+        shown = "Array.from(theatre.motion.people.follower)"
+        follower = page.evaluate(shown)
+        page.evaluate("settings.candidates = 99; react(8)")
+        page.wait_until("document.documentElement.dataset.failed === 'true'")
+        self.assertEqual(page.evaluate(shown), follower)
+        self.assertIn("candidates", page.text("#problems"))
+        self.assertEqual(page.evaluate("[seedsOf(state.takes), gallery.thumbnails.length]"),
+                         [before, 8])
+
+    # Curves.
+
+    def test_curves_are_drawn_by_mouse_and_sent(self):
+        page = self.open_still(HUG, width=1200, height=900)
+        self.open_curves(page)
+        for frame, weight in ((0, 0), (60, 1)):
+            x, y = self.in_lane(page, "hug", frame, weight)
+            page.mouse("mousePressed", x, y)
+            page.mouse("mouseReleased", x, y, buttons=0)
+        self.assertEqual(page.evaluate("settings.curves"), {"hug": [[0, 0], [60, 1]]})
+        page.drag(self.in_lane(page, "hug", 60, 1), self.in_lane(page, "hug", 30, 0.5))
+        self.assertEqual(page.evaluate("settings.curves"), {"hug": [[0, 0], [30, 0.5]]})
+        page.drag(self.in_lane(page, "push", 80, 0.5), self.in_lane(page, "push", 90, 1))
+        self.assertEqual(page.evaluate("settings.curves.push"), [[90, 1]])
+        self.react(page)
+        wanted = self.expected(keyframes={
+            frame: {name: {"hug": hug, "push": 1}.get(name, 0) for name in tools.CLASSES}
+            for frame, hug in ((0, 0), (30, 0.5), (90, 0.5))})
+        np.testing.assert_allclose(self.shown(page), wanted, atol=1e-5)
+        self.assertIn("curve=hug;0:0,30:0.5", page.evaluate("location.hash"))
+        x, y = self.in_lane(page, "push", 90, 1)
+        page.call("Input.dispatchMouseEvent", type="mousePressed", x=x, y=y, button="right",
+                  buttons=2, clickCount=1)
+        self.assertEqual(page.evaluate("Object.keys(settings.curves)"), ["hug"])
+        self.assertEqual(page.evaluate("document.documentElement.dataset.stale"), "true")
+
+    def test_curves_are_drawn_by_keys_and_fields(self):
+        page = self.open_still(HUG, width=1200, height=900)
+        self.open_curves(page)
+        page.evaluate("seekAll(20); timeline.laneOf('hug').svg.focus()")
+        self.key(page, "Enter")
+        for key, modifiers in (("ArrowRight", 0), ("ArrowRight", 8), ("ArrowDown", 0)):
+            self.key(page, key, modifiers)
+        self.assertEqual(page.evaluate("settings.curves"), {"hug": [[31, 0.95]]})
+        self.assertEqual(page.evaluate("[element('point-frame').value, frameNow()]"), ["31", 31])
+        self.set(page, "#point-weight", -0.5)
+        self.assertEqual(page.evaluate("settings.curves"), {"hug": [[31, -0.5]]})
+        self.set(page, "#point-weight", 7)  # out of range
+        self.assertEqual(page.evaluate("settings.curves"), {"hug": [[31, -0.5]]})
+        # The slider of a class with a curve sets a point in the current frame.
+        page.evaluate("seekAll(50)")
+        page.wait_until("theatre.frame === 50")
+        self.label(page, "hug", 0.25)
+        self.assertEqual(page.evaluate("settings.curves"), {"hug": [[31, -0.5], [50, 0.25]]})
+        page.evaluate("timeline.laneOf('hug').focus(31)")
+        self.key(page, "Delete")
+        self.assertEqual(page.evaluate("settings.curves"), {"hug": [[50, 0.25]]})
+        self.assertEqual(page.evaluate("document.activeElement.dataset.frame"), "50")
+        page.click("#clear-curves")
+        self.assertEqual(page.evaluate("settings.curves"), {})
+
+    def test_curves_are_drawn_by_a_finger(self):
+        page = self.open_still(HUG, width=390, height=844)
+        page.call("Emulation.setTouchEmulationEnabled", enabled=True)
+        page.evaluate("element('curves').open = true")
+        page.wait_until("timeline.lanes[0].width > 0")
+        start = self.in_lane(page, "push", 40, 0)
+        to = self.in_lane(page, "push", 60, 0.8)
+        for kind, point in (("touchStart", start), ("touchMove", to), ("touchEnd", None)):
+            page.call("Input.dispatchTouchEvent", type=kind,
+                      touchPoints=[{"x": point[0], "y": point[1]}] if point else [])
+        page.wait_until("curveOf(settings, 'push').length === 1")
+        [[frame, weight]] = page.evaluate("settings.curves.push")
+        self.assertAlmostEqual(frame, 60, delta=1)
+        self.assertAlmostEqual(weight, 0.8, delta=0.06)
+
+    # The follower's start.
+
+    def test_start_is_dragged_and_turned_in_the_scene(self):
+        page = self.open_still(HUG, width=1200, height=900)
+        page.click("#place")
+        place = page.evaluate("startNow(state.leader).root")
+        start = page.evaluate(IN_MARKER.format(part="ring"))
+        page.drag(start, (start[0] + 60, start[1] + 20))
+        moved = page.evaluate("numbers(settings.start)")
+        self.assertGreater(np.hypot(moved[0] - place[0], moved[2] - place[2]), 0.1)
+        self.react(page)
+        np.testing.assert_allclose(self.shown(page)[0][TORSO], moved, atol=0.002)
+        # The knob turns it; the pose is then the shown one.
+        before = page.evaluate("startNow(state.leader).heading")
+        knob = page.evaluate(IN_MARKER.format(part="knob"))
+        aside = page.evaluate("""(() => {
+          const {root: [x, y, z], heading} = startNow(state.leader);
+          const [right, ahead] = [Math.sin(radians(heading + 90)), Math.cos(radians(heading + 90))];
+          const box = theatre.getBoundingClientRect();
+          const [left, top] = theatre.project(x + 0.55 * right, theatre.floorHeight, z + 0.55 * ahead);
+          return [box.left + left, box.top + top];
+        })()""")
+        page.drag(knob, aside)
+        after = float(page.evaluate("settings.turn"))
+        self.assertAlmostEqual((after - before) % 360, 90, delta=3)
+        wanted = np.reshape(page.evaluate(
+            "Array.from(startMessage(state.leader.motion).pose.positions)"), (15, 3))
+        self.react(page)
+        np.testing.assert_allclose(self.shown(page)[0], wanted, atol=0.002)
+        heading = page.evaluate("headingOf(state.leader.motion, state.takes[0].positions)")
+        self.assertAlmostEqual(abs((heading - after + 180) % 360 - 180), 0, delta=3)
+
+    def test_start_is_placed_by_keys_and_freed(self):
+        page = self.open_still(HUG, width=1200, height=900)
+        self.key(page, "p")
+        before = page.evaluate("startNow(state.leader)")
+        self.key(page, "ArrowRight")
+        after = page.evaluate("startNow(state.leader)")
+        self.assertAlmostEqual(np.hypot(after["root"][0] - before["root"][0],
+                                        after["root"][2] - before["root"][2]), 0.05, places=2)
+        self.key(page, "ArrowRight", modifiers=8)
+        self.assertAlmostEqual(page.evaluate("Number(settings.turn)"),
+                               (before["heading"] + 5 + 180) % 360 - 180, places=0)
+        link = page.evaluate("location.hash")
+        wanted = page.evaluate("[settings.start, settings.turn, settings.pose]")
+        self.key(page, "Delete")
+        self.assertEqual(page.evaluate("[settings.start, settings.turn, settings.pose]"), ["", "", []])
+        again = self.open_still(link)
+        self.assertEqual(again.evaluate("[settings.start, settings.turn, settings.pose]"), wanted)
+
+    # Keeping a beginning.
+
+    def test_beginning_stays_while_the_rest_is_sampled_again(self):
+        page = self.open_still(HUG, width=1200, height=900)
+        self.assertTrue(page.evaluate("element('keep').disabled"))
+        self.react(page)
+        first = self.shown(page)
+        page.evaluate("seekAll(44)")
+        page.wait_until("theatre.frame === 44")
+        self.key(page, "l")
+        self.assertIn("Frames 0 to 44 stay", page.text("#status"))
+        self.press(page, "show-eight")
+        self.assertIn("Frames 0 to 44 are as before", page.text("#status"))
+        takes = [np.reshape(take, (FRAMES, 15, 3)) for take in
+                 page.evaluate("state.takes.map((take) => Array.from(take.positions))")]
+        for take in takes:
+            np.testing.assert_array_equal(take[:45], first[:45])
+        self.assertGreater(np.abs(takes[1][60:] - takes[2][60:]).max(), 0.05)
+        # The rest is the server's answer to the rest of the leader, from the last pose that stays.
+        leader = duet.read_motion(tools.sample("hug"))
+        rest = duet.Motion(leader.positions[44:], leader.joint_names, frame_rate_hz=30)
+        with duet.Client(self.server.address) as client:
+            wanted = client.synthesize(rest, labels={name: float(name == "hug") for name in tools.CLASSES},
+                                       seed=3, follower_start=first[44]).follower.positions
+        np.testing.assert_allclose(takes[3][45:], wanted[1:], atol=1e-5)
+        # No jump where they meet.
+        steps = np.linalg.norm(np.diff(takes[3], axis=0), axis=2).max(axis=1)
+        self.assertLess(steps[44], steps.max() + 1e-6)
+        self.assertLess(steps[44], 0.1)
+        # Curves count frames of the whole motion.
+        page.evaluate("settings.curves = {hug: [[0, 1], [90, 0]]}; changed('test')")
+        frames = page.evaluate("requestOf(state.leader.motion, 0, keptFrames()).label_keyframes"
+                               ".map(({frame, label_vector: {weights}}) => [frame, weights.find("
+                               "(one) => one.interaction_class === 'hug').weight])")
+        np.testing.assert_allclose(frames, [[0, 1 - 44 / 90], [46, 0]], atol=1e-6)
+        # The same, after a reload.
+        link = page.evaluate("settings.curves = {}; changed('test'); location.hash")
+        again = self.open_still(link)
+        self.assertEqual(again.evaluate("[state.takes.length, settings.keep]"), [8, 45])
+        again.evaluate("keepFrames(0)")
+        self.react(again)
+        self.assertEqual(again.evaluate("state.takes[0].kept"), 0)
+
+    # Undo.
+
+    def test_everything_is_undone_and_redone(self):
+        page = self.open_still(width=1200, height=900)
+        work = "JSON.stringify([settings, state.leader?.name, seedsOf(state.takes), state.chosen])"
+        states = [page.evaluate(work)]
+
+        def did(what):
+            self.assertEqual(page.evaluate("element('undo').title"), f"Undo: {what}")
+            states.append(page.evaluate(work))
+        page.evaluate("takeSample('hug')")
+        page.wait_until("state.leader")
+        did("open hug.bvh")
+        page.evaluate("undoHistory.endGesture()")
+        self.label(page, "push", 0.2)
+        self.label(page, "push", 0.3)  # of the same gesture
+        did("weight of push")
+        self.press(page, "show-eight")
+        did("show eight")
+        page.click("#answers .answer:nth-child(3)")
+        did(f"choose seed {page.evaluate('settings.seed')}")
+        self.open_curves(page)
+        page.drag(self.in_lane(page, "hug", 20, 0.5), self.in_lane(page, "hug", 40, 0.9))
+        did("curve of hug")
+        page.evaluate("keepFrames(30)")
+        did("frames to keep")
+        page.click("#place")
+        start = page.evaluate(IN_MARKER.format(part="ring"))
+        page.drag(start, (start[0] + 40, start[1] + 10))
+        did("follower's start")
+        self.react(page)
+        did("react")
+        page.evaluate("takeSample('kick')")
+        page.wait_until("state.leader.name === 'kick.bvh'")
+        did("open kick.bvh")
+        for expected in reversed(states[:-1]):
+            self.key(page, "z", modifiers=2)
+            self.assertEqual(page.evaluate(work), expected)
+        self.assertTrue(page.evaluate("element('undo').disabled && theatre.hidden"))
+        for expected in states[1:-1]:
+            self.key(page, "y", modifiers=2)
+            self.assertEqual(page.evaluate(work), expected)
+        self.assertEqual(page.evaluate("gallery.tiles.length"), 0)
+        np.testing.assert_allclose(  # the scene shows what was redone
+            page.evaluate("Array.from(theatre.motion.people.follower)"), page.evaluate(FOLLOWER),
+            atol=1e-6)
+        # A new change removes what was undone.
+        self.key(page, "z", modifiers=2)
+        page.evaluate("keepFrames(10)")
+        self.assertTrue(page.evaluate("element('redo').disabled"))
+
+    # Sessions.
+
+    def test_session_restores_everything_in_another_browser(self):
+        page = self.open_still(width=1200, height=900)
+        self.drop(page)
+        page.evaluate("settings.labels = {hug: 1}; settings.curves = {push: [[10, 0], [50, 0.5]]};"
+                      "changed('test')")
+        self.press(page, "show-eight")
+        page.click("#answers .answer:nth-child(2)")
+        page.evaluate("keepFrames(30); turnStart(170)")
+        self.assertEqual(page.evaluate("settings.keep"), 0)
+        page.evaluate("keepFrames(20);"
+                      "state.rig = {name: 'rig.bvh', bytes: new Uint8Array([1, 2, 255]).buffer};"
+                      "changed('test')")
+        name, text = self.save_session(page)
+        self.assertEqual(name, "visitor's hug.session.json")
+        wanted = page.evaluate("JSON.stringify([{...settings, leader: ''}, state.leader.file])")
+        shown = self.shown(page)
+        self.browser.forget()
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / name
+            path.write_text(text, encoding="utf-8")
+            again = self.open_still(width=1200, height=900)
+            self.choose_file(again, "#open-file", path)
+            again.wait_until("state.takes.length === 1 || "
+                             "document.documentElement.dataset.failed === 'true'")
+        self.assertEqual(again.state()["failed"], "false", again.text("#status"))
+        self.assertEqual(again.evaluate("JSON.stringify([{...settings, leader: ''}, state.leader.file])"),
+                         wanted)
+        np.testing.assert_array_equal(self.shown(again), shown)
+        self.assertEqual(again.evaluate("[state.rig.name, ...new Uint8Array(state.rig.bytes)]"),
+                         ["rig.bvh", 1, 2, 255])
+        self.assertEqual(json.loads(self.save_session(again)[1]), json.loads(text))
+        self.key(again, "z", modifiers=2)  # one step
+        self.assertIsNone(again.evaluate("state.leader"))
+        self.key(again, "y", modifiers=2)
+        np.testing.assert_array_equal(self.shown(again), shown)
+
+    def test_invalid_sessions_are_rejected_and_change_nothing(self):
+        page = self.open_still(HUG, width=1200, height=900)
+        self.react(page)
+        _, text = self.save_session(page)
+        valid = json.loads(text)
+        before = page.evaluate("JSON.stringify([settings, seedsOf(state.takes)])")
+
+        def changed(path, value):
+            session = json.loads(text)
+            *parents, last = path
+            part = session
+            for name in parents:
+                part = part[name]
+            if value is None:
+                del part[last]
+            else:
+                part[last] = value
+            return json.dumps(session)
+        short = valid["answer"]["positions"][:16]
+        for broken, message in (
+                (text[:len(text) // 2], "session: expected JSON, got"),
+                (changed(["version"], 2), "version: expected at most 1"),
+                (changed(["version"], "1"), 'version: expected 1, got "1"'),
+                (changed(["leader"], None), "leader: expected an object, got nothing"),
+                (changed(["leader", "bytes"], "!"), 'leader.bytes: expected base64, got "!"'),
+                (changed(["leader", "bytes"], "anVuaw=="), "hug.bvh:1: "),
+                (changed(["settings", "seed"], -1), "settings.seed: expected a whole number"),
+                (changed(["settings", "seed"], None), "settings.seed: expected a whole number"),
+                (changed(["settings", "colour"], 1), "settings.colour: expected no such field, got 1"),
+                (changed(["settings", "labels"], {"hug": 9}), "settings.labels.hug: expected a number"),
+                (changed(["settings", "curves"], {"hug": [[3, 1], [3, 0]]}),
+                 "settings.curves.hug[1][0]: expected ascending frames, got 3"),
+                (changed(["settings", "side"], "up"), 'settings.side: expected "left" or "right"'),
+                (changed(["answer", "positions"], short), "answer.positions: expected 4095 values"),
+                (changed(["answer", "settings"], "{"), "answer.settings: expected JSON"),
+                (changed(["answer", "grade", "twisted"], 2), "answer.grade.twisted: expected a number"),
+                (changed(["rig"], {"name": ""}), "rig.name: expected a file name"),
+                ('{"format": "duet-session"}', "version: expected 1, got nothing"),
+                ("", "file: "), ("{}", "")):
+            with self.subTest(broken=broken[-60:], message=message):
+                told = self.open_text(page, broken)
+                self.assertEqual(page.state()["failed"], "true", told)
+                if message and broken:
+                    self.assertTrue(told.startswith(message), told)
+                self.assertEqual(page.evaluate("JSON.stringify([settings, seedsOf(state.takes)])"),
+                                 before)
+        self.open_text(page, text)  # twice is harmless
+        self.open_text(page, text)
+        self.assertEqual(page.state()["failed"], "false", page.text("#status"))
+
+    # Rigs.
+
+    def test_kept_answer_is_written_on_another_files_rig(self):
+        page = self.open_still(HUG, width=1200, height=900)
+        self.react(page)
+        page.evaluate("keepFrames(40)")
+        self.press(page, "another")
+        text = tools.sample("kick").read_text(encoding="utf-8").replace("JOINT left_hand",
+                                                                        "JOINT Flipper")
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "robot.bvh"
+            path.write_text(text, encoding="utf-8")
+            self.choose_file(page, "#rig-file", path)
+            page.wait_until("state.rig !== null")
+        self.assertEqual(page.text("#rig-name"), "robot.bvh")
+        page.evaluate(CATCH_SAVED)
+        page.evaluate("attempt(downloadOnRig)()")
+        self.assertIn("left_hand", page.text("#status"))
+        self.set(page, "[name=rig_joint_map]", "left_hand=Flipper")
+        page.evaluate("attempt(downloadOnRig)()")
+        page.wait_until("window.saved.length > 0")
+        name, written = page.evaluate("window.saved.pop()")
+        self.assertRegex(name, r"\.follower\.bvh$")
+        self.assertEqual(re.findall(r"(?:ROOT|JOINT) \S+", written),
+                         re.findall(r"(?:ROOT|JOINT) \S+", text))
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "follower.bvh"
+            path.write_text(written, encoding="utf-8")
+            on_rig = duet.read_motion(path, joint_map={"left_hand": "Flipper"}).positions
+        self.assertLess(np.linalg.norm(on_rig - self.shown(page), axis=2).mean(), 0.05)
+
+    def test_first_ten_minutes_of_an_animator(self):
+        page = self.open_still(width=1440, height=900)
+        steps = studio_minutes.run(page)
+        self.assertEqual([step.name for step in steps], [name for name, _ in studio_minutes.STEPS])
+
+
+if __name__ == "__main__":
+    tools.main()
