@@ -49,8 +49,13 @@ LiveSynthesis::LiveSynthesis(ModelDescription model, LiveRequest request)
       follower_(0, model_.skeleton.joint_count()),
       leader_begin_(request_.first_frame),
       follower_begin_(request_.first_frame) {
-  leader_.Append(request_.leader.all());
-  follower_.Append(request_.follower.all());
+  // A caller may send more history than an evaluation reads.
+  const int sent = request_.follower.frame_count();
+  const int unread = std::max(0, sent - timing_.history_frames());
+  leader_begin_ += unread;
+  follower_begin_ += unread;
+  leader_.Append(request_.leader.frames(unread, request_.leader.frame_count() - unread));
+  follower_.Append(request_.follower.frames(unread, sent - unread));
   request_.leader = request_.follower = {};
 }
 

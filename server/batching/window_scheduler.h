@@ -38,9 +38,9 @@ struct WindowJob {
   // Required. Set by the owner when the result is not needed any more. A model that has started
   // stops soon.
   std::shared_ptr<const std::atomic<bool>> cancelled;
-  // True for every window of a call but the first. Such a window is never rejected because the
-  // queue is full, so that calls that have started can finish. A call has at most one window in the
-  // queue.
+  // True for every window of a call but the first, and for every window of a live session. Such a
+  // window is never rejected because the queue is full, so that calls that have started can finish.
+  // A call has at most one window in the queue.
   bool continues_call = false;
   // The client of the call. Clients take turns. The empty string is a client too.
   std::string client;

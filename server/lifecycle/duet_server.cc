@@ -379,6 +379,7 @@ void DuetServer::Drain(const std::function<bool(double seconds)>& wait) {
   // From here on new calls are rejected with UNAVAILABLE. gRPC's Shutdown comes last, because it
   // also waits for health watches, which never end by themselves.
   admission_.SetState(service::Admission::State::kDraining);
+  service_.AnnounceDrain();
   double left = settings_.grace_seconds();
   while (patient && left > 0 && admission_.calls() > 0) {
     const double step = std::min(left, kLookSeconds);

@@ -16,6 +16,7 @@ void RemoveDead(std::vector<std::weak_ptr<ActiveCall>>& calls) {
 
 void ActiveCalls::Add(const std::shared_ptr<ActiveCall>& call) {
   std::optional<absl::Status> ended;
+  bool draining = false;
   {
     common::MutexLock lock(mutex_);
     if (calls_.size() >= look_at_) {
@@ -25,8 +26,19 @@ void ActiveCalls::Add(const std::shared_ptr<ActiveCall>& call) {
     }
     calls_.push_back(call);
     ended = ended_;
+    draining = draining_;
   }
+  if (draining) call->Drain();
   if (ended) call->Abort(*ended);
+}
+
+void ActiveCalls::Drain() {
+  {
+    // A call that was admitted before the drain began may be added after this.
+    common::MutexLock lock(mutex_);
+    draining_ = true;
+  }
+  for (const std::shared_ptr<ActiveCall>& call : All()) call->Drain();
 }
 
 void ActiveCalls::AbortAll(const absl::Status& reason) {

@@ -19,6 +19,8 @@ namespace duet::server::service {
 class ActiveCall {
  public:
   virtual ~ActiveCall() = default;
+  // The server begins to drain. Calls that have no end of their own notify their callers.
+  virtual void Drain() = 0;
   // Ends the call early. The first reason counts.
   virtual void Abort(const absl::Status& reason) = 0;
   // Ends the call if a time limit has passed.
@@ -39,6 +41,8 @@ class ActiveCall {
 class ActiveCalls {
  public:
   void Add(const std::shared_ptr<ActiveCall>& call);
+  // Notifies all calls, and every call that is added later, that the server drains.
+  void Drain();
   // Ends all calls, and every call that is added later.
   void AbortAll(const absl::Status& reason);
   void CheckTime(common::TimePoint now);
@@ -52,6 +56,7 @@ class ActiveCalls {
   std::vector<std::shared_ptr<ActiveCall>> All();
 
   common::Mutex mutex_;
+  bool draining_ DUET_GUARDED_BY(mutex_) = false;
   std::optional<absl::Status> ended_ DUET_GUARDED_BY(mutex_);  // why calls added later end at once
   std::vector<std::weak_ptr<ActiveCall>> calls_ DUET_GUARDED_BY(mutex_);
   std::size_t look_at_ DUET_GUARDED_BY(mutex_) =

@@ -1,5 +1,6 @@
 #include "server/service/call_pipeline.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -37,9 +38,9 @@ void CallPipeline::Report(CallScope& scope, const absl::Status& status,
   if (!traceparent.empty()) context.AddTrailingMetadata("traceparent", traceparent);
 }
 
-absl::Status CallPipeline::CheckSize(const grpc::ByteBuffer& bytes) const {
-  if (bytes.Length() <= max_request_bytes_) return absl::OkStatus();
-  return TooLargeRefusal(bytes.Length(), max_request_bytes_);
+absl::Status CallPipeline::CheckSize(const grpc::ByteBuffer& bytes, std::size_t max_bytes) const {
+  const std::size_t most = std::min(max_bytes, max_request_bytes_);
+  return bytes.Length() <= most ? absl::OkStatus() : TooLargeRefusal(bytes.Length(), most);
 }
 
 // By value, so that the bytes are freed as soon as they are parsed.

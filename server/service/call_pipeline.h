@@ -6,6 +6,7 @@
 #include <grpcpp/support/byte_buffer.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,8 +54,8 @@ class CallPipeline {
 
   OpenedCall Open(const grpc::ServerContextBase& context, const metrics::MethodInfo& method) const;
 
-  // Returns RESOURCE_EXHAUSTED if the message is too large.
-  absl::Status CheckSize(const grpc::ByteBuffer& bytes) const;
+  // Returns RESOURCE_EXHAUSTED if the message is larger than the server's limit or `max_bytes`.
+  absl::Status CheckSize(const grpc::ByteBuffer& bytes, std::size_t max_bytes = SIZE_MAX) const;
   // Parses a message. Returns RESOURCE_EXHAUSTED if it is too large, and INVALID_ARGUMENT if it is
   // malformed or would be too large in memory. Frees `bytes` in any case.
   absl::Status Read(grpc::ByteBuffer bytes, google::protobuf::Message& request) const;

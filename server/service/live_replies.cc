@@ -29,6 +29,18 @@ v1::LiveHeader MakeLiveHeader(const engine::ModelDescription& model,
   return header;
 }
 
+absl::Status LiveReplies::ErrorOf(const LiveOutput& output, metrics::CallRecord& record) {
+  switch (output.fault) {
+    case LiveFault::kQueue:
+      return QueueRefusal(output.error);
+    case LiveFault::kWindow:
+      return WindowFailure(output.error, record.request_id, &record.cause);
+    case LiveFault::kMessage:
+      break;
+  }
+  return output.error;
+}
+
 LiveReplies::LiveReplies(std::shared_ptr<LiveSession> session, v1::LiveHeader header,
                          std::shared_ptr<const engine::Synthesizer> model,
                          engine::SynthesisOptions options, const common::Clock& clock)
@@ -60,12 +72,7 @@ NextReply LiveReplies::Next(CallScope& scope) {
     return {&reply_, {}};
   }
   if (output.frames) return FramesReply(std::move(output), scope);
-  if (!output.error.ok()) {
-    metrics::CallRecord& record = scope.record();
-    return {nullptr, output.window_failed
-                         ? WindowFailure(output.error, record.request_id, &record.cause)
-                         : output.error};
-  }
+  if (!output.error.ok()) return {nullptr, ErrorOf(output, scope.record())};
   return output.end ? SummaryReply(scope.record()) : NextReply{};
 }
 

@@ -32,6 +32,8 @@ class LiveReplies final : public ReplySource {
   void Report(metrics::CallRecord& record) const override;
 
  private:
+  // The status with which the call ends.
+  static absl::Status ErrorOf(const LiveOutput& output, metrics::CallRecord& record);
   NextReply FramesReply(LiveOutput output, CallScope& scope);
   NextReply SummaryReply(const metrics::CallRecord& record);
 

@@ -8,20 +8,23 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/service/refusals.h"
 #include "server/service/violations.h"
 #include "server/service/window_check.h"
-#include "server/service/wire.h"
 
 namespace duet::server::service {
 namespace {
 
-// Far above ten seconds of any skeleton at any rate.
-constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 20;
 constexpr double kMaxGapSeconds = 2;
 // While more leader frames than this many seconds wait for an answer, none are read.
 constexpr double kMaxUnansweredSeconds = 2;
 constexpr std::size_t kMaxWaitingNotices = 16;
+// A session that gets no answer for so long is not live, and the caller can try another server.
+constexpr double kMaxFirstWaitSeconds = 10;
+
+common::TimePoint::duration Seconds(double seconds) {
+  return std::chrono::duration_cast<common::TimePoint::duration>(
+      std::chrono::duration<double>(seconds));
+}
 
 absl::Status MalformedMessage(const char* got) {
   Violations violations;
@@ -57,19 +60,12 @@ void LiveSession::Read(std::function<bool(double)> read_next) {
   ReadOn();
 }
 
-void LiveSession::OnMessage(grpc::ByteBuffer bytes) {
-  absl::Status status;
-  if (bytes.Length() > kMaxMessageBytes) {
-    status = TooLargeRefusal(bytes.Length(), kMaxMessageBytes);
-  } else {
-    v1::SynthesizeLiveRequest message;
-    status = ParseMessage(std::move(bytes), message);
-    if (status.ok()) status = Handle(message);
-  }
+void LiveSession::OnMessage(const absl::StatusOr<v1::SynthesizeLiveRequest>& message) {
+  const absl::Status status = message.ok() ? Handle(*message) : message.status();
   {
     common::MutexLock lock(mutex_);
     reading_ = false;
-    if (error_.ok()) error_ = status;
+    Fail(status, LiveFault::kMessage);
   }
   Work();
   on_progress_();
@@ -84,6 +80,20 @@ void LiveSession::OnEndOfMessages() {
   }
   Work();
   on_progress_();
+}
+
+void LiveSession::OnDraining() {
+  {
+    common::MutexLock lock(mutex_);
+    Notify(v1::LIVE_NOTICE_KIND_DRAINING, 0, 0);
+  }
+  on_progress_();
+}
+
+void LiveSession::Fail(const absl::Status& error, LiveFault fault) {
+  if (!error_.ok() || error.ok()) return;
+  error_ = error;
+  fault_ = fault;
 }
 
 absl::Status LiveSession::Handle(const v1::SynthesizeLiveRequest& message) {
@@ -198,10 +208,6 @@ void LiveSession::Work() {
   std::optional<batching::WindowJob> job;
   {
     common::MutexLock lock(mutex_);
-    if (!told_draining_ && parts_.admission->state() == Admission::State::kDraining) {
-      told_draining_ = true;
-      Notify(v1::LIVE_NOTICE_KIND_DRAINING, 0, 0);
-    }
     if (!in_flight_ && error_.ok() && !cancelled_->load(std::memory_order_acquire)) {
       KeepDueFrames();
       if (live_.NeedsWindow()) job = NextJob();
@@ -230,11 +236,10 @@ batching::WindowJob LiveSession::NextJob() {
   job.window = live_.NextWindow();
   job.window.cancelled = cancelled_;
   job.priority = batching::Priority::kInteractive;
-  job.deadline = parts_.deadline;
-  job.due = arrival_ + std::chrono::duration_cast<common::TimePoint::duration>(
-                           std::chrono::duration<double>(1 / frame_rate_hz_));
+  job.deadline = WindowDeadline();
+  job.due = arrival_ + Seconds(1 / frame_rate_hz_);
   job.cancelled = cancelled_;
-  job.continues_call = stats_.windows > 0;
+  job.continues_call = true;  // also the first: the session was admitted
   job.client = parts_.client;
   job.done = [self = shared_from_this()](const batching::WindowOutcome& outcome) {
     self->OnWindow(outcome);
@@ -243,12 +248,17 @@ batching::WindowJob LiveSession::NextJob() {
   return job;
 }
 
+common::TimePoint LiveSession::WindowDeadline() const {
+  if (stats_.windows > 0) return parts_.deadline;
+  return std::min(parts_.deadline, parts_.clock->Now() + Seconds(kMaxFirstWaitSeconds));
+}
+
 void LiveSession::Schedule(batching::WindowJob job) {
   const absl::Status scheduled = parts_.scheduler->Submit(std::move(job));
   if (scheduled.ok()) return;
   common::MutexLock lock(mutex_);
   in_flight_ = false;
-  if (error_.ok()) error_ = QueueRefusal(scheduled);
+  Fail(scheduled, LiveFault::kQueue);
 }
 
 void LiveSession::OnWindow(const batching::WindowOutcome& outcome) {
@@ -256,22 +266,27 @@ void LiveSession::OnWindow(const batching::WindowOutcome& outcome) {
   {
     common::MutexLock lock(mutex_);
     in_flight_ = false;
-    const absl::Status status = Accept(outcome);
-    if (error_.ok() && !status.ok()) {
-      error_ = status;
-      window_failed_ = true;
-    }
+    Accept(outcome);
   }
   Work();
   on_progress_();
 }
 
-absl::Status LiveSession::Accept(const batching::WindowOutcome& outcome) {
+void LiveSession::Accept(const batching::WindowOutcome& outcome) {
   stats_.queue_seconds += outcome.timings.queue_seconds;
   stats_.compute_seconds += outcome.timings.compute_seconds;
   const absl::Status status = CheckWindow(outcome.result, window_frames_,
                                           parts_.model->description().skeleton.joint_count());
-  if (!status.ok()) return status;
+  const bool waited_in_vain = stats_.windows == 0 && absl::IsDeadlineExceeded(status) &&
+                              parts_.clock->Now() < parts_.deadline;
+  if (waited_in_vain) {
+    return Fail(absl::ResourceExhaustedError(
+                    absl::StrCat("the queue is too long: the first answer of the session was not "
+                                 "started within ",
+                                 kMaxFirstWaitSeconds, " s")),
+                LiveFault::kQueue);
+  }
+  if (!status.ok()) return Fail(status, LiveFault::kWindow);
   ++stats_.windows;
   live_.Accept(*outcome.result);
   const int skipped = live_.skipped_frames() - stats_.skipped_frames;
@@ -279,7 +294,6 @@ absl::Status LiveSession::Accept(const batching::WindowOutcome& outcome) {
     Notify(v1::LIVE_NOTICE_KIND_SKIPPED, live_.next_follower_frame() - skipped, skipped);
     stats_.skipped_frames += skipped;
   }
-  return status;
 }
 
 bool LiveSession::WantsMessage() const {
@@ -318,7 +332,7 @@ LiveOutput LiveSession::Take() {
       output.arrival = arrival_;
     } else if (!error_.ok()) {
       output.error = error_;
-      output.window_failed = window_failed_;
+      output.fault = fault_;
     } else {
       output.end = ended_ && !in_flight_ && live_.done();
     }

@@ -2,7 +2,6 @@
 #define DUET_SERVER_SERVICE_LIVE_SESSION_H_
 
 #include <google/protobuf/repeated_field.h>
-#include <grpcpp/support/byte_buffer.h>
 
 #include <atomic>
 #include <deque>
@@ -13,14 +12,13 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "duet/v1/live.pb.h"
 #include "model/engine/live_synthesis.h"
 #include "model/engine/synthesizer.h"
 #include "server/batching/window_scheduler.h"
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
-#include "server/service/admission.h"
-#include "server/service/reception.h"
 #include "server/service/request_limits.h"
 #include "server/service/validate_live.h"
 
@@ -30,7 +28,6 @@ namespace duet::server::service {
 struct LiveSessionParts {
   std::shared_ptr<const engine::Synthesizer> model;
   batching::WindowScheduler* scheduler = nullptr;
-  const Admission* admission = nullptr;  // says when the server drains
   const common::Clock* clock = nullptr;
   RequestLimits limits;
   common::TimePoint deadline = common::TimePoint::max();
@@ -50,34 +47,49 @@ struct LiveStats {
   int peak_buffered_frames = 0;
 };
 
+// Where the error of a session comes from.
+enum class LiveFault {
+  kMessage,  // the caller's message
+  kQueue,    // the scheduler did not take a window, or did not start the first one in time
+  kWindow    // a window failed
+};
+
 // What a session has for its caller now: at most one of the fields.
 struct LiveOutput {
   std::optional<v1::LiveNotice> notice;
   std::optional<v1::FollowerFrames> frames;  // without the time at the server
   // When the newest leader frame of `frames` arrived.
   common::TimePoint arrival;
-  bool end = false;            // every frame was taken
-  absl::Status error;          // the session ends with this
-  bool window_failed = false;  // `error` is that of a window
+  bool end = false;                       // every frame was taken
+  absl::Status error;                     // the session ends with this
+  LiveFault fault = LiveFault::kMessage;  // of `error`
 };
 
 // A live session: takes leader frames and label changes as they arrive, runs one window at a time
 // through the scheduler, and keeps the final frames until they are taken. Reads the next message
 // only while the caller takes its frames, so memory is bounded.
 //
+// No window of a session is refused because the queue is full: the session has its place among the
+// calls, and at most one window in the queue. The first window waits for at most ten seconds, then
+// the session ends.
+//
 // Threads: safe to call concurrently. on_progress runs under no lock, and may still run after the
-//          end was taken.
-class LiveSession final : public MessageSink, public std::enable_shared_from_this<LiveSession> {
+//          end was taken. Uses neither gRPC nor abseil's synchronisation (ARCHITECTURE.md).
+class LiveSession final : public std::enable_shared_from_this<LiveSession> {
  public:
   LiveSession(LiveSessionParts parts, ValidatedLiveStart start);
 
   // Answers the frames of the history. Call once, before everything else.
   void Start(std::function<void()> on_progress);
-  // Reads the first message after the start. `read_next`: Reception::ReadNext.
+  // Begins to read messages. `read_next` reads one, within so many seconds, and returns false if
+  // there will be none (Reception::ReadNext).
   void Read(std::function<bool(double)> read_next);
 
-  void OnMessage(grpc::ByteBuffer bytes) override;
-  void OnEndOfMessages() override;
+  // The message that was read, or why it is not one.
+  void OnMessage(const absl::StatusOr<v1::SynthesizeLiveRequest>& message);
+  void OnEndOfMessages();
+  // Notifies the caller that the server drains, also one that sends nothing. Call once.
+  void OnDraining();
 
   LiveOutput Take();
   void Cancel();
@@ -88,6 +100,8 @@ class LiveSession final : public MessageSink, public std::enable_shared_from_thi
 
  private:
   absl::Status Handle(const v1::SynthesizeLiveRequest& message) DUET_EXCLUDES(mutex_);
+  // The first error counts.
+  void Fail(const absl::Status& error, LiveFault fault) DUET_REQUIRES(mutex_);
   absl::Status AddFrames(const v1::LeaderFrames& frames) DUET_EXCLUDES(mutex_);
   absl::Status AddPoses(int first, motion::Poses poses) DUET_REQUIRES(mutex_);
   absl::Status ChangeLabels(const v1::LabelChange& change) DUET_EXCLUDES(mutex_);
@@ -101,9 +115,10 @@ class LiveSession final : public MessageSink, public std::enable_shared_from_thi
   void Work() DUET_EXCLUDES(mutex_);
   void KeepDueFrames() DUET_REQUIRES(mutex_);
   batching::WindowJob NextJob() DUET_REQUIRES(mutex_);
+  common::TimePoint WindowDeadline() const DUET_REQUIRES(mutex_);
   void Schedule(batching::WindowJob job) DUET_EXCLUDES(mutex_);
   void OnWindow(const batching::WindowOutcome& outcome) DUET_EXCLUDES(mutex_);
-  absl::Status Accept(const batching::WindowOutcome& outcome) DUET_REQUIRES(mutex_);
+  void Accept(const batching::WindowOutcome& outcome) DUET_REQUIRES(mutex_);
   void ReadOn() DUET_EXCLUDES(mutex_);
   bool WantsMessage() const DUET_REQUIRES(mutex_);
   int waiting_frames() const DUET_REQUIRES(mutex_);
@@ -130,9 +145,8 @@ class LiveSession final : public MessageSink, public std::enable_shared_from_thi
   // Final frames that wait for the reader, as they are sent: [frames, joints, 3].
   google::protobuf::RepeatedField<float> ready_ DUET_GUARDED_BY(mutex_);
   std::vector<v1::LiveNotice> notices_ DUET_GUARDED_BY(mutex_);
-  bool told_draining_ DUET_GUARDED_BY(mutex_) = false;
   absl::Status error_ DUET_GUARDED_BY(mutex_);
-  bool window_failed_ DUET_GUARDED_BY(mutex_) = false;  // error_ is that of a window
+  LiveFault fault_ DUET_GUARDED_BY(mutex_) = LiveFault::kMessage;  // of error_
   LiveStats stats_ DUET_GUARDED_BY(mutex_);
 };
 

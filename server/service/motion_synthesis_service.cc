@@ -11,6 +11,7 @@
 #include "server/common/activity.h"
 #include "server/service/call_deadline.h"
 #include "server/service/clip_replies.h"
+#include "server/service/live_inbox.h"
 #include "server/service/live_replies.h"
 #include "server/service/model_message.h"
 #include "server/service/priority_message.h"
@@ -26,8 +27,6 @@ namespace {
 constexpr metrics::MethodInfo Method(std::string_view name, std::string_view type) {
   return {MotionSynthesisService::kServiceName, name, type};
 }
-constexpr metrics::MethodInfo kSynthesize = Method("Synthesize", "server_stream");
-constexpr metrics::MethodInfo kSynthesizeLive = Method("SynthesizeLive", "bidi_stream");
 constexpr metrics::MethodInfo kListModels = Method("ListModels", "unary");
 constexpr metrics::MethodInfo kGetModel = Method("GetModel", "unary");
 
@@ -36,6 +35,9 @@ constexpr common::StepKind kHandlingLarge{"large requests", "handling a large re
 // Larger requests are handled on a separate thread, because parsing and validation take 8 ms per
 // MiB. Their memory is returned to the system.
 constexpr std::size_t kLargeRequestBytes = std::size_t{1} << 20;
+
+// Far above ten seconds of two motions of any skeleton at any rate.
+constexpr std::size_t kMaxLiveStartBytes = std::size_t{4} << 20;
 
 // A reader that has taken nothing for this long has stalled. Longer than delays of a network or a
 // busy machine, and short enough for rejected callers, which retry every second.
@@ -55,16 +57,22 @@ common::TimePoint DeadlineOf(const grpc::ServerContextBase& context, const commo
 
 }  // namespace
 
+const MotionSynthesisService::StreamMethod MotionSynthesisService::kSynthesize = {
+    Method("Synthesize", "server_stream"), &MotionSynthesisService::Begin,
+    std::numeric_limits<std::size_t>::max(), /*needs_room=*/true};
+// A session has a place among the calls for as long as it lasts; its windows always join the queue.
+const MotionSynthesisService::StreamMethod MotionSynthesisService::kSynthesizeLive = {
+    Method("SynthesizeLive", "bidi_stream"), &MotionSynthesisService::BeginLive, kMaxLiveStartBytes,
+    /*needs_room=*/false};
+
 MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
     : parts_(std::move(parts)),
       pipeline_(parts_.limits.max_request_bytes, parts_.client_key, parts_.observers, *parts_.clock,
                 parts_.guard, security::Role::kSynthesise, parts_.trace_ratio) {
-  Serve("/duet.v1.MotionSynthesis/Synthesize", [this](Context* context) {
-    return OpenStream(context, kSynthesize, &MotionSynthesisService::Handle);
-  });
-  Serve("/duet.v1.MotionSynthesis/SynthesizeLive", [this](Context* context) {
-    return OpenStream(context, kSynthesizeLive, &MotionSynthesisService::HandleLive);
-  });
+  Serve("/duet.v1.MotionSynthesis/Synthesize",
+        [this](Context* context) { return OpenStream(context, kSynthesize); });
+  Serve("/duet.v1.MotionSynthesis/SynthesizeLive",
+        [this](Context* context) { return OpenStream(context, kSynthesizeLive); });
   ServeUnary<v1::ListModelsRequest>(
       "/duet.v1.MotionSynthesis/ListModels", kListModels,
       [this](const v1::ListModelsRequest&) -> absl::StatusOr<v1::ListModelsResponse> {
@@ -76,16 +84,15 @@ MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
 }
 
 RawService::Reactor* MotionSynthesisService::OpenStream(Context* context,
-                                                        const metrics::MethodInfo& method,
-                                                        Begun begin) {
-  OpenedCall opened = pipeline_.Open(*context, method);
+                                                        const StreamMethod& method) {
+  OpenedCall opened = pipeline_.Open(*context, method.info);
   auto* reactor = new CallReactor(*context, open_calls_);
   absl::StatusOr<ShareLease> place =
       opened.status.ok() ? Admit(opened.client) : absl::StatusOr<ShareLease>(opened.status);
   absl::Status admitted = place.status();
   // Places and queue are checked before the request is read. The smaller shares of bulk calls are
   // checked afterwards, because the priority is in the request.
-  if (admitted.ok()) {
+  if (admitted.ok() && method.needs_room) {
     const absl::Status room =
         parts_.scheduler->CheckRoom(batching::Priority::kInteractive, opened.client);
     if (!room.ok()) admitted = QueueRefusal(room);
@@ -97,9 +104,9 @@ RawService::Reactor* MotionSynthesisService::OpenStream(Context* context,
   }
   reactor->Receive(
       Receive(std::move(opened), *std::move(place), *reactor),
-      [this, begin](CallReactor& received_by, const std::shared_ptr<Reception>& reception,
-                    grpc::ByteBuffer bytes) {
-        (this->*begin)(received_by, reception, std::move(bytes));
+      [this, &method](CallReactor& received_by, const std::shared_ptr<Reception>& reception,
+                      grpc::ByteBuffer bytes) {
+        Handle(method, received_by, reception, std::move(bytes));
       });
   return reactor;
 }
@@ -160,24 +167,24 @@ void MotionSynthesisService::CountIfLarge(const grpc::ByteBuffer& bytes) {
   if (bytes.Length() >= kLargeRequestBytes) large_request_bytes_ += bytes.Length();
 }
 
-void MotionSynthesisService::Handle(CallReactor& reactor,
+void MotionSynthesisService::Handle(const StreamMethod& method, CallReactor& reactor,
                                     const std::shared_ptr<Reception>& reception,
                                     grpc::ByteBuffer bytes) {
   CountIfLarge(bytes);
-  const absl::Status fits = pipeline_.CheckSize(bytes);
+  const absl::Status fits = pipeline_.CheckSize(bytes, method.max_request_bytes);
   absl::StatusOr<ShareLease> held =
       fits.ok() ? Hold(reception->client(), bytes) : absl::StatusOr<ShareLease>(fits);
   if (!held.ok()) {
     reception->Refuse(held.status());
   } else if (bytes.Length() >= kLargeRequestBytes) {
-    HandleElsewhere(reactor, reception, std::move(bytes), *std::move(held));
+    HandleElsewhere(method, reactor, reception, std::move(bytes), *std::move(held));
   } else {
-    Begin(reactor, reception, std::move(bytes), *std::move(held), nullptr);
+    (this->*method.begin)(reactor, reception, std::move(bytes), *std::move(held), nullptr);
   }
 }
 
 // The reactor and the service live until the reception ends the call.
-void MotionSynthesisService::HandleElsewhere(CallReactor& reactor,
+void MotionSynthesisService::HandleElsewhere(const StreamMethod& method, CallReactor& reactor,
                                              const std::shared_ptr<Reception>& reception,
                                              grpc::ByteBuffer bytes, ShareLease held) {
   auto lease = std::make_shared<ShareLease>(std::move(held));
@@ -185,7 +192,7 @@ void MotionSynthesisService::HandleElsewhere(CallReactor& reactor,
   if (parts_.transport != nullptr) {
     received = std::make_shared<TransportQuota::Received>(*parts_.transport, bytes.Length());
   }
-  large_requests_.Post([this, &reactor, reception, bytes = std::move(bytes), lease,
+  large_requests_.Post([this, &method, &reactor, reception, bytes = std::move(bytes), lease,
                         received = std::move(received)](bool run) mutable {
     const common::Step step(kHandlingLarge);
     const std::optional<absl::Status> ended = reception->ended_meanwhile();
@@ -194,7 +201,8 @@ void MotionSynthesisService::HandleElsewhere(CallReactor& reactor,
       reception->Refuse(ended.value_or(DrainingRefusal()));
     } else {
       // Moved, so that the bytes are freed before the parsed message is validated.
-      Begin(reactor, reception, std::move(bytes), std::move(*lease), std::move(received));
+      (this->*method.begin)(reactor, reception, std::move(bytes), std::move(*lease),
+                            std::move(received));
     }
   });
 }
@@ -280,12 +288,15 @@ StreamingCall::Parts MotionSynthesisService::CallParts(Reception& reception,
   return call;
 }
 
-void MotionSynthesisService::HandleLive(CallReactor& reactor,
-                                        const std::shared_ptr<Reception>& reception,
-                                        grpc::ByteBuffer bytes) {
-  CountIfLarge(bytes);
+// `held` is released before the session starts: the session keeps the history that it needs, and
+// nothing else.
+void MotionSynthesisService::BeginLive(CallReactor& reactor,
+                                       const std::shared_ptr<Reception>& reception,
+                                       grpc::ByteBuffer bytes, ShareLease held,
+                                       std::shared_ptr<TransportQuota::Received> received) {
   v1::SynthesizeLiveRequest request;
   absl::Status read = pipeline_.Read(std::move(bytes), request);
+  received = nullptr;
   if (read.ok() && !request.has_start()) {
     Violations violations;
     violations.Malformed("payload", "start in the first message",
@@ -294,13 +305,17 @@ void MotionSynthesisService::HandleLive(CallReactor& reactor,
                                                       : "none");
     read = violations.ToStatus();
   }
-  if (!read.ok()) return reception->Refuse(read);
+  if (!read.ok()) {
+    held = ShareLease();  // free before the caller knows
+    return reception->Refuse(read);
+  }
   absl::StatusOr<PreparedLive> prepared =
       PrepareLive(reactor.context(), *reception, std::move(*request.mutable_start()));
+  held = ShareLease();
   if (!prepared.ok()) return reception->Refuse(prepared.status());
   reactor.Run(
       StreamingCall::Create(std::move(prepared->call), std::move(prepared->replies), reactor),
-      prepared->session);
+      std::make_shared<LiveInbox>(prepared->session));
   // Weak: the reception holds the session.
   prepared->session->Read([weak = std::weak_ptr<Reception>(reception)](double timeout_seconds) {
     const std::shared_ptr<Reception> alive = weak.lock();
@@ -323,7 +338,6 @@ absl::StatusOr<MotionSynthesisService::PreparedLive> MotionSynthesisService::Pre
   LiveSessionParts parts;
   parts.model = served->model;
   parts.scheduler = parts_.scheduler;
-  parts.admission = parts_.admission;
   parts.clock = parts_.clock;
   parts.limits = parts_.limits;
   // A session lasts as long as its caller wants.

@@ -69,6 +69,10 @@ class MotionSynthesisService final : public RawService {
 
   explicit MotionSynthesisService(ServiceParts parts);
 
+  // Notifies callers of live sessions, which have no end of their own, that the server drains. Call
+  // when no more calls are admitted.
+  void AnnounceDrain() { calls_.Drain(); }
+
   // Ends every call in progress.
   void AbortAll(const absl::Status& reason) { calls_.AbortAll(reason); }
 
@@ -86,27 +90,38 @@ class MotionSynthesisService final : public RawService {
  private:
   using Context = grpc::CallbackServerContext;
 
-  // Handles the first message of a call; see CallReactor.
-  using Begun = void (MotionSynthesisService::*)(CallReactor& reactor,
-                                                 const std::shared_ptr<Reception>& reception,
-                                                 grpc::ByteBuffer bytes);
-  // Opens and admits a call of a method that streams its replies.
-  Reactor* OpenStream(Context* context, const metrics::MethodInfo& method, Begun begin);
+  // A method that streams its replies.
+  struct StreamMethod {
+    metrics::MethodInfo info;
+    // Parses the first message and starts the call. `held` accounts for the bytes of the message;
+    // `received` is released with them.
+    void (MotionSynthesisService::*begin)(CallReactor& reactor,
+                                          const std::shared_ptr<Reception>& reception,
+                                          grpc::ByteBuffer bytes, ShareLease held,
+                                          std::shared_ptr<TransportQuota::Received> received);
+    std::size_t max_request_bytes;  // of the first message, if less than the server's limit
+    // The call is refused while the queue has no room for its first window.
+    bool needs_room;
+  };
+  static const StreamMethod kSynthesize, kSynthesizeLive;
+
+  // Opens and admits a call.
+  Reactor* OpenStream(Context* context, const StreamMethod& method);
   void CountIfLarge(const grpc::ByteBuffer& bytes);
-  // Handles a message. Large messages are handled on a thread of their own, because they would
-  // occupy one of gRPC's few threads.
-  void Handle(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
-              grpc::ByteBuffer bytes);
-  void HandleElsewhere(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
-                       grpc::ByteBuffer bytes, ShareLease held);
-  // Parses the message and starts the call. `held` accounts for its bytes; `received` is released
-  // with them.
+  // Handles the first message of a call. Large messages are handled on a thread of their own,
+  // because they would occupy one of gRPC's few threads.
+  void Handle(const StreamMethod& method, CallReactor& reactor,
+              const std::shared_ptr<Reception>& reception, grpc::ByteBuffer bytes);
+  void HandleElsewhere(const StreamMethod& method, CallReactor& reactor,
+                       const std::shared_ptr<Reception>& reception, grpc::ByteBuffer bytes,
+                       ShareLease held);
+  // StreamMethod::begin of Synthesize, and of SynthesizeLive.
   void Begin(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
              grpc::ByteBuffer bytes, ShareLease held,
              std::shared_ptr<TransportQuota::Received> received);
-  // Parses the first message of a live session and starts the session.
-  void HandleLive(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
-                  grpc::ByteBuffer bytes);
+  void BeginLive(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
+                 grpc::ByteBuffer bytes, ShareLease held,
+                 std::shared_ptr<TransportQuota::Received> received);
   // A session that was found valid, with its replies.
   struct PreparedLive {
     StreamingCall::Parts call;

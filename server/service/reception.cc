@@ -60,6 +60,7 @@ void Reception::GoOn(std::shared_ptr<StreamingCall> call, std::shared_ptr<Messag
   // Start first, so that Abort and CheckTime find a call that has started.
   call->Start();
   std::optional<absl::Status> end;
+  std::shared_ptr<MessageSink> draining;
   {
     common::MutexLock lock(mutex_);
     call_ = call;
@@ -68,8 +69,10 @@ void Reception::GoOn(std::shared_ptr<StreamingCall> call, std::shared_ptr<Messag
     if (state_ == State::kHandling) {
       state_ = State::kAnswering;
       further_ = std::move(further);
+      if (draining_) draining = further_;
     }
   }
+  if (draining != nullptr) draining->OnDraining();
   if (end) call->Abort(*end);
 }
 
@@ -108,6 +111,16 @@ void Reception::Close() {
   common::MutexLock lock(mutex_);
   state_ = State::kEnded;
   further = std::move(further_);
+}
+
+void Reception::Drain() {
+  std::shared_ptr<MessageSink> sink;
+  {
+    common::MutexLock lock(mutex_);
+    if (std::exchange(draining_, true)) return;
+    sink = further_;
+  }
+  if (sink != nullptr) sink->OnDraining();
 }
 
 void Reception::Abort(const absl::Status& reason) {

@@ -38,7 +38,7 @@ class MessageReader {
 
 // Receives the messages that follow the first one of a call.
 //
-// Threads: one call at a time, under no lock. Must not block.
+// Threads: one call at a time, under no lock; OnDraining may run beside another. Must not block.
 class MessageSink {
  public:
   virtual ~MessageSink() = default;
@@ -47,6 +47,8 @@ class MessageSink {
   virtual void OnMessage(grpc::ByteBuffer bytes) = 0;
   // The caller sends no more messages. Called at most once.
   virtual void OnEndOfMessages() = 0;
+  // The server has begun to drain; the call goes on. Called at most once.
+  virtual void OnDraining() = 0;
 };
 
 // One call from its headers to its status. Waits for the first message and passes the call on; then
@@ -108,6 +110,8 @@ class Reception final : public ActiveCall {
 
   const std::string& client() const override { return parts_.client; }
 
+  // Notifies the sink given to GoOn, now or as soon as there is one.
+  void Drain() override;
   void Abort(const absl::Status& reason) override;
   void CheckTime(common::TimePoint now) override;
   std::optional<common::TimePoint> waiting_since() const override;
@@ -138,6 +142,7 @@ class Reception final : public ActiveCall {
   ShareLease slow_ DUET_GUARDED_BY(mutex_);  // permission to arrive slowly, if one was needed
   std::shared_ptr<StreamingCall> call_ DUET_GUARDED_BY(mutex_);
   std::shared_ptr<MessageSink> further_ DUET_GUARDED_BY(mutex_);  // null after the last message
+  bool draining_ DUET_GUARDED_BY(mutex_) = false;
   std::optional<Reading> reading_ DUET_GUARDED_BY(mutex_);
   std::optional<absl::Status> end_ DUET_GUARDED_BY(mutex_);  // set while the message is handled
 };

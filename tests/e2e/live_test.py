@@ -293,15 +293,16 @@ class LiveTest(unittest.TestCase):
 
 class StoppingTest(unittest.TestCase):
     def test_a_server_that_drains_says_so(self):
-        """To one session that sends on and to one that does not."""
+        """To one session that sends on, to one at rest and to one that has not sent a frame."""
         leader = person(live.SBU_JOINTS, RATE, FRAMES)
         server = tools.Server("--grace-seconds", "3")
         self.addCleanup(server.stop)
         channel = connect(self, server)
-        busy, quiet = Session(channel, start_message()), Session(channel, start_message())
+        busy, quiet, unsent = (Session(channel, start_message()) for _ in range(3))
         for session in (busy, quiet):
             session.send(frames_message(0, leader[:1]))
             session.wait_for(0)
+        self.assertTrue(unsent.read())
         stopping = threading.Thread(target=server.stop)
         stopping.start()
         self.addCleanup(stopping.join)
@@ -317,9 +318,12 @@ class StoppingTest(unittest.TestCase):
         self.assertFalse(busy.notices[0].HasField("frames"))
         busy.drain()
         self.assertEqual(busy.summary.frame_count, frame)
-        code, text, _ = quiet.error()
-        self.assertEqual(code, "UNAVAILABLE", text)
-        quiet.finish()
+        for session in (quiet, unsent):
+            code, text, _ = session.error()
+            self.assertEqual(code, "UNAVAILABLE", text)
+            self.assertEqual([notice.kind for notice in session.notices],
+                             [live_pb2.LIVE_NOTICE_KIND_DRAINING])
+            session.finish()
 
 
 class IdleTest(unittest.TestCase):

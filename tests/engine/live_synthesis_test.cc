@@ -150,6 +150,25 @@ TEST(LiveSynthesisTest, AResumedSessionContinuesWithTheSameFrames) {
   }
 }
 
+TEST(LiveSynthesisTest, HistoryThatNoEvaluationReadsChangesNothing) {
+  const Poses leader = SwayingMotion(400, kRate);
+  Session whole;
+  whole.Send(leader);
+  constexpr int kNext = 280, kUnanswered = 4;
+  for (const int first : {0, 100, kNext - whole.live().history_frames()}) {
+    LiveRequest request = Request();
+    request.first_frame = first;
+    request.leader = Frames(leader, first, kNext + kUnanswered - first);
+    request.follower = Frames(whole.follower(), first, kNext - first);
+    Session resumed(std::move(request));
+    EXPECT_EQ(resumed.live().next_leader_frame(), kNext + kUnanswered);
+    EXPECT_EQ(resumed.live().next_follower_frame(), kNext);
+    resumed.Advance();
+    resumed.Send(Frames(leader, kNext + kUnanswered, 60));
+    EXPECT_EQ(resumed.follower(), Frames(whole.follower(), kNext, kUnanswered + 60)) << first;
+  }
+}
+
 TEST(LiveSynthesisTest, ASessionResumedAtALabelChangeContinuesWithTheSameFrames) {
   const std::vector<float> none(6, 0), hug = {0, 0, 0, 1, 0, 0};
   for (const int delay : {0, 3}) {

@@ -26,6 +26,7 @@ void AddDataCommand(CLI::App* app, ChosenCommand* chosen);          // tilt, noi
 void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen);     // where the partner is
 void AddTiltCommand(CLI::App* app, ChosenCommand* chosen);          // of a camera, and levelling
 void AddLiveCommand(CLI::App* app, ChosenCommand* chosen);          // reactions of live followers
+void AddHourCommand(CLI::App* app, ChosenCommand* chosen);          // an hour of live followers
 void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen);         // for duet batch's filter
 
 }  // namespace duet::evaluation::program

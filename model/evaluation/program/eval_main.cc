@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   duet::evaluation::program::AddDirectionCommand(&app, &chosen);
   duet::evaluation::program::AddTiltCommand(&app, &chosen);
   duet::evaluation::program::AddLiveCommand(&app, &chosen);
+  duet::evaluation::program::AddHourCommand(&app, &chosen);
   CLI11_PARSE(app, argc, argv);
   const absl::Status status = duet::network::CatchExceptions([&chosen] {
     absl::Status prepared = duet::torch_engine::SetTorchThreads(1);

@@ -22,6 +22,7 @@ class FakeCall final : public ActiveCall {
   FakeCall(std::string client, std::optional<common::TimePoint> since)
       : client_(std::move(client)), since_(since) {}
 
+  void Drain() override { ++drains; }
   void Abort(const absl::Status& reason) override { aborted = reason; }
   void CheckTime(common::TimePoint) override {}
   const std::string& client() const override { return client_; }
@@ -35,6 +36,7 @@ class FakeCall final : public ActiveCall {
 
   std::optional<absl::Status> aborted;
   bool given_up = false;
+  int drains = 0;
 
  private:
   const std::string client_;
@@ -55,6 +57,16 @@ TEST(ActiveCallsTest, CallAfterShutdownEndsImmediately) {
   const auto after = AddCall(calls, "a", std::nullopt);
   EXPECT_EQ(before->aborted, absl::UnavailableError("over"));
   EXPECT_EQ(after->aborted, absl::UnavailableError("over"));
+}
+
+TEST(ActiveCallsTest, EveryCallLearnsOfADrainOnce) {
+  ActiveCalls calls;
+  const auto before = AddCall(calls, "a", std::nullopt);
+  EXPECT_EQ(before->drains, 0);
+  calls.Drain();
+  const auto after = AddCall(calls, "a", std::nullopt);
+  EXPECT_EQ(before->drains, 1);
+  EXPECT_EQ(after->drains, 1) << "it was admitted before the drain began";
 }
 
 TEST(ActiveCallsTest, EndsTheCallOfTheLongestStalledReader) {

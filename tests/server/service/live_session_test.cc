@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
@@ -12,10 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "server/service/wire.h"
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/puppet_scheduler.h"
-#include "tests/server/support/refusal.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/sample_motion.h"
@@ -25,7 +25,6 @@ namespace duet::server::service {
 namespace {
 
 using test::AddWeight;
-using test::Decode;
 using test::FakeClock;
 using test::FakeSynthesizer;
 using test::IsOk;
@@ -33,7 +32,6 @@ using test::PuppetScheduler;
 using test::SampleRequest;
 using test::StatusIs;
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -66,6 +64,10 @@ Message LabelChange(float kick) {
   return message;
 }
 
+auto IsInvalid(const std::string& field) {
+  return StatusIs(StatusCode::kInvalidArgument, HasSubstr(field));
+}
+
 // What a caller took.
 struct Taken {
   std::vector<v1::LiveNotice> notices;
@@ -73,15 +75,13 @@ struct Taken {
   std::vector<float> positions;
   bool end = false;
   absl::Status error;
-  bool window_failed = false;
+  LiveFault fault = LiveFault::kMessage;
 
   int frames() const { return static_cast<int>(positions.size()) / kValues; }
 };
 
 class LiveSessionTest : public ::testing::Test {
  protected:
-  void SetUp() override { admission_.SetState(Admission::State::kServing); }
-
   void Create(uint32_t delay = 0, uint32_t plan = 0) {
     v1::LiveStart start;
     v1::SynthesizeRequest sample = SampleRequest(2);
@@ -98,8 +98,8 @@ class LiveSessionTest : public ::testing::Test {
     LiveSessionParts parts;
     parts.model = model_;
     parts.scheduler = &scheduler_;
-    parts.admission = &admission_;
     parts.clock = &clock_;
+    parts.deadline = deadline_;
     parts.client = "client";
     parts.idle_seconds = kIdleSeconds;
     parts.buffered_frames = buffered_frames_;
@@ -114,11 +114,10 @@ class LiveSessionTest : public ::testing::Test {
   }
 
   // Delivers the message that the session is reading.
-  void Send(const Message& message) { SendBytes(SerializeMessage(message)); }
-  void SendBytes(grpc::ByteBuffer bytes) {
+  void Send(const absl::StatusOr<Message>& message) {
     ASSERT_GE(reads_, 1) << "the session reads no message";
     --reads_;
-    session_->OnMessage(std::move(bytes));
+    session_->OnMessage(message);
     EXPECT_LE(reads_, 1) << "one message at a time";
   }
   void End() {
@@ -146,18 +145,14 @@ class LiveSessionTest : public ::testing::Test {
       } else {
         taken.end = output.end;
         taken.error = output.error;
-        taken.window_failed = output.window_failed;
+        taken.fault = output.fault;
         return taken;
       }
     }
   }
 
   FakeClock clock_;
-  Admission admission_{[] {
-    AdmissionLimits limits;
-    limits.max_calls = 4;
-    return limits;
-  }()};
+  common::TimePoint deadline_ = common::TimePoint::max();
   PuppetScheduler scheduler_;
   std::shared_ptr<FakeSynthesizer> model_ =
       std::make_shared<FakeSynthesizer>(test::SamplingDescription());
@@ -272,8 +267,8 @@ TEST_F(LiveSessionTest, TooLongAGapEndsTheSessionAfterItsFrames) {
   Send(Frames(3 + 2 * kRate + 1, 1));
   const Taken taken = Take();
   EXPECT_EQ(taken.frames(), 3);
-  EXPECT_THAT(Decode(taken.error).Fields(), ElementsAre("frames.first_frame"));
-  EXPECT_FALSE(taken.window_failed);
+  EXPECT_THAT(taken.error, IsInvalid("frames.first_frame"));
+  EXPECT_EQ(taken.fault, LiveFault::kMessage);
   EXPECT_EQ(reads_, 0);
 }
 
@@ -344,7 +339,7 @@ TEST_F(LiveSessionTest, AFailedWindowEndsTheSession) {
   const Taken taken = Take();
   EXPECT_GE(taken.frames(), 1) << "what was final before";
   EXPECT_THAT(taken.error, StatusIs(StatusCode::kInternal, "of the engine"));
-  EXPECT_TRUE(taken.window_failed);
+  EXPECT_EQ(taken.fault, LiveFault::kWindow);
   EXPECT_EQ(scheduler_.queued_windows(), 0);
 }
 
@@ -358,17 +353,57 @@ TEST_F(LiveSessionTest, AWindowThatIsNotFiniteEndsTheSession) {
   const Taken taken = Take();
   EXPECT_EQ(taken.frames(), 0);
   EXPECT_THAT(taken.error, StatusIs(StatusCode::kInternal, ::testing::_));
-  EXPECT_TRUE(taken.window_failed);
+  EXPECT_EQ(taken.fault, LiveFault::kWindow);
 }
 
-TEST_F(LiveSessionTest, AFullQueueEndsTheSessionWithItsOwnCode) {
+TEST_F(LiveSessionTest, AWindowThatTheSchedulerRefusesEndsTheSession) {
   Create();
   scheduler_.Refuse(absl::ResourceExhaustedError("full"));
   Send(Frames(0, 1));
   const Taken taken = Take();
   EXPECT_EQ(taken.error.code(), StatusCode::kResourceExhausted);
-  EXPECT_FALSE(taken.window_failed);
+  EXPECT_EQ(taken.fault, LiveFault::kQueue);
   EXPECT_GT(progress_, 0);
+}
+
+TEST_F(LiveSessionTest, NoWindowNeedsRoomInTheQueue) {
+  Create();
+  for (int t = 0; t < 2; ++t) {
+    Send(Frames(t, 1));
+    EXPECT_TRUE(scheduler_.NextContinuesCall()) << "the first one as well";
+    RunAll();
+  }
+}
+
+TEST_F(LiveSessionTest, OnlyTheFirstWindowHasADeadlineOfItsOwn) {
+  Create();
+  Send(Frames(0, 1));
+  EXPECT_EQ(scheduler_.NextDeadline(), clock_.Now() + std::chrono::seconds(10));
+  RunAll();
+  Send(Frames(1, 1));
+  EXPECT_EQ(scheduler_.NextDeadline(), common::TimePoint::max());
+}
+
+TEST_F(LiveSessionTest, TheCallersDeadlineCountsIfItIsEarlier) {
+  deadline_ = clock_.Now() + std::chrono::seconds(3);
+  Create();
+  Send(Frames(0, 1));
+  EXPECT_EQ(scheduler_.NextDeadline(), deadline_);
+  clock_.Advance(std::chrono::seconds(3));
+  scheduler_.FailNext(absl::DeadlineExceededError("the deadline passed"));
+  const Taken taken = Take();
+  EXPECT_THAT(taken.error, StatusIs(StatusCode::kDeadlineExceeded, "the deadline passed"));
+  EXPECT_EQ(taken.fault, LiveFault::kWindow);
+}
+
+TEST_F(LiveSessionTest, AFirstWindowThatIsNotStartedInTimeEndsTheSession) {
+  Create();
+  Send(Frames(0, 1));
+  clock_.Advance(std::chrono::seconds(10));
+  scheduler_.FailNext(absl::DeadlineExceededError("the deadline passed"));
+  const Taken taken = Take();
+  EXPECT_THAT(taken.error, StatusIs(StatusCode::kResourceExhausted, HasSubstr("within 10 s")));
+  EXPECT_EQ(taken.fault, LiveFault::kQueue);
 }
 
 TEST_F(LiveSessionTest, NothingIsReadWhileTheReaderDoesNotTakeFrames) {
@@ -423,22 +458,29 @@ TEST_F(LiveSessionTest, ACancelledSessionStartsNoMoreWindows) {
   EXPECT_EQ(Take().frames(), 0);
 }
 
-TEST_F(LiveSessionTest, AServerThatDrainsSaysSoOnce) {
+TEST_F(LiveSessionTest, ADrainIsReportedToACallerThatSendsNothing) {
+  Create();
+  const int before = progress_;
+  session_->OnDraining();
+  EXPECT_GT(progress_, before) << "otherwise nobody takes the notice";
+  const Taken taken = Take();
+  ASSERT_THAT(taken.notices, SizeIs(1));
+  EXPECT_EQ(taken.notices[0].kind(), v1::LIVE_NOTICE_KIND_DRAINING);
+  EXPECT_FALSE(taken.notices[0].has_frames());
+  EXPECT_FALSE(taken.end);
+}
+
+TEST_F(LiveSessionTest, ASessionGoesOnWhileTheServerDrains) {
   Create();
   Send(Frames(0, 1));
-  admission_.SetState(Admission::State::kDraining);
+  session_->OnDraining();
   for (int t = 1; t < 20; ++t) {
     Send(Frames(t, 1));
     RunAll();
   }
   const Taken taken = Take();
-  EXPECT_EQ(taken.frames(), 20) << "it is answered as before";
-  ASSERT_FALSE(taken.notices.empty());
-  const auto draining =
-      std::count_if(taken.notices.begin(), taken.notices.end(), [](const v1::LiveNotice& notice) {
-        return notice.kind() == v1::LIVE_NOTICE_KIND_DRAINING && !notice.has_frames();
-      });
-  EXPECT_EQ(draining, 1);
+  EXPECT_EQ(taken.frames(), 20);
+  EXPECT_THAT(taken.error, IsOk());
 }
 
 TEST_F(LiveSessionTest, InvalidMessagesEndTheSession) {
@@ -450,22 +492,60 @@ TEST_F(LiveSessionTest, InvalidMessagesEndTheSession) {
     Create();
     Send(message);
     const Taken taken = Take();
-    EXPECT_EQ(Decode(taken.error).code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(Decode(taken.error).Of("payload"), HasSubstr(got));
+    EXPECT_THAT(taken.error, IsInvalid("payload: expected frames or label_change, " + got));
     EXPECT_EQ(reads_, 0);
   }
 }
 
-TEST_F(LiveSessionTest, MalformedAndLargeBytesEndTheSession) {
+TEST_F(LiveSessionTest, AMessageThatDidNotParseEndsTheSessionAfterItsFrames) {
   Create();
-  const grpc::Slice garbage(std::string(100, '\xff'));
-  SendBytes(grpc::ByteBuffer(&garbage, 1));
-  EXPECT_EQ(Take().error.code(), StatusCode::kInvalidArgument);
-  Create();
-  const grpc::Slice large(std::string((1 << 20) + 1, '\0'));
-  SendBytes(grpc::ByteBuffer(&large, 1));
-  EXPECT_FALSE(Take().error.ok());
+  Send(Frames(0, 3));
+  RunAll();
+  Send(absl::InvalidArgumentError("no message"));
+  const Taken taken = Take();
+  EXPECT_EQ(taken.frames(), 3);
+  EXPECT_THAT(taken.error, StatusIs(StatusCode::kInvalidArgument, "no message"));
   EXPECT_EQ(reads_, 0);
+}
+
+TEST_F(LiveSessionTest, InvalidFramesAndLabelsEndTheSession) {
+  Message endless = Frames(0, 1), many = Frames(0, 1), none = Frames(0, 1), last = Frames(0, 1);
+  endless.mutable_frames()->set_positions(7, std::numeric_limits<float>::quiet_NaN());
+  many.mutable_frames()->set_frame_count(std::numeric_limits<uint32_t>::max());
+  none.mutable_frames()->set_frame_count(0);
+  last.mutable_frames()->set_first_frame(std::numeric_limits<uint32_t>::max());
+  Message unknown, weight = LabelChange(std::numeric_limits<float>::quiet_NaN());
+  AddWeight(*unknown.mutable_label_change()->mutable_label_vector(), "tango", 1);
+  Message ease = LabelChange(1), frame = LabelChange(1);
+  ease.mutable_label_change()->set_ease_frames(std::numeric_limits<uint32_t>::max());
+  frame.mutable_label_change()->set_frame(std::numeric_limits<uint32_t>::max());
+  for (const auto& [message, field] : {std::pair<Message, std::string>{endless, "frames.positions"},
+                                       {many, "frames.frame_count"},
+                                       {none, "frames.frame_count"},
+                                       {last, "frames.first_frame"},
+                                       {unknown, "label_change.label_vector"},
+                                       {weight, "label_change.label_vector"},
+                                       {ease, "label_change.ease_frames"},
+                                       {frame, "label_change.frame"}}) {
+    Create();
+    Send(message);
+    const Taken taken = Take();
+    EXPECT_FALSE(taken.error.ok()) << field;
+    EXPECT_THAT(std::string(taken.error.message()), HasSubstr(field));
+    EXPECT_EQ(scheduler_.queued_windows(), 0);
+    EXPECT_EQ(reads_, 0);
+  }
+}
+
+TEST_F(LiveSessionTest, ATimeOfCaptureMayBeAnyNumber) {
+  Create();
+  Message frames = Frames(0, 1);
+  frames.mutable_frames()->set_capture_seconds(std::numeric_limits<double>::quiet_NaN());
+  Send(frames);
+  RunAll();
+  const Taken taken = Take();
+  ASSERT_THAT(taken.parts, SizeIs(1));
+  EXPECT_TRUE(std::isnan(taken.parts[0].capture_seconds()));
 }
 
 TEST_F(LiveSessionTest, ALabelChangeCountsFromTheNextFrame) {
@@ -495,7 +575,7 @@ TEST_F(LiveSessionTest, ALabelChangeOfAFinalFrameIsRefused) {
   EXPECT_THAT(Take().error, IsOk());
   change.mutable_label_change()->set_frame(7);
   Send(change);
-  EXPECT_THAT(Decode(Take().error).Fields(), ElementsAre("label_change.frame"));
+  EXPECT_THAT(Take().error, IsInvalid("label_change.frame"));
 }
 
 TEST_F(LiveSessionTest, AnnouncedLabelChangesAreBounded) {
@@ -512,7 +592,7 @@ TEST_F(LiveSessionTest, AnnouncedLabelChangesAreBounded) {
   Message change = LabelChange(0.5F);
   change.mutable_label_change()->set_frame(static_cast<uint32_t>(20 + 2 * most));
   Send(change);
-  EXPECT_THAT(Decode(Take().error).Fields(), ElementsAre("label_change.frame"));
+  EXPECT_THAT(Take().error, IsInvalid("label_change.frame"));
 }
 
 TEST_F(LiveSessionTest, LabelChangesThatApplyAreNotCounted) {
@@ -547,6 +627,7 @@ TEST_F(LiveSessionTest, MessagesWindowsAndTheReaderRunAtTheSameTime) {
     while (reads_ == 0 && !over) std::this_thread::yield();
     End();
   });
+  std::thread drain([&] { session_->OnDraining(); });
   Taken last;
   do {
     last = Take();
@@ -554,6 +635,7 @@ TEST_F(LiveSessionTest, MessagesWindowsAndTheReaderRunAtTheSameTime) {
     std::this_thread::yield();
   } while (!last.end && last.error.ok());
   messages.join();
+  drain.join();
   over = true;
   windows.join();
   EXPECT_EQ(answered_, kFrames);

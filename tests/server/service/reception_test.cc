@@ -194,8 +194,9 @@ class RecordingSink final : public MessageSink {
  public:
   void OnMessage(grpc::ByteBuffer bytes) override { sizes.push_back(bytes.Length()); }
   void OnEndOfMessages() override { ++ends; }
+  void OnDraining() override { ++drains; }
   std::vector<std::size_t> sizes;
-  int ends = 0;
+  int ends = 0, drains = 0;
 };
 
 // A stream that sends nothing and does not end by itself.
@@ -216,8 +217,14 @@ grpc::ByteBuffer Bytes(std::size_t size) {
 class FurtherMessagesTest : public ReceptionTest {
  protected:
   void SetUp() override {
+    Begin();
+    GoOn();
+  }
+  void Begin() {
     reception_ = Receive(writer_);
     ASSERT_TRUE(reception_->Received());
+  }
+  void GoOn() {
     StreamingCall::Parts parts;
     parts.scope = reception_->TakeScope();
     parts.place = reception_->TakePlace();
@@ -279,6 +286,32 @@ TEST_F(FurtherMessagesTest, MessagesAfterCloseAreDropped) {
   EXPECT_EQ(sink_->ends, 0);
   EXPECT_FALSE(reception_->ReadNext(30)) << "the reader may be gone";
   EXPECT_EQ(reader_.reads, 1);
+}
+
+TEST_F(FurtherMessagesTest, DrainIsReportedOnceWhileMessagesAreTaken) {
+  EXPECT_EQ(sink_->drains, 0);
+  reception_->Drain();
+  reception_->Drain();
+  EXPECT_EQ(sink_->drains, 1);
+  EXPECT_FALSE(writer_.finished.has_value());
+  EXPECT_TRUE(reception_->ReadNext(30));
+}
+
+TEST_F(FurtherMessagesTest, DrainThatBeginsBeforeTheCallGoesOnIsReported) {
+  reception_->Abort(absl::CancelledError("of another test"));
+  writer_.finished.reset();
+  Begin();
+  reception_->Drain();
+  EXPECT_EQ(sink_->drains, 0);
+  GoOn();
+  EXPECT_EQ(sink_->drains, 1);
+}
+
+TEST_F(FurtherMessagesTest, DrainIsNotReportedAfterTheLastMessage) {
+  EXPECT_TRUE(reception_->ReadNext(30));
+  reception_->EndOfMessages();
+  reception_->Drain();
+  EXPECT_EQ(sink_->drains, 0);
 }
 
 TEST_F(ReceptionTest, CallWithoutASinkReadsNoFurtherMessage) {

@@ -7,7 +7,8 @@ namespace duet::test {
 
 absl::Status PuppetScheduler::Submit(server::batching::WindowJob job) {
   server::common::MutexLock lock(mutex_);
-  if (refusal_.has_value()) return *refusal_;
+  const bool taken = takes_continuing_ && job.continues_call;
+  if (refusal_.has_value() && !taken) return *refusal_;
   jobs_.push_back(std::move(job));
   came_.NotifyAll();
   return absl::OkStatus();
@@ -21,6 +22,12 @@ absl::Status PuppetScheduler::CheckRoom(server::batching::Priority, const std::s
 void PuppetScheduler::Refuse(absl::Status status) {
   server::common::MutexLock lock(mutex_);
   refusal_ = std::move(status);
+}
+
+void PuppetScheduler::RefuseFirstWindows(absl::Status status) {
+  server::common::MutexLock lock(mutex_);
+  refusal_ = std::move(status);
+  takes_continuing_ = true;
 }
 
 bool PuppetScheduler::RunNext() {
@@ -60,6 +67,11 @@ server::common::TimePoint PuppetScheduler::NextDeadline() const {
 int PuppetScheduler::NextCallWindows() const {
   server::common::MutexLock lock(mutex_);
   return jobs_.front().call_windows;
+}
+
+bool PuppetScheduler::NextContinuesCall() const {
+  server::common::MutexLock lock(mutex_);
+  return jobs_.front().continues_call;
 }
 
 std::string PuppetScheduler::NextClient() const {

@@ -25,6 +25,10 @@ class PuppetScheduler final : public server::batching::WindowScheduler {
   // Makes Submit and CheckRoom fail with this status.
   void Refuse(absl::Status status);
 
+  // As a full queue: makes CheckRoom fail with this status, and Submit of the first window of a
+  // call.
+  void RefuseFirstWindows(absl::Status status);
+
   // Waits for a job and evaluates the oldest, or drops it if cancelled. Returns whether it was
   // evaluated.
   bool RunNext();
@@ -38,6 +42,7 @@ class PuppetScheduler final : public server::batching::WindowScheduler {
   server::batching::Priority NextPriority() const;
   server::common::TimePoint NextDeadline() const;
   int NextCallWindows() const;
+  bool NextContinuesCall() const;
   std::string NextClient() const;
 
  private:
@@ -47,6 +52,7 @@ class PuppetScheduler final : public server::batching::WindowScheduler {
   server::common::CondVar came_;
   std::deque<server::batching::WindowJob> jobs_ DUET_GUARDED_BY(mutex_);
   std::optional<absl::Status> refusal_ DUET_GUARDED_BY(mutex_);
+  bool takes_continuing_ DUET_GUARDED_BY(mutex_) = false;  // in spite of refusal_
 };
 
 }  // namespace duet::test

@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+"""Measures the memory of a server with live sessions, and what regular sessions notice of hostile ones.
+
+    benchmarks/measure_live.py BUILD hostile [--seconds 600] [--sessions 4]
+    benchmarks/measure_live.py BUILD hour [--minutes 60] [--sessions 4]
+
+hostile: regular sessions of duet-load at 30 frames a second, first without and then beside callers that
+never send, never read, end at once, send tiny, impossible, huge or malformed messages, or disconnect.
+Prints latency, frames that were lost or late, and memory.
+
+hour: sessions whose callers send each frame as soon as the one before is answered: an hour of frames at
+30 a second takes some minutes. Prints memory after each tenth.
+
+Exits with 1 if a regular session lost a frame or did not end with OK, or if memory grew by more than
+MEMORY_MB. Needs python3-grpcio and protobuf-compiler.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import threading
+import time
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+os.environ.setdefault("DUET_SOURCE_DIR", str(SOURCE))
+sys.path.insert(0, str(SOURCE / "tests/e2e"))
+CLIENT_KEY = "x-duet-client"
+RATE = 30
+WINDOW = 256  # frames that a session of an hour may have unanswered
+
+
+def say(figure, value):
+    print(f"| {figure} | {value} |", flush=True)
+
+
+def load(args, server, seconds):
+    """Regular sessions; duet-load's figures of them."""
+    printed = subprocess.run(
+        [args.build / "bin/duet-load", "--server", server.address, "--live", str(args.sessions),
+         "--seconds", str(seconds), "--deadline", str(seconds + 60), "--json", "-", "--quiet"],
+        stdout=subprocess.PIPE, text=True, check=False).stdout
+    return json.loads(printed)["live"][0]
+
+
+def say_load(name, step):
+    latency = step["latency_ms"]
+    say(f"{name}: latency, ms",
+        f"p50 {latency['p50']:.1f}, p99 {latency['p99']:.1f}, most {latency['max']:.0f}")
+    say(f"{name}: added at the server, ms",
+        f"p50 {step['at_server_ms']['p50']:.1f}, p99 {step['at_server_ms']['p99']:.1f}")
+    say(f"{name}: frames answered of those sent", f"{step['answered']} of {step['sent']}")
+    say(f"{name}: lost, doubled", f"{step['lost']}, {step['doubled']}")
+    say(f"{name}: sessions by status", ", ".join(f"{count} {code}"
+                                                 for code, count in step["ended"].items()))
+
+
+def undisturbed(args, step):
+    return (step["lost"] == step["doubled"] == 0 and step["answered"] == step["sent"] and
+            step["ended"] == {"OK": args.sessions})
+
+
+def hostile(args):
+    from live_hostile import HostileCallers  # pylint: disable=import-outside-toplevel
+    with args.running(args.build / "bin/duet-server", "--client-key", CLIENT_KEY) as server:
+        quiet = load(args, server, min(10, args.seconds))
+        say_load("alone", quiet)
+        begin = server.memory()
+        say("memory before, MB", begin)
+        with HostileCallers(server.address, CLIENT_KEY) as callers:
+            beside = load(args, server, args.seconds)
+        for (kind, code), count in sorted(callers.ends.items()):
+            say(f"sessions: {kind}", f"{count} {code}")
+        say_load("beside", beside)
+        time.sleep(10)
+        say("memory at its peak, MB", server.memory("VmHWM"))
+        say("memory ten seconds later, MB", server.memory())
+        alive = server.process.poll() is None
+        return (alive and undisturbed(args, beside) and
+                server.memory() - begin < args.memory_mb)
+
+
+def answer_all(server, frames):
+    """A session of so many frames, each sent when an earlier one is answered. Returns how many were
+    answered."""
+    import live_clients as live  # pylint: disable=import-outside-toplevel
+    leader = live.person(live.SBU_JOINTS, RATE, 10 * RATE)
+    with live.grpc.insecure_channel(server.address) as channel:
+        session = live.Session(channel, live.start_message(), timeout=None)
+        sent = 0
+        while session.read():
+            last = max(session.frames, default=-1)
+            session.frames = {last: session.frames.get(last)} if last >= 0 else {}
+            session.parts.clear()
+            session.notices.clear()
+            while sent < min(frames, last + WINDOW):
+                session.send(live.frames_message(sent, [leader[sent % len(leader)]]))
+                sent += 1
+            if sent == frames:
+                session.finish()
+                sent += 1
+        return session.summary.frame_count if session.summary else 0
+
+
+def hour(args):
+    frames = round(args.minutes * 60 * RATE)
+    answered = [0] * args.sessions
+    with args.running(args.build / "bin/duet-server") as server:
+        def session(i):
+            answered[i] = answer_all(server, frames)
+        threads = [threading.Thread(target=session, args=(i,)) for i in range(args.sessions)]
+        for thread in threads:
+            thread.start()
+        readings = []
+        while any(thread.is_alive() for thread in threads):
+            time.sleep(1)
+            readings.append(server.memory())
+        tenth = max(1, len(readings) // 10)
+        for i in range(0, len(readings), tenth):
+            say(f"memory after {100 * i // len(readings)} %, MB", readings[i])
+        say("frames answered of those sent", f"{sum(answered)} of {args.sessions * frames}")
+        growth = readings[-1] - readings[min(tenth, len(readings) - 1)]
+        say("growth after the first tenth, MB", growth)
+        return sum(answered) == args.sessions * frames and growth < args.memory_mb
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("measured", choices=("hostile", "hour"))
+    parser.add_argument("--seconds", type=float, default=600, help="of the hostile sessions")
+    parser.add_argument("--minutes", type=float, default=60, help="of frames at 30 a second")
+    parser.add_argument("--sessions", type=int, default=4, help="regular sessions side by side")
+    parser.add_argument("--memory-mb", type=int, default=150, help="growth that is accepted")
+    args = parser.parse_args()
+    args.build = args.build.resolve()
+    os.environ.setdefault("DUET_BIN_DIR", str(args.build / "bin"))
+    from hostile_tools import running  # pylint: disable=import-outside-toplevel
+    args.running = running
+    measure = {"hostile": hostile, "hour": hour}[args.measured]
+    return 0 if measure(args) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,161 @@
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "model/dataset/dataset.h"
+#include "model/engine/live_synthesis.h"
+#include "model/evaluation/experiments/hour_leaders.h"
+#include "model/evaluation/experiments/live_hour.h"
+#include "model/evaluation/experiments/synthesizer_method.h"
+#include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/model_flags.h"
+#include "model/evaluation/program/section_flags.h"
+#include "model/evaluation/report/result_section.h"
+
+namespace duet::evaluation::program {
+namespace {
+
+// So that every class is seen many times, and the first and the last minute have the same one.
+constexpr double kSecondsOfAClass = 60;
+
+struct Arguments {
+  ModelChoice models;
+  double minutes = 60;
+  double rate = 30;
+  int delay = 0;
+  uint64_t seed = 0;
+  SectionFlags section;
+};
+
+// A class each minute, in their order; in the last one, the first.
+engine::LabelTrack ClassAfterClass(int classes, double seconds, double rate) {
+  std::vector<engine::LabelKeyframe> keyframes;
+  const int minutes = static_cast<int>(std::ceil(seconds / kSecondsOfAClass));
+  for (int m = 0; m < minutes; ++m) {
+    const int own = m + 1 == minutes ? 0 : m % classes;
+    std::vector<float> weights(static_cast<size_t>(classes));
+    weights[static_cast<size_t>(own)] = 1;
+    const int frame = static_cast<int>(std::lround(m * kSecondsOfAClass * rate));
+    // Changes at once, not gradually over the minute before.
+    if (m > 0) keyframes.push_back({frame - 1, keyframes.back().weights});
+    keyframes.push_back({frame, std::move(weights)});
+  }
+  return engine::LabelTrack(std::move(keyframes));
+}
+
+absl::Status CheckModel(const engine::ModelDescription& model, const std::string& name) {
+  if (!engine::AnswersLive(model)) {
+    return absl::FailedPreconditionError(
+        absl::StrCat(name, ": expected a model that answers live, got one that does not"));
+  }
+  if (model.skeleton.joint_names != motion::SbuSkeleton().joint_names) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        name, ": expected a model with the joints of SBU, which the leaders have, got ",
+        model.skeleton.joint_names.size(), " other joints"));
+  }
+  return absl::OkStatus();
+}
+
+std::vector<dataset::Sequence> MakeLeaders(const Arguments& arguments,
+                                           const engine::ModelDescription& model) {
+  std::vector<dataset::Sequence> leaders;
+  for (const std::string& name : experiments::HourLeaderNames()) {
+    dataset::Sequence sequence;
+    sequence.id = name;
+    sequence.pair.leader = {
+        model.skeleton.joint_names, arguments.rate,
+        experiments::MakeHourLeader(name, 60 * arguments.minutes, arguments.rate)};
+    leaders.push_back(std::move(sequence));
+  }
+  return leaders;
+}
+
+absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const FoldModel& model) {
+  absl::StatusOr<SharedSynthesizer> synthesizer = model.load("");
+  if (!synthesizer.ok()) return synthesizer.status();
+  const engine::ModelDescription& description = (*synthesizer)->description();
+  absl::Status fits = CheckModel(description, model.name);
+  if (!fits.ok()) return fits;
+  const std::vector<dataset::Sequence> leaders = MakeLeaders(arguments, description);
+  std::vector<experiments::LabelledLeader> asked;
+  for (const dataset::Sequence& leader : leaders) {
+    asked.push_back(
+        {&leader,
+         ClassAfterClass(description.class_count(), 60 * arguments.minutes, arguments.rate),
+         engine::Sampling{arguments.seed + asked.size()}, /*tell_direction=*/false,
+         arguments.delay});
+  }
+  absl::StatusOr<std::vector<motion::Poses>> followers =
+      SynthesizeSequences(**synthesizer, asked, experiments::StartGiven::kNone);
+  if (!followers.ok()) return followers.status();
+  report::Table table;
+  table.title = absl::StrCat(model.name, ": ", arguments.minutes, " minutes");
+  table.columns = {"lean", "nearest", "farthest", "out %", "feet", "first", "last", "last / first"};
+  table.decimals = 3;
+  for (size_t i = 0; i < leaders.size(); ++i) {
+    const experiments::LiveHourFigures figures = experiments::MeasureLiveHour(
+        description.skeleton, leaders[i].pair.leader.poses, (*followers)[i], arguments.rate);
+    table.rows.push_back({leaders[i].id,
+                          {figures.trunk_lean, figures.nearest, figures.farthest,
+                           100 * figures.out_of_range, figures.feet, figures.first_speed,
+                           figures.last_speed, figures.last_speed / figures.first_speed}});
+  }
+  table.notes = {
+      "Lean: of the trunk, degrees, the largest mean over one second; wanted: at most 20.",
+      absl::StrCat("Nearest, farthest: the roots along the floor, metres; out: the share of frames "
+                   "outside the wanted ",
+                   experiments::kNearestWanted, " to ", experiments::kFarthestWanted, "."),
+      "Feet: the largest distance of the lower foot from the floor, metres; wanted: at most 0.05.",
+      "First, last: mean speed of the joints in the first and the last minute, in the same class, "
+      "m/s; wanted: a ratio of 0.8 to 1.25."};
+  return table;
+}
+
+absl::Status Run(const Arguments& arguments) {
+  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
+  if (!models.ok()) return models.status();
+  report::ResultSection section = BeginSection(
+      arguments.section,
+      "Long live sessions with leaders that formulas make: one stands and sways, one whirls, leaps "
+      "and rushes about, one walks while frames stop for a tenth of a second to half a minute, and "
+      "one dances and is elsewhere every few seconds. The class changes every minute.");
+  section.settings.emplace_back("minutes", absl::StrCat(arguments.minutes));
+  section.settings.emplace_back("frames per second", absl::StrCat(arguments.rate));
+  section.settings.emplace_back("delay", absl::StrCat(arguments.delay));
+  section.settings.emplace_back("seed", absl::StrCat(arguments.seed));
+  for (const FoldModel& model : *models) {
+    absl::StatusOr<report::Table> table = ModelTable(arguments, model);
+    if (!table.ok()) return table.status();
+    section.tables.push_back(*std::move(table));
+  }
+  return FinishSection(arguments.section, section);
+}
+
+}  // namespace
+
+void AddHourCommand(CLI::App* app, ChosenCommand* chosen) {
+  const auto arguments = std::make_shared<Arguments>();
+  arguments->models.as_served = true;
+  CLI::App* command =
+      app->add_subcommand("hour", "Posture and place of live followers for an hour");
+  arguments->section.id = "22_hour";
+  arguments->section.title = "An hour of live followers";
+  AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
+  command->add_option("--minutes", arguments->minutes, "length of each session")
+      ->check(CLI::Range(0.1, 240.0))
+      ->capture_default_str();
+  command->add_option("--rate", arguments->rate, "leader frames per second")
+      ->check(CLI::Range(10.0, 120.0))
+      ->capture_default_str();
+  command->add_option("--delay", arguments->delay, "delay in frames")
+      ->check(CLI::Range(0, 10))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "seed of the answers")->capture_default_str();
+  AddSectionFlags(&arguments->section, command);
+  RunWhenNamed(command, arguments, Run, chosen);
+}
+
+}  // namespace duet::evaluation::program

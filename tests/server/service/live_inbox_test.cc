@@ -1,0 +1,107 @@
+#include "server/service/live_inbox.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "server/service/wire.h"
+#include "tests/server/support/fake_clock.h"
+#include "tests/server/support/puppet_scheduler.h"
+#include "tests/server/support/sample_request.h"
+#include "tests/support/fake_synthesizer.h"
+#include "tests/support/sample_motion.h"
+#include "tests/support/status_matchers.h"
+
+namespace duet::server::service {
+namespace {
+
+using test::IsOk;
+using test::StatusIs;
+
+using ::testing::HasSubstr;
+
+using absl::StatusCode;
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+
+class LiveInboxTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    v1::LiveStart start;
+    v1::SynthesizeRequest sample = test::SampleRequest(1);
+    frame_ = {sample.leader().positions().begin(), sample.leader().positions().end()};
+    *start.mutable_leader() = sample.leader();
+    start.mutable_leader()->clear_positions();
+    start.mutable_leader()->set_frame_count(0);
+    *start.mutable_label_vector() = sample.label_vector();
+    absl::StatusOr<ValidatedLiveStart> valid =
+        ValidateLiveStart(start, model_->description(), RequestLimits());
+    ASSERT_THAT(valid, IsOk());
+    LiveSessionParts parts;
+    parts.model = model_;
+    parts.scheduler = &scheduler_;
+    parts.clock = &clock_;
+    parts.buffered_frames = 10;
+    session_ = std::make_shared<LiveSession>(std::move(parts), *std::move(valid));
+    session_->Start([] {});
+  }
+
+  // Sends bytes, and returns the error of the session.
+  absl::Status Send(const std::string& bytes) {
+    const grpc::Slice slice(bytes);
+    LiveInbox(session_).OnMessage(grpc::ByteBuffer(&slice, 1));
+    return session_->Take().error;
+  }
+
+  test::FakeClock clock_;
+  test::PuppetScheduler scheduler_;
+  std::shared_ptr<test::FakeSynthesizer> model_ =
+      std::make_shared<test::FakeSynthesizer>(test::SamplingDescription());
+  std::vector<float> frame_;
+  std::shared_ptr<LiveSession> session_;
+};
+
+TEST_F(LiveInboxTest, MessagesReachTheSession) {
+  v1::SynthesizeLiveRequest message;
+  message.mutable_frames()->set_frame_count(1);
+  message.mutable_frames()->mutable_positions()->Add(frame_.begin(), frame_.end());
+  LiveInbox inbox(session_);
+  inbox.OnMessage(SerializeMessage(message));
+  scheduler_.RunNext();
+  EXPECT_TRUE(session_->Take().frames.has_value());
+  inbox.OnDraining();
+  EXPECT_TRUE(session_->Take().notice.has_value());
+  inbox.OnEndOfMessages();
+  EXPECT_TRUE(session_->Take().end);
+}
+
+TEST_F(LiveInboxTest, BytesThatDoNotParseEndTheSession) {
+  EXPECT_THAT(Send(std::string(100, '\xff')),
+              StatusIs(StatusCode::kInvalidArgument, HasSubstr("SynthesizeLiveRequest")));
+}
+
+TEST_F(LiveInboxTest, AnEmptyMessageEndsTheSession) {
+  EXPECT_THAT(Send(""), StatusIs(StatusCode::kInvalidArgument, HasSubstr("payload")));
+}
+
+TEST_F(LiveInboxTest, ATooLargeMessageEndsTheSessionUnparsed) {
+  EXPECT_THAT(Send(std::string(kMaxBytes, '\0')),
+              StatusIs(StatusCode::kInvalidArgument, ::testing::_));
+  SetUp();
+  EXPECT_THAT(Send(std::string(kMaxBytes + 1, '\0')),
+              StatusIs(StatusCode::kResourceExhausted, HasSubstr("got 1048577")));
+}
+
+TEST_F(LiveInboxTest, ManyTinyFieldsEndTheSessionUnparsed) {
+  // Label changes, each with a vector, each with an empty weight: four bytes that take 150 parsed.
+  std::string bomb;
+  for (int i = 0; i < 100'000; ++i) bomb.append("\x1a\x02\x12\x00", 4);
+  EXPECT_THAT(Send(bomb), StatusIs(StatusCode::kInvalidArgument, HasSubstr("label_change")));
+}
+
+}  // namespace
+}  // namespace duet::server::service
