@@ -36,7 +36,7 @@ ASKING = {"side": "--leader-side", **READING, "label": "--label", "keyframe": "-
           "model": "--model", "seed": "--seed", "variety": "--variety",
           "candidates": "--candidates",
           "follower_start": "--follower-start", "partner_direction": "--partner-direction",
-          "clean_up": "--clean-up", "rig_joint_map": "--follower-rig-joint-map"}
+          "clean_up": "--clean-up", "pin": "--pin", "rig_joint_map": "--follower-rig-joint-map"}
 
 
 class Duet:
