@@ -79,6 +79,30 @@ BENCHMARK(BM_CleanUp)
     ->Unit(benchmark::kMicrosecond)
     ->Complexity();
 
+// What pins add: `pins` of one hand, a third of a second apart, for two people who stand 1 m apart.
+void BM_Pins(benchmark::State& state) {
+  constexpr int kFrames = 46, kRightHand = 8;
+  const duet::motion::Poses leader = StandingPerson(kFrames, 0, 0);
+  const duet::motion::Poses follower = StandingPerson(kFrames, 1, 3.14159);
+  const duet::cleanup::CleanUp clean_up(duet::motion::SbuSkeleton());
+  const duet::cleanup::Touch touch(kFrames, 0);
+  const duet::cleanup::Timing timing{kRateHz, kSettled};
+  duet::motion::Pins pins;
+  for (int i = 0; i < state.range(0); ++i) {
+    const int frame = kSettled + 5 + 5 * i;
+    const duet::motion::Vec3 way = {0, 0.3f, -0.1f};
+    pins.push_back({kRightHand, static_cast<double>(frame), follower.at(frame, kRightHand) + way});
+  }
+  for (auto _ : state) {
+    duet::motion::Poses pinned = follower;
+    const duet::cleanup::PinnedMotion motion =
+        clean_up.ApproachPins(leader, touch, pins, timing, &pinned);
+    clean_up.PlacePins(motion, leader, timing, &pinned);
+    benchmark::DoNotOptimize(pinned);
+  }
+}
+BENCHMARK(BM_Pins)->Arg(1)->Arg(5)->Unit(benchmark::kMicrosecond);
+
 // Only the joints' ranges, for a person whose limbs are all outside them.
 void BM_JointRanges(benchmark::State& state) {
   const int frames = static_cast<int>(state.range(0));

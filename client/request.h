@@ -65,6 +65,18 @@ struct ReactionOptions {
   std::string request_id;
 };
 
+// Where a joint of the follower must be in one frame of the leader. The server moves the limb or
+// the body there, eased over the neighbouring frames; SynthesisResult::constraint_metres has the
+// distance that remains.
+struct JointConstraint {
+  std::string joint;  // one of the leader's joint_names
+  int frame = 0;
+  motion::Vec3 position;  // in the leader's world
+  // Share of the distance that may remain, in [0, 1]. 1 moves nothing, but candidates that are near
+  // are still preferred.
+  float softness = 0;
+};
+
 // What a caller chooses of the answer to a whole clip. Every field has a default.
 // docs/guides/add_a_request_field.md describes how to add a field.
 struct SynthesisOptions : ReactionOptions {
@@ -75,6 +87,8 @@ struct SynthesisOptions : ReactionOptions {
   Priority priority = Priority::kInteractive;
   // Maximum number of frames in one chunk of the reply. Absent: the server's default.
   std::optional<int> chunk_frames;
+  // At most RequestLimits::max_constraints; each joint at most once in a frame.
+  std::vector<JointConstraint> constraints;
 };
 
 // A request to synthesize a follower. The options are a base, so that they can be collected and

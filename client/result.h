@@ -48,6 +48,7 @@ struct RequestLimits {
   float max_abs_weight = 0;
   float max_variety = 0;
   int max_candidates = 0;
+  int max_constraints = 0;
   int64_t max_request_bytes = 0;
 };
 
@@ -98,6 +99,8 @@ struct SynthesisResult {
   std::optional<double> unfamiliarity;
   // Absent if the model's skeleton lacks hips, shoulders or feet.
   std::optional<MotionGrade> grade;
+  // Distance that remains at each of SynthesisRequest::constraints, metres.
+  std::vector<float> constraint_metres;
   // The follower's joint rotations, if the request asks for them. Metres, y up.
   std::optional<motion::JointRotations> rotations;
   int window_count = 0;  // network windows that were evaluated

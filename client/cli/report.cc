@@ -5,6 +5,7 @@
 #include "absl/strings/str_join.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/grade_report.h"
+#include "client/cli/pin_report.h"
 #include "client/error_details.h"
 #include "model/motion/reading_setting.h"
 #include "nlohmann/json.hpp"
@@ -186,6 +187,7 @@ std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& writt
     }
   }
   if (result.grade) text += DescribeGrade(*result.grade);
+  text += DescribePins(synthesis.request.constraints, result.constraint_metres);
   if (result.attempt_count > 1) {
     absl::StrAppend(&text, "          ", Plural(result.attempt_count, "attempt"), "\n");
   }
@@ -231,6 +233,9 @@ json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
   if (const auto& up = synthesis.request.up) object["up"] = {up->x, up->y, up->z};
   if (result.unfamiliarity) object["unfamiliarity"] = *result.unfamiliarity;
   if (result.grade) object["grade"] = GradeJson(*result.grade);
+  if (const auto& pins = synthesis.request.constraints; !pins.empty()) {
+    object["constraints"] = PinsJson(pins, result.constraint_metres);
+  }
   return object;
 }
 

@@ -65,6 +65,12 @@ void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
       ->type_name("COUNT")
       ->group(kReactionGroup);
   AddCleanUpFlag(app, arguments);
+  AddParsed<JointConstraint>(
+      app, "--pin", "JOINT@FRAME=X,Y,Z[,SOFTNESS]", ParsePin, AppendTo(&arguments->constraints),
+      "Where a joint of the model must be in a frame, in metres, y up, such as "
+      "right_hand@40=0.2,1.3,0.5; a softness up to 1 lets that share of the distance remain; "
+      "repeatable")
+      ->group(kReactionGroup);
   app->add_flag("--rotations", arguments->rotations,
                 "Write the follower's joint rotations beside its positions to .json, for engines")
       ->group(kReactionGroup);

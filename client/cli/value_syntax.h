@@ -31,6 +31,10 @@ absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);
 // "30:kick=1,hug=0": weights at a frame; "8b:kick=1" and "8.5b:kick=1": at a position in beats
 absl::StatusOr<KeyframeArgument> ParseKeyframe(absl::string_view text);
 
+// "right_hand@40=0.2,1.3,0.5", or "right_hand@40=0.2,1.3,0.5,0.3" with a softness: a joint of the
+// model, a frame, and metres, y up
+absl::StatusOr<JointConstraint> ParsePin(absl::string_view text);
+
 // "180", or "180,0.25" with the time of the first beat in seconds, at most one beat before 0
 absl::StatusOr<motion::Beat> ParseBeat(absl::string_view text);
 

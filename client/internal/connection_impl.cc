@@ -35,7 +35,8 @@ class ReplyListener final : public StreamListener {
         done_(std::move(done)),
         now_(std::move(now)),
         start_(now_()),
-        reply_(request_.leader, no_callback_, request_.rotations) {
+        reply_(request_.leader, no_callback_, request_.rotations,
+               static_cast<int>(request_.constraints.size())) {
     reply_.StartStream();
   }
 
@@ -121,7 +122,8 @@ absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisReques
   if (!wire.ok()) return wire.status();
   const absl::Time start = environment_.now();
   const CallContext call{start + deadline_, request.request_id};
-  ReplyAssembler reply(request.leader, on_chunk, request.rotations);
+  ReplyAssembler reply(request.leader, on_chunk, request.rotations,
+                       static_cast<int>(request.constraints.size()));
   absl::Time first_chunk = absl::InfiniteFuture();
   int attempts = 0;
   absl::Status status =

@@ -45,6 +45,20 @@ v1::Priority ToProto(Priority priority) {
   return priority == Priority::kBulk ? v1::PRIORITY_BULK : v1::PRIORITY_INTERACTIVE;
 }
 
+absl::Status Fill(const JointConstraint& constraint, int index, v1::JointConstraint* out) {
+  if (constraint.frame < 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("constraints[", index, "].frame: expected 0 or more, got ", constraint.frame));
+  }
+  out->set_joint_name(constraint.joint);
+  out->set_frame(static_cast<uint32_t>(constraint.frame));
+  out->mutable_position()->set_x(constraint.position.x);
+  out->mutable_position()->set_y(constraint.position.y);
+  out->mutable_position()->set_z(constraint.position.z);
+  out->set_softness(constraint.softness);
+  return absl::OkStatus();
+}
+
 bool HasJoint(const v1::Bone& bone, int joints) {
   const auto count = static_cast<uint32_t>(joints);
   return bone.parent_joint() < count && bone.child_joint() < count;
@@ -92,6 +106,11 @@ absl::StatusOr<v1::SynthesizeRequest> ToProto(const SynthesisRequest& request) {
     }
     out.set_chunk_frames(static_cast<uint32_t>(*request.chunk_frames));
   }
+  for (const JointConstraint& constraint : request.constraints) {
+    const int index = out.constraints_size();
+    status = Fill(constraint, index, out.add_constraints());
+    if (!status.ok()) return status;
+  }
   return out;
 }
 
@@ -137,6 +156,7 @@ RequestLimits FromProto(const v1::RequestLimits& limits) {
   out.max_abs_weight = limits.max_abs_weight();
   out.max_variety = limits.max_variety();
   out.max_candidates = static_cast<int>(limits.max_candidates());
+  out.max_constraints = static_cast<int>(limits.max_constraints());
   out.max_request_bytes = static_cast<int64_t>(limits.max_request_bytes());
   return out;
 }

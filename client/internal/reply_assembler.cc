@@ -155,6 +155,22 @@ std::optional<motion::JointRotations> ReplyAssembler::RotationsFrom(int first) c
   return motion::JointRotations{rotations_.rig, {begin, rotations_.rotations.end()}};
 }
 
+absl::Status ReplyAssembler::CheckConstraints(const v1::SynthesisSummary& summary) const {
+  if (summary.constraint_metres_size() != constraints_) {
+    return Malformed("summary.constraint_metres: expected ", constraints_,
+                     " values, one for each of constraints, got ", summary.constraint_metres_size(),
+                     "; does the server know constraints?");
+  }
+  for (const float metres : summary.constraint_metres()) {
+    // Negated, so that NaN is rejected.
+    if (!(metres >= 0 && std::isfinite(metres))) {
+      return Malformed("summary.constraint_metres: expected finite values of 0 or more, got ",
+                       metres);
+    }
+  }
+  return absl::OkStatus();
+}
+
 absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) {
   if (!header_.has_value()) return Malformed("a summary before the header");
   if (received_ != leader_.frame_count()) {
@@ -174,6 +190,7 @@ absl::Status ReplyAssembler::AcceptSummary(const v1::SynthesisSummary& summary) 
                      summary.unfamiliarity());
   }
   if (absl::Status status = CheckGrade(summary.grade(), received_); !status.ok()) return status;
+  if (absl::Status status = CheckConstraints(summary); !status.ok()) return status;
   summary_ = summary;
   return absl::OkStatus();
 }
@@ -207,6 +224,8 @@ SynthesisResult ReplyAssembler::TakeResult() && {
   result.cleaned_up = header_->clean_up() == v1::CLEAN_UP_ON;
   if (summary_->has_unfamiliarity()) result.unfamiliarity = summary_->unfamiliarity();
   if (summary_->has_grade()) result.grade = FromProto(summary_->grade());
+  result.constraint_metres = {summary_->constraint_metres().begin(),
+                              summary_->constraint_metres().end()};
   if (!rotations_.rig.empty()) result.rotations = std::move(rotations_);
   result.window_count = static_cast<int>(summary_->window_count());
   result.timings.queue = absl::Seconds(summary_->queue_seconds());

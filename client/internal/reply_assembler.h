@@ -22,9 +22,13 @@ namespace duet::client::internal {
 class ReplyAssembler {
  public:
   // `leader` and `on_chunk` outlive the assembler; `on_chunk` may be empty. `rotations`: whether
-  // the request asks for them.
-  ReplyAssembler(const motion::Clip& leader, const ChunkCallback& on_chunk, bool rotations = false)
-      : leader_(leader), on_chunk_(on_chunk), wants_rotations_(rotations) {}
+  // the request asks for them. `constraints`: how many it has.
+  ReplyAssembler(const motion::Clip& leader, const ChunkCallback& on_chunk, bool rotations = false,
+                 int constraints = 0)
+      : leader_(leader),
+        on_chunk_(on_chunk),
+        wants_rotations_(rotations),
+        constraints_(constraints) {}
 
   void StartStream();
   absl::Status Accept(const v1::SynthesizeResponse& response);
@@ -48,12 +52,14 @@ class ReplyAssembler {
   absl::Status CheckChunk(const v1::MotionChunk& chunk) const;
   // Of the frames from `first` on that have been received. Absent without a rig.
   std::optional<motion::JointRotations> RotationsFrom(int first) const;
+  absl::Status CheckConstraints(const v1::SynthesisSummary& summary) const;
   absl::Status AcceptSummary(const v1::SynthesisSummary& summary);
   absl::Status HandOut();
 
   const motion::Clip& leader_;
   const ChunkCallback& on_chunk_;
   const bool wants_rotations_;
+  const int constraints_;
   std::optional<v1::SynthesisHeader> header_;
   std::optional<v1::SynthesisSummary> summary_;
   motion::Poses follower_;            // [received_, joints] of the stream in progress

@@ -10,6 +10,7 @@
 #include "model/cleanup/footsteps.h"
 #include "model/cleanup/hand_contact.h"
 #include "model/cleanup/joint_ranges.h"
+#include "model/cleanup/pins.h"
 #include "model/cleanup/spacing.h"
 #include "model/cleanup/timing.h"
 #include "model/cleanup/upright.h"
@@ -30,6 +31,7 @@ struct Options {
   FloorOptions floor;
   FootstepOptions footsteps;
   HandContactOptions hand_contact;
+  PinOptions pins;
 };
 
 // Corrects one window of a follower in stages. Every stage leaves the settled frames unchanged,
@@ -53,6 +55,21 @@ class CleanUp {
                    const Timing& timing, motion::Poses* follower) const;
   void PlaceFeetAndHands(const motion::Poses& leader, const Meetings& meetings,
                          const Timing& timing, motion::Poses* follower) const;
+
+  // The same for a follower with pins, around PlaceFeetAndHands: the body comes to its pins, but
+  // not into the leader; then the limbs do, within the ranges of their joints. Pins in settled
+  // frames have no effect.
+  //
+  //   PinnedMotion pinned = clean_up.ApproachPins(leader, touch, pins, timing, &follower);
+  //   clean_up.PlaceFeetAndHands(leader, meetings, timing, &follower);
+  //   clean_up.PlacePins(pinned, leader, timing, &follower);
+  //
+  // The result refers to this object.
+  PinnedMotion ApproachPins(const motion::Poses& leader, const Touch& touch,
+                            const motion::Pins& pins, const Timing& timing,
+                            motion::Poses* follower) const;
+  void PlacePins(const PinnedMotion& pinned, const motion::Poses& leader, const Timing& timing,
+                 motion::Poses* follower) const;
 
  private:
   // Absent for a skeleton without feet.

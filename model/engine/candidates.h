@@ -7,6 +7,7 @@
 #include "model/body/limbs.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesis_options.h"
+#include "model/motion/pin.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
@@ -25,8 +26,8 @@ uint64_t CandidateSeed(uint64_t seed, int n);
 // without any noise is no typical motion.
 float CandidateVariety(float variety, int candidates);
 
-// Chooses among the samples of a window by what a viewer would notice (model/body/grade.h) and, for
-// a variety below 1, by how far they are from the other samples.
+// Chooses among the samples of a window by what a viewer would notice (model/body/grade.h), by how
+// far they are from the window's pins and, for a variety below 1, from the other samples.
 //
 // Cost:    linear in the frames, quadratic in the candidates.
 // Threads: const methods are safe to call concurrently.
@@ -37,10 +38,10 @@ class CandidateJudge {
   explicit CandidateJudge(const motion::Skeleton& skeleton);
 
   // The index of the best follower; the first of several. `settled`: first frames that all have in
-  // common. `variety`: of the request. Shapes: every follower is like the leader. Requires at least
-  // one.
+  // common. `variety`: of the request. `pins`: of the window, which the followers do not honour
+  // yet. Shapes: every follower is like the leader. Requires at least one.
   int Best(const motion::Poses& leader, const std::vector<motion::Poses>& followers, int settled,
-           double frame_rate_hz, float variety) const;
+           double frame_rate_hz, float variety, const motion::Pins& pins = {}) const;
 
  private:
   double Faults(const motion::Poses& leader, const motion::Poses& follower, int settled,

@@ -15,6 +15,8 @@ namespace {
 // Frames of a spline before and after the one that a time falls in.
 constexpr int kFramesBefore = 1;
 constexpr int kFramesAfter = 2;
+// A window prepares for pins that come this soon after it.
+constexpr double kPinAheadSeconds = 1;
 
 }  // namespace
 
@@ -28,6 +30,7 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
           motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz),
           model_.window_frames, WindowOverlap(model_))),
       state_(model_.skeleton.joint_count()),
+      pin_distances_(request_.pins.size()),
       grader_(ClipGrader::Create(model_.skeleton, request_.frame_rate_hz)) {}
 
 SynthesisWindow ClipSynthesis::NextWindow() const {
@@ -53,6 +56,7 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
     window.partner_direction =
         EstimatePartnerDirection(*model_.partner_direction, model_.skeleton, window.leader);
   }
+  window.pins = PinsOfWindow(first);
   window.options = request_.options;
   window.options.sampling.seed = WindowSeed(request_.options.sampling.seed, index);
   return window;
@@ -70,8 +74,29 @@ motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {
   }
   motion::Poses frames = TakeFinalFrames();
   DropFrames();
+  MeasurePins(frames);
   if (grader_) grader_->Add(request_.leader, frames);
   return frames;
+}
+
+motion::Pins ClipSynthesis::PinsOfWindow(int first) const {
+  const double ahead = kPinAheadSeconds * model_.frame_rate_hz;
+  motion::Pins pins;
+  for (motion::Pin pin : request_.pins) {
+    pin.frame = ToModelFrame(pin.frame) - first;
+    if (pin.frame >= 0 && pin.frame < plan_.length + ahead) pins.push_back(pin);
+  }
+  return pins;
+}
+
+void ClipSynthesis::MeasurePins(const motion::Poses& frames) {
+  const int first = next_frame_ - frames.frame_count();
+  for (std::size_t i = 0; i < request_.pins.size(); ++i) {
+    const motion::Pin& pin = request_.pins[i];
+    const int frame = static_cast<int>(pin.frame) - first;
+    if (frame < 0 || frame >= frames.frame_count()) continue;
+    pin_distances_[i] = Distance(frames.at(frame, pin.joint), pin.position);
+  }
 }
 
 std::optional<body::Grade> ClipSynthesis::grade() const {

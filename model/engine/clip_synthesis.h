@@ -14,6 +14,7 @@
 #include "model/engine/synthesizer.h"
 #include "model/engine/window_plan.h"
 #include "model/engine/window_state.h"
+#include "model/motion/pin.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 
@@ -30,6 +31,8 @@ struct ClipRequest {
   // (ModelDescription::partner_direction).
   std::optional<motion::Vec3> partner_direction;
   SynthesisOptions options = {};
+  // Where joints of the follower must be, in the caller's frames and level world metres.
+  motion::Pins pins = {};
 };
 
 // Turns a clip of any length into network windows and their results back into one motion.
@@ -72,15 +75,22 @@ class ClipSynthesis {
   // was accepted, and if the model's skeleton lacks joints that the grade needs.
   std::optional<body::Grade> grade() const;
 
+  // The distance that remains at each of ClipRequest::pins in the frames that were returned,
+  // metres. Complete after the last window.
+  const std::vector<float>& pin_distances() const { return pin_distances_; }
+
  private:
   // Where a frame of the caller lies among the model's, and the reverse.
-  double ToModelFrame(int frame) const { return frame * model_frames_per_frame_; }
+  double ToModelFrame(double frame) const { return frame * model_frames_per_frame_; }
   double ToCallerFrame(int model_frame) const { return model_frame / model_frames_per_frame_; }
 
   // The model frame at which the next window begins. Requires HasNextWindow().
   int NextWindowStart() const {
     return plan_.starts[static_cast<std::size_t>(state_.window_count())];
   }
+  // The pins that concern a window from `first` on, in its frames.
+  motion::Pins PinsOfWindow(int first) const;
+  void MeasurePins(const motion::Poses& frames);
   motion::Poses TakeFinalFrames();
   void DropFrames();
 
@@ -92,6 +102,7 @@ class ClipSynthesis {
   WindowPlan plan_;                // in model frames
   WindowState state_;
   int next_frame_ = 0;                  // the caller's next frame to hand out
+  std::vector<float> pin_distances_;    // [pins]
   std::unique_ptr<ClipGrader> grader_;  // null if the skeleton lacks joints
 };
 

@@ -115,20 +115,28 @@ class NetworkSynthesizer : public Synthesizer {
   // The best of a window's candidates, finished. Fails if one of them is not finite.
   WindowResult Choose(const SynthesisWindow& window, const motion::Standardisation& standardisation,
                       absl::Span<const motion::Poses> candidates) const {
-    if (candidates.size() == 1) return Finish(window, standardisation, candidates[0]);
+    if (candidates.size() == 1) {
+      return Finish(window, standardisation, candidates[0], window.pins);
+    }
     std::vector<motion::Poses> followers;
     for (const motion::Poses& candidate : candidates) {
-      WindowResult finished = Finish(window, standardisation, candidate);
+      WindowResult finished = Finish(window, standardisation, candidate, /*pins=*/{});
       if (!finished.ok()) return finished;
       followers.push_back(*std::move(finished));
     }
-    const int best = judge_.Best(window.leader, followers, SettledFrames(window),
-                                 description_.frame_rate_hz, window.options.sampling.variety);
+    const int best =
+        judge_.Best(window.leader, followers, SettledFrames(window), description_.frame_rate_hz,
+                    window.options.sampling.variety, window.pins);
+    // Only the chosen one is moved to the pins: a sample that is near already is the better one.
+    if (!window.pins.empty()) {
+      return Finish(window, standardisation, candidates[static_cast<std::size_t>(best)],
+                    window.pins);
+    }
     return std::move(followers[static_cast<std::size_t>(best)]);
   }
 
   WindowResult Finish(const SynthesisWindow& window, const motion::Standardisation& standardisation,
-                      const motion::Poses& standard) const {
+                      const motion::Poses& standard, const motion::Pins& pins) const {
     motion::Poses follower = standardisation.Invert(standard);
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
     if (options_.keep_limb_lengths) KeepLimbLengths(description_.skeleton, window, &follower);
@@ -140,10 +148,16 @@ class NetworkSynthesizer : public Synthesizer {
                             {description_.frame_rate_hz, SettledFrames(window)}, &follower);
     }
     JoinSent(description_, window, &follower);
-    if (cleans) {
-      clean_up_.PlaceFeetAndHands(window.leader, meetings, FeetTiming(description_, window),
-                                  &follower);
+    const cleanup::Timing timing = FeetTiming(description_, window);
+    std::optional<cleanup::PinnedMotion> pinned;
+    if (!pins.empty()) {
+      pinned.emplace(clean_up_.ApproachPins(window.leader, TouchOf(description_, window), pins,
+                                            timing, &follower));
     }
+    if (cleans) {
+      clean_up_.PlaceFeetAndHands(window.leader, meetings, timing, &follower);
+    }
+    if (pinned) clean_up_.PlacePins(*pinned, window.leader, timing, &follower);
     return follower;
   }
 

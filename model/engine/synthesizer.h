@@ -10,6 +10,7 @@
 #include "absl/types/span.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesis_options.h"
+#include "model/motion/pin.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 
@@ -43,6 +44,9 @@ struct SynthesisWindow {
   // The frames after the settled ones that the caller already has. The network makes them anew, and
   // the follower continues from the last of them. Empty for clips.
   motion::Poses sent;
+  // Where joints of the follower must be, in the window's frames. Those in settled frames have no
+  // effect; those soon after the last frame are prepared for.
+  motion::Pins pins = {};
   SynthesisOptions options;
   // Set, at any time and from any thread, when the result is not needed any more. The result may
   // then be CANCELLED. Null: never cancelled.

@@ -142,6 +142,8 @@ void ClipReplies::FillSummary(const metrics::CallRecord& record) {
   summary.set_compute_seconds(stats.compute_seconds);
   if (stats.unfamiliarity) summary.set_unfamiliarity(*stats.unfamiliarity);
   if (stats.grade) *summary.mutable_grade() = ToMessage(*stats.grade);
+  summary.mutable_constraint_metres()->Assign(stats.pin_distances.begin(),
+                                              stats.pin_distances.end());
 }
 
 int ClipReplies::Candidates() const {

@@ -111,6 +111,7 @@ void ClipStream::KeepMeasures() {
   common::MutexLock lock(mutex_);
   stats_.unfamiliarity = unfamiliarity;
   stats_.grade = std::move(grade);
+  stats_.pin_distances = clip_.pin_distances();
 }
 
 void ClipStream::Keep(const absl::Status& status, const motion::Poses& frames,

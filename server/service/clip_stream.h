@@ -37,6 +37,8 @@ struct ClipStreamStats {
   std::optional<double> unfamiliarity;
   // engine::ClipSynthesis::grade. Set when every window has been evaluated.
   std::optional<body::Grade> grade;
+  // engine::ClipSynthesis::pin_distances. Set when every window has been evaluated.
+  std::vector<float> pin_distances;
 };
 
 // The next part of a follower's motion.

@@ -55,6 +55,7 @@ v1::RequestLimits ToMessage(const RequestLimits& limits) {
   message.set_max_candidates(static_cast<uint32_t>(limits.max_candidates));
   message.set_max_delay_frames(static_cast<uint32_t>(limits.max_delay_frames));
   message.set_max_plan_frames(static_cast<uint32_t>(limits.max_plan_frames));
+  message.set_max_constraints(static_cast<uint32_t>(limits.max_constraints));
   return message;
 }
 

@@ -21,6 +21,9 @@ struct RequestLimits {
   int max_candidates = 16;
   int max_delay_frames = 10;
   int max_plan_frames = 30;
+  int max_constraints = 64;
+  // Distance of a constraint's position from the leader's root.
+  float max_constraint_metres = 20;
   // Of the frames in one message of a live session.
   double max_live_seconds = 10;
   // Larger than any room, and small enough for float arithmetic on positions.

@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
 #include "server/service/priority_message.h"
+#include "server/service/validate_constraints.h"
 #include "server/service/validate_labels.h"
 #include "server/service/validate_leader.h"
 #include "server/service/validate_options.h"
@@ -267,6 +268,8 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
   std::optional<engine::FollowerStart> start = Start();
   const std::optional<motion::Vec3> partner_direction = PartnerDirection();
   const engine::SynthesisOptions options = ValidateOptions(request_, limits_, violations_);
+  motion::Pins pins = ValidateConstraints(request_, {coordinates_, levelling_, leader_}, model_,
+                                          limits_, violations_);
   FillReplyMapping();
   Rotations();
   const int chunk_frames = ChunkFrames();
@@ -274,7 +277,7 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
   if (!violations_.empty()) return violations_.ToStatus();
   return ValidatedRequest{
       {std::move(leader_), request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),
-       std::move(start), partner_direction, options},
+       std::move(start), partner_direction, options, std::move(pins)},
       std::move(reply_),
       chunk_frames,
       priority};

@@ -67,6 +67,27 @@ TEST(SynthesizeRequestTest, KeyframesReplaceTheLabelVector) {
   EXPECT_EQ(wire->label_keyframes(1).label_vector().weights(0).interaction_class(), "hug");
 }
 
+TEST(SynthesizeRequestTest, ConstraintsAreCarriedInOrder) {
+  SynthesisRequest request = GoodRequest();
+  EXPECT_EQ(ToProto(request)->constraints_size(), 0);
+  request.constraints = {{"hand", 1, {0.5f, 1, -2}, 0.25f}, {"head", 0, {0, 1.5f, 0}}};
+  const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
+  ASSERT_THAT(wire, IsOk());
+  ASSERT_EQ(wire->constraints_size(), 2);
+  EXPECT_EQ(wire->constraints(0).joint_name(), "hand");
+  EXPECT_EQ(wire->constraints(0).frame(), 1u);
+  EXPECT_EQ(wire->constraints(0).position().x(), 0.5f);
+  EXPECT_EQ(wire->constraints(0).position().y(), 1);
+  EXPECT_EQ(wire->constraints(0).position().z(), -2);
+  EXPECT_EQ(wire->constraints(0).softness(), 0.25f);
+  EXPECT_EQ(wire->constraints(1).joint_name(), "head");
+  EXPECT_EQ(wire->constraints(1).softness(), 0);
+  request.constraints[1].frame = -1;
+  EXPECT_THAT(ToProto(request).status(),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("constraints[1].frame: expected 0 or more, got -1")));
+}
+
 TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   SynthesisRequest request = GoodRequest();
   request.follower_start = motion::Vec3{1, 2, 3};
@@ -218,6 +239,7 @@ TEST(RequestLimitsTest, EveryFieldIsRead) {
   wire.set_max_abs_weight(2);
   wire.set_max_variety(1.5F);
   wire.set_max_candidates(16);
+  wire.set_max_constraints(64);
   wire.set_max_request_bytes(16 << 20);
   const RequestLimits limits = FromProto(wire);
   EXPECT_EQ(limits.min_frame_rate_hz, 1);
@@ -229,6 +251,7 @@ TEST(RequestLimitsTest, EveryFieldIsRead) {
   EXPECT_EQ(limits.max_abs_weight, 2);
   EXPECT_EQ(limits.max_variety, 1.5F);
   EXPECT_EQ(limits.max_candidates, 16);
+  EXPECT_EQ(limits.max_constraints, 64);
   EXPECT_EQ(limits.max_request_bytes, 16 << 20);
 }
 

@@ -235,6 +235,28 @@ TEST_F(ReplyAssemblerTest, ReadsTheGrade) {
   EXPECT_EQ(result.grade->bad_runs[1].frame_count, 2);
 }
 
+TEST_F(ReplyAssemblerTest, WhatRemainsAtTheConstraintsIsReturned) {
+  ReplyAssembler assembler(leader_, on_chunk_, /*rotations=*/false, /*constraints=*/2);
+  const auto feed = [&](const std::vector<float>& metres) {
+    Reply reply = ReplyFor(leader_, 5);
+    reply.back().mutable_summary()->mutable_constraint_metres()->Assign(metres.begin(),
+                                                                        metres.end());
+    assembler.StartStream();
+    absl::Status status;
+    for (const v1::SynthesizeResponse& response : reply) status.Update(assembler.Accept(response));
+    return status;
+  };
+  constexpr auto kInternal = absl::StatusCode::kInternal;
+  EXPECT_THAT(feed({}), StatusIs(kInternal, HasSubstr("expected 2 values, one for each of "
+                                                      "constraints, got 0; does the server know")));
+  EXPECT_THAT(feed({0.1f}), StatusIs(kInternal, HasSubstr("got 1")));
+  EXPECT_THAT(feed({0.1f, -1}), StatusIs(kInternal, HasSubstr("got -1")));
+  EXPECT_THAT(feed({std::numeric_limits<float>::quiet_NaN(), 0}),
+              StatusIs(kInternal, HasSubstr("got nan")));
+  ASSERT_THAT(feed({0.1f, 0}), IsOk());
+  EXPECT_THAT(std::move(assembler).TakeResult().constraint_metres, ElementsAre(0.1f, 0));
+}
+
 TEST_F(ReplyAssemblerTest, ServerWithoutCandidatesDrawsOne) {
   ASSERT_THAT(FeedSpoilt([](Reply* r) { r->front().mutable_header()->clear_candidates(); }),
               IsOk());

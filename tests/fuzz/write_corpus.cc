@@ -136,6 +136,11 @@ class Corpus {
     request.mutable_follower_start()->mutable_root_position()->set_z(1);
     request.mutable_partner_direction()->set_x(1);
     request.add_reply_joint_names("head");
+    v1::JointConstraint& constraint = *request.add_constraints();
+    constraint.set_joint_name("right_hand");
+    constraint.set_frame(1);
+    constraint.mutable_position()->set_y(1);
+    constraint.set_softness(0.5f);
     Write("synthesis_request/options", request.SerializeAsString());
   }
 

@@ -21,7 +21,7 @@ from duet_motion.live import (LiveHeader, LiveNotice, LivePart, LiveRequest,
                               LiveSummary)
 from duet_motion.motion import Motion
 from duet_motion.options import TlsOptions
-from duet_motion.request import SynthesisRequest
+from duet_motion.request import Constraint, SynthesisRequest
 from duet_motion.result import (FollowerChunk, FrameRun, JointRotations, ModelDetails, ModelInfo,
                                 MotionGrade, RequestLimits, RigJoint, SynthesisResult, Timings)
 from duet_motion.retry import RetryOptions
@@ -30,7 +30,7 @@ from duet_motion.sets import MotionSet, PaddedBatch, SetItem, pad, read_set
 __version__ = "1.0.0"
 
 __all__ = [
-    "CancelledError", "Client", "DataSetError", "DeadlineError", "DuetError", "FieldViolation",
+    "CancelledError", "Client", "Constraint", "DataSetError", "DeadlineError", "DuetError", "FieldViolation",
     "FollowerChunk", "FrameRun", "InvalidRequestError", "JointRotations", "LiveHeader", "LiveNotice",
     "LivePart", "LiveRequest", "LiveSummary", "MalformedReplyError",
     "ModelDetails", "ModelInfo", "ModelNotFoundError", "Motion", "MotionFileError", "MotionGrade",

@@ -122,7 +122,8 @@ class SynthesisCall:
         self.attempts = Attempts(settings, request.timeout, request.request_id)
         self._wire = to_proto(request)
         self._leader = request.leader
-        self._reply = ReplyAssembler(request.leader, bool(request.rotations))
+        self._reply = ReplyAssembler(request.leader, bool(request.rotations),
+                                     len(request.constraints))
         self._first_chunk: List[float] = []
         self._resumed_after = 0
 

@@ -39,9 +39,10 @@ def malformed(what: str) -> MalformedReplyError:
 class ReplyAssembler:
     """The reply of one call, over all its streams."""
 
-    def __init__(self, leader: Motion, rotations: bool = False) -> None:
+    def __init__(self, leader: Motion, rotations: bool = False, constraints: int = 0) -> None:
         self._leader = leader
         self._wants_rotations = rotations
+        self._constraints = constraints
         self.handed_out = 0
         """Number of frames that the caller has, over all streams."""
         self.start_stream()
@@ -153,7 +154,19 @@ class ReplyAssembler:
             raise malformed("summary.unfamiliarity: expected a finite value of at least 0, got "
                              f"{summary.unfamiliarity}")
         self._check_grade(summary.grade)
+        self._check_constraints(summary)
         self._summary = summary
+
+    def _check_constraints(self, summary: synthesis_pb2.SynthesisSummary) -> None:
+        metres = summary.constraint_metres
+        if len(metres) != self._constraints:
+            raise malformed(f"summary.constraint_metres: expected {self._constraints} values, one "
+                             f"for each of constraints, got {len(metres)}; does the server know "
+                             "constraints?")
+        for value in metres:
+            if not (np.isfinite(value) and value >= 0):
+                raise malformed("summary.constraint_metres: expected finite values of 0 or more, "
+                                 f"got {value}")
 
     def _check_grade(self, grade: reaction_pb2.MotionGrade) -> None:
         for share in (grade.twisted, grade.skating, grade.leader_skating, grade.overlapping):
@@ -197,4 +210,5 @@ class ReplyAssembler:
             window_count=summary.window_count, attempt_count=attempts,
             timings=Timings(first_chunk, total, summary.queue_seconds, summary.compute_seconds),
             rotations=(JointRotations(self._rig, np.concatenate(self._rotations)) if self._rig
-                       else None))
+                       else None),
+            constraint_metres=tuple(summary.constraint_metres))

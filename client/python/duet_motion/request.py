@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import numbers
 import reprlib
-from typing import Mapping, Optional
+from typing import Mapping, Optional, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,40 @@ from duet_motion.v1 import model_pb2, motion_pb2, reaction_pb2, synthesis_pb2
 
 Labels = Mapping[str, float]
 """Weights by interaction class, from -2 to 2: 1 requests a class, 0 is neutral, -1 avoids it."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Constraint:
+    """Where a joint of the follower must be in one frame.
+
+    Args:
+        joint: one of the leader's ``joint_names``. A joint of an arm or a leg rotates the limb; any
+            other joint moves the whole body.
+        frame: a frame of the leader.
+        position: ``[3]`` in the leader's world and unit.
+        softness: the share of the distance that may remain, 0 to 1. 1 moves nothing, but candidates
+            that are near are still preferred.
+
+    Raises:
+        ValueError: an argument is invalid for every server. The message has the form
+            ``field: expected ..., got ...``.
+    """
+
+    joint: str
+    frame: int
+    position: npt.ArrayLike
+    softness: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.joint, str):
+            raise ValueError(f"joint: expected a str, got {short(self.joint)}")
+        check_integer("frame", self.frame, 0, 2**32 - 1)
+        if self.position is None:
+            raise ValueError("position: expected the shape (3,), got None")
+        check_points("position", self.position, ((3,),))
+        softness = finite_number(self.softness)
+        if softness is None or not 0 <= softness <= 1:
+            raise ValueError(f"softness: expected a number from 0 to 1, got {short(self.softness)}")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -54,6 +88,9 @@ class SynthesisRequest:
         timeout: seconds for the whole call, including all its attempts. None: the client's.
         candidates: how many samples a model that samples draws for each window, 1 to 16. The server
             returns the one with the best grade (``SynthesisResult.grade``). More take longer.
+        constraints: where joints of the follower must be in single frames (:class:`Constraint`). The
+            server moves limbs or the body there, eased over the neighbouring frames;
+            ``SynthesisResult.constraint_metres`` is what remains.
 
     Raises:
         ValueError: an argument is invalid for every server. The message has the form
@@ -76,6 +113,7 @@ class SynthesisRequest:
     request_id: str = ""
     timeout: Optional[float] = None
     candidates: int = 1
+    constraints: Sequence[Constraint] = ()
 
     def __post_init__(self) -> None:
         if not isinstance(self.leader, Motion):
@@ -104,6 +142,7 @@ class SynthesisRequest:
             raise ValueError(f"request_id: expected a str, got {short(self.request_id)}")
         if self.timeout is not None:
             checked_number("timeout", self.timeout, above=0)
+        check_constraints(self.constraints)
 
 
 def check_weights(labels: Optional[Labels], keyframes: Optional[Mapping[int, Labels]]) -> None:
@@ -116,6 +155,17 @@ def check_weights(labels: Optional[Labels], keyframes: Optional[Mapping[int, Lab
     for frame, weights in keyframes.items():
         check_integer("keyframes: frame", frame, 0, 2**32 - 1)
         check_labels(f"keyframes[{frame}]", weights)
+
+
+def check_constraints(constraints: Sequence[Constraint]) -> None:
+    """Raises ValueError unless it is a sequence of Constraint."""
+    if not isinstance(constraints, (list, tuple)):
+        raise ValueError("constraints: expected a list of duet_motion.Constraint, got "
+                         f"{short(constraints)}")
+    for index, constraint in enumerate(constraints):
+        if not isinstance(constraint, Constraint):
+            raise ValueError(f"constraints[{index}]: expected a duet_motion.Constraint, got "
+                             f"{short(constraint)}")
 
 
 def to_selector(model: str) -> model_pb2.ModelSelector:
@@ -155,6 +205,11 @@ def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
         out.partner_direction.CopyFrom(direction(request.partner_direction))
     if request.up is not None:
         out.up.CopyFrom(direction(request.up))
+    for constraint in request.constraints:
+        x, y, z = floats(constraint.position)
+        out.constraints.add(
+            joint_name=constraint.joint, frame=int(constraint.frame),
+            position=motion_pb2.Point(x=x, y=y, z=z), softness=float(constraint.softness))
     return out
 
 

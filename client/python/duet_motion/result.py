@@ -138,6 +138,8 @@ class SynthesisResult:
     timings: Timings
     rotations: Optional[JointRotations] = None
     """The follower's joint rotations, if the request asks for them."""
+    constraint_metres: Tuple[float, ...] = ()
+    """Distance that remains at each of the request's constraints, in metres."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -183,6 +185,7 @@ class RequestLimits:
     max_variety: float
     max_candidates: int
     max_request_bytes: int
+    max_constraints: int = 0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -227,4 +230,5 @@ def details_from_proto(response: synthesis_pb2.GetModelResponse) -> ModelDetails
         min_frames=limits.min_frames, max_duration_seconds=limits.max_duration_seconds,
         max_chunk_frames=limits.max_chunk_frames, max_keyframes=limits.max_label_keyframes,
         max_abs_weight=limits.max_abs_weight, max_variety=limits.max_variety,
-        max_candidates=limits.max_candidates, max_request_bytes=limits.max_request_bytes))
+        max_candidates=limits.max_candidates, max_request_bytes=limits.max_request_bytes,
+        max_constraints=limits.max_constraints))

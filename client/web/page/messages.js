@@ -24,11 +24,14 @@ const MESSAGES = {
   Point: {x: [1, 'float'], y: [2, 'float'], z: [3, 'float']},
   Direction: {x: [1, 'float'], y: [2, 'float'], z: [3, 'float']},
   FollowerStart: {root_position: [1, 'Point'], pose: [2, 'Pose']},
+  JointConstraint: {
+    joint_name: [1, 'string'], frame: [2, 'uint32'], position: [3, 'Point'], softness: [4, 'float'],
+  },
   SynthesizeRequest: {
     model: [1, 'ModelSelector'], leader: [2, 'Motion'], label_vector: [3, 'LabelVector'],
     label_keyframes: [4, 'LabelKeyframe[]'], follower_start: [5, 'FollowerStart'],
     partner_direction: [9, 'Direction'], seed: [10, 'uint64'], variety: [11, 'float'],
-    clean_up: [12, 'enum'], candidates: [13, 'uint32'],
+    clean_up: [12, 'enum'], candidates: [13, 'uint32'], constraints: [16, 'JointConstraint[]'],
   },
   MotionChunk: {
     first_frame: [1, 'uint32'], frame_count: [2, 'uint32'], positions: [3, 'float[]'],
@@ -39,6 +42,7 @@ const MESSAGES = {
   },
   SynthesisSummary: {
     frame_count: [1, 'uint32'], unfamiliarity: [6, 'double'], grade: [7, 'MotionGrade'],
+    constraint_metres: [8, 'float[]'],
   },
   SynthesizeResponse: {chunk: [2, 'MotionChunk'], summary: [3, 'SynthesisSummary']},
   LiveHistory: {

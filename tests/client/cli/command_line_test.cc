@@ -108,6 +108,7 @@ TEST_F(CommandLineTest, SynthesizeHasDefaults) {
   EXPECT_EQ(arguments.clean_up, std::nullopt);
   EXPECT_FALSE(arguments.rotations);
   EXPECT_EQ(arguments.samples, 1);
+  EXPECT_TRUE(arguments.constraints.empty());
   EXPECT_EQ(arguments.input.frame_rate_hz, std::nullopt);
   EXPECT_EQ(arguments.input.unit, std::nullopt);
   EXPECT_THAT(arguments.outputs, ElementsAre(Out("pair.html")));
@@ -154,6 +155,10 @@ TEST_F(CommandLineTest, EveryFlagIsRead) {
                                               "8",
                                               "--request-id",
                                               "job-7",
+                                              "--pin",
+                                              "right_hand@40=-0.2,1.3,0.5",
+                                              "--pin",
+                                              "head@3=0,1.5,0,0.25",
                                               "--out",
                                               Out("pair.bvh"),
                                               "--json",
@@ -184,6 +189,9 @@ TEST_F(CommandLineTest, EveryFlagIsRead) {
   EXPECT_EQ(arguments.priority, Priority::kBulk);
   EXPECT_EQ(arguments.chunk_frames, 8);
   EXPECT_EQ(arguments.request_id, "job-7");
+  ASSERT_THAT(arguments.constraints, SizeIs(2));
+  EXPECT_EQ(arguments.constraints[0].joint, "right_hand");
+  EXPECT_EQ(arguments.constraints[1].softness, 0.25f);
   EXPECT_THAT(arguments.outputs, ElementsAre(Out("pair.html"), Out("pair.bvh")));
   EXPECT_TRUE(arguments.json);
   EXPECT_TRUE(arguments.quiet);
@@ -241,6 +249,8 @@ TEST_F(CommandLineTest, InvalidValueIsNamed) {
                 "--variety: expected a number from 0 to 2, got \"3\"");
   ExpectRefused({"--label", "kick=1", "--candidates", "0"}, "--candidates");
   ExpectRefused({"--label", "kick=1", "--candidates", "17"}, "--candidates");
+  ExpectRefused({"--label", "kick=1", "--pin", "head@3"},
+                "--pin: expected JOINT@FRAME=X,Y,Z[,SOFTNESS]");
   ExpectRefused({"--label", "kick=1", "--samples", "0"}, "--samples");
   ExpectRefused({"--label", "kick=1", "--seed", "18446744073709551610", "--samples", "7"},
                 "--samples: expected at most 6 with --seed 18446744073709551610, so that no seed "

@@ -386,6 +386,36 @@ TEST_F(ProgramTest, PrintsASummaryAsText) {
   EXPECT_THAT(out_.str(), HasSubstr("          cleaned up\n"));
 }
 
+TEST_F(ProgramTest, PinsAreSentAndWhatRemainsIsReported) {
+  SynthesisRequest sent;
+  EXPECT_CALL(*connection_, Synthesize)
+      .WillRepeatedly([&](const SynthesisRequest& request, const ChunkCallback&) {
+        sent = request;
+        absl::StatusOr<SynthesisResult> result = Follow(request);
+        result->constraint_metres = {0.004f, 0.123f};
+        return result;
+      });
+  const std::vector<std::string> pins = {"--pin", "head@3=0,1.5,-2", "--pin",
+                                         "right_hand@7=1,1,1,0.5"};
+  ASSERT_EQ(Synthesize("pair.html", pins), 0) << err_.str();
+  ASSERT_EQ(sent.constraints.size(), 2u);
+  EXPECT_EQ(sent.constraints[0].joint, "head");
+  EXPECT_EQ(sent.constraints[0].position, (motion::Vec3{0, 1.5f, -2}));
+  EXPECT_EQ(sent.constraints[1].softness, 0.5f);
+  EXPECT_THAT(out_.str(),
+              HasSubstr("          pins: 1 reached, right_hand in frame 7 is 12.3 cm away\n"));
+
+  std::vector<std::string> json_flags = pins;
+  json_flags.push_back("--json");
+  out_.str("");
+  ASSERT_EQ(Synthesize("pair.html", json_flags), 0);
+  const nlohmann::json json = nlohmann::json::parse(out_.str());
+  EXPECT_EQ(json["constraints"][1]["joint_name"], "right_hand");
+  EXPECT_EQ(json["constraints"][1]["frame"], 7);
+  EXPECT_EQ(json["constraints"][1]["softness"], 0.5);
+  EXPECT_NEAR(json["constraints"][1]["remaining_metres"].get<double>(), 0.123, 1e-6);
+}
+
 TEST_F(ProgramTest, PrintsASummaryAsJson) {
   ASSERT_EQ(Synthesize("pair.html", {"--json"}), 0);
   const nlohmann::json json = nlohmann::json::parse(out_.str());
@@ -396,6 +426,7 @@ TEST_F(ProgramTest, PrintsASummaryAsJson) {
   EXPECT_EQ(json["variety"], 1);
   EXPECT_EQ(json["candidates"], 1);
   EXPECT_EQ(json["cleaned_up"], false);
+  EXPECT_FALSE(json.contains("constraints"));
   EXPECT_EQ(json["seconds"]["total"], 0.034);
   EXPECT_EQ(json["files"], std::vector<std::string>{Path("pair.html")});
 }

@@ -66,6 +66,28 @@ TEST(ParseKeyframeTest, RejectsOtherForms) {
   }
 }
 
+TEST(ParsePinTest, ReadsJointFramePositionAndSoftness) {
+  const absl::StatusOr<JointConstraint> pin = ParsePin("right_hand@40=-0.2,1.3,5e-1");
+  ASSERT_THAT(pin, IsOk());
+  EXPECT_EQ(pin->joint, "right_hand");
+  EXPECT_EQ(pin->frame, 40);
+  EXPECT_EQ(pin->position, (motion::Vec3{-0.2f, 1.3f, 0.5f}));
+  EXPECT_EQ(pin->softness, 0);
+  EXPECT_EQ(ParsePin("head@0=0,1,2,0.25")->softness, 0.25f);
+  EXPECT_EQ(ParsePin("head@0=0,1,2,1")->softness, 1);
+}
+
+TEST(ParsePinTest, RejectsOtherForms) {
+  for (const char* text :
+       {"", "head", "head@3", "head@3=", "head@3=0,1", "head@3=0,1,2,3", "head@3=0,1,2,-0.1",
+        "head@3=0,1,2,", "head@3=0,1,2,0,0", "head@3=0,1,nan", "head@3=0,inf,2", "head@3=0,1,2,nan",
+        "@3=0,1,2", "head@=0,1,2", "head@-1=0,1,2", "head@1.5=0,1,2", "head=0,1,2", "3@head=0,1,2",
+        "head@3=a,b,c"}) {
+    EXPECT_THAT(ParsePin(text), StatusIs(kInvalid, HasSubstr("expected JOINT@FRAME=X,Y,Z")))
+        << text;
+  }
+}
+
 TEST(ParseBeatTest, ReadsRateAndFirstBeat) {
   EXPECT_EQ(ParseBeat("180")->per_minute, 180);
   EXPECT_EQ(ParseBeat("180")->first_seconds, 0);

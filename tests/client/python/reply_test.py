@@ -43,6 +43,18 @@ class ReplyTest(unittest.TestCase):
         self.assertEqual(self.reply.result(1, 0, 0).grade,
                          duet.MotionGrade(0.25, 0.5, 0.75, 1, (duet.FrameRun(1, 2),)))
 
+    def test_what_remains_at_the_constraints_is_returned(self):
+        whole = support.good_reply(self.leader, size=6)
+        for metres, message in (([], "expected 2 values.*got 0; does the server know constraints"),
+                                ([0.5], "got 1"), ([0.5, -1], "got -1"),
+                                ([float("nan"), 0], "got nan")):
+            self.reply = ReplyAssembler(self.leader, constraints=2)
+            self.accept(*whole[:2])
+            with self.assertRaisesRegex(duet.MalformedReplyError, message):
+                self.accept(support.summary(self.leader, 1, constraint_metres=metres))
+        self.accept(support.summary(self.leader, 1, constraint_metres=[0.5, 0]))
+        self.assertEqual(self.reply.result(1, 0, 0).constraint_metres, (0.5, 0))
+
     def test_server_without_candidates_draws_one(self):
         self.accept(*support.good_reply(self.leader, size=6, candidates=0))
         self.assertEqual(self.reply.result(1, 0, 0).candidates, 1)

@@ -47,6 +47,34 @@ class RequestTest(unittest.TestCase):
         self.assertEqual(wire.candidates, 1)
         self.assertFalse(wire.reply_rotations)
 
+    def test_constraints_are_sent_in_order(self):
+        self.assertEqual(len(to_proto(self.request()).constraints), 0)
+        wire = to_proto(self.request(constraints=[
+            duet.Constraint("left", 4, (1, 2, 3), softness=0.5),
+            duet.Constraint("right", 0, np.float32([0, 1, 0]))])).constraints
+        self.assertEqual([(c.joint_name, c.frame, c.softness) for c in wire],
+                         [("left", 4, 0.5), ("right", 0, 0)])
+        self.assertEqual((wire[0].position.x, wire[0].position.y, wire[0].position.z), (1, 2, 3))
+
+    def test_invalid_constraints_are_named(self):
+        for arguments, message in (
+                ((3, 0, (0, 1, 0)), "joint: expected a str, got 3"),
+                (("left", -1, (0, 1, 0)), "frame: expected an integer from 0 to .*, got -1"),
+                (("left", 1.5, (0, 1, 0)), "frame: expected an integer"),
+                (("left", 0, (0, 1)), r"position: expected the shape \(3,\), got \(2,\)"),
+                (("left", 0, None), r"position: expected the shape \(3,\), got None"),
+                (("left", 0, (0, np.nan, 0)), r"position\[1\]: expected a finite float32, got nan"),
+                (("left", 0, (0, 1, 0), 1.5), "softness: expected a number from 0 to 1, got 1.5"),
+                (("left", 0, (0, 1, 0), "a"), "softness: expected a number from 0 to 1, got 'a'")):
+            with self.assertRaisesRegex(ValueError, message):
+                duet.Constraint(*arguments)
+        with self.assertRaisesRegex(ValueError, "constraints: expected a list of "
+                                                "duet_motion.Constraint, got 'left'"):
+            self.request(constraints="left")
+        with self.assertRaisesRegex(ValueError, r"constraints\[0\]: expected a "
+                                                r"duet_motion.Constraint, got \('left', 0\)"):
+            self.request(constraints=[("left", 0)])
+
     def test_keyframes_are_sorted_by_frame(self):
         wire = to_proto(duet.SynthesisRequest(
             support.leader(), keyframes={4: {"push": 1}, 0: {"hug": 1}}))

@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "model/motion/levelling.h"
@@ -38,6 +39,7 @@ using test::TimedContext;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
+using ::testing::FloatNear;
 using ::testing::Le;
 
 // A model whose follower does what the leader does.
@@ -85,6 +87,33 @@ TEST(SynthesizeTest, TheHeaderSaysWhoAnswersAndHow) {
   EXPECT_EQ(header.frame_count(), 50u);
   EXPECT_THAT(header.interaction_classes(), ElementsAreArray(FakeDescription().classes));
   EXPECT_EQ(header.request_id(), running.calls().WaitFor(1).request_id);
+}
+
+TEST(SynthesizeTest, TheSummaryReportsWhatRemainsAtTheConstraints) {
+  RunningService::Setup setup;
+  setup.model = Echo();
+  RunningService running(std::move(setup));
+  v1::SynthesizeRequest request = SampleRequest(200);
+  const auto add = [&request](int joint, int frame, float above) {
+    const float* at = request.leader().positions().data() + 3 * (15 * frame + joint);
+    v1::JointConstraint& constraint = *request.add_constraints();
+    constraint.set_joint_name(request.leader().joint_names(joint));
+    constraint.set_frame(static_cast<uint32_t>(frame));
+    constraint.mutable_position()->set_x(at[0]);
+    constraint.mutable_position()->set_y(at[1] + above);
+    constraint.mutable_position()->set_z(at[2]);
+  };
+  add(8, 199, 0.25F);
+  add(0, 40, 0);
+  add(2, 0, -0.5F);
+  const Reply reply = Call(running.stub(), request);
+  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
+  EXPECT_THAT(reply.messages.back().summary().constraint_metres(),
+              ElementsAre(FloatNear(0.25F, 1e-4F), FloatNear(0, 1e-4F), FloatNear(0.5F, 1e-4F)));
+
+  request.clear_constraints();
+  const Reply without = Call(running.stub(), request);
+  EXPECT_EQ(without.messages.back().summary().constraint_metres_size(), 0);
 }
 
 TEST(SynthesizeTest, ChunksFollowEachOtherWithoutGaps) {

@@ -89,6 +89,17 @@ void SetVertical(v1::SynthesizeRequest& request, float x, float y, float z) {
   up.set_z(z);
 }
 
+v1::JointConstraint& AddConstraint(v1::SynthesizeRequest& request, const std::string& joint,
+                                   uint32_t frame, float x, float y, float z) {
+  v1::JointConstraint& constraint = *request.add_constraints();
+  constraint.set_joint_name(joint);
+  constraint.set_frame(frame);
+  constraint.mutable_position()->set_x(x);
+  constraint.mutable_position()->set_y(y);
+  constraint.mutable_position()->set_z(z);
+  return constraint;
+}
+
 void AddKeyframe(v1::SynthesizeRequest& request, uint32_t frame) {
   request.clear_label_vector();
   v1::LabelKeyframe& keyframe = *request.add_label_keyframes();
@@ -704,6 +715,96 @@ TEST(ValidateRequestTest, AcceptsALeaderWhoseJointsCoincide) {
   v1::SynthesizeRequest request = SampleRequest();
   for (float& value : *request.mutable_leader()->mutable_positions()) value = 0;
   EXPECT_THAT(Validate(request), IsOk());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Constraints, RefusalTest,
+    ::testing::Values(
+        Spoiled{"unknown_joint", [](Request& r) { AddConstraint(r, "left_wing", 3, 0, 1, 0); },
+                "constraints[0].joint_name",
+                "a joint of model fake (head, neck, torso, left_shoulder", kFailedPrecondition},
+        Spoiled{"no_joint", [](Request& r) { AddConstraint(r, "", 3, 0, 1, 0); },
+                "constraints[0].joint_name", "got \"\"", kFailedPrecondition},
+        Spoiled{"frame_after_the_end", [](Request& r) { AddConstraint(r, "head", 40, 0, 1, 0); },
+                "constraints[0].frame", "expected less than the 40 frames of leader, got 40"},
+        Spoiled{"no_position", [](Request& r) { r.add_constraints()->set_joint_name("head"); },
+                "constraints[0].position", "expected a point, got none"},
+        Spoiled{"nan_position", [](Request& r) { AddConstraint(r, "head", 3, 0, kNan, 0); },
+                "constraints[0].position", "expected finite numbers, got (0, nan, 0)"},
+        Spoiled{"infinite_position",
+                [](Request& r) { AddConstraint(r, "head", 3, kInfinity, 0, 0); },
+                "constraints[0].position", "expected finite numbers, got (inf, 0, 0)"},
+        Spoiled{"millimetres_as_metres",
+                [](Request& r) { AddConstraint(r, "head", 3, 100, 1600, 0); },
+                "constraints[0].position", "at most 20 m from the leader in this frame"},
+        Spoiled{"negative_softness",
+                [](Request& r) { AddConstraint(r, "head", 3, 0, 1, 0).set_softness(-0.1F); },
+                "constraints[0].softness", "expected a value in [0, 1], got -0.1"},
+        Spoiled{"nan_softness",
+                [](Request& r) { AddConstraint(r, "head", 3, 0, 1, 0).set_softness(kNan); },
+                "constraints[0].softness", "expected a value in [0, 1], got nan"},
+        Spoiled{"twice_in_a_frame",
+                [](Request& r) {
+                  AddConstraint(r, "head", 3, 0, 1, 0);
+                  AddConstraint(r, "head", 4, 0, 1, 0);
+                  AddConstraint(r, "head", 3, 0, 2, 0);
+                },
+                "constraints[2]",
+                "each joint at most once in a frame, got \"head\" in frame 3 again after "
+                "constraints[0]"},
+        Spoiled{"too_many",
+                [](Request& r) {
+                  for (int i = 0; i < 65; ++i) r.add_constraints();
+                },
+                "constraints", "expected at most 64, got 65"}),
+    SpoiledName);
+
+TEST(Constraints, ArePinsInTheModelsJointsAndMetres) {
+  Request request = SampleRequest();
+  request.mutable_leader()->set_unit(v1::LENGTH_UNIT_MILLIMETRES);
+  request.mutable_leader()->set_up_axis(v1::UP_AXIS_Z_UP);
+  AddConstraint(request, "right_hand", 7, 300, -200, 1500).set_softness(0.25F);
+  AddConstraint(request, "torso", 39, 0, 0, 1000);
+  const auto valid = Validate(request);
+  ASSERT_THAT(valid, IsOk());
+  const motion::Pins& pins = valid->clip.pins;
+  ASSERT_THAT(pins, SizeIs(2));
+  EXPECT_EQ(pins[0].joint, 8);
+  EXPECT_EQ(pins[0].frame, 7);
+  EXPECT_NEAR(Distance(pins[0].position, motion::Vec3{0.3F, 1.5F, 0.2F}), 0, 1e-6);
+  EXPECT_EQ(pins[0].softness, 0.25F);
+  EXPECT_EQ(pins[1].joint, 2);
+  EXPECT_EQ(pins[1].softness, 0);
+}
+
+TEST(Constraints, AreLevelledLikeTheLeader) {
+  Request request = SampleRequest();
+  SetVertical(request, 0.2F, 1, 0);
+  AddConstraint(request, "right_hand", 7, 0.3F, 1.2F, 0.4F);
+  const auto valid = Validate(request);
+  ASSERT_THAT(valid, IsOk());
+  const motion::Vec3 level =
+      motion::Levelling({0.2F, 1, 0}, 0).Apply(motion::Vec3{0.3F, 1.2F, 0.4F});
+  EXPECT_EQ(valid->clip.pins[0].position, level);
+  EXPECT_NE(level, (motion::Vec3{0.3F, 1.2F, 0.4F}));
+}
+
+TEST(Constraints, AsManyAsTheLimitAreAccepted) {
+  Request request = SampleRequest();
+  for (int i = 0; i < 64; ++i) {
+    AddConstraint(request, i < 40 ? "head" : "torso", static_cast<uint32_t>(i % 40), 0, 1, 0);
+  }
+  const auto valid = Validate(request);
+  ASSERT_THAT(valid, IsOk());
+  EXPECT_THAT(valid->clip.pins, SizeIs(64));
+}
+
+TEST(Constraints, AnInvalidLeaderDoesNotHideThem) {
+  Request request = SampleRequest();
+  request.mutable_leader()->clear_unit();
+  AddConstraint(request, "head", 400, 0, 1, 0);
+  EXPECT_THAT(Decode(Validate(request).status()).Fields(),
+              ::testing::UnorderedElementsAre("leader.unit", "constraints[0].frame"));
 }
 
 }  // namespace

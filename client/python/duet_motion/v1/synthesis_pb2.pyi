@@ -27,6 +27,18 @@ class GetModelResponse(_message.Message):
     model: _model_pb2.Model
     def __init__(self, model: _Optional[_Union[_model_pb2.Model, _Mapping]] = ..., limits: _Optional[_Union[RequestLimits, _Mapping]] = ...) -> None: ...
 
+class JointConstraint(_message.Message):
+    __slots__ = ["frame", "joint_name", "position", "softness"]
+    FRAME_FIELD_NUMBER: _ClassVar[int]
+    JOINT_NAME_FIELD_NUMBER: _ClassVar[int]
+    POSITION_FIELD_NUMBER: _ClassVar[int]
+    SOFTNESS_FIELD_NUMBER: _ClassVar[int]
+    frame: int
+    joint_name: str
+    position: _motion_pb2.Point
+    softness: float
+    def __init__(self, joint_name: _Optional[str] = ..., frame: _Optional[int] = ..., position: _Optional[_Union[_motion_pb2.Point, _Mapping]] = ..., softness: _Optional[float] = ...) -> None: ...
+
 class ListModelsRequest(_message.Message):
     __slots__ = []
     def __init__(self) -> None: ...
@@ -50,10 +62,11 @@ class MotionChunk(_message.Message):
     def __init__(self, first_frame: _Optional[int] = ..., frame_count: _Optional[int] = ..., positions: _Optional[_Iterable[float]] = ..., rotations: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class RequestLimits(_message.Message):
-    __slots__ = ["max_abs_weight", "max_candidates", "max_chunk_frames", "max_delay_frames", "max_duration_seconds", "max_frame_rate_hz", "max_label_keyframes", "max_plan_frames", "max_request_bytes", "max_variety", "min_frame_rate_hz", "min_frames"]
+    __slots__ = ["max_abs_weight", "max_candidates", "max_chunk_frames", "max_constraints", "max_delay_frames", "max_duration_seconds", "max_frame_rate_hz", "max_label_keyframes", "max_plan_frames", "max_request_bytes", "max_variety", "min_frame_rate_hz", "min_frames"]
     MAX_ABS_WEIGHT_FIELD_NUMBER: _ClassVar[int]
     MAX_CANDIDATES_FIELD_NUMBER: _ClassVar[int]
     MAX_CHUNK_FRAMES_FIELD_NUMBER: _ClassVar[int]
+    MAX_CONSTRAINTS_FIELD_NUMBER: _ClassVar[int]
     MAX_DELAY_FRAMES_FIELD_NUMBER: _ClassVar[int]
     MAX_DURATION_SECONDS_FIELD_NUMBER: _ClassVar[int]
     MAX_FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
@@ -66,6 +79,7 @@ class RequestLimits(_message.Message):
     max_abs_weight: float
     max_candidates: int
     max_chunk_frames: int
+    max_constraints: int
     max_delay_frames: int
     max_duration_seconds: float
     max_frame_rate_hz: float
@@ -75,7 +89,7 @@ class RequestLimits(_message.Message):
     max_variety: float
     min_frame_rate_hz: float
     min_frames: int
-    def __init__(self, min_frame_rate_hz: _Optional[float] = ..., max_frame_rate_hz: _Optional[float] = ..., min_frames: _Optional[int] = ..., max_duration_seconds: _Optional[float] = ..., max_chunk_frames: _Optional[int] = ..., max_label_keyframes: _Optional[int] = ..., max_abs_weight: _Optional[float] = ..., max_request_bytes: _Optional[int] = ..., max_variety: _Optional[float] = ..., max_candidates: _Optional[int] = ..., max_delay_frames: _Optional[int] = ..., max_plan_frames: _Optional[int] = ...) -> None: ...
+    def __init__(self, min_frame_rate_hz: _Optional[float] = ..., max_frame_rate_hz: _Optional[float] = ..., min_frames: _Optional[int] = ..., max_duration_seconds: _Optional[float] = ..., max_chunk_frames: _Optional[int] = ..., max_label_keyframes: _Optional[int] = ..., max_abs_weight: _Optional[float] = ..., max_request_bytes: _Optional[int] = ..., max_variety: _Optional[float] = ..., max_candidates: _Optional[int] = ..., max_delay_frames: _Optional[int] = ..., max_plan_frames: _Optional[int] = ..., max_constraints: _Optional[int] = ...) -> None: ...
 
 class RigJoint(_message.Message):
     __slots__ = ["joint", "name", "offset", "parent"]
@@ -122,9 +136,10 @@ class SynthesisHeader(_message.Message):
     def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., frame_count: _Optional[int] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., rig: _Optional[_Iterable[_Union[RigJoint, _Mapping]]] = ...) -> None: ...
 
 class SynthesisSummary(_message.Message):
-    __slots__ = ["chunk_count", "compute_seconds", "frame_count", "grade", "queue_seconds", "unfamiliarity", "window_count"]
+    __slots__ = ["chunk_count", "compute_seconds", "constraint_metres", "frame_count", "grade", "queue_seconds", "unfamiliarity", "window_count"]
     CHUNK_COUNT_FIELD_NUMBER: _ClassVar[int]
     COMPUTE_SECONDS_FIELD_NUMBER: _ClassVar[int]
+    CONSTRAINT_METRES_FIELD_NUMBER: _ClassVar[int]
     FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
     GRADE_FIELD_NUMBER: _ClassVar[int]
     QUEUE_SECONDS_FIELD_NUMBER: _ClassVar[int]
@@ -132,18 +147,20 @@ class SynthesisSummary(_message.Message):
     WINDOW_COUNT_FIELD_NUMBER: _ClassVar[int]
     chunk_count: int
     compute_seconds: float
+    constraint_metres: _containers.RepeatedScalarFieldContainer[float]
     frame_count: int
     grade: _reaction_pb2.MotionGrade
     queue_seconds: float
     unfamiliarity: float
     window_count: int
-    def __init__(self, frame_count: _Optional[int] = ..., chunk_count: _Optional[int] = ..., window_count: _Optional[int] = ..., queue_seconds: _Optional[float] = ..., compute_seconds: _Optional[float] = ..., unfamiliarity: _Optional[float] = ..., grade: _Optional[_Union[_reaction_pb2.MotionGrade, _Mapping]] = ...) -> None: ...
+    def __init__(self, frame_count: _Optional[int] = ..., chunk_count: _Optional[int] = ..., window_count: _Optional[int] = ..., queue_seconds: _Optional[float] = ..., compute_seconds: _Optional[float] = ..., unfamiliarity: _Optional[float] = ..., grade: _Optional[_Union[_reaction_pb2.MotionGrade, _Mapping]] = ..., constraint_metres: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class SynthesizeRequest(_message.Message):
-    __slots__ = ["candidates", "chunk_frames", "clean_up", "follower_start", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "priority", "reply_joint_names", "reply_rotations", "seed", "up", "variety"]
+    __slots__ = ["candidates", "chunk_frames", "clean_up", "constraints", "follower_start", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "priority", "reply_joint_names", "reply_rotations", "seed", "up", "variety"]
     CANDIDATES_FIELD_NUMBER: _ClassVar[int]
     CHUNK_FRAMES_FIELD_NUMBER: _ClassVar[int]
     CLEAN_UP_FIELD_NUMBER: _ClassVar[int]
+    CONSTRAINTS_FIELD_NUMBER: _ClassVar[int]
     FOLLOWER_START_FIELD_NUMBER: _ClassVar[int]
     LABEL_KEYFRAMES_FIELD_NUMBER: _ClassVar[int]
     LABEL_VECTOR_FIELD_NUMBER: _ClassVar[int]
@@ -159,6 +176,7 @@ class SynthesizeRequest(_message.Message):
     candidates: int
     chunk_frames: int
     clean_up: _reaction_pb2.CleanUp
+    constraints: _containers.RepeatedCompositeFieldContainer[JointConstraint]
     follower_start: _motion_pb2.FollowerStart
     label_keyframes: _containers.RepeatedCompositeFieldContainer[_reaction_pb2.LabelKeyframe]
     label_vector: _reaction_pb2.LabelVector
@@ -171,7 +189,7 @@ class SynthesizeRequest(_message.Message):
     seed: int
     up: _motion_pb2.Direction
     variety: float
-    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[_reaction_pb2.LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[_reaction_pb2.LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., chunk_frames: _Optional[int] = ..., priority: _Optional[_Union[Priority, str]] = ..., reply_joint_names: _Optional[_Iterable[str]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., reply_rotations: bool = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ...) -> None: ...
+    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[_reaction_pb2.LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[_reaction_pb2.LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., chunk_frames: _Optional[int] = ..., priority: _Optional[_Union[Priority, str]] = ..., reply_joint_names: _Optional[_Iterable[str]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., reply_rotations: bool = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., constraints: _Optional[_Iterable[_Union[JointConstraint, _Mapping]]] = ...) -> None: ...
 
 class SynthesizeResponse(_message.Message):
     __slots__ = ["chunk", "header", "summary"]

@@ -1,0 +1,195 @@
+"""Pins against a real server: a joint of the follower is where the caller wants it."""
+
+import json
+import os
+import pathlib
+import sys
+import tempfile
+
+import tools
+
+try:
+    import grpc  # noqa: F401
+    import numpy as np
+except ImportError as error:
+    tools.skip(f"{error}; install the packages python3-grpcio and python3-numpy")
+
+import unittest
+
+os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
+os.environ["DUET_CONFIG"] = ""
+sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
+
+import duet_motion as duet  # noqa: E402
+
+REACHED = 0.01  # metres
+FASTEST = 4.5   # metres per second that a pin may add to a joint
+
+
+def upsampled(motion, times):
+    """The motion at a multiple of its rate, interpolated linearly."""
+    frames = np.arange((motion.frame_count - 1) * times + 1) / times
+    low = np.floor(frames).astype(int)
+    high = np.minimum(low + 1, motion.frame_count - 1)
+    share = (frames - low)[:, None, None].astype(np.float32)
+    positions = motion.positions[low] * (1 - share) + motion.positions[high] * share
+    return duet.Motion(positions, motion.joint_names,
+                       frame_rate_hz=motion.frame_rate_hz * times)
+
+
+def speed(motion, joint):
+    """The largest speed of a joint, in units per second."""
+    steps = np.linalg.norm(np.diff(motion.joint(joint), axis=0), axis=-1)
+    return steps.max() * motion.frame_rate_hz
+
+
+def there(follower, joint, frame, way):
+    """A pin at the joint's place in this answer, moved by `way` in the body's directions: to its
+    left, up, and forwards."""
+    left = follower.joint("left_hip")[frame] - follower.joint("right_hip")[frame]
+    left[1] = 0
+    left /= np.linalg.norm(left)
+    forwards = np.cross(left, [0, 1, 0])
+    axes = np.stack([left, [0, 1, 0], forwards])
+    return duet.Constraint(joint, frame, follower.joint(joint)[frame] + np.float32(way) @ axes)
+
+
+class PinsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = tools.Server()
+        cls.addClassCleanup(cls.server.stop)
+        cls.client = duet.Client(cls.server.address)
+        cls.addClassCleanup(cls.client.close)
+        cls.hug = duet.read_motion(tools.sample("hug"))
+        cls.salsa = duet.read_motion(tools.sample("salsa"))
+
+    def ask(self, leader=None, labels=None, **fields):
+        return self.client.synthesize(leader or self.hug, labels=labels or {"hug": 1}, **fields)
+
+    def check(self, result, pins):
+        for pin, metres in zip(pins, result.constraint_metres, strict=True):
+            distance = np.linalg.norm(result.follower.joint(pin.joint)[pin.frame] - pin.position)
+            self.assertLess(distance, REACHED, f"{pin.joint} in frame {pin.frame}")
+            self.assertAlmostEqual(distance, metres, delta=1e-4)
+
+    def test_a_hand_is_there_and_nothing_jumps(self):
+        for name in ("kick", "hug", "push"):
+            leader = duet.read_motion(tools.sample("kick" if name == "kick" else "hug"))
+            free = self.ask(leader, {name: 1})
+            pin = there(free.follower, "right_hand", 40, (0, 0.25, 0.05))
+            pinned = self.ask(leader, {name: 1}, constraints=[pin])
+            self.check(pinned, [pin])
+            self.assertLess(speed(pinned.follower, "right_hand"),
+                            speed(free.follower, "right_hand") + FASTEST)
+            self.assertLessEqual(pinned.grade.skating, free.grade.skating + 0.05)
+            self.assertLessEqual(pinned.grade.overlapping, free.grade.overlapping + 0.05)
+
+    def test_the_body_steps_to_a_mark(self):
+        free = self.ask()
+        pin = there(free.follower, "torso", 70, (0.25, 0, -0.15))
+        pinned = self.ask(constraints=[pin])
+        self.check(pinned, [pin])
+        self.assertLessEqual(pinned.grade.skating, free.grade.skating + 0.15)
+        self.assertLess(speed(pinned.follower, "torso"), speed(free.follower, "torso") + 2)
+
+    def test_frames_long_before_do_not_change(self):
+        free = self.ask()
+        pin = there(free.follower, "left_hand", 80, (0, 0.2, 0))
+        pinned = self.ask(constraints=[pin])
+        np.testing.assert_array_equal(pinned.follower.positions[:50], free.follower.positions[:50])
+        again = self.ask(constraints=[pin])
+        np.testing.assert_array_equal(pinned.follower.positions, again.follower.positions)
+        self.assertEqual(free.constraint_metres, ())
+
+    def test_any_rate_unit_and_axis(self):
+        leader = upsampled(self.hug, 2)
+        free = self.ask(leader)
+        pins = [there(free.follower, "right_hand", 77, (0, 0.2, 0.05)),
+                there(free.follower, "left_hand", 120, (0, 0.2, 0))]
+        pinned = self.ask(leader, constraints=pins)
+        self.check(pinned, pins)
+
+        def turned(points):  # metres, y up -> millimetres, z up
+            x, y, z = np.moveaxis(np.asarray(points), -1, 0)
+            return np.float32(1000) * np.stack([x, -z, y], axis=-1)
+        foreign = duet.Motion(turned(leader.positions), leader.joint_names,
+                              frame_rate_hz=leader.frame_rate_hz, unit="millimetres",
+                              up_axis="z-up")
+        answer = self.ask(foreign, constraints=[
+            duet.Constraint(pin.joint, pin.frame, turned(pin.position)) for pin in pins])
+        np.testing.assert_allclose(answer.follower.positions, turned(pinned.follower.positions),
+                                   atol=2)
+        for metres in answer.constraint_metres:
+            self.assertLess(metres, REACHED)
+
+    def test_a_tilted_world(self):
+        tilt = np.radians(12)
+        rotation = np.float32([[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)],
+                               [0, np.sin(tilt), np.cos(tilt)]])
+        leader = duet.Motion(self.hug.positions @ rotation.T, self.hug.joint_names,
+                             frame_rate_hz=self.hug.frame_rate_hz)
+        up = rotation @ np.float32([0, 1, 0])
+        free = self.ask(leader, up=up)
+        pin = duet.Constraint("right_hand", 40, free.follower.joint("right_hand")[40] + 0.15 * up)
+        self.check(self.ask(leader, up=up, constraints=[pin]), [pin])
+
+    def test_every_window_of_a_long_clip(self):
+        free = self.ask(self.salsa, {"basic": 1}, model="salsa")
+        self.assertGreater(free.window_count, 5)
+        last = self.salsa.frame_count
+        pins = [there(free.follower, "right_hand", frame, (0, 0.1, 0.05))
+                for frame in range(11, last, last // 12)]
+        for count in (1, 3):
+            pinned = self.ask(self.salsa, {"basic": 1}, model="salsa", constraints=pins,
+                              candidates=count)
+            self.assertLess(max(pinned.constraint_metres), 0.1)
+            self.assertLess(speed(pinned.follower, "right_hand"),
+                            speed(free.follower, "right_hand") + FASTEST)
+
+    def test_candidates_that_are_near_win(self):
+        others = [self.ask(seed=seed).follower.joint("right_hand")[45] for seed in range(6)]
+        nearest = []
+        for count in (1, 8):
+            distances = [self.ask(candidates=count, constraints=[
+                duet.Constraint("right_hand", 45, place, softness=1)]).constraint_metres[0]
+                for place in others]
+            nearest.append(np.mean(distances))
+        self.assertLess(nearest[1], nearest[0])
+
+    def test_out_of_reach_is_reported_and_an_unknown_joint_refused(self):
+        free = self.ask()
+        pin = there(free.follower, "right_hand", 40, (0, 3, 0))
+        far = self.ask(constraints=[pin])
+        self.assertGreater(far.constraint_metres[0], 1)
+        hand, shoulder = (far.follower.joint(name)[40] for name in ("right_hand", "right_shoulder"))
+        self.assertGreater(hand[1], shoulder[1])
+        with self.assertRaises(duet.RequestMismatchError) as raised:
+            self.ask(constraints=[duet.Constraint("left_wing", 4, (0, 1, 0))])
+        self.assertRegex(str(raised.exception), r"constraints\[0\].joint_name: expected a joint of "
+                                                "model sbu .*left_hand.*, got \"left_wing\"")
+
+    def test_the_program_sends_pins_and_reports_what_remains(self):
+        free = self.ask()
+        place = there(free.follower, "right_hand", 40, (0, 0.25, 0.05)).position
+        flag = "right_hand@40=" + ",".join(f"{value:.5f}" for value in place)
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "pair.json"
+            told = tools.duet("synthesize", "--server", self.server.address, "--leader",
+                              tools.sample("hug"), "--label", "hug=1", "--pin", flag, "--pin",
+                              "head@10=0,9,0", "--level", "off", "--json", "--out", out)
+            told.check_returncode()
+            leader, follower = duet.read_pair(out)
+            self.assertLess(np.linalg.norm(follower.joint("right_hand")[40] - place), 2 * REACHED)
+        hand, head = json.loads(told.stdout)["constraints"]
+        self.assertEqual((hand["joint_name"], hand["frame"]), ("right_hand", 40))
+        self.assertLess(hand["remaining_metres"], REACHED)
+        self.assertGreater(head["remaining_metres"], 1)
+        live = tools.duet("live", "--from", tools.sample("hug"), "--label", "hug=1", "--pin", flag,
+                          "--server", self.server.address)
+        self.assertNotEqual(live.returncode, 0)
+        self.assertIn("--pin", live.stderr)
+
+
+if __name__ == "__main__":
+    tools.main()
