@@ -17,9 +17,9 @@ ARG BASE=debian:bookworm-slim
 # Compiler and libraries: rebuilt when a package list changes, never for a change to the sources.
 FROM ${BASE} AS tools
 WORKDIR /src
-COPY packages/build.txt packages/image.txt packages/
+COPY packages/build.txt packages/build_training.txt packages/image.txt packages/releases.tsv packages/
 COPY scripts/install_packages.sh scripts/
-RUN scripts/install_packages.sh build image && rm -rf /var/lib/apt/lists/*
+RUN scripts/install_packages.sh build build_training image && rm -rf /var/lib/apt/lists/*
 
 # The compiler cache provides unchanged objects.
 FROM tools AS build
@@ -54,12 +54,12 @@ FROM ${BASE} AS root
 ARG VERSION=1.0.0
 ARG SBOM_TIME=1970-01-01T00:00:00Z
 WORKDIR /src
-COPY packages/runtime.txt packages/image_root.txt packages/
+COPY packages/runtime.txt packages/image_root.txt packages/releases.tsv packages/
 COPY scripts/install_packages.sh scripts/
 RUN scripts/install_packages.sh runtime image_root && rm -rf /var/lib/apt/lists/*
 COPY deploy/image/make_root.sh deploy/image/write_sbom.py deploy/image/
 COPY LICENSE NOTICE ./
-RUN deploy/image/make_root.sh /root-of-image packages/runtime.txt \
+RUN deploy/image/make_root.sh /root-of-image $(scripts/install_packages.sh --print runtime) \
     && mkdir -p /root-of-image/usr/share/doc/duet \
     && cp LICENSE /root-of-image/usr/share/doc/duet/copyright \
     && cp NOTICE /root-of-image/usr/share/doc/duet/ \
@@ -69,7 +69,7 @@ RUN deploy/image/make_root.sh /root-of-image packages/runtime.txt \
 
 # The training image's packages, and its bill of materials.
 FROM ${BASE} AS training-packages
-COPY packages/runtime.txt packages/training.txt /tmp/install/packages/
+COPY packages/runtime.txt packages/training.txt packages/releases.tsv /tmp/install/packages/
 COPY scripts/install_packages.sh /tmp/install/scripts/
 RUN /tmp/install/scripts/install_packages.sh runtime training \
     && rm -rf /tmp/install /var/lib/apt/lists/* /var/cache/apt/* /var/log/apt /var/log/dpkg.log

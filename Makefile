@@ -5,6 +5,8 @@ SHELL := /bin/bash
 
 JOBS ?= $(shell scripts/build_jobs.sh)
 BUILD := build/release
+# With training and evaluation or without them: DUET_TRAINING=OFF, or a release without LibTorch.
+BUILD_LISTS = $(shell scripts/with_training.sh --lists)
 
 .PHONY: help
 help: ## List the commands
@@ -12,18 +14,18 @@ help: ## List the commands
 
 .PHONY: demo
 demo: ## Build, start the server, synthesise some reactions, write pages to out/demo
-	@scripts/install_packages.sh build
+	@scripts/install_packages.sh $(BUILD_LISTS)
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD) duet-server duet
 	@scripts/demo.sh $(BUILD)/bin
 
 .PHONY: test
 test: ## Build everything, run the quick checks and every test
-	@scripts/install_packages.sh build test
+	@scripts/install_packages.sh $(BUILD_LISTS) test
 	@JOBS=$(JOBS) scripts/test.sh
 
 .PHONY: build
 build: ## Build every program and library (release)
-	@scripts/install_packages.sh build
+	@scripts/install_packages.sh $(BUILD_LISTS)
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD)
 
 .PHONY: format
@@ -33,22 +35,22 @@ format: ## Format the sources with clang-format
 
 .PHONY: lint
 lint: ## Run clang-tidy on files that differ from main (LINT=all: on all files)
-	@scripts/install_packages.sh build test develop
+	@scripts/install_packages.sh $(BUILD_LISTS) test develop
 	@JOBS=$(JOBS) scripts/lint.sh $(LINT)
 
 .PHONY: check
 check: ## Run every check, including slow ones (CHECK="links tidy" runs only these)
-	@scripts/install_packages.sh build test develop
+	@scripts/install_packages.sh $(BUILD_LISTS) test develop
 	@JOBS=$(JOBS) scripts/check.py $(CHECK)
 
 .PHONY: mutate
 mutate: ## Measure how often the tests notice broken code: docs/mutation.md
-	@scripts/install_packages.sh build test
+	@scripts/install_packages.sh $(BUILD_LISTS) test
 	@JOBS=$(JOBS) scripts/mutate.py --report docs/mutation.md
 
 .PHONY: bench
 bench: ## Time the engine and its kernels beside the committed figures, and the cost of hardening
-	@scripts/install_packages.sh build test
+	@scripts/install_packages.sh $(BUILD_LISTS) test
 	@cmake --preset release -DDUET_BUILD_BENCHMARKS=ON >/dev/null
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD) roofline_benchmark kernel_benchmark clean_up_benchmark \
 	  synthesis_benchmark duet-server duet-load

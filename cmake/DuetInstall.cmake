@@ -14,7 +14,11 @@ mark_as_advanced(DUET_SYSTEMD_UNIT_DIR DUET_SYSUSERS_DIR)
 set(deploy ${PROJECT_SOURCE_DIR}/deploy)
 install(FILES ${deploy}/debian/duet-server.8 DESTINATION ${CMAKE_INSTALL_MANDIR}/man8
   COMPONENT server)
-foreach(program duet-train duet-eval duet-import duet-keyframe)
+set(training_programs duet-import duet-keyframe)
+if(DUET_TRAINING)
+  list(APPEND training_programs duet-train duet-eval)
+endif()
+foreach(program IN LISTS training_programs)
   install(FILES ${deploy}/debian/${program}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
     COMPONENT training)
 endforeach()
@@ -22,7 +26,7 @@ install(FILES ${deploy}/systemd/duet-server.service DESTINATION ${DUET_SYSTEMD_U
   COMPONENT server)
 install(FILES ${deploy}/systemd/duet-server.sysusers RENAME duet-server.conf
   DESTINATION ${DUET_SYSUSERS_DIR} COMPONENT server)
-install(TARGETS duet-train duet-eval duet-import duet-keyframe
+install(TARGETS ${training_programs}
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT training)
 
 set(CPACK_GENERATOR DEB)
@@ -36,7 +40,10 @@ set(CPACK_STRIP_FILES ON)
 # Packing does not build, so that one package does not build all others.
 set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)
 
-set(CPACK_COMPONENTS_ALL client client-development server training torch)
+set(CPACK_COMPONENTS_ALL client client-development server training)
+if(DUET_TRAINING)
+  list(APPEND CPACK_COMPONENTS_ALL torch)
+endif()
 set(CPACK_COMPONENT_TRAINING_GROUP training)
 set(CPACK_COMPONENT_TORCH_GROUP training)
 set(CPACK_COMPONENT_CLIENT_GROUP client)

@@ -56,6 +56,8 @@ if(DUET_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   if(TARGET GTest::gmock)
     duet_precompiled_headers(NAME test PROGRAM HEADERS ${test_headers} OPTIONS ${test_options}
       LINKS ${library_links} GTest::gmock)
+  endif()
+  if(TARGET GTest::gmock AND TARGET duet::torch)
     duet_precompiled_headers(NAME torch_test PROGRAM HEADERS ${test_headers} <torch/torch.h>
       OPTIONS ${test_options} LINKS ${library_links} duet::torch GTest::gmock)
   endif()

@@ -10,7 +10,9 @@ shift
 # Tests are off because their libraries may be missing; `make test` installs these and turns tests on. An
 # existing configuration stays.
 if [[ ! -f "${build_dir}/build.ninja" ]]; then
-  cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF
+  training="$(scripts/with_training.sh)"
+  cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF \
+    -DDUET_TRAINING="${training}"
 fi
 cmake --build "${build_dir}" --parallel "${JOBS:-$(scripts/build_jobs.sh)}" \
   ${1:+--target "$@"}

@@ -33,9 +33,11 @@ def exists(root, path):
 
 
 def documents_of(root):
-    found = (file.relative_to(root) for file in root.rglob("*.md"))
-    return sorted(file.as_posix() for file in found
-                  if file.parts[0] not in MADE and not file.parts[0].startswith("."))
+    # Made folders are not entered: one may hold the root of another system (scripts/try_release.sh).
+    folders = [entry for entry in root.iterdir()
+               if entry.is_dir() and entry.name not in MADE and not entry.name.startswith(".")]
+    found = [*root.glob("*.md"), *(file for folder in folders for file in folder.rglob("*.md"))]
+    return sorted(file.relative_to(root).as_posix() for file in found)
 
 
 def problems(root, document):

@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
-# Installs the missing Debian packages of one or more lists (packages/<list>.txt).
+# Installs the missing packages of one or more lists (packages/<list>.txt), which have the names of Debian 12;
+# packages/releases.tsv has the names in other releases.
 #   scripts/install_packages.sh build test
-# Returns quickly if none is missing.
+#   scripts/install_packages.sh --print runtime     prints the names in this release; installs nothing
+#   scripts/install_packages.sh --lacks training    succeeds if this release lacks a package of the lists
+# Returns quickly if none is missing. OS_RELEASE (default /etc/os-release) names the release.
 set -euo pipefail
 
 package_dir="$(cd "$(dirname "${BASH_SOURCE[0]}")/../packages" && pwd)"
@@ -12,9 +15,36 @@ fail() {
   exit 1
 }
 
-# Prints the package names of a list, without comments and blank lines.
+# Prints the code name of this release, such as bookworm.
+code_name() {
+  sed -n 's/^VERSION_CODENAME=//p' "${OS_RELEASE:-/etc/os-release}" 2>/dev/null | tr -d '"'
+}
+
+# Prints the package names of a list in Debian 12, without comments and blank lines.
 read_list() {
+  [[ -f "${package_dir}/$1.txt" ]] || fail "install_packages: no list '$1' in ${package_dir}"
   sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "${package_dir}/$1.txt"
+}
+
+# Replaces names of Debian 12 by those of this release; "-" replaces a package that it does not have. Of an
+# unknown release, the names stay.
+translate() {
+  awk -F '\t' -v release="$(code_name)" '
+    NR == FNR && (/^#/ || NF == 0) { next }
+    NR == FNR && !column { for (column = NF; column > 1 && $column != release; ) --column; next }
+    NR == FNR { name[$1] = $column; next }
+    { print ($1 in name) ? name[$1] : $1 }' "${package_dir}/releases.tsv" -
+}
+
+# Prints the names of all packages of some lists in this release.
+names_of() {
+  local list
+  for list in "$@"; do read_list "${list}"; done | translate
+}
+
+# Prints the releases of the table, as "bookworm, trixie".
+known_releases() {
+  sed -n '/^[^#]/{s/\t/, /g;p;q}' "${package_dir}/releases.tsv"
 }
 
 # Prints the arguments that are not installed.
@@ -46,30 +76,33 @@ install_missing() {
 }
 
 main() {
-  [[ $# -gt 0 ]] || fail "usage: install_packages.sh <list>..." "lists:" \
+  local mode=install
+  case "${1:-}" in --print | --lacks) mode="${1#--}" && shift ;; esac
+  [[ $# -gt 0 ]] || fail "usage: install_packages.sh [--print|--lacks] <list>..." "lists:" \
     "$(basename -s .txt -a "${package_dir}"/*.txt)"
 
-  local list wanted=()
-  for list in "$@"; do
-    [[ -f "${package_dir}/${list}.txt" ]] ||
-      fail "install_packages: no list '${list}' in ${package_dir}"
-    mapfile -t -O "${#wanted[@]}" wanted < <(read_list "${list}")
-  done
+  local names wanted=()
+  names="$(names_of "$@")"
+  case "${mode}" in
+    lacks) grep -qx -e - <<<"${names}" && exit 0 || exit 1 ;;
+    print) { grep -vx -e - <<<"${names}" || true; } && exit 0 ;;
+  esac
+  mapfile -t wanted < <(grep -vx -e - <<<"${names}")
 
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    fail "install_packages: expected a Debian system. Duet is built from Debian 12 packages;" \
+    fail "install_packages: expected Debian or Ubuntu. Duet is built from their packages;" \
       "install the counterparts of these, or use the Dockerfile:" "  ${wanted[*]}"
   fi
 
   mapfile -t missing < <(missing_of "${wanted[@]}")
   [[ ${#missing[@]} -gt 0 ]] || return 0
 
-  echo "Installing Debian packages: ${missing[*]} (with their dependencies; a minute or two)"
+  echo "Installing packages: ${missing[*]} (with their dependencies; a minute or two)"
   # Fetches the package index only if it is missing or too old.
   if ! compgen -G '/var/lib/apt/lists/*_Packages*' >/dev/null || ! install_missing; then
     apt update
     install_missing || fail "install_packages: apt-get could not install: ${missing[*]}" \
-      "The names are those of Debian 12 (bookworm), component main."
+      "packages/releases.tsv knows $(known_releases), got $(code_name). Ubuntu needs the component universe."
   fi
 }
 

@@ -16,9 +16,9 @@ struct RecipeOverrides {
   std::optional<int> retries_per_item;
   std::string input_format;  // empty: the recipe's
   std::optional<double> frame_rate_hz;
-  std::string level;       // empty: the recipe's
-  std::string layout;      // the same
-  std::string body_model;  // the same; relative to the working directory
+  std::string level;                 // empty: the recipe's
+  std::string layout;                // the same
+  std::string body_model;            // the same; relative to the working directory
   std::optional<double> validation;  // Splits
   std::optional<double> test;
 };

@@ -171,60 +171,60 @@ Examples:
 )";
 
 // The flags of duet admin may also follow the action.
-CLI::App* AddAction(CLI::App* app, const char* name, const char* help, Action action,
-                    AdminArguments* arguments) {
-  CLI::App* command = app->add_subcommand(name, help)->fallthrough();
-  command->callback([arguments, action] { arguments->action = action; });
+FlagSet* AddAction(FlagSet* app, const char* name, const char* help, Action action,
+                   AdminArguments* arguments) {
+  FlagSet* command = app->AddCommand(name, help);
+  command->InheritFlags();
+  command->Check([arguments, action] { arguments->action = action; });
   return command;
 }
 
-void AddModel(CLI::App* command, AdminArguments* arguments) {
-  command->add_option("name", arguments->name, "Name of the model")->required()->type_name("NAME");
+void AddModel(FlagSet* command, AdminArguments* arguments) {
+  command->Add("name", &arguments->name, "Name of the model")->Required()->Form("NAME");
 }
 
-CLI::Option* AddVersion(CLI::App* command, AdminArguments* arguments) {
-  return command->add_option("version", arguments->version, "Version of the model")
-      ->type_name("VERSION");
+Flag* AddVersion(FlagSet* command, AdminArguments* arguments) {
+  return command->Add("version", &arguments->version, "Version of the model")->Form("VERSION");
 }
 
-void AddFlags(CLI::App* command, AdminArguments* arguments) {
-  command->require_subcommand(1);
-  command->footer(kFooter);
-  command->add_option("--admin-server", arguments->server.address, "Address of the admin service")
-      ->capture_default_str()
-      ->type_name("HOST:PORT")
-      ->group(kServerGroup);
+void AddFlags(FlagSet* command, AdminArguments* arguments) {
+  command->RequireCommand();
+  command->Footer(kFooter);
+  command->Add("--admin-server", &arguments->server.address, "Address of the admin service")
+      ->ShowDefault()
+      ->Form("HOST:PORT")
+      ->Group(kServerGroup);
   AddConnectionFlags(command, &arguments->server);
-  command->add_flag("--json", arguments->json, "Print JSON");
+  command->AddSwitch("--json", &arguments->json, "Print JSON");
   AddAction(command, "models", "List every version and its state", Action::kModels, arguments);
   AddAction(command, "reload", "Reload the configuration and the model repository", Action::kReload,
             arguments);
-  CLI::App* load = AddAction(command, "load", "Load a version; reload it if it is already served",
-                             Action::kLoad, arguments);
+  FlagSet* load = AddAction(command, "load", "Load a version; reload it if it is already served",
+                            Action::kLoad, arguments);
   AddModel(load, arguments);
-  AddVersion(load, arguments)->required();
-  CLI::App* unload =
+  AddVersion(load, arguments)->Required();
+  FlagSet* unload =
       AddAction(command, "unload", "Stop serving a version", Action::kUnload, arguments);
   AddModel(unload, arguments);
-  AddVersion(unload, arguments)->required();
-  CLI::App* label =
+  AddVersion(unload, arguments)->Required();
+  FlagSet* label =
       AddAction(command, "label", "Point a version label at a version", Action::kLabel, arguments);
   AddModel(label, arguments);
-  label->add_option("label", arguments->label, "Version label")->required()->type_name("LABEL");
-  CLI::Option* version = AddVersion(label, arguments);
-  CLI::Option* remove = label->add_flag("--delete", arguments->delete_label, "Delete the label");
-  remove->excludes(version);
-  label->callback([arguments, version, remove] {
+  label->Add("label", &arguments->label, "Version label")->Required()->Form("LABEL");
+  Flag* version = AddVersion(label, arguments);
+  Flag* remove = label->AddSwitch("--delete", &arguments->delete_label, "Delete the label");
+  remove->Excludes(version);
+  label->Check([arguments, version, remove] {
     arguments->action = Action::kLabel;
-    if (version->empty() && remove->empty()) throw CLI::RequiredError("version or --delete");
+    if (!version->is_given() && !remove->is_given()) RejectMissing("version or --delete");
   });
 }
 
 }  // namespace
 
-Command AddAdminCommand(CLI::App* program) {
+Command AddAdminCommand(FlagSet* program) {
   const auto arguments = std::make_shared<AdminArguments>();
-  CLI::App* app = program->add_subcommand("admin", "Change which models a running server serves");
+  FlagSet* app = program->AddCommand("admin", "Change which models a running server serves");
   AddFlags(app, arguments.get());
   Command command;
   command.app = app;

@@ -329,7 +329,7 @@ absl::StatusOr<ExitCode> RunAction(const BatchArguments& arguments,
 
 }  // namespace
 
-Command AddBatchCommand(CLI::App* program) {
+Command AddBatchCommand(FlagSet* program) {
   const auto arguments = std::make_shared<BatchArguments>();
   Command command;
   command.app = AddBatchFlags(program, arguments.get());

@@ -1,13 +1,13 @@
 #ifndef DUET_CLIENT_CLI_BATCH_COMMAND_H_
 #define DUET_CLIENT_CLI_BATCH_COMMAND_H_
 
-#include "CLI/CLI.hpp"
 #include "client/cli/command.h"
+#include "client/cli/flag_set.h"
 
 namespace duet::client::cli {
 
 // duet batch, duet batch merge and duet batch verify.
-Command AddBatchCommand(CLI::App* program);
+Command AddBatchCommand(FlagSet* program);
 
 }  // namespace duet::client::cli
 

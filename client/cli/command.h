@@ -5,26 +5,26 @@
 #include <string>
 #include <vector>
 
-#include "CLI/CLI.hpp"
 #include "absl/status/statusor.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/flag_set.h"
 #include "client/cli/program_environment.h"
 
 namespace duet::client::cli {
 
 // What a command runs with.
 struct CommandContext {
-  const CLI::App& program;                // all commands with their flags
+  const FlagSet& program;                 // all commands with their flags
   const std::vector<std::string>& words;  // the command line, with the settings that apply
   const ProgramEnvironment& environment;
   // Runs another command line and returns its exit code.
   int (*run_program)(const std::vector<std::string>& words, const ProgramEnvironment& environment);
 };
 
-// A command of the program. Its file defines a function that adds it to the program's CLI::App and
+// A command of the program. Its file defines a function that adds it to the program's FlagSet and
 // returns it; client/cli/commands.cc lists these functions.
 struct Command {
-  CLI::App* app = nullptr;  // its name, help and flags
+  FlagSet* app = nullptr;  // its name, help and flags
   // Runs after its flags were parsed. The program reports the error, if any.
   std::function<absl::StatusOr<ExitCode>(const CommandContext&)> run;
   // The servers that it calls, for error messages.

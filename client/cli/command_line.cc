@@ -1,7 +1,7 @@
 #include "client/cli/command_line.h"
 
 #include <algorithm>
-#include <sstream>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/match.h"
@@ -41,20 +41,18 @@ bool IsGiven(const std::string& flag, const Strings& arguments) {
   return false;
 }
 
-Strings FlagNames(const CLI::App& command) {
+Strings FlagNames(const FlagSet& command) {
   Strings names;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back(absl::StrCat("--", name));
+  for (const std::unique_ptr<Flag>& flag : command.flags()) {
+    if (!flag->is_argument()) names.push_back(flag->name());
   }
   return names;
 }
 
 // Whether a flag on the command line excludes this one.
-bool IsExcluded(const CLI::App& command, const std::string& flag, const Strings& arguments) {
-  for (const CLI::Option* option : command.get_option(flag)->get_excludes()) {
-    for (const std::string& name : option->get_lnames()) {
-      if (IsGiven(absl::StrCat("--", name), arguments)) return true;
-    }
+bool IsExcluded(const FlagSet& command, const std::string& flag, const Strings& arguments) {
+  for (const std::string& name : command.Find(flag)->excluded()) {
+    if (IsGiven(name, arguments)) return true;
   }
   return false;
 }
@@ -62,13 +60,13 @@ bool IsExcluded(const CLI::App& command, const std::string& flag, const Strings&
 // The command line's arguments and, after the command, the settings that apply to it.
 class Settled {
  public:
-  Settled(const CLI::App& app, const Strings& arguments, const std::vector<Setting>& settings)
+  Settled(const FlagSet& app, const Strings& arguments, const std::vector<Setting>& settings)
       : arguments_(arguments) {
     const auto command =
         std::find_if(arguments.begin(), arguments.end(),
                      [](const std::string& argument) { return !absl::StartsWith(argument, "-"); });
     if (command == arguments.end()) return;
-    const CLI::App* chosen = FindCommand(app, *command);
+    const FlagSet* chosen = FindCommand(app, *command);
     if (chosen == nullptr) return;
     Strings added;
     for (const Setting& setting : settings) {
@@ -95,7 +93,7 @@ class Settled {
   }
 
  private:
-  static bool Knows(const CLI::App& command, const std::string& flag) {
+  static bool Knows(const FlagSet& command, const std::string& flag) {
     const Strings names = FlagNames(command);
     return std::find(names.begin(), names.end(), flag) != names.end();
   }
@@ -105,9 +103,9 @@ class Settled {
 };
 
 // The error about the first setting that no command has a flag for; empty if there is none.
-std::string FindUnknownSetting(const CLI::App& app, const std::vector<Setting>& settings) {
+std::string FindUnknownSetting(const FlagSet& app, const std::vector<Setting>& settings) {
   Strings known;
-  for (const CLI::App* command : app.get_subcommands({})) {
+  for (const std::unique_ptr<FlagSet>& command : app.commands()) {
     for (const std::string& flag : FlagNames(*command)) known.push_back(flag.substr(2));
   }
   for (const Setting& setting : settings) {
@@ -119,7 +117,7 @@ std::string FindUnknownSetting(const CLI::App& app, const std::vector<Setting>& 
 }
 
 // The error about a first word that is not a command; empty if it is one.
-std::string FindUnknownCommand(const CLI::App& app, const Strings& arguments) {
+std::string FindUnknownCommand(const FlagSet& app, const Strings& arguments) {
   if (arguments.empty() || absl::StartsWith(arguments[0], "-")) return "";
   if (FindCommand(app, arguments[0]) != nullptr || IsGiven("--help", arguments)) return "";
   return absl::StrCat("There is no command ", base::Quoted(arguments[0]),
@@ -127,11 +125,11 @@ std::string FindUnknownCommand(const CLI::App& app, const Strings& arguments) {
 }
 
 // The error about the first flag that the command does not have; empty if there is none.
-std::string FindUnknownFlag(const CLI::App& app, const Strings& arguments) {
-  const CLI::App* command = arguments.empty() ? nullptr : FindCommand(app, arguments[0]);
+std::string FindUnknownFlag(const FlagSet& app, const Strings& arguments) {
+  const FlagSet* command = arguments.empty() ? nullptr : FindCommand(app, arguments[0]);
   if (command == nullptr) return "";
   Strings known = FlagNames(*command);
-  for (const CLI::App* subcommand : command->get_subcommands({})) {
+  for (const std::unique_ptr<FlagSet>& subcommand : command->commands()) {
     const Strings further = FlagNames(*subcommand);
     known.insert(known.end(), further.begin(), further.end());
   }
@@ -149,17 +147,16 @@ std::string FindUnknownFlag(const CLI::App& app, const Strings& arguments) {
 
 CommandLine::CommandLine()
     : app_("Asks a Duet server to answer one character's motion with another's.", "duet") {
-  app_.set_version_flag("--version", "duet " DUET_VERSION);
-  app_.require_subcommand(1);
-  app_.footer(kExitCodesFooter);
-  app_.get_formatter()->column_width(34);
+  app_.Version("duet " DUET_VERSION);
+  app_.RequireCommand();
+  app_.Footer(kExitCodesFooter);
   commands_ = AddCommands(&app_);
 }
 
 bool CommandLine::UsesSettings(const std::vector<std::string>& arguments) const {
   if (arguments.empty() || absl::StartsWith(arguments[0], "-")) return false;
   for (const Command& command : commands_) {
-    if (command.app->get_name() == arguments[0]) return command.uses_settings;
+    if (command.app->name() == arguments[0]) return command.uses_settings;
   }
   return true;
 }
@@ -171,23 +168,19 @@ ParsedCommandLine CommandLine::Parse(const std::vector<std::string>& arguments,
     if (!error.empty()) return UsageError(error);
   }
   const Settled settled(app_, arguments, settings);
-  try {
-    // CLI11 takes the arguments in reverse.
-    app_.parse(Strings(settled.arguments().rbegin(), settled.arguments().rend()));
-  } catch (const CLI::ParseError& error) {
-    std::ostringstream out;
-    const int code = app_.exit(error, out, out);
-    if (code == 0) return Text(out.str());
+  const ParsedFlags flags = app_.Parse(settled.arguments());
+  if (flags.outcome == ParsedFlags::Outcome::kAnswer) return Text(flags.text);
+  if (flags.outcome == ParsedFlags::Outcome::kError) {
     // An unknown flag may cause other errors: its value counts as one argument more.
     const std::string unknown = FindUnknownFlag(app_, arguments);
     if (!unknown.empty()) return UsageError(unknown);
-    ParsedCommandLine parsed = Text(absl::StrCat(settled.SourceOf(error.what()), out.str()));
+    ParsedCommandLine parsed = Text(absl::StrCat(settled.SourceOf(flags.error), flags.text));
     parsed.exit_code = kExitUsage;
     return parsed;
   }
   ParsedCommandLine parsed;
   for (const Command& command : commands_) {
-    if (command.app->parsed()) parsed.command = &command;
+    if (command.app->is_given()) parsed.command = &command;
   }
   parsed.words = settled.arguments();
   return parsed;

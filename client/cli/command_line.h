@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "CLI/CLI.hpp"
 #include "client/cli/command.h"
+#include "client/cli/flag_set.h"
 #include "client/cli/settings.h"
 
 namespace duet::client::cli {
@@ -26,7 +26,7 @@ class CommandLine {
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  const CLI::App& app() const { return app_; }
+  const FlagSet& app() const { return app_; }
 
   // Whether settings apply to the command that `arguments` name.
   bool UsesSettings(const std::vector<std::string>& arguments) const;
@@ -37,7 +37,7 @@ class CommandLine {
                           const std::vector<Setting>& settings = {});
 
  private:
-  CLI::App app_;
+  FlagSet app_;
   std::vector<Command> commands_;
 };
 

@@ -1,6 +1,7 @@
 #include "client/cli/command_table.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -21,59 +22,57 @@ std::vector<std::string> ChoicesOf(const std::string& form) {
   return absl::StrSplit(form, '|');
 }
 
-FlagEntry EntryOf(const CLI::Option& option) {
+FlagEntry EntryOf(const Flag& flag) {
   FlagEntry entry;
-  entry.is_argument = option.get_positional();
-  entry.name =
-      entry.is_argument ? option.get_name(true) : absl::StrCat("--", option.get_lnames()[0]);
-  entry.form = option.get_items_expected_max() == 0 ? "" : option.get_type_name();
-  entry.help = option.get_description();
-  entry.group = option.get_group();
-  entry.default_value = option.get_default_str();
+  entry.is_argument = flag.is_argument();
+  entry.name = flag.name();
+  entry.form = flag.form();
+  entry.help = flag.help();
+  entry.group = flag.group();
+  entry.default_value = flag.default_value();
   entry.choices = ChoicesOf(entry.form);
   entry.takes_file =
       absl::StrContains(entry.form, "FILE") && !absl::StrContains(entry.form, "FILE_");
   entry.takes_file |= absl::StrContains(entry.form, "FOLDER");
-  entry.is_required = option.get_required();
+  entry.is_required = flag.is_required();
   return entry;
 }
 
-void Append(const CLI::App& app, const std::string& name, std::vector<CommandEntry>* entries) {
+void Append(const FlagSet& app, const std::string& name, std::vector<CommandEntry>* entries) {
   CommandEntry entry;
   entry.name = name;
-  entry.help = app.get_description();
-  entry.footer = app.get_footer();
+  entry.help = app.description();
+  entry.footer = app.footer();
   for (const bool arguments : {false, true}) {
-    for (const CLI::Option* option : app.get_options()) {
-      if (option->get_positional() == arguments) entry.flags.push_back(EntryOf(*option));
+    for (const std::unique_ptr<Flag>& flag : app.flags()) {
+      if (flag->is_argument() == arguments) entry.flags.push_back(EntryOf(*flag));
     }
   }
-  const std::vector<const CLI::App*> subcommands = app.get_subcommands({});
-  for (const CLI::App* command : subcommands) entry.subcommands.push_back(command->get_name());
+  entry.subcommands = CommandNames(app);
   entries->push_back(std::move(entry));
-  for (const CLI::App* command : subcommands) {
-    Append(*command, absl::StrCat(name, name.empty() ? "" : " ", command->get_name()), entries);
+  for (const std::unique_ptr<FlagSet>& command : app.commands()) {
+    Append(*command, absl::StrCat(name, name.empty() ? "" : " ", command->name()), entries);
   }
 }
 
 }  // namespace
 
-std::vector<CommandEntry> ListCommands(const CLI::App& app) {
+std::vector<CommandEntry> ListCommands(const FlagSet& app) {
   std::vector<CommandEntry> entries;
   Append(app, "", &entries);
   return entries;
 }
 
-const CLI::App* FindCommand(const CLI::App& app, const std::string& name) {
-  for (const CLI::App* command : app.get_subcommands({})) {
-    if (command->get_name() == name) return command;
+const FlagSet* FindCommand(const FlagSet& app, const std::string& name) {
+  for (const std::unique_ptr<FlagSet>& command : app.commands()) {
+    if (command->name() == name) return command.get();
   }
   return nullptr;
 }
 
-std::vector<std::string> CommandNames(const CLI::App& app) {
+std::vector<std::string> CommandNames(const FlagSet& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  for (const std::unique_ptr<FlagSet>& command : app.commands()) names.push_back(command->name());
   return names;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "CLI/CLI.hpp"
+#include "client/cli/flag_set.h"
 
 namespace duet::client::cli {
 
@@ -31,11 +31,11 @@ struct CommandEntry {
 };
 
 // The program, every command, and every command of a command, in the order of help.
-std::vector<CommandEntry> ListCommands(const CLI::App& app);
+std::vector<CommandEntry> ListCommands(const FlagSet& app);
 
 // The command of that name, or null.
-const CLI::App* FindCommand(const CLI::App& app, const std::string& name);
-std::vector<std::string> CommandNames(const CLI::App& app);
+const FlagSet* FindCommand(const FlagSet& app, const std::string& name);
+std::vector<std::string> CommandNames(const FlagSet& app);
 
 }  // namespace duet::client::cli
 

@@ -17,14 +17,14 @@
 namespace duet::client::cli {
 namespace {
 
-constexpr Command (*kCommands[])(CLI::App* program) = {
+constexpr Command (*kCommands[])(FlagSet* program) = {
     AddModelsCommand,  AddSynthesizeCommand, AddLiveCommand,    AddBatchCommand, AddInspectCommand,
     AddConvertCommand, AddViewCommand,       AddCompareCommand, AddAdminCommand, AddStdioCommand,
     AddHelpCommand,    AddCompletionCommand, AddManCommand};
 
 }  // namespace
 
-std::vector<Command> AddCommands(CLI::App* program) {
+std::vector<Command> AddCommands(FlagSet* program) {
   std::vector<Command> commands;
   for (const auto add : kCommands) commands.push_back(add(program));
   return commands;

@@ -3,13 +3,13 @@
 
 #include <vector>
 
-#include "CLI/CLI.hpp"
 #include "client/cli/command.h"
+#include "client/cli/flag_set.h"
 
 namespace duet::client::cli {
 
 // Adds every command to the program, in the order in which help lists them.
-std::vector<Command> AddCommands(CLI::App* program);
+std::vector<Command> AddCommands(FlagSet* program);
 
 }  // namespace duet::client::cli
 

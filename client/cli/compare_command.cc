@@ -67,25 +67,23 @@ absl::Status Run(const CompareArguments& arguments, const ProgramEnvironment& en
   return absl::OkStatus();
 }
 
-void AddFlags(CLI::App* command, CompareArguments* arguments) {
+void AddFlags(FlagSet* command, CompareArguments* arguments) {
   command
-      ->add_option("files", arguments->takes.takes,
-                   "The two motions; of two people each, their followers are compared")
-      ->required()
-      ->expected(2)
-      ->type_name("[NAME=]FILE");
+      ->Add("files", &arguments->takes.takes,
+            "The two motions; of two people each, their followers are compared")
+      ->Required()
+      ->Count(2, 2)
+      ->Form("[NAME=]FILE");
   AddTakeFlags(command, &arguments->takes);
-  command->add_flag("--json", arguments->json, "Print JSON")->group(kOutputGroup);
-  command
-      ->add_option("--out", arguments->out,
-                   "Page to write with both motions and all figures, .html")
-      ->type_name("FILE")
-      ->group(kOutputGroup);
-  command->footer(kTakesFooter);
-  command->callback([arguments] {
+  command->AddSwitch("--json", &arguments->json, "Print JSON")->Group(kOutputGroup);
+  command->Add("--out", &arguments->out, "Page to write with both motions and all figures, .html")
+      ->Form("FILE")
+      ->Group(kOutputGroup);
+  command->Footer(kTakesFooter);
+  command->Check([arguments] {
     CheckTakes(arguments->takes);
     if (arguments->out == kStandardStream) {
-      throw CLI::ValidationError("--out", "expected a file, got standard output");
+      RejectFlag("--out", "expected a file, got standard output");
     }
     if (!arguments->out.empty()) CheckPage("--out", arguments->out);
   });
@@ -93,9 +91,9 @@ void AddFlags(CLI::App* command, CompareArguments* arguments) {
 
 }  // namespace
 
-Command AddCompareCommand(CLI::App* program) {
+Command AddCompareCommand(FlagSet* program) {
   const auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* app = program->add_subcommand(
+  FlagSet* app = program->AddCommand(
       "compare", "Print how two motions differ: displacement, speed, lean, contact");
   AddFlags(app, arguments.get());
   Command command;

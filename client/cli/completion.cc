@@ -242,13 +242,13 @@ std::string FishScript(const std::vector<CommandEntry>& commands) {
 
 }  // namespace
 
-std::string CompletionScript(const CLI::App& app, const std::string& shell) {
+std::string CompletionScript(const FlagSet& app, const std::string& shell) {
   const std::vector<CommandEntry> commands = ListCommands(app);
   const std::string script = shell == "zsh"    ? ZshScript(commands)
                              : shell == "fish" ? FishScript(commands)
                                                : BashScript(commands);
-  const std::string function = absl::StrCat("_", absl::StrReplaceAll(app.get_name(), {{"-", "_"}}));
-  return absl::StrReplaceAll(script, {{"@PROGRAM@", app.get_name()}, {"@FUNCTION@", function}});
+  const std::string function = absl::StrCat("_", absl::StrReplaceAll(app.name(), {{"-", "_"}}));
+  return absl::StrReplaceAll(script, {{"@PROGRAM@", app.name()}, {"@FUNCTION@", function}});
 }
 
 }  // namespace duet::client::cli

@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "CLI/CLI.hpp"
+#include "client/cli/flag_set.h"
 
 namespace duet::client::cli {
 
 // A script that makes a shell ("bash", "zsh" or "fish") complete commands, flags, their choices and
 // files. It holds all it needs: completing does not run the program.
-std::string CompletionScript(const CLI::App& app, const std::string& shell);
+std::string CompletionScript(const FlagSet& app, const std::string& shell);
 
 }  // namespace duet::client::cli
 

@@ -10,15 +10,14 @@
 
 namespace duet::client::cli {
 
-Command AddCompletionCommand(CLI::App* program) {
+Command AddCompletionCommand(FlagSet* program) {
   const auto shell = std::make_shared<std::string>();
   Command command;
-  command.app =
-      program->add_subcommand("completion", "Print a script that completes duet in a shell");
-  command.app->add_option("shell", *shell, "bash, zsh or fish")
-      ->required()
-      ->check(Undescribed(CLI::IsMember(std::vector<std::string>{"bash", "zsh", "fish"})))
-      ->type_name("bash|zsh|fish");
+  command.app = program->AddCommand("completion", "Print a script that completes duet in a shell");
+  command.app->Add("shell", shell.get(), "bash, zsh or fish")
+      ->Required()
+      ->OneOf({"bash", "zsh", "fish"})
+      ->Form("bash|zsh|fish");
   command.run = [shell](const CommandContext& context) {
     *context.environment.out << CompletionScript(context.program, *shell);
     return kExitDone;

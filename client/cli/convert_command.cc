@@ -339,65 +339,62 @@ absl::Status Run(const ConvertArguments& arguments, const ProgramEnvironment& en
 void CheckTogether(const ConvertArguments& arguments) {
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
   if (arguments.output_format && !arguments.output_format->motion) {
-    throw CLI::ValidationError("--output-format",
-                               "html is not a motion format. Use duet view to make a page");
+    RejectFlag("--output-format", "html is not a motion format. Use duet view to make a page");
   }
   for (const std::filesystem::path& output : arguments.outputs) {
     const bool is_npy = output == kStandardStream ? arguments.output_format->motion == Format::kNpy
                                                   : formats::FormatOf(output) == Format::kNpy;
     if (arguments.output_layout && !is_npy) {
-      throw CLI::ValidationError("--output-layout",
-                                 absl::StrCat("expected --out FILE.npy, got ", output.string()));
+      RejectFlag("--output-layout", absl::StrCat("expected --out FILE.npy, got ", output.string()));
     }
     const absl::Status status = CheckOutput(output, arguments.file, PageAllowed::kNo);
-    if (!status.ok()) throw CLI::ValidationError("--out", std::string(status.message()));
+    if (!status.ok()) RejectFlag("--out", std::string(status.message()));
   }
   CheckRigFlags(arguments.rig, arguments.outputs);
 }
 
-void AddFlags(CLI::App* command, ConvertArguments* arguments) {
+void AddFlags(FlagSet* command, ConvertArguments* arguments) {
   command
-      ->add_option("file", arguments->file,
-                   "Motion: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
-                   "standard input")
-      ->required()
-      ->type_name("FILE");
+      ->Add("file", &arguments->file,
+            "Motion: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
+            "standard input")
+      ->Required()
+      ->Form("FILE");
   AddChoice<People>(
       command, "--side", kPeople, [arguments](People people) { arguments->people = people; },
       "The people to write (default: all)")
-      ->group(kInputGroup);
+      ->Group(kInputGroup);
   AddInputFlags(command, &arguments->input);
   command
-      ->add_option("--out", arguments->outputs,
-                   "File to write: .glb, .gltf, .usda, .bvh (a file for each person), .csv, .npy, "
-                   ".json or .txt (SBU text); repeatable; - for standard output")
-      ->required()
-      ->allow_extra_args(false)
-      ->type_name("FILE")
-      ->group(kOutputGroup);
+      ->Add("--out", &arguments->outputs,
+            "File to write: .glb, .gltf, .usda, .bvh (a file for each person), .csv, .npy, "
+            ".json or .txt (SBU text); repeatable; - for standard output")
+      ->Required()
+      ->OneValueEach()
+      ->Form("FILE")
+      ->Group(kOutputGroup);
   command
-      ->add_option(
-          "--resample", arguments->resample_hz,
-          "Frame rate of the output; the motion keeps its speed (--frame-rate sets the rate "
-          "of the input)")
-      ->check(AboveZero())
-      ->type_name("HZ")
-      ->group(kOutputGroup);
+      ->Add("--resample", &arguments->resample_hz,
+            "Frame rate of the output; the motion keeps its speed (--frame-rate sets the rate "
+            "of the input)")
+      ->AboveZero()
+      ->Form("HZ")
+      ->Group(kOutputGroup);
   AddOutputFormatFlag(command, &arguments->output_format);
   AddOutputLayoutFlag(command, &arguments->output_layout);
   AddBvhFlags(command, &arguments->bvh);
   AddRigFlags(command, &arguments->rig);
-  command->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
-  command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
-  command->callback([arguments] { CheckTogether(*arguments); });
+  command->AddSwitch("--json", &arguments->json, "Print the summary as JSON")->Group(kOutputGroup);
+  command->AddSwitch("--quiet", &arguments->quiet, "Print only errors")->Group(kOutputGroup);
+  command->Check([arguments] { CheckTogether(*arguments); });
 }
 
 }  // namespace
 
-Command AddConvertCommand(CLI::App* program) {
+Command AddConvertCommand(FlagSet* program) {
   const auto arguments = std::make_shared<ConvertArguments>();
-  CLI::App* app =
-      program->add_subcommand("convert", "Write a motion in another format, positions as they are");
+  FlagSet* app =
+      program->AddCommand("convert", "Write a motion in another format, positions as they are");
   AddFlags(app, arguments.get());
   Command command;
   command.app = app;

@@ -1,14 +1,14 @@
 #ifndef DUET_CLIENT_CLI_CONVERT_COMMAND_H_
 #define DUET_CLIENT_CLI_CONVERT_COMMAND_H_
 
-#include "CLI/CLI.hpp"
 #include "client/cli/command.h"
+#include "client/cli/flag_set.h"
 
 namespace duet::client::cli {
 
 // duet convert: writes a motion in other formats, without a server. Reads back what it wrote, and
 // reports what the format could not hold.
-Command AddConvertCommand(CLI::App* program);
+Command AddConvertCommand(FlagSet* program);
 
 }  // namespace duet::client::cli
 

@@ -8,65 +8,41 @@
 #include <utility>
 #include <vector>
 
-#include "CLI/CLI.hpp"
 #include "absl/status/statusor.h"
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
-#include "model/base/text.h"
+#include "client/cli/flag_set.h"
 
-// Kinds of flags that CLI11 does not have.
+// Kinds of flags with values of any type.
 
 namespace duet::client::cli {
-
-// A validator that --help does not describe.
-inline CLI::Validator Undescribed(CLI::Validator validator) {
-  validator.description("");
-  return validator;
-}
-
-// Any finite number above 0. CLI11's own validator prints the largest double in --help.
-inline CLI::Validator AboveZero() {
-  const auto check = [](const std::string& text) {
-    double value = 0;
-    if (base::ParseNumber(text, &value) && value > 0) return std::string();
-    return absl::StrCat("expected a number above 0, got ", base::Quoted(text));
-  };
-  return CLI::Validator(check, "");
-}
 
 // A flag whose value `parse` reads; --help shows the value as `form`. Each flag takes one value, so
 // that a file name that follows is never read as another value.
 template <typename T>
-CLI::Option* AddParsed(CLI::App* app, const std::string& flag, const std::string& form,
-                       absl::StatusOr<T> (*parse)(absl::string_view), std::function<void(T)> sink,
-                       const std::string& help) {
+Flag* AddParsed(FlagSet* app, const std::string& flag, const std::string& form,
+                absl::StatusOr<T> (*parse)(absl::string_view), std::function<void(T)> sink,
+                const std::string& help) {
   const auto read = [flag, parse, sink = std::move(sink)](const std::vector<std::string>& values) {
     for (const std::string& value : values) {
       absl::StatusOr<T> parsed = parse(value);
-      if (!parsed.ok()) throw CLI::ValidationError(flag, std::string(parsed.status().message()));
+      if (!parsed.ok()) RejectFlag(flag, std::string(parsed.status().message()));
       sink(*std::move(parsed));
     }
   };
-  return app->add_option_function<std::vector<std::string>>(flag, read, help)
-      ->allow_extra_args(false)
-      ->type_name(form);
+  return app->AddListReader(flag, read, help)->OneValueEach()->Form(form);
 }
 
-// A flag with one of a few names. CLI11's transformer would also accept the enum's number. `names`
-// outlives the app.
+// A flag with one of a few names. `names` outlives the app.
 template <typename T>
-CLI::Option* AddChoice(CLI::App* app, const std::string& flag,
-                       const std::map<std::string, T>& names, std::function<void(T)> sink,
-                       const std::string& help) {
+Flag* AddChoice(FlagSet* app, const std::string& flag, const std::map<std::string, T>& names,
+                std::function<void(T)> sink, const std::string& help) {
   std::vector<std::string> allowed;
   for (const auto& [name, value] : names) allowed.push_back(name);
   const auto read = [&names, sink = std::move(sink)](const std::string& name) {
     sink(names.at(name));
   };
-  return app->add_option_function<std::string>(flag, read, help)
-      ->check(Undescribed(CLI::IsMember(allowed)))
-      ->type_name(absl::StrJoin(allowed, "|"));
+  return app->AddReader(flag, read, help)->OneOf(allowed)->Form(absl::StrJoin(allowed, "|"));
 }
 
 // The name that AddChoice gives to `value`; every value has one.

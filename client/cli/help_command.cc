@@ -20,20 +20,13 @@ bool IsTopic(const std::string& name) {
   return false;
 }
 
-// The help of the program. App::help would print the help of the command that was parsed.
-std::string ProgramHelp(const CLI::App& program) {
-  return program.get_formatter()->make_help(&program, program.get_name(),
-                                            CLI::AppFormatMode::Normal);
-}
-
 ExitCode Explain(const std::string& topic, const CommandContext& context) {
   std::ostream& out = *context.environment.out;
-  const CLI::App* command = FindCommand(context.program, topic);
+  const FlagSet* command = FindCommand(context.program, topic);
   if (topic.empty()) {
-    out << ProgramHelp(context.program) << "\nTopics (duet help TOPIC):\n  " << HelpTopicNames()
-        << "\n";
+    out << context.program.Help() << "\nTopics (duet help TOPIC):\n  " << HelpTopicNames() << "\n";
   } else if (command != nullptr) {
-    out << command->help(context.program.get_name());
+    out << command->Help(context.program.name());
   } else if (IsTopic(topic)) {
     out << TopicText(topic);
   } else {
@@ -49,12 +42,12 @@ ExitCode Explain(const std::string& topic, const CommandContext& context) {
 
 }  // namespace
 
-Command AddHelpCommand(CLI::App* program) {
+Command AddHelpCommand(FlagSet* program) {
   const auto topic = std::make_shared<std::string>();
   Command command;
-  command.app = program->add_subcommand("help", "Explain a command or a topic");
-  command.app->add_option("topic", *topic, "A command, or one of: " + HelpTopicNames())
-      ->type_name("TOPIC");
+  command.app = program->AddCommand("help", "Explain a command or a topic");
+  command.app->Add("topic", topic.get(), "A command, or one of: " + HelpTopicNames())
+      ->Form("TOPIC");
   command.run = [topic](const CommandContext& context) { return Explain(*topic, context); };
   command.uses_settings = false;
   return command;

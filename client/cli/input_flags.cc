@@ -37,80 +37,79 @@ const std::map<std::string, double> kBvhUnits = {{"centimetres", formats::kCenti
 const std::map<std::string, formats::Side> kSides = {{"left", formats::Side::kLeft},
                                                      {"right", formats::Side::kRight}};
 
-void AddInputFlags(CLI::App* app, InputArguments* input) {
+void AddInputFlags(FlagSet* app, InputArguments* input) {
   AddChoice<Format>(
       app, "--input-format", kInputFormats, [input](Format format) { input->format = format; },
       "Format of the input; required for standard input (-), overrides the extension")
-      ->group(kInputGroup);
-  app->add_option("--frame-rate", input->frame_rate_hz,
-                  "Frame rate of the input; overrides the file")
-      ->check(AboveZero())
-      ->type_name("HZ")
-      ->group(kInputGroup);
+      ->Group(kInputGroup);
+  app->Add("--frame-rate", &input->frame_rate_hz, "Frame rate of the input; overrides the file")
+      ->AboveZero()
+      ->Form("HZ")
+      ->Group(kInputGroup);
   AddParsed<motion::LengthUnit>(
       app, "--unit", "metres|millimetres|sbu-normalised", ParseUnit,
       [input](motion::LengthUnit unit) { input->unit = unit; },
       "Unit of positions; overrides the file")
-      ->take_last()
-      ->group(kInputGroup);
+      ->LastOnly()
+      ->Group(kInputGroup);
   AddParsed<motion::UpAxis>(
       app, "--up-axis", "y-up|z-up|y-down", ParseAxis,
       [input](motion::UpAxis axis) { input->up_axis = axis; },
       "Up axis of positions; overrides the file")
-      ->take_last()
-      ->group(kInputGroup);
-  app->add_option("--metres-per-unit", input->metres_per_unit,
-                  "BVH, glTF, ASF: metres in one unit of the file (0.01 for centimetres)")
-      ->check(AboveZero())
-      ->type_name("METRES")
-      ->group(kInputGroup);
+      ->LastOnly()
+      ->Group(kInputGroup);
+  app->Add("--metres-per-unit", &input->metres_per_unit,
+           "BVH, glTF, ASF: metres in one unit of the file (0.01 for centimetres)")
+      ->AboveZero()
+      ->Form("METRES")
+      ->Group(kInputGroup);
   AddChoice<Layout>(
       app, "--layout", kLayouts, [input](Layout layout) { input->layout = layout; },
       "Meaning of a .npy array of research: positions of 22 joints, or features")
-      ->group(kInputGroup);
-  app->add_option("--body-model", input->body_model,
-                  "Body model of .npz motions (AMASS, SMPL): an .npz with its joint regressor")
-      ->type_name("FILE")
-      ->group(kInputGroup);
+      ->Group(kInputGroup);
+  app->Add("--body-model", &input->body_model,
+           "Body model of .npz motions (AMASS, SMPL): an .npz with its joint regressor")
+      ->Form("FILE")
+      ->Group(kInputGroup);
   AddParsed<std::pair<std::string, std::string>>(
       app, "--joint-map", "MODEL_JOINT=FILE_JOINT", ParseJointPair,
       [input](std::pair<std::string, std::string> joints) { input->joints.insert(joints); },
       "Joint of the file for a joint of the model, if its name is not recognised; repeatable")
-      ->group(kInputGroup);
-  app->add_option("--joint-map-file", input->joint_table,
-                  "File with one MODEL_JOINT=FILE_JOINT on each line; --joint-map overrides it")
-      ->type_name("FILE")
-      ->group(kInputGroup);
+      ->Group(kInputGroup);
+  app->Add("--joint-map-file", &input->joint_table,
+           "File with one MODEL_JOINT=FILE_JOINT on each line; --joint-map overrides it")
+      ->Form("FILE")
+      ->Group(kInputGroup);
 }
 
-void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format) {
+void AddOutputFormatFlag(FlagSet* app, std::optional<OutputFormat>* format) {
   AddChoice<OutputFormat>(
       app, "--output-format", kOutputFormats, [format](OutputFormat chosen) { *format = chosen; },
       "Format of standard output (--out -)")
-      ->group(kOutputGroup);
+      ->Group(kOutputGroup);
 }
 
-void AddOutputLayoutFlag(CLI::App* app, std::optional<Layout>* layout) {
+void AddOutputLayoutFlag(FlagSet* app, std::optional<Layout>* layout) {
   AddChoice<Layout>(
       app, "--output-layout", kLayouts, [layout](Layout chosen) { *layout = chosen; },
       "Layout of --out FILE.npy: 22 joints of a body model at the rate of the data set")
-      ->group(kOutputGroup);
+      ->Group(kOutputGroup);
 }
 
-void AddBvhFlags(CLI::App* app, BvhArguments* bvh) {
+void AddBvhFlags(FlagSet* app, BvhArguments* bvh) {
   AddChoice<double>(
       app, "--bvh-unit", kBvhUnits, [bvh](double metres) { bvh->metres_per_unit = metres; },
       "Unit of .bvh output, which the format does not state: Maya, MotionBuilder and Unreal "
       "expect centimetres, Blender metres")
-      ->default_str("centimetres")
-      ->group(kOutputGroup);
-  app->add_option("--bvh-keys-per-frame", bvh->keys_per_frame,
-                  "Keys in .bvh for each frame of the motion; more keep programs that interpolate "
-                  "angles linearly close to the motion near gimbal lock")
-      ->check(Undescribed(CLI::Range(1, formats::kMostBvhKeysPerFrame)))
-      ->capture_default_str()
-      ->type_name("COUNT")
-      ->group(kOutputGroup);
+      ->ShowDefault("centimetres")
+      ->Group(kOutputGroup);
+  app->Add("--bvh-keys-per-frame", &bvh->keys_per_frame,
+           "Keys in .bvh for each frame of the motion; more keep programs that interpolate "
+           "angles linearly close to the motion near gimbal lock")
+      ->InRange(1, formats::kMostBvhKeysPerFrame)
+      ->ShowDefault()
+      ->Form("COUNT")
+      ->Group(kOutputGroup);
 }
 
 bool WritesToStandardOutput(const std::vector<std::filesystem::path>& outputs) {
@@ -122,13 +121,11 @@ void CheckStandardOutput(const std::vector<std::filesystem::path>& outputs,
   const auto count = std::count(outputs.begin(), outputs.end(), kStandardStream);
   if (count == 0) {
     if (!format.has_value()) return;
-    throw CLI::ValidationError("--output-format", "is only valid with --out -");
+    RejectFlag("--output-format", "is only valid with --out -");
   }
-  if (count > 1) throw CLI::ValidationError("--out", "expected - once, got it twice");
-  if (!format.has_value()) throw CLI::RequiredError("--output-format, which --out - needs,");
-  if (json)
-    throw CLI::ValidationError("--json",
-                               "cannot be used with --out -: both print to standard output");
+  if (count > 1) RejectFlag("--out", "expected - once, got it twice");
+  if (!format.has_value()) RejectMissing("--output-format, which --out - needs,");
+  if (json) RejectFlag("--json", "cannot be used with --out -: both print to standard output");
 }
 
 }  // namespace duet::client::cli

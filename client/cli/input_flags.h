@@ -4,22 +4,22 @@
 #include <map>
 #include <string>
 
-#include "CLI/CLI.hpp"
+#include "client/cli/flag_set.h"
 #include "client/cli/motion_arguments.h"
 
 namespace duet::client::cli {
 
 // How motion files are to be read: --frame-rate, --unit, --joint-map and so on.
-void AddInputFlags(CLI::App* app, InputArguments* input);
+void AddInputFlags(FlagSet* app, InputArguments* input);
 
 // --output-format, of what goes to standard output.
-void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format);
+void AddOutputFormatFlag(FlagSet* app, std::optional<OutputFormat>* format);
 
 // --output-layout, of .npy.
-void AddOutputLayoutFlag(CLI::App* app, std::optional<formats::research::Layout>* layout);
+void AddOutputLayoutFlag(FlagSet* app, std::optional<formats::research::Layout>* layout);
 
 // --bvh-unit and --bvh-keys-per-frame, of what is written.
-void AddBvhFlags(CLI::App* app, BvhArguments* bvh);
+void AddBvhFlags(FlagSet* app, BvhArguments* bvh);
 
 // What standard output cannot take: several results, a summary besides, a result without
 // --output-format. Throws what CLI11 reports as a usage error.

@@ -113,22 +113,22 @@ ExitCode Run(const InspectArguments& arguments, const ProgramEnvironment& enviro
   return worst;
 }
 
-void AddFlags(CLI::App* command, InspectArguments* arguments) {
+void AddFlags(FlagSet* command, InspectArguments* arguments) {
   command
-      ->add_option("files", arguments->files,
-                   "Motions: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
-                   "standard input")
-      ->required()
-      ->type_name("FILE");
+      ->Add("files", &arguments->files,
+            "Motions: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
+            "standard input")
+      ->Required()
+      ->Form("FILE");
   AddInputFlags(command, &arguments->input);
-  command->add_flag("--json", arguments->json, "Print JSON")->group(kOutputGroup);
+  command->AddSwitch("--json", &arguments->json, "Print JSON")->Group(kOutputGroup);
 }
 
 }  // namespace
 
-Command AddInspectCommand(CLI::App* program) {
+Command AddInspectCommand(FlagSet* program) {
   const auto arguments = std::make_shared<InspectArguments>();
-  CLI::App* app = program->add_subcommand(
+  FlagSet* app = program->AddCommand(
       "inspect", "Print what motion files contain, how Duet reads them, and what looks wrong");
   AddFlags(app, arguments.get());
   Command command;

@@ -131,11 +131,11 @@ Examples:
 
 }  // namespace
 
-Command AddLiveCommand(CLI::App* program) {
+Command AddLiveCommand(FlagSet* program) {
   const auto arguments = std::make_shared<LiveArguments>();
-  CLI::App* app = program->add_subcommand("live", "Answer a leader while it still moves");
+  FlagSet* app = program->AddCommand("live", "Answer a leader while it still moves");
   AddLiveFlags(app, arguments.get());
-  app->footer(kFooter);
+  app->Footer(kFooter);
   Command command;
   command.app = app;
   command.run = [arguments](const CommandContext& context) {

@@ -1,13 +1,13 @@
 #ifndef DUET_CLIENT_CLI_LIVE_COMMAND_H_
 #define DUET_CLIENT_CLI_LIVE_COMMAND_H_
 
-#include "CLI/CLI.hpp"
 #include "client/cli/command.h"
+#include "client/cli/flag_set.h"
 
 namespace duet::client::cli {
 
 // duet live: the follower of a leader who still moves.
-Command AddLiveCommand(CLI::App* program);
+Command AddLiveCommand(FlagSet* program);
 
 }  // namespace duet::client::cli
 

@@ -1,12 +1,12 @@
 #ifndef DUET_CLIENT_CLI_LIVE_FLAGS_H_
 #define DUET_CLIENT_CLI_LIVE_FLAGS_H_
 
-#include "CLI/CLI.hpp"
+#include "client/cli/flag_set.h"
 #include "client/cli/live_arguments.h"
 
 namespace duet::client::cli {
 
-void AddLiveFlags(CLI::App* command, LiveArguments* arguments);
+void AddLiveFlags(FlagSet* command, LiveArguments* arguments);
 
 }  // namespace duet::client::cli
 

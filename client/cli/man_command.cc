@@ -33,15 +33,14 @@ absl::StatusOr<ExitCode> Run(const ManArguments& arguments, const CommandContext
 
 }  // namespace
 
-Command AddManCommand(CLI::App* program) {
+Command AddManCommand(FlagSet* program) {
   const auto arguments = std::make_shared<ManArguments>();
   Command command;
-  command.app = program->add_subcommand("man", "Print a manual page");
-  command.app
-      ->add_option("command", arguments->command, "Command to explain (default: duet itself)")
-      ->type_name("COMMAND");
-  command.app->add_option("--out", arguments->folder, "Write all pages into this folder instead")
-      ->type_name("FOLDER");
+  command.app = program->AddCommand("man", "Print a manual page");
+  command.app->Add("command", &arguments->command, "Command to explain (default: duet itself)")
+      ->Form("COMMAND");
+  command.app->Add("--out", &arguments->folder, "Write all pages into this folder instead")
+      ->Form("FOLDER");
   command.run = [arguments](const CommandContext& context) { return Run(*arguments, context); };
   command.uses_settings = false;
   return command;

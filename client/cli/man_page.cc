@@ -33,15 +33,15 @@ std::string Example(absl::string_view text) {
   return page + ".fi\n";
 }
 
-std::string FullName(const CLI::App& app, const CommandEntry& command) {
-  return absl::StrCat(app.get_name(), command.name.empty() ? "" : " ", command.name);
+std::string FullName(const FlagSet& app, const CommandEntry& command) {
+  return absl::StrCat(app.name(), command.name.empty() ? "" : " ", command.name);
 }
 
-std::string PageName(const CLI::App& app, const CommandEntry& command) {
+std::string PageName(const FlagSet& app, const CommandEntry& command) {
   return absl::StrReplaceAll(FullName(app, command), {{" ", "-"}});
 }
 
-std::string Synopsis(const CLI::App& app, const CommandEntry& command) {
+std::string Synopsis(const FlagSet& app, const CommandEntry& command) {
   std::string text = absl::StrCat(".B ", Escaped(FullName(app, command)), "\n");
   if (!command.subcommands.empty()) {
     absl::StrAppend(&text, command.name.empty() ? ".I COMMAND\n" : ".RI [ COMMAND ]\n");
@@ -85,7 +85,7 @@ std::string Options(const CommandEntry& command) {
   return text;
 }
 
-std::string Commands(const CLI::App& app, const CommandEntry& command,
+std::string Commands(const FlagSet& app, const CommandEntry& command,
                      const std::vector<CommandEntry>& all) {
   std::string text;
   for (const std::string& name : command.subcommands) {
@@ -113,7 +113,7 @@ std::string Topics() {
   return text;
 }
 
-std::string Page(const CLI::App& app, const CommandEntry& command,
+std::string Page(const FlagSet& app, const CommandEntry& command,
                  const std::vector<CommandEntry>& all) {
   const bool program = command.name.empty();
   std::string help(absl::StripSuffix(command.help, "."));
@@ -142,7 +142,7 @@ std::string Page(const CLI::App& app, const CommandEntry& command,
 
 }  // namespace
 
-std::string ManualPage(const CLI::App& app, const std::string& command) {
+std::string ManualPage(const FlagSet& app, const std::string& command) {
   const std::vector<CommandEntry> all = ListCommands(app);
   for (const CommandEntry& entry : all) {
     if (entry.name == command) return Page(app, entry, all);
@@ -150,7 +150,7 @@ std::string ManualPage(const CLI::App& app, const std::string& command) {
   return "";
 }
 
-absl::Status WriteManualPages(const CLI::App& app, const std::filesystem::path& folder) {
+absl::Status WriteManualPages(const FlagSet& app, const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   const std::vector<CommandEntry> all = ListCommands(app);

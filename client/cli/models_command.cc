@@ -30,11 +30,11 @@ absl::Status Run(const ModelsArguments& arguments, const ProgramEnvironment& env
 
 }  // namespace
 
-Command AddModelsCommand(CLI::App* program) {
+Command AddModelsCommand(FlagSet* program) {
   const auto arguments = std::make_shared<ModelsArguments>();
-  CLI::App* app = program->add_subcommand("models", "List the models that the server serves");
+  FlagSet* app = program->AddCommand("models", "List the models that the server serves");
   AddServerFlags(app, &arguments->server);
-  app->add_flag("--json", arguments->json, "Print JSON");
+  app->AddSwitch("--json", &arguments->json, "Print JSON");
   Command command;
   command.app = app;
   command.run = [arguments](const CommandContext& context) {

@@ -19,46 +19,46 @@ const std::map<std::string, std::optional<bool>> kCleanUps = {
 
 }  // namespace
 
-void AddReadingFlags(CLI::App* app, SynthesizeArguments* arguments) {
+void AddReadingFlags(FlagSet* app, SynthesizeArguments* arguments) {
   AddChoice<formats::Side>(
       app, "--leader-side", kSides,
       [arguments](formats::Side side) { arguments->leader_side = side; },
       "The person who leads in a file with two people")
-      ->default_str(NameOf(kSides, arguments->leader_side))
-      ->group(kInputGroup);
+      ->ShowDefault(NameOf(kSides, arguments->leader_side))
+      ->Group(kInputGroup);
   AddInputFlags(app, &arguments->input);
   AddParsed<batch::Level>(
       app, "--level", batch::kLevelForm, ParseLevel,
       [arguments](batch::Level level) { arguments->level = level; },
       "Vertical of the leader's camera in metres, y up; auto: estimated from everybody in the "
       "file, who are levelled only if the evidence is strong (duet inspect shows it)")
-      ->take_last()
-      ->default_str("auto")
-      ->group(kInputGroup);
+      ->LastOnly()
+      ->ShowDefault("auto")
+      ->Group(kInputGroup);
 }
 
-CLI::Option* AddLabelFlag(CLI::App* app, SynthesizeArguments* arguments) {
+Flag* AddLabelFlag(FlagSet* app, SynthesizeArguments* arguments) {
   return AddParsed<ClassWeight>(
              app, "--label", "CLASS[=WEIGHT]", ParseClassWeight, AppendTo(&arguments->weights),
              "Weight of an interaction class, such as kick=1 or hug=-0.5; repeatable")
-      ->group(kReactionGroup);
+      ->Group(kReactionGroup);
 }
 
-void AddModelFlag(CLI::App* app, SynthesizeArguments* arguments) {
+void AddModelFlag(FlagSet* app, SynthesizeArguments* arguments) {
   AddParsed<ModelChoice>(
       app, "--model", "NAME[@VERSION|:LABEL]", ParseModelChoice,
       [arguments](ModelChoice choice) { arguments->model = std::move(choice); },
       "Model to use (default: the server's default model)")
-      ->take_last()
-      ->group(kReactionGroup);
+      ->LastOnly()
+      ->Group(kReactionGroup);
 }
 
-void AddStartFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  app->add_option("--follower-start", arguments->follower_start,
-                  "Start of the follower: a motion file (its first frame), or X,Y,Z of the root "
-                  "joint in metres, y up")
-      ->type_name("FILE|X,Y,Z")
-      ->group(kReactionGroup);
+void AddStartFlags(FlagSet* app, SynthesizeArguments* arguments) {
+  app->Add("--follower-start", &arguments->follower_start,
+           "Start of the follower: a motion file (its first frame), or X,Y,Z of the root "
+           "joint in metres, y up")
+      ->Form("FILE|X,Y,Z")
+      ->Group(kReactionGroup);
   AddChoice<formats::Side>(
       app, "--follower-start-side", kSides,
       [arguments](formats::Side side) { arguments->follower_start_side = side; },
@@ -66,53 +66,53 @@ void AddStartFlags(CLI::App* app, SynthesizeArguments* arguments) {
           "The person in a --follower-start file with two people (default: in the leader's "
           "file, the other person; else ",
           NameOf(kSides, kDefaultSide), ")"))
-      ->group(kReactionGroup);
+      ->Group(kReactionGroup);
   AddParsed<motion::Vec3>(
       app, "--partner-direction", "X,Y,Z", ParseDirection,
       [arguments](motion::Vec3 direction) { arguments->partner_direction = direction; },
       "Horizontal direction from the leader to the follower (default: towards --follower-start, "
       "else the model's estimate from the leader)")
-      ->take_last()
-      ->group(kReactionGroup);
+      ->LastOnly()
+      ->Group(kReactionGroup);
 }
 
-void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments) {
+void AddSamplingFlags(FlagSet* app, SynthesizeArguments* arguments) {
   AddParsed<uint64_t>(
       app, "--seed", "SEED", ParseSeed, [arguments](uint64_t seed) { arguments->seed = seed; },
       "Seed of a model that samples; the same seed gives the same answer")
-      ->take_last()
-      ->default_str(absl::StrCat(arguments->seed))
-      ->group(kReactionGroup);
+      ->LastOnly()
+      ->ShowDefault(absl::StrCat(arguments->seed))
+      ->Group(kReactionGroup);
   AddParsed<float>(
       app, "--variety", "VARIETY", ParseVariety,
       [arguments](float variety) { arguments->variety = variety; },
       "Variety of such answers, from 0 (typical) over 1 (as varied as people) to 2")
-      ->take_last()
-      ->default_str(absl::StrCat(arguments->variety))
-      ->group(kReactionGroup);
-  app->add_option("--candidates", arguments->candidates,
-                  "Number of samples that such a model draws for each window; the answer is the "
-                  "best of them. More take longer")
-      ->check(Undescribed(CLI::Range(1, 16)))
-      ->capture_default_str()
-      ->type_name("COUNT")
-      ->group(kReactionGroup);
+      ->LastOnly()
+      ->ShowDefault(absl::StrCat(arguments->variety))
+      ->Group(kReactionGroup);
+  app->Add("--candidates", &arguments->candidates,
+           "Number of samples that such a model draws for each window; the answer is the "
+           "best of them. More take longer")
+      ->InRange(1, 16)
+      ->ShowDefault()
+      ->Form("COUNT")
+      ->Group(kReactionGroup);
 }
 
-void AddCleanUpFlag(CLI::App* app, SynthesizeArguments* arguments) {
+void AddCleanUpFlag(FlagSet* app, SynthesizeArguments* arguments) {
   AddChoice<std::optional<bool>>(
       app, "--clean-up", kCleanUps,
       [arguments](std::optional<bool> clean_up) { arguments->clean_up = clean_up; },
       "Correct the follower: upright, feet still, joints within human ranges, outside the leader; "
       "auto: the server's default for the model")
-      ->default_str(NameOf(kCleanUps, arguments->clean_up))
-      ->group(kReactionGroup);
+      ->ShowDefault(NameOf(kCleanUps, arguments->clean_up))
+      ->Group(kReactionGroup);
 }
 
-void AddRequestIdFlag(CLI::App* app, SynthesizeArguments* arguments) {
-  app->add_option("--request-id", arguments->request_id, "Name of the call in the server's log")
-      ->type_name("ID")
-      ->group(kReactionGroup);
+void AddRequestIdFlag(FlagSet* app, SynthesizeArguments* arguments) {
+  app->Add("--request-id", &arguments->request_id, "Name of the call in the server's log")
+      ->Form("ID")
+      ->Group(kReactionGroup);
 }
 
 }  // namespace duet::client::cli

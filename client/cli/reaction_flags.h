@@ -1,7 +1,7 @@
 #ifndef DUET_CLIENT_CLI_REACTION_FLAGS_H_
 #define DUET_CLIENT_CLI_REACTION_FLAGS_H_
 
-#include "CLI/CLI.hpp"
+#include "client/cli/flag_set.h"
 #include "client/cli/synthesize_arguments.h"
 
 // The flags that duet synthesize and duet live share.
@@ -9,16 +9,16 @@
 namespace duet::client::cli {
 
 // How the leader's file is read: --leader-side, the input flags, --level.
-void AddReadingFlags(CLI::App* app, SynthesizeArguments* arguments);
+void AddReadingFlags(FlagSet* app, SynthesizeArguments* arguments);
 
-CLI::Option* AddLabelFlag(CLI::App* app, SynthesizeArguments* arguments);
-void AddModelFlag(CLI::App* app, SynthesizeArguments* arguments);
+Flag* AddLabelFlag(FlagSet* app, SynthesizeArguments* arguments);
+void AddModelFlag(FlagSet* app, SynthesizeArguments* arguments);
 // --follower-start, --follower-start-side, --partner-direction
-void AddStartFlags(CLI::App* app, SynthesizeArguments* arguments);
+void AddStartFlags(FlagSet* app, SynthesizeArguments* arguments);
 // --seed, --variety, --candidates
-void AddSamplingFlags(CLI::App* app, SynthesizeArguments* arguments);
-void AddCleanUpFlag(CLI::App* app, SynthesizeArguments* arguments);
-void AddRequestIdFlag(CLI::App* app, SynthesizeArguments* arguments);
+void AddSamplingFlags(FlagSet* app, SynthesizeArguments* arguments);
+void AddCleanUpFlag(FlagSet* app, SynthesizeArguments* arguments);
+void AddRequestIdFlag(FlagSet* app, SynthesizeArguments* arguments);
 
 inline constexpr char kReactionGroup[] = "Reaction";
 

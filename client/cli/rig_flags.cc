@@ -11,55 +11,54 @@
 
 namespace duet::client::cli {
 
-void AddRigFlags(CLI::App* app, RigArguments* rig) {
-  CLI::Option* file =
-      app->add_option("--rig", rig->file,
-                      "Rig of the person in --out FILE.bvh, FILE.glb and FILE.gltf: the rig of "
-                      "another .bvh, .amc, .glb or .gltf (default: Duet's rig)")
-          ->type_name("FILE")
-          ->group(kOutputGroup);
+void AddRigFlags(FlagSet* app, RigArguments* rig) {
+  Flag* file = app->Add("--rig", &rig->file,
+                        "Rig of the person in --out FILE.bvh, FILE.glb and FILE.gltf: the rig of "
+                        "another .bvh, .amc, .glb or .gltf (default: Duet's rig)")
+                   ->Form("FILE")
+                   ->Group(kOutputGroup);
   AddChoice<formats::Side>(
       app, "--rig-side", kSides, [rig](formats::Side side) { rig->side = side; },
       "The person in a --rig file with two people (default: left)")
-      ->needs(file)
-      ->group(kOutputGroup);
+      ->Needs(file)
+      ->Group(kOutputGroup);
   AddParsed<motion::UpAxis>(
       app, "--rig-up-axis", "y-up|z-up|y-down", ParseAxis,
       [rig](motion::UpAxis axis) { rig->up_axis = axis; }, "Up axis of the rig; overrides the file")
-      ->take_last()
-      ->needs(file)
-      ->group(kOutputGroup);
-  app->add_option("--rig-metres-per-unit", rig->metres_per_unit,
-                  "Metres in one unit of the rig's file (0.01 for centimetres)")
-      ->check(AboveZero())
-      ->type_name("METRES")
-      ->needs(file)
-      ->group(kOutputGroup);
+      ->LastOnly()
+      ->Needs(file)
+      ->Group(kOutputGroup);
+  app->Add("--rig-metres-per-unit", &rig->metres_per_unit,
+           "Metres in one unit of the rig's file (0.01 for centimetres)")
+      ->AboveZero()
+      ->Form("METRES")
+      ->Needs(file)
+      ->Group(kOutputGroup);
   AddParsed<std::pair<std::string, std::string>>(
       app, "--rig-joint-map", "MODEL_JOINT=RIG_JOINT", ParseJointPair,
       [rig](std::pair<std::string, std::string> joints) { rig->joints.insert(joints); },
       "Joint of the rig for a joint of the model, if its name is not recognised; repeatable")
-      ->needs(file)
-      ->group(kOutputGroup);
-  app->add_option("--rig-joint-map-file", rig->joint_table,
-                  "File with one MODEL_JOINT=RIG_JOINT on each line; --rig-joint-map overrides it")
-      ->type_name("FILE")
-      ->needs(file)
-      ->group(kOutputGroup);
+      ->Needs(file)
+      ->Group(kOutputGroup);
+  app->Add("--rig-joint-map-file", &rig->joint_table,
+           "File with one MODEL_JOINT=RIG_JOINT on each line; --rig-joint-map overrides it")
+      ->Form("FILE")
+      ->Needs(file)
+      ->Group(kOutputGroup);
 }
 
 void CheckRigFlags(const RigArguments& rig, const std::vector<std::filesystem::path>& outputs) {
   if (rig.file.empty()) return;
   const std::optional<formats::Format> format = formats::FormatOf(rig.file);
   if (!format || !formats::FitsRig(formats::Format::kBvh, *format)) {
-    throw CLI::ValidationError(
-        "--rig", absl::StrCat("expected ", formats::kRigExtensions, ", got ", rig.file.string()));
+    RejectFlag("--rig",
+               absl::StrCat("expected ", formats::kRigExtensions, ", got ", rig.file.string()));
   }
   for (const std::filesystem::path& output : outputs) {
     const std::optional<formats::Format> written = formats::FormatOf(output);
     if (written && formats::FitsRig(*written, *format)) continue;
-    throw CLI::ValidationError("--out", absl::StrCat("expected ", formats::kRigOutputExtensions,
-                                                     " with --rig, got ", output.string()));
+    RejectFlag("--out", absl::StrCat("expected ", formats::kRigOutputExtensions,
+                                     " with --rig, got ", output.string()));
   }
 }
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "CLI/CLI.hpp"
 #include "absl/status/statusor.h"
+#include "client/cli/flag_set.h"
 #include "model/formats/follower_rig.h"
 #include "model/motion/skeleton.h"
 
@@ -23,10 +23,10 @@ struct RigArguments {
 };
 
 // --rig and the flags that describe its file.
-void AddRigFlags(CLI::App* app, RigArguments* rig);
+void AddRigFlags(FlagSet* app, RigArguments* rig);
 
-// Checks that the rig can be written in the format of every output. Throws what CLI11 reports as a
-// usage error.
+// Checks that the rig can be written in the format of every output. Calls RejectFlag if it cannot,
+// for use during parsing.
 void CheckRigFlags(const RigArguments& rig, const std::vector<std::filesystem::path>& outputs);
 
 // The rig, or nullopt without --rig. Errors: those of reading the table of joints.

@@ -1,17 +1,17 @@
 #ifndef DUET_CLIENT_CLI_SERVER_FLAGS_H_
 #define DUET_CLIENT_CLI_SERVER_FLAGS_H_
 
-#include "CLI/CLI.hpp"
+#include "client/cli/flag_set.h"
 #include "client/cli/server_arguments.h"
 
 namespace duet::client::cli {
 
 // --server, --wait, and the connection flags.
-void AddServerFlags(CLI::App* app, ServerArguments* server);
+void AddServerFlags(FlagSet* app, ServerArguments* server);
 // --timeout and the credential flags.
-void AddConnectionFlags(CLI::App* app, ServerArguments* server);
+void AddConnectionFlags(FlagSet* app, ServerArguments* server);
 // TLS, the token, and the name for a proxy.
-void AddCredentialFlags(CLI::App* app, ServerArguments* server);
+void AddCredentialFlags(FlagSet* app, ServerArguments* server);
 
 inline constexpr char kServerGroup[] = "Server";
 

@@ -52,11 +52,11 @@ ExitCode Run(const CommandContext& context) {
 
 }  // namespace
 
-Command AddStdioCommand(CLI::App* program) {
+Command AddStdioCommand(FlagSet* program) {
   Command command;
   command.app =
-      program->add_subcommand("stdio", "Run commands read from standard input, for other programs");
-  command.app->footer(R"(
+      program->AddCommand("stdio", "Run commands read from standard input, for other programs");
+  command.app->Footer(R"(
 Each line of standard input is a JSON array with the words of a command. The answer to each line is
 a line of JSON, followed by the command's standard output and standard error, whose numbers of bytes
 the JSON states.

@@ -1,8 +1,8 @@
 #ifndef DUET_CLIENT_CLI_STDIO_COMMAND_H_
 #define DUET_CLIENT_CLI_STDIO_COMMAND_H_
 
-#include "CLI/CLI.hpp"
 #include "client/cli/command.h"
+#include "client/cli/flag_set.h"
 
 namespace duet::client::cli {
 
@@ -18,7 +18,7 @@ namespace duet::client::cli {
 // followed by that many bytes of the command's standard output and standard error. A command has no
 // standard input. The answer to a line that is not such an array has exit code 2. At the end of the
 // input the exit code is kExitDone.
-Command AddStdioCommand(CLI::App* program);
+Command AddStdioCommand(FlagSet* program);
 
 }  // namespace duet::client::cli
 

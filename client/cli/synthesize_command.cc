@@ -133,11 +133,11 @@ absl::Status Run(const SynthesizeArguments& arguments, const ProgramEnvironment&
 
 }  // namespace
 
-Command AddSynthesizeCommand(CLI::App* program) {
+Command AddSynthesizeCommand(FlagSet* program) {
   const auto arguments = std::make_shared<SynthesizeArguments>();
-  CLI::App* app = program->add_subcommand("synthesize", "Synthesise the follower of a leader");
+  FlagSet* app = program->AddCommand("synthesize", "Synthesise the follower of a leader");
   AddSynthesizeFlags(app, arguments.get());
-  app->footer(kExitCodesFooter);
+  app->Footer(kExitCodesFooter);
   Command command;
   command.app = app;
   command.run = [arguments](const CommandContext& context) {

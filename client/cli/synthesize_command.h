@@ -1,13 +1,13 @@
 #ifndef DUET_CLIENT_CLI_SYNTHESIZE_COMMAND_H_
 #define DUET_CLIENT_CLI_SYNTHESIZE_COMMAND_H_
 
-#include "CLI/CLI.hpp"
 #include "client/cli/command.h"
+#include "client/cli/flag_set.h"
 
 namespace duet::client::cli {
 
 // duet synthesize: reads the leader in the joints of the model, calls, and writes every output.
-Command AddSynthesizeCommand(CLI::App* program);
+Command AddSynthesizeCommand(FlagSet* program);
 
 }  // namespace duet::client::cli
 

@@ -28,90 +28,90 @@ using formats::flat::RotationForm;
 const std::map<std::string, RotationForm> kRotationForms = {
     {"6d", RotationForm::kSixNumbers}, {"quaternion", RotationForm::kQuaternions}};
 
-void AddLeaderFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  app->add_option("--leader", arguments->leader,
-                  "Motion of the leader: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU "
-                  ".txt; - for standard input")
-      ->required()
-      ->type_name("FILE")
-      ->group(kInputGroup);
+void AddLeaderFlags(FlagSet* app, SynthesizeArguments* arguments) {
+  app->Add("--leader", &arguments->leader,
+           "Motion of the leader: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU "
+           ".txt; - for standard input")
+      ->Required()
+      ->Form("FILE")
+      ->Group(kInputGroup);
   AddReadingFlags(app, arguments);
 }
 
-void AddReactionFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  CLI::Option* label = AddLabelFlag(app, arguments);
+void AddReactionFlags(FlagSet* app, SynthesizeArguments* arguments) {
+  Flag* label = AddLabelFlag(app, arguments);
   AddParsed<KeyframeArgument>(
       app, "--keyframe", "FRAME|BEATSb:CLASS[=WEIGHT],...", ParseKeyframe,
       AppendTo(&arguments->keyframes),
       "Weights from a frame on, for weights that change over time; with --beat also from a "
       "position in beats, where 0b is the first beat; repeatable")
-      ->excludes(label)
-      ->group(kReactionGroup);
+      ->Excludes(label)
+      ->Group(kReactionGroup);
   AddParsed<motion::Beat>(
       app, "--beat", "BPM[,OFFSET]", ParseBeat,
       [arguments](motion::Beat beat) { arguments->beat = beat; },
       "Beat of the music, from 20 to 400 a minute, with the time of the first beat in seconds "
       "(default: 0): reports how far steps are from it, and adds a metronome to .html")
-      ->take_last()
-      ->group(kReactionGroup);
+      ->LastOnly()
+      ->Group(kReactionGroup);
   AddModelFlag(app, arguments);
   AddStartFlags(app, arguments);
   AddSamplingFlags(app, arguments);
-  app->add_option("--samples", arguments->samples,
-                  "Number of answers, with the seeds SEED, SEED+1, ...; with several, each --out "
-                  "pair.html becomes pair.seed0.html and so on")
-      ->check(Undescribed(CLI::Range(1, 1000)))
-      ->capture_default_str()
-      ->type_name("COUNT")
-      ->group(kReactionGroup);
+  app->Add("--samples", &arguments->samples,
+           "Number of answers, with the seeds SEED, SEED+1, ...; with several, each --out "
+           "pair.html becomes pair.seed0.html and so on")
+      ->InRange(1, 1000)
+      ->ShowDefault()
+      ->Form("COUNT")
+      ->Group(kReactionGroup);
   AddCleanUpFlag(app, arguments);
   AddParsed<JointConstraint>(
       app, "--pin", "JOINT@FRAME=X,Y,Z[,SOFTNESS]", ParsePin, AppendTo(&arguments->constraints),
       "Where a joint of the model must be in a frame, in metres, y up, such as "
       "right_hand@40=0.2,1.3,0.5; a softness up to 1 lets that share of the distance remain; "
       "repeatable")
-      ->group(kReactionGroup);
-  app->add_flag("--rotations", arguments->rotations,
-                "Write the follower's joint rotations beside its positions to .json, for engines")
-      ->group(kReactionGroup);
+      ->Group(kReactionGroup);
+  app->AddSwitch("--rotations", &arguments->rotations,
+                 "Write the follower's joint rotations beside its positions to .json, for engines")
+      ->Group(kReactionGroup);
   AddChoice<RotationForm>(
       app, "--rotation-form", kRotationForms,
       [arguments](RotationForm form) { arguments->rotation_form = form; },
       "Quaternions, or the first two columns of each rotation's matrix (6D)")
       ->default_str("quaternion")
-      ->group(kReactionGroup);
+      ->Group(kReactionGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->priority = priority; },
       "bulk calls yield to interactive calls, and wait if the server is full")
-      ->default_str(NameOf(kPriorities, arguments->priority))
-      ->group(kReactionGroup);
-  app->add_option("--chunk-frames", arguments->chunk_frames, "Frames in each chunk of the reply")
-      ->check(Undescribed(CLI::Range(1, 100000)))
-      ->type_name("FRAMES")
-      ->group(kReactionGroup);
+      ->ShowDefault(NameOf(kPriorities, arguments->priority))
+      ->Group(kReactionGroup);
+  app->Add("--chunk-frames", &arguments->chunk_frames, "Frames in each chunk of the reply")
+      ->InRange(1, 100000)
+      ->Form("FRAMES")
+      ->Group(kReactionGroup);
   AddRequestIdFlag(app, arguments);
 }
 
-void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
-  app->add_option(
-         "--out", arguments->outputs,
+void AddOutputFlags(FlagSet* app, SynthesizeArguments* arguments) {
+  app->Add(
+         "--out", &arguments->outputs,
          "File to write: .html (a page to watch), .glb, .gltf or .usda (both people, for Blender "
          "and engines), .bvh (two files), .csv, .npy, .json or .txt (SBU text); repeatable; - for "
          "standard output")
-      ->required()
-      ->allow_extra_args(false)
-      ->type_name("FILE")
-      ->group(kOutputGroup);
+      ->Required()
+      ->OneValueEach()
+      ->Form("FILE")
+      ->Group(kOutputGroup);
   AddOutputFormatFlag(app, &arguments->output_format);
   AddOutputLayoutFlag(app, &arguments->output_layout);
   AddBvhFlags(app, &arguments->bvh);
-  app->add_option(
-         "--follower-rig", arguments->follower_rig,
+  app->Add(
+         "--follower-rig", &arguments->follower_rig,
          "Rig of the follower in --out FILE.bvh, FILE.glb and FILE.gltf: the leader's rig, or the "
          "rig of another .bvh, .amc, .glb or .gltf (default: Duet's rig)")
-      ->type_name("leader|FILE")
-      ->group(kOutputGroup);
+      ->Form("leader|FILE")
+      ->Group(kOutputGroup);
   AddParsed<std::pair<std::string, std::string>>(
       app, "--follower-rig-joint-map", "MODEL_JOINT=RIG_JOINT", ParseJointPair,
       [arguments](std::pair<std::string, std::string> joints) {
@@ -119,14 +119,14 @@ void AddOutputFlags(CLI::App* app, SynthesizeArguments* arguments) {
       },
       "Joint of --follower-rig FILE for a joint of the model, if its name is not recognised; "
       "repeatable (for the leader's rig, use --joint-map)")
-      ->group(kOutputGroup);
-  app->add_option("--follower-rig-joint-map-file", arguments->rig_joint_table,
-                  "File with one MODEL_JOINT=RIG_JOINT on each line; --follower-rig-joint-map "
-                  "overrides it")
-      ->type_name("FILE")
-      ->group(kOutputGroup);
-  app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
-  app->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
+      ->Group(kOutputGroup);
+  app->Add("--follower-rig-joint-map-file", &arguments->rig_joint_table,
+           "File with one MODEL_JOINT=RIG_JOINT on each line; --follower-rig-joint-map "
+           "overrides it")
+      ->Form("FILE")
+      ->Group(kOutputGroup);
+  app->AddSwitch("--json", &arguments->json, "Print the summary as JSON")->Group(kOutputGroup);
+  app->AddSwitch("--quiet", &arguments->quiet, "Print only errors")->Group(kOutputGroup);
 }
 
 // "a.bvh --out b.json"
@@ -140,7 +140,7 @@ void CheckFollowerRig(const SynthesizeArguments& arguments) {
   const bool leaders = arguments.follower_rig == kLeadersRig;
   const bool names_joints = !arguments.rig_joints.empty() || !arguments.rig_joint_table.empty();
   if (names_joints && (leaders || arguments.follower_rig.empty())) {
-    throw CLI::ValidationError(
+    RejectFlag(
         arguments.rig_joints.empty() ? "--follower-rig-joint-map-file" : "--follower-rig-joint-map",
         "is only valid with --follower-rig FILE. For the leader's rig, use --joint-map or "
         "--joint-map-file");
@@ -155,10 +155,10 @@ void CheckFollowerRig(const SynthesizeArguments& arguments) {
                                          return written && formats::FitsRig(*written, *rig);
                                        });
   if (fits) return;
-  throw CLI::ValidationError(
-      "--follower-rig", absl::StrCat("expected ", formats::kRigExtensions, " and --out FILE with ",
-                                     formats::kRigOutputExtensions, ", got ", file.string(),
-                                     " and --out ", OutputsText(arguments)));
+  RejectFlag("--follower-rig",
+             absl::StrCat("expected ", formats::kRigExtensions, " and --out FILE with ",
+                          formats::kRigOutputExtensions, ", got ", file.string(), " and --out ",
+                          OutputsText(arguments)));
 }
 
 // Whether an output has this format.
@@ -172,34 +172,32 @@ bool Writes(formats::Format format, const SynthesizeArguments& arguments) {
 
 void CheckLayout(const SynthesizeArguments& arguments) {
   if (!arguments.output_layout || Writes(formats::Format::kNpy, arguments)) return;
-  throw CLI::ValidationError("--output-layout", absl::StrCat("expected --out FILE.npy, got --out ",
-                                                             OutputsText(arguments)));
+  RejectFlag("--output-layout",
+             absl::StrCat("expected --out FILE.npy, got --out ", OutputsText(arguments)));
 }
 
 void CheckRotations(const SynthesizeArguments& arguments) {
   if (arguments.rotation_form != RotationForm::kQuaternions && !arguments.rotations) {
-    throw CLI::ValidationError("--rotation-form", "is only valid with --rotations");
+    RejectFlag("--rotation-form", "is only valid with --rotations");
   }
   if (!arguments.rotations || Writes(formats::Format::kJson, arguments)) return;
-  throw CLI::ValidationError("--rotations",
-                             absl::StrCat("expected --out FILE.json, which holds them, got --out ",
-                                          OutputsText(arguments)));
+  RejectFlag("--rotations", absl::StrCat("expected --out FILE.json, which holds them, got --out ",
+                                         OutputsText(arguments)));
 }
 
 void CheckKeyframes(const SynthesizeArguments& arguments) {
   if (arguments.beat) return;
   for (const KeyframeArgument& keyframe : arguments.keyframes) {
     if (!keyframe.beats) continue;
-    throw CLI::ValidationError("--keyframe",
-                               absl::StrCat("expected --beat BPM[,OFFSET] with the position ",
-                                            *keyframe.beats, "b in beats, got no --beat"));
+    RejectFlag("--keyframe", absl::StrCat("expected --beat BPM[,OFFSET] with the position ",
+                                          *keyframe.beats, "b in beats, got no --beat"));
   }
 }
 
 // Checks flags that depend on each other.
 void CheckTogether(const SynthesizeArguments& arguments) {
   if (arguments.weights.empty() && arguments.keyframes.empty()) {
-    throw CLI::RequiredError("--label or --keyframe");
+    RejectMissing("--label or --keyframe");
   }
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
   CheckFollowerRig(arguments);
@@ -207,36 +205,34 @@ void CheckTogether(const SynthesizeArguments& arguments) {
   CheckLayout(arguments);
   CheckKeyframes(arguments);
   if (arguments.samples > 1 && WritesToStandardOutput(arguments.outputs)) {
-    throw CLI::ValidationError("--samples",
-                               "cannot be used with --out -: each answer needs a file");
+    RejectFlag("--samples", "cannot be used with --out -: each answer needs a file");
   }
   if (arguments.output_format && arguments.output_format->motion == formats::Format::kBvh) {
-    throw CLI::ValidationError("--output-format",
-                               "bvh cannot be used with --out -: it has one file for each person");
+    RejectFlag("--output-format",
+               "bvh cannot be used with --out -: it has one file for each person");
   }
   const uint64_t left = std::numeric_limits<uint64_t>::max() - arguments.seed;
   if (static_cast<uint64_t>(arguments.samples) - 1 > left) {
-    throw CLI::ValidationError(
-        "--samples",
-        absl::StrCat("expected at most ", left + 1, " with --seed ", arguments.seed,
-                     ", so that no seed exceeds the largest, got ", arguments.samples));
+    RejectFlag("--samples",
+               absl::StrCat("expected at most ", left + 1, " with --seed ", arguments.seed,
+                            ", so that no seed exceeds the largest, got ", arguments.samples));
   }
   for (int sample = 0; sample < arguments.samples; ++sample) {
     for (const std::filesystem::path& output : SampleOutputs(arguments, sample)) {
       const absl::Status status = CheckOutput(output, arguments.leader);
-      if (!status.ok()) throw CLI::ValidationError("--out", std::string(status.message()));
+      if (!status.ok()) RejectFlag("--out", std::string(status.message()));
     }
   }
 }
 
 }  // namespace
 
-void AddSynthesizeFlags(CLI::App* command, SynthesizeArguments* arguments) {
+void AddSynthesizeFlags(FlagSet* command, SynthesizeArguments* arguments) {
   AddLeaderFlags(command, arguments);
   AddReactionFlags(command, arguments);
   AddOutputFlags(command, arguments);
   AddServerFlags(command, &arguments->server);
-  command->callback([arguments] { CheckTogether(*arguments); });
+  command->Check([arguments] { CheckTogether(*arguments); });
 }
 
 }  // namespace duet::client::cli

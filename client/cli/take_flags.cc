@@ -12,43 +12,42 @@
 
 namespace duet::client::cli {
 
-void AddTakeFlags(CLI::App* app, TakeArguments* takes) {
-  app->add_option_function<std::vector<std::string>>(
+void AddTakeFlags(FlagSet* app, TakeArguments* takes) {
+  app->AddListReader(
          "--leader-side",
          [takes](const std::vector<std::string>& sides) {
            takes->leader_sides.clear();
            for (const std::string& side : sides) takes->leader_sides.push_back(kSides.at(side));
          },
          "The person who leads in a file with two people; once for all files, or once for each")
-      ->check(Undescribed(CLI::IsMember(std::vector<std::string>{"left", "right"})))
-      ->allow_extra_args(false)
-      ->type_name("left|right")
-      ->default_str("left")
-      ->group(kInputGroup);
+      ->OneOf({"left", "right"})
+      ->OneValueEach()
+      ->Form("left|right")
+      ->ShowDefault("left")
+      ->Group(kInputGroup);
   AddInputFlags(app, &takes->input);
 }
 
 void CheckTakes(const TakeArguments& takes) {
   const std::size_t sides = takes.leader_sides.size();
   if (sides != 1 && sides != takes.takes.size()) {
-    throw CLI::ValidationError(
-        "--leader-side",
-        absl::StrCat("expected once or ", takes.takes.size(), " times, got ", sides, " times"));
+    RejectFlag("--leader-side", absl::StrCat("expected once or ", takes.takes.size(),
+                                             " times, got ", sides, " times"));
   }
   int pipes = 0;
   for (const std::string& take : takes.takes) pipes += take == kStandardStream ? 1 : 0;
-  if (pipes > 1) throw CLI::ValidationError("FILE", "expected - once, got it twice");
+  if (pipes > 1) RejectFlag("FILE", "expected - once, got it twice");
 }
 
 void CheckPage(const char* flag, const std::filesystem::path& page) {
   if (page == kStandardStream) return;
   const std::string extension = absl::AsciiStrToLower(page.extension().string());
   if (extension != ".html" && extension != ".htm") {
-    throw CLI::ValidationError(
-        flag, absl::StrCat(page.string(), ": extension: expected .html, got \"", extension, "\""));
+    RejectFlag(flag,
+               absl::StrCat(page.string(), ": extension: expected .html, got \"", extension, "\""));
   }
   const absl::Status status = CheckOutput(page, "");
-  if (!status.ok()) throw CLI::ValidationError(flag, std::string(status.message()));
+  if (!status.ok()) RejectFlag(flag, std::string(status.message()));
 }
 
 }  // namespace duet::client::cli

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "CLI/CLI.hpp"
+#include "client/cli/flag_set.h"
 #include "client/cli/take.h"
 
 // The flags that duet view and duet compare share.
@@ -17,7 +17,7 @@ Each FILE is a motion of one or two people: FILE, NAME=FILE, or LEADER.bvh,FOLLO
 )";
 
 // How to read the takes: --leader-side and the input flags.
-void AddTakeFlags(CLI::App* app, TakeArguments* takes);
+void AddTakeFlags(FlagSet* app, TakeArguments* takes);
 
 // Throw a CLI11 error if the flags contradict each other, or if the page cannot be written.
 void CheckTakes(const TakeArguments& takes);

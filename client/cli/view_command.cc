@@ -125,28 +125,27 @@ absl::Status Run(const ViewArguments& arguments, const ProgramEnvironment& envir
   return Write(arguments, *page, Describe(*takes), environment);
 }
 
-void AddFlags(CLI::App* command, ViewArguments* arguments) {
+void AddFlags(FlagSet* command, ViewArguments* arguments) {
   command
-      ->add_option("files", arguments->takes.takes,
-                   "Motions to show, at most 12; or a data set of duet batch and one of its items")
-      ->required()
-      ->expected(1, 12)
-      ->type_name("[NAME=]FILE");
+      ->Add("files", &arguments->takes.takes,
+            "Motions to show, at most 12; or a data set of duet batch and one of its items")
+      ->Required()
+      ->Count(1, 12)
+      ->Form("[NAME=]FILE");
   AddTakeFlags(command, &arguments->takes);
-  command->add_option("--out", arguments->out, "Page to write, .html; - for standard output")
-      ->required()
-      ->type_name("FILE")
-      ->group(kOutputGroup);
-  command->add_option("--title", arguments->title, "Title of the page")
-      ->type_name("TEXT")
-      ->group(kOutputGroup);
-  command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
-  command->footer(absl::StrCat(kTakesFooter, kSetFooter));
-  command->callback([arguments] {
+  command->Add("--out", &arguments->out, "Page to write, .html; - for standard output")
+      ->Required()
+      ->Form("FILE")
+      ->Group(kOutputGroup);
+  command->Add("--title", &arguments->title, "Title of the page")
+      ->Form("TEXT")
+      ->Group(kOutputGroup);
+  command->AddSwitch("--quiet", &arguments->quiet, "Print only errors")->Group(kOutputGroup);
+  command->Footer(absl::StrCat(kTakesFooter, kSetFooter));
+  command->Check([arguments] {
     if (IsOfSet(*arguments) && arguments->takes.takes.size() != 2) {
-      throw CLI::ValidationError(
-          "files", absl::StrCat("expected SET ITEM, got ", arguments->takes.takes.size(),
-                                " words that begin with a data set"));
+      RejectFlag("files", absl::StrCat("expected SET ITEM, got ", arguments->takes.takes.size(),
+                                       " words that begin with a data set"));
     }
     CheckTakes(arguments->takes);
     CheckPage("--out", arguments->out);
@@ -155,9 +154,9 @@ void AddFlags(CLI::App* command, ViewArguments* arguments) {
 
 }  // namespace
 
-Command AddViewCommand(CLI::App* program) {
+Command AddViewCommand(FlagSet* program) {
   const auto arguments = std::make_shared<ViewArguments>();
-  CLI::App* app = program->add_subcommand("view", "Make a page that plays motions side by side");
+  FlagSet* app = program->AddCommand("view", "Make a page that plays motions side by side");
   AddFlags(app, arguments.get());
   Command command;
   command.app = app;

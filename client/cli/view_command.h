@@ -1,13 +1,13 @@
 #ifndef DUET_CLIENT_CLI_VIEW_COMMAND_H_
 #define DUET_CLIENT_CLI_VIEW_COMMAND_H_
 
-#include "CLI/CLI.hpp"
 #include "client/cli/command.h"
+#include "client/cli/flag_set.h"
 
 namespace duet::client::cli {
 
 // duet view: motions side by side on one page.
-Command AddViewCommand(CLI::App* program);
+Command AddViewCommand(FlagSet* program);
 
 }  // namespace duet::client::cli
 

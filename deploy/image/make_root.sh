@@ -2,7 +2,7 @@
 # Copies the installed files of the listed packages and their dependencies to a folder that becomes an
 # image's root: libraries, licences and dpkg's records, without shell, package manager or setuid programs.
 # Runs in a stage of the Dockerfile in which the packages are installed.
-#   deploy/image/make_root.sh ROOT LIST...      LIST: packages/runtime.txt
+#   deploy/image/make_root.sh ROOT PACKAGE...     the packages of packages/runtime.txt in this release
 set -euo pipefail
 
 readonly root="$1"
@@ -54,8 +54,7 @@ record() {
 
 main() {
   local package
-  while read -r package; do add "${package}"; done \
-    < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@")
+  for package in "$@"; do add "${package}"; done
 
   mkdir -p "${root}"/{etc/ssl/certs,tmp,usr/lib,usr/lib64,usr/bin,usr/share/doc} \
     "${root}/var/lib/dpkg/status.d"

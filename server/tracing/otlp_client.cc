@@ -13,9 +13,9 @@
 #include <utility>
 #include <variant>
 
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "duet/otlp/v1/trace.pb.h"
+#include "model/base/hex.h"
 #include "server/common/http_origin.h"
 
 namespace duet::server::tracing {
@@ -39,9 +39,9 @@ void Add(const std::string& key, const AttributeValue& value,
 }
 
 void Fill(const Span& span, otlp::v1::Span& wire) {
-  wire.set_trace_id(absl::HexStringToBytes(span.trace.trace_id));
-  wire.set_span_id(absl::HexStringToBytes(span.trace.span_id));
-  wire.set_parent_span_id(absl::HexStringToBytes(span.trace.parent_span_id));
+  wire.set_trace_id(base::BytesOfHex(span.trace.trace_id));
+  wire.set_span_id(base::BytesOfHex(span.trace.span_id));
+  wire.set_parent_span_id(base::BytesOfHex(span.trace.parent_span_id));
   wire.set_name(span.name);
   wire.set_kind(otlp::v1::SPAN_KIND_SERVER);
   wire.set_start_time_unix_nano(static_cast<std::uint64_t>(span.start));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -16,7 +17,8 @@ namespace {
 
 using cli::AddChoice;
 using cli::AddParsed;
-using cli::Undescribed;
+using cli::Flag;
+using cli::FlagSet;
 
 constexpr char kLoadGroup[] = "Load", kLiveGroup[] = "Live sessions", kCallGroup[] = "Calls",
                kOutputGroup[] = "Output";
@@ -73,199 +75,200 @@ absl::StatusOr<int> ParseFrameCount(absl::string_view text) {
   return Expected("numbers of frames, 1 or more", text);
 }
 
-void AddLoad(CLI::App* app, LoadArguments* arguments) {
-  CLI::Option* callers =
-      app->add_option("--callers", arguments->callers,
-                      "Concurrent callers; each calls again after an answer (default: 1)")
-          ->delimiter(',')
-          ->allow_extra_args(false)
-          ->check(Undescribed(CLI::Range(1, 100000)))
-          ->type_name("N[,N...]")
-          ->group(kLoadGroup);
-  app->add_option("--rate", arguments->rates, "Calls a second, independent of the answers")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(Undescribed(CLI::Range(0.001, 1e6)))
-      ->excludes(callers)
-      ->type_name("HZ[,HZ...]")
-      ->group(kLoadGroup);
+void AddLoad(FlagSet* app, LoadArguments* arguments) {
+  Flag* callers = app->Add("--callers", &arguments->callers,
+                           "Concurrent callers; each calls again after an answer (default: 1)")
+                      ->SplitAt(',')
+                      ->OneValueEach()
+                      ->InRange(1, 100000)
+                      ->Form("N[,N...]")
+                      ->Group(kLoadGroup);
+  app->Add("--rate", &arguments->rates, "Calls a second, independent of the answers")
+      ->SplitAt(',')
+      ->OneValueEach()
+      ->InRange(0.001, 1e6)
+      ->Excludes(callers)
+      ->Form("HZ[,HZ...]")
+      ->Group(kLoadGroup);
   AddChoice<ArrivalKind>(
       app, "--arrivals", kArrivals, [arguments](ArrivalKind kind) { arguments->arrivals = kind; },
       "Gaps between the calls of a rate: random or constant")
-      ->default_str(cli::NameOf(kArrivals, arguments->arrivals))
-      ->group(kLoadGroup);
-  app->add_option("--warm-up", arguments->warm_up_seconds, "Unmeasured seconds before each step")
-      ->check(Undescribed(CLI::Range(0.0, 86400.0)))
-      ->capture_default_str()
-      ->type_name("SECONDS")
-      ->group(kLoadGroup);
-  CLI::Option* seconds =
-      app->add_option("--seconds", arguments->seconds, "Measured seconds of each step")
-          ->check(Undescribed(CLI::Range(0.1, 864000.0)))
-          ->capture_default_str()
-          ->type_name("SECONDS")
-          ->group(kLoadGroup);
-  app->add_option("--calls", arguments->calls, "Number of measured calls, in place of --seconds")
-      ->check(Undescribed(CLI::Range(int64_t{1}, int64_t{1000000000})))
-      ->excludes(seconds)
-      ->type_name("N")
-      ->group(kLoadGroup);
-  app->add_option("--connections", arguments->connections, "Connections, which calls use in turn")
-      ->check(Undescribed(CLI::Range(1, 1000)))
-      ->capture_default_str()
-      ->type_name("N")
-      ->group(kLoadGroup);
-  app->add_option("--max-in-flight", arguments->max_in_flight,
-                  "Maximum calls in flight with --rate; further calls are sent late, and reported")
-      ->check(Undescribed(CLI::Range(1, 1000000)))
-      ->capture_default_str()
-      ->type_name("N")
-      ->group(kLoadGroup);
+      ->ShowDefault(cli::NameOf(kArrivals, arguments->arrivals))
+      ->Group(kLoadGroup);
+  app->Add("--warm-up", &arguments->warm_up_seconds, "Unmeasured seconds before each step")
+      ->InRange(0.0, 86400.0)
+      ->ShowDefault()
+      ->Form("SECONDS")
+      ->Group(kLoadGroup);
+  Flag* seconds = app->Add("--seconds", &arguments->seconds, "Measured seconds of each step")
+                      ->InRange(0.1, 864000.0)
+                      ->ShowDefault()
+                      ->Form("SECONDS")
+                      ->Group(kLoadGroup);
+  app->Add("--calls", &arguments->calls, "Number of measured calls, in place of --seconds")
+      ->InRange(int64_t{1}, int64_t{1000000000})
+      ->Excludes(seconds)
+      ->Form("N")
+      ->Group(kLoadGroup);
+  app->Add("--connections", &arguments->connections, "Connections, which calls use in turn")
+      ->InRange(1, 1000)
+      ->ShowDefault()
+      ->Form("N")
+      ->Group(kLoadGroup);
+  app->Add("--max-in-flight", &arguments->max_in_flight,
+           "Maximum calls in flight with --rate; further calls are sent late, and reported")
+      ->InRange(1, 1000000)
+      ->ShowDefault()
+      ->Form("N")
+      ->Group(kLoadGroup);
   AddParsed<uint64_t>(
       app, "--seed", "SEED", cli::ParseSeed, [arguments](uint64_t seed) { arguments->seed = seed; },
       "Seed of arrivals and requests: the same seed gives the same load")
-      ->take_last()
-      ->default_str(absl::StrCat(arguments->seed))
-      ->group(kLoadGroup);
+      ->LastOnly()
+      ->ShowDefault(absl::StrCat(arguments->seed))
+      ->Group(kLoadGroup);
 }
 
 // A flag in milliseconds.
-CLI::Option* AddMilliseconds(CLI::App* app, const char* name, Duration* time, const char* text) {
+Flag* AddMilliseconds(FlagSet* app, const char* name, Duration* time, const char* help) {
   return app
-      ->add_option_function<double>(
-          name, [time](double milliseconds) { *time = Seconds(milliseconds / 1000); }, text)
-      ->check(Undescribed(CLI::Range(0.0, 60000.0)))
-      ->type_name("MS")
-      ->group(kLiveGroup);
+      ->AddReader(
+          name,
+          [time](const std::string& text) {
+            double milliseconds = 0;
+            base::ParseNumber(text, &milliseconds);
+            *time = Seconds(milliseconds / 1000);
+          },
+          help)
+      ->InRange(0.0, 60000.0)
+      ->Form("MS")
+      ->Group(kLiveGroup);
 }
 
-void AddLive(CLI::App* app, LoadArguments* arguments) {
-  CLI::Option* live =
-      app->add_option(
-             "--live", arguments->live,
-             "Live sessions side by side; --rate is then their frames a second, default 30")
-          ->delimiter(',')
-          ->allow_extra_args(false)
-          ->check(Undescribed(CLI::Range(1, 100000)))
-          ->type_name("N[,N...]")
-          ->group(kLiveGroup);
+void AddLive(FlagSet* app, LoadArguments* arguments) {
+  Flag* live =
+      app->Add("--live", &arguments->live,
+               "Live sessions side by side; --rate is then their frames a second, default 30")
+          ->SplitAt(',')
+          ->OneValueEach()
+          ->InRange(1, 100000)
+          ->Form("N[,N...]")
+          ->Group(kLiveGroup);
   for (const char* other :
        {"--callers", "--calls", "--arrivals", "--max-in-flight", "--background-callers", "--frames",
         "--priority", "--csv", "--records"}) {
-    live->excludes(app->get_option(other));
+    live->Excludes(app->Find(other));
   }
-  app->add_option(
-         "--leader", arguments->leaders,
-         "Motion file of a leader, which plays forwards and backwards; repeatable: sessions "
-         "take them in turn (default: a generated one)")
-      ->check(Undescribed(CLI::ExistingFile))
-      ->needs(live)
-      ->allow_extra_args(false)
-      ->type_name("FILE")
-      ->group(kLiveGroup);
-  app->add_option("--delay", arguments->live_content.delay_frames,
-                  "Later leader frames that the server waits for")
-      ->check(Undescribed(CLI::Range(0, 10)))
-      ->capture_default_str()
-      ->needs(live)
-      ->type_name("FRAMES")
-      ->group(kLiveGroup);
-  app->add_option("--plan", arguments->live_content.plan_frames,
-                  "Provisional frames in each message")
-      ->check(Undescribed(CLI::Range(0, 30)))
-      ->capture_default_str()
-      ->needs(live)
-      ->type_name("FRAMES")
-      ->group(kLiveGroup);
+  app->Add("--leader", &arguments->leaders,
+           "Motion file of a leader, which plays forwards and backwards; repeatable: sessions "
+           "take them in turn (default: a generated one)")
+      ->ExistingFile()
+      ->Needs(live)
+      ->OneValueEach()
+      ->Form("FILE")
+      ->Group(kLiveGroup);
+  app->Add("--delay", &arguments->live_content.delay_frames,
+           "Later leader frames that the server waits for")
+      ->InRange(0, 10)
+      ->ShowDefault()
+      ->Needs(live)
+      ->Form("FRAMES")
+      ->Group(kLiveGroup);
+  app->Add("--plan", &arguments->live_content.plan_frames, "Provisional frames in each message")
+      ->InRange(0, 30)
+      ->ShowDefault()
+      ->Needs(live)
+      ->Form("FRAMES")
+      ->Group(kLiveGroup);
   LiveConditions* conditions = &arguments->live_conditions;
   AddMilliseconds(app, "--jitter", &conditions->jitter,
                   "Send each frame up to this long after it was due")
-      ->needs(live);
-  app->add_option("--loss", conditions->loss, "Share of the frames that are never sent")
-      ->check(Undescribed(CLI::Range(0.0, 0.9)))
-      ->needs(live)
-      ->type_name("SHARE")
-      ->group(kLiveGroup);
+      ->Needs(live);
+  app->Add("--loss", &conditions->loss, "Share of the frames that are never sent")
+      ->InRange(0.0, 0.9)
+      ->Needs(live)
+      ->Form("SHARE")
+      ->Group(kLiveGroup);
   AddMilliseconds(app, "--stall", &conditions->stall,
                   "Once in each session: send nothing for this long, then everything held back")
-      ->needs(live);
-  app->add_flag("--in-step", arguments->in_step, "Send the frames of all sessions at the same time")
-      ->needs(live)
-      ->group(kLiveGroup);
+      ->Needs(live);
+  app->AddSwitch("--in-step", &arguments->in_step,
+                 "Send the frames of all sessions at the same time")
+      ->Needs(live)
+      ->Group(kLiveGroup);
 }
 
-void AddBackground(CLI::App* app, LoadArguments* arguments) {
-  CLI::Option* callers = app->add_option("--background-callers", arguments->background_callers,
-                                         "Callers that call continuously and are not measured")
-                             ->check(Undescribed(CLI::Range(0, 100000)))
-                             ->capture_default_str()
-                             ->type_name("N")
-                             ->group(kLoadGroup);
-  app->add_option("--background-frames", arguments->background_frames, "Frames of their leaders")
-      ->check(Undescribed(CLI::Range(1, 10000000)))
-      ->capture_default_str()
-      ->needs(callers)
-      ->type_name("FRAMES")
-      ->group(kLoadGroup);
+void AddBackground(FlagSet* app, LoadArguments* arguments) {
+  Flag* callers = app->Add("--background-callers", &arguments->background_callers,
+                           "Callers that call continuously and are not measured")
+                      ->InRange(0, 100000)
+                      ->ShowDefault()
+                      ->Form("N")
+                      ->Group(kLoadGroup);
+  app->Add("--background-frames", &arguments->background_frames, "Frames of their leaders")
+      ->InRange(1, 10000000)
+      ->ShowDefault()
+      ->Needs(callers)
+      ->Form("FRAMES")
+      ->Group(kLoadGroup);
   AddParsed<ModelChoice>(
       app, "--background-model", "NAME[@VERSION|:LABEL]", cli::ParseModelChoice,
       [arguments](ModelChoice model) { arguments->background_model = std::move(model); },
       "Their model (default: the first measured one)")
-      ->take_last()
-      ->needs(callers)
-      ->group(kLoadGroup);
+      ->LastOnly()
+      ->Needs(callers)
+      ->Group(kLoadGroup);
 }
 
-void AddCalls(CLI::App* app, LoadArguments* arguments) {
+void AddCalls(FlagSet* app, LoadArguments* arguments) {
   AddParsed<std::vector<Weighted<int>>>(
       app, "--frames", "FRAMES[=WEIGHT],...", ParseFrames,
       [arguments](std::vector<Weighted<int>> frames) { arguments->mix.frames = std::move(frames); },
       "Lengths of the leaders, drawn by weight")
-      ->take_last()
-      ->default_str(absl::StrCat(arguments->mix.frames.front().value))
-      ->group(kCallGroup);
+      ->LastOnly()
+      ->ShowDefault(absl::StrCat(arguments->mix.frames.front().value))
+      ->Group(kCallGroup);
   AddParsed<std::vector<Weighted<ModelChoice>>>(
       app, "--model", "MODEL[=WEIGHT],...", ParseModels,
       [arguments](std::vector<Weighted<ModelChoice>> models) {
         arguments->mix.models = std::move(models);
       },
       "NAME, NAME@VERSION or NAME:LABEL, drawn by weight (default: the server's)")
-      ->take_last()
-      ->group(kCallGroup);
+      ->LastOnly()
+      ->Group(kCallGroup);
   AddParsed<ClassWeight>(app, "--label", "CLASS[=WEIGHT]", cli::ParseClassWeight,
                          cli::AppendTo(&arguments->mix.labels),
                          "Repeatable (default: 1 for the model's first class)")
-      ->group(kCallGroup);
+      ->Group(kCallGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->mix.priority = priority; },
       "Priority of the calls")
-      ->default_str(cli::NameOf(kPriorities, arguments->mix.priority))
-      ->group(kCallGroup);
-  app->add_option("--deadline", arguments->server.timeout_seconds, "Deadline of each call")
-      ->check(Undescribed(CLI::Range(0.001, 86400.0)))
-      ->capture_default_str()
-      ->type_name("SECONDS")
-      ->group(kCallGroup);
+      ->ShowDefault(cli::NameOf(kPriorities, arguments->mix.priority))
+      ->Group(kCallGroup);
+  app->Add("--deadline", &arguments->server.timeout_seconds, "Deadline of each call")
+      ->InRange(0.001, 86400.0)
+      ->ShowDefault()
+      ->Form("SECONDS")
+      ->Group(kCallGroup);
 }
 
-void AddOutputs(CLI::App* app, LoadArguments* arguments) {
-  app->add_option("--html", arguments->html, "Write a page with tables and charts")
-      ->type_name("FILE")
-      ->group(kOutputGroup);
-  app->add_option("--csv", arguments->csv, "Write a row for each step")
-      ->type_name("FILE")
-      ->group(kOutputGroup);
-  app->add_option("--json", arguments->json, "Write everything; - for standard output")
-      ->type_name("FILE")
-      ->group(kOutputGroup);
-  app->add_option("--records", arguments->records, "Write a CSV row for each call")
-      ->type_name("FILE")
-      ->group(kOutputGroup);
-  app->add_option("--title", arguments->title, "Title of the report")
-      ->type_name("TEXT")
-      ->group(kOutputGroup);
-  app->add_flag("--quiet", arguments->quiet, "Do not print the current step")->group(kOutputGroup);
+void AddOutputs(FlagSet* app, LoadArguments* arguments) {
+  app->Add("--html", &arguments->html, "Write a page with tables and charts")
+      ->Form("FILE")
+      ->Group(kOutputGroup);
+  app->Add("--csv", &arguments->csv, "Write a row for each step")
+      ->Form("FILE")
+      ->Group(kOutputGroup);
+  app->Add("--json", &arguments->json, "Write everything; - for standard output")
+      ->Form("FILE")
+      ->Group(kOutputGroup);
+  app->Add("--records", &arguments->records, "Write a CSV row for each call")
+      ->Form("FILE")
+      ->Group(kOutputGroup);
+  app->Add("--title", &arguments->title, "Title of the report")->Form("TEXT")->Group(kOutputGroup);
+  app->AddSwitch("--quiet", &arguments->quiet, "Do not print the current step")
+      ->Group(kOutputGroup);
 }
 
 }  // namespace
@@ -282,32 +285,31 @@ double LoadArguments::LiveRate() const {
   return rates.empty() ? LiveOptions().frame_rate_hz : rates.front();
 }
 
-void AddLoadFlags(CLI::App* app, LoadArguments* arguments) {
-  app->footer(kFooter);
-  app->get_formatter()->column_width(34);
-  app->add_option("--server", arguments->server.address,
-                  "Server, or any gRPC target such as unix:/run/duet.sock")
-      ->envname("DUET_SERVER")
-      ->capture_default_str()
-      ->type_name("HOST:PORT")
-      ->group(cli::kServerGroup);
+void AddLoadFlags(FlagSet* app, LoadArguments* arguments) {
+  app->Footer(kFooter);
+  app->Add("--server", &arguments->server.address,
+           "Server, or any gRPC target such as unix:/run/duet.sock")
+      ->Environment("DUET_SERVER")
+      ->ShowDefault()
+      ->Form("HOST:PORT")
+      ->Group(cli::kServerGroup);
   cli::AddCredentialFlags(app, &arguments->server);
   AddLoad(app, arguments);
   AddBackground(app, arguments);
   AddCalls(app, arguments);
   AddOutputs(app, arguments);
   AddLive(app, arguments);
-  app->add_flag("--man", arguments->manual_page, "Print the manual page");
-  app->add_option("--completion", arguments->completion, "Print the completion script of a shell")
-      ->check(Undescribed(CLI::IsMember(std::vector<std::string>{"bash", "zsh", "fish"})))
-      ->type_name("bash|zsh|fish");
+  app->AddSwitch("--man", &arguments->manual_page, "Print the manual page");
+  app->Add("--completion", &arguments->completion, "Print the completion script of a shell")
+      ->OneOf({"bash", "zsh", "fish"})
+      ->Form("bash|zsh|fish");
 }
 
-std::vector<std::pair<std::string, std::string>> GivenFlags(const CLI::App& app) {
+std::vector<std::pair<std::string, std::string>> GivenFlags(const FlagSet& app) {
   std::vector<std::pair<std::string, std::string>> given;
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->count() == 0 || option->get_lnames().empty()) continue;
-    given.emplace_back(option->get_lnames().front(), absl::StrJoin(option->results(), ","));
+  for (const std::unique_ptr<Flag>& flag : app.flags()) {
+    if (!flag->is_given() || flag->is_argument()) continue;
+    given.emplace_back(flag->name().substr(2), absl::StrJoin(flag->values(), ","));
   }
   return given;
 }

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "CLI/CLI.hpp"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "client/cli/flag_set.h"
 #include "client/cli/server_arguments.h"
 #include "client/load/arrivals.h"
 #include "client/load/call_kinds.h"
@@ -54,10 +54,10 @@ struct LoadArguments {
 };
 
 // duet-load's command line: the source of parsing, help, completion and the manual page.
-void AddLoadFlags(CLI::App* app, LoadArguments* arguments);
+void AddLoadFlags(cli::FlagSet* app, LoadArguments* arguments);
 
 // The flags that were given, with their values.
-std::vector<std::pair<std::string, std::string>> GivenFlags(const CLI::App& app);
+std::vector<std::pair<std::string, std::string>> GivenFlags(const cli::FlagSet& app);
 
 // "46=9,460": lengths with their weights (default 1). Errors: INVALID_ARGUMENT.
 absl::StatusOr<std::vector<Weighted<int>>> ParseFrames(absl::string_view text);

@@ -176,16 +176,18 @@ absl::Status RunCallLoad(const LoadArguments& arguments, const LoadEnvironment& 
 }  // namespace
 
 int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironment& environment) {
-  CLI::App app("Puts a load on a Duet server and measures its answers.", "duet-load");
-  app.set_version_flag("--version", "duet-load " DUET_VERSION);
+  cli::FlagSet app("Puts a load on a Duet server and measures its answers.", "duet-load");
+  app.Version("duet-load " DUET_VERSION);
   LoadArguments parsed;
   AddLoadFlags(&app, &parsed);
-  try {
-    // CLI11 takes the arguments in reverse.
-    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error, *environment.out, *environment.err) == 0 ? cli::kExitDone
-                                                                    : cli::kExitUsage;
+  const cli::ParsedFlags flags = app.Parse(arguments);
+  if (flags.outcome == cli::ParsedFlags::Outcome::kAnswer) {
+    *environment.out << flags.text;
+    return cli::kExitDone;
+  }
+  if (flags.outcome == cli::ParsedFlags::Outcome::kError) {
+    *environment.err << flags.text;
+    return cli::kExitUsage;
   }
   if (parsed.manual_page || !parsed.completion.empty()) {
     *environment.out << (parsed.manual_page ? cli::ManualPage(app, "")

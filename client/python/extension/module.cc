@@ -61,9 +61,8 @@ PYBIND11_MODULE(_motion_files, module) {
         absl::StatusOr<std::vector<motion::Clip>> people;
         {
           const py::gil_scoped_release release;
-          people = ReadMotion(
-              path, {side, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz,
-                     layout, body_model});
+          people = ReadMotion(path, {side, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map,
+                                     resample_hz, layout, body_model});
         }
         if (!people.ok()) Raise(error, people.status());
         return *std::move(people);

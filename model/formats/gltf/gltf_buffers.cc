@@ -12,6 +12,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
+#include "model/base/hex.h"
 #include "model/base/text.h"
 #include "model/motion/motion_limits.h"
 
@@ -67,7 +68,7 @@ std::optional<std::string> Unescaped(absl::string_view uri) {
         !absl::ascii_isxdigit(static_cast<unsigned char>(digits[1]))) {
       return std::nullopt;
     }
-    name += absl::HexStringToBytes(digits);
+    name += base::BytesOfHex(digits);
     i += 2;
   }
   return name;

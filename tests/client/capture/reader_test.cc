@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_replace.h"
 #include "client/capture/capture_address.h"
 #include "client/capture/lz4_frame.h"
 #include "client/capture/rokoko_reader.h"
 #include "client/capture/xsens_reader.h"
+#include "model/base/hex.h"
 #include "tests/client/capture/datagrams.h"
 
 namespace duet::client::capture {
@@ -176,7 +176,7 @@ TEST_F(RokokoReaderTest, ATimestampThatIsNoNumberIsNoTime) {
 }
 
 TEST(Lz4FrameTest, ReadsAFrameOfTheReferenceProgram) {
-  const std::string bytes = absl::HexStringToBytes(kLz4Frame);
+  const std::string bytes = base::BytesOfHex(kLz4Frame);
   std::string expected;
   for (int i = 0; i < 200; ++i) expected += "duet";
   const auto content = DecompressLz4Frame(bytes, 1000);
@@ -185,7 +185,7 @@ TEST(Lz4FrameTest, ReadsAFrameOfTheReferenceProgram) {
 }
 
 TEST(Lz4FrameTest, RejectsContentAboveTheLimit) {
-  const std::string bytes = absl::HexStringToBytes(kLz4Frame);
+  const std::string bytes = base::BytesOfHex(kLz4Frame);
   EXPECT_TRUE(DecompressLz4Frame(bytes, 803).ok());
   EXPECT_THAT(std::string(DecompressLz4Frame(bytes, 802).status().message()),
               HasSubstr("at most 802 bytes"));
@@ -212,7 +212,7 @@ TEST(Lz4FrameTest, RejectsMatchesBeforeTheContent) {
 }
 
 TEST(Lz4FrameTest, RejectsFramesCutAnywhere) {
-  const std::string bytes = absl::HexStringToBytes(kLz4Frame);
+  const std::string bytes = base::BytesOfHex(kLz4Frame);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_FALSE(DecompressLz4Frame(bytes.substr(0, size), 1000).ok()) << size;
   }

@@ -25,12 +25,11 @@ Ran RunWith(const std::vector<std::string>& arguments) {
   return {code, out.str(), err.str()};
 }
 
-LoadArguments Parse(std::vector<std::string> arguments) {
-  CLI::App app;
+LoadArguments Parse(const std::vector<std::string>& arguments) {
+  cli::FlagSet app;
   LoadArguments parsed;
   AddLoadFlags(&app, &parsed);
-  std::reverse(arguments.begin(), arguments.end());
-  app.parse(arguments);
+  EXPECT_EQ(app.Parse(arguments).error, "");
   return parsed;
 }
 
@@ -113,10 +112,10 @@ TEST(LoadFlagsTest, LiveSessionsHaveTheirOwnFlags) {
 }
 
 TEST(LoadFlagsTest, GivenFlagsAreListed) {
-  CLI::App app;
+  cli::FlagSet app;
   LoadArguments parsed;
   AddLoadFlags(&app, &parsed);
-  app.parse("--rate 5,6 --quiet");
+  app.Parse({"--rate", "5,6", "--quiet"});
   EXPECT_THAT(GivenFlags(app), ::testing::ElementsAre(::testing::Pair("rate", "5,6"),
                                                       ::testing::Pair("quiet", "true")));
 }
