@@ -1,5 +1,6 @@
 #include "client/cli/flag_set.h"
 
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -177,11 +178,20 @@ Flag* FlagSet::Add(const std::string& name, T* target, const std::string& help) 
 }
 
 // Each type that a flag's value has.
+using Path = std::filesystem::path;
 template Flag* FlagSet::Add(const std::string&, int*, const std::string&);
 template Flag* FlagSet::Add(const std::string&, std::int64_t*, const std::string&);
+template Flag* FlagSet::Add(const std::string&, std::uint32_t*, const std::string&);
 template Flag* FlagSet::Add(const std::string&, double*, const std::string&);
 template Flag* FlagSet::Add(const std::string&, std::string*, const std::string&);
-template Flag* FlagSet::Add(const std::string&, std::filesystem::path*, const std::string&);
+template Flag* FlagSet::Add(const std::string&, Path*, const std::string&);
+template Flag* FlagSet::Add(const std::string&, std::optional<int>*, const std::string&);
+template Flag* FlagSet::Add(const std::string&, std::optional<double>*, const std::string&);
+template Flag* FlagSet::Add(const std::string&, std::vector<int>*, const std::string&);
+template Flag* FlagSet::Add(const std::string&, std::vector<double>*, const std::string&);
+template Flag* FlagSet::Add(const std::string&, std::vector<std::string>*, const std::string&);
+template Flag* FlagSet::Add(const std::string&, std::vector<Path>*, const std::string&);
+
 Flag* FlagSet::AddSwitch(const std::string& name, bool* target, const std::string& help) {
   return Keep(app_->add_flag(name, *target, help));
 }

@@ -21,6 +21,9 @@ constexpr float kComfortable = 0.95f;
 constexpr float kLongestReach = 0.998f;
 // Metres. A shorter offset has no direction.
 constexpr float kNoDirection = 1e-4f;
+// Metres. What remains after a swing is corrected on the straight way if it is less: it comes from
+// pins between two frames. More remains if the limb does not reach, or has not the time.
+constexpr float kCorrectable = 0.02f;
 constexpr int kBisections = 8;
 // Frames. Pins that are this near concern the body at the same time.
 constexpr double kSameTime = 0.5;
@@ -206,17 +209,61 @@ void ShiftAboveFeet(const motion::Skeleton& skeleton, const body::Body& body,
   }
 }
 
+// Turns a limb about its upper joint and changes how far its end is from it, so that the joint of
+// `pins` comes to them. On the straight way it could pass through the upper joint.
+void SwingToPins(const motion::Skeleton& skeleton, const body::Limb& limb, bool is_leg,
+                 const Pins& pins, const OffsetLimits& limits, const Timing& timing,
+                 std::vector<bool>* moved, motion::Poses* poses) {
+  std::vector<Offset> turns, ranges;
+  std::vector<Vec3> pose;
+  for (const Pin& pin : pins) {
+    const Vec3 now = At(*poses, pin, &pose);
+    const Vec3 upper = pose[static_cast<std::size_t>(limb.upper)];
+    const float reach = Distance(now, upper), wanted = Distance(pin.position, upper);
+    const Turn turn = TurnBetween(now - upper, pin.position - upper);
+    // In metres along the circle.
+    turns.push_back({pin.frame, turn.axis * (static_cast<float>(turn.radians) * reach)});
+    ranges.push_back({pin.frame, {wanted - reach, 0, 0}});
+  }
+  // Along the circle and towards its middle at the same time.
+  constexpr double kShare = 0.7;
+  const OffsetLimits both = {limits.ease_seconds, limits.gentle_metres_per_second * kShare,
+                             limits.fastest_metres_per_second * kShare};
+  const std::vector<Vec3> turn_track = OffsetTrack(turns, both, timing, poses->frame_count());
+  const std::vector<Vec3> range_track = OffsetTrack(ranges, both, timing, poses->frame_count());
+  for (int t = timing.settled; t < poses->frame_count(); ++t) {
+    const std::size_t at = static_cast<std::size_t>(t);
+    const absl::Span<Vec3> body = (*poses)[t];
+    const Vec3 upper = body[static_cast<std::size_t>(limb.upper)];
+    const Vec3 from = body[static_cast<std::size_t>(pins.front().joint)] - upper;
+    const float angle = Norm(turn_track[at]), reach = Norm(from), longer = range_track[at].x;
+    if (reach < kNoDirection || angle + std::abs(longer) < kNoDirection) continue;
+    const Turn turn = angle > 0 ? Turn{turn_track[at] / angle, double{angle / reach}} : Turn{};
+    const Vec3 to = Turned(from, turn) * (std::max(0.0f, reach + longer) / reach);
+    MoveJoint(limb, is_leg, pins.front().joint, to - from, FacingOf(skeleton, body), body);
+    (*moved)[at] = true;
+  }
+}
+
 // Moves the joint of `pins`, all of one joint of a limb, to them.
-void MoveToPins(const motion::Skeleton& skeleton, const body::Body& body, std::size_t limb,
+void MoveToPins(const motion::Skeleton& skeleton, const body::Body& body, std::size_t index,
                 const Pins& pins, const OffsetLimits& limits, const Timing& timing,
                 std::vector<bool>* moved, motion::Poses* poses) {
-  const std::vector<Vec3> track =
-      OffsetTrack(OffsetsTo(pins, *poses), limits, timing, poses->frame_count());
+  const body::Limb& limb = LimbAt(body, index);
+  const bool is_leg = IsLeg(body, index);
+  const int joint = pins.front().joint;
+  if (joint != limb.middle) {
+    SwingToPins(skeleton, limb, is_leg, pins, limits, timing, moved, poses);
+  }
+  std::vector<Offset> offsets = OffsetsTo(pins, *poses);
+  for (Offset& offset : offsets) {
+    if (joint != limb.middle && Norm(offset.way) > kCorrectable) offset.way = {};
+  }
+  const std::vector<Vec3> track = OffsetTrack(offsets, limits, timing, poses->frame_count());
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     const Vec3 way = track[static_cast<std::size_t>(t)];
     if (Norm(way) < kNoDirection) continue;
-    MoveJoint(LimbAt(body, limb), IsLeg(body, limb), pins.front().joint, way,
-              FacingOf(skeleton, (*poses)[t]), (*poses)[t]);
+    MoveJoint(limb, is_leg, joint, way, FacingOf(skeleton, (*poses)[t]), (*poses)[t]);
     (*moved)[static_cast<std::size_t>(t)] = true;
   }
 }

@@ -158,7 +158,23 @@ class NetworkSynthesizer : public Synthesizer {
       clean_up_.PlaceFeetAndHands(window.leader, meetings, timing, &follower);
     }
     if (pinned) clean_up_.PlacePins(*pinned, window.leader, timing, &follower);
+    HoldSettledPins(window, pins, &follower);
     return follower;
+  }
+
+  // Moves the network's version of the settled frames to their pins, and eases what follows: it is
+  // blended with the frames that the window before it moved there.
+  void HoldSettledPins(const SynthesisWindow& window, const motion::Pins& pins,
+                       motion::Poses* follower) const {
+    motion::Pins settled;
+    for (const motion::Pin& pin : pins) {
+      if (pin.frame <= window.settled.frame_count() - 1) settled.push_back(pin);
+    }
+    if (settled.empty()) return;
+    const cleanup::Timing timing{description_.frame_rate_hz, 0};
+    const cleanup::PinnedMotion pinned = clean_up_.ApproachPins(
+        window.leader, TouchOf(description_, window), settled, timing, follower);
+    clean_up_.PlacePins(pinned, window.leader, timing, follower);
   }
 
   bool IsCleanedUp(const SynthesisWindow& window) const {

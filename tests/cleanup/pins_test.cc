@@ -73,7 +73,7 @@ TEST(Pins, AHandIsThereAndTheRestStays) {
 
 TEST(Pins, FramesFarFromThePinDoNotChangeABit) {
   const motion::Poses pinned = Pinned(Follower(), {Away(kRightHand, 23, {0.1f, 0.4f, -0.25f})});
-  for (const int t : {0, 5, 12, 34, 45}) {
+  for (const int t : {0, 3, 43, 45}) {
     for (int j = 0; j < 15; ++j) EXPECT_EQ(pinned.at(t, j), Unpinned().at(t, j)) << t;
   }
 }
