@@ -78,7 +78,7 @@ void AddReactionFlags(FlagSet* app, SynthesizeArguments* arguments) {
       app, "--rotation-form", kRotationForms,
       [arguments](RotationForm form) { arguments->rotation_form = form; },
       "Quaternions, or the first two columns of each rotation's matrix (6D)")
-      ->default_str("quaternion")
+      ->ShowDefault("quaternion")
       ->Group(kReactionGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,

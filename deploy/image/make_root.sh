@@ -11,19 +11,37 @@ shift
 # Dependencies only of maintainer scripts, which have already run.
 readonly not_copied=" debconf debconf-2.0 dpkg "
 
+# Prints the installed package of a name, which may be a virtual one that a package provides; nothing if there is
+# none.
+installed_as() {
+  if [[ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; then
+    echo "$1"
+  else
+    awk -F '|' -v name="$1" '
+      { count = split($2, provided, /, */) }
+      { for (i = 1; i <= count; ++i) { sub(/ .*/, "", provided[i]); if (provided[i] == name) { print $1; exit } } }
+    ' <<<"${providers}"
+  fi
+}
+
 # Prints the installed package for each dependency of a package: of alternatives, the first that is
 # installed.
 dependencies_of() {
-  local clause name
+  local clause name found
   dpkg-query -W -f '${Pre-Depends},${Depends}' "$1" | tr ',' '\n' | while read -r clause; do
     for name in $(tr '|' '\n' <<<"${clause}" | sed -e 's/(.*//' -e 's/:any//' -e 's/ //g'); do
-      if dpkg-query -W -f '${db:Status-Status}' "${name}" 2>/dev/null | grep -qx installed; then
-        echo "${name}"
+      found="$(installed_as "${name}")"
+      if [[ -n "${found}" ]]; then
+        echo "${found}"
         break
       fi
     done
   done
 }
+
+# "package|names that it provides" for each package that provides any.
+providers="$(dpkg-query -W -f '${db:Status-Status} ${Package}|${Provides}\n' | sed -n '/|./s/^installed //p')"
+readonly providers
 
 # Adds a package and its dependencies to `packages`.
 declare -A packages=()
