@@ -302,7 +302,11 @@ bool PinnedMotion::Approach(motion::Poses* follower) const {
   const OffsetLimits limits = BodyLimits(options_);
   const int frames = follower->frame_count();
   std::vector<Offset> offsets = OffsetsTo(body_pins_, *follower);
-  for (Offset& offset : offsets) offset.way = Shortened(offset.way, options_.farthest_body_metres);
+  for (Offset& offset : offsets) {
+    const float lift = options_.farthest_lift_metres;
+    offset.way.y = std::clamp(offset.way.y, -lift, lift);
+    offset.way = Shortened(offset.way, options_.farthest_body_metres);
+  }
   Shift(OffsetTrack(Merged(offsets), limits, timing_, frames), timing_, follower);
   // Where the body is pinned, it stays for the limbs.
   for (Offset& offset : offsets) offset.way = {};

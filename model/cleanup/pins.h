@@ -21,6 +21,8 @@ struct PinOptions {
   double fastest_metres_per_second = 4, fastest_body_metres_per_second = 1.6;
   // How far the body moves at most for a limb that is too short, and for a pin of its own.
   double farthest_approach_metres = 1, farthest_body_metres = 3;
+  // How far the body rises or sinks at most: a person can crouch or stand on their toes.
+  float farthest_lift_metres = 0.3f;
 };
 
 // Moves the joints of a follower to their pins, and eases the corrections in and out over the

@@ -43,10 +43,12 @@ void Replace(const motion::Skeleton& skeleton, const Poses& own, int from, int64
     std::copy(own[t].begin(), own[t].end(), known[t].begin());
     std::copy(own[t].begin(), own[t].end(), target[t].begin());
   }
+  const int after = target.frame_count() - last - 1;
   Poses returning(0, target.joint_count());
-  returning.Append(target.frames(last + 1, target.frame_count() - last - 1));
+  returning.Append(
+      target.frames(last + 1, static_cast<int>(std::min<int64_t>(after, return_frames))));
   for (int t = 0; t < returning.frame_count(); ++t) {
-    const double since = std::min(1.0, (t + 1.0) / static_cast<double>(return_frames));
+    const double since = (t + 1.0) / static_cast<double>(return_frames);
     const auto share = static_cast<float>(0.5 + 0.5 * std::cos(base::kPi * since));
     for (std::size_t j = 0; j < error.size(); ++j) returning[t][j] += error[j] * share;
   }

@@ -92,7 +92,7 @@ class PinsTest(unittest.TestCase):
         # Standing feet and the leader's body have priority.
         before = np.linalg.norm(free.follower.joint("torso")[70] - pin.position)
         self.assertLess(pinned.constraint_metres[0], before / 2)
-        self.assertLessEqual(pinned.grade.skating, free.grade.skating + 0.15)
+        self.assertLessEqual(pinned.grade.skating, free.grade.skating + 0.2)
         self.assertLess(speed(pinned.follower, "torso"), speed(free.follower, "torso") + 2)
 
     def test_frames_long_before_do_not_change(self):
@@ -137,14 +137,13 @@ class PinsTest(unittest.TestCase):
         self.check(self.ask(leader, up=up, constraints=[pin]), [pin])
 
     def test_every_window_of_a_long_clip(self):
-        free = self.ask(self.salsa, {"basic": 1}, model="salsa")
+        free = self.ask(self.salsa)
         self.assertGreater(free.window_count, 5)
         last = self.salsa.frame_count
         pins = [there(free.follower, "right_hand", frame, (0, 0.1, 0.05))
                 for frame in range(11, last, last // 12)]
         for count in (1, 3):
-            pinned = self.ask(self.salsa, {"basic": 1}, model="salsa", constraints=pins,
-                              candidates=count)
+            pinned = self.ask(self.salsa, constraints=pins, candidates=count)
             self.assertLess(np.median(pinned.constraint_metres), REACHED)
             self.assertLess(max(pinned.constraint_metres), 0.2)
             self.assertLess(speed(pinned.follower, "right_hand"),
@@ -171,6 +170,13 @@ class PinsTest(unittest.TestCase):
             self.ask(constraints=[duet.Constraint("left_wing", 4, (0, 1, 0))])
         self.assertRegex(str(raised.exception), r"constraints\[0\].joint_name: expected a joint of "
                                                 "model sbu .*left_hand.*, got \"left_wing\"")
+
+    def test_a_pin_far_above_does_not_lift_the_body(self):
+        free = self.ask()
+        pinned = self.ask(constraints=[duet.Constraint("head", 10, (0, 9, 0))])
+        self.assertGreater(pinned.constraint_metres[0], 1)
+        self.assertLess(pinned.follower.joint("head")[:, 1].max(),
+                        free.follower.joint("head")[:, 1].max() + 0.35)
 
     def test_the_program_sends_pins_and_reports_what_remains(self):
         free = self.ask()

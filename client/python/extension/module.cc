@@ -69,7 +69,7 @@ PYBIND11_MODULE(_motion_files, module) {
       },
       py::arg("path"), py::kw_only(), py::arg("side"), py::arg("frame_rate_hz"), py::arg("unit"),
       py::arg("up_axis"), py::arg("metres_per_unit"), py::arg("joint_map"), py::arg("resample_hz"),
-      py::arg("layout"), py::arg("body_model"));
+      py::arg("layout") = "", py::arg("body_model") = "");
 
   module.def(
       "write",

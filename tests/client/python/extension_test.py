@@ -28,8 +28,9 @@ DAMAGED = 24
 
 
 def options(side=None, frame_rate_hz=None, unit="", up_axis="", metres_per_unit=None, joint_map=None,
-            resample_hz=None):
-    return checked_options(side, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz)
+            resample_hz=None, layout="", body_model=None):
+    return checked_options(side, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz,
+                           layout, body_model)
 
 
 def outcome(backend, path, arguments):

@@ -152,7 +152,12 @@ class ExtensionFilesTest(FilesTest):
     def setUp(self):
         super().setUp()
         self.enterContext(mock.patch.object(_file_program, "read", side_effect=AssertionError))
-        self.enterContext(mock.patch.object(_file_program, "write", side_effect=AssertionError))
+        write = _file_program.write
+
+        def write_layout(document, path, layout):  # only the program has the layouts of research
+            self.assertTrue(layout)
+            write(document, path, layout)
+        self.enterContext(mock.patch.object(_file_program, "write", side_effect=write_layout))
 
     def test_missing_program_explains_what_to_install(self):
         with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):
