@@ -25,7 +25,8 @@ class Layer:
 
 
 MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format",
-                "gltf format", "asf format", "usd format", "research format", "formats")
+                "gltf format", "fbx format", "asf format", "usd format", "research format",
+                "formats")
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
 MEASURING = ("metrics", "protocol", "baselines", "judge", "experiments")
 SERVER = ("server common", "batching", "registry", "server metrics", "security", "tracing",
@@ -40,13 +41,18 @@ LAYERS = (
     Layer("flat formats", "model/formats/flat", sees=("base", "motion")),
     Layer("bvh format", "model/formats/bvh", sees=("base", "motion", "retargeting")),
     Layer("gltf format", "model/formats/gltf", sees=("base", "motion", "retargeting")),
+    Layer("fbx program", "model/formats/fbx/program",
+          sees=("base", "motion", "retargeting", "gltf format", "fbx format"),
+          libraries=("assimp",)),
+    Layer("fbx format", "model/formats/fbx",
+          sees=("base", "motion", "retargeting", "gltf format")),
     Layer("asf format", "model/formats/asf", sees=("base", "motion", "retargeting")),
     Layer("usd format", "model/formats/usd", sees=("base", "motion", "retargeting")),
     Layer("research format", "model/formats/research",
           sees=("base", "motion", "retargeting", "flat formats")),
     Layer("formats", "model/formats",
           sees=("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format",
-                "asf format", "usd format", "research format")),
+                "fbx format", "asf format", "usd format", "research format")),
     Layer("authoring", "model/authoring", sees=("base", "motion", "retargeting", "bvh format")),
     Layer("dataset", "model/dataset", sees=MOTION_FILES),
     Layer("importing", "model/importing", sees=MOTION_FILES + ("dataset",)),
@@ -135,6 +141,7 @@ LAYERS = (
 GUARDED_LIBRARIES = {
     "torch": ("torch/", "ATen/", "c10/", "caffe2/"),
     "highway": ("hwy/",),
+    "assimp": ("assimp/",),
     "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/", "duet/otlp/",
             "duet/admin/"),
     "prometheus": ("prometheus/",),

@@ -35,6 +35,7 @@ LIBRARIES = (
     ("CLI/", "CLI11::CLI11"),
     ("Eigen/", "Eigen3::Eigen"),
     ("hwy/", "hwy::hwy"),
+    ("assimp/", "assimp::assimp"),
     ("dlfcn.h", "dl"),
     ("prometheus/", "prometheus-cpp::core"),
     ("openssl/", "OpenSSL::Crypto", "OpenSSL::SSL"),

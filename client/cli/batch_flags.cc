@@ -64,8 +64,8 @@ void AddInputFlags(FlagSet* app, BatchArguments* arguments) {
       ->Group(kGroup);
   app->Add("--input-format", &arguments->overrides.input_format,
            "Format of every leader; overrides the extension and the recipe")
-      ->OneOf({"amc", "bvh", "csv", "glb", "gltf", "json", "npy", "npz", "sbu"})
-      ->Form("amc|bvh|csv|glb|gltf|json|npy|npz|sbu")
+      ->OneOf({"amc", "bvh", "csv", "fbx", "glb", "gltf", "json", "npy", "npz", "sbu"})
+      ->Form("amc|bvh|csv|fbx|glb|gltf|json|npy|npz|sbu")
       ->Group(kGroup);
   app->Add("--layout", &arguments->overrides.layout,
            "Layout of .npy leaders of research; overrides the recipe")

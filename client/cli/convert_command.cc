@@ -356,7 +356,7 @@ void CheckTogether(const ConvertArguments& arguments) {
 void AddFlags(FlagSet* command, ConvertArguments* arguments) {
   command
       ->Add("file", &arguments->file,
-            "Motion: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
+            "Motion: .bvh, .gltf, .glb, .fbx, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
             "standard input")
       ->Required()
       ->Form("FILE");

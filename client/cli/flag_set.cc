@@ -187,6 +187,7 @@ template Flag* FlagSet::Add(const std::string&, std::string*, const std::string&
 template Flag* FlagSet::Add(const std::string&, Path*, const std::string&);
 template Flag* FlagSet::Add(const std::string&, std::optional<int>*, const std::string&);
 template Flag* FlagSet::Add(const std::string&, std::optional<double>*, const std::string&);
+template Flag* FlagSet::Add(const std::string&, std::optional<std::string>*, const std::string&);
 template Flag* FlagSet::Add(const std::string&, std::vector<int>*, const std::string&);
 template Flag* FlagSet::Add(const std::string&, std::vector<double>*, const std::string&);
 template Flag* FlagSet::Add(const std::string&, std::vector<std::string>*, const std::string&);

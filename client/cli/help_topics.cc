@@ -21,6 +21,7 @@ const std::map<std::string, std::string>& Topics() {
   extension    read                  written              holds
   .gltf .glb   yes                   yes                  animated skeletons
   .usda        no                    yes                  animated skeletons
+  .fbx         with duet-fbx         no                   animated skeletons
   .bvh         yes                   one per person       joint angles, one length per bone
   .amc         with its .asf beside  no                   joint angles
   .csv         yes                   yes                  positions of one or two people

@@ -14,9 +14,9 @@ using formats::Format;
 using formats::research::Layout;
 
 const std::map<std::string, Format> kInputFormats = {
-    {"amc", Format::kAmc}, {"bvh", Format::kBvh},   {"csv", Format::kCsv},
-    {"glb", Format::kGlb}, {"gltf", Format::kGltf}, {"json", Format::kJson},
-    {"npy", Format::kNpy}, {"npz", Format::kNpz},   {"sbu", Format::kSbuText}};
+    {"amc", Format::kAmc}, {"bvh", Format::kBvh},    {"csv", Format::kCsv},   {"fbx", Format::kFbx},
+    {"glb", Format::kGlb}, {"gltf", Format::kGltf},  {"json", Format::kJson}, {"npy", Format::kNpy},
+    {"npz", Format::kNpz}, {"sbu", Format::kSbuText}};
 
 const std::map<std::string, OutputFormat> kOutputFormats = {
     {"bvh", {Format::kBvh}},   {"csv", {Format::kCsv}},     {"glb", {Format::kGlb}},
@@ -59,9 +59,14 @@ void AddInputFlags(FlagSet* app, InputArguments* input) {
       ->LastOnly()
       ->Group(kInputGroup);
   app->Add("--metres-per-unit", &input->metres_per_unit,
-           "BVH, glTF, ASF: metres in one unit of the file (0.01 for centimetres)")
+           "BVH, glTF, FBX, ASF: metres in one unit of the file (0.01 for centimetres)")
       ->AboveZero()
       ->Form("METRES")
+      ->Group(kInputGroup);
+  app->Add("--animation", &input->animation,
+           "glTF, FBX: the animation (of FBX, a take) of a file with several (default: the first "
+           "that moves the person)")
+      ->Form("NAME")
       ->Group(kInputGroup);
   AddChoice<Layout>(
       app, "--layout", kLayouts, [input](Layout layout) { input->layout = layout; },

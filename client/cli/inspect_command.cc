@@ -116,7 +116,7 @@ ExitCode Run(const InspectArguments& arguments, const ProgramEnvironment& enviro
 void AddFlags(FlagSet* command, InspectArguments* arguments) {
   command
       ->Add("files", &arguments->files,
-            "Motions: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
+            "Motions: .bvh, .gltf, .glb, .fbx, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
             "standard input")
       ->Required()
       ->Form("FILE");

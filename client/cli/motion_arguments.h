@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "model/formats/motion_file.h"
 
@@ -21,6 +22,7 @@ struct InputArguments {
   std::optional<motion::LengthUnit> unit;
   std::optional<motion::UpAxis> up_axis;
   std::optional<double> metres_per_unit;
+  std::optional<std::string> animation;
   retargeting::JointOverrides joints;
   std::filesystem::path joint_table;  // a file of joints, which `joints` override
   std::optional<formats::research::Layout> layout;

@@ -80,6 +80,7 @@ absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
   options.skeleton = skeleton;
   options.frame_rate_hz = input.frame_rate_hz;
   options.metres_per_unit = input.metres_per_unit;
+  options.animation = input.animation;
   absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(input.joints, input.joint_table);
   if (!joints.ok()) return joints.status();
   options.joint_overrides = *std::move(joints);

@@ -30,7 +30,7 @@ const std::map<std::string, RotationForm> kRotationForms = {
 
 void AddLeaderFlags(FlagSet* app, SynthesizeArguments* arguments) {
   app->Add("--leader", &arguments->leader,
-           "Motion of the leader: .bvh, .gltf, .glb, .amc, .csv, .npy, .npz, .json or SBU "
+           "Motion of the leader: .bvh, .gltf, .glb, .fbx, .amc, .csv, .npy, .npz, .json or SBU "
            ".txt; - for standard input")
       ->Required()
       ->Form("FILE")

@@ -9,6 +9,7 @@
 #include "model/formats/bvh/bvh_character.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_rig.h"
+#include "model/formats/fbx/fbx_rig.h"
 #include "model/formats/format_options.h"
 #include "model/formats/gltf/gltf_character.h"
 #include "model/formats/gltf/gltf_rig.h"
@@ -24,6 +25,10 @@ bvh::BvhImportOptions BvhOptionsOf(const FollowerRig& rig) {
 
 gltf::GltfImportOptions GltfOptionsOf(const FollowerRig& rig) {
   return {CharacterOptionsOf(rig.reading), PersonOf(rig.reading), std::nullopt};
+}
+
+fbx::FbxImportOptions FbxOptionsOf(const FollowerRig& rig) {
+  return {CharacterOptionsOf(rig.reading), PersonOf(rig.reading), std::nullopt, std::nullopt};
 }
 
 gltf::GltfFileReader FilesBeside(const FollowerRig& rig) {
@@ -88,13 +93,17 @@ absl::StatusOr<retargeting::CharacterRig> ReadRig(Format format, const std::stri
                                                   const FollowerRig& rig) {
   if (format == Format::kBvh) return ReadBvhRig(content, rig);
   if (format == Format::kAmc) return ReadAmcRig(content, rig);
+  if (format == Format::kFbx) {
+    return fbx::ReadFbxRig(content, rig.file.string(), FbxOptionsOf(rig));
+  }
   return gltf::ReadGltfRig(content, rig.file.string(), FilesBeside(rig), GltfOptionsOf(rig));
 }
 
 }  // namespace
 
 bool FitsRig(Format written, Format rig) {
-  const bool is_rig = rig == Format::kBvh || rig == Format::kAmc || IsGltf(rig);
+  const bool is_rig =
+      rig == Format::kBvh || rig == Format::kAmc || rig == Format::kFbx || IsGltf(rig);
   return is_rig && (written == Format::kBvh || IsGltf(written));
 }
 
@@ -127,6 +136,9 @@ absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const Fo
   if (IsGltf(format) && IsGltf(*rigs)) {
     return gltf::OntoGltfRig(follower, *content, source, FilesBeside(rig), GltfOptionsOf(rig),
                              ContainerOf(format));
+  }
+  if (IsGltf(format) && *rigs == Format::kFbx) {
+    return fbx::OntoFbxRig(follower, *content, source, FbxOptionsOf(rig), ContainerOf(format));
   }
   const absl::StatusOr<retargeting::CharacterRig> read = ReadRig(*rigs, *content, rig);
   if (!read.ok()) return read.status();

@@ -11,15 +11,15 @@
 
 namespace duet::formats {
 
-// A BVH, AMC (with its .asf) or glTF whose rig the follower is written onto, and the options to
-// read it.
+// A BVH, AMC (with its .asf), FBX or glTF whose rig the follower is written onto, and the options
+// to read it.
 struct FollowerRig {
   std::filesystem::path file;
   ReadOptions reading;
 };
 
 // The formats that have a rig, and those of a follower on a rig.
-inline constexpr char kRigExtensions[] = "a .bvh, .amc, .glb or .gltf";
+inline constexpr char kRigExtensions[] = "a .bvh, .amc, .fbx, .glb or .gltf";
 inline constexpr char kRigOutputExtensions[] = ".bvh, .glb or .gltf";
 
 // Whether a follower on a rig of the format `rig` can be written in the format `written`.
@@ -30,7 +30,8 @@ absl::Status CheckRig(const FollowerRig& rig);
 
 // Formats the follower on the rig. In the rig's own format, everything in its file except the
 // motion is kept (bvh::OntoBvhRig, gltf::OntoGltfRig). In another format, names, hierarchy and bone
-// lengths are kept (bvh::ToBvh, gltf::FormatCharacter).
+// lengths are kept (bvh::ToBvh, gltf::FormatCharacter); from FBX to glTF, skins and meshes too
+// (fbx::OntoFbxRig).
 //
 // Errors: those of reading the rig; INVALID_ARGUMENT for an unsuitable rig, or a format that
 //         FitsRig does not accept.

@@ -14,6 +14,7 @@
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_export.h"
 #include "model/formats/bvh/bvh_import.h"
+#include "model/formats/fbx/fbx_import.h"
 #include "model/formats/flat/csv.h"
 #include "model/formats/flat/json_motion.h"
 #include "model/formats/flat/npy.h"
@@ -173,10 +174,21 @@ absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const So
   if (!document.ok()) return document.status();
   gltf::GltfImportOptions gltf{CharacterOptionsOf(options), PersonOf(options),
                                options.frame_rate_hz};
+  gltf.animation = options.animation;
   const auto read_beside = [&source](const std::string& name) {
     return source.ReadBeside(name, "a buffer");
   };
   return FromGltf(*document, source.name, read_beside, gltf);
+}
+
+absl::StatusOr<motion::Clip> ReadFbxPerson(const std::string& content, const std::string& source,
+                                           const ReadOptions& options) {
+  const fbx::FbxImportOptions fbx{CharacterOptionsOf(options), PersonOf(options),
+                                  options.frame_rate_hz, options.animation};
+  absl::StatusOr<motion::Clip> clip = fbx::FromFbx(content, source, fbx);
+  // Programs that do not convert the axes state their own nevertheless.
+  if (clip.ok() && !options.coordinates.has_value()) WarnOfUpAxis(*clip, options);
+  return clip;
 }
 
 absl::StatusOr<asf::AsfSkeleton> ReadAsfBeside(const Source& source) {
@@ -256,6 +268,8 @@ const char* FormatTitle(Format format) {
     case Format::kGltf:
     case Format::kGlb:
       return "glTF";
+    case Format::kFbx:
+      return "FBX";
     case Format::kAmc:
       return "ASF/AMC";
     case Format::kCsv:
@@ -275,7 +289,13 @@ const char* FormatTitle(Format format) {
 absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& content,
                                         const Source& source, const ReadOptions& options) {
   if (options.report != nullptr) options.report->format = FormatTitle(format);
+  if (options.animation.has_value() && !IsGltf(format) && format != Format::kFbx) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(source.name, ": animation: expected none, because ", FormatTitle(format),
+                     " holds one motion, got ", base::Quoted(*options.animation)));
+  }
   if (IsGltf(format)) return ReadGltfPerson(content, source, options);
+  if (format == Format::kFbx) return ReadFbxPerson(content, source.name, options);
   if (format == Format::kAmc) return ReadAmcPerson(content, source, options);
   if (format == Format::kSbuText) return ReadSbuPerson(content, source.name, options);
   if (format == Format::kBvh) return ReadBvhPerson(content, source.name, options);
@@ -394,10 +414,10 @@ std::optional<Format> FormatOf(const fs::path& path) {
 
 std::optional<Format> ParseFormat(absl::string_view name) {
   static const auto& formats = *new std::map<absl::string_view, Format>{
-      {"sbu", Format::kSbuText}, {"bvh", Format::kBvh}, {"gltf", Format::kGltf},
-      {"glb", Format::kGlb},     {"amc", Format::kAmc}, {"csv", Format::kCsv},
-      {"json", Format::kJson},   {"npy", Format::kNpy}, {"npz", Format::kNpz},
-      {"usda", Format::kUsda}};
+      {"sbu", Format::kSbuText}, {"bvh", Format::kBvh},  {"gltf", Format::kGltf},
+      {"glb", Format::kGlb},     {"amc", Format::kAmc},  {"csv", Format::kCsv},
+      {"json", Format::kJson},   {"npy", Format::kNpy},  {"npz", Format::kNpz},
+      {"fbx", Format::kFbx},     {"usda", Format::kUsda}};
   const auto found = formats.find(name);
   return found == formats.end() ? std::nullopt : std::optional<Format>(found->second);
 }
@@ -409,7 +429,9 @@ bool IsReadable(const fs::path& path) {
   return format.has_value() && IsReadable(*format);
 }
 
-bool IsWritable(Format format) { return format != Format::kAmc && format != Format::kNpz; }
+bool IsWritable(Format format) {
+  return format != Format::kAmc && format != Format::kFbx && format != Format::kNpz;
+}
 
 bool IsWritable(const fs::path& path) {
   const std::optional<Format> format = FormatOf(path);

@@ -25,6 +25,7 @@
 //   .txt    SBU text, two people
 //   .bvh    joint angles, one person per ROOT
 //   .gltf, .glb  an animated skeleton per person
+//   .fbx    an animated skeleton per person, read by the program duet-fbx
 //   .amc    joint angles, with the skeleton in an .asf file in the same folder
 //   .csv    positions by column, one or two people
 //   .json   positions, one or two people
@@ -40,7 +41,7 @@ namespace duet::formats {
 enum class Side { kLeft, kRight };
 
 // kGlb is binary glTF. A reader distinguishes the two by their first bytes.
-enum class Format { kSbuText, kBvh, kGltf, kGlb, kAmc, kCsv, kJson, kNpy, kNpz, kUsda };
+enum class Format { kSbuText, kBvh, kGltf, kGlb, kFbx, kAmc, kCsv, kJson, kNpy, kNpz, kUsda };
 
 // SMPL-X with all its shapes, uncompressed.
 inline constexpr std::size_t kMaxBodyModelBytes = std::size_t{1} << 30;
@@ -57,9 +58,12 @@ struct ReadOptions {
   // Overrides the file's coordinates. Defaults: SBU text has the data set's normalised unit; CSV
   // and JSON have what they state, or metres, y up; NPY has metres, y up.
   std::optional<motion::Coordinates> coordinates;
-  // BVH, glTF, ASF: metres in one unit of the file (0.01 for centimetres). If absent, the unit is
-  // inferred (model/motion/inferred_coordinates.h).
+  // BVH, glTF, FBX, ASF: metres in one unit of the file (0.01 for centimetres). If absent, the unit
+  // that the file states, or else an inferred one (model/motion/inferred_coordinates.h).
   std::optional<double> metres_per_unit;
+  // glTF, FBX: the name of the animation (of FBX: a take). If absent, the first that moves the
+  // person. Other formats hold one motion and reject a name.
+  std::optional<std::string> animation;
   retargeting::JointOverrides joint_overrides;
   // The meaning of a .npy array. If absent, research::GuessLayout; if that has none, positions of
   // the skeleton's joints.
@@ -76,7 +80,7 @@ struct ReadOptions {
 //
 // Shapes: [frames >= 1, options.skeleton]. Units: world metres, y up.
 // Errors: NOT_FOUND, PERMISSION_DENIED; INVALID_ARGUMENT naming the file, the place in it, the
-//         expected value and the actual one.
+//         expected value and the actual one; FAILED_PRECONDITION for .fbx without duet-fbx.
 absl::StatusOr<motion::Clip> ReadLeader(const std::filesystem::path& path,
                                         const ReadOptions& options = {});
 
@@ -133,10 +137,11 @@ absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion
 
 // The format of an extension; absent if the extension is unknown.
 std::optional<Format> FormatOf(const std::filesystem::path& path);
-// Parses a name: "bvh", "gltf", "glb", "usda", "amc", "csv", "json", "npy", "npz" or "sbu".
+// Parses a name: "bvh", "gltf", "glb", "usda", "fbx", "amc", "csv", "json", "npy", "npz" or "sbu".
 std::optional<Format> ParseFormat(absl::string_view name);
 // The names of the formats that can be read.
-inline constexpr char kReadableFormatNames[] = "amc, bvh, csv, glb, gltf, json, npy, npz or sbu";
+inline constexpr char kReadableFormatNames[] =
+    "amc, bvh, csv, fbx, glb, gltf, json, npy, npz or sbu";
 bool IsWritable(Format format);
 bool IsReadable(Format format);
 
@@ -147,7 +152,7 @@ bool IsReadable(const std::filesystem::path& path);
 inline constexpr char kWritableExtensions[] =
     ".glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt (SBU text)";
 inline constexpr char kReadableExtensions[] =
-    ".txt (SBU text), .bvh, .gltf, .glb, .amc (beside its .asf), .csv, .npy, .npz or .json";
+    ".txt (SBU text), .bvh, .gltf, .glb, .fbx, .amc (beside its .asf), .csv, .npy, .npz or .json";
 // INVALID_ARGUMENT "path: extension: expected <known>, got ...".
 absl::Status UnknownExtension(const std::filesystem::path& path, absl::string_view known);
 

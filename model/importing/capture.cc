@@ -46,6 +46,10 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
     if (options.unit_is_given || format != formats::Format::kAmc) read.metres_per_unit = 1;
     read.coordinates = motion::Coordinates{};
   }
+  if (format == formats::Format::kFbx) {
+    if (options.unit_is_given) read.metres_per_unit = 1;
+    if (options.up_axis_is_given) read.coordinates = motion::Coordinates{};
+  }
   absl::StatusOr<motion::Clip> person = formats::ReadLeader(path, read);
   if (person.ok() || format != formats::Format::kNpy) return person;
   return absl::Status(

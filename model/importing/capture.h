@@ -30,13 +30,15 @@ struct CaptureOptions {
   std::optional<formats::research::Layout> layout;  // of .npy
   std::filesystem::path body_model;                 // of .npz
   bool unit_is_given = false;                       // ignore the unit that a file states
+  bool up_axis_is_given = false;                    // ignore the up axis that a file states
   // Receives one note for each choice between several joints. May be null.
   std::vector<std::string>* notes = nullptr;
 };
 
 // Reads both people. Formats with a hierarchy (BVH, glTF, ASF) keep the file's unit and axes,
-// except that a unit which an ASF file states is converted to metres. Every other format is read
-// in the coordinates that the file states; the default is metres, y up.
+// except that a unit which an ASF file states is converted to metres. FBX is read in metres, y up,
+// as the file states its unit and axes. Every other format is read in the coordinates that the file
+// states; the default is metres, y up.
 //
 // Errors: INVALID_ARGUMENT naming the file, also if a file that must hold two people holds one.
 absl::StatusOr<Capture> ReadCapture(const std::filesystem::path& folder, const PairFiles& files,

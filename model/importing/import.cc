@@ -182,13 +182,11 @@ class Importer {
 
   absl::Status ReadPairs() {
     std::vector<std::string> notes;
-    const CaptureOptions options = {skeleton_.skeleton,
-                                    options_.joint_overrides,
-                                    options_.frame_rate_hz,
-                                    options_.layout,
-                                    options_.body_model,
-                                    options_.metres_per_unit.has_value(),
-                                    &notes};
+    const CaptureOptions options = {
+        skeleton_.skeleton,           options_.joint_overrides,
+        options_.frame_rate_hz,       options_.layout,
+        options_.body_model,          options_.metres_per_unit.has_value(),
+        options_.up_axis.has_value(), &notes};
     for (const PairFiles& files : pairs_) {
       absl::StatusOr<Capture> capture = ReadCapture(options_.from, files, options);
       if (capture.ok()) {

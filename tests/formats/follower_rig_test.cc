@@ -123,7 +123,7 @@ TEST_F(FollowerRigTest, ARigNeedNotBeAnimated) {
 TEST_F(FollowerRigTest, ReportsTheExtensionsOfRigs) {
   EXPECT_THAT(FormatOntoRig(Follower(), {"rig.csv", {}}, Format::kGlb).status(),
               StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("rig.csv: rig: expected a .bvh, .amc, .glb or .gltf")));
+                       HasSubstr("rig.csv: rig: expected a .bvh, .amc, .fbx, .glb or .gltf")));
   EXPECT_THAT(FormatOntoRig(Follower(), {folder_ / "leader.bvh", {}}, Format::kCsv).status(),
               StatusIs(absl::StatusCode::kInvalidArgument,
                        HasSubstr("it is written as .bvh, .glb or .gltf")));

@@ -332,14 +332,14 @@ TEST_F(MotionFile, ReadsTheFirstFrameAsAFollowersStart) {
 }
 
 TEST_F(MotionFile, ReportsTheKnownExtensions) {
-  EXPECT_THAT(std::string(ReadLeader("a.fbx").status().message()),
+  EXPECT_THAT(std::string(ReadLeader("a.obj").status().message()),
               HasSubstr("extension: expected .txt (SBU text), .bvh"));
   EXPECT_THAT(std::string(WritePair("a.amc", pair_, motion::SbuSkeleton()).status().message()),
               HasSubstr("extension: expected .glb, .gltf, .usda, .bvh, .csv"));
   EXPECT_TRUE(IsWritable("a.json"));
   EXPECT_TRUE(IsWritable("a.txt"));
   EXPECT_FALSE(IsWritable("a"));
-  EXPECT_FALSE(IsReadable("a.fbx"));
+  EXPECT_FALSE(IsReadable("a.obj"));
   EXPECT_TRUE(IsReadable("a.BVH"));
 }
 

@@ -56,6 +56,7 @@ constexpr Target kTargets[] = {
     {"csv", Csv},
     {"dataset_index", DatasetIndex},
     {"dataset_layout", DatasetLayout},
+    {"fbx", Fbx},
     {"gltf", Gltf},
     {"http_request", HttpRequest},
     {"joint_map", JointMap},

@@ -3,7 +3,9 @@
 #include <zlib.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -17,6 +19,7 @@
 #include "model/dataset/leader_side.h"
 #include "model/formats/asf/amc_import.h"
 #include "model/formats/bvh/bvh_rig.h"
+#include "model/formats/fbx/fbx_program.h"
 #include "model/formats/gltf/gltf_import.h"
 #include "model/formats/gltf/gltf_rig.h"
 #include "model/formats/motion_file.h"
@@ -199,6 +202,19 @@ Broken Gltf(absl::string_view input) {
       ShortPerson(), input, kSource, read_beside, {}, formats::gltf::GltfContainer::kBinary);
   if (!onto.ok()) return CheckRefusal(onto.status());
   return CheckRefusal(formats::gltf::ParseGltf(*onto, kSource).status(), {});
+}
+
+// Whatever assimp does with the bytes happens in a process of its own. A build without it has
+// nothing to run.
+Broken Fbx(absl::string_view input) {
+#ifdef DUET_FBX_TO_FUZZ
+  static const int set = setenv("DUET_FBX_PROGRAM", DUET_FBX_TO_FUZZ, 0);
+  if (set != 0 || !std::filesystem::exists(formats::fbx::FbxProgram())) return "no duet-fbx";
+  return ReadMotion(Format::kFbx, input, std::nullopt);
+#else
+  static_cast<void>(input);
+  return "";
+#endif
 }
 
 Broken AsfAmc(absl::string_view input) {

@@ -9,6 +9,7 @@ namespace duet::fuzz {
 // Files of motion, and what describes them.
 Broken Bvh(absl::string_view input);
 Broken Csv(absl::string_view input);
+Broken Fbx(absl::string_view input);
 Broken Gltf(absl::string_view input);
 Broken JsonMotion(absl::string_view input);
 Broken Npy(absl::string_view input);

@@ -8,16 +8,20 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "model/base/median.h"
 #include "model/base/text.h"
 #include "model/formats/gltf/gltf_animation.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/motion_limits.h"
+#include "model/retargeting/affine.h"
 
 namespace duet::formats::gltf {
 namespace {
 
+using retargeting::Affine;
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 
@@ -25,26 +29,9 @@ using retargeting::Vec3d;
 constexpr double kSlowestKeysHz = 15, kHandKeyedRateHz = 30, kFastestRateHz = 240;
 constexpr double kRateTolerance = 0.01;
 constexpr std::size_t kMostCharacters = 64;
+constexpr std::size_t kMostNames = 20;  // of animations, in messages
 
 std::size_t Index(int node) { return static_cast<std::size_t>(node); }
-
-// An affine map: the images of the axes and of the origin.
-struct Affine {
-  Vec3d x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1}, origin;
-
-  Vec3d Turn(Vec3d a) const { return x * a.x + y * a.y + z * a.z; }
-  // Applies `inner` first, then this map.
-  Affine operator*(const Affine& inner) const {
-    return {Turn(inner.x), Turn(inner.y), Turn(inner.z), origin + Turn(inner.origin)};
-  }
-  // The mean factor by which lengths along the axes grow.
-  double Scale() const { return (Norm(x) + Norm(y) + Norm(z)) / 3; }
-};
-
-Affine FromParts(Vec3d translation, Quaternion rotation, Vec3d scale) {
-  return {Rotate(rotation, {1, 0, 0}) * scale.x, Rotate(rotation, {0, 1, 0}) * scale.y,
-          Rotate(rotation, {0, 0, 1}) * scale.z, translation};
-}
 
 Affine FromMatrix(const std::array<double, 16>& m) {
   return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
@@ -218,7 +205,7 @@ class Puppet {
       if (track.channel().path == GltfPath::kTranslation) translation = track.VectorAt(*seconds);
       if (track.channel().path == GltfPath::kScale) scale = track.VectorAt(*seconds);
     }
-    return FromParts(translation, rotation, scale);
+    return retargeting::FromParts({translation, rotation, scale});
   }
 
   void Stand(std::optional<double> seconds) {
@@ -292,7 +279,9 @@ class Importer {
                                         " nodes, got ", puppet.members().nodes.size()));
     }
     if (options_.nodes != nullptr) *options_.nodes = puppet.members().nodes;
-    const GltfAnimation* animation = Choose(puppet);
+    const absl::StatusOr<const GltfAnimation*> chosen = Choose(puppet, source);
+    if (!chosen.ok()) return chosen.status();
+    const GltfAnimation* animation = *chosen;
     if (animation == nullptr && options_.nodes == nullptr) {
       return Error(source, "expected an animation of the skeleton, got none");
     }
@@ -312,21 +301,39 @@ class Importer {
     if (options_.notes != nullptr) options_.notes->push_back(std::move(note));
   }
 
-  // The first animation that moves the character.
-  const GltfAnimation* Choose(const Puppet& puppet) const {
-    const GltfAnimation* chosen = nullptr;
-    int count = 0;
+  // The animation of the given name, or the first, of those that move the character; null if none
+  // moves it.
+  absl::StatusOr<const GltfAnimation*> Choose(const Puppet& puppet,
+                                              absl::string_view source) const {
+    std::vector<const GltfAnimation*> moving;
+    std::vector<std::string> names;
     for (const GltfAnimation& animation : document_.animations) {
       if (!puppet.IsMovedBy(animation)) continue;
-      if (++count == 1) chosen = &animation;
+      moving.push_back(&animation);
+      if (names.size() < kMostNames) names.push_back(base::Quoted(animation.name));
     }
-    if (count > 1) {
-      const std::string note = absl::StrCat("animation: ", base::Quoted(chosen->name),
-                                            ", the first of ", count, " that move the skeleton");
+    if (moving.size() > names.size()) names.push_back("...");
+    const std::string all = absl::StrJoin(names, ", ");
+    if (options_.animation.has_value()) {
+      for (const GltfAnimation* animation : moving) {
+        if (IsNamed(*animation, *options_.animation)) return animation;
+      }
+      return Error(source, absl::StrCat("animation: expected ", moving.empty() ? "one" : all,
+                                        ", got ", base::Quoted(*options_.animation)));
+    }
+    if (moving.empty()) return nullptr;
+    if (moving.size() > 1) {
+      const std::string note = absl::StrCat("animation: ", names[0], ", the first of ",
+                                            moving.size(), " that move the skeleton: ", all);
       if (options_.report != nullptr) options_.report->remarks.push_back(note);
       Note(note);
     }
-    return chosen;
+    return moving[0];
+  }
+
+  // Blender prefixes an animation with its armature ("Rig|walk").
+  static bool IsNamed(const GltfAnimation& animation, absl::string_view name) {
+    return animation.name == name || absl::EndsWith(animation.name, absl::StrCat("|", name));
   }
 
   absl::StatusOr<motion::Clip> Play(Puppet* puppet, absl::string_view source) const {
@@ -357,6 +364,8 @@ class Importer {
     character.tree = puppet->Tree();
     character.frame_count = static_cast<int>(frames);
     character.frame_rate_hz = timing.rate_hz;
+    character.stated_metres_per_unit = options_.stated_metres_per_unit;
+    character.stated_by = options_.stated_by;
     character.pose = [&](int frame) {
       return puppet->PoseAt(timing.start + frame / timing.rate_hz);
     };
@@ -369,8 +378,9 @@ class Importer {
     return ToClip(character, source, options);
   }
 
-  // The rate that a file written by Duet states, if it is valid.
+  // The rate that the caller or a file written by Duet states, if it is valid.
   std::optional<double> StatedRate() const {
+    if (options_.stated_frame_rate_hz.has_value()) return options_.stated_frame_rate_hz;
     if (document_.writer != kDuetsWriter || !document_.frame_rate_hz.has_value() ||
         !motion::CheckFrameRate("frame rate", *document_.frame_rate_hz).ok()) {
       return std::nullopt;

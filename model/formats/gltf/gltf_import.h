@@ -2,6 +2,7 @@
 #define DUET_MODEL_FORMATS_GLTF_GLTF_IMPORT_H_
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -22,13 +23,20 @@ struct GltfImportOptions : retargeting::CharacterOptions {
   // Receives the nodes of the character's joints, in the order of its tree; may be null. If it is
   // set, only the rig is needed, and a character without an animation is accepted in its rest pose.
   std::vector<int>* nodes = nullptr;
+  // The animation to use, by its name, or by the part of it that follows "|". If absent, the first
+  // that moves the character.
+  std::optional<std::string> animation = std::nullopt;
+  // What the file that was converted to this one states; absent for glTF itself.
+  std::optional<double> stated_frame_rate_hz = std::nullopt;
+  std::optional<double> stated_metres_per_unit = std::nullopt;
+  std::string stated_by = "";  // names the statement of the unit
 };
 
-// Converts an animated skeleton to the skeleton's joint positions by forward kinematics. Uses the
-// first animation that moves the character, sampled at a constant rate from its first key to its
-// last.
+// Converts an animated skeleton to the skeleton's joint positions by forward kinematics. Samples
+// an animation at a constant rate from its first key to its last.
 //
-// Errors: INVALID_ARGUMENT naming `source` if there is no skeleton or no animation of it, for
+// Errors: INVALID_ARGUMENT naming `source` if there is no skeleton or no animation of it (of the
+//         name in `options`; the message lists those of the file), for
 //         invalid values and too many frames; those of retargeting::ToClip.
 absl::StatusOr<motion::Clip> FromGltf(const GltfDocument& document, absl::string_view source,
                                       const GltfFileReader& read_file,

@@ -137,6 +137,18 @@ int GltfWriter::AddTranslationMatrices(const std::vector<Vec3d>& translations) {
   return accessor;
 }
 
+int GltfWriter::AddMatrices(const std::vector<retargeting::Affine>& matrices) {
+  const int accessor = AddAccessor(kFloat, "MAT4", matrices.size());
+  for (const retargeting::Affine& m : matrices) {
+    for (double value : {m.x.x, m.x.y, m.x.z, 0.0, m.y.x, m.y.y, m.y.z, 0.0, m.z.x, m.z.y, m.z.z,
+                         0.0, m.origin.x, m.origin.y, m.origin.z, 1.0}) {
+      Append(static_cast<float>(value));
+    }
+  }
+  EndAccessor();
+  return accessor;
+}
+
 int GltfWriter::AddIndices(const std::vector<uint32_t>& indices, std::size_t vertices) {
   // The largest number of either kind is not an index.
   const bool small = vertices <= std::numeric_limits<uint16_t>::max();
@@ -172,6 +184,24 @@ int GltfWriter::AddWholeWeights(std::size_t vertices) {
   const int accessor = AddAccessor(kUnsignedByte, "VEC4", vertices);
   json_["accessors"].back()["normalized"] = true;
   for (std::size_t vertex = 0; vertex < vertices; ++vertex) buffer_.append("\xFF\0\0\0", 4);
+  EndAccessor();
+  return accessor;
+}
+
+int GltfWriter::AddVertexJoints(const std::vector<std::array<int, 4>>& joints) {
+  const int accessor = AddAccessor(kUnsignedShort, "VEC4", joints.size());
+  for (const std::array<int, 4>& of_vertex : joints) {
+    for (int joint : of_vertex) AppendWhole(static_cast<uint16_t>(joint));
+  }
+  EndAccessor();
+  return accessor;
+}
+
+int GltfWriter::AddVertexWeights(const std::vector<std::array<float, 4>>& weights) {
+  const int accessor = AddAccessor(kFloat, "VEC4", weights.size());
+  for (const std::array<float, 4>& of_vertex : weights) {
+    for (float weight : of_vertex) Append(weight);
+  }
   EndAccessor();
   return accessor;
 }

@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_FORMATS_GLTF_GLTF_WRITER_H_
 #define DUET_MODEL_FORMATS_GLTF_GLTF_WRITER_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/string_view.h"
+#include "model/retargeting/affine.h"
 #include "model/retargeting/rotation.h"
 #include "nlohmann/json.hpp"
 
@@ -40,10 +42,14 @@ class GltfWriter {
   int AddPositions(const std::vector<retargeting::Vec3d>& positions);  // with their range
   int AddRotations(const std::vector<retargeting::Quaternion>& rotations);
   int AddTranslationMatrices(const std::vector<retargeting::Vec3d>& translations);
+  int AddMatrices(const std::vector<retargeting::Affine>& matrices);
   int AddIndices(const std::vector<uint32_t>& indices, std::size_t vertices);
   // Assigns one joint to each vertex, with weight 1.
   int AddVertexJoints(const std::vector<int>& joints, std::size_t joint_count);
   int AddWholeWeights(std::size_t vertices);
+  // Assigns several joints to each vertex, with weights that sum to 1.
+  int AddVertexJoints(const std::vector<std::array<int, 4>>& joints);
+  int AddVertexWeights(const std::vector<std::array<float, 4>>& weights);
 
   // Formats the file: binary, or text that embeds the buffer.
   std::string Binary();

@@ -200,7 +200,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRecipe{"filter { retries_per_item: 101 }", "retries_per_item: expected", ", got 101"},
         BadRecipe{"filter { classifier { min_probability: 0.5 } }", "classifier.model: expected",
                   ", got none"},
-        BadRecipe{"input { format: 'fbx' }", "input.format: expected amc, bvh", ", got \"fbx\""},
+        BadRecipe{"input { format: 'obj' }", "input.format: expected amc, bvh", ", got \"obj\""},
         BadRecipe{"input { format: 'usda' }", "input.format: expected amc, bvh", ", got \"usda\""},
         BadRecipe{"input { unit: 'feet' }", "input.unit: expected", ", got \"feet\""},
         BadRecipe{"input { frame_rate_hz: 0 }", "input.frame_rate_hz: expected", ", got 0"},

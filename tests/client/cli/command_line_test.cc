@@ -259,9 +259,10 @@ TEST_F(CommandLineTest, InvalidValueIsNamed) {
 }
 
 TEST_F(CommandLineTest, RigRequiresAnOutputFormatWithARig) {
-  ExpectRefused({"--label", "kick", "--out", Out("pair.bvh"), "--follower-rig", "rig.csv"},
-                "--follower-rig: expected a .bvh, .amc, .glb or .gltf and --out FILE with .bvh, "
-                ".glb or .gltf, got rig.csv");
+  ExpectRefused(
+      {"--label", "kick", "--out", Out("pair.bvh"), "--follower-rig", "rig.csv"},
+      "--follower-rig: expected a .bvh, .amc, .fbx, .glb or .gltf and --out FILE with .bvh, "
+      ".glb or .gltf, got rig.csv");
   ExpectRefused({"--label", "kick", "--out", Out("pair.csv"), "--follower-rig", "rig.bvh"},
                 "got rig.bvh and --out");
 }

@@ -64,15 +64,15 @@ TEST(Help, ListsReadableAndWritableFormats) {
       if (!extension.empty()) told[std::string(extension)] = {read, written};
     }
   }
-  for (const char* extension :
-       {".gltf", ".glb", ".usda", ".bvh", ".amc", ".csv", ".json", ".npy", ".npz", ".txt"}) {
+  for (const char* extension : {".gltf", ".glb", ".usda", ".fbx", ".bvh", ".amc", ".csv", ".json",
+                                ".npy", ".npz", ".txt"}) {
     ASSERT_TRUE(told.count(extension)) << extension;
     const std::string file = absl::StrCat("a", extension);
     EXPECT_EQ(told[extension].first, formats::IsReadable(std::filesystem::path(file))) << extension;
     EXPECT_EQ(told[extension].second, formats::IsWritable(std::filesystem::path(file)))
         << extension;
   }
-  EXPECT_EQ(told.size(), 10u);
+  EXPECT_EQ(told.size(), 11u);
 }
 
 TEST(Help, SuggestsTheNearestTopic) {

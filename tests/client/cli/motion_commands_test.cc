@@ -351,7 +351,7 @@ TEST_F(MotionCommandsTest, InvalidUseOfARigIsReported) {
   fails({"--rig", rig, "--side", "left", "--out", Path("a.csv")}, 2,
         "--out: expected .bvh, .glb or .gltf with --rig");
   fails({"--rig", Path("one.csv"), "--side", "left", "--out", Path("a.bvh")}, 2,
-        "--rig: expected a .bvh, .amc, .glb or .gltf");
+        "--rig: expected a .bvh, .amc, .fbx, .glb or .gltf");
   fails({"--rig-joint-map", "head=Top", "--side", "left", "--out", Path("a.bvh")}, 2, "--rig");
   fails({"--rig", Path("absent.bvh"), "--side", "left", "--out", Path("a.bvh")}, 42, "absent.bvh");
   fails({"--rig", rig, "--rig-joint-map", "head=Nobody", "--side", "left", "--out", Path("a.bvh")},

@@ -158,7 +158,27 @@ TEST(GltfImport, UsesTheFirstOfSeveralAnimationsWithANote) {
   GltfImportOptions options;
   options.notes = &notes;
   ASSERT_TRUE(Read(builder.Binary(), options).ok());
-  EXPECT_THAT(notes, Contains("animation: \"walk\", the first of 2 that move the skeleton"));
+  EXPECT_THAT(notes,
+              Contains(HasSubstr("animation: \"walk\", the first of 2 that move the skeleton")));
+}
+
+TEST(GltfImport, AnAnimationIsChosenByItsName) {
+  GltfBuilder builder;
+  AddPerson(MakePerson(), {}, &builder);
+  nlohmann::json other = builder.json()["animations"][0];
+  other["name"] = "Rig|run";
+  builder.json()["animations"].push_back(other);
+  std::vector<std::string> notes;
+  GltfImportOptions options;
+  options.notes = &notes;
+  for (const char* name : {"walk", "Rig|run", "run"}) {
+    options.animation = name;
+    EXPECT_TRUE(Read(builder.Binary(), options).ok()) << name;
+  }
+  EXPECT_THAT(notes, Not(Contains(HasSubstr("animation: "))));
+  options.animation = "ru\n";
+  EXPECT_THAT(ReadError(builder.Binary(), options),
+              HasSubstr("animation: expected \"walk\", \"Rig|run\", got \"ru\\n\""));
 }
 
 TEST(GltfImport, SamplesAtTheKeysRateOrTheSpecifiedOne) {

@@ -1,0 +1,140 @@
+#include "model/formats/fbx/program/node_tree.h"
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "model/motion/motion_limits.h"
+
+namespace duet::formats::fbx::program {
+namespace {
+
+using retargeting::Affine;
+using retargeting::Vec3d;
+
+// Nodes that assimp adds for pivots.
+constexpr char kPivot[] = "_$AssimpFbx$_";
+constexpr std::size_t kMostNodes = 4 * motion::kMaxFileJoints;  // cameras, lights and meshes too
+
+Vec3d ToVector(ai_real x, ai_real y, ai_real z) {
+  return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+}
+
+std::size_t Index(int node) { return static_cast<std::size_t>(node); }
+
+// The local transform that the file was saved with.
+Affine SavedPose(const Node& node, const Affine& root) {
+  Affine local = node.parent < 0 ? root : Affine{};
+  for (const aiNode* link : node.chain) local = local * ToAffine(link->mTransformation);
+  return local;
+}
+
+std::vector<Affine> WorldOf(const NodeTree& tree) {
+  std::vector<Affine> world;
+  for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+    const int parent = tree.nodes[n].parent;
+    world.push_back(parent < 0 ? tree.rest[n] : world[Index(parent)] * tree.rest[n]);
+  }
+  return world;
+}
+
+// The node that holds each mesh, -1 for none. [meshes]
+std::vector<int> HoldersOf(const aiScene& scene, const NodeTree& tree) {
+  std::vector<int> holders(scene.mNumMeshes, -1);
+  for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+    const aiNode& last = *tree.nodes[n].chain.back();
+    for (unsigned i = 0; i < last.mNumMeshes; ++i) {
+      if (last.mMeshes[i] < scene.mNumMeshes) holders[last.mMeshes[i]] = static_cast<int>(n);
+    }
+  }
+  return holders;
+}
+
+// A file is saved in any pose. A skin states where its bones were when it was bound to them.
+void TakeRestOfSkins(const aiScene& scene, NodeTree* tree) {
+  std::vector<Affine> world = WorldOf(*tree);
+  const std::vector<int> holders = HoldersOf(scene, *tree);
+  std::vector<Affine> bound = world;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    if (holders[m] < 0) continue;
+    for (unsigned b = 0; b < scene.mMeshes[m]->mNumBones; ++b) {
+      const aiBone& bone = *scene.mMeshes[m]->mBones[b];
+      const int node = tree->Find(bone.mName.C_Str());
+      if (node < 0 || tree->bound[Index(node)]) continue;
+      const std::optional<Affine> from_joint = Inverse(ToAffine(bone.mOffsetMatrix));
+      if (!from_joint.has_value()) continue;
+      tree->bound[Index(node)] = true;
+      bound[Index(node)] = world[Index(holders[m])] * *from_joint;
+    }
+  }
+  // The others keep their place relative to their parent.
+  for (std::size_t n = 0; n < tree->nodes.size(); ++n) {
+    const int parent = tree->nodes[n].parent;
+    const Affine above = parent < 0 ? Affine{} : world[Index(parent)];
+    if (tree->bound[n]) {
+      if (const std::optional<Affine> below = Inverse(above)) tree->rest[n] = *below * bound[n];
+    }
+    world[n] = above * tree->rest[n];
+  }
+}
+
+// A node that is still to be visited, below `parent` and the pivots `chain`.
+struct Open {
+  const aiNode* node;
+  int parent;
+  std::vector<const aiNode*> chain;
+};
+
+}  // namespace
+
+Affine ToAffine(const aiMatrix4x4& m) {
+  return {ToVector(m.a1, m.b1, m.c1), ToVector(m.a2, m.b2, m.c2), ToVector(m.a3, m.b3, m.c3),
+          ToVector(m.a4, m.b4, m.c4)};
+}
+
+int NodeTree::Find(const std::string& name) const {
+  const auto found = by_name.find(name);
+  return found == by_name.end() ? -1 : found->second;
+}
+
+absl::StatusOr<NodeTree> MakeNodeTree(const aiScene& scene, const Affine& to_world) {
+  NodeTree tree;
+  tree.root = to_world * ToAffine(scene.mRootNode->mTransformation);
+  std::vector<Open> open;
+  const auto push_children = [&open](const aiNode& node, int parent,
+                                     const std::vector<const aiNode*>& chain) {
+    for (unsigned i = node.mNumChildren; i-- > 0;) {
+      open.push_back({node.mChildren[i], parent, chain});
+    }
+  };
+  push_children(*scene.mRootNode, -1, {});
+  while (!open.empty()) {
+    Open next = std::move(open.back());
+    open.pop_back();
+    next.chain.push_back(next.node);
+    const std::string name = next.node->mName.C_Str();
+    if (absl::StrContains(name, kPivot)) {
+      if (next.chain.size() > kMostNodes) break;
+      push_children(*next.node, next.parent, next.chain);
+      continue;
+    }
+    if (tree.nodes.size() == kMostNodes) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("nodes: expected at most ", kMostNodes, ", got more"));
+    }
+    const int index = static_cast<int>(tree.nodes.size());
+    tree.by_name.emplace(name, index);
+    ++tree.counts[name];
+    tree.nodes.push_back({name, next.parent, std::move(next.chain)});
+    push_children(*next.node, index, {});
+  }
+  for (const Node& node : tree.nodes) tree.rest.push_back(SavedPose(node, tree.root));
+  tree.bound.resize(tree.nodes.size());
+  TakeRestOfSkins(scene, &tree);
+  return tree;
+}
+
+}  // namespace duet::formats::fbx::program

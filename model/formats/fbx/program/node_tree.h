@@ -1,0 +1,45 @@
+#ifndef DUET_MODEL_FORMATS_FBX_PROGRAM_NODE_TREE_H_
+#define DUET_MODEL_FORMATS_FBX_PROGRAM_NODE_TREE_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "assimp/scene.h"
+#include "model/retargeting/affine.h"
+
+namespace duet::formats::fbx::program {
+
+retargeting::Affine ToAffine(const aiMatrix4x4& matrix);
+
+// A node of the file. assimp splits the pivots and the parts of its transform into several nodes,
+// which are a chain here.
+struct Node {
+  std::string name;
+  int parent = -1;                   // an earlier node
+  std::vector<const aiNode*> chain;  // from the outermost; their product is the local transform
+};
+
+// The nodes below the scene's root, parents first.
+struct NodeTree {
+  std::vector<Node> nodes;
+  retargeting::Affine root;  // the scene's root, which is the parent of all trees
+
+  // The first node of that name; -1 if there is none.
+  int Find(const std::string& name) const;
+
+  std::map<std::string, int> by_name;
+  std::map<std::string, int> counts;      // nodes of each name
+  std::vector<retargeting::Affine> rest;  // [nodes], local
+  // Nodes whose rest is that of a skin instead of the pose that the file was saved in. [nodes]
+  std::vector<bool> bound;
+};
+
+// `to_world` is applied after the scene's root.
+// Errors: INVALID_ARGUMENT for too many nodes.
+absl::StatusOr<NodeTree> MakeNodeTree(const aiScene& scene, const retargeting::Affine& to_world);
+
+}  // namespace duet::formats::fbx::program
+
+#endif  // DUET_MODEL_FORMATS_FBX_PROGRAM_NODE_TREE_H_

@@ -1,0 +1,255 @@
+// Reads the files of make_files.py, which Blender wrote. Their source is the sample leaders.
+#include "model/formats/fbx/fbx_import.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/base/file.h"
+#include "model/formats/fbx/fbx_program.h"
+#include "model/formats/follower_rig.h"
+#include "model/formats/motion_file.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/test_motion.h"
+
+namespace duet::formats::fbx {
+namespace {
+
+namespace fs = std::filesystem;
+using test::LargestDistance;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+constexpr float kOneMillimetre = 0.001f;
+constexpr int kFirst = 20;  // of the samples' frames, as in make_files.py
+constexpr char kProgramVariable[] = "DUET_FBX_PROGRAM";
+
+std::string Variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+fs::path File(const std::string& name) {
+  return fs::path(Variable("DUET_SOURCE_DIR")) / "tests/formats/fbx/files" / (name + ".fbx");
+}
+
+// A part of a clip, played at another rate.
+motion::Clip Part(const motion::Clip& whole, int frames, double rate_hz) {
+  motion::Clip part;
+  part.joint_names = whole.joint_names;
+  part.frame_rate_hz = rate_hz;
+  part.Append(whole.poses.frames(kFirst, frames));
+  return part;
+}
+
+motion::Clip Sample(const std::string& name, int frames, double rate_hz = 30) {
+  const absl::StatusOr<motion::Clip> whole =
+      ReadLeader(fs::path(Variable("DUET_SOURCE_DIR")) / "samples" / (name + ".bvh"));
+  EXPECT_TRUE(whole.ok()) << whole.status();
+  return whole.ok() ? Part(*whole, frames, rate_hz) : motion::Clip();
+}
+
+class FbxTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const fs::path program = fs::path(Variable("DUET_BIN_DIR")) / "duet-fbx";
+    if (!fs::exists(program)) GTEST_SKIP() << "built without libassimp-dev (DUET_FBX)";
+    setenv(kProgramVariable, program.c_str(), 1);
+  }
+  void TearDown() override { unsetenv(kProgramVariable); }
+
+  const test::TemporaryFolder temporary_;
+};
+
+void ExpectNear(const absl::StatusOr<motion::Clip>& read, const motion::Clip& source) {
+  ASSERT_TRUE(read.ok()) << read.status();
+  ASSERT_EQ(read->frame_count(), source.frame_count());
+  EXPECT_EQ(read->frame_rate_hz, source.frame_rate_hz);
+  EXPECT_LT(LargestDistance(*read, source), kOneMillimetre);
+}
+
+TEST_F(FbxTest, EveryRateUnitAndAxisGivesTheSourcesPositions) {
+  const std::map<std::string, double> files = {
+      {"centimetres_y_up_30", 30}, {"metres_z_up_24", 24}, {"metres_y_up_60", 60}};
+  for (const auto& [name, rate_hz] : files) {
+    SCOPED_TRACE(name);
+    ExpectNear(ReadLeader(File(name)), Sample("kick", 12, rate_hz));
+  }
+}
+
+TEST_F(FbxTest, UnitAxisAndRateAreThoseThatTheFileStates) {
+  retargeting::ReadingReport report;
+  ReadOptions options;
+  options.report = &report;
+  ASSERT_TRUE(ReadLeader(File("metres_z_up_24"), options).ok());
+  EXPECT_EQ(report.format, "FBX");
+  ASSERT_TRUE(report.unit && report.up_axis && report.frame_rate);
+  EXPECT_EQ(report.unit->value, "1 m");
+  EXPECT_EQ(report.unit->why, "UnitScaleFactor 100");
+  EXPECT_EQ(report.up_axis->value, "z-up");
+  EXPECT_EQ(report.frame_rate->value, "24 Hz");
+  for (const auto& setting : {report.unit, report.up_axis, report.frame_rate}) {
+    EXPECT_EQ(setting->origin, retargeting::Origin::kFile);
+  }
+}
+
+TEST_F(FbxTest, OptionsOverrideTheFile) {
+  ReadOptions options;
+  options.metres_per_unit = 0.02;
+  options.frame_rate_hz = 60;
+  const absl::StatusOr<motion::Clip> read = ReadLeader(File("centimetres_y_up_30"), options);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_EQ(read->frame_count(), 23);  // the same time at twice the rate
+  const motion::Clip source = Sample("kick", 12);
+  EXPECT_NEAR(read->at(0, 0).y, 2 * source.at(0, 0).y, kOneMillimetre);
+}
+
+// Mixamo's names: the head is half way to HeadTop_End, as it is half way to a BVH's End Site.
+TEST_F(FbxTest, ARigWithMixamosNamesIsMapped) {
+  const fs::path samples = fs::path(Variable("DUET_SOURCE_DIR")) / "samples";
+  std::string bvh = test::ReadTestFile(samples / "kick.bvh");
+  const std::pair<const char*, const char*> names[] = {
+      {"torso", "Spine1"}, {"neck", "Neck"}, {"head", "Head"}};
+  for (const auto& [joint, name] : names) {
+    for (const char* word : {"ROOT ", "JOINT "}) {
+      bvh = absl::StrReplaceAll(
+          bvh, {{absl::StrCat(word, joint, "\n"), absl::StrCat(word, "mixamorig:", name, "\n")}});
+    }
+  }
+  const std::pair<const char*, const char*> sided[] = {{"shoulder", "Arm"}, {"elbow", "ForeArm"},
+                                                       {"hand", "Hand"},    {"hip", "UpLeg"},
+                                                       {"knee", "Leg"},     {"foot", "Foot"}};
+  for (const auto& [joint, name] : sided) {
+    bvh = absl::StrReplaceAll(
+        bvh,
+        {{absl::StrCat("JOINT left_", joint, "\n"), absl::StrCat("JOINT Left", name, "\n")},
+         {absl::StrCat("JOINT right_", joint, "\n"), absl::StrCat("JOINT Right", name, "\n")}});
+  }
+  const fs::path renamed = temporary_.path() / "renamed.bvh";
+  ASSERT_TRUE(base::WriteFile(renamed, bvh).ok());
+  const absl::StatusOr<motion::Clip> source = ReadLeader(renamed);
+  ASSERT_TRUE(source.ok()) << source.status();
+  ExpectNear(ReadLeader(File("mixamo_skin_30")), Part(*source, 12, 30));
+}
+
+TEST_F(FbxTest, ATakeIsChosenByItsName) {
+  std::vector<std::string> notes;
+  ReadOptions options;
+  options.notes = &notes;
+  ExpectNear(ReadLeader(File("two_takes_30"), options), Sample("kick", 6));
+  EXPECT_THAT(notes, Contains(AllOf(HasSubstr("Rig|kick"), HasSubstr("Rig|punch"))));
+  for (const char* name : {"punch", "Rig|punch"}) {
+    options.animation = name;
+    ExpectNear(ReadLeader(File("two_takes_30"), options), Sample("punch", 6));
+  }
+  options.animation = "walk";
+  const absl::Status status = ReadLeader(File("two_takes_30"), options).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(status.message(),
+              HasSubstr("animation: expected \"Rig|kick\", \"Rig|punch\", got \"walk\""));
+}
+
+TEST_F(FbxTest, FormatsOfOneMotionRejectTheNameOfAnAnimation) {
+  ReadOptions options;
+  options.animation = "walk";
+  const fs::path sample = fs::path(Variable("DUET_SOURCE_DIR")) / "samples/kick.bvh";
+  EXPECT_THAT(ReadLeader(sample, options).status().message(),
+              HasSubstr("animation: expected none"));
+}
+
+TEST_F(FbxTest, BothPeopleAreRead) {
+  ExpectNear(ReadLeader(File("two_people_30")), Sample("kick", 3));
+  retargeting::ReadingReport report;
+  ReadOptions options;
+  options.side = Side::kRight;
+  options.report = &report;
+  ExpectNear(ReadLeader(File("two_people_30"), options), Sample("punch", 3));
+  EXPECT_EQ(report.people, 2);
+}
+
+// assimp would give both people the motion of one.
+TEST_F(FbxTest, PeopleWhoseBonesHaveTheSameNamesAreRejected) {
+  EXPECT_THAT(ReadLeader(File("same_names_30")).status().message(),
+              HasSubstr("expected a name for each animated node, got several named"));
+}
+
+TEST_F(FbxTest, AFollowerOnTheRigKeepsItsSkin) {
+  const motion::Clip follower = test::MakePerson();
+  for (const char* name : {"still_skin", "mixamo_skin_30"}) {
+    SCOPED_TRACE(name);
+    const absl::StatusOr<std::string> glb = FormatOntoRig(follower, {File(name), {}}, Format::kGlb);
+    ASSERT_TRUE(glb.ok()) << glb.status();
+    EXPECT_THAT(*glb, AllOf(HasSubstr("JOINTS_0"), HasSubstr("mixamorig:LeftForeArm")));
+    ReadOptions options;
+    options.format = Format::kGlb;
+    options.metres_per_unit = 1;
+    const absl::StatusOr<motion::Clip> read = ParseLeader(*glb, "rig.glb", options);
+    ASSERT_TRUE(read.ok()) << read.status();
+    ASSERT_EQ(read->frame_count(), follower.frame_count());
+    const int foot = motion::SbuSkeleton().Find("left_foot");
+    for (int frame = 0; frame < follower.frame_count(); ++frame) {
+      EXPECT_LT(Distance(read->at(frame, foot), follower.at(frame, foot)), 0.01f) << frame;
+    }
+  }
+}
+
+TEST_F(FbxTest, ARigIsWrittenAsBvh) {
+  const absl::StatusOr<std::string> bvh =
+      FormatOntoRig(test::MakePerson(), {File("still_skin"), {}}, Format::kBvh);
+  ASSERT_TRUE(bvh.ok()) << bvh.status();
+  EXPECT_THAT(*bvh, HasSubstr("mixamorig:LeftForeArm"));
+}
+
+TEST_F(FbxTest, ARigWithoutAMotionIsNoLeader) {
+  EXPECT_THAT(ReadLeader(File("still_skin")).status().message(),
+              HasSubstr("expected an animation of the skeleton, got none"));
+}
+
+TEST_F(FbxTest, WhatIsNotFbxIsRejected) {
+  for (const std::string& content : {std::string(), std::string("HIERARCHY\nROOT Hips"),
+                                     std::string("Kaydara FBX Binary  \0\x1a\0", 23)}) {
+    EXPECT_EQ(FromFbx(content, "a.fbx").status().code(), absl::StatusCode::kInvalidArgument);
+  }
+}
+
+TEST_F(FbxTest, TruncatedFilesAreRejected) {
+  const std::string whole = test::ReadTestFile(File("still_skin"));
+  for (std::size_t tenth = 1; tenth < 10; ++tenth) {
+    const absl::StatusOr<motion::Clip> read =
+        FromFbx(whole.substr(0, whole.size() * tenth / 10), "a.fbx");
+    EXPECT_EQ(read.status().code(), absl::StatusCode::kInvalidArgument) << tenth;
+    EXPECT_THAT(read.status().message(), HasSubstr("a.fbx: ")) << tenth;
+  }
+}
+
+TEST_F(FbxTest, WithoutTheProgramTheErrorSaysHowToGetIt) {
+  setenv(kProgramVariable, (temporary_.path() / "duet-fbx").c_str(), 1);
+  const absl::Status status = ReadLeader(File("still_skin")).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_THAT(status.message(), AllOf(HasSubstr("libassimp-dev"), HasSubstr(".glb")));
+}
+
+// A crash, and a time limit, end the other process only.
+TEST_F(FbxTest, AReaderThatEndsIsAnErrorOfTheFile) {
+  const std::map<std::string, std::string> ends = {{"SEGV", "assimp fails (signal 11)"},
+                                                   {"XCPU", "takes longer"}};
+  const fs::path program = temporary_.path() / "duet-fbx";
+  setenv(kProgramVariable, program.c_str(), 1);
+  for (const auto& [signal, message] : ends) {
+    ASSERT_TRUE(base::WriteFile(program, absl::StrCat("#!/bin/sh\nkill -", signal, " $$\n")).ok());
+    fs::permissions(program, fs::perms::owner_all);
+    const absl::Status status = ReadLeader(File("still_skin")).status();
+    EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_THAT(status.message(), HasSubstr(message));
+  }
+}
+
+}  // namespace
+}  // namespace duet::formats::fbx
