@@ -117,9 +117,9 @@ class FilesTest(unittest.TestCase):
         with self.assertRaisesRegex(duet.MotionFileError, r"one.npy: frame rate: expected one, got "
                                     r"none in the file\nSpecify it with frame_rate_hz\.$"):
             duet.read_motion(self.folder / "one.npy")
-        (self.folder / "one.fbx").touch()
-        with self.assertRaisesRegex(duet.MotionFileError, r'one.fbx: extension: .*, got "\.fbx"$'):
-            duet.read_motion(self.folder / "one.fbx")
+        (self.folder / "one.obj").touch()
+        with self.assertRaisesRegex(duet.MotionFileError, r'one.obj: extension: .*, got "\.obj"$'):
+            duet.read_motion(self.folder / "one.obj")
         with self.assertRaisesRegex(duet.MotionFileError, "^resample_hz: .* got 2000$"):
             duet.read_motion(HUG, resample_hz=2000)
 
