@@ -64,7 +64,7 @@ make_root() {
 # Brings this commit into the root; with "again", the clone keeps what git ignores: its build folder.
 clone() {
   local root="$1" again="$2" target="$1${source_folder}"
-  if [[ "${again}" == yes && -d "${target}" ]]; then
+  if [[ "${again}" == yes && -d "${target}/.git" ]]; then
     git -C "${target}" fetch --quiet "$(pwd)" HEAD
     git -C "${target}" reset --quiet --hard FETCH_HEAD
     git -C "${target}" clean --quiet -ffd
