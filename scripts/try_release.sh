@@ -4,6 +4,7 @@
 #   scripts/try_release.sh trixie demo          make demo
 #   scripts/try_release.sh trixie test          make test
 #   scripts/try_release.sh trixie image-root    collects the image's root, and runs both programs in it (after demo)
+#   scripts/try_release.sh bookworm packages    installs build/release/packages, runs their demo, and removes them
 #   scripts/try_release.sh noble COMMAND...     any other command, in the clone
 # --again before the release keeps the clone's build folder from an earlier run. KEYRING, a file, replaces the
 # release's archive keys, and MIRROR the address of its archive: by default the one that this machine's
@@ -64,7 +65,7 @@ make_root() {
 # Brings this commit into the root; with "again", the clone keeps what git ignores: its build folder.
 clone() {
   local root="$1" again="$2" target="$1${source_folder}"
-  if [[ "${again}" == yes && -d "${target}" ]]; then
+  if [[ "${again}" == yes && -d "${target}/.git" ]]; then
     git -C "${target}" fetch --quiet "$(pwd)" HEAD
     git -C "${target}" reset --quiet --hard FETCH_HEAD
     git -C "${target}" clean --quiet -ffd
@@ -102,10 +103,29 @@ readonly image_root='
   done
   du -sh /image'
 
+# What a user does with the Debian packages. Fails if removing them leaves a package or a file.
+# shellcheck disable=SC2016  # the inner shell expands these
+readonly packages='
+  set -euo pipefail
+  export DEBIAN_FRONTEND=noninteractive
+  list() { dpkg-query -W -f "\${Package}\n" | sort; }
+  before="$(list)"
+  apt-get -qq install -y --no-install-recommends /packages/*.deb >/dev/null
+  dpkg-query -W -f "\${Package} \${Version}\n" "duet*" libduet-dev
+  scripts/demo.sh /usr/bin
+  duet inspect tests/formats/fbx/files/metres_z_up_24.fbx
+  duet-train --version
+  mapfile -t installed < <(for file in /packages/*.deb; do dpkg-deb -f "${file}" Package; done)
+  apt-get -qq purge -y --autoremove "${installed[@]}" >/dev/null
+  diff <(echo "${before}") <(list) || { echo "removing the packages left or took others" >&2 && exit 1; }
+  left="$(find / -xdev -iname "*duet*" -not -path "/src/*" -not -path "/packages/*" -not -path "/proc/*")"
+  [[ -z "${left}" ]] || { printf "removing the packages left:\n%s\n" "${left}" >&2 && exit 1; }
+  echo "installed, ran and removed: ${installed[*]}"'
+
 main() {
   local again=no release root
   [[ "${1:-}" != --again ]] || { again=yes && shift; }
-  [[ $# -ge 2 ]] || fail "usage: try_release.sh [--again] RELEASE demo|test|image-root|COMMAND..."
+  [[ $# -ge 2 ]] || fail "usage: try_release.sh [--again] RELEASE demo|test|image-root|packages|COMMAND..."
   [[ "$(id -u)" -eq 0 ]] || fail "expected root, which debootstrap and chroot need"
   release="$1" root="${roots}/$1"
   shift
@@ -113,6 +133,11 @@ main() {
   case "$1" in
     demo | test) set -- make "$1" ;;
     image-root) again=yes && set -- bash -c "${image_root}" ;;
+    packages)
+      rm -rf "${root}/packages" && mkdir -p "${root}/packages"
+      cp build/release/packages/*.deb "${root}/packages" || fail "expected packages, got none; run cpack -G DEB"
+      set -- bash -c "${packages}"
+      ;;
   esac
   mkdir -p "${root}${source_folder}"
   [[ -x "${root}/usr/bin/make" && -x "${root}/usr/bin/git" ]] ||

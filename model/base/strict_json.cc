@@ -5,6 +5,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/json_events.h"
 #include "model/base/printable.h"
 #include "model/base/text.h"
 
@@ -18,96 +19,56 @@ using nlohmann::json;
 // Arrays and objects with more items are shown by their size.
 constexpr std::size_t kMostShownItems = 8;
 
-// Checks the text without building a document. The parser's own tree silently keeps the last of two
-// equal keys; another reader that keeps the first would read a different document.
-class StrictnessChecker : public nlohmann::json_sax<json> {
+// Builds the document that ParseStrictJson describes. The parser's own tree silently keeps the last
+// of two equal keys; another reader that keeps the first would read a different document.
+class StrictBuilder final : public nlohmann::json_sax<json> {
  public:
-  StrictnessChecker(int max_depth, std::size_t max_values)
-      : max_depth_(max_depth), max_values_(max_values) {}
-
-  const std::string& problem() const { return problem_; }
-
-  bool null() override { return Count(); }
-  bool boolean(bool) override { return Count(); }
-  bool number_integer(number_integer_t) override { return Count(); }
-  bool number_unsigned(number_unsigned_t) override { return Count(); }
-  bool number_float(number_float_t, const string_t&) override { return Count(); }
-  bool string(string_t&) override { return Count(); }
-  bool binary(binary_t&) override { return Count(); }
-  bool start_object(std::size_t) override { return Open(); }
-  bool start_array(std::size_t) override { return Open(); }
-  bool end_object() override { return Close(); }
-  bool end_array() override { return Close(); }
-
-  bool key(string_t& name) override {
-    if (++key_count_ > kMaxJsonValues) {
-      problem_ = absl::StrCat("fields: expected at most ", kMaxJsonValues, " in one document");
-      return false;
-    }
-    if (keys_.back().insert(name).second) return true;
-    problem_ = absl::StrCat("the field ", Quoted(name), " is repeated");
-    return false;
-  }
-
-  bool parse_error(std::size_t position, const std::string&, const json::exception&) override {
-    problem_ = absl::StrCat("not JSON at byte ", position);
-    return false;
-  }
-
- private:
-  bool Count() {
-    if (++values_ <= max_values_) return true;
-    problem_ = absl::StrCat("values: expected at most ", max_values_, " in one document");
-    return false;
-  }
-  bool Open() {
-    if (!Count()) return false;
-    keys_.emplace_back();
-    if (static_cast<int>(keys_.size()) <= max_depth_) return true;
-    problem_ = absl::StrCat("nested deeper than ", max_depth_, " levels");
-    return false;
-  }
-  bool Close() {
-    keys_.pop_back();
-    return true;
-  }
-
-  int max_depth_;
-  std::size_t max_values_;
-  std::size_t values_ = 0, key_count_ = 0;
-  std::vector<std::set<std::string>> keys_;  // of every open object
-  std::string problem_;
-};
-
-// Also builds the document, without the content of the skipped fields of the root.
-class SkippingBuilder : public StrictnessChecker {
- public:
-  SkippingBuilder(int max_depth, const std::set<std::string>& skipped)
-      : StrictnessChecker(max_depth, std::numeric_limits<std::size_t>::max()), skipped_(skipped) {}
+  // The content of the root's fields `skipped`, which must outlive this object, is not stored.
+  StrictBuilder(int max_depth, std::size_t max_values, const std::set<std::string>& skipped)
+      : max_depth_(max_depth), max_values_(max_values), skipped_(skipped) {}
 
   json Take() { return std::move(root_); }
+  // Empty without an error.
+  const std::string& problem() const { return problem_; }
 
   bool null() override { return Add(nullptr); }
   bool boolean(bool value) override { return Add(value); }
   bool number_integer(number_integer_t value) override { return Add(value); }
   bool number_unsigned(number_unsigned_t value) override { return Add(value); }
   bool number_float(number_float_t value, const string_t&) override { return Add(value); }
-  bool string(string_t& value) override { return Add(value); }
-  bool start_object(std::size_t size) override {
-    return StrictnessChecker::start_object(size) && Open(json::object());
-  }
-  bool start_array(std::size_t size) override {
-    return StrictnessChecker::start_array(size) && Open(json::array());
-  }
-  bool end_object() override { return StrictnessChecker::end_object() && Close(); }
-  bool end_array() override { return StrictnessChecker::end_array() && Close(); }
+  bool string(string_t& value) override { return Add(std::move(value)); }
+  bool binary(binary_t&) override { return Add(nullptr); }  // JSON has none
+  bool start_object(std::size_t) override { return Open(json::object()); }
+  bool start_array(std::size_t) override { return Open(json::array()); }
+  bool end_object() override { return Close(); }
+  bool end_array() override { return Close(); }
+
   bool key(string_t& name) override {
-    if (!StrictnessChecker::key(name)) return false;
-    key_ = name;
+    if (++key_count_ > kMaxJsonValues) {
+      return Fail(absl::StrCat("fields: expected at most ", kMaxJsonValues, " in one document"));
+    }
+    if (!keys_.back().insert(name).second) {
+      return Fail(absl::StrCat("the field ", Quoted(name), " is repeated"));
+    }
+    key_ = std::move(name);
     return true;
   }
 
+  bool parse_error(std::size_t position, const std::string&, const json::exception&) override {
+    return Fail(absl::StrCat("not JSON at byte ", position));
+  }
+
  private:
+  bool Fail(std::string problem) {
+    problem_ = std::move(problem);
+    return false;
+  }
+
+  bool Count() {
+    return ++values_ <= max_values_ ||
+           Fail(absl::StrCat("values: expected at most ", max_values_, " in one document"));
+  }
+
   // Where to store the next value; null within a skipped field.
   json* Place() {
     if (open_.empty()) return &root_;
@@ -120,28 +81,40 @@ class SkippingBuilder : public StrictnessChecker {
 
   template <typename Value>
   bool Add(Value&& value) {
+    if (!Count()) return false;
     if (json* const place = Place(); place != nullptr) *place = std::forward<Value>(value);
     return true;
   }
 
   bool Open(json empty) {
+    if (!Count()) return false;
+    if (static_cast<int>(open_.size()) == max_depth_) {
+      return Fail(absl::StrCat("nested deeper than ", max_depth_, " levels"));
+    }
     json* const place = Place();
     if (place != nullptr) *place = std::move(empty);
     const bool skips = open_.size() == 1 && skipped_.count(key_) > 0;
     open_.push_back(skips ? nullptr : place);
+    keys_.emplace_back();
     return true;
   }
 
   bool Close() {
     open_.pop_back();
+    keys_.pop_back();
     return true;
   }
 
+  const int max_depth_;
+  const std::size_t max_values_;
   const std::set<std::string>& skipped_;
+  std::size_t values_ = 0, key_count_ = 0;
   json root_;
   // Pointers stay valid: a container does not change while an inner one is open.
   std::vector<json*> open_;
+  std::vector<std::set<std::string>> keys_;  // of every open object
   std::string key_;
+  std::string problem_;
 };
 
 }  // namespace
@@ -158,7 +131,8 @@ std::string Shown(const json& value) {
 
 namespace {
 
-absl::Status CheckStrict(std::string_view text, StrictnessChecker* checker) {
+absl::StatusOr<json> Parse(std::string_view text, int max_depth, std::size_t max_values,
+                           const std::set<std::string>& skipped) {
   if (text.empty() || text.front() != '{') {
     return absl::InvalidArgumentError("not a JSON object: expected '{' as the first byte");
   }
@@ -166,10 +140,12 @@ absl::Status CheckStrict(std::string_view text, StrictnessChecker* checker) {
   if (const std::size_t at = text.find('\0'); at != std::string_view::npos) {
     return absl::InvalidArgumentError(absl::StrCat("not JSON: a NUL at byte ", at));
   }
-  if (!json::sax_parse(text.begin(), text.end(), checker)) {
-    return absl::InvalidArgumentError(checker->problem());
-  }
-  return absl::OkStatus();
+  StrictBuilder builder(max_depth, max_values, skipped);
+  if (ReadJsonEvents(text, &builder)) return builder.Take();
+  if (!builder.problem().empty()) return absl::InvalidArgumentError(builder.problem());
+  StrictBuilder again(max_depth, max_values, skipped);  // names the place of an error
+  if (json::sax_parse(text.begin(), text.end(), &again)) return again.Take();
+  return absl::InvalidArgumentError(again.problem());
 }
 
 std::string_view SkipPrelude(absl::string_view text) {
@@ -180,10 +156,7 @@ std::string_view SkipPrelude(absl::string_view text) {
 }  // namespace
 
 absl::StatusOr<json> ParseStrictJson(std::string_view text, int max_depth) {
-  StrictnessChecker checker(max_depth, kMaxJsonValues);
-  const absl::Status strict = CheckStrict(text, &checker);
-  if (!strict.ok()) return strict;
-  return json::parse(text.begin(), text.end(), nullptr, /*allow_exceptions=*/false);
+  return Parse(text, max_depth, kMaxJsonValues, {});
 }
 
 absl::StatusOr<json> ParseHandwrittenJson(absl::string_view text, int max_depth) {
@@ -192,11 +165,7 @@ absl::StatusOr<json> ParseHandwrittenJson(absl::string_view text, int max_depth)
 
 absl::StatusOr<json> ParseHandwrittenJson(absl::string_view text, int max_depth,
                                           const std::set<std::string>& skipped) {
-  const std::string_view document = SkipPrelude(text);
-  SkippingBuilder builder(max_depth, skipped);
-  const absl::Status strict = CheckStrict(document, &builder);
-  if (!strict.ok()) return strict;
-  return builder.Take();
+  return Parse(SkipPrelude(text), max_depth, std::numeric_limits<std::size_t>::max(), skipped);
 }
 
 ObjectReader::ObjectReader(const json& object, std::string path)

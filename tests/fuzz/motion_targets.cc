@@ -13,6 +13,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "model/authoring/keyframes.h"
 #include "model/dataset/layout.h"
@@ -29,6 +30,7 @@
 #include "model/motion/motion_limits.h"
 #include "model/motion/recorded_motion.h"
 #include "model/retargeting/joint_table.h"
+#include "tests/base/json_event_comparison.h"
 #include "tests/fuzz/promises.h"
 #include "tests/support/test_motion.h"
 
@@ -145,6 +147,10 @@ Broken Bvh(absl::string_view input) {
 
 Broken Csv(absl::string_view input) { return ReadMotion(Format::kCsv, input, kFrameRateHz); }
 
+Broken JsonEvents(absl::string_view input) {
+  return base::test::CompareJsonEvents({input.data(), input.size()});
+}
+
 Broken JsonMotion(absl::string_view input) {
   return ReadMotion(Format::kJson, input, kFrameRateHz);
 }
@@ -210,6 +216,10 @@ Broken Fbx(absl::string_view input) {
 #ifdef DUET_FBX_TO_FUZZ
   static const int set = setenv("DUET_FBX_PROGRAM", DUET_FBX_TO_FUZZ, 0);
   if (set != 0 || !std::filesystem::exists(formats::fbx::FbxProgram())) return "no duet-fbx";
+  // assimp may fail by a signal. Statuses other than duet-fbx's own are those of sanitizers.
+  const absl::Status converted = formats::fbx::ConvertFbx(input, kSource).status();
+  if (absl::StrContains(converted.message(), "duet-fbx fails")) return converted.ToString();
+  if (!converted.ok()) return CheckRefusal(converted);
   return ReadMotion(Format::kFbx, input, std::nullopt);
 #else
   static_cast<void>(input);

@@ -11,6 +11,7 @@ Broken Bvh(absl::string_view input);
 Broken Csv(absl::string_view input);
 Broken Fbx(absl::string_view input);
 Broken Gltf(absl::string_view input);
+Broken JsonEvents(absl::string_view input);  // base::ReadJsonEvents beside nlohmann::json
 Broken JsonMotion(absl::string_view input);
 Broken Npy(absl::string_view input);
 Broken ResearchNpy(absl::string_view input);  // a byte that chooses the layout, then the array

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/json_events.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
 #include "model/motion/motion_limits.h"
@@ -326,8 +327,10 @@ std::string FormatSettings(const motion::Clip& clip, const motion::Skeleton& ske
 void ReadPeople(absl::string_view text, base::ObjectReader* reader,
                 std::vector<motion::Clip>* people) {
   const std::vector<motion::Clip> empty = *people;
+  if (!reader->ok()) return;
   PositionReader positions(people);
-  if (!reader->ok() || Json::sax_parse(text.begin(), text.end(), &positions)) return;
+  const absl::string_view document = base::SkipByteOrderMark(text);
+  if (base::ReadJsonEvents({document.data(), document.size()}, &positions)) return;
   *people = empty;
   const Json rest = Json::parse(text.begin(), text.end(), FrameReader(reader, people), false);
   if (rest.is_discarded()) reader->Fail("frames", "expected JSON");

@@ -1,4 +1,5 @@
-// Reads the files of make_files.py, which Blender wrote. Their source is the sample leaders.
+// Reads the files of make_files.py, which Blender wrote, and of make_text_file.py, which assimp
+// wrote. Their source is the sample leaders.
 #include "model/formats/fbx/fbx_import.h"
 
 #include <cstdlib>
@@ -97,6 +98,71 @@ TEST_F(FbxTest, UnitAxisAndRateAreThoseThatTheFileStates) {
   EXPECT_EQ(report.frame_rate->value, "24 Hz");
   for (const auto& setting : {report.unit, report.up_axis, report.frame_rate}) {
     EXPECT_EQ(setting->origin, retargeting::Origin::kFile);
+  }
+}
+
+// text_z_up_24 with other statements.
+std::string TextFile(const std::vector<std::pair<std::string, std::string>>& replacements) {
+  const std::string text = test::ReadTestFile(File("text_z_up_24"));
+  for (const auto& [old, unused] : replacements) EXPECT_THAT(text, HasSubstr(old));
+  return absl::StrReplaceAll(text, replacements);
+}
+
+TEST_F(FbxTest, ATextOfEachVersionGivesTheSourcesPositions) {
+  ExpectNear(ReadLeader(File("text_z_up_24")), Sample("kick", 12, 24));
+  for (const char* version : {"7100", "7200", "7300", "7400", "7500", "7700"}) {
+    SCOPED_TRACE(version);
+    const std::string text =
+        TextFile({{"FBXVersion: 7500", absl::StrCat("FBXVersion: ", version)}});
+    ExpectNear(FromFbx(text, "a.fbx"), Sample("kick", 12, 24));
+  }
+  EXPECT_THAT(
+      FromFbx(TextFile({{"FBXVersion: 7500", "FBXVersion: 6100"}}), "a.fbx").status().message(),
+      HasSubstr("expected FBX 7.1 or later"));
+}
+
+absl::StatusOr<motion::Clip> ReadWithUnit(const std::string& centimetres) {
+  const std::string before = "\"UnitScaleFactor\", \"double\", \"Number\", \"\", ";
+  return FromFbx(
+      TextFile({{absl::StrCat(before, "100\n"), absl::StrCat(before, centimetres, "\n")}}),
+      "a.fbx");
+}
+
+TEST_F(FbxTest, ATextOfEachUnitIsScaled) {
+  const motion::Clip source = Sample("kick", 12, 24);
+  for (const char* centimetres : {"91.44", "120"}) {  // yards; any other
+    SCOPED_TRACE(centimetres);
+    const absl::StatusOr<motion::Clip> read = ReadWithUnit(centimetres);
+    ASSERT_TRUE(read.ok()) << read.status();
+    EXPECT_NEAR(read->at(3, 0).y, source.at(3, 0).y * std::stof(centimetres) / 100, 1e-5f);
+  }
+}
+
+// Many programs state a unit that is not the file's.
+TEST_F(FbxTest, AUnitThatNobodysSizeFitsIsInferred) {
+  for (const char* centimetres : {"0.1", "2.54", "30.48"}) {
+    SCOPED_TRACE(centimetres);
+    ExpectNear(ReadWithUnit(centimetres), Sample("kick", 12, 24));
+  }
+}
+
+TEST_F(FbxTest, ATextOfEachAxisIsTurned) {
+  const motion::Clip source = Sample("kick", 12, 24);
+  const std::string up = "\"UpAxis\", \"int\", \"Integer\", \"\", 2";
+  const std::string sign = "\"UpAxisSign\", \"int\", \"Integer\", \"\", 1";
+  // The same numbers with another axis up: (x, y, z) in a file with z up is (x, z, -y) in Duet.
+  const absl::StatusOr<motion::Clip> y_up =
+      FromFbx(TextFile({{up, "\"UpAxis\", \"int\", \"Integer\", \"\", 1"}}), "a.fbx");
+  const absl::StatusOr<motion::Clip> y_down =
+      FromFbx(TextFile({{up, "\"UpAxis\", \"int\", \"Integer\", \"\", 1"},
+                        {sign, "\"UpAxisSign\", \"int\", \"Integer\", \"\", -1"}}),
+              "a.fbx");
+  ASSERT_TRUE(y_up.ok()) << y_up.status();
+  ASSERT_TRUE(y_down.ok()) << y_down.status();
+  for (int joint = 0; joint < source.joint_count(); ++joint) {
+    const motion::Vec3 p = source.at(5, joint);
+    EXPECT_LT(Distance(y_up->at(5, joint), {p.x, -p.z, p.y}), kOneMillimetre);
+    EXPECT_LT(Distance(y_down->at(5, joint), {p.x, p.z, -p.y}), kOneMillimetre);
   }
 }
 

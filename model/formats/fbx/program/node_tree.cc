@@ -7,6 +7,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "assimp/version.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::fbx::program {
@@ -53,21 +54,41 @@ std::vector<int> HoldersOf(const aiScene& scene, const NodeTree& tree) {
   return holders;
 }
 
+// assimp 5.4 states where a bone was bound relative to the node above the mesh, of which it takes
+// the local transform for that in the world.
+bool StatesBonesRelativeToParent() {
+  return aiGetVersionMajor() > 5 || (aiGetVersionMajor() == 5 && aiGetVersionMinor() >= 4);
+}
+
+// From a mesh, which `holder` holds at `place` in the file's world, to the joint of its bone.
+Affine ToJoint(const aiBone& bone, const Node& holder, const Affine& place) {
+  const Affine offset = ToAffine(bone.mOffsetMatrix);
+  if (!StatesBonesRelativeToParent()) return offset;
+  // The scene's root had no transform when assimp computed the offset.
+  const aiNode& above = *holder.chain.front()->mParent;
+  const Affine local = above.mParent == nullptr ? Affine{} : ToAffine(above.mTransformation);
+  return offset * Inverse(local).value_or(Affine{}) * place;
+}
+
 // A file is saved in any pose. A skin states where its bones were when it was bound to them.
 void TakeRestOfSkins(const aiScene& scene, NodeTree* tree) {
   std::vector<Affine> world = WorldOf(*tree);
   const std::vector<int> holders = HoldersOf(scene, *tree);
+  const Affine to_file = Inverse(tree->root).value_or(Affine{});
   std::vector<Affine> bound = world;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     if (holders[m] < 0) continue;
+    const std::size_t holder = Index(holders[m]);
     for (unsigned b = 0; b < scene.mMeshes[m]->mNumBones; ++b) {
       const aiBone& bone = *scene.mMeshes[m]->mBones[b];
+      const Affine to_joint = ToJoint(bone, tree->nodes[holder], to_file * world[holder]);
+      tree->to_joint[&bone] = to_joint;
       const int node = tree->Find(bone.mName.C_Str());
       if (node < 0 || tree->bound[Index(node)]) continue;
-      const std::optional<Affine> from_joint = Inverse(ToAffine(bone.mOffsetMatrix));
+      const std::optional<Affine> from_joint = Inverse(to_joint);
       if (!from_joint.has_value()) continue;
       tree->bound[Index(node)] = true;
-      bound[Index(node)] = world[Index(holders[m])] * *from_joint;
+      bound[Index(node)] = world[holder] * *from_joint;
     }
   }
   // The others keep their place relative to their parent.
@@ -102,7 +123,9 @@ int NodeTree::Find(const std::string& name) const {
 
 absl::StatusOr<NodeTree> MakeNodeTree(const aiScene& scene, const Affine& to_world) {
   NodeTree tree;
-  tree.root = to_world * ToAffine(scene.mRootNode->mTransformation);
+  // FBX has no transform above its nodes. assimp 5.4 puts the stated axes and unit there, which the
+  // program passes on as statements instead.
+  tree.root = to_world;
   std::vector<Open> open;
   const auto push_children = [&open](const aiNode& node, int parent,
                                      const std::vector<const aiNode*>& chain) {

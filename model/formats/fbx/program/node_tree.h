@@ -34,6 +34,8 @@ struct NodeTree {
   std::vector<retargeting::Affine> rest;  // [nodes], local
   // Nodes whose rest is that of a skin instead of the pose that the file was saved in. [nodes]
   std::vector<bool> bound;
+  // From the vertices of a mesh to a bone's joint, when they were bound.
+  std::map<const aiBone*, retargeting::Affine> to_joint;
 };
 
 // `to_world` is applied after the scene's root.

@@ -50,8 +50,9 @@ Joints JointsOf(const aiMesh& mesh, const NodeTree& tree, const std::set<int>& a
   for (unsigned b = 0; b < mesh.mNumBones; ++b) {
     const int node = tree.Find(mesh.mBones[b]->mName.C_Str());
     if (node < 0 || joints.PlaceOf(node) >= 0) continue;
+    const auto bound = tree.to_joint.find(mesh.mBones[b]);
     joints.nodes.push_back(node);
-    joints.to_joint.push_back(ToAffine(mesh.mBones[b]->mOffsetMatrix));
+    joints.to_joint.push_back(bound == tree.to_joint.end() ? Affine{} : bound->second);
   }
   if (joints.nodes.empty()) return joints;
   int highest = -1;
