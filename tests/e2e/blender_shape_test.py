@@ -59,6 +59,24 @@ class BlenderShapeTest(unittest.TestCase):
             self.assert_near(shown["hand"], shown["expected"], 1e-3)
         self.assertIn(f"(seed {self.state['seed_of_take']})", self.state["take"])
 
+    def test_panel_lists_the_answers(self):
+        panel = self.state["panel"]
+        for seed, grade in zip(self.state["seeds"], self.state["grades"]):
+            self.assertIn(f"Seed {seed}, {grade}", panel)
+        self.assertLessEqual({"leader", "place", "weight", "duet.key_labels", "duet.react",
+                              "duet.show_eight"}, set(panel))
+
+    def test_panels_show_pins_and_settings(self):
+        panel = self.state["pin_panel"]
+        self.assertEqual([what for what in panel if what in ("joint", "thing", "bone", "softness")],
+                         ["joint", "thing", "softness", "joint", "thing", "bone", "softness"])
+        self.assertIn("2 key frames, 25 to 45", panel)
+        self.assertIn("1 key frame, 50", panel)
+        armature, reading, server = self.state["other_panels"]
+        self.assertEqual(armature, ["target", "duet.follow", "duet.bake"])
+        self.assertIn("bone", reading)
+        self.assertEqual(server, ["server", "program", "model"])
+
     def test_missing_answers_are_reported(self):
         self.assertIn("expected one of 8, got 8", self.state["no_such_answer"])
         self.assertIn("Press React again", self.state["gone"])

@@ -95,11 +95,11 @@ def show(scene, index):
         raise DuetError("The answers of an earlier session are gone. Press React again.")
     with tempfile.TemporaryDirectory() as work:
         file = os.path.join(work, "follower.glb")
-        flags = ["--skeleton", answer.file]
+        flags = ["--skeleton", answer.file]  # of any model; rigs take the 15 joints of sbu
         if duet.body == "LEADER":
             rig = os.path.join(work, "rig.glb")
             partner.export_rig(scene, duet.leader, leader.metres_per_unit(scene), rig)
-            flags = ["--rig", rig, *leader.joint_flags(duet, "--rig-joint-map"), *flags]
+            flags = ["--rig", rig, *leader.joint_flags(duet, "--rig-joint-map")]
         yield from program.run(duet, "convert", answer.file, "--side", "right", *flags, "--out", file,
                                "--quiet")
         partner.remove_last(scene)

@@ -66,9 +66,11 @@ class VIEW3D_PT_duet_pins(bpy.types.Panel):
             if pin.thing and pin.thing.type == "ARMATURE":
                 box.prop_search(pin, "bone", pin.thing.data, "bones")
             if pin.thing:
-                frames = pins.frames_of(pin)
-                if frames == [pin.frame]:
+                frames = pins.keyed_frames_of(pin)
+                if not frames:
                     box.prop(pin, "frame")
+                elif len(frames) == 1:
+                    box.label(text=f"1 key frame, {frames[0]}")
                 else:
                     box.label(text=f"{len(frames)} key frames, {frames[0]} to {frames[-1]}")
             box.prop(pin, "softness", slider=True)

@@ -31,14 +31,12 @@ class DuetPin(bpy.types.PropertyGroup):
                     "Can be animated")
 
 
-def frames_of(pin):
-    """The frames of a pin: those of its object's key frames, or its own."""
-    if pin.thing.type == "ARMATURE":
-        path = f'pose.bones["{bpy.utils.escape_identifier(pin.bone)}"]'
-        keyed = keyed_frames(pin.thing, lambda data_path: data_path.startswith(path))
-    else:
-        keyed = keyed_frames(pin.thing, lambda data_path: data_path in _PLACES)
-    return keyed or [pin.frame]
+def keyed_frames_of(pin):
+    """The frames of the key frames of a pin's object or bone, sorted."""
+    if pin.thing.type != "ARMATURE":
+        return keyed_frames(pin.thing, lambda data_path: data_path in _PLACES)
+    path = f'pose.bones["{bpy.utils.escape_identifier(pin.bone)}"]'
+    return keyed_frames(pin.thing, lambda data_path: data_path.startswith(path))
 
 
 class Sampler:
@@ -55,7 +53,7 @@ class Sampler:
         if pin.thing.type == "ARMATURE" and pin.bone not in pin.thing.pose.bones:
             raise DuetError(f"The pin of {pin.joint} needs a bone of {pin.thing.name}. Choose one.")
         first, last = self.scene.frame_start, self.scene.frame_end
-        frames = {frame for frame in frames_of(pin) if first <= frame <= last}
+        frames = {frame for frame in keyed_frames_of(pin) or [pin.frame] if first <= frame <= last}
         if not frames:
             raise DuetError(f"The pin of {pin.joint} ({pin.thing.name}) has no key frame from frame "
                             f"{first} to {last}.")

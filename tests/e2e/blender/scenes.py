@@ -1,6 +1,7 @@
 """Scenes of the tests that Blender runs."""
 
 import sys
+import types
 
 import bpy
 import numpy
@@ -58,3 +59,41 @@ def add_character(scene, name, size=1.0, prefix=""):
             add(*bone, side=side)
     bpy.ops.object.mode_set(mode="OBJECT")
     return armature
+
+
+class Layout:
+    """Draws a panel without a window: checks what Blender would show, and lists it."""
+
+    def __init__(self):
+        self.shown = []
+
+    def __getattr__(self, name):
+        if name.startswith("use_property_"):
+            raise AttributeError(name)
+        known = bpy.types.UILayout.bl_rna.functions[name].parameters.keys()
+
+        def draw(*arguments, **options):
+            unknown = set(options) - set(known)
+            assert not unknown, f"{name}: {unknown}"
+            return self.draw(name, arguments, options)
+        return draw
+
+    def draw(self, name, arguments, options):
+        if name == "operator":
+            module, function = arguments[0].split(".")
+            getattr(getattr(bpy.ops, module), function).get_rna_type()  # fails if there is none
+        elif name in ("prop", "prop_search"):
+            things = arguments if name == "prop_search" else arguments[:2]
+            for thing, attribute in zip(things[::2], things[1::2]):
+                getattr(thing, attribute)
+        if name in ("operator", "prop", "prop_search", "label"):
+            self.shown.append(arguments[1] if name.startswith("prop") else
+                              options.get("text") or arguments[0])
+        return types.SimpleNamespace() if name == "operator" else self
+
+
+def drawn(panel):
+    """What a panel shows now."""
+    layout = Layout()
+    panel.draw(types.SimpleNamespace(layout=layout), bpy.context)
+    return layout.shown

@@ -24,6 +24,7 @@ state = {}
 scene, leader = scenes.open_leader(leader_file, addon_folder, (FIRST, LAST), 30)
 import duet_blender  # noqa: E402
 import duet_blender.leader  # noqa: E402
+import duet_blender.panel  # noqa: E402
 import duet_blender.partner  # noqa: E402
 import duet_blender.pins  # noqa: E402
 
@@ -73,6 +74,7 @@ for index in (0, 3):
         "followers": sum(thing.type == "ARMATURE" for thing in scene.objects),
         "hand": place(follower(), "left_hand", 40),
         "expected": answered(settings.answers[index], "left_hand", 40)})
+state["panel"] = scenes.drawn(duet_blender.panel.VIEW3D_PT_duet)
 state["no_such_answer"] = attempt(bpy.ops.duet.choose, index=8)
 state["seed_of_take"] = settings.answers[3].seed
 bpy.ops.duet.keep()
@@ -138,6 +140,8 @@ state["keyed"] = {}
 for frame in (25, 45):
     scene.frame_set(frame)
     state["keyed"][frame] = [value / METRE for value in hand.thing.matrix_world.translation]
+state["pin_panel"] = scenes.drawn(duet_blender.panel.VIEW3D_PT_duet_pins)
+state["other_panels"] = [scenes.drawn(panel) for panel in duet_blender.panel._PANELS[2:]]
 assert bpy.ops.duet.react() == {"FINISHED"}
 state["told"] = settings.answers[0].pins
 state["hands"] = {frame: place(follower(), "right_hand", frame) for frame in (25, 45)}
