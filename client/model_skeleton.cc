@@ -18,14 +18,18 @@ std::optional<motion::JointPair> FindPair(const motion::Skeleton& skeleton, cons
 
 }  // namespace
 
+void FindLandmarks(motion::Skeleton* skeleton) {
+  skeleton->hips = FindPair(*skeleton, "left_hip", "right_hip");
+  skeleton->feet = FindPair(*skeleton, "left_foot", "right_foot");
+  if (!skeleton->feet) skeleton->feet = FindPair(*skeleton, "left_ankle", "right_ankle");
+}
+
 absl::StatusOr<motion::Skeleton> ToSkeleton(const ModelInfo& model) {
   motion::Skeleton skeleton;
   skeleton.joint_names = model.joint_names;
   skeleton.bones = model.bones;
   skeleton.root = skeleton.Find(model.root_joint);
-  skeleton.hips = FindPair(skeleton, "left_hip", "right_hip");
-  skeleton.feet = FindPair(skeleton, "left_foot", "right_foot");
-  if (!skeleton.feet) skeleton.feet = FindPair(skeleton, "left_ankle", "right_ankle");
+  FindLandmarks(&skeleton);
   absl::Status status = Validate(skeleton);
   if (status.ok()) return skeleton;
   return absl::InternalError(absl::StrCat("the server's model ", model.name, "@", model.version,

@@ -73,6 +73,7 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
   request.keyframes = ToFrames(item.keyframes, leader.clip.frame_count());
   request.follower_start = leader.follower_start;
   request.partner_direction = item.leader->partner_direction;
+  request.constraints = item.leader->pins;
   request.up = recipe.input.up;
   request.seed = SeedOf(item, recipe.seed, retry);
   request.variety = recipe.variety;
@@ -102,6 +103,7 @@ RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const Synthesi
     Recognise(*filter.classifier, LargestClass(item), level, &answer.quality);
   }
   answer.unfamiliarity = result.unfamiliarity;
+  answer.pin_metres = result.constraint_metres;
   answer.answers = retry + 1;
   return answer;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/batch/pins.h"
 #include "client/batch/recipe.h"
 #include "model/motion/vec3.h"
 
@@ -26,6 +27,7 @@ struct LeaderEntry {
   std::string follower_start;  // a point or a file; empty: set by the recipe
   std::optional<formats::Side> follower_start_side;
   std::optional<motion::Vec3> partner_direction;
+  Pins pins;
   std::optional<uint64_t> seed;
   std::vector<std::pair<std::string, std::string>> extra;  // other columns, by name
 };

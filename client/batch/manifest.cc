@@ -22,6 +22,7 @@ namespace {
 constexpr int kJsonDepth = 8;
 constexpr size_t kMaxLineBytes = size_t{1} << 20;
 constexpr size_t kShownBytes = 60;  // of a line in a message
+constexpr char kPins[] = "constraints";
 
 // The columns of a JSON or TSV line by name, without empty ones.
 using Columns = std::map<std::string, std::string>;
@@ -37,6 +38,13 @@ std::string CellText(const nlohmann::json& value) {
   return absl::StrJoin(items, ",");
 }
 
+// A list of texts as the text that a TSV cell would hold.
+std::string ListText(const nlohmann::json& list) {
+  std::vector<std::string> items;
+  for (const nlohmann::json& item : list) items.push_back(CellText(item));
+  return absl::StrJoin(items, ";");
+}
+
 absl::StatusOr<Columns> ParseJsonLine(const std::string& line) {
   const absl::StatusOr<nlohmann::json> object = base::ParseStrictJson(line, kJsonDepth);
   if (!object.ok() && line[0] != '{') {
@@ -48,7 +56,9 @@ absl::StatusOr<Columns> ParseJsonLine(const std::string& line) {
   }
   Columns columns;
   for (const auto& [name, value] : object->items()) {
-    if (!value.is_null()) columns[name] = CellText(value);
+    if (value.is_null()) continue;
+    const bool is_pins = name == kPins && value.is_array();
+    columns[name] = is_pins ? ListText(value) : CellText(value);
   }
   return columns;
 }
@@ -106,10 +116,13 @@ absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns
   TakeParsed("side", ParseSide, &columns, &entry.side, &problems);
   TakeParsed("follower_start_side", ParseSide, &columns, &entry.follower_start_side, &problems);
   TakeParsed("partner_direction", ParseDirection, &columns, &entry.partner_direction, &problems);
+  std::optional<Pins> pins;
+  TakeParsed(kPins, ParsePins, &columns, &pins, &problems);
   TakeParsed("seed", ParseSeed, &columns, &entry.seed, &problems);
   absl::Status status = problems.ToStatus();
   if (!status.ok()) return status;
   entry.labels = std::move(labels).value_or(Labels());
+  entry.pins = std::move(pins).value_or(Pins());
   entry.extra.assign(columns.begin(), columns.end());
   return entry;
 }

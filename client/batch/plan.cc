@@ -54,7 +54,10 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
     const motion::Vec3& to = *leader.partner_direction;
     absl::StrAppend(&text, "direction ", to.x, ",", to.y, ",", to.z, "\n");
   }
-  // Added only if it differs from the default, so that items of earlier versions keep their ids.
+  // Added only if they differ from the default, so that items of earlier versions keep their ids.
+  for (const JointConstraint& pin : leader.pins) {
+    absl::StrAppend(&text, "pin ", PinText(pin), "\n");
+  }
   if (recipe.candidates != 1) absl::StrAppend(&text, "candidates ", recipe.candidates, "\n");
   if (recipe.input.up) {
     const motion::Vec3& up = *recipe.input.up;
@@ -261,9 +264,13 @@ std::string Plan::ModelNames() const {
   });
 }
 
-absl::Status Plan::CheckLabels(const LeaderEntry& leader) const {
+absl::Status Plan::CheckForModels(const LeaderEntry& leader) const {
   for (const int index : leader_models_) {
     const ModelInfo& model = models_[static_cast<size_t>(index)];
+    const absl::Status pins = CheckPinJoints(leader.pins, model);
+    if (!pins.ok()) {
+      return absl::InvalidArgumentError(absl::StrCat(PlaceOf(leader), ": ", pins.message()));
+    }
     const auto& known = model.interaction_classes;
     for (const ClassWeight& label : leader.labels) {
       if (std::count(known.begin(), known.end(), label.interaction_class) > 0) continue;
@@ -301,7 +308,7 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
         absl::StrCat(PlaceOf(leader), ": model: expected one of the recipe's (", ModelNames(),
                      "), got ", base::Quoted(leader.model)));
   }
-  absl::Status status = CheckLabels(leader);
+  absl::Status status = CheckForModels(leader);
   if (!status.ok()) return status;
   leader_ = std::make_shared<const LeaderEntry>(std::move(leader));
   side_ = reaction_ = model_ = 0;

@@ -64,7 +64,7 @@ class Plan {
   absl::Status CheckClasses() const;
   absl::Status CheckClassifier(const ModelInfo& model) const;
   std::string ModelNames() const;
-  absl::Status CheckLabels(const LeaderEntry& leader) const;
+  absl::Status CheckForModels(const LeaderEntry& leader) const;
   std::vector<std::string> ClassesOr(const std::vector<std::string>& classes) const;
   void DrawFor(const LeaderEntry& leader);
   absl::Status BeginLeader(LeaderEntry leader);

@@ -82,6 +82,9 @@ ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswe
     const motion::Vec3& to = *item.leader->partner_direction;
     record["partner_direction"] = {Number(to.x), Number(to.y), Number(to.z)};
   }
+  if (!item.leader->pins.empty()) {
+    record["constraints"] = PinsJson(item.leader->pins, answer.pin_metres);
+  }
   record["model"] = answer.model;
   record["seed"] = answer.seed;
   record["variety"] = Number(answer.variety);

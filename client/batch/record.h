@@ -49,6 +49,7 @@ struct RecordedAnswer {
   int skeleton = 0;  // index into dataset.json's
   Quality quality;
   std::optional<double> unfamiliarity;
+  std::vector<float> pin_metres;  // of the leader's pins
   int answers = 1;
 };
 

@@ -34,7 +34,7 @@ std::string DescribeChange(const ordered_json& record, const Item& item,
   }
   if (!changes.empty()) return absl::StrJoin(changes, "; ");
   return "id: expected what the set was begun with, got another seed, follower_start, "
-         "follower_start_side, partner_direction or keyframes";
+         "follower_start_side, partner_direction, constraints or keyframes";
 }
 
 absl::StatusOr<Survey> OpenSurvey(const JobFolder& folder, const JobIdentity& identity) {

@@ -19,6 +19,7 @@
 #include "client/cli/output.h"
 #include "client/cli/report.h"
 #include "client/cli/rig_flags.h"
+#include "client/cli/skeleton_file.h"
 #include "model/base/file.h"
 #include "model/formats/research/body_joints.h"
 #include "model/formats/research/layout.h"
@@ -38,7 +39,8 @@ enum class People { kLeft, kRight, kBoth };
 struct ConvertArguments {
   std::filesystem::path file;
   InputArguments input;
-  std::optional<People> people;  // nullopt: all
+  std::filesystem::path skeleton;  // empty: the 15 joints of sbu
+  std::optional<People> people;    // nullopt: all
   std::optional<double> resample_hz;
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // for standard output
@@ -110,7 +112,9 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   absl::Status status = CheckInput(arguments.file, arguments.input.format);
   if (!status.ok()) return status;
   Conversion conversion;
-  conversion.skeleton = motion::SbuSkeleton();
+  absl::StatusOr<motion::Skeleton> skeleton = SkeletonOf(arguments.skeleton);
+  if (!skeleton.ok()) return skeleton.status();
+  conversion.skeleton = *std::move(skeleton);
   conversion.writing.bvh_metres_per_unit = arguments.bvh.metres_per_unit;
   conversion.writing.bvh_keys_per_frame = arguments.bvh.keys_per_frame;
   conversion.writing.layout = arguments.output_layout;
@@ -365,6 +369,7 @@ void AddFlags(FlagSet* command, ConvertArguments* arguments) {
       "The people to write (default: all)")
       ->Group(kInputGroup);
   AddInputFlags(command, &arguments->input);
+  AddSkeletonFlag(command, &arguments->skeleton);
   command
       ->Add("--out", &arguments->outputs,
             "File to write: .glb, .gltf, .usda, .bvh (a file for each person), .csv, .npy, "

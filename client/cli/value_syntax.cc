@@ -60,35 +60,6 @@ absl::StatusOr<KeyframeArgument> ParseKeyframe(absl::string_view text) {
   return keyframe;
 }
 
-absl::StatusOr<JointConstraint> ParsePin(absl::string_view text) {
-  constexpr char kForm[] =
-      "JOINT@FRAME=X,Y,Z[,SOFTNESS] such as right_hand@40=0.2,1.3,0.5 (metres, y up; softness from "
-      "0 "
-      "to 1)";
-  const std::pair<absl::string_view, absl::string_view> sides =
-      absl::StrSplit(text, absl::MaxSplits('=', 1));
-  const std::pair<std::string, absl::string_view> place =
-      absl::StrSplit(sides.first, absl::MaxSplits('@', 1));
-  std::vector<absl::string_view> numbers = absl::StrSplit(sides.second, ',');
-  JointConstraint pin;
-  pin.joint = place.first;
-  if (numbers.size() == 4) {
-    // Negated, so that NaN is rejected.
-    if (!absl::SimpleAtof(numbers.back(), &pin.softness) ||
-        !(pin.softness >= 0 && pin.softness <= 1)) {
-      return Expected(kForm, text);
-    }
-    numbers.pop_back();
-  }
-  const std::optional<motion::Vec3> position = ParsePoint(absl::StrJoin(numbers, ","));
-  if (pin.joint.empty() || !absl::SimpleAtoi(place.second, &pin.frame) || pin.frame < 0 ||
-      !position || !IsFinite(*position)) {
-    return Expected(kForm, text);
-  }
-  pin.position = *position;
-  return pin;
-}
-
 absl::StatusOr<motion::Beat> ParseBeat(absl::string_view text) {
   const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits(',', 1));
   motion::Beat beat;

@@ -7,6 +7,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "client/batch/level.h"
+#include "client/batch/pins.h"
 #include "client/batch/text_values.h"
 #include "client/cli/synthesize_arguments.h"
 #include "client/request.h"
@@ -22,6 +23,7 @@ namespace duet::client::cli {
 using batch::ParseDirection;
 using batch::ParseLevel;
 using batch::ParseModelChoice;
+using batch::ParsePin;
 using batch::ParsePoint;
 using batch::ParseSeed;
 
@@ -30,10 +32,6 @@ absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);
 
 // "30:kick=1,hug=0": weights at a frame; "8b:kick=1" and "8.5b:kick=1": at a position in beats
 absl::StatusOr<KeyframeArgument> ParseKeyframe(absl::string_view text);
-
-// "right_hand@40=0.2,1.3,0.5", or "right_hand@40=0.2,1.3,0.5,0.3" with a softness: a joint of the
-// model, a frame, and metres, y up
-absl::StatusOr<JointConstraint> ParsePin(absl::string_view text);
 
 // "180", or "180,0.25" with the time of the first beat in seconds, at most one beat before 0
 absl::StatusOr<motion::Beat> ParseBeat(absl::string_view text);

@@ -14,6 +14,7 @@
 #include "client/cli/flags.h"
 #include "client/cli/input_flags.h"
 #include "client/cli/output.h"
+#include "client/cli/skeleton_file.h"
 #include "client/cli/take.h"
 #include "client/cli/take_flags.h"
 #include "client/viewer/gallery.h"
@@ -26,6 +27,7 @@ namespace {
 
 struct ViewArguments {
   TakeArguments takes;
+  std::filesystem::path skeleton;  // empty: the 15 joints of sbu
   std::filesystem::path out;
   std::string title;  // empty: the takes' names
   bool quiet = false;
@@ -108,15 +110,16 @@ absl::Status ViewItem(const ViewArguments& arguments, const ProgramEnvironment& 
 
 absl::Status Run(const ViewArguments& arguments, const ProgramEnvironment& environment) {
   if (IsOfSet(arguments)) return ViewItem(arguments, environment);
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const absl::StatusOr<motion::Skeleton> skeleton = SkeletonOf(arguments.skeleton);
+  if (!skeleton.ok()) return skeleton.status();
   const absl::StatusOr<std::vector<Take>> takes =
-      ReadTakes(arguments.takes, skeleton, environment.in);
+      ReadTakes(arguments.takes, *skeleton, environment.in);
   if (!takes.ok()) return takes.status();
   viewer::GalleryContent content;
   for (const Take& take : *takes) {
     content.motions.push_back({take.name, take.leader, take.follower});
   }
-  content.bones = skeleton.bones;
+  content.bones = skeleton->bones;
   content.title = arguments.title.empty() ? TitleOf(*takes) : arguments.title;
   content.subtitle =
       absl::StrCat(takes->size(), takes->size() == 1 ? " motion" : " motions side by side");
@@ -133,6 +136,7 @@ void AddFlags(FlagSet* command, ViewArguments* arguments) {
       ->Count(1, 12)
       ->Form("[NAME=]FILE");
   AddTakeFlags(command, &arguments->takes);
+  AddSkeletonFlag(command, &arguments->skeleton);
   command->Add("--out", &arguments->out, "Page to write, .html; - for standard output")
       ->Required()
       ->Form("FILE")

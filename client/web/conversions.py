@@ -21,6 +21,9 @@ PROGRAM_BYTES = 2**30
 CHUNK_BYTES = 2**18
 MAX_NAME_BYTES = 150         # without the extension; file systems allow 255
 MAX_SETTINGS_BYTES = 2**16
+MAX_JOINTS = 300
+JOINT = re.compile(r"([^\0-\x1f\x7f:,]{1,64}):([0-9]{0,3})")
+MODEL_FILE = "skeleton of the model"  # no visitor's file has a name with a blank
 FILE_NAME = re.compile(r"[A-Za-z0-9_][\w@.+-]*", re.ASCII)
 VALUE = re.compile(r"[^\0-\x1f\x7f]{1,200}")
 FORMATS = {"glb": "model/gltf-binary", "gltf": "model/gltf+json", "usda": "text/plain",
@@ -77,26 +80,34 @@ class Duet:
         return out.decode()
 
     async def read(self, folder, name, settings):
-        """Reads one person from the file `name`. Returns the path of its "duet-motion" JSON and the
-        program's notes."""
+        """Reads one person from the file `name`, in the joints of the setting `skeleton` if there is
+        one. Returns the path of its "duet-motion" JSON and the program's notes."""
+        skeleton = settings.pop("skeleton", None)
+        if skeleton is not None:
+            (folder / MODEL_FILE).write_text(json.dumps(skeleton_of(skeleton[0])), encoding="utf-8")
         flags = flags_of({"side": "left", **settings}, {"side": "--side", **READING})
+        if skeleton is not None:
+            flags.append(f"--skeleton={MODEL_FILE}")
         told = await self.run(folder, "convert", name, *flags, "--out", "leader.duet.json",
                               "--json")
         return folder / "leader.duet.json", json.loads(told).get("notes", [])
 
-    async def write(self, folder, pair, kind, stem, resample):
-        """Converts a pair in "duet-motion" JSON to another format. Returns the file."""
+    async def write(self, folder, pair, kind, stem, resample, joints):
+        """Converts a pair in "duet-motion" JSON to another format. Returns the file. `joints`: flags
+        of `own_joints`."""
         out = folder / "out"
         out.mkdir()
         if resample:
             rate = flags_of({"resample": resample}, {"resample": "--resample"})
-            await self.run(folder, "convert", pair, *rate, "--out", "resampled.json", "--quiet")
+            await self.run(folder, "convert", pair, *rate, *joints, "--out", "resampled.json",
+                           "--quiet")
             pair = "resampled.json"
         if kind == "html":
-            await self.run(folder, "view", f"{stem}={pair}", "--title", stem, "--out",
+            await self.run(folder, "view", f"{stem}={pair}", "--title", stem, *joints, "--out",
                            f"out/{stem}.html", "--quiet")
         else:
-            await self.run(folder, "convert", pair, "--out", f"out/{stem}.{kind}", "--quiet")
+            await self.run(folder, "convert", pair, *joints, "--out", f"out/{stem}.{kind}",
+                           "--quiet")
         files = sorted(out.iterdir())
         return files[0] if len(files) == 1 else await asyncio.to_thread(packed, files, stem)
 
@@ -129,6 +140,25 @@ def format_of(name):
     if name not in FORMATS:
         raise Refused(400, f"format: expected one of {', '.join(FORMATS)}, got {shown(str(name))}")
     return name
+
+
+def skeleton_of(text):
+    """Converts joints as NAME:PARENT,... to a skeleton for `duet convert --skeleton`. The parent is
+    an index; the root has none."""
+    joints = [JOINT.fullmatch(item) for item in text.split(",")]
+    if len(joints) > MAX_JOINTS or not all(joints):
+        raise Refused(400, f"skeleton: expected at most {MAX_JOINTS} joints as NAME:PARENT,..., got "
+                           f"{shown(text)}")
+    return {"joint_names": [joint[1] for joint in joints],
+            "bones": [[int(joint[2]), child] for child, joint in enumerate(joints) if joint[2]]}
+
+
+def own_joints(skeleton, pair):
+    """Flags for reading a pair with its own joints and bones (skeleton "own"), or with those of sbu
+    ("")."""
+    if skeleton not in ("", "own"):
+        raise Refused(400, f"skeleton: expected own, got {shown(str(skeleton))}")
+    return [f"--skeleton={pair}"] if skeleton else []
 
 
 def flags_of(settings, table):

@@ -82,14 +82,15 @@ class Gateway:
                 f'{{"notes": {json.dumps(notes)}, "motion": '.encode(), b"}")
 
     async def write(self, request):
-        """Converts a pair in "duet-motion" JSON to a file. The query has its name, format and
-        rate."""
+        """Converts a pair in "duet-motion" JSON to a file. The query has its name, format, rate and
+        skeleton."""
         query = request.query
         stem = conversions.file_name(query.get("name", "reaction"))
         kind = conversions.format_of(query.get("format", ""))
         resample = query.get("resample", "")
+        joints = conversions.own_joints(query.get("skeleton", ""), "pair.json")
         async with self._received(request, "pair.json") as folder:
-            file = await self._program.write(folder, "pair.json", kind, stem, resample)
+            file = await self._program.write(folder, "pair.json", kind, stem, resample, joints)
             return await send_download(request, file)
 
     async def write_on_rig(self, request):

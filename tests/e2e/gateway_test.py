@@ -82,8 +82,8 @@ class GatewayTest(unittest.TestCase):
         [answer] = ask_raw((gateway or self.gateway).port, request.encode())
         return answer
 
-    def read(self, gateway=None):
-        status, _, body = self.ask("/read?name=hug.bvh", tools.sample("hug").read_bytes(), gateway)
+    def read(self, gateway=None, query=""):
+        status, _, body = self.ask("/read?name=hug.bvh" + query, tools.sample("hug").read_bytes(), gateway)
         self.assertEqual(status, 200, body)
         return json.loads(body)["motion"]
 
@@ -129,6 +129,10 @@ class GatewayTest(unittest.TestCase):
                 (post(f"/read?name={'x' * 9000}.bvh"), 431, "header: expected "),
                 (post("/read?name=x.bvh&out=y"), 400, "settings: expected "),
                 (post("/read?name=x.bvh&unit=miles", b"x"), 422, "--unit"),
+                (post("/read?name=x.bvh&skeleton=head", b"x"), 400, "skeleton: expected "),
+                (post("/read?name=x.bvh&skeleton=a:,b:9", b"x"), 422,
+                 "skeleton of the model: bones[0]: expected "),
+                (post("/write?format=csv&skeleton=sbu", b"{}"), 400, "skeleton: expected own"),
                 (post("/write?format=exe"), 400, "format: expected "),
                 (post("/write?format=glb&name=../x"), 400, "name: expected "),
                 (post("/write?format=csv", b"[1]"), 422, "pair.json"),
@@ -298,6 +302,22 @@ class GatewayTest(unittest.TestCase):
         _, _, body = self.ask("/write?format=json&name=x&resample=60", pair)
         self.assertEqual(json.loads(body)["frame_rate_hz"], 60)
         self.assertEqual(len(json.loads(body)["leader"]), 2 * len(motion["leader"]) - 1)
+
+    def test_files_are_read_and_written_in_other_joints(self):
+        arm = "left_hand:1,left_elbow:2,left_shoulder:"
+        motion = self.read(query=f"&skeleton={arm}&metres_per_unit=0.01")
+        self.assertEqual(motion["joint_names"], ["left_hand", "left_elbow", "left_shoulder"])
+        self.assertEqual(motion["bones"], [[1, 0], [2, 1]])
+        pair = json.dumps({**motion, "follower": motion["leader"]}).encode()
+        status, _, body = self.ask("/write?format=json&name=x&skeleton=own&resample=60", pair)
+        self.assertEqual(status, 200, body)
+        self.assertEqual(json.loads(body)["joint_names"], motion["joint_names"])
+        for kind in ("glb", "html"):
+            status, _, body = self.ask(f"/write?format={kind}&name=x&skeleton=own", pair)
+            self.assertEqual(status, 200, body)
+        status, _, body = self.ask("/write?format=json&name=x", pair)
+        self.assertEqual(status, 422)
+        self.assertIn("head", message_of(body))
 
     def write_on_rig(self, pair, rig, **settings):
         """The answer to /write_on_rig for two files, (name, bytes)."""

@@ -120,12 +120,24 @@ def place(me):
     me.key("p")
 
 
+def pin_a_hand(me):
+    me.page.evaluate("seekAll(60)")
+    me.page.wait_until("theatre.frame === 60")
+    me.key("j")
+    hand = me.at("[data-joint=right_hand]")
+    me.drag(hand, (hand[0] + 15, hand[1] - 40))
+    me.key("r")
+    me.answered(5)
+    assert me.page.evaluate("state.takes[0].pins.length === 1 && state.takes[0].pins[0].metres < 0.2")
+    me.key("j")
+
+
 def redo_the_end(me):
     me.page.evaluate("seekAll(45)")
     me.page.wait_until("theatre.frame === 45")
     me.key("l")
     me.key("e")
-    me.answered(5)
+    me.answered(6)
     assert me.page.evaluate("state.takes.every((take) => take.kept === 46)")
 
 
@@ -157,6 +169,7 @@ def save_work(me):
 STEPS = (("Open a motion", open_motion), ("Look at it: orbit, play, pause", look),
          ("Get a first reaction", first_reaction), ("Choose among eight answers", choose_take),
          ("Change the reaction over time", change_over_time), ("Place and turn the character", place),
+         ("Put a hand on a spot", pin_a_hand),
          ("Keep the beginning, try other endings", redo_the_end), ("Undo and redo", undo_and_redo),
          ("Put it on a character", on_character), ("Export for an engine", export),
          ("Save the work", save_work))

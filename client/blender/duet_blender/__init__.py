@@ -10,9 +10,9 @@ bl_info = {
     "category": "Animation",
 }
 
-from . import operators, panel, settings  # noqa: E402  (Blender wants bl_info first)
+from . import answers, operators, panel, pins, settings  # noqa: E402  (Blender wants bl_info first)
 
-_MODULES = (settings, operators, panel)
+_MODULES = (pins, answers, settings, operators, panel)
 
 
 def register():

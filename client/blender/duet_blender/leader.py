@@ -1,5 +1,6 @@
 """Records the leader's armature as a motion file."""
 
+from . import pins
 from .program import DuetError
 
 # Maximum error of linear interpolation between label keyframes.
@@ -14,7 +15,7 @@ class Recording:
     there have hands, feet and the top of the head.
     """
 
-    def __init__(self, scene, armature):
+    def __init__(self, scene, armature, with_pins=True):
         self.scene = scene
         self.armature = armature
         self.metres = metres_per_unit(scene)
@@ -23,6 +24,7 @@ class Recording:
             self._add(bone)
         self.frames = []  # [frames][joints][3]
         self.weights = []  # [frames][labels]
+        self.pins = pins.Sampler(scene, self.metres) if with_pins else None
 
     def _add(self, bone):
         parents = {name: index for index, (name, _, _, tail) in enumerate(self.joints) if not tail}
@@ -39,12 +41,14 @@ class Recording:
         try:
             for frame in range(scene.frame_start, scene.frame_end + 1):
                 scene.frame_set(frame)
-                self._take_frame()
+                self.take_frame()
+                self.pins.take(frame)
                 yield
         finally:
             scene.frame_set(before, subframe=subframe)
 
-    def _take_frame(self):
+    def take_frame(self):
+        """Records the current frame."""
         world, pose = self.armature.matrix_world, self.armature.pose.bones
         frame = []
         for _, _, bone, tail in self.joints:

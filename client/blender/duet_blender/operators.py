@@ -1,16 +1,19 @@
 """The operators behind the panel's buttons. They work in small steps on a timer, so that Blender
 stays responsive; without a window (blender --background) the steps run one after another."""
 
-import os
-import tempfile
 import time
 
 import bpy
 
-from . import leader, partner, program, settings
+from . import answers, partner, program, retarget, settings
 
 STEP_SECONDS = 0.02  # maximum work per tick
 TICK_SECONDS = 0.05
+
+
+def _push_undo(message):
+    if not bpy.app.background:
+        bpy.ops.ed.undo_push(message=message)
 
 
 class _Working(bpy.types.Operator):
@@ -74,7 +77,7 @@ class _Working(bpy.types.Operator):
 
 
 class DUET_OT_ask_for_classes(_Working):
-    """Shows a slider for each class of the server's model"""
+    """Reads the server's models, and shows a slider for each class of the chosen one"""
 
     bl_idname = "duet.ask_for_classes"
     bl_label = "Ask the server for classes"
@@ -82,54 +85,101 @@ class DUET_OT_ask_for_classes(_Working):
     def work(self, context):
         duet = context.scene.duet
         duet.state = "Asking the server"
-        settings.set_classes(duet, (yield from program.classes(duet)))
+        settings.set_models(duet, (yield from program.models(duet)))
         duet.state = ""
 
 
-class DUET_OT_react(_Working):
-    """Synthesises a partner who reacts to the leader and replaces the last partner. Esc cancels"""
+class _Asking(_Working):
+    """Base of the operators that request answers and show the best one."""
 
-    bl_idname = "duet.react"
-    bl_label = "React"
+    count = 1
 
     @classmethod
     def poll(cls, context):
         return context.scene.duet.leader is not None and context.mode == "OBJECT"
 
     def work(self, context):
-        scene, duet = context.scene, context.scene.duet
-        program.find(duet.program)
-        with tempfile.TemporaryDirectory() as folder:
-            duet.state = "Reading the leader"
-            recording = leader.Recording(scene, duet.leader)
-            yield from recording.take()
-            motion = os.path.join(folder, "leader.bvh")
-            recording.write(motion)
-            duet.state = "Waiting for the server"
-            follower = yield from self._ask(context, recording, motion, folder)
-            partner.remove_last(scene)
-            partner.add(scene, follower,
-                        scene.unit_settings.scale_length / leader.metres_per_unit(scene))
-        duet.state = f"{partner.NAME}: seed {duet.seed}"
-        if not bpy.app.background:
-            bpy.ops.ed.undo_push(message="React")
+        yield from answers.request(context.scene, self.count)
+        yield from answers.show(context.scene, 0)
+        _push_undo(self.bl_label)
 
-    def _ask(self, context, recording, motion, folder):
-        """A generator that requests the follower and returns its file."""
-        scene, duet = context.scene, context.scene.duet
-        ask = ["synthesize", "--server", duet.server, "--leader", motion, *recording.reading_flags(),
-               *recording.label_flags(), *recording.place_flags(), "--seed", duet.seed,
-               "--variety", f"{duet.variety:.4g}", "--candidates", str(duet.candidates), "--quiet"]
-        if duet.body == "LEADER":
-            rig, pair = os.path.join(folder, "rig.glb"), os.path.join(folder, "pair.glb")
-            partner.export_rig(scene, duet.leader, rig)
-            yield from program.run(duet, *ask, "--out", pair, "--follower-rig", rig,
-                                   *leader.joint_flags(duet, "--follower-rig-joint-map"))
-            return os.path.join(folder, "pair.follower.glb")
-        pair, follower = os.path.join(folder, "pair.json"), os.path.join(folder, "follower.glb")
-        yield from program.run(duet, *ask, "--out", pair)
-        yield from program.run(duet, "convert", pair, "--side", "right", "--out", follower, "--quiet")
-        return follower
+
+class DUET_OT_react(_Asking):
+    """Synthesises a partner who reacts to the leader and replaces the last partner. Esc cancels"""
+
+    bl_idname = "duet.react"
+    bl_label = "React"
+
+
+class DUET_OT_show_eight(_Asking):
+    """Synthesises eight answers with consecutive seeds, and shows the best one. Esc cancels"""
+
+    bl_idname = "duet.show_eight"
+    bl_label = "Show eight"
+    count = answers.GALLERY_SIZE
+
+
+class DUET_OT_choose(_Working):
+    """Shows this answer in place of the last partner"""
+
+    bl_idname = "duet.choose"
+    bl_label = "Choose answer"
+
+    index: bpy.props.IntProperty()
+
+    @classmethod
+    def poll(cls, context):
+        return context.mode == "OBJECT"
+
+    def work(self, context):
+        yield from answers.show(context.scene, self.index)
+        _push_undo(self.bl_label)
+
+
+class DUET_OT_key_labels(bpy.types.Operator):
+    """Sets a key frame for the weight of every class in the current frame"""
+
+    bl_idname = "duet.key_labels"
+    bl_label = "Key all here"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        for label in context.scene.duet.labels:
+            label.keyframe_insert("weight", frame=context.scene.frame_current)
+        return {"FINISHED"}
+
+
+class DUET_OT_follow(_Working):
+    """Lets the chosen armature follow the partner, by constraints that you can change"""
+
+    bl_idname = "duet.follow"
+    bl_label = "Follow the partner"
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.duet.target is not None and context.mode == "OBJECT"
+
+    def work(self, context):
+        duet = context.scene.duet
+        yield from retarget.follow(context.scene, duet.target)
+        duet.state = f"{duet.target.name} follows the partner"
+        _push_undo(self.bl_label)
+
+
+class DUET_OT_bake(bpy.types.Operator):
+    """Turns what the armature follows into an action of its own, and removes the constraints"""
+
+    bl_idname = "duet.bake"
+    bl_label = "Bake"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return retarget.follows(context.scene.duet.target) and context.mode == "OBJECT"
+
+    def execute(self, context):
+        retarget.bake(context, context.scene.duet.target)
+        return {"FINISHED"}
 
 
 class DUET_OT_keep(bpy.types.Operator):
@@ -145,11 +195,13 @@ class DUET_OT_keep(bpy.types.Operator):
 
     def execute(self, context):
         duet = context.scene.duet
-        duet.state = partner.keep(context.scene, f"seed {duet.seed}")
+        seed = duet.answers[duet.chosen].seed if duet.answers else duet.seed
+        duet.state = partner.keep(context.scene, f"seed {seed}")
         return {"FINISHED"}
 
 
-_CLASSES = (DUET_OT_ask_for_classes, DUET_OT_react, DUET_OT_keep)
+_CLASSES = (DUET_OT_ask_for_classes, DUET_OT_react, DUET_OT_show_eight, DUET_OT_choose,
+            DUET_OT_key_labels, DUET_OT_follow, DUET_OT_bake, DUET_OT_keep)
 
 
 def register():

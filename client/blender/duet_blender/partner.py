@@ -5,7 +5,7 @@ import pathlib
 
 import bpy
 
-from .leader import metres_per_unit
+from .actions import curves_of
 from .program import DuetError
 
 NAME = "Duet follower"
@@ -39,6 +39,13 @@ def last(scene):
     return next((thing for thing in scene.objects if _MARK in thing and thing.type == "ARMATURE"), None)
 
 
+def joint_place(scene, joint):
+    """Where a joint of the last answer is in the current frame; None without one."""
+    armature = last(scene)
+    bone = armature and armature.pose.bones.get(joint)
+    return armature.matrix_world @ bone.head if bone else None
+
+
 def keep(scene, title):
     """Turns the last answer into a take, which the next answer does not replace. Returns its
     name."""
@@ -54,8 +61,9 @@ def keep(scene, title):
     return name
 
 
-def export_rig(scene, armature, path):
-    """Writes the armature in its rest pose with its meshes, as binary glTF in metres."""
+def export_rig(scene, armature, metres, path):
+    """Writes the armature in its rest pose with its meshes, as binary glTF in metres. `metres`: the
+    length of its unit."""
     if "gltf" not in dir(bpy.ops.export_scene):
         raise DuetError("Enable the add-on glTF 2.0, which writes the leader's rig.")
     _let_importer_run()
@@ -75,7 +83,7 @@ def export_rig(scene, armature, path):
         for thing in wanted:
             thing.select_set(thing in selected)
         bpy.context.view_layer.objects.active = active
-    _in_metres(path, metres_per_unit(scene))
+    _in_metres(path, metres)
 
 
 def _in_metres(path, metres):
@@ -139,19 +147,11 @@ def _colour(materials):
                 node.inputs["Base Color"].default_value = COLOUR
 
 
-def _curves(action):
-    """All curves of an action. Since Blender 4.4 they are in layers."""
-    if hasattr(action, "fcurves"):
-        return list(action.fcurves)
-    return [curve for layer in action.layers for strip in layer.strips
-            for bag in strip.channelbags for curve in bag.fcurves]
-
-
 def _place_in_time(scene, actions):
     """Moves actions from frame 0, where the importer puts them, to the scene's first frame."""
     for action in actions:
         action.name = NAME
-        for curve in _curves(action):
+        for curve in curves_of(action):
             for key in curve.keyframe_points:
                 key.co.x += scene.frame_start
                 key.handle_left.x += scene.frame_start

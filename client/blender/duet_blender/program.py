@@ -20,8 +20,9 @@ def find(program):
     return found
 
 
-def run(settings, *arguments):
-    """A generator that yields until the program has ended, and returns its output."""
+def run(settings, *arguments, may_fail=False):
+    """A generator that yields until the program has ended, and returns its output. `may_fail`: also
+    if it reports an error."""
     process = subprocess.Popen([find(settings.program), *map(str, arguments)],
                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
@@ -36,7 +37,7 @@ def run(settings, *arguments):
         if process.poll() is None:
             process.kill()
             process.communicate()
-    if process.returncode != 0:
+    if process.returncode != 0 and not may_fail:
         raise DuetError(_in_the_panel(errors.strip())
                         or f"duet exited with code {process.returncode}")
     return output
@@ -50,10 +51,9 @@ def _in_the_panel(message):
     return "\n".join(kept + ["Choose the bones in the panel, under Reading the leader."] * bool(hints))
 
 
-def classes(settings):
-    """The interaction classes of the server's default model. A generator like run()."""
-    models = json.loads((yield from run(settings, "models", "--server", settings.server, "--json")))
-    chosen = [model for model in models["models"] if model["is_default"]] or models["models"]
-    if not chosen:
+def models(settings):
+    """The server's models, as `duet models --json` describes them. A generator like run()."""
+    found = json.loads((yield from run(settings, "models", "--server", settings.server, "--json")))
+    if not found["models"]:
         raise DuetError("The server serves no model.")
-    return chosen[0]["interaction_classes"]
+    return found["models"]

@@ -2,6 +2,8 @@
 
 import bpy
 
+from . import answers, pins
+
 # The classes of the embedded default model, used until the user asks the server.
 CLASSES = ("kick", "push", "shake_hands", "hug", "exchange_object", "punch")
 # The joints of the embedded default model, in the order of the panel.
@@ -27,6 +29,22 @@ class DuetJoint(bpy.types.PropertyGroup):
         description="The bone whose head is this joint. Empty: recognised by the bones' names")
 
 
+class DuetModel(bpy.types.PropertyGroup):
+    """A model of the server; `name` is NAME@VERSION."""
+
+    classes: bpy.props.StringProperty()  # separated by commas
+    joints: bpy.props.StringProperty()
+    is_default: bpy.props.BoolProperty()
+
+
+def _show_model(settings, _context):
+    model = settings.models.get(settings.model) or next(
+        (model for model in settings.models if model.is_default), None)
+    if model:
+        set_classes(settings, model.classes.split(","))
+        set_joints(settings, model.joints.split(","))
+
+
 def _is_armature(_, thing):
     return thing.type == "ARMATURE"
 
@@ -42,7 +60,16 @@ class DuetSettings(bpy.types.PropertyGroup):
     place: bpy.props.PointerProperty(
         name="Place", type=bpy.types.Object, poll=_is_empty,
         description="An empty at the partner's start. Without one, the model chooses")
+    target: bpy.props.PointerProperty(
+        name="Armature", type=bpy.types.Object, poll=_is_armature,
+        description="An armature of your own that follows the partner")
     labels: bpy.props.CollectionProperty(type=DuetLabel)
+    pins: bpy.props.CollectionProperty(type=pins.DuetPin)
+    answers: bpy.props.CollectionProperty(type=answers.DuetAnswer)
+    chosen: bpy.props.IntProperty(options={"SKIP_SAVE"})
+    models: bpy.props.CollectionProperty(type=DuetModel)
+    model: bpy.props.StringProperty(name="Model", update=_show_model,
+                                    description="Empty: the server's default")
     joints: bpy.props.CollectionProperty(type=DuetJoint)
     unit: bpy.props.EnumProperty(
         name="Unit", description="The length of one unit of the leader's armature",
@@ -79,13 +106,38 @@ def set_classes(settings, classes):
         label.weight = weights.get(name, 0)
 
 
+def set_joints(settings, joints):
+    """Sets the joints that bones can be chosen for. Choices of joints in both stay."""
+    if [joint.name for joint in settings.joints] == list(joints):
+        return
+    bones = {joint.name: joint.bone for joint in settings.joints}
+    settings.joints.clear()
+    for name in joints:
+        joint = settings.joints.add()
+        joint.name = name
+        joint.bone = bones.get(name, "")
+
+
+def set_models(settings, models):
+    """Sets the models of `duet models --json`, and shows the chosen one's classes and joints."""
+    settings.models.clear()
+    for model in models:
+        one = settings.models.add()
+        one.name = f"{model['name']}@{model['version']}"
+        one.classes = ",".join(model["interaction_classes"])
+        one.joints = ",".join(model["joint_names"])
+        one.is_default = model["is_default"]
+    if settings.model not in settings.models:
+        settings.model = ""
+    _show_model(settings, None)
+
+
 def fill(scene):
     """Adds the sliders and joints to a scene that has none."""
     if not scene.duet.labels:
         set_classes(scene.duet, CLASSES)
     if not scene.duet.joints:
-        for name in JOINTS:
-            scene.duet.joints.add().name = name
+        set_joints(scene.duet, JOINTS)
 
 
 @bpy.app.handlers.persistent
@@ -97,6 +149,7 @@ def _fill_all(*_):
 def register():
     bpy.utils.register_class(DuetLabel)
     bpy.utils.register_class(DuetJoint)
+    bpy.utils.register_class(DuetModel)
     bpy.utils.register_class(DuetSettings)
     bpy.types.Scene.duet = bpy.props.PointerProperty(type=DuetSettings)
     bpy.app.handlers.load_post.append(_fill_all)
@@ -110,5 +163,6 @@ def unregister():
     bpy.app.handlers.load_post.remove(_fill_all)
     del bpy.types.Scene.duet
     bpy.utils.unregister_class(DuetSettings)
+    bpy.utils.unregister_class(DuetModel)
     bpy.utils.unregister_class(DuetJoint)
     bpy.utils.unregister_class(DuetLabel)

@@ -296,6 +296,15 @@ class DuetMotion extends HTMLElement {
     return point ? [point.x, point.z] : null;
   }
 
+  // The point that is drawn at a pixel of the element, as far from the camera as `place`: [x, y, z].
+  pointAt(x, y, place) {
+    const {camera} = this.stage;
+    camera.updateMatrixWorld();
+    const depth = new THREE.Vector3(...place).project(camera).z;
+    const point = new THREE.Vector3(2 * x / this.clientWidth - 1, 1 - 2 * y / this.clientHeight, depth);
+    return point.unproject(camera).toArray();
+  }
+
   resize() {
     if (!this.stage || !this.clientWidth || !this.stage.resize()) return;
     if (this.view) this.stage.view(this.view);

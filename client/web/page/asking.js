@@ -30,6 +30,7 @@ async function ask(leader, seed, kept, signal, show) {
     model: state.model.name, version: state.model.version, samples: Boolean(state.model.samples),
     kept: kept?.frames ?? 0,
   };
+  const pins = sentPins(settings, state.model.joint_names, take.kept);
   let summary = null;
   for await (const answer of callServer('Synthesize', 'SynthesizeRequest',
                                         requestOf(motion, seed, kept), 'SynthesizeResponse', signal)) {
@@ -44,7 +45,11 @@ async function ask(leader, seed, kept, signal, show) {
     summary = summary || answer.summary;
   }
   if (!summary) throw new CallError('The reply is incomplete. Press React again.');
-  return {...take, unfamiliarity: summary.unfamiliarity ?? 0, grade: summary.grade ?? null};
+  return {
+    ...take, unfamiliarity: summary.unfamiliarity ?? 0, grade: summary.grade ?? null,
+    pins: pins.map(({joint, frame, position}, i) => ({
+      joint, frame, position, metres: summary.constraint_metres[i] ?? 0})),
+  };
 }
 
 function tellWaiting(seeds) {
@@ -108,7 +113,9 @@ async function finish(seconds, seeds) {
       ? ' This leader is unlike the training data. Check the answer before you use it.' : '';
   const {kept} = takes[chosen];
   const stays = kept > 0 ? ` Frames 0 to ${kept - 1} are as before.` : '';
-  tell(`Answered in ${seconds.toFixed(2)} s, ${describeSeeds(seeds, takes[chosen])}.${stays}${far}`);
+  const missed = takes[chosen].pins.filter(({metres}) => metres >= 0.01).length;
+  const pins = missed > 0 ? ` ${missed} of ${takes[chosen].pins.length} pins missed.` : '';
+  tell(`Answered in ${seconds.toFixed(2)} s, ${describeSeeds(seeds, takes[chosen])}.${stays}${pins}${far}`);
   if (takes.length > 1 && !matchMedia('(min-width: 761px)').matches) {
     element('gallery').scrollIntoView({block: 'nearest'});
   }

@@ -11,6 +11,13 @@ async function messageIn(response) {
   }
 }
 
+// The joints of a model in the form of the gateway: NAME:PARENT, the parent as an index; the root has
+// none.
+function skeletonOf(model) {
+  const parents = new Map(model.bones.map((bone) => [bone.child_joint ?? 0, bone.parent_joint ?? 0]));
+  return model.joint_names.map((name, i) => `${encodeURIComponent(name)}:${parents.get(i) ?? ''}`).join();
+}
+
 // Reads a leader with the current settings. Returns {name, file, bytes, motion, notes, reading}.
 async function readLeader(name, bytes) {
   const query = new URLSearchParams({name: safeName(name)});
@@ -18,7 +25,8 @@ async function readLeader(name, bytes) {
     const values = setting === 'joint_map' ? lines(settings.joint_map) : [settings[setting]];
     for (const value of values.filter(Boolean)) query.append(setting, value);
   }
-  const response = await fetch(`/read?${query}`, {method: 'POST', body: bytes});
+  const skeleton = skeletonOf(modelNamed(settings.model));
+  const response = await fetch(`/read?${query}&skeleton=${skeleton}`, {method: 'POST', body: bytes});
   if (!response.ok) throw new CallError(await messageIn(response));
   const {notes, motion} = await response.json();
   return {
@@ -43,12 +51,13 @@ function pairJson() {
   const {motion} = state.leader;
   return JSON.stringify({
     format: 'duet-motion', version: 1, unit: 'metres', up_axis: 'y-up',
-    joint_names: motion.joint_names, frame_rate_hz: motion.frame_rate_hz,
+    joint_names: motion.joint_names, bones: bonesOf(motion), frame_rate_hz: motion.frame_rate_hz,
     leader: nested(motion, motion.positions), follower: nested(motion, take.positions)});
 }
 
 async function download(kind) {
-  const query = new URLSearchParams({format: kind, name: downloadName(state.takes[state.chosen])});
+  const query = new URLSearchParams({
+    format: kind, name: downloadName(state.takes[state.chosen]), skeleton: 'own'});
   if (settings.resample !== '') query.set('resample', settings.resample);
   await save(await fetch(`/write?${query}`, {method: 'POST', body: pairJson()}));
 }

@@ -12,6 +12,7 @@ const PAGE_KEYS = {
   k: () => press('add-key'),
   l: () => press('keep-here'),
   p: () => press('place'),
+  j: () => press('pin'),
   '?': () => element('help').showModal(),
 };
 

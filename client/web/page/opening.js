@@ -8,7 +8,7 @@ async function takeLeader(name, bytes) {
   const {leader: last} = state;
   if (last && (last.name !== name || last.file !== fingerprint(bytes))) {
     // What describes the previous file does not apply to this one.
-    for (const setting of [...READING, 'curves', 'start', 'turn', 'pose', 'keep']) {
+    for (const setting of [...READING, 'curves', 'start', 'turn', 'pose', 'keep', 'pins']) {
       settings[setting] = structuredClone(DEFAULTS[setting]);
     }
     showFields();

@@ -59,6 +59,9 @@ const marker = new StartMarker(element('start-marker'), () => {
   changed('follower\'s start');
 }, () => undoHistory.endGesture());
 
+const pinHandles = new PinHandles(element('pin-handles'), element('pin-list'), (what) => changed(what),
+                                  () => undoHistory.endGesture());
+
 // Records a change of the work, which `what` describes, and updates everything that shows it.
 function changed(what) {
   undoHistory.record(what);
@@ -68,6 +71,7 @@ function changed(what) {
   timeline.draw();
   followFrame();
   marker.draw();
+  pinHandles.draw();
 }
 
 function isStale() {
@@ -82,6 +86,12 @@ function showButtons() {
   element('place').hidden = !state.leader || !state.model.accepts_follower_start;
   const answered = state.takes.length > 0;
   const stale = isStale();
+  element('pin').hidden = element('pins').hidden = !state.leader;
+  element('pin').disabled = element('pin-add').disabled = !answered;
+  if (!answered && pinHandles.isShown) showPins(false);
+  element('pins-hint').textContent = answered
+      ? 'Drag a joint of the follower in the scene: it must be there in this frame.'
+      : 'Press React first, then drag a joint of the follower in the scene.';
   for (const button of element('downloads').children) button.disabled = !answered;
   const rigName = (state.rig ?? state.leader)?.name ?? '';
   element('rig-download').disabled = !answered || !/\.(bvh|glb|gltf)$/i.test(rigName);
@@ -135,6 +145,8 @@ function showModel() {
   state.model = modelNamed(settings.model);
   showSliders(state.model.interaction_classes, changed);
   timeline.build(state.model.interaction_classes);
+  element('pin-joint').replaceChildren(...state.model.joint_names.map(
+      (joint) => new Option(jointText(joint), joint)));
   for (const part of document.querySelectorAll('.sampling')) part.hidden = !state.model.samples;
   for (const part of document.querySelectorAll('.starting')) {
     part.hidden = !state.model.accepts_follower_start;
@@ -193,6 +205,7 @@ function placeStart(shown) {
   element('start-marker').toggleAttribute('hidden', !shown);
   element('place').setAttribute('aria-pressed', shown);
   if (!shown) return;
+  showPins(false);
   seekAll(0);
   marker.draw();
 }
@@ -238,8 +251,8 @@ function connectSettings() {
     if (target.type === 'number' && !target.checkValidity()) return;
     settings[target.name] = typeof DEFAULTS[target.name] === 'number' ? Number(target.value)
                                                                       : target.value;
-    if (target.name === 'model') showModel();
-    changed(target.name.replaceAll('_', ' '));
+    if (target.name === 'model') attempt(chooseModel)();
+    else changed(target.name.replaceAll('_', ' '));
   });
   joinSlider(document.querySelector('[name=variety]').parentElement, (variety) => {
     settings.variety = variety;
@@ -254,12 +267,47 @@ function connectSettings() {
   }));
 }
 
+// Shows the chosen model. A leader is read again if the model has other joints.
+async function chooseModel() {
+  showModel();
+  const {leader} = state;
+  if (!leader || String(leader.motion.joint_names) === String(state.model.joint_names)) {
+    changed('model');
+    return;
+  }
+  try {
+    await takeLeader(leader.name, leader.bytes);
+  } catch (error) {
+    Object.assign(state, {leader: null, takes: [], chosen: 0, asked: ''});
+    Object.assign(settings, {leader: '', file: '', keep: 0});
+    showLeader();
+    changed('model');
+    throw error;
+  }
+}
+
+// The model that a sample suits: the chosen one if it has the sample's class or name.
+function modelOfSample(name) {
+  const suits = (model) => model.name === name || model.interaction_classes.includes(name);
+  if (suits(state.model)) return state.model;
+  const standard = state.models.filter((model) => model.is_default);
+  return [...standard, ...state.models].find(suits) ?? state.model;
+}
+
 async function takeSample(name) {
   const response = await fetch(`/samples/${name}.bvh`);
   if (!response.ok) throw new CallError(await messageIn(response));
-  // The sample's own class is a useful first setting.
-  if (!isAnyWeight() && state.model.interaction_classes.includes(name)) {
-    settings.labels = {[name]: 1};
+  const model = modelOfSample(name);
+  if (model !== state.model) {
+    settings.model = nameOf(model);
+    showFields();
+    showModel();
+  }
+  // The sample's own class, or the first one of its model, is a useful first setting.
+  const classes = model.interaction_classes;
+  if (!isAnyWeight()) {
+    const own = classes.includes(name) ? name : model.name === name ? classes[0] : null;
+    if (own) settings.labels = {...settings.labels, [own]: 1};
   }
   await takeLeader(`${name}.bvh`, await response.arrayBuffer());
 }
@@ -311,6 +359,7 @@ function followStage() {
   if (isCurved(settings)) followFrame();
   drawGallery();
   marker.draw();
+  pinHandles.draw();
 }
 
 async function start() {
@@ -336,6 +385,7 @@ async function start() {
   connectGallery(choose);
   connectTimeline();
   connectStart();
+  connectPins();
   connectUndo(undoHistory);
   connectKeys();
   await takeLink();

@@ -134,7 +134,13 @@ const SETTINGS_CHECK = record({
   candidates: within(1, MAX_CANDIDATES, true), keep: frameNumber,
   turn: textOf(20, /^$|^-?\d+(\.\d+)?$/, 'degrees as text, or ""'),
   pose: listOf(within(-100, 100), MAX_POSE), leader: textOf(500), file: textOf(20),
-}, ['leader', 'file']);
+  pins: listOf((pin, at) => PIN_CHECK(pin, at), MAX_PINS),
+}, ['leader', 'file', 'pins']);
+
+const PIN_CHECK = record({
+  joint: textOf(100, /^[\w.-]+$/, 'a joint\'s name'), frame: frameNumber,
+  position: listOf(within(-PIN_METRES, PIN_METRES), 3), softness: within(0, 1),
+});
 
 const FILE_CHECK = record({name: textOf(500, /./, 'a file name'), bytes: base64});
 
@@ -147,7 +153,11 @@ const ANSWER_CHECK = record({
   seed: seedNumber, positions: floats, leader: textOf(500), settings: textOf(100000), kept: frameNumber,
   model: textOf(200, /./), version: within(1, 2 ** 32, true), samples: oneOf(true, false),
   unfamiliarity: within(0, Number.MAX_VALUE), grade: orNull(GRADE_CHECK),
-});
+  pins: listOf(record({
+    joint: textOf(100), frame: frameNumber, position: listOf(within(-PIN_METRES, PIN_METRES), 3),
+    metres: within(0, Number.MAX_VALUE),
+  }), MAX_PINS),
+}, ['pins']);
 
 const SESSION_CHECK = record({
   format: oneOf(SESSION_FORMAT), version: oneOf(SESSION_VERSION), leader: FILE_CHECK,

@@ -15,9 +15,10 @@ const settings = {
   side: 'left', unit: '', metres_per_unit: '', up_axis: '', frame_rate: '', joint_map: '',
   // The request. `labels` are the sliders' weights, `curves` those that change (curves.js), `start`
   // is the place of the follower's root, `turn` its direction in degrees with the pose `pose`
-  // (start.js), and `keep` the number of frames of the answer to keep (asking.js).
+  // (start.js), `keep` the number of frames of the answer to keep (asking.js), and `pins` are in
+  // pins.js.
   model: '', labels: {}, curves: {}, seed: 0, variety: 1, candidates: 1, start: '', turn: '',
-  pose: [], direction: '', clean_up: 'auto', keep: 0,
+  pose: [], direction: '', clean_up: 'auto', keep: 0, pins: [],
   // Downloading.
   resample: '', rig_joint_map: '',
 };
@@ -55,6 +56,8 @@ function addressOf(all) {
       if (writeWeights(value)) add(name, writeWeights(value));
     } else if (name === 'curves') {
       for (const [of, points] of Object.entries(value)) add('curve', writeCurve(of, points));
+    } else if (name === 'pins') {
+      for (const pin of value) add('pin', writePin(pin));
     } else if (String(value) !== String(DEFAULTS[name])) {
       add(name, String(value));
     }
@@ -103,6 +106,8 @@ function takeSetting(name, text) {
     settings.labels = readWeights(text);
   } else if (name === 'curve') {
     readCurve(text);
+  } else if (name === 'pin') {
+    readPin(settings, text);
   } else if (name === 'pose') {
     const values = text.split(',').map(Number);
     if (values.length <= MAX_POSE && values.every(Number.isFinite)) settings.pose = values;
@@ -121,20 +126,23 @@ function takeSetting(name, text) {
   }
 }
 
-// The settings for reading the file, for comparison.
-const readingOf = (all) => JSON.stringify(READING.map((name) => all[name]));
+// The settings for reading the file, for comparison, with the joints that are read.
+const readingOf = (all) => JSON.stringify([...READING.map((name) => all[name]),
+                                           ...(modelNamed(all.model)?.joint_names ?? [])]);
 
-const isAnyWeight = () => isCurved(settings) ||
-    Object.values(settings.labels).some((weight) => weight !== 0);
+// Whether a class of the model has a weight.
+const isAnyWeight = () => state.model.interaction_classes.some(
+    (name) => curveOf(settings, name).length > 0 || (settings.labels[name] ?? 0) !== 0);
 
 // The settings that an answer depends on, to detect whether the displayed answer is current.
 function askedFor() {
-  const {model, labels, curves, variety, candidates, start, turn, pose, direction, clean_up} =
+  const {model, labels, curves, variety, candidates, start, turn, pose, direction, clean_up, pins} =
       settings;
   const constant = Object.entries(labels).filter(([name]) => !curves[name]);
   const curved = Object.entries(curves).sort(([a], [b]) => (a < b ? -1 : 1));
   return JSON.stringify([model, writeWeights(Object.fromEntries(constant.sort())), curved, variety,
-                         candidates, start, turn, turn === '' ? [] : pose, direction, clean_up]);
+                         candidates, start, turn, turn === '' ? [] : pose, direction, clean_up,
+                         ...pins.map(writePin)]);
 }
 
 function numbers(text) {
@@ -184,6 +192,8 @@ function requestOf(leader, seed, kept) {
     request.partner_direction = pointOf('Direction to the follower', settings.direction);
   }
   if (settings.clean_up !== 'auto') request.clean_up = CLEAN_UP[settings.clean_up];
+  const pins = sentPins(settings, state.model.joint_names, kept?.frames ?? 0);
+  if (pins.length > 0) request.constraints = constraintsOf(pins, first);
   return request;
 }
 

@@ -76,6 +76,7 @@ class FakeConnection : public Connection {
     result.seed = request.seed;
     result.candidates = request.candidates;
     result.grade = grade;
+    result.constraint_metres.assign(request.constraints.size(), 0.25f);
     return result;
   }
   std::function<absl::Status(const SynthesisRequest&, int call)> answer;
@@ -523,6 +524,26 @@ TEST_F(JobTest, ChangedLinesAreRejectedByField) {
   EXPECT_THAT(Run("set", {}, "id\tleader\tlabels\tseed\nx\ta.csv\tkick=1\t2\n"),
               refused("got another seed, follower_start"));
   EXPECT_THAT(Run("set", {}, before), IsOk());
+}
+
+TEST_F(JobTest, PinsAreSentAndListedWithWhatRemains) {
+  std::vector<JointConstraint> sent;
+  connection().answer = [&sent](const SynthesisRequest& request, int) {
+    sent = request.constraints;
+    return absl::OkStatus();
+  };
+  ASSERT_THAT(Run("set", {}, "leader\tconstraints\na.csv\thead@3=0,1.5,-2,0.5\n"), IsOk());
+  ASSERT_THAT(sent, SizeIs(1));
+  EXPECT_EQ(PinText(sent[0]), "head@3=0,1.5,-2,0.5");
+  const std::string line = Lines("set/index.jsonl")[0];
+  ::duet::batch::v1::IndexEntry entry;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(line, &entry).ok()) << line;
+  ASSERT_EQ(entry.constraints_size(), 1);
+  EXPECT_EQ(entry.constraints(0).joint_name(), "head");
+  EXPECT_EQ(entry.constraints(0).frame(), 3u);
+  EXPECT_EQ(entry.constraints(0).position(2), -2);
+  EXPECT_EQ(entry.constraints(0).softness(), 0.5f);
+  EXPECT_EQ(entry.constraints(0).remaining_metres(), 0.25f);
 }
 
 TEST_F(JobTest, IdsOfAnyLengthAreKept) {

@@ -77,6 +77,21 @@ TEST(Manifest, ReadsJsonLines) {
   EXPECT_EQ((*entries)[1].model, "sbu@2");
 }
 
+TEST(Manifest, ReadsPinsOfBothFormats) {
+  for (const char* text :
+       {"leader\tconstraints\na.bvh\tright_hand@40=0.1,1.2,-3;head@0=0,2,0,0.5\n",
+        "{\"leader\": \"a.bvh\", \"constraints\": [\"right_hand@40=0.1,1.2,-3\", "
+        "\"head@0=0,2,0,0.5\"]}\n"}) {
+    const auto entries = ReadText(text);
+    ASSERT_THAT(entries, IsOk());
+    const Pins& pins = entries->front().pins;
+    ASSERT_EQ(pins.size(), 2u) << text;
+    EXPECT_EQ(PinText(pins[0]), "right_hand@40=0.1,1.2,-3");
+    EXPECT_EQ(PinText(pins[1]), "head@0=0,2,0,0.5");
+    EXPECT_TRUE(entries->front().extra.empty());
+  }
+}
+
 struct BadManifest {
   const char* text;
   const char* message;
@@ -102,6 +117,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadManifest{"leader\tlabels\na.bvh\tkick=1,kick=0\n", "each class once"},
         BadManifest{"leader\tlabels\na.bvh\tkick=2.5\n", "from -2 to 2, got \"kick=2.5\""},
         BadManifest{"leader\tpartner_direction\na.bvh\t1\n", "partner_direction: expected X,Y,Z"},
+        BadManifest{"leader\tconstraints\na.bvh\thead@x=0,1,2\n",
+                    "m:2: constraints: expected JOINT@FRAME=X,Y,Z"},
+        BadManifest{"leader\tconstraints\na.bvh\thead@1=0,1,2;head@1=0,1,3\n",
+                    "m:2: constraints: expected each joint once in a frame"},
         BadManifest{"leader\tid\na.bvh\tx\nb.bvh\tx\n",
                     "m:3: id: expected one that no other line has, got \"x\""},
         BadManifest{"leader\tid\na.bvh\tx\nb.bvh\t\n",

@@ -93,6 +93,20 @@ TEST(Plan, OnlySeveralCandidatesChangeTheItem) {
   EXPECT_NE(id("candidates: 4"), id("candidates: 5"));
 }
 
+TEST(Plan, PinsChangeTheItemAndNeedJointsOfTheModel) {
+  ModelInfo model = Model("sbu");
+  model.joint_names = motion::SbuSkeleton().joint_names;
+  const auto id = [&model](const std::string& pins) {
+    return (*PlanOf(kKick, "leader\tconstraints\na.bvh\t" + pins + "\n", {model}))[0].id;
+  };
+  EXPECT_EQ(id(""), "54e9b2a470fe12910b8bf016da00fb89");
+  EXPECT_NE(id("head@3=0,1,2"), id(""));
+  EXPECT_NE(id("head@3=0,1,2"), id("head@3=0,1,2,0.5"));
+  EXPECT_THAT(PlanOf(kKick, "leader\tconstraints\na.bvh\twing@3=0,1,2\n", {model}),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("m:2: constraints: expected joints of sbu@2 (head, ")));
+}
+
 TEST(Plan, EveryKindOfReaction) {
   const auto items = PlanOf(R"(
     reactions { grid { axes { interaction_class: 'kick' weights: 0.5 weights: 1 }

@@ -107,6 +107,57 @@ TEST_F(MotionCommandsTest, InspectPrintsEachSettingAndItsOrigin) {
                                 HasSubstr("up axis     y-up  (given)")));
 }
 
+TEST_F(MotionCommandsTest, ConvertReadsTheJointsOfAnotherSkeleton) {
+  WriteTestFile(folder_ / "arm.json",
+                R"({"joint_names": ["left_hand", "left_elbow", "left_shoulder"],
+                    "bones": [[1, 0], [2, 1]], "interaction_classes": ["wave"]})");
+  ASSERT_EQ(Run({"convert", Path("pair.csv"), "--skeleton", Path("arm.json"), "--out",
+                 Path("arms.json")}),
+            0)
+      << err_.str();
+  const json arms = json::parse(ReadTestFile(folder_ / "arms.json"));
+  EXPECT_EQ(arms["joint_names"], json({"left_hand", "left_elbow", "left_shoulder"}));
+  EXPECT_EQ(arms["bones"], json::parse("[[1, 0], [2, 1]]"));
+  EXPECT_EQ(arms["follower"][0].size(), 3u);
+  // A motion in JSON is a skeleton, too.
+  ASSERT_EQ(Run({"convert", Path("arms.json"), "--skeleton", Path("arms.json"), "--side", "right",
+                 "--out", Path("arm.glb")}),
+            0)
+      << err_.str();
+  EXPECT_EQ(Run({"convert", Path("arms.json"), "--out", Path("body.json")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("expected joints for head, neck, torso"));
+  ASSERT_EQ(
+      Run({"view", Path("arms.json"), "--skeleton", Path("arms.json"), "--out", Path("arms.html")}),
+      0)
+      << err_.str();
+}
+
+TEST_F(MotionCommandsTest, ConvertNamesWhatIsWrongInASkeleton) {
+  const std::pair<const char*, const char*> bad[] = {
+      {"no JSON", "skeleton.json: "},
+      {R"({"bones": []})", "joint_names"},
+      {R"({"joint_names": ["a", "b"], "bones": [[0, 2]]})",
+       "bones[0]: expected two indices below 2, got [0,2]"},
+      {R"({"joint_names": ["a", "b"], "bones": [[0]]})", "bones[0]: expected two indices"},
+      {R"({"joint_names": ["a", "b"], "bones": [[0, -1]]})", "bones[0]: expected two indices"},
+      {R"({"joint_names": ["a", "b"], "bones": []})", "bones"},
+      {R"({"joint_names": ["a", "b"], "bones": [[0, 1]], "root_joint": "c"})",
+       "root_joint: expected one of joint_names, got \"c\""},
+      {R"({"joint_names": ["a", "b"], "bones": [[0, 1]], "root_joint": "b"})", "bones"},
+      {R"({"joint_names": ["a", "a"], "bones": [[0, 1]]})", "joint_names"}};
+  for (const auto& [text, message] : bad) {
+    WriteTestFile(folder_ / "skeleton.json", text);
+    EXPECT_EQ(Run({"convert", Path("one.csv"), "--skeleton", Path("skeleton.json"), "--out",
+                   Path("out.json")}),
+              42)
+        << text;
+    EXPECT_THAT(err_.str(), HasSubstr(message)) << text;
+  }
+  EXPECT_EQ(
+      Run({"convert", Path("one.csv"), "--skeleton", Path("no.json"), "--out", Path("out.json")}),
+      42);
+}
+
 TEST_F(MotionCommandsTest, InspectPrintsEachOfTwoPeople) {
   ASSERT_EQ(Run({"inspect", Path("pair.csv")}), 0);
   EXPECT_THAT(out_.str(), AllOf(HasSubstr(": CSV, 2 people, 60 frames"),

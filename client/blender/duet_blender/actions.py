@@ -1,0 +1,18 @@
+"""Curves of actions, as all versions of Blender store them."""
+
+
+def curves_of(action):
+    """All curves of an action. Since Blender 4.4 they are in layers."""
+    if hasattr(action, "fcurves"):
+        return list(action.fcurves)
+    return [curve for layer in action.layers for strip in layer.strips
+            for bag in strip.channelbags for curve in bag.fcurves]
+
+
+def keyed_frames(thing, is_wanted):
+    """Frames with key frames of an object's curves whose data path is wanted, sorted."""
+    action = thing.animation_data and thing.animation_data.action
+    if not action:
+        return []
+    return sorted({round(key.co.x) for curve in curves_of(action) if is_wanted(curve.data_path)
+                   for key in curve.keyframe_points})

@@ -1,0 +1,173 @@
+"""The Blender add-on's tools for shaping an answer: gallery, label curves, pins, the user's armature,
+other models."""
+
+import json
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+import tools
+
+BLENDER = shutil.which("blender")
+SHAPE = pathlib.Path(__file__).parent / "blender" / "shape.py"
+REACHED = 0.01  # metres
+
+
+class BlenderShapeTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        with tools.running_server() as server:
+            models = tools.duet("models", "--json", "--server", server.address)
+            salsa = next(model for model in json.loads(models.stdout)["models"]
+                         if model["name"] == "salsa")
+            (cls.folder / "salsa.json").write_text(json.dumps(salsa), encoding="utf-8")
+            cls.convert("hug", "leader.glb")
+            cls.convert("salsa", "dancer.glb", "--skeleton", cls.folder / "salsa.json")
+            done = tools.run(BLENDER, "--background", "--factory-startup", "--python-exit-code",
+                             "1", "--python", SHAPE, "--", tools.SOURCE / "client" / "blender",
+                             cls.folder / "leader.glb", cls.folder / "dancer.glb", server.address,
+                             tools.PROGRAMS / "duet", cls.folder, timeout=4 * tools.RUN_SECONDS)
+        assert done.returncode == 0, done.stdout + done.stderr
+        cls.state = json.loads((cls.folder / "state.json").read_text(encoding="utf-8"))
+
+    @classmethod
+    def convert(cls, sample, out, *flags):
+        done = tools.duet("convert", tools.sample(sample), *flags, "--out", cls.folder / out)
+        assert done.returncode == 0, done.stderr
+
+    def assert_near(self, place, expected, metres=REACHED):
+        distance = sum((a - b) ** 2 for a, b in zip(place, expected)) ** 0.5
+        self.assertLess(distance, metres)
+
+    # Gallery.
+
+    def test_gallery_lists_eight_seeds_with_grades_best_first(self):
+        self.assertEqual(sorted(self.state["seeds"]), list(range(8)))
+        self.assertEqual(self.state["faults"], sorted(self.state["faults"]))
+        for grade in self.state["grades"]:
+            self.assertRegex(grade, r"^(no faults|(twist|overlap|slide) \d+ %)$")
+
+    def test_chosen_answer_replaces_the_partner(self):
+        for shown, index in zip(self.state["shown"], (0, 3), strict=True):
+            self.assertEqual(shown["chosen"], index)
+            self.assertIn(f"seed {self.state['seeds'][index]}", shown["state"])
+            self.assertEqual(shown["followers"], 2)  # the leader's and the partner's armature
+            self.assert_near(shown["hand"], shown["expected"], 1e-3)
+        self.assertIn(f"(seed {self.state['seed_of_take']})", self.state["take"])
+
+    def test_panel_lists_the_answers(self):
+        panel = self.state["panel"]
+        for seed, grade in zip(self.state["seeds"], self.state["grades"]):
+            self.assertIn(f"Seed {seed}, {grade}", panel)
+        self.assertLessEqual({"leader", "place", "weight", "duet.key_labels", "duet.react",
+                              "duet.show_eight"}, set(panel))
+
+    def test_panels_show_pins_and_settings(self):
+        panel = self.state["pin_panel"]
+        self.assertEqual([what for what in panel if what in ("joint", "thing", "bone", "softness")],
+                         ["joint", "thing", "softness", "joint", "thing", "bone", "softness"])
+        self.assertIn("2 key frames, 25 to 45", panel)
+        self.assertIn("1 key frame, 50", panel)
+        armature, reading, server = self.state["other_panels"]
+        self.assertEqual(armature, ["target", "duet.follow", "duet.bake"])
+        self.assertIn("bone", reading)
+        self.assertEqual(server, ["server", "program", "model"])
+
+    def test_missing_answers_are_reported(self):
+        self.assertIn("expected one of 8, got 8", self.state["no_such_answer"])
+        self.assertIn("Press React again", self.state["gone"])
+
+    # Label curves.
+
+    def test_keyed_labels_become_keyframes(self):
+        flags = self.state["labels"]
+        self.assertEqual(set(flags[::2]), {"--keyframe"})
+        first, last = flags[1], flags[-1]
+        self.assertTrue(first.startswith("0:"), first)
+        self.assertTrue(last.startswith("49:"), last)
+        self.assertIn("hug=1,", first)
+        self.assertIn("push=0,", first)
+        self.assertIn("hug=0,", last)
+        self.assertIn("push=1,", last)
+
+    # Pins.
+
+    def test_new_pin_is_where_the_joint_is(self):
+        pin = self.state["new_pin"]
+        self.assertEqual((pin["joint"], pin["frame"]), ("right_hand", 30))
+        self.assert_near(pin["place"], pin["hand"], 1e-4)
+        self.assertTrue(self.state["shared"])
+
+    def test_pin_without_key_frames_applies_in_its_own_frame(self):
+        pin = self.state["one_pin"]
+        self.assert_near(pin["hand"], pin["wanted"])
+        self.assertEqual(pin["told"], "All pins reached")
+
+    def test_each_key_frame_is_a_pin(self):
+        for frame, wanted in self.state["keyed"].items():
+            self.assert_near(self.state["hands"][frame], wanted)
+
+    def test_keyed_bone_and_softness_are_sent_in_metres_with_y_up(self):
+        self.assertEqual((self.state["bone_pin"]["bone"], self.state["bone_pin"]["thing"]),
+                         ("Head", "Puppet"))
+        *hands, _, head = self.state["flags"]
+        self.assertEqual([flag.split("=")[0] for flag in hands[1::2]],
+                         ["right_hand@14", "right_hand@34"])
+        joint, _, numbers = head.partition("=")
+        self.assertEqual(joint, "head@39")
+        *place, softness = map(float, numbers.split(","))
+        x, y, z = self.state["bone_pin"]["place"]
+        self.assert_near(place, (x, z, -y), 1e-4)
+        self.assertEqual(softness, 1)
+        self.assertRegex(self.state["told"], r"^head at 50: \d+ cm away$")
+
+    def test_unusable_pins_are_reported(self):
+        self.assertIn('got "wing"', self.state["wing"])
+        self.assertIn("has no key frame from frame 11 to 60", self.state["outside"])
+        self.assertIn("has no object", self.state["nothing"])
+
+    # An armature of the user's.
+
+    def test_armature_follows_the_partner_as_well_as_the_program_fits_it(self):
+        for name, fits in self.state["characters"].items():
+            blender, program = fits["blender"], fits["program"]
+            mean = {way: sum(of.values()) / len(of) for way, of in fits.items()}
+            self.assertLess(mean["blender"], mean["program"] + 0.03, name)
+            for joint in ("left_hand", "right_hand", "left_foot", "right_foot"):
+                self.assertLess(blender[joint], program[joint] + 0.05, f"{name}: {joint}")
+        self.assertLess(self.state["characters"]["Usual"]["blender"]["left_foot"], REACHED)
+
+    def test_armature_follows_the_next_answer_too(self):
+        self.assertEqual(self.state["constraints"], 4 + 1 + 9 + 4)  # trunk, limbs and neck, hands and feet
+        for joint in ("left_foot", "right_foot"):
+            self.assertLess(self.state["followed"][joint], REACHED)
+
+    def test_armature_moves_without_jumps(self):
+        for partner, own in self.state["steps"]:
+            self.assertLess(own, 1.5 * partner + 0.02)
+
+    def test_baked_armature_keeps_its_poses_without_constraints(self):
+        self.assertLess(self.state["baked"], 1e-3)
+        self.assertEqual((self.state["left"], self.state["left_constraints"]), ([], 0))
+
+    def test_armature_that_constraints_do_not_fit_is_reported(self):
+        self.assertIn("Use Body: Leader's rig", self.state["odd_rig"])
+
+    # Other models.
+
+    def test_model_brings_its_classes_and_joints(self):
+        self.assertEqual(self.state["salsa"], "")
+        self.assertIn("follower_turn", self.state["salsa_classes"])
+        self.assertIn("left_toe", self.state["salsa_joints"])
+        for joint in self.state["salsa_joints"]:
+            self.assertIn(joint, self.state["salsa_bones"])
+
+
+if __name__ == "__main__":
+    if not BLENDER:
+        tools.skip("no blender; install the package blender")
+    tools.main()

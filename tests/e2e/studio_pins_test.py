@@ -1,0 +1,222 @@
+"""Pins in the studio: handles of joints, the list, links and sessions, in a real browser against a real
+server."""
+
+import json
+
+from studio_pages import StudioTest  # before modules that it makes available
+
+import duet_motion as duet  # noqa: E402
+import numpy as np  # noqa: E402
+import tools  # noqa: E402
+
+HUG = "#leader=hug.bvh&labels=hug:1"
+FRAME = 40
+RIGHT_HAND = 8
+REACHED = 0.01  # metres
+HANDLE = """(() => {{
+  const box = document.querySelector('#pin-handles [data-joint={joint}]').getBoundingClientRect();
+  return [box.left + box.width / 2, box.top + box.height / 2];
+}})()"""
+CATCH_SAVED = """window.saved = [];
+  saveBlob = async (blob, name) => { window.saved.push([name, await blob.text()]); }; undefined"""
+
+
+class StudioPinsTest(StudioTest):
+    def key(self, page, key, modifiers=0):
+        """A real key stroke; modifiers: 2 is Ctrl, 8 is Shift."""
+        for kind in ("keyDown", "keyUp"):
+            page.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=modifiers)
+        page.next_frame()
+
+    def seek(self, page, frame):
+        page.evaluate(f"seekAll({frame})")
+        page.wait_until(f"theatre.frame === {frame}")
+
+    def open_answered(self, address=HUG, **size):
+        page = self.open_still(address, **{"width": 1200, "height": 900, **size})
+        self.react(page)
+        self.seek(page, FRAME)
+        return page
+
+    def handle(self, page, joint="right_hand"):
+        return page.evaluate(HANDLE.format(joint=joint))
+
+    def drag_hand(self, page, way=(20, -50)):
+        start = self.handle(page)
+        page.drag(start, (start[0] + way[0], start[1] + way[1]))
+
+    def pins(self, page):
+        return page.evaluate("settings.pins")
+
+    def list_of(self, page):
+        """The rows of the list: joint, frame, softness, what remains."""
+        return page.evaluate("""pinHandles.rows.map(({go, frame, softness, remains}) =>
+            [go.textContent, Number(frame.value), Number(softness.value), remains.value])""")
+
+    def test_dragged_joint_is_there_in_the_next_answer(self):
+        page = self.open_answered()
+        before = self.shown(page)
+        page.click("#pin")
+        self.drag_hand(page)
+        [pin] = self.pins(page)
+        self.assertEqual((pin["joint"], pin["frame"], pin["softness"]), ("right_hand", FRAME, 0))
+        place = before[FRAME][RIGHT_HAND]
+        self.assertGreater(np.linalg.norm(np.subtract(pin["position"], place)), 0.1)
+        handle = self.handle(page)
+        self.assertEqual(page.state()["stale"], "true")
+        self.react(page)
+        shown = self.shown(page)
+        self.assertLess(np.linalg.norm(shown[FRAME][RIGHT_HAND] - pin["position"]), REACHED)
+        np.testing.assert_allclose(
+            shown, self.expected({"hug": 1}, constraints=[
+                duet.Constraint("right_hand", FRAME, pin["position"])]), atol=1e-5)
+        self.assertEqual(self.list_of(page), [["right hand", FRAME, 0, "reached"]])
+        np.testing.assert_allclose(self.handle(page), handle, atol=1)  # it is where it was dropped
+
+    def test_handle_follows_the_pointer_and_belongs_to_its_frame(self):
+        page = self.open_answered()
+        page.click("#pin")
+        start = self.handle(page)
+        self.drag_hand(page, (30, -40))
+        np.testing.assert_allclose(self.handle(page), np.add(start, (30, -40)), atol=1.5)
+        self.drag_hand(page, (-10, 5))
+        self.assertEqual(len(self.pins(page)), 1)
+        self.seek(page, FRAME + 1)
+        page.next_frame()
+        self.assertFalse(page.evaluate("Boolean(document.querySelector('#pin-handles .pinned'))"))
+        self.drag_hand(page, (5, 5))
+        self.assertEqual([pin["frame"] for pin in self.pins(page)], [FRAME, FRAME + 1])
+        page.click("#pin")
+        self.assertTrue(page.evaluate("element('pin-handles').hasAttribute('hidden')"))
+
+    def test_keys_pin_move_and_remove(self):
+        page = self.open_answered()
+        self.key(page, "j")
+        page.evaluate("document.querySelector('[data-joint=right_hand]').focus()")
+        place = page.evaluate("pinHandles.placeOf('right_hand', frameNow())")
+        self.key(page, "ArrowUp")
+        up = np.subtract(self.pins(page)[0]["position"], place)
+        self.assertAlmostEqual(np.linalg.norm(up), 0.05, delta=0.002)
+        self.assertGreater(up[1], 0.03)
+        self.key(page, "ArrowDown")
+        np.testing.assert_allclose(self.pins(page)[0]["position"], place, atol=0.003)
+        self.key(page, "ArrowUp", modifiers=8)  # away from the camera
+        away = np.subtract(self.pins(page)[0]["position"], place)
+        eye = page.evaluate("theatre.stage.camera.position.toArray()")
+        self.assertAlmostEqual(np.linalg.norm(away), 0.05, delta=0.003)
+        self.assertGreater(np.dot(away, np.subtract(place, eye)), 0)
+        self.key(page, "Delete")
+        self.assertEqual(self.pins(page), [])
+        self.assertEqual(page.evaluate("document.activeElement.dataset.joint"), "right_hand")
+        for _ in range(2):
+            self.key(page, "z", modifiers=2)
+        self.assertEqual(len(self.pins(page)), 1)
+
+    def test_list_changes_frame_and_softness_and_deletes(self):
+        page = self.open_answered()
+        page.click("#pin")
+        self.drag_hand(page)
+        page.evaluate("element('pin-joint').value = 'head'")
+        page.click("#pin-add")
+        self.assertEqual([row[:2] for row in self.list_of(page)],
+                         [["right hand", FRAME], ["head", FRAME]])
+        self.assertEqual(page.evaluate("document.activeElement.dataset.joint"), "head")
+
+        def fill(row, name, value):
+            page.evaluate(f"pinHandles.rows[{row}].{name}.value = {value}")
+            page.evaluate(f"pinHandles.rows[{row}].{name}.dispatchEvent(new Event('change'))")
+        fill(0, "frame", 20)
+        fill(0, "softness", 0.5)
+        fill(1, "softness", 7)  # not valid
+        self.assertEqual([(pin["frame"], pin["softness"]) for pin in self.pins(page)],
+                         [(20, 0.5), (FRAME, 0)])
+        page.evaluate("element('pin-joint').value = 'right_hand'")
+        page.click("#pin-add")
+        fill(2, "frame", 20)
+        self.assertIn("frame: expected one in which right hand has no pin, got 20", page.text("#status"))
+        page.click("#pin-list li:nth-child(1) .pin-name")
+        page.wait_until("theatre.frame === 20")
+        page.click("#pin-list li:nth-child(2) button:last-child")
+        self.assertEqual([pin["joint"] for pin in self.pins(page)], ["right_hand", "right_hand"])
+        page.click("#pins-clear")
+        self.assertEqual(self.pins(page), [])
+
+    def test_pin_out_of_reach_is_reported(self):
+        page = self.open_answered()
+        page.evaluate("setPin(settings, 'right_hand', 40, [0, 4, 0]); changed('test')")
+        self.react(page)
+        self.assertIn("1 of 1 pins missed", page.text("#status"))
+        self.assertRegex(self.list_of(page)[0][3], r"^\d{3} cm away$")
+
+    def test_kept_beginning_keeps_its_pins_to_itself(self):
+        page = self.open_answered()
+        page.evaluate("""setPin(settings, 'right_hand', 20, [0, 1, 0]);
+                         setPin(settings, 'right_hand', 60, [0, 1.2, 0]); keepFrames(46)""")
+        sent = page.evaluate("requestOf(state.leader.motion, 0, keptFrames()).constraints")
+        self.assertEqual([(pin["joint_name"], pin["frame"]) for pin in sent], [("right_hand", 60 - 45)])
+
+    def test_links_and_sessions_restore_pins(self):
+        page = self.open_answered()
+        page.click("#pin")
+        self.drag_hand(page)
+        page.evaluate("changePin(settings, 0, {softness: 0.25}); changed('test')")
+        self.react(page)
+        pins, shown = self.pins(page), self.shown(page)
+        address = page.evaluate("location.hash")
+        self.assertIn("pin=right_hand@40=", address)
+        page.evaluate(CATCH_SAVED)
+        self.key(page, "s", modifiers=2)
+        page.wait_until("window.saved.length > 0")
+        [[_, text]] = page.evaluate("window.saved")
+        other = self.open_still(address, width=1200, height=900)
+        self.assertEqual(self.pins(other), pins)
+        other.evaluate("settings.pins = []; changed('test')")
+        other.evaluate(f"attempt(takeFile)(new File([{json.dumps(text)}], 'w.session.json'))")
+        other.wait_until("state.takes.length === 1")
+        self.assertEqual(self.pins(other), pins)
+        np.testing.assert_allclose(self.shown(other), shown, atol=1e-6)
+        self.assertNotIn("missed", self.list_of(other)[0][3])
+        for change, words in (
+                ({"frame": -1}, "settings.pins[0].frame: expected a whole number"),
+                ({"position": [0, "x", 0]}, "settings.pins[0].position[1]: expected a number"),
+                ({"joint": "a b"}, "settings.pins[0].joint: expected"),
+                ({"softness": 2}, "settings.pins[0].softness: expected a number from 0 to 1")):
+            session = json.loads(text)
+            session["settings"]["pins"][0].update(change)
+            damaged = json.dumps(json.dumps(session))
+            other.evaluate(f"attempt(takeFile)(new File([{damaged}], 'w.session.json'))")
+            self.assertIn(words, other.text("#status"))
+            self.assertEqual(self.pins(other), pins)
+        old = json.loads(text)
+        del old["settings"]["pins"], old["answer"]["pins"]
+        all_settings = json.loads(old["answer"]["settings"])
+        del all_settings["pins"]
+        old["answer"]["settings"] = json.dumps(all_settings)
+        other.evaluate(f"attempt(takeFile)(new File([{json.dumps(json.dumps(old))}], 'w.session.json'))")
+        other.wait_until("settings.pins.length === 0")
+        self.assertEqual(other.state()["failed"], "false", other.text("#status"))
+
+    def test_invalid_pins_of_links_are_ignored(self):
+        page = self.open_still(HUG + "&pin=right_hand@x=1,2,3&pin=head@4=1,2&pin=head@4=1,2,nan"
+                               "&pin=head@4=1,2,3,9&pin=neck@5=0,1.5,0,0.5", width=1200, height=900)
+        self.assertEqual(self.pins(page), [
+            {"joint": "neck", "frame": 5, "position": [0, 1.5, 0], "softness": 0.5}])
+        self.react(page)
+        self.assertEqual(len(page.evaluate("state.takes[0].pins")), 1)
+
+    def test_joint_is_pinned_by_a_finger(self):
+        page = self.open_answered(width=390, height=844)
+        page.call("Emulation.setTouchEmulationEnabled", enabled=True)
+        page.evaluate("showPins(true); scrollTo(0, 0)")
+        start = self.handle(page)
+        for kind, point in (("touchStart", start), ("touchMove", (start[0] + 10, start[1] - 25)),
+                            ("touchEnd", None)):
+            page.call("Input.dispatchTouchEvent", type=kind,
+                      touchPoints=[{"x": point[0], "y": point[1]}] if point else [])
+        page.wait_until("settings.pins.length === 1")
+        self.assertEqual(self.pins(page)[0]["joint"], "right_hand")
+        self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth"), 390)
+
+
+if __name__ == "__main__":
+    tools.main()
