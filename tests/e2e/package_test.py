@@ -5,11 +5,9 @@ their files with their configuration.
 """
 
 import os
-import pathlib
 import re
 import shutil
 import sys
-import tempfile
 import unittest
 
 import tools
@@ -27,12 +25,10 @@ def run(*command, **options):
     return result.stdout
 
 
-class PackageTest(unittest.TestCase):
+class PackageTest(tools.FolderTest):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         run(CPACK, "-G", "DEB", "-B", cls.folder, "-D", "CPACK_COMPONENTS_ALL=client;server;training;torch",
             cwd=BUILD, timeout=600)
         cls.packages = {file.name.split("_")[0]: file for file in cls.folder.glob("*.deb")}
