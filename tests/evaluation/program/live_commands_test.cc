@@ -1,14 +1,13 @@
-// The hour command with the checkpoint inside the program, for a few seconds.
+// The commands of live followers with the checkpoint inside the program, for a few seconds.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "model/evaluation/program/commands.h"
+#include "tests/evaluation/support/made_up_captures.h"
 #include "tests/evaluation/support/read_section.h"
+#include "tests/evaluation/support/run_command.h"
 #include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -19,25 +18,9 @@ using test::StatusIs;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-absl::StatusOr<nlohmann::json> RunCommand(std::vector<std::string> words) {
-  const duet::test::TemporaryFolder folder;
-  words.insert(words.end(), {"--embedded", "--out", folder.path().string()});
-  CLI::App app;
-  ChosenCommand chosen;
-  AddHourCommand(&app, &chosen);
-  std::reverse(words.begin(), words.end());  // as CLI11 wants them
-  try {
-    app.parse(words);
-  } catch (const CLI::ParseError& error) {
-    return absl::InvalidArgumentError(error.what());
-  }
-  absl::Status status = chosen();
-  if (!status.ok()) return status;
-  return test::ReadSection(folder.path());
-}
-
 TEST(HourCommandTest, HasARowALeader) {
-  const auto section = RunCommand({"hour", "--minutes", "0.1", "--delay", "2"});
+  const auto section = test::RunForSection(
+      AddHourCommand, {"hour", "--minutes", "0.1", "--delay", "2", "--embedded"});
   ASSERT_THAT(section, IsOk());
   EXPECT_EQ(section->at("id"), "22_hour");
   EXPECT_EQ(section->at("command"),
@@ -51,8 +34,27 @@ TEST(HourCommandTest, HasARowALeader) {
 }
 
 TEST(HourCommandTest, RejectsALengthThatIsNone) {
-  EXPECT_THAT(RunCommand({"hour", "--minutes", "0"}),
+  EXPECT_THAT(test::RunCommand(AddHourCommand, {"hour", "--minutes", "0", "--embedded"}),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("--minutes")));
+}
+
+TEST(LiveCommandTest, HasARowForTheWholeLeaderAndForEachDelay) {
+  const dataset::CaptureFolder captures;
+  test::WriteSwayingCaptures(captures);
+  const auto section = test::RunForSection(
+      AddLiveCommand,
+      {"live", "--data", captures.path().string(), "--delays", "0,3", "--seed", "4", "--embedded"});
+  ASSERT_THAT(section, IsOk());
+  EXPECT_EQ(section->at("id"), "21_live");
+  EXPECT_EQ(section->at("command"),
+            "duet-eval live --data DIR --delays 0,3 --seed 4 --out RESULTS --embedded");
+  const nlohmann::json& table = section->at("tables").at(0);
+  EXPECT_EQ(table.at("title"), "duet: reactions to 12 leaders");
+  EXPECT_THAT(test::RowNames(table),
+              ElementsAre("whole leader known", "live, delay 0", "live, delay 3"));
+  const nlohmann::json& whole = table.at("rows").at(0).at("values");
+  EXPECT_GT(whole.at(5), 0) << "speed";
+  EXPECT_EQ(whole.at(6), 1) << "jerk, as a multiple of its own";
 }
 
 }  // namespace
