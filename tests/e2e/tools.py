@@ -56,6 +56,15 @@ def duet(*arguments):
     return run(PROGRAMS / "duet", *arguments)
 
 
+def page(port, path):
+    """A page of an HTTP port of this machine: status and text."""
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=RUN_SECONDS)
+    with contextlib.closing(connection):
+        connection.request("GET", path)
+        response = connection.getresponse()
+        return response.status, response.read().decode()
+
+
 class Server:
     """A duet-server on a free port, and everything that it logged, or the last `kept_lines` of it.
     `metrics_port` is that of its figures where `metrics` names an address, `within` a
@@ -109,11 +118,7 @@ class Server:
 
     def page(self, path):
         """A page of the metrics port: status and text."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.metrics_port, timeout=RUN_SECONDS)
-        with contextlib.closing(connection):
-            connection.request("GET", path)
-            response = connection.getresponse()
-            return response.status, response.read().decode()
+        return page(self.metrics_port, path)
 
     def events(self, name):
         """The lines of one event, in order."""
