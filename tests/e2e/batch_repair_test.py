@@ -6,14 +6,12 @@ real program, which is killed at the worst moments, to the same bytes as without
 
 import json
 import os
-import pathlib
 import random
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
-import unittest
 
 KILLS = int(sys.argv.pop(1)) if sys.argv[1:] and sys.argv[1].isdigit() else 4
 
@@ -41,18 +39,14 @@ def change(path, at):
         file.write(bytes([byte[0] ^ 1]))
 
 
-class BatchRepairTest(unittest.TestCase):
+class BatchRepairTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
-        temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(temporary.cleanup)
-        cls.folder = pathlib.Path(temporary.name)
+        super().setUpClass()
         cls.leaders = cls.folder / "leaders"
         cls.leaders.mkdir()
         for name in ("kick", "hug", "push"):
             shutil.copy(tools.sample(name), cls.leaders)
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
         # The set of each packing that an undisturbed run makes.
         cls.whole = {}
         for packing, output in PACKINGS.items():

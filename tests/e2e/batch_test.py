@@ -10,7 +10,6 @@ import hashlib
 import json
 import math
 import os
-import pathlib
 import random
 import re
 import resource
@@ -20,9 +19,7 @@ import socket
 import subprocess
 import sys
 import tarfile
-import tempfile
 import time
-import unittest
 import zipfile
 
 import tools
@@ -119,19 +116,15 @@ def write_turning_leader(path, degrees):
                     "\n".join(rows) + "\n", encoding="utf-8")
 
 
-class BatchTest(unittest.TestCase):
+class BatchTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
-        temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(temporary.cleanup)
-        cls.folder = pathlib.Path(temporary.name)
+        super().setUpClass()
         cls.leaders = cls.folder / "leaders"
         (cls.leaders / "far").mkdir(parents=True)
         for name in ("kick", "hug"):
             shutil.copy(tools.sample(name), cls.leaders)
         shutil.copy(tools.sample("push"), cls.leaders / "far")
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
         # The set of RECIPE that an undisturbed run makes.
         cls.whole = cls.folder / "whole"
         recipe = cls.folder / "whole.textproto"

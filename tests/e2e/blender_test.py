@@ -3,8 +3,6 @@
 import json
 import pathlib
 import shutil
-import tempfile
-import unittest
 
 import tools
 
@@ -13,12 +11,10 @@ REACT = pathlib.Path(__file__).parent / "blender" / "react.py"
 UNITS_PER_METRE = 2  # of the scene
 
 
-class BlenderTest(unittest.TestCase):
+class BlenderTest(tools.FolderTest):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         leader = cls.folder / "leader.glb"
         done = tools.duet("convert", tools.sample("kick"), "--out", leader)
         assert done.returncode == 0, done.stderr

@@ -6,7 +6,6 @@ import math
 import pathlib
 import socket
 import struct
-import tempfile
 import unittest
 
 import tools
@@ -36,15 +35,7 @@ class Pair:
         return person[frame][self.joints.index(joint)]
 
 
-class ClientServerTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
-
+class ClientServerTest(tools.ServedTest):
     def out(self, name):
         return self.folder / f"{self.id().split('.')[-1]}.{name}"
 

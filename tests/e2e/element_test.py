@@ -7,11 +7,8 @@ import functools
 import http.server
 import json
 import math
-import pathlib
 import sys
-import tempfile
 import threading
-import unittest
 
 import browser
 import tools
@@ -65,14 +62,12 @@ for (const one of elements) {
 INLINE = f'<script type="application/json">{json.dumps(MOTION)}</script>'
 
 
-class ElementTest(unittest.TestCase):
+class ElementTest(tools.FolderTest):
     pages = 0  # opened so far
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         element.main([str(cls.folder / "duet-motion.js")])
         (cls.folder / "events.js").write_text(EVENTS, encoding="utf-8")
         (cls.folder / "pair.json").write_text(json.dumps(MOTION), encoding="utf-8")
@@ -80,7 +75,7 @@ class ElementTest(unittest.TestCase):
         (cls.folder / "alone.json").write_text(json.dumps(alone), encoding="utf-8")
         (cls.folder / "sunk.json").write_text(json.dumps({**MOTION, "up_axis": "z-up"}))
         (cls.folder / "broken.json").write_text("{", encoding="utf-8")
-        handler = functools.partial(Handler, directory=folder.name)
+        handler = functools.partial(Handler, directory=str(cls.folder))
         cls.server = Server(("127.0.0.1", 0), handler)
         threading.Thread(target=cls.server.serve_forever, daemon=True).start()
         cls.addClassCleanup(cls.server.server_close)

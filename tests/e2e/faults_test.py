@@ -17,7 +17,7 @@ import unittest
 import http2_client as http2
 import reset_flood
 import tools
-from hostile_client_test import SYNTHESIZE, ended, get, handled, in_flight, small_request
+from hostile_client_test import SYNTHESIZE, ended, handled, in_flight, small_request
 
 SILENT = 1000
 FLOOD = 5000
@@ -62,6 +62,9 @@ class LoggingServer:
         self.address = f"127.0.0.1:{serving['port']}"
         self.metrics_port = serving["metrics_port"]
 
+    def page(self, path):
+        return tools.page(self.metrics_port, path)
+
     def lines(self):
         """What it has written in whole, each line as an object, or as bytes where it is none."""
         def parsed(line):
@@ -83,7 +86,7 @@ class LoggingServer:
         resource.prlimit(self._process.pid, resource.RLIMIT_FSIZE, (most, resource.RLIM_INFINITY))
 
     def lost_lines(self):
-        return int(re.search(r"^duet_log_lines_dropped_total (\d+)", get(self, "/metrics")[1],
+        return int(re.search(r"^duet_log_lines_dropped_total (\d+)", self.page("/metrics")[1],
                              re.MULTILINE)[1])
 
     def stop(self):
@@ -101,7 +104,7 @@ class LoggingServer:
 def started(server):
     """How many Synthesize calls have begun."""
     found = re.search(r'grpc_server_started_total\{grpc_method="Synthesize".*\} (\d+)',
-                      get(server, "/metrics")[1])
+                      server.page("/metrics")[1])
     return int(found[1]) if found else 0
 
 
@@ -193,8 +196,8 @@ class FaultsTest(unittest.TestCase):
             # On a slow machine the first may be closed before the last is there.
             tools.wait_until(lambda: descriptors(server) >= before + SILENT // 2, "they are there")
             self.assert_others_are_answered(server.address)
-            self.assertEqual(get(server, "/healthz")[0], 200)
-            self.assertEqual(get(server, "/readyz")[0], 200)
+            self.assertEqual(server.page("/healthz")[0], 200)
+            self.assertEqual(server.page("/readyz")[0], 200)
             tools.wait_until(lambda: descriptors(server) < before + SILENT // 10,
                              "the server closes them")
 

@@ -1,10 +1,7 @@
 """FBX leaders and pairs through every command that reads motion files."""
 
 import json
-import pathlib
 import shutil
-import tempfile
-import unittest
 
 import tools
 
@@ -12,15 +9,7 @@ FILES = tools.SOURCE / "tests/formats/fbx/files"
 RECIPE = 'reactions { each_class { classes: "kick" } }\noutput { formats: FORMAT_NPY }\n'
 
 
-class FbxTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
-
+class FbxTest(tools.ServedTest):
     def synthesize(self, out, *flags):
         return tools.duet("synthesize", "--server", self.server.address, "--label", "kick=1", "--out",
                           self.folder / out, *flags)

@@ -2,7 +2,6 @@
 
 import math
 import tempfile
-import unittest
 
 import tools
 
@@ -17,11 +16,10 @@ PROTOS = ("duet/v1/model.proto", "duet/v1/motion.proto", "duet/v1/reaction.proto
 FRAMES = 40
 
 
-class ForeignClientTest(unittest.TestCase):
+class ForeignClientTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
+        super().setUpClass()
         channel = grpc.insecure_channel(cls.server.address)
         cls.addClassCleanup(channel.close)
         cls.stub = synthesis_pb2_grpc.MotionSynthesisStub(channel)

@@ -1,19 +1,14 @@
 """The pages of duet view and duet compare in a real browser."""
 
-import pathlib
-import tempfile
-import unittest
 
 import browser
 import tools
 
 
-class GalleryTest(unittest.TestCase):
+class GalleryTest(tools.FolderTest):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         cls.file = cls.folder / "view.html"
         cls.compared = cls.folder / "compare.html"
         pair = f"{tools.sample('kick')},{tools.sample('punch')}"

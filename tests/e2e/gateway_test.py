@@ -10,7 +10,6 @@ import signal
 import socket
 import sys
 import tempfile
-import unittest
 
 import gateways
 import tools
@@ -59,11 +58,10 @@ AMBIGUOUS = {
 }
 
 
-class GatewayTest(unittest.TestCase):
+class GatewayTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
+        super().setUpClass()
         cls.gateway = Gateway(cls.server.address)
         cls.addClassCleanup(cls.gateway.stop)
 

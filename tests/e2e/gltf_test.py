@@ -12,7 +12,6 @@ import json
 import os
 import pathlib
 import shutil
-import tempfile
 import unittest
 
 import tools
@@ -33,12 +32,10 @@ NO_THREE = "no three.js of npm; see the head of gltf_test.py"
 NO_BLENDER = "no blender; install the package blender"
 
 
-class GltfTest(unittest.TestCase):
+class GltfTest(tools.FolderTest):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         cls.pair = cls._write_pair()
 
     @classmethod

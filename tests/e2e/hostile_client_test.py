@@ -1,8 +1,6 @@
 """Clients that keep to the protocol and mean no good, against the real server: it stays small, and
 answers others. benchmarks/measure_hostile.py measures the same."""
 
-import contextlib
-import http.client
 import pathlib
 import re
 import socket
@@ -20,19 +18,9 @@ HOSTILE = "127.0.0.2"
 MEGABYTE = 1_000_000
 
 
-def get(server, path):
-    """A page of the metrics port: status and text."""
-    connection = http.client.HTTPConnection("127.0.0.1", server.metrics_port,
-                                            timeout=tools.RUN_SECONDS)
-    with contextlib.closing(connection):
-        connection.request("GET", path)
-        response = connection.getresponse()
-        return response.status, response.read().decode()
-
-
 def in_flight(server):
     found = re.search(r'duet_calls_in_flight\{method="Synthesize"\} (\d+)',
-                      get(server, "/metrics")[1])
+                      server.page("/metrics")[1])
     return int(found[1]) if found else 0
 
 
@@ -45,7 +33,7 @@ def ended(server):
 def handled(server):
     """How many Synthesize calls are over, by code. The log leaves refusals out where there are many."""
     lines = re.findall(r'grpc_server_handled_total\{grpc_code="(\w+)",grpc_method="Synthesize".*\} '
-                       r"(\d+)", get(server, "/metrics")[1])
+                       r"(\d+)", server.page("/metrics")[1])
     return {code: int(count) for code, count in lines}
 
 
@@ -143,11 +131,11 @@ class HostileClientTest(unittest.TestCase):
             self.addCleanup(loiterer.close)
             loiterer.sendall(words.encode())
         for path in ("/healthz", "/readyz", "/metrics"):
-            self.assertEqual(get(server, path)[0], 200)
+            self.assertEqual(server.page(path)[0], 200)
 
     def test_dead_listener_is_unhealthy(self):
         server = self.serve("--self-check-seconds", "0.1", descriptors=64)
-        self.assertEqual(get(server, "/healthz")[0], 200)
+        self.assertEqual(server.page("/healthz")[0], 200)
         held = []
         self.addCleanup(lambda: [each.close() for each in held])
         for _ in range(80):
@@ -157,8 +145,8 @@ class HostileClientTest(unittest.TestCase):
                                for entry in list(server.log)), "its check fails")
         for each in held:
             each.close()
-        tools.wait_until(lambda: get(server, "/readyz")[0] == 503, "it takes no new calls")
-        tools.wait_until(lambda: get(server, "/healthz")[0] == 503, "it says so")
+        tools.wait_until(lambda: server.page("/readyz")[0] == 503, "it takes no new calls")
+        tools.wait_until(lambda: server.page("/healthz")[0] == 503, "it says so")
 
     def test_deadline_beyond_the_clocks_range_is_accepted(self):
         server = self.serve()

@@ -11,7 +11,6 @@ import subprocess
 import tempfile
 import threading
 import time
-import unittest
 
 import capture_senders
 import tools
@@ -109,12 +108,7 @@ class Receiver:
         self.socket.close()
 
 
-class LiveCaptureTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
-
+class LiveCaptureTest(tools.ServedTest):
     def start(self, address, *flags):
         return Session("--from", address, "--label", "hug=1", "--server", self.server.address, *flags)
 

@@ -10,7 +10,6 @@ import socket
 import struct
 import sys
 import time
-import unittest
 
 import gateways
 import tools
@@ -69,11 +68,10 @@ def frames_message(leader, first, count=1):
     )).SerializeToString()
 
 
-class LiveSocketTest(unittest.TestCase):
+class LiveSocketTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
+        super().setUpClass()
         cls.gateway = Gateway(cls.server.address)
         cls.addClassCleanup(cls.gateway.stop)
         cls.leader = duet.read_motion(tools.sample("hug"))

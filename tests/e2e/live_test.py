@@ -1,8 +1,6 @@
 """Live sessions of a foreign client on the real server: what a frame depends on, resuming, sessions
 that share batches, the end of a server, and refusals."""
 
-import contextlib
-import http.client
 import re
 import threading
 import time
@@ -25,17 +23,9 @@ def connect(test, server):
     return channel
 
 
-def metrics(server):
-    connection = http.client.HTTPConnection("127.0.0.1", server.metrics_port,
-                                            timeout=tools.RUN_SECONDS)
-    with contextlib.closing(connection):
-        connection.request("GET", "/metrics")
-        return connection.getresponse().read().decode()
-
-
 def batches(server):
     """Number of batches, and of the windows in them."""
-    page = metrics(server)
+    page = server.page("/metrics")[1]
     return [int(re.search(rf"^duet_batch_size_{name} (\d+)", page, re.MULTILINE)[1])
             for name in ("count", "sum")]
 
@@ -285,7 +275,7 @@ class LiveTest(unittest.TestCase):
         self.assertEqual((entry["method"], entry["code"], entry["model"], entry["frames"]),
                          ("SynthesizeLive", "OK", "sbu", 20))
         self.assertEqual(entry["windows"], session.summary.window_count)
-        page = metrics(self.server)
+        page = self.server.page("/metrics")[1]
         self.assertRegex(page, r'grpc_server_handled_total\{grpc_code="OK",'
                                r'grpc_method="SynthesizeLive".*\} [1-9]')
         self.assertIn('duet_calls_in_flight{method="SynthesizeLive"} 0\n', page)

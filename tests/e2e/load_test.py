@@ -10,7 +10,6 @@ import signal
 import subprocess
 import tempfile
 import unittest
-import urllib.request
 
 import browser
 import tools
@@ -39,8 +38,7 @@ class LoadTest(unittest.TestCase):
 
     def handled(self, server):
         """Synthesize calls by status, as the server counts them."""
-        with urllib.request.urlopen(f"http://127.0.0.1:{server.metrics_port}/metrics") as page:
-            text = page.read().decode()
+        text = server.page("/metrics")[1]
         pattern = r'grpc_server_handled_total\{grpc_code="(\w+)",grpc_method="Synthesize".*?\} (\d+)'
         return {code: int(count) for code, count in re.findall(pattern, text)}
 

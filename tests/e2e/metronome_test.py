@@ -5,10 +5,7 @@
 Most tests replace the browser's audio clock and its frames, so that they control the time.
 """
 
-import pathlib
 import sys
-import tempfile
-import unittest
 
 import browser
 import tools
@@ -69,14 +66,12 @@ window.heard = () => audio.clicks
 """
 
 
-class MetronomeTest(unittest.TestCase):
+class MetronomeTest(tools.FolderTest):
     shared = None  # see page
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         cls.file = cls.folder / "page.html"
         cls.timed = cls.write_pages(cls.file, OFFSET)
         cls.browser = browser.Browser()

@@ -9,7 +9,6 @@ import pathlib
 import re
 import shutil
 import sys
-import tempfile
 import unittest
 
 import tools
@@ -29,12 +28,10 @@ def run(*command, **options):
     return result.stdout
 
 
-class PackageTest(unittest.TestCase):
+class PackageTest(tools.FolderTest):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         run(CPACK, "-G", "DEB", "-B", cls.folder, "-D", f"CPACK_COMPONENTS_ALL={COMPONENTS}",
             cwd=BUILD, timeout=600)
         cls.packages = {file.name.split("_")[0]: file for file in cls.folder.glob("*.deb")}

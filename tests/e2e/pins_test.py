@@ -14,7 +14,6 @@ try:
 except ImportError as error:
     tools.skip(f"{error}; install the packages python3-grpcio and python3-numpy")
 
-import unittest
 
 os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
 os.environ["DUET_CONFIG"] = ""
@@ -54,11 +53,10 @@ def there(follower, joint, frame, way):
     return duet.Constraint(joint, frame, follower.joint(joint)[frame] + np.float32(way) @ axes)
 
 
-class PinsTest(unittest.TestCase):
+class PinsTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
+        super().setUpClass()
         cls.client = duet.Client(cls.server.address)
         cls.addClassCleanup(cls.client.close)
         cls.hug = duet.read_motion(tools.sample("hug"))

@@ -9,7 +9,6 @@ import shutil
 import subprocess
 import tempfile
 import unittest
-import urllib.request
 
 import reset_flood
 import tools
@@ -88,8 +87,7 @@ def nginx(folder, server):
 
 def calls_of(server, method):
     """How often a method was called, by the server's own figures."""
-    with urllib.request.urlopen(f"http://127.0.0.1:{server.metrics_port}/metrics") as reply:
-        text = reply.read().decode()
+    text = server.page("/metrics")[1]
     pattern = rf'^grpc_server_started_total{{[^}}]*grpc_method="{method}"[^}}]*}} (\d+)'
     return sum(int(count) for count in re.findall(pattern, text, re.MULTILINE))
 

@@ -29,11 +29,10 @@ import duet_motion as duet  # noqa: E402
 import duet_motion.aio  # noqa: E402
 
 
-class PythonClientTest(unittest.TestCase):
+class PythonClientTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
+        super().setUpClass()
         cls.client = duet.Client(cls.server.address)
         cls.addClassCleanup(cls.client.close)
         cls.hug = duet.read_motion(tools.sample("hug"))

@@ -64,12 +64,10 @@ def needed_by(file):
     return re.findall(r"\(NEEDED\).*\[(.*)\]", listed.stdout)
 
 
-class PythonPackageTest(unittest.TestCase):
+class PythonPackageTest(tools.FolderTest):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         old = cls.folder / "dist" / "duet_motion-0.0.1-py3-none-any.whl"
         old.parent.mkdir()
         old.touch()  # a wheel of before, which pip must not find beside the new one

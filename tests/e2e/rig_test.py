@@ -1,23 +1,16 @@
 """`duet synthesize --follower-rig`: rigs with unknown joint names, and joint maps for them."""
 
-import pathlib
 import re
-import tempfile
-import unittest
 
 import tools
 
 ADVICE = "--follower-rig-joint-map-file FILE"
 
 
-class RigTest(unittest.TestCase):
+class RigTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
+        super().setUpClass()
         cls.leader = tools.sample("kick")
         text = cls.leader.read_text(encoding="utf-8")
         names = re.findall(r"(?:ROOT|JOINT) (\S+)", text)

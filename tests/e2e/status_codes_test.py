@@ -1,9 +1,7 @@
 """Every status code that a caller may see, over the wire from a server process to a client that shares no
 code with ours; and an engine that is slow, throws or answers nonsense, which fails no neighbour."""
 
-import contextlib
 import hashlib
-import http.client
 import pathlib
 import re
 import tempfile
@@ -26,19 +24,9 @@ FRAMES = 20  # less than a window
 DRAINING = "the server is shutting down"
 
 
-def page(server, path):
-    """A page of the metrics port: status and text."""
-    connection = http.client.HTTPConnection("127.0.0.1", server.metrics_port,
-                                            timeout=tools.RUN_SECONDS)
-    with contextlib.closing(connection):
-        connection.request("GET", path)
-        response = connection.getresponse()
-        return response.status, response.read().decode()
-
-
 def figure(server, pattern):
     """A number of the metrics port; 0 while it is not there."""
-    found = re.search(rf"^{pattern} (\d+)", page(server, "/metrics")[1], re.MULTILINE)
+    found = re.search(rf"^{pattern} (\d+)", server.page("/metrics")[1], re.MULTILINE)
     return int(found[1]) if found else 0
 
 
@@ -146,7 +134,7 @@ class StatusCodesTest(unittest.TestCase):
         tools.wait_until(lambda: figure(server, "duet_queued_windows") == len(calls),
                          "the one worker is busy and all others wait")
         for path in ("/healthz", "/readyz"):
-            self.assertEqual(page(server, path)[0], 200)
+            self.assertEqual(server.page(path)[0], 200)
         health = self.channel.unary_unary("/grpc.health.v1.Health/Check")
         self.assertEqual(health(b"", timeout=tools.RUN_SECONDS), b"\x08\x01")  # SERVING
         self.assertEqual(figure(server, "duet_queued_windows"), len(calls))

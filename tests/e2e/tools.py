@@ -2,6 +2,7 @@
 
 import collections
 import contextlib
+import http.client
 import json
 import os
 import pathlib
@@ -10,6 +11,7 @@ import shutil
 import struct
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -52,6 +54,15 @@ def run(*command, timeout=RUN_SECONDS, **options):
 def duet(*arguments):
     """Runs the client."""
     return run(PROGRAMS / "duet", *arguments)
+
+
+def page(port, path):
+    """A page of an HTTP port of this machine: status and text."""
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=RUN_SECONDS)
+    with contextlib.closing(connection):
+        connection.request("GET", path)
+        response = connection.getresponse()
+        return response.status, response.read().decode()
 
 
 class Server:
@@ -105,6 +116,10 @@ class Server:
     def is_alive(self):
         return self._process.poll() is None
 
+    def page(self, path):
+        """A page of the metrics port: status and text."""
+        return page(self.metrics_port, path)
+
     def events(self, name):
         """The lines of one event, in order."""
         return [entry for entry in list(self.log) if entry.get("event") == name]
@@ -131,6 +146,26 @@ class Server:
             self._process.wait(timeout=STOP_SECONDS)
             self._reader.join(timeout=STOP_SECONDS)
             self._process.stdout.close()
+
+
+class FolderTest(unittest.TestCase):
+    """Tests that share a temporary folder."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+
+
+class ServedTest(FolderTest):
+    """Tests that share a server, and a temporary folder."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.server = Server()
+        cls.addClassCleanup(cls.server.stop)
 
 
 def wait_until(happened, what):

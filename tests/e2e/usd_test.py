@@ -11,7 +11,6 @@ import math
 import os
 import pathlib
 import shutil
-import tempfile
 import unittest
 
 import tools
@@ -57,14 +56,10 @@ def places(joints, turns, moves):
     return world
 
 
-class UsdTest(unittest.TestCase):
+class UsdTest(tools.ServedTest):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
-        cls.server = tools.Server()
-        cls.addClassCleanup(cls.server.stop)
+        super().setUpClass()
         tools.run(tools.PROGRAMS / "duet", "synthesize", "--server", cls.server.address, "--leader",
                   tools.SOURCE / "samples" / "kick.bvh", "--label", "kick=1", "--label", "hug=0.25",
                   "--out", cls.folder / "pair.usda", "--out", cls.folder / "pair.json"

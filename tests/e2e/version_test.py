@@ -3,7 +3,6 @@
 import re
 import sys
 import unittest
-import urllib.request
 
 import tools
 
@@ -30,8 +29,7 @@ class VersionTest(unittest.TestCase):
 
     def test_the_server_reports_it_as_a_metric(self):
         with tools.running_server(metrics="127.0.0.1:0") as server:
-            address = f"http://127.0.0.1:{server.metrics_port}/metrics"
-            page = urllib.request.urlopen(address, timeout=60).read().decode()
+            page = server.page("/metrics")[1]
         self.assertEqual(re.findall(r'^duet_build_info\{version="([^"]*)"\} 1$', page, re.M),
                          [self.version])
 

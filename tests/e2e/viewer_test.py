@@ -4,10 +4,7 @@
 """
 
 import base64
-import pathlib
 import sys
-import tempfile
-import unittest
 
 import browser
 import gif_reader
@@ -16,14 +13,12 @@ import tools
 FRAMES = 90
 
 
-class ViewerTest(unittest.TestCase):
+class ViewerTest(tools.FolderTest):
     shared = None  # see paused
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         cls.file = cls.folder / "page.html"
         tools.run(WRITE_TEST_PAGE, cls.file).check_returncode()
         cls.browser = browser.Browser()

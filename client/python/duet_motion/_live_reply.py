@@ -7,8 +7,7 @@ from typing import Optional
 import grpc
 import numpy as np
 
-from duet_motion._reply import is_broken_connection, malformed
-from duet_motion._wire import UNITS, UP_AXES
+from duet_motion._reply import check_format, is_broken_connection, malformed
 from duet_motion.errors import DuetError, make_error
 from duet_motion.motion import Motion, Positions
 from duet_motion.v1 import live_pb2
@@ -40,15 +39,7 @@ class LiveReply:
             raise malformed("a second header" if kind == "header" else f"{kind} before the header")
 
     def accept_header(self, header: live_pb2.LiveHeader) -> None:
-        leader = self._leader
-        if tuple(header.joint_names) != leader.joint_names:
-            raise malformed("header.joint_names: expected the leader's, got others")
-        if header.frame_rate_hz != leader.frame_rate_hz:
-            raise malformed("header.frame_rate_hz: expected the leader's "
-                            f"{leader.frame_rate_hz}, got {header.frame_rate_hz}")
-        if (header.unit, header.up_axis) != (UNITS[leader.unit], UP_AXES[leader.up_axis]):
-            raise malformed(f"header.unit and up_axis: expected {leader.unit} and "
-                            f"{leader.up_axis}, got {header.unit} and {header.up_axis}")
+        check_format(header, self._leader)
         if header.first_frame != self._first_frame:
             raise malformed(f"header.first_frame: expected {self._first_frame}, got "
                             f"{header.first_frame}")

@@ -7,7 +7,7 @@ ReplyAssembler (client/internal/reply_assembler.h).
 
 from __future__ import annotations
 
-from typing import List, Optional, Tuple
+from typing import List, Optional, Tuple, Union
 
 import grpc
 import numpy as np
@@ -18,7 +18,7 @@ from duet_motion.errors import DuetError, MalformedReplyError, make_error
 from duet_motion.motion import Motion, Positions
 from duet_motion.result import (FollowerChunk, JointRotations, RigJoint, SynthesisResult, Timings,
                                 grade_from_proto)
-from duet_motion.v1 import reaction_pb2, synthesis_pb2
+from duet_motion.v1 import live_pb2, reaction_pb2, synthesis_pb2
 
 # Codes with which a proxy or a stopping server resets streams. The service always adds a reason to
 # these codes.
@@ -34,6 +34,19 @@ def is_broken_connection(error: DuetError) -> bool:
 def malformed(what: str) -> MalformedReplyError:
     return MalformedReplyError(grpc.StatusCode.INTERNAL,
                                f"the server's reply is malformed: {what}")
+
+
+def check_format(header: Union[synthesis_pb2.SynthesisHeader, live_pb2.LiveHeader],
+                 leader: Motion) -> None:
+    """Raises MalformedReplyError unless the follower has the leader's joints, rate and world."""
+    if tuple(header.joint_names) != leader.joint_names:
+        raise malformed("header.joint_names: expected the leader's, got others")
+    if header.frame_rate_hz != leader.frame_rate_hz:
+        raise malformed("header.frame_rate_hz: expected the leader's "
+                        f"{leader.frame_rate_hz}, got {header.frame_rate_hz}")
+    if (header.unit, header.up_axis) != (UNITS[leader.unit], UP_AXES[leader.up_axis]):
+        raise malformed(f"header.unit and up_axis: expected {leader.unit} and "
+                        f"{leader.up_axis}, got {header.unit} and {header.up_axis}")
 
 
 class ReplyAssembler:
@@ -77,14 +90,7 @@ class ReplyAssembler:
         leader = self._leader
         if self.header is not None:
             raise malformed("a second header")
-        if tuple(header.joint_names) != leader.joint_names:
-            raise malformed("header.joint_names: expected the leader's, got others")
-        if header.frame_rate_hz != leader.frame_rate_hz:
-            raise malformed("header.frame_rate_hz: expected the leader's "
-                             f"{leader.frame_rate_hz}, got {header.frame_rate_hz}")
-        if (header.unit, header.up_axis) != (UNITS[leader.unit], UP_AXES[leader.up_axis]):
-            raise malformed(f"header.unit and up_axis: expected {leader.unit} and "
-                             f"{leader.up_axis}, got {header.unit} and {header.up_axis}")
+        check_format(header, leader)
         if header.frame_count != leader.frame_count:
             raise malformed(f"header.frame_count: expected the leader's {leader.frame_count}, got "
                              f"{header.frame_count}")

@@ -8,9 +8,9 @@ from typing import Callable, Mapping, Optional, Sequence, Tuple
 import numpy as np
 import numpy.typing as npt
 
-from duet_motion.motion import Motion, Positions, finite_number
-from duet_motion.request import (Labels, check_integer, check_points, check_weights, short,
-                                 to_selector)
+from duet_motion.motion import Motion, Positions
+from duet_motion.request import (Labels, check_answering, check_integer, check_points, check_weights,
+                                 short)
 from duet_motion.result import FrameRun
 
 MAX_DELAY, MAX_PLAN = 10, 30
@@ -154,13 +154,7 @@ class LiveRequest:
         check_weights(self.labels, self.keyframes)
         check_integer("delay", self.delay, 0, MAX_DELAY)
         check_integer("plan", self.plan, 0, MAX_PLAN)
-        check_integer("seed", self.seed, 0, 2**64 - 1)
-        if finite_number(self.variety) is None:
-            raise ValueError(f"variety: expected a number, got {short(self.variety)}")
-        check_integer("candidates", self.candidates, 1, 16)
-        to_selector(self.model)
-        if self.clean_up is not None and not isinstance(self.clean_up, (bool, np.bool_)):
-            raise ValueError(f"clean_up: expected True, False or None, got {short(self.clean_up)}")
+        check_answering(self)
         check_points("follower_start", self.follower_start, ((3,), (len(names), 3)), names)
         check_points("partner_direction", self.partner_direction, ((3,),))
         check_points("up", self.up, ((3,),))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import numbers
 import reprlib
-from typing import Mapping, Optional, Sequence
+from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,9 @@ from duet_motion._wire import CLEAN_UP, PRIORITIES, UNITS, UP_AXES
 from duet_motion.motion import (Motion, checked_array, checked_number, finite_number,
                                first_not_finite)
 from duet_motion.v1 import model_pb2, motion_pb2, reaction_pb2, synthesis_pb2
+
+if TYPE_CHECKING:
+    from duet_motion.live import LiveRequest
 
 Labels = Mapping[str, float]
 """Weights by interaction class, from -2 to 2: 1 requests a class, 0 is neutral, -1 avoids it."""
@@ -119,13 +122,7 @@ class SynthesisRequest:
         if not isinstance(self.leader, Motion):
             raise ValueError(f"leader: expected a duet_motion.Motion, got {short(self.leader)}")
         check_weights(self.labels, self.keyframes)
-        check_integer("seed", self.seed, 0, 2**64 - 1)
-        if finite_number(self.variety) is None:
-            raise ValueError(f"variety: expected a number, got {short(self.variety)}")
-        check_integer("candidates", self.candidates, 1, 16)
-        to_selector(self.model)
-        if self.clean_up is not None and not isinstance(self.clean_up, (bool, np.bool_)):
-            raise ValueError(f"clean_up: expected True, False or None, got {short(self.clean_up)}")
+        check_answering(self)
         if not isinstance(self.rotations, (bool, np.bool_)):
             raise ValueError(f"rotations: expected True or False, got {short(self.rotations)}")
         joints = self.leader.joint_count
@@ -255,6 +252,17 @@ def check_labels(name: str, labels: Labels) -> None:
         if finite_number(weight) is None:
             raise ValueError(f"{name}[{interaction_class!r}]: expected a finite number, got "
                              f"{short(weight)}")
+
+
+def check_answering(request: Union[SynthesisRequest, LiveRequest]) -> None:
+    """Checks the fields that say which model answers, and how."""
+    check_integer("seed", request.seed, 0, 2**64 - 1)
+    if finite_number(request.variety) is None:
+        raise ValueError(f"variety: expected a number, got {short(request.variety)}")
+    check_integer("candidates", request.candidates, 1, 16)
+    to_selector(request.model)
+    if request.clean_up is not None and not isinstance(request.clean_up, (bool, np.bool_)):
+        raise ValueError(f"clean_up: expected True, False or None, got {short(request.clean_up)}")
 
 
 def check_integer(name: str, value: object, least: int, most: int) -> None:

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "model/base/statistics.h"
+#include "model/evaluation/experiments/synthesizer_method.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -79,8 +80,7 @@ const std::vector<double>& SweepWeights() {
 }
 
 std::vector<float> SweepLabels(int classes, int own, int raised, double weight) {
-  std::vector<float> labels(static_cast<size_t>(classes));
-  labels[static_cast<size_t>(own)] = 1;
+  std::vector<float> labels = OneClass(classes, own);
   labels[static_cast<size_t>(raised)] = static_cast<float>(weight);
   return labels;
 }

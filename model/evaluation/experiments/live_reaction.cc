@@ -61,12 +61,6 @@ Leaders MakeLeaders(const dataset::Sequence& sequence) {
   return {WithLeader(sequence, std::move(acting)), WithLeader(sequence, std::move(standing))};
 }
 
-std::vector<float> OneClass(int classes, int own) {
-  std::vector<float> weights(static_cast<std::size_t>(classes));
-  weights[static_cast<std::size_t>(own)] = 1;
-  return weights;
-}
-
 // The class of the sequence until kLabelFrame, then the next one.
 engine::LabelTrack ChangingLabels(int classes, int own) {
   return engine::LabelTrack(

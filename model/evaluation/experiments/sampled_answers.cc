@@ -12,11 +12,10 @@ std::vector<LabelledLeader> Ask(const dataset::Dataset& dataset, const std::vect
   for (int n = 0; n < samples; ++n) {
     for (const int index : sequences) {
       const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-      std::vector<float> labels(dataset.classes.size());
-      labels[static_cast<size_t>(sequence.interaction_class)] = 1;
-      leaders.push_back({&sequence, engine::LabelTrack(std::move(labels)),
-                         SamplingOf(asked, dataset, index, n), asked.tell_direction,
-                         asked.live_delay});
+      leaders.push_back(
+          {&sequence,
+           engine::LabelTrack(OneClass(dataset.class_count(), sequence.interaction_class)),
+           SamplingOf(asked, dataset, index, n), asked.tell_direction, asked.live_delay});
     }
   }
   return leaders;

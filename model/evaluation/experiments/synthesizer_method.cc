@@ -128,6 +128,12 @@ absl::StatusOr<motion::Poses> SynthesizeSequence(const engine::Synthesizer& synt
   return std::move(followers->front());
 }
 
+std::vector<float> OneClass(int classes, int interaction_class) {
+  std::vector<float> weights(static_cast<size_t>(classes));
+  weights[static_cast<size_t>(interaction_class)] = 1;
+  return weights;
+}
+
 engine::LabelTrack TimeLineLabels(const dataset::Sequence& sequence, int classes) {
   const auto at = [&](int frame) {
     std::vector<float> weights(static_cast<size_t>(classes));
@@ -172,9 +178,9 @@ absl::Status SynthesizerMethod::Train(const dataset::Dataset& dataset, const std
 }
 
 absl::StatusOr<motion::Poses> SynthesizerMethod::Predict(const dataset::Sequence& sequence) const {
-  std::vector<float> labels(synthesizer_->description().classes.size(), 0);
-  labels[static_cast<size_t>(sequence.interaction_class)] = 1;
-  return SynthesizeSequence(*synthesizer_, sequence, labels, start_);
+  return SynthesizeSequence(
+      *synthesizer_, sequence,
+      OneClass(synthesizer_->description().class_count(), sequence.interaction_class), start_);
 }
 
 }  // namespace duet::evaluation::experiments

@@ -53,6 +53,9 @@ absl::StatusOr<motion::Poses> SynthesizeSequence(const engine::Synthesizer& synt
                                                  const std::vector<float>& labels,
                                                  StartGiven start);
 
+// The label vector of one class at weight 1. Shapes: returns [classes].
+std::vector<float> OneClass(int classes, int interaction_class);
+
 // The classes of a sequence's time line as label weights: 1 for each class of a frame.
 engine::LabelTrack TimeLineLabels(const dataset::Sequence& sequence, int classes);
 

@@ -12,6 +12,7 @@
 #include "model/evaluation/experiments/synthesizer_method.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/model_flags.h"
+#include "model/evaluation/program/model_tables.h"
 #include "model/evaluation/program/section_flags.h"
 #include "model/evaluation/report/result_section.h"
 
@@ -36,8 +37,7 @@ engine::LabelTrack ClassAfterClass(int classes, double seconds, double rate) {
   const int minutes = static_cast<int>(std::ceil(seconds / kSecondsOfAClass));
   for (int m = 0; m < minutes; ++m) {
     const int own = m + 1 == minutes ? 0 : m % classes;
-    std::vector<float> weights(static_cast<size_t>(classes));
-    weights[static_cast<size_t>(own)] = 1;
+    std::vector<float> weights = experiments::OneClass(classes, own);
     const int frame = static_cast<int>(std::lround(m * kSecondsOfAClass * rate));
     // Changes at once, not gradually over the minute before.
     if (m > 0) keyframes.push_back({frame - 1, keyframes.back().weights});
@@ -73,11 +73,10 @@ std::vector<dataset::Sequence> MakeLeaders(const Arguments& arguments,
   return leaders;
 }
 
-absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const FoldModel& model) {
-  absl::StatusOr<SharedSynthesizer> synthesizer = model.load("");
-  if (!synthesizer.ok()) return synthesizer.status();
-  const engine::ModelDescription& description = (*synthesizer)->description();
-  absl::Status fits = CheckModel(description, model.name);
+absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const std::string& name,
+                                         const engine::Synthesizer& model) {
+  const engine::ModelDescription& description = model.description();
+  absl::Status fits = CheckModel(description, name);
   if (!fits.ok()) return fits;
   const std::vector<dataset::Sequence> leaders = MakeLeaders(arguments, description);
   std::vector<experiments::LabelledLeader> asked;
@@ -89,10 +88,10 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const FoldM
          arguments.delay});
   }
   absl::StatusOr<std::vector<motion::Poses>> followers =
-      SynthesizeSequences(**synthesizer, asked, experiments::StartGiven::kNone);
+      SynthesizeSequences(model, asked, experiments::StartGiven::kNone);
   if (!followers.ok()) return followers.status();
   report::Table table;
-  table.title = absl::StrCat(model.name, ": ", arguments.minutes, " minutes");
+  table.title = absl::StrCat(name, ": ", arguments.minutes, " minutes");
   table.columns = {"lean", "nearest", "farthest", "out %", "feet", "first", "last", "last / first"};
   table.decimals = 3;
   for (size_t i = 0; i < leaders.size(); ++i) {
@@ -115,8 +114,6 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const FoldM
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
-  if (!models.ok()) return models.status();
   report::ResultSection section = BeginSection(
       arguments.section,
       "Long live sessions with leaders that formulas make: one stands and sways, one whirls, leaps "
@@ -126,11 +123,13 @@ absl::Status Run(const Arguments& arguments) {
   section.settings.emplace_back("frames per second", absl::StrCat(arguments.rate));
   section.settings.emplace_back("delay", absl::StrCat(arguments.delay));
   section.settings.emplace_back("seed", absl::StrCat(arguments.seed));
-  for (const FoldModel& model : *models) {
-    absl::StatusOr<report::Table> table = ModelTable(arguments, model);
-    if (!table.ok()) return table.status();
-    section.tables.push_back(*std::move(table));
-  }
+  absl::Status measured = AddModelTables(
+      arguments.models,
+      [&](const std::string& name, const engine::Synthesizer& model) {
+        return ModelTable(arguments, name, model);
+      },
+      &section);
+  if (!measured.ok()) return measured;
   return FinishSection(arguments.section, section);
 }
 
@@ -153,7 +152,7 @@ void AddHourCommand(CLI::App* app, ChosenCommand* chosen) {
   command->add_option("--delay", arguments->delay, "delay in frames")
       ->check(CLI::Range(0, 10))
       ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "seed of the answers")->capture_default_str();
+  AddSeedFlag(&arguments->seed, command);
   AddSectionFlags(&arguments->section, command);
   RunWhenNamed(command, arguments, Run, chosen);
 }

@@ -124,8 +124,7 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset,
   section.text.push_back(
       "A model with a multi-hot embedding receives the class that colours the point as its label, "
       "so part of the order comes from the input. The same model with all labels zero shows what "
-      "it "
-      "infers from the leader alone.");
+      "it infers from the leader only.");
   section.tables = {report::LatentTable()};
   section.settings = {{"data", dataset.name},
                       {"left out", absl::StrJoin(subjects, ", ")},

@@ -14,6 +14,7 @@
 #include "model/evaluation/experiments/live_reaction.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/model_flags.h"
+#include "model/evaluation/program/model_tables.h"
 #include "model/evaluation/program/section_flags.h"
 #include "model/evaluation/report/result_section.h"
 
@@ -45,18 +46,16 @@ report::TableRow Row(const std::string& name, const experiments::LiveFigures& fi
 }
 
 absl::StatusOr<report::Table> ModelTable(const Arguments& arguments,
-                                         const dataset::Dataset& dataset, const FoldModel& model) {
-  absl::StatusOr<SharedSynthesizer> synthesizer = model.load("");
-  if (!synthesizer.ok()) return synthesizer.status();
+                                         const dataset::Dataset& dataset, const std::string& name,
+                                         const engine::Synthesizer& model) {
   std::vector<int> sequences(dataset.sequences.size());
   std::iota(sequences.begin(), sequences.end(), 0);
   report::Table table;
-  table.title = absl::StrCat(model.name, ": reactions to ", sequences.size(), " leaders");
+  table.title = absl::StrCat(name, ": reactions to ", sequences.size(), " leaders");
   table.columns = {"reaction", "90 %", "react %", "label", "90 %, label", "speed", "jerk"};
   table.decimals = 2;
   const auto measure = [&](std::optional<int> delay) {
-    return experiments::MeasureLiveReaction(**synthesizer, dataset, sequences, arguments.seed,
-                                            delay);
+    return experiments::MeasureLiveReaction(model, dataset, sequences, arguments.seed, delay);
   };
   const absl::StatusOr<experiments::LiveFigures> whole = measure(std::nullopt);
   if (!whole.ok()) return whole.status();
@@ -71,14 +70,11 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments,
       absl::StrCat(
           "Milliseconds. Reaction: from the moment at which a leader who stood for two seconds has "
           "moved by 5 cm, until the follower parts by 5 cm from one with the same seed whose "
-          "leader "
-          "goes on standing: median, and the value of 90 % of the clips; react: in how many clips "
-          "it "
-          "does. Captured followers leave their first pose ",
+          "leader goes on standing: median, and the value of 90 % of the clips; react: in how "
+          "many clips it does. Captured followers leave their first pose ",
           std::llround(Milliseconds(captured, 0.5)), " ms (median) after their leaders."),
       "Label: from a change to another class, until the follower of a standing leader parts by 5 "
-      "cm "
-      "from one with the old class. Speed: of the joints, m/s. Jerk: mean of the joints, as a "
+      "cm from one with the old class. Speed: of the joints, m/s. Jerk: mean of the joints, as a "
       "multiple of the first row's. Delay: in frames of 1/30 s."};
   return table;
 }
@@ -86,21 +82,20 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments,
 absl::Status Run(const Arguments& arguments) {
   absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
   if (!dataset.ok()) return dataset.status();
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
-  if (!models.ok()) return models.status();
   report::ResultSection section = BeginSection(
       arguments.section,
       "How fast live followers react, at 30 frames per second, and how smoothly they move beside "
       "followers of leaders who are known from the start. FID and the other figures of live "
-      "answers: "
-      "duet-eval samples, plausible and dance with --live.");
+      "answers: duet-eval samples, plausible and dance with --live.");
   section.settings.emplace_back("data", DescribeData(*dataset));
   section.settings.emplace_back("seed", absl::StrCat(arguments.seed));
-  for (const FoldModel& model : *models) {
-    absl::StatusOr<report::Table> table = ModelTable(arguments, *dataset, model);
-    if (!table.ok()) return table.status();
-    section.tables.push_back(*std::move(table));
-  }
+  absl::Status measured = AddModelTables(
+      arguments.models,
+      [&](const std::string& name, const engine::Synthesizer& model) {
+        return ModelTable(arguments, *dataset, name, model);
+      },
+      &section);
+  if (!measured.ok()) return measured;
   return FinishSection(arguments.section, section);
 }
 
@@ -118,7 +113,7 @@ void AddLiveCommand(CLI::App* app, ChosenCommand* chosen) {
       ->delimiter(',')
       ->check(CLI::Range(0, 10))
       ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "seed of the answers")->capture_default_str();
+  AddSeedFlag(&arguments->seed, command);
   AddSectionFlags(&arguments->section, command);
   RunWhenNamed(command, arguments, Run, chosen);
 }

@@ -39,10 +39,9 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, co
   }
   std::vector<experiments::LabelledLeader> asked;
   for (const experiments::LongLeader& leader : leaders) {
-    std::vector<float> labels(dataset.classes.size());
-    labels[static_cast<size_t>(leader.sequence.interaction_class)] = 1;
     asked.push_back({&leader.sequence,
-                     engine::LabelTrack(std::move(labels)),
+                     engine::LabelTrack(experiments::OneClass(dataset.class_count(),
+                                                              leader.sequence.interaction_class)),
                      {sampling.seed + asked.size(), sampling.variety, sampling.candidates},
                      true,
                      sampling.live_delay});

@@ -49,6 +49,10 @@ void AddVarietyFlag(float* variety, CLI::App* command) {
       ->capture_default_str();
 }
 
+void AddSeedFlag(uint64_t* seed, CLI::App* command) {
+  command->add_option("--seed", *seed, "seed of the answers")->capture_default_str();
+}
+
 void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command) {
   AddVarietyFlag(&asked->variety, command);
   command
@@ -56,7 +60,7 @@ void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command) {
                    "samples of each window, of which the best is taken")
       ->check(CLI::Range(1, engine::kMostCandidates))
       ->capture_default_str();
-  command->add_option("--seed", asked->seed, "seed of the answers")->capture_default_str();
+  AddSeedFlag(&asked->seed, command);
   command
       ->add_option(
           "--live", asked->live_delay,

@@ -2,6 +2,7 @@
 #define DUET_MODEL_EVALUATION_PROGRAM_MODEL_FLAGS_H_
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command);
 
 // --variety
 void AddVarietyFlag(float* variety, CLI::App* command);
+// --seed
+void AddSeedFlag(uint64_t* seed, CLI::App* command);
 // --variety, --candidates, --seed, --live
 void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command);
 

@@ -23,7 +23,8 @@ struct AsfBone {
   std::vector<AsfFreedom> freedoms;  // in the order of the motion's values; only the root moves
 };
 
-// The skeleton of an .asf file. Lengths are in the file's unit; `radians` is the unit of motions.
+// The skeleton of an .asf file. Lengths are in the file's unit. `radians`: whether the angles of
+// its motions are in radians, not in degrees.
 //
 // `units_per_inch` is the value of ":units length": CMU's 0.45 means 0.45 units per inch.
 struct AsfSkeleton {

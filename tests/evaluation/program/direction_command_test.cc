@@ -1,14 +1,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "model/checkpoint/checkpoint.h"
-#include "model/evaluation/program/commands.h"
-#include "model/motion/coordinates.h"
-#include "tests/dataset/capture_folder.h"
+#include "tests/evaluation/support/made_up_captures.h"
 #include "tests/evaluation/support/read_section.h"
+#include "tests/evaluation/support/run_command.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
@@ -24,22 +25,15 @@ using test::TinyManifest;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::vector<motion::Vec3> Captured(motion::Vec3 at, double yaw) {
-  std::vector<motion::Vec3> pose = test::SwayingPose(0);
-  for (motion::Vec3& p : pose) {
-    p = FromWorld({motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown},
-                  RotateY(p, yaw) + at);
-  }
-  return pose;
-}
-
 // A capture of each class of two people who stand still.
 void WriteCaptures(const dataset::CaptureFolder& folder) {
+  const std::vector<motion::Vec3> pose = test::SwayingPose(0);
   std::string text;
   for (int t = 1; t <= 12; ++t) {
-    text += dataset::CaptureLine(t, Captured({-1, 0, 0}, -1.6), Captured({1, 0, 0}, 1.6));
+    text += dataset::CaptureLine(t, test::AsCaptured(pose, {-1, 0, 0}, -1.6),
+                                 test::AsCaptured(pose, {1, 0, 0}, 1.6));
   }
-  for (const char* interaction_class : {"03", "04", "05", "06", "07", "08"}) {
+  for (const char* interaction_class : test::kSbuClassFolders) {
     folder.Write("s01s02/" + std::string(interaction_class) + "/001/skeleton_pos.txt", text);
   }
 }
@@ -72,23 +66,13 @@ checkpoint::Manifest ConstantManifest(double cosine, double sine) {
 absl::StatusOr<nlohmann::json> RunCommand(const std::vector<std::string>& runs) {
   const dataset::CaptureFolder captures;
   WriteCaptures(captures);
-  const TemporaryFolder results;
   std::vector<std::string> words = {"direction", "--data", captures.path().string(), "--subjects",
-                                    "s01",       "--out",  results.path().string()};
+                                    "s01"};
   for (const std::string& one : runs) words.insert(words.end(), {"--runs", one});
-  std::reverse(words.begin(), words.end());  // as CLI11 wants them
-  CLI::App app;
-  ChosenCommand chosen;
-  AddDirectionCommand(&app, &chosen);
-  try {
-    app.parse(words);
-  } catch (const CLI::ParseError& error) {
-    return absl::InvalidArgumentError(error.what());
-  }
-  if (absl::Status status = chosen(); !status.ok()) return status;
-  const nlohmann::json section = test::ReadSection(results.path());
-  EXPECT_EQ(section.at("id"), "06_direction");
-  return section.at("tables").at(0);
+  const auto section = test::RunForSection(AddDirectionCommand, std::move(words));
+  if (!section.ok()) return section.status();
+  EXPECT_EQ(section->at("id"), "06_direction");
+  return section->at("tables").at(0);
 }
 
 TEST(DirectionCommandTest, HasARowForTheHipsAndForEachRun) {

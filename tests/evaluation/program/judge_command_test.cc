@@ -1,14 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "model/evaluation/program/commands.h"
-#include "model/motion/coordinates.h"
-#include "tests/dataset/capture_folder.h"
+#include "tests/evaluation/support/made_up_captures.h"
+#include "tests/evaluation/support/run_command.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -25,24 +24,18 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::vector<motion::Vec3> AsCaptured(std::vector<motion::Vec3> pose, motion::Vec3 at) {
-  for (motion::Vec3& p : pose) {
-    p = FromWorld({motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown}, p + at);
-  }
-  return pose;
-}
-
 // Four clips of each class. Followers stand at a distance of their class.
 void WriteCaptures(const dataset::CaptureFolder& folder) {
   float away = 0;
-  for (const char* interaction_class : {"03", "04", "05", "06", "07", "08"}) {
+  for (const char* interaction_class : test::kSbuClassFolders) {
     away += 0.6f;
     for (int clip = 1; clip <= 4; ++clip) {
       std::string text;
       for (int t = 0; t < 20; ++t) {
         const double seconds = (1 + 0.1 * clip) * t / 15;
-        text += dataset::CaptureLine(t + 1, AsCaptured(test::SwayingPose(seconds), {-1, 0, 0}),
-                                     AsCaptured(test::SwayingPose(2 * seconds), {away - 1, 0, 0}));
+        text += dataset::CaptureLine(
+            t + 1, test::AsCaptured(test::SwayingPose(seconds), {-1, 0, 0}),
+            test::AsCaptured(test::SwayingPose(2 * seconds), {away - 1, 0, 0}));
       }
       folder.Write("s01s02/" + std::string(interaction_class) + "/00" + std::to_string(clip) +
                        "/skeleton_pos.txt",
@@ -57,17 +50,8 @@ class JudgeCommandTest : public ::testing::Test {
     WriteCaptures(captures_);
     words.insert(words.begin(), {"judge", "--data", captures_.path().string(), "--out",
                                  (folder_ / "judge").string()});
-    CLI::App app;
-    ChosenCommand chosen;
-    AddJudgeCommand(&app, &chosen);
-    std::reverse(words.begin(), words.end());  // as CLI11 wants them
-    try {
-      app.parse(words);
-    } catch (const CLI::ParseError& error) {
-      return absl::InvalidArgumentError(error.what());
-    }
     ::testing::internal::CaptureStdout();
-    absl::Status status = chosen();
+    absl::Status status = test::RunCommand(AddJudgeCommand, std::move(words));
     out_ = ::testing::internal::GetCapturedStdout();
     return status;
   }

@@ -2,14 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "model/evaluation/program/commands.h"
-#include "model/motion/coordinates.h"
-#include "tests/dataset/capture_folder.h"
+#include "tests/evaluation/support/made_up_captures.h"
 #include "tests/evaluation/support/read_section.h"
-#include "tests/support/sample_motion.h"
+#include "tests/evaluation/support/run_command.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::evaluation::program {
@@ -18,69 +18,22 @@ namespace {
 using test::IsOk;
 using test::RowNames;
 using test::StatusIs;
-using test::TemporaryFolder;
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-std::vector<motion::Vec3> AsCaptured(std::vector<motion::Vec3> pose, motion::Vec3 at, double yaw) {
-  for (motion::Vec3& p : pose) {
-    p = FromWorld({motion::LengthUnit::kSbuNormalised, motion::UpAxis::kYDown},
-                  RotateY(p, yaw) + at);
-  }
-  return pose;
-}
-
-// Two people who sway towards each other, each in a rhythm of the clip's own.
-std::string Capture(double rhythm) {
-  std::string text;
-  for (int t = 0; t < 24; ++t) {
-    const double seconds = rhythm * t / 15;
-    text += dataset::CaptureLine(t + 1, AsCaptured(test::SwayingPose(seconds), {-1, 0, 0}, 1.6),
-                                 AsCaptured(test::SwayingPose(2 * seconds), {1, 0, 1}, -1.6));
-  }
-  return text;
-}
-
-// A clip of every class by two pairs of people.
-void WriteCaptures(const dataset::CaptureFolder& folder) {
-  double rhythm = 1;
-  for (const char* people : {"s01s02", "s03s04"}) {
-    for (const char* interaction_class : {"03", "04", "05", "06", "07", "08"}) {
-      folder.Write(std::string(people) + "/" + interaction_class + "/001/skeleton_pos.txt",
-                   Capture(rhythm += 0.1));
-    }
-  }
-}
-
-// What the command leaves in its folder of results.
-absl::StatusOr<nlohmann::json> RunCommand(std::vector<std::string> words) {
+absl::StatusOr<nlohmann::json> RunCommand(test::AddCommand add, std::vector<std::string> words) {
   const dataset::CaptureFolder captures;
-  WriteCaptures(captures);
-  const TemporaryFolder folder;
-  words.insert(words.end(), {"--data", captures.path().string(), "--embedded", "--subjects", "s01",
-                             "--out", folder.path().string()});
-  CLI::App app;
-  ChosenCommand chosen;
-  AddSamplesCommand(&app, &chosen);
-  AddLongCommand(&app, &chosen);
-  AddDanceCommand(&app, &chosen);
-  AddStripsCommand(&app, &chosen);
-  AddToldApartCommand(&app, &chosen);
-  std::reverse(words.begin(), words.end());  // as CLI11 wants them
-  try {
-    app.parse(words);
-  } catch (const CLI::ParseError& error) {
-    return absl::InvalidArgumentError(error.what());
-  }
-  absl::Status status = chosen();
-  if (!status.ok()) return status;
-  return test::ReadSection(folder.path());
+  test::WriteSwayingCaptures(captures);
+  words.insert(words.end(),
+               {"--data", captures.path().string(), "--embedded", "--subjects", "s01"});
+  return test::RunForSection(add, std::move(words));
 }
 
 TEST(SampleCommandsTest, SamplesHasARowAStart) {
-  const auto section = RunCommand({"samples", "--samples", "2", "--starts", "none,pose"});
+  const auto section =
+      RunCommand(AddSamplesCommand, {"samples", "--samples", "2", "--starts", "none,pose"});
   ASSERT_THAT(section, IsOk());
   EXPECT_EQ(section->at("id"), "14_samples");
   EXPECT_THAT(RowNames(section->at("tables").at(0)),
@@ -91,7 +44,7 @@ TEST(SampleCommandsTest, SamplesHasARowAStart) {
 }
 
 TEST(SampleCommandsTest, LongHasARowALeader) {
-  const auto section = RunCommand({"long", "--seconds", "5", "--starts", "pose"});
+  const auto section = RunCommand(AddLongCommand, {"long", "--seconds", "5", "--starts", "pose"});
   ASSERT_THAT(section, IsOk());
   const nlohmann::json& tables = section->at("tables");
   ASSERT_THAT(tables, SizeIs(3));
@@ -102,7 +55,7 @@ TEST(SampleCommandsTest, LongHasARowALeader) {
 }
 
 TEST(SampleCommandsTest, DanceComparesWithBaselinesAndAnotherLead) {
-  const auto section = RunCommand({"dance", "--samples", "1"});
+  const auto section = RunCommand(AddDanceCommand, {"dance", "--samples", "1"});
   ASSERT_THAT(section, IsOk());
   const nlohmann::json& table = section->at("tables").at(0);
   EXPECT_THAT(RowNames(table), ElementsAre("first pose held", "class mean", "nearest seconds",
@@ -113,8 +66,8 @@ TEST(SampleCommandsTest, DanceComparesWithBaselinesAndAnotherLead) {
 }
 
 TEST(SampleCommandsTest, DanceLoopsLeadersAndWeighsTurns) {
-  const auto section =
-      RunCommand({"dance", "--samples", "1", "--loop-minutes", "1.5", "--turn-class", "hug"});
+  const auto section = RunCommand(
+      AddDanceCommand, {"dance", "--samples", "1", "--loop-minutes", "1.5", "--turn-class", "hug"});
   ASSERT_THAT(section, IsOk());
   const nlohmann::json& tables = section->at("tables");
   ASSERT_THAT(tables, SizeIs(4));
@@ -129,13 +82,15 @@ TEST(SampleCommandsTest, DanceLoopsLeadersAndWeighsTurns) {
 }
 
 TEST(SampleCommandsTest, DanceRejectsATurnThatTheDataLacks) {
-  const auto section = RunCommand({"dance", "--samples", "1", "--turn-class", "pirouette"});
+  const auto section =
+      RunCommand(AddDanceCommand, {"dance", "--samples", "1", "--turn-class", "pirouette"});
   EXPECT_THAT(section, StatusIs(absl::StatusCode::kInvalidArgument,
                                 HasSubstr("--turn-class: expected a class of the data")));
 }
 
 TEST(SampleCommandsTest, ToldApartHasAColumnAFold) {
-  const auto section = RunCommand({"told-apart", "--seeds", "1", "--starts", "none"});
+  const auto section =
+      RunCommand(AddToldApartCommand, {"told-apart", "--seeds", "1", "--starts", "none"});
   ASSERT_THAT(section, IsOk());
   const nlohmann::json& table = section->at("tables").at(0);
   EXPECT_EQ(table.at("columns"), nlohmann::json({"s01", "mean", "spread"}));
@@ -146,7 +101,7 @@ TEST(SampleCommandsTest, ToldApartHasAColumnAFold) {
 }
 
 TEST(SampleCommandsTest, StripsHasTheMotionsOfEveryClass) {
-  const auto section = RunCommand({"strips", "--start", "pose"});
+  const auto section = RunCommand(AddStripsCommand, {"strips", "--start", "pose"});
   ASSERT_THAT(section, IsOk());
   ASSERT_THAT(section->at("figures"), SizeIs(6));
   const nlohmann::json& figure = section->at("figures").at(0);

@@ -1,0 +1,22 @@
+#include "model/evaluation/program/model_tables.h"
+
+#include <utility>
+#include <vector>
+
+namespace duet::evaluation::program {
+
+absl::Status AddModelTables(const ModelChoice& models, const MeasureModel& measure,
+                            report::ResultSection* section) {
+  absl::StatusOr<std::vector<FoldModel>> opened = OpenModels(models);
+  if (!opened.ok()) return opened.status();
+  for (const FoldModel& model : *opened) {
+    absl::StatusOr<SharedSynthesizer> synthesizer = model.load("");
+    if (!synthesizer.ok()) return synthesizer.status();
+    absl::StatusOr<report::Table> table = measure(model.name, **synthesizer);
+    if (!table.ok()) return table.status();
+    section->tables.push_back(*std::move(table));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace duet::evaluation::program

@@ -1,0 +1,25 @@
+#ifndef DUET_MODEL_EVALUATION_PROGRAM_MODEL_TABLES_H_
+#define DUET_MODEL_EVALUATION_PROGRAM_MODEL_TABLES_H_
+
+#include <functional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "model/evaluation/program/models.h"
+#include "model/evaluation/report/result_section.h"
+
+namespace duet::evaluation::program {
+
+// Measures one model, which has this name in the tables.
+using MeasureModel = std::function<absl::StatusOr<report::Table>(const std::string& name,
+                                                                 const engine::Synthesizer& model)>;
+
+// Adds a table for each model of the command line, loaded without a fold. Errors: those of
+// OpenModels, of loading a model and of `measure`.
+absl::Status AddModelTables(const ModelChoice& models, const MeasureModel& measure,
+                            report::ResultSection* section);
+
+}  // namespace duet::evaluation::program
+
+#endif  // DUET_MODEL_EVALUATION_PROGRAM_MODEL_TABLES_H_
