@@ -96,7 +96,7 @@ class PackageTest(tools.FolderTest):
         finally:
             (self.root / "duet-fbx").rename(self.root / "usr/bin/duet-fbx")
         self.assertNotEqual(without.returncode, 0)
-        self.assertIn("expected the program", without.stderr)
+        self.assertIn("expected the program", without.stdout)
 
     @unittest.skipUnless(shutil.which("lintian"), "needs lintian")
     def test_lintian_finds_nothing(self):

@@ -106,8 +106,8 @@ absl::StatusOr<int> RunProgram(const fs::path& program, std::vector<std::string>
 absl::Status Missing(absl::string_view source, const fs::path& program) {
   return absl::FailedPreconditionError(absl::StrCat(
       source, ": FBX: expected the program ", program.string(),
-      ", got none; install libassimp-dev and build Duet again (CMake option DUET_FBX), or export "
-      ".glb or .bvh instead"));
+      ", got none; install the package duet-fbx, or build Duet with libassimp-dev (CMake option "
+      "DUET_FBX), or export .glb or .bvh instead"));
 }
 
 absl::Status Failed(absl::string_view source, int status) {
