@@ -159,7 +159,7 @@ class LiveSocketTest(unittest.TestCase):
         for changes, status in (({"Origin": "http://elsewhere.test"}, 403),
                                 ({"Origin": "null"}, 403), ({"Host": "elsewhere.test"}, 421),
                                 ({"Upgrade": "h2c"}, 426), ({"Upgrade": None}, 426),
-                                ({"Connection": "close"}, 426),
+                                ({"Connection": "close"}, 400 if gateways.has_new_aiohttp() else 426),
                                 ({"Sec_WebSocket_Key": "short"}, 400),
                                 ({"Sec_WebSocket_Version": "99"}, 400),
                                 ({"x_request_id": "\x01"}, 400)):
@@ -183,7 +183,8 @@ class LiveSocketTest(unittest.TestCase):
         leader = start_message(self.leader)
         for name, data, code in (
                 ("text", frame(TEXT, b"hello"), 1003),
-                ("a giant frame", frame(BINARY, length=2**40), 1009),
+                ("a giant frame", frame(BINARY, length=2**40),
+                 None if gateways.has_new_aiohttp() else 1009),  # None: ends with the next ping
                 ("a frame above the limit", frame(BINARY, bytes(2**20 + 1)), 1009),
                 ("a giant message in parts", b"".join(
                     frame(0 if i else BINARY, bytes(2**18), last=False) for i in range(5)), 1009),
