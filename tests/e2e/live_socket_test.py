@@ -248,12 +248,14 @@ class LiveSocketTest(unittest.TestCase):
                 browser.recv(4096)
                 browser.shutdown(socket.SHUT_WR)
         tools.wait_until(lambda: self.has_room(gateway), "the half-open sessions to end")
-        self.works(gateway)
 
     def has_room(self, gateway):
-        with connect(gateway.port) as browser:
-            browser.sendall(handshake())
-            return browser.recv(4096).startswith(b"HTTP/1.1 101 ")
+        """Whether the gateway accepts a session, which then works."""
+        try:
+            self.works(gateway)
+        except aiohttp.WSServerHandshakeError:
+            return False
+        return True
 
     def test_sessions_are_counted(self):
         gateway = self.started("live_socket.MAX_SESSIONS = 2")
