@@ -111,6 +111,12 @@ class Owners:
                 return self.innermost(self.by_folder[str(folder)])
         return frozenset()
 
+    def is_built(self, header, sources):
+        """Whether the source file of a header's name, if there is one, belongs to a library. A build without
+        training leaves some out."""
+        path = pathlib.PurePosixPath(header)
+        return str(path.with_suffix(".cc")) not in sources or str(path.with_suffix("")) in self.by_source
+
     def innermost(self, names):
         """The library of a folder that all others there link; all of them if there is none."""
         for name in names:
@@ -123,7 +129,10 @@ class LinkCheck:
     def __init__(self, targets, tree):
         self.targets, self.tree, self.owners = targets, tree, Owners(targets)
         self.headers = {}  # library -> its headers
+        sources = set(tree.files(".cc"))
         for header in tree.files(".h"):
+            if not self.owners.is_built(header, sources):
+                continue
             for owner in self.owners.of(header):
                 self.headers.setdefault(owner, []).append(header)
 

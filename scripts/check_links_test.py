@@ -76,6 +76,12 @@ class CheckLinksTest(test_project.ProjectTestCase):
         self.assertEqual(owners.of("model/motion/view.h"), {"duet_view"})
         self.assertEqual(owners.of("model/motion/mocks/clip.h"), {"duet_motion"})
 
+    def test_header_whose_source_is_not_built_needs_nothing(self):
+        self.write("model/motion/training.h", "absl/status/statusor.h")
+        self.assert_violation("duet_motion: does not link absl::statusor (PUBLIC)")
+        self.write("model/motion/training.cc", "model/motion/training.h")
+        self.assertEqual(list(self.checker().violations()), [])
+
     def test_generated_header_belongs_to_the_library_that_makes_it(self):
         self.write("server/wire.cc", "duet/v1/motion.pb.h")
         checker = self.checker()

@@ -158,7 +158,7 @@ class LiveSocketTest(tools.ServedTest):
         for changes, status in (({"Origin": "http://elsewhere.test"}, 403),
                                 ({"Origin": "null"}, 403), ({"Host": "elsewhere.test"}, 421),
                                 ({"Upgrade": "h2c"}, 426), ({"Upgrade": None}, 426),
-                                ({"Connection": "close"}, 426),
+                                ({"Connection": "close"}, 400 if gateways.has_new_aiohttp() else 426),
                                 ({"Sec_WebSocket_Key": "short"}, 400),
                                 ({"Sec_WebSocket_Version": "99"}, 400),
                                 ({"x_request_id": "\x01"}, 400)):
@@ -182,7 +182,8 @@ class LiveSocketTest(tools.ServedTest):
         leader = start_message(self.leader)
         for name, data, code in (
                 ("text", frame(TEXT, b"hello"), 1003),
-                ("a giant frame", frame(BINARY, length=2**40), 1009),
+                ("a giant frame", frame(BINARY, length=2**40),
+                 None if gateways.has_new_aiohttp() else 1009),  # None: ends with the next ping
                 ("a frame above the limit", frame(BINARY, bytes(2**20 + 1)), 1009),
                 ("a giant message in parts", b"".join(
                     frame(0 if i else BINARY, bytes(2**18), last=False) for i in range(5)), 1009),
@@ -246,12 +247,14 @@ class LiveSocketTest(tools.ServedTest):
                 browser.recv(4096)
                 browser.shutdown(socket.SHUT_WR)
         tools.wait_until(lambda: self.has_room(gateway), "the half-open sessions to end")
-        self.works(gateway)
 
     def has_room(self, gateway):
-        with connect(gateway.port) as browser:
-            browser.sendall(handshake())
-            return browser.recv(4096).startswith(b"HTTP/1.1 101 ")
+        """Whether the gateway accepts a session, which then works."""
+        try:
+            self.works(gateway)
+        except aiohttp.WSServerHandshakeError:
+            return False
+        return True
 
     def test_sessions_are_counted(self):
         gateway = self.started("live_socket.MAX_SESSIONS = 2")
