@@ -1,22 +1,8 @@
 #include "model/cleanup/clean_up.h"
 
-#include <cstddef>
 #include <optional>
-#include <vector>
 
 namespace duet::cleanup {
-namespace {
-
-// The joints that move with a limb of PinnedMotion::MovedFrames.
-std::vector<int> LimbJoints(const body::Body& body, std::size_t index) {
-  const std::size_t legs = body.legs.size();
-  const body::Limb& limb = index < legs ? body.legs[index] : body.arms[index - legs];
-  std::vector<int> joints = limb.beyond;
-  joints.insert(joints.end(), {limb.middle, limb.end});
-  return joints;
-}
-
-}  // namespace
 
 CleanUp::CleanUp(const motion::Skeleton& skeleton, const Options& options)
     : skeleton_(skeleton),
@@ -94,16 +80,11 @@ PinnedMotion CleanUp::ApproachPins(const motion::Poses& leader, const Touch& tou
 
 void CleanUp::PlacePins(const PinnedMotion& pinned, const motion::Poses& leader,
                         const Timing& timing, motion::Poses* follower) const {
-  const PinnedMotion::MovedFrames moved = pinned.Place(follower);
-  if (!options_.joint_ranges.enabled) return;
-  motion::Poses ranged = *follower;
-  KeepJointRanges(skeleton_, body_, Floor(leader), options_.joint_ranges, timing, &ranged);
-  for (std::size_t limb = 0; limb < moved.size(); ++limb) {
-    for (int t = timing.settled; t < follower->frame_count(); ++t) {
-      if (!moved[limb][static_cast<std::size_t>(t)]) continue;
-      for (const int joint : LimbJoints(body_, limb)) follower->at(t, joint) = ranged.at(t, joint);
-    }
-  }
+  const KeepRanges keep_ranges = [&](motion::Poses* poses) {
+    if (!options_.joint_ranges.enabled) return;
+    KeepJointRanges(skeleton_, body_, Floor(leader), options_.joint_ranges, timing, poses);
+  };
+  pinned.Place(keep_ranges, follower);
 }
 
 }  // namespace duet::cleanup

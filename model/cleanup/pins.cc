@@ -6,7 +6,7 @@
 
 #include "absl/types/span.h"
 #include "model/cleanup/offset_track.h"
-#include "model/motion/resample.h"
+#include "model/cleanup/pinned_joint.h"
 
 namespace duet::cleanup {
 namespace {
@@ -21,23 +21,9 @@ constexpr float kComfortable = 0.95f;
 constexpr float kLongestReach = 0.998f;
 // Metres. A shorter offset has no direction.
 constexpr float kNoDirection = 1e-4f;
-// Metres. What remains after a swing is corrected on the straight way if it is less: it comes from
-// pins between two frames. More remains if the limb does not reach, or has not the time.
-constexpr float kCorrectable = 0.02f;
 constexpr int kBisections = 8;
 // Frames. Pins that are this near concern the body at the same time.
 constexpr double kSameTime = 0.5;
-
-// Where a joint is at a time.
-Vec3 At(const motion::Poses& poses, const Pin& pin, std::vector<Vec3>* pose) {
-  pose->resize(static_cast<std::size_t>(poses.joint_count()));
-  SampleCubic(poses, pin.frame, absl::MakeSpan(*pose));
-  return (*pose)[static_cast<std::size_t>(pin.joint)];
-}
-Vec3 At(const motion::Poses& poses, const Pin& pin) {
-  std::vector<Vec3> pose;
-  return At(poses, pin, &pose);
-}
 
 const body::Limb& LimbAt(const body::Body& body, std::size_t index) {
   return index < body.legs.size() ? body.legs[index] : body.arms[index - body.legs.size()];
@@ -45,15 +31,10 @@ const body::Limb& LimbAt(const body::Body& body, std::size_t index) {
 std::size_t LimbCount(const body::Body& body) { return body.legs.size() + body.arms.size(); }
 bool IsLeg(const body::Body& body, std::size_t index) { return index < body.legs.size(); }
 
-bool Moves(const body::Limb& limb, int joint) {
-  return joint == limb.middle || joint == limb.end ||
-         std::find(limb.beyond.begin(), limb.beyond.end(), joint) != limb.beyond.end();
-}
-
 // The limb that moves a joint; LimbCount if it is the body.
 std::size_t LimbOf(const body::Body& body, int joint) {
   std::size_t index = 0;
-  while (index < LimbCount(body) && !Moves(LimbAt(body, index), joint)) ++index;
+  while (index < LimbCount(body) && !MovesWith(LimbAt(body, index), joint)) ++index;
   return index;
 }
 
@@ -72,12 +53,6 @@ void Shift(const std::vector<Vec3>& track, const Timing& timing, motion::Poses* 
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     for (Vec3& joint : (*poses)[t]) joint += track[static_cast<std::size_t>(t)];
   }
-}
-
-std::vector<Offset> OffsetsTo(const Pins& pins, const motion::Poses& poses) {
-  std::vector<Offset> offsets;
-  for (const Pin& pin : pins) offsets.push_back({pin.frame, pin.position - At(poses, pin)});
-  return offsets;
 }
 
 // `v`, not longer than `most`.
@@ -106,7 +81,7 @@ std::vector<Offset> Merged(const std::vector<Offset>& offsets) {
 // its pin.
 Vec3 Shortfall(const body::Limb& limb, float share, const Pin& pin, const motion::Poses& poses) {
   std::vector<Vec3> pose;
-  const Vec3 pinned = At(poses, pin, &pose);
+  const Vec3 pinned = JointAt(poses, pin, &pose);
   const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
   const float thigh = Distance(at(limb.upper), at(limb.middle));
   const float whole =
@@ -120,68 +95,29 @@ Vec3 Shortfall(const body::Limb& limb, float share, const Pin& pin, const motion
   return level * (1 - across / Norm(level));
 }
 
-// The shortest rotation from one direction to another.
-struct Turn {
-  Vec3 axis;  // of length 1
-  double radians = 0;
-};
-
-Turn TurnBetween(Vec3 from, Vec3 to) {
-  const Vec3 axis = Cross(from, to);
-  const float sine = Norm(axis);
-  if (sine < 1e-9f) return {};
-  return {axis / sine, std::atan2(double{sine}, double{Dot(from, to)})};
+// How far the heel of a foot rises while the leg of `hip` and the foot's place is stretched; more
+// than `highest` if the leg does not reach it then.
+float HeelRise(Vec3 hip, Vec3 foot, float length, float highest) {
+  const Vec3 way = foot - hip;
+  const float across = Norm(Vec3{way.x, 0, way.z}), reach = kLongestReach * length;
+  if (across >= reach) return 2 * highest;
+  return std::max(0.0f, -way.y - std::sqrt(reach * reach - across * across));
 }
 
-Vec3 Turned(Vec3 v, const Turn& turn) {
-  return turn.radians == 0 ? v : RotateAbout(v, turn.axis, turn.radians);
+float LengthOf(const body::Limb& limb, absl::Span<const Vec3> pose) {
+  const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
+  return Distance(at(limb.upper), at(limb.middle)) + Distance(at(limb.middle), at(limb.end));
 }
 
-// Rotates a whole limb about its upper joint.
-void Swing(const body::Limb& limb, const Turn& turn, absl::Span<Vec3> pose) {
-  const Vec3 upper = pose[static_cast<std::size_t>(limb.upper)];
-  const auto swing = [&](int joint) {
-    Vec3& position = pose[static_cast<std::size_t>(joint)];
-    position = upper + Turned(position - upper, turn);
-  };
-  swing(limb.middle);
-  swing(limb.end);
-  for (const int joint : limb.beyond) swing(joint);
-}
-
-// Moves one joint of a limb by `way`. `facing`: of the body.
-void MoveJoint(const body::Limb& limb, bool is_leg, int joint, Vec3 way, Vec3 facing,
-               absl::Span<Vec3> pose) {
-  const auto at = [&](int index) { return pose[static_cast<std::size_t>(index)]; };
-  const Vec3 upper = at(limb.upper);
-  if (joint == limb.middle) {
-    const Vec3 from = at(limb.middle) - upper;
-    // A foot stays where it stands.
-    if (is_leg) return ReachBent(limb, at(limb.end), from + way, pose);
-    return Swing(limb, TurnBetween(from, from + way), pose);
-  }
-  // Swings before it bends, so that elbow and knee keep their side of the limb.
-  const Vec3 goal = at(joint) + way;
-  const Turn turn = TurnBetween(at(joint) - upper, goal - upper);
-  Swing(limb, turn, pose);
-  Reach(limb, at(limb.end) + goal - at(joint), Turned(is_leg ? facing : -facing, turn), pose);
-}
-
-Vec3 FacingOf(const motion::Skeleton& skeleton, absl::Span<const Vec3> pose) {
-  return skeleton.hips ? body::Facing(*skeleton.hips, pose) : Vec3{};
-}
-
-// The part of `way` by which a body can move while its feet stay: all of it unless that takes a leg
-// beyond its reach.
-float ShareWithFeet(const body::Body& body, Vec3 way, absl::Span<const Vec3> pose) {
+// The part of `way` by which a body can move while its feet stay in their places and their heels
+// rise by at most `highest`: all of it unless that takes a leg beyond its reach.
+float ShareWithFeet(const body::Body& body, Vec3 way, float highest, absl::Span<const Vec3> pose) {
   const auto fits = [&](float share) {
     return std::all_of(body.legs.begin(), body.legs.end(), [&](const body::Limb& leg) {
       const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
-      const float length =
-          Distance(at(leg.upper), at(leg.middle)) + Distance(at(leg.middle), at(leg.end));
-      const float now = Distance(at(leg.upper), at(leg.end));
-      return Distance(at(leg.upper) + way * share, at(leg.end)) <=
-             std::max(now, kLongestReach * length);
+      const Vec3 hip = at(leg.upper) + way * share;
+      if (Distance(hip, at(leg.end)) <= Distance(at(leg.upper), at(leg.end))) return true;
+      return HeelRise(hip, at(leg.end), LengthOf(leg, pose), highest) <= highest;
     });
   };
   if (fits(1)) return 1;
@@ -193,78 +129,26 @@ float ShareWithFeet(const body::Body& body, Vec3 way, absl::Span<const Vec3> pos
   return low;
 }
 
-// Moves the body by a track while its feet stay.
+// Moves the body by a track while its feet stay in their places. A heel rises where its leg would
+// not reach the foot otherwise.
 void ShiftAboveFeet(const motion::Skeleton& skeleton, const body::Body& body,
-                    const std::vector<Vec3>& track, const Timing& timing, motion::Poses* poses) {
+                    const std::vector<Vec3>& track, float highest_heel, const Timing& timing,
+                    motion::Poses* poses) {
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     Vec3 way = track[static_cast<std::size_t>(t)];
     if (Norm(way) < kNoDirection) continue;
     const absl::Span<Vec3> pose = (*poses)[t];
-    way = way * ShareWithFeet(body, way, pose);
+    way = way * ShareWithFeet(body, way, highest_heel, pose);
     std::vector<Vec3> feet;
-    for (const body::Limb& leg : body.legs) feet.push_back(pose[static_cast<std::size_t>(leg.end)]);
+    for (const body::Limb& leg : body.legs) {
+      const Vec3 foot = pose[static_cast<std::size_t>(leg.end)];
+      const Vec3 hip = pose[static_cast<std::size_t>(leg.upper)] + way;
+      const float rise = HeelRise(hip, foot, LengthOf(leg, pose), highest_heel);
+      feet.push_back(foot + Vec3{0, std::min(rise, highest_heel), 0});
+    }
     for (Vec3& joint : pose) joint += way;
     const Vec3 facing = FacingOf(skeleton, pose);
     for (std::size_t i = 0; i < feet.size(); ++i) Reach(body.legs[i], feet[i], facing, pose);
-  }
-}
-
-// Turns a limb about its upper joint and changes how far its end is from it, so that the joint of
-// `pins` comes to them. On the straight way it could pass through the upper joint.
-void SwingToPins(const motion::Skeleton& skeleton, const body::Limb& limb, bool is_leg,
-                 const Pins& pins, const OffsetLimits& limits, const Timing& timing,
-                 std::vector<bool>* moved, motion::Poses* poses) {
-  std::vector<Offset> turns, ranges;
-  std::vector<Vec3> pose;
-  for (const Pin& pin : pins) {
-    const Vec3 now = At(*poses, pin, &pose);
-    const Vec3 upper = pose[static_cast<std::size_t>(limb.upper)];
-    const float reach = Distance(now, upper), wanted = Distance(pin.position, upper);
-    const Turn turn = TurnBetween(now - upper, pin.position - upper);
-    // In metres along the circle.
-    turns.push_back({pin.frame, turn.axis * (static_cast<float>(turn.radians) * reach)});
-    ranges.push_back({pin.frame, {wanted - reach, 0, 0}});
-  }
-  // Along the circle and towards its middle at the same time.
-  constexpr double kShare = 0.7;
-  const OffsetLimits both = {limits.ease_seconds, limits.gentle_metres_per_second * kShare,
-                             limits.fastest_metres_per_second * kShare};
-  const std::vector<Vec3> turn_track = OffsetTrack(turns, both, timing, poses->frame_count());
-  const std::vector<Vec3> range_track = OffsetTrack(ranges, both, timing, poses->frame_count());
-  for (int t = timing.settled; t < poses->frame_count(); ++t) {
-    const std::size_t at = static_cast<std::size_t>(t);
-    const absl::Span<Vec3> body = (*poses)[t];
-    const Vec3 upper = body[static_cast<std::size_t>(limb.upper)];
-    const Vec3 from = body[static_cast<std::size_t>(pins.front().joint)] - upper;
-    const float angle = Norm(turn_track[at]), reach = Norm(from), longer = range_track[at].x;
-    if (reach < kNoDirection || angle + std::abs(longer) < kNoDirection) continue;
-    const Turn turn = angle > 0 ? Turn{turn_track[at] / angle, double{angle / reach}} : Turn{};
-    const Vec3 to = Turned(from, turn) * (std::max(0.0f, reach + longer) / reach);
-    MoveJoint(limb, is_leg, pins.front().joint, to - from, FacingOf(skeleton, body), body);
-    (*moved)[at] = true;
-  }
-}
-
-// Moves the joint of `pins`, all of one joint of a limb, to them.
-void MoveToPins(const motion::Skeleton& skeleton, const body::Body& body, std::size_t index,
-                const Pins& pins, const OffsetLimits& limits, const Timing& timing,
-                std::vector<bool>* moved, motion::Poses* poses) {
-  const body::Limb& limb = LimbAt(body, index);
-  const bool is_leg = IsLeg(body, index);
-  const int joint = pins.front().joint;
-  if (joint != limb.middle) {
-    SwingToPins(skeleton, limb, is_leg, pins, limits, timing, moved, poses);
-  }
-  std::vector<Offset> offsets = OffsetsTo(pins, *poses);
-  for (Offset& offset : offsets) {
-    if (joint != limb.middle && Norm(offset.way) > kCorrectable) offset.way = {};
-  }
-  const std::vector<Vec3> track = OffsetTrack(offsets, limits, timing, poses->frame_count());
-  for (int t = timing.settled; t < poses->frame_count(); ++t) {
-    const Vec3 way = track[static_cast<std::size_t>(t)];
-    if (Norm(way) < kNoDirection) continue;
-    MoveJoint(limb, is_leg, joint, way, FacingOf(skeleton, (*poses)[t]), (*poses)[t]);
-    (*moved)[static_cast<std::size_t>(t)] = true;
   }
 }
 
@@ -280,7 +164,7 @@ PinnedMotion::PinnedMotion(const motion::Skeleton& skeleton, const body::Body& b
       limb_pins_(LimbCount(body)) {
   for (Pin pin : pins) {
     if (pin.frame <= timing.settled - 1) continue;
-    pin.position = Lerp(pin.position, At(follower, pin), pin.softness);
+    pin.position = Lerp(pin.position, JointAt(follower, pin), pin.softness);
     pin.softness = 0;
     const std::size_t limb = LimbOf(body, pin.joint);
     (limb < limb_pins_.size() ? limb_pins_[limb] : body_pins_).push_back(pin);
@@ -330,29 +214,20 @@ bool PinnedMotion::Approach(motion::Poses* follower) const {
 }
 
 void PinnedMotion::HoldBody(const motion::Poses& follower) {
-  for (Pin& pin : body_pins_) pin.position = At(follower, pin);
+  for (Pin& pin : body_pins_) pin.position = JointAt(follower, pin);
 }
 
-PinnedMotion::MovedFrames PinnedMotion::Place(motion::Poses* follower) const {
-  const int frames = follower->frame_count();
+void PinnedMotion::Place(const KeepRanges& keep_ranges, motion::Poses* follower) const {
   if (!body_pins_.empty()) {
     const std::vector<Offset> offsets = Merged(OffsetsTo(body_pins_, *follower));
-    ShiftAboveFeet(skeleton_, body_, OffsetTrack(offsets, BodyLimits(options_), timing_, frames),
-                   timing_, follower);
+    const std::vector<Vec3> track =
+        OffsetTrack(offsets, BodyLimits(options_), timing_, follower->frame_count());
+    ShiftAboveFeet(skeleton_, body_, track, options_.highest_heel_metres, timing_, follower);
   }
-  MovedFrames moved(limb_pins_.size());
   for (std::size_t i = 0; i < limb_pins_.size(); ++i) {
-    moved[i].resize(static_cast<std::size_t>(frames));
-    const Pins& pins = limb_pins_[i];
-    for (auto first = pins.begin(); first != pins.end();) {
-      const auto end = std::find_if(first, pins.end(),
-                                    [first](const Pin& pin) { return pin.joint != first->joint; });
-      MoveToPins(skeleton_, body_, i, Pins(first, end), LimbLimits(options_), timing_, &moved[i],
-                 follower);
-      first = end;
-    }
+    MoveToPins({skeleton_, LimbAt(body_, i), IsLeg(body_, i), LimbLimits(options_)}, limb_pins_[i],
+               keep_ranges, timing_, follower);
   }
-  return moved;
 }
 
 double MeanPinDistance(const Pins& pins, const motion::Poses& follower, int settled) {
@@ -360,7 +235,7 @@ double MeanPinDistance(const Pins& pins, const motion::Poses& follower, int sett
   int count = 0;
   for (const Pin& pin : pins) {
     if (pin.frame <= settled - 1 || pin.frame > follower.frame_count() - 1) continue;
-    sum += double{Distance(At(follower, pin), pin.position)};
+    sum += double{Distance(JointAt(follower, pin), pin.position)};
     ++count;
   }
   return count > 0 ? sum / count : 0;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "model/body/limbs.h"
+#include "model/cleanup/limb_pins.h"
 #include "model/cleanup/timing.h"
 #include "model/motion/pin.h"
 #include "model/motion/poses.h"
@@ -23,6 +24,8 @@ struct PinOptions {
   double farthest_approach_metres = 1, farthest_body_metres = 3;
   // How far the body rises or sinks at most: a person can crouch or stand on their toes.
   float farthest_lift_metres = 0.3f;
+  // How far the heel of a standing foot rises at most so that a pinned body gets farther from it.
+  float highest_heel_metres = 0.06f;
 };
 
 // Moves the joints of a follower to their pins, and eases the corrections in and out over the
@@ -39,7 +42,7 @@ struct PinOptions {
 //   ... move bodies apart ...
 //   pinned.HoldBody(*follower);
 //   ... place the feet ...
-//   pinned.Place(follower);
+//   pinned.Place(keep_ranges, follower);
 //
 // Cost:    linear in the frames and in the pins.
 // Threads: not safe to call concurrently.
@@ -54,9 +57,8 @@ class PinnedMotion {
   bool Approach(motion::Poses* follower) const;
   // Lets the pins of the body be where the body is now: what moved it away from them has priority.
   void HoldBody(const motion::Poses& follower);
-  // The frames in which Place moved each limb are set in `moved` [limbs][frames]: legs, then arms.
-  using MovedFrames = std::vector<std::vector<bool>>;
-  MovedFrames Place(motion::Poses* follower) const;
+  // `keep_ranges` limits the joints of limbs that move; may be empty.
+  void Place(const KeepRanges& keep_ranges, motion::Poses* follower) const;
 
  private:
   Timing timing_;

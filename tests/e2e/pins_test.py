@@ -83,6 +83,18 @@ class PinsTest(tools.ServedTest):
             self.assertLessEqual(pinned.grade.skating, free.grade.skating + 0.05)
             self.assertLessEqual(pinned.grade.overlapping, free.grade.overlapping + 0.05)
 
+    def test_a_hand_near_its_own_shoulder_is_not_thrown(self):
+        for name in ("kick", "hug"):
+            leader = duet.read_motion(tools.sample(name))
+            free = self.ask(leader, {name: 1})
+            for hand in ("left", "right"):
+                for frame in (12, 40, 60):
+                    place = free.follower.joint(f"{hand}_shoulder")[frame]
+                    pinned = self.ask(leader, {name: 1}, constraints=[
+                        duet.Constraint(f"{hand}_hand", frame, place)])
+                    self.assertLess(speed(pinned.follower, f"{hand}_hand"),
+                                    speed(free.follower, f"{hand}_hand") + FASTEST)
+
     def test_the_body_steps_to_a_mark(self):
         free = self.ask()
         pin = there(free.follower, "torso", 70, (0.25, 0, -0.15))
