@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "model/base/median.h"
+#include "model/base/statistics.h"
 #include "model/body/hands.h"
 
 namespace duet::engine {
@@ -11,8 +12,9 @@ namespace {
 
 // Hands at this distance meet, metres.
 constexpr double kMeets = 0.25;
-// The least share of offered hands that are met.
-constexpr double kLeastShare = 0.25;
+// The least share of an offered hand's time that is met. Clean-up meets every offered hand of the
+// class, so that a smaller share would close more hands than it should.
+constexpr double kLeastShare = 0.5;
 constexpr double kLeastSeconds = 3;
 
 }  // namespace
@@ -23,28 +25,30 @@ HandContactFit::HandContactFit(const motion::Skeleton& skeleton)
 void HandContactFit::Add(const motion::Poses& leader, const motion::Poses& follower, int begin,
                          int end) {
   if (!body_.shoulders) return;
+  int offered = 0;
+  const std::size_t met_before = met_.size();
   for (int t = begin; t < end; ++t) {
-    for (const body::Limb& offered : body_.arms) {
-      if (body::ReachTowards(offered, skeleton_.root, leader[t], follower.at(t, skeleton_.root)) <
+    for (const body::Limb& arm : body_.arms) {
+      if (body::ReachTowards(arm, skeleton_.root, leader[t], follower.at(t, skeleton_.root)) <
           body::kOffersReach) {
         continue;
       }
-      const motion::Vec3 hand = leader.at(t, offered.end);
-      distances_.push_back(double{std::min(Distance(hand, follower.at(t, body_.arms[0].end)),
-                                           Distance(hand, follower.at(t, body_.arms[1].end)))});
+      ++offered;
+      const motion::Vec3 hand = leader.at(t, arm.end);
+      const float distance = std::min(Distance(hand, follower.at(t, body_.arms[0].end)),
+                                      Distance(hand, follower.at(t, body_.arms[1].end)));
+      if (distance < kMeets) met_.push_back(double{distance});
     }
   }
+  if (offered == 0) return;
+  offered_ += offered;
+  shares_.push_back(static_cast<double>(met_.size() - met_before) / offered);
 }
 
 std::optional<double> HandContactFit::Metres(double frame_rate_hz) const {
-  std::vector<double> met;
-  for (const double distance : distances_) {
-    if (distance < kMeets) met.push_back(distance);
-  }
-  const double offered = static_cast<double>(distances_.size());
-  if (offered < kLeastSeconds * frame_rate_hz) return std::nullopt;
-  if (static_cast<double>(met.size()) < kLeastShare * offered) return std::nullopt;
-  return base::Median(std::move(met));
+  if (offered_ < kLeastSeconds * frame_rate_hz) return std::nullopt;
+  if (base::Mean(shares_) < kLeastShare) return std::nullopt;
+  return base::Median(met_);
 }
 
 }  // namespace duet::engine

@@ -17,18 +17,20 @@ class HandContactFit {
   // `skeleton` must outlive the fit.
   explicit HandContactFit(const motion::Skeleton& skeleton);
 
-  // Adds frames [begin, end) of a pair.
+  // Adds one stretch of the class: frames [begin, end) of a pair.
   void Add(const motion::Poses& leader, const motion::Poses& follower, int begin, int end);
 
   // The median distance of the hands that meet. Absent if the leaders offer a hand for less than
-  // 3 s, if fewer than a quarter of the offered hands are met, or
+  // 3 s, if less than half of an offered hand's time is met in the mean of the stretches, or
   // without two named arms.
   std::optional<double> Metres(double frame_rate_hz) const;
 
  private:
   const motion::Skeleton& skeleton_;
   body::Body body_;
-  std::vector<double> distances_;  // of an offered hand from the nearest hand of the follower
+  int offered_ = 0;             // frames in which a hand is offered
+  std::vector<double> met_;     // distances of offered hands that the follower's hand meets
+  std::vector<double> shares_;  // of the offered frames that are met, in each stretch
 };
 
 }  // namespace duet::engine

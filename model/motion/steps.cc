@@ -45,14 +45,19 @@ std::vector<double> FindSteps(const JointPair& feet, const Poses& person, double
   return steps;
 }
 
-StepTiming MeasureStepTiming(const std::vector<double>& steps, const std::vector<double>& times) {
+StepTiming MeasureStepTiming(const std::vector<double>& steps, const std::vector<double>& times,
+                             double farthest) {
   std::vector<double> offsets, distances;
+  int far = 0;
   for (const double step : steps) {
-    offsets.push_back(TimeToNearest(step, times));
-    distances.push_back(std::abs(offsets.back()));
+    const double offset = TimeToNearest(step, times);
+    far += std::abs(offset) > farthest;
+    if (std::abs(offset) > farthest) continue;
+    offsets.push_back(offset);
+    distances.push_back(std::abs(offset));
   }
-  return {static_cast<int>(steps.size()), base::Summarise(distances).mean,
-          base::Summarise(offsets).deviation};
+  return {static_cast<int>(offsets.size()), base::Summarise(distances).mean,
+          base::Summarise(offsets).deviation, far};
 }
 
 }  // namespace duet::motion

@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_MOTION_STEPS_H_
 #define DUET_MODEL_MOTION_STEPS_H_
 
+#include <limits>
 #include <vector>
 
 #include "model/motion/poses.h"
@@ -24,9 +25,11 @@ struct StepTiming {
   // Standard deviation of the signed time from each step to the nearest time, so that a constant
   // delay does not count; NaN for fewer than 2 steps or without times.
   double spread = 0;
+  int far = 0;  // steps that are farther than `farthest` from every time; no other figure has them
 };
 // Requires ascending `times`.
-StepTiming MeasureStepTiming(const std::vector<double>& steps, const std::vector<double>& times);
+StepTiming MeasureStepTiming(const std::vector<double>& steps, const std::vector<double>& times,
+                             double farthest = std::numeric_limits<double>::infinity());
 
 }  // namespace duet::motion
 

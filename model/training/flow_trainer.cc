@@ -225,7 +225,7 @@ double FlowTrainer::ValidationError(const Example& example) {
 
 std::vector<checkpoint::Tensor> FlowTrainer::BestTensors() {
   network::FlowGenerator best(manifest_);
-  best->SetMeasured(base_poses_, generator_->noise_roots());
+  best->SetMeasured(base_poses_, flow_.noise_share * generator_->noise_roots());
   CopyBest(best.get());
   return network::StoreParameters(manifest_, best);
 }

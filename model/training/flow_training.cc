@@ -24,12 +24,14 @@ void Read(base::ObjectReader* reader, FlowTraining* out) {
   out->slide_weight = reader->Number("slide_weight", 0, 1e6);
   out->slide_speed = reader->Number("slide_speed", 0, 100);
   out->least_remaining = reader->Number("least_remaining", 1e-6, 1);
+  out->noise_share = reader->Number("noise_share", 0, 2);
 }
 
 void Read(base::ObjectReader* reader, FlowTraining::FrameLabels* out) {
   out->shift = reader->Number("shift", 0, 1000);
   out->unlabelled = Probability(reader, "unlabelled");
   out->avoided = Probability(reader, "avoided");
+  out->against_lead = Probability(reader, "against_lead");
 }
 
 void Read(base::ObjectReader* reader, FlowTraining::Drift* out) {
@@ -102,9 +104,11 @@ void Describe(const FlowTraining& f, Description* out) {
                {"flow.slide_weight", Text(f.slide_weight)},
                {"flow.slide_speed", Text(f.slide_speed)},
                {"flow.least_remaining", Text(f.least_remaining)},
+               {"flow.noise_share", Text(f.noise_share)},
                {"frame_labels.shift", Text(f.frame_labels.shift)},
                {"frame_labels.unlabelled", Text(f.frame_labels.unlabelled)},
                {"frame_labels.avoided", Text(f.frame_labels.avoided)},
+               {"frame_labels.against_lead", Text(f.frame_labels.against_lead)},
                {"drift.share", Text(f.drift.share)},
                {"drift.tilt", Text(f.drift.tilt)},
                {"drift.bend", Text(f.drift.bend)},

@@ -32,6 +32,7 @@ struct FlowTraining {
   double slide_weight = 0;        // of feet that move where the captured ones stand
   double slide_speed = 0.3;       // metres per second; a captured foot below it stands
   double least_remaining = 0.15;  // losses are divided by 1 - t, but at least by this
+  double noise_share = 1;         // of the noise of training that the checkpoint's answers have
 
   // Labels in training with frame_labels. By default every class of a frame has weight 1 and all
   // others 0.
@@ -39,6 +40,9 @@ struct FlowTraining {
     double shift = 0;       // frames, standard deviation of the beginning and the end of a span
     double unlabelled = 0;  // fraction of the classes of a clip whose weight is 0 throughout
     double avoided = 0;     // fraction of the classes of a clip that have weight -1 where absent
+    // Fraction of the clips in which a lead without the clip's classes follows the known frames
+    // (other_lead.h), so that the labels decide against a lead.
+    double against_lead = 0;
   } frame_labels;
 
   // A follower that continues from its own previous answer does not start where a captured one

@@ -48,6 +48,14 @@ TEST(MeasureStepTimingTest, ConstantDelayHasNoSpread) {
   EXPECT_NEAR(timing.spread, 0, 1e-9);
 }
 
+TEST(MeasureStepTimingTest, FarStepsAreOnlyCounted) {
+  const StepTiming timing = MeasureStepTiming({1.1, 2.1, 9, 30}, {1, 2, 3}, 0.5);
+  EXPECT_EQ(timing.steps, 2);
+  EXPECT_EQ(timing.far, 2);
+  EXPECT_NEAR(timing.spread, 0, 1e-9);
+  EXPECT_NEAR(timing.mean_distance, 0.1, 1e-9);
+}
+
 TEST(MeasureStepTimingTest, StepsBeyondTheEndsHaveADistanceToo) {
   EXPECT_NEAR(MeasureStepTiming({0, 5}, {1, 3}).mean_distance, 1.5, 1e-9);
 }

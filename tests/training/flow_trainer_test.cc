@@ -212,6 +212,19 @@ TEST_F(FlowTrainerTest, PatienceBeginsWithTheEpochsThatMayResult) {
   EXPECT_EQ(trainer.epoch(), 6);  // the fifth is the best, and the sixth does not improve
 }
 
+TEST_F(FlowTrainerTest, CheckpointHasItsShareOfTheNoise) {
+  const auto noise = [this](double share) {
+    std::get<FlowTraining>(options_.method).noise_share = share;
+    for (const checkpoint::Tensor& tensor : Make().BestTensors()) {
+      if (tensor.name == "noise.roots") return tensor.values;
+    }
+    return std::vector<float>();
+  };
+  const std::vector<float> all = noise(1), half = noise(0.5);
+  ASSERT_FALSE(all.empty());
+  for (size_t i = 0; i < all.size(); ++i) EXPECT_FLOAT_EQ(half[i], all[i] / 2);
+}
+
 TEST_F(FlowTrainerTest, DrawsEveryKindOfStartWithItsProbability) {
   options_.start = {0.25, 0.5};
   FlowOf(&options_).several_known = 0.5;
@@ -243,6 +256,33 @@ TEST_F(FlowTrainerTest, LiveClipsHaveSeveralKnownFramesAndHideTheLeadersFuture) 
     EXPECT_GE(batch.input.known_count.min().item<int64_t>(), 2);
     EXPECT_TRUE(batch.input.is_hidden.any().item<bool>());
   }
+}
+
+TEST_F(FlowTrainerTest, LeadsAgainstTheLabelsChangeOnlyAfterTheKnownFrames) {
+  options_.start = {0, 1};
+  options_.augmentation = {};
+  FlowOf(&options_).passes = 1;
+  FlowOf(&options_).several_known = FlowOf(&options_).known_noise = FlowOf(&options_).pair_scale =
+      0;
+  for (dataset::Sequence& sequence : dataset_.sequences) {
+    motion::Poses& leader = sequence.pair.leader.poses;
+    sequence.labels = {{sequence.interaction_class, 0, leader.frame_count()}};
+    for (int t = 0; t < leader.frame_count(); ++t) {
+      leader.at(t, 8).y += 0.02f * static_cast<float>(sequence.interaction_class * t);
+    }
+  }
+  const std::vector<FlowBatch> captured = Sample(0);
+  FlowOf(&options_).frame_labels.against_lead = 1;
+  const std::vector<FlowBatch> against = Sample(0);
+  ASSERT_EQ(against.size(), captured.size());
+  double changed = 0;
+  for (size_t i = 0; i < captured.size(); ++i) {
+    const torch::Tensor before = captured[i].input.leader, after = against[i].input.leader;
+    EXPECT_TRUE(torch::equal(captured[i].target, against[i].target));
+    EXPECT_TRUE(torch::equal(before.select(1, 0), after.select(1, 0)));
+    changed += (before - after).abs().max().item<double>();
+  }
+  EXPECT_GT(changed, 0.01);
 }
 
 TEST_F(FlowTrainerTest, KnownFramesAreThoseOfTheTarget) {

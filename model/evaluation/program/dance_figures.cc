@@ -15,9 +15,13 @@ namespace duet::evaluation::program {
 namespace {
 
 std::vector<std::string> Columns() {
-  return {"error",   "distance", "facing",    "turns", "matched", "delay", "held",
-          "hold, s", "slip",     "both feet", "steps", "speed",   "lean",  "overlap"};
+  return {"error", "distance",  "facing", "turns", "matched", "delay",   "held", "hold, s",
+          "slip",  "both feet", "steps",  "speed", "lean",    "overlap", "alone"};
 }
+
+// A step is timed by the leader's nearest one within this time. Beyond it, the leader stands, and
+// the follower steps alone.
+constexpr double kSameStepSeconds = 0.5;
 
 }  // namespace
 
@@ -38,6 +42,10 @@ std::vector<double> MeasureDance(const dataset::Dataset& dataset,
     delay = match.mean_delay;
   }
   const metrics::Holds holds = metrics::MeasureHolds(joints, leader, follower, rate);
+  const motion::StepTiming steps =
+      motion::MeasureStepTiming(motion::FindSteps(joints.feet, follower, rate),
+                                motion::FindSteps(joints.feet, leader, rate), kSameStepSeconds);
+  const int all_steps = steps.steps + steps.far;
   return {
       error,
       metrics::RootDistance(leader, follower, dataset.skeleton),
@@ -49,12 +57,11 @@ std::vector<double> MeasureDance(const dataset::Dataset& dataset,
       holds.mean_seconds,
       holds.slip,
       metrics::BothFeetMove(joints, follower, rate),
-      motion::MeasureStepTiming(motion::FindSteps(joints.feet, follower, rate),
-                                motion::FindSteps(joints.feet, leader, rate))
-          .spread,
+      steps.spread,
       metrics::JointSpeed(motion::WithoutNoise(follower, rate), rate),
       metrics::MeasureLean(follower, dataset.skeleton, rate, metrics::LeanFrom::kHips).max_degrees,
-      metrics::MeasurePenetration(leader, follower, dataset.skeleton, dataset.parts).frequency};
+      metrics::MeasurePenetration(leader, follower, dataset.skeleton, dataset.parts).frequency,
+      all_steps == 0 ? NAN : static_cast<double>(steps.far) / all_steps};
 }
 
 std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows) {
@@ -87,9 +94,10 @@ report::Table DanceTable(std::string title, const std::vector<DanceRow>& rows) {
       "held, m/s.",
       "Both feet: share of frames in which both are faster than 0.15 m/s. Steps: standard "
       "deviation "
-      "of the time from a step to the leader's nearest one, seconds. Speed: of the joints without "
-      "noise, m/s. Lean: largest mean over one second of hips to neck, degrees. Overlap: share of "
-      "frames in which the bodies overlap."};
+      "of the time from a step to the leader's nearest one within 0.5 s, seconds. Speed: of the "
+      "joints without noise, m/s. Lean: largest mean over one second of hips to neck, degrees. "
+      "Overlap: share of frames in which the bodies overlap. Alone: share of the steps for which "
+      "the leader has none within 0.5 s."};
   table.decimals = 3;
   return table;
 }
