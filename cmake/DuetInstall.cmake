@@ -89,9 +89,9 @@ set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
   ${deploy}/debian/conffiles ${deploy}/debian/postinst ${deploy}/debian/prerm
   ${deploy}/debian/postrm)
 set(CPACK_DEBIAN_SERVER_DESCRIPTION "motion synthesis server, over gRPC
-Synthesises the motion with which one character reacts to another, controlled by
-weights for classes of interaction. Serves its embedded models or a folder of
-models, as a service that systemd starts, watches and drains.")
+Synthesises the motion with which one character reacts to another, controlled
+by weights for classes of interaction. Serves its embedded models or a folder
+of models, as a service that systemd starts, watches and drains.")
 
 set(CPACK_DEBIAN_TRAINING_PACKAGE_NAME duet-training)
 set(CPACK_DEBIAN_TRAINING_PACKAGE_SECTION science)
