@@ -79,20 +79,15 @@ BENCHMARK(BM_CleanUp)
     ->Unit(benchmark::kMicrosecond)
     ->Complexity();
 
-// What pins add: `pins` of one hand, a third of a second apart, for two people who stand 1 m apart.
-void BM_Pins(benchmark::State& state) {
-  constexpr int kFrames = 46, kRightHand = 8;
+constexpr int kFrames = 46, kRightShoulder = 6, kRightHand = 8, kTorso = 2;
+
+// Moves a follower, who stands 1 m from the leader, to pins.
+void MoveToPins(const duet::motion::Pins& pins, benchmark::State& state) {
   const duet::motion::Poses leader = StandingPerson(kFrames, 0, 0);
   const duet::motion::Poses follower = StandingPerson(kFrames, 1, 3.14159);
   const duet::cleanup::CleanUp clean_up(duet::motion::SbuSkeleton());
   const duet::cleanup::Touch touch(kFrames, 0);
   const duet::cleanup::Timing timing{kRateHz, kSettled};
-  duet::motion::Pins pins;
-  for (int i = 0; i < state.range(0); ++i) {
-    const int frame = kSettled + 5 + 5 * i;
-    const duet::motion::Vec3 way = {0, 0.3f, -0.1f};
-    pins.push_back({kRightHand, static_cast<double>(frame), follower.at(frame, kRightHand) + way});
-  }
   for (auto _ : state) {
     duet::motion::Poses pinned = follower;
     const duet::cleanup::PinnedMotion motion =
@@ -101,7 +96,41 @@ void BM_Pins(benchmark::State& state) {
     benchmark::DoNotOptimize(pinned);
   }
 }
+
+// `pins` of one hand, a third of a second apart.
+void BM_Pins(benchmark::State& state) {
+  const duet::motion::Poses follower = StandingPerson(kFrames, 1, 3.14159);
+  duet::motion::Pins pins;
+  for (int i = 0; i < state.range(0); ++i) {
+    const int frame = kSettled + 5 + 5 * i;
+    const duet::motion::Vec3 way = {0, 0.3f, -0.1f};
+    pins.push_back({kRightHand, static_cast<double>(frame), follower.at(frame, kRightHand) + way});
+  }
+  MoveToPins(pins, state);
+}
 BENCHMARK(BM_Pins)->Arg(1)->Arg(5)->Unit(benchmark::kMicrosecond);
+
+// The root 0.3 m aside.
+void BM_PinOfTheBody(benchmark::State& state) {
+  const duet::motion::Vec3 torso = StandingPerson(kFrames, 1, 3.14159).at(30, kTorso);
+  MoveToPins({{kTorso, 30, torso + duet::motion::Vec3{0.3f, 0, 0}}}, state);
+}
+BENCHMARK(BM_PinOfTheBody)->Unit(benchmark::kMicrosecond);
+
+// One hand in every frame: 31 pins at scattered places around the shoulder.
+void BM_PinsOfEveryFrame(benchmark::State& state) {
+  const duet::motion::Poses follower = StandingPerson(kFrames, 1, 3.14159);
+  duet::motion::Pins pins;
+  for (int frame = kSettled; frame < kFrames; ++frame) {
+    const float phase = 2.4f * static_cast<float>(frame);
+    const duet::motion::Vec3 way = {0.4f * std::sin(phase), 0.4f * std::cos(phase),
+                                    0.4f * std::sin(1.7f * phase)};
+    pins.push_back(
+        {kRightHand, static_cast<double>(frame), follower.at(frame, kRightShoulder) + way});
+  }
+  MoveToPins(pins, state);
+}
+BENCHMARK(BM_PinsOfEveryFrame)->Unit(benchmark::kMicrosecond);
 
 // Only the joints' ranges, for a person whose limbs are all outside them.
 void BM_JointRanges(benchmark::State& state) {
