@@ -87,27 +87,9 @@ absl::StatusOr<LoadedLeader> Load(const LeaderEntry& entry, formats::Side side,
   return loaded;
 }
 
-// The field of the recipe that sets what a reader could not find out; null if there is none.
-const char* MendingField(const absl::Status& status) {
-  const std::optional<motion::ReadingSetting> setting = motion::MendingSetting(status);
-  if (!setting.has_value()) return nullptr;
-  switch (*setting) {
-    case motion::ReadingSetting::kFrameRate:
-      return "frame_rate_hz";
-    case motion::ReadingSetting::kMetresPerUnit:
-      return "metres_per_unit";
-    case motion::ReadingSetting::kJointMap:
-      return "joint_map";
-    case motion::ReadingSetting::kFormat:
-    case motion::ReadingSetting::kRigJointMap:  // a batch has no rig
-      break;
-  }
-  return nullptr;
-}
-
 absl::Status WithMendingField(const absl::Status& status) {
-  const char* const field = MendingField(status);
-  if (field == nullptr) return status;
+  const absl::string_view field = motion::MendingField(status);
+  if (field.empty()) return status;
   return absl::Status(status.code(), absl::StrCat(status.message(),
                                                   "; say it in the recipe: input { ", field, " }"));
 }

@@ -226,13 +226,7 @@ Command AddAdminCommand(FlagSet* program) {
   const auto arguments = std::make_shared<AdminArguments>();
   FlagSet* app = program->AddCommand("admin", "Change which models a running server serves");
   AddFlags(app, arguments.get());
-  Command command;
-  command.app = app;
-  command.run = [arguments](const CommandContext& context) {
-    return Run(*arguments, context.environment);
-  };
-  command.servers = [arguments] { return arguments->server.address; };
-  return command;
+  return MakeServerCommand(app, arguments, Run);
 }
 
 }  // namespace duet::client::cli

@@ -6,8 +6,10 @@
 #include <string>
 #include <utility>
 
+#include "absl/strings/str_join.h"
 #include "client/batch/level.h"
 #include "client/cli/flags.h"
+#include "client/cli/input_flags.h"
 #include "client/cli/server_flags.h"
 
 namespace duet::client::cli {
@@ -64,13 +66,13 @@ void AddInputFlags(FlagSet* app, BatchArguments* arguments) {
       ->Group(kGroup);
   app->Add("--input-format", &arguments->overrides.input_format,
            "Format of every leader; overrides the extension and the recipe")
-      ->OneOf({"amc", "bvh", "csv", "fbx", "glb", "gltf", "json", "npy", "npz", "sbu"})
-      ->Form("amc|bvh|csv|fbx|glb|gltf|json|npy|npz|sbu")
+      ->OneOf(InputFormatNames())
+      ->Form(absl::StrJoin(InputFormatNames(), "|"))
       ->Group(kGroup);
   app->Add("--layout", &arguments->overrides.layout,
            "Layout of .npy leaders of research; overrides the recipe")
-      ->OneOf({"humanml3d", "humanml3d-263", "inter-x", "intergen", "intergen-262"})
-      ->Form("humanml3d|humanml3d-263|inter-x|intergen|intergen-262")
+      ->OneOf(LayoutNames())
+      ->Form(absl::StrJoin(LayoutNames(), "|"))
       ->Group(kGroup);
   app->Add("--body-model", &arguments->overrides.body_model,
            "Body model of .npz leaders; overrides the recipe")

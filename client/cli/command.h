@@ -2,7 +2,9 @@
 #define DUET_CLIENT_CLI_COMMAND_H_
 
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -37,6 +39,29 @@ struct Command {
 inline absl::StatusOr<ExitCode> Done(const absl::Status& status) {
   if (!status.ok()) return status;
   return kExitDone;
+}
+inline absl::StatusOr<ExitCode> Done(absl::StatusOr<ExitCode> code) { return code; }
+
+// A command that runs `run` with the arguments that `app` fills in. `run` returns a status, or a
+// status or an exit code.
+template <typename Arguments, typename Result>
+Command MakeCommand(FlagSet* app, std::shared_ptr<Arguments> arguments,
+                    Result (*run)(const Arguments&, const ProgramEnvironment&)) {
+  Command command;
+  command.app = app;
+  command.run = [arguments = std::move(arguments), run](const CommandContext& context) {
+    return Done(run(*arguments, context.environment));
+  };
+  return command;
+}
+
+// The same for a command that calls the server `arguments->server`.
+template <typename Arguments, typename Result>
+Command MakeServerCommand(FlagSet* app, const std::shared_ptr<Arguments>& arguments,
+                          Result (*run)(const Arguments&, const ProgramEnvironment&)) {
+  Command command = MakeCommand(app, arguments, run);
+  command.servers = [arguments] { return arguments->server.address; };
+  return command;
 }
 
 }  // namespace duet::client::cli

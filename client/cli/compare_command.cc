@@ -96,12 +96,7 @@ Command AddCompareCommand(FlagSet* program) {
   FlagSet* app = program->AddCommand(
       "compare", "Print how two motions differ: displacement, speed, lean, contact");
   AddFlags(app, arguments.get());
-  Command command;
-  command.app = app;
-  command.run = [arguments](const CommandContext& context) {
-    return Done(Run(*arguments, context.environment));
-  };
-  return command;
+  return MakeCommand(app, arguments, Run);
 }
 
 }  // namespace duet::client::cli

@@ -21,6 +21,7 @@
 #include "client/cli/rig_flags.h"
 #include "client/cli/skeleton_file.h"
 #include "model/base/file.h"
+#include "model/formats/motion_file.h"
 #include "model/formats/research/body_joints.h"
 #include "model/formats/research/layout.h"
 #include "model/motion/resample.h"
@@ -360,8 +361,7 @@ void CheckTogether(const ConvertArguments& arguments) {
 void AddFlags(FlagSet* command, ConvertArguments* arguments) {
   command
       ->Add("file", &arguments->file,
-            "Motion: .bvh, .gltf, .glb, .fbx, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
-            "standard input")
+            absl::StrCat("Motion: ", formats::kReadableExtensions, "; - for standard input"))
       ->Required()
       ->Form("FILE");
   AddChoice<People>(
@@ -401,12 +401,7 @@ Command AddConvertCommand(FlagSet* program) {
   FlagSet* app =
       program->AddCommand("convert", "Write a motion in another format, positions as they are");
   AddFlags(app, arguments.get());
-  Command command;
-  command.app = app;
-  command.run = [arguments](const CommandContext& context) {
-    return Done(Run(*arguments, context.environment));
-  };
-  return command;
+  return MakeCommand(app, arguments, Run);
 }
 
 }  // namespace duet::client::cli

@@ -29,6 +29,13 @@ const std::map<std::string, Layout> kLayouts = {{"humanml3d", Layout::kHumanMl3d
                                                 {"intergen", Layout::kInterGen},
                                                 {"intergen-262", Layout::kInterGenFeatures}};
 
+template <typename Value>
+std::vector<std::string> NamesOf(const std::map<std::string, Value>& choices) {
+  std::vector<std::string> names;
+  for (const auto& choice : choices) names.push_back(choice.first);
+  return names;
+}
+
 const std::map<std::string, double> kBvhUnits = {{"centimetres", formats::kCentimetre},
                                                  {"metres", 1}};
 
@@ -86,6 +93,9 @@ void AddInputFlags(FlagSet* app, InputArguments* input) {
       ->Form("FILE")
       ->Group(kInputGroup);
 }
+
+std::vector<std::string> InputFormatNames() { return NamesOf(kInputFormats); }
+std::vector<std::string> LayoutNames() { return NamesOf(kLayouts); }
 
 void AddOutputFormatFlag(FlagSet* app, std::optional<OutputFormat>* format) {
   AddChoice<OutputFormat>(

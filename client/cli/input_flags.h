@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "client/cli/flag_set.h"
 #include "client/cli/motion_arguments.h"
@@ -11,6 +12,10 @@ namespace duet::client::cli {
 
 // How motion files are to be read: --frame-rate, --unit, --joint-map and so on.
 void AddInputFlags(FlagSet* app, InputArguments* input);
+
+// The values of --input-format and of --layout.
+std::vector<std::string> InputFormatNames();
+std::vector<std::string> LayoutNames();
 
 // --output-format, of what goes to standard output.
 void AddOutputFormatFlag(FlagSet* app, std::optional<OutputFormat>* format);

@@ -12,6 +12,7 @@
 #include "client/cli/inspection.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/report.h"
+#include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"
 #include "nlohmann/json.hpp"
 
@@ -116,8 +117,7 @@ ExitCode Run(const InspectArguments& arguments, const ProgramEnvironment& enviro
 void AddFlags(FlagSet* command, InspectArguments* arguments) {
   command
       ->Add("files", &arguments->files,
-            "Motions: .bvh, .gltf, .glb, .fbx, .amc, .csv, .npy, .npz, .json or SBU .txt; - for "
-            "standard input")
+            absl::StrCat("Motions: ", formats::kReadableExtensions, "; - for standard input"))
       ->Required()
       ->Form("FILE");
   AddInputFlags(command, &arguments->input);
@@ -131,12 +131,7 @@ Command AddInspectCommand(FlagSet* program) {
   FlagSet* app = program->AddCommand(
       "inspect", "Print what motion files contain, how Duet reads them, and what looks wrong");
   AddFlags(app, arguments.get());
-  Command command;
-  command.app = app;
-  command.run = [arguments](const CommandContext& context) -> absl::StatusOr<ExitCode> {
-    return Run(*arguments, context.environment);
-  };
-  return command;
+  return MakeCommand(app, arguments, Run);
 }
 
 }  // namespace duet::client::cli

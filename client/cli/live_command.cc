@@ -86,10 +86,7 @@ absl::Status Run(const LiveArguments& arguments, const ProgramEnvironment& envir
     absl::Status inputs = CheckInputs(arguments);
     if (!inputs.ok()) return inputs;
   }
-  absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
-  if (!options.ok()) return options.status();
-  ReportWaiting(arguments.server, *environment.err, &*options);
-  const absl::StatusOr<Client> client = environment.connect(*options);
+  const absl::StatusOr<Client> client = Connect(arguments.server, environment);
   if (!client.ok()) return client.status();
   const absl::StatusOr<ModelDetails> details = client->GetModel(arguments.model);
   if (!details.ok()) return details.status();
@@ -136,13 +133,7 @@ Command AddLiveCommand(FlagSet* program) {
   FlagSet* app = program->AddCommand("live", "Answer a leader while it still moves");
   AddLiveFlags(app, arguments.get());
   app->Footer(kFooter);
-  Command command;
-  command.app = app;
-  command.run = [arguments](const CommandContext& context) {
-    return Done(Run(*arguments, context.environment));
-  };
-  command.servers = [arguments] { return arguments->server.address; };
-  return command;
+  return MakeServerCommand(app, arguments, Run);
 }
 
 }  // namespace duet::client::cli

@@ -17,10 +17,7 @@ struct ModelsArguments {
 };
 
 absl::Status Run(const ModelsArguments& arguments, const ProgramEnvironment& environment) {
-  absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
-  if (!options.ok()) return options.status();
-  ReportWaiting(arguments.server, *environment.err, &*options);
-  const absl::StatusOr<Client> client = environment.connect(*options);
+  const absl::StatusOr<Client> client = Connect(arguments.server, environment);
   if (!client.ok()) return client.status();
   const absl::StatusOr<std::vector<ModelInfo>> models = client->ListModels();
   if (!models.ok()) return models.status();
@@ -35,13 +32,7 @@ Command AddModelsCommand(FlagSet* program) {
   FlagSet* app = program->AddCommand("models", "List the models that the server serves");
   AddServerFlags(app, &arguments->server);
   app->AddSwitch("--json", &arguments->json, "Print JSON");
-  Command command;
-  command.app = app;
-  command.run = [arguments](const CommandContext& context) {
-    return Done(Run(*arguments, context.environment));
-  };
-  command.servers = [arguments] { return arguments->server.address; };
-  return command;
+  return MakeServerCommand(app, arguments, Run);
 }
 
 }  // namespace duet::client::cli

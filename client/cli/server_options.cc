@@ -37,6 +37,15 @@ absl::Status ReadPem(const std::string& path, std::string* pem) {
   return absl::OkStatus();
 }
 
+void ReportWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options) {
+  options->retry.on_wait = [&err, address = arguments.address,
+                            waits = std::make_shared<std::atomic<int>>(0)](const absl::Status& why,
+                                                                           absl::Duration) {
+    if (++*waits != 2) return;
+    err << "duet: " << address << " does not answer: " << why.message() << "; retrying\n";
+  };
+}
+
 }  // namespace
 
 absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) {
@@ -61,13 +70,12 @@ absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) 
   return options;
 }
 
-void ReportWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options) {
-  options->retry.on_wait = [&err, address = arguments.address,
-                            waits = std::make_shared<std::atomic<int>>(0)](const absl::Status& why,
-                                                                           absl::Duration) {
-    if (++*waits != 2) return;
-    err << "duet: " << address << " does not answer: " << why.message() << "; retrying\n";
-  };
+absl::StatusOr<Client> Connect(const ServerArguments& arguments,
+                               const ProgramEnvironment& environment) {
+  absl::StatusOr<ClientOptions> options = ToClientOptions(arguments);
+  if (!options.ok()) return options.status();
+  ReportWaiting(arguments, *environment.err, &*options);
+  return environment.connect(*options);
 }
 
 }  // namespace duet::client::cli

@@ -121,10 +121,7 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
 absl::Status Run(const SynthesizeArguments& arguments, const ProgramEnvironment& environment) {
   absl::Status inputs = CheckInputs(arguments);
   if (!inputs.ok()) return inputs;
-  absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
-  if (!options.ok()) return options.status();
-  ReportWaiting(arguments.server, *environment.err, &*options);
-  const absl::StatusOr<Client> client = environment.connect(*options);
+  const absl::StatusOr<Client> client = Connect(arguments.server, environment);
   if (!client.ok()) return client.status();
   const absl::StatusOr<Job> job = PrepareJob(arguments, *client, environment.in);
   if (!job.ok()) return job.status();
@@ -138,13 +135,7 @@ Command AddSynthesizeCommand(FlagSet* program) {
   FlagSet* app = program->AddCommand("synthesize", "Synthesise the follower of a leader");
   AddSynthesizeFlags(app, arguments.get());
   app->Footer(kExitCodesFooter);
-  Command command;
-  command.app = app;
-  command.run = [arguments](const CommandContext& context) {
-    return Done(Run(*arguments, context.environment));
-  };
-  command.servers = [arguments] { return arguments->server.address; };
-  return command;
+  return MakeServerCommand(app, arguments, Run);
 }
 
 }  // namespace duet::client::cli

@@ -16,6 +16,7 @@
 #include "client/cli/server_flags.h"
 #include "client/cli/value_syntax.h"
 #include "model/formats/follower_rig.h"
+#include "model/formats/motion_file.h"
 
 namespace duet::client::cli {
 namespace {
@@ -30,8 +31,8 @@ const std::map<std::string, RotationForm> kRotationForms = {
 
 void AddLeaderFlags(FlagSet* app, SynthesizeArguments* arguments) {
   app->Add("--leader", &arguments->leader,
-           "Motion of the leader: .bvh, .gltf, .glb, .fbx, .amc, .csv, .npy, .npz, .json or SBU "
-           ".txt; - for standard input")
+           absl::StrCat("Motion of the leader: ", formats::kReadableExtensions,
+                        "; - for standard input"))
       ->Required()
       ->Form("FILE")
       ->Group(kInputGroup);

@@ -19,7 +19,7 @@ Each FILE is a motion of one or two people: FILE, NAME=FILE, or LEADER.bvh,FOLLO
 // How to read the takes: --leader-side and the input flags.
 void AddTakeFlags(FlagSet* app, TakeArguments* takes);
 
-// Throw a CLI11 error if the flags contradict each other, or if the page cannot be written.
+// Call RejectFlag if the flags contradict each other, or if the page cannot be written.
 void CheckTakes(const TakeArguments& takes);
 void CheckPage(const char* flag, const std::filesystem::path& page);
 

@@ -162,12 +162,7 @@ Command AddViewCommand(FlagSet* program) {
   const auto arguments = std::make_shared<ViewArguments>();
   FlagSet* app = program->AddCommand("view", "Make a page that plays motions side by side");
   AddFlags(app, arguments.get());
-  Command command;
-  command.app = app;
-  command.run = [arguments](const CommandContext& context) {
-    return Done(Run(*arguments, context.environment));
-  };
-  return command;
+  return MakeCommand(app, arguments, Run);
 }
 
 }  // namespace duet::client::cli

@@ -20,14 +20,15 @@ constexpr char kManifestFile[] = "manifest.json";
 
 absl::Status CheckFile(const WeightsFile& expected, std::string_view weights) {
   if (weights.size() != expected.bytes) {
-    const std::string message = absl::StrCat("weights: ", weights.size(), " bytes, expected ",
-                                             expected.bytes, " as in manifest weights.bytes");
+    const std::string message =
+        absl::StrCat("weights: expected ", expected.bytes,
+                     " bytes, as in the manifest's weights.bytes, got ", weights.size());
     return weights.size() < expected.bytes ? absl::DataLossError(message)
                                            : absl::InvalidArgumentError(message);
   }
   if (const std::string sha256 = base::Sha256Hex(weights); sha256 != expected.sha256) {
-    return absl::DataLossError(absl::StrCat("weights: SHA-256 ", sha256, ", expected ",
-                                            expected.sha256, " as in manifest weights.sha256"));
+    return absl::DataLossError(absl::StrCat("weights: expected the SHA-256 ", expected.sha256,
+                                            ", as in the manifest's weights.sha256, got ", sha256));
   }
   return absl::OkStatus();
 }
@@ -53,14 +54,14 @@ absl::StatusOr<std::vector<Tensor>> Arrange(std::vector<Tensor> tensors,
   for (const TensorSpec& spec : specs) {
     const auto it = by_name.find(spec.name);
     if (it == by_name.end()) {
-      return absl::InvalidArgumentError(absl::StrCat("weights: tensor \"", spec.name,
-                                                     "\" is missing, expected shape ",
-                                                     ShapeText(spec.shape)));
+      return absl::InvalidArgumentError(absl::StrCat("weights: expected a tensor \"", spec.name,
+                                                     "\" of the shape ", ShapeText(spec.shape),
+                                                     ", got none"));
     }
     if (it->second.shape != spec.shape) {
       return absl::InvalidArgumentError(absl::StrCat(
-          "weights: tensor \"", spec.name, "\" has shape ", ShapeText(it->second.shape),
-          ", expected ", ShapeText(spec.shape), " as the manifest declares"));
+          "weights: tensor \"", spec.name, "\": expected the shape ", ShapeText(spec.shape),
+          ", as the manifest declares, got ", ShapeText(it->second.shape)));
     }
     arranged.push_back(std::move(it->second));
     by_name.erase(it);

@@ -25,13 +25,14 @@ std::vector<double> ReadNumbers(base::ObjectReader* reader, const std::string& k
     const std::string element = absl::StrCat(key, "[", numbers.size(), "]");
     numbers.push_back(value.is_number() ? value.get<double>() : std::nan(""));
     if (!(numbers.back() >= smallest && numbers.back() <= kLargest)) {
-      reader->Fail(element, absl::StrCat(base::Shown(value), ", expected a number from ", smallest,
-                                         " to ", kLargest));
+      reader->Fail(element, absl::StrCat("expected a number from ", smallest, " to ", kLargest,
+                                         ", got ", base::Shown(value)));
     }
   }
   if (reader->ok() && numbers.size() != wanted) {
-    reader->Fail(key, absl::StrCat(numbers.size(), " numbers, expected ", wanted,
-                                   ": two for each joint, three more"));
+    reader->Fail(
+        key, absl::StrCat("expected ", wanted, " numbers (two for each joint, three more), got ",
+                          numbers.size()));
   }
   return numbers;
 }
@@ -43,7 +44,7 @@ std::optional<engine::DirectionRegression> ReadDirectionRegression(const motion:
   if (!manifest->ok() || !manifest->Has(kPartnerDirection)) return std::nullopt;
   const json& object = manifest->Object(kPartnerDirection);
   if (manifest->ok() && !skeleton.hips) {
-    manifest->Fail(kPartnerDirection, "given, expected none for a skeleton without hips");
+    manifest->Fail(kPartnerDirection, "expected none for a skeleton without hips, got one");
   }
   if (!manifest->ok()) return std::nullopt;
   base::ObjectReader reader(object, kPartnerDirection);

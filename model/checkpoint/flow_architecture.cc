@@ -60,8 +60,8 @@ void ReadFields(base::ObjectReader* reader, FlowArchitecture* out) {
   out->blocks = static_cast<int>(reader->Int("blocks", 1, kMaxBlocks));
   out->heads = static_cast<int>(reader->Int("heads", 1, kMaxUnits));
   if (reader->ok() && out->width % out->heads != 0) {
-    reader->Fail("heads",
-                 absl::StrCat(out->heads, ", expected a divisor of the width ", out->width));
+    reader->Fail("heads", absl::StrCat("expected a divisor of the width ", out->width, ", got ",
+                                       out->heads));
   }
   out->feed_forward = static_cast<int>(reader->Int("feed_forward", 1, kMaxUnits));
   out->reach = static_cast<int>(reader->Int("reach", 1, kMaxUnits));
@@ -73,7 +73,8 @@ void ReadFields(base::ObjectReader* reader, FlowArchitecture* out) {
   out->steps = static_cast<int>(reader->Int("steps", 1, kMaxSteps));
   out->guidance = reader->Number("guidance", 0, 10);
   if (reader->ok() && out->frame_labels && out->guidance != 1) {
-    reader->Fail("guidance", absl::StrCat(out->guidance, ", expected 1 with ", kFrameLabels));
+    reader->Fail("guidance",
+                 absl::StrCat("expected 1 with ", kFrameLabels, ", got ", out->guidance));
   }
   out->fade_frames = static_cast<int>(reader->Int("fade_frames", 0, kMaxUnits));
 }

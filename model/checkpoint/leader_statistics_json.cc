@@ -29,12 +29,13 @@ Feature ReadFeature(base::ObjectReader* fields, const std::vector<engine::Leader
   if (!seen->insert(feature.name).second) {
     fields->Fail("name", absl::StrCat(json(feature.name).dump(), " is repeated"));
   }
-  std::string wanted;
+  std::string names;
   for (const engine::LeaderFeature& one : known) {
     if (one.name == feature.name) return feature;
-    absl::StrAppend(&wanted, wanted.empty() ? "" : ", ", std::string(one.name));
+    absl::StrAppend(&names, names.empty() ? "" : ", ", std::string(one.name));
   }
-  fields->Fail("name", absl::StrCat(json(feature.name).dump(), ", expected one of ", wanted));
+  fields->Fail("name",
+               absl::StrCat("expected one of ", names, ", got ", json(feature.name).dump()));
   return feature;
 }
 
@@ -54,7 +55,7 @@ absl::StatusOr<engine::LeaderStatistics> ReadLeaderStatistics(const json& value,
     reader.Update(fields.Finish());
   }
   if (reader.ok() && statistics.features.empty()) {
-    reader.Fail("features", "empty, expected at least one feature");
+    reader.Fail("features", "expected at least one feature, got none");
   }
   statistics.scale = reader.Number("scale", kLeast, kMost);
   if (absl::Status status = reader.Finish(); !status.ok()) return status;

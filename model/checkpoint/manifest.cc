@@ -48,12 +48,12 @@ bool IsPlainName(const std::string& name) {
   return std::all_of(name.begin(), name.end(), IsPlain);
 }
 
-constexpr char kPlainName[] = "1 to 64 letters, digits, '_', '-' or '.', the first of them not '.'";
+constexpr char kPlainName[] = "1 to 64 letters, digits, '_', '-' or '.', not beginning with '.'";
 
 std::string ReadName(base::ObjectReader* reader, const std::string& key) {
   std::string name = reader->String(key, kMaxTextBytes);
   if (reader->ok() && !IsPlainName(name)) {
-    reader->Fail(key, absl::StrCat(json(name).dump(), ", expected ", kPlainName));
+    reader->Fail(key, absl::StrCat("expected ", kPlainName, ", got ", json(name).dump()));
   }
   return name;
 }
@@ -73,8 +73,9 @@ absl::StatusOr<WeightsFile> ReadWeightsFile(const json& value) {
   weights.sha256 = reader.String("sha256", kSha256HexBytes);
   const bool is_hex = weights.sha256.find_first_not_of("0123456789abcdef") == std::string::npos;
   if (reader.ok() && (!is_hex || weights.sha256.size() != kSha256HexBytes)) {
-    reader.Fail("sha256", absl::StrCat(json(weights.sha256).dump(), ", expected ", kSha256HexBytes,
-                                       " digits of lower-case hex"));
+    reader.Fail("sha256",
+                absl::StrCat("expected ", kSha256HexBytes, " digits of lower-case hex, got ",
+                             json(weights.sha256).dump()));
   }
   if (absl::Status status = reader.Finish(); !status.ok()) return status;
   return weights;
@@ -106,7 +107,7 @@ std::string ReadTime(base::ObjectReader* reader, const std::string& key) {
   absl::Time time;
   std::string problem;
   if (reader->ok() && !absl::ParseTime(absl::RFC3339_full, text, &time, &problem)) {
-    reader->Fail(key, absl::StrCat(json(text).dump(), ", expected a time as in RFC 3339"));
+    reader->Fail(key, absl::StrCat("expected a time as in RFC 3339, got ", json(text).dump()));
   }
   return text;
 }
@@ -132,7 +133,8 @@ void ReadTouchingClasses(base::ObjectReader* reader, engine::ModelDescription* m
   model->touching_classes = reader->UniqueStrings(kTouchingClasses, kMaxClasses, kMaxNameBytes);
   for (const std::string& name : model->touching_classes) {
     if (is_class(name)) continue;
-    reader->Fail(kTouchingClasses, absl::StrCat(json(name).dump(), ", expected one of classes"));
+    reader->Fail(kTouchingClasses,
+                 absl::StrCat("expected one of classes, got ", json(name).dump()));
   }
 }
 
@@ -146,7 +148,7 @@ void ReadHandContacts(base::ObjectReader* reader, engine::ModelDescription* mode
     if (std::find(model->classes.begin(), model->classes.end(), field.key()) ==
         model->classes.end()) {
       reader->Fail(kHandContacts,
-                   absl::StrCat(json(field.key()).dump(), ", expected one of classes"));
+                   absl::StrCat("expected one of classes, got ", json(field.key()).dump()));
     }
     model->hand_contacts.push_back({field.key(), fields.Number(field.key(), 0, kFarthest)});
   }
@@ -171,7 +173,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
   ReadLookahead(reader, model);
   model->classes = reader->UniqueStrings("classes", kMaxClasses, kMaxNameBytes);
   if (reader->ok() && model->classes.empty()) {
-    reader->Fail("classes", "empty, expected at least one class");
+    reader->Fail("classes", "expected at least one class, got none");
   }
   ReadTouchingClasses(reader, model);
   ReadHandContacts(reader, model);
@@ -223,9 +225,8 @@ absl::Status CheckTotalSize(const Manifest& manifest) {
     bytes += values * sizeof(float);
   }
   if (bytes <= static_cast<double>(kMaxWeightsBytes)) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("generator: its sizes add up to ", bytes,
-                                                 " bytes of weights, expected at most ",
-                                                 kMaxWeightsBytes));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "generator: expected sizes of at most ", kMaxWeightsBytes, " bytes of weights, got ", bytes));
 }
 
 ordered_json GeneratorToJson(const Manifest& manifest) {
@@ -247,8 +248,8 @@ std::string ToPlainName(std::string_view text) {
 
 absl::StatusOr<Manifest> ParseManifest(std::string_view text) {
   if (text.size() > kMaxManifestBytes) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("manifest: ", text.size(), " bytes, expected at most ", kMaxManifestBytes));
+    return absl::InvalidArgumentError(absl::StrCat("manifest: expected at most ", kMaxManifestBytes,
+                                                   " bytes, got ", text.size()));
   }
   const absl::StatusOr<json> root = base::ParseStrictJson(text, kMaxDepth);
   absl::StatusOr<Manifest> manifest = root.ok() ? ReadManifest(*root) : root.status();

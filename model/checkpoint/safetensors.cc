@@ -49,17 +49,18 @@ uint64_t ReadLength(std::string_view bytes) {
 
 absl::StatusOr<std::string_view> HeaderOf(std::string_view bytes) {
   if (bytes.size() < kLengthBytes) {
-    return absl::DataLossError(
-        absl::StrCat("safetensors: ", bytes.size(), " bytes, expected at least ", kLengthBytes));
+    return absl::DataLossError(absl::StrCat("safetensors: expected at least ", kLengthBytes,
+                                            " bytes, got ", bytes.size()));
   }
   const uint64_t length = ReadLength(bytes);
   if (length > kMaxHeaderBytes) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("safetensors header: ", length, " bytes, expected at most ", kMaxHeaderBytes));
+    return absl::InvalidArgumentError(absl::StrCat("safetensors header: expected at most ",
+                                                   kMaxHeaderBytes, " bytes, got ", length));
   }
   if (length > bytes.size() - kLengthBytes) {
-    return absl::DataLossError(absl::StrCat("safetensors header: ", length, " bytes declared, ",
-                                            bytes.size() - kLengthBytes, " present"));
+    return absl::DataLossError(absl::StrCat("safetensors header: expected ", length,
+                                            " bytes, as declared, got ",
+                                            bytes.size() - kLengthBytes));
   }
   return bytes.substr(kLengthBytes, length);
 }
@@ -94,7 +95,7 @@ absl::StatusOr<Entry> ReadEntry(const std::string& name, const json& value) {
   Entry entry;
   entry.name = name;
   if (const std::string dtype = reader.String("dtype", 16); reader.ok() && dtype != "F32") {
-    reader.Fail("dtype", absl::StrCat(base::Quoted(dtype), ", expected \"F32\""));
+    reader.Fail("dtype", absl::StrCat("expected \"F32\", got ", base::Quoted(dtype)));
   }
   entry.shape = ReadInts(&reader, "shape", kMaxRank, 1);
   const std::vector<int64_t> offsets = ReadInts(&reader, "data_offsets", 2, 0);
@@ -109,8 +110,8 @@ absl::StatusOr<Entry> ReadEntry(const std::string& name, const json& value) {
   uint64_t wanted = 0;
   if (!ByteCount(entry.shape, &wanted) || entry.end - entry.begin != wanted) {
     reader.Fail("data_offsets",
-                absl::StrCat(entry.end - entry.begin, " bytes, expected those of shape [",
-                             absl::StrJoin(entry.shape, ", "), "]"));
+                absl::StrCat("expected the bytes of the shape [", absl::StrJoin(entry.shape, ", "),
+                             "], got ", entry.end - entry.begin));
     return reader.Finish();
   }
   return entry;
@@ -149,18 +150,18 @@ absl::Status CheckRanges(const std::vector<Entry>& entries, uint64_t data_bytes)
   for (const Entry& entry : entries) {
     if (entry.begin != at) {
       return absl::InvalidArgumentError(
-          absl::StrCat("tensor ", base::Quoted(entry.name), ".data_offsets: begins at ",
-                       entry.begin, ", expected ", at, ", the end of the previous"));
+          absl::StrCat("tensor ", base::Quoted(entry.name), ".data_offsets: expected a begin at ",
+                       at, ", the end of the previous, got ", entry.begin));
     }
     at = entry.end;
   }
   if (at > data_bytes) {
     return absl::DataLossError(
-        absl::StrCat("safetensors data: ", data_bytes, " bytes present, ", at, " declared"));
+        absl::StrCat("safetensors data: expected ", at, " bytes, as declared, got ", data_bytes));
   }
   if (at < data_bytes) {
-    return absl::InvalidArgumentError(absl::StrCat("safetensors data: ", data_bytes - at,
-                                                   " bytes after the last tensor, expected none"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "safetensors data: expected no bytes after the last tensor, got ", data_bytes - at));
   }
   return absl::OkStatus();
 }
@@ -173,9 +174,9 @@ absl::StatusOr<Tensor> ReadTensor(Entry entry, std::string_view data) {
   std::memcpy(tensor.values.data(), data.data() + entry.begin, entry.end - entry.begin);
   for (std::size_t i = 0; i < tensor.values.size(); ++i) {
     if (!std::isfinite(tensor.values[i])) {
-      return absl::InvalidArgumentError(absl::StrCat("tensor ", base::Quoted(tensor.name),
-                                                     ": value ", i, " is ", tensor.values[i],
-                                                     ", expected finite values"));
+      return absl::InvalidArgumentError(
+          absl::StrCat("tensor ", base::Quoted(tensor.name), ": value ", i,
+                       ": expected a finite number, got ", tensor.values[i]));
     }
   }
   return tensor;

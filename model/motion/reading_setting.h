@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "absl/status/status.h"
+#include "absl/strings/string_view.h"
 
 namespace duet::motion {
 
@@ -17,6 +18,9 @@ absl::Status MendedBy(absl::Status status, ReadingSetting setting);
 
 // The setting that MendedBy attached; absent if no setting would help.
 std::optional<ReadingSetting> MendingSetting(const absl::Status& status);
+
+// The same as the name of a field, in a recipe and in Python; empty if no field would help.
+absl::string_view MendingField(const absl::Status& status);
 
 }  // namespace duet::motion
 

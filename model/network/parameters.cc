@@ -22,9 +22,9 @@ absl::Status LoadTensors(const checkpoint::Checkpoint& checkpoint,
       return absl::InvalidArgumentError(absl::StrCat("tensor \"", tensor.name, "\" is unknown"));
     }
     if (it->second.sizes() != at::IntArrayRef(tensor.shape)) {
-      return absl::InvalidArgumentError(absl::StrCat("tensor \"", tensor.name, "\": shape ",
-                                                     ShapeText(tensor.shape), ", expected ",
-                                                     ShapeText(it->second.sizes())));
+      return absl::InvalidArgumentError(
+          absl::StrCat("tensor \"", tensor.name, "\": expected the shape ",
+                       ShapeText(it->second.sizes()), ", got ", ShapeText(tensor.shape)));
     }
     it->second.copy_(torch::from_blob(const_cast<float*>(tensor.values.data()), tensor.shape));
     wanted.erase(it);

@@ -74,9 +74,9 @@ class ClipMaker {
     if (!stature.has_value()) return;
     const double metres = *stature * metres_per_unit;
     if (metres >= kShortestPerson && metres <= kTallestPerson) return;
-    Warn(absl::StrCat("size: ", Rounded(metres, 0.01), " m from the feet to the head, expected ",
-                      kShortestPerson, " to ", kTallestPerson,
-                      " for an adult; specify the metres per unit if the unit is another"));
+    Warn(absl::StrCat("size: expected ", kShortestPerson, " to ", kTallestPerson,
+                      " m from the feet to the head of an adult, got ", Rounded(metres, 0.01),
+                      "; specify the metres per unit if the unit is another"));
   }
 
   // Adds a note and a remark, which `duet inspect` prints.

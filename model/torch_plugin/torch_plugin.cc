@@ -28,8 +28,8 @@ absl::StatusOr<TorchEngine> Open() {
   const auto* exported = static_cast<const Exported*>(dlsym(library, kSymbol));
   if (exported == nullptr) return absl::NotFoundError(dlerror());
   if (std::string(exported->build) != kBuildId) {
-    return absl::FailedPreconditionError(absl::StrCat(path, " is of build ", exported->build,
-                                                      ", expected this program's, ", kBuildId));
+    return absl::FailedPreconditionError(absl::StrCat(path, ": expected this program's build, ",
+                                                      kBuildId, ", got ", exported->build));
   }
   return exported->engine;
 }

@@ -170,14 +170,16 @@ absl::Status EpochTrainer::LoadState(const std::filesystem::path& file) {
     archive.load_from(file.string());
     c10::IValue value;
     if (!archive.try_read("version", value) || value.toInt() != kStateVersion) {
-      return absl::FailedPreconditionError(absl::StrCat(
-          file.string(), ": was written by another version of the trainer, expected state version ",
-          kStateVersion, "; choose another folder"));
+      return absl::FailedPreconditionError(
+          absl::StrCat(file.string(), ": expected state version ", kStateVersion,
+                       ", got that of another version of the trainer; choose another folder"));
     }
     archive.read("identity", value);
     if (value.toStringRef() != Identity()) {
       return absl::FailedPreconditionError(absl::StrCat(
-          file.string(), ": belongs to a run with other options or data; choose another folder"));
+          file.string(),
+          ": expected the state of this run, got that of one with other options or data; "
+          "choose another folder"));
     }
     torch::NoGradGuard no_grad;
     for (auto& [name, tensor] : StateTensors()) {

@@ -23,7 +23,7 @@ absl::StatusOr<TrainingOptions> ParseDerived(const json& value, const Replacemen
   const std::string name = reader.String("base", kMaxName);
   const NamedConfig* const base = FindConfig(name);
   if (reader.ok() && base == nullptr) {
-    reader.Fail("base", absl::StrCat(base::Quoted(name), ", expected a named configuration"));
+    reader.Fail("base", absl::StrCat("expected a named configuration, got ", base::Quoted(name)));
   }
   const json& set = reader.Object("set");
   if (absl::Status status = reader.Finish(); !status.ok()) return status;

@@ -51,7 +51,7 @@ void Read(base::ObjectReader* reader, TrainingOptions::Start* out) {
   out->root = Probability(reader, "root");
   out->pose = Probability(reader, "pose");
   if (reader->ok() && out->root + out->pose > 1) {
-    reader->Fail("pose", absl::StrCat(out->pose, ", expected at most ", 1 - out->root,
+    reader->Fail("pose", absl::StrCat("expected at most ", 1 - out->root, ", got ", out->pose,
                                       ": root and pose are shares of all clips"));
   }
 }
@@ -217,9 +217,10 @@ absl::Status CheckAgainst(const TrainingOptions& options, const dataset::Dataset
   const std::vector<std::string> subjects = dataset.Subjects();
   for (const std::string& name : options.validation.subjects) {
     if (std::find(subjects.begin(), subjects.end(), name) != subjects.end()) continue;
-    return absl::InvalidArgumentError(absl::StrCat(
-        "validation.subjects: ", base::Quoted(name), ", expected subjects of the data: ",
-        subjects.empty() ? "it names none" : absl::StrJoin(subjects, ", ")));
+    return absl::InvalidArgumentError(
+        absl::StrCat("validation.subjects: expected subjects of the data (",
+                     subjects.empty() ? "it names none" : absl::StrJoin(subjects, ", "), "), got ",
+                     base::Quoted(name)));
   }
   return absl::OkStatus();
 }

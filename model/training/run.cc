@@ -261,7 +261,8 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   if (error) return absl::InternalError(absl::StrCat(plan.folder.string(), ": ", error.message()));
   if (train.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
-        plan.title, ": validation holds back every sequence, expected some to train on"));
+        plan.title,
+        ": expected sequences to train on, got none: validation holds back every sequence"));
   }
   manifest.model.leader_statistics = MeasureLeaders(dataset, train);
   manifest.model.hand_contacts = FindHandContacts(dataset, train);

@@ -14,8 +14,8 @@ std::string OneOf(base::ObjectReader* reader, const std::string& key,
   constexpr std::size_t kMaxWord = 64;
   std::string value = reader->String(key, kMaxWord);
   if (reader->ok() && std::find(choices.begin(), choices.end(), value) == choices.end()) {
-    reader->Fail(
-        key, absl::StrCat(base::Quoted(value), ", expected one of ", absl::StrJoin(choices, ", ")));
+    reader->Fail(key, absl::StrCat("expected one of ", absl::StrJoin(choices, ", "), ", got ",
+                                   base::Quoted(value)));
   }
   return value;
 }

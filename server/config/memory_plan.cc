@@ -81,9 +81,10 @@ std::vector<std::string> MemoryWarnings(const v1::ServerConfig& settings, std::u
   std::vector<std::string> warnings;
   if (settings.memory_limit_bytes() > available &&
       settings.memory_limit_bytes() != kUnlimitedMemory) {
-    warnings.push_back(absl::StrCat(
-        "memory_limit_bytes: is ", settings.memory_limit_bytes(), ", expected at most ", available,
-        ", which this machine or its control group allows; above that the kernel ends the server"));
+    warnings.push_back(absl::StrCat("memory_limit_bytes: expected at most ", available,
+                                    ", which this machine or its control group allows, got ",
+                                    settings.memory_limit_bytes(),
+                                    "; above that the kernel ends the server"));
   }
   const std::uint64_t limit = std::min(settings.memory_limit_bytes(), available);
   MemoryNeed need = NeedOf(settings);

@@ -83,15 +83,15 @@ absl::Status ToStatus(const AccessControl::Decision& decision, Role role) {
     case AccessControl::Answer::kAllowed:
       break;
     case AccessControl::Answer::kNoCredentials:
+      return Refusal(absl::StatusCode::kUnauthenticated,
+                     "expected \"authorization: Bearer TOKEN\" in the call's metadata, or a client "
+                     "certificate where the server asks for one, got neither",
+                     common::kReasonCredentialsMissing);
+    case AccessControl::Answer::kWrongToken:
       return Refusal(
           absl::StatusCode::kUnauthenticated,
-          "the call does not say who makes it, expected \"authorization: Bearer TOKEN\" in "
-          "its metadata, or a client certificate where the server asks for one",
-          common::kReasonCredentialsMissing);
-    case AccessControl::Answer::kWrongToken:
-      return Refusal(absl::StatusCode::kUnauthenticated,
-                     "the call's authorization is not \"Bearer TOKEN\" with a token known here",
-                     common::kReasonCredentialsInvalid);
+          "authorization: expected \"Bearer TOKEN\" with a token known here, got another",
+          common::kReasonCredentialsInvalid);
     case AccessControl::Answer::kUnknownCertificate:
       return Refusal(absl::StatusCode::kPermissionDenied,
                      "expected a client certificate of a listed caller, got another",

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
 #include "model/engine/window_plan.h"
+#include "tests/checkpoint/edited_manifest.h"
 #include "tests/support/architectures.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
@@ -14,27 +15,15 @@
 namespace duet::checkpoint {
 namespace {
 
+using test::CompleteManifest;
 using test::IsOk;
 using test::StatusIs;
-using test::TinyManifest;
 
 using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// A complete manifest with an arbitrary hash.
-Manifest CompleteManifest() {
-  Manifest manifest = TinyManifest();
-  manifest.weights.bytes = 1234;
-  manifest.weights.sha256 = std::string(64, 'a');
-  return manifest;
-}
-
 json CompleteJson() { return json::parse(SerializeManifest(CompleteManifest())); }
-
-auto Refused(const std::string& why) {
-  return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));
-}
 
 TEST(Manifest, RoundTrip) {
   const Manifest wanted = CompleteManifest();
@@ -173,14 +162,14 @@ TEST(Manifest, IsFreeForAllUsesOnlyIfItSaysSo) {
   ASSERT_THAT(free, testing::HasSubstr(stated));
   std::string text = free;
   text.replace(text.find(stated), stated.size(), "\"free_for_all_uses\": \"yes\"");
-  EXPECT_THAT(ParseManifest(text), Refused("free_for_all_uses"));
+  EXPECT_THAT(ParseManifest(text), IsInvalid("free_for_all_uses"));
 }
 
 TEST(Manifest, TruncatedAtAnyLengthIsRejected) {
   const std::string text = SerializeManifest(CompleteManifest());
   const std::size_t last_brace = text.rfind('}');
   for (std::size_t size = 0; size <= last_brace; ++size) {
-    EXPECT_THAT(ParseManifest(text.substr(0, size)), Refused("manifest: not")) << size;
+    EXPECT_THAT(ParseManifest(text.substr(0, size)), IsInvalid("manifest: not")) << size;
   }
 }
 
@@ -188,13 +177,13 @@ TEST(Manifest, RejectsAnOversizeText) {
   std::string text = SerializeManifest(CompleteManifest());
   text.resize(kMaxManifestBytes, ' ');
   EXPECT_THAT(ParseManifest(text), IsOk());
-  EXPECT_THAT(ParseManifest(text + " "), Refused("1048577 bytes, expected at most 1048576"));
+  EXPECT_THAT(ParseManifest(text + " "), IsInvalid("expected at most 1048576 bytes, got 1048577"));
 }
 
 TEST(Manifest, RejectsRepeatedFields) {
   std::string text = SerializeManifest(CompleteManifest());
   text.insert(text.rfind('}'), ",\"version\": 4");
-  EXPECT_THAT(ParseManifest(text), Refused("\"version\" is repeated"));
+  EXPECT_THAT(ParseManifest(text), IsInvalid("\"version\" is repeated"));
 }
 
 // Visits every object inside `value`, the root first; `path` is for messages.
@@ -217,7 +206,7 @@ TEST(Manifest, RejectsEveryFieldThatIsMissing) {
     const json whole = object;
     for (const auto& [key, value] : whole.items()) {
       object.erase(key);
-      EXPECT_THAT(ParseManifest(root.dump()), Refused(absl::StrCat(key, ": missing"))) << path;
+      EXPECT_THAT(ParseManifest(root.dump()), IsInvalid(absl::StrCat(key, ": missing"))) << path;
       object = whole;
       ++fields;
     }
@@ -231,7 +220,7 @@ TEST(Manifest, RejectsEveryUnknownField) {
   ForEachObject(root, "", [&](json& object, const std::string& path) {
     if (IsFreeMap(path)) return;
     object["surprise"] = 1;
-    EXPECT_THAT(ParseManifest(root.dump()), Refused("unknown field \"surprise\"")) << path;
+    EXPECT_THAT(ParseManifest(root.dump()), IsInvalid("unknown field \"surprise\"")) << path;
     object.erase("surprise");
   });
 }
@@ -246,7 +235,7 @@ TEST(Manifest, RejectsEveryFieldOfAWrongType) {
       for (const json& value : values) {
         object[key] = value;
         const absl::StatusOr<Manifest> read = ParseManifest(root.dump());
-        EXPECT_THAT(read, Refused("")) << path << "/" << key << " = " << value;
+        EXPECT_THAT(read, IsInvalid("")) << path << "/" << key << " = " << value;
       }
       object = whole;
     }
@@ -263,9 +252,8 @@ struct BadField {
 class ManifestField : public ::testing::TestWithParam<BadField> {};
 
 TEST_P(ManifestField, IsRejectedByName) {
-  json root = CompleteJson();
-  root[json::json_pointer(GetParam().pointer)] = json::parse(GetParam().value);
-  EXPECT_THAT(ParseManifest(root.dump()), Refused(GetParam().why));
+  EXPECT_THAT(ParseEdited(CompleteManifest(), GetParam().pointer, json::parse(GetParam().value)),
+              IsInvalid(GetParam().why));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -273,8 +261,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadField{"newer_format", "/format_version", "3", "format_version: expected"},
         BadField{"format_0", "/format_version", "0", "format_version: expected"},
-        BadField{"name_empty", "/name", "\"\"", "name: \"\", expected 1 to 64"},
-        BadField{"name_leaves", "/name", "\"../x\"", "name: \"../x\""},
+        BadField{"name_empty", "/name", "\"\"", "name: expected 1 to 64"},
+        BadField{"name_leaves", "/name", "\"../x\"", "got \"../x\""},
         BadField{"name_long", "/name",
                  "\"0123456789012345678901234567890123456789012345678901234567890123x\"", "name:"},
         BadField{"version_0", "/version", "0", "version: expected a whole number"},
@@ -286,7 +274,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadField{"window_1", "/window_frames", "1", "window_frames: expected a whole number"},
         BadField{"window_fraction", "/window_frames", "8.5",
                  "window_frames: expected a whole number"},
-        BadField{"no_classes", "/classes", "[]", "classes: empty"},
+        BadField{"no_classes", "/classes", "[]", "classes: expected at least one class"},
         BadField{"class_twice", "/classes", "[\"a\",\"a\"]", "classes: \"a\" is repeated"},
         BadField{"class_number", "/classes", "[1]", "classes: expected non-empty strings, got 1"},
         BadField{"other_standardisation", "/standardisation", "\"none\"",
@@ -334,25 +322,26 @@ INSTANTIATE_TEST_SUITE_P(
         BadField{"hidden_huge", "/generator/encoder_hidden", "4097",
                  "generator.encoder_hidden: expected a whole number"},
         BadField{"hidden_out_of_memory", "/generator/encoder_hidden", "4096",
-                 "generator: its sizes add up to"},
+                 "generator: expected sizes of at most 536870912 bytes"},
         BadField{"attention_0", "/generator/attention", "0",
                  "generator.attention: expected a whole number"},
         BadField{"file_elsewhere", "/weights/file", "\"../weights\"",
-                 "weights.file: \"../weights\""},
+                 "weights.file: expected 1 to 64 letters"},
         BadField{"file_absolute", "/weights/file", "\"/etc/passwd\"", "weights.file"},
-        BadField{"file_parent", "/weights/file", "\"..\"", "weights.file: \"..\""},
-        BadField{"file_below", "/weights/file", "\"a/b\"", "weights.file: \"a/b\""},
+        BadField{"file_parent", "/weights/file", "\"..\"", "got \"..\""},
+        BadField{"file_below", "/weights/file", "\"a/b\"", "got \"a/b\""},
         BadField{"file_backslash", "/weights/file", "\"a\\\\b\"", "weights.file"},
         BadField{"file_nul", "/weights/file", "\"a\\u0000b\"", "weights.file"},
         BadField{"bytes_0", "/weights/bytes", "0", "weights.bytes: expected a whole number"},
         BadField{"bytes_over_the_cap", "/weights/bytes", "536870913",
                  "weights.bytes: expected a whole number from 1 to 536870912, got 536870913"},
-        BadField{"sha256_short", "/weights/sha256", "\"abc\"", "weights.sha256: \"abc\""},
+        BadField{"sha256_short", "/weights/sha256", "\"abc\"",
+                 "weights.sha256: expected 64 digits of lower-case hex, got \"abc\""},
         BadField{"sha256_upper_case", "/weights/sha256",
                  "\"AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA\"",
                  "lower-case hex"},
         BadField{"created_elsewhen", "/created", "\"yesterday\"",
-                 "created: \"yesterday\", expected a time as in RFC 3339"},
+                 "created: expected a time as in RFC 3339, got \"yesterday\""},
         BadField{"training_number", "/training/epochs", "7", "training.epochs: expected a string"},
         BadField{"metric_text", "/metrics/afd.kick", "\"good\"",
                  "metrics.afd.kick: expected a number"}),
@@ -362,14 +351,14 @@ TEST(Manifest, ANewerFormatIsNamedBeforeItsNewFields) {
   json root = CompleteJson();
   root["format_version"] = 3;
   root["new_field"] = true;
-  EXPECT_THAT(ParseManifest(root.dump()), Refused("format_version: expected a whole number"));
+  EXPECT_THAT(ParseManifest(root.dump()), IsInvalid("format_version: expected a whole number"));
 }
 
 TEST(Manifest, ANonFiniteMetricCannotBeRead) {
   Manifest manifest = CompleteManifest();
   manifest.metrics["afd.kick"] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(ParseManifest(SerializeManifest(manifest)),
-              Refused("metrics.afd.kick: expected a number"));
+              IsInvalid("metrics.afd.kick: expected a number"));
 }
 
 }  // namespace

@@ -83,9 +83,9 @@ TEST(Safetensors, RejectsABadHeaderLength) {
   file.resize((1 << 20) + 100);
   const uint64_t too_long = (1 << 20) + 1;
   std::memcpy(file.data(), &too_long, 8);
-  EXPECT_THAT(ParseSafetensors(file), Refused("1048577 bytes, expected at most 1048576"));
+  EXPECT_THAT(ParseSafetensors(file), Refused("expected at most 1048576 bytes, got 1048577"));
   std::memset(file.data(), 0xff, 8);
-  EXPECT_THAT(ParseSafetensors(file), Refused("18446744073709551615 bytes"));
+  EXPECT_THAT(ParseSafetensors(file), Refused("got 18446744073709551615"));
   std::memset(file.data(), 0, 8);
   EXPECT_THAT(ParseSafetensors(file), Refused("not a JSON object"));
 }
@@ -94,13 +94,14 @@ TEST(Safetensors, RejectsNonFiniteValues) {
   for (float bad : {std::numeric_limits<float>::quiet_NaN(), HUGE_VALF, -HUGE_VALF}) {
     std::vector<Tensor> tensors = TwoTensors();
     tensors[1].values[2] = bad;
-    EXPECT_THAT(ParseSafetensors(SerializeSafetensors(tensors)), Refused("\"a\": value 2 is"));
+    EXPECT_THAT(ParseSafetensors(SerializeSafetensors(tensors)),
+                Refused("\"a\": value 2: expected a finite number"));
   }
 }
 
 TEST(Safetensors, RejectsBytesAfterTheLastTensor) {
   EXPECT_THAT(ParseSafetensors(SerializeSafetensors(TwoTensors()) + "x"),
-              Refused("1 bytes after the last tensor"));
+              Refused("no bytes after the last tensor, got 1"));
 }
 
 struct BadHeader {
@@ -127,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadHeader{"not_an_object", R"({"a":[]})", "tensor \"a\": expected an object, got []"},
         BadHeader{"no_dtype", R"({"a":{"shape":[2],"data_offsets":[0,8]}})", "dtype: missing"},
         BadHeader{"other_dtype", R"({"a":{"dtype":"F64","shape":[1],"data_offsets":[0,8]}})",
-                  "tensor \"a\".dtype: \"F64\", expected \"F32\""},
+                  "tensor \"a\".dtype: expected \"F32\", got \"F64\""},
         BadHeader{"no_shape", R"({"a":{"dtype":"F32","data_offsets":[0,8]}})", "shape: missing"},
         BadHeader{"no_offsets", R"({"a":{"dtype":"F32","shape":[2]}})", "data_offsets: missing"},
         BadHeader{"unknown_field",
@@ -148,14 +149,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadHeader{"product_overflows_to_8",
                   // 4 * 2 * (2^62 + 1) * 4 wraps to 32, 4 * 4611686018427387906 to 8.
                   R"({"a":{"dtype":"F32","shape":[4611686018427387906],"data_offsets":[0,8]}})",
-                  "8 bytes, expected those of shape [4611686018427387906]"},
+                  "the bytes of the shape [4611686018427387906], got 8"},
         BadHeader{"product_overflows_to_0",
                   R"({"a":{"dtype":"F32","shape":[2147483648,2147483648,4],"data_offsets":[0,0]}})",
-                  "0 bytes, expected those of shape"},
+                  "the bytes of the shape"},
         BadHeader{"shape_too_large", R"({"a":{"dtype":"F32","shape":[3],"data_offsets":[0,8]}})",
-                  "8 bytes, expected those of shape [3]"},
+                  "the bytes of the shape [3], got 8"},
         BadHeader{"shape_too_small", R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,8]}})",
-                  "8 bytes, expected those of shape [1]"},
+                  "the bytes of the shape [1], got 8"},
         BadHeader{"one_offset", R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[8]}})",
                   "a begin and an end"},
         BadHeader{"three_offsets", R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[0,4,8]}})",
@@ -165,17 +166,17 @@ INSTANTIATE_TEST_SUITE_P(
         BadHeader{"negative_offset", R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[-8,0]}})",
                   "\"a\".data_offsets: expected whole numbers from 0"},
         BadHeader{"gap_at_the_start", R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}})",
-                  "begins at 4, expected 0"},
+                  "expected a begin at 0, the end of the previous, got 4"},
         BadHeader{"overlap",
                   R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[0,8]},)"
                   R"("b":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}})",
-                  "begins at 4, expected 8"},
+                  "expected a begin at 8, the end of the previous, got 4"},
         BadHeader{"same_bytes_twice",
                   R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[0,8]},)"
                   R"("b":{"dtype":"F32","shape":[2],"data_offsets":[0,8]}})",
-                  "begins at 0, expected 8"},
+                  "expected a begin at 8, the end of the previous, got 0"},
         BadHeader{"unused_bytes", R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4]}})",
-                  "4 bytes after the last tensor"},
+                  "no bytes after the last tensor, got 4"},
         BadHeader{"metadata_not_an_object", R"({"__metadata__":1})",
                   "__metadata__: expected an object, got 1"},
         BadHeader{"metadata_not_strings", R"({"__metadata__":{"x":1}})",
@@ -187,7 +188,7 @@ TEST(Safetensors, DeclaringMoreBytesThanPresentIsDataLoss) {
                                 R"("data_offsets":[0,9223372036854775804]}})",
                                 8);
   EXPECT_THAT(ParseSafetensors(file),
-              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("8 bytes present")));
+              StatusIs(absl::StatusCode::kDataLoss, HasSubstr("bytes, as declared, got 8")));
 }
 
 }  // namespace

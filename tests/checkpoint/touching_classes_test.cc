@@ -10,25 +10,17 @@
 namespace duet::checkpoint {
 namespace {
 
+using test::CompleteManifest;  // of a model with the classes kick and hug
 using test::IsOk;
 using test::StatusIs;
-using test::TinyManifest;
 
 using nlohmann::json;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// The manifest of a model with the classes kick and hug.
-Manifest Written() {
-  Manifest manifest = TinyManifest();
-  manifest.weights.bytes = 1234;
-  manifest.weights.sha256 = std::string(64, 'a');
-  return manifest;
-}
-
 TEST(TouchingClassesInManifest, RoundTrip) {
-  Manifest manifest = Written();
+  Manifest manifest = CompleteManifest();
   manifest.model.touching_classes = {"kick"};
   const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
   ASSERT_THAT(read, IsOk());
@@ -36,7 +28,7 @@ TEST(TouchingClassesInManifest, RoundTrip) {
 }
 
 TEST(TouchingClassesInManifest, EmptyListDiffersFromAnAbsentField) {
-  const std::string text = SerializeManifest(Written());
+  const std::string text = SerializeManifest(CompleteManifest());
   const absl::StatusOr<Manifest> none = ParseManifest(text);
   ASSERT_THAT(none, IsOk());
   EXPECT_THAT(none->model.touching_classes, IsEmpty());
@@ -52,32 +44,33 @@ TEST(TouchingClassesInManifest, EmptyListDiffersFromAnAbsentField) {
 }
 
 TEST(TouchingClassesInManifest, MustBeClasses) {
-  json root = json::parse(SerializeManifest(Written()));
+  json root = json::parse(SerializeManifest(CompleteManifest()));
   root["touching_classes"] = {"hug", "dance"};
   EXPECT_THAT(ParseManifest(root.dump()),
               StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("touching_classes: \"dance\", expected one of classes")));
+                       HasSubstr("touching_classes: expected one of classes, got \"dance\"")));
   root["touching_classes"] = {"hug", "hug"};
   EXPECT_THAT(ParseManifest(root.dump()),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("repeated")));
 }
 
 TEST(HandContactsInManifest, RoundTrip) {
-  Manifest manifest = Written();
+  Manifest manifest = CompleteManifest();
   manifest.model.hand_contacts = {{"hug", 0.25}};
   const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
   ASSERT_THAT(read, IsOk());
   ASSERT_EQ(read->model.hand_contacts.size(), 1u);
   EXPECT_EQ(read->model.hand_contacts[0].interaction_class, "hug");
   EXPECT_EQ(read->model.hand_contacts[0].metres, 0.25);
-  EXPECT_THAT(ParseManifest(SerializeManifest(Written()))->model.hand_contacts, IsEmpty());
+  EXPECT_THAT(ParseManifest(SerializeManifest(CompleteManifest()))->model.hand_contacts, IsEmpty());
 }
 
 TEST(HandContactsInManifest, NamesAClassAndADistance) {
-  json root = json::parse(SerializeManifest(Written()));
+  json root = json::parse(SerializeManifest(CompleteManifest()));
   root["hand_contacts"] = {{"bow", 0.1}};
   EXPECT_THAT(ParseManifest(root.dump()),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("hand_contacts: \"bow\"")));
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("hand_contacts: expected one of classes, got \"bow\"")));
   root["hand_contacts"] = {{"hug", 3}};
   EXPECT_THAT(ParseManifest(root.dump()),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("hand_contacts.hug")));

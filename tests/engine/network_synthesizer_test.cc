@@ -58,6 +58,18 @@ WindowResult RunOne(const Synthesizer& model, const SynthesisWindow& window) {
   return model.Synthesize({&window}).front();
 }
 
+NetworkInput SeenByTheNetwork(const SynthesisWindow& window, motion::StandardOrigin origin) {
+  NetworkInput seen;
+  const auto model = Model(
+      [&](Inputs inputs) {
+        seen = inputs[0];
+        return LargerAndHigher(inputs);
+      },
+      {}, FakeDescription(), origin);
+  EXPECT_THAT(RunOne(*model, window), IsOk());
+  return seen;
+}
+
 float LargestDistance(const motion::Poses& a, const motion::Poses& b) {
   EXPECT_EQ(a.all().size(), b.all().size());
   float largest = 0;
@@ -83,14 +95,7 @@ TEST(NetworkSynthesizer, TheNetworkSeesTheStandardFrame) {
   window.start = FollowerStart{SwayingPose(3)[2], SwayingPose(3)};
   for (const auto origin :
        {motion::StandardOrigin::kEveryFrame, motion::StandardOrigin::kFirstFrame}) {
-    NetworkInput seen;
-    const auto model = Model(
-        [&](Inputs inputs) {
-          seen = inputs[0];
-          return LargerAndHigher(inputs);
-        },
-        {}, FakeDescription(), origin);
-    ASSERT_THAT(RunOne(*model, window), IsOk());
+    const NetworkInput seen = SeenByTheNetwork(window, origin);
     const motion::Standardisation frame(motion::SbuSkeleton(), window.leader,
                                         motion::FacingYaw({1, 0, 0}), origin);
     EXPECT_EQ(seen.leader, frame.Apply(window.leader));
@@ -108,14 +113,7 @@ TEST(NetworkSynthesizer, TheNetworkSeesSamplingAndSettledFrames) {
   window.start = FollowerStart{window.settled.at(0, 2), SwayingPose(0)};
   for (const auto origin :
        {motion::StandardOrigin::kEveryFrame, motion::StandardOrigin::kFirstFrame}) {
-    NetworkInput seen;
-    const auto model = Model(
-        [&](Inputs inputs) {
-          seen = inputs[0];
-          return LargerAndHigher(inputs);
-        },
-        {}, FakeDescription(), origin);
-    ASSERT_THAT(RunOne(*model, window), IsOk());
+    const NetworkInput seen = SeenByTheNetwork(window, origin);
     EXPECT_EQ(seen.sampling.seed, 41u);
     EXPECT_EQ(seen.sampling.variety, 0.25f);
     const motion::Standardisation frame =

@@ -29,6 +29,16 @@ ModelDescription WithStart(ModelDescription model, bool accepts_follower_start) 
   return model;
 }
 
+// The window at frame 12, after one window of 20 frames of which 10 were dropped.
+SynthesisWindow Continued(const ModelDescription& model) {
+  WindowState state(kJoints);
+  state.Add(0, Frames(0, 20), CrossFade(model.skeleton));
+  state.DropBefore(10);
+  SynthesisWindow window;
+  ContinueFrom(state, 12, model, &window);
+  return window;
+}
+
 TEST(WindowStateTest, IsEmptyBeforeTheFirstWindow) {
   const WindowState state(kJoints);
   EXPECT_EQ(state.window_count(), 0);
@@ -80,22 +90,14 @@ TEST(WindowStateTest, CopiesAreIndependent) {
 }
 
 TEST(ContinueFromTest, SetsNothingForAModelWithoutAFollowerStart) {
-  const ModelDescription model = WithStart(FakeDescription(), false);
-  WindowState state(kJoints);
-  state.Add(0, Frames(0, 20), CrossFade(model.skeleton));
-  SynthesisWindow window;
-  ContinueFrom(state, 12, model, &window);
+  const SynthesisWindow window = Continued(WithStart(FakeDescription(), false));
   EXPECT_FALSE(window.start.has_value());
   EXPECT_EQ(window.settled.frame_count(), 0);
 }
 
 TEST(ContinueFromTest, SetsOnlyTheStartForAModelThatDoesNotSample) {
   const ModelDescription model = WithStart(FakeDescription(), true);
-  WindowState state(kJoints);
-  state.Add(0, Frames(0, 20), CrossFade(model.skeleton));
-  state.DropBefore(10);
-  SynthesisWindow window;
-  ContinueFrom(state, 12, model, &window);
+  const SynthesisWindow window = Continued(model);
   ASSERT_TRUE(window.start.has_value());
   EXPECT_EQ(window.start->root, Frames(0, 20).at(12, model.skeleton.root));
   ASSERT_EQ(window.start->pose.size(), static_cast<std::size_t>(kJoints));
@@ -104,12 +106,7 @@ TEST(ContinueFromTest, SetsOnlyTheStartForAModelThatDoesNotSample) {
 }
 
 TEST(ContinueFromTest, SetsEverySettledFrameForASamplingModel) {
-  const ModelDescription model = WithStart(SamplingDescription(), true);
-  WindowState state(kJoints);
-  state.Add(0, Frames(0, 20), CrossFade(model.skeleton));
-  state.DropBefore(10);
-  SynthesisWindow window;
-  ContinueFrom(state, 12, model, &window);
+  const SynthesisWindow window = Continued(WithStart(SamplingDescription(), true));
   ASSERT_TRUE(window.start.has_value());
   EXPECT_EQ(window.settled, Frames(12, 8));
 }

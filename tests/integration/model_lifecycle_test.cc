@@ -90,10 +90,10 @@ class ModelLifecycleTest : public ::testing::Test {
   absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> LoadTestModel(const fs::path& folder) {
     std::string word;
     std::ifstream(folder / "manifest.json") >> word;
-    if (word == "bad") return absl::DataLossError("weights: 7 bytes, expected 9");
+    if (word == "bad") return absl::DataLossError("weights: expected 9 bytes, got 7");
     std::string weights;
     std::ifstream(folder / "weights.safetensors") >> weights;
-    if (weights == "torn") return absl::DataLossError("weights: 4 bytes, expected 9");
+    if (weights == "torn") return absl::DataLossError("weights: expected 9 bytes, got 4");
     if (word == "gated") gate_.Pass();
     engine::ModelDescription description = FakeDescription();
     description.name = folder.parent_path().filename().string();
@@ -195,16 +195,17 @@ TEST_F(ModelLifecycleTest, ABadModelIsRefusedAndWhatIsServedStays) {
   admin::ReloadResponse reloaded;
   ASSERT_TRUE(Reload(&reloaded).ok());
   EXPECT_THAT(reloaded.refused(), ElementsAre("fake/2", "fake/1"));
-  EXPECT_THAT(ListModels(), ElementsAre("fake/2 FAILED: weights: 7 bytes, expected 9",
-                                        "fake/1 SERVED: weights: 7 bytes, expected 9 (outdated)"));
+  EXPECT_THAT(ListModels(),
+              ElementsAre("fake/2 FAILED: weights: expected 9 bytes, got 7",
+                          "fake/1 SERVED: weights: expected 9 bytes, got 7 (outdated)"));
   EXPECT_TRUE(Call(synthesis(), SampleRequest(40)).status.ok());
   EXPECT_THAT(Metrics(), AllOf(HasSubstr(R"(duet_model_state{checkpoint="fake/1"} 1)"),
                                HasSubstr(R"(duet_model_state{checkpoint="fake/2"} 0)"),
                                HasSubstr(R"(duet_model_loads_total{result="refused"} 2)"),
                                HasSubstr(R"(duet_reloads_total{result="failed"} 1)")));
-  EXPECT_THAT(
-      HttpGet(server().metrics_port(), "/readyz"),
-      AllOf(HasSubstr("HTTP/1.1 200"), HasSubstr("model fake/2: failed: weights: 7 bytes")));
+  EXPECT_THAT(HttpGet(server().metrics_port(), "/readyz"),
+              AllOf(HasSubstr("HTTP/1.1 200"),
+                    HasSubstr("model fake/2: failed: weights: expected 9 bytes")));
 }
 
 TEST_F(ModelLifecycleTest, WeightsThatAreTornAndMendedShowEverywhere) {
@@ -216,12 +217,14 @@ TEST_F(ModelLifecycleTest, WeightsThatAreTornAndMendedShowEverywhere) {
   admin::ReloadResponse reloaded;
   ASSERT_TRUE(Reload(&reloaded).ok());
   EXPECT_THAT(reloaded.refused(), ElementsAre("fake/1"));
-  EXPECT_THAT(ListModels(), ElementsAre("fake/1 SERVED: weights: 4 bytes, expected 9 (outdated)"));
+  EXPECT_THAT(ListModels(),
+              ElementsAre("fake/1 SERVED: weights: expected 9 bytes, got 4 (outdated)"));
   EXPECT_THAT(Metrics(),
               AllOf(HasSubstr(zero), HasSubstr(R"(duet_model_state{checkpoint="fake/1"} 1)")));
-  EXPECT_THAT(HttpGet(server().metrics_port(), "/readyz"),
-              AllOf(HasSubstr("HTTP/1.1 200"),
-                    HasSubstr("model fake/1: served, outdated: weights: 4 bytes, expected 9\n")));
+  EXPECT_THAT(
+      HttpGet(server().metrics_port(), "/readyz"),
+      AllOf(HasSubstr("HTTP/1.1 200"),
+            HasSubstr("model fake/1: served, outdated: weights: expected 9 bytes, got 4\n")));
   const std::vector<json> refused = server_->log.Events("model_refused");
   ASSERT_EQ(refused.size(), 1u);
   EXPECT_EQ(refused[0]["still_served"], true);
@@ -385,7 +388,8 @@ TEST_F(ModelLifecycleTest, EachRefusalHasItsCodeAndSaysWhy) {
     EXPECT_EQ(status.error_code(), code) << status.error_message();
     EXPECT_THAT(status.error_message(), HasSubstr(why));
   };
-  refused(LoadModel("fake", 2), StatusCode::FAILED_PRECONDITION, "weights: 7 bytes, expected 9");
+  refused(LoadModel("fake", 2), StatusCode::FAILED_PRECONDITION,
+          "weights: expected 9 bytes, got 7");
   refused(LoadModel("fake", 3), StatusCode::NOT_FOUND, "version 3 of model \"fake\"");
   refused(LoadModel("", 0), StatusCode::INVALID_ARGUMENT,
           "name: expected a model's name, got none");

@@ -1,6 +1,7 @@
 #include "tests/support/tiny_checkpoint.h"
 
 #include <cstddef>
+#include <string>
 #include <utility>
 
 namespace duet::test {
@@ -30,6 +31,13 @@ checkpoint::Manifest TinyManifest() {
   manifest.created = "2024-02-29T12:00:00Z";
   manifest.training = {{"data", "none"}, {"epochs", "0"}};
   manifest.metrics = {{"afd.kick", 0.5}, {"afd.hug", 0.625}};
+  return manifest;
+}
+
+checkpoint::Manifest CompleteManifest() {
+  checkpoint::Manifest manifest = TinyManifest();
+  manifest.weights.bytes = 1234;
+  manifest.weights.sha256 = std::string(64, 'a');
   return manifest;
 }
 

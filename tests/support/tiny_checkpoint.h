@@ -10,6 +10,9 @@ namespace duet::test {
 // hidden units. Its weights are not filled in.
 checkpoint::Manifest TinyManifest();
 
+// The same with the size and the hash of some weights, so that its text can be read again.
+checkpoint::Manifest CompleteManifest();
+
 // A checkpoint with weights by a rule that any language can repeat: value i of tensor k (in the
 // order of ExpectedTensors) is ((31 k + 7 i) mod 17 - 8) / 16.
 checkpoint::Checkpoint FilledCheckpoint(checkpoint::Manifest manifest);

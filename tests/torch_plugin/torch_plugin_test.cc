@@ -52,7 +52,7 @@ TEST(TorchPluginTest, InvalidLibraryIsNamed) {
 TEST(TorchPluginTest, LibraryOfAnotherBuildIsRejected) {
   setenv("DUET_TORCH_ENGINE", DUET_OTHER_BUILD_PATH, 1);
   EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kFailedPrecondition,
-                               HasSubstr("is of build another, expected this program's")));
+                               HasSubstr("expected this program's build")));
 }
 
 }  // namespace

@@ -95,9 +95,10 @@ TEST_F(PaperTrainerTest, StateOfAnotherVersionIsRejected) {
   torch::serialize::OutputArchive archive;  // a state without a version, as older trainers wrote
   archive.write("identity", c10::IValue(std::string("anything")));
   archive.save_to((folder_ / "state").string());
-  EXPECT_THAT(Make().LoadState(folder_ / "state"),
-              StatusIs(absl::StatusCode::kFailedPrecondition,
-                       HasSubstr("another version of the trainer, expected state version 2")));
+  EXPECT_THAT(
+      Make().LoadState(folder_ / "state"),
+      StatusIs(absl::StatusCode::kFailedPrecondition,
+               HasSubstr("expected state version 2, got that of another version of the trainer")));
 }
 
 TEST_F(PaperTrainerTest, StateOfASlightlyDifferentSettingIsRejected) {

@@ -33,7 +33,7 @@ def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float
     skeleton.
 
     Args:
-        path: .bvh, .gltf, .glb, .fbx, .amc, .csv, .npy, .npz, .json or SBU .txt.
+        path: a file in any format that Duet reads (docs/formats.md).
         side: ``"left"`` or ``"right"``: the person in a file with two.
         frame_rate_hz: frames per second; overrides the file's.
         unit: ``"metres"``, ``"millimetres"`` or ``"sbu-normalised"``; overrides the file's.

@@ -65,22 +65,6 @@ absl::Status KeepSide(const std::string& side, Clips* people) {
   return absl::OkStatus();
 }
 
-// The argument for a setting; empty if the package has none.
-absl::string_view ArgumentFor(motion::ReadingSetting setting) {
-  switch (setting) {
-    case motion::ReadingSetting::kFrameRate:
-      return "frame_rate_hz";
-    case motion::ReadingSetting::kMetresPerUnit:
-      return "metres_per_unit";
-    case motion::ReadingSetting::kJointMap:
-      return "joint_map";
-    case motion::ReadingSetting::kFormat:
-    case motion::ReadingSetting::kRigJointMap:
-      return "";
-  }
-  return "";
-}
-
 }  // namespace
 
 absl::StatusOr<Clips> ReadMotion(const std::filesystem::path& file,
@@ -124,8 +108,7 @@ absl::Status WriteMotion(const std::string& document, const std::filesystem::pat
 
 std::string DescribeError(const absl::Status& error) {
   std::string text(error.message());
-  const std::optional<motion::ReadingSetting> setting = motion::MendingSetting(error);
-  const absl::string_view argument = setting.has_value() ? ArgumentFor(*setting) : "";
+  const absl::string_view argument = motion::MendingField(error);
   if (!argument.empty()) absl::StrAppend(&text, "\nSpecify it with ", argument, ".");
   return text;
 }

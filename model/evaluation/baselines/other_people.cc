@@ -44,10 +44,9 @@ absl::StatusOr<std::vector<motion::Poses>> AnswerWithOtherPeople(const dataset::
     const int frames = asked.pair.leader.frame_count();
     const auto candidates = Candidates(dataset, train, asked.interaction_class, frames);
     if (candidates.empty()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("other people: no training sequence of class ",
-                       dataset.classes[static_cast<size_t>(asked.interaction_class)],
-                       ", expected at least one"));
+      return absl::InvalidArgumentError(absl::StrCat(
+          "other people: expected at least one training sequence of class ",
+          dataset.classes[static_cast<size_t>(asked.interaction_class)], ", got none"));
     }
     const auto drawn = random.Below(static_cast<int64_t>(candidates.size()));
     const Sequence& other = *candidates[static_cast<size_t>(drawn)];

@@ -54,7 +54,7 @@ absl::Status AddServedSets(const std::vector<SyntheticSet>& sets, std::vector<Da
     }
     if (!used) {
       return absl::InvalidArgumentError(
-          absl::StrCat("a synthetic set: made for half ", set.half, ", expected one of the seeds"));
+          absl::StrCat("half of a synthetic set: expected one of the seeds, got ", set.half));
     }
   }
   return absl::OkStatus();

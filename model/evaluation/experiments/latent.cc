@@ -64,9 +64,10 @@ absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint&
   absl::Status status = CheckModelFits(checkpoint.manifest.model, dataset);
   if (!status.ok()) return status;
   if (!std::holds_alternative<checkpoint::PaperArchitecture>(checkpoint.manifest.architecture)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("model ", checkpoint.manifest.model.name,
-                     ": samples, expected a generator with encoders, whose latent space is shown"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "model ", checkpoint.manifest.model.name,
+        ": expected a generator with encoders, whose latent space is shown, got one that "
+        "samples"));
   }
   network::Generator generator(checkpoint.manifest);
   if (status = network::LoadParameters(checkpoint, generator); !status.ok()) return status;

@@ -96,8 +96,8 @@ absl::StatusOr<std::pair<std::string, Asked>> ParseEntry(absl::string_view line)
   Asked asked;
   if (path.empty()) return absl::InvalidArgumentError("files: expected one file, got none");
   if (!absl::SimpleAtoi(half, &asked.half)) {
-    return absl::InvalidArgumentError(absl::StrCat("extra: half: ", base::Quoted(half),
-                                                   ", expected a seed that --write-jobs wrote"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "extra.half: expected a seed that --write-jobs wrote, got ", base::Quoted(half)));
   }
   if (entry->contains("partner_direction")) {
     asked.partner_direction = ToDirection((*entry)["partner_direction"]);
@@ -121,8 +121,8 @@ absl::StatusOr<std::map<std::string, Asked>> ReadIndex(const fs::path& file) {
     }
     if (!index.empty() && entry->second.half != index.begin()->second.half) {
       return base::ErrorAt(file.string(), lines.number(),
-                           absl::StrCat("half: ", entry->second.half, ", expected ",
-                                        index.begin()->second.half, " as above"));
+                           absl::StrCat("half: expected ", index.begin()->second.half,
+                                        " as above, got ", entry->second.half));
     }
     index.insert(*std::move(entry));
   }
@@ -171,16 +171,21 @@ absl::StatusOr<SyntheticSet> ReadSyntheticSet(const dataset::Dataset& dataset,
   if (!read.ok()) return read.status();
   absl::Status status = CheckSame(dataset, *read, folder);
   if (!status.ok()) return status;
-  absl::StatusOr<std::map<std::string, Asked>> index = ReadIndex(folder / "index.jsonl");
+  const fs::path index_file = folder / "index.jsonl";
+  absl::StatusOr<std::map<std::string, Asked>> index = ReadIndex(index_file);
   if (!index.ok()) return index.status();
+  if (index->size() != read->sequences.size()) {
+    return absl::InvalidArgumentError(absl::StrCat(index_file.string(), ": expected the ",
+                                                   read->sequences.size(),
+                                                   " clips of the folder, got ", index->size()));
+  }
   SyntheticSet set;
   set.sequences = std::move(read->sequences);
   for (dataset::Sequence& sequence : set.sequences) {
     const auto asked = index->find(sequence.id);
-    if (asked == index->end() || index->size() != set.sequences.size()) {
-      return absl::InvalidArgumentError(absl::StrCat((folder / "index.jsonl").string(), ": ",
-                                                     index->size(), " clips, expected the ",
-                                                     set.sequences.size(), " of the folder"));
+    if (asked == index->end()) {
+      return absl::InvalidArgumentError(absl::StrCat(index_file.string(), ": expected an entry of ",
+                                                     base::Quoted(sequence.id), ", got none"));
     }
     set.half = asked->second.half;
     sequence.partner_direction = asked->second.partner_direction;

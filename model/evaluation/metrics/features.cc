@@ -15,18 +15,18 @@ namespace {
 absl::Status CheckFeatures(const char* set, const FeatureSet& features, size_t width) {
   if (features.size() < 2) {
     return absl::InvalidArgumentError(
-        absl::StrCat("features ", set, ": ", features.size(), " samples, expected at least 2"));
+        absl::StrCat("features ", set, ": expected at least 2 samples, got ", features.size()));
   }
   for (size_t i = 0; i < features.size(); ++i) {
     if (features[i].size() != width || width == 0) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("features ", set, "[", i, "]: ", features[i].size(), " values, expected ",
-                       std::max<size_t>(width, 1)));
+      return absl::InvalidArgumentError(absl::StrCat("features ", set, "[", i, "]: expected ",
+                                                     std::max<size_t>(width, 1), " values, got ",
+                                                     features[i].size()));
     }
     if (!std::all_of(features[i].begin(), features[i].end(),
                      [](float value) { return std::isfinite(value); })) {
       return absl::InvalidArgumentError(
-          absl::StrCat("features ", set, "[", i, "]: not finite, expected finite values"));
+          absl::StrCat("features ", set, "[", i, "]: expected finite values, got others"));
     }
   }
   return absl::OkStatus();

@@ -46,19 +46,19 @@ int Vote(const std::vector<int>& nearest) {
 
 absl::Status Check(const FeatureSet& features, const std::vector<int>& classes, int neighbours) {
   if (classes.size() != features.size()) {
-    return absl::InvalidArgumentError(absl::StrCat("classes: ", classes.size(),
-                                                   ", expected one for each of ", features.size(),
-                                                   " feature vectors"));
+    return absl::InvalidArgumentError(absl::StrCat("classes: expected one for each of ",
+                                                   features.size(), " feature vectors, got ",
+                                                   classes.size()));
   }
   if (features.size() < static_cast<size_t>(neighbours) + 1) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "features: ", features.size(), " vectors, expected ", neighbours + 1, " or more"));
+    return absl::InvalidArgumentError(absl::StrCat("features: expected at least ", neighbours + 1,
+                                                   " vectors, got ", features.size()));
   }
   for (const std::vector<float>& vector : features) {
     if (vector.size() == features.front().size()) continue;
-    return absl::InvalidArgumentError(absl::StrCat("features: a vector of ", vector.size(),
-                                                   " values, expected ", features.front().size(),
-                                                   " as the first has"));
+    return absl::InvalidArgumentError(absl::StrCat("features: expected ", features.front().size(),
+                                                   " values in each vector, as in the first, got ",
+                                                   vector.size()));
   }
   return absl::OkStatus();
 }

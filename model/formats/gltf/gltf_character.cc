@@ -73,7 +73,7 @@ std::string FormatCharacter(const CharacterRig& rig,
   const int body = AddBody(rig, holder + 1, &writer);
   std::vector<LocalPose> local;
   for (const retargeting::CharacterPose& pose : poses) local.push_back(ToLocal(rig, pose));
-  AnimationWriter animation(poses.size(), frame_rate_hz, &writer);
+  AnimationWriter animation("duet", poses.size(), frame_rate_hz, &writer);
   for (std::size_t j = 0; j < rig.names.size(); ++j) {
     const int node = holder + 1 + static_cast<int>(j);
     if (rig.moves[j]) animation.Translate(node, PlacesOf(local, j));

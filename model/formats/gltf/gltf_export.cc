@@ -95,8 +95,8 @@ class GltfExporter {
   }
 
   void AddAnimation(const motion::Clip& clip, const std::vector<Person>& people) {
-    AnimationWriter animation(static_cast<std::size_t>(clip.frame_count()), clip.frame_rate_hz,
-                              &writer_);
+    AnimationWriter animation("duet", static_cast<std::size_t>(clip.frame_count()),
+                              clip.frame_rate_hz, &writer_);
     for (const Person& person : people) AddTracks(person, &animation);
     writer_.Add("animations", animation.Take());
   }

@@ -11,9 +11,10 @@ using retargeting::Linear;
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 
-AnimationWriter::AnimationWriter(std::size_t frames, double frame_rate_hz, GltfWriter* writer)
+AnimationWriter::AnimationWriter(const std::string& name, std::size_t frames, double frame_rate_hz,
+                                 GltfWriter* writer)
     : writer_(*writer),
-      json_({{"name", "duet"},
+      json_({{"name", name},
              {"channels", ordered_json::array()},
              {"samplers", ordered_json::array()}}) {
   std::vector<float> seconds;
@@ -30,6 +31,10 @@ void AnimationWriter::Translate(int node, const std::vector<Vec3d>& translations
 
 void AnimationWriter::Rotate(int node, const std::vector<Quaternion>& rotations) {
   AddTrack(node, "rotation", writer_.AddRotations(rotations));
+}
+
+void AnimationWriter::Scale(int node, const std::vector<Vec3d>& scales) {
+  AddTrack(node, "scale", writer_.AddVectors(scales));
 }
 
 void AnimationWriter::AddTrack(int node, const char* path, int values) {

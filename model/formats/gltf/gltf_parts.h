@@ -16,15 +16,17 @@
 
 namespace duet::formats::gltf {
 
-// One animation of a document, named "duet", with keys at every frame.
+// One animation of a document, with keys at every frame.
 class AnimationWriter {
  public:
   // `writer` must outlive this object.
-  AnimationWriter(std::size_t frames, double frame_rate_hz, GltfWriter* writer);
+  AnimationWriter(const std::string& name, std::size_t frames, double frame_rate_hz,
+                  GltfWriter* writer);
 
   // Shapes: [frames], in the axes of the node's parent.
   void Translate(int node, const std::vector<retargeting::Vec3d>& translations);
   void Rotate(int node, const std::vector<retargeting::Quaternion>& rotations);
+  void Scale(int node, const std::vector<retargeting::Vec3d>& scales);
 
   // The animation's JSON.
   nlohmann::ordered_json Take() { return std::move(json_); }

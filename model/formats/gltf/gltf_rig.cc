@@ -96,7 +96,7 @@ class RigAnimator {
 
   // Adds the animation and prepares the nodes that it moves.
   void Write(const std::vector<CharacterPose>& poses, double frame_rate_hz, GltfWriter* writer) {
-    AnimationWriter animation(poses.size(), frame_rate_hz, writer);
+    AnimationWriter animation("duet", poses.size(), frame_rate_hz, writer);
     for (std::size_t j = 0; j < nodes_.size(); ++j) AddJoint(j, poses, writer, &animation);
     writer->json()["animations"] = ordered_json::array({animation.Take()});
   }

@@ -36,8 +36,13 @@ class AdminCommandTest : public ::testing::Test {
   AdminCommandTest() {
     ServedModels models;
     models.models.push_back({"sbu", 3, ServedVersion::State::kServed, "", {"canary"}, true, 0.5});
-    models.models.push_back(
-        {"sbu", 2, ServedVersion::State::kFailed, "weights: 7 bytes, expected 9", {}, false, 0});
+    models.models.push_back({"sbu",
+                             2,
+                             ServedVersion::State::kFailed,
+                             "weights: expected 9 bytes, got 7",
+                             {},
+                             false,
+                             0});
     models.skipped_folders.push_back({"sbu/01", "is no version"});
     ON_CALL(*client_, ListModels).WillByDefault(Return(models));
   }
@@ -64,7 +69,7 @@ TEST_F(AdminCommandTest, ListsModels) {
   EXPECT_EQ(Run({"models"}), kExitDone);
   EXPECT_EQ(out_.str(),
             "sbu/3  served, default, labels: canary\n"
-            "sbu/2  failed\n    weights: 7 bytes, expected 9\n"
+            "sbu/2  failed\n    weights: expected 9 bytes, got 7\n"
             "sbu/01  skipped: is no version\n");
   EXPECT_EQ(options_.server_address, "localhost:50052");
 }
@@ -73,7 +78,7 @@ TEST_F(AdminCommandTest, ListsModelsAsJson) {
   EXPECT_EQ(Run({"models", "--json", "--admin-server", "lab:7"}), kExitDone);
   const auto json = nlohmann::json::parse(out_.str());
   EXPECT_EQ(json["models"][0]["state"], "served");
-  EXPECT_EQ(json["models"][1]["error"], "weights: 7 bytes, expected 9");
+  EXPECT_EQ(json["models"][1]["error"], "weights: expected 9 bytes, got 7");
   EXPECT_EQ(json["models"][0]["outdated"], false);
   EXPECT_TRUE(json["problems"].empty());
   EXPECT_EQ(json["skipped_folders"][0]["folder"], "sbu/01");
@@ -85,7 +90,7 @@ TEST_F(AdminCommandTest, ShowsOutdatedAndRejectedModels) {
   models.models.push_back({"sbu",
                            3,
                            ServedVersion::State::kServed,
-                           "weights: 7 bytes, expected 9",
+                           "weights: expected 9 bytes, got 7",
                            {},
                            true,
                            0.5,
@@ -95,7 +100,7 @@ TEST_F(AdminCommandTest, ShowsOutdatedAndRejectedModels) {
   EXPECT_EQ(Run({"models"}), kExitDone);
   EXPECT_EQ(out_.str(),
             "sbu/3  served (outdated: the files on disk were rejected), default\n"
-            "    weights: 7 bytes, expected 9\n"
+            "    weights: expected 9 bytes, got 7\n"
             "problem: access file: empty\n");
 }
 

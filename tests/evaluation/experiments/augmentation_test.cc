@@ -152,8 +152,9 @@ TEST(RunHalfTest, TrainsEveryRowAndKeepsServedSetsToTheirHalf) {
   ASSERT_THAT(AddServedSets({{2, dataset.sequences}}, &halves), IsOk());
   EXPECT_TRUE(halves[0].served.empty());
   EXPECT_EQ(halves[1].served.size(), dataset.sequences.size());
-  EXPECT_THAT(AddServedSets({{3, dataset.sequences}}, &halves),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("made for half 3")));
+  EXPECT_THAT(
+      AddServedSets({{3, dataset.sequences}}, &halves),
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected one of the seeds, got 3")));
 
   Trials trials({"give", "flinch", "all"});
   std::ostringstream progress;

@@ -151,20 +151,21 @@ TEST_F(SyntheticFilesTest, InvalidEntriesAreErrorsThatNameTheLine) {
   const auto invalid = [](const char* text) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(text));
   };
-  EXPECT_THAT(ReadAfter("\"half\":\"7\"", "\"hall\":\"7\""), invalid("index.jsonl:1: extra: half"));
-  EXPECT_THAT(ReadAfter("\"hall\":\"7\"", "\"half\":\"x\""), invalid("half: \"x\""));
+  EXPECT_THAT(ReadAfter("\"half\":\"7\"", "\"hall\":\"7\""), invalid("index.jsonl:1: extra.half"));
+  EXPECT_THAT(ReadAfter("\"hall\":\"7\"", "\"half\":\"x\""), invalid("got \"x\""));
   EXPECT_THAT(ReadAfter("\"half\":\"x\"", "\"half\":\"7\""), IsOk());
   EXPECT_THAT(ReadAfter("0.0,0.0,-1.0", "0.0,\"a\",-1.0"), invalid("partner_direction"));
   EXPECT_THAT(ReadAfter("0.0,\"a\",-1.0", "0.0,0.0,-1.0"), IsOk());
-  EXPECT_THAT(ReadAfter("give/give-001.txt", "give/give-009.txt"), invalid("4 clips, expected"));
+  EXPECT_THAT(ReadAfter("give/give-001.txt", "give/give-009.txt"),
+              invalid("expected an entry of \"give/give-001.txt\", got none"));
   EXPECT_THAT(ReadAfter("give/give-009.txt", "give/give-001.txt"), IsOk());
   const std::string index = ReadTestFile(folder_ / "set/index.jsonl");
   WriteTestFile(folder_ / "set/index.jsonl",
                 index + R"({"files":[{"path":"a"}],"extra":{"half":"8"}})" + "\n");
-  EXPECT_THAT(Read(), invalid("index.jsonl:5: half: 8, expected 7"));
+  EXPECT_THAT(Read(), invalid("index.jsonl:5: half: expected 7 as above, got 8"));
   WriteTestFile(folder_ / "set/index.jsonl",
                 index + R"({"files":[{"path":"a"}],"extra":{"half":"7"}})" + "\n");
-  EXPECT_THAT(Read(), invalid("5 clips, expected the 4"));
+  EXPECT_THAT(Read(), invalid("expected the 4 clips of the folder, got 5"));
   std::filesystem::remove(folder_ / "set/index.jsonl");
   EXPECT_THAT(Read(), StatusIs(absl::StatusCode::kNotFound, HasSubstr("index.jsonl")));
 }

@@ -104,7 +104,7 @@ TEST(FrechetDistanceTest, InvalidFeatureSetsAreRejected) {
 TEST(FrechetDistanceTest, SamplesWithoutFeaturesAreRejected) {
   const FeatureSet empty = {{}, {}};
   EXPECT_THAT(std::string(FrechetDistance(empty, empty).status().message()),
-              testing::HasSubstr("[0]: 0 values, expected 1"));
+              testing::HasSubstr("[0]: expected 1 values, got 0"));
 }
 
 TEST(DiversityTest, IsTheMeanPairwiseDistance) {

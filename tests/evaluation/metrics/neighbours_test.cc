@@ -45,9 +45,11 @@ TEST(NeighbourAccuracyTest, MismatchedSizesAreRejected) {
       NeighbourAccuracy({{0}, {1}}, {0}, 1),
       StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected one for each of 2")));
   EXPECT_THAT(NeighbourAccuracy({{0}, {1}}, {0, 1}, 2),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected 3 or more")));
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("expected at least 3 vectors, got 2")));
   EXPECT_THAT(NeighbourAccuracy({{0}, {1, 2}}, {0, 1}, 1),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected 1 as the first")));
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("expected 1 values in each vector, as in the first, got 2")));
 }
 
 }  // namespace

@@ -35,9 +35,9 @@ TEST(LatentTableTest, RowHasTheSharesOfOneAndOfFiveNeighbours) {
 }
 
 TEST(LatentTableTest, TooFewSamplesAreRejected) {
-  EXPECT_THAT(
-      LatentRow("ours", {{0}, {1}, {2}}, {0, 0, 1}),
-      StatusIs(absl::StatusCode::kInvalidArgument, testing::HasSubstr("expected 6 or more")));
+  EXPECT_THAT(LatentRow("ours", {{0}, {1}, {2}}, {0, 0, 1}),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       testing::HasSubstr("expected at least 6 vectors, got 3")));
 }
 
 }  // namespace

@@ -122,10 +122,10 @@ TEST(MemoryPlanTest, WarnsAboutALimitAboveTheMachinesMemory) {
   v1::ServerConfig config;
   config.set_memory_limit_bytes(4000 * kMebibyte);
   const v1::ServerConfig options = OptionsFor(400 * kMebibyte, config);
-  EXPECT_THAT(MemoryWarnings(options, 400 * kMebibyte),
-              ElementsAre(AllOf(HasSubstr("memory_limit_bytes: is 4194304000"),
-                                HasSubstr("expected at most 419430400")),
-                          HasSubstr("the limit is 419 MB")));
+  EXPECT_THAT(
+      MemoryWarnings(options, 400 * kMebibyte),
+      ElementsAre(AllOf(HasSubstr("got 4194304000"), HasSubstr("expected at most 419430400")),
+                  HasSubstr("the limit is 419 MB")));
 }
 
 TEST(MemoryPlanTest, WarnsAboutModelsLargerThanPlanned) {

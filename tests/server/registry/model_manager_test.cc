@@ -48,7 +48,7 @@ absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> LoadTestModel(const f
   std::string weights;
   std::ifstream(folder / "weights.safetensors") >> weights;
   if (name == "bad" || weights == "torn")
-    return absl::DataLossError("weights: 7 bytes, expected 9");
+    return absl::DataLossError("weights: expected 9 bytes, got 7");
   engine::ModelDescription model = test::FakeDescription();
   model.name = name;
   model.version = version;
@@ -168,7 +168,7 @@ TEST_F(ModelManagerTest, BrokenCheckpointNeverReplacesAGoodOne) {
   EXPECT_THAT(Reload().refused, ElementsAre("a/1"));
   EXPECT_EQ(Answer({}), "a/1 good");
   EXPECT_EQ(StatusOf("a", 1).state, ModelState::kServed);
-  EXPECT_EQ(StatusOf("a", 1).error, "weights: 7 bytes, expected 9");
+  EXPECT_EQ(StatusOf("a", 1).error, "weights: expected 9 bytes, got 7");
   EXPECT_THAT(events_.Take(), ElementsAre("refused a/1, served on"));
   Write("a", 1, "mended");
   Reload();
@@ -205,7 +205,7 @@ TEST_F(ModelManagerTest, TruncatedWeightsMakeAServedVersionOutdatedUntilTheyAreF
   EXPECT_THAT(Reload().refused, ElementsAre("a/1"));
   EXPECT_EQ(Answer({}), "a/1 first+old");
   EXPECT_TRUE(StatusOf("a", 1).outdated);
-  EXPECT_EQ(StatusOf("a", 1).error, "weights: 7 bytes, expected 9");
+  EXPECT_EQ(StatusOf("a", 1).error, "weights: expected 9 bytes, got 7");
   WriteWeights("a/1", "+old");
   EXPECT_THAT(Reload().loaded, ElementsAre("a/1")) << "loaded again, though they are the old ones";
   EXPECT_FALSE(StatusOf("a", 1).outdated);
@@ -441,7 +441,7 @@ TEST_F(ModelManagerTest, LoadReportsMissingAndBrokenVersions) {
   EXPECT_THAT(manager_.Load("a", 3), StatusIs(kNotFound, HasSubstr("version 3 of model \"a\"")));
   EXPECT_THAT(manager_.Load("../a", 1), StatusIs(kNotFound, HasSubstr("../a")));
   EXPECT_THAT(manager_.Load("a", 2),
-              StatusIs(kFailedPrecondition, HasSubstr("weights: 7 bytes, expected 9")));
+              StatusIs(kFailedPrecondition, HasSubstr("weights: expected 9 bytes, got 7")));
 }
 
 TEST_F(ModelManagerTest, UnloadedVersionStaysUnloadedUntilItIsLoadedByName) {

@@ -176,9 +176,7 @@ TEST(HostileClientTest, EveryMethodBoundsWhatItDoesNotKnow) {
 
 TEST(HostileClientTest, FullServerRejectsWithoutReadingTheRequest) {
   PuppetScheduler puppet;
-  RunningService::Setup setup;
-  setup.scheduler = &puppet;
-  RunningService running(setup);
+  RunningService running(&puppet);
   puppet.Refuse(absl::ResourceExhaustedError("the queue is full"));
   SilentCall call(running);
   const Refusal refusal = Decode(call.Finish());

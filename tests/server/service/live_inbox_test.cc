@@ -13,7 +13,6 @@
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::server::service {
@@ -31,15 +30,8 @@ constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 class LiveInboxTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    v1::LiveStart start;
-    v1::SynthesizeRequest sample = test::SampleRequest(1);
-    frame_ = {sample.leader().positions().begin(), sample.leader().positions().end()};
-    *start.mutable_leader() = sample.leader();
-    start.mutable_leader()->clear_positions();
-    start.mutable_leader()->set_frame_count(0);
-    *start.mutable_label_vector() = sample.label_vector();
     absl::StatusOr<ValidatedLiveStart> valid =
-        ValidateLiveStart(start, model_->description(), RequestLimits());
+        ValidateLiveStart(test::SampleLiveStart(), model_->description(), RequestLimits());
     ASSERT_THAT(valid, IsOk());
     LiveSessionParts parts;
     parts.model = model_;
@@ -61,14 +53,12 @@ class LiveInboxTest : public ::testing::Test {
   test::PuppetScheduler scheduler_;
   std::shared_ptr<test::FakeSynthesizer> model_ =
       std::make_shared<test::FakeSynthesizer>(test::SamplingDescription());
-  std::vector<float> frame_;
   std::shared_ptr<LiveSession> session_;
 };
 
 TEST_F(LiveInboxTest, MessagesReachTheSession) {
   v1::SynthesizeLiveRequest message;
-  message.mutable_frames()->set_frame_count(1);
-  message.mutable_frames()->mutable_positions()->Add(frame_.begin(), frame_.end());
+  *message.mutable_frames() = test::SampleLeaderFrames(0, 1);
   LiveInbox inbox(session_);
   inbox.OnMessage(SerializeMessage(message));
   scheduler_.RunNext();

@@ -19,7 +19,6 @@
 #include "tests/server/support/sample_request.h"
 #include "tests/server/support/timed_context.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/sample_motion.h"
 
 namespace duet::server::service {
 namespace {
@@ -49,31 +48,13 @@ RunningService::Setup LiveSetup() {
 // A start with so many frames of history of both motions.
 Message Start(int frames = 0) {
   Message message;
-  v1::LiveStart& start = *message.mutable_start();
-  v1::SynthesizeRequest sample = SampleRequest(frames == 0 ? 1 : frames);
-  *start.mutable_label_vector() = sample.label_vector();
-  *start.mutable_leader() = std::move(*sample.mutable_leader());
-  if (frames > 0) {
-    *start.mutable_history()->mutable_follower_positions() = start.leader().positions();
-    start.mutable_history()->set_follower_frame_count(static_cast<uint32_t>(frames));
-  } else {
-    start.mutable_leader()->clear_positions();
-    start.mutable_leader()->set_frame_count(0);
-  }
+  *message.mutable_start() = test::SampleLiveStart(frames);
   return message;
 }
 
 Message Frames(int first, int count) {
-  static const motion::Poses leader = test::SwayingMotion(400, 15);
   Message message;
-  v1::LeaderFrames& frames = *message.mutable_frames();
-  frames.set_first_frame(static_cast<uint32_t>(first));
-  frames.set_frame_count(static_cast<uint32_t>(count));
-  for (const motion::Vec3& position : leader.frames(first, count)) {
-    frames.add_positions(position.x);
-    frames.add_positions(position.y);
-    frames.add_positions(position.z);
-  }
+  *message.mutable_frames() = test::SampleLeaderFrames(first, count);
   return message;
 }
 

@@ -18,7 +18,6 @@
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::server::service {
@@ -29,7 +28,6 @@ using test::FakeClock;
 using test::FakeSynthesizer;
 using test::IsOk;
 using test::PuppetScheduler;
-using test::SampleRequest;
 using test::StatusIs;
 
 using ::testing::HasSubstr;
@@ -42,19 +40,9 @@ using Message = v1::SynthesizeLiveRequest;
 constexpr int kRate = 15, kValues = 45;  // of a frame
 constexpr double kIdleSeconds = 7;
 
-// Frames [first, first + count) of a leader who sways.
 Message Frames(int first, int count) {
-  static const motion::Poses leader = test::SwayingMotion(400, kRate);
   Message message;
-  v1::LeaderFrames& frames = *message.mutable_frames();
-  frames.set_first_frame(static_cast<uint32_t>(first));
-  frames.set_frame_count(static_cast<uint32_t>(count));
-  for (const motion::Vec3& position : leader.frames(first, count)) {
-    frames.add_positions(position.x);
-    frames.add_positions(position.y);
-    frames.add_positions(position.z);
-  }
-  frames.set_capture_seconds(first + count - 1);
+  *message.mutable_frames() = test::SampleLeaderFrames(first, count);
   return message;
 }
 
@@ -83,12 +71,7 @@ struct Taken {
 class LiveSessionTest : public ::testing::Test {
  protected:
   void Create(uint32_t delay = 0, uint32_t plan = 0) {
-    v1::LiveStart start;
-    v1::SynthesizeRequest sample = SampleRequest(2);
-    *start.mutable_leader() = sample.leader();
-    start.mutable_leader()->clear_positions();
-    start.mutable_leader()->set_frame_count(0);
-    *start.mutable_label_vector() = sample.label_vector();
+    v1::LiveStart start = test::SampleLiveStart();
     start.set_delay_frames(delay);
     start.set_plan_frames(plan);
     start.set_seed(3);

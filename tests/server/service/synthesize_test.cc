@@ -135,9 +135,7 @@ TEST(SynthesizeTest, ChunksFollowEachOtherWithoutGaps) {
 
 TEST(SynthesizeTest, DefaultChunkHasThirtyFrames) {
   PuppetScheduler puppet;
-  RunningService::Setup setup;
-  setup.scheduler = &puppet;
-  RunningService running(setup);
+  RunningService running(&puppet);
   TimedContext context;
   const auto reader = running.stub().Synthesize(&context, SampleRequest(46));
   puppet.RunNext();  // all 46 frames are there before the first chunk is cut
@@ -165,9 +163,7 @@ TEST(SynthesizeTest, TheSummaryCountsWhatWasSent) {
 
 TEST(SynthesizeTest, FirstChunkIsSentAfterTheFirstWindow) {
   PuppetScheduler puppet;
-  RunningService::Setup setup;
-  setup.scheduler = &puppet;
-  RunningService running(setup);
+  RunningService running(&puppet);
   TimedContext context;
   const auto reader = running.stub().Synthesize(&context, SampleRequest(900));
   puppet.RunNext();
@@ -185,9 +181,7 @@ TEST(SynthesizeTest, FirstChunkIsSentAfterTheFirstWindow) {
 
 TEST(SynthesizeTest, HeaderIsSentBeforeTheFirstWindowIsEvaluated) {
   PuppetScheduler puppet;
-  RunningService::Setup setup;
-  setup.scheduler = &puppet;
-  RunningService running(setup);
+  RunningService running(&puppet);
   TimedContext context;
   const auto reader = running.stub().Synthesize(&context, SampleRequest(46));
   v1::SynthesizeResponse message;

@@ -57,6 +57,13 @@ RunningService::RunningService(Setup setup) : admission_(setup.admission) {
 
 std::string RunningService::address() const { return absl::StrCat("127.0.0.1:", grpc_.port); }
 
+RunningService::RunningService(server::batching::WindowScheduler* scheduler)
+    : RunningService([scheduler] {
+        Setup setup;
+        setup.scheduler = scheduler;
+        return setup;
+      }()) {}
+
 RunningService::~RunningService() {
   if (grpc_.server == nullptr) return;
   service_->AbortAll(absl::UnavailableError("the test is over"));

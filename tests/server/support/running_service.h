@@ -43,6 +43,7 @@ class RunningService {
 
   explicit RunningService(Setup setup);
   RunningService() : RunningService(Setup()) {}
+  explicit RunningService(server::batching::WindowScheduler* scheduler);
   ~RunningService();
 
   v1::MotionSynthesis::Stub& stub() { return *stub_; }

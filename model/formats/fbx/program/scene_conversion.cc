@@ -12,6 +12,7 @@
 #include "model/formats/fbx/program/node_tree.h"
 #include "model/formats/fbx/program/skin_writing.h"
 #include "model/formats/fbx/program/take_sampling.h"
+#include "model/formats/gltf/gltf_parts.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/motion_limits.h"
 #include "nlohmann/json.hpp"
@@ -91,51 +92,20 @@ void WriteNodes(const NodeTree& tree, GltfWriter* writer) {
   writer->json()["scene"] = 0;
 }
 
-// One animation, with keys at every frame.
-class TakeWriter {
- public:
-  TakeWriter(const std::string& name, std::size_t frames, double frame_rate_hz, GltfWriter* writer)
-      : writer_(*writer),
-        json_({{"name", name},
-               {"channels", ordered_json::array()},
-               {"samplers", ordered_json::array()}}) {
-    std::vector<float> seconds;
-    for (std::size_t frame = 0; frame < frames; ++frame) {
-      seconds.push_back(static_cast<float>(static_cast<double>(frame) / frame_rate_hz));
-    }
-    writer_.BeginView(GltfWriter::Use::kOther);
-    times_ = writer_.AddTimes(seconds);
+void AddTrack(const Track& track, gltf::AnimationWriter* animation) {
+  std::vector<Vec3d> translations, scales;
+  std::vector<Quaternion> rotations;
+  bool scaled = false;
+  for (const Parts& parts : track.frames) {
+    translations.push_back(parts.translation);
+    rotations.push_back(parts.rotation);
+    scales.push_back(parts.scale);
+    scaled = scaled || Norm(parts.scale - Vec3d{1, 1, 1}) > 1e-6;
   }
-
-  void Add(const Track& track) {
-    std::vector<Vec3d> translations, scales;
-    std::vector<Quaternion> rotations;
-    bool scaled = false;
-    for (const Parts& parts : track.frames) {
-      translations.push_back(parts.translation);
-      rotations.push_back(parts.rotation);
-      scales.push_back(parts.scale);
-      scaled = scaled || Norm(parts.scale - Vec3d{1, 1, 1}) > 1e-6;
-    }
-    AddChannel(track.node, "translation", writer_.AddVectors(translations));
-    AddChannel(track.node, "rotation", writer_.AddRotations(rotations));
-    if (scaled) AddChannel(track.node, "scale", writer_.AddVectors(scales));
-  }
-
-  ordered_json Take() { return std::move(json_); }
-
- private:
-  void AddChannel(int node, const char* path, int values) {
-    json_["channels"].push_back(
-        {{"sampler", json_["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
-    json_["samplers"].push_back(
-        {{"input", times_}, {"interpolation", "LINEAR"}, {"output", values}});
-  }
-
-  GltfWriter& writer_;
-  ordered_json json_;
-  int times_ = 0;  // accessor
-};
+  animation->Translate(track.node, translations);
+  animation->Rotate(track.node, rotations);
+  if (scaled) animation->Scale(track.node, scales);
+}
 
 // Adds the takes that move a node; `animated` receives these nodes.
 absl::Status WriteTakes(const aiScene& scene, const NodeTree& tree, double frame_rate_hz,
@@ -149,12 +119,13 @@ absl::Status WriteTakes(const aiScene& scene, const NodeTree& tree, double frame
     const absl::StatusOr<std::vector<Track>> tracks = SampleTake(take, tree, frame_rate_hz);
     if (!tracks.ok()) return tracks.status();
     if (tracks->empty()) continue;
-    TakeWriter written(take.mName.C_Str(), tracks->front().frames.size(), frame_rate_hz, writer);
+    gltf::AnimationWriter animation(take.mName.C_Str(), tracks->front().frames.size(),
+                                    frame_rate_hz, writer);
     for (const Track& track : *tracks) {
-      written.Add(track);
+      AddTrack(track, &animation);
       animated->insert(track.node);
     }
-    writer->Add("animations", written.Take());
+    writer->Add("animations", animation.Take());
   }
   return absl::OkStatus();
 }

@@ -117,6 +117,13 @@ TEST(ServerChoice, GivesEachServerItsShare) {
   EXPECT_THAT(calls, ::testing::Each(CallWindow(Limits()).limit()));
 }
 
+TEST(ServerChoice, EqualServersTakeTurns) {
+  ServerChoice servers(3, Limits());
+  std::vector<int> order;
+  while (const auto call = servers.Start(kStart)) order.push_back(call->server);
+  EXPECT_THAT(order, ::testing::ElementsAre(1, 2, 0, 1, 2, 0));
+}
+
 TEST(ServerChoice, SendsNoCallsToAServerThatIsAway) {
   ServerChoice servers(2, Limits());
   auto call = servers.Start(kStart);
