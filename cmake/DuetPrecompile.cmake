@@ -1,6 +1,8 @@
 # Precompiled headers: most of the time that a file takes to compile goes into headers of libraries
-# (LibTorch's take ten seconds). Only the release preset uses them. The other builds and
-# scripts/check_headers.py show that every file includes what it uses.
+# (LibTorch's take ten seconds). Every file pays for reading its whole set, so a set has only what most
+# files include; JSON would more than double the time of a file that does not use it. Only the release
+# preset uses them. The other builds and scripts/check_headers.py show that every file includes what it
+# uses.
 option(DUET_PRECOMPILE "Precompile the headers of libraries that most files include" OFF)
 
 # Makes duet_precompiled_<NAME>: HEADERS, compiled as a target with the same OPTIONS and LINKS sees them.
@@ -43,12 +45,13 @@ if(DUET_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-pthread>)
   set(library_headers <algorithm> <cstdint> <functional> <memory> <optional> <string> <string_view>
       <utility> <vector> <absl/status/status.h> <absl/status/statusor.h> <absl/strings/str_cat.h>
-      <absl/strings/str_format.h> <absl/types/span.h> <nlohmann/json.hpp>)
+      <absl/strings/str_format.h> <absl/types/span.h>)
   set(test_headers ${library_headers} <gmock/gmock.h> <gtest/gtest.h>)
-  set(library_links absl::span absl::status absl::statusor absl::str_format absl::strings
-      nlohmann_json::nlohmann_json)
+  set(library_links absl::span absl::status absl::statusor absl::str_format absl::strings)
   set(test_options -O0 $<$<CONFIG:Release>:-U_FORTIFY_SOURCE>)
   duet_precompiled_headers(NAME library HEADERS ${library_headers} LINKS ${library_links})
+  duet_precompiled_headers(NAME glue HEADERS ${library_headers} LINKS ${library_links}
+    OPTIONS ${DUET_GLUE_OPTIONS})
   if(TARGET duet::torch)
     duet_precompiled_headers(NAME torch HEADERS ${library_headers} <torch/torch.h>
       LINKS ${library_links} duet::torch)

@@ -1,12 +1,16 @@
 # Functions for every target of the project: explicit sources, aliases, no global flags.
+# Code that is not worth optimising further (GLUE below): flags, settings, reports, main functions.
+set(DUET_GLUE_OPTIONS $<$<CONFIG:Release>:-O1>)
+
 include(DuetWarnings)
 include(DuetTools)
 include(DuetPrecompile)
 
-# duet_library(NAME motion SOURCES a.cc b.cc [DEPS duet::x absl::y] [PRIVATE_DEPS ...] [PRECOMPILED torch])
+# duet_library(NAME motion SOURCES a.cc b.cc [DEPS duet::x absl::y] [PRIVATE_DEPS ...] [PRECOMPILED torch] [GLUE])
 # Makes duet_<name> with the alias duet::<name>; headers are included from the top folder.
+# GLUE: nothing in it is computed often, such as flags and reports, so that it is compiled in less time.
 function(duet_library)
-  cmake_parse_arguments(A "" "NAME;PRECOMPILED" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  cmake_parse_arguments(A "GLUE" "NAME;PRECOMPILED" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   add_library(duet_${A_NAME} STATIC ${A_SOURCES})
   add_library(duet::${A_NAME} ALIAS duet_${A_NAME})
   target_include_directories(duet_${A_NAME} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
@@ -14,28 +18,45 @@ function(duet_library)
   target_link_libraries(duet_${A_NAME} PUBLIC ${A_DEPS} PRIVATE ${A_PRIVATE_DEPS})
   duet_enable_warnings(duet_${A_NAME})
   duet_compile_fast(duet_${A_NAME})
+  if(A_GLUE)
+    target_compile_options(duet_${A_NAME} PRIVATE ${DUET_GLUE_OPTIONS})
+  endif()
   if(NOT A_PRECOMPILED AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/tests")
     set(A_PRECOMPILED library)
+    if(A_GLUE)
+      set(A_PRECOMPILED glue)
+    endif()
   endif()
   duet_precompile(duet_${A_NAME} "${A_PRECOMPILED}")
 endfunction()
 
-# duet_program(NAME duet-server SOURCES main.cc DEPS ...): an executable in <build>/bin.
+# duet_program(NAME duet-server SOURCES main.cc DEPS ...): an executable in <build>/bin. Its own sources are glue.
 function(duet_program)
   cmake_parse_arguments(A "" "NAME" "SOURCES;DEPS" ${ARGN})
   add_executable(${A_NAME} ${A_SOURCES})
   target_link_libraries(${A_NAME} PRIVATE ${A_DEPS})
   target_include_directories(${A_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_options(${A_NAME} PRIVATE ${DUET_GLUE_OPTIONS})
   duet_enable_warnings(${A_NAME})
   duet_compile_fast(${A_NAME})
   duet_link_fast(${A_NAME})
 endfunction()
 
+# duet_share_cores(name waits): how many half cores a test takes. A test that mostly waits, for timeouts and processes, runs beside
+# others: scripts/test.sh runs tests on four half cores.
+function(duet_share_cores name waits)
+  if(waits)
+    set_tests_properties(${name} PROPERTIES PROCESSORS 1)
+  else()
+    set_tests_properties(${name} PROPERTIES PROCESSORS 2)
+  endif()
+endfunction()
+
 # duet_test(NAME motion_test SOURCES a_test.cc DEPS ... [LABELS ...] [ENVIRONMENT ...] [TIMEOUT s]
-#           [PRECOMPILED torch_test])
+#           [PRECOMPILED torch_test] [WAITS])
 # One CTest entry for each test program, linked with GoogleTest's main and mocks.
 function(duet_test)
-  cmake_parse_arguments(A "" "NAME;TIMEOUT;PRECOMPILED" "SOURCES;DEPS;LABELS;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(A "WAITS" "NAME;TIMEOUT;PRECOMPILED" "SOURCES;DEPS;LABELS;ENVIRONMENT" ${ARGN})
   add_executable(${A_NAME} ${A_SOURCES})
   target_link_libraries(${A_NAME} PRIVATE ${A_DEPS} GTest::gmock GTest::gtest_main)
   duet_compile_fast(${A_NAME})
@@ -48,6 +69,7 @@ function(duet_test)
   duet_enable_warnings(${A_NAME})
   duet_link_fast(${A_NAME})
   add_test(NAME ${A_NAME} COMMAND ${A_NAME})
+  duet_share_cores(${A_NAME} ${A_WAITS})
   if(NOT A_TIMEOUT)
     set(A_TIMEOUT 300)
   endif()

@@ -25,7 +25,7 @@ source scripts/sanitizer_options.sh "${build_dir}"
 failed=0
 # One alternative for each program, anchored.
 pattern="$(IFS='|' && echo "^(${tests[*]})\$")"
-ctest --test-dir "${build_dir}" --output-on-failure --parallel 2 --tests-regex "${pattern}" || failed=1
+ctest --test-dir "${build_dir}" --output-on-failure --parallel 4 --tests-regex "${pattern}" || failed=1
 if [[ -z "${label}" ]]; then
   # One at a time: several scripts start many sanitized servers and clients each.
   ctest --test-dir "${build_dir}" --output-on-failure -L '^server$' -LE '^libtorch$' || failed=1

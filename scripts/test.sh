@@ -6,4 +6,5 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export JOBS="${JOBS:-$(scripts/build_jobs.sh)}"
 scripts/check.py --quick
 echo "== Built and checked in ${SECONDS} s; CTest prints the time of the tests."
-exec ctest --test-dir build/release --output-on-failure --parallel 2
+# Four half cores: a test takes two, or one if it mostly waits (duet_share_cores).
+exec ctest --test-dir build/release --output-on-failure --parallel 4

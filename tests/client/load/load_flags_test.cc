@@ -43,6 +43,17 @@ TEST(LoadFlagsTest, EachValueIsAStep) {
   EXPECT_EQ(Parse({}).Steps().front().callers, 1);
 }
 
+TEST(LoadFlagsTest, ReadsOutputsAndTheTitleOfTheReport) {
+  const LoadArguments parsed = Parse({"--html", "a.html", "--csv", "b.csv", "--json", "-",
+                                      "--records", "c.csv", "--title", "Two cores", "--quiet"});
+  EXPECT_EQ(parsed.html, "a.html");
+  EXPECT_EQ(parsed.csv, "b.csv");
+  EXPECT_EQ(parsed.json, "-");
+  EXPECT_EQ(parsed.records, "c.csv");
+  EXPECT_EQ(parsed.title, "Two cores");
+  EXPECT_TRUE(parsed.quiet);
+}
+
 TEST(LoadFlagsTest, ReadsTheContentOfCalls) {
   const LoadArguments parsed =
       Parse({"--frames", "46=9,460", "--model", "sbu=0.5,k3hi@1=2", "--label", "kick=1",
