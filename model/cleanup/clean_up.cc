@@ -38,6 +38,9 @@ std::optional<float> CleanUp::Floor(const motion::Poses& leader) const {
 void CleanUp::CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
                           const Timing& timing, motion::Poses* follower) const {
   // The trunk and the whole body first, then the limbs, so that fixed feet stay fixed.
+  if (options_.shoulders.enabled) {
+    LimitShoulders(skeleton_, body_, leader, options_.shoulders, timing, follower);
+  }
   if (options_.waist.enabled) {
     LimitWaist(skeleton_, body_, leader, options_.waist, timing, follower);
   }

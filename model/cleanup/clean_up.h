@@ -11,6 +11,7 @@
 #include "model/cleanup/hand_contact.h"
 #include "model/cleanup/joint_ranges.h"
 #include "model/cleanup/pins.h"
+#include "model/cleanup/shoulders.h"
 #include "model/cleanup/spacing.h"
 #include "model/cleanup/timing.h"
 #include "model/cleanup/upright.h"
@@ -23,6 +24,7 @@
 namespace duet::cleanup {
 
 struct Options {
+  ShoulderOptions shoulders;
   WaistOptions waist;
   UprightOptions upright;
   SpacingOptions spacing;
