@@ -82,6 +82,7 @@ void CleanUp::PlaceFeetAndHands(const motion::Poses& leader, const Meetings& mee
   if (options_.hand_contact.enabled) {
     MeetHand(skeleton_, body_, leader, meetings, options_.hand_contact, timing, follower);
   }
+  if (options_.limb_swings.enabled) CalmLimbs(body_, options_.limb_swings, timing, follower);
 }
 
 PinnedMotion CleanUp::ApproachPins(const motion::Poses& leader, const Touch& touch,

@@ -10,6 +10,7 @@
 #include "model/cleanup/footsteps.h"
 #include "model/cleanup/hand_contact.h"
 #include "model/cleanup/joint_ranges.h"
+#include "model/cleanup/limb_swings.h"
 #include "model/cleanup/pins.h"
 #include "model/cleanup/shoulders.h"
 #include "model/cleanup/spacing.h"
@@ -33,6 +34,7 @@ struct Options {
   FloorOptions floor;
   FootstepOptions footsteps;
   HandContactOptions hand_contact;
+  LimbSwingOptions limb_swings;
   PinOptions pins;
 };
 

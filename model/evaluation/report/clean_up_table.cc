@@ -23,7 +23,7 @@ cleanup::Options NoStage() {
   none.upright.enabled = none.spacing.enabled = none.capsules.enabled = false;
   none.waist.enabled = none.hand_contact.enabled = none.floor.enabled = none.footsteps.enabled =
       none.joint_ranges.enabled = false;
-  none.shoulders.enabled = false;
+  none.shoulders.enabled = none.limb_swings.enabled = false;
   return none;
 }
 
@@ -44,6 +44,7 @@ std::vector<std::pair<std::string, cleanup::Options>> Variants() {
           {"floor", Only(&cleanup::Options::floor)},
           {"footsteps", Only(&cleanup::Options::footsteps)},
           {"joint ranges", Only(&cleanup::Options::joint_ranges)},
+          {"limb swings", Only(&cleanup::Options::limb_swings)},
           {"all", {}}};
 }
 

@@ -12,7 +12,7 @@ namespace {
 using motion::Vec3;
 
 constexpr double kRate = 15;
-constexpr int kLeftShoulder = 3, kLeftElbow = 4, kLeftHand = 5, kRightFoot = 14;
+constexpr int kLeftShoulder = 3, kLeftElbow = 4, kLeftHand = 5, kRightHand = 8, kRightFoot = 14;
 
 // Stands and sways, and faces -z.
 motion::Poses Person() { return MakeLeader("idle", 4, kRate); }
@@ -29,6 +29,7 @@ motion::Poses ReachingOut(int joint, float ahead, float height) {
   motion::Poses poses = Person();
   for (int t = 0; t < poses.frame_count(); ++t) {
     poses.at(t, joint) = {poses.at(t, 2).x, height, poses.at(t, 2).z - ahead};
+    poses.at(t, joint - 1) = Lerp(poses.at(t, joint - 2), poses.at(t, joint), 0.5f);
   }
   return poses;
 }
@@ -61,6 +62,16 @@ TEST(PlausibilityTest, AStandingPairHasNoFaults) {
   EXPECT_TRUE(std::isnan(Figure(figures, "hands")));
   EXPECT_TRUE(std::isnan(Figure(figures, "strikes")));
   for (const double fault : figures.faults) EXPECT_EQ(fault, 0);
+}
+
+TEST(PlausibilityTest, HandsAreMeasuredWhileOneIsReachedOut) {
+  const motion::Poses leader = ReachingOut(kRightHand, 0.7f, 1.1f);
+  const double near = Figure(leader, Partner(0.9f), "hands");
+  const double far = Figure(leader, Partner(1.4f), "hands");
+  EXPECT_GT(near, 0.2);
+  EXPECT_GT(far, near + 0.2);
+  EXPECT_GT(Measured(leader, Partner(1.4f), true).faults[9], 0.9);
+  EXPECT_EQ(Measured(leader, Partner(1.4f), false).faults[9], 0);
 }
 
 TEST(PlausibilityTest, AFootThatStaysShortOfTheBody) {
