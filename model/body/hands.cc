@@ -1,5 +1,6 @@
 #include "model/body/hands.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace duet::body {
@@ -12,6 +13,22 @@ double ReachTowards(const Limb& arm, int root, absl::Span<const motion::Vec3> po
   const motion::Vec3 way = {partner_root.x - at(root).x, 0, partner_root.z - at(root).z};
   if (length == 0 || Norm(way) == 0) return 0;
   return double{Dot(at(arm.end) - at(root), way) / (Norm(way) * length)};
+}
+
+std::optional<double> OfferedHandDistance(const Body& body, int root,
+                                          absl::Span<const motion::Vec3> leader,
+                                          absl::Span<const motion::Vec3> follower) {
+  std::optional<double> nearest;
+  for (const Limb& offered : body.arms) {
+    const motion::Vec3 partner = follower[static_cast<std::size_t>(root)];
+    if (ReachTowards(offered, root, leader, partner) < kOffersReach) continue;
+    for (const Limb& arm : body.arms) {
+      const double distance = double{Distance(leader[static_cast<std::size_t>(offered.end)],
+                                              follower[static_cast<std::size_t>(arm.end)])};
+      nearest = std::min(nearest.value_or(distance), distance);
+    }
+  }
+  return nearest;
 }
 
 }  // namespace duet::body

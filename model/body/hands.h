@@ -1,6 +1,8 @@
 #ifndef DUET_MODEL_BODY_HANDS_H_
 #define DUET_MODEL_BODY_HANDS_H_
 
+#include <optional>
+
 #include "absl/types/span.h"
 #include "model/body/limbs.h"
 #include "model/motion/vec3.h"
@@ -16,6 +18,13 @@ double ReachTowards(const Limb& arm, int root, absl::Span<const motion::Vec3> po
 // From this reach on, a leader offers the hand: in captures, two in three such hands are shaken,
 // and less than one in ten that reaches half as far.
 inline constexpr double kOffersReach = 0.8;
+
+// The distance between the hands of two people where the leader offers one: of all offered hands
+// and all hands of the follower, the nearest two. Absent if no hand is offered. Shapes: poses
+// [joints].
+std::optional<double> OfferedHandDistance(const Body& body, int root,
+                                          absl::Span<const motion::Vec3> leader,
+                                          absl::Span<const motion::Vec3> follower);
 
 }  // namespace duet::body
 

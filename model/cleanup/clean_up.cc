@@ -24,6 +24,9 @@ std::optional<float> CleanUp::Floor(const motion::Poses& leader) const {
 void CleanUp::CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
                           const Timing& timing, motion::Poses* follower) const {
   // The trunk and the whole body first, then the limbs, so that fixed feet stay fixed.
+  if (options_.shoulders.enabled) {
+    LimitShoulders(skeleton_, body_, leader, options_.shoulders, timing, follower);
+  }
   if (options_.waist.enabled) {
     LimitWaist(skeleton_, body_, leader, options_.waist, timing, follower);
   }
@@ -65,6 +68,7 @@ void CleanUp::PlaceFeetAndHands(const motion::Poses& leader, const Meetings& mee
   if (options_.hand_contact.enabled) {
     MeetHand(skeleton_, body_, leader, meetings, options_.hand_contact, timing, follower);
   }
+  if (options_.limb_swings.enabled) CalmLimbs(body_, options_.limb_swings, timing, follower);
 }
 
 PinnedMotion CleanUp::ApproachPins(const motion::Poses& leader, const Touch& touch,

@@ -10,7 +10,9 @@
 #include "model/cleanup/footsteps.h"
 #include "model/cleanup/hand_contact.h"
 #include "model/cleanup/joint_ranges.h"
+#include "model/cleanup/limb_swings.h"
 #include "model/cleanup/pins.h"
+#include "model/cleanup/shoulders.h"
 #include "model/cleanup/spacing.h"
 #include "model/cleanup/timing.h"
 #include "model/cleanup/upright.h"
@@ -23,6 +25,7 @@
 namespace duet::cleanup {
 
 struct Options {
+  ShoulderOptions shoulders;
   WaistOptions waist;
   UprightOptions upright;
   SpacingOptions spacing;
@@ -31,6 +34,7 @@ struct Options {
   FloorOptions floor;
   FootstepOptions footsteps;
   HandContactOptions hand_contact;
+  LimbSwingOptions limb_swings;
   PinOptions pins;
 };
 

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/base/median.h"
+#include "model/base/angle.h"
+#include "model/cleanup/pair_line.h"
+#include "model/cleanup/turns.h"
 
 namespace duet::cleanup {
 namespace {
@@ -13,7 +15,6 @@ namespace {
 using motion::Vec3;
 using Pose = absl::Span<Vec3>;
 
-constexpr float kDegree = 0.01745329252f;
 // Metres. A shorter vector has no direction.
 constexpr float kNoDirection = 1e-4f;
 // Fractions of the width between which the direction of narrow hips becomes certain.
@@ -21,49 +22,10 @@ constexpr float kUncertain = 0.3f, kCertain = 0.7f;
 
 Vec3& At(Pose pose, int joint) { return pose[static_cast<std::size_t>(joint)]; }
 
-float Within(const SoftRange& range, float degrees) {
-  const float limited =
-      SoftLimit(std::abs(degrees), static_cast<float>(range.free), static_cast<float>(range.most));
-  return std::copysign(limited, degrees);
-}
-
-float MedianWidth(const motion::JointPair& hips, const motion::Poses& poses, int frames) {
-  std::vector<float> widths;
-  for (int t = 0; t < frames; ++t) {
-    widths.push_back(Distance(poses.at(t, hips.left), poses.at(t, hips.right)));
-  }
-  return base::Median(std::move(widths));
-}
-
-// The directions of a trunk: orthonormal.
-struct Axes {
-  Vec3 down;    // from the chest to the middle of the hips
-  Vec3 left;    // of the shoulders
-  Vec3 behind;  // such that a positive angle from left towards it is a turn of the hips to the left
-};
-
-// The line of the hips in these axes, to the left.
-struct HipLine {
-  float turn = 0;   // degrees from the shoulders' line, to the left; -90 to 90 with mirrored ones
-  float tilt = 0;   // degrees downwards on the left
-  float width = 0;  // metres
-  bool reversed = false;
-};
-
-HipLine Describe(const Axes& axes, Vec3 across) {
-  const float left = Dot(across, axes.left), behind = Dot(across, axes.behind);
-  HipLine line;
-  line.reversed = left < 0;
-  line.turn = std::atan2(behind, std::abs(left)) / kDegree;
-  line.width = Norm(across);
-  line.tilt = std::asin(std::clamp(Dot(across, axes.down) / line.width, -1.0f, 1.0f)) / kDegree;
-  return line;
-}
-
 // The same within the ranges of the waist. Continuous in the line.
-HipLine Limited(const HipLine& line, float width, const WaistOptions& options) {
+PairLine Limited(const PairLine& line, float width, const WaistOptions& options) {
   const float certain = SmoothStep((line.width / width - kUncertain) / (kCertain - kUncertain));
-  HipLine limited;
+  PairLine limited;
   limited.turn = Within(options.twist, line.turn) * certain;
   limited.tilt = Within(options.tilt, line.tilt) * certain;
   limited.width = std::clamp(line.width, static_cast<float>(options.narrowest) * width,
@@ -71,32 +33,8 @@ HipLine Limited(const HipLine& line, float width, const WaistOptions& options) {
   return limited;
 }
 
-bool Same(const HipLine& a, const HipLine& b) {
+bool Same(const PairLine& a, const PairLine& b) {
   return a.turn == b.turn && a.tilt == b.tilt && a.width == b.width && a.reversed == b.reversed;
-}
-
-struct Hips {
-  Vec3 left, right;
-};
-
-// The hips on a line, at their distances `to_left` and `to_right` from their parent at `from`, in
-// the direction `towards`.
-Hips PlaceHips(const Axes& axes, const HipLine& line, Vec3 from, Vec3 towards, float to_left,
-               float to_right) {
-  const float c = std::cos(line.turn * kDegree), s = std::sin(line.turn * kDegree);
-  const Vec3 level = axes.left * c + axes.behind * s;
-  const float ct = std::cos(line.tilt * kDegree), st = std::sin(line.tilt * kDegree);
-  const Vec3 along = level * ct + axes.down * st;
-  const Vec3 across = towards - along * Dot(towards, along);
-  const Vec3 down =
-      Norm(across) > kNoDirection ? across / Norm(across) : axes.down * ct - level * st;
-  // A triangle with these three sides, as wide as the bones allow.
-  const float width = std::clamp(line.width, std::abs(to_left - to_right), to_left + to_right);
-  if (width < kNoDirection) return {from + down * to_left, from + down * to_right};
-  const float a = (to_left * to_left - to_right * to_right + width * width) / (2 * width);
-  const float depth = std::sqrt(std::max(0.0f, to_left * to_left - a * a));
-  const Vec3 left = from + down * depth + along * a;
-  return {left, left - along * width};
 }
 
 // Turns the hips of one pose, by a share of the correction.
@@ -108,20 +46,55 @@ class Waist {
 
   void Limit(float share, Pose pose) const {
     const Vec3 from = At(pose, parent_);
-    Axes axes;
+    TrunkAxes axes;
     if (!FindAxes(pose, &axes)) return;
-    const HipLine line = Describe(axes, At(pose, hips_.left) - At(pose, hips_.right));
-    const HipLine limited = Limited(line, width_, options_);
+    const PairLine line = Describe(axes, At(pose, hips_.left) - At(pose, hips_.right));
+    const PairLine limited = Limited(line, width_, options_);
     if (line.width < kNoDirection || Same(line, limited)) return;
     const Vec3 middle = Lerp(At(pose, hips_.left), At(pose, hips_.right), 0.5f);
-    const Hips placed =
-        PlaceHips(axes, Shared(line, limited, share), from, middle - from,
+    const PlacedPair placed =
+        PlacePair(axes, Shared(line, limited, share), from, middle - from,
                   Distance(from, At(pose, hips_.left)), Distance(from, At(pose, hips_.right)));
     MoveLegs(placed, pose);
   }
 
+  // The direction of the hips to the left, seen along the trunk, in every frame.
+  std::vector<Vec3> Directions(motion::Poses* poses) const {
+    std::vector<Vec3> directions;
+    directions.reserve(static_cast<std::size_t>(poses->frame_count()));
+    for (int t = 0; t < poses->frame_count(); ++t) {
+      const Pose pose = (*poses)[t];
+      const Vec3 down = Down(pose);
+      const Vec3 line = At(pose, hips_.left) - At(pose, hips_.right);
+      const Vec3 across = line - down * Dot(line, down);
+      const float length = Norm(across);
+      const Vec3 before = directions.empty() ? Vec3{1, 0, 0} : directions.back();
+      directions.push_back(length > kNoDirection ? across / length : before);
+    }
+    return directions;
+  }
+
+  // Turns the hips about the trunk.
+  void Turn(Vec3 from, Vec3 to, Pose pose) const {
+    if (from == to) return;
+    const Vec3 pivot = At(pose, parent_), down = Down(pose);
+    const float angle = SignedAngle(from, to, down);
+    const auto turned = [&](int joint) {
+      return pivot + RotateAbout(At(pose, joint) - pivot, down, angle);
+    };
+    MoveLegs({turned(hips_.left), turned(hips_.right)}, pose);
+  }
+
  private:
-  bool FindAxes(Pose pose, Axes* axes) const {
+  // From the chest to the middle of the hips, of length 1.
+  Vec3 Down(Pose pose) const {
+    const Vec3 down =
+        Lerp(At(pose, hips_.left), At(pose, hips_.right), 0.5f) - At(pose, *body_.chest);
+    const float length = Norm(down);
+    return length > kNoDirection ? down / length : Vec3{0, -1, 0};
+  }
+
+  bool FindAxes(Pose pose, TrunkAxes* axes) const {
     const Vec3 middle = Lerp(At(pose, hips_.left), At(pose, hips_.right), 0.5f);
     // The trunk's direction: the parent may be close to the middle of the hips.
     const Vec3 down = middle - At(pose, *body_.chest);
@@ -134,8 +107,8 @@ class Waist {
     return true;
   }
 
-  static HipLine Shared(const HipLine& from, const HipLine& to, float share) {
-    HipLine line = to;
+  static PairLine Shared(const PairLine& from, const PairLine& to, float share) {
+    PairLine line = to;
     // A reversed line turns the short way.
     const float turn = from.reversed ? std::copysign(180.0f, from.turn) - from.turn : from.turn;
     line.turn = turn + (to.turn - turn) * share;
@@ -144,7 +117,7 @@ class Waist {
     return line;
   }
 
-  void MoveLegs(const Hips& hips, Pose pose) const {
+  void MoveLegs(const PlacedPair& hips, Pose pose) const {
     const Vec3 from[] = {At(pose, hips_.left), At(pose, hips_.right)};
     At(pose, hips_.left) = hips.left;
     At(pose, hips_.right) = hips.right;
@@ -182,6 +155,16 @@ void LimitWaist(const motion::Skeleton& skeleton, const body::Body& body,
   const Waist waist(skeleton, body, parent, width, options);
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     waist.Limit(EaseIn(timing, t), (*poses)[t]);
+  }
+  const std::vector<Vec3> before = waist.Directions(poses);
+  std::vector<Vec3> after = before;
+  LimitTurns(
+      timing.settled,
+      static_cast<float>(base::kRadiansPerDegree * options.fastest_turn / timing.frame_rate_hz),
+      &after);
+  for (int t = timing.settled; t < poses->frame_count(); ++t) {
+    const std::size_t at = static_cast<std::size_t>(t);
+    waist.Turn(before[at], after[at], (*poses)[t]);
   }
 }
 

@@ -18,12 +18,15 @@ struct WaistOptions {
   SoftRange tilt = {15, 25};
   // Distance between the hips as a fraction of `width`, beyond which it is corrected.
   double narrowest = 0.85, widest = 1.15;
+  // How fast the hips turn about the trunk, degrees per second.
+  double fastest_turn = 720;
 };
 
 // Turns the hips to within the range of the waist below the shoulders, and gives them the distance
-// of a person's hips. A network's hips are less certain than its shoulders, because they are close
-// together: they can shrink to a point and come out reversed. Feet stay where they are, and knees
-// follow. Preserves bone lengths, and leaves frames within the ranges unchanged.
+// of a person's hips, and lets them turn as fast as a person can. A network's hips are less certain
+// than its shoulders, because they are close together: they can shrink to a point, come out
+// reversed, and turn over within a frame. Feet stay where they are, and knees follow. Preserves
+// bone lengths, and leaves frames within the ranges unchanged.
 //
 // Does nothing for a skeleton without named shoulders, a chest, or hips with a common parent. The
 // width of the hips is that of the settled frames, or else of the leader (medians).

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "model/body/grade.h"
+#include "model/body/hands.h"
 #include "model/cleanup/pins.h"
 #include "model/engine/window_seed.h"
 
@@ -17,6 +18,7 @@ using motion::Poses;
 constexpr double kTwistCost = 1.0;    // a frame twisted by twice the threshold
 constexpr double kOverlapCost = 4.0;  // a frame in which heads or trunks overlap by 10 cm
 constexpr double kSkateCost = 0.1;    // a frame in which the slower ankle moves at 1 m/s
+constexpr double kHandCost = 4.0;     // hands that are to meet and are one metre apart
 constexpr double kPinCost = 2.0;      // a pin that is one metre away, on average of all pins
 // Degrees between shoulders and hips from which on a twist counts.
 constexpr double kFreeTwistDegrees = 30;
@@ -83,14 +85,32 @@ double CandidateJudge::Faults(const Poses& leader, const Poses& follower, int se
   return faults / std::max(1, follower.frame_count() - settled);
 }
 
+double CandidateJudge::HandsApart(const Poses& leader, const Poses& follower, int settled,
+                                  const cleanup::Meetings& meetings) const {
+  if (!body_.shoulders) return 0;
+  double sum = 0;
+  for (int t = settled; t < follower.frame_count(); ++t) {
+    const cleanup::Meeting& meeting = meetings[static_cast<std::size_t>(t)];
+    if (meeting.weight == 0) continue;
+    const std::optional<double> apart =
+        body::OfferedHandDistance(body_, skeleton_.root, leader[t], follower[t]);
+    sum += double{meeting.weight} * std::max(0.0, apart.value_or(0) - double{meeting.metres});
+  }
+  return sum / std::max(1, follower.frame_count() - settled);
+}
+
 int CandidateJudge::Best(const Poses& leader, const std::vector<Poses>& followers, int settled,
-                         double frame_rate_hz, float variety, const motion::Pins& pins) const {
+                         double frame_rate_hz, float variety, const motion::Pins& pins,
+                         const cleanup::Meetings& meetings) const {
   if (followers.size() == 1) return 0;
   const double typical = std::max(0.0, 1 - double{variety});
   std::vector<double> costs(followers.size());
   if (typical > 0) costs = FromTheOthers(followers, settled);
   for (std::size_t i = 0; i < followers.size(); ++i) {
     costs[i] = typical * costs[i] + Faults(leader, followers[i], settled, frame_rate_hz);
+    if (!meetings.empty()) {
+      costs[i] += kHandCost * HandsApart(leader, followers[i], settled, meetings);
+    }
     if (!pins.empty()) costs[i] += kPinCost * cleanup::MeanPinDistance(pins, followers[i], settled);
   }
   return static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/body/limbs.h"
+#include "model/cleanup/hand_contact.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesis_options.h"
 #include "model/motion/pin.h"
@@ -27,7 +28,8 @@ uint64_t CandidateSeed(uint64_t seed, int n);
 float CandidateVariety(float variety, int candidates);
 
 // Chooses among the samples of a window by what a viewer would notice (model/body/grade.h), by how
-// far they are from the window's pins and, for a variety below 1, from the other samples.
+// far hands that meet are apart, by how far the samples are from the window's pins and, for a
+// variety below 1, from each other.
 //
 // Cost:    linear in the frames, quadratic in the candidates.
 // Threads: const methods are safe to call concurrently.
@@ -39,11 +41,16 @@ class CandidateJudge {
 
   // The index of the best follower; the first of several. `settled`: first frames that all have in
   // common. `variety`: of the request. `pins`: of the window, which the followers do not honour
-  // yet. Shapes: every follower is like the leader. Requires at least one.
+  // yet. `meetings`: where hands are to meet; may be empty. Shapes: every follower is like the
+  // leader; meetings [frames]. Requires at least one.
   int Best(const motion::Poses& leader, const std::vector<motion::Poses>& followers, int settled,
-           double frame_rate_hz, float variety, const motion::Pins& pins = {}) const;
+           double frame_rate_hz, float variety, const motion::Pins& pins = {},
+           const cleanup::Meetings& meetings = {}) const;
 
  private:
+  // How far hands that are to meet are apart, mean over the frames after the settled ones, metres.
+  double HandsApart(const motion::Poses& leader, const motion::Poses& follower, int settled,
+                    const cleanup::Meetings& meetings) const;
   double Faults(const motion::Poses& leader, const motion::Poses& follower, int settled,
                 double frame_rate_hz) const;
 

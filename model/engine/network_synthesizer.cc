@@ -126,7 +126,7 @@ class NetworkSynthesizer : public Synthesizer {
     }
     const int best =
         judge_.Best(window.leader, followers, SettledFrames(window), description_.frame_rate_hz,
-                    window.options.sampling.variety, window.pins);
+                    window.options.sampling.variety, window.pins, MeetingsOf(description_, window));
     // Only the chosen one is moved to the pins: a sample that is near already is the better one.
     if (!window.pins.empty()) {
       return Finish(window, standardisation, candidates[static_cast<std::size_t>(best)],

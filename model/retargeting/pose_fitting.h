@@ -35,7 +35,7 @@ enum class BoneLengths {
 class PoseFitter {
  public:
   // Degrees per frame, and degrees per second.
-  static constexpr double kMaxTwist = 40, kMaxTwistSpeed = 800;
+  static constexpr double kMaxTwist = 40, kMaxTwistSpeed = 600;
 
   // `rig` must outlive the fitter.
   PoseFitter(const Rig& rig, double frame_rate_hz, BoneLengths lengths = BoneLengths::kRigs);

@@ -57,6 +57,7 @@ TEST(CleanUp, EveryStageHasItsSwitch) {
   none.upright.enabled = none.spacing.enabled = none.capsules.enabled = false;
   none.waist.enabled = none.floor.enabled = none.footsteps.enabled = none.joint_ranges.enabled =
       false;
+  none.shoulders.enabled = none.limb_swings.enabled = false;
   const motion::Poses soiled = Moved(Soiled(), {3, 0, 0});
   EXPECT_EQ(Cleaned(soiled, 0, none), soiled);
   EXPECT_EQ(Cleaned(Soiled(), 0, none), Soiled());
@@ -74,6 +75,12 @@ TEST(CleanUp, EveryStageHasItsSwitch) {
             soiled.at(9, 2).y - 0.05f);
   EXPECT_NE(alone([](Options* o) { o->footsteps.enabled = true; }, Moved(soiled, {0, -0.12f, 0})),
             Moved(soiled, {0, -0.12f, 0}));
+  motion::Poses tilted = Puppet();  // one shoulder is far above the other
+  for (int t = 0; t < kFrames; ++t) tilted.at(t, 3).y += 0.3f;
+  EXPECT_NE(alone([](Options* o) { o->shoulders.enabled = true; }, tilted), tilted);
+  motion::Poses snapping = Puppet();  // a forearm turns over in a frame
+  for (int t = 20; t < kFrames; ++t) snapping.at(t, 8) = snapping.at(t, 7) * 2 - snapping.at(t, 8);
+  EXPECT_NE(alone([](Options* o) { o->limb_swings.enabled = true; }, snapping), snapping);
   motion::Poses broken = Puppet();
   for (int t = 0; t < kFrames; ++t) broken.at(t, 11) += {0, 0.2f, 0.3f};  // a knee bends forwards
   EXPECT_NE(alone([](Options* o) { o->joint_ranges.enabled = true; }, broken), broken);

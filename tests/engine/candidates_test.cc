@@ -40,6 +40,20 @@ TEST(CandidateJudge, BelowVarietyOneTheMostTypicalWins) {
   EXPECT_EQ(Best(followers, 0), 1);
 }
 
+TEST(CandidateJudge, HandsThatAreToMeetDo) {
+  const motion::Poses leader = Puppet([](double, authoring::PuppetPose* pose) {
+    pose->right_hand.target = {-0.15, 0, 0.7};
+  });
+  // The right hand of the second one is at the leader's.
+  std::vector<motion::Poses> followers = {Away(0, 1), Away(0, 1)};
+  for (int t = 0; t < kFrames; ++t) followers[1].at(t, 8) = leader.at(t, 8);
+  const CandidateJudge judge(motion::SbuSkeleton());
+  EXPECT_EQ(judge.Best(leader, followers, 0, kRate, 1), 0);
+  const cleanup::Meetings meetings(kFrames, {1, 0.1f});
+  EXPECT_EQ(judge.Best(leader, followers, 0, kRate, 1, {}, meetings), 1);
+  EXPECT_EQ(judge.Best(leader, followers, kFrames, kRate, 1, {}, meetings), 0);
+}
+
 TEST(CandidateJudge, JudgesNothingInSettledFrames) {
   motion::Poses late = Away(0, 1);
   for (int t = 0; t < 10; ++t) std::swap(late.at(t, 9), late.at(t, 12));

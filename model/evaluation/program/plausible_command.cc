@@ -9,19 +9,15 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/statistics.h"
-#include "model/body/grade.h"
-#include "model/body/hands.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/experiments/long_leaders.h"
+#include "model/evaluation/experiments/plausibility.h"
 #include "model/evaluation/experiments/synthesizer_method.h"
-#include "model/evaluation/metrics/liveliness.h"
-#include "model/evaluation/metrics/posture.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/program/section_flags.h"
 #include "model/evaluation/report/result_section.h"
 #include "model/formats/motion_file.h"
-#include "model/motion/filter.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -29,77 +25,17 @@ namespace {
 namespace fs = std::filesystem;
 using motion::Poses;
 
-// A clip counts as twisted from this angle between shoulders and hips on, in any frame.
-constexpr double kTwistedClipDegrees = 60;
+// Length of the pictures of the worst answers.
+constexpr double kPictureSeconds = 4;
 
 struct Arguments {
   std::string leaders;
   double seconds = 60;
+  std::string data;  // captured pairs; may be empty
+  int worst = 0;     // answers to picture
   ModelChoice models;
   experiments::AskedSamples asked;
   SectionFlags section;
-};
-
-std::vector<std::string> Columns() {
-  return {"twisted clips", "twisted", "both feet", "leader's", "heads",
-          "trunks",        "hands",   "distance",  "speed",    "lean"};
-}
-
-// The figures of one follower, in the order of the columns.
-class Measure {
- public:
-  explicit Measure(const motion::Skeleton& skeleton)
-      : skeleton_(skeleton), body_(body::FindBody(skeleton)) {}
-
-  bool possible() const { return body::PairMeter::CanMeasure(skeleton_, body_); }
-
-  std::vector<double> operator()(const Poses& leader, const Poses& follower, double rate) const {
-    body::PairMeter meter(skeleton_, body_, rate);
-    body::GradeSum sum;
-    double most_twisted = 0, heads = 0, trunks = 0;
-    for (int t = 0; t < leader.frame_count(); ++t) {
-      const body::FrameMeasures frame = meter.Add(leader[t], follower[t]);
-      sum.Add(frame);
-      most_twisted = std::max(most_twisted, frame.twist_degrees);
-      heads += frame.head_overlap > 0;
-      trunks += frame.trunk_overlap > 0;
-    }
-    const body::Grade grade = sum.Get();
-    return {most_twisted > kTwistedClipDegrees ? 1.0 : 0.0,
-            grade.twisted,
-            grade.skating,
-            grade.leader_skating,
-            heads / leader.frame_count(),
-            trunks / leader.frame_count(),
-            HandsApart(leader, follower),
-            metrics::RootDistance(leader, follower, skeleton_),
-            metrics::JointSpeed(motion::WithoutNoise(follower, rate), rate),
-            metrics::MeasureLean(follower, skeleton_, rate, metrics::LeanFrom::kHips).max_degrees};
-  }
-
- private:
-  // The mean distance of a hand that the leader offers from the nearest hand of the follower; NaN
-  // if no hand is offered.
-  double HandsApart(const Poses& leader, const Poses& follower) const {
-    std::vector<double> nearest;
-    for (int t = 0; t < leader.frame_count(); ++t) {
-      for (const body::Limb& arm : body_.arms) {
-        if (body::ReachTowards(arm, skeleton_.root, leader[t], follower.at(t, skeleton_.root)) <
-            body::kOffersReach) {
-          continue;
-        }
-        nearest.push_back(HUGE_VAL);
-        for (const body::Limb& other : body_.arms) {
-          nearest.back() = std::min(
-              nearest.back(), double{Distance(leader.at(t, arm.end), follower.at(t, other.end))});
-        }
-      }
-    }
-    return base::Mean(nearest);
-  }
-
-  const motion::Skeleton& skeleton_;
-  body::Body body_;
 };
 
 // The motion files below a folder as leaders of a model, in the order of their paths, each cut to
@@ -144,46 +80,124 @@ std::vector<dataset::Sequence> MadeLeaders(double seconds, const engine::ModelDe
   return leaders;
 }
 
-// The mean of each column over all leaders and seeds, for one class.
-absl::StatusOr<std::vector<double>> ClassFigures(const Arguments& arguments,
-                                                 const engine::Synthesizer& synthesizer,
-                                                 const std::vector<dataset::Sequence>& leaders,
-                                                 int label, const Measure& measure) {
-  std::vector<std::vector<double>> columns(Columns().size());
-  std::vector<float> weights(synthesizer.description().classes.size());
-  weights[static_cast<size_t>(label)] = 1;
-  for (int n = 0; n < arguments.asked.samples; ++n) {
-    std::vector<experiments::LabelledLeader> asked;
-    for (const dataset::Sequence& leader : leaders) {
-      const uint64_t seed = arguments.asked.seed + asked.size() * 1000 + static_cast<uint64_t>(n);
-      asked.push_back({&leader,
-                       engine::LabelTrack(weights),
-                       {seed, arguments.asked.variety, arguments.asked.candidates},
-                       true,
-                       arguments.asked.live_delay});
-    }
-    absl::StatusOr<std::vector<Poses>> followers =
-        SynthesizeSequences(synthesizer, asked, experiments::StartGiven::kNone);
-    if (!followers.ok()) return followers.status();
-    for (size_t i = 0; i < leaders.size(); ++i) {
-      const motion::Clip& leader = leaders[i].pair.leader;
-      const std::vector<double> figures =
-          measure(leader.poses, (*followers)[i], leader.frame_rate_hz);
-      for (size_t c = 0; c < figures.size(); ++c) {
-        if (!std::isnan(figures[c])) columns[c].push_back(figures[c]);
-      }
-    }
-  }
-  std::vector<double> means;
-  for (const std::vector<double>& column : columns) means.push_back(base::Mean(column));
-  return means;
+// An answer to a leader, and its figures.
+struct Answer {
+  const dataset::Sequence* leader;
+  int label;
+  uint64_t seed;
+  Poses follower;
+  experiments::PairFigures figures;
+  experiments::WorstPart worst;
+};
+
+bool HandsMeet(const engine::ModelDescription& model, int label) {
+  const std::string& name = model.classes[static_cast<size_t>(label)];
+  return std::any_of(
+      model.hand_contacts.begin(), model.hand_contacts.end(),
+      [&](const engine::HandContact& contact) { return contact.interaction_class == name; });
 }
 
-absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const std::string& name,
-                                         const engine::Synthesizer& synthesizer) {
+// The answers to all leaders with one seed each, for one class.
+absl::Status AddAnswers(const Arguments& arguments, const engine::Synthesizer& synthesizer,
+                        const std::vector<dataset::Sequence>& leaders, int label, int sample,
+                        const experiments::Plausibility& plausibility,
+                        std::vector<Answer>* answers) {
   const engine::ModelDescription& model = synthesizer.description();
-  const Measure measure(model.skeleton);
-  if (!measure.possible()) {
+  std::vector<float> weights(model.classes.size());
+  weights[static_cast<size_t>(label)] = 1;
+  std::vector<experiments::LabelledLeader> asked;
+  for (const dataset::Sequence& leader : leaders) {
+    const uint64_t seed =
+        arguments.asked.seed + asked.size() * 1000 + static_cast<uint64_t>(sample);
+    asked.push_back({&leader,
+                     engine::LabelTrack(weights),
+                     {seed, arguments.asked.variety, arguments.asked.candidates},
+                     true,
+                     arguments.asked.live_delay});
+  }
+  absl::StatusOr<std::vector<Poses>> followers =
+      SynthesizeSequences(synthesizer, asked, experiments::StartGiven::kNone);
+  if (!followers.ok()) return followers.status();
+  for (size_t i = 0; i < leaders.size(); ++i) {
+    const motion::Clip& leader = leaders[i].pair.leader;
+    Answer answer{&leaders[i], label, asked[i].sampling.seed, std::move((*followers)[i]), {}, {}};
+    answer.figures = plausibility.Measure(leader.poses, answer.follower, leader.frame_rate_hz,
+                                          HandsMeet(model, label));
+    answer.worst = experiments::FindWorstPart(
+        answer.figures.faults, static_cast<int>(kPictureSeconds * leader.frame_rate_hz));
+    answer.worst.faults /= leader.frame_rate_hz;
+    answers->push_back(std::move(answer));
+  }
+  return absl::OkStatus();
+}
+
+// An empty table with the columns of the figures.
+report::Table EmptyTable(const std::string& title) {
+  report::Table table;
+  table.title = title;
+  for (const experiments::PairFigure& figure : experiments::Plausibility::Figures()) {
+    table.columns.push_back(figure.name);
+  }
+  table.decimals = 3;
+  table.notes = experiments::Plausibility::Notes();
+  return table;
+}
+
+// A row for each class, and their mean.
+void AddRows(const std::vector<std::string>& classes,
+             const std::vector<std::vector<experiments::PairFigures>>& by_class,
+             report::Table* table) {
+  std::vector<std::vector<double>> columns(table->columns.size());
+  for (size_t c = 0; c < classes.size(); ++c) {
+    if (by_class[c].empty()) continue;
+    std::vector<double> row = experiments::Combine(by_class[c]);
+    for (size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
+    table->rows.push_back({classes[c], std::move(row)});
+  }
+  report::TableRow mean{"mean", {}};
+  for (const std::vector<double>& column : columns) mean.values.push_back(base::Mean(column));
+  table->rows.push_back(std::move(mean));
+}
+
+// Pictures of the worst seconds of the worst answers.
+void AddPictures(const engine::ModelDescription& model, const std::vector<Answer>& answers,
+                 int count, report::ResultSection* section) {
+  std::vector<const Answer*> worst;
+  for (const Answer& answer : answers) worst.push_back(&answer);
+  std::stable_sort(worst.begin(), worst.end(), [](const Answer* a, const Answer* b) {
+    return a->worst.faults > b->worst.faults;
+  });
+  worst.resize(std::min(worst.size(), static_cast<size_t>(count)));
+  for (size_t n = 0; n < worst.size(); ++n) {
+    const Answer& answer = *worst[n];
+    const motion::Clip& leader = answer.leader->pair.leader;
+    const int first = answer.worst.first;
+    const int frames = std::min(static_cast<int>(kPictureSeconds * leader.frame_rate_hz),
+                                leader.frame_count() - first);
+    const auto part = [&](const Poses& poses) {
+      Poses cut(0, poses.joint_count());
+      for (int t = first; t < first + frames; ++t) cut.Append(poses[t]);
+      return cut;
+    };
+    const std::string name = model.classes[static_cast<size_t>(answer.label)];
+    const std::string caption =
+        absl::StrCat(name, ", leader ", answer.leader->id, " from ",
+                     static_cast<int>(first / leader.frame_rate_hz), " s, seed ", answer.seed);
+    section->figures.push_back(
+        {absl::StrCat(section->id, "_worst_", section->figures.size() + 1),
+         absl::StrCat(caption, ": leader blue, follower orange; paler on the left of the body."),
+         report::PosePlot{caption,
+                          model.skeleton,
+                          {{model.name, part(leader.poses), part(answer.follower)}},
+                          leader.frame_rate_hz}});
+  }
+}
+
+absl::Status AddModel(const Arguments& arguments, const std::string& name,
+                      const engine::Synthesizer& synthesizer, report::ResultSection* section) {
+  const engine::ModelDescription& model = synthesizer.description();
+  const experiments::Plausibility plausibility(model.skeleton);
+  if (!plausibility.possible()) {
     return absl::InvalidArgumentError(
         absl::StrCat(name,
                      ": expected a skeleton with hips, feet, a chest and two arms whose "
@@ -197,30 +211,45 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const std::
   for (dataset::Sequence& made : MadeLeaders(arguments.seconds, model)) {
     leaders.push_back(std::move(made));
   }
-  report::Table table;
-  table.title = absl::StrCat(name, ": followers of ", leaders.size(), " leaders");
-  table.columns = Columns();
-  std::vector<std::vector<double>> columns(table.columns.size());
+  std::vector<Answer> answers;
   for (int c = 0; c < model.class_count(); ++c) {
-    absl::StatusOr<std::vector<double>> row =
-        ClassFigures(arguments, synthesizer, leaders, c, measure);
-    if (!row.ok()) return row.status();
-    for (size_t i = 0; i < row->size(); ++i) columns[i].push_back((*row)[i]);
-    table.rows.push_back({model.classes[static_cast<size_t>(c)], *std::move(row)});
+    for (int n = 0; n < arguments.asked.samples; ++n) {
+      absl::Status status =
+          AddAnswers(arguments, synthesizer, leaders, c, n, plausibility, &answers);
+      if (!status.ok()) return status;
+    }
   }
-  report::TableRow mean{"mean", {}};
-  for (const std::vector<double>& column : columns) mean.values.push_back(base::Mean(column));
-  table.rows.push_back(std::move(mean));
-  table.decimals = 3;
-  table.notes = {
-      "Twisted clips: share of answers in which shoulders and hips differ by more than 60 degrees "
-      "in any frame. Twisted: share of frames above 45 degrees. Both feet: share of frames in "
-      "which the slower ankle moves faster than 10 cm/s; leader's: the same of the leaders.",
-      "Heads, trunks: share of frames in which the heads are nearer than 18 cm, the axes of the "
-      "trunks nearer than 16 cm. Hands: mean distance of a hand that the leader reaches out from "
-      "the follower's nearest hand, metres. Distance: of the roots, metres. Speed: of the joints, "
-      "m/s. Lean: largest of the trunk over one second, degrees."};
-  return table;
+  std::vector<std::vector<experiments::PairFigures>> by_class(model.classes.size());
+  for (const Answer& answer : answers) {
+    by_class[static_cast<size_t>(answer.label)].push_back(answer.figures);
+  }
+  report::Table table =
+      EmptyTable(absl::StrCat(name, ": followers of ", leaders.size(), " leaders"));
+  AddRows(model.classes, by_class, &table);
+  section->tables.push_back(std::move(table));
+  AddPictures(model, answers, arguments.worst, section);
+  return absl::OkStatus();
+}
+
+// The same figures for captured pairs.
+absl::Status AddCaptured(const std::string& folder, report::ResultSection* section) {
+  absl::StatusOr<dataset::Dataset> data = dataset::ReadDataset(folder);
+  if (!data.ok()) return data.status();
+  const experiments::Plausibility plausibility(data->skeleton);
+  if (!plausibility.possible()) {
+    return absl::InvalidArgumentError(
+        "--data: expected a skeleton with hips, feet, a chest and two named arms");
+  }
+  std::vector<std::vector<experiments::PairFigures>> by_class(data->classes.size());
+  for (const dataset::Sequence& sequence : data->sequences) {
+    by_class[static_cast<size_t>(sequence.interaction_class)].push_back(
+        plausibility.Measure(sequence.pair.leader.poses, sequence.pair.follower.poses,
+                             sequence.pair.leader.frame_rate_hz, /*hands_meet=*/false));
+  }
+  report::Table table = EmptyTable(absl::StrCat("captured people: ", DescribeData(*data)));
+  AddRows(data->classes, by_class, &table);
+  section->tables.push_back(std::move(table));
+  return absl::OkStatus();
 }
 
 absl::Status Run(const Arguments& arguments) {
@@ -239,9 +268,12 @@ absl::Status Run(const Arguments& arguments) {
   for (const FoldModel& model : *models) {
     absl::StatusOr<SharedSynthesizer> synthesizer = model.load("");
     if (!synthesizer.ok()) return synthesizer.status();
-    absl::StatusOr<report::Table> table = ModelTable(arguments, model.name, **synthesizer);
-    if (!table.ok()) return table.status();
-    section.tables.push_back(*std::move(table));
+    absl::Status status = AddModel(arguments, model.name, **synthesizer, &section);
+    if (!status.ok()) return status;
+  }
+  if (!arguments.data.empty()) {
+    absl::Status status = AddCaptured(arguments.data, &section);
+    if (!status.ok()) return status;
   }
   return FinishSection(arguments.section, section);
 }
@@ -263,6 +295,16 @@ void AddPlausibleCommand(CLI::App* app, ChosenCommand* chosen) {
       ->required();
   command->add_option("--seconds", arguments->seconds, "longest leader; longer ones are cut")
       ->check(CLI::Range(1.0, 600.0))
+      ->capture_default_str();
+  command
+      ->add_option("--data", arguments->data,
+                   "captured pairs with the same figures, for comparison")
+      ->type_name(kData)
+      ->check(CLI::ExistingDirectory);
+  command
+      ->add_option("--worst", arguments->worst,
+                   "answers to picture: the worst seconds of so many of the worst (with --out)")
+      ->check(CLI::Range(0, 100))
       ->capture_default_str();
   command
       ->add_option("--samples", arguments->asked.samples,

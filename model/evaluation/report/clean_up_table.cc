@@ -23,6 +23,7 @@ cleanup::Options NoStage() {
   none.upright.enabled = none.spacing.enabled = none.capsules.enabled = false;
   none.waist.enabled = none.hand_contact.enabled = none.floor.enabled = none.footsteps.enabled =
       none.joint_ranges.enabled = false;
+  none.shoulders.enabled = none.limb_swings.enabled = false;
   return none;
 }
 
@@ -35,6 +36,7 @@ cleanup::Options Only(Stage cleanup::Options::*stage) {
 
 std::vector<std::pair<std::string, cleanup::Options>> Variants() {
   return {{"captured", NoStage()},
+          {"shoulders", Only(&cleanup::Options::shoulders)},
           {"waist", Only(&cleanup::Options::waist)},
           {"upright", Only(&cleanup::Options::upright)},
           {"spacing", Only(&cleanup::Options::spacing)},
@@ -42,6 +44,7 @@ std::vector<std::pair<std::string, cleanup::Options>> Variants() {
           {"floor", Only(&cleanup::Options::floor)},
           {"footsteps", Only(&cleanup::Options::footsteps)},
           {"joint ranges", Only(&cleanup::Options::joint_ranges)},
+          {"limb swings", Only(&cleanup::Options::limb_swings)},
           {"all", {}}};
 }
 

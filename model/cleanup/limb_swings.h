@@ -1,0 +1,28 @@
+#ifndef DUET_MODEL_CLEANUP_LIMB_SWINGS_H_
+#define DUET_MODEL_CLEANUP_LIMB_SWINGS_H_
+
+#include "model/body/limbs.h"
+#include "model/cleanup/timing.h"
+#include "model/motion/poses.h"
+
+namespace duet::cleanup {
+
+struct LimbSwingOptions {
+  bool enabled = true;
+  // The fastest turns, degrees per second: of the bones, and of the direction in which an elbow
+  // points.
+  double fastest_upper_arm = 350, fastest_forearm = 500;
+  double fastest_thigh = 500, fastest_shin = 700;
+  double fastest_elbow = 400;
+};
+
+// Calms limbs that a network lets snap from one frame to the next: an elbow takes its time to turn
+// about the line from shoulder to hand, and no bone turns faster than a limb can. A faster turn
+// takes more time, before and after. Moves hands and feet only where a bone is too fast, preserves
+// bone lengths, and leaves calm limbs as they are.
+void CalmLimbs(const body::Body& body, const LimbSwingOptions& options, const Timing& timing,
+               motion::Poses* poses);
+
+}  // namespace duet::cleanup
+
+#endif  // DUET_MODEL_CLEANUP_LIMB_SWINGS_H_

@@ -1,0 +1,67 @@
+#include "model/cleanup/turns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace duet::cleanup {
+namespace {
+
+using motion::Vec3;
+using Track = std::vector<Vec3>;
+
+// The sine of an angle without an axis.
+constexpr float kNoAngle = 1e-6f;
+
+Vec3 AnyAcross(Vec3 along) {
+  const Vec3 across = Cross(along, std::abs(along.y) < 0.9f ? Vec3{0, 1, 0} : Vec3{1, 0, 0});
+  return across / Norm(across);
+}
+
+// `from` turned towards `to` by a share of the way, and by at most `most` radians.
+Vec3 TurnTowards(Vec3 from, Vec3 to, float share, float most) {
+  const Vec3 axis = Cross(from, to);
+  const float sine = Norm(axis), cosine = Dot(from, to);
+  const float way = share * std::atan2(sine, cosine);
+  if (share == 1 && way <= most) return to;
+  if (sine < kNoAngle && cosine > 0) return to;
+  return RotateAbout(from, sine < kNoAngle ? AnyAcross(from) : axis / sine, std::min(way, most));
+}
+
+bool HasFastTurn(const Track& track, std::size_t begin, float most) {
+  const float least_cosine = std::cos(most);
+  for (std::size_t t = begin; t < track.size(); ++t) {
+    if (Dot(track[t - 1], track[t]) < least_cosine) return true;
+  }
+  return false;
+}
+
+void TurnLate(std::size_t begin, float most, Track* track) {
+  for (std::size_t t = begin; t < track->size(); ++t) {
+    (*track)[t] = TurnTowards((*track)[t - 1], (*track)[t], 1, most);
+  }
+}
+
+}  // namespace
+
+void LimitTurns(int first, float most, Track* track) {
+  const std::size_t settled = static_cast<std::size_t>(first);
+  const std::size_t begin = std::max<std::size_t>(1, settled);
+  if (!HasFastTurn(*track, begin, most)) return;
+  // Too late, and too early: half-way between them the turn takes time before and after.
+  Track late = *track, early = *track;
+  TurnLate(begin, most, &late);
+  for (std::size_t t = early.size() - 1; t > settled; --t) {
+    early[t - 1] = TurnTowards(early[t], early[t - 1], 1, most);
+  }
+  for (std::size_t t = settled; t < track->size(); ++t) {
+    (*track)[t] = late[t] == early[t] ? late[t] : TurnTowards(late[t], early[t], 0.5f, HUGE_VALF);
+  }
+  TurnLate(begin, most, track);
+}
+
+float SignedAngle(Vec3 a, Vec3 b, Vec3 axis) {
+  return std::atan2(Dot(Cross(a, b), axis), Dot(a, b));
+}
+
+}  // namespace duet::cleanup

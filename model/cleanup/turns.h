@@ -1,0 +1,20 @@
+#ifndef DUET_MODEL_CLEANUP_TURNS_H_
+#define DUET_MODEL_CLEANUP_TURNS_H_
+
+#include <vector>
+
+#include "model/motion/vec3.h"
+
+namespace duet::cleanup {
+
+// Limits how far a track of directions, each of length 1, turns in a frame: `most` radians. A
+// faster turn takes more time for it, before and after. Frames before `first` do not change, nor
+// does a track without fast turns.
+void LimitTurns(int first, float most, std::vector<motion::Vec3>* track);
+
+// The angle from `a` to `b` about `axis`, -pi to pi; all of length 1, `axis` across both.
+float SignedAngle(motion::Vec3 a, motion::Vec3 b, motion::Vec3 axis);
+
+}  // namespace duet::cleanup
+
+#endif  // DUET_MODEL_CLEANUP_TURNS_H_
