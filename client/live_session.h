@@ -14,6 +14,7 @@
 #include "absl/types/span.h"
 #include "client/request.h"
 #include "client/result.h"
+#include "model/motion/joint_rotations.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 
@@ -38,6 +39,8 @@ struct LiveRequest : ReactionOptions {
   int delay_frames = 0;
   // Number of provisional frames beyond the final ones, 0 to 30 (LiveFrames::plan).
   int plan_frames = 0;
+  // Whether the final frames have joint rotations beside the positions, for engines.
+  bool rotations = false;
 };
 
 // Consecutive frames of the follower. Frame n belongs to the same instant as leader frame n.
@@ -47,6 +50,8 @@ struct LiveFrames {
   // What the server expects of the frames after these, up to LiveRequest::plan_frames. Provisional:
   // each plan replaces the one before it.
   motion::Poses plan;
+  // The rotations of `poses`, if the request asks for them. The rig is the same in every message.
+  std::optional<motion::JointRotations> rotations;
   // The newest leader frame that the server had, and the capture time that was sent with it.
   int leader_frame = 0;
   double capture_seconds = 0;

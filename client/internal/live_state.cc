@@ -116,6 +116,7 @@ absl::StatusOr<LiveState> LiveState::Create(LiveRequest request) {
   }
   start.set_delay_frames(static_cast<uint32_t>(request.delay_frames));
   start.set_plan_frames(static_cast<uint32_t>(request.plan_frames));
+  start.set_reply_rotations(request.rotations);
   return LiveState(std::move(request), std::move(start));
 }
 
@@ -124,6 +125,7 @@ LiveState::LiveState(LiveRequest request, v1::LiveStart start)
       start_(std::move(start)),
       leader_(static_cast<int>(request_.joint_names.size())),
       follower_(static_cast<int>(request_.joint_names.size())),
+      rotations_(request_.rotations, static_cast<int>(request_.joint_names.size())),
       labels_(FirstLabels(request_)) {}
 
 absl::Status LiveState::CheckIndices(int first_frame, size_t points) const {
@@ -180,6 +182,7 @@ absl::StatusOr<v1::SynthesizeLiveRequest> LiveState::AddFrames(
   const size_t joints = request_.joint_names.size();
   const int frames = static_cast<int>(positions.size() / joints);
   FillGap(first_frame, positions.subspan(0, joints), capture_seconds);
+  if (leader_.end() == 0) rig_leader_.assign(positions.begin(), positions.begin() + joints);
   const int known = std::clamp(leader_.end() - first_frame, 0, frames);
   leader_.Append(positions.subspan(static_cast<size_t>(known) * joints));
   capture_seconds_.resize(static_cast<size_t>(leader_.end() - capture_first_), capture_seconds);
@@ -235,11 +238,16 @@ v1::LiveStart LiveState::StartWithHistory(int answered, int first) {
   history->set_first_frame(static_cast<uint32_t>(first));
   history->set_follower_frame_count(static_cast<uint32_t>(answered - first));
   AppendPositions(follower_.Frames(first, answered - first), history->mutable_follower_positions());
+  if (request_.rotations) {
+    AppendPositions(rig_leader_, history->mutable_rig_leader_positions());
+    AppendPositions(rig_follower_, history->mutable_rig_follower_positions());
+  }
   return start;
 }
 
 std::deque<v1::SynthesizeLiveRequest> LiveState::BeginStream() {
   is_open_ = has_summary_ = false;
+  rotations_.BeginStream();
   // At the end of the leader's motion, the server also answers frames within the delay, which the
   // history may not hold.
   const int answered = std::min(delivered_, std::max(0, leader_.end() - request_.delay_frames));
@@ -346,9 +354,14 @@ absl::StatusOr<LiveAnswer> LiveState::AcceptFrames(const v1::FollowerFrames& fra
   next_frame_ += out.poses.frame_count();
   // A resumed stream may begin with frames that the caller has.
   const int known = out.poses.frame_count() - std::max(0, next_frame_ - delivered_);
+  absl::StatusOr<std::optional<motion::JointRotations>> rotations =
+      rotations_.Read(frames, std::clamp(known, 0, out.poses.frame_count()));
+  if (!rotations.ok()) return Malformed(rotations.status().message());
+  out.rotations = *std::move(rotations);
   out.poses.DropFront(std::min(known, out.poses.frame_count()));
   if (out.poses.empty()) return LiveAnswer{};
   out.first_frame = delivered_;
+  if (delivered_ == 0) rig_follower_.assign(out.poses[0].begin(), out.poses[0].end());
   delivered_ = next_frame_;
   summary_.follower_frames = delivered_;
   follower_.Append(out.poses.all());

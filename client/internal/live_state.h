@@ -11,6 +11,7 @@
 #include "absl/types/span.h"
 #include "client/internal/frame_log.h"
 #include "client/internal/label_track.h"
+#include "client/internal/live_rotations.h"
 #include "client/live_session.h"
 #include "duet/v1/live.pb.h"
 #include "model/motion/vec3.h"
@@ -74,6 +75,9 @@ class LiveState {
   LiveRequest request_;
   v1::LiveStart start_;  // without history
   FrameLog leader_, follower_;
+  LiveRotations rotations_;
+  // Frame 0 of both, with rotations: a resumed session makes its rig from them. [joint_names]
+  std::vector<motion::Vec3> rig_leader_, rig_follower_;
   std::vector<double> capture_seconds_;  // of the leader's frames from capture_first_ on
   int capture_first_ = 0;
   LabelTrack labels_;

@@ -89,7 +89,8 @@ absl::Status ReplyAssembler::AcceptHeader(const v1::SynthesisHeader& header) {
                                         "none; does the server know reply_rotations?"
                                       : "none without reply_rotations, got joints");
   }
-  absl::StatusOr<std::vector<motion::RestJoint>> rig = ReadRig(header.rig(), leader_.joint_count());
+  absl::StatusOr<std::vector<motion::RestJoint>> rig =
+      ReadRig("header.rig", header.rig(), leader_.joint_count());
   if (!rig.ok()) return Malformed(rig.status().message());
   rotations_.rig = *std::move(rig);
   header_ = header;
@@ -116,7 +117,9 @@ absl::Status ReplyAssembler::CheckChunk(const v1::MotionChunk& chunk) const {
                        chunk.first_frame());
     }
   }
-  if (absl::Status status = CheckRotations(chunk, rotations_.rig.size()); !status.ok()) {
+  absl::Status status = CheckRotations("chunk.rotations", chunk.rotations(), chunk.frame_count(),
+                                       rotations_.rig.size());
+  if (!status.ok()) {
     return Malformed(status.message(), ", in the chunk of frame ", chunk.first_frame());
   }
   return absl::OkStatus();
@@ -132,7 +135,7 @@ absl::Status ReplyAssembler::AcceptChunk(const v1::MotionChunk& chunk) {
     value += 3;
   }
   follower_.Append(frames.all());
-  AppendRotations(chunk, &rotations_.rotations);
+  AppendRotations(chunk.rotations(), &rotations_.rotations);
   received_ += frames.frame_count();
   ++chunk_count_;
   return HandOut();

@@ -19,8 +19,8 @@ absl::Status Invalid(const Parts&... parts) {
   return absl::InvalidArgumentError(absl::StrCat(parts...));
 }
 
-absl::Status CheckJoint(const v1::RigJoint& joint, int index, int joint_count) {
-  const std::string field = absl::StrCat("header.rig[", index, "]");
+absl::Status CheckJoint(const std::string& field, const v1::RigJoint& joint, int index,
+                        int joint_count) {
   const bool has_parent =
       index == 0 ? joint.parent() == -1 : joint.parent() >= 0 && joint.parent() < index;
   if (!has_parent) {
@@ -40,15 +40,18 @@ absl::Status CheckJoint(const v1::RigJoint& joint, int index, int joint_count) {
 }  // namespace
 
 absl::StatusOr<std::vector<motion::RestJoint>> ReadRig(
-    const google::protobuf::RepeatedPtrField<v1::RigJoint>& rig, int joint_count) {
+    const std::string& field, const google::protobuf::RepeatedPtrField<v1::RigJoint>& rig,
+    int joint_count) {
   std::vector<motion::RestJoint> joints;
   std::set<std::string> names;
   for (const v1::RigJoint& joint : rig) {
     const int index = static_cast<int>(joints.size());
-    if (absl::Status status = CheckJoint(joint, index, joint_count); !status.ok()) return status;
+    const std::string indexed = absl::StrCat(field, "[", index, "]");
+    absl::Status status = CheckJoint(indexed, joint, index, joint_count);
+    if (!status.ok()) return status;
     if (!names.insert(joint.name()).second) {
-      return Invalid("header.rig[", index, "].name: expected a name once, got ",
-                     base::Quoted(joint.name()), " again");
+      return Invalid(indexed, ".name: expected a name once, got ", base::Quoted(joint.name()),
+                     " again");
     }
     joints.push_back({joint.name(),
                       joint.parent(),
@@ -58,27 +61,30 @@ absl::StatusOr<std::vector<motion::RestJoint>> ReadRig(
   return joints;
 }
 
-absl::Status CheckRotations(const v1::MotionChunk& chunk, std::size_t rig_joints) {
-  const std::size_t wanted = std::size_t{chunk.frame_count()} * rig_joints * 4;
-  if (static_cast<std::size_t>(chunk.rotations_size()) != wanted) {
-    return Invalid("chunk.rotations: expected ", wanted, " values for ", chunk.frame_count(),
-                   " frames, got ", chunk.rotations_size());
+absl::Status CheckRotations(const std::string& field,
+                            const google::protobuf::RepeatedField<float>& values,
+                            std::size_t frames, std::size_t rig_joints) {
+  const std::size_t wanted = frames * rig_joints * 4;
+  if (static_cast<std::size_t>(values.size()) != wanted) {
+    return Invalid(field, ": expected ", wanted, " values for ", frames, " frames, got ",
+                   values.size());
   }
-  for (int i = 0; i < chunk.rotations_size(); i += 4) {
+  for (int i = 0; i < values.size(); i += 4) {
     float squares = 0;
-    for (int k = i; k < i + 4; ++k) squares += chunk.rotations(k) * chunk.rotations(k);
+    for (int k = i; k < i + 4; ++k) squares += values[k] * values[k];
     // Negated, so that NaN is rejected.
     if (!(std::abs(std::sqrt(squares) - 1) <= kNormTolerance)) {
-      return Invalid("chunk.rotations[", i, "..", i + 3, "]: expected a unit quaternion, got norm ",
+      return Invalid(field, "[", i, "..", i + 3, "]: expected a unit quaternion, got norm ",
                      std::sqrt(squares));
     }
   }
   return absl::OkStatus();
 }
 
-void AppendRotations(const v1::MotionChunk& chunk, std::vector<motion::UnitQuaternion>* rotations) {
-  const float* value = chunk.rotations().data();
-  for (int i = 0; i < chunk.rotations_size(); i += 4, value += 4) {
+void AppendRotations(const google::protobuf::RepeatedField<float>& values,
+                     std::vector<motion::UnitQuaternion>* rotations) {
+  const float* value = values.data();
+  for (int i = 0; i < values.size(); i += 4, value += 4) {
     rotations->push_back({value[0], value[1], value[2], value[3]});
   }
 }

@@ -26,6 +26,22 @@ common::TimePoint::duration Seconds(double seconds) {
       std::chrono::duration<double>(seconds));
 }
 
+int HistoryFrames(const engine::ModelDescription& model, const ValidatedLiveStart& start) {
+  const double rate = start.live.frame_rate_hz;
+  const int frames = engine::LiveTiming(model, rate, start.live.delay_frames).history_frames();
+  return start.rotations ? std::max(frames, LiveRig::HistoryFrames(rate)) : frames;
+}
+
+// The rig of a resumed session, fitted up to its last frame; null for a new one.
+std::unique_ptr<LiveRig> ResumedRig(const motion::Skeleton& skeleton,
+                                    const ValidatedLiveStart& start) {
+  if (start.rig_follower.empty()) return nullptr;
+  auto rig = std::make_unique<LiveRig>(skeleton, start.reply, start.rig_leader, start.rig_follower);
+  google::protobuf::RepeatedField<float> answered;
+  rig->Fit(start.live.first_frame, start.live.follower, &answered);
+  return rig;
+}
+
 absl::Status MalformedMessage(const char* got) {
   Violations violations;
   violations.Malformed("payload", "frames or label_change", got);
@@ -36,14 +52,15 @@ absl::Status MalformedMessage(const char* got) {
 
 LiveSession::LiveSession(LiveSessionParts parts, ValidatedLiveStart start)
     : parts_(std::move(parts)),
-      format_(std::move(start.reply)),
+      format_(start.reply),
       plan_frames_(start.plan_frames),
+      rotations_(start.rotations),
       frame_rate_hz_(start.live.frame_rate_hz),
       first_frame_(start.live.first_frame + start.live.follower.frame_count()),
-      history_frames_(
-          engine::LiveTiming(parts_.model->description(), frame_rate_hz_, start.live.delay_frames)
-              .history_frames()),
+      history_frames_(HistoryFrames(parts_.model->description(), start)),
       cancelled_(std::make_shared<std::atomic<bool>>(false)),
+      rig_leader_(start.rig_leader),
+      rig_(ResumedRig(parts_.model->description().skeleton, start)),
       live_(parts_.model->description(), std::move(start.live)),
       arrival_(parts_.clock->Now()) {}
 
@@ -145,6 +162,8 @@ absl::Status LiveSession::AddPoses(int first, motion::Poses poses) {
     Notify(v1::LIVE_NOTICE_KIND_GAP_FILLED, next, gap);
     FillGap(gap, poses);
   }
+  if (rotations_ && next == 0)
+    rig_leader_ = motion::Poses(poses.joint_count(), {poses[0].begin(), poses[0].end()});
   live_.AddLeader(poses);
   return absl::OkStatus();
 }
@@ -219,14 +238,31 @@ void LiveSession::Work() {
 
 void LiveSession::KeepDueFrames() {
   for (;;) {
-    const engine::LiveFrames due = live_.TakeDue();
+    engine::LiveFrames due = live_.TakeDue();
     if (due.poses.frame_count() == 0) return;
-    google::protobuf::RepeatedField<float> sent;
-    AppendPositions(format_, due.poses, &sent);
-    live_.Settle(FromPositions(format_, sent));
-    ready_.Add(sent.begin(), sent.end());
+    live_.Settle(KeepFrames(std::move(due)));
     stats_.peak_buffered_frames = std::max(stats_.peak_buffered_frames, waiting_frames());
   }
+}
+
+motion::Poses LiveSession::KeepFrames(engine::LiveFrames due) {
+  if (rotations_ && rig_ == nullptr) MakeRig(due.poses);
+  if (rig_ != nullptr) rig_->KeepBoneLengths(due.first, &due.poses);
+  google::protobuf::RepeatedField<float> sent;
+  AppendPositions(format_, due.poses, &sent);
+  motion::Poses frames = FromPositions(format_, sent);
+  if (rig_ != nullptr) rig_->Fit(due.first, frames, &ready_rotations_);
+  ready_.Add(sent.begin(), sent.end());
+  return frames;
+}
+
+void LiveSession::MakeRig(const motion::Poses& follower) {
+  google::protobuf::RepeatedField<float> sent;
+  AppendPositions(format_,
+                  motion::Poses(follower.joint_count(), {follower[0].begin(), follower[0].end()}),
+                  &sent);
+  rig_ = std::make_unique<LiveRig>(parts_.model->description().skeleton, format_, rig_leader_,
+                                   FromPositions(format_, sent));
 }
 
 batching::WindowJob LiveSession::NextJob() {
@@ -346,6 +382,9 @@ void LiveSession::FillFrames(v1::FollowerFrames* frames) {
   frames->set_first_frame(static_cast<uint32_t>(live_.next_follower_frame() - count));
   frames->set_frame_count(static_cast<uint32_t>(count));
   frames->mutable_positions()->Swap(&ready_);
+  frames->mutable_rotations()->Swap(&ready_rotations_);
+  if (rig_ != nullptr && !sent_rig_) rig_->AppendRig(frames->mutable_rig());
+  sent_rig_ = true;
   if (plan_frames_ > 0) {
     AppendPositions(format_, live_.Plan(plan_frames_).poses, frames->mutable_plan_positions());
   }

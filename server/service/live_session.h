@@ -19,6 +19,7 @@
 #include "server/batching/window_scheduler.h"
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
+#include "server/service/live_rig.h"
 #include "server/service/request_limits.h"
 #include "server/service/validate_live.h"
 
@@ -114,6 +115,9 @@ class LiveSession final : public std::enable_shared_from_this<LiveSession> {
   // Hands out what is due, schedules a window if one is needed, and reads on.
   void Work() DUET_EXCLUDES(mutex_);
   void KeepDueFrames() DUET_REQUIRES(mutex_);
+  // Keeps frames, and returns them as the caller gets them.
+  motion::Poses KeepFrames(engine::LiveFrames due) DUET_REQUIRES(mutex_);
+  void MakeRig(const motion::Poses& follower) DUET_REQUIRES(mutex_);
   batching::WindowJob NextJob() DUET_REQUIRES(mutex_);
   common::TimePoint WindowDeadline() const DUET_REQUIRES(mutex_);
   void Schedule(batching::WindowJob job) DUET_EXCLUDES(mutex_);
@@ -127,12 +131,16 @@ class LiveSession final : public std::enable_shared_from_this<LiveSession> {
   const LiveSessionParts parts_;
   const ReplyMapping format_;  // of both motions
   const int plan_frames_;
+  const bool rotations_;
   const double frame_rate_hz_;
   const int first_frame_, history_frames_;
   const std::shared_ptr<std::atomic<bool>> cancelled_;
   std::function<void()> on_progress_;  // constant after Start
 
   mutable common::Mutex mutex_;
+  // With rotations: frame 0 of the leader, and the rig from the first answer on.
+  motion::Poses rig_leader_ DUET_GUARDED_BY(mutex_);
+  std::unique_ptr<LiveRig> rig_ DUET_GUARDED_BY(mutex_);
   engine::LiveSynthesis live_ DUET_GUARDED_BY(mutex_);
   std::deque<int> announced_ DUET_GUARDED_BY(mutex_);  // frames of changes to come, ascending
   bool in_flight_ DUET_GUARDED_BY(mutex_) = false;
@@ -144,6 +152,8 @@ class LiveSession final : public std::enable_shared_from_this<LiveSession> {
   double capture_seconds_ DUET_GUARDED_BY(mutex_) = 0;
   // Final frames that wait for the reader, as they are sent: [frames, joints, 3].
   google::protobuf::RepeatedField<float> ready_ DUET_GUARDED_BY(mutex_);
+  google::protobuf::RepeatedField<float> ready_rotations_ DUET_GUARDED_BY(mutex_);
+  bool sent_rig_ DUET_GUARDED_BY(mutex_) = false;
   std::vector<v1::LiveNotice> notices_ DUET_GUARDED_BY(mutex_);
   absl::Status error_ DUET_GUARDED_BY(mutex_);
   LiveFault fault_ DUET_GUARDED_BY(mutex_) = LiveFault::kMessage;  // of error_

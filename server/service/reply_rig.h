@@ -12,7 +12,7 @@
 #include "model/motion/skeleton.h"
 #include "model/retargeting/rig.h"
 #include "model/retargeting/rig_fitting.h"
-#include "model/retargeting/rotation.h"
+#include "server/service/rig_format.h"
 
 namespace duet::server::service {
 
@@ -27,6 +27,10 @@ struct RigSource {
 // Requires a leader with at least one frame. leader: [frames, skeleton joints], metres, y up.
 RigSource MakeRigSource(const motion::Skeleton& skeleton, const motion::Poses& leader,
                         double frame_rate_hz);
+
+// A rig with the proportions of the source's person and the bone lengths of the follower's first
+// frame. Requires a follower with at least one frame.
+retargeting::Rig MakeReplyRig(const RigSource& source, const motion::Poses& follower);
 
 // The joint rotations of one reply, frame by frame, in the caller's unit, up axis and tilt. The rig
 // has the leader's proportions and the bone lengths of the follower's first frame.
@@ -47,10 +51,7 @@ class ReplyRig {
   void AddRotations(motion::Poses* poses, v1::MotionChunk& chunk);
 
  private:
-  const motion::Coordinates coordinates_;
-  const retargeting::Quaternion to_caller_;  // from the world's axes
-  const retargeting::Quaternion tilt_;       // from the follower's world to the caller's
-  std::vector<int> reply_joints_;            // for each joint of the model, its index in the reply
+  const RigFormat format_;
   const retargeting::Rig rig_;
   retargeting::RigFitter fitter_;
 };

@@ -37,6 +37,7 @@ v1::SynthesizeRequest ToRequest(v1::LiveStart* start) {
   request.set_clean_up(start->clean_up());
   if (start->has_candidates()) request.set_candidates(start->candidates());
   if (start->has_up()) *request.mutable_up() = start->up();
+  request.set_reply_rotations(start->reply_rotations());
   return request;
 }
 
@@ -102,6 +103,49 @@ void ReadHistory(const v1::LiveStart& start, const RequestLimits& limits, Valida
   valid->live.follower = FromPositions(valid->reply, positions);
 }
 
+// Reads a frame of LiveHistory: as FromPositions. Empty if there are violations.
+motion::Poses ReadRigPose(const std::string& field,
+                          const google::protobuf::RepeatedField<float>& positions,
+                          const ReplyMapping& reply, const RequestLimits& limits,
+                          Violations& violations) {
+  const std::size_t expected = reply.joints.size() * 3;
+  if (static_cast<std::size_t>(positions.size()) != expected) {
+    violations.Malformed(field,
+                         absl::StrCat(expected, " values (", reply.joints.size(), " joints x 3)"),
+                         absl::StrCat(positions.size()));
+    return motion::Poses(0, static_cast<int>(reply.joints.size()));
+  }
+  if (!ValidateFinite(field, positions, violations) ||
+      ReadPositions(field, positions, reply.joints, reply.coordinates, limits, violations)
+          .empty()) {
+    return motion::Poses(0, static_cast<int>(reply.joints.size()));
+  }
+  return FromPositions(reply, positions);
+}
+
+motion::Poses FirstPose(const motion::Poses& poses) {
+  motion::Poses first(0, poses.joint_count());
+  if (!poses.empty()) first.Append(poses[0]);
+  return first;
+}
+
+void ReadRigPoses(const v1::LiveStart& start, const RequestLimits& limits,
+                  ValidatedLiveStart* valid, Violations& violations) {
+  if (!start.reply_rotations()) return;
+  valid->rotations = true;
+  if (valid->live.first_frame == 0) {
+    valid->rig_leader = FirstPose(valid->live.leader);
+    valid->rig_follower = FirstPose(valid->live.follower);
+    return;
+  }
+  const v1::LiveHistory& history = start.history();
+  valid->rig_leader = ReadRigPose("history.rig_leader_positions", history.rig_leader_positions(),
+                                  valid->reply, limits, violations);
+  valid->rig_follower =
+      ReadRigPose("history.rig_follower_positions", history.rig_follower_positions(), valid->reply,
+                  limits, violations);
+}
+
 }  // namespace
 
 absl::StatusOr<ValidatedLiveStart> ValidateLiveStart(v1::LiveStart start,
@@ -128,9 +172,11 @@ absl::StatusOr<ValidatedLiveStart> ValidateLiveStart(v1::LiveStart start,
                             {}},
                            std::move(common->reply),
                            static_cast<int>(start.plan_frames())};
+  valid.reply.rig.reset();  // LiveRig makes its own
   Violations violations(kPrefix);
   ValidateCounts(start, valid.live.frame_rate_hz, limits, violations);
   ReadHistory(start, limits, &valid, violations);
+  ReadRigPoses(start, limits, &valid, violations);
   if (!violations.empty()) return violations.ToStatus();
   return valid;
 }

@@ -22,6 +22,11 @@ struct ValidatedLiveStart {
   engine::LiveRequest live;
   ReplyMapping reply;
   int plan_frames = 0;
+  // The caller wants joint rotations. Frame 0 of both motions, [1, joints] in the model's joint
+  // order and level metres, as far as they are known: LiveRig needs them.
+  bool rotations = false;
+  motion::Poses rig_leader = {};
+  motion::Poses rig_follower = {};
 };
 
 // Validates every field of the first message against a model and the limits. Returns

@@ -2,6 +2,7 @@
 #include "client/live_session.h"
 
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -68,6 +69,11 @@ class LiveSessionTest : public ::testing::Test {
       const std::lock_guard<std::mutex> lock(mutex_);
       EXPECT_EQ(frames.first_frame, follower_.frame_count());
       follower_.Append(frames.poses.all());
+      if (frames.rotations.has_value()) {
+        EXPECT_THAT(frames.rotations->rig, SizeIs(1));
+        rotations_.insert(rotations_.end(), frames.rotations->rotations.begin(),
+                          frames.rotations->rotations.end());
+      }
       last_ = frames;
       return absl::OkStatus();
     };
@@ -116,6 +122,8 @@ class LiveSessionTest : public ::testing::Test {
     return kinds;
   }
 
+  // The rotations of all frames: of one joint.
+  std::vector<motion::UnitQuaternion> rotations_;
   motion::Clip leader_ = ThreeJointLeader(40);
   absl::Notification finished_;  // outlives the server, as does the mirror
   LiveMirror mirror_;
@@ -128,6 +136,34 @@ class LiveSessionTest : public ::testing::Test {
   std::vector<LiveNotice> notices_;
   std::unique_ptr<LiveSession> session_;
 };
+
+TEST_F(LiveSessionTest, RotationsKeepTheirSignsOverAnInterruption) {
+  request_.rotations = true;
+  mirror_.before_frame = [](int stream, int frame) {
+    return stream == 0 && frame == 17 ? Away() : grpc::Status::OK;
+  };
+  ASSERT_THAT(StartSendFinish(), IsOk());
+  ASSERT_THAT(rotations_, SizeIs(40));
+  for (int frame = 0; frame < 40; ++frame) {
+    const float half = 0.25F * static_cast<float>(frame);
+    EXPECT_NEAR(rotations_[static_cast<size_t>(frame)].w, std::cos(half), 1e-6) << frame;
+    EXPECT_NEAR(rotations_[static_cast<size_t>(frame)].x, std::sin(half), 1e-6) << frame;
+  }
+  const std::vector<v1::LiveStart> starts = mirror_.starts();
+  ASSERT_THAT(starts, SizeIs(2));
+  const v1::LiveHistory& history = starts[1].history();
+  EXPECT_GT(history.first_frame(), 0);
+  ASSERT_EQ(history.rig_leader_positions_size(), 9);
+  ASSERT_EQ(history.rig_follower_positions_size(), 9);
+  EXPECT_EQ(history.rig_leader_positions(3), leader_.poses[0][1].x);
+  EXPECT_EQ(history.rig_follower_positions(3), follower_[0][1].x);
+}
+
+TEST_F(LiveSessionTest, NothingButPositionsUnlessAsked) {
+  ASSERT_THAT(StartSendFinish(), IsOk());
+  EXPECT_FALSE(last_.rotations.has_value());
+  EXPECT_FALSE(mirror_.starts().at(0).reply_rotations());
+}
 
 TEST_F(LiveSessionTest, AnswersEveryFrameInOrder) {
   request_.seed = 7;

@@ -1,6 +1,7 @@
 """Live sessions of a foreign client on the real server: what a frame depends on, resuming, sessions
 that share batches, the end of a server, and refusals."""
 
+import math
 import re
 import threading
 import time
@@ -28,6 +29,47 @@ def batches(server):
     page = server.page("/metrics")[1]
     return [int(re.search(rf"^duet_batch_size_{name} (\d+)", page, re.MULTILINE)[1])
             for name in ("count", "sum")]
+
+
+def frames_of(values, width):
+    return [values[i:i + width] for i in range(0, len(values), width)]
+
+
+def rotations_from(session, first):
+    """The rotations of every frame from `first` on; none without reply_rotations."""
+    return [value for part in session.parts if part.frame_count and part.first_frame >= first
+            for value in part.rotations]
+
+
+def rotate(q, v):
+    """A vector by a quaternion x, y, z, w."""
+    x, y, z, w = q
+    c = [y * v[2] - z * v[1] + w * v[0], z * v[0] - x * v[2] + w * v[1],
+         x * v[1] - y * v[0] + w * v[2]]
+    return [v[0] + 2 * (y * c[2] - z * c[1]), v[1] + 2 * (z * c[0] - x * c[2]),
+            v[2] + 2 * (x * c[1] - y * c[0])]
+
+
+def multiply(p, q):
+    """First q, then p."""
+    return [*(p[3] * a + q[3] * b + c for a, b, c in zip(q[:3], p[:3], (
+        p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]))),
+        p[3] * q[3] - sum(a * b for a, b in zip(p[:3], q[:3]))]
+
+
+def forward(rig, rotations, positions):
+    """Where forward kinematics (docs/rotations.md) puts the joints of a rig in one frame."""
+    at, world = [], []
+    for joint, q in zip(rig, frames_of(rotations, 4)):
+        if joint.parent < 0:
+            at.append(positions[3 * joint.joint:3 * joint.joint + 3])
+            world.append(q)
+            continue
+        offset = (joint.offset.x, joint.offset.y, joint.offset.z)
+        turned = rotate(world[joint.parent], offset)
+        at.append([a + b for a, b in zip(at[joint.parent], turned)])
+        world.append(multiply(world[joint.parent], q))
+    return at
 
 
 class LiveTest(unittest.TestCase):
@@ -92,6 +134,9 @@ class LiveTest(unittest.TestCase):
         history.follower_frame_count = at - begin
         history.follower_positions.extend(
             value for frame in range(begin, at) for value in whole.frames[frame])
+        if start.start.reply_rotations:
+            history.rig_leader_positions.extend(leader[0])
+            history.rig_follower_positions.extend(whole.frames[0])
         rest = lockstep(self.channel, resumed, leader[begin + len(known):],
                         first=begin + len(known))
         self.assertEqual(rest.header.first_frame, at)
@@ -106,6 +151,44 @@ class LiveTest(unittest.TestCase):
                 different = [frame for frame in rest.frames
                              if rest.frames[frame] != whole.frames[frame]]
                 self.assertEqual(different, [])
+                self.assertEqual(list(rest.parts[0].rig), list(whole.parts[0].rig))
+                self.assertEqual(rotations_from(rest, at), rotations_from(whole, at))
+
+    def test_rotations_give_the_positions(self):
+        session = self.lockstep(start_message(reply_rotations=True))
+        rig = session.parts[0].rig
+        self.assertGreater(len(rig), len(live.SBU_JOINTS))
+        self.assertEqual([part.first_frame for part in session.parts if part.rig], [0])
+        worst = 0
+        for part in session.parts:
+            for frame, rotations in enumerate(frames_of(part.rotations, 4 * len(rig))):
+                positions = session.frames[part.first_frame + frame]
+                for joint, at in zip(rig, forward(rig, rotations, positions)):
+                    place = positions[3 * joint.joint:3 * joint.joint + 3]
+                    worst = max(worst, math.dist(place, at))
+        self.assertLess(worst, 1e-4)
+
+    def test_a_resumed_session_goes_on_with_the_same_rotations(self):
+        for delay in (0, 3):
+            with self.subTest(delay=delay):
+                self.check_resumes(start_message(delay_frames=delay, reply_rotations=True),
+                                   self.leader, ((1, 0), (37, 0), (64, 4), (120, 0)))
+
+    def test_a_resumed_session_needs_the_first_frames_for_its_rig(self):
+        start = start_message(reply_rotations=True)
+        whole = self.lockstep(start)
+        begin, at = 40, 100
+        start.start.leader.frame_count = at - begin
+        start.start.leader.positions.extend(
+            value for pose in self.leader[begin:at] for value in pose)
+        start.start.history.first_frame = begin
+        start.start.history.follower_frame_count = at - begin
+        start.start.history.follower_positions.extend(
+            value for frame in range(begin, at) for value in whole.frames[frame])
+        code, _, fields = Session(self.channel, start).error()
+        self.assertEqual(code, "INVALID_ARGUMENT")
+        self.assertEqual(fields, ["start.history.rig_leader_positions",
+                                  "start.history.rig_follower_positions"])
 
     def test_a_session_resumed_with_another_seed_goes_on_with_other_frames(self):
         start = start_message()
@@ -137,6 +220,8 @@ class LiveTest(unittest.TestCase):
         start.start.leader.unit = motion_pb2.LENGTH_UNIT_MILLIMETRES
         start.start.leader.up_axis = motion_pb2.UP_AXIS_Z_UP
         self.check_resumes(start, leader, ((7, 0), (101, 3), (200, 0)))
+        start.start.reply_rotations = True
+        self.check_resumes(start, leader, ((7, 0), (200, 0)))
 
     def test_sessions_at_the_same_time_have_the_frames_of_one_alone(self):
         seeds = range(8)

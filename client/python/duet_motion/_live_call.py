@@ -12,6 +12,8 @@ from duet_motion._call import Attempts, CallSettings
 from duet_motion._fields import with_joint_names
 from duet_motion._labels import LabelTrack
 from duet_motion._live_reply import LiveReply
+from duet_motion._live_rotations import LiveRotations
+from duet_motion._reply import malformed
 from duet_motion._wire import CLEAN_UP, UNITS, UP_AXES
 from duet_motion.errors import DuetError, make_error
 from duet_motion.live import LiveHeader, LiveNotice, LivePart, LiveRequest, LiveSummary
@@ -69,6 +71,9 @@ class LiveCall:
         self.attempts = Attempts(settings, request_id=request.request_id)
         self._labels = LabelTrack(request.keyframes or {0: request.labels or {}})
         self._leader, self._follower = _Frames(), _Frames()
+        self._rotations = LiveRotations(bool(request.rotations), self.motion.joint_count)
+        # Frame 0 of both motions: a resumed session makes its rig from them.
+        self._rig_poses: List[Optional[Positions]] = [None, None]
         self._captures: Deque[float] = collections.deque()  # of the leader frames kept
         self._outbox: Deque[live_pb2.SynthesizeLiveRequest] = collections.deque()
         self._reply = LiveReply(self.motion, 0)
@@ -105,6 +110,8 @@ class LiveCall:
         """Adds leader frames ``[frames, joints, 3]``, the last of them captured at
         ``capture_seconds``."""
         first = self._leader.end
+        if first == 0:
+            self._rig_poses[0] = frames[0]
         self._leader.extend(frames)
         last = len(frames) - 1
         self._captures.extend(capture_seconds - (last - index) / self.motion.frame_rate_hz
@@ -129,6 +136,7 @@ class LiveCall:
         self._progressed = self.is_draining = False
         end = self._resumed_from()
         self._reply = LiveReply(self.motion, end)
+        self._rotations.begin()
         start = self._start(end)
         self._outbox.clear()
         self._outbox.append(live_pb2.SynthesizeLiveRequest(start=start))
@@ -192,7 +200,8 @@ class LiveCall:
             seed=int(request.seed), variety=float(request.variety),
             candidates=int(request.candidates),
             clean_up=CLEAN_UP[None if request.clean_up is None else bool(request.clean_up)],
-            delay_frames=int(request.delay), plan_frames=int(request.plan))
+            delay_frames=int(request.delay), plan_frames=int(request.plan),
+            reply_rotations=bool(request.rotations))
         self._fill_labels(start, first)
         if request.partner_direction is not None:
             start.partner_direction.CopyFrom(direction(request.partner_direction))
@@ -211,6 +220,10 @@ class LiveCall:
         start.history.first_frame = first
         start.history.follower_frame_count = end - first
         start.history.follower_positions.extend(self._follower.values(first, end))
+        leader, follower = self._rig_poses
+        if request.rotations and leader is not None and follower is not None:
+            start.history.rig_leader_positions.extend(floats(leader))
+            start.history.rig_follower_positions.extend(floats(follower))
         return start
 
     def _fill_labels(self, start: live_pb2.LiveStart, first: int) -> None:
@@ -249,16 +262,22 @@ class LiveCall:
         positions = self._reply.accept_frames(frames, self._leader.end)
         plan = self._reply.poses("frames.plan_positions", frames.plan_positions)
         known = max(self._follower.end - frames.first_frame, 0)
+        try:
+            rotations = self._rotations.read(frames, known)
+        except ValueError as error:
+            raise malformed(str(error)) from error
         new = positions[known:]
         if not len(new):
             return None
         self._progressed = True
         captured = self._capture(frames.leader_frame)
         first = self._follower.end
+        if first == 0:
+            self._rig_poses[1] = new[0]
         self._follower.extend(new)
         self._forget()
         return LivePart(first, new, plan, frames.leader_frame, captured,
-                        self.now() - captured, frames.server_seconds)
+                        self.now() - captured, frames.server_seconds, rotations)
 
     def _forget(self) -> None:
         first = self._history_start()

@@ -108,7 +108,7 @@ class ReplyAssembler:
     def _accept_chunk(self, chunk: synthesis_pb2.MotionChunk) -> Optional[FollowerChunk]:
         positions = self._read_chunk(chunk)
         try:
-            rotations = read_rotations(chunk, len(self._rig))
+            rotations = read_rotations(chunk.rotations, chunk.frame_count, len(self._rig))
         except ValueError as error:
             raise malformed(f"{error}, in the chunk of frame {chunk.first_frame}") from error
         self._chunks.append(positions)

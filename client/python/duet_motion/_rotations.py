@@ -12,18 +12,19 @@ import numpy as np
 import numpy.typing as npt
 
 from duet_motion.result import RigJoint
-from duet_motion.v1 import synthesis_pb2
+from duet_motion.v1 import motion_pb2
 
 Rotations = npt.NDArray[np.float32]
 _NORM_TOLERANCE = 1e-3  # of a quaternion's norm from 1
 
 
-def read_rig(rig: Sequence[synthesis_pb2.RigJoint], joint_count: int) -> Tuple[RigJoint, ...]:
+def read_rig(rig: Sequence[motion_pb2.RigJoint], joint_count: int,
+             rig_field: str = "header.rig") -> Tuple[RigJoint, ...]:
     """Each joint comes after its parent; names are unique."""
     joints: List[RigJoint] = []
     names: Set[str] = set()
     for index, joint in enumerate(rig):
-        field = f"header.rig[{index}]"
+        field = f"{rig_field}[{index}]"
         lowest, highest = (-1, -1) if index == 0 else (0, index - 1)
         if not lowest <= joint.parent <= highest:
             expected = "-1" if index == 0 else f"0 to {highest}"
@@ -40,17 +41,18 @@ def read_rig(rig: Sequence[synthesis_pb2.RigJoint], joint_count: int) -> Tuple[R
     return tuple(joints)
 
 
-def read_rotations(chunk: synthesis_pb2.MotionChunk, rig_joints: int) -> Rotations:
+def read_rotations(values: Sequence[float], frames: int, rig_joints: int,
+                   field: str = "chunk.rotations") -> Rotations:
     """``[frames, rig joints, 4]``: unit quaternions x, y, z, w."""
-    shape = (chunk.frame_count, rig_joints, 4)
-    if len(chunk.rotations) != np.prod(shape):
-        raise ValueError(f"chunk.rotations: expected {np.prod(shape)} values for "
-                         f"{chunk.frame_count} frames, got {len(chunk.rotations)}")
-    rotations = np.array(chunk.rotations, dtype=np.float32).reshape(shape)
+    shape = (frames, rig_joints, 4)
+    if len(values) != np.prod(shape):
+        raise ValueError(f"{field}: expected {np.prod(shape)} values for {frames} frames, got "
+                         f"{len(values)}")
+    rotations = np.array(values, dtype=np.float32).reshape(shape)
     norms = np.linalg.norm(rotations, axis=-1).ravel()
     unit = np.abs(norms - 1) <= _NORM_TOLERANCE  # False for NaN
     if not unit.all():
         bad = int(np.argmin(unit))
-        raise ValueError(f"chunk.rotations[{4 * bad}..{4 * bad + 3}]: expected a unit quaternion, "
+        raise ValueError(f"{field}[{4 * bad}..{4 * bad + 3}]: expected a unit quaternion, "
                          f"got norm {norms[bad]}")
     return rotations

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from duet_motion.motion import Motion, Positions
 from duet_motion.request import (Labels, check_answering, check_integer, check_points, check_weights,
                                  short)
-from duet_motion.result import FrameRun
+from duet_motion.result import FrameRun, JointRotations
 
 MAX_DELAY, MAX_PLAN = 10, 30
 
@@ -50,6 +50,9 @@ class LivePart:
     clock."""
     server_seconds: float
     """Seconds from the arrival of that leader frame at the server to the server's answer."""
+    rotations: Optional[JointRotations] = None
+    """The joint rotations of ``positions`` (docs/rotations.md); None without ``rotations``. The rig
+    is the same in every part."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -121,6 +124,8 @@ class LiveRequest:
         candidates: how many samples a model that samples draws for each window, 1 to 16.
         unit: ``"metres"``, ``"millimetres"`` or ``"sbu-normalised"``.
         up_axis: ``"y-up"``, ``"z-up"`` or ``"y-down"``.
+        rotations: whether the final frames have joint rotations beside the positions, for engines
+            (docs/rotations.md).
         request_id: identifies the call in the server's log. Empty: the server creates one.
         on_notice: called with each :class:`duet_motion.LiveNotice`. It must not block.
 
@@ -145,6 +150,7 @@ class LiveRequest:
     candidates: int = 1
     unit: str = "metres"
     up_axis: str = "y-up"
+    rotations: bool = False
     request_id: str = ""
     on_notice: Optional[Callable[[LiveNotice], None]] = None
 
@@ -158,6 +164,8 @@ class LiveRequest:
         check_points("follower_start", self.follower_start, ((3,), (len(names), 3)), names)
         check_points("partner_direction", self.partner_direction, ((3,),))
         check_points("up", self.up, ((3,),))
+        if not isinstance(self.rotations, (bool, np.bool_)):
+            raise ValueError(f"rotations: expected True or False, got {short(self.rotations)}")
         if not isinstance(self.request_id, str):
             raise ValueError(f"request_id: expected a str, got {short(self.request_id)}")
 

@@ -115,6 +115,48 @@ class LiveTest(unittest.TestCase):
                         support.follower_of(leader)[begin:begin + Mirror.HISTORY].ravel())
                     self.assertEqual((start.seed, start.model.name, start.model.version), (5, "m", 1))
 
+    def test_rotations_keep_their_signs_over_an_interruption(self):
+        mirror = Mirror({"after": 9, "act": RESET})
+        parts, _ = run(lambda client: answered(client, support.leader(40), rotations=True), mirror)
+        self.assert_whole(parts, 40)
+        self.assertEqual([joint.name for joint in parts[0].rotations.rig], ["root", "left"])
+        self.assertTrue(all(part.rotations.rig == parts[0].rotations.rig for part in parts))
+        turned = np.concatenate([part.rotations.rotations for part in parts])[:, 1]
+        half = 0.25 * np.arange(40)
+        np.testing.assert_allclose(turned[:, 3], np.cos(half), atol=1e-6)
+        np.testing.assert_allclose(turned[:, 0], np.sin(half), atol=1e-6)
+        history = mirror.streams[1][0].start.history
+        self.assertGreater(history.first_frame, 0)
+        leader = support.leader(40)
+        np.testing.assert_array_equal(history.rig_leader_positions, leader.positions[0].ravel())
+        np.testing.assert_array_equal(history.rig_follower_positions,
+                                      support.follower_of(leader)[0].ravel())
+
+    def test_malformed_rotations_are_refused(self):
+        class Spoiled(Mirror):
+            def SynthesizeLive(self, requests, context):
+                for response in super().SynthesizeLive(requests, context):
+                    if response.HasField("frames"):
+                        self.spoil(response.frames)
+                    yield response
+
+        for field, spoil in (
+                ("frames.rig: expected joints in the first", lambda frames: frames.ClearField("rig")),
+                ("frames.rotations: expected 8", lambda frames: frames.rotations.pop()),
+                (r"frames.rotations\[0..3\]: expected a unit",
+                 lambda frames: frames.rotations.__setitem__(3, 2)),
+                (r"frames.rig\[1\].parent", lambda frames: frames.rig and
+                 setattr(frames.rig[1], "parent", 1))):
+            with self.subTest(field):
+                mirror = Spoiled()
+                mirror.spoil = spoil
+                with self.assertRaisesRegex(duet.DuetError, field):
+                    run(lambda client: answered(client, rotations=True), mirror)
+
+    def test_parts_have_no_rotations_unless_asked(self):
+        parts, _ = run(answered, Mirror())
+        self.assertIsNone(parts[0].rotations)
+
     def test_stream_that_breaks_before_its_first_frame_begins_again(self):
         mirror = Mirror({"after": 0, "act": RESET}, {"after": 0, "act": RESET})
         parts, session = run(answered, mirror)
@@ -269,6 +311,7 @@ class LiveTest(unittest.TestCase):
         async def wrong(client):
             for field, arguments in (("delay", {"delay": 11}), ("plan", {"plan": 31}),
                                      ("seed", {"seed": -1}), ("labels", {"labels": {"hug": "x"}}),
+                                     ("rotations", {"rotations": 1}),
                                      ("joint_names", {"joint_names": "abc"}),
                                      ("frame_rate_hz", {"frame_rate_hz": 0})):
                 with self.subTest(field), self.assertRaisesRegex(ValueError, f"^{field}"):

@@ -8,7 +8,7 @@ import grpc
 import numpy as np
 from duet_motion._reply import ReplyAssembler
 from duet_motion.errors import make_error
-from duet_motion.v1 import reaction_pb2, synthesis_pb2
+from duet_motion.v1 import motion_pb2, reaction_pb2, synthesis_pb2
 
 
 class ReplyTest(unittest.TestCase):
@@ -104,8 +104,8 @@ class ReplyTest(unittest.TestCase):
         """A good reply with a rig of two joints; a quaternion of frame f is a turn by f / 10."""
         responses = support.good_reply(self.leader, size=4)
         responses[0].header.rig.extend(rig or [
-            synthesis_pb2.RigJoint(name="root", parent=-1),
-            synthesis_pb2.RigJoint(name="left", parent=0, joint=1, offset={"y": 0.5})])
+            motion_pb2.RigJoint(name="root", parent=-1),
+            motion_pb2.RigJoint(name="left", parent=0, joint=1, offset={"y": 0.5})])
         for response in responses:
             if response.WhichOneof("payload") == "chunk":
                 first, count = response.chunk.first_frame, response.chunk.frame_count
@@ -136,8 +136,8 @@ class ReplyTest(unittest.TestCase):
 
     def test_malformed_rotations_are_rejected(self):
         def rig(**second):
-            return [synthesis_pb2.RigJoint(name="root", parent=-1),
-                    synthesis_pb2.RigJoint(**{"name": "left", "joint": 1, **second})]
+            return [motion_pb2.RigJoint(name="root", parent=-1),
+                    motion_pb2.RigJoint(**{"name": "left", "joint": 1, **second})]
         nan = [float("nan")] * 32
         for asked, responses, message in (
                 (True, support.good_reply(self.leader), "header.rig: expected joints"),

@@ -27,7 +27,7 @@ except ImportError as error:
 import duet_motion as duet  # noqa: E402
 from duet_motion import _file_extension  # noqa: E402
 from duet_motion.rpc.v1 import status_pb2  # noqa: E402
-from duet_motion.v1 import live_pb2, synthesis_pb2, synthesis_pb2_grpc  # noqa: E402
+from duet_motion.v1 import live_pb2, motion_pb2, synthesis_pb2, synthesis_pb2_grpc  # noqa: E402
 
 # The programs of the build, and its extension module, which the package loads as if it were installed.
 PROGRAMS = pathlib.Path(os.environ.get("DUET_BIN_DIR", SOURCE / "build/release/bin"))
@@ -291,10 +291,24 @@ def live_header(start, first, **changes):
 
 def live_frames(start, frame, leader, capture_seconds):
     pose = leader[frame] + np.float32([1, 0, 0])
+    rotations = {}
+    if start.reply_rotations:
+        begun = start.history.first_frame + start.history.follower_frame_count
+        rig = [motion_pb2.RigJoint(name="root", parent=-1, joint=0),
+               motion_pb2.RigJoint(name="left", parent=0, joint=1, offset={"y": 0.5})]
+        rotations = {"rig": rig if frame == begun else [],
+                     "rotations": [0, 0, 0, 1, *live_quaternion(frame)]}
     return live_pb2.SynthesizeLiveResponse(frames=live_pb2.FollowerFrames(
-        first_frame=frame, frame_count=1, positions=pose.ravel().tolist(),
+        **rotations, first_frame=frame, frame_count=1, positions=pose.ravel().tolist(),
         plan_positions=np.tile(pose.ravel(), start.plan_frames).tolist(),
         leader_frame=max(leader), capture_seconds=capture_seconds, server_seconds=0.125))
+
+
+def live_quaternion(frame):
+    """That of the second joint: x, y, z, w with w >= 0 of a steady turn about x."""
+    half = 0.25 * frame
+    sign = 1 if np.cos(half) >= 0 else -1
+    return [float(sign * np.sin(half)), 0.0, 0.0, float(sign * np.cos(half))]
 
 
 def live_notice(kind, first=0, count=0):

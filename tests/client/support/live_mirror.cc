@@ -1,6 +1,7 @@
 #include "tests/client/support/live_mirror.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <utility>
@@ -23,6 +24,7 @@ class MirrorStream {
   MirrorStream(LiveServerStream* stream, const v1::LiveStart& start)
       : stream_(stream), width_(static_cast<size_t>(start.leader().joint_names_size()) * 3) {
     delay_ = static_cast<int>(start.delay_frames());
+    rotations_ = start.reply_rotations();
     if (start.has_label_vector()) hug_[0] = HugOf(start.label_vector());
     for (const v1::LabelKeyframe& key : start.label_keyframes()) {
       hug_[static_cast<int>(key.frame())] = HugOf(key.label_vector());
@@ -92,6 +94,7 @@ class MirrorStream {
       const float moved = k % 3 == 0 ? offset_ : k % 3 == 1 ? HugAt(next_) : 0;
       frames->add_positions(leader[k] + moved);
     }
+    if (rotations_) AddRotations(frames);
     frames->set_leader_frame(static_cast<uint32_t>(end() - 1));
     frames->set_capture_seconds(capture_seconds_);
     frames->set_server_seconds(0.001F);
@@ -121,6 +124,19 @@ class MirrorStream {
     }
   }
 
+  void AddRotations(v1::FollowerFrames* frames) const {
+    if (answered_ == 0) {
+      v1::RigJoint* joint = frames->add_rig();
+      joint->set_name("root");
+      joint->set_parent(-1);
+    }
+    const float half = 0.25F * static_cast<float>(next_);
+    const float sign = std::cos(half) < 0 ? -1 : 1;  // so that w is not negative
+    for (const float value : {sign * std::sin(half), 0.0F, 0.0F, sign * std::cos(half)}) {
+      frames->add_rotations(value);
+    }
+  }
+
   float HugAt(int frame) const {
     const auto after = hug_.upper_bound(frame);
     if (after == hug_.end()) return hug_.empty() ? 0 : hug_.rbegin()->second;
@@ -134,6 +150,7 @@ class MirrorStream {
   LiveServerStream* stream_;
   const size_t width_;
   int delay_ = 0;
+  bool rotations_ = false;
   std::map<int, float> hug_;
   std::vector<Pose> leaders_;  // from first_ on
   int first_ = 0, next_ = 0, answered_ = 0;

@@ -18,6 +18,8 @@ using LiveServerStream =
 // Answers live sessions as the contract describes: the follower is the leader moved by one metre in
 // x, plus the weight of the class "hug" at that frame in y. It keeps what it was asked.
 //
+// With rotations, the rig has one joint, which turns steadily about x by 0.5 radians in a frame.
+//
 // A resumed session continues from the history's frames, so a client that sends a wrong history
 // gets a motion with a jump.
 class LiveMirror {

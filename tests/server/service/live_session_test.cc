@@ -70,11 +70,17 @@ struct Taken {
 
 class LiveSessionTest : public ::testing::Test {
  protected:
-  void Create(uint32_t delay = 0, uint32_t plan = 0) {
+  void Create(uint32_t delay = 0, uint32_t plan = 0) { Begin(Start(delay, plan)); }
+
+  static v1::LiveStart Start(uint32_t delay = 0, uint32_t plan = 0) {
     v1::LiveStart start = test::SampleLiveStart();
     start.set_delay_frames(delay);
     start.set_plan_frames(plan);
     start.set_seed(3);
+    return start;
+  }
+
+  void Begin(const v1::LiveStart& start) {
     absl::StatusOr<ValidatedLiveStart> valid =
         ValidateLiveStart(start, model_->description(), RequestLimits());
     ASSERT_THAT(valid, IsOk());
@@ -164,6 +170,90 @@ TEST_F(LiveSessionTest, EachFrameIsAnsweredInOrder) {
   EXPECT_GT(session_->stats().windows, 10);
   EXPECT_EQ(session_->stats().queue_seconds, 0.25 * session_->stats().windows);
   EXPECT_EQ(session_->stats().compute_seconds, 0.5 * session_->stats().windows);
+}
+
+std::vector<float> Joined(
+    const std::vector<v1::FollowerFrames>& parts,
+    const google::protobuf::RepeatedField<float>& (v1::FollowerFrames::*values)() const) {
+  std::vector<float> joined;
+  for (const v1::FollowerFrames& part : parts) {
+    joined.insert(joined.end(), (part.*values)().begin(), (part.*values)().end());
+  }
+  return joined;
+}
+
+TEST_F(LiveSessionTest, TheFirstFramesHaveTheRigAndEveryFrameItsRotations) {
+  v1::LiveStart start = Start();
+  start.set_reply_rotations(true);
+  Begin(start);
+  EXPECT_EQ(session_->history_frames(), 2 * kRate) << "two seconds";
+  int rig_joints = 0;
+  for (int t = 0; t < 20; ++t) {
+    Send(Frames(t, 1));
+    RunAll();
+    const Taken taken = Take();
+    ASSERT_THAT(taken.parts, SizeIs(1));
+    EXPECT_EQ(taken.parts[0].rig().empty(), t > 0);
+    if (t == 0) rig_joints = taken.parts[0].rig_size();
+    ASSERT_EQ(taken.parts[0].rotations_size(), 4 * rig_joints);
+    for (int i = 3; i < 4 * rig_joints; i += 4) EXPECT_GE(taken.parts[0].rotations(i), 0);
+  }
+  EXPECT_GT(rig_joints, kValues / 3);
+}
+
+TEST_F(LiveSessionTest, AResumedSessionHasTheSameRigAndRotations) {
+  constexpr int kAll = 90;
+  v1::LiveStart start = Start();
+  start.set_reply_rotations(true);
+  Begin(start);
+  std::vector<v1::FollowerFrames> whole;
+  for (int t = 0; t < kAll; ++t) {
+    Send(Frames(t, 1));
+    RunAll();
+    whole.push_back(Take().parts.at(0));
+  }
+  const std::vector<float> rotations = Joined(whole, &v1::FollowerFrames::rotations);
+  const std::ptrdiff_t width = 4 * whole[0].rig_size();
+  for (const int at : {1, 29, 30, 47, 60, 74}) {
+    v1::LiveStart resumed = start;
+    const int first = std::max(0, at - 2 * kRate);
+    const Message known = Frames(first, at - first);
+    *resumed.mutable_leader()->mutable_positions() = known.frames().positions();
+    resumed.mutable_leader()->set_frame_count(known.frames().frame_count());
+    v1::LiveHistory& history = *resumed.mutable_history();
+    history.set_first_frame(static_cast<uint32_t>(first));
+    history.set_follower_frame_count(static_cast<uint32_t>(at - first));
+    for (int t = first; t < at; ++t) {
+      history.mutable_follower_positions()->MergeFrom(whole[static_cast<size_t>(t)].positions());
+    }
+    *history.mutable_rig_leader_positions() = Frames(0, 1).frames().positions();
+    *history.mutable_rig_follower_positions() = whole[0].positions();
+    Begin(resumed);
+    answered_ = at;
+    std::vector<v1::FollowerFrames> rest;
+    for (int t = at; t < kAll; ++t) {
+      Send(Frames(t, 1));
+      RunAll();
+      rest.push_back(Take().parts.at(0));
+    }
+    ASSERT_EQ(rest[0].rig_size(), whole[0].rig_size()) << at;
+    for (int j = 0; j < rest[0].rig_size(); ++j) {
+      EXPECT_EQ(rest[0].rig(j).SerializeAsString(), whole[0].rig(j).SerializeAsString());
+    }
+    EXPECT_EQ(Joined(rest, &v1::FollowerFrames::rotations),
+              std::vector<float>(rotations.begin() + at * width, rotations.end()))
+        << "resumed at " << at;
+  }
+}
+
+TEST_F(LiveSessionTest, WithoutRotationsThereIsNoRig) {
+  Create();
+  Send(Frames(0, 5));
+  RunAll();
+  const Taken taken = Take();
+  ASSERT_FALSE(taken.parts.empty());
+  EXPECT_EQ(taken.parts[0].rig_size(), 0);
+  EXPECT_EQ(taken.parts[0].rotations_size(), 0);
 }
 
 TEST_F(LiveSessionTest, OneWindowAtATimeAndProgressIsReported) {

@@ -84,6 +84,49 @@ TEST(ValidateLiveStartTest, ResumedSession) {
   EXPECT_EQ(valid->live.follower[7][2].y, start.history().follower_positions((7 * 15 + 2) * 3 + 1));
 }
 
+// The same with rotations: also frame 0 of both motions.
+v1::LiveStart ResumedWithRotations() {
+  v1::LiveStart start = Resumed();
+  start.set_reply_rotations(true);
+  for (int i = 0; i < kJoints * 3; ++i) {
+    start.mutable_history()->add_rig_leader_positions(start.leader().positions(i));
+    start.mutable_history()->add_rig_follower_positions(start.leader().positions(i) + 0.5F);
+  }
+  return start;
+}
+
+TEST(ValidateLiveStartTest, RotationsOfAResumedSessionNeedTheFirstFrameOfBoth) {
+  const absl::StatusOr<ValidatedLiveStart> valid = Validate(ResumedWithRotations());
+  ASSERT_THAT(valid, IsOk());
+  EXPECT_TRUE(valid->rotations);
+  ASSERT_EQ(valid->rig_leader.frame_count(), 1);
+  ASSERT_EQ(valid->rig_follower.frame_count(), 1);
+  EXPECT_EQ(valid->rig_follower[0][3].z, valid->rig_leader[0][3].z + 0.5F);
+  EXPECT_FALSE(Validate(Resumed())->rotations);
+}
+
+TEST(ValidateLiveStartTest, AHistoryFromFrameZeroHasTheFirstFrames) {
+  v1::LiveStart start = Resumed();
+  start.set_reply_rotations(true);
+  start.mutable_history()->set_first_frame(0);
+  const absl::StatusOr<ValidatedLiveStart> valid = Validate(start);
+  ASSERT_THAT(valid, IsOk());
+  ASSERT_EQ(valid->rig_leader.frame_count(), 1);
+  EXPECT_EQ(valid->rig_leader[0][2].y, valid->live.leader[0][2].y);
+  ASSERT_EQ(valid->rig_follower.frame_count(), 1);
+  EXPECT_EQ(valid->rig_follower[0][2].y, valid->live.follower[0][2].y);
+}
+
+TEST(ValidateLiveStartTest, ANewSessionWithRotationsHasNoFirstFramesYet) {
+  v1::LiveStart start = New();
+  start.set_reply_rotations(true);
+  const absl::StatusOr<ValidatedLiveStart> valid = Validate(start);
+  ASSERT_THAT(valid, IsOk());
+  EXPECT_TRUE(valid->rotations);
+  EXPECT_TRUE(valid->rig_leader.empty());
+  EXPECT_TRUE(valid->rig_follower.empty());
+}
+
 TEST(ValidateLiveStartTest, HistoryIsReadInTheCallersUnitAndOrder) {
   v1::LiveStart start = Resumed();
   const absl::StatusOr<ValidatedLiveStart> metres = Validate(start);
@@ -234,6 +277,42 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled<Start>{"far",
                        [](Start& s) { s.mutable_history()->set_follower_positions(9, 20000); },
                        "start.history.follower_positions[9..11]", ""}),
+    NameOf<Start>);
+
+INSTANTIATE_TEST_SUITE_P(
+    Rotations, StartRefusalTest,
+    ::testing::Values(Spoiled<Start>{"no_rig_leader",
+                                     [](Start& s) {
+                                       s = ResumedWithRotations();
+                                       s.mutable_history()->clear_rig_leader_positions();
+                                     },
+                                     "start.history.rig_leader_positions", "expected 45 values"},
+                      Spoiled<Start>{"rig_follower_too_long",
+                                     [](Start& s) {
+                                       s = ResumedWithRotations();
+                                       s.mutable_history()->add_rig_follower_positions(0);
+                                     },
+                                     "start.history.rig_follower_positions", "got 46"},
+                      Spoiled<Start>{"rig_nan",
+                                     [](Start& s) {
+                                       s = ResumedWithRotations();
+                                       s.mutable_history()->set_rig_leader_positions(4, kNan);
+                                     },
+                                     "start.history.rig_leader_positions[4]", "finite"},
+                      Spoiled<Start>{"rig_far",
+                                     [](Start& s) {
+                                       s = ResumedWithRotations();
+                                       s.mutable_history()->set_rig_follower_positions(9, 20000);
+                                     },
+                                     "start.history.rig_follower_positions[9..11]", ""},
+                      Spoiled<Start>{"unit_without_rotations",
+                                     [](Start& s) {
+                                       s = New();
+                                       s.set_reply_rotations(true);
+                                       s.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED);
+                                       s.mutable_leader()->set_up_axis(v1::UP_AXIS_Y_DOWN);
+                                     },
+                                     "start.reply_rotations", "LENGTH_UNIT_METRES"}),
     NameOf<Start>);
 
 TEST(ValidateLiveStartTest, MoreThanTenSecondsOfHistory) {

@@ -15,13 +15,15 @@ LIVE_NOTICE_KIND_SKIPPED: LiveNoticeKind
 LIVE_NOTICE_KIND_UNSPECIFIED: LiveNoticeKind
 
 class FollowerFrames(_message.Message):
-    __slots__ = ["capture_seconds", "first_frame", "frame_count", "leader_frame", "plan_positions", "positions", "server_seconds"]
+    __slots__ = ["capture_seconds", "first_frame", "frame_count", "leader_frame", "plan_positions", "positions", "rig", "rotations", "server_seconds"]
     CAPTURE_SECONDS_FIELD_NUMBER: _ClassVar[int]
     FIRST_FRAME_FIELD_NUMBER: _ClassVar[int]
     FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
     LEADER_FRAME_FIELD_NUMBER: _ClassVar[int]
     PLAN_POSITIONS_FIELD_NUMBER: _ClassVar[int]
     POSITIONS_FIELD_NUMBER: _ClassVar[int]
+    RIG_FIELD_NUMBER: _ClassVar[int]
+    ROTATIONS_FIELD_NUMBER: _ClassVar[int]
     SERVER_SECONDS_FIELD_NUMBER: _ClassVar[int]
     capture_seconds: float
     first_frame: int
@@ -29,8 +31,10 @@ class FollowerFrames(_message.Message):
     leader_frame: int
     plan_positions: _containers.RepeatedScalarFieldContainer[float]
     positions: _containers.RepeatedScalarFieldContainer[float]
+    rig: _containers.RepeatedCompositeFieldContainer[_motion_pb2.RigJoint]
+    rotations: _containers.RepeatedScalarFieldContainer[float]
     server_seconds: float
-    def __init__(self, first_frame: _Optional[int] = ..., frame_count: _Optional[int] = ..., positions: _Optional[_Iterable[float]] = ..., plan_positions: _Optional[_Iterable[float]] = ..., leader_frame: _Optional[int] = ..., capture_seconds: _Optional[float] = ..., server_seconds: _Optional[float] = ...) -> None: ...
+    def __init__(self, first_frame: _Optional[int] = ..., frame_count: _Optional[int] = ..., positions: _Optional[_Iterable[float]] = ..., plan_positions: _Optional[_Iterable[float]] = ..., leader_frame: _Optional[int] = ..., capture_seconds: _Optional[float] = ..., server_seconds: _Optional[float] = ..., rig: _Optional[_Iterable[_Union[_motion_pb2.RigJoint, _Mapping]]] = ..., rotations: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class LabelChange(_message.Message):
     __slots__ = ["ease_frames", "frame", "label_vector"]
@@ -89,14 +93,18 @@ class LiveHeader(_message.Message):
     def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., delay_frames: _Optional[int] = ..., first_frame: _Optional[int] = ..., history_frames: _Optional[int] = ...) -> None: ...
 
 class LiveHistory(_message.Message):
-    __slots__ = ["first_frame", "follower_frame_count", "follower_positions"]
+    __slots__ = ["first_frame", "follower_frame_count", "follower_positions", "rig_follower_positions", "rig_leader_positions"]
     FIRST_FRAME_FIELD_NUMBER: _ClassVar[int]
     FOLLOWER_FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
     FOLLOWER_POSITIONS_FIELD_NUMBER: _ClassVar[int]
+    RIG_FOLLOWER_POSITIONS_FIELD_NUMBER: _ClassVar[int]
+    RIG_LEADER_POSITIONS_FIELD_NUMBER: _ClassVar[int]
     first_frame: int
     follower_frame_count: int
     follower_positions: _containers.RepeatedScalarFieldContainer[float]
-    def __init__(self, first_frame: _Optional[int] = ..., follower_frame_count: _Optional[int] = ..., follower_positions: _Optional[_Iterable[float]] = ...) -> None: ...
+    rig_follower_positions: _containers.RepeatedScalarFieldContainer[float]
+    rig_leader_positions: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, first_frame: _Optional[int] = ..., follower_frame_count: _Optional[int] = ..., follower_positions: _Optional[_Iterable[float]] = ..., rig_leader_positions: _Optional[_Iterable[float]] = ..., rig_follower_positions: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class LiveNotice(_message.Message):
     __slots__ = ["frames", "kind"]
@@ -107,7 +115,7 @@ class LiveNotice(_message.Message):
     def __init__(self, kind: _Optional[_Union[LiveNoticeKind, str]] = ..., frames: _Optional[_Union[_reaction_pb2.FrameRun, _Mapping]] = ...) -> None: ...
 
 class LiveStart(_message.Message):
-    __slots__ = ["candidates", "clean_up", "delay_frames", "follower_start", "history", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "plan_frames", "seed", "up", "variety"]
+    __slots__ = ["candidates", "clean_up", "delay_frames", "follower_start", "history", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "plan_frames", "reply_rotations", "seed", "up", "variety"]
     CANDIDATES_FIELD_NUMBER: _ClassVar[int]
     CLEAN_UP_FIELD_NUMBER: _ClassVar[int]
     DELAY_FRAMES_FIELD_NUMBER: _ClassVar[int]
@@ -119,6 +127,7 @@ class LiveStart(_message.Message):
     MODEL_FIELD_NUMBER: _ClassVar[int]
     PARTNER_DIRECTION_FIELD_NUMBER: _ClassVar[int]
     PLAN_FRAMES_FIELD_NUMBER: _ClassVar[int]
+    REPLY_ROTATIONS_FIELD_NUMBER: _ClassVar[int]
     SEED_FIELD_NUMBER: _ClassVar[int]
     UP_FIELD_NUMBER: _ClassVar[int]
     VARIETY_FIELD_NUMBER: _ClassVar[int]
@@ -133,10 +142,11 @@ class LiveStart(_message.Message):
     model: _model_pb2.ModelSelector
     partner_direction: _motion_pb2.Direction
     plan_frames: int
+    reply_rotations: bool
     seed: int
     up: _motion_pb2.Direction
     variety: float
-    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[_reaction_pb2.LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[_reaction_pb2.LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., delay_frames: _Optional[int] = ..., plan_frames: _Optional[int] = ..., history: _Optional[_Union[LiveHistory, _Mapping]] = ...) -> None: ...
+    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[_reaction_pb2.LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[_reaction_pb2.LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., delay_frames: _Optional[int] = ..., plan_frames: _Optional[int] = ..., history: _Optional[_Union[LiveHistory, _Mapping]] = ..., reply_rotations: bool = ...) -> None: ...
 
 class LiveSummary(_message.Message):
     __slots__ = ["compute_seconds", "frame_count", "gap_frames", "late_frames", "queue_seconds", "skipped_frames", "window_count"]

@@ -13,7 +13,7 @@ _sym_db = _symbol_database.Default()
 
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14\x64uet/v1/motion.proto\x12\x07\x64uet.v1\"\xa1\x01\n\x06Motion\x12\x13\n\x0bjoint_names\x18\x01 \x03(\t\x12\x15\n\rframe_rate_hz\x18\x02 \x01(\x01\x12!\n\x04unit\x18\x03 \x01(\x0e\x32\x13.duet.v1.LengthUnit\x12 \n\x07up_axis\x18\x04 \x01(\x0e\x32\x0f.duet.v1.UpAxis\x12\x13\n\x0b\x66rame_count\x18\x05 \x01(\r\x12\x11\n\tpositions\x18\x06 \x03(\x02\"(\n\x05Point\x12\t\n\x01x\x18\x01 \x01(\x02\x12\t\n\x01y\x18\x02 \x01(\x02\x12\t\n\x01z\x18\x03 \x01(\x02\",\n\tDirection\x12\t\n\x01x\x18\x01 \x01(\x02\x12\t\n\x01y\x18\x02 \x01(\x02\x12\t\n\x01z\x18\x03 \x01(\x02\"`\n\rFollowerStart\x12\'\n\rroot_position\x18\x01 \x01(\x0b\x32\x0e.duet.v1.PointH\x00\x12\x1d\n\x04pose\x18\x02 \x01(\x0b\x32\r.duet.v1.PoseH\x00\x42\x07\n\x05start\"\x19\n\x04Pose\x12\x11\n\tpositions\x18\x01 \x03(\x02*~\n\nLengthUnit\x12\x1b\n\x17LENGTH_UNIT_UNSPECIFIED\x10\x00\x12\x16\n\x12LENGTH_UNIT_METRES\x10\x01\x12\x1b\n\x17LENGTH_UNIT_MILLIMETRES\x10\x02\x12\x1e\n\x1aLENGTH_UNIT_SBU_NORMALISED\x10\x03*Y\n\x06UpAxis\x12\x17\n\x13UP_AXIS_UNSPECIFIED\x10\x00\x12\x10\n\x0cUP_AXIS_Y_UP\x10\x01\x12\x10\n\x0cUP_AXIS_Z_UP\x10\x02\x12\x12\n\x0eUP_AXIS_Y_DOWN\x10\x03\x42\x03\xf8\x01\x01\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x14\x64uet/v1/motion.proto\x12\x07\x64uet.v1\"\xa1\x01\n\x06Motion\x12\x13\n\x0bjoint_names\x18\x01 \x03(\t\x12\x15\n\rframe_rate_hz\x18\x02 \x01(\x01\x12!\n\x04unit\x18\x03 \x01(\x0e\x32\x13.duet.v1.LengthUnit\x12 \n\x07up_axis\x18\x04 \x01(\x0e\x32\x0f.duet.v1.UpAxis\x12\x13\n\x0b\x66rame_count\x18\x05 \x01(\r\x12\x11\n\tpositions\x18\x06 \x03(\x02\"(\n\x05Point\x12\t\n\x01x\x18\x01 \x01(\x02\x12\t\n\x01y\x18\x02 \x01(\x02\x12\t\n\x01z\x18\x03 \x01(\x02\",\n\tDirection\x12\t\n\x01x\x18\x01 \x01(\x02\x12\t\n\x01y\x18\x02 \x01(\x02\x12\t\n\x01z\x18\x03 \x01(\x02\"`\n\rFollowerStart\x12\'\n\rroot_position\x18\x01 \x01(\x0b\x32\x0e.duet.v1.PointH\x00\x12\x1d\n\x04pose\x18\x02 \x01(\x0b\x32\r.duet.v1.PoseH\x00\x42\x07\n\x05start\"\x19\n\x04Pose\x12\x11\n\tpositions\x18\x01 \x03(\x02\"W\n\x08RigJoint\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0e\n\x06parent\x18\x02 \x01(\x05\x12\x1e\n\x06offset\x18\x03 \x01(\x0b\x32\x0e.duet.v1.Point\x12\r\n\x05joint\x18\x04 \x01(\r*~\n\nLengthUnit\x12\x1b\n\x17LENGTH_UNIT_UNSPECIFIED\x10\x00\x12\x16\n\x12LENGTH_UNIT_METRES\x10\x01\x12\x1b\n\x17LENGTH_UNIT_MILLIMETRES\x10\x02\x12\x1e\n\x1aLENGTH_UNIT_SBU_NORMALISED\x10\x03*Y\n\x06UpAxis\x12\x17\n\x13UP_AXIS_UNSPECIFIED\x10\x00\x12\x10\n\x0cUP_AXIS_Y_UP\x10\x01\x12\x10\n\x0cUP_AXIS_Z_UP\x10\x02\x12\x12\n\x0eUP_AXIS_Y_DOWN\x10\x03\x42\x03\xf8\x01\x01\x62\x06proto3')
 
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, globals())
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'duet.v1.motion_pb2', globals())
@@ -21,10 +21,10 @@ if _descriptor._USE_C_DESCRIPTORS == False:
 
   DESCRIPTOR._options = None
   DESCRIPTOR._serialized_options = b'\370\001\001'
-  _LENGTHUNIT._serialized_start=410
-  _LENGTHUNIT._serialized_end=536
-  _UPAXIS._serialized_start=538
-  _UPAXIS._serialized_end=627
+  _LENGTHUNIT._serialized_start=499
+  _LENGTHUNIT._serialized_end=625
+  _UPAXIS._serialized_start=627
+  _UPAXIS._serialized_end=716
   _MOTION._serialized_start=34
   _MOTION._serialized_end=195
   _POINT._serialized_start=197
@@ -35,4 +35,6 @@ if _descriptor._USE_C_DESCRIPTORS == False:
   _FOLLOWERSTART._serialized_end=381
   _POSE._serialized_start=383
   _POSE._serialized_end=408
+  _RIGJOINT._serialized_start=410
+  _RIGJOINT._serialized_end=497
 # @@protoc_insertion_point(module_scope)

@@ -64,6 +64,18 @@ class Pose(_message.Message):
     positions: _containers.RepeatedScalarFieldContainer[float]
     def __init__(self, positions: _Optional[_Iterable[float]] = ...) -> None: ...
 
+class RigJoint(_message.Message):
+    __slots__ = ["joint", "name", "offset", "parent"]
+    JOINT_FIELD_NUMBER: _ClassVar[int]
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    OFFSET_FIELD_NUMBER: _ClassVar[int]
+    PARENT_FIELD_NUMBER: _ClassVar[int]
+    joint: int
+    name: str
+    offset: Point
+    parent: int
+    def __init__(self, name: _Optional[str] = ..., parent: _Optional[int] = ..., offset: _Optional[_Union[Point, _Mapping]] = ..., joint: _Optional[int] = ...) -> None: ...
+
 class LengthUnit(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = []
 

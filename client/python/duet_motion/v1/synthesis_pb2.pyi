@@ -91,18 +91,6 @@ class RequestLimits(_message.Message):
     min_frames: int
     def __init__(self, min_frame_rate_hz: _Optional[float] = ..., max_frame_rate_hz: _Optional[float] = ..., min_frames: _Optional[int] = ..., max_duration_seconds: _Optional[float] = ..., max_chunk_frames: _Optional[int] = ..., max_label_keyframes: _Optional[int] = ..., max_abs_weight: _Optional[float] = ..., max_request_bytes: _Optional[int] = ..., max_variety: _Optional[float] = ..., max_candidates: _Optional[int] = ..., max_delay_frames: _Optional[int] = ..., max_plan_frames: _Optional[int] = ..., max_constraints: _Optional[int] = ...) -> None: ...
 
-class RigJoint(_message.Message):
-    __slots__ = ["joint", "name", "offset", "parent"]
-    JOINT_FIELD_NUMBER: _ClassVar[int]
-    NAME_FIELD_NUMBER: _ClassVar[int]
-    OFFSET_FIELD_NUMBER: _ClassVar[int]
-    PARENT_FIELD_NUMBER: _ClassVar[int]
-    joint: int
-    name: str
-    offset: _motion_pb2.Point
-    parent: int
-    def __init__(self, name: _Optional[str] = ..., parent: _Optional[int] = ..., offset: _Optional[_Union[_motion_pb2.Point, _Mapping]] = ..., joint: _Optional[int] = ...) -> None: ...
-
 class SynthesisHeader(_message.Message):
     __slots__ = ["candidates", "clean_up", "frame_count", "frame_rate_hz", "interaction_classes", "joint_names", "model_name", "model_version", "request_id", "rig", "seed", "unit", "up_axis", "variety"]
     CANDIDATES_FIELD_NUMBER: _ClassVar[int]
@@ -128,12 +116,12 @@ class SynthesisHeader(_message.Message):
     model_name: str
     model_version: int
     request_id: str
-    rig: _containers.RepeatedCompositeFieldContainer[RigJoint]
+    rig: _containers.RepeatedCompositeFieldContainer[_motion_pb2.RigJoint]
     seed: int
     unit: _motion_pb2.LengthUnit
     up_axis: _motion_pb2.UpAxis
     variety: float
-    def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., frame_count: _Optional[int] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., rig: _Optional[_Iterable[_Union[RigJoint, _Mapping]]] = ...) -> None: ...
+    def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., frame_count: _Optional[int] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., rig: _Optional[_Iterable[_Union[_motion_pb2.RigJoint, _Mapping]]] = ...) -> None: ...
 
 class SynthesisSummary(_message.Message):
     __slots__ = ["chunk_count", "compute_seconds", "constraint_metres", "frame_count", "grade", "queue_seconds", "unfamiliarity", "window_count"]
