@@ -21,7 +21,7 @@ class HandContactFit {
   void Add(const motion::Poses& leader, const motion::Poses& follower, int begin, int end);
 
   // The median distance of the hands that meet. Absent if the leaders offer a hand for less than
-  // 3 s, if less than half of an offered hand's time is met in the mean of the stretches, or
+  // 3 s, if less than two fifths of an offered hand's time is met in the mean of the stretches, or
   // without two named arms.
   std::optional<double> Metres(double frame_rate_hz) const;
 
