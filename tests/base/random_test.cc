@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <set>
 
@@ -20,6 +22,18 @@ TEST(RandomTest, ASeedAlwaysGivesTheSameUniformNumbers) {
   EXPECT_EQ(random.Uniform(), 0.9493012028926442);
   Random scaled(7);
   EXPECT_DOUBLE_EQ(scaled.Uniform(-2, 3), -2 + 5 * 0.754385304152858);
+}
+
+// Half a step above the number that Uniform returns, so never 0. Above a quarter, sums are rounded.
+TEST(RandomTest, OpenUniformLiesBetweenTheStepsOfUniform) {
+  int tried = 0;
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    const double uniform = Random(seed).Uniform();
+    if (uniform > 0.25) continue;
+    EXPECT_EQ(Random(seed).OpenUniform(), uniform + std::ldexp(0.5, -53)) << seed;
+    ++tried;
+  }
+  EXPECT_GT(tried, 0);
 }
 
 TEST(RandomTest, ASeedAndAPartAlwaysGiveTheSameUniformNumbers) {

@@ -96,6 +96,7 @@ TEST(FindBody, AnArmEndsAtItsWrist) {
 TEST(FindBody, FindsNoLimbsInASkeletonWithoutThem) {
   EXPECT_THAT(FindBody(WithoutFeet()).legs, IsEmpty());
   EXPECT_THAT(FindBody(WithoutHips()).arms, IsEmpty());
+  EXPECT_EQ(FindBody(WithoutHips()).legs.size(), 2u) << "feet are enough to find legs";
   EXPECT_EQ(FindBody(WithoutHips()).chest, std::nullopt);
   EXPECT_FALSE(FindBody(WithoutHips()).neck.has_value());
   motion::Skeleton stubs = Tree({{"root", -1}, {"left", 0}, {"right", 0}});
