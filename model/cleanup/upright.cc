@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "model/cleanup/low_pass.h"
+#include "model/cleanup/trunk_bend.h"
 
 namespace duet::cleanup {
 namespace {
@@ -34,24 +35,6 @@ Turn TurnBack(Vec3 lean, const UprightOptions& options) {
   return {axis / sine, angle - allowed};
 }
 
-// Rotates everything except the legs about the middle of the hips. Feet stay and knees follow.
-void BendAtHips(const motion::Skeleton& skeleton, const body::Body& body, const Turn& turn,
-                absl::Span<Vec3> pose) {
-  const auto at = [&](int joint) -> Vec3& { return pose[static_cast<std::size_t>(joint)]; };
-  const Vec3 pivot = Lerp(at(skeleton.hips->left), at(skeleton.hips->right), 0.5f);
-  const std::vector<Vec3> before(pose.begin(), pose.end());
-  for (Vec3& joint : pose) joint = pivot + RotateAbout(joint - pivot, turn.axis, turn.radians);
-  const Vec3 forward = body::Facing(*skeleton.hips, pose);
-  for (const body::Limb& leg : body.legs) {
-    const auto was = [&](int joint) { return before[static_cast<std::size_t>(joint)]; };
-    const Vec3 moved = at(leg.upper) - was(leg.upper);
-    at(leg.middle) = was(leg.middle) + moved;
-    at(leg.end) = was(leg.end) + moved;
-    for (const int joint : leg.beyond) at(joint) = was(joint) + moved;
-    Reach(leg, was(leg.end), forward, pose);
-  }
-}
-
 }  // namespace
 
 std::vector<Vec3> LastingLean(const motion::JointPair& base, int chest, const motion::Poses& poses,
@@ -77,7 +60,7 @@ void SetTrunkUpright(const motion::Skeleton& skeleton, const body::Body& body,
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     Turn turn = TurnBack(lean[static_cast<std::size_t>(t)], options);
     turn.radians *= EaseIn(timing, t);
-    if (turn.radians != 0) BendAtHips(skeleton, body, turn, (*poses)[t]);
+    if (turn.radians != 0) BendAtHips(skeleton, body, turn.axis, turn.radians, (*poses)[t]);
   }
 }
 

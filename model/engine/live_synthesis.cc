@@ -111,7 +111,17 @@ LiveFrames LiveSynthesis::TakeDue() const {
 
 LiveFrames LiveSynthesis::Plan(int count) const {
   if (!evaluation_) return {next_follower_frame(), Poses(0, leader_.joint_count())};
-  return Sample(std::min(count, PlannedEnd() - next_follower_frame()));
+  LiveFrames frames = Sample(std::min(count, PlannedEnd() - next_follower_frame()));
+  std::vector<double> beyond;  // seconds after the last planned frame
+  for (int i = frames.poses.frame_count(); i < count; ++i) {
+    beyond.push_back((i - frames.poses.frame_count() + 1) / request_.frame_rate_hz);
+  }
+  if (beyond.empty()) return frames;
+  Poses known = follower_;
+  known.Append(frames.poses.all());
+  const Poses resting = ComeToRest(model_.skeleton, known, request_.frame_rate_hz, beyond);
+  frames.poses.Append(resting.all());
+  return frames;
 }
 
 LiveFrames LiveSynthesis::Sample(int count) const {

@@ -42,11 +42,11 @@ bool AnswersLive(const ModelDescription& model);
 // Answers a leader while it still moves.
 //
 // Follower frame n is final when leader frame n + delay is there. At certain leader frames
-// (LiveTiming) the network plans the follower for the next second from the last 1.5 s of both
-// motions. It sees the leader's future as a motion that comes to rest, and labels that stay as they
-// are at the first frame that the plan may change. Final frames are taken from the newest plan. If
-// leader frames arrive faster than plans are made, the due frames come from the plan that is held,
-// and only the newest evaluation is made.
+// (LiveTiming) the network plans the follower's next frames from the last second of both motions.
+// It sees the leader's future as a motion that comes to rest, and labels that stay as they are at
+// the first frame that the plan may change. Final frames are taken from the newest plan. If leader
+// frames arrive faster than plans are made, the due frames come from the plan that is held, and
+// only the newest evaluation is made.
 //
 //   LiveSynthesis live(description, request);
 //   live.AddLeader(frames);                       // as they arrive
@@ -98,7 +98,8 @@ class LiveSynthesis {
   // Takes the result of the last NextWindow, of as many frames.
   void Accept(const motion::Poses& follower);
 
-  // The next frames that are not final, as planned, at most `count`. Provisional.
+  // The next frames that are not final, at most `count`. Provisional: as planned, and beyond the
+  // plan a motion that comes to rest.
   LiveFrames Plan(int count) const;
   // True if every leader frame was answered.
   bool done() const { return ended_ && next_follower_frame() >= next_leader_frame(); }

@@ -16,8 +16,11 @@ constexpr double kMostEvaluationsHz = 15;
 // settled ones hardly leave them, and clean-up eases in over this time: a motion of such frames
 // alone would drift.
 constexpr double kRemadeSeconds = 0.4;
-// The plan covers frames that the server has to skip, and the provisional frames that callers get.
-constexpr double kFutureSeconds = 0.8;
+// How far a plan reaches beyond the last frame that was sent, at least: for frames that the server
+// may have to skip, and provisional frames. The more frames of a leader who comes to rest a plan
+// has, the less its follower moves (docs/decisions/0065-live-by-planning-again.md). A model with a
+// lookahead plans at least as far: its windows end with an unknown future in clips, too.
+constexpr double kFutureSeconds = 0.4;
 // A spline's neighbours, and rounding at either end.
 constexpr int kMarginFrames = 4;
 
@@ -29,11 +32,12 @@ LiveTiming::LiveTiming(const ModelDescription& model, double frame_rate_hz, int 
       model_frames_between_(
           std::max(1, static_cast<int>(std::lround(model.frame_rate_hz / kMostEvaluationsHz)))) {
   const double delay = std::ceil(delay_frames * model_frames_per_frame_);
-  const double wanted = std::ceil(kFutureSeconds * model.frame_rate_hz);
+  const double wanted = std::ceil(kFutureSeconds * model.frame_rate_hz - kEpsilon);
   // At least the frames that are due until the next evaluation.
   const double due = delay + model_frames_between_ + std::ceil(model_frames_per_frame_);
   remade_ = static_cast<int>(std::lround(kRemadeSeconds * model.frame_rate_hz));
-  future_ = static_cast<int>(std::max(wanted + delay, due)) + kMarginFrames;
+  future_ = std::max(
+      {static_cast<int>(wanted), model.lookahead_frames, static_cast<int>(due) + kMarginFrames});
   past_ = SettledOverlap(model.window_frames);
 }
 

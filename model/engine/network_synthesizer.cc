@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/cleanup/live_bounds.h"
 #include "model/engine/candidates.h"
 #include "model/engine/finishing.h"
 #include "model/engine/standard_window.h"
@@ -29,6 +30,7 @@ class NetworkSynthesizer : public Synthesizer {
         origin_(origin),
         network_(std::move(network)),
         options_(options),
+        live_bounds_(description_.skeleton),
         clean_up_(description_.skeleton, options.cleaning),
         judge_(description_.skeleton) {}
 
@@ -149,6 +151,8 @@ class NetworkSynthesizer : public Synthesizer {
     }
     JoinSent(description_, window, &follower);
     const cleanup::Timing timing = FeetTiming(description_, window);
+    const bool bounded = cleans && window.options.sampling.first_frame.has_value();
+    if (bounded) live_bounds_.BoundBody(window.leader, timing, &follower);
     std::optional<cleanup::PinnedMotion> pinned;
     if (!pins.empty()) {
       pinned.emplace(clean_up_.ApproachPins(window.leader, TouchOf(description_, window), pins,
@@ -157,6 +161,7 @@ class NetworkSynthesizer : public Synthesizer {
     if (cleans) {
       clean_up_.PlaceFeetAndHands(window.leader, meetings, timing, &follower);
     }
+    if (bounded) live_bounds_.BoundFeet(window.leader, timing, &follower);
     if (pinned) clean_up_.PlacePins(*pinned, window.leader, timing, &follower);
     HoldSettledPins(window, pins, &follower);
     return follower;
@@ -186,6 +191,7 @@ class NetworkSynthesizer : public Synthesizer {
   const motion::StandardOrigin origin_;
   const std::unique_ptr<const Network> network_;
   const PipelineOptions options_;
+  const cleanup::LiveBounds live_bounds_;
   const cleanup::CleanUp clean_up_;
   const CandidateJudge judge_;
 };

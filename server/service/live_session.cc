@@ -37,8 +37,13 @@ std::unique_ptr<LiveRig> ResumedRig(const motion::Skeleton& skeleton,
                                     const ValidatedLiveStart& start) {
   if (start.rig_follower.empty()) return nullptr;
   auto rig = std::make_unique<LiveRig>(skeleton, start.reply, start.rig_leader, start.rig_follower);
+  // A caller may send more history than the fit depends on.
+  motion::Poses history = start.live.follower;
+  const int unread =
+      std::max(0, history.frame_count() - LiveRig::HistoryFrames(start.live.frame_rate_hz));
+  history.DropFront(unread);
   google::protobuf::RepeatedField<float> answered;
-  rig->Fit(start.live.first_frame, start.live.follower, &answered);
+  rig->Fit(start.live.first_frame + unread, history, &answered);
   return rig;
 }
 

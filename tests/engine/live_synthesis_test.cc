@@ -213,9 +213,9 @@ TEST(LiveSynthesisTest, OfFramesThatQueueOnlyTheNewestIsEvaluated) {
   Session session;
   session.Send(SwayingMotion(30, kRate));
   const std::size_t before = session.windows().size();
-  session.Send(SwayingMotion(8, kRate), /*together=*/true);
+  session.Send(SwayingMotion(5, kRate), /*together=*/true);
   EXPECT_EQ(session.windows().size(), before + 1);
-  EXPECT_EQ(session.follower().frame_count(), 38);
+  EXPECT_EQ(session.follower().frame_count(), 35);
   EXPECT_GT(session.live().skipped_frames(), 0);
 }
 
@@ -234,7 +234,19 @@ TEST(LiveSynthesisTest, ThePlanGoesOnFromTheFinalFrames) {
   ASSERT_EQ(plan.poses.frame_count(), 12);
   const motion::Vec3 last = session.follower().at(40, 0);
   EXPECT_LT(Distance(plan.poses.at(0, 0), last), 0.1f);
-  EXPECT_EQ(session.live().Plan(1000).poses.frame_count() < 60, true);
+}
+
+TEST(LiveSynthesisTest, APlanComesToRestWhereTheWindowEnds) {
+  Session session;
+  session.Send(SwayingMotion(41, kRate));
+  const Poses plan = session.live().Plan(60).poses;
+  ASSERT_EQ(plan.frame_count(), 60);
+  EXPECT_EQ(Frames(plan, 0, 5), session.live().Plan(5).poses);
+  const auto step = [&plan](int frame) {
+    return Distance(plan.at(frame, 0), plan.at(frame - 1, 0));
+  };
+  for (int frame = 1; frame < 60; ++frame) EXPECT_LT(step(frame), 0.1f) << frame;
+  EXPECT_LT(step(59), 1e-4f);
 }
 
 TEST(LiveSynthesisTest, WindowsContinueFromTheLastFrames) {
@@ -264,7 +276,8 @@ TEST(LiveSynthesisTest, TheUnknownLeaderComesToRestWithItsLimbLengths) {
   const int newest =
       session.windows().back().settled.frame_count() + session.windows().back().sent.frame_count();
   EXPECT_GT(leader.at(newest + 1, 0).z - leader.at(newest, 0).z, 0.03f);
-  EXPECT_LT(leader.at(last, 0).z - leader.at(last - 1, 0).z, 0.005f);
+  EXPECT_LT(leader.at(last, 0).z - leader.at(last - 1, 0).z,
+            0.3f * (leader.at(newest + 1, 0).z - leader.at(newest, 0).z));
 }
 
 TEST(LiveSynthesisTest, WindowsSpecifyHowManyFramesOfTheLeaderAreAGuess) {
