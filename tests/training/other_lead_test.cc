@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "model/base/angle.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::training {
