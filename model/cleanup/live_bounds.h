@@ -41,8 +41,8 @@ class LiveBounds {
   // Before the feet are placed: lean and distance. Bends a trunk at the hips, and moves the body
   // along the floor.
   void BoundBody(const motion::Poses& leader, const Timing& timing, motion::Poses* follower) const;
-  // Afterwards: moves the body vertically, with the leader's floor. Does nothing for a skeleton
-  // without feet.
+  // Afterwards: moves the body vertically. The leader defines the floor, in any frames, at least
+  // one. Does nothing for a skeleton without feet.
   void BoundFeet(const motion::Poses& leader, const Timing& timing, motion::Poses* follower) const;
 
  private:

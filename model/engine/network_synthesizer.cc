@@ -22,6 +22,13 @@ using Windows = absl::Span<const SynthesisWindow* const>;
 // memory of a batch.
 constexpr std::size_t kMostTogether = 32;
 
+// The leader without the frames that are a guess: one who lands goes on through the floor.
+motion::Poses KnownLeader(const SynthesisWindow& window) {
+  motion::Poses known = window.leader;
+  known.Resize(known.frame_count() - window.hidden_frames);
+  return known;
+}
+
 class NetworkSynthesizer : public Synthesizer {
  public:
   NetworkSynthesizer(ModelDescription description, motion::StandardOrigin origin,
@@ -161,7 +168,7 @@ class NetworkSynthesizer : public Synthesizer {
     if (cleans) {
       clean_up_.PlaceFeetAndHands(window.leader, meetings, timing, &follower);
     }
-    if (bounded) live_bounds_.BoundFeet(window.leader, timing, &follower);
+    if (bounded) live_bounds_.BoundFeet(KnownLeader(window), timing, &follower);
     if (pinned) clean_up_.PlacePins(*pinned, window.leader, timing, &follower);
     HoldSettledPins(window, pins, &follower);
     return follower;
