@@ -18,9 +18,6 @@ struct HandContactOptions {
   // How far a hand is moved at most, and how far the body for it, metres.
   double farthest_metres = 0.6, farthest_body_metres = 0.6;
   double fastest_metres_per_second = 0.8;  // of the body
-  // How long before and after a hand is offered the body is near enough, and the follower's hand
-  // is on its way.
-  double body_ahead_seconds = 0.5, hand_ahead_seconds = 0.2;
 };
 
 // In each frame, how much the hands are to meet, 0 to 1, and the distance at which they do, metres.
@@ -31,9 +28,9 @@ struct Meeting {
 using Meetings = std::vector<Meeting>;
 
 // Both functions let a hand of the follower meet a hand that the leader offers, where the labels
-// ask for it. One hand of each at a time: the leader's that is offered most, and the follower's
-// that is nearest to it. They do nothing for a skeleton without two named arms. `meetings` has as
-// many frames as the follower.
+// ask for it. One hand of each for the whole window: the leader's that is offered most, and the
+// follower's that is nearest to it. They do nothing for a skeleton without two named arms.
+// `meetings` has as many frames as the follower.
 //
 // Moves the body towards the hand where the arm is too short.
 void ApproachHand(const motion::Skeleton& skeleton, const body::Body& body,

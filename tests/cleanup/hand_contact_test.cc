@@ -72,50 +72,6 @@ TEST(HandContact, TheBodyComesNearerWhereTheArmIsTooShort) {
   EXPECT_LT(Gap(leader, met, kFrames - 1), 0.2f);
 }
 
-TEST(HandContact, FollowsALeaderWhoChangesHands) {
-  constexpr int kLeftHand = 5;
-  const motion::Poses leader = Puppet([](double t, authoring::PuppetPose* pose) {
-    authoring::PuppetPose& offering = *pose;
-    (t < 1.5 ? offering.right_hand : offering.left_hand).target = {t < 1.5 ? -0.15 : 0.15, -0.1,
-                                                                   0.45};
-  });
-  const motion::Poses met = Met(leader, Opposite(), Wanted());
-  const auto gap = [&](int frame, int hand) {
-    return std::min(Distance(leader.at(frame, hand), met.at(frame, kLeftHand)),
-                    Distance(leader.at(frame, hand), met.at(frame, kRightHand)));
-  };
-  EXPECT_NEAR(gap(12, kRightHand), 0.1f, 0.05f);
-  EXPECT_NEAR(gap(kFrames - 6, kLeftHand), 0.1f, 0.05f);
-}
-
-TEST(HandContact, TheBodyComesBeforeTheHandIsOffered) {
-  const motion::Poses leader = Puppet([](double t, authoring::PuppetPose* pose) {
-    if (t > 1.5) pose->right_hand.target = {-0.15, -0.1, 0.45};
-  });
-  const motion::Poses far = Changed(Opposite(), [](int, Vec3 joint) {
-    return joint + Vec3{0, 0, 0.3f};
-  });
-  const motion::Poses met = Met(leader, far, Wanted());
-  EXPECT_LT(met.at(22, kTorso).z, far.at(22, kTorso).z - 0.1f);
-  EXPECT_LT(Gap(leader, met, 25), 0.2f);
-  EXPECT_NEAR(met.at(0, kTorso).z, far.at(0, kTorso).z, 0.01f);
-}
-
-TEST(HandContact, AHandAtTheShoulderDoesNotFoldTheElbow) {
-  const motion::Poses leader = Offering();
-  const motion::Poses close = Changed(Opposite(), [&](int, Vec3 joint) {
-    return joint - Vec3{0, 0, 0.45f};
-  });
-  const motion::Poses met = Met(leader, close, Wanted());
-  for (const int shoulder : {3, kRightShoulder}) {
-    const float arm = Distance(met.at(9, shoulder), met.at(9, shoulder + 1)) +
-                      Distance(met.at(9, shoulder + 1), met.at(9, shoulder + 2));
-    for (int t = 0; t < kFrames; ++t) {
-      EXPECT_GT(Distance(met.at(t, shoulder), met.at(t, shoulder + 2)), 0.22f * arm) << t;
-    }
-  }
-}
-
 TEST(HandContact, LeavesSettledFramesAndDoesNotJump) {
   const motion::Poses leader = Offering(), met = Met(leader, Opposite(), Wanted(), 30);
   for (int t = 0; t < 30; ++t) EXPECT_EQ(met[t], Opposite()[t]);

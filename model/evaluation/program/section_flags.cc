@@ -30,7 +30,8 @@ bool IsFolder(const std::string& type) {
 
 // A value with a placeholder for its path.
 std::string Shown(const CLI::Option& option, const std::string& value) {
-  const std::string type = option.get_type_name();
+  // Without the names of its checks, which follow after colons.
+  const std::string type = option.get_type_name().substr(0, option.get_type_name().find(':'));
   if (IsFolder(type)) return type;
   if (type != kNamedRuns) return ShellWord(value);
   const absl::StatusOr<NamedRuns> runs = ParseRuns(value);

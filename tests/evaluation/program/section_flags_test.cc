@@ -22,6 +22,8 @@ std::string Recorded(std::vector<std::string> words) {
   AddDataFlag(&data, command);
   AddSubjectsFlag(&subjects, command);
   AddSectionFlags(&section, command);
+  std::string checked;
+  command->add_option("--leaders", checked)->type_name(kData)->check(CLI::ExistingDirectory);
   AddModelFlags(ModelNeeded::kNo, &models, command);
   AddSamplingFlags(&asked, command);
   std::reverse(words.begin(), words.end());  // CLI11 takes the arguments in reverse
@@ -34,6 +36,11 @@ TEST(RecordedCommandTest, FoldersAreReplacedByPlaceholders) {
             "duet-eval measure --data DIR --out RESULTS");
   EXPECT_EQ(Recorded({"measure", "--data=x", "--checkpoint", "/models/sbu/2"}),
             "duet-eval measure --data DIR --checkpoint CHECKPOINT");
+}
+
+TEST(RecordedCommandTest, AFolderThatIsCheckedIsReplacedToo) {
+  EXPECT_EQ(Recorded({"measure", "--data", "x", "--leaders", "/tmp"}),
+            "duet-eval measure --data DIR --leaders DIR");
 }
 
 TEST(RecordedCommandTest, RunsKeepTheirNames) {
