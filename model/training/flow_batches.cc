@@ -9,13 +9,11 @@
 #include "model/training/drift.h"
 #include "model/training/frame_labels.h"
 #include "model/training/live_leader.h"
-#include "model/training/other_lead.h"
 
 namespace duet::training {
 namespace {
 
 constexpr int kFewestSeveral = 2;
-constexpr double kJoinSeconds = 0.3;  // of a lead that continues another one
 
 // Replaces a known first pose by several known frames, up to half of the clip.
 void TellSeveral(const motion::Poses& target, base::Random* random, engine::NetworkInput* input) {
@@ -53,39 +51,18 @@ void ScalePair(float scale, FlowExample* example) {
   Scale(scale, absl::MakeSpan(example->input.start->pose));
 }
 
-// A lead without the classes of `example` follows its known frames: the labels decide against it.
-void LeadAgainst(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
-                 const std::vector<dataset::Sequence>& sequences, const Example& captured,
-                 base::Random* random, FlowExample* example) {
-  const dataset::Sequence& own = captured.sequence;
-  const int last = std::max(0, example->input.settled.frame_count() - 1);
-  const dataset::Sequence* other = DrawOther(sequences, own, last, random);
-  if (other == nullptr) return;
-  const int join = static_cast<int>(kJoinSeconds * manifest.model.frame_rate_hz);
-  const motion::Standardisation frame = WindowStandardisation(
-      dataset.skeleton, MakeWindow(dataset, captured), manifest.standardisation);
-  example->input.leader = frame.Apply(
-      ContinuedBy(dataset.skeleton, own.pair.leader.poses, last, other->pair.leader.poses, join));
-}
-
-// Draws the example of one of `sequences`.
 FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
-                        const std::vector<dataset::Sequence>& sequences, int index,
-                        const TrainingOptions& options, base::Random* random) {
+                        const dataset::Sequence& sequence, const TrainingOptions& options,
+                        base::Random* random) {
   const auto& flow = std::get<FlowTraining>(options.method);
-  const dataset::Sequence& sequence = sequences[static_cast<size_t>(index)];
   const bool live = flow.live.share > 0 && random->Chance(flow.live.share);
   const bool goes_on = live && random->Chance(flow.live.several_known);
   const StartKnowledge start = goes_on ? StartKnowledge::kPose : DrawStart(options.start, random);
-  const Example captured = CapturedExample(dataset, sequence, start);
-  FlowExample example = MakeFlowExample(manifest, dataset, captured, flow.target_smoothing);
+  FlowExample example = MakeFlowExample(
+      manifest, dataset, CapturedExample(dataset, sequence, start), flow.target_smoothing);
   example.live = live;
   if (goes_on || (start == StartKnowledge::kPose && random->Chance(flow.several_known))) {
     TellSeveral(example.target, random, &example.input);
-  }
-  const double against_lead = flow.frame_labels.against_lead;
-  if (against_lead > 0 && random->Chance(against_lead)) {
-    LeadAgainst(manifest, dataset, sequences, captured, random, &example);
   }
   Disturb(flow.known_noise, random, &example.input);
   if (start == StartKnowledge::kPose && random->Chance(flow.drift.share)) {
@@ -165,7 +142,8 @@ FlowEpoch DrawFlowEpoch(const checkpoint::Manifest& manifest, const dataset::Dat
     for (const std::vector<int>& piece : BatchesByLength(sequences, options.batch, &random)) {
       std::vector<FlowExample>& examples = batches.emplace_back();
       for (const int index : piece) {
-        examples.push_back(DrawExample(manifest, dataset, sequences, index, options, &random));
+        examples.push_back(DrawExample(manifest, dataset, sequences[static_cast<size_t>(index)],
+                                       options, &random));
         examples.back().unlabelled = random.Chance(flow.unlabelled);
       }
     }

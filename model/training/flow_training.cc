@@ -31,7 +31,6 @@ void Read(base::ObjectReader* reader, FlowTraining::FrameLabels* out) {
   out->shift = reader->Number("shift", 0, 1000);
   out->unlabelled = Probability(reader, "unlabelled");
   out->avoided = Probability(reader, "avoided");
-  out->against_lead = Probability(reader, "against_lead");
 }
 
 void Read(base::ObjectReader* reader, FlowTraining::Drift* out) {
@@ -108,7 +107,6 @@ void Describe(const FlowTraining& f, Description* out) {
                {"frame_labels.shift", Text(f.frame_labels.shift)},
                {"frame_labels.unlabelled", Text(f.frame_labels.unlabelled)},
                {"frame_labels.avoided", Text(f.frame_labels.avoided)},
-               {"frame_labels.against_lead", Text(f.frame_labels.against_lead)},
                {"drift.share", Text(f.drift.share)},
                {"drift.tilt", Text(f.drift.tilt)},
                {"drift.bend", Text(f.drift.bend)},

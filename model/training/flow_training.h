@@ -40,9 +40,6 @@ struct FlowTraining {
     double shift = 0;       // frames, standard deviation of the beginning and the end of a span
     double unlabelled = 0;  // fraction of the classes of a clip whose weight is 0 throughout
     double avoided = 0;     // fraction of the classes of a clip that have weight -1 where absent
-    // Fraction of the clips in which a lead without the clip's classes follows the known frames
-    // (other_lead.h), so that the labels decide against a lead.
-    double against_lead = 0;
   } frame_labels;
 
   // A follower that continues from its own previous answer does not start where a captured one

@@ -258,33 +258,6 @@ TEST_F(FlowTrainerTest, LiveClipsHaveSeveralKnownFramesAndHideTheLeadersFuture) 
   }
 }
 
-TEST_F(FlowTrainerTest, LeadsAgainstTheLabelsChangeOnlyAfterTheKnownFrames) {
-  options_.start = {0, 1};
-  options_.augmentation = {};
-  FlowOf(&options_).passes = 1;
-  FlowOf(&options_).several_known = FlowOf(&options_).known_noise = FlowOf(&options_).pair_scale =
-      0;
-  for (dataset::Sequence& sequence : dataset_.sequences) {
-    motion::Poses& leader = sequence.pair.leader.poses;
-    sequence.labels = {{sequence.interaction_class, 0, leader.frame_count()}};
-    for (int t = 0; t < leader.frame_count(); ++t) {
-      leader.at(t, 8).y += 0.02f * static_cast<float>(sequence.interaction_class * t);
-    }
-  }
-  const std::vector<FlowBatch> captured = Sample(0);
-  FlowOf(&options_).frame_labels.against_lead = 1;
-  const std::vector<FlowBatch> against = Sample(0);
-  ASSERT_EQ(against.size(), captured.size());
-  double changed = 0;
-  for (size_t i = 0; i < captured.size(); ++i) {
-    const torch::Tensor before = captured[i].input.leader, after = against[i].input.leader;
-    EXPECT_TRUE(torch::equal(captured[i].target, against[i].target));
-    EXPECT_TRUE(torch::equal(before.select(1, 0), after.select(1, 0)));
-    changed += (before - after).abs().max().item<double>();
-  }
-  EXPECT_GT(changed, 0.01);
-}
-
 TEST_F(FlowTrainerTest, KnownFramesAreThoseOfTheTarget) {
   options_.start = {0, 1};
   FlowOf(&options_).several_known = 1;
