@@ -201,6 +201,25 @@ class SparTest(unittest.TestCase):
         page.wait_until(f"spar.strip.counts.resumed > 0 && spar.session.follower.end > {end + 10}")
         self.assertTrue(page.evaluate("spar.session.leader === window.started"))
 
+    def test_socket_that_opens_late_begins_a_new_session(self):
+        page = self.open()
+        page.wait_until("document.documentElement.dataset.frames > 30")
+        page.evaluate("""(() => {
+          const {session} = spar;
+          const connect = session.connect.bind(session);
+          session.connect = () => {
+            connect();
+            const pose = session.leader.get(session.leader.end - 1);
+            session.add(Array(90).fill(pose), performance.now() / 1000);
+            session.connect = connect;
+          };
+          window.stale = session.leader;
+          session.socket.close();
+        })()""")
+        page.wait_until("spar.strip.counts.resumed > 0 && spar.session.follower.end > 10")
+        self.assertTrue(page.evaluate("spar.session.leader !== window.stale"))
+        self.assertEqual(page.events("Runtime.exceptionThrown"), [])
+
     def test_last_seconds_are_saved_as_a_file(self):
         page = self.open()
         page.wait_until("document.documentElement.dataset.recorded > 20")

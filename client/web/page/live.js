@@ -46,10 +46,6 @@ class LiveSession {
   get joints() { return this.settings.joints.length; }
 
   connect() {
-    if (this.leader.end - this.follower.end > RESUME_SECONDS * this.settings.frameRate) {
-      this.start = this.follower.get(this.follower.end - 1) ?? this.start;
-      this.restart();
-    }
     const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
     const socket = this.socket = new WebSocket(`${scheme}//${location.host}/live`);
     socket.binaryType = 'arraybuffer';
@@ -76,7 +72,10 @@ class LiveSession {
 
   begin() {
     const {settings} = this;
-    if (this.follower.end <= settings.delay) this.restart();  // frames of before are of no use
+    // Here and not when it connects: frames are added while the socket opens.
+    const wasAwayLong = this.leader.end - this.follower.end > RESUME_SECONDS * settings.frameRate;
+    if (wasAwayLong) this.start = this.follower.get(this.follower.end - 1) ?? this.start;
+    if (wasAwayLong || this.follower.end <= settings.delay) this.restart();  // older frames are of no use
     const {leader, follower} = this;
     const end = Math.max(0, Math.min(follower.end, leader.end - settings.delay));
     const first = Math.max(follower.first, end - this.kept);
