@@ -41,6 +41,14 @@ def work_of(server):
     return sum(map(int, stat.rpartition(")")[2].split()[11:13]))
 
 
+def rest_of(process):
+    """Output and errors until a process ends. After readline(), communicate() would lose the lines that
+    the reader has buffered."""
+    output, errors = process.stdout.read(), process.stderr.read()
+    process.wait(tools.RUN_SECONDS)
+    return output, errors
+
+
 class LiveCliTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -118,7 +126,7 @@ class LiveCliTest(unittest.TestCase):
                  follower], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             lines = [process.stdout.readline() for _ in range(11)]
             process.send_signal(signal.SIGINT)
-            rest, errors = process.communicate(timeout=tools.RUN_SECONDS)
+            rest, errors = rest_of(process)
         self.assertEqual(process.returncode, 0, errors)
         count = len(frames_of("".join(lines) + rest))
         self.assertTrue(10 <= count < FRAMES, count)
@@ -159,7 +167,7 @@ class LiveCliTest(unittest.TestCase):
                 lines = [process.stdout.readline() for _ in range(31)]
                 # The one that works: a session goes to either.
                 max((first, second), key=lambda server: work_of(server) - before[server]).kill()
-                rest, errors = process.communicate(timeout=tools.RUN_SECONDS)
+                rest, errors = rest_of(process)
             self.assertEqual(process.returncode, 0, errors)
             self.assertEqual(len(frames_of("".join(lines) + rest)), FRAMES)
             self.assertIn("resumed", errors)
