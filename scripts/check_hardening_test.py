@@ -24,11 +24,11 @@ FLAGS = ("-O2", "-fPIE", "-pie", "-fstack-protector-strong", "-U_FORTIFY_SOURCE"
 
 @unittest.skipUnless(shutil.which("c++") and shutil.which("readelf"), "no compiler")
 class CheckHardeningTest(unittest.TestCase):
-    def check(self, *more):
+    def check(self, *more, text=SOURCE):
         """Builds with FLAGS and `more`, which override them; exit status and what was printed."""
         with tempfile.TemporaryDirectory() as folder:
             source = pathlib.Path(folder, "duet.cc")
-            source.write_text(SOURCE, encoding="utf-8")
+            source.write_text(text, encoding="utf-8")
             subprocess.run(["c++", *FLAGS, *more, source, "-o", source.with_suffix("")], check=True)
             source.unlink()
             done = subprocess.run([SCRIPT, folder], capture_output=True, check=False, text=True)
@@ -36,6 +36,11 @@ class CheckHardeningTest(unittest.TestCase):
 
     def test_a_program_with_every_protection(self):
         self.assertEqual(self.check(), (0, "1 programs are hardened: duet.\n"))
+
+    def test_a_program_that_calls_nothing_to_fortify(self):
+        text = SOURCE.replace("std::strcpy(text, words[0]);", "std::memcpy(text, words[0], sizeof text);")
+        text = text.replace('std::printf("%s %d", text, ', "return std::memchr(text, 0, 9) != nullptr ? 1 : (")
+        self.assertEqual(self.check(text=text), (0, "1 programs are hardened: duet.\n"))
 
     def test_each_protection_that_is_absent_is_named(self):
         for flags, name in (
