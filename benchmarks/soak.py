@@ -93,7 +93,8 @@ def play(args, server, callers, operator, sampler):
                    LONG_DEADLINE, "--connections", "2", "--seed", number, "--json", "-", "--quiet")
         operator.pause()
         callers.gate.set(False)
-        if not load.stdout:  # the exit code is also not 0 if none of a few calls was answered
+        # The exit code is also not 0 if none of a few calls was answered; below 0, a signal ended it.
+        if load.returncode < 0 or not load.stdout:
             raise SystemExit(f"duet-load ended with {load.returncode}: {load.stderr}")
         steady.update(json.loads(load.stdout)["steps"][0]["ended"])
         settle(server, callers)
