@@ -14,7 +14,7 @@ namespace duet::client::internal {
 // with w >= 0; the caller gets each with the sign that is nearer to the frame before.
 class LiveRotations {
  public:
-  // Without `wanted`, the server must not send any.
+  // wanted: whether the session asked for rotations. If not, a message that has some is an error.
   LiveRotations(bool wanted, int joint_count) : wanted_(wanted), joint_count_(joint_count) {}
 
   // The next message is the first one of a stream, which has the rig.

@@ -9,10 +9,10 @@ def curves_of(action):
             for bag in strip.channelbags for curve in bag.fcurves]
 
 
-def keyed_frames(thing, is_wanted):
-    """Frames with key frames of an object's curves whose data path is wanted, sorted."""
+def keyed_frames(thing, matches):
+    """The frames, sorted, in which an object has key frames on a curve whose data path `matches`."""
     action = thing.animation_data and thing.animation_data.action
     if not action:
         return []
-    return sorted({round(key.co.x) for curve in curves_of(action) if is_wanted(curve.data_path)
+    return sorted({round(key.co.x) for curve in curves_of(action) if matches(curve.data_path)
                    for key in curve.keyframe_points})

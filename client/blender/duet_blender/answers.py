@@ -58,12 +58,12 @@ def request(scene, count):
         motion = os.path.join(work, "leader.bvh")
         recording.write(motion)
         duet.state = "Waiting for the server"
-        told = yield from program.run(
+        output = yield from program.run(
             duet, "synthesize", "--server", duet.server, "--leader", motion, *flags,
             *(["--model", duet.model] if duet.model else []), "--seed", duet.seed,
             "--variety", f"{duet.variety:.4g}", "--candidates", str(duet.candidates),
             "--samples", str(count), "--json", "--out", os.path.join(work, "pair.json"))
-        summaries = json.loads(told)
+        summaries = json.loads(output)
         _list(scene, summaries.get("samples", [summaries]), work)
 
 

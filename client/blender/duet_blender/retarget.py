@@ -38,16 +38,16 @@ def _named(names, joint):
 
 def _segments(names):
     """Pairs of joints that a bone connects: those of the limbs, and the neck."""
-    wanted = [(f"{side}_{a}", f"{side}_{b}") for side in _SIDES for a, b in _LIMBS]
-    pairs = [(_named(names, a), _named(names, b)) for a, b in (*wanted, ("neck", "head"))]
+    limbs = [(f"{side}_{a}", f"{side}_{b}") for side in _SIDES for a, b in _LIMBS]
+    pairs = [(_named(names, a), _named(names, b)) for a, b in (*limbs, ("neck", "head"))]
     return [pair for pair in pairs if None not in pair]
 
 
 def _limbs(names):
     """The joints of each limb: upper, middle and end."""
-    wanted = [[_named(names, f"{side}_{joint}") for joint in joints]
+    chains = [[_named(names, f"{side}_{joint}") for joint in joints]
               for side in _SIDES for joints in _ENDS]
-    return [joints for joints in wanted if None not in joints]
+    return [joints for joints in chains if None not in joints]
 
 
 def _bones_of(scene, armature):
@@ -65,11 +65,11 @@ def _bones_of(scene, armature):
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "rest.bvh")
         rest.write(file)
-        told = yield from program.run(duet, "inspect", file, "--metres-per-unit", "1", "--json",
-                                      may_fail=True)
+        output = yield from program.run(duet, "inspect", file, "--metres-per-unit", "1", "--json",
+                                        may_fail=True)
     bones = {}
     heads = {name: bone for name, _, bone, tail in rest.joints if not tail}
-    for found in json.loads(told)["files"][0]["people"][0]["joints"]:
+    for found in json.loads(output)["files"][0]["people"][0]["joints"]:
         if len(found["parts"]) == 1 and found["parts"][0]["joint"] in heads:
             bones[found["joint"]] = heads[found["parts"][0]["joint"]]
     for joint in duet.joints:

@@ -61,7 +61,8 @@ class FbxTest : public ::testing::Test {
  protected:
   void SetUp() override {
     const fs::path program = fs::path(Variable("DUET_BIN_DIR")) / "duet-fbx";
-    if (!fs::exists(program)) GTEST_SKIP() << "built without libassimp-dev (DUET_FBX)";
+    if (!fs::exists(program))
+      GTEST_SKIP() << "duet-fbx is not built; it needs libassimp-dev (CMake option DUET_FBX)";
     setenv(kProgramVariable, program.c_str(), 1);
   }
   void TearDown() override { unsetenv(kProgramVariable); }
