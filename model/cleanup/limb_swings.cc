@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/base/angle.h"
 #include "model/cleanup/turns.h"
 
 namespace duet::cleanup {
@@ -17,10 +16,6 @@ using Track = std::vector<Vec3>;
 constexpr float kClearBend = 0.03f;
 // Metres. A shorter vector has no direction.
 constexpr float kNoDirection = 1e-4f;
-
-float MostInAFrame(double degrees_per_second, const Timing& timing) {
-  return static_cast<float>(base::kRadiansPerDegree * degrees_per_second / timing.frame_rate_hz);
-}
 
 // The direction in which the elbow points, of length 1, in every frame. A nearly straight arm keeps
 // the direction of the frame before.

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/base/angle.h"
 #include "model/cleanup/pair_line.h"
 #include "model/cleanup/turns.h"
 
@@ -140,10 +139,7 @@ void LimitShoulders(const motion::Skeleton& skeleton, const body::Body& body,
   const Shoulders shoulders(skeleton, body, width, options);
   const std::vector<Vec3> before = shoulders.Directions(*poses);
   std::vector<Vec3> after = before;
-  LimitTurns(
-      timing.settled,
-      static_cast<float>(base::kRadiansPerDegree * options.fastest_turn / timing.frame_rate_hz),
-      &after);
+  LimitTurns(timing.settled, MostInAFrame(options.fastest_turn, timing), &after);
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     const std::size_t at = static_cast<std::size_t>(t);
     shoulders.Set(before[at], after[at], EaseIn(timing, t), (*poses)[t]);

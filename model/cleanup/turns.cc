@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/base/angle.h"
+
 namespace duet::cleanup {
 namespace {
 
@@ -43,6 +45,10 @@ void TurnLate(std::size_t begin, float most, Track* track) {
 }
 
 }  // namespace
+
+float MostInAFrame(double degrees_per_second, const Timing& timing) {
+  return static_cast<float>(base::kRadiansPerDegree * degrees_per_second / timing.frame_rate_hz);
+}
 
 void LimitTurns(int first, float most, Track* track) {
   const std::size_t settled = static_cast<std::size_t>(first);

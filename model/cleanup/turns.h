@@ -3,9 +3,13 @@
 
 #include <vector>
 
+#include "model/cleanup/timing.h"
 #include "model/motion/vec3.h"
 
 namespace duet::cleanup {
+
+// How far something turns in a frame at this speed, radians.
+float MostInAFrame(double degrees_per_second, const Timing& timing);
 
 // Limits how far a track of directions, each of length 1, turns in a frame: `most` radians. A
 // faster turn takes more time for it, before and after. Frames before `first` do not change, nor

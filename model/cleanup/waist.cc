@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/base/angle.h"
 #include "model/cleanup/pair_line.h"
 #include "model/cleanup/turns.h"
 
@@ -158,10 +157,7 @@ void LimitWaist(const motion::Skeleton& skeleton, const body::Body& body,
   }
   const std::vector<Vec3> before = waist.Directions(poses);
   std::vector<Vec3> after = before;
-  LimitTurns(
-      timing.settled,
-      static_cast<float>(base::kRadiansPerDegree * options.fastest_turn / timing.frame_rate_hz),
-      &after);
+  LimitTurns(timing.settled, MostInAFrame(options.fastest_turn, timing), &after);
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     const std::size_t at = static_cast<std::size_t>(t);
     waist.Turn(before[at], after[at], (*poses)[t]);
