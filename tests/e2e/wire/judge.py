@@ -159,8 +159,8 @@ def without_times(message):
 
 
 class GoodCaller:
-    """Good calls one after the other, in a thread, beside whatever else goes on. Raises in stop() what it
-    found."""
+    """Makes all good calls, at least once, in a thread beside whatever else goes on. Raises in stop() what
+    it found."""
 
     def __init__(self, judge):
         self._judge = judge
@@ -171,6 +171,7 @@ class GoodCaller:
 
     def _call(self):
         try:
+            self._judge.check_good_calls()
             while not self._over.wait(PAUSE_SECONDS):
                 self._judge.check_good_calls()
         except Finding as finding:
