@@ -180,6 +180,30 @@ class ViewerTest(tools.FolderTest):
         self.assertGreater(picture.count(tools.is_leader_orange, left=0, right=1), 300)
         self.assertGreater(picture.count(tools.is_follower_teal, left=0, right=1), 300)
 
+    def test_no_button_covers_another_on_a_phone(self):
+        page = self.open_good("#paused", width=390, height=844)
+        covered = page.evaluate("""[...document.querySelectorAll('button')].filter((button) => {
+            const {left, top, width, height} = button.getBoundingClientRect();
+            return width && !button.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+        }).map((button) => button.textContent)""")
+        self.assertEqual(covered, [])
+
+    def test_camera_tracks_people_on_request(self):
+        page = self.open_good("#paused&track")
+        tracks = "document.getElementById('stage').hasAttribute('track')"
+        for on in (True, False, True):
+            self.assertEqual(page.evaluate(tracks), on)
+            self.assertEqual(page.evaluate("document.querySelector('#track-people').ariaPressed"), str(on).lower())
+            page.press("t")
+
+    def test_camera_tracks_people_who_walk_far(self):
+        far = self.spoilt("scene.motion = data;", """for (const name of ['leader', 'follower']) {
+            data[name] = Motion.decode(data[name]).map((value, i) => i % 3 ? value : value + i / 450);
+        } scene.motion = data;""")
+        tracks = "document.getElementById('stage').hasAttribute('track')"
+        self.assertFalse(self.paused().evaluate(tracks))
+        self.assertTrue(self.open("#paused", far).evaluate(tracks))
+
     def test_keys_step_through_frames(self):
         page = self.paused()
         for key, frame in (("ArrowRight", 1), ("ArrowRight", 2), ("ArrowLeft", 1),

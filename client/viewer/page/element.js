@@ -35,7 +35,7 @@ const VIEWS = ['reset', 'front', 'side', 'top'];
 
 class DuetMotion extends HTMLElement {
   static get observedAttributes() {
-    return ['src', 'controls', 'frame', 'paused', 'once', 'speed', 'view'];
+    return ['src', 'controls', 'frame', 'paused', 'once', 'speed', 'view', 'track'];
   }
 
   constructor() {
@@ -105,6 +105,7 @@ class DuetMotion extends HTMLElement {
     if (name === 'once') this.player.looping = value === null;
     if (name === 'speed') this.player.speed = Number(value) > 0 ? Number(value) : 1;
     if (name === 'view' && VIEWS.includes(value)) this.look(value);
+    if (name === 'track' && this.stage) this.track(value !== null);
     this.touch();
   }
 
@@ -182,6 +183,7 @@ class DuetMotion extends HTMLElement {
       this.people[name] = {figure, path: this.stage.addPath(name, COLOURS[name])};
     }
     this.resize();
+    if (this.hasAttribute('track')) this.stage.track(true);
     this.look(this.view || 'reset');
   }
 
@@ -229,6 +231,12 @@ class DuetMotion extends HTMLElement {
     this.touch();
   }
 
+  // Lets the camera track the characters, or stay where the whole motion is in view.
+  track(tracks) {
+    this.stage.track(tracks);
+    this.look(this.view || 'reset');
+  }
+
   show(person, visible) {
     const {figure, path} = this.people[person];
     figure.group.visible = path.visible = visible;
@@ -248,6 +256,7 @@ class DuetMotion extends HTMLElement {
     const {follower} = this.people;
     this.stage.scene.remove(follower.path);
     follower.path = this.stage.addPath('follower', COLOURS.follower);
+    if (this.stage.path) this.stage.track(true);
     this.touch();
   }
 
@@ -326,6 +335,7 @@ class DuetMotion extends HTMLElement {
   draw() {
     if (!this.stage) return;
     this.stale = false;
+    this.stage.goTo(this.player.frame);
     for (const {figure} of Object.values(this.people)) figure.update(this.player.frame);
     this.tell('frame', {frame: this.player.frame});
     this.triangles = this.stage.draw();

@@ -78,9 +78,9 @@ class Gallery {
 
   view(name) {
     const direction = viewDirection(name, new THREE.Vector3(0, 0, 1));
-    this.controls.target.copy(this.box.getCenter(new THREE.Vector3()));
-    this.camera.position.copy(this.controls.target)
-        .addScaledVector(direction, fittingDistance(this.box, direction, this.camera));
+    const centre = this.box.getCenter(this.controls.target);
+    this.camera.position.copy(centre).addScaledVector(
+        direction, fittingDistance(cornersOf(this.box), centre, direction, this.camera));
     this.controls.update();
   }
 

@@ -41,12 +41,17 @@ function start() {
 
   element('save-film').hidden = !film.possible;
   element('save-motion').hidden = !data.glb;
+  const track = (tracks) => {
+    scene.toggleAttribute('track', tracks);
+    element('track-people').setAttribute('aria-pressed', tracks);
+  };
   const measure = () => element('measure').setAttribute('aria-pressed', measures.toggle());
   connectInput({
     player, chooseView,
     showPerson: (name, visible) => scene.show(name, visible),
     touch: () => scene.touch(),
     more: [
+      {id: 'track-people', key: 't', action: () => track(!scene.hasAttribute('track'))},
       {id: 'measure', key: 'm', action: measure},
       {id: 'save-picture', key: 'p', action: () => savePicture(scene, data.title)},
       {id: 'save-film', key: film.possible ? 'r' : '', action: () => film.start()},
@@ -61,6 +66,7 @@ function start() {
   if ('frame' in opening) player.seek(Number(opening.frame) || 0);
   if ('paused' in opening) player.playing = false;
   if ('measure' in opening) measure();
+  if ('track' in opening || stage.isFar) track(true);
   chooseView(['front', 'side', 'top'].includes(opening.view) ? opening.view : 'reset');
 }
 

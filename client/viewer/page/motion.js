@@ -104,6 +104,41 @@ class Motion {
     return box;
   }
 
+  // The root of the skeleton, or the first joint.
+  get root() {
+    return Math.max(0, this.find('torso'));
+  }
+
+  // Where a camera that tracks the characters looks, in each frame: the middle between their roots, averaged
+  // over half a second before and after it, so that steps do not shake the picture. Each is [x, z], metres.
+  path() {
+    const people = Object.values(this.people);
+    const at = (frame, axis) => people.reduce((sum, positions) => sum +
+        positions[(frame * this.joints.length + this.root) * 3 + axis], 0) / people.length;
+    const reach = Math.round(this.frameRate / 2);
+    const middles = Array.from({length: this.frames}, (_, frame) => [at(frame, 0), at(frame, 2)]);
+    return middles.map((_, frame) => {
+      const near = middles.slice(Math.max(0, frame - reach), frame + reach + 1);
+      return [0, 1].map((axis) => near.reduce((sum, middle) => sum + middle[axis], 0) / near.length);
+    });
+  }
+
+  // Every joint of both characters in about 500 frames of all; from a path, if one is given.
+  points(path = null) {
+    const joints = this.joints.length;
+    const step = Math.max(1, Math.floor(this.frames / 500));
+    const points = [];
+    for (const positions of Object.values(this.people)) {
+      for (let frame = 0; frame < this.frames; frame += step) {
+        const [x, z] = path ? path[frame] : [0, 0];
+        for (let i = frame * joints * 3; i < (frame + 1) * joints * 3; i += 3) {
+          points.push(new THREE.Vector3(positions[i] - x, positions[i + 1], positions[i + 2] - z));
+        }
+      }
+    }
+    return points;
+  }
+
   // The floor is the world's, y = 0, so that a floating character is visible. If that is far away,
   // the capture has no floor: the floor is then under the leader's feet, and `ofWorld` is false.
   floor() {

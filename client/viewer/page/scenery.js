@@ -53,19 +53,22 @@ function viewDirection(name, axis) {
   return directions[name].normalize();
 }
 
-// The distance at which the box's corners fit into the frame, looking along -direction.
-function fittingDistance(box, direction, camera) {
-  const centre = box.getCenter(new THREE.Vector3());
+function cornersOf({min, max}) {
+  return [...Array(8).keys()].map((corner) => new THREE.Vector3(
+      corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z));
+}
+
+// The distance from the centre at which all points fit into the frame, looking along -direction.
+function fittingDistance(points, centre, direction, camera) {
   const side = new THREE.Vector3(0, 1, 0).cross(direction).normalize();
   const top = direction.clone().cross(side);
   const margin = 0.22;  // for the body around the joints and for the panels
   const tanV = Math.tan(THREE.Math.degToRad(camera.fov / 2));
   const tanH = tanV * camera.aspect;
   let distance = 1.5;
-  for (let corner = 0; corner < 8; ++corner) {
-    const point = new THREE.Vector3(corner & 1 ? box.max.x : box.min.x,
-                                    corner & 2 ? box.max.y : box.min.y,
-                                    corner & 4 ? box.max.z : box.min.z).sub(centre);
+  const point = new THREE.Vector3();
+  for (const each of points) {
+    point.subVectors(each, centre);
     const depth = point.dot(direction);
     distance = Math.max(distance, depth + (Math.abs(point.dot(side)) + margin) / tanH,
                         depth + (Math.abs(point.dot(top)) + margin) / (tanV * 0.86));
@@ -154,11 +157,10 @@ class Scenery {
   // A faint line on the floor along the path of a person's root.
   addPath(person, colour) {
     const motion = this.motion;
-    const root = Math.max(0, motion.find('torso'));
     const positions = motion.people[person];
     const points = [];
     for (let frame = 0; frame < motion.frames; ++frame) {
-      const at = (frame * motion.joints.length + root) * 3;
+      const at = (frame * motion.joints.length + motion.root) * 3;
       points.push(new THREE.Vector3(positions[at], this.floor + 0.008, positions[at + 2]));
     }
     const line = new THREE.Line(

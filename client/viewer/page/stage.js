@@ -8,7 +8,31 @@ class Stage {
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.05, 400);
     this.controls = makeControls(this.camera, canvas, this.scenery.reach);
     this.moved = new THREE.Vector3();  // from the motion's own place
+    this.path = null;                  // while the camera tracks the characters: Motion.path()
   }
+
+  // Whether the characters walk so far that they are small in a picture of the whole motion.
+  get isFar() {
+    const near = new THREE.Box3().setFromPoints(this.motion.points(this.motion.path()));
+    return this.scenery.reach > 1.4 * near.getSize(new THREE.Vector3()).length();
+  }
+
+  // Lets the camera track the characters, or stay where all of the motion is in view.
+  track(tracks) {
+    this.path = tracks ? this.motion.path() : null;
+    const centre = this.scenery.box.getCenter(new THREE.Vector3());
+    if (!tracks) this.moveTo(centre.x, centre.z);
+  }
+
+  // Moves a camera that tracks the characters to where they are in a frame, a fraction.
+  goTo(frame) {
+    if (!this.path) return;
+    const before = Math.floor(frame);
+    const [x, z] = this.path[before];
+    const [nextX, nextZ] = this.path[Math.min(before + 1, this.path.length - 1)];
+    this.moveTo(x + (nextX - x) * (frame - before), z + (nextZ - z) * (frame - before));
+  }
+
 
   get scene() {
     return this.scenery.scene;
@@ -18,12 +42,16 @@ class Stage {
     return this.scenery.addPath(person, colour);
   }
 
-  // Moves the camera so that the whole motion is in view.
+  // Moves the camera so that the whole motion is in view, or the characters in every frame while it tracks them.
   view(name) {
     const direction = viewDirection(name, this.motion.axis());
-    this.controls.target.copy(this.scenery.box.getCenter(new THREE.Vector3())).add(this.moved);
-    this.camera.position.copy(this.controls.target)
-        .addScaledVector(direction, fittingDistance(this.scenery.box, direction, this.camera));
+    const points = this.motion.points(this.path);
+    const centre = new THREE.Box3().setFromPoints(points).getCenter(new THREE.Vector3());
+    const distance = fittingDistance(points, centre, direction, this.camera);
+    const {target} = this.controls;
+    this.scenery.box.getCenter(target).add(this.moved);
+    if (this.path) target.add(new THREE.Vector3(centre.x, 0, centre.z));
+    this.camera.position.copy(target).addScaledVector(direction, distance);
     this.controls.update();
   }
 
