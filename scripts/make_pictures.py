@@ -49,7 +49,7 @@ def page_of(server, leader, flags, folder):
 
 
 def save_film(chromium, url, file):
-    page = chromium.open(f"{url}#paused", sharp=True, **FILM)
+    page = chromium.open(f"{url}#paused&track", sharp=True, **FILM)
     page.evaluate(KEEP_BLOBS)
     page.press("g")
     page.wait_until("(document.documentElement.dataset.saved || '').includes('.gif')")
