@@ -14,6 +14,7 @@ import tempfile
 import unittest
 import unittest.mock
 
+import http2_client as http2
 import tools
 import wire_fuzzer
 from wire import calls, corpus, judge, mutation, player, protobuf, rounds, saved, target
@@ -77,6 +78,50 @@ class InputsTest(unittest.TestCase):
             saved.write(path, {"seed": 3}, wanted)
             self.assertEqual(saved.read(path), wanted)
             self.assertEqual(json.loads(path.read_text())["seed"], 3)
+
+
+class CorpusTest(unittest.TestCase):
+    """That the server accepts the real requests: mutations of others reach no code behind its checks."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.target = target.Target()
+        cls.addClassCleanup(cls.target.kill)
+        cls.requests = corpus.requests_of_methods(tools.SOURCE)
+
+    def accepted(self, method, *messages):
+        """The answers to a call that must end well."""
+        connection = http2.Connection(self.target.ports[rounds.SERVICE], window=2**20)
+        self.addCleanup(connection.close)
+        stream = connection.open("/" + method)
+        connection.socket.sendall(
+            calls.data(stream, b"".join(map(http2.message, messages)), end=True))
+        body = b""
+        for kind, flags, _, payload in connection.frames():
+            if kind == http2.DATA:
+                body += payload
+            elif kind == http2.HEADERS and flags & http2.END_STREAM:
+                self.assertEqual(judge.grpc_status(payload), "0", payload)
+                return judge.messages_in(body)
+        raise AssertionError("the call has no end")
+
+    def test_clips_are_answered(self):
+        for request in self.requests[corpus.SYNTHESIZE]:
+            answers = self.accepted(corpus.SYNTHESIZE, request)
+            self.assertTrue(protobuf.values(answers[-1], 3), "no summary")
+        header = protobuf.values(answers[0], 1)[0]
+        self.assertTrue(protobuf.values(header, 14), "no rig")
+
+    def test_sessions_are_answered(self):
+        *starts, frames, change = self.requests[corpus.LIVE]
+        for start in starts:
+            self.accepted(corpus.LIVE, start)
+        opening = corpus.opening(corpus.LIVE, self.requests[corpus.LIVE])
+        answers = self.accepted(corpus.LIVE, opening, change, frames)
+        self.assertEqual(protobuf.values(protobuf.values(answers[-1], 4)[0], 1), [2])  # frames
+        rotations = [part for answer in answers for frames in protobuf.values(answer, 2)
+                     for part in protobuf.values(frames, 9)]
+        self.assertTrue(rotations)
 
 
 class FindingsTest(unittest.TestCase):

@@ -11,10 +11,11 @@ PADDED = 0x8
 WRONG_LENGTHS = (0, 1, 4, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)
 
 
-def plain(stream, method, message):
+def plain(stream, method, *messages):
     """A call as a library would send it, and what is waited for: its end, or its beginning if it has
     none."""
-    yield ["send", headers(stream, "/" + method) + data(stream, http2.message(message), end=True)]
+    body = b"".join(map(http2.message, messages))
+    yield ["send", headers(stream, "/" + method) + data(stream, body, end=True)]
     if method in corpus.ENDLESS:
         yield ["begun", stream]
         yield ["send", reset(stream)]
@@ -22,8 +23,8 @@ def plain(stream, method, message):
         yield ["ended", stream]
 
 
-def odd(stream, method, message, random, reading=True):
-    """A call whose headers, framing or ending may be anything. It is waited for where the server ends it
+def odd(stream, method, messages, random, reading=True):
+    """A call whose headers, ending or framing of the last message may be anything. It is waited for where the server ends it
     by itself: those of MotionSynthesis give up a request that never comes, Synthesize also an answer
     that is never read (unless `reading`); those of the admin port and gRPC's own give up neither."""
     path = "/" + method
@@ -33,7 +34,9 @@ def odd(stream, method, message, random, reading=True):
         block = odd_headers(path, random)
     flags = http2.END_HEADERS | (http2.END_STREAM if random.random() < 0.03 else 0)
     yield ["send", http2.frame(http2.HEADERS, flags, stream, block)]
-    body = http2.message(message) if random.random() < 0.6 else odd_message(message, random)
+    *before, message = messages
+    body = b"".join(map(http2.message, before))
+    body += http2.message(message) if random.random() < 0.6 else odd_message(message, random)
     end = random.choice(("with it", "with it", "with it", "after it", "trailers", "reset", "reset",
                          "reset once begun", "never"))
     ends = gives_up or (reading and end in ("with it", "after it", "trailers"))

@@ -4,12 +4,13 @@ The fuzzer asks the server by reflection what it serves, and fails for a method 
 
 import pathlib
 
-from wire.protobuf import message
+from wire.protobuf import message, values
 
 HEALTH = "grpc.health.v1.Health"
 REFLECTION = "grpc.reflection.v1alpha.ServerReflection"
 SYNTHESIS = "duet.v1.MotionSynthesis"
 SYNTHESIZE = f"{SYNTHESIS}/Synthesize"
+LIVE = f"{SYNTHESIS}/SynthesizeLive"
 ADMIN = "duet.admin.v1.Admin"
 # Methods whose answer has no end unless the client cancels the call.
 ENDLESS = (f"{HEALTH}/Watch",)
@@ -22,11 +23,11 @@ def requests_of_methods(source):
     """"service/method" -> its requests, the simplest first. `source`: the project's folder."""
     samples = pathlib.Path(source) / "tests/fuzz/corpus/synthesis_request"
     synthesize = [(samples / name).read_bytes() for name in ("sample", "options")]
+    synthesize.append(with_rotations(synthesize[0]))
     version, label = message(f1=SPARE, f2=1), message(f1=SPARE, f2="blue", f3=1)
     return {
         SYNTHESIZE: synthesize,
-        # The fields that a LiveStart and a clip's request share have the same numbers.
-        f"{SYNTHESIS}/SynthesizeLive": [message(f1=synthesize[0]), message(f2=message(f2=1))],
+        LIVE: live_messages(synthesize[0]),
         f"{SYNTHESIS}/ListModels": [b""],
         f"{SYNTHESIS}/GetModel": [message(f1=message(f1="sbu", f2=2)),
                                   message(f1=message(f1=SPARE, f3="blue")), b""],
@@ -43,3 +44,27 @@ def requests_of_methods(source):
             message(f4=f"{SYNTHESIS}.Synthesize"), message(f5=message(f1="duet.v1.Motion", f2=7)),
             message(f6="duet.v1.Motion")],
     }
+
+
+def with_rotations(sample):
+    """A request with the fields that neither of the files has."""
+    return sample + message(f7=1, f12=1, f13=2, f14=1, f15=message(f1=0.05, f2=1.0))
+
+
+def live_messages(sample):
+    """Starts of a new and of a resumed session, then what may follow a start. The fields that a LiveStart
+    and a clip's request share have the same numbers."""
+    leader, labels = values(sample, 2)[0], values(sample, 3)[0]
+    positions = values(leader, 6)[0]  # of two frames
+    first = positions[:len(positions) // 2]
+    history = message(f1=5, f2=2, f3=positions, f4=first, f5=first)
+    resumed = message(f2=leader, f4=message(f2=labels), f7=7, f8=0.5, f9=1, f10=2,
+                      f11=message(f1=0.05, f2=1.0), f12=2, f13=3, f14=history, f15=1)
+    return [message(f1=sample), message(f1=sample + message(f15=1)), message(f1=resumed),
+            message(f2=message(f1=7, f2=2, f3=positions)),
+            message(f3=message(f2=labels, f3=3))]
+
+
+def opening(method, requests):
+    """The message that must come before others in a call of a method; None if each stands alone."""
+    return requests[2] if method == LIVE else None

@@ -1,6 +1,7 @@
 """Protocol Buffers' wire format by hand: enough to write small messages and to take any apart."""
 
 import dataclasses
+import struct
 
 VARINT, FIXED64, LENGTH_DELIMITED, FIXED32 = 0, 1, 2, 5
 
@@ -31,12 +32,17 @@ def varint(value):
 
 
 def message(**fields):
-    """A message of fields named f1, f2, ...: str and bytes are length-delimited, int a varint."""
+    """A message of fields named f1, f2, ...: str and bytes are length-delimited, int a varint, float a
+    float."""
     out = b""
     for name, value in fields.items():
         if isinstance(value, str):
             value = value.encode()
-        kind = LENGTH_DELIMITED if isinstance(value, bytes) else VARINT
+        kind = VARINT
+        if isinstance(value, bytes):
+            kind = LENGTH_DELIMITED
+        elif isinstance(value, float):
+            kind, value = FIXED32, struct.pack("<f", value)
         out += Field(int(name[1:]), kind, value).encoded()
     return out
 

@@ -58,11 +58,14 @@ class Rounds:
         for port, method, _ in synthesis_first:
             waves = EMPTY_WAVES if method == corpus.SYNTHESIZE else 1
             steps = [step for wave in range(waves)
-                     for step in pipelined(method, [b""] * EMPTY_CALLS, 1 + 2 * EMPTY_CALLS * wave)]
+                     for step in pipelined(method, [(b"",)] * EMPTY_CALLS, 1 + 2 * EMPTY_CALLS * wave)]
             yield [connection(port, steps) for _ in range(2)]
         for port, method, requests in self._methods:
             changed = list(dict.fromkeys(
                 change for request in requests for change in mutation.systematic(request)))
+            opening = corpus.opening(method, requests)
+            changed = [(change,) for change in changed] + [
+                (opening, change) for change in changed if opening is not None]
             for at in range(0, len(changed), 2 * CALLS_A_CONNECTION):
                 halves = (changed[at:at + CALLS_A_CONNECTION],
                           changed[at + CALLS_A_CONNECTION:at + 2 * CALLS_A_CONNECTION])
@@ -78,6 +81,11 @@ class Rounds:
         offered = [(method, requests) for of, method, requests in self._methods if of == port]
         chosen = [each for each in offered if each[0] == corpus.SYNTHESIZE]
         return random.choice(chosen if chosen and random.random() < 0.5 else offered)
+
+    def _messages(self, random, method, requests):
+        """The message of a call, behind the one that must come before it."""
+        opening, message = corpus.opening(method, requests), self._message(random, requests)
+        return (message,) if opening is None or random.random() < 0.4 else (opening, message)
 
     def _message(self, random, requests):
         request, other = random.choice(requests), random.choice(requests)
@@ -97,7 +105,7 @@ class Rounds:
         most = 2 * ADMIN_CALLS if port == ADMIN else CALLS_A_CONNECTION
         for _ in range(random.randint(1, most)):
             method, requests = self._pick(random, port)
-            waiting.append((method, self._message(random, requests)))
+            waiting.append((method, self._messages(random, method, requests)))
         window = random.choice((LARGE_WINDOW,) * 6 + (0, 1, 100))
         steps = interleaved(waiting, random.randint(1, 8), window == LARGE_WINDOW, random)
         return connection(port, [*steps, closing(random)], window)
@@ -106,16 +114,17 @@ class Rounds:
         """Many calls of one kind at once, as in a race for the same place."""
         port = random.choice((SERVICE, SERVICE, SERVICE, ADMIN))
         method, requests = self._pick(random, port)
-        message = self._message(random, requests)
+        messages = self._messages(random, method, requests)
         most = ADMIN_CALLS if port == ADMIN else EMPTY_CALLS
-        return connection(port, pipelined(method, [message] * random.randint(2, most)))
+        return connection(port, pipelined(method, [messages] * random.randint(2, most)))
 
 
-def pipelined(method, messages, first_stream=1):
-    """Calls begun one after the other without waiting, all of which are then waited for."""
-    streams = range(first_stream, first_stream + 2 * len(messages), 2)
-    steps = [list(calls.plain(stream, method, message))
-             for stream, message in zip(streams, messages)]
+def pipelined(method, each_call, first_stream=1):
+    """Calls begun one after the other without waiting, all of which are then waited for. `each_call`: the
+    messages of each."""
+    streams = range(first_stream, first_stream + 2 * len(each_call), 2)
+    steps = [list(calls.plain(stream, method, *messages))
+             for stream, messages in zip(streams, each_call)]
     return [each[0] for each in steps] + [step for each in steps for step in each[1:]]
 
 
@@ -125,8 +134,8 @@ def interleaved(waiting, together, reading, random):
     waiting = list(waiting)
     while waiting or active:
         if waiting and len(active) < together:
-            method, message = waiting.pop()
-            active.append(calls.odd(stream, method, message, random, reading))
+            method, messages = waiting.pop()
+            active.append(calls.odd(stream, method, messages, random, reading))
             # A stream begins in the order of its number.
             yield next(active[-1])
             stream += 2
