@@ -261,7 +261,9 @@ class LiveSession(AsyncIterator[LivePart]):
     async def _write(self, stream: Any) -> None:
         """Writes messages until the stream ends; its status has the reason of an error."""
         with contextlib.suppress(grpc.RpcError, asyncio.InvalidStateError):
-            while True:
+            # gRPC ignores the cancellation of a write if the stream has ended with OK. Later messages
+            # are those of the next stream.
+            while not stream.done():
                 changed = self._changed
                 message: Optional[live_pb2.SynthesizeLiveRequest] = self._call.next_message()
                 if message is not None:

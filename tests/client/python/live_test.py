@@ -1,8 +1,10 @@
 """Live sessions of the asyncio client against a server that mirrors the leader."""
 
 import asyncio
+import contextlib
 import time
 import unittest
+from unittest import mock
 
 import support
 import duet_motion as duet
@@ -10,7 +12,7 @@ import duet_motion.aio
 import grpc
 import numpy as np
 from duet_motion._labels import LabelTrack
-from duet_motion.v1 import live_pb2
+from duet_motion.v1 import live_pb2, motion_pb2
 from support import Failure, Mirror
 
 FRAMES = 12
@@ -73,10 +75,11 @@ class LiveTest(unittest.TestCase):
         async def one(client):
             async with client.live(support.JOINTS, 30, {"hug": 1}) as session:
                 await session.send(support.leader(1).positions[0],
-                                   capture_seconds=time.monotonic() - 2)
+                                   capture_seconds=time.monotonic() - 100)
                 return await session.__anext__()
 
-        self.assertAlmostEqual(run(one, Mirror()).latency, 2, delta=1)
+        latency = run(one, Mirror()).latency
+        self.assertTrue(100 <= latency < 100 + support.LONGEST_CALL, latency)
 
     def test_delay_holds_frames_back_until_the_end(self):
         parts, _ = run(lambda client: answered(client, delay=3), Mirror())
@@ -157,6 +160,68 @@ class LiveTest(unittest.TestCase):
         parts, _ = run(answered, Mirror())
         self.assertIsNone(parts[0].rotations)
 
+    def test_messages_never_go_to_a_stream_that_has_ended(self):
+        class Ended:
+            """A stream that answers a frame and ends with OK while the next one is written. gRPC then
+            ignores the cancellation of the write."""
+
+            def __init__(self):
+                self.written, self.blocks, self.is_over = [], asyncio.Event(), False
+                self.reads = self.answers()
+
+            def done(self):
+                return self.is_over
+
+            def cancel(self):
+                pass
+
+            async def write(self, message):
+                if self.is_over:
+                    raise asyncio.InvalidStateError
+                self.written.append(message)
+                if len(self.written) == 3:
+                    self.blocks.set()
+                    with contextlib.suppress(asyncio.CancelledError):
+                        await asyncio.Event().wait()
+
+            async def answers(self):
+                yield support.live_header(start, 0, history_frames=4)
+                yield support.live_frames(start, 0, {0: leader[0]}, 0)
+                await self.blocks.wait()
+                self.is_over = True
+                yield grpc.aio.EOF
+
+            async def read(self):
+                return await self.reads.__anext__()
+
+        class Open(Ended):
+            async def write(self, message):
+                self.written.append(message)
+
+            async def read(self):
+                await asyncio.Event().wait()
+
+        async def sent():
+            streams = [Ended(), Open()]
+            async with duet.aio.Client("127.0.0.1:1") as client:
+                session = client.live(support.JOINTS, 30, {"hug": 1})
+                session._stub = mock.Mock()
+                session._stub.SynthesizeLive.side_effect = streams
+                async with session:
+                    await session.send(leader[0])
+                    await session.__anext__()
+                    await session.send(leader[1])
+                    while not streams[1].written:
+                        await asyncio.sleep(0.001)
+            return streams[1].written
+
+        leader = support.leader(2).positions
+        start = live_pb2.LiveStart(leader=motion_pb2.Motion(
+            joint_names=support.JOINTS, frame_rate_hz=30, unit=1, up_axis=1))
+        messages = asyncio.run(asyncio.wait_for(sent(), support.LONGEST_CALL))
+        self.assertEqual([message.WhichOneof("payload") for message in messages],
+                         ["start", "frames"])
+
     def test_stream_that_breaks_before_its_first_frame_begins_again(self):
         mirror = Mirror({"after": 0, "act": RESET}, {"after": 0, "act": RESET})
         parts, session = run(answered, mirror)
@@ -187,9 +252,9 @@ class LiveTest(unittest.TestCase):
 
     def test_silent_server_is_given_up(self):
         mirror = Mirror({"after": 5, "act": "hang"})
-        parts, session = run(lambda client: answered(client), mirror, wait=1)
+        parts, session = run(lambda client: answered(client), mirror, wait=3)
         self.assert_whole(parts)
-        self.assertEqual(session.summary.resume_count, 1)
+        self.assertGreaterEqual(session.summary.resume_count, 1)
 
     def test_error_that_no_retry_can_mend_is_raised(self):
         for script, expected in (
