@@ -8,6 +8,7 @@ import os
 import pathlib
 import queue
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -89,8 +90,7 @@ class Server:
         except queue.Empty:
             self.port = None
         if self.port is None:
-            self._process.kill()
-            self.stop()
+            self.kill()
             raise AssertionError(f"the server did not come to serve: {self.log}")
 
     @property
@@ -134,18 +134,20 @@ class Server:
     def kill(self):
         """Ends the server without warning."""
         self._process.kill()
-        self.stop()
+        self._process.wait(timeout=STOP_SECONDS)
+        self._reader.join(timeout=STOP_SECONDS)
+        self._process.stdout.close()
 
     def stop(self):
-        """Asks the server to drain; returns its exit code."""
+        """Asks the server to drain; returns its exit code. A crash is an error."""
         self._process.terminate()
         try:
-            return self._process.wait(timeout=STOP_SECONDS)
+            code = self._process.wait(timeout=STOP_SECONDS)
         finally:
-            self._process.kill()
-            self._process.wait(timeout=STOP_SECONDS)
-            self._reader.join(timeout=STOP_SECONDS)
-            self._process.stdout.close()
+            self.kill()
+        if code < 0 and code != -signal.SIGKILL:
+            raise AssertionError(f"the server ended with signal {-code}: {list(self.log)[-20:]}")
+        return code
 
 
 class FolderTest(unittest.TestCase):
