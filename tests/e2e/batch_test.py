@@ -348,7 +348,7 @@ class BatchTest(tools.ServedTest):
         try:
             while True:
                 client = subprocess.Popen(
-                    self.command(out, recipe, "--patience", "2", "--quiet", "--channels", "2",
+                    self.command(out, recipe, "--patience", "60", "--quiet", "--channels", "2",
                                  server=server.address),
                     stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
                 if kills < KILLS:

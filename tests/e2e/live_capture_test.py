@@ -91,10 +91,12 @@ class Receiver:
         return self.socket.getsockname()[1]
 
     def _read(self):
-        while not self.ended:
+        while True:
             try:
                 datagram = self.socket.recv(65536)
             except socket.timeout:
+                if self.ended:
+                    return
                 continue
             for address, arguments in capture_senders.read_osc(datagram):
                 if address == "/VMC/Ext/T":
@@ -102,10 +104,12 @@ class Receiver:
                 elif address == "/VMC/Ext/Bone/Pos":
                     self.frames[-1][arguments[0]] = arguments[1:]
 
-    def stop(self):
+    def finish(self):
+        """Reads what has arrived, and stops."""
         self.ended = True
         self.thread.join()
         self.socket.close()
+        return self.frames
 
 
 class LiveCaptureTest(tools.ServedTest):
@@ -114,7 +118,7 @@ class LiveCaptureTest(tools.ServedTest):
 
     def test_a_captured_leader_is_answered_in_vmc(self):
         receiver = Receiver()
-        self.addCleanup(receiver.stop)
+        self.addCleanup(receiver.finish)
         session = self.start("vmc://127.0.0.1:0", "--frame-rate", RATE,
                              "--to", f"vmc://127.0.0.1:{receiver.port}")
         last = []
@@ -140,7 +144,7 @@ class LiveCaptureTest(tools.ServedTest):
         self.assertIn("interpolated", out)
         self.assertIn("held", out)
         self.assertTrue(any("frames arrive again" in line for line in session.errors))
-        frames = receiver.frames
+        frames = receiver.finish()
         self.assertGreater(len(frames), 3.5 * RATE)
         for before, after in zip(frames, frames[1:]):
             self.assertAlmostEqual(after["T"] - before["T"], 1 / RATE, places=4)

@@ -75,7 +75,8 @@ def forward(rig, rotations, positions):
 class LiveTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.server = tools.Server(metrics="127.0.0.1:0")
+        # With one worker, windows of sessions at the same time wait for one another, and share batches.
+        cls.server = tools.Server("--workers", "1", metrics="127.0.0.1:0")
         cls.addClassCleanup(cls.server.stop)
         cls.leader = person(live.SBU_JOINTS, RATE, FRAMES)
 
@@ -370,7 +371,7 @@ class StoppingTest(unittest.TestCase):
     def test_a_server_that_drains_says_so(self):
         """To one session that sends on, to one at rest and to one that has not sent a frame."""
         leader = person(live.SBU_JOINTS, RATE, FRAMES)
-        server = tools.Server("--grace-seconds", "3")
+        server = tools.Server("--grace-seconds", "10")
         self.addCleanup(server.stop)
         channel = connect(self, server)
         busy, quiet, unsent = (Session(channel, start_message()) for _ in range(3))
