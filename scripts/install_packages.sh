@@ -4,6 +4,7 @@
 #   scripts/install_packages.sh build test
 #   scripts/install_packages.sh --print runtime     prints the names in this release; installs nothing
 #   scripts/install_packages.sh --lacks training    succeeds if this release lacks a package of the lists
+#   scripts/install_packages.sh --try build test    fails if apt-get could not install the lists; installs nothing
 # Returns quickly if none is missing. OS_RELEASE (default /etc/os-release) names the release.
 set -euo pipefail
 
@@ -71,14 +72,22 @@ apt() {
     -o Dpkg::Use-Pty=0 "$@" >/dev/null
 }
 
+# Lets apt-get plan an installation of all wanted packages, which finds names that the archive lacks and conflicts.
+try_install() {
+  apt-get -qq --simulate install --no-install-recommends "${wanted[@]}" >/dev/null ||
+    fail "install_packages: expected packages of $(code_name)'s archive, got those above;" \
+      "correct packages/*.txt or packages/releases.tsv"
+  echo "${#wanted[@]} packages of $(code_name) can be installed: $*"
+}
+
 install_missing() {
   apt install -y --no-install-recommends "${missing[@]}"
 }
 
 main() {
   local mode=install
-  case "${1:-}" in --print | --lacks) mode="${1#--}" && shift ;; esac
-  [[ $# -gt 0 ]] || fail "usage: install_packages.sh [--print|--lacks] <list>..." "lists:" \
+  case "${1:-}" in --print | --lacks | --try) mode="${1#--}" && shift ;; esac
+  [[ $# -gt 0 ]] || fail "usage: install_packages.sh [--print|--lacks|--try] <list>..." "lists:" \
     "$(basename -s .txt -a "${package_dir}"/*.txt)"
 
   local names wanted=()
@@ -93,6 +102,8 @@ main() {
     fail "install_packages: expected Debian or Ubuntu. Duet is built from their packages;" \
       "install the counterparts of these, or use the Dockerfile:" "  ${wanted[*]}"
   fi
+
+  [[ "${mode}" != try ]] || { try_install "$@" && exit; }
 
   mapfile -t missing < <(missing_of "${wanted[@]}")
   [[ ${#missing[@]} -gt 0 ]] || return 0

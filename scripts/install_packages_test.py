@@ -51,6 +51,35 @@ class InstallPackagesTest(unittest.TestCase):
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("no list 'nonsense'", result.stderr)
 
+    def try_lists(self, release, lacking="none"):
+        """The result of --try with an apt-get that lacks one package, and the arguments that it got."""
+        tools = self.folder / "tools"
+        tools.mkdir(exist_ok=True)
+        record = self.folder / "arguments"
+        (tools / "dpkg-query").write_text("#!/bin/sh\nexit 1\n", encoding="utf-8")
+        (tools / "apt-get").write_text(f'#!/bin/sh\necho "$@" >{record}\nfor name in "$@"; do [ "$name" != {lacking} ] '
+                                       '|| { echo "E: Unable to locate package $name" >&2; exit 100; }; done\n',
+                                       encoding="utf-8")
+        for tool in tools.iterdir():
+            tool.chmod(0o755)
+        result = self.run_script(release, "install_packages.sh", "--try", "runtime", "training",
+                                 PATH=f"{tools}:{os.environ['PATH']}")
+        return result, record.read_text(encoding="utf-8").split()
+
+    def test_trying_lists_only_simulates_with_the_names_of_the_release(self):
+        result, arguments = self.try_lists("noble")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("--simulate", arguments)
+        names = self.names("noble", "runtime", "training")
+        self.assertEqual(arguments[-len(names):], names)
+        self.assertIn(f"{len(names)} packages of noble can be installed", result.stdout)
+
+    def test_a_name_that_the_archive_lacks_is_an_error(self):
+        result, _ = self.try_lists("trixie", lacking="libtorch2.6")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("Unable to locate package libtorch2.6", result.stderr)
+        self.assertIn("expected packages of trixie's archive", result.stderr)
+
     def test_training_is_built_where_its_packages_are(self):
         for release, training, lists in (("bookworm", "ON", "build build_training"), ("noble", "OFF", "build")):
             self.assertEqual(self.run_script(release, "with_training.sh").stdout.strip(), training)

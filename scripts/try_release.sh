@@ -4,6 +4,7 @@
 #   scripts/try_release.sh trixie demo          make demo
 #   scripts/try_release.sh trixie test          make test
 #   scripts/try_release.sh trixie image-root    collects the image's root, and runs both programs in it (after demo)
+#   scripts/try_release.sh trixie lists         checks that its archive has the packages of every list
 #   scripts/try_release.sh bookworm packages    installs build/release/packages, runs their demo, and removes them
 #   scripts/try_release.sh noble COMMAND...     any other command, in the clone
 # --again before the release keeps the clone's build folder from an earlier run. KEYRING, a file, replaces the
@@ -103,6 +104,14 @@ readonly image_root='
   done
   du -sh /image'
 
+# Of all lists together: a release must have them all.
+# shellcheck disable=SC2016  # the inner shell expands these
+readonly lists='
+  set -euo pipefail
+  apt-get -qq update
+  mapfile -t names < <(basename -s .txt -a packages/*.txt)
+  scripts/install_packages.sh --try "${names[@]}"'
+
 # What a user does with the Debian packages. Fails if removing them leaves a package or a file.
 # shellcheck disable=SC2016  # the inner shell expands these
 readonly packages='
@@ -125,7 +134,7 @@ readonly packages='
 main() {
   local again=no release root
   [[ "${1:-}" != --again ]] || { again=yes && shift; }
-  [[ $# -ge 2 ]] || fail "usage: try_release.sh [--again] RELEASE demo|test|image-root|packages|COMMAND..."
+  [[ $# -ge 2 ]] || fail "usage: try_release.sh [--again] RELEASE demo|test|image-root|lists|packages|COMMAND..."
   [[ "$(id -u)" -eq 0 ]] || fail "expected root, which debootstrap and chroot need"
   release="$1" root="${roots}/$1"
   shift
@@ -133,6 +142,7 @@ main() {
   case "$1" in
     demo | test) set -- make "$1" ;;
     image-root) again=yes && set -- bash -c "${image_root}" ;;
+    lists) set -- bash -c "${lists}" ;;
     packages)
       rm -rf "${root}/packages" && mkdir -p "${root}/packages"
       cp build/release/packages/*.deb "${root}/packages" || fail "expected packages, got none; run cpack -G DEB"
