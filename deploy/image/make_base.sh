@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
-# Makes the image `localhost/debian:bookworm-slim` from Debian's packages, for machines that reach a
+# Makes the image `localhost/debian:RELEASE-slim` from Debian's packages, for machines that reach a
 # Debian mirror but no image registry. Run it as root; it needs mmdebstrap and podman.
-#   deploy/image/make_base.sh
-# deploy/image/build.sh uses the image if it exists; for other builds, pass
-# --build-arg BASE=localhost/debian:bookworm-slim.
+#   deploy/image/make_base.sh           bookworm (Debian 12)
+#   deploy/image/make_base.sh trixie    Debian 13
+# deploy/image/build.sh uses bookworm's image if it exists; for other builds, pass
+# --build-arg BASE=localhost/debian:RELEASE-slim, or set BASE for deploy/image/build.sh.
 set -euo pipefail
 
-readonly name=localhost/debian:bookworm-slim
+readonly release="${1:-bookworm}"
+readonly name="localhost/debian:${release}-slim"
 
 fail() {
   printf 'make_base: %s\n' "$*" >&2
@@ -27,8 +29,8 @@ options=()
 for folder in "${excluded[@]}"; do options+=(--dpkgopt="path-exclude=${folder}/*"); done
 options+=(--dpkgopt='path-include=/usr/share/doc/*/copyright')
 
-# Names no archive: mmdebstrap's default is bookworm with its updates and security fixes.
+# Names no archive: mmdebstrap's default is the release with its updates and security fixes.
 mmdebstrap --mode=root --variant=minbase --include=ca-certificates "${options[@]}" \
-  bookworm "${work}/base.tar"
+  "${release}" "${work}/base.tar"
 podman import --change 'CMD ["bash"]' "${work}/base.tar" "${name}"
 echo "${name} is made."
