@@ -132,12 +132,13 @@ readonly packages='
   echo "installed, ran and removed: ${installed[*]}"'
 
 main() {
-  local again=no release root
+  local again=no release root shown
   [[ "${1:-}" != --again ]] || { again=yes && shift; }
   [[ $# -ge 2 ]] || fail "usage: try_release.sh [--again] RELEASE demo|test|image-root|lists|packages|COMMAND..."
   [[ "$(id -u)" -eq 0 ]] || fail "expected root, which debootstrap and chroot need"
   release="$1" root="${roots}/$1"
   shift
+  shown="$*"
   [[ -d "${root}" ]] || make_root "${release}" "${root}"
   case "$1" in
     demo | test) set -- make "$1" ;;
@@ -153,7 +154,7 @@ main() {
   [[ -x "${root}/usr/bin/make" && -x "${root}/usr/bin/git" ]] ||
     in_root "${root}" apt-get -qq install -y --no-install-recommends make git >/dev/null
   clone "${root}" "${again}"
-  echo "== ${release}: $(git rev-parse --short HEAD): $*"
+  echo "== ${release}: $(git rev-parse --short HEAD): ${shown}"
   in_root "${root}" "$@"
 }
 
