@@ -216,5 +216,6 @@ def main(folder):
     export(folder, "still_skin", bake_anim=False)
 
 
-extra = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
-main(pathlib.Path(extra[0]) if extra else pathlib.Path(__file__).parent / "files")
+if __name__ == "__main__":
+    extra = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+    main(pathlib.Path(extra[0]) if extra else pathlib.Path(__file__).parent / "files")
