@@ -1,6 +1,6 @@
-"""The tour, the cookbook, the guides to batches, to training and to the layouts of research, and the
-page on rotations do what they say: their commands and their Python run as they are printed, against a
-real server that they find by DUET_SERVER, as they say."""
+"""The tour, the cookbook, the guides to batches, to training, to FBX and to the layouts of research, and
+the page on rotations do what they say: their commands and their Python run as they are printed, against
+a real server that they find by DUET_SERVER, as they say."""
 
 import importlib.util
 import os
@@ -21,9 +21,9 @@ BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 class DocumentsTest(unittest.TestCase):
-    def run_blocks(self, name, leaders=()):
+    def run_blocks(self, name, leaders=(), files=None):
         """Runs a document's blocks one after the other, in a folder with the sample leaders of these
-        names in `walks`."""
+        names in `walks`, and with copies of `files`, {name: path}."""
         text = (tools.SOURCE / "docs" / name).read_text(encoding="utf-8")
         blocks = BLOCK.findall(text)
         with tempfile.TemporaryDirectory() as folder, tools.running_server() as server:
@@ -32,6 +32,8 @@ class DocumentsTest(unittest.TestCase):
             pathlib.Path(folder, "walks").mkdir()
             for leader in leaders:
                 shutil.copy(tools.sample(leader), pathlib.Path(folder, "walks"))
+            for copied, path in (files or {}).items():
+                shutil.copy(path, pathlib.Path(folder, copied))
             environment = {
                 **os.environ, "DUET_SERVER": server.address, "DUET_CONFIG": "",
                 # `python3` is the one that runs this test and has the modules.
@@ -60,6 +62,13 @@ class DocumentsTest(unittest.TestCase):
 
     def test_the_layouts_of_research(self):
         self.assertEqual(self.run_blocks("guides/research_layouts.md"), 7)
+
+    @unittest.skipUnless(shutil.which("blender") and (tools.PROGRAMS / "duet-fbx").exists(),
+                         "no blender, or duet was built without libassimp-dev")
+    def test_fbx(self):
+        files = tools.SOURCE / "tests/formats/fbx/files"
+        self.assertEqual(self.run_blocks("guides/fbx.md", files={
+            "kick.fbx": files / "two_takes_30.fbx", "character.fbx": files / "still_skin.fbx"}), 3)
 
     def test_from_a_data_set_to_training(self):
         if importlib.util.find_spec("pandas") is None:
