@@ -180,18 +180,7 @@ std::string DescribeVertical(const motion::VerticalEstimate& vertical) {
 }
 
 json VerticalJson(const motion::VerticalEstimate& vertical) {
-  const auto verdict = [&vertical] {
-    switch (vertical.verdict) {
-      case motion::TiltVerdict::kLevel:
-        return "level";
-      case motion::TiltVerdict::kTilted:
-        return "tilted";
-      case motion::TiltVerdict::kUnknown:
-        break;
-    }
-    return "unknown";
-  };
-  return {{"verdict", verdict()},
+  return {{"verdict", std::string(VerdictName(vertical.verdict))},
           {"text", Describe(vertical)},
           {"up", {vertical.up.x, vertical.up.y, vertical.up.z}},
           {"tilt_degrees", vertical.tilt_degrees},

@@ -40,6 +40,18 @@ std::string DescribeTilt(const VerticalEstimate& estimate) {
 
 }  // namespace
 
+absl::string_view VerdictName(TiltVerdict verdict) {
+  switch (verdict) {
+    case TiltVerdict::kLevel:
+      return "level";
+    case TiltVerdict::kTilted:
+      return "tilted";
+    case TiltVerdict::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
 void VerticalEvidence::Add(const Clip& person) {
   if (!skeleton_.feet) return;
   floor_.Add(skeleton_, person);

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "absl/strings/string_view.h"
 #include "model/motion/body_slope.h"
 #include "model/motion/clip.h"
 #include "model/motion/floor_slope.h"
@@ -30,6 +31,9 @@ enum class TiltVerdict {
   kTilted,  // `up` is the vertical
   kUnknown  // a tilted camera and people who lean, or a sloping floor, look the same here
 };
+
+// "level", "tilted" or "unknown".
+absl::string_view VerdictName(TiltVerdict verdict);
 
 struct VerticalEstimate {
   TiltVerdict verdict = TiltVerdict::kUnknown;

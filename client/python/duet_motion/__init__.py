@@ -17,6 +17,7 @@ from duet_motion.errors import (CancelledError, DeadlineError, DuetError, FieldV
                                 NotPermittedError, RequestMismatchError, ServerBusyError,
                                 UnavailableError)
 from duet_motion.files import MotionFileError, read_motion, read_pair, write_motion, write_page
+from duet_motion.levelling import estimate_vertical
 from duet_motion.live import (LiveHeader, LiveNotice, LivePart, LiveRequest,
                               LiveSummary)
 from duet_motion.motion import Motion
@@ -26,6 +27,7 @@ from duet_motion.result import (FollowerChunk, FrameRun, JointRotations, ModelDe
                                 MotionGrade, RequestLimits, RigJoint, SynthesisResult, Timings)
 from duet_motion.retry import RetryOptions
 from duet_motion.sets import MotionSet, PaddedBatch, SetItem, pad, read_set
+from duet_motion.vertical import VerticalEstimate
 
 __version__ = "1.0.0"
 
@@ -37,6 +39,7 @@ __all__ = [
     "MotionSet", "NotPermittedError", "Outcome", "PaddedBatch", "RequestLimits",
     "RequestMismatchError", "RetryOptions", "RigJoint", "ServerBusyError", "SetItem",
     "SynthesisRequest", "SynthesisResult",
-    "SynthesisStream", "Timings", "TlsOptions", "UnavailableError", "__version__", "aio", "pad",
+    "SynthesisStream", "Timings", "TlsOptions", "UnavailableError", "VerticalEstimate",
+    "__version__", "aio", "estimate_vertical", "pad",
     "read_motion", "read_pair", "read_set", "write_motion", "write_page",
 ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import List
+from typing import Any, Dict, List
 
 import numpy as np
 
@@ -34,5 +34,13 @@ def write(document: str, path: Path) -> None:
     """Writes the people of a "duet-motion" document (docs/formats.md)."""
     try:
         _motion_files.write(document, path)
+    except _motion_files.Error as error:
+        raise MotionFileError(str(error)) from None
+
+
+def estimate_vertical(documents: List[str]) -> Dict[str, Any]:
+    """The vertical of the people in "duet-motion" documents, as in ``duet inspect --json``."""
+    try:
+        return dict(_motion_files.estimate_vertical(documents))
     except _motion_files.Error as error:
         raise MotionFileError(str(error)) from None

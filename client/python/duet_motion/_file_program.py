@@ -50,6 +50,34 @@ def write(document: str, path: Path, layout: str = "") -> None:
             raise MotionFileError(str(error).replace(str(source), "motion")) from None
 
 
+def estimate_vertical(documents: List[str]) -> Dict[str, Any]:
+    """The vertical of the people in "duet-motion" documents, as in ``duet inspect --json``."""
+    with tempfile.TemporaryDirectory() as folder:
+        sources = []
+        for index, document in enumerate(documents):
+            source = pathlib.Path(folder) / f"{index}.json"
+            source.write_text(document, encoding="utf-8")
+            sources.append(str(source))
+        try:
+            answer = json.loads(_program.run("inspect", *sources, "--json"))
+        except _program.CommandFailed as error:
+            raise MotionFileError(_why_unreadable(error)) from None
+    vertical: Dict[str, Any] = answer["tilt"]
+    return vertical
+
+
+def _why_unreadable(failed: _program.CommandFailed) -> str:
+    """The error of the first file that ``duet inspect --json`` could not read."""
+    try:
+        files = json.loads(failed.output)["files"]
+    except (ValueError, KeyError):
+        return str(failed)
+    for file in files:
+        if not file["readable"]:
+            return str(file["error"]).replace(file["file"], "motion")
+    return str(failed)
+
+
 def run(*arguments: str) -> str:
     """Runs a command of the program and returns its output."""
     try:

@@ -2,7 +2,7 @@
 every wheel: see _file_extension.py."""
 
 import os
-from typing import List, Mapping, Optional, Union
+from typing import Any, Dict, List, Mapping, Optional, Union
 
 Path = Union[str, bytes, "os.PathLike[str]"]
 
@@ -21,3 +21,4 @@ def read(path: Path, *, side: str, frame_rate_hz: Optional[float], unit: str, up
          metres_per_unit: Optional[float], joint_map: Mapping[str, str],
          resample_hz: Optional[float], layout: str = "", body_model: str = "") -> List[Person]: ...
 def write(document: str, path: Path) -> None: ...
+def estimate_vertical(documents: List[str]) -> Dict[str, Any]: ...

@@ -24,6 +24,11 @@ _STOP_SECONDS = 5
 class CommandFailed(Exception):
     """A command exited with a code other than 0. The message is its standard error."""
 
+    def __init__(self, message: str, output: str) -> None:
+        super().__init__(message)
+        self.output = output
+        """What it wrote to its standard output."""
+
 
 class _Ended(Exception):
     """The process ended, or its version has no ``duet stdio``."""
@@ -51,7 +56,8 @@ def run(*arguments: str) -> str:
     """
     code, out, err = _run(find(), arguments)
     if code != 0:
-        raise CommandFailed(err.decode(errors="replace").strip().removeprefix("duet: "))
+        raise CommandFailed(err.decode(errors="replace").strip().removeprefix("duet: "),
+                            out.decode(errors="replace"))
     return out.decode()
 
 

@@ -101,10 +101,10 @@ def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None, 
         MotionFileError: the file cannot be written.
         FileNotFoundError: see :func:`read_motion`.
     """
-    document = _to_json(leader if follower is None else (leader, follower))
+    document = to_document(leader if follower is None else (leader, follower))
     if not _file_extension.missing and not layout:
         return _file_extension.write(document, path)
-    with _in_place_of_the_extension():
+    with in_place_of_the_extension():
         _file_program.write(document, path, layout)
 
 
@@ -124,7 +124,7 @@ def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> Non
         arguments = []
         for index, (name, shown) in enumerate(motions.items()):
             source = pathlib.Path(folder) / f"{index}.json"
-            source.write_text(_to_json(shown), encoding="utf-8")
+            source.write_text(to_document(shown), encoding="utf-8")
             arguments.append(f"{name}={source}")
         if title:
             arguments += ["--title", title]
@@ -134,12 +134,12 @@ def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> Non
 def _read(path: Path, options: ReadOptions) -> List[Motion]:
     if not _file_extension.missing:
         return _file_extension.read(path, options)
-    with _in_place_of_the_extension():
+    with in_place_of_the_extension():
         return _file_program.read(path, options)
 
 
 @contextlib.contextmanager
-def _in_place_of_the_extension() -> Iterator[None]:
+def in_place_of_the_extension() -> Iterator[None]:
     """Adds to the error of a missing program why it is needed."""
     try:
         yield
@@ -149,7 +149,7 @@ def _in_place_of_the_extension() -> Iterator[None]:
             f"no extension module: {_file_extension.missing}") from None
 
 
-def _to_json(shown: Shown) -> str:
+def to_document(shown: Shown) -> str:
     """One person or two as a "duet-motion" document (docs/formats.md)."""
     if isinstance(shown, SynthesisResult):
         shown = (shown.leader, shown.follower)

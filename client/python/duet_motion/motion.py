@@ -188,6 +188,12 @@ def adopt(positions: Positions, joint_names: Sequence[str], frame_rate_hz: float
     return motion
 
 
+def axes_from_y_up(vector: Sequence[float], up_axis: str) -> Tuple[float, float, float]:
+    """A direction of a y-up world in another axis convention."""
+    x, y, z = (np.asarray(vector) @ _TO_Y_UP[up_axis].T + 0.0).tolist()  # + 0: no -0
+    return x, y, z
+
+
 def place(frame: int, joint: str, axis: int) -> str:
     """Describes the place of a value in a motion."""
     return f"frame {frame}, joint {joint!r}, {_AXES[axis]}"

@@ -11,15 +11,19 @@ import numpy as np
 import numpy.typing as npt
 
 from duet_motion._wire import CLEAN_UP, PRIORITIES, UNITS, UP_AXES
+from duet_motion.levelling import estimate_vertical
 from duet_motion.motion import (Motion, checked_array, checked_number, finite_number,
                                first_not_finite)
 from duet_motion.v1 import model_pb2, motion_pb2, reaction_pb2, synthesis_pb2
+from duet_motion.vertical import VerticalEstimate
 
 if TYPE_CHECKING:
     from duet_motion.live import LiveRequest
 
 Labels = Mapping[str, float]
 """Weights by interaction class, from -2 to 2: 1 requests a class, 0 is neutral, -1 avoids it."""
+
+LEVELS = ("auto", "off")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -84,7 +88,7 @@ class SynthesisRequest:
             (:class:`duet_motion.JointRotations`). Not with the unit ``"sbu-normalised"``.
         up: the true vertical of the leader's world, ``[3]``, of any length but 0, for motion from a
             tilted camera: less than 45 degrees from ``leader.up_axis``. The follower is returned
-            tilted like the leader. None: ``leader.up_axis``.
+            tilted like the leader. None: ``leader.up_axis``, unless ``level`` finds another one.
         priority: ``"interactive"``, or ``"bulk"``, which yields to interactive calls.
         chunk_frames: frames per chunk of the reply. None: the server's default.
         request_id: identifies the call in the server's log. Empty: the server creates one.
@@ -94,10 +98,16 @@ class SynthesisRequest:
         constraints: where joints of the follower must be in single frames (:class:`Constraint`). The
             server moves limbs or the body there, eased over the neighbouring frames;
             ``SynthesisResult.constraint_metres`` is what remains.
+        level: ``"auto"``: estimate the vertical from the leader (:func:`duet_motion.estimate_vertical`),
+            and use it as ``up`` if the evidence is strong. A :class:`duet_motion.VerticalEstimate` of
+            everybody whom the camera captured: the same with that estimate.
+            ``SynthesisResult.vertical`` reports it. ``"off"``: estimate nothing. Not with ``up``.
 
     Raises:
         ValueError: an argument is invalid for every server. The message has the form
             ``field: expected ..., got ...``.
+        FileNotFoundError: ``level`` is ``"auto"``, the package has no extension module, and the program
+            `duet` is missing.
     """
 
     leader: Motion
@@ -117,6 +127,9 @@ class SynthesisRequest:
     timeout: Optional[float] = None
     candidates: int = 1
     constraints: Sequence[Constraint] = ()
+    level: Union[str, VerticalEstimate] = "off"
+    vertical: Optional[VerticalEstimate] = dataclasses.field(init=False, default=None)
+    """What ``level`` found. None if it is ``"off"``."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.leader, Motion):
@@ -140,6 +153,23 @@ class SynthesisRequest:
         if self.timeout is not None:
             checked_number("timeout", self.timeout, above=0)
         check_constraints(self.constraints)
+        object.__setattr__(self, "vertical", self._find_vertical())
+
+    def _find_vertical(self) -> Optional[VerticalEstimate]:
+        known = self.level if isinstance(self.level, VerticalEstimate) else None
+        if known is None and self.level not in LEVELS:
+            raise ValueError(f"level: expected {' or '.join(LEVELS)}, or a "
+                             f"duet_motion.VerticalEstimate, got {short(self.level)}")
+        if self.level == "off":
+            return None
+        if self.up is not None:
+            raise ValueError(f"level: expected 'off' beside up, got {short(self.level)}")
+        if known is not None:
+            return known
+        try:
+            return estimate_vertical(self.leader)
+        except ValueError as error:
+            raise ValueError(f"level: {error}") from None
 
 
 def check_weights(labels: Optional[Labels], keyframes: Optional[Mapping[int, Labels]]) -> None:
@@ -200,8 +230,11 @@ def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
         fill_start(request.follower_start, out.follower_start)
     if request.partner_direction is not None:
         out.partner_direction.CopyFrom(direction(request.partner_direction))
-    if request.up is not None:
-        out.up.CopyFrom(direction(request.up))
+    up = request.up
+    if request.vertical is not None and request.vertical.verdict == "tilted":
+        up = request.vertical.up
+    if up is not None:
+        out.up.CopyFrom(direction(up))
     for constraint in request.constraints:
         x, y, z = floats(constraint.position)
         out.constraints.add(

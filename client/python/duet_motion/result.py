@@ -12,6 +12,7 @@ import numpy.typing as npt
 from duet_motion.errors import MalformedReplyError
 from duet_motion.motion import Motion, Positions
 from duet_motion.v1 import model_pb2, reaction_pb2, synthesis_pb2
+from duet_motion.vertical import VerticalEstimate
 
 
 @dataclasses.dataclass(frozen=True)
@@ -140,6 +141,9 @@ class SynthesisResult:
     """The follower's joint rotations, if the request asks for them."""
     constraint_metres: Tuple[float, ...] = ()
     """Distance that remains at each of the request's constraints, in metres."""
+    vertical: Optional[VerticalEstimate] = None
+    """What the request's ``level`` found about the tilt of the leader's camera. The leader was levelled
+    if its verdict is ``"tilted"``. None if ``level`` is ``"off"``."""
 
 
 @dataclasses.dataclass(frozen=True)

@@ -13,6 +13,7 @@
 #include "absl/status/statusor.h"
 #include "client/python/extension/motion_files.h"
 #include "model/motion/clip.h"
+#include "model/motion/vertical.h"
 #include "model/retargeting/joint_mapping.h"
 
 namespace duet::client::python::extension {
@@ -39,8 +40,24 @@ py::buffer_info PositionsOf(motion::Clip& clip) {
           /*readonly=*/true};
 }
 
+// With the names of `duet inspect --json`.
+py::dict ToDict(const motion::VerticalEstimate& estimate) {
+  py::dict values;
+  values["verdict"] = std::string(VerdictName(estimate.verdict));
+  values["text"] = Describe(estimate);
+  values["up"] = std::vector<float>{estimate.up.x, estimate.up.y, estimate.up.z};
+  values["tilt_degrees"] = estimate.tilt_degrees;
+  values["error_degrees"] = estimate.error_degrees;
+  values["deviations"] = estimate.deviations;
+  values["disagreement"] = estimate.disagreement;
+  values["places"] = estimate.places;
+  return values;
+}
+
 PYBIND11_MODULE(_motion_files, module) {
-  module.doc() = "Reads and writes motion files; see duet_motion.files.";
+  module.doc() =
+      "Reads and writes motion files, and estimates the vertical of their camera; see "
+      "duet_motion.files.";
   const py::object error = py::exception<absl::Status>(module, "Error");
 
   py::class_<motion::Clip>(module, "Person", py::buffer_protocol())
@@ -82,6 +99,19 @@ PYBIND11_MODULE(_motion_files, module) {
         if (!written.ok()) Raise(error, written);
       },
       py::arg("document"), py::arg("path"));
+
+  module.def(
+      "estimate_vertical",
+      [error](const std::vector<std::string>& documents) {
+        absl::StatusOr<motion::VerticalEstimate> estimate;
+        {
+          const py::gil_scoped_release release;
+          estimate = EstimateVertical(documents);
+        }
+        if (!estimate.ok()) Raise(error, estimate.status());
+        return ToDict(*estimate);
+      },
+      py::arg("documents"));
 }
 
 }  // namespace

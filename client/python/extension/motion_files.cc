@@ -65,6 +65,16 @@ absl::Status KeepSide(const std::string& side, Clips* people) {
   return absl::OkStatus();
 }
 
+absl::StatusOr<formats::ReadPeople> ParseDocument(const std::string& document,
+                                                  formats::ReadOptions options) {
+  options.format = formats::Format::kJson;
+  return formats::ReadAllPeople(
+      [&document](const formats::ReadOptions& person) {
+        return formats::ParseLeader(document, "motion", person);
+      },
+      options);
+}
+
 }  // namespace
 
 absl::StatusOr<Clips> ReadMotion(const std::filesystem::path& file,
@@ -94,16 +104,24 @@ absl::Status WriteMotion(const std::string& document, const std::filesystem::pat
   }
   absl::Status status = formats::CheckFolderOf(file);
   if (!status.ok()) return status;
-  formats::ReadOptions options;
-  options.format = formats::Format::kJson;
-  const absl::StatusOr<formats::ReadPeople> read = formats::ReadAllPeople(
-      [&document](const formats::ReadOptions& person) {
-        return formats::ParseLeader(document, "motion", person);
-      },
-      options);
+  const formats::ReadOptions options;
+  const absl::StatusOr<formats::ReadPeople> read = ParseDocument(document, options);
   if (!read.ok()) return read.status();
   return formats::WritePeople(file, *formats::FormatOf(file), read->people, options.skeleton)
       .status();
+}
+
+absl::StatusOr<motion::VerticalEstimate> EstimateVertical(
+    const std::vector<std::string>& documents) {
+  const formats::ReadOptions options;
+  motion::VerticalEvidence evidence(options.skeleton);
+  for (const std::string& document : documents) {
+    const absl::StatusOr<formats::ReadPeople> read = ParseDocument(document, options);
+    // Without the advice for readers of files: no argument helps here.
+    if (!read.ok()) return absl::InvalidArgumentError(read.status().message());
+    for (const motion::Clip& person : read->people) evidence.Add(person);
+  }
+  return evidence.Estimate();
 }
 
 std::string DescribeError(const absl::Status& error) {

@@ -9,10 +9,12 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "model/motion/clip.h"
+#include "model/motion/vertical.h"
 #include "model/retargeting/joint_mapping.h"
 
-// Reads and writes motion files like `duet convert`, for the Python package. Nothing here uses
-// Python. All functions are safe to call concurrently.
+// Reads and writes motion files like `duet convert`, and estimates the vertical like `duet
+// inspect`, for the Python package. Nothing here uses Python. All functions are safe to call
+// concurrently.
 
 namespace duet::client::python::extension {
 
@@ -40,6 +42,13 @@ absl::StatusOr<std::vector<motion::Clip>> ReadMotion(const std::filesystem::path
 //
 // Errors: those of `duet convert`.
 absl::Status WriteMotion(const std::string& document, const std::filesystem::path& file);
+
+// Estimates the vertical of the camera that captured everybody in "duet-motion" JSON documents,
+// like `duet inspect` of files with these contents.
+//
+// Errors: those of `duet inspect`.
+absl::StatusOr<motion::VerticalEstimate> EstimateVertical(
+    const std::vector<std::string>& documents);
 
 // The message of an error, with the name of the argument that would help, if any.
 std::string DescribeError(const absl::Status& error);

@@ -1,0 +1,42 @@
+"""Whether a camera was tilted, estimated from the people that it captured."""
+
+from __future__ import annotations
+
+import reprlib
+
+from duet_motion import _file_extension, _file_program
+from duet_motion.files import in_place_of_the_extension, to_document
+from duet_motion.motion import Motion, axes_from_y_up
+from duet_motion.vertical import VerticalEstimate
+
+
+def estimate_vertical(leader: Motion, *others: Motion) -> VerticalEstimate:
+    """Estimates the vertical of the camera that captured all of these people, like ``duet inspect``.
+
+    More people and longer motions give stronger evidence, above all people who turn or face different
+    ways. Everybody must be from one camera in one position.
+
+    >>> camera = duet.estimate_vertical(*duet.read_pair("pair.bvh"))
+    >>> client.synthesize(leader, {"hug": 1}, level=camera)      # levels only if the evidence is strong
+
+    Args:
+        leader: a person with the joints of Duet's skeleton, or with joints whose names are recognised;
+            metres or millimetres. The estimate is in this motion's axes.
+        others: further people.
+
+    Raises:
+        ValueError: a motion has no joints that are recognised, or is ``"sbu-normalised"``.
+        FileNotFoundError: the package has no extension module and the program `duet` is missing.
+    """
+    documents = []
+    for person in (leader, *others):
+        if not isinstance(person, Motion):
+            raise ValueError(f"leader: expected a duet_motion.Motion, got {reprlib.repr(person)}")
+        documents.append(to_document(person.converted("metres", "y-up")))
+    if not _file_extension.missing:
+        values = _file_extension.estimate_vertical(documents)
+    else:
+        with in_place_of_the_extension():
+            values = _file_program.estimate_vertical(documents)
+    values["up"] = axes_from_y_up(values["up"], leader.up_axis)
+    return VerticalEstimate(**values)
