@@ -31,11 +31,11 @@ bool MovesWith(const body::Limb& limb, int joint);
 // pass through that joint. A pin that is nearer to the upper joint than a folded limb, or farther
 // than a stretched one, is approached as far as the limb folds or stretches.
 //
-// No joint of the limb gets faster than `limits.fastest_metres_per_second` by the correction,
-// within a tenth: pins that would make one faster are approached less. Requires pins that are
-// sorted by joint and then by frame. Joints of other limbs do not change.
+// The correction makes no joint of the limb faster than `limits.fastest_metres_per_second`, within
+// a tenth: the corrections of pins that would do so are reduced. Requires pins that are sorted by
+// joint and then by frame. Joints of other limbs do not change.
 //
-// Cost: linear in the frames and pins; up to 28 times that for pins that are approached less.
+// Cost: linear in the frames and pins; up to 28 times that if corrections are reduced.
 void MoveToPins(const PinnedLimb& limb, const motion::Pins& pins, const KeepRanges& keep_ranges,
                 const Timing& timing, motion::Poses* poses);
 

@@ -16,10 +16,10 @@ struct LimbSwingOptions {
   double fastest_elbow = 400;
 };
 
-// Calms limbs that a network lets snap from one frame to the next: an elbow takes its time to turn
-// about the line from shoulder to hand, and no bone turns faster than a limb can. A faster turn
-// takes more time, before and after. Moves hands and feet only where a bone is too fast, preserves
-// bone lengths, and leaves calm limbs as they are.
+// Slows down limbs that snap from one frame to the next. Limits how fast an elbow turns about the
+// line from shoulder to hand, and how fast each bone turns. A faster turn is spread over more
+// frames before and after it. Moves hands and feet only where a bone is too fast, preserves bone
+// lengths, and leaves slower limbs unchanged.
 void CalmLimbs(const body::Body& body, const LimbSwingOptions& options, const Timing& timing,
                motion::Poses* poses);
 

@@ -8,9 +8,9 @@
 
 namespace duet::cleanup {
 
-// Bounds for a motion without an end, of which every window plans a return to normal and the next
-// window postpones it. The other stages permit short violations and look ahead for their end; these
-// look only at the frame and at what was sent before it.
+// Bounds for a motion without an end. Every window of it plans a return to normal, which the next
+// window postpones. The other stages permit short violations and look ahead for their end; these
+// bounds depend only on the frame and on what was sent before it.
 struct LiveBoundOptions {
   // The more the trunk leaned in the last second, the less it may lean now. After a mean of
   // easy_degrees or less it may lean by bow_degrees, after one of lasting_degrees or more by
@@ -18,13 +18,13 @@ struct LiveBoundOptions {
   double easy_degrees = 8, lasting_degrees = 17, upright_degrees = 13, bow_degrees = 60;
   double lasting_seconds = 1;
   // Horizontal distance of the roots, metres: within the inner values nothing is corrected, beyond
-  // the outer ones no follower is left for long.
+  // the outer ones no follower stays for long.
   double near_metres = 0.3, nearest_metres = 0.18;
   double far_metres = 2.3, farthest_metres = 2.65;
   // Height of the lower foot above or below the floor, metres.
   double low_metres = 0.02, lowest_metres = 0.04;
-  // Maximum speed of the corrections of the whole body: it is not dragged after a leader who is
-  // elsewhere at once.
+  // Maximum speed of the corrections of the whole body, so that it is not dragged after a leader
+  // who jumps.
   double fastest_metres_per_second = 2;
 };
 

@@ -12,7 +12,7 @@ namespace duet::cleanup {
 std::vector<float> LowPass(const std::vector<float>& track, double sigma_frames);
 std::vector<motion::Vec3> LowPass(const std::vector<motion::Vec3>& track, double sigma_frames);
 
-// Returns the maximum within `reach` frames on either side.
+// Returns, for each frame, the maximum within `reach` frames on either side.
 std::vector<float> MostAround(const std::vector<float>& track, int reach);
 
 }  // namespace duet::cleanup

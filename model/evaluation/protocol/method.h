@@ -23,8 +23,8 @@ class Method {
   virtual absl::Status Train(const dataset::Dataset& dataset, const std::vector<int>& train) = 0;
 
   // The follower's motion for a test sequence's leader, class and partner direction, in world
-  // metres. The sequence comes without its follower, or with only the follower's first pose where
-  // reads_first_pose asks for it. Shapes: returns as many frames as the leader has.
+  // metres. The sequence has no follower, or only the follower's first pose if
+  // reads_first_pose() is true. Shapes: returns as many frames as the leader has.
   virtual absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const = 0;
 
   // True for methods that receive the follower's first pose.

@@ -14,7 +14,7 @@ namespace duet::formats::fbx {
 // An FBX file as glTF, in the file's own unit and axes, and what the file states.
 struct FbxScene {
   std::string glb;  // an animation for each take, sampled at the file's rate
-  // Absent if the file states none that Duet has.
+  // Absent if the file states no value, or one that Duet does not support.
   std::optional<double> unit_scale_factor;  // centimetres in one unit
   std::optional<motion::UpAxis> up_axis;
   std::optional<double> frame_rate_hz;
