@@ -22,13 +22,16 @@ struct AskedSamples {
   std::optional<int> live_delay = std::nullopt;  // see LabelledLeader
 };
 
-// The sampling of the n-th answer to a sequence. No two leaders share a seed: with common noise
-// their answers would vary less than in use.
-engine::Sampling SamplingOf(const AskedSamples& asked, const dataset::Dataset& dataset,
-                            int sequence, int n);
+// A request for one answer with these parameters. `seed`: of this answer.
+LabelledLeader Ask(const dataset::Sequence& sequence, engine::LabelTrack labels,
+                   const AskedSamples& asked, uint64_t seed);
+
+// The seed of the n-th answer to a sequence. No two leaders share a seed: with common noise, their
+// answers would vary less than in use.
+uint64_t SeedOf(const AskedSamples& asked, const dataset::Dataset& dataset, int sequence, int n);
 
 // The answers to sequences of the data set, each in its own class at weight 1. Errors: those of
-// CheckModelFits; FAILED_PRECONDITION for a start that the model does not accept; the network's.
+// CheckModelTakes and of the network.
 // Shapes: returns [samples][sequences].
 absl::StatusOr<metrics::SampledMotions> AnswerWithSamples(const engine::Synthesizer& synthesizer,
                                                           const dataset::Dataset& dataset,

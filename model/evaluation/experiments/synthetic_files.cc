@@ -13,6 +13,7 @@
 #include "model/base/file.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
+#include "model/formats/flat/json_motion.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -36,37 +37,21 @@ std::string PartnerText(const std::optional<motion::Vec3>& direction) {
   return absl::StrCat(plain.x, ",", plain.y, ",", plain.z);
 }
 
-// One person (docs/formats.md): the folder never contains the captured follower.
-std::string LeaderJson(const motion::Clip& leader) {
-  nlohmann::json frames = nlohmann::json::array();
-  for (int t = 0; t < leader.frame_count(); ++t) {
-    nlohmann::json joints = nlohmann::json::array();
-    for (int j = 0; j < leader.joint_count(); ++j) {
-      const motion::Vec3& point = leader.at(t, j);
-      joints.push_back({point.x, point.y, point.z});
-    }
-    frames.push_back(std::move(joints));
-  }
-  return nlohmann::json{
-      {"format", "duet-motion"},    {"version", 1},      {"frame_rate_hz", leader.frame_rate_hz},
-      {"unit", "metres"},           {"up_axis", "y-up"}, {"joint_names", leader.joint_names},
-      {"leader", std::move(frames)}}
-      .dump();
-}
-
 // The path of a job's leader below the folder; its first part is the captured set.
 std::string LeaderPath(const dataset::Sequence& sequence) {
   return absl::StrCat("leaders/", sequence.set, sequence.set.empty() ? "" : "/", sequence.id,
                       ".json");
 }
 
-absl::Status WriteLeader(const dataset::Sequence& sequence, const fs::path& file) {
+// One person: the folder never contains the captured follower.
+absl::Status WriteLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
+                         const fs::path& file) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   if (error) {
     return absl::InternalError(absl::StrCat(file.parent_path().string(), ": ", error.message()));
   }
-  return base::WriteFile(file, LeaderJson(sequence.pair.leader));
+  return base::WriteFile(file, formats::flat::FormatJsonMotion(sequence.pair.leader, skeleton));
 }
 
 // The index's fields of a clip.
@@ -159,7 +144,7 @@ absl::Status WriteSyntheticJobs(const dataset::Dataset& dataset,
     const std::string leader = LeaderPath(job.sequence);
     absl::StrAppend(&lines, leader, "\t", LabelText(dataset, job.labels), "\t",
                     PartnerText(job.sequence.partner_direction), "\t", half, "\n");
-    absl::Status status = WriteLeader(job.sequence, folder / leader);
+    absl::Status status = WriteLeader(dataset.skeleton, job.sequence, folder / leader);
     if (!status.ok()) return status;
   }
   return base::WriteFile(folder / "manifest.tsv", lines);

@@ -71,4 +71,11 @@ report::ResultSection BeginExperiment(const ExperimentFlags& flags, const Experi
   return section;
 }
 
+report::ResultSection BeginAnswers(const ExperimentFlags& flags, const Experiment& experiment,
+                                   const std::string& text) {
+  report::ResultSection section = BeginExperiment(flags, experiment, text);
+  AddSamplingSettings(flags.asked, &section);
+  return section;
+}
+
 }  // namespace duet::evaluation::program

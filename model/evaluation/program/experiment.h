@@ -67,6 +67,9 @@ absl::StatusOr<metrics::SampledMotions> Answers(const dataset::Dataset& dataset,
 // models' answers are finished.
 report::ResultSection BeginExperiment(const ExperimentFlags& flags, const Experiment& experiment,
                                       const std::string& text);
+// The same with the sampling of the answers, for commands of AddAnswersFlags.
+report::ResultSection BeginAnswers(const ExperimentFlags& flags, const Experiment& experiment,
+                                   const std::string& text);
 
 }  // namespace duet::evaluation::program
 

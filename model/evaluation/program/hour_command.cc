@@ -123,14 +123,12 @@ absl::Status Run(const Arguments& arguments) {
   section.settings.emplace_back("frames per second", absl::StrCat(arguments.rate));
   section.settings.emplace_back("delay", absl::StrCat(arguments.delay));
   section.settings.emplace_back("seed", absl::StrCat(arguments.seed));
-  absl::Status measured = AddModelTables(
-      arguments.models,
+  return FinishModelTables(
+      arguments.section, arguments.models,
       [&](const std::string& name, const engine::Synthesizer& model) {
         return ModelTable(arguments, name, model);
       },
-      &section);
-  if (!measured.ok()) return measured;
-  return FinishSection(arguments.section, section);
+      std::move(section));
 }
 
 }  // namespace

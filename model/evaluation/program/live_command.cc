@@ -89,14 +89,12 @@ absl::Status Run(const Arguments& arguments) {
       "answers: duet-eval samples, plausible and dance with --live.");
   section.settings.emplace_back("data", DescribeData(*dataset));
   section.settings.emplace_back("seed", absl::StrCat(arguments.seed));
-  absl::Status measured = AddModelTables(
-      arguments.models,
+  return FinishModelTables(
+      arguments.section, arguments.models,
       [&](const std::string& name, const engine::Synthesizer& model) {
         return ModelTable(arguments, *dataset, name, model);
       },
-      &section);
-  if (!measured.ok()) return measured;
-  return FinishSection(arguments.section, section);
+      std::move(section));
 }
 
 }  // namespace

@@ -74,4 +74,11 @@ std::string LiveText(const experiments::AskedSamples& asked) {
   return asked.live_delay ? absl::StrCat(*asked.live_delay, " frames of delay") : "no";
 }
 
+void AddSamplingSettings(const experiments::AskedSamples& asked, report::ResultSection* section) {
+  section->settings.insert(section->settings.end(), {{"variety", absl::StrCat(asked.variety)},
+                                                     {"candidates", absl::StrCat(asked.candidates)},
+                                                     {"seed", absl::StrCat(asked.seed)},
+                                                     {"live", LiveText(asked)}});
+}
+
 }  // namespace duet::evaluation::program

@@ -8,6 +8,7 @@
 
 #include "model/evaluation/experiments/sampled_answers.h"
 #include "model/evaluation/program/models.h"
+#include "model/evaluation/report/result_section.h"
 
 // Flags that several commands share.
 
@@ -40,8 +41,10 @@ void AddSeedFlag(uint64_t* seed, CLI::App* command);
 // --variety, --candidates, --seed, --live
 void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command);
 
-// How the answers were asked for, for a section's settings: "no", or the delay of a live session.
+// Whether the answers are live, for a section's settings: "no", or the delay of the session.
 std::string LiveText(const experiments::AskedSamples& asked);
+// The values of AddSamplingFlags as settings of a section.
+void AddSamplingSettings(const experiments::AskedSamples& asked, report::ResultSection* section);
 
 }  // namespace duet::evaluation::program
 

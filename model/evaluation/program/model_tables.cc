@@ -5,8 +5,8 @@
 
 namespace duet::evaluation::program {
 
-absl::Status AddModelTables(const ModelChoice& models, const MeasureModel& measure,
-                            report::ResultSection* section) {
+absl::Status FinishModelTables(const SectionFlags& flags, const ModelChoice& models,
+                               const MeasureModel& measure, report::ResultSection section) {
   absl::StatusOr<std::vector<FoldModel>> opened = OpenModels(models);
   if (!opened.ok()) return opened.status();
   for (const FoldModel& model : *opened) {
@@ -14,9 +14,9 @@ absl::Status AddModelTables(const ModelChoice& models, const MeasureModel& measu
     if (!synthesizer.ok()) return synthesizer.status();
     absl::StatusOr<report::Table> table = measure(model.name, **synthesizer);
     if (!table.ok()) return table.status();
-    section->tables.push_back(*std::move(table));
+    section.tables.push_back(*std::move(table));
   }
-  return absl::OkStatus();
+  return FinishSection(flags, section);
 }
 
 }  // namespace duet::evaluation::program

@@ -7,6 +7,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "model/evaluation/program/models.h"
+#include "model/evaluation/program/section_flags.h"
 #include "model/evaluation/report/result_section.h"
 
 namespace duet::evaluation::program {
@@ -15,10 +16,10 @@ namespace duet::evaluation::program {
 using MeasureModel = std::function<absl::StatusOr<report::Table>(const std::string& name,
                                                                  const engine::Synthesizer& model)>;
 
-// Adds a table for each model of the command line, loaded without a fold. Errors: those of
-// OpenModels, of loading a model and of `measure`.
-absl::Status AddModelTables(const ModelChoice& models, const MeasureModel& measure,
-                            report::ResultSection* section);
+// Adds a table for each model of the command line, loaded without a fold, and finishes the section.
+// Errors: those of OpenModels, of loading a model, of `measure` and of FinishSection.
+absl::Status FinishModelTables(const SectionFlags& flags, const ModelChoice& models,
+                               const MeasureModel& measure, report::ResultSection section);
 
 }  // namespace duet::evaluation::program
 

@@ -103,17 +103,12 @@ absl::Status AddAnswers(const Arguments& arguments, const engine::Synthesizer& s
                         const experiments::Plausibility& plausibility,
                         std::vector<Answer>* answers) {
   const engine::ModelDescription& model = synthesizer.description();
-  std::vector<float> weights(model.classes.size());
-  weights[static_cast<size_t>(label)] = 1;
+  const engine::LabelTrack labels(experiments::OneClass(model.class_count(), label));
   std::vector<experiments::LabelledLeader> asked;
   for (const dataset::Sequence& leader : leaders) {
     const uint64_t seed =
         arguments.asked.seed + asked.size() * 1000 + static_cast<uint64_t>(sample);
-    asked.push_back({&leader,
-                     engine::LabelTrack(weights),
-                     {seed, arguments.asked.variety, arguments.asked.candidates},
-                     true,
-                     arguments.asked.live_delay});
+    asked.push_back(Ask(leader, labels, arguments.asked, seed));
   }
   absl::StatusOr<std::vector<Poses>> followers =
       SynthesizeSequences(synthesizer, asked, experiments::StartGiven::kNone);
@@ -176,7 +171,7 @@ void AddPictures(const engine::ModelDescription& model, const std::vector<Answer
                                 leader.frame_count() - first);
     const auto part = [&](const Poses& poses) {
       Poses cut(0, poses.joint_count());
-      for (int t = first; t < first + frames; ++t) cut.Append(poses[t]);
+      cut.Append(poses.frames(first, frames));
       return cut;
     };
     const std::string name = model.classes[static_cast<size_t>(answer.label)];
@@ -262,9 +257,7 @@ absl::Status Run(const Arguments& arguments) {
                    "formulas make, answered in every class at weight 1 without "
                    "a start.");
   section.settings.emplace_back("seeds", absl::StrCat(arguments.asked.samples));
-  section.settings.emplace_back("candidates", absl::StrCat(arguments.asked.candidates));
-  section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
-  section.settings.emplace_back("live", LiveText(arguments.asked));
+  AddSamplingSettings(arguments.asked, &section);
   for (const FoldModel& model : *models) {
     absl::StatusOr<SharedSynthesizer> synthesizer = model.load("");
     if (!synthesizer.ok()) return synthesizer.status();

@@ -77,7 +77,7 @@ absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experi
 
 report::ResultSection MakeSection(const Experiment& experiment, const ExperimentFlags& flags,
                                   const FoldScorer& scorer) {
-  report::ResultSection section = BeginExperiment(
+  report::ResultSection section = BeginAnswers(
       flags, experiment,
       "A model that samples answers every leader of every left-out subject several times, each "
       "time with another seed; other models answer once. The average frame distance rewards the "
@@ -87,9 +87,6 @@ report::ResultSection MakeSection(const Experiment& experiment, const Experiment
       "pose. Other people: captured followers of training clips of the same class, drawn at "
       "random, who answered another leader.");
   section.settings.emplace_back("answers to a leader", absl::StrCat(flags.asked.samples));
-  section.settings.emplace_back("variety", absl::StrCat(flags.asked.variety));
-  section.settings.emplace_back("live", LiveText(flags.asked));
-  section.settings.emplace_back("seed", absl::StrCat(flags.asked.seed));
   section.settings.emplace_back("direction of the partner",
                                 flags.asked.tell_direction ? "in the request" : "from the leader");
   for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));

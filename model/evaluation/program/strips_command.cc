@@ -84,13 +84,11 @@ absl::Status AddPictures(const Experiment& experiment, const std::string& class_
 }
 
 report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
-  report::ResultSection section = BeginExperiment(
+  report::ResultSection section = BeginAnswers(
       arguments.flags, experiment,
       "One clip of each class: the clip of median length of the first left-out subject who has "
       "any. Above: the captured pair. Below: the same leader with synthesised followers.");
   section.settings.emplace_back("input about the follower's first frame", arguments.start);
-  section.settings.emplace_back("variety", absl::StrCat(arguments.flags.asked.variety));
-  section.settings.emplace_back("seed", absl::StrCat(arguments.flags.asked.seed));
   return section;
 }
 

@@ -107,7 +107,7 @@ absl::Status Run(const Arguments& given) {
   absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.flags.models);
   if (!models.ok()) return models.status();
   const Experiment experiment{*std::move(dataset), *std::move(folds), *std::move(models)};
-  report::ResultSection section = BeginExperiment(
+  report::ResultSection section = BeginAnswers(
       arguments.flags, experiment,
       "Answers to leaders of a tilted camera, in the level world: the mean distance of the joints "
       "from the captured follower as one vector (afd), and by how much that exceeds leaders that "

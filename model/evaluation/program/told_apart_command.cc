@@ -87,15 +87,13 @@ absl::StatusOr<report::Table> Measure(const Experiment& experiment, const Argume
 }
 
 report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
-  report::ResultSection section = BeginExperiment(
+  report::ResultSection section = BeginAnswers(
       arguments.flags, experiment,
       "A fresh classifier that sees leader and follower learns to tell a fold's answers to its "
       "training leaders from the captured pairs of the same people, and is tested on the left-out "
       "person: on that fold's answers to leaders never seen, and on the captured pairs. Both sides "
       "go through the same Gaussian of 0.1 s, so that a capture's noise gives nothing away.");
   section.settings.emplace_back("classifiers (seeds)", absl::StrJoin(arguments.seeds, ", "));
-  section.settings.emplace_back("variety", absl::StrCat(arguments.flags.asked.variety));
-  section.settings.emplace_back("seed of the answers", absl::StrCat(arguments.flags.asked.seed));
   return section;
 }
 

@@ -98,8 +98,7 @@ Table CleanUpTable(const dataset::Dataset& dataset) {
   table.title = "What clean-up does to captured followers";
   table.columns = {"frames moved %", "way cm", "way cm 99 %", "slide cm a frame", "depth cm"};
   table.notes = {
-      "Each stage alone, then all. Frames moved: some joint goes farther than a centimetre. Way: "
-      "of "
+      "Each stage alone, then all. Frames moved: some joint moves more than a centimetre. Way: of "
       "a joint in a frame, mean and 99th percentile. Depth: the deepest overlap with the leader."};
   if (dataset.sequences.empty()) return table;
   const double sequences = static_cast<double>(dataset.sequences.size());

@@ -120,9 +120,8 @@ Table LeanTable(const dataset::Dataset& dataset) {
                    "follower x",     "follower z",       "level leader x",
                    "level leader z", "level follower x", "level follower z"};
   table.notes = {
-      "From the feet to the neck; x is along the image, z is away from the camera. What a set "
-      "keeps "
-      "once level is what its people do."};
+      "From the feet to the neck; x is along the image, z is away from the camera. The lean that "
+      "remains in a level set is that of its people."};
   for (const Group& group : BySet(dataset)) {
     TableRow row = {group.name, {static_cast<double>(group.sequences.size())}};
     for (const World world : {World::kCaptured, World::kLevel}) {
@@ -165,8 +164,7 @@ Table NoiseTable(const dataset::Dataset& dataset) {
                    "jitter",       "jitter repaired", "jitter smooth"};
   table.notes = {
       "Repaired: joints that jump away for a frame and back. Jitter in m/s^3; smooth: repaired, "
-      "then "
-      "a Gaussian of one frame."};
+      "then filtered by a Gaussian of one frame."};
   for (const Group& group : ByClass(dataset)) {
     Noise noise;
     for (const dataset::Sequence* one : group.sequences) {
@@ -187,9 +185,9 @@ Table LeaderTable(const dataset::Dataset& dataset) {
   table.title = "Who leads";
   table.columns = {"sequences", "by index", "by its guess", "by motion", "rule agrees"};
   table.notes = {
-      "Rule agrees: the share of the leaders named by the index, without guessing, whom the motion "
-      "rule names too. Either: a symmetric class, where either person may lead and the rule knows "
-      "no better than chance."};
+      "Rule agrees: share of the leaders named by the index, other than by its guess, whom the "
+      "motion rule names too. Either: a symmetric class, where either person may lead and the rule "
+      "is no better than chance."};
   for (const Group& group : ByClass(dataset)) {
     std::map<std::string, double> sources;
     double asked = 0, agreed = 0;

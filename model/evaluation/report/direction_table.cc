@@ -23,9 +23,8 @@ Table DirectionTable(const std::vector<DirectionRow>& rows) {
   table.title = "Where the partner is expected: degrees off";
   table.columns = {"tests", "median", "90th percentile"};
   table.notes = {
-      "Hips: where the leader's hips face in the first frame. A model: by its own estimate from "
-      "the "
-      "leader's motion, or by the hips where it has none."};
+      "Hips: where the leader's hips face in the first frame. A model: its own estimate from the "
+      "leader's motion, or the hips if it has none."};
   table.decimals = 1;
   for (const DirectionRow& row : rows) {
     table.rows.push_back({row.name,

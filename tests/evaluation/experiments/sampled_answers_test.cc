@@ -70,8 +70,8 @@ TEST(SampledAnswersTest, EveryAnswerHasASeedOfItsOwn) {
 
 TEST(SampledAnswersTest, SeedOfTheSetChangesEverySeed) {
   const dataset::Dataset dataset = MadeUpPairs(3);
-  EXPECT_EQ(SamplingOf({2, 1, 7}, dataset, 4, 0).seed, SamplingOf({2, 1, 7}, dataset, 4, 0).seed);
-  EXPECT_NE(SamplingOf({2, 1, 7}, dataset, 4, 0).seed, SamplingOf({2, 1, 8}, dataset, 4, 0).seed);
+  EXPECT_EQ(SeedOf({2, 1, 7}, dataset, 4, 0), SeedOf({2, 1, 7}, dataset, 4, 0));
+  EXPECT_NE(SeedOf({2, 1, 7}, dataset, 4, 0), SeedOf({2, 1, 8}, dataset, 4, 0));
 }
 
 TEST(SampledAnswersTest, DirectionIsOmittedOnRequest) {
