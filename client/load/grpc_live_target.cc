@@ -23,10 +23,10 @@ using Stub = v1::MotionSynthesis::Stub;
 // What arrived and Wait has not returned yet.
 class EventQueue {
  public:
-  void Add(LiveEvent event) {
+  void Add(const LiveEvent& event) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (event.ended) --open_;
-    events_.push_back(std::move(event));
+    events_.push_back(event);
     changed_.notify_all();
   }
   void Opened() {
@@ -97,7 +97,7 @@ class Session final
       event.first_frame = static_cast<int>(response_.frames().first_frame());
       event.frames = static_cast<int>(response_.frames().frame_count());
       event.server_seconds = double{response_.frames().server_seconds()};
-      if (event.frames > 0) events_->Add(std::move(event));
+      if (event.frames > 0) events_->Add(event);
     } else if (response_.has_summary()) {
       const v1::LiveSummary& summary = response_.summary();
       summed_up_ = true;
@@ -113,12 +113,15 @@ class Session final
   void OnDone(const grpc::Status& status) override {
     ended_.code = static_cast<absl::StatusCode>(status.error_code());
     if (status.ok() && !summed_up_) ended_.code = absl::StatusCode::kInternal;
-    const std::shared_ptr<Session> until_here = std::move(self_);
     LiveEvent event;
     event.session = index_;
     event.time = std::chrono::steady_clock::now();
     event.ended = ended_;
-    events_->Add(std::move(event));
+    // Release the session first. It holds a connection, and gRPC's thread must not release the last
+    // reference to one, because closing it waits for that thread.
+    EventQueue* const events = events_;
+    std::exchange(self_, nullptr).reset();
+    events->Add(event);
   }
 
  private:
@@ -185,11 +188,11 @@ int ThereAndBack(int frame, int frames) {
 class GrpcLiveTarget final : public LiveTarget {
  public:
   GrpcLiveTarget(const std::vector<std::shared_ptr<grpc::Channel>>& channels,
-                 const ClientOptions& options, const v1::LiveStart& start,
+                 const ClientOptions& options, v1::LiveStart start,
                  std::vector<motion::Poses> leaders, absl::Duration longest)
       : authorization_(options.token.empty() ? "" : absl::StrCat("Bearer ", options.token)),
         longest_(longest),
-        start_(start),
+        start_(std::move(start)),
         leaders_(std::move(leaders)),
         begin_(Now()) {
     for (const auto& channel : channels) stubs_.push_back(v1::MotionSynthesis::NewStub(channel));

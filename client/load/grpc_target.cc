@@ -33,25 +33,25 @@ class CallBook {
   void Begin(int64_t id, std::shared_ptr<Call> call) {
     const std::lock_guard<std::mutex> lock(mutex_);
     open_.emplace(id, std::move(call));
+    ++unreported_;
   }
-  // Returns the call, which the thread that ends it keeps alive.
-  std::shared_ptr<Call> End(const EndedCall& ended) {
+  // Releases the call, then reports its end. A released call holds no connection: gRPC's thread
+  // must not release the last reference to one, because closing it waits for that thread.
+  void End(EndedCall ended) {
+    Take(ended.id).reset();
     const std::lock_guard<std::mutex> lock(mutex_);
-    const auto found = open_.find(ended.id);
-    std::shared_ptr<Call> call = std::move(found->second);
-    open_.erase(found);
+    --unreported_;
     ended_.push_back(ended);
     changed_.notify_all();
-    return call;
   }
   std::vector<EndedCall> Wait(Time until) {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait_until(lock, until, [this] { return !ended_.empty(); });
     return std::exchange(ended_, {});
   }
-  void WaitUntilNoneIsOpen() {
+  void WaitUntilAllHaveEnded() {
     std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [this] { return open_.empty(); });
+    changed_.wait(lock, [this] { return unreported_ == 0; });
   }
   std::vector<std::shared_ptr<Call>> Open() {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -62,9 +62,18 @@ class CallBook {
   }
 
  private:
+  std::shared_ptr<Call> Take(int64_t id) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = open_.find(id);
+    std::shared_ptr<Call> call = std::move(found->second);
+    open_.erase(found);
+    return call;
+  }
+
   std::mutex mutex_;
   std::condition_variable changed_;
   std::unordered_map<int64_t, std::shared_ptr<Call>> open_;
+  int unreported_ = 0;  // the open calls, and those that End is releasing
   std::vector<EndedCall> ended_;
 };
 
@@ -101,7 +110,7 @@ class Call final : public grpc::ClientBidiReactor<grpc::ByteBuffer, v1::Synthesi
     ended_.code = static_cast<absl::StatusCode>(status.error_code());
     const bool complete = summed_up_ && ended_.frames == wanted_;
     if (status.ok() && !complete) ended_.code = absl::StatusCode::kInternal;
-    const std::shared_ptr<Call> until_here = book_->End(ended_);
+    book_->End(ended_);  // deletes this
   }
 
  private:
@@ -129,7 +138,7 @@ class GrpcTarget final : public Target {
   GrpcTarget& operator=(const GrpcTarget&) = delete;
   ~GrpcTarget() override {
     CancelAll();
-    book_.WaitUntilNoneIsOpen();
+    book_.WaitUntilAllHaveEnded();
   }
 
   Time Now() const override { return std::chrono::steady_clock::now(); }

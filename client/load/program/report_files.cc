@@ -31,7 +31,8 @@ absl::Status WriteReport(const std::string& text, const std::vector<ReportFile>&
   const auto standard = std::find_if(files.begin(), files.end(), [](const ReportFile& file) {
     return file.path == kStandardOutput;
   });
-  *out << (standard == files.end() ? text : standard->content());
+  *out << (standard == files.end() ? text : standard->content()) << std::flush;
+  if (!*out) return absl::InvalidArgumentError("standard output: could not write all of it");
   for (const ReportFile& file : files) {
     if (file.path.empty() || file.path == kStandardOutput) continue;
     absl::Status status = base::WriteFile(file.path, file.content());

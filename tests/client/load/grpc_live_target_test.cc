@@ -3,12 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "absl/synchronization/mutex.h"
+#include "tests/client/support/context_ends.h"
 #include "tests/client/support/fake_service.h"
 
 namespace duet::client::load {
@@ -150,6 +153,23 @@ TEST_F(GrpcLiveTargetTest, AStreamWithoutSummaryIsInternal) {
   target->Open(0);
   target->Finish(0);
   EXPECT_EQ(AwaitEnd(*target).back().ended->code, absl::StatusCode::kInternal);
+}
+
+// gRPC's thread that releases the last reference to a connection uses freed memory.
+TEST_F(GrpcLiveTargetTest, ItsDestructorReleasesTheConnections) {
+  std::vector<v1::SynthesizeLiveRequest> requests;
+  server_.service().on_live = [&](auto*, Stream* stream) { return Mirror(stream, &requests); };
+  const std::thread::id here = std::this_thread::get_id();
+  std::atomic<int> released_here{0};
+  const test::ContextEnds ends([&] { released_here += std::this_thread::get_id() == here; });
+  constexpr int kTargets = 300;
+  for (int i = 0; i < kTargets; ++i) {
+    const std::unique_ptr<LiveTarget> target = Connect();
+    target->Open(0);
+    target->Finish(0);
+    AwaitEnd(*target);
+  }
+  EXPECT_EQ(released_here, kTargets);
 }
 
 TEST_F(GrpcLiveTargetTest, OpenSessionsAreCancelled) {

@@ -10,6 +10,8 @@
 #include <thread>
 
 #include "absl/synchronization/mutex.h"
+#include "absl/synchronization/notification.h"
+#include "tests/client/support/context_ends.h"
 #include "tests/client/support/fake_service.h"
 
 namespace duet::client::load {
@@ -152,6 +154,27 @@ TEST_F(GrpcTargetTest, CancelledCallsEndAndNothingOutlivesIt) {
   target->Start(3, 0);
   while (begun < 3) std::this_thread::yield();
   target.reset();  // with one under way
+}
+
+// gRPC's thread that releases the last reference to a connection uses freed memory.
+TEST_F(GrpcTargetTest, ReleasesACallBeforeItReportsTheEnd) {
+  server_.service().on_synthesize = [](auto*, const auto&, auto* writer) {
+    WriteReply(kFrames, true, writer);
+    return grpc::Status::OK;
+  };
+  absl::Notification reported, released;
+  bool reported_first = false;
+  const test::ContextEnds ends([&] {
+    // Time for a call to be reported that is not released yet.
+    reported_first = reported.WaitForNotificationWithTimeout(absl::Milliseconds(200));
+    released.Notify();
+  });
+  const std::unique_ptr<Target> target = Connect();
+  target->Start(1, 0);
+  Await(*target);
+  reported.Notify();
+  released.WaitForNotification();
+  EXPECT_FALSE(reported_first);
 }
 
 TEST_F(GrpcTargetTest, SendsItsToken) {
