@@ -23,11 +23,15 @@ constexpr double kShortestPause = 0.01;
 constexpr double kLooks = 8;
 // The pause while the process stops.
 constexpr double kPauseWhileStopping = 0.1;
-// Timeouts for writing all last lines, and for reading the stack of one thread.
+// Timeout for writing all last lines.
 constexpr unsigned kLastSeconds = 3;
-constexpr std::chrono::milliseconds kStackPatience(100);
 // Maximum number of threads that get a line.
 constexpr int kMaxLines = 16;
+// Timeout for reading the stack of one thread. On a busy machine a thread that could respond may
+// not run for a while, so threads share some more time.
+constexpr std::chrono::milliseconds kStackPatience(50);
+constexpr std::chrono::milliseconds kSharedPatience(1500);
+static_assert(kMaxLines * kStackPatience + kSharedPatience < std::chrono::seconds(kLastSeconds));
 
 sigset_t WatchedSignals() {
   sigset_t signals;
@@ -41,14 +45,18 @@ int WaitForSignal(double seconds) {
   const sigset_t signals = WatchedSignals();
   timespec timeout = {};
   timeout.tv_sec = static_cast<time_t>(seconds);
-  timeout.tv_nsec = static_cast<long>((seconds - static_cast<double>(timeout.tv_sec)) * 1e9);
+  timeout.tv_nsec =
+      static_cast<decltype(timeout.tv_nsec)>((seconds - static_cast<double>(timeout.tv_sec)) * 1e9);
   return std::max(0, sigtimedwait(&signals, nullptr, &timeout));
 }
 
 }  // namespace
 
 Watchdog::Watchdog(const WatchdogOptions& options, StopSignal& stop)
-    : options_(options), stop_(stop), stop_seconds_(options.hurry_seconds) {
+    : options_(options),
+      stop_(stop),
+      stop_seconds_(options.hurry_seconds),
+      shared_patience_(kSharedPatience) {
   // Use now what allocates memory at its first use.
   PrepareThreadStacks();
   tzset();
@@ -136,9 +144,13 @@ void Watchdog::EndLate() {
   _exit(kExitLate);
 }
 
-void Watchdog::WriteThread(const char* event, const BusyThread& thread) const {
+void Watchdog::WriteThread(const char* event, const BusyThread& thread) {
   char stack[2048];
-  WriteThreadStack(thread.thread_id, kStackPatience, stack, sizeof(stack));
+  const steady_clock::time_point begin = steady_clock::now();
+  WriteThreadStack(thread.thread_id, kStackPatience + shared_patience_, stack, sizeof(stack));
+  const auto used = std::chrono::ceil<std::chrono::milliseconds>(steady_clock::now() - begin);
+  shared_patience_ -=
+      std::clamp(used - kStackPatience, std::chrono::milliseconds(0), shared_patience_);
   LastLine line(options_.text_log, event);
   line.Add("thread", thread.step->thread);
   line.Add("thread_id", std::int64_t{thread.thread_id});

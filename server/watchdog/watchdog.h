@@ -4,6 +4,7 @@
 #include <pthread.h>
 
 #include <atomic>
+#include <chrono>
 #include <thread>
 
 #include "server/common/activity.h"
@@ -55,7 +56,7 @@ class Watchdog {
   void Take(int signal);
   [[noreturn]] void EndStuck();
   [[noreturn]] void EndLate();
-  void WriteThread(const char* event, const BusyThread& thread) const;
+  void WriteThread(const char* event, const BusyThread& thread);
 
   const WatchdogOptions options_;
   StopSignal& stop_;
@@ -66,6 +67,7 @@ class Watchdog {
   common::ThreadStates threads_;
   StepWatch watch_;
   StopDeadline deadline_;
+  std::chrono::milliseconds shared_patience_;  // what is left of it
 
   std::thread thread_;
 };

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <string>
@@ -31,14 +33,19 @@ constexpr double kNever = 1e6;
   while (true) pause();
 }
 
-// Starts a thread that holds a lock and never returns.
-void BlockIn(const common::StepKind& kind) {
-  std::thread([&kind] {
+// Starts a thread that holds a lock, and calls a function that never returns. Waits until the
+// thread has begun the step.
+void BlockIn(const common::StepKind& kind, void (*block)() = WaitForEver) {
+  static std::atomic<int> begun{0};
+  const int before = begun;
+  std::thread([&kind, block] {
     common::Mutex& mutex = *new common::Mutex;
     const common::MutexLock lock(mutex);
     const common::Step step(kind);
-    WaitForEver();
+    ++begun;
+    block();
   }).detach();
+  while (begun == before) std::this_thread::yield();
 }
 
 // Each test ends a process of its own, in which no other thread has started.
@@ -74,6 +81,48 @@ TEST_F(WatchdogDeathTest, StuckThreadEndsTheProcess) {
                     HasSubstr(R"("doing":"working for ever","seconds":0.)"),
                     HasSubstr(R"("event":"stuck",)"), HasSubstr(R"("calls":3,)"),
                     HasSubstr("\"exit_code\":3}\n")));
+}
+
+// Responds to the request for its stack as late as a thread on a busy machine.
+void RespondLate() {
+  sigset_t request, pending;
+  sigemptyset(&request);
+  sigaddset(&request, SIGUSR2);
+  pthread_sigmask(SIG_BLOCK, &request, nullptr);
+  do {
+    std::this_thread::yield();
+    sigpending(&pending);
+  } while (sigismember(&pending, SIGUSR2) == 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  pthread_sigmask(SIG_UNBLOCK, &request, nullptr);
+  WaitForEver();
+}
+
+void NeverRespond() {
+  sigset_t request;
+  sigemptyset(&request);
+  sigaddset(&request, SIGUSR2);
+  pthread_sigmask(SIG_BLOCK, &request, nullptr);
+  WaitForEver();
+}
+
+TEST_F(WatchdogDeathTest, StackOfAThreadThatRespondsLateIsShown) {
+  const auto process = [] {
+    Begin(Options(kSoon, kNever));
+    BlockIn(kWorking, RespondLate);
+    WaitForEver();
+  };
+  EXPECT_EXIT(process(), ExitedWithCode(kExitStuck), HasSubstr(R"("stack":")"));
+}
+
+TEST_F(WatchdogDeathTest, ThreadsThatNeverRespondDoNotKeepTheProcess) {
+  const auto process = [] {
+    for (int i = 0; i < 20; ++i) BlockIn(kWorking, NeverRespond);
+    Begin(Options(kSoon, kNever));
+    WaitForEver();
+  };
+  EXPECT_EXIT(process(), ExitedWithCode(kExitStuck),
+              AllOf(HasSubstr("thread_stuck"), ::testing::Not(HasSubstr(R"("stack":")"))));
 }
 
 TEST_F(WatchdogDeathTest, TextLogHasNoJson) {
