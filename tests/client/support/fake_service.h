@@ -16,7 +16,7 @@ namespace duet::test {
 
 // The longest that a test waits for a call that ought to end at once: a defect then ends in a
 // failure rather than in a test that hangs.
-inline constexpr absl::Duration kLongestCall = absl::Seconds(10);
+inline constexpr absl::Duration kLongestCall = absl::Seconds(60);
 
 // A service whose answers a test writes.
 class FakeService final : public v1::MotionSynthesis::Service {
