@@ -1,7 +1,9 @@
 """The Blender add-on on a scene whose rate, unit, first frame and axes differ from Duet's."""
 
 import json
+import os
 import pathlib
+import re
 import shutil
 
 import tools
@@ -9,6 +11,30 @@ import tools
 BLENDER = shutil.which("blender")
 REACT = pathlib.Path(__file__).parent / "blender" / "react.py"
 UNITS_PER_METRE = 2  # of the scene
+# What the preferences' button and check box do.
+INSTALL = """
+import os
+import bpy
+bpy.ops.preferences.addon_install(filepath=os.path.abspath("duet_blender.zip"))
+bpy.ops.preferences.addon_enable(module="duet_blender")
+assert bpy.context.scene.duet.answers is not None
+"""
+
+
+def install(folder):
+    """Follows docs/blender.md: zips and installs the add-on. Returns the folder of add-ons."""
+    guide = (tools.SOURCE / "docs" / "blender.md").read_text(encoding="utf-8")
+    shutil.copytree(tools.SOURCE / "client" / "blender", folder / "client" / "blender",
+                    ignore=shutil.ignore_patterns("__pycache__"))
+    commands = re.search(r"## Installing\n.*?```sh\n(.*?)```", guide, re.DOTALL)[1]
+    tools.run("bash", "-e", "-c", commands, cwd=folder).check_returncode()
+    scripts = folder / "scripts"
+    scripts.mkdir()
+    done = tools.run(BLENDER, "--background", "--factory-startup", "--python-exit-code", "1",
+                     "--python-expr", INSTALL, cwd=folder / "client" / "blender",
+                     env={**os.environ, "BLENDER_USER_SCRIPTS": str(scripts)})
+    assert done.returncode == 0, done.stdout + done.stderr
+    return scripts / "addons"
 
 
 class BlenderTest(tools.FolderTest):
@@ -20,7 +46,7 @@ class BlenderTest(tools.FolderTest):
         assert done.returncode == 0, done.stderr
         with tools.running_server() as server:
             done = tools.run(BLENDER, "--background", "--factory-startup", "--python-exit-code",
-                             "1", "--python", REACT, "--", tools.SOURCE / "client" / "blender",
+                             "1", "--python", REACT, "--", install(cls.folder),
                              leader, server.address, tools.PROGRAMS / "duet", cls.folder)
         assert done.returncode == 0, done.stdout + done.stderr
         cls.state = json.loads((cls.folder / "state.json").read_text(encoding="utf-8"))
