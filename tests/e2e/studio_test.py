@@ -1,9 +1,13 @@
 """The studio's tools in a real browser against a real server: gallery, curves, start, keeping a
 beginning, undo, sessions, rigs."""
 
+import contextlib
 import json
+import os
 import pathlib
 import re
+import subprocess
+import sys
 import tempfile
 
 from studio_pages import FOLLOWER, StudioTest  # before modules that it makes available
@@ -13,6 +17,7 @@ import numpy as np  # noqa: E402
 import studio_minutes  # noqa: E402
 import tools  # noqa: E402
 
+GUIDE = (tools.SOURCE / "docs/guides/studio.md").read_text(encoding="utf-8")
 HUG = "#leader=hug.bvh&labels=hug:1"
 FRAMES = 91
 TORSO = 2
@@ -433,6 +438,23 @@ class ToolsTest(StudioTest):
         self.open_text(page, text)
         self.assertEqual(page.state()["failed"], "false", page.text("#status"))
 
+    # Sizes.
+
+    def test_rows_scroll_below_the_scene_on_a_low_screen(self):
+        page = self.open_still(HUG, width=1440, height=800)
+        self.press(page, "show-eight")
+        page.evaluate("document.querySelectorAll('main details').forEach((item) => { item.open = true; })")
+        scene = "element('view').getBoundingClientRect().top"
+        before = page.evaluate(scene)
+        x, y = page.evaluate("""(({left, top}) => [left + 5, top + 5])(
+            element('gallery-title').getBoundingClientRect())""")
+        page.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=900)
+        page.wait_until("""(() => {
+            const {left, top, width, height} = element('pin-add').getBoundingClientRect();
+            return document.elementFromPoint(left + width / 2, top + height / 2) === element('pin-add');
+        })()""")
+        self.assertEqual(page.evaluate(scene), before)
+
     # Rigs.
 
     def test_kept_answer_is_written_on_another_files_rig(self):
@@ -464,10 +486,38 @@ class ToolsTest(StudioTest):
             on_rig = duet.read_motion(path, joint_map={"left_hand": "Flipper"}).positions
         self.assertLess(np.linalg.norm(on_rig - self.shown(page), axis=2).mean(), 0.05)
 
+    # The guide.
+
     def test_first_ten_minutes_of_an_animator(self):
         page = self.open_still(width=1440, height=900)
         steps = studio_minutes.run(page)
         self.assertEqual([step.name for step in steps], [name for name, _ in studio_minutes.STEPS])
+        rows = [[cell.strip() for cell in row.strip("|").split("|")]
+                for row in re.findall(r"^\|.*\|$", GUIDE, re.MULTILINE)]
+        self.assertEqual([(row[0], int(row[-1])) for row in rows if row[-1].isdigit()],
+                         [*((step.name, step.actions) for step in steps),
+                          ("all", sum(step.actions for step in steps))])
+
+    def test_first_commands_of_the_guide_start_the_studio(self):
+        server, gateway = re.search(r"## Start\n\n```sh\n(.*?) &\n(.*?) +#.*\n```", GUIDE).groups()
+        port, web_port = tools.free_ports(2)
+        commands = (f"{server} --listen 127.0.0.1:{port} --metrics-listen off",
+                    f"{gateway} --server localhost:{port} --listen 127.0.0.1:{web_port}")
+        path = os.pathsep.join((str(pathlib.Path(sys.executable).parent), os.environ["PATH"]))
+        with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
+            (pathlib.Path(folder) / "build").mkdir()  # as in a built clone
+            (pathlib.Path(folder) / "build" / "release").symlink_to(tools.PROGRAMS.parent)
+            (pathlib.Path(folder) / "client").symlink_to(tools.SOURCE / "client")
+            for command, ready in zip(commands, ('"serving"', "http://")):
+                started = stack.enter_context(subprocess.Popen(
+                    ["bash", "-c", f"exec env {command}"], cwd=folder, stdout=subprocess.PIPE,
+                    stderr=subprocess.STDOUT, text=True, env={**os.environ, "PATH": path}))
+                stack.callback(started.terminate)
+                line = next((line for line in started.stdout if ready in line), "")
+                self.assertNotEqual(line, "", f"{command} ended")
+            page = self.browser.open(line.strip(), still=True)
+            self.assertEqual(page.state()["state"], "ready", page.text("#status"))
+            page.wait_until("state.models.length > 0")
 
 
 if __name__ == "__main__":
