@@ -1,5 +1,5 @@
-"""The tour, the cookbook, the guides to batches, to training, to FBX and to the layouts of research, and
-the page on rotations do what they say: their commands and their Python run as they are printed, against
+"""The tour, the cookbook, the guides to batches, to training, to FBX, to the layouts of research and to
+reading in Python, and the page on rotations do what they say: their commands and their Python run as they are printed, against
 a real server that they find by DUET_SERVER, as they say."""
 
 import importlib.util
@@ -21,9 +21,10 @@ BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 class DocumentsTest(unittest.TestCase):
-    def run_blocks(self, name, leaders=(), files=None):
+    def run_blocks(self, name, leaders=(), files=None, source_package=True):
         """Runs a document's blocks one after the other, in a folder with the sample leaders of these
-        names in `walks`, and with copies of `files`, {name: path}."""
+        names in `walks`, and with copies of `files`, {name: path}. `source_package`: Python finds the
+        package in the source tree."""
         text = (tools.SOURCE / "docs" / name).read_text(encoding="utf-8")
         blocks = BLOCK.findall(text)
         with tempfile.TemporaryDirectory() as folder, tools.running_server() as server:
@@ -33,13 +34,15 @@ class DocumentsTest(unittest.TestCase):
             for leader in leaders:
                 shutil.copy(tools.sample(leader), pathlib.Path(folder, "walks"))
             for copied, path in (files or {}).items():
+                pathlib.Path(folder, copied).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(path, pathlib.Path(folder, copied))
             environment = {
                 **os.environ, "DUET_SERVER": server.address, "DUET_CONFIG": "",
                 # `python3` is the one that runs this test and has the modules.
                 "PATH": os.pathsep.join((str(tools.PROGRAMS), str(pathlib.Path(sys.executable).parent),
                                          os.environ["PATH"])),
-                "PYTHONPATH": str(tools.SOURCE / "client" / "python")}
+                "PYTHONPATH": str(tools.SOURCE / "client" / "python") if source_package else "",
+                "PIP_NO_INDEX": "1"}
             for language, block in blocks:
                 with self.subTest(block=block.splitlines()[0]):
                     ran = self.run_block(language, block, cwd=folder, env=environment)
@@ -69,6 +72,19 @@ class DocumentsTest(unittest.TestCase):
         files = tools.SOURCE / "tests/formats/fbx/files"
         self.assertEqual(self.run_blocks("guides/fbx.md", files={
             "kick.fbx": files / "two_takes_30.fbx", "character.fbx": files / "still_skin.fbx"}), 3)
+
+    def test_reading_in_python(self):
+        for module, package in (("build", "python3-build"), ("ensurepip", "python3-venv")):
+            if importlib.util.find_spec(module) is None:
+                self.skipTest(f"no Python module {module}; install the package {package}")
+        build = tools.PROGRAMS.parent
+        if not list((build / "python" / "duet_motion").glob("_motion_files.*.so")):
+            self.skipTest("no extension module; build duet_python_module")
+        with tempfile.TemporaryDirectory() as folder:
+            tools.run(tools.SOURCE / "scripts" / "build_python.sh", folder, build).check_returncode()
+            wheel, = pathlib.Path(folder).glob("*.whl")
+            self.assertEqual(self.run_blocks("guides/python_reading.md", source_package=False,
+                                             files={f"build/python/{wheel.name}": wheel}), 4)
 
     def test_from_a_data_set_to_training(self):
         if importlib.util.find_spec("pandas") is None:
