@@ -46,7 +46,7 @@ check: ## Run every check, including slow ones (CHECK="links tidy" runs only the
 .PHONY: mutate
 mutate: ## Measure how often the tests notice broken code: docs/mutation.md
 	@scripts/install_packages.sh $(BUILD_LISTS) test
-	@JOBS=$(JOBS) scripts/mutate.py --report docs/mutation.md
+	@JOBS=$(JOBS) scripts/mutate.py
 
 .PHONY: bench
 bench: ## Time the engine and its kernels beside the committed figures, and the cost of hardening

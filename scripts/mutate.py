@@ -8,43 +8,28 @@ tests of its own folder. The next draw replaces a mutation that does not compile
 caught mutation counts until its file changes or build/mutate/caught is deleted; a survivor is tried again.
 
     scripts/mutate.py [--rooms model/motion server/*] [--per-room 30] [--seed 1] [--jobs 2]
-                      [--report docs/mutation.md]
-    scripts/mutate.py --at server/batching/batch_decision.cc:209       every mutation of a line, listed
+    scripts/mutate.py --at server/batching/batch_decision.cc:209       every mutation of a line
 
-Fails if the tests catch less than 90 %.
+Prints each mutation with its outcome, then the share that was caught of each room. Fails if it is below 90 % in all.
 """
 
 import argparse
 import collections
 import concurrent.futures
-import datetime
 import fnmatch
 import hashlib
 import os
 import pathlib
-import queue
 import random
 import re
-import shlex
 import sys
 import threading
-import typing
 
 import build_tree
 import mutations
 from mutation_workshop import Workshop
 
-MARK = "<!-- scripts/mutate.py --report writes the rest of this page. -->"
 WANTED = 90  # per cent
-
-
-class Result(typing.NamedTuple):
-    file: str
-    line: int
-    code: str  # the line
-    before: str
-    after: str
-    outcome: str  # caught, timeout or survived
 
 
 def rooms_of(targets, root):
@@ -89,96 +74,61 @@ def draw(options, rooms, root):
 
 
 class Run:
-    """Tries mutations in the workshops, one room at a time in each. `known` names those caught earlier."""
+    """Tries mutations in workshops, each of which takes its share of the rooms. `known` has those caught earlier."""
 
     def __init__(self, shops, known, root, tests):
-        self.root, self.tests, self.path, self.lock = root, tests, known, threading.Lock()
-        self.known = dict(line.split() for line in known.read_text().splitlines()) if known.exists() else {}
-        self.stopped, self.jobs, self.free = threading.Event(), len(shops), queue.Queue()
-        for shop in shops:
-            self.free.put(shop)
+        self.shops, self.root, self.tests, self.path, self.lock = shops, root, tests, known, threading.Lock()
+        self.known = set(known.read_text().split()) if known.exists() else set()
+        self.stopped, self.caught = threading.Event(), collections.defaultdict(list)
 
     def rooms(self, drawn, wanted):
-        """Room -> results of its first `wanted` mutations that compile."""
-        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+        """Room -> for each of its first `wanted` mutations that compile, whether it was caught."""
+        with concurrent.futures.ThreadPoolExecutor(len(self.shops)) as pool:
             try:
-                return dict(zip(drawn, pool.map(lambda room: self.room(room, drawn[room], wanted), drawn)))
+                list(pool.map(lambda number: self.share(number, drawn, wanted), range(len(self.shops))))
+                return dict(self.caught)
             finally:
                 self.stopped.set()  # an interruption
 
-    def room(self, room, drawn, wanted):
-        shop, results = self.free.get(), []
-        try:
-            for file, mutation in drawn:
-                if len(results) == wanted or self.stopped.is_set():
+    def share(self, number, drawn, wanted):
+        for room in list(drawn)[number::len(self.shops)]:
+            for file, mutation in drawn[room]:
+                if len(self.caught[room]) == wanted or self.stopped.is_set():
                     break
-                result = self.one(shop, file, mutation)
-                if result.outcome != "invalid":
-                    results.append(result)
-                    print(f"{room} {len(results)}: {' '.join(map(str, result))}", flush=True)
-        finally:
-            self.free.put(shop)
-        return results
+                outcome = self.one(self.shops[number], file, mutation)
+                if outcome != "invalid":
+                    self.caught[room].append(outcome == "caught")
 
     def one(self, shop, file, mutation):
         text = (self.root / file).read_text(encoding="utf-8")
         key = hashlib.sha256(f"{file} {mutation} {text}".encode()).hexdigest()
-        outcome = self.known.get(key) or shop.attempt(file, mutation.apply(text), self.tests[file])
-        if key not in self.known and outcome != "survived":
+        outcome = "caught" if key in self.known else shop.attempt(file, mutation.apply(text), self.tests[file])
+        if key not in self.known and outcome == "caught":
             with self.lock, self.path.open("a", encoding="utf-8") as out:
-                out.write(f"{key} {outcome}\n")
-        return Result(file, mutation.line, text.splitlines()[mutation.line - 1].strip(),
-                      text[mutation.start:mutation.end], mutation.replacement, outcome)
+                out.write(f"{key}\n")
+        print(f"{outcome} {file}:{mutation.line}: {text[mutation.start:mutation.end]!r} became {mutation.replacement!r}"
+              f" in {text.splitlines()[mutation.line - 1].strip()}", flush=True)
+        return outcome
 
 
-def percent(results):
-    return 100 * sum(result.outcome != "survived" for result in results) / len(results) if results else 100
-
-
-def page(results, options, arguments):
-    """The generated part of the report."""
-    everything = [result for found in results.values() for result in found]
-    yield f"{MARK}\nWritten by `{shlex.join(['scripts/mutate.py', *arguments])}` on {datetime.date.today()}:"
-    yield f"up to {options.per_room} mutations that compile from each folder, drawn with seed {options.seed}.\n"
-    yield "| folder | tried | caught | of these by a time limit | survived | score |\n|---|---|---|---|---|---|"
-    for room, found in (*((f"`{room}`", found) for room, found in results.items()), ("**all**", everything)):
-        count = collections.Counter(result.outcome for result in found)
-        yield (f"| {room} | {len(found)} | {len(found) - count['survived']} | {count['timeout']} | "
-               f"{count['survived']} | {percent(found):.1f} % |")
-    yield "\n## Survivors\n\n| where | before | after | line |\n|---|---|---|---|"
-    for result in everything:
-        if result.outcome == "survived":
-            yield f"| `{result.file}:{result.line}` | {cell(result.before)} | {cell(result.after)} | {cell(result.code)} |"
-
-
-def cell(code):
-    """C++ as a cell of a Markdown table."""
-    escaped = " ".join(code.split()).replace("&", "&amp;").replace("<", "&lt;").replace("|", "&#124;")
-    return f"<code>{escaped}</code>" if code else "(nothing)"
-
-
-def write_report(path, lines):
-    """Replaces the generated part of a page, and keeps the text above it."""
-    before = path.read_text(encoding="utf-8") if path.exists() else ""
-    path.write_text(before.partition(MARK)[0] + "\n".join(lines) + "\n", encoding="utf-8")
+def percent(caught):
+    return 100 * sum(caught) / len(caught) if caught else 100
 
 
 def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rooms", nargs="+", default=["*"], metavar="PATTERN", help="folders to sample")
-    parser.add_argument("--at", nargs="+", metavar="FILE:LINE", help="only mutations of these lines")
+    parser.add_argument("--at", nargs="+", metavar="FILE:LINE", help="all mutations of these lines")
     parser.add_argument("--per-room", type=int, default=30, help="mutations of each room that compile")
     parser.add_argument("--seed", type=int, default=1, help="which mutations are drawn")
     parser.add_argument("--jobs", type=int, default=build_tree.default_jobs(), help="copies of the tree")
-    parser.add_argument("--report", type=pathlib.Path, help="page to write")
     return parser.parse_args(arguments)
 
 
 def main(arguments):
     options, root = parse(arguments), build_tree.ROOT
     os.nice(5)
-    work = root / "build/mutate"
-    shops = [Workshop(work / str(number), root) for number in range(1, options.jobs + 1)]
+    shops = [Workshop(root / "build/mutate" / str(number), root) for number in range(1, options.jobs + 1)]
     for shop in shops:
         shop.prepare()
     targets = build_tree.read_targets(shops[0].build_dir)
@@ -190,14 +140,12 @@ def main(arguments):
     drawn = {room: [change for change in drawn[room] if tests[change[0]]] for room in drawn}
     for shop in shops:
         shop.build_and_time(sorted(set().union(*tests.values())))
-
-    run = Run(shops, work / "caught", root, tests)
+    run = Run(shops, root / "build/mutate/caught", root, tests)
     results = run.rooms(drawn, sys.maxsize if options.at else options.per_room)
-    for room, found in results.items():
-        print(f"{room:32} {percent(found):5.1f} % of {len(found)}")
-    if options.report:
-        write_report(options.report, page(results, options, arguments))
-    return 0 if percent([result for found in results.values() for result in found]) >= WANTED else 1
+    results = {**dict(sorted(results.items())), "all": sum(results.values(), [])}
+    for room, caught in results.items():
+        print(f"{room:32} {percent(caught):5.1f} % of {len(caught)}")
+    return 0 if percent(results["all"]) >= WANTED else 1
 
 
 if __name__ == "__main__":

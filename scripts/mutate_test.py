@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows how mutate.py chooses, tries, remembers and reports, without compiling anything."""
+"""Shows how mutate.py chooses, tries and remembers, without compiling anything."""
 
 import contextlib
 import io
@@ -51,7 +51,7 @@ class MutateTest(test_project.ProjectTestCase):
         self.tried.clear()
         run = mutate.Run([self], self.root / "caught", self.root, {FILE: ["motion_test"]})
         with contextlib.redirect_stdout(io.StringIO()):
-            return [result.outcome for result in run.rooms(self.draw(), wanted)["model/motion"]]
+            return run.rooms(self.draw(), wanted)["model/motion"]
 
     def test_rooms_are_folders_of_torch_free_libraries(self):
         self.assertEqual(self.rooms(), {"model/motion": {FILE: "duet_motion"}})
@@ -78,7 +78,7 @@ class MutateTest(test_project.ProjectTestCase):
         self.assertEqual(self.judges(), ["motion_test", "cli_test", "parity_test"])
 
     def test_every_mutation_is_tried(self):
-        self.assertEqual(set(self.run_room()), {"caught"})
+        self.assertTrue(all(self.run_room()))
         self.assertEqual(len(self.tried), len(mutations.mutations(CODE)))
         self.assertNotIn(CODE, self.tried)
 
@@ -107,27 +107,12 @@ class MutateTest(test_project.ProjectTestCase):
         self.run_room()
         self.assertEqual(len(self.tried), len(mutations.mutations(CODE)) - 2)
 
-    def test_report_counts_time_limits_as_caught_names_survivors_and_keeps_the_text_above(self):
-        results = {"model": [mutate.Result("model/a.cc", 3, "x < y", "a && b", "", outcome)
-                             for outcome in ("caught", "timeout", "survived", "caught")]}
-        report = self.root / "mutation.md"
-        report.write_text(f"# Score\n{mutate.MARK}\nstale")
-        arguments = ["--rooms", "server/*"]
-        mutate.write_report(report, mutate.page(results, mutate.parse(arguments), arguments))
-        for part in ("# Score\n<!-- ", "`scripts/mutate.py --rooms 'server/*'`", "| `model` | 4 | 3 | 1 | 1 | 75.0 % |",
-                     "| `model/a.cc:3` | <code>a &amp;&amp; b</code> | (nothing) | <code>x &lt; y</code> |"):
-            self.assertIn(part, report.read_text())
-        self.assertNotIn("stale", report.read_text())
-
 
 class WorkshopTest(test_project.ProjectTestCase):
-    def limited(self, code, limit_s=60):
-        return mutation_workshop.limited([sys.executable, "-c", code], limit_s, dict(os.environ))
-
     def test_outcome_follows_from_status_and_limit(self):
-        self.assertEqual(self.limited("pass"), "passed")
-        self.assertEqual(self.limited("raise SystemExit(1)"), "failed")
-        self.assertEqual(self.limited("import time; time.sleep(600)", limit_s=0.2), "timeout")
+        for code, limit_s, passes in ("", 60, True), ("exit(1)", 60, False), ("import time; time.sleep(600)", 0.2, False):
+            command = [sys.executable, "-c", code]
+            self.assertEqual(mutation_workshop.passes(command, limit_s, dict(os.environ)), passes, code)
 
     def test_copy_follows_the_tree_and_only_one_file_is_mutated(self):
         self.write("CMakeLists.txt", text="cmake_minimum_required(VERSION 3.25)\nproject(none NONE)\n")
