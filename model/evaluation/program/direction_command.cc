@@ -15,13 +15,6 @@
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments {
-  std::string data;
-  std::vector<std::string> runs;
-  std::vector<std::string> subjects;
-  SectionFlags section = {"06_direction", "Where the partner of a leader is expected"};
-};
-
 // Reads the regression of a fold's model, if it has one. Errors: those of reading it;
 // INVALID_ARGUMENT for other joints.
 absl::StatusOr<std::optional<engine::DirectionRegression>> ReadFold(
@@ -36,13 +29,13 @@ absl::StatusOr<std::optional<engine::DirectionRegression>> ReadFold(
 }
 
 // The hips' row, then one for each of the runs.
-absl::StatusOr<std::vector<report::DirectionRow>> Measure(const Arguments& arguments,
+absl::StatusOr<std::vector<report::DirectionRow>> Measure(const ExperimentFlags& flags,
                                                           const dataset::Dataset& dataset) {
-  const absl::StatusOr<std::vector<Fold>> folds = LeaveOut(dataset, arguments.subjects);
+  const absl::StatusOr<std::vector<Fold>> folds = LeaveOut(dataset, flags.subjects);
   if (!folds.ok()) return folds.status();
   std::vector<NamedRuns> runs;
   std::vector<report::DirectionRow> rows = {{"hips", {}}};
-  for (const std::string& text : arguments.runs) {
+  for (const std::string& text : flags.models.runs) {
     absl::StatusOr<NamedRuns> named = ParseRuns(text);
     if (!named.ok()) return named.status();
     rows.push_back({named->name, {}});
@@ -65,37 +58,37 @@ absl::StatusOr<std::vector<report::DirectionRow>> Measure(const Arguments& argum
   return rows;
 }
 
-absl::Status Run(const Arguments& arguments) {
-  const absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
+absl::Status Run(const ExperimentFlags& flags) {
+  const absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(flags.data);
   if (!dataset.ok()) return dataset.status();
   if (!dataset->skeleton.hips) {
     return absl::InvalidArgumentError(
         absl::StrCat("--data: expected a skeleton with hips, got that of ", dataset->name));
   }
-  const absl::StatusOr<std::vector<report::DirectionRow>> rows = Measure(arguments, *dataset);
+  const absl::StatusOr<std::vector<report::DirectionRow>> rows = Measure(flags, *dataset);
   if (!rows.ok()) return rows.status();
   report::ResultSection section = BeginSection(
-      arguments.section,
+      flags.section,
       "If a request has neither a partner direction nor a follower start, the direction is "
       "estimated from the leader's motion. Each subject is left out of training in turn; lower is "
       "better.");
   section.tables = {report::DirectionTable(*rows)};
   section.settings = {{"data", DescribeData(*dataset)}};
-  return FinishSection(arguments.section, section);
+  return FinishSection(flags.section, section);
 }
 
 }  // namespace
 
 void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto flags = std::make_shared<ExperimentFlags>();
   CLI::App* command = app->add_subcommand(
       "direction", "Errors of the partner's direction when a model estimates it from the leader");
-  AddDataFlag(&arguments->data, command);
-  command->add_option("--runs", arguments->runs, "output of duet-train --protocol loso; repeatable")
+  AddExperimentFlags("06_direction", "Where the partner of a leader is expected", flags.get(),
+                     command);
+  command
+      ->add_option("--runs", flags->models.runs, "output of duet-train --protocol loso; repeatable")
       ->type_name(kNamedRuns);
-  AddSubjectsFlag(&arguments->subjects, command);
-  AddSectionFlags(&arguments->section, command);
-  RunWhenNamed(command, arguments, Run, chosen);
+  RunWhenNamed(command, flags, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program
