@@ -3,21 +3,18 @@
 #include <sys/stat.h>
 
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::base {
 namespace {
 
-using test::IsOk;
 using test::ReadTestFile;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::WriteTestFile;
 
 namespace fs = std::filesystem;
 using ::testing::_;
-using ::testing::HasSubstr;
 
 constexpr std::size_t kMax = 100;
 

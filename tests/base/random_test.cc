@@ -9,10 +9,10 @@
 #include <numeric>
 #include <set>
 
+#include "tests/support/matchers.h"
+
 namespace duet::base {
 namespace {
-
-using testing::ElementsAre;
 
 // The fixed values are those of an implementation of MT19937-64 of its own, in another language:
 // published results change when these do.

@@ -7,17 +7,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::base {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
-
 using nlohmann::json;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 auto Refused(const std::string& why) {
   return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));

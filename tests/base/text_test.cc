@@ -7,11 +7,10 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/matchers.h"
 
 namespace duet::base {
 namespace {
-
-using ::testing::ElementsAre;
 
 TEST(ParseNumber, AcceptsOneFiniteNumber) {
   double value = 0;

@@ -7,24 +7,20 @@
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
 #include "model/base/sha256.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::checkpoint {
 namespace {
 
-using test::IsOk;
 using test::ReadTestFile;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::TinyCheckpoint;
 using test::TinyManifest;
 using test::WriteTestFile;
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 auto Refused(const std::string& why) {
   return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why));

@@ -7,7 +7,7 @@
 #include "model/base/sha256.h"
 #include "model/checkpoint/checkpoint.h"
 #include "tests/support/architectures.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_checkpoint.h"
 
@@ -15,10 +15,7 @@ namespace duet::checkpoint {
 namespace {
 
 using test::FilledCheckpoint;
-using test::IsOk;
 using test::TinyManifest;
-
-using ::testing::Not;
 
 struct Files {
   std::string manifest;

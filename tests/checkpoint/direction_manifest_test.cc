@@ -4,19 +4,15 @@
 
 #include "model/checkpoint/manifest.h"
 #include "tests/checkpoint/edited_manifest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::checkpoint {
 namespace {
 
 using test::CompleteManifest;
-using test::IsOk;
-using test::StatusIs;
 
 using nlohmann::json;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 // Three joints: 2 (3 + 1) + 1 features.
 std::vector<double> Numbers(double first) {

@@ -9,19 +9,15 @@
 #include "model/engine/window_plan.h"
 #include "tests/checkpoint/edited_manifest.h"
 #include "tests/support/architectures.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::checkpoint {
 namespace {
 
 using test::CompleteManifest;
-using test::IsOk;
-using test::StatusIs;
 
 using nlohmann::json;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 json CompleteJson() { return json::parse(SerializeManifest(CompleteManifest())); }
 

@@ -3,23 +3,17 @@
 #include <gmock/gmock.h>
 
 #include "model/checkpoint/checkpoint.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::checkpoint {
 namespace {
 
-using test::IsOk;
 using test::ReadTestFile;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::TinyCheckpoint;
 using test::TinyManifest;
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 Manifest Trained() {
   Manifest manifest = TinyManifest();

@@ -10,14 +10,13 @@
 #include "absl/strings/str_split.h"
 #include "gtest/gtest.h"
 #include "model/checkpoint/safetensors.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::checkpoint {
 namespace {
 
-using test::IsOk;
 using test::ReadTestFile;
 using test::TemporaryFolder;
 using test::TinyCheckpoint;

@@ -6,15 +6,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::checkpoint {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
 
 std::vector<Tensor> TwoTensors() {
   return {{"b", {2, 2}, {1, 2, 3, 4}}, {"a", {3}, {-1, 0.5f, 1e-30f}}};

@@ -2,14 +2,13 @@
 #include "gtest/gtest.h"
 #include "model/checkpoint/manifest.h"
 #include "tests/support/architectures.h"
+#include "tests/support/matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::checkpoint {
 namespace {
 
 using test::TinyManifest;
-
-using ::testing::ElementsAre;
 
 Manifest SbuManifest() {
   Manifest manifest;

@@ -4,20 +4,15 @@
 #include <string>
 
 #include "model/checkpoint/manifest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::checkpoint {
 namespace {
 
 using test::CompleteManifest;  // of a model with the classes kick and hug
-using test::IsOk;
-using test::StatusIs;
 
 using nlohmann::json;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 TEST(TouchingClassesInManifest, RoundTrip) {
   Manifest manifest = CompleteManifest();

@@ -3,17 +3,14 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/classifier/random_classifier.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::classifier {
 namespace {
 
-using test::IsOk;
 using test::RandomClassifier;
-using test::StatusIs;
 using ::testing::_;
-using ::testing::HasSubstr;
 
 TEST(ClassifierFiles, RoundTrip) {
   const test::TemporaryFolder folder;

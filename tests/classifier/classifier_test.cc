@@ -7,19 +7,13 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/classifier/random_classifier.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 
 namespace duet::classifier {
 namespace {
 
-using test::IsOk;
 using test::RandomClassifier;
-using test::StatusIs;
-using ::testing::FloatNear;
-using ::testing::HasSubstr;
-using ::testing::Pointwise;
-using ::testing::SizeIs;
 
 motion::ClipPair Pair(int frames, double frame_rate_hz = 15) {
   motion::ClipPair pair;

@@ -6,7 +6,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::internal {
 namespace {
@@ -16,18 +16,10 @@ using test::FakeStub;
 using test::FakeTime;
 using test::FollowerFor;
 using test::HeaderFor;
-using test::IsOk;
 using test::ReplyFor;
 using test::ScriptedStream;
 using test::ServiceError;
-using test::StatusIs;
 using test::ThreeJointLeader;
-
-using ::testing::Each;
-using ::testing::ElementsAre;
-using ::testing::Field;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 using Reply = std::vector<v1::SynthesizeResponse>;
 

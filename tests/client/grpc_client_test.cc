@@ -14,7 +14,7 @@
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_service.h"
 #include "tests/client/support/fake_stub.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::internal {
 namespace {
@@ -22,14 +22,9 @@ namespace {
 using test::FakeServer;
 using test::FollowerFor;
 using test::HeaderFor;
-using test::IsOk;
 using test::kLongestCall;
 using test::ReplyFor;
-using test::StatusIs;
 using test::ThreeJointLeader;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 using Writer = grpc::ServerWriter<v1::SynthesizeResponse>;
 

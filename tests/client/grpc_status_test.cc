@@ -6,17 +6,12 @@
 #include "duet/rpc/v1/status.pb.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::internal {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
-
 using ::testing::Eq;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 void Pack(const google::protobuf::Message& detail, const std::string& type,
           rpc::v1::Status* status) {

@@ -2,13 +2,10 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::internal {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::Field;
 
 auto Key(int frame, float hug) {
   return AllOf(Field(&WeightKeyframe::frame, frame),

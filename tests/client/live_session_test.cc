@@ -22,22 +22,16 @@
 #include "tests/client/support/fake_service.h"
 #include "tests/client/support/fake_stub.h"
 #include "tests/client/support/live_mirror.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client {
 namespace {
 
 using test::FakeServer;
-using test::IsOk;
 using test::kLongestCall;
 using test::LiveMirror;
 using test::LiveServerStream;
-using test::StatusIs;
 using test::ThreeJointLeader;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 using Kind = LiveNotice::Kind;
 

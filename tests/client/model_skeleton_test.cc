@@ -2,15 +2,10 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
 
 ModelInfo Model(const std::vector<std::string>& joint_names) {
   ModelInfo model;

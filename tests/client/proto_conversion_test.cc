@@ -5,17 +5,12 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::internal {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
 using test::ThreeJointLeader;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 SynthesisRequest GoodRequest() {
   SynthesisRequest request;

@@ -9,7 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::internal {
 namespace {
@@ -17,14 +17,9 @@ namespace {
 using test::ChunkFor;
 using test::FollowerFor;
 using test::HeaderFor;
-using test::IsOk;
 using test::ReplyFor;
 using test::ServiceError;
-using test::StatusIs;
 using test::ThreeJointLeader;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 using Reply = std::vector<v1::SynthesizeResponse>;
 

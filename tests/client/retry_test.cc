@@ -5,20 +5,13 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::internal {
 namespace {
 
 using test::FakeTime;
-using test::IsOk;
 using test::ServiceError;
-using test::StatusIs;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 constexpr absl::Duration kMillisecond = absl::Milliseconds(1);
 

@@ -6,22 +6,16 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_service.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_certificate.h"
 
 namespace duet::client::internal {
 namespace {
 
 using test::FakeServer;
-using test::IsOk;
 using test::kLongestCall;
 using test::MakeTestCertificate;
-using test::StatusIs;
 using test::TestCertificate;
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 class TlsTest : public ::testing::Test {
  protected:

@@ -9,7 +9,7 @@
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/dataset/dataset.h"
 #include "tests/support/data_folder.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::cpu_engine {
 namespace {
@@ -17,7 +17,6 @@ namespace {
 using engine::SynthesisWindow;
 using engine::Synthesizer;
 using kernels::Precision;
-using test::IsOk;
 
 // The first window of a capture.
 SynthesisWindow WindowOf(const dataset::Sequence& sequence, const engine::ModelDescription& model,

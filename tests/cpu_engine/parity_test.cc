@@ -13,8 +13,8 @@
 #include "tests/cpu_engine/network_inputs.h"
 #include "tests/cpu_engine/random_checkpoint.h"
 #include "tests/support/architectures.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 
 namespace duet::cpu_engine {
 namespace {
@@ -24,7 +24,6 @@ using checkpoint::GeneratorVariant;
 using checkpoint::Manifest;
 using engine::NetworkInput;
 using kernels::Precision;
-using test::IsOk;
 
 std::vector<Checkpoint> Embedded() {
   std::vector<Checkpoint> checkpoints;

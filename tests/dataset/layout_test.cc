@@ -5,12 +5,11 @@
 
 #include "model/dataset/dataset.h"
 #include "nlohmann/json.hpp"
+#include "tests/support/matchers.h"
 
 namespace duet::dataset {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
 using Json = nlohmann::json;
 
 // A stick figure in the own-data layout, complete.

@@ -3,11 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/matchers.h"
+
 namespace duet::dataset {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 TEST(LeaderIndexTest, ReadsSidesAndSubjectsByColumnName) {
   const auto index = ParseIndex(

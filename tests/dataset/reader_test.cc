@@ -5,14 +5,11 @@
 #include "model/dataset/dataset.h"
 #include "model/dataset/layout.h"
 #include "tests/dataset/capture_folder.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::dataset {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 // The right person's left hand reaches, everything else stands still.
 std::string RightReaches() {

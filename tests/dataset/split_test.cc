@@ -6,12 +6,10 @@
 #include <numeric>
 
 #include "model/dataset/dataset.h"
+#include "tests/support/matchers.h"
 
 namespace duet::dataset {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 // `counts[c]` sequences of class c.
 Dataset MadeUp(const std::vector<int>& counts) {

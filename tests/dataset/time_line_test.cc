@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::dataset {
 
@@ -11,13 +11,6 @@ bool operator==(const LabelSpan& a, const LabelSpan& b) {
 }
 
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 constexpr char kHeader[] = "path\tclass\tfrom_seconds\tto_seconds\n";
 const std::vector<std::string> kClasses = {"basic", "turn"};

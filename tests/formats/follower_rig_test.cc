@@ -11,16 +11,12 @@
 #include "nlohmann/json.hpp"
 #include "tests/formats/asf/asf_fixture.h"
 #include "tests/formats/gltf/gltf_fixture.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::HasSubstr;
 
 namespace fs = std::filesystem;
 

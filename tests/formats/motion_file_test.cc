@@ -15,6 +15,7 @@
 #include "model/formats/flat/sbu_text.h"
 #include "tests/formats/asf/asf_fixture.h"
 #include "tests/formats/gltf/gltf_fixture.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
 
@@ -25,9 +26,6 @@ using test::LargestDistance;
 using test::MakePerson;
 
 namespace fs = std::filesystem;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 class MotionFile : public ::testing::Test {
  protected:

@@ -8,21 +8,14 @@
 #include "absl/strings/str_replace.h"
 #include "model/formats/motion_file.h"
 #include "tests/importing/bvh_people.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::importing {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::WriteTestFile;
-
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 class FindSkeletonTest : public ::testing::Test {
  protected:

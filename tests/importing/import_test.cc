@@ -16,26 +16,16 @@
 #include "model/retargeting/reading_report.h"
 #include "tests/formats/asf/asf_fixture.h"
 #include "tests/importing/bvh_people.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::importing {
 namespace {
 
 namespace fs = std::filesystem;
-using test::IsOk;
 using test::ReadTestFile;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::WriteTestFile;
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using ::testing::SizeIs;
-using ::testing::StartsWith;
 
 class ImportTest : public ::testing::Test {
  protected:

@@ -3,18 +3,10 @@
 #include <gmock/gmock.h>
 
 #include "absl/strings/str_cat.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::importing {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 // "label/name first second source", for each pair.
 std::vector<std::string> Lines(const Pairing& pairing) {

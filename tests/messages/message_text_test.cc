@@ -7,16 +7,10 @@
 
 #include <string>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::messages {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 TEST(ParseMessage, ReadsBothSyntaxesAndForgetsWhatWasThere) {
   google::protobuf::Duration message;

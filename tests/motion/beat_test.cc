@@ -1,12 +1,10 @@
 #include "model/motion/beat.h"
 
 #include "gmock/gmock.h"
+#include "tests/support/matchers.h"
 
 namespace duet::motion {
 namespace {
-
-using ::testing::DoubleEq;
-using ::testing::ElementsAre;
 
 TEST(BeatTest, PositionsCountFromTheFirstBeat) {
   const Beat beat{120, 0.25};

@@ -4,15 +4,10 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::motion {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
 
 TEST(SbuParts, AreFiveOfThreeJoints) {
   const std::vector<BodyPart> parts = SbuParts();

@@ -1,11 +1,10 @@
 #include "model/motion/feet.h"
 
 #include "gmock/gmock.h"
+#include "tests/support/matchers.h"
 
 namespace duet::motion {
 namespace {
-
-using ::testing::ElementsAre;
 
 TEST(LowerFootTest, IsTheLowerOfBothInEachFrame) {
   Poses poses(3, 3);

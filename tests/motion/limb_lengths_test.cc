@@ -2,11 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/support/matchers.h"
+
 namespace duet::motion {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::FloatEq;
 
 // A chain of three joints, its bones listed child first.
 Skeleton Chain() {

@@ -4,13 +4,10 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::motion {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
 
 TEST(CheckFrameRate, AcceptsRatesOfCameras) {
   for (const double rate : {0.1, 15.0, 29.97, 1000.0}) {

@@ -4,11 +4,10 @@
 
 #include <cmath>
 
+#include "tests/support/matchers.h"
+
 namespace duet::motion {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 // Root, neck and two feet.
 Skeleton Figure() {

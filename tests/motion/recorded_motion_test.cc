@@ -5,15 +5,10 @@
 
 #include <limits>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::motion {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
 
 constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
 

@@ -2,16 +2,12 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::motion {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
-
 using nlohmann::json;
-using ::testing::HasSubstr;
 
 json Complete() { return json::parse(SkeletonToJson(SbuSkeleton(), SbuParts()).dump()); }
 

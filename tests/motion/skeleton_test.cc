@@ -8,15 +8,10 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::motion {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
 
 TEST(SbuSkeleton, IsValid) { EXPECT_THAT(Validate(SbuSkeleton()), IsOk()); }
 

@@ -3,15 +3,13 @@
 #include <cmath>
 
 #include "gmock/gmock.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::motion {
 namespace {
 
 using test::SteppingMotion;
-
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 JointPair Feet() { return *SbuSkeleton().feet; }
 

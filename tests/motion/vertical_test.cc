@@ -7,12 +7,10 @@
 
 #include "model/base/angle.h"
 #include "model/motion/levelling.h"
+#include "tests/support/matchers.h"
 
 namespace duet::motion {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 constexpr double kRate = 30;
 constexpr double kDegree = base::kRadiansPerDegree;

@@ -6,16 +6,10 @@
 #include <new>
 #include <stdexcept>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::network {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 TEST(CatchExceptionsTest, ReturnsTheStatusOfTheWork) {
   EXPECT_THAT(CatchExceptions([] { return absl::OkStatus(); }), IsOk());

@@ -2,17 +2,10 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::retargeting {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 // Mixamo's names, with collar bones, fingers and toes.
 motion::Skeleton MixamoSkeleton() {

@@ -10,14 +10,10 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/retargeting/joint_names.h"
+#include "tests/support/matchers.h"
 
 namespace duet::retargeting {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 // What one program calls the joints of a person in a T pose. '@' is the side.
 struct Convention {

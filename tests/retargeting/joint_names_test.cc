@@ -4,11 +4,10 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/matchers.h"
 
 namespace duet::retargeting {
 namespace {
-
-using ::testing::ElementsAre;
 
 struct NameCase {
   const char* name;

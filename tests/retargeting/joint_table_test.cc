@@ -2,14 +2,10 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/matchers.h"
 
 namespace duet::retargeting {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Pair;
 
 TEST(JointTable, ReadsOneJointPerLine) {
   const absl::StatusOr<JointOverrides> table = ParseJointTable(

@@ -6,6 +6,7 @@
 #include "gtest/gtest.h"
 #include "model/motion/skeleton.h"
 #include "tests/support/expect_near.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::retargeting {
@@ -13,7 +14,6 @@ namespace {
 
 using test::MakePerson;
 using test::PersonOptions;
-using ::testing::ElementsAre;
 
 using Kind = RigJoint::Kind;
 

@@ -8,19 +8,15 @@
 #include <vector>
 
 #include "model/torch_engine/torch_network.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::torch_engine {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
 using test::SwayingMotion;
 using test::TinyCheckpoint;
-
-using ::testing::HasSubstr;
 
 constexpr int kPaper = 1, kSampling = 2;  // versions of sbu
 

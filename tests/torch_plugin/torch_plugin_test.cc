@@ -6,16 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::torch_plugin {
 namespace {
-
-using ::testing::HasSubstr;
-
-using test::IsOk;
-using test::StatusIs;
 
 // The path of the library, which the build passes to this test.
 TEST(TorchPluginTest, OpensTheLibraryAndLoadsModels) {

@@ -4,7 +4,7 @@
 
 #include "model/network/batch.h"
 #include "model/training/flow_statistics.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/training/flow_test_options.h"
 #include "tests/training/made_up_dataset.h"
@@ -12,11 +12,7 @@
 namespace duet::training {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
 using test::TemporaryFolder;
-
-using ::testing::HasSubstr;
 
 class FlowTrainerTest : public ::testing::Test {
  protected:

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 
+#include "tests/support/matchers.h"
+
 namespace duet::training {
 namespace {
-
-using testing::Each;
-using testing::ElementsAre;
 
 constexpr int kClasses = 2;
 

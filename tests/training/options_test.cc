@@ -5,17 +5,11 @@
 #include <string>
 
 #include "model/training/named_configs.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/training/made_up_dataset.h"
 
 namespace duet::training {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 std::string DefaultJson() { return std::string(FindConfig("default")->json); }
 std::string FlowJson() { return std::string(FindConfig("flow")->json); }

@@ -13,19 +13,15 @@
 #include "model/training/named_configs.h"
 #include "model/training/run.h"
 #include "tests/importing/bvh_people.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/training/made_up_dataset.h"
 
 namespace duet::training {
 namespace {
 
-using test::IsOk;
 using test::ReadTestFile;
 using test::TemporaryFolder;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 using Replacements = std::vector<std::pair<std::string, std::string>>;
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "model/network/losses.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/training/made_up_dataset.h"
 #include "tests/training/test_options.h"
@@ -13,13 +13,9 @@
 namespace duet::training {
 namespace {
 
-using test::IsOk;
 using test::ReadTestFile;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::WriteTestFile;
-
-using ::testing::HasSubstr;
 
 class PaperTrainerTest : public ::testing::Test {
  protected:

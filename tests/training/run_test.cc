@@ -11,7 +11,7 @@
 #include "model/training/named_configs.h"
 #include "model/training/run_log.h"
 #include "model/training/sampler.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/training/flow_test_options.h"
 #include "tests/training/made_up_dataset.h"
@@ -19,13 +19,8 @@
 namespace duet::training {
 namespace {
 
-using test::IsOk;
 using test::ReadTestFile;
-using test::StatusIs;
 using test::TemporaryFolder;
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 class RunTest : public ::testing::Test {
  protected:

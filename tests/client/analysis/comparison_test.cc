@@ -4,17 +4,13 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::client::analysis {
 namespace {
 
-using test::IsOk;
 using test::MakePerson;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
 
 const motion::Skeleton& Sbu() {
   static const auto& skeleton = *new motion::Skeleton(motion::SbuSkeleton());

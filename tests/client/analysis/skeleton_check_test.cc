@@ -9,14 +9,13 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/motion/inferred_coordinates.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::client::analysis {
 namespace {
 
 using test::MakePerson;
-
-using ::testing::HasSubstr;
 
 const motion::Skeleton& Sbu() {
   static const auto& skeleton = *new motion::Skeleton(motion::SbuSkeleton());

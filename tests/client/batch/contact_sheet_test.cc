@@ -16,17 +16,12 @@
 #include "model/base/sha256.h"
 #include "model/formats/flat/sbu_text.h"
 #include "model/formats/motion_file.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 // People who sway, the follower `apart` from the leader.
 motion::ClipPair Pair(motion::Vec3 apart, int frames = 9) {

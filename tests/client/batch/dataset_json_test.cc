@@ -9,16 +9,10 @@
 #include "duet/batch/v1/dataset.pb.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::batch {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 namespace v1 = ::duet::batch::v1;
 

@@ -4,17 +4,11 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
-
-using test::IsOk;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::Field;
-using ::testing::SizeIs;
 
 nlohmann::ordered_json Failed(const char* leader, const char* name, const std::string& message) {
   return {{"state", "failed"},

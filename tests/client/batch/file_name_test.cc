@@ -4,12 +4,10 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::batch {
 namespace {
-
-using ::testing::MatchesRegex;
-using ::testing::StartsWith;
 
 std::string Repeated(const std::string& text, int times) {
   std::string all;

@@ -6,17 +6,14 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/sha256.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
 
 using nlohmann::ordered_json;
-using test::IsOk;
 using test::ReadTestFile;
-using test::StatusIs;
-using ::testing::HasSubstr;
 
 class ItemFilesTest : public ::testing::Test {
  protected:

@@ -11,15 +11,13 @@
 #include "client/batch/shard_offsets.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
 
 using nlohmann::ordered_json;
-using test::IsOk;
-using ::testing::SizeIs;
 
 JobIdentity Identity(Packing packing, const Splits& splits = {}) {
   JobIdentity identity;

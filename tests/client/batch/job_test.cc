@@ -31,19 +31,14 @@
 #include "model/motion/resample.h"
 #include "nlohmann/json.hpp"
 #include "tests/classifier/random_classifier.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
 
-using test::IsOk;
 using test::ReadTestFile;
-using test::StatusIs;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 constexpr char kRecipe[] = R"(
   reactions { labels { weights { key: "kick" value: 1 } } }

@@ -10,18 +10,14 @@
 #include "client/batch/item_limit.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
 
-using test::IsOk;
 using test::ReadTestFile;
-using test::StatusIs;
 using test::WriteTestFile;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 // While it lives, files take this many bytes and no more, as if the disk were full.
 class FullDisk {

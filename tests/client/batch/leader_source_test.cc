@@ -8,18 +8,13 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/motion/reading_setting.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
 using ::testing::_;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Pair;
 
 // All that a source gives; the status of the first that it cannot.
 absl::StatusOr<std::vector<LeaderEntry>> ReadAll(LeaderSource& source) {

@@ -8,18 +8,14 @@
 #include "client/batch/verify.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
 
 using nlohmann::ordered_json;
-using test::IsOk;
-using test::StatusIs;
 using test::WriteTestFile;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 constexpr auto kDataLoss = absl::StatusCode::kDataLoss;
 

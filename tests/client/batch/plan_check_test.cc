@@ -11,22 +11,12 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/formats/motion_file.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
-using ::testing::StartsWith;
 
 // Two items of each leader.
 constexpr char kRecipe[] = R"(

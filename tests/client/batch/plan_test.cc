@@ -17,17 +17,11 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/motion/skeleton.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Pair;
 
 ModelInfo Model(const std::string& name, bool samples = true) {
   ModelInfo model;

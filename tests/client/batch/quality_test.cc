@@ -5,13 +5,11 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/classifier/random_classifier.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::client::batch {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 constexpr int kFrames = 30;
 

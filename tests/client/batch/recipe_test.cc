@@ -6,16 +6,11 @@
 #include "gtest/gtest.h"
 #include "model/classifier/classifier_files.h"
 #include "tests/classifier/random_classifier.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 // Of recipes that say nothing of it.
 constexpr char kOutput[] = " output { formats: FORMAT_NPY }";

@@ -4,15 +4,11 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
-
-using test::IsOk;
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 class SetFilesTest : public ::testing::Test {
  protected:

@@ -8,18 +8,14 @@
 #include "gtest/gtest.h"
 #include "model/base/sha256.h"
 #include "model/formats/flat/sbu_text.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::batch {
 namespace {
 
 using nlohmann::ordered_json;
-using test::IsOk;
-using test::StatusIs;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 class SetItemTest : public ::testing::Test {
  protected:

@@ -6,11 +6,10 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/sha256.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::batch {
 namespace {
-
-using ::testing::ElementsAre;
 
 std::string Leader(int number) { return base::Sha256Hex(std::to_string(number)); }
 

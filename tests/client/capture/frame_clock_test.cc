@@ -17,14 +17,11 @@
 #include "client/capture/vmc_reader.h"
 #include "model/base/random.h"
 #include "tests/client/capture/datagrams.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::capture {
 namespace {
 
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using Kind = ClockEvent::Kind;
 using Source = TimedFrame::Source;
 

@@ -8,12 +8,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "tests/client/capture/datagrams.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::capture {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 std::vector<std::string> AddressesIn(absl::string_view datagram) {
   std::vector<std::string> addresses;

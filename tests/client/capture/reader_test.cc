@@ -15,14 +15,10 @@
 #include "client/capture/xsens_reader.h"
 #include "model/base/hex.h"
 #include "tests/client/capture/datagrams.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::capture {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 // Made by `lz4 -9 --no-frame-crc` 1.9.4 of 200 times "duet" and "end".
 constexpr char kLz4Frame[] = "04224d18604082110000004f647565740400ffffff0a506574656e6400000000";

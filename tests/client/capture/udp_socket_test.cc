@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "client/capture/stream_reader.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::capture {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr double kPatience = 30;  // seconds; nothing waits for so long
 

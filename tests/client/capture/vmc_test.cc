@@ -15,14 +15,11 @@
 #include "model/motion/skeleton.h"
 #include "model/retargeting/joint_mapping.h"
 #include "tests/client/capture/datagrams.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::client::capture {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 constexpr float kMillimetre = 1e-3f;
 

@@ -12,12 +12,11 @@
 #include "client/cli/exit_code.h"
 #include "client/cli/program.h"
 #include "nlohmann/json.hpp"
+#include "tests/support/matchers.h"
 
 namespace duet::client::cli {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 using ::testing::Return;
 
 class MockAdminClient : public AdminClient {

@@ -5,14 +5,10 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::client::cli {
 namespace {
-
-using test::IsOk;
-
-using ::testing::SizeIs;
 
 // The options of every client that duet batch makes with these arguments.
 std::vector<ClientOptions> OptionsOf(const BatchArguments& arguments) {

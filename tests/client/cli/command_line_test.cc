@@ -6,6 +6,7 @@
 #include "client/cli/synthesize_flags.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::cli {
@@ -13,11 +14,6 @@ namespace {
 
 using test::TemporaryFolder;
 using test::WriteTestFile;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Pair;
-using ::testing::SizeIs;
 
 using Strings = std::vector<std::string>;
 

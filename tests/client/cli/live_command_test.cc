@@ -20,8 +20,8 @@
 #include "nlohmann/json.hpp"
 #include "tests/client/support/fake_service.h"
 #include "tests/client/support/live_mirror.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::cli {
@@ -29,20 +29,12 @@ namespace {
 
 using nlohmann::json;
 using test::FakeServer;
-using test::IsOk;
 using test::LiveMirror;
 using test::LiveServerStream;
 using test::ReadTestFile;
-using test::StatusIs;
 using test::SwayingMotion;
 using test::SwayingPose;
 using test::TemporaryFolder;
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using ::testing::StartsWith;
 
 constexpr int kFrames = 20;
 

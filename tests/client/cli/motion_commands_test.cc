@@ -12,8 +12,8 @@
 #include "model/motion/skeleton.h"
 #include "nlohmann/json.hpp"
 #include "tests/formats/asf/asf_fixture.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
 
@@ -22,18 +22,11 @@ namespace {
 
 using formats::Format;
 using nlohmann::json;
-using test::IsOk;
 using test::LargestDistance;
 using test::MakePerson;
 using test::ReadTestFile;
 using test::TemporaryFolder;
 using test::WriteTestFile;
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
 
 using Strings = std::vector<std::string>;
 

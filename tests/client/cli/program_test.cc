@@ -17,14 +17,13 @@
 #include "model/motion/skeleton.h"
 #include "nlohmann/json.hpp"
 #include "tests/client/support/fake_stub.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::cli {
 namespace {
 
-using test::IsOk;
 using test::ReadTestFile;
 using test::ServiceError;
 using test::SteppingMotion;
@@ -33,13 +32,7 @@ using test::TemporaryFolder;
 using test::WriteTestFile;
 
 using ::testing::_;
-using ::testing::AllOf;
-using ::testing::EndsWith;
-using ::testing::Field;
-using ::testing::HasSubstr;
-using ::testing::Not;
 using ::testing::Return;
-using ::testing::StartsWith;
 
 constexpr int kFrames = 20;
 

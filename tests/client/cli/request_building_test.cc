@@ -8,17 +8,11 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/motion/coordinates.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::cli {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 // What BuildRequest makes of (1, 2, 3) in a file that does not say its coordinates.
 motion::Vec3 ReadPoint(const InputArguments& input) {

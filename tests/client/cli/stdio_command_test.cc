@@ -10,20 +10,15 @@
 #include "model/formats/motion_file.h"
 #include "model/motion/skeleton.h"
 #include "nlohmann/json.hpp"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::client::cli {
 namespace {
 
-using test::IsOk;
 using test::SwayingMotion;
 using test::TemporaryFolder;
-
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
-using ::testing::StartsWith;
 
 struct Answer {
   int exit_code = 0;

@@ -11,13 +11,12 @@
 #include "model/evaluation/baselines/motion_matrix.h"
 #include "model/evaluation/baselines/pose_space.h"
 #include "tests/evaluation/support/made_up_pairs.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::baselines {
 namespace {
 
 using test::MadeUpPairs;
-
-using testing::ElementsAre;
 
 // Every path of three frames through two states, weighed one by one.
 struct Enumerated {

@@ -5,17 +5,12 @@
 
 #include "model/evaluation/protocol/protocol.h"
 #include "tests/evaluation/support/made_up_pairs.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::baselines {
 namespace {
 
-using test::IsOk;
 using test::MadeUpPairs;
-using test::StatusIs;
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 double MeanAfd(const dataset::Dataset& dataset, const std::string& name) {
   auto method = MakeBaseline(name);

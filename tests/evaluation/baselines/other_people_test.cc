@@ -8,15 +8,12 @@
 
 #include "model/evaluation/baselines/motion_matrix.h"
 #include "tests/evaluation/support/made_up_pairs.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::baselines {
 namespace {
 
 using test::MadeUpPairs;
-using test::StatusIs;
-
-using testing::HasSubstr;
 
 constexpr auto kFirstFrame = motion::StandardOrigin::kFirstFrame;
 

@@ -13,17 +13,13 @@
 #include "model/evaluation/experiments/synthetic_plan.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::experiments {
 namespace {
 
 using test::FakeSynthesizer;
-using test::IsOk;
 using test::MadeUpPairs;
-using test::StatusIs;
-
-using testing::HasSubstr;
 
 std::vector<int> AllOf(const dataset::Dataset& dataset) {
   std::vector<int> all(dataset.sequences.size());

@@ -5,14 +5,10 @@
 #include <cmath>
 
 #include "tests/evaluation/support/made_up_pairs.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::experiments {
 namespace {
-
-using ::testing::DoubleNear;
-using ::testing::Each;
-using ::testing::IsEmpty;
-using ::testing::Pointwise;
 
 // The leaders of these pairs face their followers exactly.
 TEST(DirectionErrors, AreAnglesFromWhereTheFollowerIs) {

@@ -6,14 +6,12 @@
 #include <cmath>
 
 #include "tests/evaluation/support/sweep_curve.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::experiments {
 namespace {
 
 using test::MakeSweepCurve;
-
-using ::testing::ElementsAre;
-using ::testing::SizeIs;
 
 double Rising(double weight) { return 0.4 + 0.2 * weight; }
 double Falling(double weight) { return 0.4 - 0.2 * weight; }

@@ -7,20 +7,15 @@
 
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/architectures.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::evaluation::experiments {
 namespace {
 
 using test::FilledCheckpoint;
-using test::IsOk;
 using test::MadeUpPairs;
-using test::StatusIs;
 using test::TinyManifest;
-
-using testing::HasSubstr;
-using testing::SizeIs;
 
 constexpr int kHidden = 3, kSlices = 6;
 

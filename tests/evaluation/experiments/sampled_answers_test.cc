@@ -7,16 +7,12 @@
 
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::experiments {
 namespace {
 
 using test::MadeUpPairs;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 // Stands still at a height that is the window's seed, at a distance that is its variety, and to the
 // side that its direction points to.

@@ -9,7 +9,7 @@
 #include "model/evaluation/protocol/protocol.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -17,11 +17,6 @@ namespace {
 using test::FakeAnswer;
 using test::FakeSynthesizer;
 using test::MadeUpPairs;
-using test::StatusIs;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 // A leader that takes several windows of the model's.
 dataset::Sequence Repeated(const dataset::Sequence& sequence, int times) {

@@ -14,20 +14,16 @@
 #include "model/formats/motion_file.h"
 #include "model/motion/skeleton_json.h"
 #include "tests/evaluation/support/made_up_pairs.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::evaluation::experiments {
 namespace {
 
-using test::IsOk;
 using test::MadeUpPairs;
 using test::ReadTestFile;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::WriteTestFile;
-
-using testing::HasSubstr;
 
 // The jobs of a small set, written as for `duet batch`, and a data set as it answers: here each
 // leader's own motion, moved by a metre.

@@ -10,13 +10,11 @@
 #include "model/motion/skeleton.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 
 namespace duet::evaluation::experiments {
 namespace {
-
-using test::IsOk;
 
 // The followers are the leaders, lifted by 1 m: what Lifter answers to a level leader.
 motion::Vec3 Lift(motion::Vec3 leader, absl::Span<const float>) {

@@ -8,16 +8,12 @@
 #include "model/classifier/classifier_input.h"
 #include "model/motion/vec3.h"
 #include "tests/evaluation/support/made_up_pairs.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::judge {
 namespace {
 
 using test::MadeUpPairs;
-
-using ::testing::FloatNear;
-using ::testing::HasSubstr;
-using ::testing::Pointwise;
-using ::testing::SizeIs;
 
 constexpr int kPairsAClass = 12;
 

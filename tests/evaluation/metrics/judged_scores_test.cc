@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/matchers.h"
+
 namespace duet::evaluation::metrics {
 namespace {
 
-using ::testing::DoubleNear;
-using ::testing::ElementsAre;
 using ::testing::NanSensitiveDoubleEq;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

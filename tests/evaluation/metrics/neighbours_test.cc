@@ -3,14 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::metrics {
 namespace {
-
-using test::StatusIs;
-
-using testing::HasSubstr;
 
 TEST(NeighbourAccuracyTest, CountsSamplesWhoseNearestIsOfTheirClass) {
   // 0 and 1 are each other's nearest, 5 is nearest to 1, and 9 to 5.

@@ -7,11 +7,10 @@
 
 #include "model/motion/body_part.h"
 #include "model/motion/skeleton.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::metrics {
 namespace {
-
-using ::testing::UnorderedElementsAre;
 
 // Everyone's joints along a line up from a place: a body that is a stick 1.4 m high.
 motion::Poses Stick(motion::Vec3 at, int frames) {

@@ -10,20 +10,15 @@
 #include "tests/evaluation/support/made_up_captures.h"
 #include "tests/evaluation/support/read_section.h"
 #include "tests/evaluation/support/run_command.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/tiny_checkpoint.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::TinyManifest;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 // A capture of each class of two people who stand still.
 void WriteCaptures(const dataset::CaptureFolder& folder) {

@@ -5,18 +5,14 @@
 
 #include "model/evaluation/report/sample_tables.h"
 #include "tests/evaluation/support/made_up_pairs.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::program {
 namespace {
 
 using test::MadeUpPairs;
 
-using ::testing::DoubleNear;
-using ::testing::Each;
-using ::testing::ElementsAre;
 using ::testing::Gt;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 using OneAnswerEach = std::vector<std::vector<metrics::ScoredMotion>>;  // [folds]
 

@@ -8,21 +8,14 @@
 
 #include "tests/evaluation/support/made_up_captures.h"
 #include "tests/evaluation/support/run_command.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
 using test::TemporaryFolder;
-
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 // Four clips of each class. Followers stand at a distance of their class.
 void WriteCaptures(const dataset::CaptureFolder& folder) {

@@ -7,16 +7,10 @@
 #include "tests/evaluation/support/made_up_captures.h"
 #include "tests/evaluation/support/read_section.h"
 #include "tests/evaluation/support/run_command.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::program {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 TEST(HourCommandTest, HasARowALeader) {
   const auto section = test::RunForSection(

@@ -10,18 +10,12 @@
 #include "tests/evaluation/support/made_up_captures.h"
 #include "tests/evaluation/support/read_section.h"
 #include "tests/evaluation/support/run_command.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-using test::IsOk;
 using test::RowNames;
-using test::StatusIs;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 absl::StatusOr<nlohmann::json> RunCommand(test::AddCommand add, std::vector<std::string> words) {
   const dataset::CaptureFolder captures;

@@ -8,17 +8,12 @@
 #include <functional>
 
 #include "tests/evaluation/support/made_up_pairs.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::protocol {
 namespace {
 
-using test::IsOk;
 using test::MadeUpPairs;
-using test::StatusIs;
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 constexpr std::chrono::microseconds kTraining(200);
 

@@ -4,11 +4,10 @@
 
 #include <cmath>
 
+#include "tests/support/matchers.h"
+
 namespace duet::evaluation::report {
 namespace {
-
-using ::testing::DoubleEq;
-using ::testing::ElementsAre;
 
 TEST(DirectionTable, HasMediansAndPercentilesBetweenNeighbours) {
   const Table table = DirectionTable({{"hips", {40, 10, 30, 20}}, {"one", {7}}, {"none", {}}});

@@ -3,15 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::report {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using testing::ElementsAre;
 
 // Two groups of ten on lines far apart.
 metrics::FeatureSet TwoGroups() {

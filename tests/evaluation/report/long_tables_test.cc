@@ -5,11 +5,10 @@
 
 #include <cmath>
 
+#include "tests/support/matchers.h"
+
 namespace duet::evaluation::report {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 TEST(LongTablesTest, ShowTheWorstOfLeadersAndOfClasses) {
   const std::vector<experiments::LongClipRow> rows = {

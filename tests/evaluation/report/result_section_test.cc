@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/evaluation/support/example_section.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::evaluation::report {
@@ -17,12 +17,8 @@ namespace {
 using nlohmann::json;
 
 using test::ExampleSection;
-using test::IsOk;
 using test::ReadTestFile;
-using test::StatusIs;
 using test::TemporaryFolder;
-
-using testing::HasSubstr;
 
 json Written(const ResultSection& section) {
   const TemporaryFolder folder;

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/matchers.h"
+
 namespace duet::evaluation::report {
 namespace {
-
-using ::testing::ElementsAre;
 
 std::vector<MethodFigures> Rows() {
   return {{"captured", true, {{"joint_speed", {0.4, 0.2}}, {"range_of_motion_m", {1, 1}}}},

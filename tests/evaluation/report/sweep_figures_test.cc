@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/evaluation/support/sweep_curve.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::report {
 namespace {
@@ -13,11 +14,6 @@ namespace {
 using experiments::SweepCurve;
 using experiments::SweepKind;
 using test::MakeSweepCurve;
-
-using ::testing::DoubleNear;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 double Rising(double weight) { return 0.4 + 0.2 * weight; }
 double Falling(double weight) { return 0.4 - 0.2 * weight; }

@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "model/evaluation/report/paper_tables.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::report {
 namespace {
-
-using testing::HasSubstr;
 
 Table Example() {
   Table table;

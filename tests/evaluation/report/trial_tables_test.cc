@@ -5,11 +5,10 @@
 
 #include <cmath>
 
+#include "tests/support/matchers.h"
+
 namespace duet::evaluation::report {
 namespace {
-
-using testing::DoubleEq;
-using testing::ElementsAre;
 
 experiments::Trials TwoRows() {
   experiments::Trials trials({"kick", "all"});

@@ -7,6 +7,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/formats/asf/asf_fixture.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::asf {
@@ -16,9 +17,6 @@ using test::AsfFiles;
 using test::LargestDistance;
 using test::MakeAsfFiles;
 using test::MakePerson;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 absl::StatusOr<motion::Clip> Read(const AsfFiles& files, const AmcImportOptions& options = {}) {
   const absl::StatusOr<AsfSkeleton> skeleton = ParseAsf(files.asf, "a.asf");

@@ -7,12 +7,12 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/expect_near.h"
+#include "tests/support/matchers.h"
 
 namespace duet::formats::asf {
 namespace {
 
 using retargeting::Vec3d;
-using ::testing::HasSubstr;
 
 // A root, an arm along x that turns about axes of its own (its x is the world's y), a stiff hand.
 AsfSkeleton Arm() {

@@ -6,13 +6,12 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/expect_near.h"
+#include "tests/support/matchers.h"
 
 namespace duet::formats::asf {
 namespace {
 
 using retargeting::Vec3d;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 // The fore arm comes before the arm that it hangs from.
 constexpr char kArm[] =

@@ -8,13 +8,12 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/expect_near.h"
+#include "tests/support/matchers.h"
 
 namespace duet::formats::bvh {
 namespace {
 
 using test::ExpectNear;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 // Other spacing, order and names than ours: what exporters write.
 constexpr char kArm[] =

@@ -11,6 +11,7 @@
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
 #include "model/formats/bvh/bvh_document.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::bvh {
@@ -23,7 +24,6 @@ using test::PersonOptions;
 using test::LargestDistance;
 using test::MakePerson;
 using test::PersonOptions;
-using ::testing::HasSubstr;
 
 using base::kPi;
 constexpr float kOneMillimetre = 0.001f;

@@ -8,6 +8,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/formats/bvh/bvh_export.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::bvh {
@@ -16,9 +17,6 @@ namespace {
 using test::LargestDistance;
 using test::MakePerson;
 using test::PersonOptions;
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr float kOneMillimetre = 0.001f;
 

@@ -8,6 +8,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
+#include "tests/support/matchers.h"
 
 namespace duet::formats::bvh {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 using retargeting::AxisAngle;
 using retargeting::EulerOrder;
 using retargeting::Quaternion;
-using ::testing::HasSubstr;
 
 constexpr double kDegree = base::kRadiansPerDegree;
 constexpr double kRateHz = 30;

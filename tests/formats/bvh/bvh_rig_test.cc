@@ -10,16 +10,14 @@
 #include "model/base/angle.h"
 #include "model/retargeting/euler.h"
 #include "tests/formats/bvh/rig_families.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::bvh {
 namespace {
 
 using retargeting::Quaternion;
-using test::IsOk;
 using test::RigFamily;
-using ::testing::HasSubstr;
 
 // Walks on the spot in a turn, arms and legs swinging; ankles as high as the rigs' are.
 motion::Clip Follower() {

@@ -10,12 +10,12 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "nlohmann/json.hpp"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::flat {
 namespace {
 
-using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 Json OnePerson() {

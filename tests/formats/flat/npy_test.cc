@@ -10,13 +10,12 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/file.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::flat {
 namespace {
-
-using ::testing::HasSubstr;
 
 motion::ClipPair MakePair() {
   return {test::MakePerson({12}), test::MakePerson({12, 3, 0, {0, 1, 1.2f}, 30})};

@@ -8,11 +8,10 @@
 #include "absl/strings/str_replace.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/matchers.h"
 
 namespace duet::formats::flat {
 namespace {
-
-using ::testing::HasSubstr;
 
 // Two joints in metres: what a person with their own data writes.
 SbuOptions TwoJoints() {

@@ -9,6 +9,7 @@
 #include "model/base/angle.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/expect_near.h"
+#include "tests/support/matchers.h"
 
 namespace duet::formats::gltf {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 using test::ExpectNear;
-using ::testing::HasSubstr;
 
 using base::kPi;
 

@@ -8,12 +8,10 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/formats/gltf/gltf_fixture.h"
+#include "tests/support/matchers.h"
 
 namespace duet::formats::gltf {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 absl::StatusOr<std::string> NoFiles(const std::string& name) {
   return absl::NotFoundError(name + ": no such file");

@@ -6,12 +6,10 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/formats/gltf/gltf_fixture.h"
+#include "tests/support/matchers.h"
 
 namespace duet::formats::gltf {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 std::string ParseError(const std::string& content) {
   const absl::StatusOr<GltfDocument> document = ParseGltf(content, "a.gltf");

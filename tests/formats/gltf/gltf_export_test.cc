@@ -11,18 +11,15 @@
 #include "model/formats/gltf/gltf_document.h"
 #include "model/formats/gltf/gltf_import.h"
 #include "nlohmann/json.hpp"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::gltf {
 namespace {
 
-using test::IsOk;
 using test::LargestDistance;
 using test::MakePerson;
 using test::PersonOptions;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 constexpr float kRounding = 2e-5f;
 

@@ -9,6 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/formats/gltf/gltf_fixture.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::gltf {
@@ -19,10 +20,6 @@ using test::GltfBuilder;
 using test::GltfPersonOptions;
 using test::LargestDistance;
 using test::MakePerson;
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 constexpr float kOneMillimetre = 0.001f;
 

@@ -9,14 +9,11 @@
 #include "model/formats/gltf/gltf_document.h"
 #include "nlohmann/json.hpp"
 #include "tests/formats/gltf/gltf_fixture.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::gltf {
 namespace {
-
-using test::IsOk;
-using ::testing::HasSubstr;
 
 absl::StatusOr<std::string> NoFile(const std::string& name) { return absl::NotFoundError(name); }
 

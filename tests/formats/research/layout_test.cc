@@ -15,14 +15,13 @@
 #include "model/formats/research/humanml3d_features.h"
 #include "model/formats/research/intergen_features.h"
 #include "tests/formats/research/npz_fixture.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::research {
 namespace {
 
 using retargeting::Vec3d;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 // The person of TinyBodyJoints, turned by `yaw` about y and moved.
 BodyPose Standing(double yaw = 0, Vec3d at = {}) {

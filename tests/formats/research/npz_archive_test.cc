@@ -9,14 +9,13 @@
 #include "model/formats/flat/npy_array.h"
 #include "model/formats/research/npz_numbers.h"
 #include "tests/formats/research/npz_fixture.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::formats::research {
 namespace {
 
 using test::Packed;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 std::string TwoArrays(Packed packed) {
   return test::MakeNpz({{"a", test::Array({2, 2}, {1, 2, 3, 4})}, {"b", test::Array({1}, {5})}},

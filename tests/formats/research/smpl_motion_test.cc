@@ -10,12 +10,11 @@
 #include "model/formats/motion_file.h"
 #include "model/formats/research/body_joints.h"
 #include "tests/formats/research/npz_fixture.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::formats::research {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr float kQuarter = 1.57079633f;
 

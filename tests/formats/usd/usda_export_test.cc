@@ -6,7 +6,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/formats/usd/usda_writer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
 // What a file says is checked here; whether a reader finds every joint where it was, in
@@ -14,10 +14,6 @@
 
 namespace duet::formats::usd {
 namespace {
-
-using test::IsOk;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 std::string Export(const std::vector<motion::Clip>& people,
                    const motion::Provenance* provenance = nullptr) {

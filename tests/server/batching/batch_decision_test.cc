@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::batching {
 namespace {
@@ -18,12 +18,6 @@ namespace {
 using common::TimePoint;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-using test::StatusIs;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::ElementsAreArray;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr auto kCancelled = absl::StatusCode::kCancelled;
 constexpr auto kDeadlineExceeded = absl::StatusCode::kDeadlineExceeded;

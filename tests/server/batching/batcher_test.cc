@@ -17,8 +17,8 @@
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/gated_model.h"
 #include "tests/support/fake_synthesizer.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 
 namespace duet::server::batching {
 namespace {
@@ -30,12 +30,7 @@ using test::FakeClock;
 using test::FakeDescription;
 using test::FakeSynthesizer;
 using test::GatedModel;
-using test::IsOk;
-using test::StatusIs;
 using test::SwayingMotion;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 constexpr auto kCancelled = absl::StatusCode::kCancelled;
 constexpr auto kDeadlineExceeded = absl::StatusCode::kDeadlineExceeded;

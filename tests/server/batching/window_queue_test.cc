@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::batching {
 namespace {
@@ -18,8 +18,6 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using test::FakeSynthesizer;
-using test::StatusIs;
-using ::testing::IsEmpty;
 
 using Model = std::shared_ptr<const engine::Synthesizer>;
 

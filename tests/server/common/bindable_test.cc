@@ -11,17 +11,10 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::common {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 // A socket bound to a port of 127.0.0.1.
 class BoundSocket {

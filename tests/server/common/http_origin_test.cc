@@ -3,13 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::common {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
 
 TEST(HttpOriginTest, ParsesSchemeHostAndPort) {
   for (const char* good : {"http://localhost:4317", "http://10.0.0.1:1", "http://my_collector:4317",

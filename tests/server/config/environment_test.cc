@@ -3,11 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/matchers.h"
+
 namespace duet::server::config {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::Pair;
 
 TEST(EnvironmentTest, HasTheServersVariables) {
   const char* variables[] = {"DUET_SERVER=lab:1",      "DUET_SERVER_MAX_CALLS=4", "PATH=/bin",

@@ -12,25 +12,14 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "server/config/settings.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::server::config {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::WriteTestFile;
-
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::Pair;
-using ::testing::StartsWith;
-using ::testing::UnorderedElementsAre;
 
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
 

@@ -7,18 +7,10 @@
 
 #include "server/config/memory_limit.h"
 #include "server/config/settings.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::config {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
 

@@ -7,15 +7,10 @@
 #include "absl/strings/str_cat.h"
 #include "server/config/load_config.h"
 #include "server/config/setting.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::config {
 namespace {
-
-using test::IsOk;
-
-using ::testing::AnyOf;
-using ::testing::HasSubstr;
 
 TEST(PrintConfigTest, PrintsEveryValueWithItsSource) {
   v1::ServerConfig config;

@@ -8,14 +8,10 @@
 #include <string>
 
 #include "server/config/settings.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::config {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::HasSubstr;
 
 TEST(SecuritySettingsTest, DefaultsAreUnencryptedAndUntraced) {
   const absl::StatusOr<v1::ServerConfig> options = ResolveSettings(v1::ServerConfig(), 4);

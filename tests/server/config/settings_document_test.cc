@@ -11,12 +11,10 @@
 #include "absl/strings/str_replace.h"
 #include "model/base/file.h"
 #include "server/config/setting.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::config {
 namespace {
-
-using test::IsOk;
 
 constexpr char kIntroduction[] = R"(# Settings of duet-server
 

@@ -11,16 +11,10 @@
 
 #include "server/config/listen_address.h"
 #include "server/config/load_config.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::config {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
 

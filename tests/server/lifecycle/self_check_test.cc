@@ -12,15 +12,10 @@
 #include <thread>
 
 #include "tests/server/support/running_service.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::lifecycle {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
 
 using absl::StatusCode;
 

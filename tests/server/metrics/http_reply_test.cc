@@ -5,13 +5,10 @@
 
 #include <string>
 
+#include "tests/support/matchers.h"
+
 namespace duet::server::metrics {
 namespace {
-
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
 
 const HttpPages& Pages() {
   static const auto* const pages = new HttpPages{{"/page", [] {

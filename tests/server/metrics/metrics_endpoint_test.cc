@@ -14,18 +14,13 @@
 #include <utility>
 
 #include "tests/server/support/http_get.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::metrics {
 namespace {
 
 using test::Exchange;
 using test::HttpGet;
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 class MetricsEndpointTest : public ::testing::Test {
  protected:

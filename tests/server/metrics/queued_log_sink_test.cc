@@ -13,12 +13,10 @@
 #include <vector>
 
 #include "server/common/mutex.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::metrics {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 // A sink that the test blocks and fills: it accepts no line until it is opened, and loses the lines
 // that arrive while it is full.

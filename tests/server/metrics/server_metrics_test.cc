@@ -10,13 +10,10 @@
 #include <vector>
 
 #include "server/common/error_details.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::metrics {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr MethodInfo kSynthesize = {"duet.v1.MotionSynthesis", "Synthesize", "server_stream"};
 

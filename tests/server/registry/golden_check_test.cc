@@ -12,16 +12,12 @@
 
 #include "absl/status/status.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::registry {
 namespace {
 
 using test::FakeSynthesizer;
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
 
 TEST(GoldenLeaderTest, StandsOnTheFloorAndMoves) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();

@@ -10,23 +10,17 @@
 #include <vector>
 
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::server::registry {
 namespace {
 
 using test::FakeSynthesizer;
-using test::IsOk;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::WriteTestFile;
 
 namespace fs = std::filesystem;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 class Events final : public ModelObserver {
  public:

@@ -9,19 +9,13 @@
 #include <vector>
 
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::registry {
 namespace {
 
 using test::FakeDescription;
 using test::FakeSynthesizer;
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr auto kNotFound = absl::StatusCode::kNotFound;
 

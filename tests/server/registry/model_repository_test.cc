@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::server::registry {
@@ -18,18 +18,10 @@ namespace {
 
 using test::FakeDescription;
 using test::FakeSynthesizer;
-using test::IsOk;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::WriteTestFile;
 
 namespace fs = std::filesystem;
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::StartsWith;
 
 void MakeCheckpoint(const TemporaryFolder& folder, const std::string& place) {
   fs::create_directories(folder / place);

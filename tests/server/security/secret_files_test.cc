@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/sha256.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_certificate.h"
 
@@ -18,15 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using test::IsOk;
 using test::MakeTestCertificate;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::TestCertificate;
 using test::WriteTestFile;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 std::string Line(const std::string& name) {
   return absl::StrCat(name, " synthesise sha256:", base::Sha256Hex(name), "\n");

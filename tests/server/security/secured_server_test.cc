@@ -27,7 +27,7 @@
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/server/support/timed_context.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_certificate.h"
 
@@ -41,18 +41,14 @@ using test::FakeSynthesizer;
 using test::GatedModel;
 using test::Health;
 using test::HttpGet;
-using test::IsOk;
 using test::MakeTestCertificate;
 using test::Refusal;
 using test::Reply;
 using test::SampleRequest;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::TestCertificate;
 using test::TimedContext;
 using test::WriteTestFile;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr int kFrames = 40;  // of a sample request
 

@@ -3,21 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_certificate.h"
 
 namespace duet::server::security {
 namespace {
 
-using test::IsOk;
 using test::MakeTestCertificate;
-using test::StatusIs;
 using test::TemporaryFolder;
 using test::TestCertificate;
 using test::TestCertificateOptions;
 using test::WriteTestFile;
-using ::testing::HasSubstr;
 
 constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
 

@@ -7,16 +7,12 @@
 #include <vector>
 
 #include "tests/server/support/refusal.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
 
-using test::IsOk;
-using test::StatusIs;
-
 using ::testing::_;
-using ::testing::HasSubstr;
 
 using absl::StatusCode;
 

@@ -17,22 +17,16 @@
 #include "tests/server/support/recording_observer.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
 
 using test::FakeClock;
 using test::FakeSynthesizer;
-using test::IsOk;
 using test::PuppetScheduler;
 using test::RecordingObserver;
 using test::SampleRequest;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 using absl::StatusCode;
 

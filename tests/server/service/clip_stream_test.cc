@@ -12,8 +12,8 @@
 #include "server/batching/batcher.h"
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/support/fake_synthesizer.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/status_matchers.h"
 
 namespace duet::server::service {
 namespace {
@@ -21,12 +21,9 @@ namespace {
 using test::FakeAnswer;
 using test::FakeDescription;
 using test::FakeSynthesizer;
-using test::IsOk;
 using test::PuppetScheduler;
-using test::StatusIs;
 using test::SwayingMotion;
 
-using ::testing::HasSubstr;
 using Kind = ClipPart::Kind;
 
 constexpr int kJoints = 15;

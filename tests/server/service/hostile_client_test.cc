@@ -24,6 +24,7 @@
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/server/support/timed_context.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
@@ -39,8 +40,6 @@ using test::Refusal;
 using test::RunningService;
 using test::SampleRequest;
 using test::TimedContext;
-
-using ::testing::HasSubstr;
 
 using absl::StatusCode;
 

@@ -18,7 +18,7 @@
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
@@ -26,13 +26,7 @@ namespace {
 using test::AddWeight;
 using test::FakeClock;
 using test::FakeSynthesizer;
-using test::IsOk;
 using test::PuppetScheduler;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 using absl::StatusCode;
 using Message = v1::SynthesizeLiveRequest;

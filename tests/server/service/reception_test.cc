@@ -16,14 +16,13 @@
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/recording_observer.h"
 #include "tests/server/support/refusal.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
 
 using test::FakeClock;
 using test::RecordingObserver;
-using test::StatusIs;
 
 using ::testing::_;
 

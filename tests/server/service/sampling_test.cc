@@ -12,6 +12,7 @@
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
@@ -23,12 +24,6 @@ using test::Reply;
 using test::RunningService;
 using test::SampleRequest;
 using test::SamplingDescription;
-
-using ::testing::AllOf;
-using ::testing::Each;
-using ::testing::Ge;
-using ::testing::Le;
-using ::testing::SizeIs;
 
 // A request of several windows.
 v1::SynthesizeRequest Sampled(std::optional<uint64_t> seed, std::optional<float> variety) {

@@ -14,6 +14,7 @@
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/server/support/timed_context.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
@@ -32,12 +33,6 @@ using test::RunningService;
 using test::SampleRequest;
 using test::SamplingDescription;
 using test::TimedContext;
-
-using ::testing::AnyOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 using absl::StatusCode;
 

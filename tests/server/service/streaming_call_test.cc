@@ -16,19 +16,15 @@
 #include "duet/v1/model.pb.h"
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/recording_observer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
 
 using test::FakeClock;
-using test::IsOk;
 using test::RecordingObserver;
-using test::StatusIs;
 
 using ::testing::_;
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 using absl::StatusCode;
 

@@ -18,6 +18,7 @@
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/server/support/timed_context.h"
+#include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::server::service {
@@ -35,12 +36,6 @@ using test::RunningService;
 using test::SampleRequest;
 using test::SwayingMotion;
 using test::TimedContext;
-
-using ::testing::Each;
-using ::testing::ElementsAre;
-using ::testing::ElementsAreArray;
-using ::testing::FloatNear;
-using ::testing::Le;
 
 // A model whose follower does what the leader does.
 std::shared_ptr<FakeSynthesizer> Echo() {

@@ -12,20 +12,15 @@
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
 
 using test::AddWeight;
 using test::Decode;
-using test::IsOk;
 using test::Refusal;
 using test::SampleRequest;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::UnorderedElementsAre;
 
 constexpr int kJoints = 15;
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;

@@ -14,7 +14,7 @@
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
@@ -22,16 +22,8 @@ namespace {
 using test::AddWeight;
 using test::Decode;
 using test::FakeDescription;
-using test::IsOk;
 using test::Refusal;
 using test::SampleRequest;
-using test::StatusIs;
-
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
 
 constexpr int kJoints = 15;
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;

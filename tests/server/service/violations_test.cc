@@ -8,18 +8,13 @@
 #include "absl/strings/str_cat.h"
 #include "server/common/grpc_status.h"
 #include "tests/server/support/refusal.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
 
 using test::Decode;
-using test::IsOk;
 using test::Refusal;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Pair;
 
 TEST(ViolationsTest, NoneIsOk) { EXPECT_THAT(Violations().ToStatus(), IsOk()); }
 

@@ -10,17 +10,12 @@
 #include "duet/v1/synthesis.pb.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/sample_request.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
 
-using test::IsOk;
 using test::Refusal;
-using test::StatusIs;
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 // In pieces of `block` bytes, as they come from the network.
 absl::Status Survey(const std::string& bytes, int block = -1) {

@@ -7,14 +7,10 @@
 #include <vector>
 
 #include "duet/v1/synthesis.pb.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::HasSubstr;
 
 // A message as it comes, in these slices.
 grpc::ByteBuffer Received(const std::vector<std::string>& parts) {

@@ -6,16 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::tracing {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Pair;
 
 constexpr std::int64_t kEnd = 1'650'000'000'000'000'000;
 

@@ -14,14 +14,12 @@
 
 #include "server/common/mutex.h"
 #include "server/watchdog/exit_codes.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::watchdog {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
 using ::testing::ExitedWithCode;
-using ::testing::HasSubstr;
 
 constexpr common::StepKind kWorking{"tester", "working for ever"};
 constexpr common::StepKind kLoading{"loader", "reading for ever", /*is_bounded=*/false};
