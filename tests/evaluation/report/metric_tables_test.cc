@@ -8,12 +8,10 @@
 
 #include "model/evaluation/metrics/scores.h"
 #include "model/evaluation/report/paper_tables.h"
+#include "tests/support/matchers.h"
 
 namespace duet::evaluation::report {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 MetricStyle Style(const std::string& name) {
   for (const MetricStyle& style : MetricStyles()) {
@@ -35,6 +33,16 @@ TEST(MetricStyles, CoverEveryFigureOnce) {
   std::multiset<std::string> wanted = {kAccuracy, kFrechet, kDiversity};
   for (const char* metric : metrics::kMetrics) wanted.insert(metric);
   EXPECT_EQ(styled, wanted);
+}
+
+TEST(MetricStyles, OnlyDistancesToCapturedFollowersHaveNoMeaningForThem) {
+  std::vector<std::string> without;
+  for (const MetricStyle& style : MetricStyles()) {
+    if (!style.of_captured) without.push_back(style.name);
+  }
+  EXPECT_THAT(without,
+              ElementsAre("afd", "afd_squared", "afd_m", "afd_squared_m", "root_aligned_afd",
+                          "root_aligned_afd_m", "velocity_error", kFrechet));
 }
 
 TEST(MetricTable, OmitsMethodsWithoutTheFigure) {

@@ -2,10 +2,14 @@
 // wrote. Their source is the sample leaders.
 #include "model/formats/fbx/fbx_import.h"
 
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -16,6 +20,7 @@
 #include "model/formats/fbx/fbx_program.h"
 #include "model/formats/follower_rig.h"
 #include "model/formats/motion_file.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
 
@@ -24,9 +29,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::LargestDistance;
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::HasSubstr;
 
 constexpr float kOneMillimetre = 0.001f;
 constexpr int kFirst = 20;  // of the samples' frames, as in make_files.py
@@ -247,6 +249,37 @@ TEST_F(FbxTest, PeopleWhoseBonesHaveTheSameNamesAreRejected) {
               HasSubstr("expected a name for each animated node, got several named"));
 }
 
+// The bones of the first skin that move a vertex of a binary glTF file, by their names.
+std::set<std::string> BonesOfVertices(const std::string& glb) {
+  constexpr std::size_t kJsonAt = 20, kChunkHeader = 8;
+  std::uint32_t json_bytes = 0;
+  std::memcpy(&json_bytes, glb.data() + kJsonAt - kChunkHeader, sizeof json_bytes);
+  const nlohmann::json json = nlohmann::json::parse(glb.substr(kJsonAt, json_bytes));
+  const char* const buffer = glb.data() + kJsonAt + json_bytes + kChunkHeader;
+  const auto values = [&](const nlohmann::json& accessor) {
+    const nlohmann::json& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+    return buffer + view.value("byteOffset", 0) + accessor.value("byteOffset", 0);
+  };
+  std::set<std::string> bones;
+  for (const nlohmann::json& mesh : json["meshes"]) {
+    const nlohmann::json& attributes = mesh["primitives"][0]["attributes"];
+    const nlohmann::json& accessor = json["accessors"][attributes["JOINTS_0"].get<std::size_t>()];
+    const char* const joints = values(accessor);
+    const char* const weights =
+        values(json["accessors"][attributes["WEIGHTS_0"].get<std::size_t>()]);
+    for (std::size_t i = 0; i < 4 * accessor["count"].get<std::size_t>(); ++i) {
+      std::uint16_t joint = 0;
+      float weight = 0;
+      std::memcpy(&joint, joints + i * sizeof joint, sizeof joint);
+      std::memcpy(&weight, weights + i * sizeof weight, sizeof weight);
+      if (weight == 0) continue;
+      const std::size_t node = json["skins"][0]["joints"].at(joint).get<std::size_t>();
+      bones.insert(json["nodes"][node]["name"].get<std::string>());
+    }
+  }
+  return bones;
+}
+
 TEST_F(FbxTest, AFollowerOnTheRigKeepsItsSkin) {
   const motion::Clip follower = test::MakePerson();
   for (const char* name : {"still_skin", "mixamo_skin_30"}) {
@@ -254,6 +287,9 @@ TEST_F(FbxTest, AFollowerOnTheRigKeepsItsSkin) {
     const absl::StatusOr<std::string> glb = FormatOntoRig(follower, {File(name), {}}, Format::kGlb);
     ASSERT_TRUE(glb.ok()) << glb.status();
     EXPECT_THAT(*glb, AllOf(HasSubstr("JOINTS_0"), HasSubstr("mixamorig:LeftForeArm")));
+    EXPECT_THAT(BonesOfVertices(*glb),
+                ElementsAre("mixamorig:LeftForeArm", "mixamorig:LeftUpLeg",
+                            "mixamorig:RightForeArm", "mixamorig:RightUpLeg"));
     ReadOptions options;
     options.format = Format::kGlb;
     options.metres_per_unit = 1;
