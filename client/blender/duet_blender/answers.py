@@ -93,21 +93,29 @@ def show(scene, index):
     answer = duet.answers[index]
     if not os.path.isfile(answer.file):
         raise DuetError("The answers of an earlier session are gone. Press React again.")
-    with tempfile.TemporaryDirectory() as work:
-        file = os.path.join(work, "follower.glb")
-        flags = ["--skeleton", answer.file]  # of any model; rigs take the 15 joints of sbu
-        if duet.body == "LEADER":
-            rig = os.path.join(work, "rig.glb")
-            partner.export_rig(scene, duet.leader, leader.metres_per_unit(scene), rig)
-            flags = ["--rig", rig, *leader.joint_flags(duet, "--rig-joint-map")]
-        yield from program.run(duet, "convert", answer.file, "--side", "right", *flags, "--out", file,
-                               "--quiet")
-        partner.remove_last(scene)
-        partner.add(scene, file, scene.unit_settings.scale_length / leader.metres_per_unit(scene))
+    # The file names the joints of any model; rigs take the 15 joints of sbu.
+    yield from show_file(scene, answer.file, "right", ["--skeleton", answer.file], duet.body)
     if retarget.follows(duet.target):
         yield from retarget.follow(scene, duet.target)
     duet.chosen = index
     duet.state = ", ".join(filter(None, (f"{partner.NAME}: seed {answer.seed}", answer.pins)))
+
+
+def show_file(scene, motion, side, flags, body, first_frame=None):
+    """A generator that shows a person of a motion file in place of the last partner, on a body of
+    DuetSettings.body. `flags`: for reading the file. `first_frame`: see partner.add()."""
+    duet = scene.duet
+    with tempfile.TemporaryDirectory() as work:
+        file = os.path.join(work, "follower.glb")
+        if body == "LEADER":
+            rig = os.path.join(work, "rig.glb")
+            partner.export_rig(scene, duet.leader, leader.metres_per_unit(scene), rig)
+            flags = ["--rig", rig, *leader.joint_flags(duet, "--rig-joint-map")]
+        yield from program.run(duet, "convert", motion, "--side", side, *flags, "--out", file,
+                               "--quiet")
+        partner.remove_last(scene)
+        partner.add(scene, file, scene.unit_settings.scale_length / leader.metres_per_unit(scene),
+                    first_frame)
 
 
 def register():

@@ -49,13 +49,17 @@ class Recording:
 
     def take_frame(self):
         """Records the current frame."""
+        self.frames.append(self.places())
+        self.weights.append([label.weight for label in self.scene.duet.labels])
+
+    def places(self):
+        """The places of the joints in the current frame."""
         world, pose = self.armature.matrix_world, self.armature.pose.bones
         frame = []
         for _, _, bone, tail in self.joints:
             x, y, z = world @ (pose[bone].tail if tail else pose[bone].head)
             frame.append([self.metres * x, self.metres * z, -self.metres * y])
-        self.frames.append(frame)
-        self.weights.append([label.weight for label in self.scene.duet.labels])
+        return frame
 
     def write(self, path):
         """Writes BVH, because its hierarchy helps `duet` to recognise the joints."""

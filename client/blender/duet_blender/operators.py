@@ -5,15 +5,31 @@ import time
 
 import bpy
 
-from . import answers, partner, program, retarget, settings
+from . import answers, leader, live, partner, program, retarget, settings
 
 STEP_SECONDS = 0.02  # maximum work per tick
 TICK_SECONDS = 0.05
 
 
+def _can_replace(context):
+    """Whether the partner may be replaced."""
+    return context.mode == "OBJECT" and not live.is_playing()
+
+
 def _push_undo(message):
     if not bpy.app.background:
         bpy.ops.ed.undo_push(message=message)
+
+
+def _fail(operator, context, error):
+    context.scene.duet.state = ""
+    operator.report({"ERROR"}, str(error))
+    return {"CANCELLED"}
+
+
+def _redraw(context):
+    for area in context.screen.areas if context.screen else ():
+        area.tag_redraw()
 
 
 class _Working(bpy.types.Operator):
@@ -37,7 +53,7 @@ class _Working(bpy.types.Operator):
             for _ in self.work(context):
                 time.sleep(0)
         except program.DuetError as error:
-            return self._fail(context, error)
+            return _fail(self, context, error)
         return {"FINISHED"}
 
     def modal(self, context, event):
@@ -56,24 +72,14 @@ class _Working(bpy.types.Operator):
             return {"FINISHED"}
         except program.DuetError as error:
             self._end(context, "")
-            return self._fail(context, error)
-        self._redraw(context)
+            return _fail(self, context, error)
+        _redraw(context)
         return {"PASS_THROUGH"}
 
     def _end(self, context, state):
         context.window_manager.event_timer_remove(self._timer)
         context.scene.duet.state = state
-        self._redraw(context)
-
-    def _fail(self, context, error):
-        context.scene.duet.state = ""
-        self.report({"ERROR"}, str(error))
-        return {"CANCELLED"}
-
-    @staticmethod
-    def _redraw(context):
-        for area in context.screen.areas if context.screen else ():
-            area.tag_redraw()
+        _redraw(context)
 
 
 class DUET_OT_ask_for_classes(_Working):
@@ -96,7 +102,7 @@ class _Asking(_Working):
 
     @classmethod
     def poll(cls, context):
-        return context.scene.duet.leader is not None and context.mode == "OBJECT"
+        return context.scene.duet.leader is not None and _can_replace(context)
 
     def work(self, context):
         yield from answers.request(context.scene, self.count)
@@ -129,7 +135,7 @@ class DUET_OT_choose(_Working):
 
     @classmethod
     def poll(cls, context):
-        return context.mode == "OBJECT"
+        return _can_replace(context)
 
     def work(self, context):
         yield from answers.show(context.scene, self.index)
@@ -157,7 +163,7 @@ class DUET_OT_follow(_Working):
 
     @classmethod
     def poll(cls, context):
-        return context.scene.duet.target is not None and context.mode == "OBJECT"
+        return context.scene.duet.target is not None and _can_replace(context)
 
     def work(self, context):
         duet = context.scene.duet
@@ -175,7 +181,7 @@ class DUET_OT_bake(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return retarget.follows(context.scene.duet.target) and context.mode == "OBJECT"
+        return retarget.follows(context.scene.duet.target) and _can_replace(context)
 
     def execute(self, context):
         retarget.bake(context, context.scene.duet.target)
@@ -191,7 +197,7 @@ class DUET_OT_keep(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return partner.last(context.scene) is not None
+        return partner.last(context.scene) is not None and not live.is_playing()
 
     def execute(self, context):
         duet = context.scene.duet
@@ -200,8 +206,73 @@ class DUET_OT_keep(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class DUET_OT_play_live(bpy.types.Operator):
+    """Answers the leader while it moves: as the animation plays, or as you pose it. Esc or Stop ends
+    the session, whose motion the partner keeps"""
+
+    bl_idname = "duet.play_live"
+    bl_label = "Play live"
+    bl_options = {"REGISTER"}
+    _timer = None
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.duet.leader is not None and _can_replace(context)
+
+    def invoke(self, context, event):
+        done = self.execute(context)
+        if bpy.app.background or done != {"FINISHED"}:
+            return done
+        seconds = 0.5 / leader.frame_rate(context.scene)
+        self._timer = context.window_manager.event_timer_add(seconds, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context):
+        """Only starts the session. Without a window, call live.tick() until it returns False."""
+        try:
+            live.start(context.scene)
+        except program.DuetError as error:
+            return _fail(self, context, error)
+        return {"FINISHED"}
+
+    def modal(self, context, event):
+        if event.type == "ESC":
+            live.stop()
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        try:
+            goes_on = live.tick()
+        except program.DuetError as error:
+            context.window_manager.event_timer_remove(self._timer)
+            return _fail(self, context, error)
+        _redraw(context)
+        if goes_on:
+            return {"PASS_THROUGH"}
+        context.window_manager.event_timer_remove(self._timer)
+        _push_undo(self.bl_label)
+        return {"FINISHED"}
+
+
+class DUET_OT_stop_live(bpy.types.Operator):
+    """Ends the live session"""
+
+    bl_idname = "duet.stop_live"
+    bl_label = "Stop"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, _context):
+        return live.is_playing()
+
+    def execute(self, _context):
+        live.stop()
+        return {"FINISHED"}
+
+
 _CLASSES = (DUET_OT_ask_for_classes, DUET_OT_react, DUET_OT_show_eight, DUET_OT_choose,
-            DUET_OT_key_labels, DUET_OT_follow, DUET_OT_bake, DUET_OT_keep)
+            DUET_OT_key_labels, DUET_OT_follow, DUET_OT_bake, DUET_OT_keep,
+            DUET_OT_play_live, DUET_OT_stop_live)
 
 
 def register():

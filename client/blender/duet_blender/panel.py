@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import pins
+from . import live, pins
 
 
 class VIEW3D_PT_duet(bpy.types.Panel):
@@ -45,6 +45,21 @@ def _draw_answers(layout, duet):
         text = ", ".join(filter(None, (f"Seed {answer.seed}", answer.grade, answer.pins)))
         column.operator("duet.choose", text=text, icon=icon,
                         depress=index == duet.chosen).index = index
+
+
+class VIEW3D_PT_duet_live(bpy.types.Panel):
+    bl_label = "Live"
+    bl_parent_id = "VIEW3D_PT_duet"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+
+    def draw(self, context):
+        self.layout.use_property_split = True
+        self.layout.prop(context.scene.duet, "delay")
+        if live.is_playing():
+            self.layout.operator("duet.stop_live", icon="PAUSE")
+        else:
+            self.layout.operator("duet.play_live", icon="PLAY")
 
 
 class VIEW3D_PT_duet_pins(bpy.types.Panel):
@@ -126,7 +141,7 @@ class VIEW3D_PT_duet_server(bpy.types.Panel):
         self.layout.prop_search(context.scene.duet, "model", context.scene.duet, "models")
 
 
-_PANELS = (VIEW3D_PT_duet, VIEW3D_PT_duet_pins, VIEW3D_PT_duet_armature, VIEW3D_PT_duet_reading,
+_PANELS = (VIEW3D_PT_duet, VIEW3D_PT_duet_live, VIEW3D_PT_duet_pins, VIEW3D_PT_duet_armature, VIEW3D_PT_duet_reading,
            VIEW3D_PT_duet_server)
 
 

@@ -102,12 +102,12 @@ def _in_metres(path, metres):
     pathlib.Path(path).write_bytes(header + len(text).to_bytes(4, "little") + b"JSON" + text + rest)
 
 
-def add(scene, path, scale=1):
+def add(scene, path, scale=1, first_frame=None):
     """Imports one person, whose file is in metres, and marks them as the last answer; their
     armature.
 
-    `scale`: units of the leader's armature in a unit of the scene. The scene keeps rate, range and
-    current frame."""
+    `scale`: units of the leader's armature in a unit of the scene. `first_frame`: of the person's
+    action, by default the scene's. The scene keeps rate, range and current frame."""
     if "gltf" not in dir(bpy.ops.import_scene):
         raise DuetError("Switch on the add-on glTF 2.0, which reads the partner")
     _let_importer_run()
@@ -130,7 +130,8 @@ def add(scene, path, scale=1):
         if thing.type == "MESH" and thing.parent is armature:
             thing.name = f"{NAME} body"
             _colour(thing.data.materials)
-    _place_in_time(scene, [action for action in bpy.data.actions if action not in actions])
+    _place_in_time(scene.frame_start if first_frame is None else first_frame,
+                   [action for action in bpy.data.actions if action not in actions])
     scene.frame_set(kept[4])
     return armature
 
@@ -147,12 +148,12 @@ def _colour(materials):
                 node.inputs["Base Color"].default_value = COLOUR
 
 
-def _place_in_time(scene, actions):
-    """Moves actions from frame 0, where the importer puts them, to the scene's first frame."""
+def _place_in_time(first_frame, actions):
+    """Moves actions from frame 0, where the importer puts them, to another first frame."""
     for action in actions:
         action.name = NAME
         for curve in curves_of(action):
             for key in curve.keyframe_points:
-                key.co.x += scene.frame_start
-                key.handle_left.x += scene.frame_start
-                key.handle_right.x += scene.frame_start
+                key.co.x += first_frame
+                key.handle_left.x += first_frame
+                key.handle_right.x += first_frame

@@ -38,12 +38,12 @@ def run(settings, *arguments, may_fail=False):
             process.kill()
             process.communicate()
     if process.returncode != 0 and not may_fail:
-        raise DuetError(_in_the_panel(errors.strip())
+        raise DuetError(in_the_panel(errors.strip())
                         or f"duet exited with code {process.returncode}")
     return output
 
 
-def _in_the_panel(message):
+def in_the_panel(message):
     """Replaces hints about the program's flags by hints about the panel."""
     lines = message.splitlines()
     hints = [line for line in lines if "joint-map" in line and line.startswith("Specify it with")]

@@ -7,11 +7,11 @@ import os
 import tempfile
 
 import bpy
-from mathutils import Matrix
 
 from . import leader, partner, program
 from .actions import curves_of
 from .program import DuetError
+from .puppet import basis
 
 MARK = "Duet"  # the beginning of the names of its constraints, and a property of its empties
 _SIDES = ("left", "right")
@@ -142,14 +142,6 @@ class _Target:
                    for a, b in (("hip", "knee"), ("knee", _named(self.bones, "left_foot")[5:])))
 
 
-def _basis(left, right, low, high):
-    """A rotation whose x points from right to left, and z upwards."""
-    x = (left - right).normalized()
-    z = high - low
-    z = (z - x * z.dot(x)).normalized()
-    return Matrix((x, z.cross(x), z)).transposed()
-
-
 class _Trunk:
     """Where hips and shoulders are."""
 
@@ -157,8 +149,8 @@ class _Trunk:
         hips = [place(f"{side}_hip") for side in _SIDES]
         shoulders = [place(f"{side}_shoulder") for side in _SIDES]
         self.middle, top = sum(hips[1:], hips[0]) / 2, sum(shoulders[1:], shoulders[0]) / 2
-        self.pelvis = _basis(*hips, self.middle, top)
-        self.chest = _basis(*shoulders, self.middle, top)
+        self.pelvis = basis(*hips, self.middle, top)
+        self.chest = basis(*shoulders, self.middle, top)
 
 
 def _source(scene):
@@ -174,6 +166,39 @@ def _source(scene):
 def follow(scene, target):
     """A generator that lets `target` follow the last partner. Replaces its earlier constraints of
     this kind."""
+    source, fit, empties = yield from _attach(scene, target)
+    yield from _key(scene, source, fit, empties)
+
+
+def follow_live(scene, target):
+    """The same for a partner that moves without key frames. A generator that returns a LiveTrunk."""
+    _, fit, empties = yield from _attach(scene, target)
+    return LiveTrunk(fit, empties)
+
+
+class LiveTrunk:
+    """Moves the empties that the trunk of an armature copies, as the partner moves."""
+
+    def __init__(self, fit, empties):
+        self._fit, self._empties = fit, empties
+        self._fitting = None  # after the first frame
+
+    def place(self, joints):
+        """Moves the empties: places of the partner's joints in the world, by name."""
+        now = _Trunk(joints.__getitem__)
+        if self._fitting is None:
+            feet = [joints[_named(joints, f"{side}_foot")] for side in _SIDES]
+            self._fitting = _Fitting(self._fit, joints, min(foot.z for foot in feet))
+        for empty, (rotation, place) in zip(self._empties, self._fitting.places(now)):
+            rotation.make_compatible(empty.rotation_quaternion)
+            empty.rotation_quaternion = rotation
+            if place is not None:
+                empty.location = place
+
+
+def _attach(scene, target):
+    """A generator that adds constraints to `target`, and returns the partner, how `target` fits, and
+    the empties that its trunk copies."""
     source = _source(scene)
     if target is source:
         raise DuetError("Choose an armature of your own, not the partner.")
@@ -185,7 +210,6 @@ def follow(scene, target):
               for upper, middle, end in _limbs(source.pose.bones) if middle in bones]
     release(scene, target)
     empties = [_empty(scene, target, bone) for bone in fit.trunk]
-    yield from _key(scene, source, fit, empties)
     for bone, empty in zip(fit.trunk, empties):
         kinds = ["COPY_LOCATION"] if bone == fit.trunk[0] else []
         for kind in [*kinds, "COPY_ROTATION"]:
@@ -196,6 +220,7 @@ def follow(scene, target):
         if count:
             _constrain(target, bone, "IK", source, subtarget=joint, chain_count=count,
                        use_stretch=False)
+    return source, fit, empties
 
 
 def _constrain(target, bone, kind, thing, **settings):
@@ -216,50 +241,62 @@ def _empty(scene, target, bone):
     return empty
 
 
+class _Fitting:
+    """Puts the partner's trunk on an armature. Legs of another length change the height of the hips
+    above the floor, which is at the partner's lowest ankle."""
+
+    def __init__(self, fit, joints, floor):
+        """`joints`: places of the partner's joints by name, in any frame."""
+        self._fit, self._floor = fit, floor
+        self._rest = _Trunk(fit.head)
+        chain = [joints[joint] for joint in ("left_hip", "left_knee", _named(joints, "left_foot"))]
+        self._longer = fit.leg() / ((chain[0] - chain[1]).length + (chain[1] - chain[2]).length)
+        self._offset = fit.armature.matrix_world @ fit.trunk[0].head_local - self._rest.middle
+
+    def places(self, now):
+        """The rotation of each empty, and the place of the first one, for a trunk of the partner."""
+        turns = (now.pelvis @ self._rest.pelvis.inverted(), now.chest @ self._rest.chest.inverted())
+        at = now.middle.copy()
+        at.z = self._floor + (at.z - self._floor) * self._longer
+        ends = [turn.to_quaternion() for turn in turns]
+        last = max(1, len(self._fit.trunk) - 1)
+        return [(ends[0].slerp(ends[1], i / last) @ self._fit.rotation(bone).to_quaternion(),
+                 at + turns[0] @ self._offset if i == 0 else None)
+                for i, bone in enumerate(self._fit.trunk)]
+
+
 def _key(scene, source, fit, empties):
-    """Keys the empties: the partner's trunk, on the bones of the target. Legs of another length change
-    the height of the hips above the ankles."""
+    """Keys the empties: the partner's trunk, on the bones of the target."""
     before, subframe = scene.frame_current, scene.frame_subframe
-    rest = _Trunk(fit.head)
-    legs, ankles, rows = None, [], []
     pose, feet = source.pose.bones, [_named(source.pose.bones, f"{side}_foot") for side in _SIDES]
+    first, ankles, rows = None, [], []
     try:
         for frame in range(scene.frame_start, scene.frame_end + 1):
             scene.frame_set(frame)
-            now = _Trunk(lambda joint: source.matrix_world @ pose[joint].head)
-            ankles.append(min((source.matrix_world @ pose[foot].head).z for foot in feet))
-            if legs is None:
-                chain = [source.matrix_world @ pose[joint].head
-                         for joint in ("left_hip", "left_knee", feet[0])]
-                legs = (chain[0] - chain[1]).length + (chain[1] - chain[2]).length
-            rows.append((frame, now))
+            joints = {bone.name: source.matrix_world @ bone.head for bone in pose}
+            first = first or joints
+            ankles.append(min(joints[foot].z for foot in feet))
+            rows.append((frame, _Trunk(joints.__getitem__)))
             yield
     finally:
         scene.frame_set(before, subframe=subframe)
-    pelvis, floor, longer = fit.trunk[0], min(ankles), fit.leg() / legs
-    offset = fit.armature.matrix_world @ pelvis.head_local - rest.middle
+    fitting = _Fitting(fit, first, min(ankles))
     for frame, now in rows:
-        turn = (now.pelvis @ rest.pelvis.inverted(), now.chest @ rest.chest.inverted())
-        at = now.middle.copy()
-        at.z = floor + (at.z - floor) * longer
-        _key_row(frame, fit, empties, turn, at + turn[0] @ offset)
+        _key_row(frame, empties, fitting.places(now))
     for empty in empties:
         for curve in curves_of(empty.animation_data.action):
             for key in curve.keyframe_points:
                 key.interpolation = "LINEAR"
 
 
-def _key_row(frame, fit, empties, turn, place):
-    ends = [one.to_quaternion() for one in turn]
-    for i, (bone, empty) in enumerate(zip(fit.trunk, empties)):
-        share = i / max(1, len(empties) - 1)
-        rotation = ends[0].slerp(ends[1], share) @ fit.rotation(bone).to_quaternion()
+def _key_row(frame, empties, places):
+    for empty, (rotation, place) in zip(empties, places):
         if frame > empty.get("last_frame", frame):
             rotation.make_compatible(empty.rotation_quaternion)
         empty["last_frame"] = frame
         empty.rotation_quaternion = rotation
         empty.keyframe_insert("rotation_quaternion", frame=frame)
-        if i == 0:
+        if place is not None:
             empty.location = place
             empty.keyframe_insert("location", frame=frame)
 
