@@ -3,6 +3,8 @@
 import json
 import pathlib
 import shutil
+import threading
+import time
 
 import tools
 
@@ -19,20 +21,32 @@ class BlenderLiveTest(tools.FolderTest):
         leader = cls.folder / "leader.glb"
         done = tools.duet("convert", tools.sample("hug"), "--out", leader)
         assert done.returncode == 0, done.stderr
-        mortal = tools.Server()  # which Blender's script kills
-        cls.addClassCleanup(mortal.kill)
-        with tools.running_server() as server:
-            done = tools.run(BLENDER, "--background", "--factory-startup", "--python-exit-code",
-                             "1", "--python", LIVE, "--", tools.SOURCE / "client" / "blender",
-                             leader, f"{mortal.address},{server.address}", mortal.pid,
-                             tools.PROGRAMS / "duet", cls.folder, timeout=2 * tools.RUN_SECONDS)
-            assert done.returncode == 0, done.stdout + done.stderr
-            cls.state = json.loads((cls.folder / "state.json").read_text(encoding="utf-8"))
-            cls.undisturbed = tools.run(
-                tools.PROGRAMS / "duet", "live", "--server", server.address, "--from", "-", "--to",
-                "-", "--label", "hug=1",
-                input="".join(json.dumps(line) + "\n" for line in cls.state["lines"]))
+        mortal, port = tools.Server(), tools.free_port()
+        cls.addClassCleanup(mortal.kill)  # Blender's script does it earlier
+        starting = threading.Thread(target=cls.start_second, args=(port,))
+        starting.start()
+        done = tools.run(BLENDER, "--background", "--factory-startup", "--python-exit-code", "1",
+                         "--python", LIVE, "--", tools.SOURCE / "client" / "blender", leader,
+                         f"{mortal.address},127.0.0.1:{port}", mortal.pid, tools.PROGRAMS / "duet",
+                         cls.folder, timeout=2 * tools.RUN_SECONDS)
+        (cls.folder / "wanted").touch()  # if Blender failed before
+        starting.join()
+        assert done.returncode == 0, done.stdout + done.stderr
+        cls.state = json.loads((cls.folder / "state.json").read_text(encoding="utf-8"))
+        cls.undisturbed = tools.run(
+            tools.PROGRAMS / "duet", "live", "--server", cls.second.address, "--from", "-", "--to",
+            "-", "--label", "hug=1",
+            input="".join(json.dumps(line) + "\n" for line in cls.state["lines"]))
         assert cls.undisturbed.returncode == 0, cls.undisturbed.stderr
+
+    @classmethod
+    def start_second(cls, port):
+        """Starts the second server when Blender's script wants it, after its session has begun."""
+        while not (cls.folder / "wanted").exists():
+            time.sleep(0.05)
+        cls.second = tools.Server(port=port)
+        cls.addClassCleanup(cls.second.stop)
+        (cls.folder / "started").touch()
 
     def test_failures_to_begin_are_reported(self):
         self.assertIn("Every label is 0", self.state["no_label"])

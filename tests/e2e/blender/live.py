@@ -3,7 +3,8 @@
     blender --background --factory-startup --python live.py -- ADD_ON_FOLDER LEADER.glb SERVERS PID DUET OUT
 
 SERVERS: addresses of two servers, separated by a comma. PID: of the first one, which is killed in the
-middle. Writes what happens as JSON into the folder OUT.
+middle, when the test has started the second one: it does so when there is a file OUT/wanted, and then
+writes OUT/started. Writes what happens as JSON into the folder OUT.
 """
 
 import json
@@ -143,6 +144,8 @@ for frame in play(session, range(FIRST, LAST + 1)):
         tails.append(distance([value / METRE for value in tail], place(follower(), joint)))
     feet.append(distance(place(character, "LeftFoot"), place(follower(), "left_foot")))
     if frame == FIRST + KILLED_AFTER:
+        (OUT / "wanted").touch()
+        tick_until((OUT / "started").exists)
         os.kill(int(pid), signal.SIGKILL)
     if frame == FIRST + LABELS_AFTER:
         settings.labels["hug"].weight, settings.labels["push"].weight = 0, 1
