@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Measures live sessions: memory, what regular ones notice of hostile ones, latency in a browser.
+"""Measures live sessions: memory, what regular ones notice of hostile ones and of a server that dies, latency
+in a browser.
 
     benchmarks/measure_live.py BUILD hostile [--seconds 600] [--sessions 4]
     benchmarks/measure_live.py BUILD hour [--minutes 60] [--sessions 4]
+    benchmarks/measure_live.py BUILD killed [--times 20]
     benchmarks/measure_live.py BUILD page [--seconds 60]
 
 hostile: regular sessions of duet-load at 30 frames a second, first without and then beside callers that
@@ -11,6 +13,10 @@ Prints latency, frames that were lost or late, and memory.
 
 hour: sessions whose callers send each frame as soon as the one before is answered: an hour of frames at
 30 a second takes some minutes. Prints memory after each tenth.
+
+killed: a session of `duet live` in real time whose server is killed while another one serves. Prints the longest time
+without a frame, and whether all frames are those of an undisturbed session: they are unless the machine is so
+busy that the server skips evaluations.
 
 page: the Spar page in Chromium, through the gateway, with each model that answers live. A move begins every
 second. Prints the time from the page's sending of a leader frame until its script has the follower's
@@ -132,6 +138,54 @@ def hour(args):
         return sum(answered) == args.sessions * frames and growth < args.memory_mb
 
 
+def work_of(server):
+    """Clock ticks of processor time that a server has used."""
+    stat = pathlib.Path(f"/proc/{server.pid}/stat").read_text(encoding="ascii")
+    return sum(map(int, stat.rpartition(")")[2].split()[11:13]))
+
+
+def interrupted(command, servers):
+    """Kills the server of a session after a second. Returns the longest time without a frame from then on, all
+    lines, and the summary."""
+    before = [work_of(server) for server in servers]
+    address = ",".join(server.address for server in servers)
+    with subprocess.Popen([*command, "--realtime", "--server", f"ipv4:{address}"],
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        lines = [process.stdout.readline() for _ in range(1 + RATE)]
+        work = [work_of(server) - ticks for server, ticks in zip(servers, before)]
+        servers[work.index(max(work))].kill()  # a session goes to either
+        times = [time.monotonic()]
+        for line in process.stdout:
+            times.append(time.monotonic())
+            lines.append(line)
+        return max(b - a for a, b in zip(times, times[1:])), lines, process.stderr.read()
+
+
+def killed(args):
+    import tools  # pylint: disable=import-outside-toplevel
+    command = [args.build / "bin/duet", "live", "--from", tools.sample("hug"), "--label", "hug=1", "--to", "-"]
+    gaps, resumed, in_time, same = [], 0, 0, 0
+    for _ in range(args.times):
+        servers = [tools.Server(), tools.Server()]
+        try:
+            alone = tools.run(*command, "--server", servers[0].address).stdout.splitlines(True)
+            gap, lines, summary = interrupted(command, servers)
+        finally:
+            for server in servers:
+                server.kill()
+        gaps.append(1000 * gap)
+        resumed += "resumed   1 time" in summary
+        if "older plan" not in summary:
+            in_time += 1
+            same += lines == alone
+    gaps.sort()
+    say("sessions that resumed", f"{resumed} of {args.times}")
+    say("longest time without a frame, ms", f"p50 {gaps[len(gaps) // 2]:.0f}, most {gaps[-1]:.0f}")
+    say("sessions in which every evaluation was in time", in_time)
+    say("... and whose frames are those of an undisturbed session", same)
+    return resumed == args.times and same == in_time
+
+
 COUNT = """{
   const add = spar.strip.add.bind(spar.strip);
   spar.strip.add = (latency) => { window.parts.push(latency); add(latency); };
@@ -180,10 +234,11 @@ def page(args):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("measured", choices=("hostile", "hour", "page"))
+    parser.add_argument("measured", choices=("hostile", "hour", "killed", "page"))
     parser.add_argument("--seconds", type=float, default=600,
                         help="of the hostile sessions, or on the page")
     parser.add_argument("--minutes", type=float, default=60, help="of frames at 30 a second")
+    parser.add_argument("--times", type=int, default=20, help="servers that are killed")
     parser.add_argument("--sessions", type=int, default=4, help="regular sessions side by side")
     parser.add_argument("--memory-mb", type=int, default=150, help="growth that is accepted")
     args = parser.parse_args()
@@ -191,7 +246,7 @@ def main():
     os.environ.setdefault("DUET_BIN_DIR", str(args.build / "bin"))
     from hostile_tools import running  # pylint: disable=import-outside-toplevel
     args.running = running
-    measure = {"hostile": hostile, "hour": hour, "page": page}[args.measured]
+    measure = {"hostile": hostile, "hour": hour, "killed": killed, "page": page}[args.measured]
     return 0 if measure(args) else 1
 
 
