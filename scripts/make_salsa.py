@@ -3,8 +3,10 @@
 
     scripts/make_salsa.py --takes takes.npz --out salsa
     scripts/make_salsa.py --takes takes.npz --glitches glitches.tsv --out salsa --sheets sheets
+    scripts/make_salsa.py --cmu folder --duet build/release/bin/duet --out salsa
 
-TAKES holds `lead_NN` and `follow_NN` ([frames, joints, 3], metres, y up, one world), `joints`,
+CMU is a folder with files of the CMU motion capture database: 60.asf, 60_01.amc, ... (the lead) and
+61.asf, 61_01.amc, ... (the follower). The program duet reads them. TAKES holds `lead_NN` and `follow_NN` ([frames, joints, 3], metres, y up, one world), `joints`,
 `parents` and `fps`. GLITCHES lists frames to leave out: PERSON_NN, a tab, FIRST-LAST,... below a
 heading. --leads writes a second data set, in which the lead answers a standing person, to train a
 generator of leads, and that person as a leader, standing.json. --sheets writes a contact sheet of
@@ -18,7 +20,7 @@ from pathlib import Path
 
 import numpy
 
-from salsa import dataset_folder, moves, standing, takes
+from salsa import cmu, dataset_folder, moves, standing, takes
 
 STANDING_SECONDS = 30
 
@@ -45,9 +47,23 @@ def _write_sheets(prepared, parents, folder):
         sheet.draw(prepared, parents, name, folder / f"{name}.png")
 
 
+def _read(options):
+    """(the takes as recorded, the parents of their joints)."""
+    if options.cmu:
+        return cmu.read_folder(options.cmu, options.duet), list(cmu.PARENTS)
+    recorded = takes.read_archive(options.takes)
+    with numpy.load(options.takes) as archive:
+        if "parents" not in archive:
+            raise takes.TakesError(f"{options.takes}: parents: expected an array, got none")
+        return recorded, [int(parent) for parent in archive["parents"]]
+
+
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--takes", type=Path, required=True, metavar="FILE.npz")
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument("--takes", type=Path, metavar="FILE.npz")
+    source.add_argument("--cmu", type=Path, metavar="DIR", help="the database's own files")
+    parser.add_argument("--duet", default="duet", metavar="PROGRAM", help="reads --cmu")
     parser.add_argument("--glitches", type=Path, metavar="FILE.tsv")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="a new folder")
     parser.add_argument("--leads", type=Path, metavar="DIR", help="a new folder")
@@ -58,12 +74,15 @@ def main(arguments=None):
             parser.error(f"{flag}: expected a new folder, got {folder}, which exists")
     try:
         glitches = takes.read_glitches(options.glitches) if options.glitches else {}
-        prepared = takes.prepare(takes.read_archive(options.takes), glitches)
+        recorded, parents = _read(options)
+        prepared = takes.prepare(recorded, glitches)
     except (takes.TakesError, OSError, ValueError) as error:
         print(f"make_salsa.py: {error}", file=sys.stderr)
         return 1
-    with numpy.load(options.takes) as archive:
-        parents = [int(parent) for parent in archive["parents"]]
+    if not prepared:
+        print(f"make_salsa.py: expected a take of at least {takes.FEWEST_SECONDS:g} s without a "
+              "glitch, got none", file=sys.stderr)
+        return 1
     dataset_folder.write(prepared, parents, options.out)
     _print_summary(prepared)
     if options.leads:
