@@ -9,7 +9,8 @@
 namespace duet::server::service {
 namespace {
 
-// The sign in which w is not negative: that of the frame before is not known after a resumption.
+// Chooses the sign in which w is not negative, because a resumed session does not know the signs of
+// earlier frames.
 void ChooseSigns(google::protobuf::RepeatedField<float>* rotations, int begin) {
   for (int i = begin; i < rotations->size(); i += 4) {
     float* const q = rotations->mutable_data() + i;

@@ -54,8 +54,8 @@ std::vector<int> HoldersOf(const aiScene& scene, const NodeTree& tree) {
   return holders;
 }
 
-// assimp 5.4 states where a bone was bound relative to the node above the mesh, of which it takes
-// the local transform for that in the world.
+// assimp 5.4 states the pose in which a bone was bound relative to the node above the mesh, and
+// uses that node's local transform where its transform in the world is needed.
 bool StatesBonesRelativeToParent() {
   return aiGetVersionMajor() > 5 || (aiGetVersionMajor() == 5 && aiGetVersionMinor() >= 4);
 }
@@ -123,8 +123,8 @@ int NodeTree::Find(const std::string& name) const {
 
 absl::StatusOr<NodeTree> MakeNodeTree(const aiScene& scene, const Affine& to_world) {
   NodeTree tree;
-  // FBX has no transform above its nodes. assimp 5.4 puts the stated axes and unit there, which the
-  // program passes on as statements instead.
+  // FBX has no transform above its nodes. assimp 5.4 applies the stated axes and unit there; this
+  // program passes them on as statements instead.
   tree.root = to_world;
   std::vector<Open> open;
   const auto push_children = [&open](const aiNode& node, int parent,
