@@ -83,6 +83,7 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
   if (synthesis.sampled) absl::StrAppend(&content.subtitle, " · seed ", result.seed);
   content.weights = KeyframesOf(synthesis.request);
   content.beat = synthesis.beat;
+  content.grade = result.grade;
   if (content.pair.leader.frame_count() <= kMostFramesToHandOut) {
     absl::StatusOr<std::string> glb = FormatPair(formats::Format::kGlb, synthesis);
     if (!glb.ok()) return glb.status();

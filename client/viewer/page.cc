@@ -14,6 +14,7 @@ extern const char duet_page_panel[], duet_page_panel_end[];
 extern const char duet_page_measures[], duet_page_measures_end[];
 extern const char duet_page_exporting[], duet_page_exporting_end[];
 extern const char duet_page_metronome[], duet_page_metronome_end[];
+extern const char duet_page_grade[], duet_page_grade_end[];
 extern const char duet_page_main[], duet_page_main_end[];
 }
 
@@ -58,14 +59,14 @@ absl::Status Check(const PageContent& content) {
 }
 
 std::string Script() {
-  return absl::StrCat(SharedScript(), Embedded(duet_page_stage, duet_page_stage_end),
-                      Embedded(duet_page_element, duet_page_element_end),
-                      Embedded(duet_page_gif, duet_page_gif_end),
-                      Embedded(duet_page_panel, duet_page_panel_end),
-                      Embedded(duet_page_measures, duet_page_measures_end),
-                      Embedded(duet_page_exporting, duet_page_exporting_end),
-                      Embedded(duet_page_metronome, duet_page_metronome_end),
-                      Embedded(duet_page_main, duet_page_main_end));
+  return absl::StrCat(
+      SharedScript(), Embedded(duet_page_stage, duet_page_stage_end),
+      Embedded(duet_page_element, duet_page_element_end),
+      Embedded(duet_page_gif, duet_page_gif_end), Embedded(duet_page_panel, duet_page_panel_end),
+      Embedded(duet_page_measures, duet_page_measures_end),
+      Embedded(duet_page_exporting, duet_page_exporting_end),
+      Embedded(duet_page_metronome, duet_page_metronome_end),
+      Embedded(duet_page_grade, duet_page_grade_end), Embedded(duet_page_main, duet_page_main_end));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/request.h"
+#include "client/result.h"
 #include "model/motion/beat.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
@@ -25,6 +26,8 @@ struct PageContent {
   std::string glb;
   // The beat that the page shows and, when the reader turns it on, plays as a metronome.
   std::optional<motion::Beat> beat;
+  // The grade that the page shows and whose bad frames it marks on the time line.
+  std::optional<MotionGrade> grade;
 };
 
 // Returns a self-contained HTML page that plays both characters in 3D. It fetches nothing and works

@@ -33,6 +33,16 @@ nlohmann::json WeightsJson(const WeightKeyframe& keyframe,
   return {{"frame", keyframe.frame}, {"weights", values}};
 }
 
+nlohmann::json GradeJson(const MotionGrade& grade) {
+  nlohmann::json runs = nlohmann::json::array();
+  for (const FrameRun& run : grade.bad_runs) runs.push_back({run.first_frame, run.frame_count});
+  return {{"twisted", grade.twisted},
+          {"skating", grade.skating},
+          {"leaderSkating", grade.leader_skating},
+          {"overlapping", grade.overlapping},
+          {"badRuns", runs}};
+}
+
 }  // namespace
 
 std::string PageDataJson(const PageContent& content) {
@@ -58,6 +68,7 @@ std::string PageDataJson(const PageContent& content) {
   if (content.beat) {
     data["beat"] = {{"bpm", content.beat->per_minute}, {"offset", content.beat->first_seconds}};
   }
+  if (content.grade) data["grade"] = GradeJson(*content.grade);
   return SafeJson(data);
 }
 

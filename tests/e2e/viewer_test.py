@@ -92,6 +92,52 @@ class ViewerTest(tools.FolderTest):
         page.click("#measure")
         self.assertTrue(page.evaluate("document.getElementById('measures').hidden"))
 
+    def test_grade_is_in_figures(self):
+        page = self.paused()
+        rows = page.evaluate("Array.from(document.querySelectorAll('#grade p')).map((row) =>"
+                             " [row.textContent, row.className])")
+        self.assertEqual(rows, [["twisted5 %", "fault"], ["overlapping< 1 %", ""],
+                                ["feet move40 %, leader 10 %", "fault"]])
+
+    def test_bad_frames_are_marked_where_the_scrub_bar_shows_them(self):
+        page = self.paused()
+        boxes = ("((selector) => Array.from(document.querySelectorAll(selector)).map((box) =>"
+                 " { const {left, right} = box.getBoundingClientRect(); return [left, right]; }))")
+        [[left, right]] = page.evaluate(f"{boxes}('#scrub')")
+        left, width = left + 7, right - left - 14
+        marks = page.evaluate(f"{boxes}('#marks b')")
+        self.assertEqual(len(marks), 3)
+        for (start, end), (first, last) in zip(marks, ((11.5, 15.5), (49.5, 50.5), (84.5, 89))):
+            self.assertAlmostEqual(start, left + width * first / (FRAMES - 1), delta=0.5)
+            self.assertAlmostEqual(end, left + width * last / (FRAMES - 1), delta=2)
+
+    def test_next_fault_goes_through_the_bad_frames(self):
+        page = self.open_good("#paused", width=1000, height=600)
+        self.assertEqual(page.text("#next-fault"), "Marked frames: 3")
+        for index, frame in enumerate((12, 50, 85, 12)):
+            page.press("n") if index % 2 else page.click("#next-fault")
+            self.assertEqual(page.state()["frame"], str(frame))
+            self.assertEqual(page.text("#next-fault"), f"Marked frames {index % 3 + 1} of 3")
+        for frame, text in ((15, "Marked frames 1 of 3"), (16, "Marked frames: 3"),
+                            (11, "Marked frames: 3"), (89, "Marked frames 3 of 3")):
+            page.evaluate(f"document.getElementById('stage').player.seek({frame})")
+            page.press("0")
+            self.assertEqual(page.text("#next-fault"), text, frame)
+
+    def test_page_without_a_grade_shows_none(self):
+        page = self.open("#paused", self.spoilt('"grade":{', '"other":{'))
+        self.assertEqual(page.state()["state"], "ready")
+        self.assertTrue(page.evaluate("document.getElementById('grade').hidden"))
+        self.assertEqual(page.evaluate("document.querySelectorAll('#marks b').length"), 0)
+
+    def test_grade_without_bad_frames_has_no_marks(self):
+        page = self.open("#paused", self.spoilt('"badRuns":[[12,4],[50,1],[85,5]]', '"badRuns":[]'))
+        self.assertEqual(page.state()["state"], "ready")
+        self.assertFalse(page.evaluate("document.getElementById('grade').hidden"))
+        self.assertTrue(page.evaluate("document.getElementById('next-fault').hidden"))
+        page.press("n")
+        self.assertEqual(page.state()["frame"], "0")
+
     def test_saves_png_and_glb(self):
         page = self.paused()
         page.click("#save-picture")

@@ -14,6 +14,7 @@ function start() {
   const film = new Film(scene, data.title);
   const gif = new Gif(scene, data.title);
   const metronome = data.beat ? new Metronome(data.beat, player) : null;
+  const grade = data.grade ? new Grade(data.grade, player) : null;
   const showChosen = (name) => {
     for (const button of document.querySelectorAll('[data-view]')) {
       button.classList.toggle('chosen', button.dataset.view === name && name !== 'reset');
@@ -31,6 +32,7 @@ function start() {
     measures.update(player.frame);
     panel.update();
     if (metronome) metronome.update();
+    if (grade) grade.update();
   });
   scene.addEventListener('drawn', () => {
     root.dataset.triangles = scene.triangles;
@@ -57,6 +59,7 @@ function start() {
       {id: 'save-film', key: film.possible ? 'r' : '', action: () => film.start()},
       {id: 'save-gif', key: 'g', action: () => gif.start()},
       {id: 'save-motion', action: () => saveMotion(data.glb, data.title)},
+      ...(grade ? [{id: 'next-fault', key: 'n', action: () => grade.next()}] : []),
       ...(metronome && metronome.possible
               ? [{id: 'metronome', key: 'b', action: () => metronome.toggle()}] : []),
     ],

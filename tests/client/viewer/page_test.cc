@@ -68,6 +68,15 @@ TEST(PageDataTest, ContainsTheMotion) {
   EXPECT_EQ(LittleEndian(bytes, 11), 0.25f);
 }
 
+TEST(PageDataTest, ContainsTheGradeIfThereIsOne) {
+  PageContent content = SmallContent();
+  EXPECT_FALSE(Data(content).contains("grade"));
+  content.grade = MotionGrade{0.5, 0.25, 0.125, 1, {{0, 1}, {1, 1}}};
+  EXPECT_EQ(Data(content)["grade"], nlohmann::json::parse(R"({
+    "twisted": 0.5, "skating": 0.25, "leaderSkating": 0.125, "overlapping": 1,
+    "badRuns": [[0, 1], [1, 1]]})"));
+}
+
 TEST(PageDataTest, ContainsTheGlbIfThereIsOne) {
   PageContent content = SmallContent();
   EXPECT_FALSE(Data(content).contains("glb"));
