@@ -1,4 +1,5 @@
-// How fast the engines answer: windows by batch, and a long clip from end to end, side by side.
+// How fast the engines answer: windows by batch, a whole answer by its candidates, and a long clip
+// from end to end, side by side.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -21,6 +22,8 @@ using Models = std::vector<std::unique_ptr<Synthesizer>>;
 
 // From a window to what 46,000 frames cost: time should grow as the clip does.
 constexpr int kClipFrames[] = {46, 460, 4600, 46000};
+// Of a whole answer.
+constexpr int kAnswerFrames = 45;
 
 Models Loaded(absl::StatusOr<Models> models) {
   if (models.ok()) return *std::move(models);
@@ -63,23 +66,36 @@ void Windows(benchmark::State& state, const Synthesizer* model, bool clean_up) {
                                                    benchmark::Counter::kIsIterationInvariantRate);
 }
 
-// At the model's own frame rate.
+// A clip at the model's own frame rate.
+duet::engine::ClipRequest Request(const Synthesizer& model, int frames) {
+  return {Leader(frames, model.description().skeleton.joint_count()),
+          model.description().frame_rate_hz,
+          duet::engine::LabelTrack(Label(model)),
+          {},
+          {}};
+}
+
+void Answer(const Synthesizer& model, const duet::engine::ClipRequest& request) {
+  duet::engine::ClipSynthesis clip(model.description(), request);
+  while (clip.HasNextWindow()) {
+    const duet::engine::SynthesisWindow window = clip.NextWindow();
+    const duet::engine::SynthesisWindow* const one = &window;
+    benchmark::DoNotOptimize(clip.Accept(*model.Synthesize({&one, 1}).front()));
+  }
+}
+
+// As a server answers by default: cleaned up and graded.
+void Candidates(benchmark::State& state, const Synthesizer* model) {
+  duet::engine::ClipRequest request = Request(*model, kAnswerFrames);
+  request.options.clean_up = true;
+  request.options.sampling.candidates = static_cast<int>(state.range(0));
+  for (auto _ : state) Answer(*model, request);
+}
+
 void Clip(benchmark::State& state, const Synthesizer* model) {
   const int frames = static_cast<int>(state.range(0));
-  const duet::engine::ClipRequest request{
-      Leader(frames, model->description().skeleton.joint_count()),
-      model->description().frame_rate_hz,
-      duet::engine::LabelTrack(Label(*model)),
-      {},
-      {}};
-  for (auto _ : state) {
-    duet::engine::ClipSynthesis clip(model->description(), request);
-    while (clip.HasNextWindow()) {
-      const duet::engine::SynthesisWindow window = clip.NextWindow();
-      const duet::engine::SynthesisWindow* const one = &window;
-      benchmark::DoNotOptimize(clip.Accept(*model->Synthesize({&one, 1}).front()));
-    }
-  }
+  const duet::engine::ClipRequest request = Request(*model, frames);
+  for (auto _ : state) Answer(*model, request);
   state.counters["frames/s"] =
       benchmark::Counter(frames, benchmark::Counter::kIsIterationInvariantRate);
 }
@@ -95,6 +111,12 @@ void Register(const std::string& engine, const Models& models) {
           ->Arg(8)
           ->Arg(32)
           ->Arg(64)
+          ->Unit(benchmark::kMillisecond);
+    }
+    if (model->description().samples) {
+      benchmark::RegisterBenchmark(("candidates/" + name).c_str(), Candidates, model.get())
+          ->Arg(1)
+          ->Arg(8)
           ->Unit(benchmark::kMillisecond);
     }
     auto* clip = benchmark::RegisterBenchmark(("clip/" + name).c_str(), Clip, model.get())
