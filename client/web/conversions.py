@@ -112,12 +112,13 @@ class Duet:
         return files[0] if len(files) == 1 else await asyncio.to_thread(packed, files, stem)
 
     async def write_on_rig(self, folder, pair, rig, kind, stem, settings):
-        """Converts the follower of a pair in "duet-motion" JSON to a file on a rig. Returns it."""
+        """Converts the follower of a pair in "duet-motion" JSON, with all of its joints, to a file on
+        a rig. Returns it."""
         out = folder / "out"
         out.mkdir()
         file = f"out/{stem}.follower.{kind}"
-        await self.run(folder, "convert", pair, "--side", "right", f"--rig={rig}",
-                       *flags_of(settings, RIG), "--out", file, "--quiet")
+        await self.run(folder, "convert", pair, *own_joints("own", pair), "--side", "right",
+                       f"--rig={rig}", *flags_of(settings, RIG), "--out", file, "--quiet")
         return folder / file
 
 

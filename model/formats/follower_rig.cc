@@ -19,16 +19,23 @@
 namespace duet::formats {
 namespace {
 
+// The feet of a rig may lack toes.
+retargeting::CharacterOptions RigOptionsOf(const FollowerRig& rig) {
+  retargeting::CharacterOptions options = CharacterOptionsOf(rig.reading);
+  options.missing_toes = retargeting::MissingToes::kAtTheFeet;
+  return options;
+}
+
 bvh::BvhImportOptions BvhOptionsOf(const FollowerRig& rig) {
-  return {CharacterOptionsOf(rig.reading), PersonOf(rig.reading)};
+  return {RigOptionsOf(rig), PersonOf(rig.reading)};
 }
 
 gltf::GltfImportOptions GltfOptionsOf(const FollowerRig& rig) {
-  return {CharacterOptionsOf(rig.reading), PersonOf(rig.reading), std::nullopt};
+  return {RigOptionsOf(rig), PersonOf(rig.reading), std::nullopt};
 }
 
 fbx::FbxImportOptions FbxOptionsOf(const FollowerRig& rig) {
-  return {CharacterOptionsOf(rig.reading), PersonOf(rig.reading), std::nullopt, std::nullopt};
+  return {RigOptionsOf(rig), PersonOf(rig.reading), std::nullopt, std::nullopt};
 }
 
 gltf::GltfFileReader FilesBeside(const FollowerRig& rig) {
@@ -71,7 +78,7 @@ absl::StatusOr<retargeting::CharacterRig> ReadAmcRig(const std::string& text,
   const std::string source = rig.file.string();
   const absl::StatusOr<asf::AmcMotion> motion = asf::ParseAmc(text, source, *skeleton);
   if (!motion.ok()) return motion.status();
-  return AmcRig(*skeleton, *motion, source, {CharacterOptionsOf(rig.reading), std::nullopt});
+  return AmcRig(*skeleton, *motion, source, {RigOptionsOf(rig), std::nullopt});
 }
 
 // In another format, joints and bones are kept.

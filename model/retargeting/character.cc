@@ -29,9 +29,9 @@ class ClipMaker {
 
   absl::StatusOr<motion::Clip> Make() {
     if (options_.report != nullptr) options_.report->file_joints = character_.tree.names;
-    absl::StatusOr<JointMap> map =
-        MapJoints(source_, character_.tree, options_.skeleton, options_.joint_overrides,
-                  options_.report == nullptr ? nullptr : &options_.report->joints);
+    absl::StatusOr<JointMap> map = MapJoints(
+        source_, character_.tree, options_.skeleton, options_.joint_overrides,
+        options_.report == nullptr ? nullptr : &options_.report->joints, options_.missing_toes);
     if (!map.ok()) return map.status();
     for (std::string& note : map->notes) Note(std::move(note));
     const absl::StatusOr<double> scale = MetresPerUnit(map->straight);

@@ -40,6 +40,7 @@ struct CharacterFit {
 struct CharacterOptions {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   JointOverrides joint_overrides;
+  MissingToes missing_toes = MissingToes::kRejected;
   // If absent, the unit that the file states, provided that it gives legs of a person's length;
   // otherwise the one that motion::InferUnit returns. If there is none, legs are taken as 1 m long,
   // with a warning. A further warning reports a person who is smaller or taller than adults.

@@ -92,11 +92,13 @@ class Mapper {
     return Finish();
   }
 
-  absl::StatusOr<JointMap> MapTree(const JointTree& tree, const JointOverrides& overrides) {
+  absl::StatusOr<JointMap> MapTree(const JointTree& tree, const JointOverrides& overrides,
+                                   MissingToes missing_toes) {
     absl::Status status = ApplyOverrides(overrides);
     if (!status.ok()) return status;
     const bool identity = MapIdentity();
     if (!identity) MapAliases();
+    if (missing_toes == MissingToes::kAtTheFeet) PlaceMissingToes();
     if (!identity) PlaceHeadAtAnEnd(tree);
     const std::vector<motion::Vec3> straight = PullStraight(tree, FindLandmarks());
     measured_ = {straight};
@@ -166,6 +168,16 @@ class Mapper {
     found_[static_cast<size_t>(hand)] =
         Mix({{&SourceOf(wrist), 1 + kHandReach}, {&SourceOf(elbow), -kHandReach}});
     why_[static_cast<size_t>(hand)] = "beyond the wrist, away from the elbow";
+  }
+
+  void PlaceMissingToes() {
+    if (!skeleton_.feet) return;
+    for (const motion::Bone& bone : skeleton_.bones) {
+      const bool toe = bone.parent == skeleton_.feet->left || bone.parent == skeleton_.feet->right;
+      if (!toe || Found(bone.child) || !Found(bone.parent)) continue;
+      found_[static_cast<size_t>(bone.child)] = SourceOf(bone.parent);
+      why_[static_cast<size_t>(bone.child)] = "at the foot; the file has no toes";
+    }
   }
 
   // Maps the joints that depend on positions, in `measured_`.
@@ -490,8 +502,8 @@ class Mapper {
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const JointTree& tree,
                                    const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides,
-                                   std::vector<JointReading>* readings) {
-  return Mapper(source, tree.names, skeleton, readings).MapTree(tree, overrides);
+                                   std::vector<JointReading>* readings, MissingToes missing_toes) {
+  return Mapper(source, tree.names, skeleton, readings).MapTree(tree, overrides, missing_toes);
 }
 
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<std::string>& names,

@@ -38,6 +38,12 @@ struct JointMap {
   std::vector<std::string> notes;
 };
 
+// What happens if a file has no joint for a skeleton's toes, the joints beyond its feet.
+enum class MissingToes {
+  kRejected,
+  kAtTheFeet  // They are placed at the feet, as on a rig whose legs end there.
+};
+
 // Finds a skeleton's joints in a file by name (docs/formats.md has the table). If the file has all
 // of the skeleton's names, they are used unchanged. Otherwise names are compared without prefix
 // (`mixamorig:`, `Bip01`), case, separators and side (`LeftArm`, `arm.L`, `lArm`). Neck and torso
@@ -56,7 +62,8 @@ struct JointMap {
 absl::StatusOr<JointMap> MapJoints(absl::string_view source, const JointTree& tree,
                                    const motion::Skeleton& skeleton,
                                    const JointOverrides& overrides = {},
-                                   std::vector<JointReading>* readings = nullptr);
+                                   std::vector<JointReading>* readings = nullptr,
+                                   MissingToes missing_toes = MissingToes::kRejected);
 
 // The same for a file without a hierarchy: neck and torso are chosen by mean distances over the
 // motion.

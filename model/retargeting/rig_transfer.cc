@@ -10,7 +10,9 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/median.h"
 #include "model/motion/recorded_motion.h"
+#include "model/retargeting/body_roles.h"
 #include "model/retargeting/foot_pose.h"
+#include "model/retargeting/limb_ends.h"
 #include "model/retargeting/limb_reach.h"
 
 namespace duet::retargeting {
@@ -28,6 +30,12 @@ constexpr double kPreviousPrior = 1e-3;
 
 std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
 
+std::vector<motion::Vec3> ToFloats(const std::vector<Vec3d>& positions) {
+  std::vector<motion::Vec3> floats;
+  for (const Vec3d& position : positions) floats.push_back(ToFloat(position));
+  return floats;
+}
+
 // The axes of the first direction and of the part of the second that is perpendicular to it.
 Quaternion Frame(Vec3d along, Vec3d across) {
   const Vec3d y = Unit(across - along * Dot(across, along), kUp);
@@ -37,21 +45,37 @@ Quaternion Frame(Vec3d along, Vec3d across) {
 // An arm or a leg: its joints and its rest pose.
 struct Limb {
   int start = 0, middle = 0, end = 0;                 // of the rig
-  int clip_start = 0, clip_middle = 0, clip_end = 0;  // of the skeleton
+  int clip_start = 0, clip_middle = 0, clip_end = 0;  // of the body
   double upper_length = 0, lower_length = 0;          // metres
   Quaternion upper_rest, lower_rest;                  // Frame(bone, hinge)
   bool leg = false;
+  LimbEnds::Side side = LimbEnds::Side::kLeft;
   PoleTracker pole;
 };
 
+// The body's joints of a clip.
+motion::Clip BodyOf(const motion::Clip& clip, const JointMap& body) {
+  motion::Clip mapped;
+  mapped.joint_names = motion::SbuSkeleton().joint_names;
+  mapped.frame_rate_hz = clip.frame_rate_hz;
+  for (int frame = 0; frame < clip.frame_count(); ++frame) {
+    mapped.Append(ApplyJointMap(body, clip.poses[frame]));
+  }
+  return mapped;
+}
+
 class Transfer {
  public:
-  Transfer(const CharacterRig& rig, absl::string_view source)
-      : rig_(rig), skeleton_(motion::SbuSkeleton()), source_(source) {}
+  // `body` maps the body's joints to the rig's.
+  Transfer(const CharacterRig& rig, JointMap body, const LimbEnds& ends, absl::string_view source)
+      : rig_(rig),
+        joints_(std::move(body)),
+        ends_(ends),
+        skeleton_(motion::SbuSkeleton()),
+        source_(source) {}
 
   absl::Status Prepare() {
-    const std::vector<motion::Vec3> rest = ToFloats(rig_.positions);
-    for (const motion::Vec3& landmark : ApplyJointMap(rig_.joints, rest)) {
+    for (const motion::Vec3& landmark : ApplyJointMap(joints_, ToFloats(rig_.positions))) {
       landmarks_.push_back(ToDouble(landmark));
     }
     FindBody();
@@ -63,6 +87,7 @@ class Transfer {
     return FindTrunk();
   }
 
+  // `clip` has the body's joints.
   std::vector<CharacterPose> Run(const motion::Clip& clip) {
     ankle_height_ = AnkleHeightOnFloor(skeleton_, clip);
     leg_ratio_ = LegRatio(clip);
@@ -72,12 +97,6 @@ class Transfer {
   }
 
  private:
-  static std::vector<motion::Vec3> ToFloats(const std::vector<Vec3d>& positions) {
-    std::vector<motion::Vec3> floats;
-    for (const Vec3d& position : positions) floats.push_back(ToFloat(position));
-    return floats;
-  }
-
   absl::Status Error(absl::string_view what) const {
     return absl::InvalidArgumentError(absl::StrCat(source_, ": rig: ", what));
   }
@@ -98,7 +117,7 @@ class Transfer {
   }
 
   absl::StatusOr<int> JointFor(const std::string& name) const {
-    const JointSource& found = rig_.joints.sources[Index(skeleton_.Find(name))];
+    const JointSource& found = joints_.sources[Index(skeleton_.Find(name))];
     if (found.terms.size() == 1) return found.terms[0].joint;
     return Error(absl::StrCat(name, ": expected one joint of the rig, got a place between joints"));
   }
@@ -125,7 +144,9 @@ class Transfer {
     limb.clip_start = skeleton_.Find(start);
     limb.clip_middle = skeleton_.Find(middle);
     limb.clip_end = skeleton_.Find(end);
+    const bool left = absl::string_view(start).substr(0, 4) == "left";
     limb.leg = leg;
+    limb.side = left ? LimbEnds::Side::kLeft : LimbEnds::Side::kRight;
     const Vec3d upper = RestAt(limb.middle) - RestAt(limb.start);
     const Vec3d lower = RestAt(limb.end) - RestAt(limb.middle);
     limb.upper_length = Norm(upper), limb.lower_length = Norm(lower);
@@ -134,7 +155,7 @@ class Transfer {
                                 " and ", limb.lower_length, " m"));
     }
     const Vec3d u = Unit(upper, kUp), l = Unit(lower, kUp);
-    const Vec3d hinge = RestHinge(u, l, leg, absl::string_view(start).substr(0, 4) == "left");
+    const Vec3d hinge = RestHinge(u, l, leg, left);
     limb.upper_rest = Frame(u, hinge);
     limb.lower_rest = Frame(l, hinge);
     limbs_.push_back(limb);
@@ -176,7 +197,7 @@ class Transfer {
     chest_ = CommonAncestor(limbs_[0].start, limbs_[1].start);
     pelvis_ = CommonAncestor(pelvis_, chest_);
     spine_ = Chain(pelvis_, chest_);
-    const JointSource& head = rig_.joints.sources[Index(skeleton_.Find("head"))];
+    const JointSource& head = joints_.sources[Index(skeleton_.Find("head"))];
     // The middle of the head is between its joint and its end.
     int joint = head.terms[0].joint;
     for (const JointSource::Term& term : head.terms) {
@@ -318,17 +339,27 @@ class Transfer {
     const Quaternion lower = Frame(reach.lower, reach.hinge);
     Turn(limb->start, Frame(reach.upper, reach.hinge) * Inverse(limb->upper_rest), pose);
     Turn(limb->middle, lower * Inverse(limb->lower_rest), pose);
-    if (!limb->leg) return;
+    if (!limb->leg) {
+      const Quaternion forearm = pose->turns[Index(limb->middle)];
+      return Turn(limb->end, ends_.Hand(limb->side, frame, forearm), pose);
+    }
+    const Vec3d ankle = start + reach.upper * limb->upper_length + reach.lower * limb->lower_length;
+    TurnFoot(frame, *limb, lower, ankle, pose);
+  }
+
+  // Requires the leg's other turns. `lower`: Frame(shin, hinge).
+  void TurnFoot(int frame, const Limb& leg, Quaternion lower, Vec3d ankle, CharacterPose* pose) {
     // In the canonical pose the shin hangs and bends about the axis to the left.
     const Quaternion hangs = Frame({0, -1, 0}, {1, 0, 0});
-    const Quaternion shin = lower * Inverse(hangs);
-    const Quaternion rest_shin = limb->lower_rest * Inverse(hangs);
-    const Vec3d rest_down = Rotate(limb->lower_rest, {1, 0, 0});
+    const Vec3d rest_down = Rotate(leg.lower_rest, {1, 0, 0});
     const bool flat_at_rest = Dot(rest_down, Rotate(body_, {0, -1, 0})) > kShinHangs;
-    const Vec3d ankle = start + reach.upper * limb->upper_length + reach.lower * limb->lower_length;
-    Turn(limb->end,
-         FootRotation(shin, ankle, ankle_height_) * Inverse(flat_at_rest ? body_ : rest_shin),
-         pose);
+    const Quaternion rest = ends_.FootAtRest(
+        leg.side, flat_at_rest ? body_ : leg.lower_rest * Inverse(hangs), flat_at_rest);
+    const Quaternion foot =
+        ends_.Foot(leg.side, frame, FootRotation(lower * Inverse(hangs), ankle, ankle_height_));
+    Turn(leg.end, foot * Inverse(rest), pose);
+    const int toe = ends_.ToeJoint(leg.side);
+    if (toe >= 0) Turn(toe, ends_.Toes(leg.side, frame, foot) * Inverse(rest), pose);
   }
 
   // Joints without a target rotation follow their parents. Positions follow from the rotations.
@@ -359,9 +390,11 @@ class Transfer {
   }
 
   const CharacterRig& rig_;
-  const motion::Skeleton skeleton_;
+  const JointMap joints_;  // the body's joints from the rig's
+  const LimbEnds& ends_;
+  const motion::Skeleton skeleton_;  // of the body
   const std::string source_;
-  std::vector<Vec3d> landmarks_;  // the skeleton's joints on the rig at rest
+  std::vector<Vec3d> landmarks_;  // the body's joints on the rig at rest
   Quaternion body_;               // from x left, y up, z ahead to the rest pose
   std::vector<Limb> limbs_;       // arms, then legs, the left one first
   int pelvis_ = 0, chest_ = 0;
@@ -377,18 +410,21 @@ class Transfer {
 absl::StatusOr<std::vector<CharacterPose>> TransferToRig(const motion::Clip& clip,
                                                          const CharacterRig& rig,
                                                          absl::string_view source) {
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
-  if (clip.joint_names != skeleton.joint_names) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("follower: expected the ", skeleton.joint_count(),
-                     " joints of SBU to write onto a rig, got ", clip.joint_count()));
-  }
   absl::Status status = CheckClip("follower", clip);
   if (!status.ok()) return status;
-  Transfer transfer(rig, source);
+  const std::size_t joints = rig.joints.sources.size();
+  if (clip.joint_names.size() != joints) {
+    return absl::InvalidArgumentError(absl::StrCat("follower: joints: expected the ", joints,
+                                                   " joints that the rig is read for, got ",
+                                                   clip.joint_count()));
+  }
+  const absl::StatusOr<BodyRoles> roles = FindBodyRoles("follower", clip);
+  if (!roles.ok()) return roles.status();
+  const LimbEnds ends(clip, *roles, rig, ApplyJointMap(rig.joints, ToFloats(rig.positions)));
+  Transfer transfer(rig, Compose(rig.joints, roles->body), ends, source);
   status = transfer.Prepare();
   if (!status.ok()) return status;
-  return transfer.Run(clip);
+  return transfer.Run(BodyOf(clip, roles->body));
 }
 
 }  // namespace duet::retargeting

@@ -1,10 +1,19 @@
 """`duet synthesize --follower-rig`: rigs with unknown joint names, and joint maps for them."""
 
+import json
 import re
 
+import numpy as np
 import tools
 
 ADVICE = "--follower-rig-joint-map-file FILE"
+MIXAMO = {"hips": "Hips", "spine": "Spine", "chest": "Spine2", "neck": "Neck", "head": "Head",
+          "head_top": "HeadTop_End"}
+for side in ("left", "right"):
+    for joint, name in (("shoulder", "Arm"), ("elbow", "ForeArm"), ("wrist", "Hand"),
+                        ("hand", "HandMiddle1"), ("hip", "UpLeg"), ("knee", "Leg"), ("ankle", "Foot"),
+                        ("toe", "ToeBase")):
+        MIXAMO[f"{side}_{joint}"] = side.capitalize() + name
 
 
 class RigTest(tools.ServedTest):
@@ -65,6 +74,59 @@ class RigTest(tools.ServedTest):
                                leader=self.rig)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("ROOT Part0", (self.folder / "own.follower.bvh").read_text(encoding="utf-8"))
+
+    def dance(self, out, *flags):
+        """A salsa, as `out` and pair.json. Returns the joints' names and the follower of pair.json."""
+        done = tools.duet("synthesize", "--server", self.server.address, "--model", "salsa", "--leader",
+                          tools.sample("salsa"), "--label", "basic=1", "--out", self.folder / "pair.json",
+                          "--out", self.folder / out, "--quiet", *flags)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        pair = json.loads((self.folder / "pair.json").read_text(encoding="utf-8"))
+        return pair["joint_names"], np.array(pair["follower"])
+
+    def read(self, file, *flags):
+        """The joints' names and the positions of a file of one person."""
+        out = self.folder / "read.json"
+        done = tools.duet("convert", self.folder / file, "--out", out, "--quiet", *flags)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        motion = json.loads(out.read_text(encoding="utf-8"))
+        return motion["joint_names"], np.array(motion["leader"])
+
+    def test_follower_of_salsa_moves_feet_toes_and_hands_of_a_mixamo_rig(self):
+        text = tools.sample("salsa").read_text(encoding="utf-8")
+        (self.folder / "mixamo.bvh").write_text(re.sub(
+            r"(ROOT|JOINT) (\S+)", lambda line: f"{line[1]} mixamorig:{MIXAMO.get(line[2], line[2])}",
+            text), encoding="utf-8")
+        names, follower = self.dance("dance.bvh", "--follower-rig", self.folder / "mixamo.bvh")
+        self.assertIn("JOINT mixamorig:LeftToeBase",
+                      (self.folder / "dance.follower.bvh").read_text(encoding="utf-8"))
+        joints, on_rig = self.read("dance.follower.bvh", "--skeleton", self.folder / "pair.json")
+        self.assertEqual(joints, names)
+        for side in ("left", "right"):
+            start, end = (names.index(f"{side}_{joint}") for joint in ("ankle", "toe"))
+            self.assertLess(np.abs(on_rig[:, start] - follower[:, start]).max(), 0.002, side)
+            feet = [(motion[:, end] - motion[:, start]) for motion in (on_rig, follower)]
+            cosines = np.sum(feet[0] * feet[1], axis=1) / np.prod([np.linalg.norm(foot, axis=1)
+                                                                   for foot in feet], axis=0)
+            self.assertGreater(cosines.min(), 0.99, side)
+            wrist, hand = (names.index(f"{side}_{joint}") for joint in ("wrist", "hand"))
+            hands = [(motion[:, hand] - motion[:, wrist]) for motion in (on_rig, follower)]
+            self.assertLess(np.abs(hands[0] - hands[1]).max(), 0.03, side)
+        done = tools.duet("convert", self.folder / "pair.json", "--skeleton", self.folder / "pair.json",
+                          "--side", "right", "--rig", self.folder / "mixamo.bvh", "--out",
+                          self.folder / "converted.bvh", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        np.testing.assert_allclose(
+            self.read("converted.bvh", "--skeleton", self.folder / "pair.json")[1], on_rig, atol=1e-4)
+
+    def test_follower_of_salsa_stands_on_a_rig_without_toes_and_hands(self):
+        names, follower = self.dance("robot.glb", "--follower-rig", self.leader)
+        self.assertTrue((self.folder / "robot.glb").exists())
+        joints, on_rig = self.read("robot.follower.glb")
+        self.assertEqual(len(joints), 15)
+        for side in ("left", "right"):
+            at, wanted = joints.index(f"{side}_foot"), names.index(f"{side}_ankle")
+            self.assertLess(np.abs(on_rig[:, at] - follower[:, wanted]).max(), 0.002, side)
 
     def test_joint_map_without_a_rig_is_rejected(self):
         for flags in ((), ("--follower-rig", "leader")):

@@ -68,7 +68,17 @@ class StudioModelsTest(StudioTest):
         self.assertEqual(page.state()["failed"], "false", page.text("#status"))
         name, text = page.evaluate("window.saved.pop()")
         self.assertRegex(name, r"\.follower\.bvh$")
-        self.assertIn("HIERARCHY", text)
+        with tempfile.TemporaryDirectory() as folder:
+            files = [pathlib.Path(folder) / name for name in ("pair.json", "on_rig.bvh", "on_rig.json")]
+            files[0].write_text(json.dumps(pair), encoding="utf-8")
+            files[1].write_text(text, encoding="utf-8")
+            tools.duet("convert", files[1], "--skeleton", files[0], "--out", files[2]).check_returncode()
+            on_rig = np.array(json.loads(files[2].read_text(encoding="utf-8"))["leader"])
+        follower = np.array(pair["follower"])
+        for side in ("left", "right"):
+            ankle, toe = (pair["joint_names"].index(f"{side}_{joint}") for joint in ("ankle", "toe"))
+            self.assertLess(np.abs(on_rig[:, ankle] - follower[:, ankle]).max(), 0.002)
+            self.assertLess(np.abs(on_rig[:, toe] - follower[:, toe]).max(), 0.05)
 
     def test_model_with_other_joints_reads_the_leader_again(self):
         page = self.open_dance()

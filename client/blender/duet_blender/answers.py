@@ -93,7 +93,6 @@ def show(scene, index):
     answer = duet.answers[index]
     if not os.path.isfile(answer.file):
         raise DuetError("The answers of an earlier session are gone. Press React again.")
-    # The file names the joints of any model; rigs take the 15 joints of sbu.
     yield from show_file(scene, answer.file, "right", ["--skeleton", answer.file], duet.body)
     if retarget.follows(duet.target):
         yield from retarget.follow(scene, duet.target)
@@ -110,7 +109,7 @@ def show_file(scene, motion, side, flags, body, first_frame=None):
         if body == "LEADER":
             rig = os.path.join(work, "rig.glb")
             partner.export_rig(scene, duet.leader, leader.metres_per_unit(scene), rig)
-            flags = ["--rig", rig, *leader.joint_flags(duet, "--rig-joint-map")]
+            flags = [*flags, "--rig", rig, *leader.joint_flags(duet, "--rig-joint-map")]
         yield from program.run(duet, "convert", motion, "--side", side, *flags, "--out", file,
                                "--quiet")
         partner.remove_last(scene)

@@ -11,9 +11,10 @@
 
 namespace duet::formats::bvh {
 
-// Writes a clip of motion::SbuSkeleton's joints onto the rig of a BVH (retargeting::TransferToRig).
-// Its names, hierarchy, offsets, channels and their order, unit and up axis are kept. Angles are
-// continuous: of all equivalent angles, each frame has those nearest to the previous frame's.
+// Writes a clip of the joints of `options.skeleton` onto the rig of a BVH
+// (retargeting::TransferToRig). Its names, hierarchy, offsets, channels and their order, unit and
+// up axis are kept. Angles are continuous: of all equivalent angles, each frame has those nearest
+// to the previous frame's.
 //
 // `options` select the rig and how to read its file; `source` denotes it in messages.
 // Errors: INVALID_ARGUMENT for a rig that FromBvh or TransferToRig rejects, or a joint that must

@@ -13,8 +13,8 @@
 
 namespace duet::formats::gltf {
 
-// Writes a clip of motion::SbuSkeleton's joints onto a character of a glTF file. The nodes, rest
-// pose, skins, meshes and materials of the file are kept. One new animation of the character
+// Writes a clip of the joints of `options.skeleton` onto a character of a glTF file. The nodes,
+// rest pose, skins, meshes and materials of the file are kept. One new animation of the character
 // (retargeting::TransferToRig) replaces its animations and their data. Buffers in other files are
 // embedded; images in other files are not.
 //

@@ -246,11 +246,17 @@ TEST(OntoBvhRig, RejectsARigThatCannotBeAPerson) {
   EXPECT_THAT(std::string(OntoBvhRig(Follower(), rig, "rig.bvh", {}).status().message()),
               HasSubstr("\"mixamorig:LeftForeArm\": expected rotation channels about three axes"));
   motion::Clip other = Follower();
-  other.joint_names[0] = "skull";
+  for (std::string& name : other.joint_names) name += "_of_a_crab";
   EXPECT_THAT(
       std::string(
           OntoBvhRig(other, test::RigFamilies()[0].document, "rig.bvh", {}).status().message()),
-      HasSubstr("expected the 15 joints of SBU"));
+      HasSubstr("follower: joints: expected those of a person"));
+  other.joint_names.pop_back();
+  other.poses = motion::Poses(1, 14);
+  EXPECT_THAT(
+      std::string(
+          OntoBvhRig(other, test::RigFamilies()[0].document, "rig.bvh", {}).status().message()),
+      HasSubstr("expected the 15 joints that the rig is read for, got 14"));
 }
 
 }  // namespace
