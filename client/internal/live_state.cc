@@ -18,6 +18,8 @@ namespace {
 constexpr double kLongestGapSeconds = 2;
 // Leader frames that may wait for an answer: the longest outage that a session survives.
 constexpr double kLongestBacklogSeconds = 120;
+// Leader frames in a start.
+constexpr double kLongestStartSeconds = 10;
 constexpr absl::Duration kLongestEase = absl::Seconds(10);
 
 template <typename... Parts>
@@ -231,7 +233,7 @@ v1::LiveStart LiveState::StartWithHistory(int answered, int first) {
   }
   if (answered == 0) return start;
   start.clear_follower_start();
-  const int leaders = answered + request_.delay_frames - first;
+  const int leaders = StartEnd(answered, first) - first;
   start.mutable_leader()->set_frame_count(static_cast<uint32_t>(leaders));
   AppendPositions(leader_.Frames(first, leaders), start.mutable_leader()->mutable_positions());
   v1::LiveHistory* history = start.mutable_history();
@@ -245,6 +247,14 @@ v1::LiveStart LiveState::StartWithHistory(int answered, int first) {
   return start;
 }
 
+// The leader frames that have no answer belong to the start: the server evaluates all of those,
+// whereas it skips evaluations for frames that queue up later.
+int LiveState::StartEnd(int answered, int first) const {
+  if (answered == 0) return 0;
+  const int most = first + static_cast<int>(kLongestStartSeconds * request_.frame_rate_hz);
+  return std::clamp(most, answered + request_.delay_frames, leader_.end());
+}
+
 std::deque<v1::SynthesizeLiveRequest> LiveState::BeginStream() {
   is_open_ = has_summary_ = false;
   rotations_.BeginStream();
@@ -255,8 +265,7 @@ std::deque<v1::SynthesizeLiveRequest> LiveState::BeginStream() {
   next_frame_ = answered;
   std::deque<v1::SynthesizeLiveRequest> messages(1);
   *messages[0].mutable_start() = StartWithHistory(answered, first);
-  const int sent = answered == 0 ? 0 : answered + request_.delay_frames;
-  for (int frame = sent; frame < leader_.end(); ++frame) {
+  for (int frame = StartEnd(answered, first); frame < leader_.end(); ++frame) {
     messages.push_back(FramesMessage(
         frame, 1, leader_[frame], capture_seconds_[static_cast<size_t>(frame - capture_first_)]));
   }
@@ -341,6 +350,15 @@ absl::Status LiveState::CheckFrames(const v1::FollowerFrames& frames) const {
   return absl::OkStatus();
 }
 
+// Of the leader frame that the answer is from. The server does not know those of a start.
+double LiveState::CaptureSeconds(const v1::FollowerFrames& frames) const {
+  const int64_t kept = int64_t{frames.leader_frame()} - capture_first_;
+  if (kept < 0 || kept >= static_cast<int64_t>(capture_seconds_.size())) {
+    return frames.capture_seconds();
+  }
+  return capture_seconds_[static_cast<size_t>(kept)];
+}
+
 absl::StatusOr<LiveAnswer> LiveState::AcceptFrames(const v1::FollowerFrames& frames) {
   absl::Status status = CheckFrames(frames);
   if (!status.ok()) return status;
@@ -349,7 +367,7 @@ absl::StatusOr<LiveAnswer> LiveState::AcceptFrames(const v1::FollowerFrames& fra
   out.poses = ToPoses(frames.positions(), joints);
   out.plan = ToPoses(frames.plan_positions(), joints);
   out.leader_frame = static_cast<int>(frames.leader_frame());
-  out.capture_seconds = frames.capture_seconds();
+  out.capture_seconds = CaptureSeconds(frames);
   out.server_time = absl::Seconds(frames.server_seconds());
   next_frame_ += out.poses.frame_count();
   // A resumed stream may begin with frames that the caller has.

@@ -40,8 +40,8 @@ class LiveState {
   absl::StatusOr<v1::SynthesizeLiveRequest> ChangeLabels(const std::vector<ClassWeight>& weights,
                                                          absl::Duration ease);
 
-  // Begins a stream, and returns its first messages: the start with the history, then the leader's
-  // frames since.
+  // Begins a stream, and returns its first messages: the start with the history and the leader's
+  // frames since, then those frames that a start has no room for.
   std::deque<v1::SynthesizeLiveRequest> BeginStream();
 
   // Reads a message of the stream. INTERNAL if it violates the contract.
@@ -66,6 +66,9 @@ class LiveState {
   absl::Status CheckIndices(int first_frame, size_t points) const;
   void FillGap(int first_frame, absl::Span<const motion::Vec3> next, double capture_seconds);
   v1::LiveStart StartWithHistory(int answered, int first);
+  // The index after the last leader frame in such a start.
+  int StartEnd(int answered, int first) const;
+  double CaptureSeconds(const v1::FollowerFrames& frames) const;
   absl::Status AcceptHeader(const v1::LiveHeader& header);
   absl::Status CheckFrames(const v1::FollowerFrames& frames) const;
   absl::StatusOr<LiveAnswer> AcceptFrames(const v1::FollowerFrames& frames);

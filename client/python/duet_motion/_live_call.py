@@ -25,6 +25,8 @@ from duet_motion.v1 import live_pb2, motion_pb2, reaction_pb2
 
 # Leader frames in one message, so that no message exceeds the server's limit.
 _BLOCK_FRAMES = 32
+# The server's limit for the leader frames of a start.
+_START_SECONDS = 10
 _NOTICES = {
     live_pb2.LIVE_NOTICE_KIND_GAP_FILLED: "gap_filled",
     live_pb2.LIVE_NOTICE_KIND_LATE: "late",
@@ -141,7 +143,7 @@ class LiveCall:
         self._outbox.clear()
         self._outbox.append(live_pb2.SynthesizeLiveRequest(start=start))
         self._has_stream = True
-        self._send_frames(end + self.request.delay if end else 0)
+        self._send_frames(self._start_end(end))
 
     def next_message(self) -> Optional[live_pb2.SynthesizeLiveRequest]:
         """The next message of this stream; None if there is none yet."""
@@ -190,6 +192,15 @@ class LiveCall:
         kept = self.header.history_frames if self.header else self._leader.end
         return max(self._resumed_from() - kept, 0)
 
+    def _start_end(self, end: int) -> int:
+        """The index after the last leader frame in a start. Those that have no answer belong to it:
+        the server evaluates all of them, whereas it skips evaluations for frames that queue up
+        later."""
+        if not end:
+            return 0
+        most = self._history_start() + int(_START_SECONDS * self.motion.frame_rate_hz)
+        return max(min(most, self._leader.end), end + self.request.delay)
+
     def _start(self, end: int) -> live_pb2.LiveStart:
         request, header = self.request, self.header
         first = self._history_start()
@@ -215,8 +226,9 @@ class LiveCall:
         # One follower must not mix the answers of two versions.
         start.model.Clear()
         start.model.name, start.model.version = header.model_name, header.model_version
-        start.leader.frame_count = end + request.delay - first
-        start.leader.positions.extend(self._leader.values(first, end + request.delay))
+        leader_end = self._start_end(end)
+        start.leader.frame_count = leader_end - first
+        start.leader.positions.extend(self._leader.values(first, leader_end))
         start.history.first_frame = first
         start.history.follower_frame_count = end - first
         start.history.follower_positions.extend(self._follower.values(first, end))

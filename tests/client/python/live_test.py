@@ -108,15 +108,30 @@ class LiveTest(unittest.TestCase):
                     start = mirror.streams[1][0].start
                     begin = start.history.first_frame
                     self.assertEqual(start.history.follower_frame_count, Mirror.HISTORY)
-                    self.assertEqual(start.leader.frame_count, Mirror.HISTORY + delay)
+                    self.assertGreaterEqual(start.leader.frame_count, Mirror.HISTORY + delay)
                     leader = support.leader(FRAMES)
                     np.testing.assert_array_equal(
                         start.leader.positions,
-                        leader.positions[begin:begin + Mirror.HISTORY + delay].ravel())
+                        leader.positions[begin:begin + start.leader.frame_count].ravel())
                     np.testing.assert_array_equal(
                         start.history.follower_positions,
                         support.follower_of(leader)[begin:begin + Mirror.HISTORY].ravel())
                     self.assertEqual((start.seed, start.model.name, start.model.version), (5, "m", 1))
+
+    def test_frames_without_an_answer_are_in_the_start_of_the_next_stream(self):
+        mirror = Mirror({"after": 7, "act": RESET})
+        parts, _ = run(lambda client: answered(client, together=True), mirror)
+        self.assert_whole(parts)
+        start = mirror.streams[1][0].start
+        self.assertEqual(start.history.first_frame + start.history.follower_frame_count, 7)
+        self.assertEqual(start.leader.frame_count, FRAMES - start.history.first_frame)
+        self.assertFalse(mirror.streams[1][1:])
+
+    def test_a_start_has_at_most_ten_seconds_of_the_leader(self):
+        mirror = Mirror({"after": 7, "act": RESET})
+        parts, _ = run(lambda client: answered(client, support.leader(500), together=True), mirror)
+        self.assert_whole(parts, 500)
+        self.assertLessEqual(mirror.streams[1][0].start.leader.frame_count, 300)
 
     def test_rotations_keep_their_signs_over_an_interruption(self):
         mirror = Mirror({"after": 9, "act": RESET})

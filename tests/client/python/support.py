@@ -3,6 +3,7 @@
 import concurrent.futures
 import contextlib
 import importlib
+import itertools
 import os
 import pathlib
 import sys
@@ -247,8 +248,12 @@ class Mirror(synthesis_pb2_grpc.MotionSynthesisServicer):
         done = begun = first + start.history.follower_frame_count
         yield live_header(start, begun, history_frames=self.HISTORY, **script.get("header", {}))
         yield from script.get("extra", ())
-        for message in requests:
-            received.append(message)
+        # The start may have frames that are due.
+        for message in itertools.chain(received[:1], requests):
+            if message.HasField("start"):
+                message = live_pb2.SynthesizeLiveRequest()
+            else:
+                received.append(message)
             if message.HasField("frames"):
                 block = np.float32(message.frames.positions).reshape(-1, len(JOINTS), 3)
                 leader.update(enumerate(block, message.frames.first_frame))

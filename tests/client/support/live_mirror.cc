@@ -199,10 +199,12 @@ grpc::Status LiveMirror::Run(grpc::ServerContext* /*context*/, LiveServerStream*
     if (!status.ok()) return status;
   }
   stream->Write(HeaderFor(request.start(), *this, mirror.next()));
-  for (bool open = true; open;) {
-    open = stream->Read(&request);
-    if (open && request.has_label_change()) mirror.Change(request.label_change());
-    if (open && request.has_frames()) {
+  for (bool open = true, begun = false; open; begun = true) {
+    // The start may have frames that are due.
+    const bool read = begun || mirror.next() >= mirror.last_due();
+    open = !read || stream->Read(&request);
+    if (open && read && request.has_label_change()) mirror.Change(request.label_change());
+    if (open && read && request.has_frames()) {
       const std::lock_guard<std::mutex> lock(mutex_);
       ++messages_;
       mirror.Add(request.frames());
