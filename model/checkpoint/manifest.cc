@@ -34,6 +34,8 @@ constexpr int kMaxDepth = 6;
 constexpr std::size_t kSha256HexBytes = 64;
 constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kHandContacts[] = "hand_contacts";
+constexpr char kTurningClasses[] = "turning_classes";
+constexpr char kStepsInTime[] = "steps_in_time";
 constexpr char kTerms[] = "terms";
 constexpr char kLookaheadFrames[] = "lookahead_frames";
 constexpr char kFreeForAllUses[] = "free_for_all_uses";
@@ -138,21 +140,34 @@ void ReadTouchingClasses(base::ObjectReader* reader, engine::ModelDescription* m
   }
 }
 
-// Classes with the distance at which hands meet in them. Older checkpoints have none.
-void ReadHandContacts(base::ObjectReader* reader, engine::ModelDescription* model) {
-  constexpr double kFarthest = 1;
-  if (!reader->Has(kHandContacts)) return;
-  const json& object = reader->Object(kHandContacts);
-  base::ObjectReader fields(object, kHandContacts);
+// Calls `add(class, number)` for every class of an optional object of numbers in [0, most].
+template <typename Add>
+void ReadClassNumbers(base::ObjectReader* reader, const char* name,
+                      const std::vector<std::string>& classes, double most, const Add& add) {
+  if (!reader->Has(name)) return;
+  const json& object = reader->Object(name);
+  base::ObjectReader fields(object, name);
   for (const auto& field : object.items()) {
-    if (std::find(model->classes.begin(), model->classes.end(), field.key()) ==
-        model->classes.end()) {
-      reader->Fail(kHandContacts,
-                   absl::StrCat("expected one of classes, got ", json(field.key()).dump()));
+    if (std::find(classes.begin(), classes.end(), field.key()) == classes.end()) {
+      reader->Fail(name, absl::StrCat("expected one of classes, got ", json(field.key()).dump()));
     }
-    model->hand_contacts.push_back({field.key(), fields.Number(field.key(), 0, kFarthest)});
+    add(field.key(), fields.Number(field.key(), 0, most));
   }
   reader->Update(fields.Finish());
+}
+
+// What people do in some of the classes. Older checkpoints have no such fields.
+void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
+  constexpr double kFarthestHands = 1, kFastestTurn = 1440;
+  ReadClassNumbers(reader, kHandContacts, model->classes, kFarthestHands,
+                   [model](const std::string& name, double metres) {
+                     model->hand_contacts.push_back({name, metres});
+                   });
+  ReadClassNumbers(reader, kTurningClasses, model->classes, kFastestTurn,
+                   [model](const std::string& name, double speed) {
+                     model->turning_classes.push_back({name, speed});
+                   });
+  if (reader->Has(kStepsInTime)) model->steps_in_time = reader->Bool(kStepsInTime);
 }
 
 // Windows with a lookahead share their settled frames and the lookahead, and must still advance.
@@ -176,7 +191,7 @@ void ReadModel(base::ObjectReader* reader, engine::ModelDescription* model) {
     reader->Fail("classes", "expected at least one class, got none");
   }
   ReadTouchingClasses(reader, model);
-  ReadHandContacts(reader, model);
+  ReadHabits(reader, model);
 }
 
 // Older checkpoints have none, and version 1 does not allow them.
@@ -284,6 +299,10 @@ std::string SerializeManifest(const Manifest& manifest) {
   for (const engine::HandContact& contact : model.hand_contacts) {
     root[kHandContacts][contact.interaction_class] = contact.metres;
   }
+  for (const engine::TurningClass& turning : model.turning_classes) {
+    root[kTurningClasses][turning.interaction_class] = turning.degrees_per_second;
+  }
+  if (model.steps_in_time) root[kStepsInTime] = true;
   if (!model.terms.empty()) root[kTerms] = model.terms;
   if (model.lookahead_frames > 0) root[kLookaheadFrames] = model.lookahead_frames;
   if (model.free_for_all_uses) root[kFreeForAllUses] = true;

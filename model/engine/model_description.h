@@ -17,6 +17,12 @@ struct HandContact {
   double metres = 0;
 };
 
+// A class in which the follower turns about itself, and how fast.
+struct TurningClass {
+  std::string interaction_class;
+  double degrees_per_second = 0;
+};
+
 // Everything that callers need to know about a model, without its weights.
 struct ModelDescription {
   std::string name;
@@ -32,6 +38,10 @@ struct ModelDescription {
   std::vector<std::string> touching_classes;
   // The classes in which a hand that the leader offers is met.
   std::vector<HandContact> hand_contacts;
+  // The classes whose weight decides whether the follower turns (asked_turns.h).
+  std::vector<TurningClass> turning_classes;
+  // The follower's steps fall on those of its leader, as in a dance.
+  bool steps_in_time = false;
   double frame_rate_hz = 0;  // the network's own
   int window_frames = 0;     // maximum window length that the network was trained on
   // The last frames of a window that the next window replaces, because their leader's future was

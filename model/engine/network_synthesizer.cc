@@ -7,6 +7,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/cleanup/live_bounds.h"
+#include "model/cleanup/steps_in_time.h"
+#include "model/engine/asked_turns.h"
 #include "model/engine/candidates.h"
 #include "model/engine/finishing.h"
 #include "model/engine/standard_window.h"
@@ -57,10 +59,12 @@ class NetworkSynthesizer : public Synthesizer {
     std::size_t first = 0;
     for (std::size_t i = 0; i < windows.size(); ++i) {
       const std::size_t count = static_cast<std::size_t>(Candidates(*windows[i]));
-      results.push_back(IsCancelled(inputs[first])
-                            ? absl::CancelledError("cancelled while it was being answered")
-                            : Choose(*windows[i], standardisations[i],
-                                     absl::MakeConstSpan(*followers).subspan(first, count)));
+      results.push_back(
+          IsCancelled(inputs[first])
+              ? absl::CancelledError("cancelled while it was being answered")
+              : TurnAsAsked(*windows[i], standardisations[i], inputs[first],
+                            Choose(*windows[i], standardisations[i],
+                                   absl::MakeConstSpan(*followers).subspan(first, count))));
       first += count;
     }
     return results;
@@ -121,6 +125,31 @@ class NetworkSynthesizer : public Synthesizer {
     return followers;
   }
 
+  // If a follower does not turn as the labels ask, draws more candidates, and returns the one that
+  // comes nearest to it. Windows of an endless motion keep their noise.
+  WindowResult TurnAsAsked(const SynthesisWindow& window,
+                           const motion::Standardisation& standardisation,
+                           const NetworkInput& input, WindowResult follower) const {
+    if (!follower.ok() || !description_.samples || window.options.sampling.first_frame) {
+      return follower;
+    }
+    const AskedTurns turns(description_, window);
+    double least = turns.demand() == 0 ? 0 : turns.Miss(window.leader, *follower);
+    if (least <= kToleratedMiss * turns.demand()) return follower;
+    const std::vector<NetworkInput> inputs = DrawnAgain(description_, turns, window, input);
+    const absl::StatusOr<std::vector<motion::Poses>> answers = RunNetwork(inputs, 1);
+    if (!answers.ok()) return answers.status();
+    for (const motion::Poses& answer : *answers) {
+      WindowResult finished = Finish(window, standardisation, answer, window.pins);
+      if (!finished.ok()) return finished;
+      const double miss = turns.Miss(window.leader, *finished);
+      if (miss >= least) continue;
+      least = miss;
+      follower = std::move(finished);
+    }
+    return follower;
+  }
+
   // The best of a window's candidates, finished. Fails if one of them is not finite.
   WindowResult Choose(const SynthesisWindow& window, const motion::Standardisation& standardisation,
                       absl::Span<const motion::Poses> candidates) const {
@@ -168,6 +197,11 @@ class NetworkSynthesizer : public Synthesizer {
     if (cleans) {
       clean_up_.PlaceFeetAndHands(window.leader, meetings, timing, &follower);
     }
+    if (IsInTime(window)) {
+      // After the feet are placed, because a foot that stands does so at every time.
+      cleanup::StepInTime(*description_.skeleton.feet, window.leader, timing, &follower);
+      if (options_.keep_limb_lengths) KeepLimbLengths(description_.skeleton, window, &follower);
+    }
     if (bounded) live_bounds_.BoundFeet(KnownLeader(window), timing, &follower);
     if (pinned) clean_up_.PlacePins(*pinned, window.leader, timing, &follower);
     HoldSettledPins(window, pins, &follower);
@@ -187,6 +221,12 @@ class NetworkSynthesizer : public Synthesizer {
     const cleanup::PinnedMotion pinned = clean_up_.ApproachPins(
         window.leader, TouchOf(description_, window), settled, timing, follower);
     clean_up_.PlacePins(pinned, window.leader, timing, follower);
+  }
+
+  // A window of an endless motion does not know the steps that come.
+  bool IsInTime(const SynthesisWindow& window) const {
+    return description_.steps_in_time && description_.skeleton.feet && IsCleanedUp(window) &&
+           !window.options.sampling.first_frame;
   }
 
   bool IsCleanedUp(const SynthesisWindow& window) const {

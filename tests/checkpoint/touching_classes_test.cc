@@ -71,5 +71,39 @@ TEST(HandContactsInManifest, NamesAClassAndADistance) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("hand_contacts.hug")));
 }
 
+TEST(TurningClassesInManifest, RoundTrip) {
+  Manifest manifest = CompleteManifest();
+  manifest.model.turning_classes = {{"hug", 240}};
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  ASSERT_EQ(read->model.turning_classes.size(), 1u);
+  EXPECT_EQ(read->model.turning_classes[0].interaction_class, "hug");
+  EXPECT_EQ(read->model.turning_classes[0].degrees_per_second, 240);
+  EXPECT_THAT(ParseManifest(SerializeManifest(CompleteManifest()))->model.turning_classes,
+              IsEmpty());
+}
+
+TEST(TurningClassesInManifest, AreClassesWithASpeed) {
+  json root = json::parse(SerializeManifest(CompleteManifest()));
+  root["turning_classes"] = {{"spin", 240}};
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("turning_classes: expected one of classes, got \"spin\"")));
+  root["turning_classes"] = {{"hug", -1}};
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("turning_classes.hug")));
+}
+
+TEST(StepsInTimeInManifest, RoundTrip) {
+  Manifest manifest = CompleteManifest();
+  EXPECT_FALSE(ParseManifest(SerializeManifest(manifest))->model.steps_in_time);
+  manifest.model.steps_in_time = true;
+  EXPECT_TRUE(ParseManifest(SerializeManifest(manifest))->model.steps_in_time);
+  json root = json::parse(SerializeManifest(manifest));
+  root["steps_in_time"] = 1;
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("steps_in_time")));
+}
+
 }  // namespace
 }  // namespace duet::checkpoint

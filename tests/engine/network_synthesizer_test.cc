@@ -8,6 +8,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/engine/asked_turns.h"
 #include "model/engine/window_standardisation.h"
 #include "model/motion/feet.h"
 #include "model/motion/limb_lengths.h"
@@ -295,6 +296,86 @@ TEST(NetworkSynthesizer, TheNetworkSeesAWindowCancelledMeanwhile) {
   });
   EXPECT_THAT(RunOne(*model, window),
               StatusIs(absl::StatusCode::kCancelled, HasSubstr("cancelled")));
+}
+
+// A model of 15 frames a second whose class 0 is a turn of 240 degrees a second.
+ModelDescription TurningDescription() {
+  ModelDescription description = test::SamplingDescription();
+  description.turning_classes = {{description.classes[0], 240}};
+  return description;
+}
+
+// The leader, 1 m away, turning at `speed(seed)` degrees a second; counts the inputs.
+std::function<Answer(Inputs)> Turner(std::function<double(uint64_t)> speed, int* inputs_seen) {
+  return [speed = std::move(speed), inputs_seen](Inputs inputs) {
+    std::vector<motion::Poses> followers;
+    for (const NetworkInput& input : inputs) {
+      ++*inputs_seen;
+      motion::Poses& follower = followers.emplace_back(input.leader);
+      for (int t = 0; t < follower.frame_count(); ++t) {
+        const double radians = speed(input.sampling.seed) * t / 15 * 3.14159265 / 180;
+        for (motion::Vec3& p : follower[t]) p = RotateY(p, radians) + motion::Vec3{0, 0, -1};
+      }
+    }
+    return followers;
+  };
+}
+
+SynthesisWindow AskingToTurn(float weight) {
+  SynthesisWindow window = Window(45);
+  std::fill(window.labels.begin(), window.labels.end(), 0.0f);
+  for (std::size_t i = 0; i < window.labels.size(); i += 6) window.labels[i] = weight;
+  return window;
+}
+
+double TurnedDegrees(const SynthesisWindow& window, const motion::Poses& follower) {
+  AskedTurns turns(TurningDescription(), AskingToTurn(1));
+  return (1 - turns.Miss(window.leader, follower)) * 0.6 * 240 * 3;  // at most what is enough
+}
+
+TEST(NetworkSynthesizer, DrawsAgainUntilTheFollowerTurnsAsTheLabelsAsk) {
+  int seen = 0;
+  // Of all seeds, only those that are multiples of three turn.
+  const auto some = [](uint64_t seed) { return seed % 3 == 0 ? 240.0 : 0.0; };
+  const auto model = Model(Turner(some, &seen), kAsTheNetworkSays, TurningDescription());
+  SynthesisWindow window = AskingToTurn(1);
+  window.options.sampling.seed = 1;
+  const WindowResult turned = RunOne(*model, window);
+  ASSERT_THAT(turned, IsOk());
+  EXPECT_GT(seen, 1);
+  EXPECT_GT(TurnedDegrees(window, *turned), 400);
+  EXPECT_EQ(*RunOne(*model, window), *turned);
+  seen = 0;
+  window = AskingToTurn(0);
+  window.options.sampling.seed = 1;
+  const WindowResult not_asked = RunOne(*model, window);
+  EXPECT_EQ(seen, 1);
+  EXPECT_LT(TurnedDegrees(window, *not_asked), 150);
+}
+
+TEST(NetworkSynthesizer, DrawsAgainUntilTheFollowerDoesNotTurnWhereLabelsAvoidIt) {
+  int seen = 0;
+  const auto some = [](uint64_t seed) { return seed % 3 == 0 ? 0.0 : 240.0; };
+  const auto model = Model(Turner(some, &seen), kAsTheNetworkSays, TurningDescription());
+  SynthesisWindow window = AskingToTurn(-1);
+  window.options.sampling.seed = 1;
+  const WindowResult calm = RunOne(*model, window);
+  ASSERT_THAT(calm, IsOk());
+  EXPECT_GT(seen, 1);
+  EXPECT_LT(TurnedDegrees(window, *calm), 150);
+}
+
+TEST(NetworkSynthesizer, AFollowerWhoDoesAsTheLabelsAskIsDrawnOnce) {
+  int seen = 0;
+  const auto model =
+      Model(Turner([](uint64_t) { return 240.0; }, &seen), kAsTheNetworkSays, TurningDescription());
+  ASSERT_THAT(RunOne(*model, AskingToTurn(1)), IsOk());
+  EXPECT_EQ(seen, 1);
+  // A window of an endless motion is never drawn again: its noise belongs to the frames.
+  SynthesisWindow live = AskingToTurn(-1);
+  live.options.sampling.first_frame = 0;
+  ASSERT_THAT(RunOne(*model, live), IsOk());
+  EXPECT_EQ(seen, 2);
 }
 
 }  // namespace

@@ -1,0 +1,131 @@
+#include "model/engine/asked_turns.h"
+
+#include <cmath>
+
+#include "gmock/gmock.h"
+#include "tests/cleanup/bodies.h"
+#include "tests/support/fake_synthesizer.h"
+
+namespace duet::engine {
+namespace {
+
+using cleanup::Changed;
+using cleanup::kRate;
+using cleanup::Moved;
+using cleanup::Puppet;
+using motion::Poses;
+using motion::Vec3;
+using test::FakeDescription;
+
+constexpr int kFrames = 45;
+constexpr int kTurn = 1;  // class of the turn
+constexpr double kSpeed = 240;
+
+ModelDescription Description(int lookahead = 0) {
+  ModelDescription description = FakeDescription();
+  description.frame_rate_hz = kRate;
+  description.lookahead_frames = lookahead;
+  description.turning_classes = {{description.classes[kTurn], kSpeed}};
+  return description;
+}
+
+// A person in front of the leader who turns at `speed` degrees a second in frames [begin, end).
+Poses Turning(double speed, int begin = 0, int end = kFrames) {
+  const auto turned = [=](int t, Vec3 joint) {
+    const double degrees = speed * std::clamp(t - begin, 0, end - begin) / kRate;
+    return RotateY(joint, degrees * 3.14159265 / 180);
+  };
+  return Moved(Changed(Puppet({}, kFrames), turned), {0, 0, 0.8f});
+}
+
+// The weight of the turn in frames [begin, end); all other weights are 0.
+SynthesisWindow Window(float weight, int begin = 0, int end = kFrames) {
+  SynthesisWindow window;
+  window.leader = Puppet({}, kFrames);
+  const std::size_t classes = FakeDescription().classes.size();
+  window.labels.resize(kFrames * classes);
+  for (int t = begin; t < end; ++t) {
+    window.labels[static_cast<std::size_t>(t) * classes + kTurn] = weight;
+  }
+  return window;
+}
+
+double Miss(const SynthesisWindow& window, const Poses& follower, int lookahead = 0) {
+  return AskedTurns(Description(lookahead), window).Miss(window.leader, follower);
+}
+
+TEST(AskedTurns, ATurnAtTheSpeedOfTheClassIsWhatIsAskedFor) {
+  for (const double speed : {kSpeed, -kSpeed}) EXPECT_EQ(Miss(Window(1), Turning(speed)), 0);
+  EXPECT_NEAR(Miss(Window(1), Turning(0)), 1, 1e-6);
+  const double half = Miss(Window(1), Turning(kSpeed / 4));
+  EXPECT_GT(half, 0.4);
+  EXPECT_LT(half, 0.8);
+}
+
+TEST(AskedTurns, SwayingIsNoTurn) {
+  Poses follower = Turning(kSpeed, 0, 4);
+  for (int t = 4; t < kFrames; ++t) {
+    const int swayed = std::abs(t % 8 - 4);
+    std::copy(follower[swayed].begin(), follower[swayed].end(), follower[t].begin());
+  }
+  EXPECT_GT(Miss(Window(1), follower), 0.7);
+  EXPECT_EQ(Miss(Window(-1), follower), 0);
+}
+
+TEST(AskedTurns, AnAvoidedTurnIsAMiss) {
+  EXPECT_EQ(Miss(Window(-1), Turning(0)), 0);
+  EXPECT_EQ(Miss(Window(-1), Turning(30)), 0);  // no faster than people turn in other classes
+  EXPECT_GT(Miss(Window(-1), Turning(kSpeed)), 1);
+}
+
+TEST(AskedTurns, SmallerWeightsAskForLess) {
+  EXPECT_GT(Miss(Window(1), Turning(kSpeed / 3)), 0.1);
+  EXPECT_EQ(Miss(Window(0.5f), Turning(kSpeed / 3)), 0);
+  EXPECT_NEAR(AskedTurns(Description(), Window(0.5f)).demand(), 0.5, 1e-6);
+  EXPECT_NEAR(AskedTurns(Description(), Window(-0.5f)).demand(), 0.5, 1e-6);
+}
+
+TEST(AskedTurns, NothingIsAskedWithoutAWeightOrAClass) {
+  EXPECT_EQ(AskedTurns(Description(), Window(0)).demand(), 0);
+  EXPECT_EQ(AskedTurns(Description(), Window(1, 0, 2)).demand(), 0);
+  EXPECT_EQ(AskedTurns(FakeDescription(), Window(1)).demand(), 0);
+  EXPECT_EQ(Miss(Window(0), Turning(kSpeed)), 0);
+  ModelDescription without_hips = Description();
+  without_hips.skeleton.hips.reset();
+  EXPECT_EQ(AskedTurns(without_hips, Window(1)).demand(), 0);
+}
+
+TEST(AskedTurns, OnlyFramesBetweenTheSettledOnesAndTheLookaheadAreJudged) {
+  SynthesisWindow window = Window(1);
+  EXPECT_GT(Miss(window, Turning(kSpeed, 30)), 0.3);
+  window.settled = Puppet({}, 29);
+  EXPECT_EQ(Miss(window, Turning(kSpeed, 28)), 0);
+  EXPECT_EQ(Miss(Window(1), Turning(kSpeed, 0, 20), kFrames - 20), 0);
+  window.settled = Puppet({}, 40);
+  EXPECT_EQ(AskedTurns(Description(10), window).demand(), 0);
+}
+
+std::optional<double> Fitted(double speed, int stretches) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  TurningFit fit(skeleton);
+  for (int i = 0; i < stretches; ++i) fit.Add(Puppet({}, kFrames), Turning(speed), 0, kFrames);
+  return fit.DegreesPerSecond(kRate);
+}
+
+TEST(TurningFit, FindsTheSpeedOfAClassOfTurns) {
+  ASSERT_TRUE(Fitted(120, 3).has_value());
+  EXPECT_NEAR(*Fitted(-120, 3), 120, 5);
+  EXPECT_EQ(Fitted(120, 2), std::nullopt);
+  EXPECT_EQ(Fitted(40, 10), std::nullopt);
+}
+
+TEST(TurningFit, NeedsHips) {
+  motion::Skeleton skeleton = motion::SbuSkeleton();
+  skeleton.hips.reset();
+  TurningFit fit(skeleton);
+  for (int i = 0; i < 3; ++i) fit.Add(Puppet({}, kFrames), Turning(200), 0, kFrames);
+  EXPECT_EQ(fit.DegreesPerSecond(kRate), std::nullopt);
+}
+
+}  // namespace
+}  // namespace duet::engine
