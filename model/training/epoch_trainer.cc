@@ -83,6 +83,7 @@ EpochReport EpochTrainer::RunEpoch() {
   report.validation_afd_pose = manifest_.model.accepts_follower_start
                                    ? Validate(StartKnowledge::kPose)
                                    : std::numeric_limits<double>::quiet_NaN();
+  if (!takes_.empty()) WithAverage([&] { report.error_by_position = TakeErrors(takes_); });
   Choose(report.validation_afd);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return report;
@@ -97,19 +98,26 @@ void EpochTrainer::Choose(double afd) {
   CopyInto(average_, best_);
 }
 
-double EpochTrainer::Validate(StartKnowledge start) {
-  if (validation_.empty()) return std::numeric_limits<double>::quiet_NaN();
+template <typename Measure>
+void EpochTrainer::WithAverage(const Measure& measure) {
   torch::NoGradGuard no_grad;
   const std::vector<torch::Tensor> parameters = generator_->parameters();
   const std::vector<torch::Tensor> trained = Copies(parameters);
   CopyInto(average_, parameters);
   generator_->eval();
-  double sum = 0;
-  for (int index : validation_) {
-    sum += ValidationError(
-        CapturedExample(dataset_, dataset_.sequences[static_cast<size_t>(index)], start));
-  }
+  measure();
   CopyInto(trained, parameters);
+}
+
+double EpochTrainer::Validate(StartKnowledge start) {
+  if (validation_.empty()) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0;
+  WithAverage([&] {
+    for (const int index : validation_) {
+      sum += ValidationError(
+          CapturedExample(dataset_, dataset_.sequences[static_cast<size_t>(index)], start));
+    }
+  });
   return sum / static_cast<double>(validation_.size());
 }
 

@@ -1,6 +1,7 @@
 #include "model/training/flow_trainer.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "model/motion/skeleton.h"
 #include "model/network/batch.h"
@@ -11,6 +12,7 @@
 #include "model/network/parameters.h"
 #include "model/training/flow_statistics.h"
 #include "model/training/own_history.h"
+#include "model/training/take_errors.h"
 
 namespace duet::training {
 namespace {
@@ -221,6 +223,16 @@ double FlowTrainer::ValidationError(const Example& example) {
   const torch::Tensor answer = network::AnswerWindows(generator_, manifest_, {&captured.input, 1});
   const torch::Tensor follower = network::PadPoses({&captured.target}, answer.size(1));
   return network::NormLoss(answer, follower, torch::tensor({answer.size(1)})).item<double>();
+}
+
+std::vector<double> FlowTrainer::TakeErrors(absl::Span<const dataset::Sequence> takes) {
+  const absl::StatusOr<std::vector<double>> errors =
+      ErrorByPosition(manifest_, takes, [this](const auto inputs) { return AnswerNow(inputs); });
+  // An answer that is not finite has no error; the loss of such a run is not finite either.
+  if (errors.ok()) return *errors;
+  return std::vector<double>(
+      static_cast<size_t>(PositionCount(takes, manifest_.model.frame_rate_hz)),
+      std::numeric_limits<double>::quiet_NaN());
 }
 
 std::vector<checkpoint::Tensor> FlowTrainer::BestTensors() {

@@ -41,6 +41,7 @@ class FlowTrainer : public EpochTrainer {
   absl::Status LoadWeights(const checkpoint::Checkpoint& checkpoint) override;
   // The error of the typical answer: variety 0.
   double ValidationError(const Example& example) override;
+  std::vector<double> TakeErrors(absl::Span<const dataset::Sequence> takes) override;
   std::vector<std::pair<std::string, torch::optim::Optimizer*>> StateOptimisers() override;
   // The clips of the current epoch. Those of the next one are drawn meanwhile, on another thread.
   FlowEpoch TakeEpoch();

@@ -14,12 +14,15 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "model/dataset/time_line.h"
+#include "model/engine/asked_turns.h"
 #include "model/engine/hand_contact_fit.h"
 #include "model/engine/leader_statistics.h"
+#include "model/engine/step_fit.h"
 #include "model/network/threads.h"
 #include "model/training/direction_fit.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
+#include "model/training/take_errors.h"
 #include "model/training/trainers.h"
 
 namespace duet::training {
@@ -65,26 +68,54 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   return manifest;
 }
 
+// Fits `fit` to every stretch of a class.
+template <typename Fit>
+void FitClass(const dataset::Dataset& dataset, const std::vector<int>& sequences, int c, Fit* fit) {
+  for (const int index : sequences) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+    const motion::ClipPair& pair = sequence.pair;
+    const auto add = [&](const dataset::LabelSpan& span) {
+      if (span.interaction_class != c) return;
+      fit->Add(pair.leader.poses, pair.follower.poses, span.begin, span.end);
+    };
+    std::for_each(sequence.labels.begin(), sequence.labels.end(), add);
+    if (sequence.labels.empty()) add({sequence.interaction_class, 0, pair.leader.frame_count()});
+  }
+}
+
 // The classes in which people meet an offered hand.
 std::vector<engine::HandContact> FindHandContacts(const dataset::Dataset& dataset,
                                                   const std::vector<int>& sequences) {
   std::vector<engine::HandContact> contacts;
   for (int c = 0; c < dataset.class_count(); ++c) {
     engine::HandContactFit fit(dataset.skeleton);
-    for (const int index : sequences) {
-      const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-      const motion::ClipPair& pair = sequence.pair;
-      const auto add = [&](const dataset::LabelSpan& span) {
-        if (span.interaction_class != c) return;
-        fit.Add(pair.leader.poses, pair.follower.poses, span.begin, span.end);
-      };
-      std::for_each(sequence.labels.begin(), sequence.labels.end(), add);
-      if (sequence.labels.empty()) add({sequence.interaction_class, 0, pair.leader.frame_count()});
-    }
+    FitClass(dataset, sequences, c, &fit);
     const std::optional<double> metres = fit.Metres(dataset.frame_rate_hz);
     if (metres) contacts.push_back({dataset.classes[static_cast<size_t>(c)], *metres});
   }
   return contacts;
+}
+
+// The classes in which the follower turns about itself.
+std::vector<engine::TurningClass> FindTurningClasses(const dataset::Dataset& dataset,
+                                                     const std::vector<int>& sequences) {
+  std::vector<engine::TurningClass> classes;
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    engine::TurningFit fit(dataset.skeleton);
+    FitClass(dataset, sequences, c, &fit);
+    const std::optional<double> speed = fit.DegreesPerSecond(dataset.frame_rate_hz);
+    if (speed) classes.push_back({dataset.classes[static_cast<size_t>(c)], *speed});
+  }
+  return classes;
+}
+
+bool StepInTime(const dataset::Dataset& dataset, const std::vector<int>& sequences) {
+  engine::StepFit fit(dataset.skeleton, dataset.frame_rate_hz);
+  for (const int index : sequences) {
+    const motion::ClipPair& pair = dataset.sequences[static_cast<size_t>(index)].pair;
+    fit.Add(pair.leader.poses, pair.follower.poses);
+  }
+  return fit.InTime();
 }
 
 engine::LeaderStatistics MeasureLeaders(const dataset::Dataset& dataset,
@@ -153,6 +184,19 @@ dataset::Dataset CutIfAsked(const TrainingOptions& options, const dataset::Datas
     CutAll(whole, frames(flow->window_seconds), frames(flow->stride_seconds), indices, &cut);
   }
   return cut;
+}
+
+// The sequences `indices` that are cut into windows, whole.
+std::vector<dataset::Sequence> WholeTakes(const TrainingOptions& options,
+                                          const dataset::Dataset& whole,
+                                          const std::vector<int>& indices) {
+  std::vector<dataset::Sequence> takes;
+  const auto* flow = std::get_if<FlowTraining>(&options.method);
+  if (flow == nullptr || flow->window_seconds == 0) return takes;
+  for (const int index : indices) {
+    takes.push_back(whole.sequences[static_cast<size_t>(index)]);
+  }
+  return takes;
 }
 
 // The checkpoint that the run begins with, noted in the manifest; an empty one if there is none.
@@ -251,6 +295,8 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   }
   std::vector<int> train = plan.train;
   std::vector<int> validation = HoldBack(plan.options, whole, &train);
+  const std::vector<int> takes = train;
+  const std::vector<dataset::Sequence> held_takes = WholeTakes(plan.options, whole, validation);
   const dataset::Dataset dataset = CutIfAsked(plan.options, whole, &train, &validation);
   checkpoint::Manifest manifest = MakeManifest(plan, whole);
   manifest.model.window_frames = dataset.LongestFrameCount();
@@ -266,6 +312,8 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   }
   manifest.model.leader_statistics = MeasureLeaders(dataset, train);
   manifest.model.hand_contacts = FindHandContacts(dataset, train);
+  manifest.model.turning_classes = FindTurningClasses(whole, takes);
+  manifest.model.steps_in_time = StepInTime(whole, takes);
   const bool fits_direction = std::visit(
       [](const auto& method) { return method.kFitsPartnerDirection; }, plan.options.method);
   if (fits_direction) manifest.model.partner_direction = FitPartnerDirection(dataset, train);
@@ -278,7 +326,8 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   status = trainer->LoadState(state);
   if (absl::IsNotFound(status)) status = StartFrom(plan, *from, trainer.get());
   if (!status.ok()) return status;
-  RunLog log(plan.folder / "log.csv");
+  trainer->ValidateTakes(held_takes);
+  RunLog log(plan.folder / "log.csv", PositionCount(held_takes, whole.frame_rate_hz));
   if (status = log.ResumeAt(trainer->epoch()); !status.ok()) return status;
   ShowLength(plan, train.size(), *trainer, progress);
   EpochReport report;
@@ -300,6 +349,9 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
     Show(plan, report, terminal, progress);
   }
   ShowBest(plan, *trainer, progress);
+  if (!report.error_by_position.empty()) {
+    *progress << plan.title << ": last epoch: " << PositionsLine(report.error_by_position) << "\n";
+  }
   return Finish(plan, manifest, report, trainer.get());
 }
 

@@ -72,6 +72,59 @@ TEST_F(RunTest, LongTakesAreTrainedOnInWindows) {
   EXPECT_EQ(checkpoint->manifest.training.at("flow.window_seconds"), "0.4");
 }
 
+TEST_F(RunTest, ReportsTheErrorByPositionInTakesThatAreHeldBack) {
+  plan_.options = SmallFlowOptions();
+  plan_.options.epochs = 2;
+  plan_.options.validation.subjects = {"s02"};
+  FlowOf(&plan_.options).window_seconds = 2;
+  FlowOf(&plan_.options).stride_seconds = 2;
+  for (dataset::Sequence& take : dataset_.sequences) {
+    take.pair.leader.poses = SwayingMotion(170, dataset_.frame_rate_hz);
+    take.pair.follower.poses = take.pair.leader.poses;
+  }
+  ASSERT_THAT(Go(), IsOk());
+  const std::string log = ReadTestFile(plan_.folder / "log.csv");
+  EXPECT_THAT(log, HasSubstr(",whole_answers,error_0s,error_5s\n1,"));
+  std::vector<std::string> rows = absl::StrSplit(log, '\n', absl::SkipEmpty());
+  ASSERT_EQ(rows.size(), 3u);
+  for (size_t epoch = 1; epoch <= 2; ++epoch) {
+    const std::vector<std::string> fields = absl::StrSplit(rows[epoch], ',');
+    ASSERT_EQ(fields.size(), 13u);
+    for (const size_t position : {11u, 12u}) EXPECT_GT(std::stod(fields[position]), 0);
+  }
+  EXPECT_THAT(progress_.str(),
+              HasSubstr("all: last epoch: error by position in whole takes, 5 s each: 0."));
+  plan_.folder = folder_.path() / "none_held_back";
+  plan_.options.validation.subjects.clear();
+  ASSERT_THAT(Go(), IsOk());
+  EXPECT_THAT(ReadTestFile(plan_.folder / "log.csv"), HasSubstr(",whole_answers\n1,"));
+}
+
+TEST_F(RunTest, NotesWhatPeopleDoInTheClassesOfADance) {
+  plan_.options = SmallFlowOptions();
+  plan_.options.epochs = 1;
+  for (dataset::Sequence& take : dataset_.sequences) {
+    motion::Poses& follower = take.pair.follower.poses;
+    take.labels = {{0, 0, 12}};
+    take.interaction_class = 0;
+    for (int t = 0; t < follower.frame_count(); ++t) {
+      const motion::Vec3 root = follower.at(t, dataset_.skeleton.root);
+      for (motion::Vec3& joint : follower[t]) {
+        joint = RotateY(joint - root, 0.5 * t) + root;  // 430 degrees a second
+      }
+    }
+  }
+  ASSERT_THAT(Go(), IsOk());
+  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(checkpoint, IsOk());
+  const engine::ModelDescription& model = checkpoint->manifest.model;
+  ASSERT_EQ(model.turning_classes.size(), 1u);
+  EXPECT_EQ(model.turning_classes[0].interaction_class, "kick");
+  // Against the line to the leader, who sways.
+  EXPECT_NEAR(model.turning_classes[0].degrees_per_second, 430, 120);
+  EXPECT_FALSE(model.steps_in_time);
+}
+
 TEST_F(RunTest, NotesTheLookaheadOfItsWindows) {
   plan_.options = SmallFlowOptions();
   plan_.options.epochs = 1;
