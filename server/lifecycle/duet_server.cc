@@ -396,6 +396,8 @@ void DuetServer::Close() {
   service_.AbortAll(service::DrainingRefusal());
   // Shutdown's deadline would end the rest as CANCELLED, without a message.
   service_.FinishAborted(kLastMessageSeconds);
+  // gRPC 1.51 crashes if a call within the process begins while the server shuts down.
+  if (self_check_ != nullptr) self_check_->Stop();
   grpc_.server->Shutdown(std::chrono::system_clock::now() + kFlush);
 }
 

@@ -99,7 +99,8 @@ absl::Status CheckListener(const std::string& host, int port, double timeout_sec
 
 SelfCheck::SelfCheck(SelfCheckOptions options)
     : options_(std::move(options)),
-      task_(kChecking, options_.interval_seconds, [this] { Check(); }) {}
+      task_(std::make_unique<RepeatedTask>(kChecking, options_.interval_seconds,
+                                           [this] { Check(); })) {}
 
 void SelfCheck::Check() {
   const absl::Status status = options_.check();

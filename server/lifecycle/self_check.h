@@ -35,6 +35,10 @@ class SelfCheck {
  public:
   explicit SelfCheck(SelfCheckOptions options);
 
+  // Ends the checks, and waits for one that is running. The last result stays. Call it on the
+  // thread that destroys the object.
+  void Stop() { task_ = nullptr; }
+
   // False after a failed check, until one succeeds: no new calls should arrive.
   bool passes() const { return failures_ == 0; }
   // False after three failed checks in a row, until one succeeds: a restart would help.
@@ -47,7 +51,7 @@ class SelfCheck {
 
   const SelfCheckOptions options_;
   std::atomic<int> failures_{0};
-  RepeatedTask task_;
+  std::unique_ptr<RepeatedTask> task_;  // null after Stop
 };
 
 }  // namespace duet::server::lifecycle

@@ -53,6 +53,15 @@ TEST(ServerProcessTest, ServesWithoutAnyModelFlagAndStopsOnSigterm) {
   EXPECT_EQ(server.Wait(), 0);
 }
 
+TEST(ServerProcessTest, StopsDuringASelfCheck) {
+  for (int i = 0; i < 10; ++i) {
+    Process server(Flags({"--self-check-seconds", "0.001"}));
+    ASSERT_FALSE(server.WaitForEvent("serving").is_null());
+    server.Signal(SIGTERM);
+    EXPECT_EQ(server.Wait(), 0);
+  }
+}
+
 TEST(ServerProcessTest, StopsOnSigintAsWell) {
   Process server(Flags());
   ASSERT_FALSE(server.WaitForEvent("serving").is_null());
