@@ -15,8 +15,10 @@ namespace duet::checkpoint {
 inline constexpr char kPartnerDirection[] = "partner_direction";
 
 // Reads the field from the reader of the manifest. Records errors in it: lists of another length
-// than the skeleton's features, deviations that are not above 0, a skeleton without hips.
+// than the skeleton's features, deviations that are not above 0, a skeleton without hips, another
+// number of classes.
 std::optional<engine::DirectionRegression> ReadDirectionRegression(const motion::Skeleton& skeleton,
+                                                                   int classes,
                                                                    base::ObjectReader* manifest);
 
 nlohmann::ordered_json DirectionRegressionToJson(const engine::DirectionRegression& regression);

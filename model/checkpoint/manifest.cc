@@ -215,7 +215,8 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   if (reader.ok()) Take(motion::ReadSkeleton(skeleton_object, "skeleton"), &reader, &skeleton);
   manifest.model.skeleton = std::move(skeleton.skeleton);
   ReadLeaders(&reader, &manifest);
-  manifest.model.partner_direction = ReadDirectionRegression(manifest.model.skeleton, &reader);
+  manifest.model.partner_direction = ReadDirectionRegression(
+      manifest.model.skeleton, static_cast<int>(manifest.model.classes.size()), &reader);
   const json& generator = reader.Object("generator");
   if (reader.ok()) ReadGenerator(generator, &reader, &manifest);
   manifest.parts = std::move(skeleton.parts);

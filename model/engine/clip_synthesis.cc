@@ -53,8 +53,8 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
   // The characters move, so in later windows the follower's position gives the direction.
   if (index == 0 || !window.start) window.partner_direction = request_.partner_direction;
   if (!window.start && !window.partner_direction && model_.partner_direction) {
-    window.partner_direction =
-        EstimatePartnerDirection(*model_.partner_direction, model_.skeleton, window.leader);
+    window.partner_direction = EstimatePartnerDirection(*model_.partner_direction, model_.skeleton,
+                                                        window.leader, window.labels);
   }
   window.pins = PinsOfWindow(first);
   window.options = request_.options;

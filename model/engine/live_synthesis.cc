@@ -180,8 +180,8 @@ SynthesisWindow LiveSynthesis::NextWindow() {
     window.start = request_.start;
     window.partner_direction = request_.partner_direction;
     if (!window.start && !window.partner_direction && model_.partner_direction) {
-      window.partner_direction =
-          EstimatePartnerDirection(*model_.partner_direction, model_.skeleton, window.leader);
+      window.partner_direction = EstimatePartnerDirection(
+          *model_.partner_direction, model_.skeleton, window.leader, window.labels);
     }
   }
   window.options = request_.options;

@@ -23,8 +23,53 @@ std::vector<double> Numbers(double first) {
 
 Manifest DirectedManifest() {
   Manifest manifest = CompleteManifest();
-  manifest.model.partner_direction = {Numbers(-0.3), Numbers(0.1), Numbers(-1), Numbers(0.2)};
+  static_cast<engine::AngleRegression&>(manifest.model.partner_direction.emplace()) = {
+      Numbers(-0.3), Numbers(0.1), Numbers(-1), Numbers(0.2)};
   return manifest;
+}
+
+// With a correction, to which each of the manifest's classes adds something.
+Manifest CorrectedManifest() {
+  Manifest manifest = DirectedManifest();
+  engine::DirectionCorrection& correction = manifest.model.partner_direction->correction.emplace();
+  static_cast<engine::AngleRegression&>(correction) = {Numbers(0), Numbers(2), Numbers(3),
+                                                       Numbers(4)};
+  for (std::size_t c = 0; c < manifest.model.classes.size(); ++c) {
+    const double first = static_cast<double>(c);
+    correction.classes.push_back({Numbers(5 + first), Numbers(-first)});
+  }
+  return manifest;
+}
+
+TEST(DirectionManifest, CorrectionRoundTrip) {
+  const std::string text = SerializeManifest(CorrectedManifest());
+  const absl::StatusOr<Manifest> read = ParseManifest(text);
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(SerializeManifest(*read), text);
+  ASSERT_TRUE(read->model.partner_direction->correction.has_value());
+  const engine::DirectionCorrection& correction = *read->model.partner_direction->correction;
+  EXPECT_EQ(correction.mean, Numbers(0));
+  EXPECT_EQ(correction.sine, Numbers(4));
+  ASSERT_EQ(correction.classes.size(), read->model.classes.size());
+  EXPECT_EQ(correction.classes[1].cosine, Numbers(6));
+  EXPECT_EQ(correction.classes[1].sine, Numbers(-1));
+}
+
+TEST(DirectionManifest, RejectsACorrectionByName) {
+  const auto refusal = [](const std::string& pointer, const json& value) {
+    return ParseEdited(CorrectedManifest(), "/partner_direction/correction" + pointer, value);
+  };
+  EXPECT_THAT(refusal("", 1), IsInvalid("partner_direction.correction"));
+  EXPECT_THAT(refusal("/mean", Numbers(1).front()), IsInvalid("partner_direction.correction.mean"));
+  EXPECT_THAT(
+      refusal("/classes", json::array()),
+      IsInvalid("partner_direction.correction.classes: expected one object for each of the"));
+  EXPECT_THAT(refusal("/classes/1", 3),
+              IsInvalid("partner_direction.correction.classes: expected objects, got 3"));
+  EXPECT_THAT(refusal("/classes/1/sine/2", "x"),
+              IsInvalid("partner_direction.correction.classes[1].sine[2]: expected a number"));
+  EXPECT_THAT(refusal("/classes/1/tangent", 1),
+              IsInvalid("partner_direction.correction.classes[1]: unknown field \"tangent\""));
 }
 
 TEST(DirectionManifest, RoundTrip) {

@@ -486,7 +486,8 @@ ModelDescription DirectedDescription() {
   const auto count = static_cast<std::size_t>(DirectionFeatureCount(description.skeleton));
   std::vector<double> none(count, 0), always = none;
   always.back() = 1;
-  description.partner_direction = {none, std::vector<double>(count, 1), none, always};
+  static_cast<AngleRegression&>(description.partner_direction.emplace()) = {
+      none, std::vector<double>(count, 1), none, always};
   return description;
 }
 

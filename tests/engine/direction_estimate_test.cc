@@ -29,17 +29,36 @@ motion::Poses Standing(int frames, motion::Vec3 root, float aside) {
   return poses;
 }
 
+const std::size_t kFeatures =
+    static_cast<std::size_t>(DirectionFeatureCount(motion::SbuSkeleton()));
+
+void SetStraightAhead(AngleRegression* regression) {
+  regression->mean.assign(kFeatures, 0);
+  regression->deviation.assign(kFeatures, 1);
+  regression->cosine.assign(kFeatures, 0);
+  regression->sine.assign(kFeatures, 0);
+  regression->cosine.back() = 1;
+}
+
 // The partner is straight ahead of hips, and by `per_metre` of sine to a side for each metre that
 // the right hand is held there.
 DirectionRegression FollowTheHand(double per_metre) {
-  const std::size_t count = static_cast<std::size_t>(DirectionFeatureCount(motion::SbuSkeleton()));
   DirectionRegression regression;
-  regression.mean.assign(count, 0);
-  regression.deviation.assign(count, 1);
-  regression.cosine.assign(count, 0);
-  regression.sine.assign(count, 0);
-  regression.cosine.back() = 1;
+  SetStraightAhead(&regression);
   regression.sine[kHandFeature] = per_metre;
+  return regression;
+}
+
+// Two classes: the first adds nothing, the second `per_metre` of sine for each metre that the hand
+// is to the right of the estimate.
+DirectionRegression SecondClassFollowsTheHand(double per_metre) {
+  DirectionRegression regression = FollowTheHand(0);
+  DirectionCorrection& correction = regression.correction.emplace();
+  SetStraightAhead(&correction);
+  const ClassCoefficients nothing = {std::vector<double>(kFeatures, 0),
+                                     std::vector<double>(kFeatures, 0)};
+  correction.classes = {nothing, nothing};
+  correction.classes[1].sine[kHandFeature] = per_metre;
   return regression;
 }
 
@@ -91,6 +110,66 @@ TEST(EstimatePartnerDirection, TurnsWithTheLeader) {
     for (motion::Vec3& p : turned.all()) p = RotateY(p, yaw) + motion::Vec3{4, 0, -3};
     ExpectNear(EstimatePartnerDirection(regression, skeleton, turned), RotateY(*straight, yaw));
   }
+}
+
+TEST(TurnedFeatures, AreThoseOfTheTurnedLeader) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  motion::Poses leader = test::SwayingMotion(20, 15);
+  for (int t = 0; t < leader.frame_count(); ++t) {
+    for (motion::Vec3& p : leader[t]) p.x += 0.1f * static_cast<float>(t);
+  }
+  const auto features = DirectionFeatures(skeleton, leader);
+  ASSERT_TRUE(features.has_value());
+  for (const double angle : {0.5, -2.0, 3.0}) {
+    // Hips of the first frame alone, turned towards the direction at `angle`, give its frame.
+    motion::Poses other = leader;
+    const motion::Vec3 root = leader.at(0, skeleton.root);
+    for (const int hip : {kLeftHip, kRightHip}) {
+      other.at(0, hip) = root + RotateY(leader.at(0, hip) - root, -angle);
+    }
+    auto wanted = DirectionFeatures(skeleton, other);
+    ASSERT_TRUE(wanted.has_value());
+    const std::vector<double> turned = TurnedFeatures(*features, angle);
+    for (std::size_t i = 0; i < kFeatures; ++i) {
+      // Only the hips' own features differ, because they were turned in one frame.
+      if (i / 2 == kLeftHip - 1 || i / 2 == kRightHip - 1) continue;
+      EXPECT_NEAR(turned[i], (*wanted)[i], 1e-5) << i << " at " << angle;
+    }
+  }
+}
+
+TEST(ClassShares, AreMeansOfWeightsAboveZero) {
+  EXPECT_THAT(ClassShares({0.5f, -1, 1.0f, -1}, 2), Pointwise(DoubleNear(1e-6), {0.75, 0.0}));
+  EXPECT_THAT(ClassShares({1, 1}, 2), Pointwise(DoubleNear(1e-6), {0.5, 0.5}));
+  EXPECT_THAT(ClassShares({2, 0}, 2), Pointwise(DoubleNear(1e-6), {1.0, 0.0}));
+  EXPECT_THAT(ClassShares({0, 0}, 2), Pointwise(DoubleNear(1e-6), {0.0, 0.0}));
+  EXPECT_THAT(ClassShares({}, 2), Pointwise(DoubleNear(1e-6), {0.0, 0.0}));
+}
+
+TEST(EstimatePartnerDirection, CorrectionsAreRelativeToTheEstimate) {
+  const motion::Poses leader = Standing(3, {0, 1, 0}, 0.5f);
+  DirectionRegression regression = SecondClassFollowsTheHand(0);
+  regression.correction->sine[kHandFeature] = 0.4;
+  // The hand is at x = .5 before the first correction, at .5 cos of the angle before the second.
+  const double first = std::atan2(0.2, 1);
+  const double angle = first + std::atan2(0.2 * std::cos(first), 1);
+  ExpectNear(EstimatePartnerDirection(regression, motion::SbuSkeleton(), leader),
+             {static_cast<float>(std::sin(angle)), 0, static_cast<float>(-std::cos(angle))});
+}
+
+TEST(EstimatePartnerDirection, CorrectsByTheClassesThatAreAskedFor) {
+  const motion::Poses leader = Standing(3, {0, 1, 0}, 0.5f);
+  const DirectionRegression regression = SecondClassFollowsTheHand(1);
+  const auto aside = [&](const std::vector<float>& label) {
+    return EstimatePartnerDirection(regression, motion::SbuSkeleton(), leader, label)->x;
+  };
+  EXPECT_NEAR(aside({}), 0, 1e-6);
+  EXPECT_NEAR(aside({1, 0}), 0, 1e-6);
+  EXPECT_NEAR(aside({1, -1}), 0, 1e-6);
+  EXPECT_GT(aside({0, 1}), 0.5f);
+  EXPECT_GT(aside({0, 1}), aside({0, 0.5f}));
+  EXPECT_FLOAT_EQ(aside({0.5f, 0.5f}), aside({0, 0.5f}));
+  EXPECT_FLOAT_EQ(aside({0, 2}), aside({0, 1}));
 }
 
 TEST(EstimatePartnerDirection, OneStrangeFeatureCountsAsThreeDeviations) {

@@ -21,8 +21,10 @@ std::vector<double> DirectionErrors(const dataset::Dataset& dataset, const std::
     engine::SynthesisWindow window;
     window.leader = sequence.pair.leader.poses;
     if (regression) {
+      std::vector<float> label(static_cast<std::size_t>(dataset.class_count()), 0);
+      label[static_cast<std::size_t>(sequence.interaction_class)] = 1;
       window.partner_direction =
-          EstimatePartnerDirection(*regression, dataset.skeleton, window.leader);
+          EstimatePartnerDirection(*regression, dataset.skeleton, window.leader, label);
     }
     const double expected = WindowStandardisation(dataset.skeleton, window).yaw();
     const double actual = motion::FacingYaw(PartnerDirection(dataset.skeleton, sequence));
