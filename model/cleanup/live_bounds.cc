@@ -120,7 +120,27 @@ void LiveBounds::BoundFeet(const motion::Poses& leader, const Timing& timing,
     const float way = Way(timing, t);
     const float lift = std::clamp(std::copysign(allowed, height) - height, -way, way);
     for (Vec3& joint : (*follower)[t]) joint.y += lift;
+    if (t > 0) LowerRisingFoot(floor, t, follower);
   }
+}
+
+void LiveBounds::LowerRisingFoot(float floor, int frame, motion::Poses* follower) const {
+  const float lowest = Float(options_.lowest_metres);
+  const auto height = [&](const body::Limb& leg, int t) {
+    return follower->at(t, leg.end).y - floor;
+  };
+  const body::Limb* rising = nullptr;
+  for (const body::Limb& leg : body_.legs) {
+    const float before = height(leg, frame - 1), now = height(leg, frame);
+    if (before + now <= 2 * lowest) return;  // this foot is low between the frames
+    if (now > before && (rising == nullptr || now > height(*rising, frame))) rising = &leg;
+  }
+  if (rising == nullptr) return;
+  Vec3 place = follower->at(frame, rising->end);
+  place.y = floor + std::max(lowest, 2 * lowest - height(*rising, frame - 1));
+  const Vec3 bend = BendOf(*rising, (*follower)[frame]);
+  const float length = Norm(bend);
+  if (length > 0) ReachBent(*rising, place, bend / length, (*follower)[frame]);
 }
 
 }  // namespace duet::cleanup

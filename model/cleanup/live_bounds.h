@@ -53,6 +53,9 @@ class LiveBounds {
   float AllowedLean(double mean) const;
   // A distance within the bounds; nearly the same if it is well inside.
   float AllowedDistance(float distance) const;
+  // Lowers a foot that leaves the floor while the other one comes down: between the two frames,
+  // both would be in the air.
+  void LowerRisingFoot(float floor, int frame, motion::Poses* follower) const;
   // How far a correction of the whole body may have come in a frame, metres.
   float Way(const Timing& timing, int frame) const;
 

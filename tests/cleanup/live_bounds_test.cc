@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/base/angle.h"
+#include "model/body/limbs.h"
 #include "tests/cleanup/bodies.h"
 
 namespace duet::cleanup {
@@ -132,6 +133,28 @@ TEST(LiveBoundsTest, OneFootStaysNearTheFloor) {
       EXPECT_LT(std::abs(bounded.at(t, 11).y - kAnkle), 0.041) << t;
     }
   }
+}
+
+TEST(LiveBoundsTest, FeetThatTakeTurnsAreNotBothInTheAirInBetween) {
+  const body::Body body = body::FindBody(kSkeleton);
+  motion::Poses poses = Puppet();
+  for (int t = 20; t < kFrames; ++t) {
+    const body::Limb& leg = body.legs[static_cast<size_t>(t % 2)];
+    ReachBent(leg, poses.at(t, leg.end) + Vec3{0, 0.2f, 0}, {0, 0, 1}, poses[t]);
+  }
+  const auto lower_in_between = [&body](const motion::Poses& moved, int t) {
+    float lower = 1;
+    for (const body::Limb& leg : body.legs) {
+      lower = std::min(lower, (moved.at(t - 1, leg.end).y + moved.at(t, leg.end).y) / 2);
+    }
+    return lower - static_cast<float>(kAnkle);
+  };
+  const motion::Poses bounded = Bounded(Leader(), poses);
+  for (int t = 21; t < kFrames; ++t) {
+    EXPECT_GT(lower_in_between(poses, t), 0.09f) << t;
+    EXPECT_LT(lower_in_between(bounded, t), 0.041f) << t;
+  }
+  EXPECT_LT(LargestLengthChange(bounded, poses), 1e-4f);
 }
 
 TEST(LiveBoundsTest, ASkeletonWithoutHipsAndFeetKeepsItsDistance) {
