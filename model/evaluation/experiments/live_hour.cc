@@ -21,16 +21,20 @@ double SpeedOf(const Poses& poses, int first, int count, double rate) {
 }
 
 void MeasureDistances(const motion::Skeleton& skeleton, const Poses& leader, const Poses& follower,
-                      LiveHourFigures* figures) {
+                      double frame_rate_hz, LiveHourFigures* figures) {
   figures->nearest = HUGE_VAL;
-  int outside = 0;
+  int outside = 0, run = 0, longest = 0;
   for (int t = 0; t < follower.frame_count(); ++t) {
     const motion::Vec3 apart = follower.at(t, skeleton.root) - leader.at(t, skeleton.root);
     const double distance = std::hypot(apart.x, apart.z);
     figures->nearest = std::min(figures->nearest, distance);
     figures->farthest = std::max(figures->farthest, distance);
-    outside += distance < kNearestWanted || distance > kFarthestWanted ? 1 : 0;
+    const bool is_outside = distance < kNearestWanted || distance > kFarthestWanted;
+    run = is_outside ? run + 1 : 0;
+    longest = std::max(longest, run);
+    outside += is_outside ? 1 : 0;
   }
+  figures->longest_outside = longest / frame_rate_hz;
   figures->out_of_range = static_cast<double>(outside) / follower.frame_count();
 }
 
@@ -44,7 +48,7 @@ LiveHourFigures MeasureLiveHour(const motion::Skeleton& skeleton, const Poses& l
   LiveHourFigures figures;
   figures.trunk_lean =
       MeasureLean(follower, skeleton, frame_rate_hz, metrics::LeanFrom::kHips).max_degrees;
-  MeasureDistances(skeleton, leader, follower, &figures);
+  MeasureDistances(skeleton, leader, follower, frame_rate_hz, &figures);
   figures.feet = std::fmax(gap.above, gap.below);
   figures.first_speed = SpeedOf(follower, 0, part, frame_rate_hz);
   figures.last_speed = SpeedOf(follower, frames - part, part, frame_rate_hz);

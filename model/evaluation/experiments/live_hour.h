@@ -18,10 +18,11 @@ struct LiveHourFigures {
   double trunk_lean = 0;  // hips to neck, the largest mean over one second
   double nearest = 0;     // the smallest and the largest distance of the two roots along the floor
   double farthest = 0;
-  double out_of_range = 0;  // share of frames nearer or farther than wanted, in [0, 1]
-  double feet = 0;          // the largest distance of the lower foot from the floor
-  double first_speed = 0;   // of the joints, over the first minute,
-  double last_speed = 0;    // and over the last one, both after the noise filter
+  double out_of_range = 0;     // share of frames nearer or farther than wanted, in [0, 1]
+  double longest_outside = 0;  // the longest time nearer or farther than wanted, seconds
+  double feet = 0;             // the largest distance of the lower foot from the floor
+  double first_speed = 0;      // of the joints, over the first minute,
+  double last_speed = 0;       // and over the last one, both after the noise filter
 };
 
 // Shapes: the same number of frames in both, at least 2.

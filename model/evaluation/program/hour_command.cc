@@ -92,21 +92,24 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const std::
   if (!followers.ok()) return followers.status();
   report::Table table;
   table.title = absl::StrCat(name, ": ", arguments.minutes, " minutes");
-  table.columns = {"lean", "nearest", "farthest", "out %", "feet", "first", "last", "last / first"};
+  table.columns = {"lean", "nearest", "farthest", "out %",       "out s",
+                   "feet", "first",   "last",     "last / first"};
   table.decimals = 3;
   for (size_t i = 0; i < leaders.size(); ++i) {
     const experiments::LiveHourFigures figures = experiments::MeasureLiveHour(
         description.skeleton, leaders[i].pair.leader.poses, (*followers)[i], arguments.rate);
-    table.rows.push_back({leaders[i].id,
-                          {figures.trunk_lean, figures.nearest, figures.farthest,
-                           100 * figures.out_of_range, figures.feet, figures.first_speed,
-                           figures.last_speed, figures.last_speed / figures.first_speed}});
+    table.rows.push_back(
+        {leaders[i].id,
+         {figures.trunk_lean, figures.nearest, figures.farthest, 100 * figures.out_of_range,
+          figures.longest_outside, figures.feet, figures.first_speed, figures.last_speed,
+          figures.last_speed / figures.first_speed}});
   }
   table.notes = {
       "Lean: of the trunk, degrees, the largest mean over one second; wanted: at most 20.",
       absl::StrCat("Nearest, farthest: the roots along the floor, metres; out: the share of frames "
                    "outside the wanted ",
-                   experiments::kNearestWanted, " to ", experiments::kFarthestWanted, "."),
+                   experiments::kNearestWanted, " to ", experiments::kFarthestWanted,
+                   ", and the longest time there, seconds."),
       "Feet: the largest distance of the lower foot from the floor, metres; wanted: at most 0.05.",
       "First, last: mean speed of the joints in the first and the last minute, in the same class, "
       "m/s; wanted: a ratio of 0.8 to 1.25."};

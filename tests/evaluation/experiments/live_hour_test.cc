@@ -43,6 +43,7 @@ TEST(LiveHourTest, WhatHappensInBetweenCounts) {
   EXPECT_NEAR(figures.nearest, 0.1, 1e-3);
   EXPECT_NEAR(figures.farthest, 3, 1e-3);
   EXPECT_NEAR(figures.out_of_range, 150.0 / follower.frame_count(), 1e-9);
+  EXPECT_NEAR(figures.longest_outside, 150 / kRate, 1e-9);
   EXPECT_NEAR(figures.feet, 0.3, 0.01);
 }
 
