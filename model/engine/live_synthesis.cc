@@ -165,12 +165,18 @@ SynthesisWindow LiveSynthesis::NextWindow() {
   const int known = static_cast<int>(std::ceil(timing_.ToModelFrame(follower_begin_) - kEpsilon));
   const int begin =
       std::max({0, settled_end - timing_.past_frames(), std::min(known, settled_end - 1)});
-  const int frames = std::min(sent_end - begin + timing_.future_frames(), model_.window_frames);
+  const bool is_first = settled_end == 0;
+  const int frames =
+      is_first ? model_.window_frames
+               : std::min(sent_end - begin + timing_.future_frames(), model_.window_frames);
   window_begin_ = begin;
   SynthesisWindow window;
   window.leader = WindowLeader(begin, frames, *pending_, &window.hidden_frames);
   window.labels = WindowLabels(begin, frames, join);
-  if (settled_end > begin) {
+  // As in a clip of a leader who stands: the follower begins where followers of clips begin. With a
+  // hidden future, it would begin where they are at any time, which is nearer.
+  if (is_first) window.hidden_frames = 0;
+  if (!is_first) {
     window.settled = WindowFollower(begin, settled_end, join);
     window.sent = WindowFollower(settled_end, sent_end, join);
     const absl::Span<const Vec3> pose = window.settled[0];

@@ -21,8 +21,10 @@ constexpr double kRemadeSeconds = 0.4;
 // has, the less its follower moves (docs/decisions/0065-live-by-planning-again.md). A model with a
 // lookahead plans at least as far: its windows end with an unknown future in clips, too.
 constexpr double kFutureSeconds = 0.4;
-// A spline's neighbours, and rounding at either end.
-constexpr int kMarginFrames = 4;
+// The neighbours of a spline at the end of a plan.
+constexpr int kMarginFrames = 2;
+// The neighbours of splines, and rounding, at either end of the history.
+constexpr int kHistoryMarginFrames = 8;
 
 }  // namespace
 
@@ -48,7 +50,7 @@ int LiveTiming::ModelFrameAt(int frame) const {
 int LiveTiming::history_frames() const {
   const double between = model_frames_between_ / model_frames_per_frame_;
   return static_cast<int>(std::ceil((past_ + remade_) / model_frames_per_frame_ + between)) +
-         delay_frames_ + 2 * kMarginFrames;
+         delay_frames_ + kHistoryMarginFrames;
 }
 
 bool LiveTiming::IsEvaluation(int frame) const {

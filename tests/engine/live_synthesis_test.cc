@@ -290,6 +290,15 @@ TEST(LiveSynthesisTest, WindowsSpecifyHowManyFramesOfTheLeaderAreAGuess) {
   EXPECT_GE(window.hidden_frames, window.leader.frame_count() - known - 3);
 }
 
+TEST(LiveSynthesisTest, TheFirstWindowIsThatOfAClip) {
+  Session session;
+  session.Send(SwayingMotion(10, kRate));
+  const SynthesisWindow& first = session.windows().front();
+  EXPECT_EQ(first.leader.frame_count(), session.fake().description().window_frames);
+  EXPECT_EQ(first.hidden_frames, 0);
+  EXPECT_GT(session.windows()[1].hidden_frames, 0);
+}
+
 TEST(LiveSynthesisTest, LabelsChangeFromTheFrameTold) {
   Session session;
   session.Send(SwayingMotion(30, kRate));
