@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "model/cleanup/girdle.h"
+#include "model/cleanup/hinge.h"
 #include "model/cleanup/turns.h"
 
 namespace duet::cleanup {
@@ -19,11 +21,11 @@ constexpr float kNoDirection = 1e-4f;
 
 // The direction in which the elbow points, of length 1, in every frame. A nearly straight arm keeps
 // the direction of the frame before.
-Track ElbowDirections(const body::Limb& arm, const motion::Poses& poses) {
+Track ElbowDirections(const body::Limb& arm, const Girdles& girdles, const motion::Poses& poses) {
   Track directions;
   directions.reserve(static_cast<std::size_t>(poses.frame_count()));
   for (int t = 0; t < poses.frame_count(); ++t) {
-    const Vec3 bend = BendOf(arm, poses[t]);
+    const Vec3 bend = girdles[static_cast<std::size_t>(t)].Inwards(BendOf(arm, poses[t]));
     const float length = Norm(bend);
     const bool clear = length >= kClearBend || (directions.empty() && length > kNoDirection);
     const Vec3 before = directions.empty() ? Vec3{0, -1, 0} : directions.back();
@@ -34,24 +36,25 @@ Track ElbowDirections(const body::Limb& arm, const motion::Poses& poses) {
 
 // Turns the elbow about the line from shoulder to hand, so that it does not change sides in a
 // frame.
-void SlowElbow(const body::Limb& arm, const LimbSwingOptions& options, const Timing& timing,
-               motion::Poses* poses) {
-  const Track before = ElbowDirections(arm, *poses);
+void SlowElbow(const body::Limb& arm, const Girdles& girdles, const LimbSwingOptions& options,
+               const Timing& timing, motion::Poses* poses) {
+  const Track before = ElbowDirections(arm, girdles, *poses);
   Track after = before;
   LimitTurns(timing.settled, MostInAFrame(options.fastest_elbow, timing), &after);
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     const std::size_t at = static_cast<std::size_t>(t);
     if (after[at] == before[at]) continue;
-    ReachBent(arm, poses->at(t, arm.end), after[at], (*poses)[t]);
+    ReachBent(arm, poses->at(t, arm.end), girdles[at].Outwards(after[at]), (*poses)[t]);
   }
 }
 
 // The directions of a bone, of length 1. A bone without length keeps the direction before.
-Track BoneDirections(int from, int to, const motion::Poses& poses) {
+Track BoneDirections(int from, int to, const Girdles& girdles, const motion::Poses& poses) {
   Track directions;
   directions.reserve(static_cast<std::size_t>(poses.frame_count()));
   for (int t = 0; t < poses.frame_count(); ++t) {
-    const Vec3 bone = poses.at(t, to) - poses.at(t, from);
+    const Vec3 bone =
+        girdles[static_cast<std::size_t>(t)].Inwards(poses.at(t, to) - poses.at(t, from));
     const float length = Norm(bone);
     const Vec3 before = directions.empty() ? Vec3{0, -1, 0} : directions.back();
     directions.push_back(length > kNoDirection ? bone / length : before);
@@ -59,21 +62,28 @@ Track BoneDirections(int from, int to, const motion::Poses& poses) {
   return directions;
 }
 
-// Limits the turns of both bones of a limb, degrees per second.
-void SlowBones(const body::Limb& limb, double fastest_inner, double fastest_outer,
-               const Timing& timing, motion::Poses* poses) {
-  const Track inner = BoneDirections(limb.upper, limb.middle, *poses);
-  const Track outer = BoneDirections(limb.middle, limb.end, *poses);
-  Track slow_inner = inner, slow_outer = outer;
-  LimitTurns(timing.settled, MostInAFrame(fastest_inner, timing), &slow_inner);
-  LimitTurns(timing.settled, MostInAFrame(fastest_outer, timing), &slow_outer);
+struct BoneSpeeds {
+  double upper = 0, lower = 0;  // degrees per second
+};
+
+// Limits the turns of both bones of a limb and of its hinge, as the girdle sees them.
+void SlowLimb(const body::Limb& limb, const Girdles& girdles, const BoneSpeeds& fastest,
+              const HingeLimits& hinge, const Timing& timing, motion::Poses* poses) {
+  const Track upper = BoneDirections(limb.upper, limb.middle, girdles, *poses);
+  const Track lower = BoneDirections(limb.middle, limb.end, girdles, *poses);
+  Track slow_upper = upper, slow_lower = lower;
+  LimitTurns(timing.settled, MostInAFrame(fastest.upper, timing), &slow_upper);
+  LimitTurns(timing.settled, MostInAFrame(fastest.lower, timing), &slow_lower);
+  LimitHinge(slow_upper, hinge, timing, &slow_lower);
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     const std::size_t at = static_cast<std::size_t>(t);
-    if (slow_inner[at] == inner[at] && slow_outer[at] == outer[at]) continue;
-    const Vec3 upper = poses->at(t, limb.upper), middle = poses->at(t, limb.middle);
+    if (slow_upper[at] == upper[at] && slow_lower[at] == lower[at]) continue;
+    const Vec3 from = poses->at(t, limb.upper), middle = poses->at(t, limb.middle);
     const Vec3 end = poses->at(t, limb.end);
-    poses->at(t, limb.middle) = upper + slow_inner[at] * Distance(upper, middle);
-    poses->at(t, limb.end) = poses->at(t, limb.middle) + slow_outer[at] * Distance(middle, end);
+    const Vec3 to_middle = girdles[at].Outwards(slow_upper[at]) * Distance(from, middle);
+    const Vec3 to_end = girdles[at].Outwards(slow_lower[at]) * Distance(middle, end);
+    poses->at(t, limb.middle) = from + to_middle;
+    poses->at(t, limb.end) = from + to_middle + to_end;
     for (const int joint : limb.beyond) poses->at(t, joint) += poses->at(t, limb.end) - end;
   }
 }
@@ -82,12 +92,18 @@ void SlowBones(const body::Limb& limb, double fastest_inner, double fastest_oute
 
 void CalmLimbs(const body::Body& body, const LimbSwingOptions& options, const Timing& timing,
                motion::Poses* poses) {
+  const Girdles shoulders = GirdlesOf(body, body.shoulders, *poses);
   for (const body::Limb& arm : body.arms) {
-    SlowElbow(arm, options, timing, poses);
-    SlowBones(arm, options.fastest_upper_arm, options.fastest_forearm, timing, poses);
+    SlowElbow(arm, shoulders, options, timing, poses);
+    SlowLimb(arm, shoulders, {options.fastest_upper_arm, options.fastest_forearm}, options.hinge,
+             timing, poses);
   }
+  if (body.legs.size() != 2) return;
+  const motion::JointPair hip_joints{body.legs[0].upper, body.legs[1].upper};
+  const Girdles hips = GirdlesOf(body, hip_joints, *poses);
   for (const body::Limb& leg : body.legs) {
-    SlowBones(leg, options.fastest_thigh, options.fastest_shin, timing, poses);
+    SlowLimb(leg, hips, {options.fastest_thigh, options.fastest_shin}, options.hinge, timing,
+             poses);
   }
 }
 

@@ -44,6 +44,19 @@ void TurnLate(std::size_t begin, float most, Track* track) {
   }
 }
 
+bool HasSteepSlope(const std::vector<float>& track, std::size_t begin, float most) {
+  for (std::size_t t = begin; t < track.size(); ++t) {
+    if (std::abs(track[t] - track[t - 1]) > most) return true;
+  }
+  return false;
+}
+
+void FollowLate(std::size_t begin, float most, std::vector<float>* track) {
+  for (std::size_t t = begin; t < track->size(); ++t) {
+    (*track)[t] = std::clamp((*track)[t], (*track)[t - 1] - most, (*track)[t - 1] + most);
+  }
+}
+
 }  // namespace
 
 float MostInAFrame(double degrees_per_second, const Timing& timing) {
@@ -64,6 +77,21 @@ void LimitTurns(int first, float most, Track* track) {
     (*track)[t] = late[t] == early[t] ? late[t] : TurnTowards(late[t], early[t], 0.5f, HUGE_VALF);
   }
   TurnLate(begin, most, track);
+}
+
+void LimitSlopes(int first, float most, std::vector<float>* track) {
+  const std::size_t settled = static_cast<std::size_t>(first);
+  const std::size_t begin = std::max<std::size_t>(1, settled);
+  if (!HasSteepSlope(*track, begin, most)) return;
+  std::vector<float> early = *track;
+  FollowLate(begin, most, track);
+  for (std::size_t t = early.size() - 1; t > settled; --t) {
+    early[t - 1] = std::clamp(early[t - 1], early[t] - most, early[t] + most);
+  }
+  for (std::size_t t = settled; t < track->size(); ++t) {
+    (*track)[t] = (*track)[t] == early[t] ? early[t] : ((*track)[t] + early[t]) / 2;
+  }
+  FollowLate(begin, most, track);
 }
 
 float SignedAngle(Vec3 a, Vec3 b, Vec3 axis) {

@@ -16,6 +16,9 @@ float MostInAFrame(double degrees_per_second, const Timing& timing);
 // does a track without fast turns.
 void LimitTurns(int first, float most, std::vector<motion::Vec3>* track);
 
+// The same for a track of numbers: limits how far it rises or falls in a frame.
+void LimitSlopes(int first, float most, std::vector<float>* track);
+
 // The angle from `a` to `b` about `axis`, -pi to pi; all of length 1, `axis` across both.
 float SignedAngle(motion::Vec3 a, motion::Vec3 b, motion::Vec3 axis);
 

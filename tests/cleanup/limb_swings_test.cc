@@ -8,7 +8,8 @@ namespace {
 
 using motion::Vec3;
 
-constexpr int kShoulder = 6, kElbow = 7, kHand = 8, kRightKnee = 13, kRightFoot = 14;
+constexpr int kShoulder = 6, kElbow = 7, kHand = 8, kRightHip = 12, kRightKnee = 13,
+              kRightFoot = 14;
 constexpr int kMiddle = 20;
 
 // The right hand in front of the body.
@@ -82,7 +83,8 @@ TEST(CalmLimbs, AnElbowKeepsItsSideAndTheHandItsPlace) {
 TEST(CalmLimbs, SettledFramesDoNotChange) {
   const motion::Poses calmed = Calmed(Snapping(), kMiddle);
   for (int t = 0; t < kMiddle; ++t) EXPECT_EQ(calmed[t], Snapping()[t]);
-  EXPECT_LT(FastestForearm(calmed), 510);
+  // The elbow bends by up to 600 degrees per second while its plane turns.
+  EXPECT_LT(FastestForearm(calmed), 650);
 }
 
 TEST(CalmLimbs, AShinThatSnapsTakesItsTime) {
@@ -102,6 +104,78 @@ TEST(CalmLimbs, AShinThatSnapsTakesItsTime) {
   EXPECT_GT(largest_step(poses), 0.5f);
   EXPECT_LT(largest_step(calmed), 0.35f);
   EXPECT_LT(Distance(calmed.at(kFrames - 1, kRightFoot), poses.at(kFrames - 1, kRightFoot)), 0.02f);
+}
+
+// By how much the plane of a limb turns from a frame to the next at most, degrees.
+double FastestPlane(const motion::Poses& poses, int upper, int middle, int end) {
+  double fastest = 0;
+  Vec3 before;
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    const Vec3 normal =
+        Cross(poses.at(t, middle) - poses.at(t, upper), poses.at(t, end) - poses.at(t, middle));
+    if (t > 0) {
+      fastest =
+          std::max(fastest, double{std::atan2(Norm(Cross(before, normal)), Dot(before, normal))});
+    }
+    before = normal;
+  }
+  return fastest * base::kDegreesPerRadian;
+}
+
+// A knee that is bent by a right angle, at first to one side and then to the other.
+motion::Poses KneeThatChangesSides() {
+  motion::Poses poses = Puppet();
+  for (int t = 0; t < kFrames; ++t) {
+    const Vec3 hip = poses.at(t, kRightHip), side = {t < kMiddle ? 0.28f : -0.28f, -0.28f, 0};
+    poses.at(t, kRightKnee) = hip + Vec3{0, -0.4f, 0};
+    poses.at(t, kRightFoot) = poses.at(t, kRightKnee) + side;
+  }
+  return poses;
+}
+
+TEST(CalmLimbs, ThePlaneOfAKneeTakesItsTimeToTurn) {
+  const motion::Poses snapping = KneeThatChangesSides(), calmed = Calmed(snapping);
+  EXPECT_GT(FastestPlane(snapping, kRightHip, kRightKnee, kRightFoot), 170);
+  EXPECT_LT(FastestPlane(calmed, kRightHip, kRightKnee, kRightFoot), 40);
+  EXPECT_LT(LargestLengthChange(calmed, snapping), 1e-3f);
+  EXPECT_LT(Distance(calmed.at(0, kRightFoot), snapping.at(0, kRightFoot)), 0.02f);
+  EXPECT_LT(Distance(calmed.at(kFrames - 1, kRightFoot), snapping.at(kFrames - 1, kRightFoot)),
+            0.02f);
+}
+
+// The direction in which a limb bends is seen only while it is bent.
+TEST(CalmLimbs, AStraightLegRemembersItsPlane) {
+  motion::Poses poses = KneeThatChangesSides();
+  for (int t = kMiddle - 8; t < kMiddle + 8; ++t) {
+    poses.at(t, kRightFoot) = poses.at(t, kRightKnee) + Vec3{0, -0.4f, t % 2 ? 0.01f : -0.01f};
+  }
+  const motion::Poses calmed = Calmed(poses);
+  for (int t = kMiddle - 3; t < kMiddle + 3; ++t) {
+    EXPECT_LT(Distance(calmed.at(t, kRightFoot), poses.at(t, kRightFoot)), 0.15f) << t;
+  }
+  EXPECT_LT(FastestForearm(calmed), 510);
+}
+
+TEST(CalmLimbs, AFoldedArmOpens) {
+  motion::Poses poses = Raised();
+  for (int t = kMiddle; t < kMiddle + 5; ++t) {
+    poses.at(t, kHand) = Lerp(poses.at(t, kShoulder), poses.at(t, kElbow), 0.05f);
+  }
+  const motion::Poses calmed = Calmed(poses);
+  for (int t = 0; t < kFrames; ++t) {
+    const Vec3 inner = calmed.at(t, kElbow) - calmed.at(t, kShoulder);
+    const Vec3 outer = calmed.at(t, kHand) - calmed.at(t, kElbow);
+    EXPECT_LT(std::atan2(Norm(Cross(inner, outer)), Dot(inner, outer)),
+              156 * base::kRadiansPerDegree);
+  }
+}
+
+// A body that spins takes its arms along: only what they do relative to it is limited.
+TEST(CalmLimbs, ASpinningBodyTakesItsArmsAlong) {
+  const motion::Poses spinning = Changed(Raised(), [](int t, Vec3 joint) {
+    return RotateY(joint, t * 500 * base::kRadiansPerDegree / kRate);
+  });
+  EXPECT_LT(LargestDistance(Calmed(spinning), spinning), 1e-3f);
 }
 
 }  // namespace

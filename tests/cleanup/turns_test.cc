@@ -1,6 +1,8 @@
 #include "model/cleanup/turns.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "gtest/gtest.h"
 
@@ -62,6 +64,41 @@ TEST(LimitTurns, FramesBeforeTheFirstDoNotChange) {
   for (std::size_t t = 0; t < 20; ++t) EXPECT_EQ(limited[t], track[t]);
   EXPECT_LT(FastestTurn(limited), 1.01f * kMost);
   EXPECT_LT(Distance(limited.back(), track.back()), 1e-4f);
+}
+
+std::vector<float> Step(float height) {
+  std::vector<float> track(40, 0.0f);
+  for (std::size_t t = 20; t < 40; ++t) track[t] = height;
+  return track;
+}
+
+float Steepest(const std::vector<float>& track) {
+  float steepest = 0;
+  for (std::size_t t = 1; t < track.size(); ++t) {
+    steepest = std::max(steepest, std::abs(track[t] - track[t - 1]));
+  }
+  return steepest;
+}
+
+TEST(LimitSlopes, AStepTakesTimeBeforeAndAfter) {
+  std::vector<float> track = Step(1);
+  LimitSlopes(0, kMost, &track);
+  EXPECT_LT(Steepest(track), 1.01f * kMost);
+  EXPECT_EQ(track.front(), 0);
+  EXPECT_EQ(track.back(), 1);
+  EXPECT_GT(track[18], 0.05f);
+  EXPECT_LT(track[21], 0.95f);
+}
+
+TEST(LimitSlopes, LeavesGentleTracksAndTheFramesBeforeTheFirst) {
+  std::vector<float> gentle = Step(0.19f);
+  LimitSlopes(0, kMost, &gentle);
+  EXPECT_EQ(gentle, Step(0.19f));
+  std::vector<float> late = Step(1);
+  LimitSlopes(20, kMost, &late);
+  for (std::size_t t = 0; t < 20; ++t) EXPECT_EQ(late[t], 0);
+  EXPECT_LT(Steepest(late), 1.01f * kMost);
+  EXPECT_EQ(late.back(), 1);
 }
 
 TEST(SignedAngle, IsPositiveAboutItsAxis) {
