@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "model/base/angle.h"
 #include "model/retargeting/foot_pose.h"
 
 namespace duet::retargeting {
@@ -12,6 +13,12 @@ std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
 
 bool IsFoot(const motion::Skeleton& skeleton, int joint) {
   return skeleton.feet && (joint == skeleton.feet->left || joint == skeleton.feet->right);
+}
+
+// The rotation on the way from one to another that is at most `most` radians from the first.
+Quaternion Towards(Quaternion from, Quaternion to, double most) {
+  const double way = Angle(from, to);
+  return way <= most ? to : Slerp(from, to, most / way);
 }
 
 void KeepSigns(const std::vector<Quaternion>& previous, std::vector<Quaternion>* rotations) {
@@ -25,7 +32,10 @@ void KeepSigns(const std::vector<Quaternion>& previous, std::vector<Quaternion>*
 
 RigFitter::RigFitter(const motion::Skeleton& skeleton, const Rig& rig, double frame_rate_hz,
                      double ankle_height_on_floor, BoneLengths lengths)
-    : rig_(rig), ankle_height_(ankle_height_on_floor), fitter_(rig, frame_rate_hz, lengths) {
+    : rig_(rig),
+      ankle_height_(ankle_height_on_floor),
+      max_foot_turn_(base::kRadiansPerDegree * kMaxFootSpeed / frame_rate_hz),
+      fitter_(rig, frame_rate_hz, lengths) {
   for (const RigJoint& joint : rig.joints) {
     feet_.push_back(joint.kind == RigJoint::Kind::kLeaf && IsFoot(skeleton, joint.joint));
   }
@@ -34,14 +44,14 @@ RigFitter::RigFitter(const motion::Skeleton& skeleton, const Rig& rig, double fr
 const RigPose& RigFitter::Fit(absl::Span<const motion::Vec3> positions) {
   const std::vector<Quaternion> previous = std::move(pose_.rotations);
   pose_ = fitter_.Fit(positions);
-  TurnFeet();
+  TurnFeet(previous);
   if (!first_) KeepSigns(previous, &pose_.rotations);
   first_ = false;
   return pose_;
 }
 
 // The fit leaves feet at rest relative to their shins.
-void RigFitter::TurnFeet() {
+void RigFitter::TurnFeet(const std::vector<Quaternion>& previous) {
   std::vector<Quaternion> world(rig_.joints.size());
   std::vector<Vec3d> at(rig_.joints.size());
   for (std::size_t j = 0; j < rig_.joints.size(); ++j) {
@@ -49,7 +59,8 @@ void RigFitter::TurnFeet() {
     const Quaternion above = parent < 0 ? Quaternion{} : world[Index(parent)];
     at[j] = (parent < 0 ? Vec3d{} : at[Index(parent)]) + Rotate(above, pose_.translations[j]);
     if (feet_[j]) {
-      pose_.rotations[j] = Inverse(above) * FootRotation(above, at[j], ankle_height_);
+      const Quaternion foot = Inverse(above) * FootRotation(above, at[j], ankle_height_);
+      pose_.rotations[j] = first_ ? foot : Towards(previous[j], foot, max_foot_turn_);
     }
     world[j] = above * pose_.rotations[j];
   }

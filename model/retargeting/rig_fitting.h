@@ -12,10 +12,13 @@
 namespace duet::retargeting {
 
 // Poses of a rig for files and engines, frame by frame: those of PoseFitter, with feet that stand
-// level, and with quaternions on the same side as in the frame before (q, not -q). A frame depends
-// only on itself and earlier frames.
+// level and turn no faster than kMaxFootSpeed, and with quaternions on the same side as in the
+// frame before (q, not -q). A frame depends only on itself and earlier frames.
 class RigFitter {
  public:
+  // Degrees per second, of a foot without toes against its shin.
+  static constexpr double kMaxFootSpeed = 700;
+
   // `rig` must outlive the fitter. `ankle_height_on_floor`: see AnkleHeightOnFloor.
   RigFitter(const motion::Skeleton& skeleton, const Rig& rig, double frame_rate_hz,
             double ankle_height_on_floor, BoneLengths lengths);
@@ -23,11 +26,12 @@ class RigFitter {
   const RigPose& Fit(absl::Span<const motion::Vec3> positions);
 
  private:
-  void TurnFeet();
+  void TurnFeet(const std::vector<Quaternion>& previous);
 
   const Rig& rig_;
   const double ankle_height_;
-  std::vector<bool> feet_;  // whether a rig joint is a foot without toes
+  const double max_foot_turn_;  // in a frame, radians
+  std::vector<bool> feet_;      // whether a rig joint is a foot without toes
   PoseFitter fitter_;
   bool first_ = true;
   RigPose pose_;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "gtest/gtest.h"
+#include "model/base/angle.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::retargeting {
@@ -73,6 +74,31 @@ TEST(RigAnimation, AStandingFootIsLevelAndALiftedOneFollowsItsShin) {
   EXPECT_NEAR(Rotate(World(animation, 0, joint), {0, 0, 1}).y, 0, 1e-6);
   EXPECT_NEAR(Rotate(World(animation, 0, joint), {0, 1, 0}).y, 1, 1e-6);
   EXPECT_LT(Rotate(World(animation, 0, shin), {0, 1, 0}).y, 0.97);
+  EXPECT_NEAR(Angle(World(animation, last, joint), World(animation, last, shin)), 0, 1e-6);
+}
+
+// A foot that is lifted at once follows its shin within some frames.
+TEST(RigAnimation, AFootDoesNotTurnOverInAFrame) {
+  motion::Clip clip = MakePerson();
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const int knee = skeleton.Find("left_knee"), foot = skeleton.Find("left_foot");
+  for (int frame = 0; frame < clip.frame_count(); ++frame) {
+    const motion::Vec3 hip = clip.at(frame, skeleton.Find("left_hip"));
+    const bool stands = frame < clip.frame_count() / 2;
+    clip.at(frame, knee) = hip + motion::Vec3{0, -0.1f, 0.4f};
+    clip.at(frame, foot) = {hip.x, stands ? 0.1f : 0.6f, hip.z};
+    clip.at(frame, skeleton.Find("right_foot")).y = 0.1f;
+  }
+  const RigAnimation animation = AnimateRig(skeleton, clip);
+  const std::size_t joint = Find(animation, "left_foot"), shin = Find(animation, "left_knee");
+  double fastest = 0;
+  for (std::size_t frame = 1; frame < animation.frames.size(); ++frame) {
+    fastest = std::max(fastest, Angle(animation.frames[frame - 1].rotations[joint],
+                                      animation.frames[frame].rotations[joint]));
+  }
+  EXPECT_GT(fastest * base::kDegreesPerRadian * clip.frame_rate_hz, 600);
+  EXPECT_LT(fastest * base::kDegreesPerRadian * clip.frame_rate_hz, 701);
+  const int last = clip.frame_count() - 1;
   EXPECT_NEAR(Angle(World(animation, last, joint), World(animation, last, shin)), 0, 1e-6);
 }
 
