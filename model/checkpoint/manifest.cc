@@ -36,6 +36,8 @@ constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kHandContacts[] = "hand_contacts";
 constexpr char kTurningClasses[] = "turning_classes";
 constexpr char kStepsInTime[] = "steps_in_time";
+constexpr char kStrikes[] = "strikes";
+constexpr char kFist[] = "fist", kFoot[] = "foot";
 constexpr char kTerms[] = "terms";
 constexpr char kLookaheadFrames[] = "lookahead_frames";
 constexpr char kFreeForAllUses[] = "free_for_all_uses";
@@ -156,6 +158,28 @@ void ReadClassNumbers(base::ObjectReader* reader, const char* name,
   reader->Update(fields.Finish());
 }
 
+// Classes with the limb that strikes in them. Older checkpoints have none.
+void ReadStrikes(base::ObjectReader* reader, engine::ModelDescription* model) {
+  if (!reader->Has(kStrikes)) return;
+  const json& object = reader->Object(kStrikes);
+  base::ObjectReader fields(object, kStrikes);
+  for (const auto& field : object.items()) {
+    if (std::find(model->classes.begin(), model->classes.end(), field.key()) ==
+        model->classes.end()) {
+      reader->Fail(kStrikes,
+                   absl::StrCat("expected one of classes, got ", json(field.key()).dump()));
+    }
+    const std::string limb = fields.String(field.key(), kMaxNameBytes);
+    if (fields.ok() && limb != kFist && limb != kFoot) {
+      fields.Fail(field.key(),
+                  absl::StrCat("expected \"fist\" or \"foot\", got ", json(limb).dump()));
+    }
+    model->strikes.push_back(
+        {field.key(), limb == kFoot ? engine::StrikingLimb::kFoot : engine::StrikingLimb::kFist});
+  }
+  reader->Update(fields.Finish());
+}
+
 // What people do in some of the classes. Older checkpoints have no such fields.
 void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
   constexpr double kFarthestHands = 1, kFastestTurn = 1440;
@@ -168,6 +192,7 @@ void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
                      model->turning_classes.push_back({name, speed});
                    });
   if (reader->Has(kStepsInTime)) model->steps_in_time = reader->Bool(kStepsInTime);
+  ReadStrikes(reader, model);
 }
 
 // Windows with a lookahead share their settled frames and the lookahead, and must still advance.
@@ -304,6 +329,10 @@ std::string SerializeManifest(const Manifest& manifest) {
     root[kTurningClasses][turning.interaction_class] = turning.degrees_per_second;
   }
   if (model.steps_in_time) root[kStepsInTime] = true;
+  for (const engine::Strike& strike : model.strikes) {
+    root[kStrikes][strike.interaction_class] =
+        strike.limb == engine::StrikingLimb::kFoot ? kFoot : kFist;
+  }
   if (!model.terms.empty()) root[kTerms] = model.terms;
   if (model.lookahead_frames > 0) root[kLookaheadFrames] = model.lookahead_frames;
   if (model.free_for_all_uses) root[kFreeForAllUses] = true;

@@ -8,7 +8,8 @@ CleanUp::CleanUp(const motion::Skeleton& skeleton, const Options& options)
     : skeleton_(skeleton),
       options_(options),
       body_(body::FindBody(skeleton)),
-      radii_(CapsuleRadii(skeleton, body_)) {}
+      radii_(CapsuleRadii(skeleton, body_)),
+      surface_(skeleton, body_) {}
 
 void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
                     const Timing& timing, motion::Poses* follower) const {
@@ -45,6 +46,10 @@ void CleanUp::CorrectBody(const motion::Poses& leader, const Touch& touch, const
   }
   if (options_.hand_contact.enabled) {
     ApproachHand(skeleton_, body_, leader, meetings, options_.hand_contact, timing, follower);
+  }
+  if (options_.strikes.enabled) {
+    ApproachStrikes(skeleton_, body_, surface_, leader, meetings, options_.strikes, timing,
+                    follower);
   }
   const std::optional<float> floor = Floor(leader);
   if (floor && options_.floor.enabled) {

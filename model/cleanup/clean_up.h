@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/body/limbs.h"
+#include "model/body/surface.h"
 #include "model/cleanup/capsules.h"
 #include "model/cleanup/floor.h"
 #include "model/cleanup/footsteps.h"
@@ -14,6 +15,7 @@
 #include "model/cleanup/pins.h"
 #include "model/cleanup/shoulders.h"
 #include "model/cleanup/spacing.h"
+#include "model/cleanup/strikes.h"
 #include "model/cleanup/timing.h"
 #include "model/cleanup/upright.h"
 #include "model/cleanup/waist.h"
@@ -34,6 +36,7 @@ struct Options {
   FloorOptions floor;
   FootstepOptions footsteps;
   HandContactOptions hand_contact;
+  StrikeOptions strikes;
   LimbSwingOptions limb_swings;
   PinOptions pins;
 };
@@ -83,6 +86,7 @@ class CleanUp {
   Options options_;
   body::Body body_;
   std::vector<double> radii_;
+  body::Surface surface_;
 };
 
 }  // namespace duet::cleanup

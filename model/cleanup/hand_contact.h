@@ -18,12 +18,17 @@ struct HandContactOptions {
   // How far a hand is moved at most, and how far the body for it, metres.
   double farthest_metres = 0.6, farthest_body_metres = 0.6;
   double fastest_metres_per_second = 0.8;  // of the body
+  // How long before a hand is offered the follower's body and hand begin to answer it.
+  double body_lead_seconds = 0.13, hand_lead_seconds = 0.07;
 };
 
-// In each frame, how much the hands are to meet, 0 to 1, and the distance at which they do, metres.
+// In each frame, how much the hands are to meet, 0 to 1, and the distance at which they do, metres;
+// and how much a fist of the leader is to end near the body, and how near.
 struct Meeting {
   float weight = 0;
   float metres = 0;
+  float fist = 0;
+  float strike_metres = 0;
 };
 using Meetings = std::vector<Meeting>;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "model/motion/feet.h"
@@ -16,6 +17,15 @@ constexpr double kEndlessEaseSeconds = 0;
 constexpr double kEndlessAnticipationSeconds = 0.2;
 // The time of the spring that joins a window to the frames that were sent.
 constexpr double kJoinSeconds = 0.1;
+// How far from the surface of the follower's body a fist ends. Captured people keep 0.1 m (push)
+// and 0.3 m (punch), because they only act.
+constexpr float kStrikeMetres = 0.1f;
+
+// The place of a class in the label vector; the number of classes if there is none of the name.
+std::size_t ClassIndex(const std::vector<std::string>& classes, const std::string& name) {
+  return static_cast<std::size_t>(std::find(classes.begin(), classes.end(), name) -
+                                  classes.begin());
+}
 
 }  // namespace
 
@@ -90,17 +100,26 @@ cleanup::Meetings MeetingsOf(const ModelDescription& description, const Synthesi
   const auto& classes = description.classes;
   cleanup::Meetings meetings(static_cast<std::size_t>(window.leader.frame_count()));
   for (const HandContact& contact : description.hand_contacts) {
-    const std::size_t c = static_cast<std::size_t>(
-        std::find(classes.begin(), classes.end(), contact.interaction_class) - classes.begin());
+    const std::size_t c = ClassIndex(classes, contact.interaction_class);
     for (std::size_t t = 0; t < meetings.size() && c < classes.size(); ++t) {
       const float weight = std::max(0.0f, window.labels[t * classes.size() + c]);
       meetings[t].weight += weight;
       meetings[t].metres += weight * static_cast<float>(contact.metres);
     }
   }
+  for (const Strike& strike : description.strikes) {
+    if (strike.limb != StrikingLimb::kFist) continue;
+    const std::size_t c = ClassIndex(classes, strike.interaction_class);
+    for (std::size_t t = 0; t < meetings.size() && c < classes.size(); ++t) {
+      const float weight = std::max(0.0f, window.labels[t * classes.size() + c]);
+      meetings[t].fist += weight;
+      meetings[t].strike_metres = kStrikeMetres;
+    }
+  }
   for (cleanup::Meeting& meeting : meetings) {
     if (meeting.weight > 0) meeting.metres /= meeting.weight;
     meeting.weight = std::min(1.0f, meeting.weight);
+    meeting.fist = std::min(1.0f, meeting.fist);
   }
   return meetings;
 }

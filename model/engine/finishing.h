@@ -37,7 +37,8 @@ cleanup::Timing FeetTiming(const ModelDescription& description, const SynthesisW
 cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindow& window);
 
 // Returns how much the hands are to meet in each frame: the weight of the classes with a hand
-// contact, 0 to 1, and their mean distance. Shapes: returns [frames].
+// contact, 0 to 1, and their mean distance; and how much fists are to end near the body.
+// Shapes: returns [frames].
 cleanup::Meetings MeetingsOf(const ModelDescription& description, const SynthesisWindow& window);
 
 // Returns the number of the window's first frames that must not change: the settled frames, or the

@@ -23,6 +23,13 @@ struct TurningClass {
   double degrees_per_second = 0;
 };
 
+// A class in which the leader strikes at the follower's body, and the limb that does.
+enum class StrikingLimb { kFist, kFoot };
+struct Strike {
+  std::string interaction_class;
+  StrikingLimb limb = StrikingLimb::kFist;
+};
+
 // Everything that callers need to know about a model, without its weights.
 struct ModelDescription {
   std::string name;
@@ -42,6 +49,8 @@ struct ModelDescription {
   std::vector<TurningClass> turning_classes;
   // The follower's steps fall on those of its leader, as in a dance.
   bool steps_in_time = false;
+  // The classes in which the leader strikes at the body.
+  std::vector<Strike> strikes;
   double frame_rate_hz = 0;  // the network's own
   int window_frames = 0;     // maximum window length that the network was trained on
   // The last frames of a window that the next window replaces, because their leader's future was

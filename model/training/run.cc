@@ -18,6 +18,7 @@
 #include "model/engine/hand_contact_fit.h"
 #include "model/engine/leader_statistics.h"
 #include "model/engine/step_fit.h"
+#include "model/engine/strike_fit.h"
 #include "model/network/threads.h"
 #include "model/training/direction_fit.h"
 #include "model/training/revision.h"
@@ -68,14 +69,15 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   return manifest;
 }
 
-// Fits `fit` to every stretch of a class.
+// Adds every stretch of a class to a fit (HandContactFit, StrikeFit, TurningFit).
 template <typename Fit>
-void FitClass(const dataset::Dataset& dataset, const std::vector<int>& sequences, int c, Fit* fit) {
+void AddStretches(const dataset::Dataset& dataset, const std::vector<int>& sequences,
+                  int interaction_class, Fit* fit) {
   for (const int index : sequences) {
     const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
     const motion::ClipPair& pair = sequence.pair;
     const auto add = [&](const dataset::LabelSpan& span) {
-      if (span.interaction_class != c) return;
+      if (span.interaction_class != interaction_class) return;
       fit->Add(pair.leader.poses, pair.follower.poses, span.begin, span.end);
     };
     std::for_each(sequence.labels.begin(), sequence.labels.end(), add);
@@ -83,17 +85,21 @@ void FitClass(const dataset::Dataset& dataset, const std::vector<int>& sequences
   }
 }
 
-// The classes in which people meet an offered hand.
-std::vector<engine::HandContact> FindHandContacts(const dataset::Dataset& dataset,
-                                                  const std::vector<int>& sequences) {
-  std::vector<engine::HandContact> contacts;
+// The classes in which people meet an offered hand, and those in which they strike.
+void FindContacts(const dataset::Dataset& dataset, const std::vector<int>& sequences,
+                  engine::ModelDescription* model) {
   for (int c = 0; c < dataset.class_count(); ++c) {
-    engine::HandContactFit fit(dataset.skeleton);
-    FitClass(dataset, sequences, c, &fit);
-    const std::optional<double> metres = fit.Metres(dataset.frame_rate_hz);
-    if (metres) contacts.push_back({dataset.classes[static_cast<size_t>(c)], *metres});
+    const std::string& name = dataset.classes[static_cast<size_t>(c)];
+    engine::HandContactFit hands(dataset.skeleton);
+    AddStretches(dataset, sequences, c, &hands);
+    if (const std::optional<double> metres = hands.Metres(dataset.frame_rate_hz)) {
+      model->hand_contacts.push_back({name, *metres});
+      continue;
+    }
+    engine::StrikeFit strikes(dataset.skeleton);
+    AddStretches(dataset, sequences, c, &strikes);
+    if (const auto limb = strikes.Limb()) model->strikes.push_back({name, *limb});
   }
-  return contacts;
 }
 
 // The classes in which the follower turns about itself.
@@ -102,7 +108,7 @@ std::vector<engine::TurningClass> FindTurningClasses(const dataset::Dataset& dat
   std::vector<engine::TurningClass> classes;
   for (int c = 0; c < dataset.class_count(); ++c) {
     engine::TurningFit fit(dataset.skeleton);
-    FitClass(dataset, sequences, c, &fit);
+    AddStretches(dataset, sequences, c, &fit);
     const std::optional<double> speed = fit.DegreesPerSecond(dataset.frame_rate_hz);
     if (speed) classes.push_back({dataset.classes[static_cast<size_t>(c)], *speed});
   }
@@ -311,7 +317,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
         ": expected sequences to train on, got none: validation holds back every sequence"));
   }
   manifest.model.leader_statistics = MeasureLeaders(dataset, train);
-  manifest.model.hand_contacts = FindHandContacts(dataset, train);
+  FindContacts(dataset, train, &manifest.model);
   manifest.model.turning_classes = FindTurningClasses(whole, takes);
   manifest.model.steps_in_time = StepInTime(whole, takes);
   const bool fits_direction = std::visit(

@@ -105,5 +105,30 @@ TEST(StepsInTimeInManifest, RoundTrip) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("steps_in_time")));
 }
 
+TEST(StrikesInManifest, RoundTrip) {
+  Manifest manifest = CompleteManifest();
+  manifest.model.strikes = {{"hug", engine::StrikingLimb::kFist},
+                            {"kick", engine::StrikingLimb::kFoot}};
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  ASSERT_EQ(read->model.strikes.size(), 2u);
+  EXPECT_EQ(read->model.strikes[0].interaction_class, "hug");
+  EXPECT_EQ(read->model.strikes[0].limb, engine::StrikingLimb::kFist);
+  EXPECT_EQ(read->model.strikes[1].limb, engine::StrikingLimb::kFoot);
+  EXPECT_THAT(ParseManifest(SerializeManifest(CompleteManifest()))->model.strikes, IsEmpty());
+}
+
+TEST(StrikesInManifest, NamesAClassAndALimb) {
+  json root = json::parse(SerializeManifest(CompleteManifest()));
+  root["strikes"] = {{"bow", "fist"}};
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("strikes: expected one of classes, got \"bow\"")));
+  root["strikes"] = {{"kick", "knee"}};
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("strikes.kick: expected \"fist\" or \"foot\", got \"knee\"")));
+}
+
 }  // namespace
 }  // namespace duet::checkpoint

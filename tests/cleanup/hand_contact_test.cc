@@ -79,6 +79,24 @@ TEST(HandContact, LeavesSettledFramesAndDoesNotJump) {
   EXPECT_LT(Gap(leader, met, kFrames - 1), 0.2f);
 }
 
+// The right hand is offered in the first second and a half, and then the left one.
+motion::Poses OfferingBoth() {
+  return Puppet([](double t, authoring::PuppetPose* pose) {
+    auto& hand = t < 1.5 ? pose->right_hand : pose->left_hand;
+    hand.target = {t < 1.5 ? -0.15 : 0.15, -0.1, 0.45};
+  });
+}
+
+TEST(HandContact, MeetsEachHandWhileItIsOffered) {
+  const motion::Poses leader = OfferingBoth(), met = Met(leader, Opposite(), Wanted());
+  EXPECT_LT(Gap(leader, met, 8), 0.15f);
+  const auto left_gap = [&](int frame) {
+    return std::min(Distance(leader.at(frame, 5), met.at(frame, 5)),
+                    Distance(leader.at(frame, 5), met.at(frame, kRightHand)));
+  };
+  EXPECT_LT(left_gap(kFrames - 5), 0.15f);
+}
+
 TEST(HandContact, NeedsTwoNamedArms) {
   EXPECT_EQ(Met(Offering(), Opposite(), Wanted(), 0, WithoutHips()), Opposite());
 }

@@ -12,7 +12,6 @@
 #include "model/body/hands.h"
 #include "model/evaluation/metrics/liveliness.h"
 #include "model/evaluation/metrics/posture.h"
-#include "model/motion/capsules.h"
 #include "model/motion/filter.h"
 #include "model/retargeting/rig_animation.h"
 
@@ -31,8 +30,6 @@ constexpr double kBentDegrees = 20;
 constexpr double kShoulderDegrees = 30;
 // A plane that turns more than this in a frame, or a joint that turns faster than this, is a fault.
 constexpr double kPlaneDegrees = 45, kTurnDegreesPerSecond = 900;
-// From this reach on, a foot kicks (body::ReachTowards, in lengths of the leg).
-constexpr double kKicksReach = 0.5;
 // A hand or foot of the leader that is deeper than this in the follower's body passes through it.
 constexpr double kThroughMetres = 0.05;
 // Offered hands that stay farther apart than this are a fault.
@@ -47,18 +44,27 @@ double Mean(double sum, int count) {
 // How near the leader's fists and feet come to the follower's body while they reach out.
 class Strikes {
  public:
-  Strikes(const motion::Skeleton& skeleton, const body::Body& body,
-          const std::vector<double>& radii)
-      : skeleton_(skeleton), body_(body), radii_(radii) {
-    for (const body::Limb& arm : body.arms) limbs_.push_back({&arm, body::kOffersReach, {}});
-    for (const body::Limb& leg : body.legs) limbs_.push_back({&leg, kKicksReach, {}});
+  // `strikes`: the limbs whose reach counts as a strike.
+  Strikes(const motion::Skeleton& skeleton, const body::Body& body, const body::Surface& surface,
+          std::optional<engine::StrikingLimb> strikes)
+      : skeleton_(skeleton), surface_(surface) {
+    using Limb = engine::StrikingLimb;
+    const auto least_reach = [&](Limb limb, double reach) {
+      return strikes == limb ? reach : HUGE_VAL;
+    };
+    for (const body::Limb& arm : body.arms) {
+      limbs_.push_back({&arm, least_reach(Limb::kFist, body::kOffersReach), {}});
+    }
+    for (const body::Limb& leg : body.legs) {
+      limbs_.push_back({&leg, least_reach(Limb::kFoot, body::kKicksReach), {}});
+    }
   }
 
   // Whether a fist or a foot passes through the body in this frame.
   bool Add(Pose leader, Pose follower) {
     bool through = false;
     for (Striking& limb : limbs_) {
-      const double depth = -FromBody(At(leader, limb.limb->end), follower);
+      const double depth = -surface_.Distance(At(leader, limb.limb->end), follower);
       through |= depth > kThroughMetres;
       const double reach =
           body::ReachTowards(*limb.limb, skeleton_.root, leader, At(follower, skeleton_.root));
@@ -93,28 +99,8 @@ class Strikes {
     limb->nearest.reset();
   }
 
-  bool IsOfArm(const motion::Bone& bone) const {
-    return std::any_of(body_.arms.begin(), body_.arms.end(), [&](const body::Limb& arm) {
-      return bone.parent == arm.upper || bone.parent == arm.middle || bone.parent == arm.end;
-    });
-  }
-
-  // The distance of a point from the surface of a body without its arms; negative inside.
-  double FromBody(Vec3 point, Pose pose) const {
-    double nearest = HUGE_VAL;
-    for (std::size_t b = 0; b < radii_.size(); ++b) {
-      const motion::Bone& bone = skeleton_.bones[b];
-      if (IsOfArm(bone)) continue;
-      nearest = std::min(nearest, motion::SegmentDistance(point, point, At(pose, bone.parent),
-                                                          At(pose, bone.child)) -
-                                      radii_[b]);
-    }
-    return nearest;
-  }
-
   const motion::Skeleton& skeleton_;
-  const body::Body& body_;
-  const std::vector<double>& radii_;
+  const body::Surface& surface_;
   std::vector<Striking> limbs_;
   double sum_ = 0;
   int count_ = 0, through_ = 0, frames_ = 0;
@@ -175,9 +161,7 @@ std::vector<double> RigTurns(const motion::Skeleton& skeleton, const Poses& pose
 }  // namespace
 
 Plausibility::Plausibility(const motion::Skeleton& skeleton)
-    : skeleton_(skeleton),
-      body_(body::FindBody(skeleton)),
-      radii_(body::CapsuleRadii(skeleton, body_)) {}
+    : skeleton_(skeleton), body_(body::FindBody(skeleton)), surface_(skeleton, body_) {}
 
 bool Plausibility::possible() const { return body::PairMeter::CanMeasure(skeleton_, body_); }
 
@@ -200,9 +184,10 @@ std::vector<std::string> Plausibility::Notes() {
       "trunks nearer than 16 cm. Hands: mean distance of the nearest hands while the leader "
       "reaches one out, metres. Distance: of the roots, metres. Speed: of the joints, "
       "m/s.",
-      "Strikes: how far a fist or foot that the leader reaches out stays from the surface of the "
-      "follower's trunk, head and legs at its nearest, metres. Through: share of frames in which "
-      "one of them is more than 5 cm inside.",
+      "Strikes: how far the limb that strikes in the class (a fist or a foot) stays from the "
+      "surface "
+      "of the follower's trunk, head and legs at its nearest while the leader reaches it out, "
+      "metres. Through: share of frames in which a fist or foot is more than 5 cm inside.",
       "Planes: share of answers in which the plane of a bent arm or leg turns by more than 45 "
       "degrees in a frame. Turns: share of answers in which a joint of the rig turns faster than "
       "900 degrees a second; fastest turn: the fastest of all, degrees a second. Lean: largest of "
@@ -210,10 +195,10 @@ std::vector<std::string> Plausibility::Notes() {
 }
 
 PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, double rate,
-                                  bool hands_meet) const {
+                                  const ClassContacts& contacts) const {
   body::PairMeter meter(skeleton_, body_, rate);
   body::GradeSum sum;
-  Strikes strikes(skeleton_, body_, radii_);
+  Strikes strikes(skeleton_, body_, surface_, contacts.strikes);
   const std::vector<double> turns = RigTurns(skeleton_, follower, rate);
   double most_twisted = 0, shoulders = 0, heads = 0, trunks = 0, plane = 0;
   std::vector<double> hands;
@@ -233,11 +218,11 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
     const double turned = LargestPlaneTurn(body_, follower, t);
     plane = std::max(plane, turned);
     const bool fast = turns[static_cast<std::size_t>(t)] > kTurnDegreesPerSecond;
-    figures.faults.push_back(One(frame.twisted()) + One(tilted) + One(frame.overlaps()) +
-                             0.5 * One(frame.skates()) +
-                             One(hands_meet && apart.value_or(0) > kHandsMetres) + One(through) +
-                             // Seen for longer than the frame in which they happen.
-                             5 * (One(turned > kPlaneDegrees) + One(fast)));
+    figures.faults.push_back(
+        One(frame.twisted()) + One(tilted) + One(frame.overlaps()) + 0.5 * One(frame.skates()) +
+        One(contacts.hands_meet && apart.value_or(0) > kHandsMetres) + One(through) +
+        // Seen for longer than the frame in which they happen.
+        5 * (One(turned > kPlaneDegrees) + One(fast)));
   }
   const body::Grade grade = sum.Get();
   const double fastest = *std::max_element(turns.begin(), turns.end());

@@ -1,10 +1,13 @@
 #ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_PLAUSIBILITY_H_
 #define DUET_MODEL_EVALUATION_EXPERIMENTS_PLAUSIBILITY_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/body/limbs.h"
+#include "model/body/surface.h"
+#include "model/engine/model_description.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
@@ -20,6 +23,12 @@ struct PairFigure {
 struct PairFigures {
   std::vector<double> values;  // like Plausibility::Figures; NaN where there is nothing to measure
   std::vector<double> faults;  // how much is wrong in each frame, about 1 for one obvious fault
+};
+
+// How the two people of a class meet.
+struct ClassContacts {
+  bool hands_meet = false;  // hands that stay apart although one is offered are a fault
+  std::optional<engine::StrikingLimb> strikes;
 };
 
 // Measures pairs of people with one skeleton. Metres, y up.
@@ -38,15 +47,14 @@ class Plausibility {
   // Explains the figures, for the notes of a table.
   static std::vector<std::string> Notes();
 
-  // `hands_meet`: hands that stay apart although one is offered are a fault. Requires possible()
-  // and at least one frame. Shapes: leader like the follower.
+  // Requires possible() and at least one frame. Shapes: leader like the follower.
   PairFigures Measure(const motion::Poses& leader, const motion::Poses& follower, double rate,
-                      bool hands_meet) const;
+                      const ClassContacts& contacts) const;
 
  private:
   motion::Skeleton skeleton_;
   body::Body body_;
-  std::vector<double> radii_;  // of the bones' capsules
+  body::Surface surface_;
 };
 
 // Combines the figures of pairs. Requires at least one pair. Shapes: as Plausibility::Figures.

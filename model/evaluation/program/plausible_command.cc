@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/statistics.h"
 #include "model/dataset/dataset.h"
+#include "model/engine/hand_contact_fit.h"
+#include "model/engine/strike_fit.h"
 #include "model/evaluation/experiments/long_leaders.h"
 #include "model/evaluation/experiments/plausibility.h"
 #include "model/evaluation/experiments/synthesizer_method.h"
@@ -90,11 +93,17 @@ struct Answer {
   experiments::WorstPart worst;
 };
 
-bool HandsMeet(const engine::ModelDescription& model, int label) {
+// How people meet in a class of a model.
+experiments::ClassContacts ContactsOf(const engine::ModelDescription& model, int label) {
   const std::string& name = model.classes[static_cast<size_t>(label)];
-  return std::any_of(
-      model.hand_contacts.begin(), model.hand_contacts.end(),
-      [&](const engine::HandContact& contact) { return contact.interaction_class == name; });
+  experiments::ClassContacts contacts;
+  for (const engine::HandContact& contact : model.hand_contacts) {
+    contacts.hands_meet |= contact.interaction_class == name;
+  }
+  for (const engine::Strike& strike : model.strikes) {
+    if (strike.interaction_class == name) contacts.strikes = strike.limb;
+  }
+  return contacts;
 }
 
 // The answers to all leaders with one seed each, for one class.
@@ -117,7 +126,7 @@ absl::Status AddAnswers(const Arguments& arguments, const engine::Synthesizer& s
     const motion::Clip& leader = leaders[i].pair.leader;
     Answer answer{&leaders[i], label, asked[i].sampling.seed, std::move((*followers)[i]), {}, {}};
     answer.figures = plausibility.Measure(leader.poses, answer.follower, leader.frame_rate_hz,
-                                          HandsMeet(model, label));
+                                          ContactsOf(model, label));
     answer.worst = experiments::FindWorstPart(
         answer.figures.faults, static_cast<int>(kPictureSeconds * leader.frame_rate_hz));
     answer.worst.faults /= leader.frame_rate_hz;
@@ -226,6 +235,25 @@ absl::Status AddModel(const Arguments& arguments, const std::string& name,
   return absl::OkStatus();
 }
 
+// The limb with which the leader strikes in each class, if one does.
+std::vector<std::optional<engine::StrikingLimb>> FindStrikes(const dataset::Dataset& data) {
+  std::vector<engine::StrikeFit> fits(data.classes.size(), engine::StrikeFit(data.skeleton));
+  std::vector<engine::HandContactFit> hands(data.classes.size(),
+                                            engine::HandContactFit(data.skeleton));
+  for (const dataset::Sequence& sequence : data.sequences) {
+    const motion::ClipPair& pair = sequence.pair;
+    const size_t c = static_cast<size_t>(sequence.interaction_class);
+    fits[c].Add(pair.leader.poses, pair.follower.poses, 0, pair.leader.frame_count());
+    hands[c].Add(pair.leader.poses, pair.follower.poses, 0, pair.leader.frame_count());
+  }
+  std::vector<std::optional<engine::StrikingLimb>> limbs;
+  for (size_t c = 0; c < fits.size(); ++c) {
+    const bool meet = hands[c].Metres(data.frame_rate_hz).has_value();
+    limbs.push_back(meet ? std::nullopt : fits[c].Limb());
+  }
+  return limbs;
+}
+
 // The same figures for captured pairs.
 absl::Status AddCaptured(const std::string& folder, report::ResultSection* section) {
   absl::StatusOr<dataset::Dataset> data = dataset::ReadDataset(folder);
@@ -235,11 +263,13 @@ absl::Status AddCaptured(const std::string& folder, report::ResultSection* secti
     return absl::InvalidArgumentError(
         "--data: expected a skeleton with hips, feet, a chest and two named arms");
   }
+  const auto strikes = FindStrikes(*data);
   std::vector<std::vector<experiments::PairFigures>> by_class(data->classes.size());
   for (const dataset::Sequence& sequence : data->sequences) {
     by_class[static_cast<size_t>(sequence.interaction_class)].push_back(
         plausibility.Measure(sequence.pair.leader.poses, sequence.pair.follower.poses,
-                             sequence.pair.leader.frame_rate_hz, /*hands_meet=*/false));
+                             sequence.pair.leader.frame_rate_hz,
+                             {false, strikes[static_cast<size_t>(sequence.interaction_class)]}));
   }
   report::Table table = EmptyTable(absl::StrCat("captured people: ", DescribeData(*data)));
   AddRows(data->classes, by_class, &table);

@@ -35,8 +35,8 @@ motion::Poses ReachingOut(int joint, float ahead, float height) {
 }
 
 PairFigures Measured(const motion::Poses& leader, const motion::Poses& follower,
-                     bool hands_meet = false) {
-  return Plausibility(motion::SbuSkeleton()).Measure(leader, follower, kRate, hands_meet);
+                     const ClassContacts& contacts = {false, engine::StrikingLimb::kFoot}) {
+  return Plausibility(motion::SbuSkeleton()).Measure(leader, follower, kRate, contacts);
 }
 
 double Figure(const PairFigures& figures, const std::string& name) {
@@ -70,8 +70,8 @@ TEST(PlausibilityTest, HandsAreMeasuredWhileOneIsReachedOut) {
   const double far = Figure(leader, Partner(1.4f), "hands");
   EXPECT_GT(near, 0.2);
   EXPECT_GT(far, near + 0.2);
-  EXPECT_GT(Measured(leader, Partner(1.4f), true).faults[9], 0.9);
-  EXPECT_EQ(Measured(leader, Partner(1.4f), false).faults[9], 0);
+  EXPECT_GT(Measured(leader, Partner(1.4f), {true, std::nullopt}).faults[9], 0.9);
+  EXPECT_EQ(Measured(leader, Partner(1.4f), {false, std::nullopt}).faults[9], 0);
 }
 
 TEST(PlausibilityTest, AFootThatStaysShortOfTheBody) {
@@ -79,6 +79,19 @@ TEST(PlausibilityTest, AFootThatStaysShortOfTheBody) {
   EXPECT_NEAR(Figure(leader, Partner(1.2f), "strikes"), 0.5, 0.12);
   EXPECT_LT(Figure(leader, Partner(0.8f), "strikes"), 0.15);
   EXPECT_EQ(Figure(leader, Partner(1.2f), "through"), 0);
+}
+
+TEST(PlausibilityTest, OnlyTheLimbThatStrikesInTheClassCounts) {
+  const motion::Poses kick = ReachingOut(kRightFoot, 0.6f, 0.9f);
+  const motion::Poses punch = ReachingOut(kRightHand, 0.7f, 1.1f);
+  const auto short_by = [](const motion::Poses& leader, const ClassContacts& contacts) {
+    return Figure(Measured(leader, Partner(1.2f), contacts), "strikes");
+  };
+  const ClassContacts fists{false, engine::StrikingLimb::kFist};
+  EXPECT_TRUE(std::isnan(short_by(kick, fists)));
+  EXPECT_TRUE(std::isnan(short_by(kick, {})));
+  EXPECT_TRUE(std::isnan(short_by(punch, {false, engine::StrikingLimb::kFoot})));
+  EXPECT_GT(short_by(punch, fists), 0.2);
 }
 
 TEST(PlausibilityTest, AFootInsideTheBody) {
