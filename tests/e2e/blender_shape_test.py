@@ -2,6 +2,7 @@
 other models."""
 
 import json
+import math
 import pathlib
 import shutil
 import tempfile
@@ -165,6 +166,12 @@ class BlenderShapeTest(unittest.TestCase):
         self.assertIn("left_toe", self.state["salsa_joints"])
         for joint in self.state["salsa_joints"]:
             self.assertIn(joint, self.state["salsa_bones"])
+
+    def test_dancers_own_rig_follows_with_its_toes(self):
+        self.assertEqual(self.state["salsa_rig"], "")
+        self.assertEqual(self.state["salsa_rig_bones"], self.state["dancer_bones"])
+        for wanted, place in self.state["salsa_rig_places"]:
+            self.assertLess(math.dist(wanted, place), 0.05)
 
 
 if __name__ == "__main__":

@@ -248,6 +248,12 @@ state["salsa_joints"] = [joint.name for joint in settings.joints]
 settings.labels["basic"].weight = 1
 state["salsa"] = attempt(bpy.ops.duet.react)
 state["salsa_bones"] = [bone.name for bone in follower().pose.bones]
+places = {joint: place(follower(), joint, 40) for joint in ("left_ankle", "left_toe", "right_wrist")}
+settings.body = "LEADER"
+state["salsa_rig"] = attempt(bpy.ops.duet.react)
+state["salsa_rig_bones"] = [bone.name for bone in follower().pose.bones]
+state["dancer_bones"] = [bone.name for bone in dancer.pose.bones]
+state["salsa_rig_places"] = [[places[joint], place(follower(), joint, 40)] for joint in places]
 
 (OUT / "state.json").write_text(json.dumps(state), encoding="utf-8")
 bpy.ops.wm.save_as_mainfile(filepath=str(OUT / "out.blend"))
