@@ -339,13 +339,14 @@ class AwaitingTest(Calls, Awaiting, unittest.TestCase):
         self.assertEqual(together.most, 4)
 
     def test_call_without_a_turn_times_out(self):
-        go_on = threading.Event()
-        script = Script(support.held_reply(self.leader, go_on, go_on),
+        begun, go_on = threading.Event(), threading.Event()
+        script = Script([lambda _: begun.set(), *support.held_reply(self.leader, go_on, go_on)],
                         support.good_reply(self.leader))
 
         async def ask(client):
             first = asyncio.ensure_future(client.synthesize(self.leader, {"hug": 1}))
-            await asyncio.sleep(0)
+            # Otherwise, a later call may get the first reply.
+            await self.loop.run_in_executor(None, begun.wait, support.LONGEST_CALL)
             with self.assertRaisesRegex(duet.DeadlineError, "max_concurrent_calls=1 calls"):
                 await client.synthesize(self.leader, {"hug": 1}, timeout=0.05)
             waiting = asyncio.ensure_future(client.synthesize(self.leader, {"hug": 1}))
