@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <optional>
 
+#include "model/base/angle.h"
 #include "model/motion/filter.h"
 
 namespace duet::engine {
 namespace {
 
-constexpr double kDegrees = 180 / M_PI;
 constexpr double kNoiseSigmaSeconds = 0.1;  // a depth camera's noise, not yet a punch
 constexpr double kStillSpeed = 0.15;        // m/s, the mean joint of somebody who waits
 
@@ -135,7 +135,7 @@ double TrunkLean(const Motion& leader) {
     const motion::Vec3 middle =
         (leader.poses.at(t, hips.left) + leader.poses.at(t, hips.right)) / 2;
     const motion::Vec3 trunk = leader.poses.at(t, neck) - middle;
-    return std::atan2(std::hypot(trunk.x, trunk.z), trunk.y) * kDegrees;
+    return std::atan2(std::hypot(trunk.x, trunk.z), trunk.y) * base::kDegreesPerRadian;
   });
 }
 
@@ -152,7 +152,8 @@ double Turn(const Motion& leader) {
   double farthest = 0;
   for (int t = 1; t < leader.smooth.frame_count(); ++t) {
     const motion::Vec3 now = AcrossHips(leader, t);
-    const double angle = std::atan2(Norm(Cross(first, now)), Dot(first, now)) * kDegrees;
+    const double angle =
+        std::atan2(Norm(Cross(first, now)), Dot(first, now)) * base::kDegreesPerRadian;
     farthest = std::max(farthest, angle);
   }
   return farthest;

@@ -3,16 +3,11 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/base/angle.h"
 #include "model/dataset/partner_direction.h"
 #include "model/engine/window_standardisation.h"
 
 namespace duet::evaluation::experiments {
-namespace {
-
-constexpr double kDegrees = 180 / M_PI;
-
-}  // namespace
-
 std::vector<double> DirectionErrors(const dataset::Dataset& dataset, const std::vector<int>& tests,
                                     const std::optional<engine::DirectionRegression>& regression) {
   std::vector<double> errors;
@@ -28,7 +23,8 @@ std::vector<double> DirectionErrors(const dataset::Dataset& dataset, const std::
     }
     const double expected = WindowStandardisation(dataset.skeleton, window).yaw();
     const double actual = motion::FacingYaw(PartnerDirection(dataset.skeleton, sequence));
-    errors.push_back(kDegrees * std::abs(std::remainder(expected - actual, 2 * M_PI)));
+    errors.push_back(base::kDegreesPerRadian *
+                     std::abs(std::remainder(expected - actual, 2 * M_PI)));
   }
   return errors;
 }

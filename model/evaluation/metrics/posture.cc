@@ -6,11 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "model/base/angle.h"
+
 namespace duet::evaluation::metrics {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegrees = 180 / M_PI;
 
 motion::Vec3 Middle(const motion::Poses& poses, int frame, const motion::JointPair& pair) {
   return Lerp(poses.at(frame, pair.left), poses.at(frame, pair.right), 0.5f);
@@ -34,7 +35,7 @@ motion::Vec3 Across(const motion::Poses& poses, int frame,
 // Seen from above; 0 for a vector of length 0.
 double HorizontalAngle(motion::Vec3 a, motion::Vec3 b) {
   a.y = b.y = 0;
-  return std::atan2(Norm(Cross(a, b)), Dot(a, b)) * kDegrees;
+  return std::atan2(Norm(Cross(a, b)), Dot(a, b)) * base::kDegreesPerRadian;
 }
 
 double LargestMean(const std::vector<double>& values, size_t window) {
@@ -59,7 +60,7 @@ Lean MeasureLean(const motion::Poses& poses, const motion::Skeleton& skeleton, d
   double sum = 0;
   for (int t = 0; t < poses.frame_count(); ++t) {
     const motion::Vec3 up = poses.at(t, top) - Middle(poses, t, *base);
-    angles.push_back(std::atan2(std::hypot(up.x, up.z), up.y) * kDegrees);
+    angles.push_back(std::atan2(std::hypot(up.x, up.z), up.y) * base::kDegreesPerRadian);
     sum += angles.back();
   }
   return {sum / poses.frame_count(),
