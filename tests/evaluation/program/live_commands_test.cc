@@ -22,8 +22,8 @@ TEST(HourCommandTest, HasARowALeader) {
   const nlohmann::json& table = section->at("tables").at(0);
   EXPECT_THAT(test::RowNames(table), ElementsAre("idle", "wild", "absent", "teleporting"));
   for (const nlohmann::json& row : table.at("rows")) {
-    EXPECT_EQ(row.at("values").at(7), 1) << "the first minute is the last";
-    EXPECT_GT(row.at("values").at(5), 0);
+    EXPECT_EQ(row.at("values").at(8), 1) << "the first minute is the last";
+    EXPECT_GT(row.at("values").at(6), 0);
   }
 }
 
