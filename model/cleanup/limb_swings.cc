@@ -68,12 +68,14 @@ struct BoneSpeeds {
 
 // Limits the turns of both bones of a limb and of its hinge, as the girdle sees them.
 void SlowLimb(const body::Limb& limb, const Girdles& girdles, const BoneSpeeds& fastest,
-              const HingeLimits& hinge, const Timing& timing, motion::Poses* poses) {
+              const HingeLimits& hinge, bool holds_end, const Timing& timing,
+              motion::Poses* poses) {
   const Track upper = BoneDirections(limb.upper, limb.middle, girdles, *poses);
   const Track lower = BoneDirections(limb.middle, limb.end, girdles, *poses);
   Track slow_upper = upper, slow_lower = lower;
   LimitTurns(timing.settled, MostInAFrame(fastest.upper, timing), &slow_upper);
   LimitTurns(timing.settled, MostInAFrame(fastest.lower, timing), &slow_lower);
+  const Track before_hinge = slow_lower;
   LimitHinge(slow_upper, hinge, timing, &slow_lower);
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     const std::size_t at = static_cast<std::size_t>(t);
@@ -85,6 +87,9 @@ void SlowLimb(const body::Limb& limb, const Girdles& girdles, const BoneSpeeds& 
     poses->at(t, limb.middle) = from + to_middle;
     poses->at(t, limb.end) = from + to_middle + to_end;
     for (const int joint : limb.beyond) poses->at(t, joint) += poses->at(t, limb.end) - end;
+    // A foot stays where only its knee turns.
+    const bool only_hinge = slow_upper[at] == upper[at] && before_hinge[at] == lower[at];
+    if (holds_end && only_hinge) ReachBent(limb, end, BendOf(limb, (*poses)[t]), (*poses)[t]);
   }
 }
 
@@ -96,14 +101,14 @@ void CalmLimbs(const body::Body& body, const LimbSwingOptions& options, const Ti
   for (const body::Limb& arm : body.arms) {
     SlowElbow(arm, shoulders, options, timing, poses);
     SlowLimb(arm, shoulders, {options.fastest_upper_arm, options.fastest_forearm}, options.hinge,
-             timing, poses);
+             /*holds_end=*/false, timing, poses);
   }
   if (body.legs.size() != 2) return;
   const motion::JointPair hip_joints{body.legs[0].upper, body.legs[1].upper};
   const Girdles hips = GirdlesOf(body, hip_joints, *poses);
   for (const body::Limb& leg : body.legs) {
-    SlowLimb(leg, hips, {options.fastest_thigh, options.fastest_shin}, options.hinge, timing,
-             poses);
+    SlowLimb(leg, hips, {options.fastest_thigh, options.fastest_shin}, options.hinge,
+             /*holds_end=*/true, timing, poses);
   }
 }
 
