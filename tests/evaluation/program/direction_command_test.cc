@@ -51,7 +51,7 @@ checkpoint::Manifest SbuManifest() {
 checkpoint::Manifest ConstantManifest(double cosine, double sine) {
   checkpoint::Manifest manifest = SbuManifest();
   std::vector<double> none(33, 0);
-  engine::DirectionRegression& constant = manifest.model.partner_direction.emplace();
+  engine::AngleRegression& constant = manifest.model.partner_direction.emplace();
   constant = {none, std::vector<double>(33, 1), none, none};
   constant.cosine.back() = cosine;
   constant.sine.back() = sine;
