@@ -20,10 +20,10 @@ struct LimbSwingOptions {
 };
 
 // Slows down limbs that snap from one frame to the next. Limits how fast an elbow turns about the
-// line from shoulder to hand, how fast each bone turns, and how fast the plane turns in which a limb
-// bends. A faster turn is spread over more frames before and after it. Turns are measured relative
-// to the trunk, which moves its limbs. Moves hands and feet only where a bone is too fast, preserves
-// bone lengths, and leaves slower limbs unchanged.
+// line from shoulder to hand, how fast each bone turns, and how fast the plane turns in which a
+// limb bends. A faster turn is spread over more frames before and after it. Turns are measured
+// relative to the trunk, which moves its limbs. Moves hands and feet only where a bone is too fast,
+// preserves bone lengths, and leaves slower limbs unchanged.
 void CalmLimbs(const body::Body& body, const LimbSwingOptions& options, const Timing& timing,
                motion::Poses* poses);
 
