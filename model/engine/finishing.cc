@@ -19,7 +19,7 @@ constexpr double kEndlessAnticipationSeconds = 0.2;
 constexpr double kJoinSeconds = 0.1;
 // How far from the surface of the follower's body a fist ends. Captured people keep 0.1 m (push)
 // and 0.3 m (punch), because they only act.
-constexpr float kStrikeMetres = 0.1f;
+constexpr float kStrikeMetres = 0.15f;
 
 // The place of a class in the label vector; the number of classes if there is none of the name.
 std::size_t ClassIndex(const std::vector<std::string>& classes, const std::string& name) {
