@@ -109,17 +109,19 @@ class PinsTest(tools.ServedTest):
         free = self.ask()
         pin = there(free.follower, "left_hand", 80, (0, 0.2, 0))
         pinned = self.ask(constraints=[pin])
-        np.testing.assert_array_equal(pinned.follower.positions[:50], free.follower.positions[:50])
+        np.testing.assert_allclose(pinned.follower.positions[:50], free.follower.positions[:50],
+                                   atol=1e-6)  # metres
         again = self.ask(constraints=[pin])
         np.testing.assert_array_equal(pinned.follower.positions, again.follower.positions)
         self.assertEqual(free.constraint_metres, ())
 
     def test_any_rate_unit_and_axis(self):
+        # Where clean-up may take a step at two equally good moments, rounding decides.
         leader = upsampled(self.hug, 2)
-        free = self.ask(leader)
+        free = self.ask(leader, clean_up=False)
         pins = [there(free.follower, "right_hand", 77, (0, 0.2, 0.05)),
                 there(free.follower, "left_hand", 120, (0, 0.2, 0))]
-        pinned = self.ask(leader, constraints=pins)
+        pinned = self.ask(leader, constraints=pins, clean_up=False)
         self.check(pinned, pins)
 
         def turned(points):  # metres, y up -> millimetres, z up
@@ -128,7 +130,7 @@ class PinsTest(tools.ServedTest):
         foreign = duet.Motion(turned(leader.positions), leader.joint_names,
                               frame_rate_hz=leader.frame_rate_hz, unit="millimetres",
                               up_axis="z-up")
-        answer = self.ask(foreign, constraints=[
+        answer = self.ask(foreign, clean_up=False, constraints=[
             duet.Constraint(pin.joint, pin.frame, turned(pin.position)) for pin in pins])
         np.testing.assert_allclose(answer.follower.positions, turned(pinned.follower.positions),
                                    atol=2)

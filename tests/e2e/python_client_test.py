@@ -110,11 +110,13 @@ class PythonClientTest(tools.ServedTest):
         np.testing.assert_array_equal(result.follower.positions, follower.positions)
 
     def test_follower_has_the_leaders_unit_and_world(self):
-        metres = self.client.synthesize(self.hug, {"hug": 1})
-        other = self.client.synthesize(self.hug.converted("millimetres", "z-up"), {"hug": 1})
+        # Clean-up decides when a foot steps, and where two moments are equally good, rounding decides.
+        metres = self.client.synthesize(self.hug, {"hug": 1}, clean_up=False)
+        other = self.client.synthesize(self.hug.converted("millimetres", "z-up"), {"hug": 1},
+                                       clean_up=False)
         self.assertEqual((other.follower.unit, other.follower.up_axis), ("millimetres", "z-up"))
         np.testing.assert_allclose(other.follower.converted().positions,
-                                   metres.follower.positions, atol=0.02)
+                                   metres.follower.positions, atol=1e-3)
 
     def test_rotations_are_in_the_leaders_unit_and_axes(self):
         def turned(q, v):
