@@ -85,9 +85,12 @@ class LiveSession {
       label_vector: messageOf(settings.weights), seed: settings.seed,
       delay_frames: settings.delay, plan_frames: settings.plan,
     };
+    // Frames without an answer belong to the start: the server evaluates all of it, whereas it skips
+    // evaluations for frames that queue up later.
+    const known = end > 0 ? leader.end : 0;
     if (end > 0) {
-      start.leader.frame_count = end + settings.delay - first;
-      start.leader.positions = leader.values(first, end + settings.delay);
+      start.leader.frame_count = known - first;
+      start.leader.positions = leader.values(first, known);
       start.history = {first_frame: first, follower_frame_count: end - first,
                        follower_positions: follower.values(first, end)};
     } else if (this.start && settings.acceptsStart) {
@@ -95,7 +98,7 @@ class LiveSession {
     }
     this.send({start});
     this.next = end;  // of the follower's frames in this stream
-    this.sendFrames(end > 0 ? end + settings.delay : 0);
+    this.sendFrames(known);
   }
 
   sendFrames(first) {
