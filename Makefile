@@ -69,7 +69,7 @@ python: ## Build the Python package, wheel and sdist in build/python, and try th
 	@cmake --preset release -DDUET_PYTHON_EXTENSION=ON >/dev/null
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD) duet_python_module
 	@scripts/build_python.sh
-	@scripts/check_wheel.sh
+	@scripts/try_wheel.sh
 
 .PHONY: site
 site: ## Build the site of all documents with the API references: build/site/index.html

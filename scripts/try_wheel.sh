@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Installs the wheel of the Python package into a fresh environment, without network access, and reads every
 # sample there: without programs of Duet, from another folder.
-#   scripts/check_wheel.sh [folder of the wheel]       (build/python)
+#   scripts/try_wheel.sh [folder of the wheel]       (build/python)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 fail() {
-  printf 'check_wheel: %s\n' "$*" >&2
+  printf 'try_wheel: %s\n' "$*" >&2
   exit 1
 }
 
