@@ -69,7 +69,7 @@ synthesize() {
 
 # A dance of 30 s: the lead of the sample comes, asks for two turns, and leaves. Ten frames a beat.
 dance() {
-  duet synthesize --server "${address}" --model salsa --leader samples/salsa.bvh --beat 180 \
+  duet synthesize --server "${address}" --model salsa --leader samples/salsa.bvh --candidates 4 --seed 1 --beat 180 \
     --keyframe 0b:apart=1 --keyframe 5b:apart=1 --keyframe 6b:approach=1 --keyframe 11b:approach=1 \
     --keyframe 12b:basic=1 --keyframe 27b:basic=1 --keyframe 28b:follower_turn=1 --keyframe 39b:follower_turn=1 \
     --keyframe 40b:basic=1 --keyframe 51b:basic=1 --keyframe 52b:cross_body=1 --keyframe 67b:cross_body=1 \
