@@ -22,6 +22,7 @@ sys.path.insert(0, str(SOURCE / "tests" / "e2e"))
 import browser  # noqa: E402
 import tools  # noqa: E402
 
+browser.WAIT_SECONDS = 900  # a film of half a minute takes minutes where a processor draws it
 FILM = {"width": 360, "height": 240}
 STILL = {"width": 467, "height": 396}
 # (leader, labels, frame of the leader)
