@@ -60,7 +60,7 @@ Change ChangeByRounding(const Synthesizer& exact, const Synthesizer& rounded,
       EXPECT_THAT(b, IsOk());
       if (!a.ok() || !b.ok()) continue;
       for (std::size_t i = 0; i < a->all().size(); ++i) {
-        const motion::Vec3& captured = sequence.pair.follower.poses.all()[i];
+        const motion::Vec3 captured = sequence.pair.follower.poses.all()[i];
         change.farthest = std::max(change.farthest, Distance(a->all()[i], b->all()[i]));
         change.exact_error += Distance(a->all()[i], captured);
         change.error += Distance(b->all()[i], captured);
