@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <initializer_list>
 
 namespace duet::server::watchdog {
 namespace {

@@ -6,7 +6,7 @@ import dataclasses
 import math
 import numbers
 import reprlib
-from typing import Any, Iterable, Optional, Sequence, Tuple
+from typing import Any, Iterable, Optional, Sequence, Tuple, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -120,7 +120,8 @@ class Motion:
         Raises:
             ValueError: see the constructor.
         """
-        return dataclasses.replace(self, positions=positions)
+        # The constructor converts what is like an array.
+        return dataclasses.replace(self, positions=cast(Positions, positions))
 
     def frames(self, start: int, stop: int | None = None) -> Motion:
         """Returns the frames from ``start`` to before ``stop``.
