@@ -237,6 +237,15 @@ INSTANTIATE_TEST_SUITE_P(Families, BvhRigEnds, ::testing::ValuesIn(test::RigFami
                            return name;
                          });
 
+// A motion on a rig, as a reader of the written file has it.
+absl::StatusOr<motion::Clip> OnRigAndBack(const motion::Clip& clip, const BvhDocument& rig,
+                                          const motion::Skeleton& skeleton) {
+  const absl::StatusOr<BvhDocument> written =
+      OntoBvhRig(clip, rig, "rig.bvh", OptionsFor(skeleton));
+  if (!written.ok()) return written.status();
+  return FromBvh(*written, "written", OptionsFor(skeleton));
+}
+
 // As in Duet's own BVH, whose rest pose has legs that hang.
 TEST(BvhRigWithHangingFeet, PointsAtTheFollowersToes) {
   BvhDocument rig = test::RigFamilies()[1].document;
@@ -247,10 +256,7 @@ TEST(BvhRigWithHangingFeet, PointsAtTheFollowersToes) {
   }
   const motion::Skeleton skeleton = DancersSkeleton();
   const motion::Clip dancer = Dancer(skeleton);
-  const absl::StatusOr<BvhDocument> written =
-      OntoBvhRig(dancer, rig, "rig.bvh", OptionsFor(skeleton));
-  ASSERT_THAT(written.status(), IsOk());
-  const absl::StatusOr<motion::Clip> read = FromBvh(*written, "written", OptionsFor(skeleton));
+  const absl::StatusOr<motion::Clip> read = OnRigAndBack(dancer, rig, skeleton);
   ASSERT_THAT(read.status(), IsOk());
   const int ankle = skeleton.Find("left_ankle");
   for (int frame = 0; frame < dancer.frame_count(); ++frame) {
@@ -273,10 +279,7 @@ TEST(BvhRigWithoutToes, IsFollowedByAnklesAndRejectedAsAMotion) {
   EXPECT_THAT(FromBvh(rig, "rig.bvh", options).status(),
               test::StatusIs(absl::StatusCode::kInvalidArgument, ::testing::HasSubstr("left_toe")));
   const motion::Clip dancer = Dancer(skeleton);
-  const absl::StatusOr<BvhDocument> written =
-      OntoBvhRig(dancer, rig, "rig.bvh", OptionsFor(skeleton));
-  ASSERT_THAT(written.status(), IsOk());
-  const absl::StatusOr<motion::Clip> read = FromBvh(*written, "written", OptionsFor(skeleton));
+  const absl::StatusOr<motion::Clip> read = OnRigAndBack(dancer, rig, skeleton);
   ASSERT_THAT(read.status(), IsOk());
   const int ankle = skeleton.Find("right_ankle");
   for (int frame = 0; frame < dancer.frame_count(); ++frame) {
