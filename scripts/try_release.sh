@@ -83,7 +83,8 @@ in_root() {
   # shellcheck disable=SC2016  # the inner shells expand these
   unshare --mount --pid --fork bash -c '
     mount --make-rprivate / && root="$1" && shift
-    mount -t proc proc "${root}/proc" && mount --rbind /dev "${root}/dev" || exit
+    mount -t proc proc "${root}/proc" && mount -t sysfs -o ro sysfs "${root}/sys" || exit
+    mount --rbind /dev "${root}/dev" || exit  # with /dev/pts and /dev/shm
     mkdir -p "${root}/tmp" && chmod 1777 "${root}/tmp"
     exec chroot "${root}" env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin \
       ${DUET_TRAINING:+"DUET_TRAINING=${DUET_TRAINING}"} ${JOBS:+"JOBS=${JOBS}"} ${CI:+"CI=${CI}"} \
