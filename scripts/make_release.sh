@@ -52,6 +52,16 @@ make_images() {
   done
 }
 
+# begin_folder COMMIT: makes the folder. Parts that another commit made are removed, so that all parts come from one.
+begin_folder() {
+  if [[ -d "${out}" && "$(cat "${out}/COMMIT" 2>/dev/null)" != "$1" ]]; then
+    echo "make_release: removing ${out}, which another commit made"
+    rm -rf "${out}"
+  fi
+  mkdir -p "${out}"
+  echo "$1" >"${out}/COMMIT"
+}
+
 main() {
   local part sums parts=("$@")
   [[ $# -gt 0 ]] || parts=(packages python images)
@@ -60,9 +70,8 @@ main() {
   done
   scripts/check_version.py
   [[ -z "$(git status --porcelain)" ]] || fail "expected a commit without changes beside it, got changed files (git status)"
-  mkdir -p "${out}"
+  begin_folder "$(git rev-parse HEAD)"
   for part in "${parts[@]}"; do "make_${part}"; done
-  git rev-parse HEAD >"${out}/COMMIT"
   rm -f "${out}/SHA256SUMS"
   sums="$(cd "${out}" && sha256sum -- *)"
   echo "${sums}" >"${out}/SHA256SUMS"

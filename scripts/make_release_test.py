@@ -38,9 +38,7 @@ class MakeReleaseTest(unittest.TestCase):
         for name, text in PROGRAMS.items():
             self.write(self.programs / name, f"#!/usr/bin/env bash\nset -eu\n{text}\n")
         self.git("init", "--quiet")
-        self.git("add", ".")
-        self.git("-c", "user.name=A", "-c", "user.email=a@example.com", "-c", "core.hooksPath=/dev/null",
-                 "commit", "--quiet", "-m", "a")
+        self.commit()
 
     def write(self, file, text):
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -49,6 +47,11 @@ class MakeReleaseTest(unittest.TestCase):
 
     def git(self, *words):
         subprocess.run(["git", *words], cwd=self.root, check=True)
+
+    def commit(self):
+        self.git("add", ".")
+        self.git("-c", "user.name=A", "-c", "user.email=a@example.com", "-c", "core.hooksPath=/dev/null",
+                 "commit", "--quiet", "-m", "a")
 
     def make(self, *parts, **environment):
         return subprocess.run(
@@ -70,6 +73,17 @@ class MakeReleaseTest(unittest.TestCase):
         self.assertLessEqual(names, set(sums))
         for name in names:
             self.assertEqual(hashlib.sha256((self.made / name).read_bytes()).hexdigest(), sums[name])
+
+    def test_all_parts_come_from_one_commit(self):
+        self.make("packages")
+        self.make("python")
+        self.assertTrue((self.made / "duet_1.2.3-1_amd64.deb").exists())
+        self.write(self.root / "README.md", "changed\n")
+        self.commit()
+        done = self.make("python")
+        self.assertIn("removing build/release_files/1.2.3", done.stdout)
+        self.assertFalse((self.made / "duet_1.2.3-1_amd64.deb").exists())
+        self.assertTrue((self.made / "duet-motion-1.2.3.tar.gz").exists())
 
     def test_each_part_of_another_version_is_rejected(self):
         for part in ("packages", "python", "images"):
