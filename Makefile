@@ -51,7 +51,7 @@ mutate: ## Measure how often the tests notice broken code: docs/mutation.md
 .PHONY: bench
 bench: ## Time the engine and its kernels beside the committed figures, and the cost of hardening
 	@scripts/install_packages.sh $(BUILD_LISTS) test
-	@cmake --preset release -DDUET_BUILD_BENCHMARKS=ON >/dev/null
+	@scripts/configure.sh release -DDUET_BUILD_BENCHMARKS=ON >/dev/null
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD) roofline_benchmark kernel_benchmark clean_up_benchmark \
 	  synthesis_benchmark duet-server duet-load
 	@benchmarks/bench.py $(BUILD)
@@ -65,8 +65,8 @@ docs: ## Build the API reference from headers and proto files: build/docs/html/i
 
 .PHONY: python
 python: ## Build the Python package, wheel and sdist in build/python, and try the wheel
-	@scripts/install_packages.sh build test
-	@cmake --preset release -DDUET_PYTHON_EXTENSION=ON >/dev/null
+	@scripts/install_packages.sh $(BUILD_LISTS) test
+	@scripts/configure.sh release -DDUET_PYTHON_EXTENSION=ON >/dev/null
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD) duet_python_module
 	@scripts/build_python.sh
 	@scripts/try_wheel.sh

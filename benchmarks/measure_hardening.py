@@ -28,7 +28,7 @@ TICKS = os.sysconf("SC_CLK_TCK")
 
 
 def build_unhardened(jobs):
-    subprocess.run(["cmake", "--preset", "release", "-B", UNHARDENED, "-DDUET_HARDENING=OFF",
+    subprocess.run(["scripts/configure.sh", "release", "-B", UNHARDENED, "-DDUET_HARDENING=OFF",
                     "-DDUET_BUILD_TESTS=OFF", "-DDUET_BUILD_BENCHMARKS=ON"], cwd=SOURCE, check=True,
                    stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", UNHARDENED, "--parallel", jobs, "--target", "duet-server",

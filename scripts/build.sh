@@ -10,9 +10,7 @@ shift
 # Tests are off because their libraries may be missing; `make test` installs these and turns tests on. An
 # existing configuration stays.
 if [[ ! -f "${build_dir}/build.ninja" ]]; then
-  training="$(scripts/with_training.sh)"
-  cmake --preset release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF \
-    -DDUET_TRAINING="${training}"
+  scripts/configure.sh release -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_BENCHMARKS=OFF
 fi
 cmake --build "${build_dir}" --parallel "${JOBS:-$(scripts/build_jobs.sh)}" \
   ${1:+--target "$@"}

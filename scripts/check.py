@@ -65,11 +65,8 @@ def prepare(need):
     """Configures or builds the release build. Returns whether that succeeded."""
     if need == "configure":
         werror = "ON" if os.environ.get("CI") else "OFF"
-        training = subprocess.run([ROOT / "scripts/with_training.sh"], check=True, text=True,
-                                  stdout=subprocess.PIPE).stdout.strip()
-        return step("configure", f"cmake --preset release -DDUET_BUILD_TESTS=ON "
-                                 f"-DDUET_BUILD_BENCHMARKS=ON -DDUET_TRAINING={training} "
-                                 f"-DDUET_WARNINGS_AS_ERRORS={werror}")
+        return step("configure", f"scripts/configure.sh release -DDUET_BUILD_TESTS=ON "
+                                 f"-DDUET_BUILD_BENCHMARKS=ON -DDUET_WARNINGS_AS_ERRORS={werror}")
     return step("build", f"scripts/build.sh {BUILD}")
 
 

@@ -22,7 +22,7 @@ if [[ ${#targets[@]} -eq 0 ]]; then
   mapfile -t targets < <(ls tests/fuzz/corpus)
 fi
 
-cmake --preset fuzz -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=OFF >/dev/null
+scripts/configure.sh fuzz -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=OFF >/dev/null
 cmake --build build/fuzz --parallel "${JOBS:-$(scripts/build_jobs.sh)}" \
   --target "${targets[@]/#/fuzz_}"
 exec scripts/run_fuzzers.py "${options[@]}" build/fuzz "${targets[@]}"

@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 readonly seconds="${1:-600}" build_dir=build/asan
 shift || true
 
-cmake --preset asan -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=OFF >/dev/null
+scripts/configure.sh asan -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=OFF >/dev/null
 cmake --build "${build_dir}" --parallel "${JOBS:-$(scripts/build_jobs.sh)}" --target duet-server
 # shellcheck source=scripts/sanitizer_options.sh
 source scripts/sanitizer_options.sh "${build_dir}"

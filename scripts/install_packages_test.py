@@ -1,4 +1,5 @@
-"""Tests the package lists of each release: install_packages.sh --print and --lacks, with_training.sh, format.sh."""
+"""Tests the package lists of each release: install_packages.sh --print and --lacks, with_training.sh,
+configure.sh, format.sh."""
 
 import os
 import pathlib
@@ -91,6 +92,20 @@ class InstallPackagesTest(unittest.TestCase):
         result = self.run_script("bookworm", "with_training.sh", DUET_TRAINING="maybe")
         self.assertEqual(result.returncode, 2)
         self.assertIn("DUET_TRAINING: expected ON or OFF, got maybe", result.stderr)
+
+    def test_every_build_is_configured_for_the_release(self):
+        tools = self.folder / "tools"
+        tools.mkdir()
+        (tools / "cmake").write_text('#!/bin/sh\necho "$@"\n', encoding="utf-8")
+        (tools / "cmake").chmod(0o755)
+        path = f"{tools}:{os.environ['PATH']}"
+        for release, training in (("bookworm", "ON"), ("noble", "OFF")):
+            result = self.run_script(release, "configure.sh", "tsan", "-DA=B C", PATH=path)
+            self.assertEqual(result.stdout.strip(), f"--preset tsan -DDUET_TRAINING={training} -DA=B C")
+        root = SCRIPTS.parent
+        for file in (root / "Makefile", *SCRIPTS.glob("*.sh"), *SCRIPTS.glob("*.py")):
+            if file.name not in ("configure.sh", "build_tree.py", pathlib.Path(__file__).name):
+                self.assertNotIn("cmake --preset", file.read_text(encoding="utf-8"), file)
 
     def test_the_format_is_unchecked_only_where_the_release_lacks_the_formatter(self):
         tools = self.folder / "tools"

@@ -16,7 +16,7 @@ changed_files() {
 }
 
 # clang-tidy needs the generated protocol headers, and reads no precompiled ones.
-cmake --preset release -B "${build_dir}" -DDUET_PRECOMPILE=OFF -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=ON >/dev/null
+scripts/configure.sh release -B "${build_dir}" -DDUET_PRECOMPILE=OFF -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=ON >/dev/null
 cmake --build "${build_dir}" --parallel "${JOBS:-1}" --target duet_generated
 
 mapfile -t files < <(changed_files "$@" | sort -u)

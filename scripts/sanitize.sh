@@ -10,7 +10,7 @@ readonly build_dir="build/${preset}"
 # The programs that scripts start. A script that needs others, with LibTorch, has the label "libtorch".
 readonly programs=(duet duet-load duet-server duet-fake-server)
 
-cmake --preset "${preset}" -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=OFF >/dev/null
+scripts/configure.sh "${preset}" -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=OFF >/dev/null
 mapfile -t tests < <(scripts/torch_free_tests.py "${build_dir}" ${label:+"${label}"})
 if [[ ${#tests[@]} -eq 0 ]]; then
   echo "${preset}: expected test programs${label:+ with the label ${label}}, got none" >&2
