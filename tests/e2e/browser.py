@@ -30,8 +30,15 @@ WITHOUT_ANTIALIASING = """{
 }"""
 
 
+MISSING = "no chromium; install the package chromium"
+
+
+def installed():
+    return shutil.which("chromium")
+
+
 def find_chromium():
-    return shutil.which("chromium") or tools.skip("no chromium; install the package chromium")
+    return installed() or tools.skip(MISSING)
 
 
 class Browser:
