@@ -33,13 +33,13 @@ NAMELESS = """[...document.querySelectorAll('input, select, button')].filter((it
 class SparTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        cls.browser = Browser()  # first: without one, the test ends here
+        cls.addClassCleanup(cls.browser.close)
         cls.port = tools.free_port()
         cls.server = tools.Server(port=cls.port)
         cls.addClassCleanup(lambda: cls.server.stop())
         cls.gateway = gateways.Gateway(cls.server.address)
         cls.addClassCleanup(cls.gateway.stop)
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
 
     def setUp(self):
         self.browser.forget()

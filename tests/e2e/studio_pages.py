@@ -37,12 +37,12 @@ class StudioTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
+        cls.browser = Browser()  # first: without one, the test ends here
+        cls.addClassCleanup(cls.browser.close)
         cls.server = tools.Server()
         cls.addClassCleanup(cls.server.stop)
         cls.gateway = gateways.Gateway(cls.server.address)
         cls.addClassCleanup(cls.gateway.stop)
-        cls.browser = Browser()
-        cls.addClassCleanup(cls.browser.close)
 
     def setUp(self):
         self.browser.forget()
