@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/service/validate_size.h"
 #include "server/service/violations.h"
 #include "server/service/window_check.h"
 
@@ -137,6 +138,11 @@ absl::Status LiveSession::AddFrames(const v1::LeaderFrames& frames) {
   if (!poses.ok()) return poses.status();
   common::MutexLock lock(mutex_);
   const int newest = live_.next_leader_frame();
+  if (newest == 0) {
+    Violations violations("frames.");
+    ValidateSize("positions", *poses, violations);
+    if (!violations.empty()) return violations.ToStatus();
+  }
   absl::Status added = AddPoses(static_cast<int>(frames.first_frame()), *std::move(poses));
   if (live_.next_leader_frame() > newest) {
     arrival_ = parts_.clock->Now();

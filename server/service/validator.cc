@@ -15,6 +15,7 @@
 #include "server/service/validate_labels.h"
 #include "server/service/validate_leader.h"
 #include "server/service/validate_options.h"
+#include "server/service/validate_size.h"
 #include "server/service/violations.h"
 
 namespace duet::server::service {
@@ -93,6 +94,7 @@ void Validation::Leader() {
   if (!finite || !coordinates_.has_value() || joints_.empty()) return;
   leader_ = ReadPositions("leader.positions", leader.positions(), joints_, *coordinates_, limits_,
                           violations_);
+  ValidateSize("leader.positions", leader_, violations_);
 }
 
 void Validation::Up() {

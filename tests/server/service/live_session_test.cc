@@ -604,6 +604,14 @@ TEST_F(LiveSessionTest, InvalidFramesAndLabelsEndTheSession) {
   }
 }
 
+TEST_F(LiveSessionTest, ALeaderInCentimetresEndsTheSessionWithItsFirstFrame) {
+  Create();
+  Message centimetres = Frames(0, 1);
+  for (float& value : *centimetres.mutable_frames()->mutable_positions()) value *= 100;
+  Send(centimetres);
+  EXPECT_THAT(Take().error, IsInvalid("frames.positions: expected the size of a person"));
+}
+
 TEST_F(LiveSessionTest, ATimeOfCaptureMayBeAnyNumber) {
   Create();
   Message frames = Frames(0, 1);

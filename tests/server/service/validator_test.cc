@@ -101,6 +101,10 @@ void AddKeyframe(v1::SynthesizeRequest& request, uint32_t frame) {
 
 using Request = v1::SynthesizeRequest;
 
+void Scale(Request& request, float factor) {
+  for (float& value : *request.mutable_leader()->mutable_positions()) value *= factor;
+}
+
 std::string SpoiledName(const ::testing::TestParamInfo<Spoiled>& spoiled) {
   return spoiled.param.name;
 }
@@ -110,6 +114,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Spoiled{"nan", [](Request& r) { r.mutable_leader()->set_positions(17, kNan); },
                 "leader.positions[17]", "expected a finite number, got nan"},
+        Spoiled{"centimetres", [](Request& r) { Scale(r, 100); }, "leader.positions",
+                "m from the middle), got 4"},
+        Spoiled{"metres_as_millimetres",
+                [](Request& r) { r.mutable_leader()->set_unit(v1::LENGTH_UNIT_MILLIMETRES); },
+                "leader.positions", "check leader.unit"},
         Spoiled{"infinite", [](Request& r) { r.mutable_leader()->set_positions(5, -kInfinity); },
                 "leader.positions[5]", "expected a finite number, got -inf"},
         Spoiled{"too_few_values",
@@ -549,6 +558,7 @@ TEST(ValidateRequestTest, BringsJointsIntoTheModelsOrder) {
 
 TEST(ValidateRequestTest, ConvertsUnitAndUpAxisToTheWorld) {
   v1::SynthesizeRequest request = SampleRequest();
+  Scale(request, 1000);
   request.mutable_leader()->set_unit(v1::LENGTH_UNIT_MILLIMETRES);
   request.mutable_leader()->set_up_axis(v1::UP_AXIS_Z_UP);
   request.mutable_leader()->set_positions(0, 1000);
@@ -753,6 +763,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Constraints, ArePinsInTheModelsJointsAndMetres) {
   Request request = SampleRequest();
+  Scale(request, 1000);
   request.mutable_leader()->set_unit(v1::LENGTH_UNIT_MILLIMETRES);
   request.mutable_leader()->set_up_axis(v1::UP_AXIS_Z_UP);
   AddConstraint(request, "right_hand", 7, 300, -200, 1500).set_softness(0.25F);
