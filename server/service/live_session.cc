@@ -154,13 +154,14 @@ absl::Status LiveSession::AddFrames(const v1::LeaderFrames& frames) {
 absl::Status LiveSession::AddPoses(int first, motion::Poses poses) {
   const int next = live_.next_leader_frame(), end = first + poses.frame_count();
   const int late = std::min(next, end) - first, gap = first - next;
-  if (end > kMaxLiveFrames || gap > kMaxGapSeconds * frame_rate_hz_) {
+  const int most_missing = static_cast<int>(kMaxGapSeconds * frame_rate_hz_);
+  if (end > kMaxLiveFrames || gap > most_missing) {
     Violations violations("frames.");
     violations.Malformed(
         "first_frame",
-        absl::StrCat("at most ", next, " and ", kMaxGapSeconds,
-                     " s of missing frames; after a longer gap, start again with the history"),
-        absl::StrCat(first));
+        absl::StrCat("at most ", next + most_missing, " (", kMaxGapSeconds, " s after frame ", next,
+                     ", the next one)"),
+        absl::StrCat(first, "; after a longer gap, resume with LiveStart.history"));
     return violations.ToStatus();
   }
   if (late > 0) {

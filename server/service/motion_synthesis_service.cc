@@ -265,9 +265,10 @@ absl::StatusOr<MotionSynthesisService::Prepared> MotionSynthesisService::Prepare
 }
 
 absl::StatusOr<registry::ServedModel> MotionSynthesisService::FindModel(
-    const v1::ModelSelector& selector) const {
+    const v1::ModelSelector& selector, absl::string_view prefix) const {
   registry::FindResult found = parts_.registry->Find(ToQuery(selector));
-  if (const auto* not_found = std::get_if<registry::ModelNotFound>(&found)) {
+  if (auto* not_found = std::get_if<registry::ModelNotFound>(&found)) {
+    not_found->field.insert(0, prefix.data(), prefix.size());
     return ModelNotFoundRefusal(*not_found);
   }
   return std::get<registry::ServedModel>(std::move(found));
@@ -325,7 +326,7 @@ void MotionSynthesisService::BeginLive(CallReactor& reactor,
 
 absl::StatusOr<MotionSynthesisService::PreparedLive> MotionSynthesisService::PrepareLive(
     const Context& context, Reception& reception, v1::LiveStart start) {
-  absl::StatusOr<registry::ServedModel> served = FindModel(start.model());
+  absl::StatusOr<registry::ServedModel> served = FindModel(start.model(), "start.");
   if (!served.ok()) return served.status();
   const engine::ModelDescription& model = served->model->description();
   absl::StatusOr<ValidatedLiveStart> valid =

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/string_view.h"
 #include "duet/v1/synthesis.pb.h"
 #include "server/batching/window_scheduler.h"
 #include "server/common/background_thread.h"
@@ -130,8 +131,9 @@ class MotionSynthesisService final : public RawService {
   };
   absl::StatusOr<PreparedLive> PrepareLive(const Context& context, Reception& reception,
                                            v1::LiveStart start);
-  // Finds the model that a request selects.
-  absl::StatusOr<registry::ServedModel> FindModel(const v1::ModelSelector& selector) const;
+  // Finds the model that a request selects. `prefix`: precedes the fields in errors, as "start.".
+  absl::StatusOr<registry::ServedModel> FindModel(const v1::ModelSelector& selector,
+                                                  absl::string_view prefix = "") const;
   // Whether followers of a model are cleaned up if the request does not specify it.
   bool CleansUp(const engine::ModelDescription& model) const;
   // What every streaming call holds until it ends.

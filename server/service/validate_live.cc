@@ -76,6 +76,11 @@ void ReadHistory(const v1::LiveStart& start, const RequestLimits& limits, Valida
     violations.Malformed("history.first_frame", absl::StrCat("less than ", kMaxLiveFrames),
                          absl::StrCat(history.first_frame()));
   }
+  if (leader_frames == 0) {
+    violations.Malformed("leader.frame_count", "the leader's frames from history.first_frame on",
+                         "0");
+    return;
+  }
   const uint32_t frames = history.follower_frame_count();
   if (frames < 1 || frames > static_cast<uint32_t>(leader_frames)) {
     violations.Malformed("history.follower_frame_count",

@@ -307,7 +307,7 @@ class LiveTest(unittest.TestCase):
                                ({"rate": -1}, "start.leader.frame_rate_hz"),
                                ({"label": ""}, "start.label_vector"),
                                ({"history": live_pb2.LiveHistory(follower_frame_count=1)},
-                                "start.history.follower_frame_count")):
+                                "start.leader.frame_count")):
             with self.subTest(field=field):
                 self.assertEqual(self.refused(start_message(**changes))[1], [field])
 

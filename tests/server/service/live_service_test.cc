@@ -32,6 +32,7 @@ using test::SampleRequest;
 using test::TimedContext;
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 using absl::StatusCode;
@@ -131,6 +132,15 @@ TEST(LiveServiceTest, ImpossibleStartsNameTheirFields) {
     EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
     EXPECT_THAT(refusal.Fields(), Contains(field));
   }
+}
+
+TEST(LiveServiceTest, AnUnknownModelIsNamedAsAFieldOfTheStart) {
+  RunningService running(LiveSetup());
+  Message message = Start();
+  message.mutable_start()->mutable_model()->set_name("nobody");
+  const Refusal refusal = RefusalOf(running, message);
+  EXPECT_EQ(refusal.code, StatusCode::kNotFound);
+  EXPECT_THAT(refusal.Fields(), ElementsAre("start.model.name"));
 }
 
 TEST(LiveServiceTest, MoreHistoryThanTenSecondsIsRefused) {

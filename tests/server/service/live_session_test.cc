@@ -334,7 +334,7 @@ TEST_F(LiveSessionTest, TooLongAGapEndsTheSessionAfterItsFrames) {
   Send(Frames(3 + 2 * kRate + 1, 1));
   const Taken taken = Take();
   EXPECT_EQ(taken.frames(), 3);
-  EXPECT_THAT(taken.error, IsInvalid("frames.first_frame"));
+  EXPECT_THAT(taken.error, IsInvalid("frames.first_frame: expected at most 33 (2 s after frame 3"));
   EXPECT_EQ(taken.fault, LiveFault::kMessage);
   EXPECT_EQ(reads_, 0);
 }

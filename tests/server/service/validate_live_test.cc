@@ -258,6 +258,12 @@ INSTANTIATE_TEST_SUITE_P(
             "start.history.first_frame", "less than 1073741824"},
         Spoiled<Start>{"none", [](Start& s) { s.mutable_history()->clear_follower_frame_count(); },
                        "start.history.follower_frame_count", "expected 1 to 10, the frames"},
+        Spoiled<Start>{"no_leader",
+                       [](Start& s) {
+                         s.mutable_leader()->clear_positions();
+                         s.mutable_leader()->set_frame_count(0);
+                       },
+                       "start.leader.frame_count", "expected the leader's frames from"},
         Spoiled<Start>{"more_than_leader",
                        [](Start& s) { s.mutable_history()->set_follower_frame_count(11); },
                        "start.history.follower_frame_count", "got 11"},
