@@ -339,8 +339,12 @@ class Checker {
     const std::vector<Vec3> directions = motion::StandingDirections(skeleton_, clip_.poses);
     // Frames without a direction are left out there.
     if (directions.size() != Index(clip_.frame_count())) return;
-    const motion::Lean lean = motion::LeanOf(motion::RobustMean(directions));
-    const double all = std::hypot(lean.x, lean.z);
+    const Vec3 up = motion::RobustMean(directions);
+    const double across = std::hypot(up.x, up.z);
+    const double all = std::atan2(across, up.y) * base::kDegreesPerRadian;
+    // Of a person who lies, the angles of motion::LeanOf are meaningless.
+    const motion::Lean lean = {across > 0 ? all * up.x / across : 0,
+                               across > 0 ? all * up.z / across : 0};
     const auto [forwards, sideways] = LeanFromOwnView(directions);
     const bool good =
         all <= kMostForwardLean && std::hypot(std::min(forwards, 0.0), sideways) <= kMostOtherLean;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "absl/types/span.h"
 #include "model/motion/posture.h"
 
 namespace duet::motion {
@@ -26,11 +27,36 @@ constexpr double kLeastError = 0.0175;  // however much is captured: 1 degree
 constexpr double kBlockSeconds = 0.5;
 constexpr double kLeastUpright = 0.7;  // the cosine of 45 degrees
 constexpr float kLiftedMetres = 0.25f;
+constexpr float kLeastStraight = 0.8f;  // of a leg; a knee bent by 74 degrees has it
 constexpr int kSteps = 10;
 constexpr double kReach = 2;  // standard deviations with full weight
 
 using Vec4 = std::array<double, 4>;
 using Mat4 = std::array<Vec4, 4>;
+
+// Whether the hip is as far from the foot as the bones between them are long, about. True if the
+// foot is no descendant of the hip.
+bool IsStraight(absl::Span<const int> parents, absl::Span<const Vec3> pose, int hip, int foot) {
+  float bones = 0;
+  int joint = foot;
+  for (; joint >= 0 && joint != hip; joint = parents[static_cast<std::size_t>(joint)]) {
+    const int parent = parents[static_cast<std::size_t>(joint)];
+    if (parent >= 0)
+      bones +=
+          Distance(pose[static_cast<std::size_t>(joint)], pose[static_cast<std::size_t>(parent)]);
+  }
+  return joint < 0 || Distance(pose[static_cast<std::size_t>(hip)],
+                               pose[static_cast<std::size_t>(foot)]) >= kLeastStraight * bones;
+}
+
+// Whether the person stands on both legs. False for positions that are not finite.
+bool Stands(const Skeleton& skeleton, absl::Span<const int> parents, absl::Span<const Vec3> pose) {
+  const auto [left, right] = *skeleton.feet;
+  const float apart =
+      pose[static_cast<std::size_t>(left)].y - pose[static_cast<std::size_t>(right)].y;
+  return std::abs(apart) <= kLiftedMetres && IsStraight(parents, pose, skeleton.hips->left, left) &&
+         IsStraight(parents, pose, skeleton.hips->right, right);
+}
 
 }  // namespace
 
@@ -43,10 +69,10 @@ struct BodyEvidence::Equations {
 // The block of frames [first, end). Absent if the person does not stand in it.
 std::optional<BodyEvidence::Block> BodyEvidence::BlockOf(const Skeleton& skeleton, const Clip& clip,
                                                          int first, int end) {
+  const std::vector<int> parents = skeleton.Parents();
   Vec3 body, left;
   for (int t = first; t < end; ++t) {
-    const Vec3 feet[] = {clip.at(t, skeleton.feet->left), clip.at(t, skeleton.feet->right)};
-    if (!(std::abs(feet[0].y - feet[1].y) <= kLiftedMetres)) return std::nullopt;
+    if (!Stands(skeleton, parents, clip.poses[t])) return std::nullopt;
     body += FromFeet(skeleton, clip.poses, t);
     left += clip.at(t, skeleton.hips->left) - clip.at(t, skeleton.hips->right);
   }

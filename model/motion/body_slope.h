@@ -21,7 +21,8 @@ namespace duet::motion {
 //
 // Habit, own leans and noise have known spreads. People who face one way leave the slope as
 // uncertain as their own leans; people who turn, or face each other, do not. Blocks in which a foot
-// is lifted, or the body is nearer to the floor than to upright, are ignored.
+// is lifted, a leg is bent as by sitting, or the body is nearer to the floor than to upright, are
+// ignored.
 class BodyEvidence {
  public:
   // Requires feet, hips and poses in the skeleton's joint order.

@@ -98,8 +98,9 @@ std::string Describe(const VerticalEstimate& estimate) {
     return "cannot tell: the floor and the people disagree, as on a slope or stairs";
   }
   if (estimate.tilt_degrees < kLeastTiltDegrees) {
-    return absl::StrFormat("no sign of a tilt, but up to %.0f degrees cannot be ruled out",
-                           estimate.tilt_degrees + 2 * estimate.error_degrees);
+    const double most = estimate.tilt_degrees + 2 * estimate.error_degrees;
+    if (most >= 90) return "no evidence of the vertical: nobody stands on both feet";
+    return absl::StrFormat("no sign of a tilt, but up to %.0f degrees cannot be ruled out", most);
   }
   return absl::StrCat("cannot tell a tilted camera from people who lean: ", DescribeTilt(estimate));
 }

@@ -205,6 +205,32 @@ TEST(VerticalTest, PositionsThatAreNotFiniteAreNoEvidence) {
   EXPECT_EQ(EstimateFrom({clip}).places, 0);
 }
 
+TEST(VerticalTest, WhoSitsIsNoEvidence) {
+  Skeleton skeleton;
+  skeleton.joint_names = {"root",      "neck",       "left_hip",  "right_hip",
+                          "left_knee", "right_knee", "left_foot", "right_foot"};
+  skeleton.bones = {{0, 1}, {0, 2}, {0, 3}, {2, 4}, {3, 5}, {4, 6}, {5, 7}};
+  skeleton.hips = JointPair{2, 3};
+  skeleton.feet = JointPair{6, 7};
+  // On a chair: the neck is half a metre behind the feet.
+  const std::vector<Vec3> sits = {{0, 0.5F, 0},      {0, 1.1F, 0},         {0.1F, 0.45F, 0},
+                                  {-0.1F, 0.45F, 0}, {0.1F, 0.45F, 0.45F}, {-0.1F, 0.45F, 0.45F},
+                                  {0.1F, 0, 0.45F},  {-0.1F, 0, 0.45F}};
+  std::vector<Vec3> stands = sits;
+  stands[4] = {0.1F, 0.2F, 0.2F}, stands[5] = {-0.1F, 0.2F, 0.2F};
+  const auto estimate = [&](const std::vector<Vec3>& pose) {
+    Clip clip{skeleton.joint_names, kRate, {}};
+    for (int t = 0; t < 20 * kRate; ++t) clip.Append(pose);
+    VerticalEvidence evidence(skeleton);
+    evidence.Add(clip);
+    return evidence.Estimate();
+  };
+  EXPECT_EQ(estimate(sits).verdict, TiltVerdict::kUnknown);
+  EXPECT_LT(estimate(sits).tilt_degrees, 0.01);
+  EXPECT_THAT(Describe(estimate(sits)), HasSubstr("nobody stands on both feet"));
+  EXPECT_GT(estimate(stands).tilt_degrees, 10) << "the same directions, with straighter legs";
+}
+
 TEST(VerticalTest, WhoLiesIsNoEvidence) {
   Clip lies = Standing(10, {}, {});
   for (Vec3& joint : lies.poses.all()) joint = {joint.y, joint.x, joint.z};

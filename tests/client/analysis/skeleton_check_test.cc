@@ -161,6 +161,14 @@ TEST(CheckSkeleton, TiltedCameraIsDetected) {
   }
 }
 
+TEST(CheckSkeleton, WhoLiesLeansByARightAngleWhicheverWay) {
+  for (double degrees : {-95.0, -90.0, 92.0}) {
+    const Check check = Find(CheckSkeleton(Tilted(degrees), Sbu()), "upright");
+    EXPECT_NEAR(check.figures.at("lean_degrees"), 90, 10) << degrees;
+    EXPECT_LT(std::abs(check.figures.at("lean_x_degrees")), 10) << degrees;
+  }
+}
+
 TEST(CheckSkeleton, TwistedWaistIsDetected) {
   const Check check = Spoilt("waist", [](motion::Clip* clip) {
     const int left = Sbu().Find("left_shoulder"), right = Sbu().Find("right_shoulder");
