@@ -96,7 +96,10 @@ absl::Status AddFolder(const fs::path& folder, const std::optional<formats::Form
   std::error_code error;
   for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
        it.increment(error)) {
-    if (it->is_regular_file() && MayLead(it->path(), format)) files.push_back(it->path());
+    const bool missing = it->is_symlink() && !it->exists();
+    if ((missing || it->is_regular_file()) && MayLead(it->path(), format)) {
+      files.push_back(it->path());
+    }
   }
   if (error) {
     return absl::PermissionDeniedError(absl::StrCat(folder.string(), ": ", error.message()));
@@ -166,6 +169,10 @@ absl::Status AddPattern(const fs::path& pattern, const std::optional<formats::Fo
       absl::StrCat(pattern.string(), ": no motion file matches this pattern"));
 }
 
+absl::Status Missing(const fs::path& path) {
+  return absl::NotFoundError(absl::StrCat(path.string(), ": no such file or folder"));
+}
+
 absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>& format,
                       LeaderList* list, std::vector<std::string>* passed_over) {
   std::error_code error;
@@ -176,7 +183,14 @@ absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>
                     motion::ReadingSetting::kFormat);
   }
   if (IsPattern(path)) return AddPattern(path, format, list);
-  return absl::NotFoundError(absl::StrCat(path.string(), ": no such file or folder"));
+  return Missing(path);
+}
+
+// Whether a path is the folder or below it.
+bool IsWithin(const fs::path& path, const fs::path& folder) {
+  const auto [in_folder, in_path] =
+      std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return in_folder == folder.end();
 }
 
 }  // namespace
@@ -196,6 +210,19 @@ absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
     return format.has_value() ? none : MendedBy(none, motion::ReadingSetting::kFormat);
   }
   return std::unique_ptr<LeaderSource>(std::move(list));
+}
+
+absl::Status CheckInputs(const std::vector<std::string>& inputs, const fs::path& out) {
+  std::error_code error;
+  const fs::path set = fs::weakly_canonical(fs::absolute(out), error);
+  for (const std::string& input : inputs) {
+    if (!fs::exists(input, error) && !IsPattern(input)) return Missing(input);
+    if (!fs::is_directory(input, error) || !IsWithin(set, fs::canonical(input, error))) continue;
+    return absl::InvalidArgumentError(absl::StrCat("--out: expected a folder outside ", input,
+                                                   ", whose files are leaders, got ", out.string(),
+                                                   "; choose another folder"));
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace duet::client::batch

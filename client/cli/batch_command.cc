@@ -13,6 +13,7 @@
 #include "client/batch/estimate.h"
 #include "client/batch/job.h"
 #include "client/batch/leader_sharing.h"
+#include "client/batch/leader_source.h"
 #include "client/batch/level.h"
 #include "client/batch/merge.h"
 #include "client/batch/plan_check.h"
@@ -259,6 +260,8 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
 
 absl::StatusOr<ExitCode> Run(const BatchArguments& arguments,
                              const ProgramEnvironment& environment) {
+  const absl::Status inputs = batch::CheckInputs(arguments.leaders, arguments.out);
+  if (!inputs.ok()) return inputs;
   Prepared prepared;
   absl::StatusOr<batch::Recipe> recipe = batch::ReadRecipe(arguments.recipe, arguments.overrides);
   if (!recipe.ok()) return recipe.status();

@@ -519,6 +519,23 @@ class BatchTest(tools.ServedTest):
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual([cause["items"] for cause in summary["failures"]], [16])
 
+    def test_causes_beyond_the_first_are_counted(self):
+        leaders, out = self.out("leaders"), self.out()
+        leaders.mkdir()
+        for number in range(7):
+            (leaders / f"{number}.bvh").write_text(f"HIERARCHY\nROOT{number}", encoding="utf-8")
+        (leaders / "lost.bvh").symlink_to("/nowhere")
+        result = self.batch(out, self.recipe(), code=42, leaders=leaders)
+        self.assertIn("8 leaders cannot be used", result.stderr)
+        self.assertIn("  and 3 other causes\n", result.stderr)
+
+    def test_a_set_among_its_leaders_is_rejected(self):
+        result = self.batch(self.leaders / "set", self.recipe(), code=42)
+        self.assertIn("--out: expected a folder outside", result.stderr)
+        result = self.batch(self.out(), self.recipe(), "--server", "localhost:1", code=42,
+                            leaders=self.out("nothing"))
+        self.assertIn("nothing: no such file or folder", result.stderr)
+
     def test_every_set_describes_itself(self):
         shards = self.out("shards")
         self.batch(shards, self.recipe("packing: PACKING_NPZ"), "--limit", "20")

@@ -223,6 +223,34 @@ TEST_F(ListLeadersTest, MissingPathIsRejected) {
                                         HasSubstr("expected one or more motion files")));
 }
 
+TEST_F(ListLeadersTest, ALinkToAMissingFileIsALeader) {
+  std::filesystem::create_symlink("/nowhere/at/all", folder_ / "walks/e.bvh");
+  std::filesystem::create_symlink("/nowhere/at/all", folder_ / "walks/e.md");
+  EXPECT_THAT(*List({"walks"}), ElementsAre("a", "a_csv", "b", "e"))
+      << "which fails when it is read";
+}
+
+TEST_F(ListLeadersTest, ADataSetAmongItsLeadersIsRejected) {
+  const auto check = [&](const std::string& input, const std::filesystem::path& out) {
+    return CheckInputs({(folder_ / "c.npy").string(), (folder_ / input).string()}, out);
+  };
+  for (const char* out : {"walks", "walks/", "walks/set", "walks/not/yet", "set/../walks/x"}) {
+    EXPECT_THAT(check("walks", folder_ / out),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("--out: expected a folder")))
+        << out;
+  }
+  std::filesystem::create_directory_symlink(folder_ / "walks", folder_ / "link");
+  EXPECT_THAT(check("link", folder_ / "walks/set"),
+              StatusIs(absl::StatusCode::kInvalidArgument, _));
+  EXPECT_THAT(check("walks", folder_ / "set"), IsOk());
+  EXPECT_THAT(check("walks", folder_ / "walks2"), IsOk());
+  EXPECT_THAT(check("walks", folder_.path()), IsOk());
+  EXPECT_THAT(check("walks/a.bvh", folder_ / "walks"), IsOk());
+  EXPECT_THAT(check("walks/*.bvh", folder_ / "walks"), IsOk());
+  EXPECT_THAT(check("wlaks", folder_ / "set"),
+              StatusIs(absl::StatusCode::kNotFound, HasSubstr("wlaks")));
+}
+
 TEST(KeyOf, IsValidInFileSystemsAndArchives) {
   EXPECT_EQ(KeyOf("../walks/./Kick 1.v2"), "walks/Kick_1_v2");
   EXPECT_EQ(KeyOf("/abs/a:b+c-d_e"), "abs/a_b+c-d_e");
