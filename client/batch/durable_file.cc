@@ -49,8 +49,10 @@ absl::Status MakeFolders(const fs::path& folder) {
 }  // namespace
 
 absl::Status CannotWrite(const fs::path& path, int error) {
-  return absl::AbortedError(
-      absl::StrCat("cannot write ", path.string(), ": ", std::generic_category().message(error)));
+  const std::string message =
+      absl::StrCat("cannot write ", path.string(), ": ", std::generic_category().message(error));
+  return error == ENOTDIR || error == EISDIR ? absl::FailedPreconditionError(message)
+                                             : absl::AbortedError(message);
 }
 
 absl::Status RenameInto(const std::string& from, const std::string& to) {

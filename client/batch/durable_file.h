@@ -82,7 +82,8 @@ class AppendedFile {
   absl::Status broken_;
 };
 
-// ABORTED "cannot write <path>: <what errno means>".
+// "cannot write <path>: <what errno means>". FAILED_PRECONDITION if a file is where a folder must
+// be or the reverse, which no retry changes; otherwise ABORTED.
 absl::Status CannotWrite(const std::filesystem::path& path, int error);
 
 // A lock for one process that works in a folder; released when the process ends. ABORTED while

@@ -90,8 +90,9 @@ absl::StatusOr<LoadedLeader> Load(const LeaderEntry& entry, formats::Side side,
 absl::Status WithMendingField(const absl::Status& status) {
   const absl::string_view field = motion::MendingField(status);
   if (field.empty()) return status;
-  return absl::Status(status.code(), absl::StrCat(status.message(),
-                                                  "; say it in the recipe: input { ", field, " }"));
+  return absl::Status(
+      status.code(),
+      absl::StrCat(status.message(), "; specify it in the recipe: input { ", field, " }"));
 }
 
 }  // namespace

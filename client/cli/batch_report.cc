@@ -51,6 +51,10 @@ void WriteCauses(const std::vector<batch::FailureCause>& causes, std::ostream& o
     if (cause.leaders > 0) out << " of " << Counted(cause.leaders, "leader");
     out << ": " << cause.code << (cause.code.empty() ? "" : ": ") << cause.message << "\n";
   }
+  if (causes.size() > kCausesShown) {
+    out << "  and " << Counted(static_cast<int64_t>(causes.size() - kCausesShown), "other cause")
+        << "\n";
+  }
 }
 
 }  // namespace
@@ -108,8 +112,8 @@ void Report(const BatchArguments& arguments, const batch::PlanCheck& check,
     *environment.out << Line(event) << "\n";
     return;
   }
-  *environment.out << absl::StrFormat("%d items of %d leaders, %d frames", check.items,
-                                      check.leaders, check.frames);
+  *environment.out << Counted(check.items, "item") << " of " << Counted(check.leaders, "leader")
+                   << ", " << Counted(check.frames, "frame");
   if (estimate.bytes > 0) {
     *environment.out << absl::StrFormat(": about %.0f s of calls one after the other, %.1f MB",
                                         estimate.seconds, estimate.bytes / 1e6);

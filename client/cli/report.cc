@@ -114,8 +114,7 @@ std::string Advice(const absl::Status& status, const std::string& server_address
   if (absl::IsUnavailable(status) && ErrorReason(status).empty()) {
     return absl::StrCat(
         "Does a duet-server listen at ", server_address,
-        "? (Choose a server with --server, wait for it with --wait SECONDS, and use "
-        "--tls or --tls-ca FILE if it encrypts.)\n");
+        "? (Choose a server with --server, and use --tls or --tls-ca FILE if it encrypts.)\n");
   }
   return "Trying again later may help.\n";
 }

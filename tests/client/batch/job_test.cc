@@ -483,7 +483,8 @@ TEST_F(JobTest, MissingInformationNamesTheRecipesField) {
                                    motion::SbuSkeleton()),
               IsOk());
   ASSERT_THAT(Run("set", {}, "leader\nwalk.npy\n"), IsOk());
-  EXPECT_THAT(Read("set/failed.tsv"), HasSubstr("say it in the recipe: input { frame_rate_hz }"));
+  EXPECT_THAT(Read("set/failed.tsv"),
+              HasSubstr("specify it in the recipe: input { frame_rate_hz }"));
 }
 
 TEST_F(JobTest, AnotherRecipeIsRefused) {

@@ -171,7 +171,7 @@ TEST(DurableFiles, AreCompleteOrMissing) {
   EXPECT_FALSE(std::filesystem::exists(folder / "tmp"));
   WriteTestFile(folder / "plain", "");
   EXPECT_THAT(WriteDurably(folder / "tmp", folder / "plain" / "file", "content"),
-              StatusIs(absl::StatusCode::kAborted, HasSubstr("plain")));
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("plain")));
   EXPECT_FALSE(std::filesystem::exists(folder / "tmp"));
   const FullDisk full(3);
   EXPECT_THAT(WriteDurably(folder / "tmp", folder / "file", "content"),

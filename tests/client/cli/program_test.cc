@@ -845,8 +845,7 @@ TEST_F(ProgramTest, MissingServerIsNamedAndExitsWithRetry) {
   EXPECT_EQ(
       err_.str(),
       "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (Choose a server with "
-      "--server, wait for it with --wait SECONDS, and use --tls or --tls-ca FILE if it "
-      "encrypts.)\n");
+      "--server, and use --tls or --tls-ca FILE if it encrypts.)\n");
 }
 
 TEST_F(ProgramTest, DrainingServerExitsWithRetry) {
