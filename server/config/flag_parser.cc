@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
@@ -162,6 +164,17 @@ std::string Mistake(const CLI::App& app, const std::string& flag, const std::str
   return std::string(text);
 }
 
+// CLI::App::parse. CLI11 lets the error of std::stoll escape if a switch has a value that is
+// neither true, false nor a number.
+template <typename... Words>
+void ParseWords(CLI::App& app, Words&&... words) {
+  try {
+    app.parse(std::forward<Words>(words)...);
+  } catch (const std::logic_error& error) {
+    throw CLI::ConversionError(error.what());
+  }
+}
+
 // Describes the words that CLI11 left over. An unknown flag's value may be among them, so the error
 // names the flag.
 absl::Status NotAFlag(const CLI::App& app, const std::vector<std::string>& words) {
@@ -204,13 +217,18 @@ FlagParser::~FlagParser() = default;
 absl::StatusOr<Flags> FlagParser::Parse(int argc, const char* const* argv,
                                         std::optional<std::string>* print) {
   try {
-    app_->parse(argc, argv);
+    ParseWords(*app_, argc, argv);
   } catch (const CLI::Success& wanted) {
     std::ostringstream text;
     app_->exit(wanted, text, text);
-    *print = text.str();
+    // CLI11 marks the negative name of a switch.
+    *print = absl::StrReplaceAll(text.str(), {{"{false}", ""}});
   } catch (const CLI::ExtrasError&) {
     return NotAFlag(*app_, app_->remaining());
+  } catch (const CLI::ArgumentMismatch& error) {
+    const std::vector<std::string> parts = absl::StrSplit(error.what(), absl::MaxSplits(':', 1));
+    return absl::InvalidArgumentError(
+        absl::StrCat(parts[0], ": expected the flag at most once, got it again"));
   } catch (const CLI::ParseError& error) {
     return absl::InvalidArgumentError(error.what());
   }
@@ -222,7 +240,7 @@ absl::StatusOr<Flags> FlagParser::ParseOne(std::vector<std::string> words) {
   const std::string value = parts.size() > 1 ? parts[1] : words.back();
   std::reverse(words.begin(), words.end());  // the order that CLI11 takes
   try {
-    app_->parse(std::move(words));
+    ParseWords(*app_, std::move(words));
   } catch (const CLI::Success&) {
   } catch (const CLI::ExtrasError&) {
     return NotAFlag(*app_, app_->remaining());
@@ -247,7 +265,7 @@ absl::StatusOr<Flags> FlagParser::ParseVariable(const std::string& name, const s
     if (!each.empty()) words.push_back(absl::StrCat(flag, "=", each));
   }
   try {
-    app_->parse(std::move(words));
+    ParseWords(*app_, std::move(words));
   } catch (const CLI::ParseError& error) {
     return absl::InvalidArgumentError(absl::StrCat(name, ": ", Mistake(*app_, flag, value, error)));
   }

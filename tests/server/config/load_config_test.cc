@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -237,8 +238,25 @@ TEST(ParseCommandLineTest, ReportsEveryWrongFlagAndKeepsTheOthers) {
 }
 
 TEST(ParseCommandLineTest, RejectsARepeatedFlag) {
-  EXPECT_THAT(Parse({"--workers", "1", "--workers", "2"}),
-              StatusIs(kInvalidArgument, HasSubstr("--workers")));
+  EXPECT_THAT(
+      Parse({"--workers", "1", "--workers", "2"}),
+      StatusIs(kInvalidArgument, "--workers: expected the flag at most once, got it again"));
+}
+
+TEST(ParseCommandLineTest, RejectsASwitchThatIsNeitherTrueNorFalse) {
+  for (const std::string value : {"maybe", "99999999999999999999"}) {
+    const std::string mistake = "expected true or false, got \"" + value + "\"";
+    EXPECT_THAT(Parse({"--reflection=" + value}),
+                StatusIs(kInvalidArgument, "--reflection: " + mistake));
+    EXPECT_THAT(Parse({}, {{"DUET_SERVER_REFLECTION", value}}),
+                StatusIs(kInvalidArgument, "DUET_SERVER_REFLECTION: " + mistake));
+  }
+}
+
+TEST(ParseCommandLineTest, HelpNamesBothFormsOfASwitch) {
+  const std::array<const char*, 2> argv = {"duet-server", "--help"};
+  const CommandLine line = ParseCommandLine(2, argv.data(), {});
+  EXPECT_THAT(*line.print, HasSubstr("  --reflection,--no-reflection\n"));
 }
 
 TEST(ParseCommandLineTest, FlagsOverrideVariablesAndVariablesOverrideTheFile) {
