@@ -38,6 +38,18 @@ RIG = {"side": "--rig-side", "up_axis": "--rig-up-axis",
        "resample": "--resample"}
 
 
+# The last line of an error, which names a flag.
+HINT = re.compile(r"\nSpecify it with (--[\w-]+).*\Z", re.DOTALL)
+
+
+def in_the_page(message):
+    """Replaces the hint about a flag of the program by one about the page's settings."""
+    def hint(found):
+        readable = found[1] in READING.values()
+        return '\nSpecify it under "How the file is read".' if readable else ""
+    return HINT.sub(hint, message.strip().removeprefix("duet: "))
+
+
 class Duet:
     """Runs the program `duet`."""
 
@@ -76,7 +88,7 @@ class Duet:
             raise Refused(422, f"file: expected one that needs at most {PROGRAM_BYTES >> 20} MiB "
                                f"and {PROGRAM_SECONDS} s, got one that needs more")
         if process.returncode != 0:
-            raise Refused(422, told.decode(errors="replace").strip().removeprefix("duet: "))
+            raise Refused(422, in_the_page(told.decode(errors="replace")))
         return out.decode()
 
     async def read(self, folder, name, settings):

@@ -158,6 +158,15 @@ class GatewayTest(tools.ServedTest):
                 self.assertEqual(found, status, body[:200])
                 self.assertTrue(message_of(body).startswith(words), body[:200])
 
+    def test_hints_name_settings_of_the_page_and_no_flags(self):
+        crab = tools.sample("kick").read_bytes().replace(b"_hand", b"_claw")
+        for name, body, hint in (("crab.bvh", crab, '\nSpecify it under "How the file is read".'),
+                                 ("crab.py", crab, "")):
+            status, _, reply = self.ask(f"/read?name={name}", body)
+            self.assertEqual(status, 422)
+            self.assertTrue(message_of(reply).endswith(f"(INVALID_ARGUMENT){hint}"),
+                            message_of(reply))
+
     def test_empty_message_to_each_path_is_answered(self):
         for path in ("/", "/about.json", "/read", "/read?name=a.bvh", "/write", "/write?format=glb",
                      "/write_on_rig"):
