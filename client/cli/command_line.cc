@@ -124,6 +124,15 @@ std::string FindUnknownCommand(const FlagSet& app, const Strings& arguments) {
                       base::DidYouMean(arguments[0], CommandNames(app)));
 }
 
+// "; did you mean --admin-server?" for --server, of which the known flag is a longer form, or for a
+// flag with another spelling.
+std::string SuggestedFlag(const std::string& flag, const Strings& known) {
+  for (const std::string& name : known) {
+    if (absl::EndsWith(name, flag.substr(1))) return absl::StrCat("; did you mean ", name, "?");
+  }
+  return base::DidYouMean(flag, known);
+}
+
 // The error about the first flag that the command does not have; empty if there is none.
 std::string FindUnknownFlag(const FlagSet& app, const Strings& arguments) {
   const FlagSet* command = arguments.empty() ? nullptr : FindCommand(app, arguments[0]);
@@ -138,7 +147,7 @@ std::string FindUnknownFlag(const FlagSet& app, const Strings& arguments) {
     if (!absl::StartsWith(argument, "--")) continue;
     const std::string flag = FlagOf(argument);
     if (std::find(known.begin(), known.end(), flag) != known.end()) continue;
-    return absl::StrCat(arguments[0], " has no flag ", flag, base::DidYouMean(flag, known));
+    return absl::StrCat(arguments[0], " has no flag ", flag, SuggestedFlag(flag, known));
   }
   return "";
 }

@@ -6,15 +6,31 @@
 
 #include "CLI/CLI.hpp"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "client/cli/usage_text.h"
 #include "model/base/text.h"
 
 namespace duet::client::cli {
 namespace {
 
-// A validator that --help does not describe.
-CLI::Validator Undescribed(CLI::Validator validator) {
-  validator.description("");
-  return validator;
+// `validator` with the error "expected <what>, got <value>", and without a description in --help.
+CLI::Validator Expects(const std::string& what, const CLI::Validator& validator) {
+  const auto check = [what, validator](const std::string& text) {
+    if (validator(text).empty()) return std::string();
+    return absl::StrCat("expected ", what, ", got ", base::Quoted(text));
+  };
+  return CLI::Validator(check, "");
+}
+
+// "bash, zsh or fish"
+std::string Choices(const std::vector<std::string>& choices) {
+  const std::string last = absl::StrCat(choices.size() > 1 ? " or " : "", choices.back());
+  return absl::StrCat(absl::StrJoin(choices.begin(), choices.end() - 1, ", "), last);
+}
+
+template <typename Number>
+CLI::Validator ExpectsRange(const std::string& what, Number least, Number most) {
+  return Expects(absl::StrCat(what, " from ", least, " to ", most), CLI::Range(least, most));
 }
 
 // CLI11's own validator prints the largest double in --help.
@@ -87,17 +103,17 @@ Flag* Flag::Environment(const std::string& variable) {
 }
 
 Flag* Flag::InRange(int least, int most) {
-  option_->check(Undescribed(CLI::Range(least, most)));
+  option_->check(ExpectsRange("a whole number", least, most));
   return this;
 }
 
 Flag* Flag::InRange(std::int64_t least, std::int64_t most) {
-  option_->check(Undescribed(CLI::Range(least, most)));
+  option_->check(ExpectsRange("a whole number", least, most));
   return this;
 }
 
 Flag* Flag::InRange(double least, double most) {
-  option_->check(Undescribed(CLI::Range(least, most)));
+  option_->check(ExpectsRange("a number", least, most));
   return this;
 }
 
@@ -107,12 +123,12 @@ Flag* Flag::AboveZero() {
 }
 
 Flag* Flag::OneOf(const std::vector<std::string>& choices) {
-  option_->check(Undescribed(CLI::IsMember(choices)));
+  option_->check(Expects(Choices(choices), CLI::IsMember(choices)));
   return this;
 }
 
 Flag* Flag::ExistingFile() {
-  option_->check(Undescribed(CLI::ExistingFile));
+  option_->check(Expects("a file that exists", CLI::ExistingFile));
   return this;
 }
 
@@ -232,12 +248,15 @@ ParsedFlags FlagSet::Parse(const std::vector<std::string>& arguments) {
   try {
     // CLI11 takes the arguments in reverse.
     app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-  } catch (const CLI::ParseError& error) {
+  } catch (const CLI::Success& answer) {
     std::ostringstream out;
-    const int code = app_->exit(error, out, out);
-    parsed.outcome = code == 0 ? ParsedFlags::Outcome::kAnswer : ParsedFlags::Outcome::kError;
+    app_->exit(answer, out, out);
+    parsed.outcome = ParsedFlags::Outcome::kAnswer;
     parsed.text = out.str();
-    parsed.error = error.what();
+  } catch (const CLI::ParseError& error) {
+    parsed.outcome = ParsedFlags::Outcome::kError;
+    parsed.error = UsageText(error.what());
+    parsed.text = absl::StrCat(parsed.error, "\nRun with --help for more information.\n");
   }
   return parsed;
 }

@@ -148,8 +148,11 @@ void AddFlags(FlagSet* command, ViewArguments* arguments) {
   command->Footer(absl::StrCat(kTakesFooter, kSetFooter));
   command->Check([arguments] {
     if (IsOfSet(*arguments) && arguments->takes.takes.size() != 2) {
-      RejectFlag("files", absl::StrCat("expected SET ITEM, got ", arguments->takes.takes.size(),
-                                       " words that begin with a data set"));
+      const size_t words = arguments->takes.takes.size();
+      RejectFlag("files", words == 1
+                              ? "expected a data set and one of its items, got only the data set"
+                              : absl::StrCat("expected a data set and one of its items, got ",
+                                             words - 1, " words after the data set"));
     }
     CheckTakes(arguments->takes);
     CheckPage("--out", arguments->out);

@@ -230,10 +230,32 @@ TEST_F(CommandLineTest, KeyframesInBeatsRequireABeat) {
 }
 
 TEST_F(CommandLineTest, MissingFlagIsNamed) {
-  ExpectUsageError({}, "subcommand is required");
+  ExpectUsageError({}, "A command is required");
   ExpectUsageError({"synthesize", "--label", "kick=1", "--out", Out("pair.html")}, "--leader");
   ExpectUsageError({"synthesize", "--leader", "kick.bvh", "--label", "kick=1"}, "--out");
   ExpectRefused({}, "--label or --keyframe is required");
+}
+
+TEST_F(CommandLineTest, ALongerFormOfAFlagIsSuggested) {
+  ExpectUsageError({"admin", "models", "--server", "a"},
+                   "admin has no flag --server; did you mean --admin-server?");
+}
+
+TEST_F(CommandLineTest, ErrorsStateWhatIsExpectedAndGiven) {
+  ExpectRefused({"--label", "kick", "--samples", "0"},
+                "--samples: expected a whole number from 1 to 1000, got \"0\"");
+  ExpectRefused({"--label", "kick", "--wait", "x"},
+                "--wait: expected a number from 0 to 86400, got \"x\"");
+  ExpectRefused({"--label", "kick", "--priority", "high"},
+                "--priority: expected bulk or interactive, got \"high\"");
+  ExpectRefused({"--label", "kick", "--timeout"}, "--timeout: expected a value, got none");
+  ExpectRefused({"--label", "kick", "--server", "a", "--server", "b"},
+                "--server: expected one value, got 2");
+  ExpectRefused({"--label", "kick", "--json=maybe"},
+                "--json: expected true or false, got \"maybe\"");
+  ExpectUsageError({"models", "extra"}, "Unexpected argument \"extra\"");
+  ExpectUsageError({"compare", "a.bvh"}, "files: expected at least 2 values, got 1");
+  ExpectUsageError({"completion", "tcsh"}, "expected bash, zsh or fish, got \"tcsh\"");
 }
 
 TEST_F(CommandLineTest, InvalidValueIsNamed) {
@@ -243,7 +265,8 @@ TEST_F(CommandLineTest, InvalidValueIsNamed) {
   ExpectRefused({"--label", "kick=1", "hug=1"}, "hug=1");
   ExpectRefused({"--keyframe", "kick=1"}, "--keyframe: expected FRAME:CLASS=WEIGHT");
   ExpectRefused({"--label", "kick=1", "--keyframe", "0:kick=1"}, "excludes");
-  ExpectRefused({"--label", "kick=1", "--leader-side", "up"}, "--leader-side: up");
+  ExpectRefused({"--label", "kick=1", "--leader-side", "up"},
+                "--leader-side: expected left or right, got \"up\"");
   ExpectRefused({"--label", "kick=1", "--unit", "1"}, "--unit: expected metres");
   ExpectRefused({"--label", "kick=1", "--frame-rate", "-15"},
                 "--frame-rate: expected a number above 0, got \"-15\"");
