@@ -24,6 +24,7 @@
 #include "model/formats/motion_file.h"
 #include "model/formats/research/body_joints.h"
 #include "model/formats/research/layout.h"
+#include "model/motion/reading_setting.h"
 #include "model/motion/resample.h"
 #include "model/motion/sbu.h"
 #include "nlohmann/json.hpp"
@@ -222,6 +223,12 @@ absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversio
   return contents;
 }
 
+// The error of a rig's file: the joint map that would fix it is the rig's.
+absl::Status OfRig(const absl::Status& status) {
+  if (motion::MendingSetting(status) != motion::ReadingSetting::kJointMap) return status;
+  return MendedBy(status, motion::ReadingSetting::kRigJointMap);
+}
+
 absl::StatusOr<Written> WriteOntoRig(const Conversion& conversion,
                                      const std::filesystem::path& output, Format format) {
   Written written;
@@ -229,7 +236,7 @@ absl::StatusOr<Written> WriteOntoRig(const Conversion& conversion,
   writing.notes = &written.notes;
   const absl::StatusOr<std::string> content =
       formats::FormatOntoRig(conversion.people[0], *conversion.rig, format, writing);
-  if (!content.ok()) return content.status();
+  if (!content.ok()) return OfRig(content.status());
   absl::Status status = base::WriteFile(output, *content);
   if (!status.ok()) return NotWritten(status);
   written.files = {output};

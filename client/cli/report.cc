@@ -101,8 +101,9 @@ std::string FlagFor(motion::ReadingSetting setting) {
     case motion::ReadingSetting::kJointMap:
       return "--joint-map MODEL_JOINT=FILE_JOINT, or a table of them with --joint-map-file FILE";
     case motion::ReadingSetting::kRigJointMap:
-      return "--follower-rig-joint-map MODEL_JOINT=RIG_JOINT, or a table of them with "
-             "--follower-rig-joint-map-file FILE";
+      return "--follower-rig-joint-map MODEL_JOINT=RIG_JOINT (in duet convert, --rig-joint-map), "
+             "or "
+             "a table of them with --follower-rig-joint-map-file FILE";
   }
   return "";
 }

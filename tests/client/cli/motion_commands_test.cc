@@ -400,6 +400,13 @@ TEST_F(MotionCommandsTest, InvalidUseOfARigIsReported) {
   fails({"--rig", Path("absent.bvh"), "--side", "left", "--out", Path("a.bvh")}, 42, "absent.bvh");
   fails({"--rig", rig, "--rig-joint-map", "head=Nobody", "--side", "left", "--out", Path("a.bvh")},
         42, "Nobody");
+  std::string crab = ReadTestFile(rig);
+  for (size_t at = 0; (at = crab.find("_hand", at)) != std::string::npos;)
+    crab.replace(at, 5, "_claw");
+  WriteTestFile(Path("crab.bvh"), crab);
+  fails({"--rig", Path("crab.bvh"), "--side", "left", "--out", Path("a.bvh")}, 42,
+        "\nSpecify it with --follower-rig-joint-map MODEL_JOINT=RIG_JOINT (in duet convert, "
+        "--rig-joint-map)");
 }
 
 TEST_F(MotionCommandsTest, ResampleKeepsTheDurationAndFrameRateChangesIt) {
