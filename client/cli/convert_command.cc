@@ -406,7 +406,14 @@ void AddFlags(FlagSet* command, ConvertArguments* arguments) {
 Command AddConvertCommand(FlagSet* program) {
   const auto arguments = std::make_shared<ConvertArguments>();
   FlagSet* app =
-      program->AddCommand("convert", "Write a motion in another format, positions as they are");
+      program->AddCommand("convert", "Write a motion in another format, with the same positions");
+  app->Footer(R"(
+Examples:
+  duet convert walk.bvh --out walk.glb
+  duet convert pair.json --side left --resample 30 --out leader.csv
+
+duet help exit-codes explains the exit codes.
+)");
   AddFlags(app, arguments.get());
   return MakeCommand(app, arguments, Run);
 }

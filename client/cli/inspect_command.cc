@@ -130,6 +130,13 @@ Command AddInspectCommand(FlagSet* program) {
   const auto arguments = std::make_shared<InspectArguments>();
   FlagSet* app = program->AddCommand(
       "inspect", "Print what motion files contain, how Duet reads them, and what looks wrong");
+  app->Footer(R"(
+Examples:
+  duet inspect walk.bvh
+  duet inspect captures/*.bvh --json
+
+duet help exit-codes explains the exit codes.
+)");
   AddFlags(app, arguments.get());
   return MakeCommand(app, arguments, Run);
 }

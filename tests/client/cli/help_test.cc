@@ -47,6 +47,13 @@ TEST(Help, ExplainsCommandsAndTopics) {
   EXPECT_THAT(Duet({"help", "settings"}).text, HasSubstr("DUET_SERVER"));
 }
 
+TEST(Help, ExamplesAreOfTheCommand) {
+  for (const char* command :
+       {"convert", "inspect", "synthesize", "live", "batch", "view", "admin"}) {
+    EXPECT_THAT(Duet({"help", command}).text, HasSubstr(absl::StrCat("\n  duet ", command, " ")));
+  }
+}
+
 TEST(Help, ListsReadableAndWritableFormats) {
   std::map<std::string, std::pair<bool, bool>> told;  // by extension
   for (absl::string_view line : absl::StrSplit(TopicText("formats"), '\n')) {
