@@ -370,12 +370,23 @@ class Importer {
       return puppet->PoseAt(timing.start + frame / timing.rate_hz);
     };
     retargeting::CharacterOptions options = options_;
-    if (document_.writer == kDuetsWriter) {
-      // The format's own values; the leg length of a child would suggest another unit.
-      options.metres_per_unit = options.metres_per_unit.value_or(1);
-      options.up_axis = options.up_axis.value_or(motion::UpAxis::kYUp);
-    }
-    return ToClip(character, source, options);
+    if (document_.writer != kDuetsWriter) return ToClip(character, source, options);
+    // The format's own values; the leg length of a child would suggest another unit.
+    options.metres_per_unit = options.metres_per_unit.value_or(1);
+    options.up_axis = options.up_axis.value_or(motion::UpAxis::kYUp);
+    absl::StatusOr<motion::Clip> clip = ToClip(character, source, options);
+    ReportOrigins();
+    return clip;
+  }
+
+  // Unit and up axis come from the file unless the caller of the import gave them.
+  void ReportOrigins() const {
+    if (options_.report == nullptr) return;
+    using retargeting::Origin;
+    std::optional<retargeting::Setting>& unit = options_.report->unit;
+    std::optional<retargeting::Setting>& up_axis = options_.report->up_axis;
+    if (unit && !options_.metres_per_unit.has_value()) unit->origin = Origin::kFile;
+    if (up_axis && !options_.up_axis.has_value()) up_axis->origin = Origin::kFile;
   }
 
   // The rate that the caller or a file written by Duet states, if it is valid.

@@ -409,6 +409,16 @@ TEST_F(MotionCommandsTest, InvalidUseOfARigIsReported) {
         "--rig-joint-map)");
 }
 
+TEST_F(MotionCommandsTest, AFileOfDuetStatesItsUnitAndUpAxis) {
+  ASSERT_EQ(Run({"convert", Path("one.bvh"), "--out", Path("own.glb")}), 0);
+  ASSERT_EQ(Run({"inspect", Path("own.glb")}), 0);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("  unit        1 m  (file)\n"),
+                                HasSubstr("  up axis     y-up  (file)\n")));
+  ASSERT_EQ(Run({"inspect", Path("own.glb"), "--metres-per-unit", "1"}), 0);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("  unit        1 m  (given)\n"),
+                                HasSubstr("  up axis     y-up  (file)\n")));
+}
+
 TEST_F(MotionCommandsTest, ResampleKeepsTheDurationAndFrameRateChangesIt) {
   ASSERT_EQ(Run({"convert", Path("one.csv"), "--resample", "15", "--out", Path("slow.csv")}), 0);
   const motion::Clip resampled = Read("slow.csv");
