@@ -29,7 +29,8 @@ class KeptLeaders {
   std::shared_ptr<SharedLeader> Take(const LeaderEntry& entry, formats::Side side, int skeleton);
 
  private:
-  // All that decides what is read: file, side, the follower's start and its side, skeleton.
+  // Everything that determines what is read: file, side, the follower's start and its side,
+  // skeleton.
   using Key = std::tuple<std::string, int, std::string, int, int>;
   static Key KeyFor(const LeaderEntry& entry, formats::Side side, int skeleton);
 

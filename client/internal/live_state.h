@@ -33,7 +33,8 @@ class LiveState {
   // Errors: INVALID_ARGUMENT, naming the field, for values that the proto cannot represent.
   static absl::StatusOr<LiveState> Create(LiveRequest request);
 
-  // The leader moves on. Each returns the message that tells the server, if a stream is open.
+  // Add frames or a change of labels, and return the message for the server. Send it if a stream is
+  // open.
   absl::StatusOr<v1::SynthesizeLiveRequest> AddFrames(int first_frame,
                                                       absl::Span<const motion::Vec3> positions,
                                                       double capture_seconds);
@@ -47,10 +48,10 @@ class LiveState {
   // Reads a message of the stream. INTERNAL if it violates the contract.
   absl::StatusOr<LiveAnswer> Accept(const v1::SynthesizeLiveResponse& response);
 
-  // Whether the server owes frames for what was added.
+  // Whether follower frames are due for the added leader frames.
   bool IsDue() const { return delivered_ < leader_.end() - request_.delay_frames; }
-  // Whether the session is over if the leader has ended: the stream has its summary and owes
-  // nothing, or every leader frame is answered.
+  // Whether the session is over, once the leader has ended: the stream has its summary and no frame
+  // is due, or every leader frame is answered.
   bool IsComplete() const { return (has_summary_ && !IsDue()) || delivered_ >= leader_.end(); }
   // Whether the stream has its header.
   bool is_open() const { return is_open_; }
