@@ -47,6 +47,15 @@ absl::StatusOr<motion::Vec3> ReadPoint(const nlohmann::json& row, std::size_t in
                                                  row.is_array() ? row.dump() : base::Shown(row)));
 }
 
+// Rejects a frame before the first one or too long after it. `index`: its distance in frames.
+template <typename Value>
+absl::Status CheckIndex(const char* field, Value first, Value value, int64_t index) {
+  if (index >= 0 && index <= kMaxIndex) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(field, ": expected at least ", first,
+                                                 ", that of the first frame, and at most ",
+                                                 kMaxIndex, " frames later, got ", value));
+}
+
 }  // namespace
 
 absl::Status JsonLinesSource::InLine(const absl::Status& status) const {
@@ -147,13 +156,12 @@ absl::StatusOr<LeaderEvent> JsonLinesSource::ReadFrame(const nlohmann::json& obj
   int64_t index = next_index_;
   if (number.has_value() && first_frame_.has_value()) {
     index = *number - *first_frame_;
+    status = CheckIndex("frame", *first_frame_, *number, index);
   } else if (time.has_value() && first_time_.has_value()) {
     index = std::llround((*time - *first_time_) * frame_rate_hz_);
+    status = CheckIndex("t", *first_time_, *time, index);
   }
-  if (index < 0 || index > kMaxIndex) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("frame: expected an index from the first frame's on, got frame ", index));
-  }
+  if (!status.ok()) return status;
   next_index_ = static_cast<int>(index) + 1;
   return LeaderFrame{static_cast<int>(index), retargeting::ApplyJointMap(*map_, *pose),
                      absl::Now()};

@@ -165,7 +165,10 @@ TEST(JsonLinesSourceTest, ErrorsNameTheLineAndTheField) {
       {Header() + Frame({{"pose", 1}}), "line 2: "},
       {Header() + Frame({{"frame", -1}}), "line 2: frame: expected"},
       {Header() + Frame({{"frame", 9}}) + Frame({{"frame", 8}}),
-       "line 3: frame: expected an index from the first frame's on"},
+       "line 3: frame: expected at least 9, that of the first frame, and at most 1073741824 frames "
+       "later, got 8"},
+      {Header() + Frame({{"t", 0.5}}) + Frame({{"t", 0.1}}),
+       "line 3: t: expected at least 0.5, that of the first frame,"},
       {Header({{"joints", {"a", "b"}}}) + Frame({{"positions", {{1, 2, 3}, {4, 5, 6}}}}),
        "line 2: joints: "},
       {Header() + R"({"labels": {}})", "line 2: labels: expected at least one class"},
