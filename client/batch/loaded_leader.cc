@@ -10,6 +10,7 @@
 #include "model/base/sha256.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
+#include "model/motion/stated_unit.h"
 
 namespace duet::client::batch {
 namespace {
@@ -102,7 +103,7 @@ formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skele
   options.format = input.format;
   options.skeleton = skeleton;
   options.frame_rate_hz = input.frame_rate_hz;
-  options.metres_per_unit = input.metres_per_unit;
+  options.metres_per_unit = motion::StatedMetresPerUnit(input.metres_per_unit, input.unit);
   options.joint_overrides = input.joint_map;
   options.layout = input.layout;
   options.body_model = input.body_model;

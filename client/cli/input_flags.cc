@@ -66,7 +66,8 @@ void AddInputFlags(FlagSet* app, InputArguments* input) {
       ->LastOnly()
       ->Group(kInputGroup);
   app->Add("--metres-per-unit", &input->metres_per_unit,
-           "BVH, glTF, FBX, ASF: metres in one unit of the file (0.01 for centimetres)")
+           "BVH, glTF, FBX, ASF: metres in one unit of the file (0.01 for centimetres); overrides "
+           "--unit")
       ->AboveZero()
       ->Form("METRES")
       ->Group(kInputGroup);

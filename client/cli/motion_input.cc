@@ -9,6 +9,7 @@
 #include "model/base/file.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
+#include "model/motion/stated_unit.h"
 #include "model/retargeting/joint_table.h"
 
 namespace duet::client::cli {
@@ -79,7 +80,7 @@ absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
   options.format = input.format;
   options.skeleton = skeleton;
   options.frame_rate_hz = input.frame_rate_hz;
-  options.metres_per_unit = input.metres_per_unit;
+  options.metres_per_unit = motion::StatedMetresPerUnit(input.metres_per_unit, input.unit);
   options.animation = input.animation;
   absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(input.joints, input.joint_table);
   if (!joints.ok()) return joints.status();

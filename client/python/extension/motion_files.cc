@@ -13,6 +13,7 @@
 #include "model/motion/recorded_motion.h"
 #include "model/motion/resample.h"
 #include "model/motion/skeleton.h"
+#include "model/motion/stated_unit.h"
 
 namespace duet::client::python::extension {
 namespace {
@@ -50,7 +51,7 @@ absl::StatusOr<formats::ReadOptions> OptionsOf(const ReadArguments& arguments) {
   options.body_model = arguments.body_model;
   options.coordinates = motion::StatedCoordinates(unit, up_axis);
   options.frame_rate_hz = arguments.frame_rate_hz;
-  options.metres_per_unit = arguments.metres_per_unit;
+  options.metres_per_unit = motion::StatedMetresPerUnit(arguments.metres_per_unit, unit);
   options.joint_overrides = arguments.joint_map;
   return options;
 }

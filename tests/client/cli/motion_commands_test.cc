@@ -419,6 +419,18 @@ TEST_F(MotionCommandsTest, AFileOfDuetStatesItsUnitAndUpAxis) {
                                 HasSubstr("  up axis     y-up  (file)\n")));
 }
 
+TEST_F(MotionCommandsTest, TheUnitOfAHierarchyCanBeNamed) {
+  ASSERT_EQ(Run({"convert", Path("one.bvh"), "--unit", "millimetres", "--out", Path("small.csv")}),
+            0)
+      << err_.str();
+  const motion::Clip small = Read("small.csv");
+  EXPECT_LT(Distance(small.at(9, 4) * 10, leader_.at(9, 4)), 0.01F) << "the file has centimetres";
+  ASSERT_EQ(Run({"convert", Path("one.bvh"), "--unit", "millimetres", "--metres-per-unit", "0.01",
+                 "--out", Path("same.csv")}),
+            0);
+  EXPECT_LT(Distance(Read("same.csv").at(9, 4), leader_.at(9, 4)), 0.01F);
+}
+
 TEST_F(MotionCommandsTest, ResampleKeepsTheDurationAndFrameRateChangesIt) {
   ASSERT_EQ(Run({"convert", Path("one.csv"), "--resample", "15", "--out", Path("slow.csv")}), 0);
   const motion::Clip resampled = Read("slow.csv");

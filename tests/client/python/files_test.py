@@ -41,7 +41,9 @@ class FilesTest(unittest.TestCase):
 
     def test_arguments_override_the_file(self):
         half = duet.read_motion(HUG, metres_per_unit=0.005, frame_rate_hz=60)
+        tenth = duet.read_motion(HUG, unit="millimetres")
         np.testing.assert_allclose(half.positions, self.hug.positions / 2, atol=1e-5)
+        np.testing.assert_allclose(tenth.positions, self.hug.positions / 10, atol=1e-5)
         self.assertEqual(half.frame_rate_hz, 60)
         self.assertEqual(duet.read_motion(HUG, resample_hz=15).frame_count, 46)
         swapped = duet.read_motion(HUG, joint_map={"left_hand": "right_hand"})
