@@ -1,6 +1,8 @@
 #include "model/base/statistics.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace duet::base {
@@ -16,6 +18,15 @@ double Mean(const std::vector<double>& values) {
     ++count;
   }
   return count == 0 ? kNone : sum / count;
+}
+
+double Quantile(std::vector<double> values, double share) {
+  if (values.empty()) return kNone;
+  std::sort(values.begin(), values.end());
+  const double at = share * static_cast<double>(values.size() - 1);
+  const std::size_t below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
 MeanAndDeviation Summarise(const std::vector<double>& values) {

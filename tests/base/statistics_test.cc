@@ -13,6 +13,13 @@ TEST(MeanTest, IgnoresMissingValues) {
   EXPECT_TRUE(std::isnan(Mean({})));
 }
 
+TEST(QuantileTest, LiesBetweenNeighbours) {
+  EXPECT_DOUBLE_EQ(Quantile({40, 10, 30, 20}, 0.5), 25);
+  EXPECT_DOUBLE_EQ(Quantile({40, 10, 30, 20}, 0.9), 37);
+  EXPECT_EQ(Quantile({7}, 0.9), 7);
+  EXPECT_TRUE(std::isnan(Quantile({}, 0.5)));
+}
+
 TEST(SummariseTest, MeanAndSampleDeviation) {
   const MeanAndDeviation summary = Summarise({1, 2, 3, 6});
   EXPECT_DOUBLE_EQ(summary.mean, 3);
