@@ -7,6 +7,7 @@
 
 #include "model/base/random.h"
 #include "model/engine/clip_synthesis.h"
+#include "model/engine/clips_together.h"
 #include "model/engine/network_synthesizer.h"
 #include "model/training/frame_labels.h"
 
@@ -56,33 +57,6 @@ engine::ClipRequest RequestFor(const engine::ModelDescription& model,
   return request;
 }
 
-// Answers all takes, the next window of each together.
-absl::StatusOr<std::vector<motion::Poses>> Answer(const engine::Synthesizer& synthesizer,
-                                                  absl::Span<const dataset::Sequence> takes) {
-  const engine::ModelDescription& model = synthesizer.description();
-  std::vector<engine::ClipSynthesis> clips;
-  for (const dataset::Sequence& take : takes) clips.emplace_back(model, RequestFor(model, take));
-  std::vector<motion::Poses> followers(takes.size(),
-                                       motion::Poses(0, model.skeleton.joint_count()));
-  while (true) {
-    std::vector<std::size_t> waiting;
-    std::vector<engine::SynthesisWindow> windows;
-    for (std::size_t i = 0; i < clips.size(); ++i) {
-      if (!clips[i].HasNextWindow()) continue;
-      waiting.push_back(i);
-      windows.push_back(clips[i].NextWindow());
-    }
-    if (windows.empty()) return followers;
-    std::vector<const engine::SynthesisWindow*> pointers;
-    for (const engine::SynthesisWindow& window : windows) pointers.push_back(&window);
-    const std::vector<engine::WindowResult> results = synthesizer.Synthesize(pointers);
-    for (std::size_t n = 0; n < waiting.size(); ++n) {
-      if (!results[n].ok()) return results[n].status();
-      followers[waiting[n]].Append(clips[waiting[n]].Accept(*results[n]).all());
-    }
-  }
-}
-
 double MeanDistance(const motion::Poses& a, const motion::Poses& b, int first, int count) {
   double sum = 0;
   for (int t = first; t < first + count; ++t) {
@@ -109,7 +83,11 @@ absl::StatusOr<std::vector<double>> ErrorByPosition(const checkpoint::Manifest& 
   const std::unique_ptr<engine::Synthesizer> synthesizer =
       MakeSynthesizer(manifest.model, manifest.standardisation,
                       std::make_unique<const NetworkInTraining>(answer), options);
-  absl::StatusOr<std::vector<motion::Poses>> followers = Answer(*synthesizer, takes);
+  std::vector<engine::ClipSynthesis> clips;
+  for (const dataset::Sequence& take : takes) {
+    clips.emplace_back(manifest.model, RequestFor(manifest.model, take));
+  }
+  absl::StatusOr<std::vector<motion::Poses>> followers = SynthesizeTogether(*synthesizer, &clips);
   if (!followers.ok()) return followers.status();
   const int length = PositionFrames(manifest.model.frame_rate_hz);
   std::vector<double> errors(
