@@ -89,9 +89,15 @@ struct Split {
   std::vector<int> test;
 };
 
+// The indices of all sequences.
+std::vector<int> AllSequences(const Dataset& dataset);
+
 // Leave one subject out: test on every sequence with the subject in either role, train on the rest.
 // Errors: NOT_FOUND if the data set does not have the subject.
 absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string& subject);
+
+// Cross-validation: tests on part `part` of `parts` of every class. Requires part < parts.
+Split LeavePartOut(const Dataset& dataset, int part, int parts);
 
 // Splits each class into halves for training and testing. Only `seed` determines the choice. If the
 // number is odd, the training half is larger. Both are sorted. A subject may be in both.

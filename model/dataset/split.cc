@@ -29,6 +29,12 @@ size_t ValidationCount(size_t available, double fraction) {
 
 }  // namespace
 
+std::vector<int> AllSequences(const Dataset& dataset) {
+  std::vector<int> all(dataset.sequences.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
 absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string& subject) {
   Split split;
   for (size_t i = 0; i < dataset.sequences.size(); ++i) {
@@ -43,10 +49,18 @@ absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string&
                                           ", got ", base::Quoted(subject)));
 }
 
+Split LeavePartOut(const Dataset& dataset, int part, int parts) {
+  Split split;
+  std::vector<int> seen(static_cast<size_t>(dataset.class_count()));
+  for (size_t i = 0; i < dataset.sequences.size(); ++i) {
+    const int of_class = seen[static_cast<size_t>(dataset.sequences[i].interaction_class)]++;
+    (of_class % parts == part ? split.test : split.train).push_back(static_cast<int>(i));
+  }
+  return split;
+}
+
 absl::StatusOr<Split> SplitInHalves(const Dataset& dataset, uint64_t seed) {
-  std::vector<int> all(dataset.sequences.size());
-  std::iota(all.begin(), all.end(), 0);
-  std::vector<std::vector<int>> by_class = ByClass(dataset, all);
+  std::vector<std::vector<int>> by_class = ByClass(dataset, AllSequences(dataset));
   base::Random random(seed);
   Split split;
   for (size_t c = 0; c < by_class.size(); ++c) {
