@@ -14,12 +14,10 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "model/dataset/time_line.h"
-#include "model/engine/asked_turns.h"
-#include "model/engine/hand_contact_fit.h"
 #include "model/engine/leader_statistics.h"
 #include "model/engine/step_fit.h"
-#include "model/engine/strike_fit.h"
 #include "model/network/threads.h"
+#include "model/training/class_fits.h"
 #include "model/training/direction_fit.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
@@ -67,52 +65,6 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   manifest.training["sequences"] = absl::StrCat(plan.train.size());
   NoteData(dataset, plan.train, &manifest.training);
   return manifest;
-}
-
-// Adds every stretch of a class to a fit (HandContactFit, StrikeFit, TurningFit).
-template <typename Fit>
-void AddStretches(const dataset::Dataset& dataset, const std::vector<int>& sequences,
-                  int interaction_class, Fit* fit) {
-  for (const int index : sequences) {
-    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-    const motion::ClipPair& pair = sequence.pair;
-    const auto add = [&](const dataset::LabelSpan& span) {
-      if (span.interaction_class != interaction_class) return;
-      fit->Add(pair.leader.poses, pair.follower.poses, span.begin, span.end);
-    };
-    std::for_each(sequence.labels.begin(), sequence.labels.end(), add);
-    if (sequence.labels.empty()) add({sequence.interaction_class, 0, pair.leader.frame_count()});
-  }
-}
-
-// The classes in which people meet an offered hand, and those in which they strike.
-void FindContacts(const dataset::Dataset& dataset, const std::vector<int>& sequences,
-                  engine::ModelDescription* model) {
-  for (int c = 0; c < dataset.class_count(); ++c) {
-    const std::string& name = dataset.classes[static_cast<size_t>(c)];
-    engine::HandContactFit hands(dataset.skeleton);
-    AddStretches(dataset, sequences, c, &hands);
-    if (const std::optional<double> metres = hands.Metres(dataset.frame_rate_hz)) {
-      model->hand_contacts.push_back({name, *metres});
-      continue;
-    }
-    engine::StrikeFit strikes(dataset.skeleton);
-    AddStretches(dataset, sequences, c, &strikes);
-    if (const auto limb = strikes.Limb()) model->strikes.push_back({name, *limb});
-  }
-}
-
-// The classes in which the follower turns about itself.
-std::vector<engine::TurningClass> FindTurningClasses(const dataset::Dataset& dataset,
-                                                     const std::vector<int>& sequences) {
-  std::vector<engine::TurningClass> classes;
-  for (int c = 0; c < dataset.class_count(); ++c) {
-    engine::TurningFit fit(dataset.skeleton);
-    AddStretches(dataset, sequences, c, &fit);
-    const std::optional<double> speed = fit.DegreesPerSecond(dataset.frame_rate_hz);
-    if (speed) classes.push_back({dataset.classes[static_cast<size_t>(c)], *speed});
-  }
-  return classes;
 }
 
 bool StepInTime(const dataset::Dataset& dataset, const std::vector<int>& sequences) {

@@ -1,0 +1,61 @@
+#include "model/training/class_fits.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "model/engine/asked_turns.h"
+#include "model/engine/hand_contact_fit.h"
+#include "model/engine/strike_fit.h"
+
+namespace duet::training {
+namespace {
+
+// Adds every stretch of a class to a fit (HandContactFit, StrikeFit, TurningFit).
+template <typename Fit>
+void AddStretches(const dataset::Dataset& dataset, const std::vector<int>& sequences,
+                  int interaction_class, Fit* fit) {
+  for (const int index : sequences) {
+    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+    const motion::ClipPair& pair = sequence.pair;
+    const auto add = [&](const dataset::LabelSpan& span) {
+      if (span.interaction_class != interaction_class) return;
+      fit->Add(pair.leader.poses, pair.follower.poses, span.begin, span.end);
+    };
+    std::for_each(sequence.labels.begin(), sequence.labels.end(), add);
+    if (sequence.labels.empty()) add({sequence.interaction_class, 0, pair.leader.frame_count()});
+  }
+}
+
+}  // namespace
+
+void FindContacts(const dataset::Dataset& dataset, const std::vector<int>& sequences,
+                  engine::ModelDescription* model) {
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    const std::string& name = dataset.classes[static_cast<size_t>(c)];
+    engine::HandContactFit hands(dataset.skeleton);
+    AddStretches(dataset, sequences, c, &hands);
+    if (const std::optional<double> metres = hands.Metres(dataset.frame_rate_hz)) {
+      model->hand_contacts.push_back({name, *metres});
+      continue;
+    }
+    engine::StrikeFit strikes(dataset.skeleton);
+    AddStretches(dataset, sequences, c, &strikes);
+    if (const auto limb = strikes.Limb()) model->strikes.push_back({name, *limb});
+  }
+}
+
+std::vector<engine::TurningClass> FindTurningClasses(const dataset::Dataset& dataset,
+                                                     const std::vector<int>& sequences) {
+  std::vector<engine::TurningClass> classes;
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    engine::TurningFit fit(dataset.skeleton);
+    AddStretches(dataset, sequences, c, &fit);
+    const std::optional<double> speed = fit.DegreesPerSecond(dataset.frame_rate_hz);
+    if (speed) classes.push_back({dataset.classes[static_cast<size_t>(c)], *speed});
+  }
+  return classes;
+}
+
+}  // namespace duet::training
