@@ -28,7 +28,7 @@ MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format",
                 "gltf format", "fbx format", "asf format", "usd format", "research format",
                 "formats")
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
-MEASURING = ("metrics", "protocol", "baselines", "judge", "experiments")
+MEASURING = ("metrics", "protocol", "baselines", "judge", "report", "experiments")
 SERVER = ("server common", "batching", "registry", "server metrics", "security", "tracing",
           "server config", "service", "admin", "watchdog", "lifecycle")
 
@@ -75,7 +75,7 @@ LAYERS = (
           sees=("base", "motion", "retargeting", "dataset", "engine", "checkpoint", "network"),
           libraries=("torch",)),
     # Evaluation.
-    Layer("metrics", "model/evaluation/metrics", sees=("base", "motion", "dataset")),
+    Layer("metrics", "model/evaluation/metrics", sees=("base", "motion", "body", "dataset")),
     Layer("protocol", "model/evaluation/protocol", sees=("base", "motion", "dataset", "metrics")),
     Layer("baselines", "model/evaluation/baselines",
           sees=("base", "motion", "dataset", "metrics", "protocol")),
@@ -83,15 +83,15 @@ LAYERS = (
           sees=("base", "motion", "dataset", "engine", "checkpoint", "classifier", "network",
                 "training", "metrics", "protocol"),
           source_libraries=("torch",)),
-    Layer("experiments", "model/evaluation/experiments",
-          sees=MOTION_FILES + MODELS + ("body", "dataset", "metrics", "protocol", "baselines",
-                                        "judge"),
-          source_libraries=("torch",)),
     Layer("report", "model/evaluation/report",
-          sees=("base", "motion", "dataset", "cleanup") + MEASURING),
+          sees=("base", "motion", "body", "dataset", "cleanup", "metrics")),
+    Layer("experiments", "model/evaluation/experiments",
+          sees=MOTION_FILES + MODELS + ("authoring", "body", "dataset", "metrics", "protocol",
+                                        "baselines", "judge", "report"),
+          source_libraries=("torch",)),
     Layer("evaluation program", "model/evaluation/program",
-          sees=MOTION_FILES + ("body", "dataset", "engine", "checkpoint", "classifier", "network",
-                                "torch engine", "report") + MEASURING),
+          sees=MOTION_FILES + ("authoring", "body", "dataset", "engine", "checkpoint", "classifier",
+                                "network", "torch engine", "training") + MEASURING),
     # The server, innermost first.
     Layer("server common", "server/common", sees=("base",), libraries=("rpc",)),
     Layer("batching", "server/batching", sees=("base", "motion", "engine", "server common")),
@@ -121,11 +121,11 @@ LAYERS = (
     # The client.
     Layer("viewer", "client/viewer", sees=("base", "motion", "client")),
     Layer("analysis", "client/analysis",
-          sees=("base", "motion", "body", "dataset", "cleanup", "metrics")),
+          sees=("base", "motion", "body", "dataset", "cleanup")),
     Layer("batch flow", "client/batch/flow", sees=()),
     Layer("batch", "client/batch",
-          sees=MOTION_FILES + ("messages", "body", "dataset", "cleanup", "classifier", "metrics",
-                                "batch flow", "client"),
+          sees=MOTION_FILES + ("messages", "body", "dataset", "cleanup", "classifier", "batch flow",
+                                "client"),
           libraries=("rpc",)),
     Layer("capture", "client/capture", sees=("base", "motion", "retargeting")),
     Layer("live", "client/live", sees=MOTION_FILES + ("capture", "client")),

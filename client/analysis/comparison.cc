@@ -8,22 +8,19 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/body/limbs.h"
+#include "model/body/liveliness.h"
+#include "model/body/motion_quality.h"
+#include "model/body/penetration.h"
+#include "model/body/posture.h"
+#include "model/body/touch.h"
 #include "model/cleanup/contacts.h"
 #include "model/cleanup/floor.h"
-#include "model/evaluation/metrics/displacement.h"
-#include "model/evaluation/metrics/liveliness.h"
-#include "model/evaluation/metrics/motion_quality.h"
-#include "model/evaluation/metrics/penetration.h"
-#include "model/evaluation/metrics/posture.h"
-#include "model/evaluation/metrics/touch.h"
 #include "model/motion/body_part.h"
 #include "model/motion/filter.h"
 #include "model/motion/resample.h"
 
 namespace duet::client::analysis {
 namespace {
-
-namespace metrics = evaluation::metrics;
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
@@ -81,7 +78,7 @@ Displacement Displace(const motion::Poses& a, const motion::Poses& b,
   }
   displacement.root_metres = displacement.joint_metres[Index(skeleton.root)];
   if (a.frame_count() > 1) {
-    displacement.velocity_metres_per_second = metrics::VelocityError(a, b, rate_hz);
+    displacement.velocity_metres_per_second = body::VelocityError(a, b, rate_hz);
   }
   return displacement;
 }
@@ -111,21 +108,19 @@ class Measurer {
   std::vector<double> Measure() const {
     const motion::Poses& poses = person_.poses;
     const double rate = person_.frame_rate_hz;
-    const metrics::Lean hips =
-        metrics::MeasureLean(poses, skeleton_, rate, metrics::LeanFrom::kHips);
-    const metrics::Lean feet =
-        metrics::MeasureLean(poses, skeleton_, rate, metrics::LeanFrom::kFeet);
+    const body::Lean hips = body::MeasureLean(poses, skeleton_, rate, body::LeanFrom::kHips);
+    const body::Lean feet = body::MeasureLean(poses, skeleton_, rate, body::LeanFrom::kFeet);
     std::vector<double> figures = {person_.frame_count() / rate,
-                                   metrics::JointSpeed(poses, rate),
-                                   metrics::JointSpeed(motion::WithoutNoise(poses, rate), rate),
-                                   metrics::RangeOfMotion(poses),
-                                   metrics::Jitter(poses, rate),
+                                   body::JointSpeed(poses, rate),
+                                   body::JointSpeed(motion::WithoutNoise(poses, rate), rate),
+                                   body::RangeOfMotion(poses),
+                                   body::Jitter(poses, rate),
                                    hips.mean_degrees,
                                    hips.max_degrees,
                                    feet.max_degrees,
-                                   metrics::BoneLengthDrift(poses, skeleton_),
+                                   body::BoneLengthDrift(poses, skeleton_),
                                    skeleton_.feet ? StandingShare(person_, *skeleton_.feet) : kNone,
-                                   metrics::MeasureFootSlide(poses, skeleton_, rate).skating_ratio};
+                                   body::MeasureFootSlide(poses, skeleton_, rate).skating_ratio};
     const std::vector<double> with_partner = MeasureWithPartner();
     figures.insert(figures.end(), with_partner.begin(), with_partner.end());
     return figures;
@@ -138,11 +133,11 @@ class Measurer {
     if (partner_ == nullptr) return {kNone, kNone, kNone, kNone, kNone};
     const std::vector<motion::BodyPart> limbs = body::LimbParts(body::FindBody(skeleton_));
     const motion::Poses &partner = partner_->poses, &person = person_.poses;
-    const metrics::Penetration penetration =
-        metrics::MeasurePenetration(partner, person, skeleton_, limbs);
-    return {metrics::RootDistance(partner, person, skeleton_),
-            metrics::FacingDegrees(partner, person, skeleton_),
-            metrics::TouchShare(partner, person, skeleton_, limbs), penetration.frequency,
+    const body::Penetration penetration =
+        body::MeasurePenetration(partner, person, skeleton_, limbs);
+    return {body::RootDistance(partner, person, skeleton_),
+            body::FacingDegrees(partner, person, skeleton_),
+            body::TouchShare(partner, person, skeleton_, limbs), penetration.frequency,
             penetration.max_depth_metres};
   }
 

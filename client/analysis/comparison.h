@@ -26,7 +26,7 @@ struct Figure {
   std::optional<double> a, b;
 };
 
-// The distance of b's person from a's, over their common time. evaluation::metrics has the
+// The distance of b's person from a's, over their common time. model/body has the
 // definitions. Units: metres.
 struct Displacement {
   double mean_metres = 0;          // over frames and joints

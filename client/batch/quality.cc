@@ -5,15 +5,13 @@
 
 #include "absl/strings/str_format.h"
 #include "model/body/limbs.h"
+#include "model/body/liveliness.h"
+#include "model/body/penetration.h"
+#include "model/body/posture.h"
 #include "model/cleanup/floor.h"
-#include "model/evaluation/metrics/liveliness.h"
-#include "model/evaluation/metrics/penetration.h"
-#include "model/evaluation/metrics/posture.h"
 
 namespace duet::client::batch {
 namespace {
-
-namespace metrics = evaluation::metrics;
 
 std::optional<double> Known(double figure) {
   return std::isnan(figure) ? std::nullopt : std::optional<double>(figure);
@@ -43,21 +41,20 @@ Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton) 
   const motion::Poses& leader = pair.leader.poses;
   const motion::Poses& follower = pair.follower.poses;
   Quality quality;
-  quality.lean_degrees = Known(metrics::MeasureLean(follower, skeleton, pair.follower.frame_rate_hz,
-                                                    metrics::LeanFrom::kHips)
-                                   .max_degrees);
+  quality.lean_degrees = Known(
+      body::MeasureLean(follower, skeleton, pair.follower.frame_rate_hz, body::LeanFrom::kHips)
+          .max_degrees);
   if (skeleton.feet.has_value()) {
-    const metrics::FloorGap gap =
-        metrics::MeasureFloorGap(follower, skeleton, cleanup::FloorHeight(*skeleton.feet, leader));
+    const body::FloorGap gap =
+        body::MeasureFloorGap(follower, skeleton, cleanup::FloorHeight(*skeleton.feet, leader));
     quality.foot_above_floor_metres = gap.above;
     quality.foot_below_floor_metres = gap.below;
   }
-  quality.distance_metres = metrics::RootDistance(leader, follower, skeleton);
-  quality.penetration_metres =
-      metrics::MeasurePenetration(leader, follower, skeleton,
-                                  body::LimbParts(body::FindBody(skeleton)))
-          .max_depth_metres;
-  quality.range_of_motion_metres = metrics::RangeOfMotion(follower);
+  quality.distance_metres = body::RootDistance(leader, follower, skeleton);
+  quality.penetration_metres = body::MeasurePenetration(leader, follower, skeleton,
+                                                        body::LimbParts(body::FindBody(skeleton)))
+                                   .max_depth_metres;
+  quality.range_of_motion_metres = body::RangeOfMotion(follower);
   return quality;
 }
 

@@ -57,6 +57,12 @@ void SampleCubic(const Poses& poses, double frame, absl::Span<Vec3> out) {
   }
 }
 
+Poses Part(const Poses& poses, int first, int count) {
+  Poses part(0, poses.joint_count());
+  part.Append(poses.frames(first, count));
+  return part;
+}
+
 Poses Resample(const Poses& poses, double from_hz, double to_hz) {
   Poses out(ResampledFrameCount(poses.frame_count(), from_hz, to_hz), poses.joint_count());
   for (int t = 0; t < out.frame_count(); ++t) SampleLinear(poses, t * from_hz / to_hz, out[t]);

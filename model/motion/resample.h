@@ -23,6 +23,9 @@ void SampleLinear(const Poses& poses, double frame, absl::Span<Vec3> out);
 // than the network's has no kinks.
 void SampleCubic(const Poses& poses, double frame, absl::Span<Vec3> out);
 
+// The `count` frames from frame `first` on.
+Poses Part(const Poses& poses, int first, int count);
+
 // A whole motion at another rate, interpolated linearly, with ResampledFrameCount frames.
 Poses Resample(const Poses& poses, double from_hz, double to_hz);
 

@@ -2,10 +2,10 @@
 #include <cstddef>
 
 #include "gtest/gtest.h"
+#include "model/body/motion_quality.h"
+#include "model/body/penetration.h"
 #include "model/cleanup/clean_up.h"
 #include "model/dataset/dataset.h"
-#include "model/evaluation/metrics/motion_quality.h"
-#include "model/evaluation/metrics/penetration.h"
 #include "model/motion/limb_lengths.h"
 #include "tests/cleanup/bodies.h"
 #include "tests/support/data_folder.h"
@@ -41,8 +41,8 @@ class CapturesTest : public ::testing::Test {
 
   static void Measure(const motion::Poses& leader, const motion::Poses& follower,
                       const dataset::Dataset& data, Figures* figures) {
-    using evaluation::metrics::MeasureFootSlide;
-    using evaluation::metrics::MeasurePenetration;
+    using body::MeasureFootSlide;
+    using body::MeasurePenetration;
     figures->slide +=
         MeasureFootSlide(follower, data.skeleton, data.frame_rate_hz).centimetres_a_frame;
     figures->overlap +=

@@ -140,5 +140,11 @@ TEST(ResampleByRate, RejectsRatesThatNoMotionHas) {
   EXPECT_EQ(clip.frame_count(), 1000);
 }
 
+TEST(PartTest, HasTheFramesFromTheFirstOn) {
+  const Poses poses(1, {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
+  EXPECT_EQ(Part(poses, 1, 2), Poses(1, {{2, 0, 0}, {3, 0, 0}}));
+  EXPECT_TRUE(Part(poses, 3, 0).empty());
+}
+
 }  // namespace
 }  // namespace duet::motion

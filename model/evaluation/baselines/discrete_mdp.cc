@@ -1,7 +1,6 @@
 #include "model/evaluation/baselines/chain.h"
 #include "model/evaluation/baselines/class_models.h"
-#include "model/evaluation/baselines/kmeans.h"
-#include "model/evaluation/baselines/pose_space.h"
+#include "model/evaluation/baselines/motion_matrix.h"
 
 namespace duet::evaluation::baselines {
 namespace {
@@ -69,16 +68,85 @@ struct Tables {
 
 class DiscreteMdp : public ClassModel {
  public:
-  explicit DiscreteMdp(const std::vector<StandardPair>& pairs);
-  Rows Predict(const StandardPair& leader) const override;
+  explicit DiscreteMdp(const std::vector<StandardPair>& pairs) {
+    const Rows cues = StackCues(pairs), poses = StackFollowers(pairs);
+    leader_ = PoseSpace(cues, kComponents);
+    follower_ = PoseSpace(poses, kComponents);
+    leader_centres_ = KMeans(leader_.Project(cues), kLeaderStates, kSeed);
+    pose_centres_ = KMeans(follower_.Project(poses), kPoseStates, kSeed);
+    effort_.resize(pose_centres_.rows(), pose_centres_.rows());
+    for (Eigen::Index from = 0; from < effort_.rows(); ++from) {
+      effort_.row(from) =
+          -(pose_centres_.rowwise() - pose_centres_.row(from)).rowwise().squaredNorm();
+    }
+    std::vector<Demonstration> demonstrations;
+    Counts counts(pose_centres_.rows(), leader_centres_.rows());
+    for (const StandardPair& pair : pairs) {
+      demonstrations.push_back({NearestCentres(leader_centres_, leader_.Project(pair.cues)),
+                                NearestCentres(pose_centres_, follower_.Project(pair.follower))});
+      counts.Add(demonstrations.back(), 1);
+    }
+    tables_ = Tables(counts);
+    LearnReward(demonstrations, counts);
+  }
+
+  Rows Predict(const StandardPair& leader) const override {
+    const std::vector<int> seen = NearestCentres(leader_centres_, leader_.Project(leader.cues));
+    return follower_.Reconstruct(Visits(tables_, seen) * pose_centres_);
+  }
 
  private:
-  void LearnReward(const std::vector<Demonstration>& demonstrations, const Counts& counts);
+  void LearnReward(const std::vector<Demonstration>& demonstrations, const Counts& counts) {
+    // Each demonstration is explained by the counts of the others: its own would overfit.
+    std::vector<Tables> others;
+    double frames = 0;
+    for (const Demonstration& one : demonstrations) {
+      Counts rest = counts;
+      if (demonstrations.size() > 1) rest.Add(one, -1);
+      others.emplace_back(rest);
+      frames += static_cast<double>(one.pose.size());
+    }
+    const Weights initial = Weights(1, 1, 0);
+    weights_ = initial;
+    Weights squares = Weights::Constant(1e-12);
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      Weights gradient = Weights::Zero();
+      for (size_t i = 0; i < demonstrations.size(); ++i) {
+        gradient += Surplus(others[i], demonstrations[i]);
+      }
+      gradient = gradient / frames - kPull * (weights_ - initial);
+      squares += gradient.cwiseAbs2();
+      weights_ += kRate * gradient.cwiseQuotient(squares.cwiseSqrt());
+    }
+  }
+
   // Features of the demonstration minus the policy's expected features.
-  Weights Surplus(const Tables& tables, const Demonstration& one) const;
+  Weights Surplus(const Tables& tables, const Demonstration& one) const {
+    Eigen::MatrixXd steps = Eigen::MatrixXd::Zero(effort_.rows(), effort_.cols());
+    const Rows visits = Visits(tables, one.leader, &steps);
+    Weights surplus(0, tables.start(one.pose[0]) - visits.row(0).dot(tables.start), 0);
+    for (size_t t = 0; t < one.pose.size(); ++t) {
+      const auto fit = tables.leader_given_pose.row(one.leader[t]);
+      surplus(0) += fit(one.pose[t]) - visits.row(static_cast<Eigen::Index>(t)).dot(fit);
+      if (t > 0) steps(one.pose[t - 1], one.pose[t]) -= 1;
+    }
+    surplus(1) -= steps.cwiseProduct(tables.step).sum();
+    surplus(2) -= steps.cwiseProduct(effort_).sum();
+    return surplus;
+  }
+
   // How probable each pose is in each frame. `steps`: as in SumOverPaths.
   Rows Visits(const Tables& tables, const std::vector<int>& leader,
-              Eigen::MatrixXd* steps = nullptr) const;
+              Eigen::MatrixXd* steps = nullptr) const {
+    Rows arrivals(leader.size(), pose_centres_.rows());
+    for (size_t t = 0; t < leader.size(); ++t) {
+      arrivals.row(static_cast<Eigen::Index>(t)) =
+          weights_(0) * tables.leader_given_pose.row(leader[t]);
+    }
+    const ChainWeights chain = {(weights_(1) * tables.start).array().exp(),
+                                (weights_(1) * tables.step + weights_(2) * effort_).array().exp()};
+    return SumOverPaths(chain, arrivals, steps).states;
+  }
 
   PoseSpace leader_, follower_;
   Rows leader_centres_, pose_centres_;  // in the components
@@ -86,84 +154,6 @@ class DiscreteMdp : public ClassModel {
   Eigen::MatrixXd effort_;  // [from, to] minus the squared change of pose
   Weights weights_;
 };
-
-Rows DiscreteMdp::Visits(const Tables& tables, const std::vector<int>& leader,
-                         Eigen::MatrixXd* steps) const {
-  Rows arrivals(leader.size(), pose_centres_.rows());
-  for (size_t t = 0; t < leader.size(); ++t) {
-    arrivals.row(static_cast<Eigen::Index>(t)) =
-        weights_(0) * tables.leader_given_pose.row(leader[t]);
-  }
-  const ChainWeights chain = {(weights_(1) * tables.start).array().exp(),
-                              (weights_(1) * tables.step + weights_(2) * effort_).array().exp()};
-  return SumOverPaths(chain, arrivals, steps).states;
-}
-
-Weights DiscreteMdp::Surplus(const Tables& tables, const Demonstration& one) const {
-  Eigen::MatrixXd steps = Eigen::MatrixXd::Zero(effort_.rows(), effort_.cols());
-  const Rows visits = Visits(tables, one.leader, &steps);
-  Weights surplus(0, tables.start(one.pose[0]) - visits.row(0).dot(tables.start), 0);
-  for (size_t t = 0; t < one.pose.size(); ++t) {
-    const auto fit = tables.leader_given_pose.row(one.leader[t]);
-    surplus(0) += fit(one.pose[t]) - visits.row(static_cast<Eigen::Index>(t)).dot(fit);
-    if (t > 0) steps(one.pose[t - 1], one.pose[t]) -= 1;
-  }
-  surplus(1) -= steps.cwiseProduct(tables.step).sum();
-  surplus(2) -= steps.cwiseProduct(effort_).sum();
-  return surplus;
-}
-
-void DiscreteMdp::LearnReward(const std::vector<Demonstration>& demonstrations,
-                              const Counts& counts) {
-  // Each demonstration is explained by the counts of the others: its own would overfit.
-  std::vector<Tables> others;
-  double frames = 0;
-  for (const Demonstration& one : demonstrations) {
-    Counts rest = counts;
-    if (demonstrations.size() > 1) rest.Add(one, -1);
-    others.emplace_back(rest);
-    frames += static_cast<double>(one.pose.size());
-  }
-  const Weights initial = Weights(1, 1, 0);
-  weights_ = initial;
-  Weights squares = Weights::Constant(1e-12);
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    Weights gradient = Weights::Zero();
-    for (size_t i = 0; i < demonstrations.size(); ++i) {
-      gradient += Surplus(others[i], demonstrations[i]);
-    }
-    gradient = gradient / frames - kPull * (weights_ - initial);
-    squares += gradient.cwiseAbs2();
-    weights_ += kRate * gradient.cwiseQuotient(squares.cwiseSqrt());
-  }
-}
-
-DiscreteMdp::DiscreteMdp(const std::vector<StandardPair>& pairs) {
-  const Rows cues = StackCues(pairs), poses = StackFollowers(pairs);
-  leader_ = PoseSpace(cues, kComponents);
-  follower_ = PoseSpace(poses, kComponents);
-  leader_centres_ = KMeans(leader_.Project(cues), kLeaderStates, kSeed);
-  pose_centres_ = KMeans(follower_.Project(poses), kPoseStates, kSeed);
-  effort_.resize(pose_centres_.rows(), pose_centres_.rows());
-  for (Eigen::Index from = 0; from < effort_.rows(); ++from) {
-    effort_.row(from) =
-        -(pose_centres_.rowwise() - pose_centres_.row(from)).rowwise().squaredNorm();
-  }
-  std::vector<Demonstration> demonstrations;
-  Counts counts(pose_centres_.rows(), leader_centres_.rows());
-  for (const StandardPair& pair : pairs) {
-    demonstrations.push_back({NearestCentres(leader_centres_, leader_.Project(pair.cues)),
-                              NearestCentres(pose_centres_, follower_.Project(pair.follower))});
-    counts.Add(demonstrations.back(), 1);
-  }
-  tables_ = Tables(counts);
-  LearnReward(demonstrations, counts);
-}
-
-Rows DiscreteMdp::Predict(const StandardPair& leader) const {
-  const std::vector<int> seen = NearestCentres(leader_centres_, leader_.Project(leader.cues));
-  return follower_.Reconstruct(Visits(tables_, seen) * pose_centres_);
-}
 
 }  // namespace
 

@@ -2,9 +2,10 @@
 #include <cmath>
 #include <limits>
 
+#include "model/base/median.h"
 #include "model/evaluation/baselines/chain.h"
 #include "model/evaluation/baselines/class_models.h"
-#include "model/evaluation/baselines/pose_space.h"
+#include "model/evaluation/baselines/motion_matrix.h"
 
 namespace duet::evaluation::baselines {
 namespace {
@@ -39,9 +40,7 @@ double MedianNearest(const Eigen::MatrixXd& squared, const std::vector<int>& cli
   }
   const double least_width = kLeastWidth * std::sqrt(squared.mean()) + kTiny;
   if (nearest.empty()) return least_width;  // a single clip
-  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
-  std::nth_element(nearest.begin(), middle, nearest.end());
-  return std::max(*middle, least_width);
+  return std::max(base::Median(nearest), least_width);
 }
 
 // Rows 0, n, 2 n, ...
@@ -64,20 +63,116 @@ Rows FillBetween(const Rows& kept, Eigen::Index n, Eigen::Index rows) {
 
 class KernelRl : public ClassModel {
  public:
-  explicit KernelRl(const std::vector<StandardPair>& pairs);
-  Rows Predict(const StandardPair& leader) const override;
+  explicit KernelRl(const std::vector<StandardPair>& pairs) {
+    const Rows cues = StackCues(pairs), poses = StackFollowers(pairs);
+    leader_ = PoseSpace(cues, kComponents);
+    follower_ = PoseSpace(poses, kComponents);
+    stride_ = (cues.rows() + kMostSamples - 1) / kMostSamples;
+    std::vector<Eigen::Index> kept;
+    std::vector<int> successor;
+    Eigen::Index first = 0;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      const Eigen::Index frames = pairs[i].cues.rows();
+      for (Eigen::Index t = 0; t < frames; t += stride_) {
+        const int index = static_cast<int>(kept.size());
+        kept.push_back(first + t);
+        clip_.push_back(static_cast<int>(i));
+        // A clip's last pose follows itself.
+        successor.push_back(t + stride_ < frames ? index + 1 : index);
+      }
+      first += frames;
+    }
+    cues_ = leader_.Project(cues(kept, Eigen::all));
+    poses_ = follower_.Project(poses(kept, Eigen::all));
+    BuildStep(successor);
+    LearnReward(pairs);
+  }
+
+  Rows Predict(const StandardPair& leader) const override {
+    const Rows visits = Plan(reward_weight_ * Cost(leader.cues), /*without=*/-1).states;
+    return follower_.Reconstruct(FillBetween(MeanShift(visits), stride_, leader.cues.rows()));
+  }
 
  private:
-  void BuildStep(const std::vector<int>& successor);
-  void LearnReward(const std::vector<StandardPair>& pairs);
-  double LogLikelihood(const std::vector<StandardPair>& pairs, double weight) const;
+  void BuildStep(const std::vector<int>& successor) {
+    // A state is a pose and its change: without the change, motion could reverse freely.
+    const Eigen::Index samples = poses_.rows(), width = poses_.cols();
+    Rows states(samples, 2 * width);
+    for (Eigen::Index i = 0; i < samples; ++i) {
+      const Eigen::Index next = successor[static_cast<size_t>(i)];
+      states.row(i) << poses_.row(i), kVelocityWeight * (poses_.row(next) - poses_.row(i));
+    }
+    pose_width_ = MedianNearest(SquaredDistances(poses_, poses_), clip_);
+    const Eigen::MatrixXd squared = SquaredDistances(states, states);
+    const double spread = kTransitionWidth * MedianNearest(squared, clip_);
+    Eigen::MatrixXd kernel = (-squared / (2 * spread * spread)).array().exp();
+    kernel.array().colwise() /= kernel.rowwise().sum().array().eval();
+    step_ = Eigen::MatrixXd::Zero(samples, samples);
+    for (Eigen::Index like = 0; like < samples; ++like) {
+      step_.col(successor[static_cast<size_t>(like)]) += kernel.col(like);
+    }
+  }
+
+  void LearnReward(const std::vector<StandardPair>& pairs) {
+    const double cue_width = MedianNearest(SquaredDistances(cues_, cues_), clip_);
+    double best = -std::numeric_limits<double>::infinity();
+    for (int power = kLeastPower; power <= kMostPower; ++power) {
+      const double weight = std::pow(2, power) / (2 * cue_width * cue_width);
+      const double likelihood = LogLikelihood(pairs, weight);
+      if (likelihood <= best) continue;
+      best = likelihood;
+      reward_weight_ = weight;
+    }
+  }
+
+  double LogLikelihood(const std::vector<StandardPair>& pairs, double weight) const {
+    const size_t stride = std::max<size_t>(1, pairs.size() / size_t{kDemonstrations});
+    const double precision = 1 / (2 * pose_width_ * pose_width_);
+    double sum = 0;
+    for (size_t i = 0; pairs.size() > 1 && i < pairs.size(); i += stride) {
+      const int clip = static_cast<int>(i);
+      const Rows cost = weight * Cost(pairs[i].cues);
+      const Rows noise =
+          precision *
+          SquaredDistances(EveryNth(follower_.Project(pairs[i].follower), stride_), poses_);
+      sum += Plan(cost + noise, clip).log_sum - Plan(cost, clip).log_sum;
+    }
+    return sum;
+  }
+
   // Distances between the leader's cues and each sample's. Shapes: returns [frames / stride,
   // samples].
-  Rows Cost(const Rows& cues) const;
+  Rows Cost(const Rows& cues) const {
+    return SquaredDistances(EveryNth(leader_.Project(cues), stride_), cues_);
+  }
+
   // Soft value iteration and the policy's visits, given the cost of arriving at each sample in each
   // frame. Ignores samples of the clip `without` (-1: none).
-  PathPosterior Plan(const Rows& cost, int without) const;
-  Rows MeanShift(const Rows& visits) const;
+  PathPosterior Plan(const Rows& cost, int without) const {
+    Rows arrivals = -cost;
+    for (Eigen::Index i = 0; i < arrivals.cols(); ++i) {
+      if (clip_[static_cast<size_t>(i)] == without) arrivals.col(i).setConstant(kNever);
+    }
+    return SumOverPaths({Eigen::RowVectorXd::Ones(arrivals.cols()), step_}, arrivals);
+  }
+
+  Rows MeanShift(const Rows& visits) const {
+    const double width = kDecodingWidth * pose_width_;
+    Rows poses(visits.rows(), poses_.cols());
+    for (Eigen::Index t = 0; t < visits.rows(); ++t) {
+      Eigen::Index likeliest = 0;
+      visits.row(t).maxCoeff(&likeliest);
+      Rows pose = poses_.row(likeliest);
+      for (int i = 0; i < kMeanShifts; ++i) {
+        const Eigen::RowVectorXd kernel =
+            (-SquaredDistances(pose, poses_) / (2 * width * width)).array().exp();
+        const Eigen::RowVectorXd weights = kernel.cwiseProduct(visits.row(t));
+        pose = weights * poses_ / weights.sum();
+      }
+      poses.row(t) = pose;
+    }
+    return poses;
+  }
 
   PoseSpace leader_, follower_;
   Eigen::Index stride_ = 1;  // frames from one sample to the next
@@ -87,114 +182,6 @@ class KernelRl : public ClassModel {
   double pose_width_ = 1;    // median distance to the nearest sample of another clip
   double reward_weight_ = 1;
 };
-
-void KernelRl::BuildStep(const std::vector<int>& successor) {
-  // A state is a pose and its change: without the change, motion could reverse freely.
-  const Eigen::Index samples = poses_.rows(), width = poses_.cols();
-  Rows states(samples, 2 * width);
-  for (Eigen::Index i = 0; i < samples; ++i) {
-    const Eigen::Index next = successor[static_cast<size_t>(i)];
-    states.row(i) << poses_.row(i), kVelocityWeight * (poses_.row(next) - poses_.row(i));
-  }
-  pose_width_ = MedianNearest(SquaredDistances(poses_, poses_), clip_);
-  const Eigen::MatrixXd squared = SquaredDistances(states, states);
-  const double spread = kTransitionWidth * MedianNearest(squared, clip_);
-  Eigen::MatrixXd kernel = (-squared / (2 * spread * spread)).array().exp();
-  kernel.array().colwise() /= kernel.rowwise().sum().array().eval();
-  step_ = Eigen::MatrixXd::Zero(samples, samples);
-  for (Eigen::Index like = 0; like < samples; ++like) {
-    step_.col(successor[static_cast<size_t>(like)]) += kernel.col(like);
-  }
-}
-
-Rows KernelRl::Cost(const Rows& cues) const {
-  return SquaredDistances(EveryNth(leader_.Project(cues), stride_), cues_);
-}
-
-PathPosterior KernelRl::Plan(const Rows& cost, int without) const {
-  Rows arrivals = -cost;
-  for (Eigen::Index i = 0; i < arrivals.cols(); ++i) {
-    if (clip_[static_cast<size_t>(i)] == without) arrivals.col(i).setConstant(kNever);
-  }
-  return SumOverPaths({Eigen::RowVectorXd::Ones(arrivals.cols()), step_}, arrivals);
-}
-
-void KernelRl::LearnReward(const std::vector<StandardPair>& pairs) {
-  const double cue_width = MedianNearest(SquaredDistances(cues_, cues_), clip_);
-  double best = -std::numeric_limits<double>::infinity();
-  for (int power = kLeastPower; power <= kMostPower; ++power) {
-    const double weight = std::pow(2, power) / (2 * cue_width * cue_width);
-    const double likelihood = LogLikelihood(pairs, weight);
-    if (likelihood <= best) continue;
-    best = likelihood;
-    reward_weight_ = weight;
-  }
-}
-
-// The log-likelihood of the demonstrated poses, each as a sample's pose with Gaussian noise.
-// Excludes a clip's own samples, which would overfit.
-double KernelRl::LogLikelihood(const std::vector<StandardPair>& pairs, double weight) const {
-  const size_t stride = std::max<size_t>(1, pairs.size() / size_t{kDemonstrations});
-  const double precision = 1 / (2 * pose_width_ * pose_width_);
-  double sum = 0;
-  for (size_t i = 0; pairs.size() > 1 && i < pairs.size(); i += stride) {
-    const int clip = static_cast<int>(i);
-    const Rows cost = weight * Cost(pairs[i].cues);
-    const Rows noise =
-        precision *
-        SquaredDistances(EveryNth(follower_.Project(pairs[i].follower), stride_), poses_);
-    sum += Plan(cost + noise, clip).log_sum - Plan(cost, clip).log_sum;
-  }
-  return sum;
-}
-
-KernelRl::KernelRl(const std::vector<StandardPair>& pairs) {
-  const Rows cues = StackCues(pairs), poses = StackFollowers(pairs);
-  leader_ = PoseSpace(cues, kComponents);
-  follower_ = PoseSpace(poses, kComponents);
-  stride_ = (cues.rows() + kMostSamples - 1) / kMostSamples;
-  std::vector<Eigen::Index> kept;
-  std::vector<int> successor;
-  Eigen::Index first = 0;
-  for (size_t i = 0; i < pairs.size(); ++i) {
-    const Eigen::Index frames = pairs[i].cues.rows();
-    for (Eigen::Index t = 0; t < frames; t += stride_) {
-      const int index = static_cast<int>(kept.size());
-      kept.push_back(first + t);
-      clip_.push_back(static_cast<int>(i));
-      // A clip's last pose follows itself.
-      successor.push_back(t + stride_ < frames ? index + 1 : index);
-    }
-    first += frames;
-  }
-  cues_ = leader_.Project(cues(kept, Eigen::all));
-  poses_ = follower_.Project(poses(kept, Eigen::all));
-  BuildStep(successor);
-  LearnReward(pairs);
-}
-
-Rows KernelRl::MeanShift(const Rows& visits) const {
-  const double width = kDecodingWidth * pose_width_;
-  Rows poses(visits.rows(), poses_.cols());
-  for (Eigen::Index t = 0; t < visits.rows(); ++t) {
-    Eigen::Index likeliest = 0;
-    visits.row(t).maxCoeff(&likeliest);
-    Rows pose = poses_.row(likeliest);
-    for (int i = 0; i < kMeanShifts; ++i) {
-      const Eigen::RowVectorXd kernel =
-          (-SquaredDistances(pose, poses_) / (2 * width * width)).array().exp();
-      const Eigen::RowVectorXd weights = kernel.cwiseProduct(visits.row(t));
-      pose = weights * poses_ / weights.sum();
-    }
-    poses.row(t) = pose;
-  }
-  return poses;
-}
-
-Rows KernelRl::Predict(const StandardPair& leader) const {
-  const Rows visits = Plan(reward_weight_ * Cost(leader.cues), /*without=*/-1).states;
-  return follower_.Reconstruct(FillBetween(MeanShift(visits), stride_, leader.cues.rows()));
-}
 
 }  // namespace
 

@@ -4,9 +4,7 @@
 
 #include "model/base/random.h"
 #include "model/evaluation/baselines/class_models.h"
-#include "model/evaluation/baselines/kmeans.h"
-#include "model/evaluation/baselines/pose_space.h"
-#include "model/evaluation/baselines/sample_index.h"
+#include "model/evaluation/baselines/motion_matrix.h"
 
 namespace duet::evaluation::baselines {
 namespace {
@@ -108,19 +106,156 @@ struct Rollouts {
 
 class MaxEntIoc : public ClassModel {
  public:
-  explicit MaxEntIoc(const std::vector<StandardPair>& pairs);
-  Rows Predict(const StandardPair& leader) const override;
+  explicit MaxEntIoc(const std::vector<StandardPair>& pairs) {
+    const Rows all_cues = StackCues(pairs), all_poses = StackFollowers(pairs);
+    leader_ = PoseSpace(all_cues, kLeaderComponents);
+    follower_ = PoseSpace(all_poses, kPoseComponents);
+    const Rows cues = leader_.Project(all_cues), poses = follower_.Project(all_poses);
+    regression_ = FitRegression(cues, poses, kRidge);
+    std::vector<Rows> changes;
+    std::vector<const Rows*> parts;
+    Eigen::Index first = 0;
+    for (const StandardPair& pair : pairs) {
+      changes.push_back(Changes(poses.middleRows(first, pair.cues.rows())));
+      first += pair.cues.rows();
+    }
+    for (const Rows& part : changes) parts.push_back(&part);
+    PrepareActions(StackRows(parts));
+    PrepareValues(poses);
+    std::vector<Demonstration> demonstrations;
+    first = 0;
+    for (const StandardPair& pair : pairs) {
+      const Eigen::Index frames = pair.cues.rows();
+      // Fitted without the clip, which the regression would otherwise memorise.
+      const Eigen::MatrixXd regression =
+          pairs.size() == 1
+              ? regression_
+              : FitRegression(Without(cues, first, frames), Without(poses, first, frames), kRidge);
+      demonstrations.push_back(
+          Demonstrate(WithConstant(cues.middleRows(first, frames)) * regression,
+                      poses.middleRows(first, frames)));
+      first += frames;
+    }
+    LearnReward(demonstrations);
+  }
+
+  Rows Predict(const StandardPair& leader) const override {
+    const Rows expected = WithConstant(leader_.Project(leader.cues)) * regression_;
+    base::Random random(kSeed);
+    return follower_.Reconstruct(Sample(expected, kAnswerRollouts, &random).mean);
+  }
 
  private:
   // The radial functions at the centres, normalised to a sum of one. Shapes: squared [n, centres].
-  Rows Basis(const Eigen::MatrixXd& squared) const;
-  void PrepareActions(const Rows& changes);
-  void PrepareValues(const Rows& poses);
+  Rows Basis(const Eigen::MatrixXd& squared) const {
+    // Relative to the nearest centre, so that the sum never underflows. Normalisation bounds the
+    // values of poses far from all centres by those near them.
+    const Eigen::VectorXd nearest = squared.rowwise().minCoeff();
+    Rows basis = (-(squared.colwise() - nearest) / (2 * width_ * width_)).array().exp();
+    basis.array().colwise() /= basis.rowwise().sum().array().eval();
+    return basis;
+  }
+
+  void PrepareActions(const Rows& changes) {
+    actions_ = KMeans(changes, kActions, kSeed);
+    Eigen::VectorXd counts = Eigen::VectorXd::Ones(actions_.rows());
+    for (const int action : NearestCentres(actions_, changes)) counts(action) += 1;
+    usual_ = (counts / counts.sum()).array().log();
+  }
+
+  void PrepareValues(const Rows& poses) {
+    centres_ = KMeans(poses, kValueCentres, kSeed);
+    width_ = MeanSpacing(centres_);
+    samples_ = Thin(poses, kValueSamples);
+    arrivals_ = OuterSum(samples_, actions_);
+    const Eigen::MatrixXd squared = SquaredDistances(arrivals_, centres_);
+    arrival_basis_ = Basis(squared);
+    arrival_costs_ = Costs::Zero(squared.rows(), kFeatures);
+    arrival_costs_.col(1) = actions_.rowwise().squaredNorm().replicate(samples_.rows(), 1);
+    arrival_costs_.col(2) = arrivals_.rowwise().squaredNorm();
+    const Rows basis = Basis(SquaredDistances(samples_, centres_));
+    Eigen::MatrixXd normal = basis.transpose() * basis;
+    normal.diagonal().array() += kValueRidge;
+    fit_ = normal.ldlt().solve(Eigen::MatrixXd(basis.transpose()));
+  }
+
   // Coefficients of the soft value function of each frame. Shapes: returns [frames, basis].
-  Rows SoftValues(const Rows& expected) const;
+  Rows SoftValues(const Rows& expected) const {
+    const Eigen::Index actions = actions_.rows(), samples = samples_.rows();
+    const Eigen::VectorXd fixed = arrival_costs_ * weights_;
+    Rows values = Rows::Zero(expected.rows(), arrival_basis_.cols());
+    for (Eigen::Index t = expected.rows() - 2; t >= 0; --t) {
+      // V_t(s) = log sum_a p(a) exp(r(s, s + a) + V_{t+1}(s + a)), fitted on the samples.
+      const Eigen::VectorXd totals =
+          arrival_basis_ * values.row(t + 1).transpose() - fixed -
+          weights_(0) * (arrivals_.rowwise() - expected.row(t + 1)).rowwise().squaredNorm();
+      Eigen::VectorXd targets(samples);
+      for (Eigen::Index i = 0; i < samples; ++i) {
+        const Eigen::VectorXd choices = totals.segment(i * actions, actions) + usual_;
+        const double largest = choices.maxCoeff();
+        targets(i) = largest + std::log((choices.array() - largest).exp().sum());
+      }
+      values.row(t) = (fit_ * targets).transpose();
+    }
+    return values;
+  }
+
   // Samples `paths` answers from the policy of the soft value function.
-  Rollouts Sample(const Rows& expected, int paths, base::Random* random) const;
-  void LearnReward(const std::vector<Demonstration>& demonstrations);
+  Rollouts Sample(const Rows& expected, int paths, base::Random* random) const {
+    const Rows values = SoftValues(expected);
+    const Eigen::Index actions = actions_.rows();
+    const Eigen::VectorXd effort = actions_.rowwise().squaredNorm();
+    Rollouts rollouts;
+    rollouts.mean.resize(expected.rows(), expected.cols());
+    rollouts.mean.row(0) = expected.row(0);
+    Rows poses = expected.row(0).replicate(paths, 1);
+    for (Eigen::Index t = 1; t < expected.rows(); ++t) {
+      const Rows next = OuterSum(poses, actions_);
+      Costs costs(next.rows(), kFeatures);
+      costs.col(0) = (next.rowwise() - expected.row(t)).rowwise().squaredNorm();
+      costs.col(1) = effort.replicate(paths, 1);
+      costs.col(2) = next.rowwise().squaredNorm();
+      const Eigen::VectorXd totals =
+          Basis(SquaredDistances(next, centres_)) * values.row(t).transpose() - costs * weights_;
+      for (int path = 0; path < paths; ++path) {
+        const Eigen::VectorXd choices = totals.segment(path * actions, actions) + usual_;
+        const Eigen::VectorXd policy = (choices.array() - choices.maxCoeff()).exp();
+        const Eigen::Index pick = path * actions + SampleIndex(policy, random);
+        poses.row(path) = next.row(pick);
+        rollouts.costs += costs.row(pick).transpose() / paths;
+      }
+      rollouts.mean.row(t) = poses.colwise().mean();
+    }
+    return rollouts;
+  }
+
+  void LearnReward(const std::vector<Demonstration>& demonstrations) {
+    base::Random random(kSeed);
+    // Initial weights: those of independent Gaussians with the demonstrations' spread.
+    Weights total = Weights::Constant(kLeastFeature);
+    double steps = 0;
+    for (const Demonstration& one : demonstrations) {
+      total += one.costs;
+      steps += static_cast<double>(one.poses.rows() - 1);
+    }
+    const double freedom = steps * static_cast<double>(samples_.cols());
+    weights_ = 0.5 * freedom * total.cwiseInverse();
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      Weights excess = Weights::Zero(), scale = Weights::Constant(kLeastFeature);
+      for (int i = 0; i < kDemonstrations; ++i) {
+        const auto drawn = random.Below(static_cast<int64_t>(demonstrations.size()));
+        const Demonstration& one = demonstrations[static_cast<size_t>(drawn)];
+        excess += Sample(one.expected, kRollouts, &random).costs - one.costs;
+        scale += one.costs;
+      }
+      // Raise the weight of costs that the policy incurs more than people do.
+      const Weights step = excess.cwiseQuotient(scale).cwiseMax(-1).cwiseMin(1);
+      const double rate = kRate / std::sqrt(1.0 + iteration);
+      weights_ = weights_.cwiseProduct((rate * step).array().exp().matrix())
+                     .cwiseMax(kLeastWeight)
+                     .cwiseMin(kMostWeight);
+    }
+  }
 
   PoseSpace leader_, follower_;
   Eigen::MatrixXd regression_;  // from cues and a constant to poses
@@ -135,152 +270,6 @@ class MaxEntIoc : public ClassModel {
   Eigen::MatrixXd fit_;         // [basis, samples]: values at the samples to coefficients
   Weights weights_;
 };
-
-Rows MaxEntIoc::Basis(const Eigen::MatrixXd& squared) const {
-  // Relative to the nearest centre, so that the sum never underflows. Normalisation bounds the
-  // values of poses far from all centres by those near them.
-  const Eigen::VectorXd nearest = squared.rowwise().minCoeff();
-  Rows basis = (-(squared.colwise() - nearest) / (2 * width_ * width_)).array().exp();
-  basis.array().colwise() /= basis.rowwise().sum().array().eval();
-  return basis;
-}
-
-void MaxEntIoc::PrepareActions(const Rows& changes) {
-  actions_ = KMeans(changes, kActions, kSeed);
-  Eigen::VectorXd counts = Eigen::VectorXd::Ones(actions_.rows());
-  for (const int action : NearestCentres(actions_, changes)) counts(action) += 1;
-  usual_ = (counts / counts.sum()).array().log();
-}
-
-void MaxEntIoc::PrepareValues(const Rows& poses) {
-  centres_ = KMeans(poses, kValueCentres, kSeed);
-  width_ = MeanSpacing(centres_);
-  samples_ = Thin(poses, kValueSamples);
-  arrivals_ = OuterSum(samples_, actions_);
-  const Eigen::MatrixXd squared = SquaredDistances(arrivals_, centres_);
-  arrival_basis_ = Basis(squared);
-  arrival_costs_ = Costs::Zero(squared.rows(), kFeatures);
-  arrival_costs_.col(1) = actions_.rowwise().squaredNorm().replicate(samples_.rows(), 1);
-  arrival_costs_.col(2) = arrivals_.rowwise().squaredNorm();
-  const Rows basis = Basis(SquaredDistances(samples_, centres_));
-  Eigen::MatrixXd normal = basis.transpose() * basis;
-  normal.diagonal().array() += kValueRidge;
-  fit_ = normal.ldlt().solve(Eigen::MatrixXd(basis.transpose()));
-}
-
-Rows MaxEntIoc::SoftValues(const Rows& expected) const {
-  const Eigen::Index actions = actions_.rows(), samples = samples_.rows();
-  const Eigen::VectorXd fixed = arrival_costs_ * weights_;
-  Rows values = Rows::Zero(expected.rows(), arrival_basis_.cols());
-  for (Eigen::Index t = expected.rows() - 2; t >= 0; --t) {
-    // V_t(s) = log sum_a p(a) exp(r(s, s + a) + V_{t+1}(s + a)), fitted on the samples.
-    const Eigen::VectorXd totals =
-        arrival_basis_ * values.row(t + 1).transpose() - fixed -
-        weights_(0) * (arrivals_.rowwise() - expected.row(t + 1)).rowwise().squaredNorm();
-    Eigen::VectorXd targets(samples);
-    for (Eigen::Index i = 0; i < samples; ++i) {
-      const Eigen::VectorXd choices = totals.segment(i * actions, actions) + usual_;
-      const double largest = choices.maxCoeff();
-      targets(i) = largest + std::log((choices.array() - largest).exp().sum());
-    }
-    values.row(t) = (fit_ * targets).transpose();
-  }
-  return values;
-}
-
-Rollouts MaxEntIoc::Sample(const Rows& expected, int paths, base::Random* random) const {
-  const Rows values = SoftValues(expected);
-  const Eigen::Index actions = actions_.rows();
-  const Eigen::VectorXd effort = actions_.rowwise().squaredNorm();
-  Rollouts rollouts;
-  rollouts.mean.resize(expected.rows(), expected.cols());
-  rollouts.mean.row(0) = expected.row(0);
-  Rows poses = expected.row(0).replicate(paths, 1);
-  for (Eigen::Index t = 1; t < expected.rows(); ++t) {
-    const Rows next = OuterSum(poses, actions_);
-    Costs costs(next.rows(), kFeatures);
-    costs.col(0) = (next.rowwise() - expected.row(t)).rowwise().squaredNorm();
-    costs.col(1) = effort.replicate(paths, 1);
-    costs.col(2) = next.rowwise().squaredNorm();
-    const Eigen::VectorXd totals =
-        Basis(SquaredDistances(next, centres_)) * values.row(t).transpose() - costs * weights_;
-    for (int path = 0; path < paths; ++path) {
-      const Eigen::VectorXd choices = totals.segment(path * actions, actions) + usual_;
-      const Eigen::VectorXd policy = (choices.array() - choices.maxCoeff()).exp();
-      const Eigen::Index pick = path * actions + SampleIndex(policy, random);
-      poses.row(path) = next.row(pick);
-      rollouts.costs += costs.row(pick).transpose() / paths;
-    }
-    rollouts.mean.row(t) = poses.colwise().mean();
-  }
-  return rollouts;
-}
-
-void MaxEntIoc::LearnReward(const std::vector<Demonstration>& demonstrations) {
-  base::Random random(kSeed);
-  // Initial weights: those of independent Gaussians with the demonstrations' spread.
-  Weights total = Weights::Constant(kLeastFeature);
-  double steps = 0;
-  for (const Demonstration& one : demonstrations) {
-    total += one.costs;
-    steps += static_cast<double>(one.poses.rows() - 1);
-  }
-  const double freedom = steps * static_cast<double>(samples_.cols());
-  weights_ = 0.5 * freedom * total.cwiseInverse();
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    Weights excess = Weights::Zero(), scale = Weights::Constant(kLeastFeature);
-    for (int i = 0; i < kDemonstrations; ++i) {
-      const auto drawn = random.Below(static_cast<int64_t>(demonstrations.size()));
-      const Demonstration& one = demonstrations[static_cast<size_t>(drawn)];
-      excess += Sample(one.expected, kRollouts, &random).costs - one.costs;
-      scale += one.costs;
-    }
-    // Raise the weight of costs that the policy incurs more than people do.
-    const Weights step = excess.cwiseQuotient(scale).cwiseMax(-1).cwiseMin(1);
-    const double rate = kRate / std::sqrt(1.0 + iteration);
-    weights_ = weights_.cwiseProduct((rate * step).array().exp().matrix())
-                   .cwiseMax(kLeastWeight)
-                   .cwiseMin(kMostWeight);
-  }
-}
-
-MaxEntIoc::MaxEntIoc(const std::vector<StandardPair>& pairs) {
-  const Rows all_cues = StackCues(pairs), all_poses = StackFollowers(pairs);
-  leader_ = PoseSpace(all_cues, kLeaderComponents);
-  follower_ = PoseSpace(all_poses, kPoseComponents);
-  const Rows cues = leader_.Project(all_cues), poses = follower_.Project(all_poses);
-  regression_ = FitRegression(cues, poses, kRidge);
-  std::vector<Rows> changes;
-  std::vector<const Rows*> parts;
-  Eigen::Index first = 0;
-  for (const StandardPair& pair : pairs) {
-    changes.push_back(Changes(poses.middleRows(first, pair.cues.rows())));
-    first += pair.cues.rows();
-  }
-  for (const Rows& part : changes) parts.push_back(&part);
-  PrepareActions(StackRows(parts));
-  PrepareValues(poses);
-  std::vector<Demonstration> demonstrations;
-  first = 0;
-  for (const StandardPair& pair : pairs) {
-    const Eigen::Index frames = pair.cues.rows();
-    // Fitted without the clip, which the regression would otherwise memorise.
-    const Eigen::MatrixXd regression =
-        pairs.size() == 1
-            ? regression_
-            : FitRegression(Without(cues, first, frames), Without(poses, first, frames), kRidge);
-    demonstrations.push_back(Demonstrate(WithConstant(cues.middleRows(first, frames)) * regression,
-                                         poses.middleRows(first, frames)));
-    first += frames;
-  }
-  LearnReward(demonstrations);
-}
-
-Rows MaxEntIoc::Predict(const StandardPair& leader) const {
-  const Rows expected = WithConstant(leader_.Project(leader.cues)) * regression_;
-  base::Random random(kSeed);
-  return follower_.Reconstruct(Sample(expected, kAnswerRollouts, &random).mean);
-}
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 #include "model/evaluation/baselines/motion_matrix.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -25,6 +25,59 @@ struct Path {
 const Path& Cheapest(const Path& a, const Path& b, const Path& c) {
   const Path& ab = a.cost <= b.cost ? a : b;
   return ab.cost <= c.cost ? ab : c;
+}
+
+// Components with less than this share of the strongest one's variance are rounding.
+constexpr double kNoVariance = 1e-10;
+
+Rows Stack(const std::vector<StandardPair>& pairs, Rows StandardPair::*part) {
+  std::vector<const Rows*> parts;
+  for (const StandardPair& pair : pairs) parts.push_back(&(pair.*part));
+  return StackRows(parts);
+}
+
+Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world) {
+  const Rows pose = ToRows(frame.Apply(world));
+  const Eigen::Index frames = pose.rows(), width = pose.cols();
+  Rows cues(frames, 2 * width + 4);
+  for (Eigen::Index t = 0; t < frames; ++t) {
+    const Eigen::Index before = std::max<Eigen::Index>(t - kVelocityReach, 0);
+    const Eigen::Index after = std::min(t + kVelocityReach, frames - 1);
+    cues.row(t).head(width) = pose.row(t);
+    cues.row(t).segment(width, width) = pose.row(after) - pose.row(before);
+    // For any joint, its coordinates in this frame's system and in the first frame's differ by the
+    // root's movement.
+    const motion::Vec3 way =
+        frame.Apply(world.at(static_cast<int>(t), 0)) -
+        motion::Vec3{static_cast<float>(pose(t, 0)), static_cast<float>(pose(t, 1)),
+                     static_cast<float>(pose(t, 2))};
+    cues.row(t).segment(2 * width, 3) = kWayWeight * Eigen::RowVector3d(way.x, way.y, way.z);
+    cues(t, 2 * width + 3) = kTimeWeight * static_cast<double>(t) /
+                             static_cast<double>(std::max<Eigen::Index>(frames - 1, 1));
+  }
+  return cues;
+}
+
+constexpr int kMaxIterations = 100;
+
+// Picks rows with probability proportional to the squared distance to those picked before.
+Rows Seeds(const Rows& rows, int clusters, base::Random* random) {
+  Rows centres(clusters, rows.cols());
+  Eigen::VectorXd nearest =
+      Eigen::VectorXd::Constant(rows.rows(), std::numeric_limits<double>::infinity());
+  Eigen::Index pick =
+      static_cast<Eigen::Index>(random->Uniform() * static_cast<double>(rows.rows()));
+  int count = 0;
+  for (; count < clusters; ++count) {
+    centres.row(count) = rows.row(pick);
+    nearest = nearest.cwiseMin((rows.rowwise() - centres.row(count)).rowwise().squaredNorm());
+    if (nearest.sum() <= 0) {
+      ++count;
+      break;
+    }
+    pick = SampleIndex(nearest, random);
+  }
+  return centres.topRows(count);
 }
 
 }  // namespace
@@ -59,28 +112,6 @@ motion::Poses FromRows(const Rows& rows) {
     value += 3;
   }
   return poses;
-}
-
-Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world) {
-  const Rows pose = ToRows(frame.Apply(world));
-  const Eigen::Index frames = pose.rows(), width = pose.cols();
-  Rows cues(frames, 2 * width + 4);
-  for (Eigen::Index t = 0; t < frames; ++t) {
-    const Eigen::Index before = std::max<Eigen::Index>(t - kVelocityReach, 0);
-    const Eigen::Index after = std::min(t + kVelocityReach, frames - 1);
-    cues.row(t).head(width) = pose.row(t);
-    cues.row(t).segment(width, width) = pose.row(after) - pose.row(before);
-    // For any joint, its coordinates in this frame's system and in the first frame's differ by the
-    // root's movement.
-    const motion::Vec3 way =
-        frame.Apply(world.at(static_cast<int>(t), 0)) -
-        motion::Vec3{static_cast<float>(pose(t, 0)), static_cast<float>(pose(t, 1)),
-                     static_cast<float>(pose(t, 2))};
-    cues.row(t).segment(2 * width, 3) = kWayWeight * Eigen::RowVector3d(way.x, way.y, way.z);
-    cues(t, 2 * width + 3) = kTimeWeight * static_cast<double>(t) /
-                             static_cast<double>(std::max<Eigen::Index>(frames - 1, 1));
-  }
-  return cues;
 }
 
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
@@ -141,6 +172,75 @@ Eigen::MatrixXd SquaredDistances(const Rows& a, const Rows& b) {
   distances.colwise() += a.rowwise().squaredNorm();
   distances.rowwise() += b.rowwise().squaredNorm().transpose();
   return distances.cwiseMax(0);
+}
+
+PoseSpace::PoseSpace(const Rows& rows, Eigen::Index dimensions) : mean_(rows.colwise().mean()) {
+  const Rows centred = rows.rowwise() - mean_;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(centred.transpose() * centred);
+  const Eigen::VectorXd& variance = solver.eigenvalues();  // ascending
+  const Eigen::Index values = rows.cols();
+  const double least = kNoVariance * std::max(variance(values - 1), 0.0);
+  Eigen::Index kept = std::min(dimensions, values);
+  while (kept > 1 && variance(values - kept) <= least) --kept;
+  basis_ = solver.eigenvectors().rightCols(kept).rowwise().reverse();
+}
+
+Rows PoseSpace::Project(const Rows& rows) const { return (rows.rowwise() - mean_) * basis_; }
+
+Rows PoseSpace::Reconstruct(const Rows& components) const {
+  return (components * basis_.transpose()).rowwise() + mean_;
+}
+
+Rows StackRows(const std::vector<const Rows*>& parts) {
+  Eigen::Index rows = 0;
+  for (const Rows* part : parts) rows += part->rows();
+  Rows stacked(rows, parts.front()->cols());
+  rows = 0;
+  for (const Rows* part : parts) {
+    stacked.middleRows(rows, part->rows()) = *part;
+    rows += part->rows();
+  }
+  return stacked;
+}
+
+Rows StackCues(const std::vector<StandardPair>& pairs) { return Stack(pairs, &StandardPair::cues); }
+
+Rows StackFollowers(const std::vector<StandardPair>& pairs) {
+  return Stack(pairs, &StandardPair::follower);
+}
+
+std::vector<int> NearestCentres(const Rows& centres, const Rows& rows) {
+  std::vector<int> nearest;
+  nearest.reserve(static_cast<size_t>(rows.rows()));
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    Eigen::Index of_row = 0;
+    (centres.rowwise() - rows.row(i)).rowwise().squaredNorm().minCoeff(&of_row);
+    nearest.push_back(static_cast<int>(of_row));
+  }
+  return nearest;
+}
+
+Rows KMeans(const Rows& rows, int clusters, uint64_t seed) {
+  base::Random random(seed);
+  Rows centres = Seeds(rows, clusters, &random);
+  std::vector<int> members;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    std::vector<int> nearest = NearestCentres(centres, rows);
+    if (nearest == members) break;
+    members = std::move(nearest);
+    Rows sums = Rows::Zero(centres.rows(), centres.cols());
+    Eigen::VectorXd counts = Eigen::VectorXd::Zero(centres.rows());
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+      const int centre = members[static_cast<size_t>(i)];
+      sums.row(centre) += rows.row(i);
+      counts(centre) += 1;
+    }
+    // A centre that lost all its rows stays where it was.
+    for (Eigen::Index c = 0; c < centres.rows(); ++c) {
+      if (counts(c) > 0) centres.row(c) = sums.row(c) / counts(c);
+    }
+  }
+  return centres;
 }
 
 }  // namespace duet::evaluation::baselines

@@ -2,8 +2,10 @@
 #define DUET_MODEL_EVALUATION_BASELINES_MOTION_MATRIX_H_
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
+#include "model/base/random.h"
 #include "model/dataset/dataset.h"
 #include "model/motion/poses.h"
 #include "model/motion/standardise.h"
@@ -20,7 +22,7 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 // Units: metres.
 struct StandardPair {
   Rows leader;    // [frames, 3 joints]
-  Rows cues;      // [frames, cues]: see LeaderCues
+  Rows cues;      // [frames, cues]: see StandardLeader
   Rows follower;  // [frames, 3 joints]
 };
 
@@ -29,7 +31,10 @@ motion::Standardisation BaselineStandardisation(
     const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
     motion::StandardOrigin origin = motion::StandardOrigin::kEveryFrame);
 
-// The leader's half of a pair; `follower` stays empty and sequence.pair.follower is not read.
+// The leader's half of a pair; `follower` stays empty and sequence.pair.follower is not read. The
+// cues are a method's input for the leader in each frame: the pose, its change over four frames,
+// the root's movement since the first frame, and the time from 0 to 1 (the whole leader is known).
+// Each is scaled so that typical changes have similar weights. Shapes: cues [frames, 6 joints + 4].
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence);
 StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
                                  const dataset::Sequence& sequence);
@@ -43,12 +48,6 @@ motion::Poses FollowerToWorld(const motion::Skeleton& skeleton, const dataset::S
 Rows ToRows(const motion::Poses& poses);
 motion::Poses FromRows(const Rows& rows);
 
-// A method's input for the leader in each frame: the pose, its change over four frames, the root's
-// movement since the first frame, and the time from 0 to 1 (the whole leader is known). Each is
-// scaled so that typical changes have similar weights.
-// Shapes: `world` in world metres; returns [frames, 6 joints + 4].
-Rows LeaderCues(const motion::Standardisation& frame, const motion::Poses& world);
-
 // Resamples a motion linearly to another number of frames. Both numbers are at least 1.
 Rows StretchTo(const Rows& motion, Eigen::Index frames);
 
@@ -59,6 +58,49 @@ double TimeWarpedDistance(const Rows& a, const Rows& b);
 
 // Squared distances between rows. Shapes: returns [a rows, b rows].
 Eigen::MatrixXd SquaredDistances(const Rows& a, const Rows& b);
+
+// The principal components of a set of rows.
+class PoseSpace {
+ public:
+  PoseSpace() = default;
+  // Fits at most `dimensions` components, fewer if the rows span fewer. Requires at least one row.
+  PoseSpace(const Rows& rows, Eigen::Index dimensions);
+
+  Eigen::Index dimensions() const { return basis_.cols(); }
+  // Shapes: [n, values] to [n, dimensions] and back.
+  Rows Project(const Rows& rows) const;
+  Rows Reconstruct(const Rows& components) const;
+
+ private:
+  Eigen::RowVectorXd mean_;
+  Eigen::MatrixXd basis_;  // [values, dimensions], orthonormal columns, strongest first
+};
+
+// Rows of several matrices with the same number of columns, one below the other. Requires at least
+// one matrix.
+Rows StackRows(const std::vector<const Rows*>& parts);
+
+// The cues, or the followers, of pairs, one below the other. Requires at least one pair.
+Rows StackCues(const std::vector<StandardPair>& pairs);
+Rows StackFollowers(const std::vector<StandardPair>& pairs);
+
+// Draws an index with a probability proportional to its weight. Weights are >= 0 and at least one
+// is > 0.
+inline Eigen::Index SampleIndex(const Eigen::Ref<const Eigen::VectorXd>& weights,
+                                base::Random* random) {
+  double left = random->Uniform() * weights.sum();
+  Eigen::Index pick = 0;
+  while (pick + 1 < weights.size() && left >= weights(pick)) left -= weights(pick++);
+  return pick;
+}
+
+// Centres of clusters of rows: k-means++ seeding (Arthur, Vassilvitskii 2007), then Lloyd's
+// iterations until nothing changes. At most `clusters` centres, fewer if there are fewer distinct
+// rows. The same seed gives the same centres.
+Rows KMeans(const Rows& rows, int clusters, uint64_t seed);
+
+// The index of the centre nearest to each row.
+std::vector<int> NearestCentres(const Rows& centres, const Rows& rows);
 
 }  // namespace duet::evaluation::baselines
 

@@ -4,31 +4,34 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <numeric>
 
+#include "absl/strings/str_cat.h"
 #include "model/base/statistics.h"
-#include "model/evaluation/experiments/synthesizer_method.h"
+#include "model/evaluation/experiments/answers.h"
 
 namespace duet::evaluation::experiments {
 namespace {
 
-constexpr double kLeastWeight = -1;
 constexpr int kStepsAUnit = 4;
-constexpr int kUnits = 3;
 // Of SweepWeights: -1, 0 and 1.
 constexpr size_t kMinusOne = 0, kZero = kStepsAUnit, kOne = 2 * kStepsAUnit;
 
+// The columns of the table.
+struct Column {
+  const char* name;
+  double LabelControl::*figure;
+};
+constexpr Column kColumns[] = {{"0 to 1: up", &LabelControl::raised_up},
+                               {"level", &LabelControl::raised_level},
+                               {"0 to -1: down", &LabelControl::lowered_down},
+                               {"level", &LabelControl::lowered_level},
+                               {"a step up", &LabelControl::steps_up},
+                               {"level", &LabelControl::steps_level},
+                               {"rank correlation", &LabelControl::rank_correlation}};
+
 double RaisedProbability(const SweepCurve& curve, size_t weight) {
   return curve.probabilities[weight][static_cast<size_t>(curve.raised)];
-}
-
-std::vector<double> RaisedProbabilities(const SweepCurve& curve) {
-  std::vector<double> values;
-  for (size_t i = 0; i < curve.probabilities.size(); ++i) {
-    values.push_back(RaisedProbability(curve, i));
-  }
-  return values;
 }
 
 // Ranks from 1; ties share the mean of theirs.
@@ -63,19 +66,43 @@ void AddCurve(const SweepCurve& curve, LabelControl* sums) {
     sums->steps_up += up(change(i, i + 1)) / kStepsAUnit;
     sums->steps_level += level(change(i, i + 1)) / kStepsAUnit;
   }
-  sums->rank_correlation += RankCorrelation(SweepWeights(), RaisedProbabilities(curve));
+  std::vector<double> raised;
+  for (size_t i = 0; i < curve.probabilities.size(); ++i) {
+    raised.push_back(RaisedProbability(curve, i));
+  }
+  sums->rank_correlation += RankCorrelation(SweepWeights(), raised);
+}
+
+report::TableRow ControlRow(const std::string& name, const std::vector<SweepCurve>& curves) {
+  const LabelControl control = MeasureControl(curves);
+  report::TableRow row{name, {}};
+  for (const Column& column : kColumns) row.values.push_back(control.*column.figure);
+  return row;
+}
+
+report::PlotSeries MeanLine(const std::string& name, const std::vector<SweepCurve>& curves,
+                            int of_class) {
+  const std::vector<double>& weights = SweepWeights();
+  const std::vector<double> means = MeanProbabilities(curves, of_class);
+  report::PlotSeries line{name, {}};
+  for (size_t i = 0; i < weights.size(); ++i) line.points.push_back({weights[i], means[i]});
+  return line;
+}
+
+std::string Caption(SweepKind kind, const std::string& name, const std::string& told) {
+  if (kind == SweepKind::kOwn) {
+    return absl::StrCat("Leaders of ", name, " answered with the weight of ", name, " alone, ",
+                        told, ": the judges' mean probability of every class.");
+  }
+  return absl::StrCat("Leaders of the other classes answered with their own class at 1 and ", name,
+                      " added, ", told, ": the judges' mean probability of ", name, ".");
 }
 
 }  // namespace
 
 const std::vector<double>& SweepWeights() {
-  static const auto& weights = *[] {
-    auto* all = new std::vector<double>;
-    for (int i = 0; i <= kUnits * kStepsAUnit; ++i) {
-      all->push_back(kLeastWeight + static_cast<double>(i) / kStepsAUnit);
-    }
-    return all;
-  }();
+  static const auto& weights =
+      *new std::vector<double>{-1, -0.75, -0.5, -0.25, 0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2};
   return weights;
 }
 
@@ -88,13 +115,8 @@ std::vector<float> SweepLabels(int classes, int own, int raised, double weight) 
 LabelControl MeasureControl(const std::vector<SweepCurve>& curves) {
   LabelControl control;
   for (const SweepCurve& curve : curves) AddCurve(curve, &control);
-  const double count = curves.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                      : static_cast<double>(curves.size());
-  for (double* value :
-       {&control.raised_up, &control.raised_level, &control.lowered_down, &control.lowered_level,
-        &control.steps_up, &control.steps_level, &control.rank_correlation}) {
-    *value /= count;
-  }
+  const double count = curves.empty() ? NAN : static_cast<double>(curves.size());
+  for (const Column& column : kColumns) control.*column.figure /= count;
   return control;
 }
 
@@ -119,13 +141,6 @@ std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind 
   return selected;
 }
 
-std::vector<SweepCurve> SelectOwn(const std::vector<SweepCurve>& curves, int own) {
-  std::vector<SweepCurve> selected;
-  std::copy_if(curves.begin(), curves.end(), std::back_inserter(selected),
-               [&](const SweepCurve& curve) { return curve.own == own; });
-  return selected;
-}
-
 std::vector<double> MeanProbabilities(const std::vector<SweepCurve>& curves, int of_class) {
   std::vector<double> means;
   for (size_t i = 0; i < SweepWeights().size(); ++i) {
@@ -136,6 +151,67 @@ std::vector<double> MeanProbabilities(const std::vector<SweepCurve>& curves, int
     means.push_back(sum / static_cast<double>(curves.size()));
   }
   return means;
+}
+
+report::Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
+                           const std::vector<SweepCurve>& curves, SweepKind kind) {
+  report::Table table{title};
+  for (const Column& column : kColumns) table.columns.push_back(column.name);
+  std::vector<SweepCurve> all;
+  for (size_t c = 0; c < classes.size(); ++c) {
+    const std::vector<SweepCurve> selected = Select(curves, kind, static_cast<int>(c));
+    table.rows.push_back(ControlRow(classes[c], selected));
+    all.insert(all.end(), selected.begin(), selected.end());
+  }
+  table.rows.push_back(ControlRow("all", all));
+  table.notes = {
+      "Shares of answers whose probability of the class goes the way its weight goes. Level: by "
+      "0.001 or less, either way. Steps: by 0.25, from weight 0 to 1. Rank correlation: "
+      "Spearman's, of weight and probability from -1 to 2, the mean over answers."};
+  return table;
+}
+
+report::LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
+                           const std::vector<SweepCurve>& curves, SweepKind kind, int raised) {
+  const std::string& raised_name = classes[static_cast<size_t>(raised)];
+  report::LinePlot plot;
+  plot.title = title;
+  plot.x_label = "weight of " + raised_name;
+  plot.y_label =
+      "mean probability of " + (kind == SweepKind::kOwn ? std::string("each class") : raised_name);
+  plot.y_range = {0, 1};
+  plot.markers = true;
+  plot.marked_x = {0, 1};
+  const std::vector<SweepCurve> selected = Select(curves, kind, raised);
+  for (int c = 0; c < static_cast<int>(classes.size()); ++c) {
+    const std::string& name = classes[static_cast<size_t>(c)];
+    if (kind == SweepKind::kOwn) {
+      if (!selected.empty()) plot.series.push_back(MeanLine(name, selected, c));
+    } else {
+      std::vector<SweepCurve> beside;
+      std::copy_if(selected.begin(), selected.end(), std::back_inserter(beside),
+                   [c](const SweepCurve& curve) { return curve.own == c; });
+      if (!beside.empty()) plot.series.push_back(MeanLine("beside " + name, beside, raised));
+    }
+  }
+  return plot;
+}
+
+void AddSweep(const std::vector<std::string>& classes, const std::vector<SweepCurve>& curves,
+              const SweepNames& names, report::ResultSection* section) {
+  for (const SweepKind kind : {SweepKind::kOwn, SweepKind::kAdded}) {
+    const bool own = kind == SweepKind::kOwn;
+    const char* const title = own ? "Own class alone, " : "Another class beside the own one, ";
+    section->tables.push_back(ControlTable(absl::StrCat(title, names.told), classes, curves, kind));
+    for (size_t c = 0; c < classes.size(); ++c) {
+      const std::string& name = classes[c];
+      section->figures.push_back(
+          {absl::StrCat(section->id, own ? "_own_" : "_added_", name, names.name_end),
+           Caption(kind, name, names.told),
+           SweepPlot(absl::StrCat(name, own ? " alone, " : " added, ", names.told), classes, curves,
+                     kind, static_cast<int>(c))});
+    }
+  }
 }
 
 }  // namespace duet::evaluation::experiments

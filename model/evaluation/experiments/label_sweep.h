@@ -1,7 +1,11 @@
 #ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_LABEL_SWEEP_H_
 #define DUET_MODEL_EVALUATION_EXPERIMENTS_LABEL_SWEEP_H_
 
+#include <string>
 #include <vector>
+
+#include "model/evaluation/report/result_section.h"
+#include "model/evaluation/report/table.h"
 
 // The effect of a class's weight in the label vector on a judge's probability of that class.
 //
@@ -51,11 +55,28 @@ enum class SweepKind {
   kAdded  // another class, beside the own one
 };
 std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind kind, int raised);
-// Those with a leader of class `own`.
-std::vector<SweepCurve> SelectOwn(const std::vector<SweepCurve>& curves, int own);
 
 // The mean over curves of one class's probability. Shapes: returns [weights]; NaN without curves.
 std::vector<double> MeanProbabilities(const std::vector<SweepCurve>& curves, int of_class);
+
+// One row per raised class and one for all of them.
+report::Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
+                           const std::vector<SweepCurve>& curves, SweepKind kind);
+
+// kOwn: the mean probability of every class against the weight of class `raised`. kAdded: only that
+// of class `raised`, a line for each own class.
+report::LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
+                           const std::vector<SweepCurve>& curves, SweepKind kind, int raised);
+
+// The names of a sweep, by the model's input about the follower's first frame.
+struct SweepNames {
+  std::string told;      // ends titles and captions: "without a start"
+  std::string name_end;  // ends the figures' names: "", "_root"
+};
+
+// Adds a sweep's tables, one per kind, and its figures, one per kind and raised class.
+void AddSweep(const std::vector<std::string>& classes, const std::vector<SweepCurve>& curves,
+              const SweepNames& names, report::ResultSection* section);
 
 }  // namespace duet::evaluation::experiments
 

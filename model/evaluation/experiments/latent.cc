@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/evaluation/experiments/synthesizer_method.h"
+#include "model/base/status_macros.h"
+#include "model/evaluation/experiments/answers.h"
+#include "model/evaluation/metrics/judged_scores.h"
 #include "model/network/batch.h"
 #include "model/network/generator.h"
 #include "model/network/parameters.h"
@@ -61,16 +63,14 @@ absl::StatusOr<metrics::FeatureSet> LatentFeatures(const checkpoint::Checkpoint&
                                                    const dataset::Dataset& dataset,
                                                    const std::vector<int>& sequences,
                                                    LatentLabels labels) {
-  absl::Status status = CheckModelFits(checkpoint.manifest.model, dataset);
-  if (!status.ok()) return status;
+  DUET_RETURN_IF_ERROR(CheckModelFits(checkpoint.manifest.model, dataset));
   if (!std::holds_alternative<checkpoint::PaperArchitecture>(checkpoint.manifest.architecture)) {
     return absl::InvalidArgumentError(absl::StrCat(
         "model ", checkpoint.manifest.model.name,
-        ": expected a generator with encoders, whose latent space is shown, got one that "
-        "samples"));
+        ": expected a generator with encoders, whose latent space is shown, got one that samples"));
   }
   network::Generator generator(checkpoint.manifest);
-  if (status = network::LoadParameters(checkpoint, generator); !status.ok()) return status;
+  DUET_RETURN_IF_ERROR(network::LoadParameters(checkpoint, generator));
   generator->eval();
   // Converts LibTorch's exceptions to a status.
   try {

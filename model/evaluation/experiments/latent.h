@@ -6,7 +6,7 @@
 #include "absl/status/statusor.h"
 #include "model/checkpoint/checkpoint.h"
 #include "model/dataset/dataset.h"
-#include "model/evaluation/metrics/features.h"
+#include "model/evaluation/metrics/judged_scores.h"
 
 namespace duet::evaluation::experiments {
 

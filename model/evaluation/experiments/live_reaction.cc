@@ -1,12 +1,13 @@
 #include "model/evaluation/experiments/live_reaction.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
-#include "model/evaluation/experiments/synthesizer_method.h"
-#include "model/evaluation/metrics/liveliness.h"
+#include "model/base/status_macros.h"
+#include "model/body/liveliness.h"
+#include "model/body/motion_quality.h"
+#include "model/evaluation/experiments/answers.h"
 #include "model/motion/filter.h"
 #include "model/motion/resample.h"
 
@@ -20,14 +21,20 @@ constexpr int kStandingFrames = 60;
 constexpr int kLabelFrame = 60;
 constexpr float kPartedMetres = 0.05f;
 
-// The first frame from `begin` on in which a joint of one motion is far from that of the other.
-std::optional<int> PartedAt(const Poses& a, const Poses& b, int begin) {
-  for (int t = begin; t < std::min(a.frame_count(), b.frame_count()); ++t) {
+// The first frame in which a joint of one motion is far from that of the other.
+std::optional<int> PartedAt(const Poses& a, const Poses& b) {
+  for (int t = 0; t < std::min(a.frame_count(), b.frame_count()); ++t) {
     for (int j = 0; j < a.joint_count(); ++j) {
       if (Distance(a.at(t, j), b.at(t, j)) > kPartedMetres) return t;
     }
   }
   return std::nullopt;
+}
+
+// At kRateHz, without noise.
+Poses Calm(const motion::Clip& clip) {
+  return motion::Resample(motion::WithoutNoise(clip.poses, clip.frame_rate_hz), clip.frame_rate_hz,
+                          kRateHz);
 }
 
 Poses Standing(const Poses& motion, int frames) {
@@ -52,9 +59,7 @@ struct Leaders {
 };
 
 Leaders MakeLeaders(const dataset::Sequence& sequence) {
-  const motion::Clip& clip = sequence.pair.leader;
-  const Poses moving = motion::Resample(motion::WithoutNoise(clip.poses, clip.frame_rate_hz),
-                                        clip.frame_rate_hz, kRateHz);
+  const Poses moving = Calm(sequence.pair.leader);
   Poses acting = Standing(moving, kStandingFrames);
   acting.Append(moving.all());
   Poses standing = Standing(moving, acting.frame_count());
@@ -69,26 +74,13 @@ engine::LabelTrack ChangingLabels(int classes, int own) {
                                          {kLabelFrame, OneClass(classes, (own + 1) % classes)}});
 }
 
-double MeanJerk(const Poses& poses) {
-  double sum = 0;
-  int count = 0;
-  for (int t = 3; t < poses.frame_count(); ++t) {
-    for (int j = 0; j < poses.joint_count(); ++j, ++count) {
-      sum += double{Norm(poses.at(t, j) - poses.at(t - 3, j) +
-                         (poses.at(t - 2, j) - poses.at(t - 1, j)) * 3)};
-    }
-  }
-  return sum / std::max(1, count) * kRateHz * kRateHz * kRateHz;
-}
-
 }  // namespace
 
 absl::StatusOr<LiveFigures> MeasureLiveReaction(const engine::Synthesizer& synthesizer,
                                                 const dataset::Dataset& dataset,
                                                 const std::vector<int>& sequences, uint64_t seed,
                                                 std::optional<int> live_delay) {
-  absl::Status fits = CheckModelFits(synthesizer.description(), dataset);
-  if (!fits.ok()) return fits;
+  DUET_RETURN_IF_ERROR(CheckModelFits(synthesizer.description(), dataset));
   const int classes = dataset.class_count();
   std::vector<Leaders> leaders;
   leaders.reserve(sequences.size());
@@ -106,22 +98,20 @@ absl::StatusOr<LiveFigures> MeasureLiveReaction(const engine::Synthesizer& synth
     asked.push_back(
         {&leaders[i].standing, ChangingLabels(classes, own), sampling, true, live_delay});
   }
-  absl::StatusOr<std::vector<Poses>> followers =
-      SynthesizeSequences(synthesizer, asked, StartGiven::kNone);
-  if (!followers.ok()) return followers.status();
+  DUET_TRY(auto followers, SynthesizeSequences(synthesizer, asked, StartGiven::kNone));
   LiveFigures figures;
   figures.clips = static_cast<int>(leaders.size());
   for (std::size_t i = 0; i < leaders.size(); ++i) {
-    const Poses &acting = (*followers)[3 * i], &standing = (*followers)[3 * i + 1];
+    const Poses &acting = followers[3 * i], &standing = followers[3 * i + 1];
     const std::optional<int> led =
-        PartedAt(leaders[i].acting.pair.leader.poses, leaders[i].standing.pair.leader.poses, 0);
-    const std::optional<int> followed = PartedAt(acting, standing, 0);
+        PartedAt(leaders[i].acting.pair.leader.poses, leaders[i].standing.pair.leader.poses);
+    const std::optional<int> followed = PartedAt(acting, standing);
     if (led && followed) figures.reaction_seconds.push_back((*followed - *led) / kRateHz);
-    if (const auto changed = PartedAt((*followers)[3 * i + 2], standing, 0)) {
+    if (const auto changed = PartedAt(followers[3 * i + 2], standing)) {
       figures.label_seconds.push_back((*changed - kLabelFrame) / kRateHz);
     }
-    figures.speed += metrics::JointSpeed(acting, kRateHz) / figures.clips;
-    figures.jerk += MeanJerk(acting) / figures.clips;
+    figures.speed += body::JointSpeed(acting, kRateHz) / figures.clips;
+    figures.jerk += body::Jitter(acting, kRateHz) / figures.clips;
   }
   return figures;
 }
@@ -132,9 +122,8 @@ std::vector<double> CapturedReactions(const dataset::Dataset& dataset,
   for (const int index : sequences) {
     const dataset::Sequence& sequence = dataset.sequences[static_cast<std::size_t>(index)];
     const auto departure = [](const motion::Clip& clip) {
-      const Poses moving = motion::Resample(motion::WithoutNoise(clip.poses, clip.frame_rate_hz),
-                                            clip.frame_rate_hz, kRateHz);
-      return PartedAt(moving, Standing(moving, moving.frame_count()), 0);
+      const Poses moving = Calm(clip);
+      return PartedAt(moving, Standing(moving, moving.frame_count()));
     };
     const auto led = departure(sequence.pair.leader), followed = departure(sequence.pair.follower);
     if (led && followed) seconds.push_back((*followed - *led) / kRateHz);

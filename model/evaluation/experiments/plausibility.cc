@@ -10,8 +10,8 @@
 #include "model/base/statistics.h"
 #include "model/body/grade.h"
 #include "model/body/hands.h"
-#include "model/evaluation/metrics/liveliness.h"
-#include "model/evaluation/metrics/posture.h"
+#include "model/body/liveliness.h"
+#include "model/body/posture.h"
 #include "model/motion/filter.h"
 #include "model/retargeting/rig_animation.h"
 
@@ -182,12 +182,10 @@ std::vector<std::string> Plausibility::Notes() {
       "which the slower ankle moves faster than 10 cm/s; leader's: the same of the leaders.",
       "Heads, trunks: share of frames in which the heads are nearer than 18 cm, the axes of the "
       "trunks nearer than 16 cm. Hands: mean distance of the nearest hands while the leader "
-      "reaches one out, metres. Distance: of the roots, metres. Speed: of the joints, "
-      "m/s.",
+      "reaches one out, metres. Distance: of the roots, metres. Speed: of the joints, m/s.",
       "Strikes: how far the limb that strikes in the class (a fist or a foot) stays from the "
-      "surface "
-      "of the follower's trunk, head and legs at its nearest while the leader reaches it out, "
-      "metres. Through: share of frames in which a fist or foot is more than 5 cm inside.",
+      "surface of the follower's trunk, head and legs at its nearest while the leader reaches it "
+      "out, metres. Through: share of frames in which a fist or foot is more than 5 cm inside.",
       "Planes: share of answers in which the plane of a bent arm or leg turns by more than 45 "
       "degrees in a frame. Turns: share of answers in which a joint of the rig turns faster than "
       "900 degrees a second; fastest turn: the fastest of all, degrees a second. Lean: largest of "
@@ -236,15 +234,15 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
       heads / frames,
       trunks / frames,
       base::Mean(hands),
-      metrics::RootDistance(leader, follower, skeleton_),
-      metrics::JointSpeed(motion::WithoutNoise(follower, rate), rate),
-      metrics::JointSpeed(motion::WithoutNoise(leader, rate), rate),
+      body::RootDistance(leader, follower, skeleton_),
+      body::JointSpeed(motion::WithoutNoise(follower, rate), rate),
+      body::JointSpeed(motion::WithoutNoise(leader, rate), rate),
       strikes.short_by(),
       strikes.through(),
       One(plane > kPlaneDegrees),
       One(fastest > kTurnDegreesPerSecond),
       fastest,
-      metrics::MeasureLean(follower, skeleton_, rate, metrics::LeanFrom::kHips).max_degrees};
+      body::MeasureLean(follower, skeleton_, rate, body::LeanFrom::kHips).max_degrees};
   return figures;
 }
 

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <string>
+#include <tuple>
 #include <utility>
 
 #include "model/base/angle.h"
-#include "model/evaluation/metrics/displacement.h"
+#include "model/base/status_macros.h"
+#include "model/evaluation/metrics/scores.h"
 #include "model/motion/levelling.h"
 #include "model/motion/vertical.h"
 
@@ -59,29 +62,22 @@ std::optional<Vec3> StrongUp(const motion::VerticalEvidence& evidence) {
 // The verticals that requests state, in the order of `captures`.
 using Verticals = std::vector<std::optional<Vec3>>;
 
-Verticals FromOneFile(const motion::Skeleton& skeleton, const std::vector<Capture>& captures) {
-  Verticals verticals;
-  for (const Capture& capture : captures) {
-    motion::VerticalEvidence evidence(skeleton);
-    evidence.Add(capture.sequence.pair.leader);
-    evidence.Add(capture.sequence.pair.follower);
-    verticals.push_back(StrongUp(evidence));
-  }
-  return verticals;
-}
-
-Verticals FromWholeSet(const motion::Skeleton& skeleton, const std::vector<Capture>& captures) {
-  std::map<std::string, motion::VerticalEvidence> sets;
-  for (const Capture& capture : captures) {
-    motion::VerticalEvidence& evidence =
-        sets.try_emplace(capture.sequence.set, skeleton).first->second;
-    evidence.Add(capture.sequence.pair.leader);
-    evidence.Add(capture.sequence.pair.follower);
+// The verticals that all captures of one file or, `whole_sets`, of one set show.
+Verticals Estimated(const motion::Skeleton& skeleton, const std::vector<Capture>& captures,
+                    bool whole_sets) {
+  const auto key = [&](size_t i) {
+    return whole_sets ? captures[i].sequence.set : std::to_string(i);
+  };
+  std::map<std::string, motion::VerticalEvidence> evidence;
+  for (size_t i = 0; i < captures.size(); ++i) {
+    motion::VerticalEvidence& shown = evidence.try_emplace(key(i), skeleton).first->second;
+    shown.Add(captures[i].sequence.pair.leader);
+    shown.Add(captures[i].sequence.pair.follower);
   }
   std::map<std::string, std::optional<Vec3>> found;
-  for (const auto& [set, evidence] : sets) found[set] = StrongUp(evidence);
+  for (const auto& [name, shown] : evidence) found[name] = StrongUp(shown);
   Verticals verticals;
-  for (const Capture& capture : captures) verticals.push_back(found[capture.sequence.set]);
+  for (size_t i = 0; i < captures.size(); ++i) verticals.push_back(found[key(i)]);
   return verticals;
 }
 
@@ -92,39 +88,34 @@ Verticals True(const std::vector<Capture>& captures) {
 }
 
 // Answers captures in a copy of the data set, as a server does for requests with these verticals.
-class Answerer {
- public:
-  Answerer(const engine::Synthesizer& synthesizer, const dataset::Dataset& dataset,
-           const std::vector<int>& sequences, StartGiven start, const AskedSamples& asked)
-      : synthesizer_(synthesizer),
-        dataset_(dataset),
-        sequences_(sequences),
-        start_(start),
-        asked_(asked) {}
+struct Answerer {
+  const engine::Synthesizer& synthesizer;
+  const dataset::Dataset& dataset;
+  const std::vector<int>& sequences;
+  const StartGiven start;
+  const AskedSamples& asked;
 
   absl::StatusOr<TiltedFigures> Answer(std::string name, const std::vector<Capture>& captures,
                                        const Verticals& verticals) const {
-    dataset::Dataset sent = dataset_;
+    dataset::Dataset sent = dataset;
     std::vector<Levelling> levellings;
     TiltedFigures figures{std::move(name)};
     const auto count = static_cast<double>(captures.size());
     for (size_t i = 0; i < captures.size(); ++i) {
       const Levelling levelling = verticals[i] ? Levelling(*verticals[i], 0) : Levelling();
       levellings.push_back(levelling);
-      sent.sequences[static_cast<size_t>(sequences_[i])] =
+      sent.sequences[static_cast<size_t>(sequences[i])] =
           Moved(captures[i].sequence, [&](Vec3 p) { return levelling.Apply(p); });
       figures.levelled_share += (verticals[i] ? 1 : 0) / count;
       figures.residual_degrees += DegreesBetween(captures[i].to_level.up(), levelling.up()) / count;
     }
-    const absl::StatusOr<metrics::SampledMotions> answers =
-        AnswerWithSamples(synthesizer_, sent, sequences_, start_, asked_);
-    if (!answers.ok()) return answers.status();
-    const auto samples = static_cast<double>(answers->size());
-    for (const auto& answer : *answers) {
+    DUET_TRY(const auto answers, AnswerWithSamples(synthesizer, sent, sequences, start, asked));
+    const auto samples = static_cast<double>(answers.size());
+    for (const auto& answer : answers) {
       for (size_t i = 0; i < captures.size(); ++i) {
         const Levelling& to_level = captures[i].to_level;
         const motion::Poses level = to_level.Apply(levellings[i].Invert(answer[i].follower));
-        const dataset::Sequence& truth = dataset_.sequences[static_cast<size_t>(sequences_[i])];
+        const dataset::Sequence& truth = dataset.sequences[static_cast<size_t>(sequences[i])];
         figures.error_metres +=
             metrics::Afd(level, truth.pair.follower.poses, metrics::MetricUnit::kMetres) /
             (count * samples);
@@ -132,13 +123,6 @@ class Answerer {
     }
     return figures;
   }
-
- private:
-  const engine::Synthesizer& synthesizer_;
-  const dataset::Dataset& dataset_;
-  const std::vector<int>& sequences_;
-  const StartGiven start_;
-  const AskedSamples& asked_;
 };
 
 std::vector<Capture> CaptureAll(const dataset::Dataset& dataset, const std::vector<int>& sequences,
@@ -164,24 +148,19 @@ absl::StatusOr<std::vector<TiltedFigures>> AnswerTilted(const engine::Synthesize
   });
   const std::vector<Capture> tilted = CaptureAll(
       dataset, sequences, [&](const dataset::Sequence& one) { return TrueUp(camera, one); });
-  const Answerer answerer(synthesizer, dataset, sequences, start, asked);
+  const Answerer answerer{synthesizer, dataset, sequences, start, asked};
   const Verticals none(sequences.size());
   std::vector<TiltedFigures> rows;
-  absl::Status status;
-  const auto add = [&](const char* name, const std::vector<Capture>& captures,
-                       const Verticals& verticals) {
-    if (!status.ok()) return;
-    absl::StatusOr<TiltedFigures> row = answerer.Answer(name, captures, verticals);
-    status = row.status();
-    if (row.ok()) rows.push_back(*std::move(row));
-  };
-  add("never tilted", level, none);
-  add("as sent", tilted, none);
-  add("auto, one file", tilted, FromOneFile(dataset.skeleton, tilted));
-  add("auto, whole set", tilted, FromWholeSet(dataset.skeleton, tilted));
-  add("true vertical", tilted, True(tilted));
-  add("auto, one file, never tilted", level, FromOneFile(dataset.skeleton, level));
-  if (!status.ok()) return status;
+  for (const auto& [name, captures, verticals] :
+       std::vector<std::tuple<const char*, const std::vector<Capture>&, Verticals>>{
+           {"never tilted", level, none},
+           {"as sent", tilted, none},
+           {"auto, one file", tilted, Estimated(dataset.skeleton, tilted, false)},
+           {"auto, whole set", tilted, Estimated(dataset.skeleton, tilted, true)},
+           {"true vertical", tilted, True(tilted)},
+           {"auto, one file, never tilted", level, Estimated(dataset.skeleton, level, false)}}) {
+    DUET_TRY(rows.emplace_back(), answerer.Answer(name, captures, verticals));
+  }
   return rows;
 }
 

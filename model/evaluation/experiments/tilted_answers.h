@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "model/evaluation/experiments/sampled_answers.h"
+#include "model/evaluation/experiments/answers.h"
 
 namespace duet::evaluation::experiments {
 

@@ -1,11 +1,10 @@
 #include "model/evaluation/experiments/told_apart.h"
 
-#include <cstddef>
-#include <numeric>
 #include <utility>
 
 #include "absl/status/status.h"
-#include "model/evaluation/metrics/confusion.h"
+#include "model/base/status_macros.h"
+#include "model/evaluation/metrics/judged_scores.h"
 #include "model/motion/filter.h"
 
 namespace duet::evaluation::experiments {
@@ -37,12 +36,6 @@ dataset::Dataset PairsToTell(const dataset::Dataset& dataset,
   return pairs;
 }
 
-std::vector<metrics::ScoredMotion> All(const dataset::Dataset& pairs) {
-  std::vector<int> all(pairs.sequences.size());
-  std::iota(all.begin(), all.end(), 0);
-  return metrics::CapturedMotions(pairs, all);
-}
-
 }  // namespace
 
 judge::MotionClassifierOptions ToldApartOptions(uint64_t seed) {
@@ -61,14 +54,15 @@ absl::StatusOr<double> ToldApart(const dataset::Dataset& dataset,
     return absl::InvalidArgumentError("test answers: expected at least one, got none");
   }
   const dataset::Dataset training = PairsToTell(dataset, training_answers);
-  const absl::StatusOr<judge::MotionClassifier> classifier =
-      judge::MotionClassifier::Train(training, All(training), options);
-  if (!classifier.ok()) return classifier.status();
+  DUET_TRY(
+      const auto classifier,
+      judge::MotionClassifier::Train(
+          training, metrics::CapturedMotions(training, dataset::AllSequences(training)), options));
   const dataset::Dataset test = PairsToTell(dataset, test_answers);
-  std::vector<int> meant;
-  for (const dataset::Sequence& pair : test.sequences) meant.push_back(pair.interaction_class);
+  const std::vector<int> all = dataset::AllSequences(test);
   metrics::Confusion confusion(test.class_count());
-  confusion.AddLikeliest(meant, classifier->Probabilities(test, All(test)));
+  confusion.AddLikeliest(metrics::ClassesOf(test, all),
+                         classifier.Probabilities(test, metrics::CapturedMotions(test, all)));
   return confusion.MeanClassAccuracy();
 }
 

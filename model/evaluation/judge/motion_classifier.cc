@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/sha256.h"
+#include "model/base/status_macros.h"
 #include "model/network/batch.h"
 #include "model/network/discriminator.h"
 #include "model/training/augment.h"
@@ -31,12 +32,15 @@ struct MotionBatch {
   torch::Tensor classes;  // [N] int64
 };
 
-// The sequence with its captured follower replaced.
-dataset::Sequence WithFollower(const dataset::Dataset& dataset,
-                               const metrics::ScoredMotion& motion) {
-  dataset::Sequence sequence = SequenceOf(dataset, motion);
-  sequence.pair.follower.poses = motion.follower;
-  return sequence;
+// The sequences of motions with these followers.
+std::vector<dataset::Sequence> WithFollowers(const dataset::Dataset& dataset,
+                                             const std::vector<metrics::ScoredMotion>& motions) {
+  std::vector<dataset::Sequence> sequences;
+  for (const metrics::ScoredMotion& motion : motions) {
+    sequences.push_back(SequenceOf(dataset, motion));
+    sequences.back().pair.follower.poses = motion.follower;
+  }
+  return sequences;
 }
 
 MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
@@ -56,16 +60,15 @@ MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
           torch::tensor(lengths), torch::tensor(classes)};
 }
 
-std::vector<MotionBatch> TestBatches(const dataset::Dataset& dataset,
-                                     const std::vector<metrics::ScoredMotion>& motions,
-                                     classifier::Sees sees) {
+// `size` sequences in each batch but the last, in order.
+std::vector<MotionBatch> Batches(const dataset::Dataset& dataset,
+                                 const std::vector<dataset::Sequence>& sequences, size_t size,
+                                 classifier::Sees sees) {
   std::vector<MotionBatch> batches;
-  for (size_t first = 0; first < motions.size(); first += kTestBatch) {
-    std::vector<dataset::Sequence> sequences;
-    for (size_t i = first; i < std::min(first + kTestBatch, motions.size()); ++i) {
-      sequences.push_back(WithFollower(dataset, motions[i]));
-    }
-    batches.push_back(MakeMotionBatch(dataset, sequences, sees));
+  for (size_t first = 0; first < sequences.size(); first += size) {
+    const auto begin = sequences.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(size, sequences.size() - first));
+    batches.push_back(MakeMotionBatch(dataset, {begin, end}, sees));
   }
   return batches;
 }
@@ -82,33 +85,19 @@ training::TrainingOptions::Augmentation Variations() {
   return augmentation;
 }
 
-motion::Vec3 RandomOffset(double deviation, base::Random* random) {
-  const auto x = static_cast<float>(random->Normal(deviation));
-  const auto y = static_cast<float>(random->Normal(deviation));
-  const auto z = static_cast<float>(random->Normal(deviation));
-  return {x, y, z};
-}
-
 dataset::Sequence Vary(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
                        double body_noise, base::Random* random) {
   dataset::Sequence varied = Augment(dataset, sequence, Variations(), random);
+  const auto draw = [&] { return static_cast<float>(random->Normal(body_noise)); };
   std::vector<motion::Vec3> offsets;
   for (int j = 0; j < dataset.skeleton.joint_count(); ++j) {
-    offsets.push_back(RandomOffset(body_noise, random));
+    offsets.push_back(motion::Vec3{draw(), draw(), draw()});
   }
   motion::Poses& poses = varied.pair.follower.poses;
   for (int t = 0; t < poses.frame_count(); ++t) {
     for (size_t j = 0; j < offsets.size(); ++j) poses[t][j] += offsets[j];
   }
   return varied;
-}
-
-training::TrainingOptions::Optimiser OptimiserSettings(const MotionClassifierOptions& options) {
-  training::TrainingOptions::Optimiser settings;
-  settings.learning_rate = options.learning_rate;
-  settings.weight_decay = options.weight_decay;
-  settings.gradient_clip = 1;
-  return settings;
 }
 
 // The batches of one epoch: every motion once, varied, in a new random order.
@@ -121,14 +110,7 @@ std::vector<MotionBatch> EpochBatches(const dataset::Dataset& dataset,
     varied.push_back(Vary(dataset, sequence, options.body_noise, &random));
   }
   random.Shuffle(&varied);
-  std::vector<MotionBatch> batches;
-  const size_t size = static_cast<size_t>(options.batch);
-  for (size_t first = 0; first < varied.size(); first += size) {
-    const auto begin = varied.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(size, varied.size() - first));
-    batches.push_back(MakeMotionBatch(dataset, {begin, end}, options.sees));
-  }
-  return batches;
+  return Batches(dataset, varied, static_cast<size_t>(options.batch), options.sees);
 }
 
 network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
@@ -144,7 +126,11 @@ network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
   network->set_dropout(options.dropout);
   const int64_t count = static_cast<int64_t>(sequences.size());
   const int64_t steps = options.epochs * ((count + options.batch - 1) / options.batch);
-  training::Optimiser optimiser(OptimiserSettings(options), network->parameters(), steps);
+  training::TrainingOptions::Optimiser settings;
+  settings.learning_rate = options.learning_rate;
+  settings.weight_decay = options.weight_decay;
+  settings.gradient_clip = 1;
+  training::Optimiser optimiser(settings, network->parameters(), steps);
   const auto smoothed =
       torch::nn::functional::CrossEntropyFuncOptions().label_smoothing(kLabelSmoothing);
   int64_t step = 0;
@@ -189,12 +175,8 @@ absl::Status CheckMotions(const dataset::Dataset& dataset,
 absl::StatusOr<MotionClassifier> MotionClassifier::Train(
     const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions,
     const MotionClassifierOptions& options) {
-  absl::Status status = CheckMotions(dataset, motions);
-  if (!status.ok()) return status;
-  std::vector<dataset::Sequence> sequences;
-  for (const metrics::ScoredMotion& motion : motions) {
-    sequences.push_back(WithFollower(dataset, motion));
-  }
+  DUET_RETURN_IF_ERROR(CheckMotions(dataset, motions));
+  const std::vector<dataset::Sequence> sequences = WithFollowers(dataset, motions);
   auto model = std::make_shared<Model>();
   model->sees = options.sees;
   model->hidden = options.hidden;
@@ -211,7 +193,8 @@ std::vector<std::vector<float>> MotionClassifier::Probabilities(
     const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions) const {
   torch::NoGradGuard no_grad;
   std::vector<std::vector<float>> rows;
-  for (const MotionBatch& batch : TestBatches(dataset, motions, model_->sees)) {
+  for (const MotionBatch& batch :
+       Batches(dataset, WithFollowers(dataset, motions), kTestBatch, model_->sees)) {
     std::vector<torch::Tensor> probabilities;
     for (network::Discriminator& network : model_->members) {
       probabilities.push_back(network->forward(batch.motion, batch.lengths).softmax(1));
@@ -225,7 +208,8 @@ metrics::FeatureSet MotionClassifier::Features(
     const dataset::Dataset& dataset, const std::vector<metrics::ScoredMotion>& motions) const {
   torch::NoGradGuard no_grad;
   metrics::FeatureSet rows;
-  for (const MotionBatch& batch : TestBatches(dataset, motions, model_->sees)) {
+  for (const MotionBatch& batch :
+       Batches(dataset, WithFollowers(dataset, motions), kTestBatch, model_->sees)) {
     std::vector<torch::Tensor> features;
     for (network::Discriminator& network : model_->members) {
       features.push_back(network->Features(batch.motion, batch.lengths));

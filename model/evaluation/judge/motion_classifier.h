@@ -10,7 +10,7 @@
 #include "model/classifier/classifier.h"
 #include "model/classifier/classifier_input.h"
 #include "model/dataset/dataset.h"
-#include "model/evaluation/metrics/features.h"
+#include "model/evaluation/metrics/judged_scores.h"
 #include "model/evaluation/metrics/scores.h"
 
 namespace duet::evaluation::judge {

@@ -1,26 +1,28 @@
 #include <algorithm>
 #include <iostream>
 #include <limits>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "model/evaluation/baselines/take_baselines.h"
-#include "model/evaluation/experiments/long_leaders.h"
-#include "model/evaluation/experiments/turn_labels.h"
-#include "model/evaluation/metrics/dance.h"
+#include "model/base/status_macros.h"
+#include "model/body/dance.h"
+#include "model/evaluation/baselines/other_people.h"
+#include "model/evaluation/experiments/dance.h"
+#include "model/evaluation/experiments/looped_leaders.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/dance_figures.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/model_flags.h"
+#include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
+#include "model/motion/resample.h"
 #include "model/motion/standardise.h"
 
 namespace duet::evaluation::program {
 namespace {
+
+using experiments::DanceRow;
 
 constexpr double kPartSeconds = 60;                  // of a looped take: its beginning and its end
 constexpr int kPositionSeconds = 5, kPositions = 6;  // of a take, for the error by position
@@ -65,7 +67,7 @@ motion::Poses MovedTo(const motion::Skeleton& skeleton, const dataset::Sequence&
 // Answers takes with one model and one kind of start.
 struct Dancer {
   const Experiment& experiment;
-  const metrics::DanceJoints& joints;
+  const body::DanceJoints& joints;
   const FoldModel& model;
   const DanceFlags& flags;
   experiments::StartGiven start;
@@ -79,16 +81,12 @@ struct Dancer {
 
   absl::StatusOr<motion::Poses> Answer(const Take& take, engine::LabelTrack labels,
                                        const engine::Sampling& sampling) const {
-    absl::StatusOr<SharedSynthesizer> synthesizer = model.load(take.fold->subject);
-    if (!synthesizer.ok()) return synthesizer.status();
-    absl::Status fits = CheckModelTakes((*synthesizer)->description(), experiment.dataset, start);
-    if (!fits.ok()) return fits;
+    DUET_TRY(SharedSynthesizer synthesizer, model.load(take.fold->subject));
+    DUET_RETURN_IF_ERROR(CheckModelTakes(synthesizer->description(), experiment.dataset, start));
     const experiments::LabelledLeader leader = {take.sequence, std::move(labels), sampling, true,
                                                 flags.asked.live_delay};
-    absl::StatusOr<std::vector<motion::Poses>> answer =
-        SynthesizeSequences(**synthesizer, {&leader, 1}, start);
-    if (!answer.ok()) return answer.status();
-    return std::move(answer->front());
+    DUET_TRY(auto answer, SynthesizeSequences(*synthesizer, {&leader, 1}, start));
+    return std::move(answer.front());
   }
 
   // With the labels of the take's time line.
@@ -100,15 +98,9 @@ struct Dancer {
 
   std::vector<double> Measure(const motion::Poses& leader, const motion::Poses& follower,
                               const motion::Poses* captured) const {
-    return MeasureDance(experiment.dataset, joints, leader, follower, captured);
+    return experiments::MeasureDance(experiment.dataset, joints, leader, follower, captured);
   }
 };
-
-motion::Poses Part(const motion::Poses& poses, int first, int count) {
-  motion::Poses part(0, poses.joint_count());
-  part.Append(poses.frames(first, count));
-  return part;
-}
 
 // The error of a follower in each position of its take; NaN after its end. Shapes: [kPositions].
 std::vector<double> ErrorByPosition(const motion::Poses& follower, const motion::Poses& captured,
@@ -116,15 +108,14 @@ std::vector<double> ErrorByPosition(const motion::Poses& follower, const motion:
   const int length = static_cast<int>(kPositionSeconds * frame_rate_hz);
   std::vector<double> errors(kPositions, std::numeric_limits<double>::quiet_NaN());
   for (int p = 0; p < kPositions && (p + 1) * length <= follower.frame_count(); ++p) {
-    errors[static_cast<size_t>(p)] =
-        metrics::MeanError(Part(follower, p * length, length), Part(captured, p * length, length));
+    errors[static_cast<size_t>(p)] = body::MeanError(motion::Part(follower, p * length, length),
+                                                     motion::Part(captured, p * length, length));
   }
   return errors;
 }
 
 report::Table PositionTable() {
-  report::Table table;
-  table.title = "Error by position in the take";
+  report::Table table{"Error by position in the take"};
   for (int p = 0; p < kPositions; ++p) {
     table.columns.push_back(
         absl::StrFormat("%d to %d s", p * kPositionSeconds, (p + 1) * kPositionSeconds));
@@ -143,9 +134,7 @@ absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows,
   for (int n = 0; n < dancer.flags.asked.samples; ++n) {
     std::vector<motion::Poses> followers;
     for (const Take& take : takes) {
-      absl::StatusOr<motion::Poses> follower = dancer.Answer(take, dancer.Sampling(n));
-      if (!follower.ok()) return follower.status();
-      followers.push_back(*std::move(follower));
+      DUET_TRY(followers.emplace_back(), dancer.Answer(take, dancer.Sampling(n)));
     }
     for (size_t i = 0; i < takes.size(); ++i) {
       const motion::ClipPair& pair = takes[i].sequence->pair;
@@ -162,7 +151,7 @@ absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows,
     std::cerr << dancer.name() << ": seed " << n + 1 << " of " << dancer.flags.asked.samples
               << "\n";
   }
-  positions->rows.push_back({dancer.name(), ColumnMeans(errors)});
+  positions->rows.push_back({dancer.name(), report::ColumnMeans(errors)});
   rows->push_back(std::move(own));
   if (!chance.takes.empty()) rows->push_back(std::move(chance));
   return absl::OkStatus();
@@ -180,16 +169,14 @@ absl::Status AddLoops(const Dancer& dancer, std::vector<DanceRow>* rows) {
     }
     const dataset::Sequence looped =
         experiments::LoopTake(dataset, *take.sequence, 60 * dancer.flags.loop_minutes);
-    absl::StatusOr<motion::Poses> follower =
-        dancer.Answer({&looped, take.fold}, dancer.Sampling(0));
-    if (!follower.ok()) return follower.status();
+    DUET_TRY(motion::Poses follower, dancer.Answer({&looped, take.fold}, dancer.Sampling(0)));
     const int part = static_cast<int>(kPartSeconds * dataset.frame_rate_hz);
     const auto measure = [&](int begin) {
-      return dancer.Measure(Part(looped.pair.leader.poses, begin, part),
-                            Part(*follower, begin, part), nullptr);
+      return dancer.Measure(motion::Part(looped.pair.leader.poses, begin, part),
+                            motion::Part(follower, begin, part), nullptr);
     };
     first.takes.push_back(measure(0));
-    last.takes.push_back(measure(follower->frame_count() - part));
+    last.takes.push_back(measure(follower.frame_count() - part));
   }
   rows->push_back(std::move(first));
   rows->push_back(std::move(last));
@@ -208,17 +195,16 @@ absl::Status AddTurns(const Dancer& dancer, int turn_class, report::Table* table
       for (const bool is_led : {false, true}) {
         const std::vector<experiments::FrameSpan>& spans = is_led ? found.led : found.not_led;
         for (int n = 0; n < dancer.flags.asked.samples; ++n) {
-          absl::StatusOr<motion::Poses> follower =
-              dancer.Answer(take,
-                            experiments::LabelsWithTurn(*take.sequence, dataset.class_count(),
-                                                        turn_class, spans, weight),
-                            dancer.Sampling(n));
-          if (!follower.ok()) return follower.status();
+          DUET_TRY(motion::Poses follower,
+                   dancer.Answer(take,
+                                 experiments::LabelsWithTurn(*take.sequence, dataset.class_count(),
+                                                             turn_class, spans, weight),
+                                 dancer.Sampling(n)));
           stretches[is_led] += static_cast<int>(spans.size());
           turned[is_led] += experiments::CountTurned(
               spans,
-              metrics::FindTurns(dancer.joints, *follower, take.sequence->pair.leader.poses,
-                                 dataset.frame_rate_hz),
+              body::FindTurns(dancer.joints, follower, take.sequence->pair.leader.poses,
+                              dataset.frame_rate_hz),
               dataset.frame_rate_hz);
         }
       }
@@ -232,8 +218,7 @@ absl::Status AddTurns(const Dancer& dancer, int turn_class, report::Table* table
 }
 
 report::Table TurnTable(const std::string& turn_class) {
-  report::Table table;
-  table.title = absl::StrCat("Turns by the weight of ", turn_class);
+  report::Table table{absl::StrCat("Turns by the weight of ", turn_class)};
   for (const double weight : kTurnWeights) {
     table.columns.push_back(absl::StrFormat("%g", weight));
   }
@@ -245,7 +230,7 @@ report::Table TurnTable(const std::string& turn_class) {
   return table;
 }
 
-void AddBaselines(const Experiment& experiment, const metrics::DanceJoints& joints,
+void AddBaselines(const Experiment& experiment, const body::DanceJoints& joints,
                   std::vector<DanceRow>* rows) {
   const dataset::Dataset& dataset = experiment.dataset;
   DanceRow held = {"first pose held", {}}, mean = {"class mean", {}},
@@ -254,8 +239,8 @@ void AddBaselines(const Experiment& experiment, const metrics::DanceJoints& join
     const std::vector<int>& train = take.fold->split.train;
     const motion::ClipPair& pair = take.sequence->pair;
     const auto add = [&](const motion::Poses& follower, DanceRow* row) {
-      row->takes.push_back(
-          MeasureDance(dataset, joints, pair.leader.poses, follower, &pair.follower.poses));
+      row->takes.push_back(experiments::MeasureDance(dataset, joints, pair.leader.poses, follower,
+                                                     &pair.follower.poses));
     };
     add(baselines::FirstPoseHeld(*take.sequence), &held);
     add(baselines::MeanOfClass(dataset, train, *take.sequence), &mean);
@@ -273,38 +258,35 @@ absl::StatusOr<int> FindTurnClass(const DanceFlags& flags, const dataset::Datase
 }
 
 absl::Status Run(const DanceFlags& flags) {
-  absl::StatusOr<Experiment> experiment = OpenExperiment(flags);
-  if (!experiment.ok()) return experiment.status();
-  absl::StatusOr<metrics::DanceJoints> joints =
-      metrics::FindDanceJoints(experiment->dataset.skeleton);
-  if (!joints.ok()) return joints.status();
-  absl::StatusOr<int> turn_class = 0;
-  if (!flags.turn_class.empty()) turn_class = FindTurnClass(flags, experiment->dataset);
-  if (!turn_class.ok()) return turn_class.status();
+  DUET_TRY(Experiment experiment, OpenExperiment(flags));
+  DUET_TRY(body::DanceJoints joints, body::FindDanceJoints(experiment.dataset.skeleton));
+  int turn_class = 0;
+  if (!flags.turn_class.empty()) {
+    DUET_TRY(turn_class, FindTurnClass(flags, experiment.dataset));
+  }
   std::vector<DanceRow> rows, loops;
   report::Table turns = TurnTable(flags.turn_class), positions = PositionTable();
-  AddBaselines(*experiment, *joints, &rows);
-  for (const FoldModel& model : experiment->models) {
+  AddBaselines(experiment, joints, &rows);
+  for (const FoldModel& model : experiment.models) {
     for (const std::string& start : flags.starts) {
-      const Dancer dancer = {*experiment, *joints, model, flags, ParseStart(start)};
-      absl::Status status = AddAnswers(dancer, &rows, &positions);
-      if (status.ok() && flags.loop_minutes > 0) status = AddLoops(dancer, &loops);
-      if (status.ok() && !flags.turn_class.empty()) status = AddTurns(dancer, *turn_class, &turns);
-      if (!status.ok()) return status;
+      const Dancer dancer = {experiment, joints, model, flags, ParseStart(start)};
+      DUET_RETURN_IF_ERROR(AddAnswers(dancer, &rows, &positions));
+      if (flags.loop_minutes > 0) DUET_RETURN_IF_ERROR(AddLoops(dancer, &loops));
+      if (!flags.turn_class.empty()) DUET_RETURN_IF_ERROR(AddTurns(dancer, turn_class, &turns));
     }
   }
   report::ResultSection section = BeginExperiment(
-      flags, *experiment,
+      flags, experiment,
       "Whole takes of left-out subjects, answered with the labels of their time lines. \"Other "
       "lead\": the same answers beside the leader of the next take, as if both leaders began at "
       "the same place; a figure that is as good there does not depend on the leader.");
   section.settings.emplace_back("seeds", absl::StrCat(flags.asked.samples));
   section.settings.emplace_back("variety", absl::StrCat(flags.asked.variety));
   section.settings.emplace_back("live", LiveText(flags.asked));
-  section.tables = {DanceTable("Followers of whole takes, mean over the takes", rows)};
+  section.tables = {experiments::DanceTable("Followers of whole takes, mean over the takes", rows)};
   if (!positions.rows.empty()) section.tables.push_back(std::move(positions));
   if (!loops.empty()) {
-    section.tables.push_back(DanceTable(
+    section.tables.push_back(experiments::DanceTable(
         absl::StrFormat("The same leaders looped for %g minutes", flags.loop_minutes), loops));
   }
   if (!turns.rows.empty()) section.tables.push_back(std::move(turns));
@@ -314,21 +296,19 @@ absl::Status Run(const DanceFlags& flags) {
 }  // namespace
 
 void AddDanceCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto flags = std::make_shared<DanceFlags>();
+  const auto [flags, command] =
+      AddCommand("dance", "Followers of whole takes of a couple's dance", Run, app, chosen);
   flags->starts = {"pose"};
   flags->asked.samples = 3;
-  CLI::App* command = app->add_subcommand("dance", "Followers of whole takes of a couple's dance");
-  AddAnswersFlags("18_dance", "Whole takes of a dance", flags.get(), command);
-  command->add_option("--samples", flags->asked.samples, "answers to each take, each with its seed")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  AddAnswersFlags("18_dance", "Whole takes of a dance", flags, command);
+  AddNumber("--samples", &flags->asked.samples, 1, 1000, "answers to each take, each with its seed",
+            command);
   command
       ->add_option("--loop-minutes", flags->loop_minutes,
                    "loop the takes, and compare the first and the last minute of the answers")
       ->check(CLI::Range(1.0, 60.0));
   command->add_option("--turn-class", flags->turn_class,
                       "class of a turn: measure how its weight decides that the follower turns");
-  RunWhenNamed(command, flags, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

@@ -6,27 +6,22 @@
 #include "model/network/exceptions.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
+namespace program = duet::evaluation::program;
+
 int main(int argc, char** argv) {
   CLI::App app("Measures trained models and baselines on captures.");
   app.set_version_flag("--version", "duet-eval " DUET_VERSION);
   app.require_subcommand(1);
-  duet::evaluation::program::ChosenCommand chosen;
-  duet::evaluation::program::AddFoldsCommand(&app, &chosen);
-  duet::evaluation::program::AddSamplesCommand(&app, &chosen);
-  duet::evaluation::program::AddLongCommand(&app, &chosen);
-  duet::evaluation::program::AddDanceCommand(&app, &chosen);
-  duet::evaluation::program::AddPlausibleCommand(&app, &chosen);
-  duet::evaluation::program::AddStripsCommand(&app, &chosen);
-  duet::evaluation::program::AddToldApartCommand(&app, &chosen);
-  duet::evaluation::program::AddSweepCommand(&app, &chosen);
-  duet::evaluation::program::AddAugmentationCommand(&app, &chosen);
-  duet::evaluation::program::AddLatentCommand(&app, &chosen);
-  duet::evaluation::program::AddDataCommand(&app, &chosen);
-  duet::evaluation::program::AddJudgeCommand(&app, &chosen);
-  duet::evaluation::program::AddDirectionCommand(&app, &chosen);
-  duet::evaluation::program::AddTiltCommand(&app, &chosen);
-  duet::evaluation::program::AddLiveCommand(&app, &chosen);
-  duet::evaluation::program::AddHourCommand(&app, &chosen);
+  program::ChosenCommand chosen;
+  for (const auto add :
+       {program::AddFoldsCommand, program::AddSamplesCommand, program::AddLongCommand,
+        program::AddDanceCommand, program::AddPlausibleCommand, program::AddStripsCommand,
+        program::AddToldApartCommand, program::AddSweepCommand, program::AddAugmentationCommand,
+        program::AddLatentCommand, program::AddDataCommand, program::AddJudgeCommand,
+        program::AddDirectionCommand, program::AddTiltCommand, program::AddLiveCommand,
+        program::AddHourCommand}) {
+    add(&app, &chosen);
+  }
   CLI11_PARSE(app, argc, argv);
   const absl::Status status = duet::network::CatchExceptions([&chosen] {
     absl::Status prepared = duet::torch_engine::SetTorchThreads(1);

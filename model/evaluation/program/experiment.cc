@@ -1,19 +1,96 @@
 #include "model/evaluation/program/experiment.h"
 
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "model/evaluation/program/model_flags.h"
+#include "model/base/status_macros.h"
+#include "model/base/text.h"
+#include "model/evaluation/program/flags.h"
+#include "model/torch_engine/torch_synthesizer.h"
 
 namespace duet::evaluation::program {
+namespace {
+
+namespace fs = std::filesystem;
+
+absl::StatusOr<fs::path> FindCheckpoint(const fs::path& run) {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const auto& name : fs::directory_iterator(run / "checkpoint", error)) {
+    for (const auto& version : fs::directory_iterator(name.path(), error)) {
+      // A dot marks an unfinished write of an interrupted run.
+      if (version.path().filename().string().front() != '.') found.push_back(version.path());
+    }
+  }
+  if (found.size() == 1) return found[0];
+  return absl::NotFoundError(absl::StrCat(run.string(),
+                                          ": expected one finished run of duet-train, got ",
+                                          found.size(), " checkpoints"));
+}
+
+absl::StatusOr<SharedSynthesizer> LoadOne(const ModelChoice& choice) {
+  const engine::PipelineOptions options{choice.as_served, choice.as_served, choice.as_served};
+  if (!choice.embedded) return torch_engine::LoadTorchSynthesizer(choice.checkpoint, options);
+  DUET_TRY(auto all, torch_engine::LoadEmbeddedSynthesizers(options));
+  return SharedSynthesizer(std::move(all.front()));
+}
+
+}  // namespace
+
+absl::StatusOr<NamedRuns> ParseRuns(const std::string& text) {
+  const size_t equals = text.find('=');
+  NamedRuns runs{text.substr(0, equals), text};
+  if (equals == std::string::npos) {
+    // "runs/" ends in an empty part.
+    const fs::path path = (fs::path(text) / "").parent_path();
+    runs.name = path.lexically_normal().filename().string();
+  } else {
+    runs.folder = text.substr(equals + 1);
+  }
+  if (!runs.name.empty() && !runs.folder.empty()) return runs;
+  return absl::InvalidArgumentError(
+      absl::StrCat("--runs: expected NAME=DIR or DIR, got ", base::Quoted(text)));
+}
+
+absl::StatusOr<checkpoint::Checkpoint> ReadRunCheckpoint(const fs::path& run) {
+  DUET_TRY(fs::path folder, FindCheckpoint(run));
+  return checkpoint::ReadCheckpoint(folder);
+}
+
+absl::StatusOr<SharedSynthesizer> LoadFoldModel(const fs::path& runs, const std::string& subject,
+                                                bool as_served) {
+  DUET_TRY(checkpoint::Checkpoint checkpoint, ReadRunCheckpoint(runs / subject));
+  return torch_engine::MakeTorchSynthesizer(checkpoint, {as_served, as_served, as_served});
+}
+
+absl::StatusOr<std::vector<FoldModel>> OpenModels(const ModelChoice& choice) {
+  std::vector<FoldModel> models;
+  if (choice.one_for_all()) {
+    DUET_TRY(SharedSynthesizer one, LoadOne(choice));
+    models.push_back({"duet", [one](const std::string&) { return one; }});
+  }
+  for (const std::string& text : choice.runs) {
+    DUET_TRY(NamedRuns runs, ParseRuns(text));
+    const bool as_served = choice.as_served;
+    models.push_back({runs.name, [runs = runs, as_served](const std::string& subject) {
+                        return LoadFoldModel(runs.folder, subject, as_served);
+                      }});
+  }
+  return models;
+}
 
 void AddExperimentFlags(const std::string& id, const std::string& title, ExperimentFlags* flags,
                         CLI::App* command) {
   flags->section.id = id;
   flags->section.title = title;
   AddDataFlag(&flags->data, command);
-  AddSubjectsFlag(&flags->subjects, command);
+  command
+      ->add_option("--subjects", flags->subjects,
+                   "subjects to leave out, one at a time (default: every subject)")
+      ->delimiter(',');
   AddSectionFlags(&flags->section, command);
 }
 
@@ -29,9 +106,8 @@ absl::StatusOr<std::vector<Fold>> LeaveOut(const dataset::Dataset& dataset,
                                            const std::vector<std::string>& asked) {
   std::vector<Fold> folds;
   for (const std::string& subject : asked.empty() ? dataset.Subjects() : asked) {
-    absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
-    if (!split.ok()) return split.status();
-    folds.push_back({subject, *std::move(split)});
+    DUET_TRY(dataset::Split split, LeaveSubjectOut(dataset, subject));
+    folds.push_back({subject, std::move(split)});
   }
   if (!folds.empty()) return folds;
   return absl::InvalidArgumentError(
@@ -39,13 +115,10 @@ absl::StatusOr<std::vector<Fold>> LeaveOut(const dataset::Dataset& dataset,
 }
 
 absl::StatusOr<Experiment> OpenExperiment(const ExperimentFlags& flags) {
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(flags.data);
-  if (!dataset.ok()) return dataset.status();
-  absl::StatusOr<std::vector<Fold>> folds = LeaveOut(*dataset, flags.subjects);
-  if (!folds.ok()) return folds.status();
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(flags.models);
-  if (!models.ok()) return models.status();
-  return Experiment{*std::move(dataset), *std::move(folds), *std::move(models)};
+  DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(flags.data));
+  DUET_TRY(std::vector<Fold> folds, LeaveOut(dataset, flags.subjects));
+  DUET_TRY(std::vector<FoldModel> models, OpenModels(flags.models));
+  return Experiment{std::move(dataset), std::move(folds), std::move(models)};
 }
 
 absl::StatusOr<metrics::SampledMotions> Answers(const dataset::Dataset& dataset,
@@ -53,15 +126,17 @@ absl::StatusOr<metrics::SampledMotions> Answers(const dataset::Dataset& dataset,
                                                 const std::vector<int>& sequences,
                                                 const std::string& start,
                                                 const experiments::AskedSamples& asked) {
-  absl::StatusOr<SharedSynthesizer> synthesizer = model.load(fold.subject);
-  if (!synthesizer.ok()) return synthesizer.status();
-  return AnswerWithSamples(**synthesizer, dataset, sequences, ParseStart(start), asked);
+  DUET_TRY(SharedSynthesizer synthesizer, model.load(fold.subject));
+  return AnswerWithSamples(*synthesizer, dataset, sequences, ParseStart(start), asked);
 }
 
 report::ResultSection BeginExperiment(const ExperimentFlags& flags, const Experiment& experiment,
                                       const std::string& text) {
   report::ResultSection section = BeginSection(flags.section, text);
-  if (flags.models.one_for_all()) section.text.push_back(kOneForAll);
+  if (flags.models.one_for_all()) {
+    section.text.push_back(
+        "One checkpoint for every fold: it may have been trained on what is tested.");
+  }
   std::vector<std::string> subjects;
   for (const Fold& fold : experiment.folds) subjects.push_back(fold.subject);
   section.settings = {
@@ -76,6 +151,16 @@ report::ResultSection BeginAnswers(const ExperimentFlags& flags, const Experimen
   report::ResultSection section = BeginExperiment(flags, experiment, text);
   AddSamplingSettings(flags.asked, &section);
   return section;
+}
+
+absl::Status FinishModelTables(const SectionFlags& flags, const ModelChoice& models,
+                               const MeasureModel& measure, report::ResultSection section) {
+  DUET_TRY(std::vector<FoldModel> opened, OpenModels(models));
+  for (const FoldModel& model : opened) {
+    DUET_TRY(SharedSynthesizer synthesizer, model.load(""));
+    DUET_TRY(section.tables.emplace_back(), measure(model.name, *synthesizer));
+  }
+  return FinishSection(flags, section);
 }
 
 }  // namespace duet::evaluation::program

@@ -2,20 +2,54 @@
 #define DUET_MODEL_EVALUATION_PROGRAM_EXPERIMENT_H_
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "model/checkpoint/checkpoint.h"
 #include "model/dataset/dataset.h"
-#include "model/evaluation/experiments/sampled_answers.h"
-#include "model/evaluation/metrics/sampled_scores.h"
-#include "model/evaluation/program/models.h"
-#include "model/evaluation/program/section_flags.h"
+#include "model/engine/synthesizer.h"
+#include "model/evaluation/experiments/answers.h"
+#include "model/evaluation/metrics/scores.h"
+#include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
 
-// Shared by the commands that measure models on people left out of their training.
+// The models that a command line names, the runs of duet-train that they come from, and people left
+// out of their training, on whom they are measured.
 
 namespace duet::evaluation::program {
+
+using SharedSynthesizer = std::shared_ptr<const engine::Synthesizer>;
+
+// Runs of duet-train, and their name in tables.
+struct NamedRuns {
+  std::string name;
+  std::filesystem::path folder;
+};
+
+// Parses "ours=DIR", or "DIR", which is named by its last part. Errors: INVALID_ARGUMENT.
+absl::StatusOr<NamedRuns> ParseRuns(const std::string& text);
+
+// The only checkpoint below a run's folder, <run>/checkpoint/<name>/<version>. Errors: NOT_FOUND.
+absl::StatusOr<checkpoint::Checkpoint> ReadRunCheckpoint(const std::filesystem::path& run);
+
+// The generator of a fold: of <runs>/<subject>, as written by duet-train --protocol loso.
+// `as_served`: with constant limb lengths on the leader's floor, as a server answers; otherwise the
+// network's own answer.
+absl::StatusOr<SharedSynthesizer> LoadFoldModel(const std::filesystem::path& runs,
+                                                const std::string& subject, bool as_served);
+
+// A model by its name in the tables, and its generator for the fold without a subject.
+struct FoldModel {
+  std::string name;
+  std::function<absl::StatusOr<SharedSynthesizer>(const std::string& subject)> load;
+};
+
+// Errors: INVALID_ARGUMENT for runs without a name; those of reading a checkpoint.
+absl::StatusOr<std::vector<FoldModel>> OpenModels(const ModelChoice& choice);
 
 struct ExperimentFlags {
   std::string data;
@@ -70,6 +104,15 @@ report::ResultSection BeginExperiment(const ExperimentFlags& flags, const Experi
 // The same with the sampling of the answers, for commands of AddAnswersFlags.
 report::ResultSection BeginAnswers(const ExperimentFlags& flags, const Experiment& experiment,
                                    const std::string& text);
+
+// Measures one model, which has this name in the tables.
+using MeasureModel = std::function<absl::StatusOr<report::Table>(const std::string& name,
+                                                                 const engine::Synthesizer& model)>;
+
+// Adds a table for each model of the command line, loaded without a fold, and finishes the section.
+// Errors: those of OpenModels, of loading a model, of `measure` and of FinishSection.
+absl::Status FinishModelTables(const SectionFlags& flags, const ModelChoice& models,
+                               const MeasureModel& measure, report::ResultSection section);
 
 }  // namespace duet::evaluation::program
 

@@ -1,25 +1,34 @@
 #include "model/evaluation/program/fold_scorer.h"
 
+#include <chrono>
 #include <cstddef>
+#include <iostream>
 
-#include "model/evaluation/report/sample_tables.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "model/base/status_macros.h"
+#include "model/evaluation/report/metric_tables.h"
 #include "model/motion/filter.h"
 
 namespace duet::evaluation::program {
 namespace {
+
+// The results of one network for an unseen person depend on its seed: several are averaged.
+constexpr int64_t kMembers = 4;
 
 using metrics::FiguresByMetric;
 using metrics::JudgedFold;
 using metrics::SampledMotions;
 using metrics::ScoredMotion;
 
-std::vector<ScoredMotion> Filtered(const dataset::Dataset& dataset,
-                                   std::vector<ScoredMotion> motions) {
-  for (ScoredMotion& motion : motions) {
-    const double rate = SequenceOf(dataset, motion).pair.leader.frame_rate_hz;
-    motion.follower = motion::WithoutNoise(motion.follower, rate);
+OneAnswerEach Filtered(const dataset::Dataset& dataset, OneAnswerEach folds) {
+  for (std::vector<ScoredMotion>& motions : folds) {
+    for (ScoredMotion& motion : motions) {
+      const double rate = SequenceOf(dataset, motion).pair.leader.frame_rate_hz;
+      motion.follower = motion::WithoutNoise(motion.follower, rate);
+    }
   }
-  return motions;
+  return folds;
 }
 
 // All folds' answers as one set of folds: the n-th set of every fold, one after the other. All
@@ -52,12 +61,38 @@ void AddShare(const std::vector<double>& values, size_t count, std::vector<doubl
   for (size_t i = 0; i < values.size(); ++i) (*sums)[i] += values[i] / static_cast<double>(count);
 }
 
-absl::StatusOr<report::MethodFigures> AsCaptured(absl::StatusOr<report::MethodFigures> figures) {
-  if (figures.ok()) figures->captured = true;
-  return figures;
+// A judge's results for motions, each requested in its sequence's class.
+JudgedFold JudgeMotions(const judge::MotionClassifier& judge, const dataset::Dataset& dataset,
+                        const std::vector<ScoredMotion>& motions) {
+  JudgedFold judged;
+  for (const ScoredMotion& motion : motions) {
+    judged.classes.push_back(SequenceOf(dataset, motion).interaction_class);
+  }
+  judged.probabilities = judge.Probabilities(dataset, motions);
+  judged.features = judge.Features(dataset, motions);
+  return judged;
 }
 
 }  // namespace
+
+absl::StatusOr<judge::MotionClassifier> TrainFoldJudge(const dataset::Dataset& dataset,
+                                                       const Fold& fold) {
+  judge::MotionClassifierOptions options;
+  options.members = kMembers;
+  const auto start = std::chrono::steady_clock::now();
+  absl::StatusOr<judge::MotionClassifier> judge = judge::MotionClassifier::Train(
+      dataset, metrics::CapturedMotions(dataset, fold.split.train), options);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::cerr << absl::StrFormat("judge without %s: %d motions, %.1f s\n", fold.subject,
+                               fold.split.train.size(), seconds);
+  return judge;
+}
+
+std::pair<std::string, std::string> JudgeSetting(const Fold& fold,
+                                                 const judge::MotionClassifier& judge) {
+  return {absl::StrCat("judge without ", fold.subject, ", SHA-256"), judge.hash()};
+}
 
 absl::StatusOr<FoldScorer> FoldScorer::Create(const dataset::Dataset& dataset,
                                               std::vector<Fold> folds, Judging judging) {
@@ -66,81 +101,69 @@ absl::StatusOr<FoldScorer> FoldScorer::Create(const dataset::Dataset& dataset,
   for (const Fold& fold : scorer.folds_) {
     scorer.captured_.push_back(metrics::CapturedMotions(dataset, fold.split.test));
     if (judging == Judging::kNone) continue;
-    absl::Status status = scorer.AddJudge(fold, judging);
-    if (!status.ok()) return status;
+    DUET_TRY(judge::MotionClassifier judge, TrainFoldJudge(dataset, fold));
+    scorer.judges_.push_back(std::move(judge));
+  }
+  if (judging != Judging::kNone) scorer.judged_captured_ = scorer.Judge(scorer.captured_);
+  if (judging == Judging::kFiltered) {
+    scorer.judged_filtered_ = scorer.Judge(Filtered(dataset, scorer.captured_));
   }
   return scorer;
 }
 
-absl::Status FoldScorer::AddJudge(const Fold& fold, Judging judging) {
-  absl::StatusOr<judge::MotionClassifier> judge = TrainFoldJudge(*dataset_, fold);
-  if (!judge.ok()) return judge.status();
-  const std::vector<ScoredMotion>& captured = captured_.back();
-  judged_captured_.push_back(JudgeMotions(*judge, *dataset_, captured));
-  if (judging == Judging::kFiltered) {
-    judged_filtered_.push_back(JudgeMotions(*judge, *dataset_, Filtered(*dataset_, captured)));
+std::vector<JudgedFold> FoldScorer::Judge(const OneAnswerEach& answers) const {
+  std::vector<JudgedFold> judged;
+  for (size_t i = 0; i < folds_.size(); ++i) {
+    judged.push_back(JudgeMotions(judges_[i], *dataset_, answers[i]));
   }
-  judges_.push_back(*std::move(judge));
-  return absl::OkStatus();
+  return judged;
 }
 
-absl::StatusOr<report::MethodFigures> FoldScorer::Score(
-    const std::string& row, const std::vector<std::vector<ScoredMotion>>& answers) const {
+absl::StatusOr<report::MethodFigures> FoldScorer::Score(const std::string& row,
+                                                        const OneAnswerEach& answers) const {
   report::MethodFigures figures{row, /*captured=*/false, ScoreByClass(*dataset_, Pool(answers))};
   if (judges_.empty()) return figures;
-  std::vector<JudgedFold> made;
-  for (size_t i = 0; i < folds_.size(); ++i) {
-    made.push_back(JudgeMotions(judges_[i], *dataset_, answers[i]));
-  }
   const int classes = dataset_->class_count();
-  absl::StatusOr<std::vector<double>> frechet = FrechetByClass(made, judged_captured_, classes);
-  if (!frechet.ok()) return frechet.status();
+  const std::vector<JudgedFold> made = Judge(answers);
+  DUET_TRY(figures.by_metric[report::kFrechet], FrechetByClass(made, judged_captured_, classes));
   figures.by_metric[report::kAccuracy] = AccuracyByClass(made, classes);
-  figures.by_metric[report::kFrechet] = *std::move(frechet);
   figures.by_metric[report::kDiversity] = DiversityByClass(made, classes);
   return figures;
 }
 
 absl::StatusOr<report::MethodFigures> FoldScorer::ScoreCaptured() const {
-  return AsCaptured(Score("captured", captured_));
+  DUET_TRY(report::MethodFigures figures, Score("captured", captured_));
+  figures.captured = true;
+  return figures;
 }
 
 absl::StatusOr<report::MethodFigures> FoldScorer::ScoreSamples(
     const std::string& row, const std::vector<SampledMotions>& answers) const {
   report::MethodFigures figures{row, /*captured=*/false, Distances(*dataset_, JoinFolds(answers))};
-  absl::Status status = AddJudged(answers, &figures);
-  if (!status.ok()) return status;
-  return figures;
-}
-
-absl::Status FoldScorer::AddJudged(const std::vector<SampledMotions>& answers,
-                                   report::MethodFigures* figures) const {
   const int classes = dataset_->class_count();
   const size_t count = answers.empty() ? 0 : answers.front().size();
-  FiguresByMetric& by_metric = figures->by_metric;
+  FiguresByMetric& by_metric = figures.by_metric;
   for (size_t n = 0; n < count; ++n) {
-    std::vector<JudgedFold> made, filtered;
-    for (size_t i = 0; i < folds_.size(); ++i) {
-      made.push_back(JudgeMotions(judges_[i], *dataset_, answers[i][n]));
-      filtered.push_back(JudgeMotions(judges_[i], *dataset_, Filtered(*dataset_, answers[i][n])));
-    }
-    absl::StatusOr<double> distance = PooledFrechet(made, judged_captured_);
-    if (!distance.ok()) return distance.status();
-    absl::StatusOr<double> filtered_distance = PooledFrechet(filtered, judged_filtered_);
-    if (!filtered_distance.ok()) return filtered_distance.status();
-    AddShare({*distance}, count, &by_metric[report::kPooledFrechet]);
-    AddShare({*filtered_distance}, count, &by_metric[report::kFilteredFrechet]);
+    OneAnswerEach set;
+    for (const SampledMotions& of_fold : answers) set.push_back(of_fold[n]);
+    const std::vector<JudgedFold> made = Judge(set), filtered = Judge(Filtered(*dataset_, set));
+    DUET_TRY(double distance, PooledFrechet(made, judged_captured_));
+    DUET_TRY(double filtered_distance, PooledFrechet(filtered, judged_filtered_));
+    AddShare({distance}, count, &by_metric[report::kPooledFrechet]);
+    AddShare({filtered_distance}, count, &by_metric[report::kFilteredFrechet]);
     AddShare(AccuracyByClass(made, classes), count, &by_metric[report::kAccuracy]);
     AddShare(DiversityByClass(made, classes), count, &by_metric[report::kDiversity]);
     AddShare(DiversityByClass(filtered, classes), count, &by_metric[report::kFilteredDiversity]);
   }
-  return absl::OkStatus();
+  return figures;
 }
 
 absl::StatusOr<report::MethodFigures> FoldScorer::ScoreCapturedSamples() const {
   std::vector<SampledMotions> once;
   for (const std::vector<ScoredMotion>& fold : captured_) once.push_back({fold});
-  return AsCaptured(ScoreSamples("captured", once));
+  DUET_TRY(report::MethodFigures figures, ScoreSamples("captured", once));
+  figures.captured = true;
+  return figures;
 }
 
 std::vector<std::pair<std::string, std::string>> FoldScorer::JudgeSettings() const {

@@ -6,11 +6,25 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "model/evaluation/metrics/sampled_scores.h"
-#include "model/evaluation/program/fold_judge.h"
+#include "model/evaluation/judge/motion_classifier.h"
+#include "model/evaluation/metrics/judged_scores.h"
+#include "model/evaluation/metrics/scores.h"
+#include "model/evaluation/program/experiment.h"
 #include "model/evaluation/report/metric_tables.h"
 
 namespace duet::evaluation::program {
+
+// Trains a fold's judge, only on the captured followers of the fold's training sequences. Prints
+// the time to stderr. Errors: MotionClassifier::Train's.
+absl::StatusOr<judge::MotionClassifier> TrainFoldJudge(const dataset::Dataset& dataset,
+                                                       const Fold& fold);
+
+// The judge's name and hash, for the settings of a section.
+std::pair<std::string, std::string> JudgeSetting(const Fold& fold,
+                                                 const judge::MotionClassifier& judge);
+
+// Shapes: [folds], each as its fold's test sequences.
+using OneAnswerEach = std::vector<std::vector<metrics::ScoredMotion>>;
 
 // Scores the answers to the leaders of every fold's left-out subject: every row in the same folds
 // with the same judges.
@@ -27,13 +41,12 @@ class FoldScorer {
   const std::vector<Fold>& folds() const { return folds_; }
 
   // Figures by class of one answer to each leader; those of a judge if there is one.
-  // Shapes: answers [folds], each as its fold's test sequences.
-  absl::StatusOr<report::MethodFigures> Score(
-      const std::string& row, const std::vector<std::vector<metrics::ScoredMotion>>& answers) const;
+  absl::StatusOr<report::MethodFigures> Score(const std::string& row,
+                                              const OneAnswerEach& answers) const;
   // The same figures of the captured followers.
   absl::StatusOr<report::MethodFigures> ScoreCaptured() const;
 
-  // Figures by class of many answers to each leader, with the names of report/sample_tables.h.
+  // Figures by class of many answers to each leader, with the names of report/metric_tables.h.
   // Requires kFiltered. Shapes: answers [folds].
   absl::StatusOr<report::MethodFigures> ScoreSamples(
       const std::string& row, const std::vector<metrics::SampledMotions>& answers) const;
@@ -44,14 +57,13 @@ class FoldScorer {
 
  private:
   explicit FoldScorer(const dataset::Dataset& dataset) : dataset_(&dataset) {}
-  absl::Status AddJudge(const Fold& fold, Judging judging);
-  absl::Status AddJudged(const std::vector<metrics::SampledMotions>& answers,
-                         report::MethodFigures* figures) const;
+  // The judges' results. Requires judges.
+  std::vector<metrics::JudgedFold> Judge(const OneAnswerEach& answers) const;
 
   const dataset::Dataset* dataset_;
   std::vector<Fold> folds_;
-  std::vector<std::vector<metrics::ScoredMotion>> captured_;  // [folds]
-  std::vector<judge::MotionClassifier> judges_;               // [folds], or empty
+  OneAnswerEach captured_;
+  std::vector<judge::MotionClassifier> judges_;  // [folds], or empty
   // Of the captured followers. Shapes: as judges_; empty without the filter.
   std::vector<metrics::JudgedFold> judged_captured_, judged_filtered_;
 };

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "model/base/status_macros.h"
 #include "model/evaluation/baselines/baselines.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
+#include "model/evaluation/program/flags.h"
 #include "model/evaluation/program/fold_scorer.h"
-#include "model/evaluation/program/model_flags.h"
 #include "model/evaluation/protocol/protocol.h"
 #include "model/evaluation/report/metric_tables.h"
-#include "model/evaluation/report/paper_tables.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -22,10 +22,9 @@ namespace {
 // Value of --baselines for only the models' rows.
 constexpr char kNoBaseline[] = "none";
 
-struct Arguments {
-  Arguments() { flags.starts = StartNames(); }
+struct Arguments : ExperimentFlags {
+  Arguments() { starts = StartNames(); }
 
-  ExperimentFlags flags;
   std::vector<std::string> baselines = {"class_mean", "frozen_first_frame"};
   std::vector<std::string> metrics = {"afd", "afd_squared"};
   std::vector<std::string> printed;
@@ -41,14 +40,12 @@ absl::StatusOr<report::MethodFigures> ScoreMethod(const dataset::Dataset& datase
                                                   const MakeMethod& make) {
   std::vector<std::vector<metrics::ScoredMotion>> answers;
   for (const Fold& fold : scorer.folds()) {
-    absl::StatusOr<std::unique_ptr<protocol::Method>> method = make(fold.subject);
-    if (!method.ok()) return method.status();
-    absl::StatusOr<protocol::FoldResult> result = RunFold(dataset, fold.split, method->get());
-    if (!result.ok()) return result.status();
+    DUET_TRY(std::unique_ptr<protocol::Method> method, make(fold.subject));
+    DUET_TRY(protocol::FoldResult result, RunFold(dataset, fold.split, method.get()));
     std::cerr << absl::StrFormat(
         "%s without %s: trained in %.1f s, answered %d leaders in %.1f s\n", row, fold.subject,
-        result->train_seconds, result->motions.size(), result->predict_seconds);
-    answers.push_back(std::move(result->motions));
+        result.train_seconds, result.motions.size(), result.predict_seconds);
+    answers.push_back(std::move(result.motions));
   }
   return scorer.Score(row, answers);
 }
@@ -60,9 +57,8 @@ absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset
   return ScoreMethod(
       dataset, scorer, row,
       [&](const std::string& subject) -> absl::StatusOr<std::unique_ptr<protocol::Method>> {
-        absl::StatusOr<SharedSynthesizer> synthesizer = model.load(subject);
-        if (!synthesizer.ok()) return synthesizer.status();
-        return std::make_unique<experiments::SynthesizerMethod>(row, *synthesizer, start);
+        DUET_TRY(SharedSynthesizer synthesizer, model.load(subject));
+        return std::make_unique<experiments::SynthesizerMethod>(row, synthesizer, start);
       });
 }
 
@@ -70,30 +66,25 @@ absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experi
                                                         const FoldScorer& scorer,
                                                         const Arguments& arguments) {
   std::vector<report::MethodFigures> rows;
-  const auto add = [&rows](absl::StatusOr<report::MethodFigures> row) {
-    if (row.ok()) rows.push_back(*std::move(row));
-    return row.status();
-  };
   for (const std::string& name : arguments.baselines) {
     if (name == kNoBaseline) continue;
     const auto make = [&name](const std::string&) { return baselines::MakeBaseline(name); };
-    absl::Status status = add(ScoreMethod(experiment.dataset, scorer, name, make));
-    if (!status.ok()) return status;
+    DUET_TRY(rows.emplace_back(), ScoreMethod(experiment.dataset, scorer, name, make));
   }
   for (const FoldModel& model : experiment.models) {
-    for (const std::string& name : arguments.flags.starts) {
+    for (const std::string& name : arguments.starts) {
       const experiments::StartGiven start = ParseStart(name);
-      absl::Status status = add(ScoreModel(experiment.dataset, scorer, model, start));
+      auto row = ScoreModel(experiment.dataset, scorer, model, start);
       // A model without a start input has only one row.
-      if (absl::IsFailedPrecondition(status) && start != experiments::StartGiven::kNone) {
-        std::cerr << model.name << StartSuffix(start) << ": left out: " << status.message() << "\n";
-      } else if (!status.ok()) {
-        return status;
+      if (absl::IsFailedPrecondition(row.status()) && start != experiments::StartGiven::kNone) {
+        std::cerr << model.name << StartSuffix(start) << ": left out: " << row.status().message()
+                  << "\n";
+        continue;
       }
+      DUET_TRY(rows.emplace_back(), std::move(row));
     }
   }
-  absl::Status status = add(scorer.ScoreCaptured());
-  if (!status.ok()) return status;
+  DUET_TRY(rows.emplace_back(), scorer.ScoreCaptured());
   return rows;
 }
 
@@ -118,18 +109,6 @@ std::vector<report::Table> Tables(const dataset::Dataset& dataset, const Argumen
   return tables;
 }
 
-report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments,
-                                  const FoldScorer& scorer) {
-  report::ResultSection section = BeginExperiment(
-      arguments.flags, experiment,
-      "Each subject is left out in turn: a method learns from the sequences without that subject "
-      "and answers the leaders of the others. Figures are means over the answers of all folds. The "
-      "suffix of a row names the input about the follower's first frame: none, the position of its "
-      "root (+root) or its pose (+pose).");
-  for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
-  return section;
-}
-
 bool NeedsJudge(const std::vector<std::string>& metrics) {
   const auto& styles = report::MetricStyles();
   return std::any_of(styles.begin(), styles.end(), [&](const report::MetricStyle& style) {
@@ -138,19 +117,23 @@ bool NeedsJudge(const std::vector<std::string>& metrics) {
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
-  if (!experiment.ok()) return experiment.status();
-  absl::StatusOr<FoldScorer> scorer = FoldScorer::Create(
-      experiment->dataset, experiment->folds,
-      NeedsJudge(arguments.metrics) ? FoldScorer::Judging::kPlain : FoldScorer::Judging::kNone);
-  if (!scorer.ok()) return scorer.status();
-  absl::StatusOr<std::vector<report::MethodFigures>> rows = Rows(*experiment, *scorer, arguments);
-  if (!rows.ok()) return rows.status();
-  report::ResultSection section = MakeSection(*experiment, arguments, *scorer);
-  section.tables = Tables(experiment->dataset, arguments, *rows);
+  DUET_TRY(Experiment experiment, OpenExperiment(arguments));
+  DUET_TRY(FoldScorer scorer,
+           FoldScorer::Create(experiment.dataset, experiment.folds,
+                              NeedsJudge(arguments.metrics) ? FoldScorer::Judging::kPlain
+                                                            : FoldScorer::Judging::kNone));
+  DUET_TRY(std::vector<report::MethodFigures> rows, Rows(experiment, scorer, arguments));
+  report::ResultSection section = BeginExperiment(
+      arguments, experiment,
+      "Each subject is left out in turn: a method learns from the sequences without that subject "
+      "and answers the leaders of the others. Figures are means over the answers of all folds. The "
+      "suffix of a row names the input about the follower's first frame: none, the position of its "
+      "root (+root) or its pose (+pose).");
+  for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
+  section.tables = Tables(experiment.dataset, arguments, rows);
   for (const std::string& text : section.text) std::cout << text << "\n";
   std::cout << "\n";
-  return FinishSection(arguments.flags.section, section);
+  return FinishSection(arguments.section, section);
 }
 
 std::vector<std::string> MetricNames() {
@@ -162,26 +145,19 @@ std::vector<std::string> MetricNames() {
 }  // namespace
 
 void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app->add_subcommand("folds", "Figures of models and baselines, leaving one subject out");
-  AddExperimentFlags("10_folds", "Leave one subject out", &arguments->flags, command);
-  AddModelFlags(ModelNeeded::kNo, &arguments->flags.models, command);
-  AddStartsFlag(&arguments->flags.starts, command);
+  const auto [arguments, command] = AddCommand(
+      "folds", "Figures of models and baselines, leaving one subject out", Run, app, chosen);
+  AddExperimentFlags("10_folds", "Leave one subject out", arguments, command);
+  AddModelFlags(ModelNeeded::kNo, &arguments->models, command);
+  AddStartsFlag(&arguments->starts, command);
   std::vector<std::string> baselines = baselines::BaselineNames();
   baselines.push_back(kNoBaseline);
-  command->add_option("--baselines", arguments->baselines, "rows of baselines; none: no such row")
-      ->delimiter(',')
-      ->check(CLI::IsMember(baselines))
-      ->capture_default_str();
-  command->add_option("--metrics", arguments->metrics, "tables to print")
-      ->delimiter(',')
-      ->check(CLI::IsMember(MetricNames()))
-      ->capture_default_str();
+  AddNames("--baselines", &arguments->baselines, baselines, "rows of baselines; none: no such row",
+           command);
+  AddNames("--metrics", &arguments->metrics, MetricNames(), "tables to print", command);
   command->add_option("--printed", arguments->printed, "add the paper's rows: afd, fid")
       ->delimiter(',')
       ->check(CLI::IsMember({"afd", "fid"}));
-  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

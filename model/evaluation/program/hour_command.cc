@@ -1,19 +1,18 @@
 #include <cmath>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/authoring/made_leaders.h"
+#include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
-#include "model/engine/live_synthesis.h"
-#include "model/evaluation/experiments/hour_leaders.h"
-#include "model/evaluation/experiments/live_hour.h"
-#include "model/evaluation/experiments/synthesizer_method.h"
+#include "model/evaluation/experiments/answers.h"
+#include "model/evaluation/experiments/long_clips.h"
+#include "model/evaluation/experiments/looped_leaders.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/model_flags.h"
-#include "model/evaluation/program/model_tables.h"
-#include "model/evaluation/program/section_flags.h"
+#include "model/evaluation/program/experiment.h"
+#include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
 
 namespace duet::evaluation::program {
@@ -28,7 +27,7 @@ struct Arguments {
   double rate = 30;
   int delay = 0;
   uint64_t seed = 0;
-  SectionFlags section;
+  SectionFlags section = {"22_hour", "An hour of live followers"};
 };
 
 // A class each minute, in their order; in the last one, the first.
@@ -47,10 +46,6 @@ engine::LabelTrack ClassAfterClass(int classes, double seconds, double rate) {
 }
 
 absl::Status CheckModel(const engine::ModelDescription& model, const std::string& name) {
-  if (!engine::AnswersLive(model)) {
-    return absl::FailedPreconditionError(
-        absl::StrCat(name, ": expected a model that answers live, got one that does not"));
-  }
   if (model.skeleton.joint_names != motion::SbuSkeleton().joint_names) {
     return absl::FailedPreconditionError(absl::StrCat(
         name, ": expected a model with the joints of SBU, which the leaders have, got ",
@@ -59,26 +54,15 @@ absl::Status CheckModel(const engine::ModelDescription& model, const std::string
   return absl::OkStatus();
 }
 
-std::vector<dataset::Sequence> MakeLeaders(const Arguments& arguments,
-                                           const engine::ModelDescription& model) {
-  std::vector<dataset::Sequence> leaders;
-  for (const std::string& name : experiments::HourLeaderNames()) {
-    dataset::Sequence sequence;
-    sequence.id = name;
-    sequence.pair.leader = {
-        model.skeleton.joint_names, arguments.rate,
-        experiments::MakeHourLeader(name, 60 * arguments.minutes, arguments.rate)};
-    leaders.push_back(std::move(sequence));
-  }
-  return leaders;
-}
-
 absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const std::string& name,
                                          const engine::Synthesizer& model) {
   const engine::ModelDescription& description = model.description();
-  absl::Status fits = CheckModel(description, name);
-  if (!fits.ok()) return fits;
-  const std::vector<dataset::Sequence> leaders = MakeLeaders(arguments, description);
+  DUET_RETURN_IF_ERROR(CheckModel(description, name));
+  std::vector<dataset::Sequence> leaders;
+  for (const char* const leader : authoring::kHourLeaders) {
+    leaders.push_back(
+        experiments::MakeLeaderSequence(leader, 60 * arguments.minutes, arguments.rate));
+  }
   std::vector<experiments::LabelledLeader> asked;
   for (const dataset::Sequence& leader : leaders) {
     asked.push_back(
@@ -87,17 +71,16 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const std::
          engine::Sampling{arguments.seed + asked.size()}, /*tell_direction=*/false,
          arguments.delay});
   }
-  absl::StatusOr<std::vector<motion::Poses>> followers =
-      SynthesizeSequences(model, asked, experiments::StartGiven::kNone);
-  if (!followers.ok()) return followers.status();
-  report::Table table;
-  table.title = absl::StrCat(name, ": ", arguments.minutes, " minutes");
-  table.columns = {"lean", "nearest", "farthest", "out %",       "out s",
-                   "feet", "first",   "last",     "last / first"};
-  table.decimals = 3;
+  DUET_TRY(auto followers, SynthesizeSequences(model, asked, experiments::StartGiven::kNone));
+  report::Table table{
+      absl::StrCat(name, ": ", arguments.minutes, " minutes"),
+      {"lean", "nearest", "farthest", "out %", "out s", "feet", "first", "last", "last / first"},
+      {},
+      {},
+      3};
   for (size_t i = 0; i < leaders.size(); ++i) {
     const experiments::LiveHourFigures figures = experiments::MeasureLiveHour(
-        description.skeleton, leaders[i].pair.leader.poses, (*followers)[i], arguments.rate);
+        description.skeleton, leaders[i].pair.leader.poses, followers[i], arguments.rate);
     table.rows.push_back(
         {leaders[i].id,
          {figures.trunk_lean, figures.nearest, figures.farthest, 100 * figures.out_of_range,
@@ -137,25 +120,15 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 
 void AddHourCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto [arguments, command] =
+      AddCommand("hour", "Posture and place of live followers for an hour", Run, app, chosen);
   arguments->models.as_served = true;
-  CLI::App* command =
-      app->add_subcommand("hour", "Posture and place of live followers for an hour");
-  arguments->section.id = "22_hour";
-  arguments->section.title = "An hour of live followers";
   AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
-  command->add_option("--minutes", arguments->minutes, "length of each session")
-      ->check(CLI::Range(0.1, 240.0))
-      ->capture_default_str();
-  command->add_option("--rate", arguments->rate, "leader frames per second")
-      ->check(CLI::Range(10.0, 120.0))
-      ->capture_default_str();
-  command->add_option("--delay", arguments->delay, "delay in frames")
-      ->check(CLI::Range(0, 10))
-      ->capture_default_str();
+  AddNumber("--minutes", &arguments->minutes, 0.1, 240.0, "length of each session", command);
+  AddNumber("--rate", &arguments->rate, 10.0, 120.0, "leader frames per second", command);
+  AddNumber("--delay", &arguments->delay, 0, 10, "delay in frames", command);
   AddSeedFlag(&arguments->seed, command);
   AddSectionFlags(&arguments->section, command);
-  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

@@ -1,20 +1,18 @@
 #include <cmath>
 #include <iostream>
-#include <memory>
-#include <numeric>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "model/base/status_macros.h"
 #include "model/classifier/classifier_files.h"
 #include "model/classifier/classifier_input.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/judge/motion_classifier.h"
-#include "model/evaluation/metrics/confusion.h"
+#include "model/evaluation/metrics/judged_scores.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/section_flags.h"
+#include "model/evaluation/program/flags.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -42,24 +40,6 @@ void Test(const judge::MotionClassifier& judge, const dataset::Dataset& dataset,
       judge.Probabilities(dataset, metrics::CapturedMotions(dataset, sequences)));
 }
 
-double Accuracy(const judge::MotionClassifier& judge, const dataset::Dataset& dataset,
-                const std::vector<int>& sequences) {
-  metrics::Confusion confusion(dataset.class_count());
-  Test(judge, dataset, sequences, &confusion);
-  return confusion.Accuracy();
-}
-
-// The sequences with part `part` of `parts` of every class to test on.
-dataset::Split LeavePartOut(const dataset::Dataset& dataset, int part, int parts) {
-  dataset::Split split;
-  std::vector<int> seen(static_cast<size_t>(dataset.class_count()));
-  for (size_t i = 0; i < dataset.sequences.size(); ++i) {
-    const int of_class = seen[static_cast<size_t>(dataset.sequences[i].interaction_class)]++;
-    (of_class % parts == part ? split.test : split.train).push_back(static_cast<int>(i));
-  }
-  return split;
-}
-
 // "kick: 8 of 10 recognised; 2 taken for shove".
 std::string Recognised(const dataset::Dataset& dataset, const metrics::Confusion& confusion,
                        int meant) {
@@ -83,10 +63,10 @@ absl::Status CrossValidate(const dataset::Dataset& dataset, const Arguments& arg
   for (int part = 0; part < arguments.parts; ++part) {
     const dataset::Split split = LeavePartOut(dataset, part, arguments.parts);
     if (split.test.empty()) continue;
-    const absl::StatusOr<judge::MotionClassifier> judge = judge::MotionClassifier::Train(
-        dataset, metrics::CapturedMotions(dataset, split.train), arguments.options);
-    if (!judge.ok()) return judge.status();
-    Test(*judge, dataset, split.test, &confusion);
+    DUET_TRY(const judge::MotionClassifier judge,
+             judge::MotionClassifier::Train(dataset, metrics::CapturedMotions(dataset, split.train),
+                                            arguments.options));
+    Test(judge, dataset, split.test, &confusion);
   }
   for (int c = 0; c < dataset.class_count(); ++c) {
     if (std::isnan(confusion.ClassAccuracy(c))) continue;
@@ -98,32 +78,27 @@ absl::Status CrossValidate(const dataset::Dataset& dataset, const Arguments& arg
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
-  if (!dataset.ok()) return dataset.status();
-  FaceFollowers(&*dataset);
-  dataset::Split split;
-  split.train.resize(dataset->sequences.size());
-  std::iota(split.train.begin(), split.train.end(), 0);
+  DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
+  FaceFollowers(&dataset);
+  dataset::Split split{dataset::AllSequences(dataset), {}};
   if (!arguments.hold_out.empty()) {
-    absl::StatusOr<dataset::Split> without = LeaveSubjectOut(*dataset, arguments.hold_out);
-    if (!without.ok()) return without.status();
-    split = *std::move(without);
+    DUET_TRY(split, LeaveSubjectOut(dataset, arguments.hold_out));
   }
   if (arguments.parts > 0) {
-    absl::Status status = CrossValidate(*dataset, arguments);
-    if (!status.ok()) return status;
+    DUET_RETURN_IF_ERROR(CrossValidate(dataset, arguments));
   }
-  const absl::StatusOr<judge::MotionClassifier> judge = judge::MotionClassifier::Train(
-      *dataset, metrics::CapturedMotions(*dataset, split.train), arguments.options);
-  if (!judge.ok()) return judge.status();
+  DUET_TRY(const judge::MotionClassifier judge,
+           judge::MotionClassifier::Train(dataset, metrics::CapturedMotions(dataset, split.train),
+                                          arguments.options));
   std::cout << absl::StrFormat("trained on %d followers of %d classes\n", split.train.size(),
-                               dataset->class_count());
+                               dataset.class_count());
   if (!split.test.empty()) {
+    metrics::Confusion confusion(dataset.class_count());
+    Test(judge, dataset, split.test, &confusion);
     std::cout << absl::StrFormat("%d held-out followers of %s: %.1f %% classified correctly\n",
-                                 split.test.size(), arguments.hold_out,
-                                 100 * Accuracy(*judge, *dataset, split.test));
+                                 split.test.size(), arguments.hold_out, 100 * confusion.Accuracy());
   }
-  absl::Status status = classifier::WriteClassifier(arguments.out, judge->Parts(*dataset));
+  absl::Status status = classifier::WriteClassifier(arguments.out, judge.Parts(dataset));
   if (status.ok()) std::cout << "wrote " << arguments.out << "\n";
   return status;
 }
@@ -131,9 +106,8 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 
 void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app->add_subcommand("judge", "Train a classifier of followers, for the filter of duet batch");
+  const auto [arguments, command] = AddCommand(
+      "judge", "Train a classifier of followers, for the filter of duet batch", Run, app, chosen);
   AddDataFlag(&arguments->data, command);
   command->add_option("--out", arguments->out, "folder to write the classifier to")->required();
   CLI::Option* hold_out =
@@ -145,17 +119,10 @@ void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen) {
                    "of the data; number of parts")
       ->check(CLI::Range(2, 1000))
       ->excludes(hold_out);
-  command
-      ->add_option("--networks", arguments->options.members,
-                   "number of networks with different seeds; their probabilities are averaged")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  command->add_option("--epochs", arguments->options.epochs, "training epochs")
-      ->check(CLI::Range(0, 10000))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->options.seed, "seed of the networks")
-      ->capture_default_str();
-  RunWhenNamed(command, arguments, Run, chosen);
+  AddNumber("--networks", &arguments->options.members, 1, 100,
+            "number of networks with different seeds; their probabilities are averaged", command);
+  AddNumber("--epochs", &arguments->options.epochs, 0, 10000, "training epochs", command);
+  AddOption("--seed", &arguments->options.seed, "seed of the networks", command);
 }
 
 }  // namespace duet::evaluation::program

@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -8,16 +7,20 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/experiments/latent.h"
+#include "model/evaluation/metrics/judged_scores.h"
 #include "model/evaluation/metrics/scores.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/models.h"
-#include "model/evaluation/program/section_flags.h"
-#include "model/evaluation/report/latent_table.h"
+#include "model/evaluation/program/experiment.h"
+#include "model/evaluation/program/flags.h"
 
 namespace duet::evaluation::program {
 namespace {
+
+// The columns of the table: how many nearest neighbours vote on a clip's class.
+constexpr int kNeighbours[] = {1, 5};
 
 struct Arguments {
   std::string data;
@@ -32,12 +35,11 @@ struct Arguments {
 // The clips of a fold to show.
 absl::StatusOr<std::vector<int>> ChooseClips(const dataset::Dataset& dataset,
                                              const std::string& subject, const std::string& which) {
-  absl::StatusOr<dataset::Split> split = LeaveSubjectOut(dataset, subject);
-  if (!split.ok()) return split.status();
-  if (which == "test") return split->test;
-  if (which == "train") return split->train;
-  std::vector<int> all = split->test;
-  all.insert(all.end(), split->train.begin(), split->train.end());
+  DUET_TRY(dataset::Split split, LeaveSubjectOut(dataset, subject));
+  if (which == "test") return split.test;
+  if (which == "train") return split.train;
+  std::vector<int> all = split.test;
+  all.insert(all.end(), split.train.begin(), split.train.end());
   return all;
 }
 
@@ -60,26 +62,25 @@ struct FoldCheckpoint {
 absl::Status AddSpace(const dataset::Dataset& dataset, const FoldCheckpoint& fold,
                       experiments::LatentLabels labels, const Arguments& arguments,
                       report::ResultSection* section) {
-  absl::StatusOr<std::vector<int>> clips = ChooseClips(dataset, fold.subject, arguments.clips);
-  if (!clips.ok()) return clips.status();
-  absl::StatusOr<metrics::FeatureSet> features =
-      LatentFeatures(fold.checkpoint, dataset, *clips, labels);
-  if (!features.ok()) return features.status();
-  const std::vector<int> classes = metrics::ClassesOf(dataset, *clips);
+  DUET_TRY(std::vector<int> clips, ChooseClips(dataset, fold.subject, arguments.clips));
+  DUET_TRY(metrics::FeatureSet features, LatentFeatures(fold.checkpoint, dataset, clips, labels));
+  const std::vector<int> classes = metrics::ClassesOf(dataset, clips);
   const bool blind = labels == experiments::LatentLabels::kNone;
   const std::string name =
       absl::StrCat(fold.model, blind ? ", label withheld" : "", ", ", fold.subject);
-  absl::StatusOr<report::TableRow> row = report::LatentRow(name, *features, classes);
-  if (!row.ok()) return row.status();
-  section->tables.front().rows.push_back(*std::move(row));
+  report::TableRow row{name, {}};
+  for (const int count : kNeighbours) {
+    DUET_TRY(row.values.emplace_back(), metrics::NeighbourAccuracy(features, classes, count));
+  }
+  section->tables.front().rows.push_back(std::move(row));
   section->figures.push_back(
       {FigureName(
            absl::StrCat(section->id, "_", fold.model, blind ? "_no_label_" : "_", fold.subject)),
        absl::StrCat("Latent space of ", fold.model, " with ", fold.subject, " left out",
-                    blind ? ", the label vector withheld" : "", ": t-SNE of ", clips->size(),
+                    blind ? ", the label vector withheld" : "", ": t-SNE of ", clips.size(),
                     " clips, one point each."),
-       report::LatentPlot{name, dataset.classes, classes, *std::move(features),
-                          arguments.perplexity, arguments.seed}});
+       report::LatentPlot{name, dataset.classes, classes, std::move(features), arguments.perplexity,
+                          arguments.seed}});
   return absl::OkStatus();
 }
 
@@ -97,19 +98,15 @@ absl::Status AddModel(const dataset::Dataset& dataset, const NamedRuns& runs,
                       const std::vector<std::string>& subjects, const Arguments& arguments,
                       report::ResultSection* section) {
   for (const std::string& subject : subjects) {
-    absl::StatusOr<checkpoint::Checkpoint> checkpoint = ReadFold(runs.folder, subject);
-    if (!checkpoint.ok()) return checkpoint.status();
-    const FoldCheckpoint fold = {runs.name, subject, *std::move(checkpoint)};
-    absl::Status status =
-        AddSpace(dataset, fold, experiments::LatentLabels::kOwnClass, arguments, section);
-    if (!status.ok()) return status;
+    DUET_TRY(checkpoint::Checkpoint checkpoint, ReadFold(runs.folder, subject));
+    const FoldCheckpoint fold = {runs.name, subject, std::move(checkpoint)};
+    DUET_RETURN_IF_ERROR(
+        AddSpace(dataset, fold, experiments::LatentLabels::kOwnClass, arguments, section));
     const auto& paper =
         std::get<checkpoint::PaperArchitecture>(fold.checkpoint.manifest.architecture);
-    if (paper.variant == checkpoint::GeneratorVariant::kUnlabelled) {
-      continue;
-    }
-    status = AddSpace(dataset, fold, experiments::LatentLabels::kNone, arguments, section);
-    if (!status.ok()) return status;
+    if (paper.variant == checkpoint::GeneratorVariant::kUnlabelled) continue;
+    DUET_RETURN_IF_ERROR(
+        AddSpace(dataset, fold, experiments::LatentLabels::kNone, arguments, section));
   }
   return absl::OkStatus();
 }
@@ -125,7 +122,10 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset,
       "A model with a multi-hot embedding receives the class that colours the point as its label, "
       "so part of the order comes from the input. The same model with all labels zero shows what "
       "it infers from the leader only.");
-  section.tables = {report::LatentTable()};
+  report::Table table{"Share of clips whose nearest neighbours are of their class"};
+  for (const int count : kNeighbours) table.columns.push_back(absl::StrCat(count, " in the space"));
+  table.decimals = 3;
+  section.tables = {std::move(table)};
   section.settings = {{"data", dataset.name},
                       {"left out", absl::StrJoin(subjects, ", ")},
                       {"clips", arguments.clips},
@@ -135,17 +135,14 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset,
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
-  if (!dataset.ok()) return dataset.status();
+  DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
   std::vector<std::string> subjects = arguments.subjects;
-  if (subjects.empty()) subjects = dataset->Subjects();
+  if (subjects.empty()) subjects = dataset.Subjects();
   if (arguments.subjects.empty() && subjects.size() > 1) subjects.resize(1);
-  report::ResultSection section = MakeSection(*dataset, subjects, arguments);
+  report::ResultSection section = MakeSection(dataset, subjects, arguments);
   for (const std::string& text : arguments.runs) {
-    absl::StatusOr<NamedRuns> runs = ParseRuns(text);
-    if (!runs.ok()) return runs.status();
-    absl::Status status = AddModel(*dataset, *runs, subjects, arguments, &section);
-    if (!status.ok()) return status;
+    DUET_TRY(NamedRuns runs, ParseRuns(text));
+    DUET_RETURN_IF_ERROR(AddModel(dataset, runs, subjects, arguments, &section));
   }
   return FinishSection(arguments.section, section);
 }
@@ -153,9 +150,8 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 
 void AddLatentCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app->add_subcommand("latent", "Maps of the generator's latent space (Figures 6 and 7)");
+  const auto [arguments, command] = AddCommand(
+      "latent", "Maps of the generator's latent space (Figures 6 and 7)", Run, app, chosen);
   AddDataFlag(&arguments->data, command);
   command
       ->add_option("--runs", arguments->runs,
@@ -167,18 +163,12 @@ void AddLatentCommand(CLI::App* app, ChosenCommand* chosen) {
       ->add_option("--subjects", arguments->subjects,
                    "subjects whose folds to show (default: the first subject)")
       ->delimiter(',');
-  command->add_option("--clips", arguments->clips, "clips of the fold to show")
-      ->check(CLI::IsMember({"test", "train", "all"}))
-      ->capture_default_str();
-  command
-      ->add_option("--perplexity", arguments->perplexity,
-                   "perplexity of t-SNE; lowered for few clips")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "seed of t-SNE's initial positions")
-      ->capture_default_str();
+  AddOption("--clips", &arguments->clips, "clips of the fold to show", command)
+      ->check(CLI::IsMember({"test", "train", "all"}));
+  AddNumber("--perplexity", &arguments->perplexity, 1.0, 1000.0,
+            "perplexity of t-SNE; lowered for few clips", command);
+  AddOption("--seed", &arguments->seed, "seed of t-SNE's initial positions", command);
   AddSectionFlags(&arguments->section, command);
-  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

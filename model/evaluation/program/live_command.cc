@@ -1,21 +1,17 @@
 #include <algorithm>
 #include <cmath>
-#include <iostream>
-#include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/statistics.h"
+#include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/experiments/live_reaction.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/model_flags.h"
-#include "model/evaluation/program/model_tables.h"
-#include "model/evaluation/program/section_flags.h"
+#include "model/evaluation/program/experiment.h"
+#include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
 
 namespace duet::evaluation::program {
@@ -26,7 +22,7 @@ struct Arguments {
   ModelChoice models;
   std::vector<int> delays = {0, 2, 5, 10};
   uint64_t seed = 0;
-  SectionFlags section;
+  SectionFlags section = {"21_live", "Live followers"};
 };
 
 double Milliseconds(std::vector<double> seconds, double share) {
@@ -48,22 +44,20 @@ report::TableRow Row(const std::string& name, const experiments::LiveFigures& fi
 absl::StatusOr<report::Table> ModelTable(const Arguments& arguments,
                                          const dataset::Dataset& dataset, const std::string& name,
                                          const engine::Synthesizer& model) {
-  std::vector<int> sequences(dataset.sequences.size());
-  std::iota(sequences.begin(), sequences.end(), 0);
-  report::Table table;
-  table.title = absl::StrCat(name, ": reactions to ", sequences.size(), " leaders");
-  table.columns = {"reaction", "90 %", "react %", "label", "90 %, label", "speed", "jerk"};
-  table.decimals = 2;
+  const std::vector<int> sequences = dataset::AllSequences(dataset);
+  report::Table table{absl::StrCat(name, ": reactions to ", sequences.size(), " leaders"),
+                      {"reaction", "90 %", "react %", "label", "90 %, label", "speed", "jerk"},
+                      {},
+                      {},
+                      2};
   const auto measure = [&](std::optional<int> delay) {
     return experiments::MeasureLiveReaction(model, dataset, sequences, arguments.seed, delay);
   };
-  const absl::StatusOr<experiments::LiveFigures> whole = measure(std::nullopt);
-  if (!whole.ok()) return whole.status();
-  table.rows.push_back(Row("whole leader known", *whole, whole->jerk));
+  DUET_TRY(const experiments::LiveFigures whole, measure(std::nullopt));
+  table.rows.push_back(Row("whole leader known", whole, whole.jerk));
   for (const int delay : arguments.delays) {
-    const absl::StatusOr<experiments::LiveFigures> live = measure(delay);
-    if (!live.ok()) return live.status();
-    table.rows.push_back(Row(absl::StrCat("live, delay ", delay), *live, whole->jerk));
+    DUET_TRY(const experiments::LiveFigures live, measure(delay));
+    table.rows.push_back(Row(absl::StrCat("live, delay ", delay), live, whole.jerk));
   }
   const std::vector<double> captured = experiments::CapturedReactions(dataset, sequences);
   table.notes = {
@@ -80,19 +74,18 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments,
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(arguments.data);
-  if (!dataset.ok()) return dataset.status();
+  DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
   report::ResultSection section = BeginSection(
       arguments.section,
       "How fast live followers react, at 30 frames per second, and how smoothly they move beside "
       "followers of leaders who are known from the start. FID and the other figures of live "
       "answers: duet-eval samples, plausible and dance with --live.");
-  section.settings.emplace_back("data", DescribeData(*dataset));
+  section.settings.emplace_back("data", DescribeData(dataset));
   section.settings.emplace_back("seed", absl::StrCat(arguments.seed));
   return FinishModelTables(
       arguments.section, arguments.models,
       [&](const std::string& name, const engine::Synthesizer& model) {
-        return ModelTable(arguments, *dataset, name, model);
+        return ModelTable(arguments, dataset, name, model);
       },
       std::move(section));
 }
@@ -100,20 +93,15 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 
 void AddLiveCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto [arguments, command] =
+      AddCommand("live", "How fast and how smoothly live followers react", Run, app, chosen);
   arguments->models.as_served = true;
-  CLI::App* command = app->add_subcommand("live", "How fast and how smoothly live followers react");
-  arguments->section.id = "21_live";
-  arguments->section.title = "Live followers";
   AddDataFlag(&arguments->data, command);
   AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
-  command->add_option("--delays", arguments->delays, "delays in frames, one row each")
-      ->delimiter(',')
-      ->check(CLI::Range(0, 10))
-      ->capture_default_str();
+  AddNumber("--delays", &arguments->delays, 0, 10, "delays in frames, one row each", command)
+      ->delimiter(',');
   AddSeedFlag(&arguments->seed, command);
   AddSectionFlags(&arguments->section, command);
-  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

@@ -1,24 +1,21 @@
 #include <iostream>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
+#include "model/base/status_macros.h"
 #include "model/evaluation/experiments/long_clips.h"
-#include "model/evaluation/experiments/long_leaders.h"
+#include "model/evaluation/experiments/looped_leaders.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/model_flags.h"
-#include "model/evaluation/report/long_tables.h"
+#include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments {
-  ExperimentFlags flags;
+struct Arguments : ExperimentFlags {
   std::vector<double> seconds = {60, 600};
 };
 
@@ -27,31 +24,27 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, co
                      double seconds, experiments::StartGiven start,
                      const experiments::AskedSamples& sampling,
                      std::vector<experiments::LongClipRow>* rows) {
-  absl::StatusOr<SharedSynthesizer> synthesizer = model.load(fold.subject);
-  if (!synthesizer.ok()) return synthesizer.status();
-  absl::Status fits = CheckModelTakes((*synthesizer)->description(), dataset, start);
-  if (!fits.ok()) return fits;
-  std::vector<experiments::LongLeader> leaders;
+  DUET_TRY(SharedSynthesizer synthesizer, model.load(fold.subject));
+  DUET_RETURN_IF_ERROR(CheckModelTakes(synthesizer->description(), dataset, start));
+  std::vector<dataset::Sequence> leaders;
   for (int c = 0; c < dataset.class_count(); ++c) {
     for (auto& leader : experiments::MakeLongLeaders(dataset, fold.split.test, c, seconds)) {
       leaders.push_back(std::move(leader));
     }
   }
   std::vector<experiments::LabelledLeader> asked;
-  for (const experiments::LongLeader& leader : leaders) {
-    asked.push_back(Ask(leader.sequence,
-                        engine::LabelTrack(experiments::OneClass(
-                            dataset.class_count(), leader.sequence.interaction_class)),
-                        sampling, sampling.seed + asked.size()));
+  for (const dataset::Sequence& leader : leaders) {
+    asked.push_back(Ask(
+        leader,
+        engine::LabelTrack(experiments::OneClass(dataset.class_count(), leader.interaction_class)),
+        sampling, sampling.seed + asked.size()));
   }
-  absl::StatusOr<std::vector<motion::Poses>> followers =
-      SynthesizeSequences(**synthesizer, asked, start);
-  if (!followers.ok()) return followers.status();
+  DUET_TRY(std::vector<motion::Poses> followers, SynthesizeSequences(*synthesizer, asked, start));
   for (size_t i = 0; i < leaders.size(); ++i) {
-    const dataset::Sequence& sequence = leaders[i].sequence;
-    rows->push_back({model.name, leaders[i].name, sequence.interaction_class,
+    const dataset::Sequence& sequence = leaders[i];
+    rows->push_back({model.name, sequence.id, sequence.interaction_class,
                      experiments::MeasureLongClip(dataset.skeleton, sequence.pair.leader.poses,
-                                                  (*followers)[i], dataset.frame_rate_hz)});
+                                                  followers[i], dataset.frame_rate_hz)});
   }
   std::cerr << absl::StrCat(model.name, StartSuffix(start), " without ", fold.subject, ": ",
                             leaders.size(), " leaders of ", seconds, " s\n");
@@ -80,17 +73,16 @@ absl::StatusOr<std::vector<report::Table>> Tables(const Experiment& experiment,
   const std::vector<experiments::LongClipRow> captured = CapturedRows(experiment);
   std::vector<report::Table> tables;
   for (const double seconds : arguments.seconds) {
-    for (const std::string& start : arguments.flags.starts) {
+    for (const std::string& start : arguments.starts) {
       std::vector<experiments::LongClipRow> rows = captured;
       for (const FoldModel& model : experiment.models) {
         for (const Fold& fold : experiment.folds) {
-          absl::Status status = AddFold(dataset, model, fold, seconds, ParseStart(start),
-                                        arguments.flags.asked, &rows);
-          if (!status.ok()) return status;
+          DUET_RETURN_IF_ERROR(
+              AddFold(dataset, model, fold, seconds, ParseStart(start), arguments.asked, &rows));
         }
       }
       const std::string what = absl::StrCat(seconds, " s, start: ", start);
-      for (report::Table& table : report::LongTables(what, dataset.classes, rows)) {
+      for (report::Table& table : experiments::LongTables(what, dataset.classes, rows)) {
         tables.push_back(std::move(table));
       }
     }
@@ -98,38 +90,29 @@ absl::StatusOr<std::vector<report::Table>> Tables(const Experiment& experiment,
   return tables;
 }
 
-report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
-  return BeginAnswers(
-      arguments.flags, experiment,
+absl::Status Run(const Arguments& arguments) {
+  DUET_TRY(Experiment experiment, OpenExperiment(arguments));
+  report::ResultSection section = BeginAnswers(
+      arguments, experiment,
       "Long leaders, each answered in every class by windows that continue one another. Four are "
       "generated by formulas and unlike any capture: one stands and sways, one walks a figure of "
       "eight, one dances, one sits down and stands up. \"captured\" joins the clips of the class "
       "of the left-out subject. A figure is the worst over the folds. The first row, for "
       "comparison, is of the captured followers of the left-out subjects, in clips of a few "
       "seconds.");
-}
-
-absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
-  if (!experiment.ok()) return experiment.status();
-  report::ResultSection section = MakeSection(*experiment, arguments);
-  absl::StatusOr<std::vector<report::Table>> tables = Tables(*experiment, arguments);
-  if (!tables.ok()) return tables.status();
-  section.tables = *std::move(tables);
-  return FinishSection(arguments.flags.section, section);
+  DUET_TRY(section.tables, Tables(experiment, arguments));
+  return FinishSection(arguments.section, section);
 }
 
 }  // namespace
 
 void AddLongCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app->add_subcommand("long", "Posture and place of followers in long clips");
-  AddAnswersFlags("16_long", "Clips of a minute and of ten", &arguments->flags, command);
-  command->add_option("--seconds", arguments->seconds, "lengths of the leaders, seconds")
-      ->delimiter(',')
-      ->check(CLI::Range(1.0, 3600.0))
-      ->capture_default_str();
-  RunWhenNamed(command, arguments, Run, chosen);
+  const auto [arguments, command] =
+      AddCommand("long", "Posture and place of followers in long clips", Run, app, chosen);
+  AddAnswersFlags("16_long", "Clips of a minute and of ten", arguments, command);
+  AddNumber("--seconds", &arguments->seconds, 1.0, 3600.0, "lengths of the leaders, seconds",
+            command)
+      ->delimiter(',');
 }
 
 }  // namespace duet::evaluation::program

@@ -1,26 +1,24 @@
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/statistics.h"
+#include "model/authoring/made_leaders.h"
+#include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
-#include "model/engine/hand_contact_fit.h"
-#include "model/engine/strike_fit.h"
-#include "model/evaluation/experiments/long_leaders.h"
+#include "model/evaluation/experiments/answers.h"
+#include "model/evaluation/experiments/looped_leaders.h"
 #include "model/evaluation/experiments/plausibility.h"
-#include "model/evaluation/experiments/synthesizer_method.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/model_flags.h"
-#include "model/evaluation/program/section_flags.h"
+#include "model/evaluation/program/experiment.h"
+#include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/resample.h"
+#include "model/training/class_fits.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -38,7 +36,7 @@ struct Arguments {
   int worst = 0;     // answers to picture
   ModelChoice models;
   experiments::AskedSamples asked;
-  SectionFlags section;
+  SectionFlags section = {"19_plausible", "Plausible followers of foreign leaders"};
 };
 
 // The motion files below a folder as leaders of a model, in the order of their paths, each cut to
@@ -64,20 +62,6 @@ std::vector<dataset::Sequence> ReadLeaders(const Arguments& arguments,
     dataset::Sequence sequence;
     sequence.id = file.filename().string();
     sequence.pair.leader = *std::move(leader);
-    leaders.push_back(std::move(sequence));
-  }
-  return leaders;
-}
-
-// The leaders that formulas make (long_leaders.h), for models with their joints.
-std::vector<dataset::Sequence> MadeLeaders(double seconds, const engine::ModelDescription& model) {
-  std::vector<dataset::Sequence> leaders;
-  if (model.skeleton.joint_names != motion::SbuSkeleton().joint_names) return leaders;
-  for (const std::string& name : experiments::MadeLeaderNames()) {
-    dataset::Sequence sequence;
-    sequence.id = name;
-    sequence.pair.leader = {model.skeleton.joint_names, model.frame_rate_hz,
-                            experiments::MakeLeader(name, seconds, model.frame_rate_hz)};
     leaders.push_back(std::move(sequence));
   }
   return leaders;
@@ -119,12 +103,10 @@ absl::Status AddAnswers(const Arguments& arguments, const engine::Synthesizer& s
         arguments.asked.seed + asked.size() * 1000 + static_cast<uint64_t>(sample);
     asked.push_back(Ask(leader, labels, arguments.asked, seed));
   }
-  absl::StatusOr<std::vector<Poses>> followers =
-      SynthesizeSequences(synthesizer, asked, experiments::StartGiven::kNone);
-  if (!followers.ok()) return followers.status();
+  DUET_TRY(auto followers, SynthesizeSequences(synthesizer, asked, experiments::StartGiven::kNone));
   for (size_t i = 0; i < leaders.size(); ++i) {
     const motion::Clip& leader = leaders[i].pair.leader;
-    Answer answer{&leaders[i], label, asked[i].sampling.seed, std::move((*followers)[i]), {}, {}};
+    Answer answer{&leaders[i], label, asked[i].sampling.seed, std::move(followers[i]), {}, {}};
     answer.figures = plausibility.Measure(leader.poses, answer.follower, leader.frame_rate_hz,
                                           ContactsOf(model, label));
     answer.worst = experiments::FindWorstPart(
@@ -135,32 +117,23 @@ absl::Status AddAnswers(const Arguments& arguments, const engine::Synthesizer& s
   return absl::OkStatus();
 }
 
-// An empty table with the columns of the figures.
-report::Table EmptyTable(const std::string& title) {
-  report::Table table;
-  table.title = title;
+// A row for each class with the figures of its pairs, and their mean. Shapes: pairs [classes].
+report::Table FiguresTable(const std::string& title, const std::vector<std::string>& classes,
+                           const std::vector<std::vector<experiments::PairFigures>>& pairs) {
+  report::Table table{title};
   for (const experiments::PairFigure& figure : experiments::Plausibility::Figures()) {
     table.columns.push_back(figure.name);
   }
+  std::vector<std::vector<double>> rows;
+  for (size_t c = 0; c < classes.size(); ++c) {
+    if (pairs[c].empty()) continue;
+    rows.push_back(experiments::Combine(pairs[c]));
+    table.rows.push_back({classes[c], rows.back()});
+  }
+  table.rows.push_back({"mean", report::ColumnMeans(rows)});
   table.decimals = 3;
   table.notes = experiments::Plausibility::Notes();
   return table;
-}
-
-// A row for each class, and their mean.
-void AddRows(const std::vector<std::string>& classes,
-             const std::vector<std::vector<experiments::PairFigures>>& by_class,
-             report::Table* table) {
-  std::vector<std::vector<double>> columns(table->columns.size());
-  for (size_t c = 0; c < classes.size(); ++c) {
-    if (by_class[c].empty()) continue;
-    std::vector<double> row = experiments::Combine(by_class[c]);
-    for (size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
-    table->rows.push_back({classes[c], std::move(row)});
-  }
-  report::TableRow mean{"mean", {}};
-  for (const std::vector<double>& column : columns) mean.values.push_back(base::Mean(column));
-  table->rows.push_back(std::move(mean));
 }
 
 // Pictures of the worst seconds of the worst answers.
@@ -178,11 +151,6 @@ void AddPictures(const engine::ModelDescription& model, const std::vector<Answer
     const int first = answer.worst.first;
     const int frames = std::min(static_cast<int>(kPictureSeconds * leader.frame_rate_hz),
                                 leader.frame_count() - first);
-    const auto part = [&](const Poses& poses) {
-      Poses cut(0, poses.joint_count());
-      cut.Append(poses.frames(first, frames));
-      return cut;
-    };
     const std::string name = model.classes[static_cast<size_t>(answer.label)];
     const std::string caption =
         absl::StrCat(name, ", leader ", answer.leader->id, " from ",
@@ -192,7 +160,8 @@ void AddPictures(const engine::ModelDescription& model, const std::vector<Answer
          absl::StrCat(caption, ": leader blue, follower orange; paler on the left of the body."),
          report::PosePlot{caption,
                           model.skeleton,
-                          {{model.name, part(leader.poses), part(answer.follower)}},
+                          {{model.name, motion::Part(leader.poses, first, frames),
+                            motion::Part(answer.follower, first, frames)}},
                           leader.frame_rate_hz}});
   }
 }
@@ -212,91 +181,67 @@ absl::Status AddModel(const Arguments& arguments, const std::string& name,
     return absl::InvalidArgumentError(
         absl::StrCat("--leaders: expected a folder with motion files, got ", arguments.leaders));
   }
-  for (dataset::Sequence& made : MadeLeaders(arguments.seconds, model)) {
-    leaders.push_back(std::move(made));
+  if (model.skeleton.joint_names == motion::SbuSkeleton().joint_names) {
+    for (const char* const made : authoring::kMadeLeaders) {
+      leaders.push_back(
+          experiments::MakeLeaderSequence(made, arguments.seconds, model.frame_rate_hz));
+    }
   }
   std::vector<Answer> answers;
   for (int c = 0; c < model.class_count(); ++c) {
     for (int n = 0; n < arguments.asked.samples; ++n) {
-      absl::Status status =
-          AddAnswers(arguments, synthesizer, leaders, c, n, plausibility, &answers);
-      if (!status.ok()) return status;
+      DUET_RETURN_IF_ERROR(
+          AddAnswers(arguments, synthesizer, leaders, c, n, plausibility, &answers));
     }
   }
   std::vector<std::vector<experiments::PairFigures>> by_class(model.classes.size());
   for (const Answer& answer : answers) {
     by_class[static_cast<size_t>(answer.label)].push_back(answer.figures);
   }
-  report::Table table =
-      EmptyTable(absl::StrCat(name, ": followers of ", leaders.size(), " leaders"));
-  AddRows(model.classes, by_class, &table);
-  section->tables.push_back(std::move(table));
+  section->tables.push_back(FiguresTable(
+      absl::StrCat(name, ": followers of ", leaders.size(), " leaders"), model.classes, by_class));
   AddPictures(model, answers, arguments.worst, section);
   return absl::OkStatus();
 }
 
-// The limb with which the leader strikes in each class, if one does.
-std::vector<std::optional<engine::StrikingLimb>> FindStrikes(const dataset::Dataset& data) {
-  std::vector<engine::StrikeFit> fits(data.classes.size(), engine::StrikeFit(data.skeleton));
-  std::vector<engine::HandContactFit> hands(data.classes.size(),
-                                            engine::HandContactFit(data.skeleton));
-  for (const dataset::Sequence& sequence : data.sequences) {
-    const motion::ClipPair& pair = sequence.pair;
-    const size_t c = static_cast<size_t>(sequence.interaction_class);
-    fits[c].Add(pair.leader.poses, pair.follower.poses, 0, pair.leader.frame_count());
-    hands[c].Add(pair.leader.poses, pair.follower.poses, 0, pair.leader.frame_count());
-  }
-  std::vector<std::optional<engine::StrikingLimb>> limbs;
-  for (size_t c = 0; c < fits.size(); ++c) {
-    const bool meet = hands[c].Metres(data.frame_rate_hz).has_value();
-    limbs.push_back(meet ? std::nullopt : fits[c].Limb());
-  }
-  return limbs;
-}
-
 // The same figures for captured pairs.
 absl::Status AddCaptured(const std::string& folder, report::ResultSection* section) {
-  absl::StatusOr<dataset::Dataset> data = dataset::ReadDataset(folder);
-  if (!data.ok()) return data.status();
-  const experiments::Plausibility plausibility(data->skeleton);
+  DUET_TRY(dataset::Dataset data, dataset::ReadDataset(folder));
+  const experiments::Plausibility plausibility(data.skeleton);
   if (!plausibility.possible()) {
     return absl::InvalidArgumentError(
         "--data: expected a skeleton with hips, feet, a chest and two named arms");
   }
-  const auto strikes = FindStrikes(*data);
-  std::vector<std::vector<experiments::PairFigures>> by_class(data->classes.size());
-  for (const dataset::Sequence& sequence : data->sequences) {
+  engine::ModelDescription people;
+  people.classes = data.classes;
+  training::FindContacts(data, dataset::AllSequences(data), &people);
+  std::vector<std::vector<experiments::PairFigures>> by_class(data.classes.size());
+  for (const dataset::Sequence& sequence : data.sequences) {
+    const motion::ClipPair& pair = sequence.pair;
     by_class[static_cast<size_t>(sequence.interaction_class)].push_back(
-        plausibility.Measure(sequence.pair.leader.poses, sequence.pair.follower.poses,
-                             sequence.pair.leader.frame_rate_hz,
-                             {false, strikes[static_cast<size_t>(sequence.interaction_class)]}));
+        plausibility.Measure(pair.leader.poses, pair.follower.poses, pair.leader.frame_rate_hz,
+                             {false, ContactsOf(people, sequence.interaction_class).strikes}));
   }
-  report::Table table = EmptyTable(absl::StrCat("captured people: ", DescribeData(*data)));
-  AddRows(data->classes, by_class, &table);
-  section->tables.push_back(std::move(table));
+  section->tables.push_back(
+      FiguresTable(absl::StrCat("captured people: ", DescribeData(data)), data.classes, by_class));
   return absl::OkStatus();
 }
 
 absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<std::vector<FoldModel>> models = OpenModels(arguments.models);
-  if (!models.ok()) return models.status();
+  DUET_TRY(std::vector<FoldModel> models, OpenModels(arguments.models));
   report::ResultSection section =
       BeginSection(arguments.section,
                    "What a viewer would notice in followers of leaders that the model never saw: "
                    "every motion file below a folder and, for the skeleton of SBU, four that "
-                   "formulas make, answered in every class at weight 1 without "
-                   "a start.");
+                   "formulas make, answered in every class at weight 1 without a start.");
   section.settings.emplace_back("seeds", absl::StrCat(arguments.asked.samples));
   AddSamplingSettings(arguments.asked, &section);
-  for (const FoldModel& model : *models) {
-    absl::StatusOr<SharedSynthesizer> synthesizer = model.load("");
-    if (!synthesizer.ok()) return synthesizer.status();
-    absl::Status status = AddModel(arguments, model.name, **synthesizer, &section);
-    if (!status.ok()) return status;
+  for (const FoldModel& model : models) {
+    DUET_TRY(SharedSynthesizer synthesizer, model.load(""));
+    DUET_RETURN_IF_ERROR(AddModel(arguments, model.name, *synthesizer, &section));
   }
   if (!arguments.data.empty()) {
-    absl::Status status = AddCaptured(arguments.data, &section);
-    if (!status.ok()) return status;
+    DUET_RETURN_IF_ERROR(AddCaptured(arguments.data, &section));
   }
   return FinishSection(arguments.section, section);
 }
@@ -304,39 +249,28 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 
 void AddPlausibleCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto [arguments, command] = AddCommand(
+      "plausible", "What a viewer would notice in followers of any leaders", Run, app, chosen);
   arguments->models.as_served = true;
   arguments->asked.samples = 1;
-  CLI::App* command =
-      app->add_subcommand("plausible", "What a viewer would notice in followers of any leaders");
-  arguments->section.id = "19_plausible";
-  arguments->section.title = "Plausible followers of foreign leaders";
   AddSectionFlags(&arguments->section, command);
   command->add_option("--leaders", arguments->leaders, "folder of motion files, with subfolders")
       ->type_name(kData)
       ->check(CLI::ExistingDirectory)
       ->required();
-  command->add_option("--seconds", arguments->seconds, "longest leader; longer ones are cut")
-      ->check(CLI::Range(1.0, 600.0))
-      ->capture_default_str();
+  AddNumber("--seconds", &arguments->seconds, 1.0, 600.0, "longest leader; longer ones are cut",
+            command);
   command
       ->add_option("--data", arguments->data,
                    "captured pairs with the same figures, for comparison")
       ->type_name(kData)
       ->check(CLI::ExistingDirectory);
-  command
-      ->add_option("--worst", arguments->worst,
-                   "answers to picture: the worst seconds of so many of the worst (with --out)")
-      ->check(CLI::Range(0, 100))
-      ->capture_default_str();
-  command
-      ->add_option("--samples", arguments->asked.samples,
-                   "answers to each leader, each with its seed")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  AddNumber("--worst", &arguments->worst, 0, 100,
+            "answers to picture: the worst seconds of so many of the worst (with --out)", command);
+  AddNumber("--samples", &arguments->asked.samples, 1, 1000,
+            "answers to each leader, each with its seed", command);
   AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
   AddSamplingFlags(&arguments->asked, command);
-  RunWhenNamed(command, arguments, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

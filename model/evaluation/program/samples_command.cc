@@ -1,18 +1,17 @@
 #include <iostream>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
+#include "model/base/status_macros.h"
 #include "model/evaluation/baselines/other_people.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
+#include "model/evaluation/program/flags.h"
 #include "model/evaluation/program/fold_scorer.h"
-#include "model/evaluation/program/model_flags.h"
+#include "model/evaluation/report/metric_tables.h"
 #include "model/evaluation/report/result_section.h"
-#include "model/evaluation/report/sample_tables.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -24,12 +23,10 @@ absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset
   const std::string row = model.name + StartSuffix(ParseStart(start));
   std::vector<metrics::SampledMotions> answers;
   for (const Fold& fold : scorer.folds()) {
-    absl::StatusOr<metrics::SampledMotions> of_fold =
-        Answers(dataset, model, fold, fold.split.test, start, asked);
-    if (!of_fold.ok()) return of_fold.status();
+    DUET_TRY(auto of_fold, Answers(dataset, model, fold, fold.split.test, start, asked));
     std::cerr << absl::StrCat(row, " without ", fold.subject, ": ", fold.split.test.size(),
-                              " leaders, ", of_fold->size(), " answers each\n");
-    answers.push_back(*std::move(of_fold));
+                              " leaders, ", of_fold.size(), " answers each\n");
+    answers.push_back(std::move(of_fold));
   }
   return scorer.ScoreSamples(row, answers);
 }
@@ -42,10 +39,10 @@ absl::StatusOr<report::MethodFigures> ScoreOtherPeople(const dataset::Dataset& d
   for (const Fold& fold : scorer.folds()) {
     metrics::SampledMotions of_fold(static_cast<size_t>(asked.samples));
     for (size_t n = 0; n < of_fold.size(); ++n) {
-      absl::StatusOr<std::vector<motion::Poses>> followers = baselines::AnswerWithOtherPeople(
-          dataset, fold.split.train, fold.split.test, asked.seed + n);
-      if (!followers.ok()) return followers.status();
-      auto follower = followers->begin();
+      DUET_TRY(std::vector<motion::Poses> followers,
+               baselines::AnswerWithOtherPeople(dataset, fold.split.train, fold.split.test,
+                                                asked.seed + n));
+      auto follower = followers.begin();
       for (const int index : fold.split.test) {
         of_fold[n].push_back({index, std::move(*follower++)});
       }
@@ -59,24 +56,22 @@ absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experi
                                                         const FoldScorer& scorer,
                                                         const ExperimentFlags& flags) {
   std::vector<report::MethodFigures> rows;
-  const auto add = [&rows](absl::StatusOr<report::MethodFigures> row) {
-    if (row.ok()) rows.push_back(*std::move(row));
-    return row.status();
-  };
-  absl::Status status = add(scorer.ScoreCapturedSamples());
-  if (status.ok()) status = add(ScoreOtherPeople(experiment.dataset, scorer, flags.asked));
+  DUET_TRY(rows.emplace_back(), scorer.ScoreCapturedSamples());
+  DUET_TRY(rows.emplace_back(), ScoreOtherPeople(experiment.dataset, scorer, flags.asked));
   for (const std::string& start : flags.starts) {
     for (const FoldModel& model : experiment.models) {
-      if (!status.ok()) return status;
-      status = add(ScoreModel(experiment.dataset, scorer, model, start, flags.asked));
+      DUET_TRY(rows.emplace_back(),
+               ScoreModel(experiment.dataset, scorer, model, start, flags.asked));
     }
   }
-  if (!status.ok()) return status;
   return rows;
 }
 
-report::ResultSection MakeSection(const Experiment& experiment, const ExperimentFlags& flags,
-                                  const FoldScorer& scorer) {
+absl::Status Run(const ExperimentFlags& flags) {
+  DUET_TRY(Experiment experiment, OpenExperiment(flags));
+  DUET_TRY(FoldScorer scorer, FoldScorer::Create(experiment.dataset, experiment.folds,
+                                                 FoldScorer::Judging::kFiltered));
+  DUET_TRY(std::vector<report::MethodFigures> rows, Rows(experiment, scorer, flags));
   report::ResultSection section = BeginAnswers(
       flags, experiment,
       "A model that samples answers every leader of every left-out subject several times, each "
@@ -90,22 +85,10 @@ report::ResultSection MakeSection(const Experiment& experiment, const Experiment
   section.settings.emplace_back("direction of the partner",
                                 flags.asked.tell_direction ? "in the request" : "from the leader");
   for (auto& setting : scorer.JudgeSettings()) section.settings.push_back(std::move(setting));
-  return section;
-}
-
-absl::Status Run(const ExperimentFlags& flags) {
-  absl::StatusOr<Experiment> experiment = OpenExperiment(flags);
-  if (!experiment.ok()) return experiment.status();
-  absl::StatusOr<FoldScorer> scorer =
-      FoldScorer::Create(experiment->dataset, experiment->folds, FoldScorer::Judging::kFiltered);
-  if (!scorer.ok()) return scorer.status();
-  absl::StatusOr<std::vector<report::MethodFigures>> rows = Rows(*experiment, *scorer, flags);
-  if (!rows.ok()) return rows.status();
-  report::ResultSection section = MakeSection(*experiment, flags, *scorer);
-  section.tables = {report::SampleSummary(*rows)};
-  report::Table spread = report::SampleSpread(*rows);
+  section.tables = {report::SampleSummary(rows)};
+  report::Table spread = report::SampleSpread(rows);
   if (!spread.rows.empty()) section.tables.push_back(std::move(spread));
-  for (report::Table& table : report::SampleTables(experiment->dataset.classes, *rows)) {
+  for (report::Table& table : report::SampleTables(experiment.dataset.classes, rows)) {
     section.tables.push_back(std::move(table));
   }
   return FinishSection(flags.section, section);
@@ -114,17 +97,13 @@ absl::Status Run(const ExperimentFlags& flags) {
 }  // namespace
 
 void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto flags = std::make_shared<ExperimentFlags>();
-  CLI::App* command = app->add_subcommand("samples", "Figures of many answers to each leader");
-  AddAnswersFlags("14_samples", "Many answers to one leader", flags.get(), command);
-  command
-      ->add_option("--samples", flags->asked.samples,
-                   "answers to each leader by a model that samples")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  const auto [flags, command] =
+      AddCommand("samples", "Figures of many answers to each leader", Run, app, chosen);
+  AddAnswersFlags("14_samples", "Many answers to one leader", flags, command);
+  AddNumber("--samples", &flags->asked.samples, 1, 1000,
+            "answers to each leader by a model that samples", command);
   command->add_flag("!--untold-direction", flags->asked.tell_direction,
                     "estimate the partner's direction from the leader's motion");
-  RunWhenNamed(command, flags, Run, chosen);
 }
 
 }  // namespace duet::evaluation::program

@@ -1,15 +1,15 @@
 #include <algorithm>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/status_macros.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/model_flags.h"
+#include "model/evaluation/program/flags.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -17,8 +17,7 @@ namespace {
 // Two answers show the variety of a model that samples.
 constexpr int kAnswers = 2;
 
-struct Arguments {
-  ExperimentFlags flags;
+struct Arguments : ExperimentFlags {
   std::string start = "none";
 };
 
@@ -50,15 +49,14 @@ absl::StatusOr<std::vector<report::PicturedPair>> Pairs(const Experiment& experi
   const dataset::Dataset& dataset = experiment.dataset;
   const motion::ClipPair& pair = dataset.sequences[static_cast<size_t>(example.sequence)].pair;
   std::vector<report::PicturedPair> pairs = {{"captured", pair.leader.poses, pair.follower.poses}};
-  experiments::AskedSamples asked = arguments.flags.asked;
+  experiments::AskedSamples asked = arguments.asked;
   asked.samples = kAnswers;
   for (const FoldModel& model : experiment.models) {
-    absl::StatusOr<metrics::SampledMotions> answers =
-        Answers(dataset, model, *example.fold, {example.sequence}, arguments.start, asked);
-    if (!answers.ok()) return answers.status();
-    for (size_t n = 0; n < answers->size(); ++n) {
+    DUET_TRY(metrics::SampledMotions answers,
+             Answers(dataset, model, *example.fold, {example.sequence}, arguments.start, asked));
+    for (size_t n = 0; n < answers.size(); ++n) {
       const std::string name = n == 0 ? model.name : absl::StrCat(model.name, ", another seed");
-      pairs.push_back({name, pair.leader.poses, (*answers)[n].front().follower});
+      pairs.push_back({name, pair.leader.poses, answers[n].front().follower});
     }
   }
   return pairs;
@@ -67,61 +65,49 @@ absl::StatusOr<std::vector<report::PicturedPair>> Pairs(const Experiment& experi
 absl::Status AddPictures(const Experiment& experiment, const std::string& class_name,
                          const Example& example, const Arguments& arguments,
                          report::ResultSection* section) {
-  absl::StatusOr<std::vector<report::PicturedPair>> pairs = Pairs(experiment, example, arguments);
-  if (!pairs.ok()) return pairs.status();
+  DUET_TRY(std::vector<report::PicturedPair> pairs, Pairs(experiment, example, arguments));
   const dataset::Sequence& sequence =
       experiment.dataset.sequences[static_cast<size_t>(example.sequence)];
   const double rate = sequence.pair.leader.frame_rate_hz;
   const std::string name = absl::StrCat(section->id, "_", class_name);
   std::string of = absl::StrCat(class_name, ", clip ", sequence.id);
-  if (!arguments.flags.models.one_for_all()) {
+  if (!arguments.models.one_for_all()) {
     absl::StrAppend(&of, ", by models that never saw ", example.fold->subject);
   }
   section->figures.push_back(
       {name, absl::StrCat(of, ": leader blue, follower orange; paler on the left of the body."),
-       report::PosePlot{class_name, experiment.dataset.skeleton, *std::move(pairs), rate}});
+       report::PosePlot{class_name, experiment.dataset.skeleton, std::move(pairs), rate}});
   return absl::OkStatus();
 }
 
-report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
+absl::Status Run(const Arguments& arguments) {
+  DUET_TRY(Experiment experiment, OpenExperiment(arguments));
   report::ResultSection section = BeginAnswers(
-      arguments.flags, experiment,
+      arguments, experiment,
       "One clip of each class: the clip of median length of the first left-out subject who has "
       "any. Above: the captured pair. Below: the same leader with synthesised followers.");
   section.settings.emplace_back("input about the follower's first frame", arguments.start);
-  return section;
-}
-
-absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
-  if (!experiment.ok()) return experiment.status();
-  report::ResultSection section = MakeSection(*experiment, arguments);
-  const std::vector<std::string>& classes = experiment->dataset.classes;
+  const std::vector<std::string>& classes = experiment.dataset.classes;
   for (size_t c = 0; c < classes.size(); ++c) {
-    const std::optional<Example> example = FindExample(*experiment, static_cast<int>(c));
+    const std::optional<Example> example = FindExample(experiment, static_cast<int>(c));
     if (!example) continue;
-    absl::Status status = AddPictures(*experiment, classes[c], *example, arguments, &section);
-    if (!status.ok()) return status;
+    DUET_RETURN_IF_ERROR(AddPictures(experiment, classes[c], *example, arguments, &section));
   }
   std::cout << section.figures.size() << " figures\n";
-  return FinishSection(arguments.flags.section, section);
+  return FinishSection(arguments.section, section);
 }
 
 }  // namespace
 
 void AddStripsCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app->add_subcommand("strips", "Pictures of captured and synthesised pairs, still and moving");
-  AddExperimentFlags("18_strips", "Captured and synthesised, side by side", &arguments->flags,
-                     command);
+  const auto [arguments, command] = AddCommand(
+      "strips", "Pictures of captured and synthesised pairs, still and moving", Run, app, chosen);
+  AddExperimentFlags("18_strips", "Captured and synthesised, side by side", arguments, command);
   command->get_option("--out")->required();
-  AddModelFlags(ModelNeeded::kYes, &arguments->flags.models, command);
-  command->add_option("--start", arguments->start, "input about the follower's first frame")
-      ->check(CLI::IsMember(StartNames()))
-      ->capture_default_str();
-  AddSamplingFlags(&arguments->flags.asked, command);
-  RunWhenNamed(command, arguments, Run, chosen);
+  AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
+  AddOption("--start", &arguments->start, "input about the follower's first frame", command)
+      ->check(CLI::IsMember(StartNames()));
+  AddSamplingFlags(&arguments->asked, command);
 }
 
 }  // namespace duet::evaluation::program

@@ -1,24 +1,22 @@
 #include <cstddef>
 #include <iostream>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/status_macros.h"
 #include "model/evaluation/experiments/label_sweep.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/fold_judge.h"
-#include "model/evaluation/program/model_flags.h"
-#include "model/evaluation/report/sweep_figures.h"
+#include "model/evaluation/program/flags.h"
+#include "model/evaluation/program/fold_scorer.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments {
-  ExperimentFlags flags;
+struct Arguments : ExperimentFlags {
   std::vector<uint64_t> sample_seeds = {0};
 };
 
@@ -44,11 +42,9 @@ absl::Status SweepLeader(const dataset::Dataset& dataset, const SweepFold& fold,
                          sampling});
     }
   }
-  absl::StatusOr<std::vector<motion::Poses>> followers =
-      SynthesizeSequences(*fold.model, leaders, start);
-  if (!followers.ok()) return followers.status();
+  DUET_TRY(std::vector<motion::Poses> followers, SynthesizeSequences(*fold.model, leaders, start));
   std::vector<metrics::ScoredMotion> motions;
-  for (motion::Poses& follower : *followers) motions.push_back({index, std::move(follower)});
+  for (motion::Poses& follower : followers) motions.push_back({index, std::move(follower)});
   const auto probabilities = fold.judge.Probabilities(dataset, motions);
   auto row = probabilities.begin();
   for (int raised = 0; raised < classes; ++raised) {
@@ -61,15 +57,12 @@ absl::Status SweepLeader(const dataset::Dataset& dataset, const SweepFold& fold,
 
 absl::StatusOr<SweepFold> OpenFold(const dataset::Dataset& dataset, const FoldModel& model,
                                    const Fold& fold, const std::vector<std::string>& starts) {
-  absl::StatusOr<SharedSynthesizer> synthesizer = model.load(fold.subject);
-  if (!synthesizer.ok()) return synthesizer.status();
+  DUET_TRY(SharedSynthesizer synthesizer, model.load(fold.subject));
   for (const std::string& start : starts) {
-    absl::Status fits = CheckModelTakes((*synthesizer)->description(), dataset, ParseStart(start));
-    if (!fits.ok()) return fits;
+    DUET_RETURN_IF_ERROR(CheckModelTakes(synthesizer->description(), dataset, ParseStart(start)));
   }
-  absl::StatusOr<judge::MotionClassifier> judge = TrainFoldJudge(dataset, fold);
-  if (!judge.ok()) return judge.status();
-  return SweepFold{&fold, *std::move(synthesizer), *std::move(judge)};
+  DUET_TRY(judge::MotionClassifier judge, TrainFoldJudge(dataset, fold));
+  return SweepFold{&fold, std::move(synthesizer), std::move(judge)};
 }
 
 absl::StatusOr<std::vector<experiments::SweepCurve>> SweepFolds(const dataset::Dataset& dataset,
@@ -83,10 +76,8 @@ absl::StatusOr<std::vector<experiments::SweepCurve>> SweepFolds(const dataset::D
         fold.model->description().samples ? arguments.sample_seeds.size() : size_t{1};
     for (const int index : fold.fold->split.test) {
       for (size_t i = 0; i < seeds; ++i) {
-        const engine::Sampling sampling = {arguments.sample_seeds[i],
-                                           arguments.flags.asked.variety};
-        absl::Status status = SweepLeader(dataset, fold, index, start, sampling, &curves);
-        if (!status.ok()) return status;
+        const engine::Sampling sampling = {arguments.sample_seeds[i], arguments.asked.variety};
+        DUET_RETURN_IF_ERROR(SweepLeader(dataset, fold, index, start, sampling, &curves));
       }
     }
     std::cerr << "sweep" << StartSuffix(start) << " without " << fold.fold->subject << ": "
@@ -95,16 +86,23 @@ absl::StatusOr<std::vector<experiments::SweepCurve>> SweepFolds(const dataset::D
   return curves;
 }
 
-report::SweepNames Names(experiments::StartGiven start) {
+experiments::SweepNames Names(experiments::StartGiven start) {
   if (start == experiments::StartGiven::kNone) return {"without a start", ""};
   const bool root = start == experiments::StartGiven::kRoot;
   return {root ? "given the first root" : "given the first pose", root ? "_root" : "_pose"};
 }
 
-report::ResultSection MakeSection(const Experiment& experiment, const std::vector<SweepFold>& folds,
-                                  const Arguments& arguments) {
+absl::Status Run(const Arguments& arguments) {
+  DUET_TRY(Experiment experiment, OpenExperiment(arguments));
+  const dataset::Dataset& dataset = experiment.dataset;
+  std::vector<SweepFold> folds;
+  for (const Fold& fold : experiment.folds) {
+    DUET_TRY(SweepFold opened,
+             OpenFold(dataset, experiment.models.front(), fold, arguments.starts));
+    folds.push_back(std::move(opened));
+  }
   report::ResultSection section = BeginExperiment(
-      arguments.flags, experiment,
+      arguments, experiment,
       "Every leader of every fold's left-out subject is answered at each weight from -1 to 2 of "
       "its own class alone, and of each other class beside its own at 1. The fold's judge, trained "
       "without the left-out subject, gives the probability of each class. At weight 0 of its own "
@@ -112,56 +110,35 @@ report::ResultSection MakeSection(const Experiment& experiment, const std::vecto
   section.settings.emplace_back("model", experiment.models.front().name);
   section.settings.emplace_back("seeds of a model that samples",
                                 absl::StrJoin(arguments.sample_seeds, ", "));
-  section.settings.emplace_back("variety", absl::StrCat(arguments.flags.asked.variety));
+  section.settings.emplace_back("variety", absl::StrCat(arguments.asked.variety));
   for (const SweepFold& fold : folds) {
     section.settings.push_back(JudgeSetting(*fold.fold, fold.judge));
   }
-  return section;
-}
-
-absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
-  if (!experiment.ok()) return experiment.status();
-  const dataset::Dataset& dataset = experiment->dataset;
-  std::vector<SweepFold> folds;
-  for (const Fold& fold : experiment->folds) {
-    absl::StatusOr<SweepFold> opened =
-        OpenFold(dataset, experiment->models.front(), fold, arguments.flags.starts);
-    if (!opened.ok()) return opened.status();
-    folds.push_back(*std::move(opened));
-  }
-  report::ResultSection section = MakeSection(*experiment, folds, arguments);
-  for (const std::string& name : arguments.flags.starts) {
+  for (const std::string& name : arguments.starts) {
     const experiments::StartGiven start = ParseStart(name);
-    absl::StatusOr<std::vector<experiments::SweepCurve>> curves =
-        SweepFolds(dataset, folds, start, arguments);
-    if (!curves.ok()) return curves.status();
-    AddSweep(dataset.classes, *curves, Names(start), &section);
+    DUET_TRY(auto curves, SweepFolds(dataset, folds, start, arguments));
+    experiments::AddSweep(dataset.classes, curves, Names(start), &section);
   }
-  return FinishSection(arguments.flags.section, section);
+  return FinishSection(arguments.section, section);
 }
 
 }  // namespace
 
 void AddSweepCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app->add_subcommand("sweep", "Effect of raising and lowering label weights");
-  AddExperimentFlags("30_sweep", "Mix, match and avoid: what label weights do", &arguments->flags,
-                     command);
-  ModelChoice& models = arguments->flags.models;
-  models.runs.resize(1);
-  command->add_option("--runs", models.runs.front(), "output of duet-train --protocol loso")
+  const auto [arguments, command] =
+      AddCommand("sweep", "Effect of raising and lowering label weights", Run, app, chosen);
+  AddExperimentFlags("30_sweep", "Mix, match and avoid: what label weights do", arguments, command);
+  arguments->models.runs.resize(1);
+  command
+      ->add_option("--runs", arguments->models.runs.front(), "output of duet-train --protocol loso")
       ->type_name(kNamedRuns)
       ->required();
-  AddAsServedFlag(&models, command);
-  AddStartsFlag(&arguments->flags.starts, command);
-  command
-      ->add_option("--sample-seeds", arguments->sample_seeds,
-                   "seeds of a model that samples; each leader is swept with every seed")
-      ->delimiter(',')
-      ->capture_default_str();
-  AddVarietyFlag(&arguments->flags.asked.variety, command);
-  RunWhenNamed(command, arguments, Run, chosen);
+  AddAsServedFlag(&arguments->models, command);
+  AddStartsFlag(&arguments->starts, command);
+  AddOption("--sample-seeds", &arguments->sample_seeds,
+            "seeds of a model that samples; each leader is swept with every seed", command)
+      ->delimiter(',');
+  AddVarietyFlag(&arguments->asked.variety, command);
 }
 
 }  // namespace duet::evaluation::program

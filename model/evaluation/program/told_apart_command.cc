@@ -1,24 +1,21 @@
 #include <iostream>
-#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "model/base/statistics.h"
+#include "model/base/status_macros.h"
 #include "model/evaluation/experiments/told_apart.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
-#include "model/evaluation/program/model_flags.h"
+#include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
 
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments {
-  ExperimentFlags flags;
+struct Arguments : ExperimentFlags {
   std::vector<uint64_t> seeds = {1, 2, 3};
 };
 
@@ -27,23 +24,18 @@ using Accuracies = std::vector<std::vector<double>>;
 
 absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, const Fold& fold,
                      const std::string& start, const Arguments& arguments, Accuracies* accuracies) {
-  experiments::AskedSamples asked = arguments.flags.asked;
+  experiments::AskedSamples asked = arguments.asked;
   asked.samples = 1;
-  absl::StatusOr<metrics::SampledMotions> training =
-      Answers(dataset, model, fold, fold.split.train, start, asked);
-  if (!training.ok()) return training.status();
-  absl::StatusOr<metrics::SampledMotions> test =
-      Answers(dataset, model, fold, fold.split.test, start, asked);
-  if (!test.ok()) return test.status();
+  DUET_TRY(auto training, Answers(dataset, model, fold, fold.split.train, start, asked));
+  DUET_TRY(auto test, Answers(dataset, model, fold, fold.split.test, start, asked));
   for (size_t i = 0; i < arguments.seeds.size(); ++i) {
-    absl::StatusOr<double> accuracy =
-        experiments::ToldApart(dataset, training->front(), test->front(),
-                               experiments::ToldApartOptions(arguments.seeds[i]));
-    if (!accuracy.ok()) return accuracy.status();
+    DUET_TRY(double accuracy,
+             experiments::ToldApart(dataset, training.front(), test.front(),
+                                    experiments::ToldApartOptions(arguments.seeds[i])));
     std::cerr << absl::StrFormat("%s%s without %s, classifier %d: %.3f\n", model.name,
                                  StartSuffix(ParseStart(start)), fold.subject, arguments.seeds[i],
-                                 *accuracy);
-    (*accuracies)[i].push_back(*accuracy);
+                                 accuracy);
+    (*accuracies)[i].push_back(accuracy);
   }
   return absl::OkStatus();
 }
@@ -64,21 +56,19 @@ report::TableRow Row(const std::string& name, const Accuracies& accuracies) {
 }
 
 absl::StatusOr<report::Table> Measure(const Experiment& experiment, const Arguments& arguments) {
-  report::Table table;
-  table.title = "Balanced accuracy of telling synthesised from captured pairs";
+  report::Table table{"Balanced accuracy of telling synthesised from captured pairs"};
   for (const Fold& fold : experiment.folds) table.columns.push_back(fold.subject);
   table.columns.insert(table.columns.end(), {"mean", "spread"});
   table.decimals = 3;
   table.notes = {
       "0.5: cannot be told apart; 1: always. A column is a left-out person; spread: the standard "
       "deviation of the mean over the classifiers' seeds."};
-  for (const std::string& start : arguments.flags.starts) {
+  for (const std::string& start : arguments.starts) {
     for (const FoldModel& model : experiment.models) {
       Accuracies accuracies(arguments.seeds.size());
       for (const Fold& fold : experiment.folds) {
-        absl::Status status =
-            AddFold(experiment.dataset, model, fold, start, arguments, &accuracies);
-        if (!status.ok()) return status;
+        DUET_RETURN_IF_ERROR(
+            AddFold(experiment.dataset, model, fold, start, arguments, &accuracies));
       }
       table.rows.push_back(Row(model.name + StartSuffix(ParseStart(start)), accuracies));
     }
@@ -86,38 +76,28 @@ absl::StatusOr<report::Table> Measure(const Experiment& experiment, const Argume
   return table;
 }
 
-report::ResultSection MakeSection(const Experiment& experiment, const Arguments& arguments) {
+absl::Status Run(const Arguments& arguments) {
+  DUET_TRY(Experiment experiment, OpenExperiment(arguments));
   report::ResultSection section = BeginAnswers(
-      arguments.flags, experiment,
+      arguments, experiment,
       "A fresh classifier that sees leader and follower learns to tell a fold's answers to its "
       "training leaders from the captured pairs of the same people, and is tested on the left-out "
       "person: on that fold's answers to leaders never seen, and on the captured pairs. Both sides "
       "go through the same Gaussian of 0.1 s, so that a capture's noise gives nothing away.");
   section.settings.emplace_back("classifiers (seeds)", absl::StrJoin(arguments.seeds, ", "));
-  return section;
-}
-
-absl::Status Run(const Arguments& arguments) {
-  absl::StatusOr<Experiment> experiment = OpenExperiment(arguments.flags);
-  if (!experiment.ok()) return experiment.status();
-  report::ResultSection section = MakeSection(*experiment, arguments);
-  absl::StatusOr<report::Table> table = Measure(*experiment, arguments);
-  if (!table.ok()) return table.status();
-  section.tables = {*std::move(table)};
-  return FinishSection(arguments.flags.section, section);
+  DUET_TRY(section.tables.emplace_back(), Measure(experiment, arguments));
+  return FinishSection(arguments.section, section);
 }
 
 }  // namespace
 
 void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app->add_subcommand(
-      "told-apart", "How well a classifier distinguishes answers from captured pairs");
-  AddAnswersFlags("17_told_apart", "Told apart from captured pairs", &arguments->flags, command);
-  command->add_option("--seeds", arguments->seeds, "seeds; one classifier per seed")
-      ->delimiter(',')
-      ->capture_default_str();
-  RunWhenNamed(command, arguments, Run, chosen);
+  const auto [arguments, command] =
+      AddCommand("told-apart", "How well a classifier distinguishes answers from captured pairs",
+                 Run, app, chosen);
+  AddAnswersFlags("17_told_apart", "Told apart from captured pairs", arguments, command);
+  AddOption("--seeds", &arguments->seeds, "seeds; one classifier per seed", command)
+      ->delimiter(',');
 }
 
 }  // namespace duet::evaluation::program

@@ -7,6 +7,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/status_macros.h"
 
 namespace duet::evaluation::protocol {
 namespace {
@@ -54,15 +55,13 @@ absl::StatusOr<FoldResult> RunFold(const dataset::Dataset& dataset, const datase
                                    Method* method) {
   FoldResult result;
   auto start = std::chrono::steady_clock::now();
-  absl::Status status = method->Train(dataset, split.train);
-  if (!status.ok()) return status;
+  DUET_RETURN_IF_ERROR(method->Train(dataset, split.train));
   result.train_seconds = SecondsSince(start);
   start = std::chrono::steady_clock::now();
   for (const int i : split.test) {
     const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(i)];
-    absl::StatusOr<motion::Poses> answer = Answer(*method, sequence);
-    if (!answer.ok()) return answer.status();
-    result.motions.push_back({i, *std::move(answer)});
+    DUET_TRY(motion::Poses answer, Answer(*method, sequence));
+    result.motions.push_back({i, std::move(answer)});
   }
   result.predict_seconds = SecondsSince(start);
   return result;

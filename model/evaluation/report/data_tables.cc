@@ -1,14 +1,17 @@
 #include "model/evaluation/report/data_tables.h"
 
+#include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/evaluation/metrics/motion_quality.h"
+#include "model/base/statistics.h"
+#include "model/body/motion_quality.h"
+#include "model/body/penetration.h"
+#include "model/cleanup/clean_up.h"
 #include "model/motion/filter.h"
 #include "model/motion/posture.h"
 
@@ -91,8 +94,7 @@ std::vector<motion::Vec3> FeetOf(const motion::Skeleton& skeleton, const Sequenc
 
 // A noise row's sums over both people.
 struct Noise {
-  int joint_frames = 0;
-  int repaired = 0;
+  double joint_frames = 0, repaired = 0;
   double captured = 0, without_jumps = 0, smooth = 0;  // jitter, summed over clips
   int clips = 0;
 };
@@ -101,24 +103,89 @@ void AddNoise(const motion::Clip& clip, Noise* noise) {
   motion::Poses poses = clip.poses;
   noise->repaired += RepairJumps(&poses);
   noise->joint_frames += poses.frame_count() * poses.joint_count();
-  noise->captured += metrics::Jitter(clip.poses, clip.frame_rate_hz);
-  noise->without_jumps += metrics::Jitter(poses, clip.frame_rate_hz);
-  noise->smooth += metrics::Jitter(GaussianFilter(poses, kSmoothingFrames), clip.frame_rate_hz);
+  noise->captured += body::Jitter(clip.poses, clip.frame_rate_hz);
+  noise->without_jumps += body::Jitter(poses, clip.frame_rate_hz);
+  noise->smooth += body::Jitter(GaussianFilter(poses, kSmoothingFrames), clip.frame_rate_hz);
   ++noise->clips;
 }
 
-double Share(double part, double whole) {
-  return whole == 0 ? std::numeric_limits<double>::quiet_NaN() : part / whole;
+constexpr float kMovedMetres = 0.01f;
+constexpr double kHigh = 0.99;
+
+cleanup::Options NoStage() {
+  cleanup::Options none;
+  none.upright.enabled = none.spacing.enabled = none.capsules.enabled = false;
+  none.waist.enabled = none.hand_contact.enabled = none.floor.enabled = none.footsteps.enabled =
+      none.joint_ranges.enabled = false;
+  none.shoulders.enabled = none.limb_swings.enabled = false;
+  return none;
+}
+
+template <typename Stage>
+cleanup::Options Only(Stage cleanup::Options::*stage) {
+  cleanup::Options only = NoStage();
+  (only.*stage).enabled = true;
+  return only;
+}
+
+std::vector<std::pair<std::string, cleanup::Options>> Variants() {
+  return {{"captured", NoStage()},
+          {"shoulders", Only(&cleanup::Options::shoulders)},
+          {"waist", Only(&cleanup::Options::waist)},
+          {"upright", Only(&cleanup::Options::upright)},
+          {"spacing", Only(&cleanup::Options::spacing)},
+          {"capsules", Only(&cleanup::Options::capsules)},
+          {"floor", Only(&cleanup::Options::floor)},
+          {"footsteps", Only(&cleanup::Options::footsteps)},
+          {"joint ranges", Only(&cleanup::Options::joint_ranges)},
+          {"limb swings", Only(&cleanup::Options::limb_swings)},
+          {"all", {}}};
+}
+
+// A row's sums over sequences.
+struct Effect {
+  std::vector<double> ways;  // of every joint in every frame, metres
+  int frames = 0, moved_frames = 0;
+  double slide = 0, depth = 0;
+};
+
+void Add(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
+         const cleanup::CleanUp& clean_up, Effect* effect) {
+  const motion::Poses& leader = sequence.pair.leader.poses;
+  const motion::Poses& captured = sequence.pair.follower.poses;
+  const bool touches = dataset.touches[static_cast<std::size_t>(sequence.interaction_class)];
+  const cleanup::Touch touch(static_cast<std::size_t>(leader.frame_count()), touches ? 1.0f : 0.0f);
+  motion::Poses cleaned = captured;
+  clean_up.Apply(leader, touch, cleanup::Meetings(touch.size()), {dataset.frame_rate_hz, 0},
+                 &cleaned);
+  for (int t = 0; t < captured.frame_count(); ++t) {
+    float farthest = 0;
+    for (int j = 0; j < captured.joint_count(); ++j) {
+      const float way = Distance(captured.at(t, j), cleaned.at(t, j));
+      effect->ways.push_back(way);
+      farthest = std::max(farthest, way);
+    }
+    ++effect->frames;
+    if (farthest > kMovedMetres) ++effect->moved_frames;
+  }
+  effect->slide +=
+      body::MeasureFootSlide(cleaned, dataset.skeleton, dataset.frame_rate_hz).centimetres_a_frame;
+  effect->depth +=
+      body::MeasurePenetration(leader, cleaned, dataset.skeleton, dataset.parts).max_depth_metres;
+}
+
+float High(std::vector<double> values) {
+  const auto at = static_cast<std::ptrdiff_t>(kHigh * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return static_cast<float>(values[static_cast<std::size_t>(at)]);
 }
 
 }  // namespace
 
 Table LeanTable(const dataset::Dataset& dataset) {
-  Table table;
-  table.title = "Mean lean of people, degrees: as captured, then level";
-  table.columns = {"sequences",      "leader x",         "leader z",
-                   "follower x",     "follower z",       "level leader x",
-                   "level leader z", "level follower x", "level follower z"};
+  Table table{"Mean lean of people, degrees: as captured, then level",
+              {"sequences", "leader x", "leader z", "follower x", "follower z", "level leader x",
+               "level leader z", "level follower x", "level follower z"}};
   table.notes = {
       "From the feet to the neck; x is along the image, z is away from the camera. The lean that "
       "remains in a level set is that of its people."};
@@ -136,10 +203,8 @@ Table LeanTable(const dataset::Dataset& dataset) {
 }
 
 Table FloorTable(const dataset::Dataset& dataset) {
-  Table table;
-  table.title = "The floor under the lower feet: as captured, then level";
-  table.columns = {"lean x",       "lean z",       "height cm",
-                   "level lean x", "level lean z", "level height cm"};
+  Table table{"The floor under the lower feet: as captured, then level",
+              {"lean x", "lean z", "height cm", "level lean x", "level lean z", "level height cm"}};
   table.notes = {
       "The lean of the normal of a plane through the feet, degrees; the height that a "
       "quarter of the feet are below."};
@@ -158,10 +223,9 @@ Table FloorTable(const dataset::Dataset& dataset) {
 }
 
 Table NoiseTable(const dataset::Dataset& dataset) {
-  Table table;
-  table.title = "Noise of the captures";
-  table.columns = {"joint frames", "repaired",        "repaired per mille",
-                   "jitter",       "jitter repaired", "jitter smooth"};
+  Table table{"Noise of the captures",
+              {"joint frames", "repaired", "repaired per mille", "jitter", "jitter repaired",
+               "jitter smooth"}};
   table.notes = {
       "Repaired: joints that jump away for a frame and back. Jitter in m/s^3; smooth: repaired, "
       "then filtered by a Gaussian of one frame."};
@@ -173,21 +237,21 @@ Table NoiseTable(const dataset::Dataset& dataset) {
     }
     table.rows.push_back(
         {group.name,
-         {static_cast<double>(noise.joint_frames), static_cast<double>(noise.repaired),
-          1000 * Share(noise.repaired, noise.joint_frames), Share(noise.captured, noise.clips),
-          Share(noise.without_jumps, noise.clips), Share(noise.smooth, noise.clips)}});
+         {noise.joint_frames, noise.repaired, 1000 * (noise.repaired / noise.joint_frames),
+          noise.captured / noise.clips, noise.without_jumps / noise.clips,
+          noise.smooth / noise.clips}});
   }
   return table;
 }
 
 Table LeaderTable(const dataset::Dataset& dataset) {
-  Table table;
-  table.title = "Who leads";
-  table.columns = {"sequences", "by index", "by its guess", "by motion", "rule agrees"};
-  table.notes = {
-      "Rule agrees: share of the leaders named by the index, other than by its guess, whom the "
-      "motion rule names too. Either: a symmetric class, where either person may lead and the rule "
-      "is no better than chance."};
+  Table table{
+      "Who leads",
+      {"sequences", "by index", "by its guess", "by motion", "rule agrees"},
+      {},
+      {"Rule agrees: share of the leaders named by the index, other than by its guess, whom the "
+       "motion rule names too. Either: a symmetric class, where either person may lead and the "
+       "rule is no better than chance."}};
   for (const Group& group : ByClass(dataset)) {
     std::map<std::string, double> sources;
     double asked = 0, agreed = 0;
@@ -199,7 +263,31 @@ Table LeaderTable(const dataset::Dataset& dataset) {
     }
     table.rows.push_back({group.name,
                           {static_cast<double>(group.sequences.size()), sources["index"],
-                           sources["guess"], sources["motion"], Share(agreed, asked)}});
+                           sources["guess"], sources["motion"], agreed / asked}});
+  }
+  return table;
+}
+
+Table CleanUpTable(const dataset::Dataset& dataset) {
+  Table table{
+      "What clean-up does to captured followers",
+      {"frames moved %", "way cm", "way cm 99 %", "slide cm a frame", "depth cm"},
+      {},
+      {"Each stage alone, then all. Frames moved: some joint moves more than a centimetre. Way: of "
+       "a joint in a frame, mean and 99th percentile. Depth: the deepest overlap with the "
+       "leader."}};
+  if (dataset.sequences.empty()) return table;
+  const double sequences = static_cast<double>(dataset.sequences.size());
+  for (const auto& [name, options] : Variants()) {
+    const cleanup::CleanUp clean_up(dataset.skeleton, options);
+    Effect effect;
+    for (const dataset::Sequence& sequence : dataset.sequences) {
+      Add(dataset, sequence, clean_up, &effect);
+    }
+    table.rows.push_back({name,
+                          {100.0 * effect.moved_frames / effect.frames,
+                           kCentimetres * base::Mean(effect.ways), 100.0f * High(effect.ways),
+                           effect.slide / sequences, kCentimetres * effect.depth / sequences}});
   }
   return table;
 }

@@ -1,24 +1,166 @@
 #include "model/evaluation/report/metric_tables.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/statistics.h"
 
 namespace duet::evaluation::report {
 namespace {
 
-std::vector<MetricStyle> Styles() {
+void AddNotes(const MetricStyle& style, Table* table) {
+  if (style.name == kFrechet || style.name == kDiversity) {
+    table->notes.push_back(
+        "Per fold and class, averaged over the folds with two motions of the class or more. Each "
+        "fold's judge has learnt from captured followers of the fold's training people alone.");
+  } else if (style.name == kAccuracy) {
+    table->notes.push_back(
+        "The share of test motions that the fold's judge, trained on captured followers of the "
+        "fold's training people alone, takes for the class asked for.");
+  } else if (style.of_captured) {
+    table->notes.push_back("Captured motion is not perfect: compare with its row, not with zero.");
+  }
+}
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr char kSpeedRatio[] = "speed_ratio", kRangeRatio[] = "range_ratio";
+constexpr char kSpeed[] = "joint_speed", kRange[] = "range_of_motion_m";
+
+// Columns of the summary: a figure and its heading.
+struct Column {
+  const char* figure;
+  const char* heading;
+};
+constexpr Column kSummary[] = {{kSpeedRatio, "speed ratio"},
+                               {kRangeRatio, "range ratio"},
+                               {kAccuracy, "accuracy"},
+                               {kPooledFrechet, "FID"},
+                               {kFilteredFrechet, "FID, filt."},
+                               {kDiversity, "diversity"},
+                               {kFilteredDiversity, "div., filt."},
+                               {kMultimodality, "MM"},
+                               {"afd", "afd one"},
+                               {kMeanAnswerAfd, "afd mean"},
+                               {kBestAnswerAfd, "afd best"},
+                               {"lean_degrees", "lean"},
+                               {"facing_degrees", "facing"},
+                               {"touch", "touch"},
+                               {"foot_slide_cm", "slide"},
+                               {"penetration_frequency", "pen. freq."},
+                               {"penetration_depth_m", "pen. depth"}};
+
+std::vector<MetricStyle> SampleStyles() {
+  constexpr Best kLow = Best::kLowest, kNoBest = Best::kNone;
+  std::vector<MetricStyle> styles = {
+      {kSpeedRatio, "Mean speed of the joints, ratio to captured, both without noise", 2, kNoBest,
+       false, true},
+      {kRangeRatio, "Range of motion, ratio to captured, both without noise", 2, kNoBest, false,
+       true},
+      {kMeanAnswerAfd, "Average frame distance of the mean answer, SBU's raw unit", 3, kLow},
+      {kMeanAnswerAfdMetres, "Average frame distance of the mean answer, metres", 3, kLow},
+      {kBestAnswerAfd, "Average frame distance of the best answer, SBU's raw unit", 3, kLow},
+      {kBestAnswerAfdMetres, "Average frame distance of the best answer, metres", 3, kLow},
+      {kMultimodality, "Multimodality: mean distance between answers to one leader, raw unit", 3,
+       kNoBest},
+      {kFilteredDiversity, "Diversity without noise, the judge's features", 2, kNoBest, true,
+       true}};
+  for (const MetricStyle& style : MetricStyles()) styles.push_back(style);
+  return styles;
+}
+
+double Figure(const MethodFigures& method, const std::string& name) {
+  const auto found = method.by_metric.find(name);
+  return found == method.by_metric.end() ? kNone : base::Mean(found->second);
+}
+
+void AddRatio(const std::string& figure, const std::string& ratio, const MethodFigures& captured,
+              MethodFigures* method) {
+  const auto made = method->by_metric.find(figure);
+  const auto real = captured.by_metric.find(figure);
+  if (made == method->by_metric.end() || real == captured.by_metric.end()) return;
+  std::vector<double> ratios;
+  for (size_t c = 0; c < made->second.size(); ++c) {
+    ratios.push_back(made->second[c] / real->second[c]);
+  }
+  method->by_metric[ratio] = std::move(ratios);
+}
+
+std::vector<MethodFigures> WithRatios(std::vector<MethodFigures> methods) {
+  const auto found = std::find_if(methods.begin(), methods.end(),
+                                  [](const MethodFigures& method) { return method.captured; });
+  if (found == methods.end()) return methods;
+  const MethodFigures captured = *found;
+  for (MethodFigures& method : methods) {
+    AddRatio(kSpeed, kSpeedRatio, captured, &method);
+    AddRatio(kRange, kRangeRatio, captured, &method);
+  }
+  return methods;
+}
+
+// Groups of rows of one name, in order of first appearance.
+std::vector<std::vector<MethodFigures>> ByName(const std::vector<MethodFigures>& rows) {
+  std::vector<std::vector<MethodFigures>> groups;
+  for (const MethodFigures& row : rows) {
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& other) {
+      return other.front().name == row.name;
+    });
+    if (group == groups.end()) {
+      groups.push_back({row});
+    } else {
+      group->push_back(row);
+    }
+  }
+  return groups;
+}
+
+MethodFigures MeanOfRows(const std::vector<MethodFigures>& rows) {
+  MethodFigures mean = rows.front();
+  for (auto& [name, values] : mean.by_metric) {
+    for (size_t c = 0; c < values.size(); ++c) {
+      std::vector<double> of_rows;
+      for (const MethodFigures& row : rows) of_rows.push_back(row.by_metric.at(name)[c]);
+      values[c] = base::Mean(of_rows);
+    }
+  }
+  return mean;
+}
+
+Table EmptySummary(const std::string& title) {
+  Table table{title};
+  table.decimals = 3;
+  for (const Column& column : kSummary) table.columns.push_back(column.heading);
+  return table;
+}
+
+// One row per name: rows with the same name (a model trained with several seeds) become their mean.
+std::vector<MethodFigures> MeanByName(const std::vector<MethodFigures>& rows) {
+  std::vector<MethodFigures> means;
+  for (const std::vector<MethodFigures>& group : ByName(rows)) means.push_back(MeanOfRows(group));
+  return means;
+}
+
+const std::vector<std::string>& SbuClasses() {
+  static const auto& classes = *new std::vector<std::string>{
+      "kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
+  return classes;
+}
+
+}  // namespace
+
+const std::vector<MetricStyle>& MetricStyles() {
   constexpr Best kLow = Best::kLowest, kHigh = Best::kHighest, kNone = Best::kNone;
-  return {
-      {"afd", "Average frame distance (Eq. 6), SBU's raw unit", 3, kLow, false, false},
-      {"afd_squared", "Average squared frame distance, raw unit squared", 3, kLow, false, false},
-      {"afd_m", "Average frame distance, metres", 3, kLow, false, false},
-      {"afd_squared_m", "Average squared frame distance, m^2", 3, kLow, false, false},
+  static const auto& styles = *new std::vector<MetricStyle>{
+      {"afd", "Average frame distance (Eq. 6), SBU's raw unit", 3, kLow},
+      {"afd_squared", "Average squared frame distance, raw unit squared", 3, kLow},
+      {"afd_m", "Average frame distance, metres", 3, kLow},
+      {"afd_squared_m", "Average squared frame distance, m^2", 3, kLow},
       {"root_aligned_afd", "Average frame distance about the own root, SBU's raw unit", 3, kLow,
        false, false},
-      {"root_aligned_afd_m", "Average frame distance about the own root, metres", 3, kLow, false,
-       false},
-      {"velocity_error", "Velocity error, m/s", 3, kLow, false, false},
+      {"root_aligned_afd_m", "Average frame distance about the own root, metres", 3, kLow},
+      {"velocity_error", "Velocity error, m/s", 3, kLow},
       {"bone_length_drift", "Drift of bone lengths, share of the length", 4, kNone, false, true},
       {"jitter", "Jitter, m/s^3", 1, kNone, false, true},
       {"skating_ratio", "Steps on the floor faster than 0.5 m/s, share", 3, kNone, false, true},
@@ -39,36 +181,17 @@ std::vector<MetricStyle> Styles() {
       {kDiversity, "Diversity: mean distance between motions of a class, the judge's features", 2,
        kNone, true, true},
   };
-}
-
-void AddNotes(const MetricStyle& style, Table* table) {
-  if (style.name == kFrechet || style.name == kDiversity) {
-    table->notes.push_back(
-        "Per fold and class, averaged over the folds with two motions of the class or more. Each "
-        "fold's judge has learnt from captured followers of the fold's training people alone.");
-  } else if (style.name == kAccuracy) {
-    table->notes.push_back(
-        "The share of test motions that the fold's judge, trained on captured followers of the "
-        "fold's training people alone, takes for the class asked for.");
-  } else if (style.of_captured) {
-    table->notes.push_back("Captured motion is not perfect: compare with its row, not with zero.");
-  }
-}
-
-}  // namespace
-
-const std::vector<MetricStyle>& MetricStyles() {
-  static const auto& styles = *new std::vector<MetricStyle>(Styles());
   return styles;
 }
 
 Table MetricTable(const MetricStyle& style, const std::vector<std::string>& classes,
                   const std::vector<MethodFigures>& methods) {
-  Table table;
-  table.title = absl::StrCat(style.title, " (", style.name, ")");
-  table.columns = classes;
-  table.decimals = style.decimals;
-  table.best = style.best;
+  Table table{absl::StrCat(style.title, " (", style.name, ")"),
+              classes,
+              {},
+              {},
+              style.decimals,
+              style.best};
   for (const MethodFigures& method : methods) {
     const auto figures = method.by_metric.find(style.name);
     if (figures == method.by_metric.end() || (method.captured && !style.of_captured)) continue;
@@ -91,6 +214,95 @@ void AddPrintedRows(const Table& paper, Table* table) {
     table->rows.push_back(std::move(row));
   }
   table->notes.insert(table->notes.end(), printed.notes.begin(), printed.notes.end());
+}
+
+Table SampleSummary(const std::vector<MethodFigures>& methods) {
+  Table table = EmptySummary("All figures, means over the classes");
+  for (const MethodFigures& method : MeanByName(WithRatios(methods))) {
+    TableRow row = {method.name, {}};
+    for (const Column& column : kSummary) row.values.push_back(Figure(method, column.figure));
+    table.rows.push_back(std::move(row));
+  }
+  table.notes = {
+      "Speed and range: ratios to captured followers, both under a Gaussian of 0.1 s, of class "
+      "means. FID: of all classes together within a fold; filt.: both sides under the same "
+      "Gaussian. MM: mean afd between two answers to one leader. afd, SBU's raw unit: of one "
+      "answer, of the mean of all answers, of the best of all. Lean, facing: degrees. Slide: "
+      "centimetres a frame. Depth: metres."};
+  return table;
+}
+
+Table SampleSpread(const std::vector<MethodFigures>& methods) {
+  Table table = EmptySummary("Spread over training seeds, standard deviation");
+  for (const std::vector<MethodFigures>& group : ByName(WithRatios(methods))) {
+    if (group.size() < 2) continue;
+    TableRow row = {group.front().name, {}};
+    for (const Column& column : kSummary) {
+      std::vector<double> values;
+      for (const MethodFigures& method : group) values.push_back(Figure(method, column.figure));
+      row.values.push_back(base::Summarise(values).deviation);
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::vector<Table> SampleTables(const std::vector<std::string>& classes,
+                                const std::vector<MethodFigures>& methods) {
+  const std::vector<MethodFigures> rows = MeanByName(WithRatios(methods));
+  std::vector<Table> tables;
+  for (const MetricStyle& style : SampleStyles()) {
+    tables.push_back(MetricTable(style, classes, rows));
+    if (tables.back().rows.empty()) tables.pop_back();
+  }
+  return tables;
+}
+
+Table PaperAfdSbu() {
+  return {
+      "Average frame distance on SBU, as printed (Tables 1 and 4)",
+      SbuClasses(),
+      {{"NN", {.81, .51, .48, .61, .63, .56}, true},
+       {"HMM", {.92, .60, 1.41, .67, 3.84, .66}, true},
+       {"KZBH12", {.65, .45, .42, .48, .53, .48}, true},
+       {"HK14", {.92, .61, .54, .81, .74, .66}, true},
+       {"HFKB15", {.67, .48, .42, .47, .54, .52}, true},
+       {"MSHL22", {.53, .52, .44, .72, .45, .45}, true},
+       {"Goel et al. 2022", {.50, .43, .40, .42, .40, .32}, true},
+       {"w/o D", {.53, .45, .42, .49, .44, .38}, true},
+       {"w/o L_b", {.45, .42, .39, .40, .39, .32}, true},
+       {"w/o L_c", {.59, .45, .55, .46, .41, .40}, true},
+       {"w/o FC", {.55, .47, .46, .49, .41, .40}, true},
+       {"w/o multi-hot embedding", {.51, .48, .50, .66, .46, .45}, true}},
+      {"Printed for seven subjects, six of whom are measured here. The formula printed (Eq. 6) is "
+       "the mean norm; the released code averages the squared norm and keeps the epoch that does "
+       "best on the test set. The figures lie between the two readings, so both are measured: afd "
+       "and afd_squared. The unit is SBU's raw one."},
+      2,
+      Best::kLowest};
+}
+
+Table PaperFidSbu() {
+  return {"Frechet distance on SBU, as printed (Table 2)",
+          SbuClasses(),
+          {{"MSHL22", {10.8, 20.8, 23.8, 29.5, 16.7, 11.2}, true},
+           {"Goel et al. 2022", {9.3, 16.8, 15.1, 19.3, 11.7, 10.8}, true}},
+          {"The feature extractor is not known: only ratios between rows under one "
+           "extractor can be compared."},
+          1,
+          Best::kLowest};
+}
+
+Table PaperAugmentation() {
+  return {
+      "Accuracy of a classifier on SBU, as printed (Table 6)",
+      SbuClasses(),
+      {{"original", {.947, .941, .692, .538, .667, .889}, true},
+       {"augmented", {.996, .877, .706, .641, .881, .911}, true}},
+      {"Half of the data trains, half tests; 25 + 25 synthetic sequences are added. The split and "
+       "the number of runs are not printed."},
+      3,
+      Best::kHighest};
 }
 
 }  // namespace duet::evaluation::report

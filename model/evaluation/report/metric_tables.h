@@ -15,7 +15,7 @@ inline constexpr char kDiversity[] = "diversity";
 
 // How a figure is printed.
 struct MetricStyle {
-  std::string name;   // lower_snake_case; MetricName's for the figures of single motions
+  std::string name;   // lower_snake_case; ScoreMotion's for the figures of single motions
   std::string title;  // of its table
   int decimals = 2;
   Best best = Best::kNone;
@@ -23,7 +23,7 @@ struct MetricStyle {
   bool of_captured = false;  // meaningful for captured followers by themselves
 };
 
-// Every figure of the tables: those of AllMetrics, then the judge's.
+// Every figure of the tables: those of ScoreMotion, then the judge's.
 const std::vector<MetricStyle>& MetricStyles();
 
 // Figures of one method, or of the captured followers, by metric.
@@ -41,6 +41,36 @@ Table MetricTable(const MetricStyle& style, const std::vector<std::string>& clas
 // Adds the paper's rows and notes below those measured here, if the paper's columns are the table's
 // classes; otherwise adds a note that they are not. `table` ends in a mean column.
 void AddPrintedRows(const Table& paper, Table* table);
+
+// Figures of a model's many answers, beside those of MetricStyles, by class.
+inline constexpr char kMeanAnswerAfd[] = "afd_of_mean";
+inline constexpr char kMeanAnswerAfdMetres[] = "afd_of_mean_m";
+inline constexpr char kBestAnswerAfd[] = "afd_of_best";
+inline constexpr char kBestAnswerAfdMetres[] = "afd_of_best_m";
+inline constexpr char kMultimodality[] = "multimodality";
+inline constexpr char kFilteredDiversity[] = "filtered_diversity";
+// Of all classes together: one value.
+inline constexpr char kPooledFrechet[] = "fid_pooled";
+inline constexpr char kFilteredFrechet[] = "fid_pooled_filtered";
+
+// One row per method, every figure the mean over the classes; speed and range of motion as ratios
+// to the row of captured followers, of class means. Requires that row.
+Table SampleSummary(const std::vector<MethodFigures>& methods);
+
+// The standard deviations (n - 1) of the summary's figures over the rows of each name that occurs
+// more than once.
+Table SampleSpread(const std::vector<MethodFigures>& methods);
+
+// By class: the ratios and every figure of MetricStyles and of the above.
+std::vector<Table> SampleTables(const std::vector<std::string>& classes,
+                                const std::vector<MethodFigures>& methods);
+
+// The figures printed by Goel et al. 2022. Every row is marked as printed; a note of each table
+// says what it is comparable with. Columns have this project's class names.
+
+Table PaperAfdSbu();        // Tables 1 and 4: average frame distance on SBU
+Table PaperFidSbu();        // Table 2
+Table PaperAugmentation();  // Table 6: a classifier's accuracy without and with synthetic motion
 
 }  // namespace duet::evaluation::report
 

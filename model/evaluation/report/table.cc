@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <limits>
+
+#include "absl/strings/str_format.h"
+#include "model/base/statistics.h"
 
 namespace duet::evaluation::report {
 namespace {
@@ -13,9 +15,7 @@ constexpr char kDash[] = "-";
 
 std::string Rounded(double value, int decimals) {
   if (std::isnan(value)) return kDash;
-  char text[400];  // the largest double has 309 digits before the point
-  std::snprintf(text, sizeof(text), "%.*f", decimals, value);
-  const std::string rounded = text;
+  const std::string rounded = absl::StrFormat("%.*f", decimals, value);
   // Never "-0.00".
   const bool is_zero = rounded.find_first_of("123456789in") == std::string::npos;
   return is_zero && rounded[0] == '-' ? rounded.substr(1) : rounded;
@@ -49,6 +49,16 @@ std::string PadRight(const std::string& text, size_t width) {
 }
 
 }  // namespace
+
+std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows) {
+  std::vector<double> means;
+  for (size_t c = 0; !rows.empty() && c < rows.front().size(); ++c) {
+    std::vector<double> values;
+    for (const std::vector<double>& row : rows) values.push_back(row[c]);
+    means.push_back(base::Mean(values));
+  }
+  return means;
+}
 
 void AddMeanColumn(Table* table) {
   table->columns.push_back("mean");

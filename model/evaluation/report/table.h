@@ -20,12 +20,15 @@ enum class Best { kNone, kLowest, kHighest };
 // Figures by method (rows) and class (columns).
 struct Table {
   std::string title;
-  std::vector<std::string> columns;
-  std::vector<TableRow> rows;
-  std::vector<std::string> notes;  // printed below, one line each
+  std::vector<std::string> columns = {};
+  std::vector<TableRow> rows = {};
+  std::vector<std::string> notes = {};  // printed below, one line each
   int decimals = 2;
   Best best = Best::kNone;
 };
+
+// The mean of each column, ignoring NaN. Shapes: rows [rows][columns]; returns [columns].
+std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows);
 
 // Adds a last column "mean" with each row's mean; NaN where a figure is missing.
 void AddMeanColumn(Table* table);

@@ -6,10 +6,7 @@
 #include <random>
 
 #include "model/evaluation/baselines/chain.h"
-#include "model/evaluation/baselines/gaussian_hmm.h"
-#include "model/evaluation/baselines/kmeans.h"
 #include "model/evaluation/baselines/motion_matrix.h"
-#include "model/evaluation/baselines/pose_space.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/matchers.h"
 

@@ -1,9 +1,8 @@
-#include "model/evaluation/baselines/take_baselines.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "model/evaluation/baselines/other_people.h"
 #include "model/motion/standardise.h"
 #include "tests/support/sample_motion.h"
 

@@ -1,3 +1,5 @@
+#include "model/evaluation/experiments/augmentation.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,10 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "model/evaluation/experiments/classifier_accuracy.h"
-#include "model/evaluation/experiments/data_half.h"
-#include "model/evaluation/experiments/synthesize_jobs.h"
-#include "model/evaluation/experiments/synthetic_plan.h"
+#include "model/evaluation/experiments/synthetic_set.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/matchers.h"
@@ -157,16 +156,15 @@ TEST(RunHalfTest, TrainsEveryRowAndKeepsServedSetsToTheirHalf) {
   for (const DataHalf& half : halves) {
     ASSERT_THAT(RunHalf(dataset, half, {"with synthetic", 1, 2}, &progress, &trials), IsOk());
   }
-  const std::vector<TrialSummary> summaries = trials.Summaries();
   std::vector<std::string> rows;
-  for (const TrialSummary& summary : summaries) rows.push_back(summary.row);
+  for (const report::TableRow& row : trials.Means("means").rows) {
+    rows.push_back(row.name);
+    EXPECT_GE(row.values.back(), 0);
+    EXPECT_LE(row.values.back(), 1);
+  }
   EXPECT_THAT(rows, testing::ElementsAre("captured", "with synthetic", "captured, longer",
                                          "with synthetic, longer", "synthetic alone",
                                          "captured + set through the server"));
-  for (const TrialSummary& summary : summaries) {
-    EXPECT_GE(summary.means.back(), 0);
-    EXPECT_LE(summary.means.back(), 1);
-  }
   // 5 rows for half 1 and 6 for half 2, two classifiers each.
   const std::string lines = progress.str();
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 22);

@@ -86,7 +86,6 @@ TEST(SelectCurves, ByKindAndClass) {
   EXPECT_EQ(own[0].own, 0);
   ASSERT_THAT(added, SizeIs(1));
   EXPECT_EQ(added[0].own, 1);
-  EXPECT_THAT(SelectOwn(curves, 1), SizeIs(2));
 }
 
 TEST(MeanProbabilities, AreOfOneClassOverAllCurves) {

@@ -1,8 +1,7 @@
-#include "model/evaluation/experiments/live_hour.h"
-
 #include <gtest/gtest.h>
 
-#include "model/evaluation/experiments/long_leaders.h"
+#include "model/authoring/made_leaders.h"
+#include "model/evaluation/experiments/long_clips.h"
 #include "model/motion/vec3.h"
 
 namespace duet::evaluation::experiments {
@@ -18,7 +17,7 @@ motion::Poses Beside(motion::Poses leader) {
 }
 
 TEST(LiveHourTest, AFollowerWhoStandsBesideItsLeader) {
-  const motion::Poses leader = MakeLeader("idle", 150, kRate);
+  const motion::Poses leader = authoring::MakeLeader("idle", 150, kRate);
   const LiveHourFigures figures =
       MeasureLiveHour(motion::SbuSkeleton(), leader, Beside(leader), kRate);
   EXPECT_LT(figures.trunk_lean, 5);
@@ -30,7 +29,7 @@ TEST(LiveHourTest, AFollowerWhoStandsBesideItsLeader) {
 }
 
 TEST(LiveHourTest, WhatHappensInBetweenCounts) {
-  const motion::Poses leader = MakeLeader("idle", 200, kRate);
+  const motion::Poses leader = authoring::MakeLeader("idle", 200, kRate);
   motion::Poses follower = Beside(leader);
   for (int t = 1000; t < 1030; ++t) {  // lies in the air
     for (motion::Vec3& p : follower[t]) p = {p.y + 1, 0.3f, p.z};
@@ -48,14 +47,14 @@ TEST(LiveHourTest, WhatHappensInBetweenCounts) {
 }
 
 TEST(LiveHourTest, FeetBelowTheFloorCount) {
-  const motion::Poses leader = MakeLeader("idle", 70, kRate);
+  const motion::Poses leader = authoring::MakeLeader("idle", 70, kRate);
   motion::Poses follower = Beside(leader);
   for (motion::Vec3& p : follower[500]) p.y -= 0.2f;
   EXPECT_NEAR(MeasureLiveHour(motion::SbuSkeleton(), leader, follower, kRate).feet, 0.2, 0.02);
 }
 
 TEST(LiveHourTest, TheFirstAndTheLastMinuteAreMeasured) {
-  const motion::Poses leader = MakeLeader("dance", 200, kRate);
+  const motion::Poses leader = authoring::MakeLeader("dance", 200, kRate);
   motion::Poses follower = Beside(leader);
   for (int t = follower.frame_count() - kMinute; t < follower.frame_count(); ++t) {
     for (int j = 0; j < follower.joint_count(); ++j) follower.at(t, j) = follower.at(1500, j);

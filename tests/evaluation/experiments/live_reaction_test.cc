@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "model/evaluation/experiments/synthesizer_method.h"
+#include "model/evaluation/experiments/answers.h"
 #include "model/motion/skeleton.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/evaluation/experiments/long_leaders.h"
+#include "model/authoring/made_leaders.h"
 #include "model/motion/vec3.h"
 
 namespace duet::evaluation::experiments {
@@ -15,7 +15,7 @@ constexpr double kRate = 15;
 
 TEST(LongClipsTest, MeasuresFallingAndDrifting) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  motion::Poses leader = MakeLeader("idle", 40, kRate);
+  motion::Poses leader = authoring::MakeLeader("idle", 40, kRate);
   for (motion::Vec3& p : leader.all()) p.y += 2;  // the floor is the leader's
   const LongClipFigures upright = MeasureLongClip(skeleton, leader, leader, kRate);
   EXPECT_LT(upright.trunk_lean, 5);
@@ -41,7 +41,7 @@ TEST(LongClipsTest, MeasuresFallingAndDrifting) {
 }
 
 TEST(LongClipsTest, LastSecondsShowWhetherItStoodUpAgain) {
-  const motion::Poses leader = MakeLeader("idle", 40, kRate);
+  const motion::Poses leader = authoring::MakeLeader("idle", 40, kRate);
   motion::Poses follower = leader;
   for (int t = 200; t < 300; ++t) {
     for (motion::Vec3& p : follower[t]) p = {p.y, 0.4f, p.z};
@@ -54,7 +54,7 @@ TEST(LongClipsTest, LastSecondsShowWhetherItStoodUpAgain) {
 }
 
 TEST(LongClipsTest, FirstAndLastSecondsAreMeasuredSeparately) {
-  const motion::Poses leader = MakeLeader("dance", 40, kRate);
+  const motion::Poses leader = authoring::MakeLeader("dance", 40, kRate);
   motion::Poses stops = leader;
   for (int t = 200; t < stops.frame_count(); ++t) {
     for (int j = 0; j < stops.joint_count(); ++j) stops.at(t, j) = stops.at(200, j);

@@ -1,21 +1,21 @@
-#include "model/evaluation/experiments/long_leaders.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "model/evaluation/metrics/liveliness.h"
-#include "model/evaluation/metrics/motion_quality.h"
-#include "model/evaluation/metrics/posture.h"
+#include "model/authoring/made_leaders.h"
+#include "model/body/liveliness.h"
+#include "model/body/motion_quality.h"
+#include "model/body/posture.h"
+#include "model/evaluation/experiments/looped_leaders.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::evaluation::experiments {
 namespace {
 
-using metrics::LeanFrom;
+using body::LeanFrom;
 
 constexpr double kRate = 15;
 
@@ -31,32 +31,32 @@ float LargestStep(const motion::Poses& poses) {
 
 TEST(MadeLeadersTest, StandOnTheFloorWithLimbsOfOneLength) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  for (const std::string& name : MadeLeaderNames()) {
-    const motion::Poses leader = MakeLeader(name, 30, kRate);
+  for (const std::string name : authoring::kMadeLeaders) {
+    const motion::Poses leader = authoring::MakeLeader(name, 30, kRate);
     ASSERT_EQ(leader.frame_count(), 451) << name;
-    EXPECT_LT(metrics::BoneLengthDrift(leader, skeleton), 1e-3) << name;
-    const metrics::FloorGap gap = metrics::MeasureFloorGap(leader, skeleton, 0);
+    EXPECT_LT(body::BoneLengthDrift(leader, skeleton), 1e-3) << name;
+    const body::FloorGap gap = body::MeasureFloorGap(leader, skeleton, 0);
     EXPECT_LT(gap.above, 0.02) << name;
     EXPECT_LT(gap.below, 0.02) << name;
-    EXPECT_LT(MeasureLean(leader, skeleton, kRate, LeanFrom::kHips).max_degrees, 35) << name;
+    EXPECT_LT(body::MeasureLean(leader, skeleton, kRate, LeanFrom::kHips).max_degrees, 35) << name;
     EXPECT_LT(LargestStep(leader), 0.35f) << name;
   }
 }
 
 TEST(MadeLeadersTest, StandingFeetDoNotSlide) {
-  for (const std::string& name : MadeLeaderNames()) {
-    const motion::Poses leader = MakeLeader(name, 10, 60);
+  for (const std::string name : authoring::kMadeLeaders) {
+    const motion::Poses leader = authoring::MakeLeader(name, 10, 60);
     // Of a step, the instants of lifting and setting down are within 5 cm of the floor as well.
-    EXPECT_LT(metrics::MeasureFootSlide(leader, motion::SbuSkeleton(), 60).skating_ratio, 0.15)
+    EXPECT_LT(body::MeasureFootSlide(leader, motion::SbuSkeleton(), 60).skating_ratio, 0.15)
         << name;
   }
 }
 
 TEST(MadeLeadersTest, MoveAsTheirNamesSay) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  const auto made = [](const char* name) { return MakeLeader(name, 14, kRate); };
-  EXPECT_LT(metrics::JointSpeed(made("idle"), kRate), 0.1);
-  EXPECT_GT(metrics::JointSpeed(made("dance"), kRate), 0.3);
+  const auto made = [](const char* name) { return authoring::MakeLeader(name, 14, kRate); };
+  EXPECT_LT(body::JointSpeed(made("idle"), kRate), 0.1);
+  EXPECT_GT(body::JointSpeed(made("dance"), kRate), 0.3);
   // An eight: wide, and where it began at the end.
   const motion::Poses walk = made("walk_eight");
   float widest = 0;
@@ -125,23 +125,22 @@ TEST(LoopClipsTest, JoinsClipsWithoutAJump) {
 
 TEST(MakeLongLeadersTest, HasGeneratedLeadersAndTheClassesClips) {
   dataset::Dataset dataset = test::MadeUpPairs(2);
-  std::vector<LongLeader> leaders = MakeLongLeaders(dataset, {0, 1, 2, 3}, 1, 8);
-  ASSERT_EQ(leaders.size(), MadeLeaderNames().size() + 1);
-  EXPECT_EQ(leaders.back().name, "captured");
-  for (const LongLeader& leader : leaders) {
-    EXPECT_EQ(leader.sequence.interaction_class, 1);
-    EXPECT_EQ(leader.sequence.pair.leader.frame_count(), 121);
-    EXPECT_EQ(leader.sequence.pair.follower.frame_count(), 1);
+  std::vector<dataset::Sequence> leaders = MakeLongLeaders(dataset, {0, 1, 2, 3}, 1, 8);
+  ASSERT_EQ(leaders.size(), std::size(authoring::kMadeLeaders) + 1);
+  EXPECT_EQ(leaders.back().id, "captured");
+  for (const dataset::Sequence& leader : leaders) {
+    EXPECT_EQ(leader.interaction_class, 1);
+    EXPECT_EQ(leader.pair.leader.frame_count(), 121);
+    EXPECT_EQ(leader.pair.follower.frame_count(), 1);
   }
-  EXPECT_EQ(leaders.back().sequence.pair.follower.at(0, 3),
-            dataset.sequences[2].pair.follower.at(0, 3));
+  EXPECT_EQ(leaders.back().pair.follower.at(0, 3), dataset.sequences[2].pair.follower.at(0, 3));
   // In front of those made.
-  const motion::Poses& follower = leaders.front().sequence.pair.follower.poses;
-  motion::Poses leader = leaders.front().sequence.pair.leader.poses;
+  const motion::Poses& follower = leaders.front().pair.follower.poses;
+  motion::Poses leader = leaders.front().pair.leader.poses;
   leader.Resize(1);
-  EXPECT_LT(metrics::FacingDegrees(leader, follower, dataset.skeleton), 5);
-  EXPECT_LT(metrics::FacingDegrees(follower, leader, dataset.skeleton), 5);
-  EXPECT_EQ(MakeLongLeaders(dataset, {0, 1}, 1, 8).size(), MadeLeaderNames().size());
+  EXPECT_LT(body::FacingDegrees(leader, follower, dataset.skeleton), 5);
+  EXPECT_LT(body::FacingDegrees(follower, leader, dataset.skeleton), 5);
+  EXPECT_EQ(MakeLongLeaders(dataset, {0, 1}, 1, 8).size(), std::size(authoring::kMadeLeaders));
   dataset.skeleton.joint_names[0] = "hat";
   EXPECT_EQ(MakeLongLeaders(dataset, {2, 3}, 1, 8).size(), 1u);
 }

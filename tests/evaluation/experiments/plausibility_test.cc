@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "gtest/gtest.h"
-#include "model/evaluation/experiments/long_leaders.h"
+#include "model/authoring/made_leaders.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -15,7 +15,7 @@ constexpr double kRate = 15;
 constexpr int kLeftShoulder = 3, kLeftElbow = 4, kLeftHand = 5, kRightHand = 8, kRightFoot = 14;
 
 // Stands and sways, and faces -z.
-motion::Poses Person() { return MakeLeader("idle", 4, kRate); }
+motion::Poses Person() { return authoring::MakeLeader("idle", 4, kRate); }
 
 // The same, `metres` in front of it, facing back.
 motion::Poses Partner(float metres) {

@@ -1,10 +1,9 @@
-#include "model/evaluation/experiments/sampled_answers.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
+#include "model/evaluation/experiments/answers.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/matchers.h"

@@ -1,11 +1,10 @@
-#include "model/evaluation/experiments/synthesizer_method.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <memory>
 
+#include "model/evaluation/experiments/answers.h"
 #include "model/evaluation/protocol/protocol.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"

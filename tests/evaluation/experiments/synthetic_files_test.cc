@@ -1,5 +1,3 @@
-#include "model/evaluation/experiments/synthetic_files.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
-#include "model/evaluation/experiments/synthetic_plan.h"
+#include "model/evaluation/experiments/synthetic_set.h"
 #include "model/formats/flat/sbu_text.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/skeleton_json.h"

@@ -1,8 +1,7 @@
-#include "model/evaluation/experiments/turn_labels.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "model/evaluation/experiments/dance.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::evaluation::experiments {

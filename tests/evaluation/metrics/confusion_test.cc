@@ -1,8 +1,8 @@
-#include "model/evaluation/metrics/confusion.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "model/evaluation/metrics/judged_scores.h"
 
 namespace duet::evaluation::metrics {
 namespace {

@@ -1,9 +1,8 @@
-#include "model/evaluation/metrics/displacement.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "model/evaluation/metrics/scores.h"
 #include "model/motion/coordinates.h"
 
 namespace duet::evaluation::metrics {
@@ -57,14 +56,6 @@ TEST(RootAlignedAfdTest, IgnoresPlacementButNotPose) {
   EXPECT_DOUBLE_EQ(RootAlignedAfd(moved, kTruth, 0, MetricUnit::kMetres), 1.5);
   // Relative to the other joint, the root is what is off.
   EXPECT_DOUBLE_EQ(RootAlignedAfd(moved, kTruth, 1, MetricUnit::kMetres), 1.5);
-}
-
-TEST(VelocityErrorTest, ComparesStepsInMetresASecond) {
-  const motion::Poses still(3, 1);
-  const motion::Poses moving(1, {{9, 9, 9}, {9, 9, 10}, {9, 9, 10}});
-  // One step of 1 m among two, at 15 frames a second.
-  EXPECT_DOUBLE_EQ(VelocityError(moving, still, 15), 7.5);
-  EXPECT_DOUBLE_EQ(VelocityError(moving, moving, 15), 0);
 }
 
 }  // namespace

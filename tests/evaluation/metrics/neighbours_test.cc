@@ -1,8 +1,7 @@
-#include "model/evaluation/metrics/neighbours.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "model/evaluation/metrics/judged_scores.h"
 #include "tests/support/matchers.h"
 
 namespace duet::evaluation::metrics {
@@ -36,16 +35,10 @@ TEST(NeighbourAccuracyTest, MeasuresInAllDimensions) {
   EXPECT_EQ(*NeighbourAccuracy(plane, {0, 1, 0, 1}, 1), 0.0);
 }
 
-TEST(NeighbourAccuracyTest, MismatchedSizesAreRejected) {
-  EXPECT_THAT(
-      NeighbourAccuracy({{0}, {1}}, {0}, 1),
-      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected one for each of 2")));
+TEST(NeighbourAccuracyTest, TooFewSamplesAreRejected) {
   EXPECT_THAT(NeighbourAccuracy({{0}, {1}}, {0, 1}, 2),
               StatusIs(absl::StatusCode::kInvalidArgument,
                        HasSubstr("expected at least 3 vectors, got 2")));
-  EXPECT_THAT(NeighbourAccuracy({{0}, {1, 2}}, {0, 1}, 1),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("expected 1 values in each vector, as in the first, got 2")));
 }
 
 }  // namespace

@@ -1,11 +1,9 @@
-#include "model/evaluation/metrics/sampled_scores.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "model/evaluation/metrics/displacement.h"
 #include "model/evaluation/metrics/judged_scores.h"
+#include "model/evaluation/metrics/scores.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
 namespace duet::evaluation::metrics {

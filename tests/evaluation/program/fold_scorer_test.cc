@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "model/evaluation/report/sample_tables.h"
+#include "model/evaluation/report/metric_tables.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/matchers.h"
 
@@ -13,8 +13,6 @@ namespace {
 using test::MadeUpPairs;
 
 using ::testing::Gt;
-
-using OneAnswerEach = std::vector<std::vector<metrics::ScoredMotion>>;  // [folds]
 
 OneAnswerEach Captured(const dataset::Dataset& dataset, const FoldScorer& scorer) {
   OneAnswerEach captured;

@@ -1,11 +1,9 @@
-#include "model/evaluation/program/section_flags.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "model/evaluation/program/model_flags.h"
+#include "model/evaluation/program/flags.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -20,7 +18,7 @@ std::string Recorded(std::vector<std::string> words) {
   ModelChoice models;
   experiments::AskedSamples asked;
   AddDataFlag(&data, command);
-  AddSubjectsFlag(&subjects, command);
+  command->add_option("--subjects", subjects)->delimiter(',');
   AddSectionFlags(&section, command);
   std::string checked;
   command->add_option("--leaders", checked)->type_name(kData)->check(CLI::ExistingDirectory);

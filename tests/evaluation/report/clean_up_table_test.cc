@@ -1,7 +1,6 @@
-#include "model/evaluation/report/clean_up_table.h"
-
 #include <gtest/gtest.h>
 
+#include "model/evaluation/report/data_tables.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 
 namespace duet::evaluation::report {

@@ -1,10 +1,9 @@
-#include "model/evaluation/report/plot.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "model/evaluation/report/result_section.h"
 #include "tests/support/sample_motion.h"
 
 namespace duet::evaluation::report {

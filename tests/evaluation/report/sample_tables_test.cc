@@ -1,11 +1,10 @@
-#include "model/evaluation/report/sample_tables.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "model/evaluation/report/metric_tables.h"
 #include "tests/support/matchers.h"
 
 namespace duet::evaluation::report {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "model/evaluation/report/paper_tables.h"
+#include "model/evaluation/report/metric_tables.h"
 #include "tests/support/matchers.h"
 
 namespace duet::evaluation::report {

@@ -1,0 +1,42 @@
+#ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_LOOPED_LEADERS_H_
+#define DUET_MODEL_EVALUATION_EXPERIMENTS_LOOPED_LEADERS_H_
+
+#include <string>
+#include <vector>
+
+#include "model/dataset/dataset.h"
+#include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
+
+// Long leaders, to test whether followers keep their posture: captured clips one after the other,
+// and leaders that formulas make.
+
+namespace duet::evaluation::experiments {
+
+// A leader of model/authoring/made_leaders.h, which is also the id; without a follower.
+dataset::Sequence MakeLeaderSequence(const std::string& name, double seconds, double frame_rate_hz);
+
+// Repeats clips of one skeleton for `seconds`. Each clip is rotated and moved on the floor to start
+// where the first one starts, and faded in over half a second. Requires clips longer than that.
+motion::Poses LoopClips(const motion::Skeleton& skeleton, const std::vector<motion::Poses>& clips,
+                        double seconds, double frame_rate_hz);
+
+// Whether a take is long enough for LoopClips.
+bool IsLoopable(const dataset::Sequence& take);
+
+// The take with its leader looped for `seconds` and its labels repeated. The follower has only its
+// first pose. Requires IsLoopable.
+dataset::Sequence LoopTake(const dataset::Dataset& dataset, const dataset::Sequence& take,
+                           double seconds);
+
+// Leaders by name (their id), each with only a first pose of a follower: the generated ones, with a
+// standing follower one metre in front; and, as "captured", the looped clips of the class among
+// `sequences`. Requires at least one that is long enough for LoopClips. Omits the generated leaders
+// if the data's skeleton does not have SbuSkeleton's joints.
+std::vector<dataset::Sequence> MakeLongLeaders(const dataset::Dataset& dataset,
+                                               const std::vector<int>& sequences,
+                                               int interaction_class, double seconds);
+
+}  // namespace duet::evaluation::experiments
+
+#endif  // DUET_MODEL_EVALUATION_EXPERIMENTS_LOOPED_LEADERS_H_
