@@ -6,11 +6,12 @@ include(DuetWarnings)
 include(DuetTools)
 include(DuetPrecompile)
 
-# duet_library(NAME motion SOURCES a.cc b.cc [DEPS duet::x absl::y] [PRIVATE_DEPS ...] [PRECOMPILED torch] [GLUE])
+# duet_library(NAME motion SOURCES a.cc b.cc [DEPS duet::x absl::y] [PRIVATE_DEPS ...] [PRECOMPILED torch] [GLUE] [SINGLY])
 # Makes duet_<name> with the alias duet::<name>; headers are included from the top folder.
 # GLUE: nothing in it is computed often, such as flags and reports, so that it is compiled in less time.
+# SINGLY: its files never compile in batches.
 function(duet_library)
-  cmake_parse_arguments(A "GLUE" "NAME;PRECOMPILED" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
+  cmake_parse_arguments(A "GLUE;SINGLY" "NAME;PRECOMPILED" "SOURCES;DEPS;PRIVATE_DEPS" ${ARGN})
   add_library(duet_${A_NAME} STATIC ${A_SOURCES})
   add_library(duet::${A_NAME} ALIAS duet_${A_NAME})
   target_include_directories(duet_${A_NAME} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
@@ -28,6 +29,9 @@ function(duet_library)
     endif()
   endif()
   duet_precompile(duet_${A_NAME} "${A_PRECOMPILED}")
+  if(NOT A_SINGLY)
+    duet_compile_in_batches(duet_${A_NAME})
+  endif()
 endfunction()
 
 # duet_program(NAME duet-server SOURCES main.cc DEPS ...): an executable in <build>/bin. Its own sources are glue.
@@ -64,6 +68,7 @@ function(duet_test)
     set(A_PRECOMPILED test)
   endif()
   duet_precompile(${A_NAME} ${A_PRECOMPILED})
+  duet_compile_in_batches(${A_NAME})
   target_include_directories(${A_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   set_target_properties(${A_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   duet_enable_warnings(${A_NAME})

@@ -5,12 +5,15 @@ import dataclasses
 import json
 import os
 import pathlib
+import re
 import shlex
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TORCH_TARGET = "duet_torch"
+BATCH = re.compile(r"/Unity/unity_\w+\.cxx$")  # a file of CMake's that includes the sources of a batch
+BATCHED = re.compile(r'^#include "(.+)"$', re.MULTILINE)
 TORCH_LABEL = "libtorch"  # a test that loads LibTorch without linking it
 
 
@@ -79,13 +82,20 @@ def torch_free_tests(build_dir, label=None):
 
 
 def compile_commands(build_dir):
-    """The project's source files -> their compile commands as words, relative to `build_dir`."""
+    """The project's source files -> their compile commands as words, relative to `build_dir`.
+
+    A file of a batch (cmake/DuetBatches.cmake) gets the command of its batch, with the batch as an include by a flag."""
     database = pathlib.Path(build_dir) / "compile_commands.json"
     commands = {}
     for entry in json.loads(database.read_text(encoding="utf-8")):
-        file = pathlib.Path(entry["directory"], entry["file"]).resolve()
-        if file.is_relative_to(ROOT) and file.suffix == ".cc":
-            commands[file.relative_to(ROOT).as_posix()] = shlex.split(entry["command"])
+        compiled, words = pathlib.Path(entry["directory"], entry["file"]), shlex.split(entry["command"])
+        files = [compiled]
+        if BATCH.search(compiled.as_posix()):
+            files = [compiled.parent / name for name in BATCHED.findall(compiled.read_text(encoding="utf-8"))]
+            words += ["-include", str(compiled)]
+        for file in (file.resolve() for file in files):
+            if file.is_relative_to(ROOT) and file.suffix == ".cc":
+                commands[file.relative_to(ROOT).as_posix()] = words
     return commands
 
 

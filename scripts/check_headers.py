@@ -2,7 +2,7 @@
 """Checks that every header of the project compiles by itself.
 
 The build proves that for a header that some source file includes first, unless that file is compiled with
-a precompiled header. This check compiles every other header with the flags of a nearby source file. A
+a precompiled header or in a batch. This check compiles every other header with the flags of a nearby source file. A
 compiler cache makes the second run fast.
 
     scripts/check_headers.py [--torch-free] [build folder]     build/release, configured

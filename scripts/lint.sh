@@ -15,8 +15,8 @@ changed_files() {
   fi
 }
 
-# clang-tidy needs the generated protocol headers, and reads no precompiled ones.
-scripts/configure.sh release -B "${build_dir}" -DDUET_PRECOMPILE=OFF -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=ON >/dev/null
+# clang-tidy needs the generated protocol headers, reads no precompiled ones, and looks at single files.
+scripts/configure.sh release -B "${build_dir}" -DDUET_BATCHES=OFF -DDUET_PRECOMPILE=OFF -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=ON >/dev/null
 cmake --build "${build_dir}" --parallel "${JOBS:-1}" --target duet_generated
 
 mapfile -t files < <(changed_files "$@" | sort -u)

@@ -58,6 +58,14 @@ class BuildTreeTest(test_project.ProjectTestCase):
         self.compile_command("model/a.cc", "-DA")
         self.assertEqual(list(build_tree.compile_commands(self.build_dir)), ["model/a.cc"])
 
+    def test_files_of_a_batch_have_the_command_of_the_batch(self):
+        self.batch("model/a.cc", "model/b.cc")
+        self.compile_command("model/c.cc")
+        commands = build_tree.compile_commands(self.build_dir)
+        self.assertEqual(list(commands), ["model/a.cc", "model/b.cc", "model/c.cc"])
+        self.assertIn("-DBATCHED", commands["model/b.cc"])
+        self.assertEqual([file for file, words in commands.items() if "-include" in words], ["model/a.cc", "model/b.cc"])
+
     def test_output_of_failed_commands_is_kept(self):
         failures = build_tree.run_all([("good", ["true"], "/"),
                                        ("bad", ["sh", "-c", "echo reason; exit 3"], "/")], jobs=2)
