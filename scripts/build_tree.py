@@ -99,11 +99,6 @@ def compile_commands(build_dir):
     return commands
 
 
-def compile_flags(build_dir):
-    """Source file -> the flags that any compiler needs (see portable_flags)."""
-    return {file: portable_flags(words) for file, words in compile_commands(build_dir).items()}
-
-
 def portable_flags(command):
     """Include folders, definitions and the language of a compile command; no precompiled header."""
     kept, words = [], iter(command)

@@ -2,7 +2,8 @@
 """Checks with Clang that data guarded by a mutex is used only under it (-Wthread-safety as errors).
 
 Checks every file that includes the annotated mutex, which is the header with the attribute
-`capability("mutex")`. Builds only the generated protocol headers.
+`capability("mutex")`. Files of one batch of the build (cmake/DuetBatches.cmake) are read together, because most of the time goes into
+headers that they share. Builds only the generated protocol headers.
 
     scripts/check_thread_safety.py [build folder]     build/release, configured
 """
@@ -32,6 +33,20 @@ def files_to_check(tree, known):
     return [file for file in tree.files(".cc") if file in known and mutexes & tree.reach(file)]
 
 
+def read_together(files, commands):
+    """The files by their compile command: files of a batch share theirs."""
+    groups = {}
+    for file in files:
+        groups.setdefault(tuple(commands[file]), []).append(file)
+    return groups
+
+
+def check_command(compiler, words, files):
+    """Checks files by including them in an empty one."""
+    sources = (word for file in files for word in ("-include", str(build_tree.ROOT / file)))
+    return [compiler, *build_tree.portable_flags(words), *FLAGS, *sources, "-x", "c++", os.devnull]
+
+
 def main(arguments):
     build_dir = os.path.abspath(arguments[0] if arguments else build_tree.ROOT / "build/release")
     build_tree.require_configured(build_dir)
@@ -40,17 +55,16 @@ def main(arguments):
         sys.exit("expected clang++, got none; install the packages of packages/develop.txt")
     jobs = build_tree.default_jobs()
     build_tree.build_generated_sources(build_dir, jobs)
-    flags = build_tree.compile_flags(build_dir)
-    files = files_to_check(source_tree.SourceTree(build_tree.ROOT), flags)
+    commands = build_tree.compile_commands(build_dir)
+    files = files_to_check(source_tree.SourceTree(build_tree.ROOT), commands)
     if not files:
         sys.exit("no file sees an annotated mutex: nothing would be checked")
-    failures = build_tree.run_all(
-        [(file, [compiler, *flags[file], *FLAGS, str(build_tree.ROOT / file)], build_dir)
-         for file in files], jobs)
+    groups = read_together(files, commands)
+    failures = build_tree.run_all([(group[0], check_command(compiler, words, group), build_dir)
+                                   for words, group in groups.items()], jobs)
     for output in failures.values():
         print(output, file=sys.stderr)
-    kept = len(files) - len(failures)
-    print(f"Thread safety: {kept} of {len(files)} files use their mutexes correctly.")
+    print(f"Thread safety: {len(files)} files in {len(groups)} compilations, {len(failures)} of which failed.")
     return 1 if failures else 0
 
 

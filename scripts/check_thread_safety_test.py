@@ -44,7 +44,7 @@ class CheckThreadSafetyTest(test_project.ProjectTestCase):
     def test_locked_access_passes(self):
         status, output = self.run_check("mutex.Lock(); ++count; mutex.Unlock();")
         self.assertEqual(status, 0, output)
-        self.assertIn("1 of 1", output)
+        self.assertIn("1 files in 1 compilations, 0 of which failed", output)
 
     def test_unlocked_access_fails(self):
         status, output = self.run_check("++count;")
@@ -53,6 +53,16 @@ class CheckThreadSafetyTest(test_project.ProjectTestCase):
 
     def test_forgotten_unlock_fails(self):
         self.assertEqual(self.run_check("mutex.Lock(); ++count;")[0], 1)
+
+    def test_files_of_a_batch_are_checked_together(self):
+        self.write("server/first.cc", "server/counter.h", text="int First(Counter& counter) { return counter.count; }\n")
+        self.write("server/second.cc", "server/counter.h", text="int Second(Counter& counter) { return counter.count; }\n")
+        self.batch("server/first.cc", "server/second.cc")
+        status, output = self.run_check("mutex.Lock(); ++count; mutex.Unlock();")
+        self.assertEqual(status, 1)
+        self.assertIn("server/first.cc", output)
+        self.assertIn("server/second.cc", output)
+        self.assertIn("3 files in 2 compilations, 1 of which failed", output)
 
     def test_nothing_to_check_is_a_failure(self):
         self.write("server/mutex.h", text="#pragma once\nclass Mutex {};\n")
