@@ -1,8 +1,8 @@
-# duet_proto_library(NAME proto IMPORT_DIR dir PROTOS a/b.proto ... [GRPC c/d.proto ...])
+# duet_proto_library(NAME proto IMPORT_DIR dir PROTOS a/b.proto ... [GRPC c/d.proto ...] [GLUE])
 # Generates C++ for every proto, and gRPC stubs (with mocks) for those in GRPC. The target
-# duet_generated makes all of them, which is enough for checks that only read the sources.
+# duet_generated makes all of them, which is enough for checks that only read the sources. GLUE: as in duet_library.
 function(duet_proto_library)
-  cmake_parse_arguments(A "" "NAME;IMPORT_DIR" "PROTOS;GRPC" ${ARGN})
+  cmake_parse_arguments(A "GLUE" "NAME;IMPORT_DIR" "PROTOS;GRPC" ${ARGN})
   set(out ${CMAKE_CURRENT_BINARY_DIR}/gen)
   file(MAKE_DIRECTORY ${out})
   set(sources "")
@@ -29,6 +29,9 @@ function(duet_proto_library)
   target_include_directories(duet_${A_NAME} SYSTEM PUBLIC
     $<BUILD_INTERFACE:${out}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(duet_${A_NAME} PUBLIC gRPC::grpc++ protobuf::libprotobuf)
+  if(A_GLUE)
+    target_compile_options(duet_${A_NAME} PRIVATE ${DUET_GLUE_OPTIONS})
+  endif()
   if(NOT TARGET duet_generated)
     add_custom_target(duet_generated)
   endif()
