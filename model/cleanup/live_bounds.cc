@@ -117,7 +117,11 @@ void LiveBounds::BoundFeet(const motion::Poses& leader, const Timing& timing,
     const float height = heights[static_cast<std::size_t>(t)] - floor;
     const float allowed =
         SoftLimit(std::abs(height), Float(options_.low_metres), Float(options_.lowest_metres));
-    const float way = Way(timing, t);
+    // The correction may also undo what the plan itself rises or sinks.
+    const float planned =
+        std::abs(heights[static_cast<std::size_t>(t)] -
+                 heights[static_cast<std::size_t>(std::max(0, timing.settled - 1))]);
+    const float way = Way(timing, t) + planned;
     const float lift = std::clamp(std::copysign(allowed, height) - height, -way, way);
     for (Vec3& joint : (*follower)[t]) joint.y += lift;
     if (t > 0) LowerRisingFoot(floor, t, follower);

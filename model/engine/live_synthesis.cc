@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "model/cleanup/live_frame.h"
 #include "model/engine/direction_estimate.h"
 #include "model/engine/resting_leader.h"
 #include "model/engine/window_state.h"
@@ -44,6 +45,8 @@ LiveSynthesis::LiveSynthesis(ModelDescription model, LiveRequest request)
     : model_(std::move(model)),
       request_(std::move(request)),
       timing_(model_, request_.frame_rate_hz, request_.delay_frames),
+      body_(body::FindBody(model_.skeleton)),
+      cleans_up_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
       replay_end_(request_.first_frame + request_.leader.frame_count()),
       leader_(0, model_.skeleton.joint_count()),
       follower_(0, model_.skeleton.joint_count()),
@@ -146,8 +149,24 @@ void LiveSynthesis::SampleJoined(int frame, Poses* pose) const {
     const float place = static_cast<float>((1 + since / frames) * fall);
     for (std::size_t j = 0; j < offset_.size(); ++j) (*pose)[0][j] += offset_[j] * place;
   }
+  const Poses interpolated = *pose;
   // Interpolation and offsets shorten limbs, and later plans continue from these.
   SetBoneLengths(model_.skeleton, bone_lengths_, pose);
+  if (cleans_up_) CorrectFrame(frame, interpolated[0], (*pose)[0]);
+}
+
+void LiveSynthesis::CorrectFrame(int frame, absl::Span<const Vec3> interpolated,
+                                 absl::Span<Vec3> pose) const {
+  const double at = timing_.ToModelFrame(frame) - plan_begin_;
+  const int before = static_cast<int>(std::floor(at + kEpsilon));
+  if (at - before > kEpsilon) {
+    cleanup::PlaceFeetBetween(model_.skeleton, body_, plan_[before], plan_[before + 1],
+                              interpolated, pose);
+  }
+  // A provisional frame may be one of which the leader is not known.
+  if (frame < next_leader_frame()) {
+    cleanup::KeepApart(model_.skeleton.root, leader_[frame - leader_begin_], pose);
+  }
 }
 
 void LiveSynthesis::Settle(const Poses& frames) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/types/span.h"
+#include "model/body/limbs.h"
 #include "model/engine/label_track.h"
 #include "model/engine/live_timing.h"
 #include "model/engine/model_description.h"
@@ -121,6 +122,10 @@ class LiveSynthesis {
   // A frame of the plan held, without and with what remains of the plan before it.
   void SamplePlan(int frame, absl::Span<motion::Vec3> pose) const;
   void SampleJoined(int frame, motion::Poses* pose) const;
+  // Corrects what only the frame itself shows (cleanup/live_frame.h). `interpolated`: the pose
+  // before its bones had their lengths.
+  void CorrectFrame(int frame, absl::Span<const motion::Vec3> interpolated,
+                    absl::Span<motion::Vec3> pose) const;
   LiveFrames Sample(int count) const;
 
   std::vector<float> WindowLabels(int begin, int frames, int join) const;
@@ -132,6 +137,8 @@ class LiveSynthesis {
   ModelDescription model_;
   LiveRequest request_;
   LiveTiming timing_;
+  body::Body body_;
+  bool cleans_up_;  // whether frames are corrected; see SynthesisOptions::clean_up
   // Frames before this one are answered evaluation by evaluation: those of a resumed session.
   int replay_end_;
 

@@ -135,6 +135,16 @@ TEST(LiveBoundsTest, OneFootStaysNearTheFloor) {
   }
 }
 
+TEST(LiveBoundsTest, APlanThatLeapsOffTheFloorIsBoundedAtOnce) {
+  for (const float leap : {0.2f, 0.3f, -0.3f}) {
+    const motion::Poses plan = Changed(Puppet(), [leap](int t, Vec3 joint) {
+      return t < kSettled ? joint : joint + Vec3{0, leap, 0};
+    });
+    const motion::Poses bounded = Bounded(Leader(), plan);
+    EXPECT_LT(std::abs(bounded.at(kSettled, 11).y - kAnkle), 0.041) << leap;
+  }
+}
+
 TEST(LiveBoundsTest, FeetThatTakeTurnsAreNotBothInTheAirInBetween) {
   const body::Body body = body::FindBody(kSkeleton);
   motion::Poses poses = Puppet();

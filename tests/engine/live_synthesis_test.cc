@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -297,6 +298,38 @@ TEST(LiveSynthesisTest, TheFirstWindowIsThatOfAClip) {
   EXPECT_EQ(first.leader.frame_count(), session.fake().description().window_frames);
   EXPECT_EQ(first.hidden_frames, 0);
   EXPECT_GT(session.windows()[1].hidden_frames, 0);
+}
+
+// How near the roots come to each other along the floor.
+float NearestRoots(const Poses& leader, const Poses& follower, int root) {
+  float nearest = HUGE_VALF;
+  for (int t = 0; t < follower.frame_count(); ++t) {
+    const motion::Vec3 apart = follower.at(t, root) - leader.at(t, root);
+    nearest = std::min(nearest, std::hypot(apart.x, apart.z));
+  }
+  return nearest;
+}
+
+TEST(LiveSynthesisTest, NoFinalFrameStandsInTheLeader) {
+  for (const bool cleans_up : {true, false}) {
+    LiveRequest request = Request();
+    request.options.sampling.variety = 0;
+    request.options.clean_up = cleans_up;
+    Session session(std::move(request));
+    session.fake().answer = [](motion::Vec3 leader, auto) { return leader; };
+    const int root = session.fake().description().skeleton.root;
+    Poses leader = SwayingMotion(90, kRate);
+    for (int t = 0; t < 90; ++t) {  // elsewhere at once, in any phase of the plans
+      for (motion::Vec3& joint : leader[t]) joint.x += 0.05f * static_cast<float>(t / 7 % 3);
+    }
+    session.Send(leader);
+    const float nearest = NearestRoots(leader, session.follower(), root);
+    if (cleans_up) {
+      EXPECT_GT(nearest, 0.169f);
+    } else {
+      EXPECT_LT(nearest, 0.05f);
+    }
+  }
 }
 
 TEST(LiveSynthesisTest, LabelsChangeFromTheFrameTold) {

@@ -1,0 +1,43 @@
+#include "model/cleanup/live_frame.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace duet::cleanup {
+namespace {
+
+using motion::Vec3;
+
+constexpr float kNearestMetres = 0.17f;
+// Metres. A shorter offset has no direction.
+constexpr float kNoDirection = 1e-3f;
+
+Vec3 Level(Vec3 v) { return {v.x, 0, v.z}; }
+
+}  // namespace
+
+void PlaceFeetBetween(const motion::Skeleton& skeleton, const body::Body& body,
+                      absl::Span<const Vec3> before, absl::Span<const Vec3> after,
+                      absl::Span<const Vec3> interpolated, absl::Span<Vec3> pose) {
+  if (!skeleton.hips) return;
+  const Vec3 facing = body::Facing(*skeleton.hips, pose);
+  for (const body::Limb& leg : body.legs) {
+    const std::size_t foot = static_cast<std::size_t>(leg.end);
+    Vec3 place = interpolated[foot];
+    const auto [low, high] = std::minmax(before[foot].y, after[foot].y);
+    place.y = std::clamp(place.y, low, high);
+    Reach(leg, place, facing, pose);
+  }
+}
+
+void KeepApart(int root, absl::Span<const Vec3> leader, absl::Span<Vec3> follower) {
+  const std::size_t at = static_cast<std::size_t>(root);
+  const Vec3 offset = Level(follower[at] - leader[at]);
+  const float distance = Norm(offset);
+  if (distance >= kNearestMetres) return;
+  const Vec3 direction = distance > kNoDirection ? offset / distance : Vec3{0, 0, 1};
+  const Vec3 shift = direction * kNearestMetres - offset;
+  for (Vec3& joint : follower) joint += shift;
+}
+
+}  // namespace duet::cleanup
