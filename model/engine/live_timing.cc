@@ -14,7 +14,8 @@ constexpr double kEpsilon = 1e-6;
 constexpr double kMostEvaluationsHz = 15;
 // How much of what was sent each plan makes anew, to continue from there. The frames right after
 // settled ones hardly leave them, and clean-up eases in over this time: a motion of such frames
-// alone would drift.
+// alone would drift. With a delay it is longer by the delay, because plans may change more where
+// more of the leader is known.
 constexpr double kRemadeSeconds = 0.4;
 // How far a plan reaches beyond the last frame that was sent, at least: for frames that the server
 // may have to skip, and provisional frames. The more frames of a leader who comes to rest a plan
@@ -37,10 +38,12 @@ LiveTiming::LiveTiming(const ModelDescription& model, double frame_rate_hz, int 
   const double wanted = std::ceil(kFutureSeconds * model.frame_rate_hz - kEpsilon);
   // At least the frames that are due until the next evaluation.
   const double due = delay + model_frames_between_ + std::ceil(model_frames_per_frame_);
-  remade_ = static_cast<int>(std::lround(kRemadeSeconds * model.frame_rate_hz));
   future_ = std::max(
       {static_cast<int>(wanted), model.lookahead_frames, static_cast<int>(due) + kMarginFrames});
   past_ = SettledOverlap(model.window_frames);
+  const int remade = static_cast<int>(std::lround(kRemadeSeconds * model.frame_rate_hz));
+  const int room = model.window_frames - past_ - future_ - remade;
+  remade_ = remade + std::clamp(static_cast<int>(delay), 0, std::max(0, room));
 }
 
 int LiveTiming::ModelFrameAt(int frame) const {

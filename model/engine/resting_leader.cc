@@ -12,8 +12,8 @@ namespace {
 
 // The leader's velocity is that of its last frames, and falls by a factor of e in each of these
 // times after the last one.
-constexpr double kVelocitySeconds = 0.1;
-constexpr double kRestSeconds = 0.15;
+constexpr double kVelocitySeconds = 0.034;
+constexpr double kRestSeconds = 0.3;
 
 }  // namespace
 

@@ -265,6 +265,26 @@ TEST(LiveSynthesisTest, WindowsContinueFromTheLastFrames) {
   EXPECT_LT(Distance(window.sent.at(5, 0), session.follower().at(198, 0)), 1e-6f);
 }
 
+TEST(LiveSynthesisTest, WithADelayAPlanMakesTheDelayAnewToo) {
+  for (const auto& [delay, anew] : {std::pair(2, 7), {5, 9}, {10, 11}}) {
+    Session session(Request(delay));
+    session.Send(SwayingMotion(200, kRate));
+    const SynthesisWindow& window = session.windows().back();
+    EXPECT_EQ(window.settled.frame_count(), 8) << delay;
+    EXPECT_EQ(window.sent.frame_count(), anew) << delay;
+    EXPECT_LE(window.leader.frame_count(), session.fake().description().window_frames) << delay;
+  }
+}
+
+TEST(LiveSynthesisTest, ALongDelayLeavesRoomForTheFuture) {
+  Session session(Request(/*delay=*/10, /*rate=*/8));
+  session.Send(SwayingMotion(60, 8));
+  const SynthesisWindow& window = session.windows().back();
+  EXPECT_EQ(window.leader.frame_count(), session.fake().description().window_frames);
+  EXPECT_GE(window.sent.frame_count(), 6);
+  EXPECT_EQ(session.follower().frame_count(), 50);
+}
+
 TEST(LiveSynthesisTest, TheUnknownLeaderComesToRestWithItsLimbLengths) {
   Session session;
   Poses walking = SwayingMotion(60, kRate);
@@ -278,7 +298,7 @@ TEST(LiveSynthesisTest, TheUnknownLeaderComesToRestWithItsLimbLengths) {
       session.windows().back().settled.frame_count() + session.windows().back().sent.frame_count();
   EXPECT_GT(leader.at(newest + 1, 0).z - leader.at(newest, 0).z, 0.03f);
   EXPECT_LT(leader.at(last, 0).z - leader.at(last - 1, 0).z,
-            0.3f * (leader.at(newest + 1, 0).z - leader.at(newest, 0).z));
+            0.5f * (leader.at(newest + 1, 0).z - leader.at(newest, 0).z));
 }
 
 TEST(LiveSynthesisTest, WindowsSpecifyHowManyFramesOfTheLeaderAreAGuess) {
