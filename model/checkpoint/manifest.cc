@@ -36,6 +36,8 @@ constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kHandContacts[] = "hand_contacts";
 constexpr char kTurningClasses[] = "turning_classes";
 constexpr char kStepsInTime[] = "steps_in_time";
+constexpr char kBoneRatios[] = "bone_ratios";
+constexpr char kHipHeight[] = "hip_height";
 constexpr char kStrikes[] = "strikes";
 constexpr char kFist[] = "fist", kFoot[] = "foot";
 constexpr char kTerms[] = "terms";
@@ -192,7 +194,28 @@ void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
                      model->turning_classes.push_back({name, speed});
                    });
   if (reader->Has(kStepsInTime)) model->steps_in_time = reader->Bool(kStepsInTime);
+  if (reader->Has(kHipHeight)) model->hip_height = reader->Number(kHipHeight, 0, 1);
   ReadStrikes(reader, model);
+}
+
+// One for each bone of the skeleton. Older checkpoints have none.
+void ReadBoneRatios(base::ObjectReader* reader, engine::ModelDescription* model) {
+  constexpr double kSmallest = 0.1, kLargest = 10;
+  if (!reader->Has(kBoneRatios)) return;
+  const std::size_t bones = model->skeleton.bones.size();
+  for (const json& value : reader->Array(kBoneRatios, bones)) {
+    const double ratio = value.is_number() ? value.get<double>() : 0;
+    if (ratio < kSmallest || ratio > kLargest) {
+      reader->Fail(absl::StrCat(kBoneRatios, "[", model->bone_ratios.size(), "]"),
+                   absl::StrCat("expected a number from ", kSmallest, " to ", kLargest, ", got ",
+                                base::Shown(value)));
+    }
+    model->bone_ratios.push_back(ratio);
+  }
+  if (reader->ok() && model->bone_ratios.size() != bones) {
+    reader->Fail(kBoneRatios, absl::StrCat("expected ", bones, " numbers (one for each bone), got ",
+                                           model->bone_ratios.size()));
+  }
 }
 
 // Windows with a lookahead share their settled frames and the lookahead, and must still advance.
@@ -239,6 +262,7 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   const json& skeleton_object = reader.Object("skeleton");
   if (reader.ok()) Take(motion::ReadSkeleton(skeleton_object, "skeleton"), &reader, &skeleton);
   manifest.model.skeleton = std::move(skeleton.skeleton);
+  ReadBoneRatios(&reader, &manifest.model);
   ReadLeaders(&reader, &manifest);
   manifest.model.partner_direction = ReadDirectionRegression(
       manifest.model.skeleton, static_cast<int>(manifest.model.classes.size()), &reader);
@@ -329,6 +353,8 @@ std::string SerializeManifest(const Manifest& manifest) {
     root[kTurningClasses][turning.interaction_class] = turning.degrees_per_second;
   }
   if (model.steps_in_time) root[kStepsInTime] = true;
+  if (!model.bone_ratios.empty()) root[kBoneRatios] = model.bone_ratios;
+  if (model.hip_height > 0) root[kHipHeight] = model.hip_height;
   for (const engine::Strike& strike : model.strikes) {
     root[kStrikes][strike.interaction_class] =
         strike.limb == engine::StrikingLimb::kFoot ? kFoot : kFist;

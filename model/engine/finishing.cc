@@ -36,13 +36,19 @@ absl::Status CheckFinite(const motion::Poses& follower) {
   return absl::InternalError("the network's result is not finite");
 }
 
-void KeepLimbLengths(const motion::Skeleton& skeleton, const SynthesisWindow& window,
+void KeepLimbLengths(const ModelDescription& description, const SynthesisWindow& window,
                      motion::Poses* follower) {
+  const motion::Skeleton& skeleton = description.skeleton;
   const bool has_pose = window.start && !window.start->pose.empty();
-  const std::vector<float> lengths =
+  std::vector<float> lengths =
       has_pose
           ? MedianBoneLengths(skeleton, motion::Poses(skeleton.joint_count(), window.start->pose))
           : MedianBoneLengths(skeleton, window.leader);
+  if (!has_pose && !description.bone_ratios.empty()) {
+    for (std::size_t b = 0; b < lengths.size(); ++b) {
+      lengths[b] *= static_cast<float>(description.bone_ratios[b]);
+    }
+  }
   SetBoneLengths(skeleton, lengths, follower);
 }
 

@@ -15,8 +15,8 @@ namespace duet::engine {
 absl::Status CheckFinite(const motion::Poses& follower);
 
 // Sets the follower's limb lengths in every frame to those of its start's pose, or else to the
-// leader's median lengths.
-void KeepLimbLengths(const motion::Skeleton& skeleton, const SynthesisWindow& window,
+// leader's median lengths times ModelDescription::bone_ratios.
+void KeepLimbLengths(const ModelDescription& description, const SynthesisWindow& window,
                      motion::Poses* follower);
 
 // Moves a follower without a start vertically so that its lowest foot is as high as the leader's.

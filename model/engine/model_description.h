@@ -49,6 +49,12 @@ struct ModelDescription {
   std::vector<TurningClass> turning_classes;
   // The follower's steps fall on those of its leader, as in a dance.
   bool steps_in_time = false;
+  // The follower's limb lengths as multiples of the leader's, unless its pose is known. Empty: the
+  // leader's lengths. Shapes: [bones].
+  std::vector<double> bone_ratios;
+  // A follower does not stay in a crouch in which its hips are lower than this
+  // (cleanup::LastingHipHeights). 0: as low as the network has them.
+  double hip_height = 0;
   // The classes in which the leader strikes at the body.
   std::vector<Strike> strikes;
   double frame_rate_hz = 0;  // the network's own

@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/body/limbs.h"
 #include "model/cleanup/live_bounds.h"
+#include "model/cleanup/stand_up.h"
 #include "model/cleanup/steps_in_time.h"
 #include "model/engine/asked_turns.h"
 #include "model/engine/candidates.h"
@@ -40,6 +42,7 @@ class NetworkSynthesizer : public Synthesizer {
         network_(std::move(network)),
         options_(options),
         live_bounds_(description_.skeleton),
+        body_(body::FindBody(description_.skeleton)),
         clean_up_(description_.skeleton, options.cleaning),
         judge_(description_.skeleton) {}
 
@@ -177,7 +180,7 @@ class NetworkSynthesizer : public Synthesizer {
                       const motion::Poses& standard, const motion::Pins& pins) const {
     motion::Poses follower = standardisation.Invert(standard);
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
-    if (options_.keep_limb_lengths) KeepLimbLengths(description_.skeleton, window, &follower);
+    if (options_.keep_limb_lengths) KeepLimbLengths(description_, window, &follower);
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
     const bool cleans = IsCleanedUp(window);
     const cleanup::Meetings meetings = MeetingsOf(description_, window);
@@ -197,10 +200,14 @@ class NetworkSynthesizer : public Synthesizer {
     if (cleans) {
       clean_up_.PlaceFeetAndHands(window.leader, meetings, timing, &follower);
     }
+    // Live windows would raise the body anew in every plan.
+    if (cleans && description_.hip_height > 0 && !window.options.sampling.first_frame) {
+      cleanup::StandUp(body_, description_.hip_height, timing, &follower);
+    }
     if (IsInTime(window)) {
       // After the feet are placed, because a foot that stands does so at every time.
       cleanup::StepInTime(*description_.skeleton.feet, window.leader, timing, &follower);
-      if (options_.keep_limb_lengths) KeepLimbLengths(description_.skeleton, window, &follower);
+      if (options_.keep_limb_lengths) KeepLimbLengths(description_, window, &follower);
     }
     if (bounded) live_bounds_.BoundFeet(KnownLeader(window), timing, &follower);
     if (pinned) clean_up_.PlacePins(*pinned, window.leader, timing, &follower);
@@ -239,6 +246,7 @@ class NetworkSynthesizer : public Synthesizer {
   const std::unique_ptr<const Network> network_;
   const PipelineOptions options_;
   const cleanup::LiveBounds live_bounds_;
+  const body::Body body_;
   const cleanup::CleanUp clean_up_;
   const CandidateJudge judge_;
 };

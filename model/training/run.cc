@@ -14,6 +14,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "model/dataset/time_line.h"
+#include "model/engine/body_fit.h"
 #include "model/engine/leader_statistics.h"
 #include "model/engine/step_fit.h"
 #include "model/network/threads.h"
@@ -74,6 +75,17 @@ bool StepInTime(const dataset::Dataset& dataset, const std::vector<int>& sequenc
     fit.Add(pair.leader.poses, pair.follower.poses);
   }
   return fit.InTime();
+}
+
+void MeasureBodies(const dataset::Dataset& dataset, const std::vector<int>& sequences,
+                   engine::ModelDescription* model) {
+  engine::BodyFit fit(dataset.skeleton, dataset.frame_rate_hz);
+  for (const int index : sequences) {
+    const motion::ClipPair& pair = dataset.sequences[static_cast<size_t>(index)].pair;
+    fit.Add(pair.leader.poses, pair.follower.poses);
+  }
+  model->bone_ratios = fit.BoneRatios();
+  model->hip_height = fit.HipHeight();
 }
 
 engine::LeaderStatistics MeasureLeaders(const dataset::Dataset& dataset,
@@ -272,6 +284,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   FindContacts(dataset, train, &manifest.model);
   manifest.model.turning_classes = FindTurningClasses(whole, takes);
   manifest.model.steps_in_time = StepInTime(whole, takes);
+  MeasureBodies(whole, takes, &manifest.model);
   const bool fits_direction = std::visit(
       [](const auto& method) { return method.kFitsPartnerDirection; }, plan.options.method);
   if (fits_direction) manifest.model.partner_direction = FitPartnerDirection(dataset, train);

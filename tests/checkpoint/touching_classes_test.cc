@@ -105,6 +105,46 @@ TEST(StepsInTimeInManifest, RoundTrip) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("steps_in_time")));
 }
 
+TEST(BodiesInManifest, RoundTrip) {
+  Manifest manifest = CompleteManifest();
+  EXPECT_THAT(ParseManifest(SerializeManifest(manifest))->model.bone_ratios, IsEmpty());
+  EXPECT_EQ(ParseManifest(SerializeManifest(manifest))->model.hip_height, 0);
+  manifest.model.bone_ratios.assign(manifest.model.skeleton.bones.size(), 0.9);
+  manifest.model.hip_height = 0.88;
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->model.bone_ratios, manifest.model.bone_ratios);
+  EXPECT_EQ(read->model.hip_height, 0.88);
+}
+
+TEST(BodiesInManifest, HaveARatioForEachBone) {
+  const auto error_of = [](const json& ratios) {
+    json root = json::parse(SerializeManifest(CompleteManifest()));
+    root["bone_ratios"] = ratios;
+    return ParseManifest(root.dump()).status();
+  };
+  const std::size_t bones = CompleteManifest().model.skeleton.bones.size();
+  json ratios = std::vector<double>(bones, 0.9);
+  ASSERT_THAT(error_of(ratios), IsOk());
+  ratios[1] = 0;
+  EXPECT_THAT(error_of(ratios), StatusIs(absl::StatusCode::kInvalidArgument,
+                                         HasSubstr("bone_ratios[1]: expected a number from 0.1")));
+  ratios[1] = "long";
+  EXPECT_THAT(error_of(ratios),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("got \"long\"")));
+  EXPECT_THAT(error_of(std::vector<double>(bones - 1, 0.9)),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("(one for each bone), got")));
+  EXPECT_THAT(error_of(std::vector<double>(bones + 1, 0.9)),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("bone_ratios")));
+}
+
+TEST(BodiesInManifest, HaveAHipHeightInLegs) {
+  json root = json::parse(SerializeManifest(CompleteManifest()));
+  root["hip_height"] = 1.2;
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("hip_height")));
+}
+
 TEST(StrikesInManifest, RoundTrip) {
   Manifest manifest = CompleteManifest();
   manifest.model.strikes = {{"hug", engine::StrikingLimb::kFist},

@@ -8,11 +8,13 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/cleanup/stand_up.h"
 #include "model/engine/asked_turns.h"
 #include "model/engine/window_standardisation.h"
 #include "model/motion/feet.h"
 #include "model/motion/limb_lengths.h"
 #include "tests/engine/rule_network.h"
+#include "tests/cleanup/bodies.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
@@ -188,6 +190,53 @@ TEST(NetworkSynthesizer, LimbsKeepTheLengthsOfTheStartOrElseTheLeader) {
   for (motion::Vec3& joint : tall) joint = joint * 1.1f + motion::Vec3{0, 0, -1};
   window.start = FollowerStart{tall[2], tall};
   expect_lengths(motion::Poses(15, tall));
+}
+
+TEST(NetworkSynthesizer, LimbsWithoutAPoseHaveTheModelsRatiosToThoseOfTheLeader) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  ModelDescription description = test::FakeDescription();
+  description.bone_ratios.assign(skeleton.bones.size(), 0.9);
+  description.bone_ratios.back() = 1.1;
+  const auto model = Model(LargerAndHigher, {}, description);
+  SynthesisWindow window = Window();
+  const auto expect = [&](const motion::Poses& owner, float ratio, float last) {
+    const WindowResult result = RunOne(*model, window);
+    ASSERT_THAT(result, IsOk());
+    const std::vector<float> now = MedianBoneLengths(skeleton, *result),
+                             lengths = MedianBoneLengths(skeleton, owner);
+    EXPECT_NEAR(now.front(), ratio * lengths.front(), 1e-4f);
+    EXPECT_NEAR(now.back(), last * lengths.back(), 1e-4f);
+  };
+  expect(window.leader, 0.9f, 1.1f);
+  const std::vector<motion::Vec3> pose = SwayingPose(0);
+  window.start = FollowerStart{pose[2], pose};
+  expect(motion::Poses(15, pose), 1, 1);
+}
+
+TEST(NetworkSynthesizer, RaisesACrouchingFollowerOfAModelWithAHipHeight) {
+  const body::Body body = body::FindBody(motion::SbuSkeleton());
+  const motion::Poses crouching =
+      cleanup::Puppet([](double, authoring::PuppetPose* pose) { pose->torso.y = 0.9; }, 45);
+  const auto height = [&](double least, std::optional<int64_t> first_frame) {
+    ModelDescription description = test::SamplingDescription();
+    description.hip_height = least;
+    SynthesisWindow window = Window(45);
+    window.leader = cleanup::Puppet({}, 45);
+    window.options.sampling.first_frame = first_frame;
+    const auto model = Model(
+        [&](Inputs inputs) {
+          std::vector<motion::Poses> followers(inputs.size(), crouching);
+          for (motion::Vec3& p : followers[0].all()) p += motion::Vec3{0, 0, -1};
+          return followers;
+        },
+        {}, description);
+    const WindowResult result = RunOne(*model, window);
+    return result.ok() ? cleanup::LastingHipHeights(body, *result, 15)[22] : 0;
+  };
+  const float low = height(0, {});
+  EXPECT_GT(low, 0.5f);
+  EXPECT_GT(height(0.95, {}), low + 0.04f);
+  EXPECT_NEAR(height(0.95, 0), height(0, 0), 1e-6);  // not in live windows
 }
 
 float LowestFoot(const motion::Poses& poses) {

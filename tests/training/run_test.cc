@@ -110,7 +110,8 @@ TEST_F(RunTest, NotesWhatPeopleDoInTheClassesOfADance) {
     for (int t = 0; t < follower.frame_count(); ++t) {
       const motion::Vec3 root = follower.at(t, dataset_.skeleton.root);
       for (motion::Vec3& joint : follower[t]) {
-        joint = RotateY(joint - root, 0.5 * t) + root;  // 430 degrees a second
+        // A smaller person who turns by 430 degrees a second.
+        joint = RotateY(joint - root, 0.5 * t) * 0.9f + root;
       }
     }
   }
@@ -123,6 +124,9 @@ TEST_F(RunTest, NotesWhatPeopleDoInTheClassesOfADance) {
   // Against the line to the leader, who sways.
   EXPECT_NEAR(model.turning_classes[0].degrees_per_second, 430, 120);
   EXPECT_FALSE(model.steps_in_time);
+  ASSERT_EQ(model.bone_ratios.size(), dataset_.skeleton.bones.size());
+  EXPECT_NEAR(model.bone_ratios[0], 0.9, 0.02);
+  EXPECT_EQ(model.hip_height, 0);  // of takes of ten seconds
 }
 
 TEST_F(RunTest, NotesTheLookaheadOfItsWindows) {

@@ -1,0 +1,63 @@
+#include "model/engine/body_fit.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+
+#include "model/base/median.h"
+#include "model/cleanup/stand_up.h"
+#include "model/motion/limb_lengths.h"
+
+namespace duet::engine {
+namespace {
+
+constexpr double kClearlyOther = 0.02;  // of the size
+constexpr double kFewestSeconds = 10, kFewestSecondsTogether = 30;
+
+// The value that all but `share` of the values exceed.
+template <typename Number>
+Number Quantile(std::vector<Number> values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+BodyFit::BodyFit(const motion::Skeleton& skeleton, double frame_rate_hz)
+    : skeleton_(skeleton),
+      frame_rate_hz_(frame_rate_hz),
+      body_(body::FindBody(skeleton)),
+      ratios_(skeleton.bones.size()) {}
+
+void BodyFit::Add(const motion::Poses& leader, const motion::Poses& follower) {
+  const std::vector<float> leaders = MedianBoneLengths(skeleton_, leader),
+                           followers = MedianBoneLengths(skeleton_, follower);
+  if (std::any_of(leaders.begin(), leaders.end(), [](float length) { return length == 0; })) return;
+  for (std::size_t b = 0; b < leaders.size(); ++b) {
+    ratios_[b].push_back(double{followers[b]} / double{leaders[b]});
+  }
+  sizes_.push_back(std::accumulate(followers.begin(), followers.end(), 0.0) /
+                   std::accumulate(leaders.begin(), leaders.end(), 0.0));
+  if (body_.legs.empty() || follower.frame_count() < kFewestSeconds * frame_rate_hz_) return;
+  const std::vector<float> heights = cleanup::LastingHipHeights(body_, follower, frame_rate_hz_);
+  heights_.insert(heights_.end(), heights.begin(), heights.end());
+}
+
+std::vector<double> BodyFit::BoneRatios() const {
+  if (sizes_.empty()) return {};
+  const bool smaller = Quantile(sizes_, 0.9) <= 1 - kClearlyOther,
+             larger = Quantile(sizes_, 0.1) >= 1 + kClearlyOther;
+  std::vector<double> medians;
+  if (!smaller && !larger) return medians;
+  for (const std::vector<double>& ratios : ratios_) medians.push_back(base::Median(ratios));
+  return medians;
+}
+
+double BodyFit::HipHeight() const {
+  if (static_cast<double>(heights_.size()) < kFewestSecondsTogether * frame_rate_hz_) return 0;
+  return double{Quantile(heights_, 0.1)};
+}
+
+}  // namespace duet::engine
