@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_ENGINE_ASKED_TURNS_H_
 #define DUET_MODEL_ENGINE_ASKED_TURNS_H_
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -13,39 +14,64 @@
 namespace duet::engine {
 
 // The turns of the follower that the labels of a window ask for (a positive weight of one of
-// ModelDescription::turning_classes) or avoid (a negative one). Judged are the frames between the
-// settled ones and the lookahead.
+// ModelDescription::turning_classes) or avoid: a negative weight of such a class, or a positive
+// weight of another class where those of turns are 0. Judged are the frames between the settled
+// ones and the lookahead.
 class AskedTurns {
  public:
   AskedTurns(const ModelDescription& description, const SynthesisWindow& window);
 
-  // The mean size of the weights, 0 to 1. 0 if the labels say nothing about turns, or too little
-  // to be judged.
+  // How much the labels say about turns, 0 to 1: the mean size of the weights of turns or, if these
+  // are all 0, of the other classes. 0 if they say nothing, or too little to be judged.
   double demand() const { return demand_; }
 
+  // How far a follower has turned, seen from the leader, in each frame that is judged. Degrees, not
+  // limited to whole turns. Shapes: follower as the window's leader; returns [judged frames].
+  std::vector<double> TurnsOf(const motion::Poses& leader, const motion::Poses& follower) const;
+
+  // How far the largest turn goes where turns are asked for: above 0 one way, below 0 the other.
+  double Asked(const std::vector<double>& turns) const;
+
   // How far a follower is from doing what the labels say: 0 if it does, at most demand() for a
-  // follower that does not turn where it should, and above if it turns against the labels. Shapes:
-  // follower as the window's leader.
-  double Miss(const motion::Poses& leader, const motion::Poses& follower) const;
+  // follower that does not turn where it should, and more if it turns against the labels.
+  // `way`: above 0 or below it if only turns that way count; 0 if both do.
+  double Miss(const std::vector<double>& turns, double way = 0) const;
+
+  // A miss of at most this is not worth more samples.
+  double tolerated() const { return 0.1 * demand_; }
+
+  // The number of samples that are drawn after one that misses more: up to seven, the more the
+  // labels demand.
+  int further_samples() const;
+  // How often the first sample of such a window misses more, 0 to 1.
+  double often_missed() const;
 
  private:
   int root_ = 0;
   motion::JointPair hips_;
-  int first_ = 0;                   // of the frames that are judged
-  std::vector<double> wanted_;      // degrees per frame; below 0 where turns are avoided
-  double asked_ = 0, avoided_ = 0;  // their sums
-  double share_asked_ = 0, share_avoided_ = 0;
+  int first_ = 0;               // of the frames that are judged
+  std::vector<double> wanted_;  // degrees per frame; below 0 where a negative weight avoids turns
+  std::vector<bool> other_;     // where another class avoids turns
+  double asked_ = 0;            // the sum of what is wanted
+  double share_asked_ = 0, share_avoided_ = 0, share_other_ = 0;
   double demand_ = 0;
 };
 
-// A miss of at most this share of the demand is not worth more samples.
-inline constexpr double kToleratedMiss = 0.1;
-
-// The inputs of more samples of a window: up to seven, the more the labels demand, with other
-// seeds and with labels of turns that are enlarged by up to four, because the network gives them
-// less weight than its leader. `input`: of the window's first sample.
+// The inputs of AskedTurns::further_samples() samples: with other seeds, and with labels of turns
+// that are enlarged by up to four, because the network gives them less weight than its leader.
+// `input`: of the window's first sample.
 std::vector<NetworkInput> DrawnAgain(const ModelDescription& description, const AskedTurns& turns,
                                      const SynthesisWindow& window, const NetworkInput& input);
+
+// The index of the sample that best does what the labels say. Where they ask for turns, only turns
+// in the direction count in which the samples turn farther in total: most of them follow the lead.
+// Of those that do what the labels say, the one whose turns are nearest to those of the others is
+// chosen. Shapes: samples, TurnsOf each.
+std::size_t MostAsAsked(const AskedTurns& turns, const std::vector<std::vector<double>>& samples);
+
+// The number of samples that a window is expected to cost: its candidates, and those that are drawn
+// because they do not turn as the labels ask, times how often that happens.
+double ExpectedSamples(const ModelDescription& description, const SynthesisWindow& window);
 
 // Finds out from captured pairs of one class whether its followers turn about themselves, and how
 // fast: seen from the leader, by more than half a turn and in one direction.

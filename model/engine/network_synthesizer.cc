@@ -129,28 +129,26 @@ class NetworkSynthesizer : public Synthesizer {
   }
 
   // If a follower does not turn as the labels ask, draws more candidates, and returns the one that
-  // comes nearest to it. Windows of an endless motion keep their noise.
+  // does so best. Windows of an endless motion keep their noise.
   WindowResult TurnAsAsked(const SynthesisWindow& window,
                            const motion::Standardisation& standardisation,
-                           const NetworkInput& input, WindowResult follower) const {
-    if (!follower.ok() || !description_.samples || window.options.sampling.first_frame) {
-      return follower;
-    }
+                           const NetworkInput& input, WindowResult first) const {
+    if (!first.ok() || !description_.samples || window.options.sampling.first_frame) return first;
     const AskedTurns turns(description_, window);
-    double least = turns.demand() == 0 ? 0 : turns.Miss(window.leader, *follower);
-    if (least <= kToleratedMiss * turns.demand()) return follower;
-    const std::vector<NetworkInput> inputs = DrawnAgain(description_, turns, window, input);
-    const absl::StatusOr<std::vector<motion::Poses>> answers = RunNetwork(inputs, 1);
+    if (turns.demand() == 0) return first;
+    std::vector<std::vector<double>> samples = {turns.TurnsOf(window.leader, *first)};
+    if (turns.Miss(samples[0]) <= turns.tolerated()) return first;
+    const absl::StatusOr<std::vector<motion::Poses>> answers =
+        RunNetwork(DrawnAgain(description_, turns, window, input), 1);
     if (!answers.ok()) return answers.status();
+    std::vector<WindowResult> followers = {std::move(first)};
     for (const motion::Poses& answer : *answers) {
-      WindowResult finished = Finish(window, standardisation, answer, window.pins);
-      if (!finished.ok()) return finished;
-      const double miss = turns.Miss(window.leader, *finished);
-      if (miss >= least) continue;
-      least = miss;
-      follower = std::move(finished);
+      // The network's own hips can be turned over or shrunk to a point.
+      followers.push_back(Finish(window, standardisation, answer, window.pins));
+      if (!followers.back().ok()) return std::move(followers.back());
+      samples.push_back(turns.TurnsOf(window.leader, *followers.back()));
     }
-    return follower;
+    return std::move(followers[MostAsAsked(turns, samples)]);
   }
 
   // The best of a window's candidates, finished. Fails if one of them is not finite.

@@ -50,8 +50,25 @@ SynthesisWindow Window(float weight, int begin = 0, int end = kFrames) {
   return window;
 }
 
-double Miss(const SynthesisWindow& window, const Poses& follower, int lookahead = 0) {
-  return AskedTurns(Description(lookahead), window).Miss(window.leader, follower);
+double Miss(const SynthesisWindow& window, const Poses& follower, int lookahead = 0,
+            double way = 0) {
+  const AskedTurns turns(Description(lookahead), window);
+  return turns.Miss(turns.TurnsOf(window.leader, follower), way);
+}
+
+// The farthest turn of a follower in the frames of Window(1).
+double TurnedOneWay(const Poses& follower) {
+  const AskedTurns turns(Description(), Window(1));
+  return turns.Asked(turns.TurnsOf(Window(1).leader, follower));
+}
+
+// The window, with another class at 1 in frames [begin, end).
+SynthesisWindow WithAnother(SynthesisWindow window, int begin, int end) {
+  const std::size_t classes = FakeDescription().classes.size();
+  for (int t = begin; t < end; ++t) {
+    window.labels[static_cast<std::size_t>(t) * classes + kTurn + 1] = 1;
+  }
+  return window;
 }
 
 TEST(AskedTurns, ATurnAtTheSpeedOfTheClassIsWhatIsAskedFor) {
@@ -70,6 +87,25 @@ TEST(AskedTurns, SwayingIsNoTurn) {
   }
   EXPECT_GT(Miss(Window(1), follower), 0.7);
   EXPECT_EQ(Miss(Window(-1), follower), 0);
+}
+
+TEST(AskedTurns, OneWayIsEnoughUnlessItIsGiven) {
+  const double turns = TurnedOneWay(Turning(kSpeed));
+  EXPECT_NEAR(std::abs(turns), kSpeed * (kFrames - 1) / kRate, 20);
+  EXPECT_NEAR(TurnedOneWay(Turning(-kSpeed)), -turns, 1);
+  EXPECT_EQ(Miss(Window(1), Turning(kSpeed), 0, turns), 0);
+  EXPECT_GT(Miss(Window(1), Turning(-kSpeed), 0, turns), 0.9);
+}
+
+TEST(AskedTurns, AnotherClassAvoidsWholeTurns) {
+  SynthesisWindow window = WithAnother(Window(0), 0, kFrames);
+  EXPECT_EQ(AskedTurns(Description(), window).demand(), 1);
+  EXPECT_EQ(Miss(window, Turning(70)), 0);  // two thirds of a turn
+  EXPECT_GT(Miss(window, Turning(kSpeed)), 1);
+  // Where a turn is asked for as well, only the other frames are kept free of turns.
+  window = WithAnother(Window(1, 0, 25), 0, kFrames);
+  EXPECT_EQ(Miss(window, Turning(kSpeed, 0, 25)), 0);
+  EXPECT_GT(Miss(window, Turning(kSpeed)), 0.2);
 }
 
 TEST(AskedTurns, AnAvoidedTurnIsAMiss) {
@@ -103,6 +139,50 @@ TEST(AskedTurns, OnlyFramesBetweenTheSettledOnesAndTheLookaheadAreJudged) {
   EXPECT_EQ(Miss(Window(1), Turning(kSpeed, 0, 20), kFrames - 20), 0);
   window.settled = Puppet({}, 40);
   EXPECT_EQ(AskedTurns(Description(10), window).demand(), 0);
+}
+
+std::size_t Best(const SynthesisWindow& window, const std::vector<Poses>& followers) {
+  const AskedTurns turns(Description(), window);
+  std::vector<std::vector<double>> samples;
+  for (const Poses& follower : followers) {
+    samples.push_back(turns.TurnsOf(window.leader, follower));
+  }
+  return MostAsAsked(turns, samples);
+}
+
+TEST(MostAsAsked, ChoosesASampleThatTurns) {
+  EXPECT_EQ(Best(Window(1), {Turning(0), Turning(kSpeed), Turning(20)}), 1u);
+  EXPECT_EQ(Best(Window(-1), {Turning(kSpeed), Turning(-kSpeed), Turning(20)}), 2u);
+}
+
+TEST(MostAsAsked, MostOfTheTurnsDecideTheWay) {
+  EXPECT_EQ(Best(Window(1), {Turning(0), Turning(-kSpeed), Turning(kSpeed), Turning(150)}), 2u);
+  EXPECT_EQ(Best(Window(1), {Turning(0), Turning(-kSpeed), Turning(kSpeed), Turning(-150)}), 1u);
+}
+
+TEST(MostAsAsked, OfGoodSamplesTheMostTypicalIsChosen) {
+  const Poses early = Turning(2 * kSpeed, 0, 20), middle = Turning(2 * kSpeed, 11, 31),
+              late = Turning(2 * kSpeed, 22, 42);
+  EXPECT_EQ(Best(Window(1), {early, late, middle}), 2u);
+  EXPECT_EQ(Best(Window(1), {middle, early, late}), 0u);
+}
+
+TEST(ExpectedSamples, CountsThoseThatLabelsOfTurnsAreExpectedToCost) {
+  ModelDescription description = Description();
+  description.samples = true;
+  SynthesisWindow asking = Window(1), silent = Window(0);
+  EXPECT_EQ(ExpectedSamples(description, silent), 1);
+  EXPECT_GT(ExpectedSamples(description, asking), 2);
+  EXPECT_LE(ExpectedSamples(description, asking), 8);
+  const double half = ExpectedSamples(description, Window(0.5f));
+  EXPECT_GT(half, 1);
+  EXPECT_LT(half, ExpectedSamples(description, asking));
+  asking.options.sampling.candidates = 3;
+  EXPECT_GT(ExpectedSamples(description, asking), 4);
+  asking.options.sampling.first_frame = 0;  // live windows are drawn once
+  EXPECT_EQ(ExpectedSamples(description, asking), 3);
+  description.samples = false;
+  EXPECT_EQ(ExpectedSamples(description, asking), 1);
 }
 
 std::optional<double> Fitted(double speed, int stretches) {

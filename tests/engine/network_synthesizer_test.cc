@@ -13,8 +13,8 @@
 #include "model/engine/window_standardisation.h"
 #include "model/motion/feet.h"
 #include "model/motion/limb_lengths.h"
-#include "tests/engine/rule_network.h"
 #include "tests/cleanup/bodies.h"
+#include "tests/engine/rule_network.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/status_matchers.h"
@@ -379,7 +379,7 @@ SynthesisWindow AskingToTurn(float weight) {
 
 double TurnedDegrees(const SynthesisWindow& window, const motion::Poses& follower) {
   AskedTurns turns(TurningDescription(), AskingToTurn(1));
-  return (1 - turns.Miss(window.leader, follower)) * 0.6 * 240 * 3;  // at most what is enough
+  return std::abs(turns.Asked(turns.TurnsOf(window.leader, follower)));
 }
 
 TEST(NetworkSynthesizer, DrawsAgainUntilTheFollowerTurnsAsTheLabelsAsk) {
