@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
-#include "model/engine/candidates.h"
+#include "model/engine/asked_turns.h"
 
 namespace duet::server::batching {
 namespace {
@@ -17,10 +18,10 @@ TimePoint After(TimePoint start, double seconds) {
          std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(seconds));
 }
 
-// Frames that the model computes for a window: its own, once for each candidate.
 int FramesOf(const WindowJob& job) {
-  return job.window.leader.frame_count() *
-         engine::CandidateCount(job.model->description(), job.window.options.sampling);
+  return static_cast<int>(
+      std::lround(job.window.leader.frame_count() *
+                  engine::ExpectedSamples(job.model->description(), job.window)));
 }
 
 Lane LaneOf(const WindowJob& job) {
@@ -33,7 +34,7 @@ bool IsCancelled(const WindowJob& job) { return job.cancelled->load(std::memory_
 
 int Batch::Frames() const {
   int frames = 0;
-  for (const QueuedWindow& window : windows) frames += FramesOf(window.job);
+  for (const QueuedWindow& window : windows) frames += window.frames;
   return frames;
 }
 
@@ -54,10 +55,10 @@ bool WindowQueue::HasRoomFor(Priority priority, const std::string& client, TimeP
 bool WindowQueue::ComesInTime(const WindowJob& job, TimePoint now) const {
   double work = 0, batch_seconds = 0;
   int windows = 0;
-  for (const auto& [waiting, queued_at] : waiting_) {
+  for (const auto& [waiting, queued_at, frames] : waiting_) {
     if (LaneOf(waiting) > LaneOf(job) || IsCancelled(waiting) || now >= waiting.deadline) continue;
     const CostEstimate cost = CostOf(waiting, now);
-    work += cost.frame_seconds * FramesOf(waiting);
+    work += cost.frame_seconds * frames;
     batch_seconds = std::max(batch_seconds, cost.batch_seconds);
     ++windows;
   }
@@ -83,7 +84,8 @@ void WindowQueue::Push(WindowJob job, TimePoint now) {
   }
   ++account.waiting;
   if (LaneOf(job) == Lane::kShort) last_short_ = now;
-  waiting_.push_back({std::move(job), now});
+  const int frames = FramesOf(job);
+  waiting_.push_back({std::move(job), now, frames});
 }
 
 Turn WindowQueue::Next(TimePoint now) {
@@ -142,9 +144,9 @@ QueueState WindowQueue::StateAt(TimePoint now) const {
   }
   std::map<std::string_view, std::size_t> clients;
   state.windows.reserve(waiting_.size());
-  for (const auto& [job, queued_at] : waiting_) {
+  for (const auto& [job, queued_at, frames] : waiting_) {
     const std::size_t client = clients.emplace(job.client, clients.size()).first->second;
-    state.windows.push_back({index[job.model.get()], LaneOf(job), client, FramesOf(job), queued_at,
+    state.windows.push_back({index[job.model.get()], LaneOf(job), client, frames, queued_at,
                              job.deadline, IsCancelled(job), job.due});
   }
   state.overtaken_frames = overtaken_frames_;

@@ -16,10 +16,12 @@
 
 namespace duet::server::batching {
 
-// A job and its time of arrival.
+// A job, its time of arrival, and the frames that its model is expected to compute: those of the
+// window, once for each sample.
 struct QueuedWindow {
   WindowJob job;
   common::TimePoint queued_at;
+  int frames = 0;
 };
 
 // A window that will never start, and the reason.
@@ -35,7 +37,7 @@ struct Batch {
   double expected_seconds = 0;
   int number = 0;  // unique within a queue
 
-  int Frames() const;  // of all windows, once for each candidate
+  int Frames() const;  // of all windows
 };
 
 // The work that a worker gets from the queue.
