@@ -1,18 +1,21 @@
 #include <algorithm>
 #include <iostream>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "model/base/statistics.h"
 #include "model/base/status_macros.h"
 #include "model/body/dance.h"
 #include "model/evaluation/baselines/other_people.h"
 #include "model/evaluation/experiments/dance.h"
 #include "model/evaluation/experiments/looped_leaders.h"
 #include "model/evaluation/program/commands.h"
+#include "model/evaluation/program/dance_variants.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
@@ -31,6 +34,7 @@ constexpr double kTurnWeights[] = {-1, -0.5, 0, 0.5, 1};
 struct DanceFlags : ExperimentFlags {
   double loop_minutes = 0;
   std::string turn_class;
+  bool ablations = false;
 };
 
 struct Take {
@@ -230,6 +234,50 @@ report::Table TurnTable(const std::string& turn_class) {
   return table;
 }
 
+// The figures of a dancer with each seed, mean over the takes. Shapes: returns [seeds][columns].
+absl::StatusOr<std::vector<std::vector<double>>> FiguresOfSeeds(const Dancer& dancer) {
+  std::vector<std::vector<double>> seeds;
+  for (int n = 0; n < dancer.flags.asked.samples; ++n) {
+    std::vector<std::vector<double>> figures;
+    for (const Take& take : TakesOf(dancer.experiment)) {
+      DUET_TRY(const motion::Poses follower, dancer.Answer(take, dancer.Sampling(n)));
+      const motion::ClipPair& pair = take.sequence->pair;
+      figures.push_back(dancer.Measure(pair.leader.poses, follower, &pair.follower.poses));
+    }
+    seeds.push_back(report::ColumnMeans(figures));
+  }
+  return seeds;
+}
+
+// The checkpoint as it is served, and without each of its parts: means over the seeds, and their
+// deviations.
+absl::StatusOr<report::Table> AblationTable(const DanceFlags& flags, const Experiment& experiment,
+                                            const body::DanceJoints& joints) {
+  DUET_TRY(const auto checkpoint, checkpoint::ReadCheckpoint(flags.models.checkpoint));
+  DUET_TRY(const auto variants, DanceVariants(checkpoint, flags.asked));
+  report::Table table = experiments::DanceTable("Without parts", {});
+  for (const DanceVariant& variant : variants) {
+    DanceFlags varied = flags;
+    varied.asked = variant.asked;
+    const FoldModel model = {variant.name, [&](const std::string&) { return variant.synthesizer; }};
+    DUET_TRY(const auto seeds,
+             FiguresOfSeeds({experiment, joints, model, varied, experiments::StartGiven::kPose}));
+    report::TableRow mean = {variant.name, {}}, deviation = {variant.name + ", deviation", {}};
+    for (size_t column = 0; column < table.columns.size(); ++column) {
+      std::vector<double> values;
+      for (const std::vector<double>& seed : seeds) values.push_back(seed[column]);
+      const base::MeanAndDeviation summary = base::Summarise(values);
+      mean.values.push_back(summary.mean);
+      deviation.values.push_back(summary.deviation);
+    }
+    table.rows.push_back(std::move(mean));
+    table.rows.push_back(std::move(deviation));
+    std::cerr << variant.name << "\n";
+  }
+  table.notes.push_back("Deviation: over the seeds, of the mean over the takes.");
+  return table;
+}
+
 void AddBaselines(const Experiment& experiment, const body::DanceJoints& joints,
                   std::vector<DanceRow>* rows) {
   const dataset::Dataset& dataset = experiment.dataset;
@@ -258,6 +306,9 @@ absl::StatusOr<int> FindTurnClass(const DanceFlags& flags, const dataset::Datase
 }
 
 absl::Status Run(const DanceFlags& flags) {
+  if (flags.ablations && flags.models.checkpoint.empty()) {
+    return absl::InvalidArgumentError("--ablations: expected --checkpoint, got none");
+  }
   DUET_TRY(Experiment experiment, OpenExperiment(flags));
   DUET_TRY(body::DanceJoints joints, body::FindDanceJoints(experiment.dataset.skeleton));
   int turn_class = 0;
@@ -275,6 +326,10 @@ absl::Status Run(const DanceFlags& flags) {
       if (!flags.turn_class.empty()) DUET_RETURN_IF_ERROR(AddTurns(dancer, turn_class, &turns));
     }
   }
+  std::optional<report::Table> ablations;
+  if (flags.ablations) {
+    DUET_TRY(ablations, AblationTable(flags, experiment, joints));
+  }
   report::ResultSection section = BeginExperiment(
       flags, experiment,
       "Whole takes of left-out subjects, answered with the labels of their time lines. \"Other "
@@ -290,6 +345,7 @@ absl::Status Run(const DanceFlags& flags) {
         absl::StrFormat("The same leaders looped for %g minutes", flags.loop_minutes), loops));
   }
   if (!turns.rows.empty()) section.tables.push_back(std::move(turns));
+  if (ablations) section.tables.push_back(*std::move(ablations));
   return FinishSection(flags.section, section);
 }
 
@@ -309,6 +365,8 @@ void AddDanceCommand(CLI::App* app, ChosenCommand* chosen) {
       ->check(CLI::Range(1.0, 60.0));
   command->add_option("--turn-class", flags->turn_class,
                       "class of a turn: measure how its weight decides that the follower turns");
+  command->add_flag("--ablations", flags->ablations,
+                    "measure the checkpoint, as it is served, without each of its parts too");
 }
 
 }  // namespace duet::evaluation::program

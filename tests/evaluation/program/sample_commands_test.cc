@@ -2,15 +2,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "model/checkpoint/checkpoint.h"
+#include "model/motion/skeleton.h"
 #include "tests/evaluation/support/made_up_captures.h"
 #include "tests/evaluation/support/read_section.h"
 #include "tests/evaluation/support/run_command.h"
+#include "tests/support/architectures.h"
 #include "tests/support/matchers.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tiny_checkpoint.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -73,6 +79,51 @@ TEST(SampleCommandsTest, DanceLoopsLeadersAndWeighsTurns) {
   EXPECT_GT(tables[2]["rows"][1].at("values").at(1), 0);
   EXPECT_EQ(tables[3].at("columns"), nlohmann::json({"-1", "-0.5", "0", "0.5", "1"}));
   EXPECT_THAT(RowNames(tables[3]), ElementsAre("duet+pose, not led", "duet+pose, led"));
+}
+
+// A checkpoint of the captures' people and classes that samples, with weights by a rule.
+void WriteSampler(const std::filesystem::path& folder) {
+  checkpoint::Manifest manifest = test::TinyManifest();
+  manifest.model.skeleton = motion::SbuSkeleton();
+  manifest.model.classes = {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
+  manifest.model.frame_rate_hz = 15;
+  manifest.model.turning_classes = {{"hug", 240}};
+  manifest.parts = motion::SbuParts();
+  manifest.architecture = test::SmallFlow();
+  manifest.training["flow.noise_share"] = "0.5";
+  ASSERT_THAT(WriteCheckpoint(folder, test::FilledCheckpoint(std::move(manifest))), IsOk());
+}
+
+TEST(SampleCommandsTest, DanceMeasuresACheckpointWithoutItsParts) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path checkpoint = folder.path() / "1";
+  WriteSampler(checkpoint);
+  const dataset::CaptureFolder captures;
+  test::WriteSwayingCaptures(captures);
+  const auto section =
+      test::RunForSection(AddDanceCommand, {"dance", "--samples", "2", "--ablations", "--data",
+                                            captures.path().string(), "--checkpoint",
+                                            checkpoint.string(), "--subjects", "s01"});
+  ASSERT_THAT(section, IsOk());
+  const nlohmann::json& table = section->at("tables").back();
+  std::vector<std::string> names;
+  for (const char* name :
+       {"as served", "labels do not choose turns", "no steps in time", "hips are not raised",
+        "no clean-up", "four candidates", "all the noise of training"}) {
+    names.insert(names.end(), {name, std::string(name) + ", deviation"});
+  }
+  EXPECT_THAT(RowNames(table), testing::ElementsAreArray(names));
+  const auto error = [&](std::size_t row) { return table["rows"][row].at("values").at(0); };
+  EXPECT_GT(error(0), 0);
+  EXPECT_GT(error(1), 0);          // two seeds differ
+  EXPECT_NE(error(8), error(0));   // without clean-up
+  EXPECT_NE(error(12), error(0));  // with more noise
+}
+
+TEST(SampleCommandsTest, AblationsNeedACheckpoint) {
+  EXPECT_THAT(RunCommand(AddDanceCommand, {"dance", "--samples", "1", "--ablations"}),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("--ablations: expected --checkpoint, got none")));
 }
 
 TEST(SampleCommandsTest, DanceRejectsATurnThatTheDataLacks) {
