@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "model/body/grade.h"
 #include "model/body/hands.h"
@@ -20,6 +21,7 @@ constexpr double kOverlapCost = 4.0;  // a frame in which heads or trunks overla
 constexpr double kSkateCost = 0.1;    // a frame in which the slower ankle moves at 1 m/s
 constexpr double kHandCost = 4.0;     // hands that are to meet and are one metre apart
 constexpr double kPinCost = 2.0;      // a pin that is one metre away, on average of all pins
+constexpr double kCriticCost = 0.1;   // odds of being captured that are lower by the factor e
 // Degrees between shoulders and hips from which on a twist counts.
 constexpr double kFreeTwistDegrees = 30;
 
@@ -70,8 +72,8 @@ float CandidateVariety(float variety, int candidates) {
   return candidates > 1 && variety < 1 ? (1 + variety) / 2 : variety;
 }
 
-CandidateJudge::CandidateJudge(const motion::Skeleton& skeleton)
-    : skeleton_(skeleton), body_(body::FindBody(skeleton)) {}
+CandidateJudge::CandidateJudge(const motion::Skeleton& skeleton, std::optional<Critic> critic)
+    : skeleton_(skeleton), body_(body::FindBody(skeleton)), critic_(std::move(critic)) {}
 
 double CandidateJudge::Faults(const Poses& leader, const Poses& follower, int settled,
                               double frame_rate_hz) const {
@@ -101,7 +103,7 @@ double CandidateJudge::HandsApart(const Poses& leader, const Poses& follower, in
 
 int CandidateJudge::Best(const Poses& leader, const std::vector<Poses>& followers, int settled,
                          double frame_rate_hz, float variety, const motion::Pins& pins,
-                         const cleanup::Meetings& meetings) const {
+                         const cleanup::Meetings& meetings, absl::Span<const float> labels) const {
   if (followers.size() == 1) return 0;
   const double typical = std::max(0.0, 1 - double{variety});
   std::vector<double> costs(followers.size());
@@ -111,6 +113,7 @@ int CandidateJudge::Best(const Poses& leader, const std::vector<Poses>& follower
     if (!meetings.empty()) {
       costs[i] += kHandCost * HandsApart(leader, followers[i], settled, meetings);
     }
+    if (critic_) costs[i] -= kCriticCost * double{critic_->Score(leader, followers[i], labels)};
     if (!pins.empty()) costs[i] += kPinCost * cleanup::MeanPinDistance(pins, followers[i], settled);
   }
   return static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());

@@ -2,10 +2,12 @@
 #define DUET_MODEL_ENGINE_CANDIDATES_H_
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "model/body/limbs.h"
 #include "model/cleanup/hand_contact.h"
+#include "model/engine/critic.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesis_options.h"
 #include "model/motion/pin.h"
@@ -28,8 +30,8 @@ uint64_t CandidateSeed(uint64_t seed, int n);
 float CandidateVariety(float variety, int candidates);
 
 // Chooses among the samples of a window by what a viewer would notice (model/body/grade.h), by how
-// far hands that meet are apart, by how far the samples are from the window's pins and, for a
-// variety below 1, from each other.
+// far hands that meet are apart, by how far the samples are from the window's pins, by how much a
+// critic takes them for captured and, for a variety below 1, by how far they are from each other.
 //
 // Cost:    linear in the frames, quadratic in the candidates.
 // Threads: const methods are safe to call concurrently.
@@ -37,15 +39,17 @@ class CandidateJudge {
  public:
   // Requires a skeleton that Validate accepts. A skeleton without the joints of a measure is judged
   // by the others.
-  explicit CandidateJudge(const motion::Skeleton& skeleton);
+  explicit CandidateJudge(const motion::Skeleton& skeleton,
+                          std::optional<Critic> critic = std::nullopt);
 
   // The index of the best follower; the first of several. `settled`: first frames that all have in
   // common. `variety`: of the request. `pins`: of the window, which the followers do not honour
-  // yet. `meetings`: where hands are to meet; may be empty. Shapes: every follower is like the
-  // leader; meetings [frames]. Requires at least one.
+  // yet. `meetings`: where hands are to meet; may be empty. `labels`: what the critic sees of the
+  // labels. Shapes: every follower is like the leader; meetings [frames]; labels [frames, classes].
+  // Requires at least one.
   int Best(const motion::Poses& leader, const std::vector<motion::Poses>& followers, int settled,
            double frame_rate_hz, float variety, const motion::Pins& pins = {},
-           const cleanup::Meetings& meetings = {}) const;
+           const cleanup::Meetings& meetings = {}, absl::Span<const float> labels = {}) const;
 
  private:
   // How far hands that are to meet are apart, mean over the frames after the settled ones, metres.
@@ -56,6 +60,7 @@ class CandidateJudge {
 
   motion::Skeleton skeleton_;
   body::Body body_;
+  std::optional<Critic> critic_;
 };
 
 }  // namespace duet::engine

@@ -36,7 +36,8 @@ motion::Poses KnownLeader(const SynthesisWindow& window) {
 class NetworkSynthesizer : public Synthesizer {
  public:
   NetworkSynthesizer(ModelDescription description, motion::StandardOrigin origin,
-                     std::unique_ptr<const Network> network, const PipelineOptions& options)
+                     std::unique_ptr<const Network> network, const PipelineOptions& options,
+                     std::optional<Critic> critic)
       : description_(std::move(description)),
         origin_(origin),
         network_(std::move(network)),
@@ -44,7 +45,7 @@ class NetworkSynthesizer : public Synthesizer {
         live_bounds_(description_.skeleton),
         body_(body::FindBody(description_.skeleton)),
         clean_up_(description_.skeleton, options.cleaning),
-        judge_(description_.skeleton) {}
+        judge_(description_.skeleton, std::move(critic)) {}
 
   const ModelDescription& description() const override { return description_; }
 
@@ -163,9 +164,9 @@ class NetworkSynthesizer : public Synthesizer {
       if (!finished.ok()) return finished;
       followers.push_back(*std::move(finished));
     }
-    const int best =
-        judge_.Best(window.leader, followers, SettledFrames(window), description_.frame_rate_hz,
-                    window.options.sampling.variety, window.pins, MeetingsOf(description_, window));
+    const int best = judge_.Best(window.leader, followers, SettledFrames(window),
+                                 description_.frame_rate_hz, window.options.sampling.variety,
+                                 window.pins, MeetingsOf(description_, window), window.labels);
     // Only the chosen one is moved to the pins: a sample that is near already is the better one.
     if (!window.pins.empty()) {
       return Finish(window, standardisation, candidates[static_cast<std::size_t>(best)],
@@ -254,9 +255,10 @@ class NetworkSynthesizer : public Synthesizer {
 std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
                                              motion::StandardOrigin origin,
                                              std::unique_ptr<const Network> network,
-                                             const PipelineOptions& options) {
+                                             const PipelineOptions& options,
+                                             std::optional<Critic> critic) {
   return std::make_unique<NetworkSynthesizer>(std::move(description), origin, std::move(network),
-                                              options);
+                                              options, std::move(critic));
 }
 
 }  // namespace duet::engine

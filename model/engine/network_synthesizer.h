@@ -2,8 +2,10 @@
 #define DUET_MODEL_ENGINE_NETWORK_SYNTHESIZER_H_
 
 #include <memory>
+#include <optional>
 
 #include "model/cleanup/clean_up.h"
+#include "model/engine/critic.h"
 #include "model/engine/model_description.h"
 #include "model/engine/network.h"
 #include "model/engine/synthesizer.h"
@@ -28,11 +30,13 @@ struct PipelineOptions {
 // A synthesizer around a network:
 //   WindowStandardisation, Standardise, Network::Run, Standardisation::Invert, CheckFinite,
 //   KeepLimbLengths, ShareFloor, CleanUp.
-// `origin`: origin of the standard coordinates in which the network was trained.
+// `origin`: origin of the standard coordinates in which the network was trained. `critic`: judges
+// several samples of a window, if there is one.
 std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,
                                              motion::StandardOrigin origin,
                                              std::unique_ptr<const Network> network,
-                                             const PipelineOptions& options = {});
+                                             const PipelineOptions& options = {},
+                                             std::optional<Critic> critic = std::nullopt);
 
 }  // namespace duet::engine
 

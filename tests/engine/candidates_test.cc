@@ -54,6 +54,40 @@ TEST(CandidateJudge, HandsThatAreToMeetDo) {
   EXPECT_EQ(judge.Best(leader, followers, kFrames, kRate, 1, {}, meetings), 0);
 }
 
+// A critic that finds followers the more captured the higher their joints are.
+Critic LikesHeight(float factor) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const std::size_t inputs = static_cast<std::size_t>(CriticInputs(skeleton, 1));
+  const auto zeros = [](std::size_t count) { return std::vector<float>(count); };
+  CriticWeights weights = {zeros(kCriticUnits * inputs),
+                           zeros(kCriticUnits),
+                           zeros(kCriticUnits * kCriticUnits * kCriticKernel),
+                           zeros(kCriticUnits),
+                           zeros(kCriticUnits * kCriticUnits * kCriticKernel),
+                           zeros(kCriticUnits),
+                           zeros(kCriticUnits),
+                           zeros(1)};
+  weights.frames_weight[1] = 1;  // the first joint's height above the leader's root
+  weights.output_weight[0] = factor;
+  return {skeleton, kRate, std::move(weights)};
+}
+
+TEST(CandidateJudge, TheCriticDecidesBetweenFaultlessSamples) {
+  const motion::Poses low = Away(0, 1);
+  motion::Poses high = low;
+  for (motion::Vec3& joint : high.all()) joint.y += 0.1f;
+  const std::vector<float> labels(kFrames, 1);
+  const auto best = [&](float factor, const motion::Poses& other) {
+    return CandidateJudge(motion::SbuSkeleton(), LikesHeight(factor))
+        .Best(Puppet(), {low, other}, 0, kRate, 1, {}, {}, labels);
+  };
+  EXPECT_EQ(best(1, high), 1);
+  EXPECT_EQ(best(-1, high), 0);
+  // An obvious fault weighs more than the critic's opinion.
+  for (int t = 0; t < kFrames; ++t) std::swap(high.at(t, 9), high.at(t, 12));
+  EXPECT_EQ(best(1, high), 0);
+}
+
 TEST(CandidateJudge, JudgesNothingInSettledFrames) {
   motion::Poses late = Away(0, 1);
   for (int t = 0; t < 10; ++t) std::swap(late.at(t, 9), late.at(t, 12));
