@@ -1,5 +1,7 @@
 #include "model/checkpoint/checkpoint.h"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "model/base/file_io.h"
 #include "model/base/sha256.h"
 #include "model/base/text.h"
+#include "model/checkpoint/critic_tensors.h"
 #include "model/checkpoint/model_card.h"
 
 namespace duet::checkpoint {
@@ -71,6 +74,17 @@ absl::StatusOr<std::vector<Tensor>> Arrange(std::vector<Tensor> tensors,
       absl::StrCat("weights: unknown tensor ", base::Quoted(by_name.begin()->first)));
 }
 
+// Moves the critic's tensors out of `tensors`.
+std::vector<Tensor> TakeCritic(std::vector<Tensor>* tensors) {
+  const auto critic = std::stable_partition(tensors->begin(), tensors->end(), [](const Tensor& t) {
+    return t.name.rfind(kCriticPrefix, 0) != 0;
+  });
+  std::vector<Tensor> taken(std::make_move_iterator(critic),
+                            std::make_move_iterator(tensors->end()));
+  tensors->erase(critic, tensors->end());
+  return taken;
+}
+
 }  // namespace
 
 absl::StatusOr<Checkpoint> ParseCheckpoint(std::string_view manifest_json,
@@ -80,9 +94,12 @@ absl::StatusOr<Checkpoint> ParseCheckpoint(std::string_view manifest_json,
   if (absl::Status status = CheckFile(manifest->weights, weights); !status.ok()) return status;
   absl::StatusOr<std::vector<Tensor>> tensors = ParseSafetensors(weights);
   if (!tensors.ok()) return tensors.status();
+  absl::StatusOr<std::vector<Tensor>> critic = TakeCritic(&*tensors);
+  if (!critic->empty()) critic = Arrange(*std::move(critic), CriticTensors(manifest->model));
+  if (!critic.ok()) return critic.status();
   tensors = Arrange(*std::move(tensors), ExpectedTensors(*manifest));
   if (!tensors.ok()) return tensors.status();
-  return Checkpoint{*std::move(manifest), *std::move(tensors)};
+  return Checkpoint{*std::move(manifest), *std::move(tensors), *std::move(critic)};
 }
 
 absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder) {
@@ -112,7 +129,9 @@ absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint che
   absl::Status valid = Validate(skeleton);
   if (valid.ok()) valid = Validate(checkpoint.manifest.parts, skeleton);
   if (!valid.ok()) return valid;
-  const std::string weights = SerializeSafetensors(checkpoint.tensors, {{"format", "pt"}});
+  std::vector<Tensor> tensors = std::move(checkpoint.tensors);
+  std::move(checkpoint.critic.begin(), checkpoint.critic.end(), std::back_inserter(tensors));
+  const std::string weights = SerializeSafetensors(tensors, {{"format", "pt"}});
   Manifest& manifest = checkpoint.manifest;
   manifest.weights.bytes = weights.size();
   manifest.weights.sha256 = base::Sha256Hex(weights);

@@ -16,10 +16,11 @@ namespace duet::checkpoint {
 struct Checkpoint {
   Manifest manifest;
   std::vector<Tensor> tensors;  // in the order of ExpectedTensors(manifest)
+  std::vector<Tensor> critic;   // empty, or in the order of CriticTensors (critic_tensors.h)
 };
 
 // Checks manifest and weights against each other: size, SHA-256, and exactly the tensors of
-// ExpectedTensors, all finite.
+// ExpectedTensors, all finite, and those of CriticTensors if there is any of them.
 absl::StatusOr<Checkpoint> ParseCheckpoint(std::string_view manifest_json,
                                            std::string_view weights);
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "model/checkpoint/critic_tensors.h"
 #include "model/embedded/embedded.h"
 
 namespace duet::cpu_engine {
@@ -9,7 +10,8 @@ namespace duet::cpu_engine {
 std::unique_ptr<engine::Synthesizer> MakeCpuSynthesizer(const checkpoint::Checkpoint& checkpoint,
                                                         const CpuEngineOptions& options) {
   return MakeSynthesizer(checkpoint.manifest.model, checkpoint.manifest.standardisation,
-                         MakeCpuNetwork(checkpoint, options.precision), options.pipeline);
+                         MakeCpuNetwork(checkpoint, options.precision), options.pipeline,
+                         checkpoint::CriticOf(checkpoint));
 }
 
 absl::StatusOr<std::unique_ptr<engine::Synthesizer>> LoadCpuSynthesizer(

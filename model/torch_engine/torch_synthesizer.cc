@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "model/checkpoint/critic_tensors.h"
 #include "model/embedded/embedded.h"
 #include "model/network/exceptions.h"
 #include "model/network/threads.h"
@@ -16,7 +17,8 @@ absl::StatusOr<std::unique_ptr<engine::Synthesizer>> MakeTorchSynthesizer(
   absl::StatusOr<std::unique_ptr<const engine::Network>> network = MakeTorchNetwork(checkpoint);
   if (!network.ok()) return network.status();
   const checkpoint::Manifest& manifest = checkpoint.manifest;
-  return MakeSynthesizer(manifest.model, manifest.standardisation, *std::move(network), options);
+  return MakeSynthesizer(manifest.model, manifest.standardisation, *std::move(network), options,
+                         checkpoint::CriticOf(checkpoint));
 }
 
 absl::StatusOr<std::unique_ptr<engine::Synthesizer>> LoadTorchSynthesizer(

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "gtest/gtest.h"
 #include "model/base/sha256.h"
+#include "model/checkpoint/critic_tensors.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tiny_checkpoint.h"
@@ -70,6 +71,44 @@ TEST_F(CheckpointFolder, WritesThreeFilesAndNoTemporaryOnes) {
   EXPECT_EQ(std::distance(fs::directory_iterator(at_.parent_path()), {}), 1);
   // A server under another user must be able to read it.
   EXPECT_EQ(fs::status(at_).permissions() & fs::perms::mask, fs::perms(0755));
+}
+
+// Some values for every tensor of a critic.
+std::vector<Tensor> TinyCritic() {
+  std::vector<Tensor> tensors;
+  for (const TensorSpec& spec : CriticTensors(TinyManifest().model)) {
+    std::size_t count = 1;
+    for (const int64_t size : spec.shape) count *= static_cast<std::size_t>(size);
+    tensors.push_back({spec.name, spec.shape, std::vector<float>(count, 0.25f)});
+  }
+  return tensors;
+}
+
+TEST_F(CheckpointFolder, KeepsACritic) {
+  Checkpoint checkpoint = TinyCheckpoint();
+  EXPECT_FALSE(CriticOf(checkpoint).has_value());
+  checkpoint.critic = TinyCritic();
+  ASSERT_THAT(WriteCheckpoint(at_, checkpoint), IsOk());
+  const absl::StatusOr<Checkpoint> read = ReadCheckpoint(at_);
+  ASSERT_THAT(read, IsOk());
+  ExpectTiny(*read);
+  ASSERT_EQ(read->critic.size(), 8u);
+  EXPECT_EQ(read->critic[0].name, "critic.frames.weight");
+  EXPECT_EQ(read->critic[7].values, std::vector<float>{0.25f});
+  EXPECT_TRUE(CriticOf(*read).has_value());
+}
+
+TEST_F(CheckpointFolder, ACriticIsWholeOrAbsent) {
+  Checkpoint without_bias = TinyCheckpoint(), other_shape = TinyCheckpoint(),
+             unknown = TinyCheckpoint();
+  without_bias.critic = other_shape.critic = unknown.critic = TinyCritic();
+  without_bias.critic.pop_back();
+  other_shape.critic[1] = {"critic.frames.bias", {15}, std::vector<float>(15)};
+  unknown.critic.push_back({"critic.more", {1}, {0}});
+  EXPECT_THAT(WriteCheckpoint(at_, without_bias),
+              Refused("expected a tensor \"critic.output.bias\" of the shape [1], got none"));
+  EXPECT_THAT(WriteCheckpoint(at_, other_shape), Refused("expected the shape [16]"));
+  EXPECT_THAT(WriteCheckpoint(at_, unknown), Refused("unknown tensor \"critic.more\""));
 }
 
 TEST_F(CheckpointFolder, IsNeverOverwritten) {
