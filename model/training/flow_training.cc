@@ -71,6 +71,11 @@ void Read(base::ObjectReader* reader, FlowTraining::Energy* out) {
   out->near_hands = reader->Number("near_hands", 1e-3, 10);
 }
 
+void Read(base::ObjectReader* reader, FlowTraining::Critic* out) {
+  out->steps = reader->Int("steps", 0, kMaxEpochs);
+  out->answers = reader->Int("answers", 1, 64);
+}
+
 }  // namespace
 
 void ReadSections(base::ObjectReader* root, FlowTraining* out) {
@@ -84,6 +89,8 @@ void ReadSections(base::ObjectReader* root, FlowTraining* out) {
   section("live", &out->live);
   section("own", &out->own);
   section("energy", &out->energy);
+  // Optional: configurations of earlier versions do not have it.
+  if (root->Has("critic")) section("critic", &out->critic);
 }
 
 void Describe(const FlowTraining& f, Description* out) {
@@ -132,7 +139,9 @@ void Describe(const FlowTraining& f, Description* out) {
                {"energy.bone_weight", Text(f.energy.bone_weight)},
                {"energy.feet_weight", Text(f.energy.feet_weight)},
                {"energy.hands_weight", Text(f.energy.hands_weight)},
-               {"energy.near_hands", Text(f.energy.near_hands)}});
+               {"energy.near_hands", Text(f.energy.near_hands)},
+               {"critic.steps", Text(f.critic.steps)},
+               {"critic.answers", Text(f.critic.answers)}});
 }
 
 }  // namespace duet::training

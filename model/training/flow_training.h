@@ -90,6 +90,13 @@ struct FlowTraining {
     double hands_weight = 0;   // of the score of hands against the leader's hands
     double near_hands = 0.15;  // metres; what counts as near in that score
   } energy;
+
+  // After the generator, a critic learns to tell its answers from captured followers
+  // (critic_trainer.h).
+  struct Critic {
+    int64_t steps = 0;    // 0: none
+    int64_t answers = 8;  // drawn for each clip
+  } critic;
 };
 
 }  // namespace duet::training

@@ -19,6 +19,7 @@
 #include "model/engine/step_fit.h"
 #include "model/network/threads.h"
 #include "model/training/class_fits.h"
+#include "model/training/critic_trainer.h"
 #include "model/training/direction_fit.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
@@ -199,19 +200,68 @@ absl::Status StartFrom(const RunPlan& plan, const checkpoint::Checkpoint& from,
                    ": expected the architecture of the options, got another: ", started.message()));
 }
 
-absl::Status Finish(const RunPlan& plan, checkpoint::Manifest manifest, const EpochReport& last,
-                    EpochTrainer* trainer) {
+// Trains the critic of a finished generator, if the settings ask for one.
+absl::Status AddCritic(const RunPlan& plan, const dataset::Dataset& dataset,
+                       const std::vector<int>& train, std::ostream* progress,
+                       checkpoint::Checkpoint* checkpoint) {
+  const auto* flow = std::get_if<FlowTraining>(&plan.options.method);
+  if (flow == nullptr || flow->critic.steps == 0) return absl::OkStatus();
+  absl::StatusOr<TrainedCritic> critic =
+      TrainCritic(*flow, plan.options.seed, *checkpoint, dataset, train);
+  if (!critic.ok()) return critic.status();
+  checkpoint->critic = std::move(critic->tensors);
+  checkpoint->manifest.metrics["training.critic"] = critic->loss;
+  *progress << plan.title << ": critic: "
+            << absl::StrFormat("loss %.2f (0.69: cannot tell answers from captured followers)\n",
+                               critic->loss);
+  return absl::OkStatus();
+}
+
+absl::Status Write(const RunPlan& plan, checkpoint::Checkpoint checkpoint) {
+  std::error_code error;
+  fs::create_directories(CheckpointFolder(plan).parent_path(), error);
+  return checkpoint::WriteCheckpoint(CheckpointFolder(plan), std::move(checkpoint));
+}
+
+// Writes the checkpoint `from` with a new critic, under the name of the plan.
+absl::Status TrainCriticOnly(const RunPlan& plan, const dataset::Dataset& dataset,
+                             const std::vector<int>& train, checkpoint::Checkpoint from,
+                             std::ostream* progress) {
+  const auto* flow = std::get_if<FlowTraining>(&plan.options.method);
+  if (plan.from.empty() || !from.manifest.model.samples || flow == nullptr ||
+      flow->critic.steps == 0) {
+    return absl::InvalidArgumentError(
+        "--critic-only: expected --from with a sampling generator, and critic.steps above 0");
+  }
+  checkpoint::Manifest& manifest = from.manifest;
+  manifest.training["critic.of"] =
+      absl::StrCat(manifest.model.name, "@", manifest.model.version, " ", manifest.weights.sha256);
+  manifest.training["critic.steps"] = absl::StrCat(flow->critic.steps);
+  manifest.training["critic.answers"] = absl::StrCat(flow->critic.answers);
+  manifest.model.name = plan.model_name;
+  manifest.model.version = plan.model_version;
+  if (!plan.description.empty()) manifest.model.description = plan.description;
+  if (absl::Status status = AddCritic(plan, dataset, train, progress, &from); !status.ok()) {
+    return status;
+  }
+  return Write(plan, std::move(from));
+}
+
+absl::Status Finish(const RunPlan& plan, const dataset::Dataset& dataset,
+                    const std::vector<int>& train, checkpoint::Manifest manifest,
+                    const EpochReport& last, EpochTrainer* trainer, std::ostream* progress) {
   manifest.git_revision = kGitRevision;
   manifest.metrics["training.reconstruction"] = last.reconstruction;
   if (std::isfinite(trainer->best_afd())) {
     manifest.metrics["validation.afd"] = trainer->best_afd();
     manifest.metrics["validation.epoch"] = static_cast<double>(trainer->best_epoch());
   }
-  std::error_code error;
-  fs::create_directories(CheckpointFolder(plan).parent_path(), error);
   std::vector<checkpoint::Tensor> tensors = trainer->BestTensors();
-  return checkpoint::WriteCheckpoint(CheckpointFolder(plan),
-                                     {std::move(manifest), std::move(tensors)});
+  checkpoint::Checkpoint checkpoint{std::move(manifest), std::move(tensors), {}};
+  if (absl::Status status = AddCritic(plan, dataset, train, progress, &checkpoint); !status.ok()) {
+    return status;
+  }
+  return Write(plan, std::move(checkpoint));
 }
 
 // How long the run will be: settings and data decide it together.
@@ -290,6 +340,9 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   if (fits_direction) manifest.model.partner_direction = FitPartnerDirection(dataset, train);
   absl::StatusOr<checkpoint::Checkpoint> from = ReadFrom(plan, &manifest);
   if (!from.ok()) return from.status();
+  if (plan.critic_only) {
+    return TrainCriticOnly(plan, dataset, train, *std::move(from), progress);
+  }
   const std::unique_ptr<EpochTrainer> trainer =
       MakeTrainer(plan.options, manifest, dataset, train, validation);
   if (status = trainer->UseDevice(plan.device); !status.ok()) return status;
@@ -323,7 +376,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   if (!report.error_by_position.empty()) {
     *progress << plan.title << ": last epoch: " << PositionsLine(report.error_by_position) << "\n";
   }
-  return Finish(plan, manifest, report, trainer.get());
+  return Finish(plan, dataset, train, manifest, report, trainer.get(), progress);
 }
 
 }  // namespace duet::training

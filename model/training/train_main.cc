@@ -28,6 +28,7 @@ struct Arguments {
   std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
   std::vector<std::string> settings;
   std::string from;
+  bool critic_only = false;
   int threads = 1;
   std::string device = "cpu";
 };
@@ -73,6 +74,7 @@ duet::training::RunPlan CommonPlan(const Arguments& arguments,
   plan.model_version = arguments.version;
   plan.description = arguments.description;
   plan.from = arguments.from;
+  plan.critic_only = arguments.critic_only;
   plan.device = arguments.device;
   return plan;
 }
@@ -162,6 +164,8 @@ void Declare(Arguments* arguments, CLI::App* app) {
   app->add_option("--set", arguments->settings, "override a setting: section.field=value");
   app->add_option("--from", arguments->from,
                   "checkpoint folder whose weights the training begins with (default: random)");
+  app->add_flag("--critic-only", arguments->critic_only,
+                "only train a critic for the checkpoint of --from, which keeps its generator");
   app->add_option("--name", arguments->name, "name of the model (default: that of the data set)");
   app->add_option("--version-number", arguments->version, "version of the model")
       ->check(CLI::Range(1, 1000000))

@@ -100,6 +100,7 @@ TEST_F(OwnDataTest, SamplingConfigurationTrainsOnOwnData) {
   TrainAndAsk("flow", {{"epochs", "2"},
                        {"flow.passes", "1"},
                        {"flow.least_steps", "0"},
+                       {"critic.steps", "4"},
                        {"generator.width", "8"},
                        {"generator.blocks", "1"},
                        {"generator.heads", "2"},

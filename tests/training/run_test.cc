@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
+#include "model/checkpoint/critic_tensors.h"
 #include "model/engine/leader_statistics.h"
 #include "model/torch_engine/torch_synthesizer.h"
 #include "model/training/named_configs.h"
@@ -137,6 +138,54 @@ TEST_F(RunTest, NotesTheLookaheadOfItsWindows) {
   const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
   ASSERT_THAT(checkpoint, IsOk());
   EXPECT_EQ(checkpoint->manifest.model.lookahead_frames, 3);  // at 15 Hz
+}
+
+TEST_F(RunTest, TrainsACriticAfterTheGenerator) {
+  plan_.options = SmallFlowOptions();
+  plan_.options.epochs = 1;
+  ASSERT_THAT(Go(), IsOk());
+  const auto plain = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(plain, IsOk());
+  EXPECT_TRUE(plain->critic.empty());
+  FlowOf(&plan_.options).critic = {60, 2};
+  plan_.folder = folder_.path() / "with";
+  ASSERT_THAT(Go(), IsOk());
+  EXPECT_THAT(progress_.str(), HasSubstr("all: critic: loss "));
+  const auto with = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(with, IsOk());
+  EXPECT_EQ(with->tensors[0].values, plain->tensors[0].values);
+  EXPECT_TRUE(checkpoint::CriticOf(*with).has_value());
+  EXPECT_EQ(with->manifest.training.at("critic.steps"), "60");
+  // A generator of one epoch is easily told from people.
+  EXPECT_LT(with->manifest.metrics.at("training.critic"), 0.6);
+}
+
+TEST_F(RunTest, AddsACriticToACheckpoint) {
+  plan_.options = SmallFlowOptions();
+  plan_.options.epochs = 1;
+  ASSERT_THAT(Go(), IsOk());
+  plan_.critic_only = true;
+  plan_.folder = folder_.path() / "with";
+  FlowOf(&plan_.options).critic = {10, 2};
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected --from")));
+  plan_.from = folder_.path() / "run/checkpoint/made_up/1";
+  plan_.model_version = 2;
+  std::vector<std::vector<float>> critics;
+  for (const char* name : {"with", "again"}) {
+    plan_.folder = folder_.path() / name;
+    ASSERT_THAT(Go(), IsOk());
+    const auto from = checkpoint::ReadCheckpoint(plan_.from);
+    const auto with = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+    ASSERT_THAT(with, IsOk());
+    for (size_t i = 0; i < from->tensors.size(); ++i) {
+      EXPECT_EQ(with->tensors[i].values, from->tensors[i].values);
+    }
+    EXPECT_EQ(with->manifest.model.version, 2);
+    EXPECT_EQ(with->manifest.training.at("critic.of"),
+              "made_up@1 " + from->manifest.weights.sha256);
+    critics.push_back(with->critic.at(0).values);
+  }
+  EXPECT_EQ(critics[0], critics[1]);  // the same again
 }
 
 TEST_F(RunTest, BeginsWithTheWeightsOfACheckpoint) {
