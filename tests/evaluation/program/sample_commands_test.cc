@@ -145,6 +145,14 @@ TEST(SampleCommandsTest, ToldApartHasAColumnAFold) {
   EXPECT_LE(accuracy, 1);
 }
 
+TEST(SampleCommandsTest, ToldApartFinishesCapturedFollowersIfAsked) {
+  const auto section = RunCommand(
+      AddToldApartCommand,
+      {"told-apart", "--seeds", "1", "--starts", "none", "--as-served", "--finish-captured"});
+  ASSERT_THAT(section, IsOk());
+  EXPECT_THAT(section->at("settings").dump(), HasSubstr("finished as answers"));
+}
+
 TEST(SampleCommandsTest, StripsHasTheMotionsOfEveryClass) {
   const auto section = RunCommand(AddStripsCommand, {"strips", "--start", "pose"});
   ASSERT_THAT(section, IsOk());
