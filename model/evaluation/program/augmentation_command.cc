@@ -158,6 +158,7 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
                    "only write the leaders of one half's set and their manifest")
       ->type_name(kSet)
       ->excludes(runs);
+  AddSectionFlags(&arguments->section, command);
 }
 
 }  // namespace duet::evaluation::program
