@@ -70,10 +70,12 @@ std::vector<float> InputsOutermost(const std::vector<float>& weight, std::size_t
 
 // sum += values x rows. Shapes: values [inputs], rows [inputs, U].
 void AddProduct(const float* values, std::size_t inputs, const float* rows, Units* sum) {
+  Units units = *sum;  // a local copy stays in registers
   for (std::size_t i = 0; i < inputs; ++i, rows += kCriticUnits) {
     const float value = values[i];
-    for (std::size_t u = 0; u < kCriticUnits; ++u) (*sum)[u] += value * rows[u];
+    for (std::size_t u = 0; u < kCriticUnits; ++u) units[u] += value * rows[u];
   }
+  *sum = units;
 }
 
 Units Bias(const std::vector<float>& bias) {

@@ -43,7 +43,7 @@ struct CriticWeights {
 //
 //   x = relu(frames(input)); x += relu(near(x)); x += relu(far(x)); score = mean(output(x))
 //
-// Cost:    linear in the frames; about 10 us for a window of 3 s.
+// Cost:    linear in the frames; about 15 us for a window of 3 s.
 // Threads: const methods are safe to call concurrently.
 class Critic {
  public:
