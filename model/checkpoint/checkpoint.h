@@ -15,8 +15,8 @@ namespace duet::checkpoint {
 // A generator as a file holds it: data only, no code.
 struct Checkpoint {
   Manifest manifest;
-  std::vector<Tensor> tensors;  // in the order of ExpectedTensors(manifest)
-  std::vector<Tensor> critic;   // empty, or in the order of CriticTensors (critic_tensors.h)
+  std::vector<Tensor> tensors;      // in the order of ExpectedTensors(manifest)
+  std::vector<Tensor> critic = {};  // empty, or in the order of CriticTensors (critic_tensors.h)
 };
 
 // Checks manifest and weights against each other: size, SHA-256, and exactly the tensors of
