@@ -491,8 +491,8 @@ TEST_F(ComesInTimeTest, CountsSamplesThatLabelsOfTurnsAreExpectedToCost) {
   queue_.Push(asking(0), now_);
   Serve(queue_, now_, milliseconds(10));
   const common::TimePoint now = now_ + milliseconds(10);
-  const auto seconds = engine::ExpectedSamples(description, asking(1).window) / 100;
-  ASSERT_GT(seconds, 0.02);
+  const double expected = engine::ExpectedSamples(description, asking(1).window) / 100;
+  ASSERT_GT(expected, 0.02);
   queue_.Push(asking(1), now);
   const auto comes = [&](double after) {
     WindowJob job = asking(0);
@@ -501,9 +501,9 @@ TEST_F(ComesInTimeTest, CountsSamplesThatLabelsOfTurnsAreExpectedToCost) {
     return queue_.ComesInTime(job, now);
   };
   // The window that asks for a turn, and its own 10 ms.
-  EXPECT_TRUE(comes(seconds + 0.011));
-  EXPECT_FALSE(comes(seconds + 0.009));
-  EXPECT_EQ(queue_.Next(now).batch.Frames(), std::lround(45 * 100 * seconds));
+  EXPECT_TRUE(comes(expected + 0.011));
+  EXPECT_FALSE(comes(expected + 0.009));
+  EXPECT_EQ(queue_.Next(now).batch.Frames(), std::lround(45 * 100 * expected));
 }
 
 TEST_F(ComesInTimeTest, IgnoresWindowsThatNeverRunOrRunLater) {
