@@ -29,9 +29,8 @@ Eigen::MatrixXd CountJumps(const std::vector<Rows>& posteriors) {
   const Eigen::Index states = posteriors[0].cols();
   Eigen::MatrixXd jumps = Eigen::MatrixXd::Zero(states, states);
   for (const Rows& posterior : posteriors) {
-    for (Eigen::Index t = 1; t < posterior.rows(); ++t) {
-      jumps += posterior.row(t - 1).transpose() * posterior.row(t);
-    }
+    const Eigen::Index steps = posterior.rows() - 1;
+    jumps += posterior.topRows(steps).transpose() * posterior.bottomRows(steps);
   }
   return jumps;
 }
@@ -63,12 +62,9 @@ PathPosterior SumOverPaths(const ChainWeights& chain, const Rows& log_arrivals,
   Rows forward(frames, states), backward(frames, states);
   PathPosterior posterior;
   posterior.log_sum = largest.sum();
+  forward.row(0) = chain.start;
   for (Eigen::Index t = 0; t < frames; ++t) {
-    if (t == 0) {
-      forward.row(t) = chain.start;
-    } else {
-      forward.row(t).noalias() = forward.row(t - 1) * chain.step;
-    }
+    if (t > 0) forward.row(t).noalias() = forward.row(t - 1) * chain.step;
     forward.row(t).array() *= arrivals.row(t).array();
     const double scale = forward.row(t).sum();
     forward.row(t) /= scale;

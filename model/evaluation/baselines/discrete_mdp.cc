@@ -138,11 +138,7 @@ class DiscreteMdp : public ClassModel {
   // How probable each pose is in each frame. `steps`: as in SumOverPaths.
   Rows Visits(const Tables& tables, const std::vector<int>& leader,
               Eigen::MatrixXd* steps = nullptr) const {
-    Rows arrivals(leader.size(), pose_centres_.rows());
-    for (size_t t = 0; t < leader.size(); ++t) {
-      arrivals.row(static_cast<Eigen::Index>(t)) =
-          weights_(0) * tables.leader_given_pose.row(leader[t]);
-    }
+    const Rows arrivals = weights_(0) * tables.leader_given_pose(leader, Eigen::all);
     const ChainWeights chain = {(weights_(1) * tables.start).array().exp(),
                                 (weights_(1) * tables.step + weights_(2) * effort_).array().exp()};
     return SumOverPaths(chain, arrivals, steps).states;

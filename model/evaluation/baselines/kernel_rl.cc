@@ -45,9 +45,7 @@ double MedianNearest(const Eigen::MatrixXd& squared, const std::vector<int>& cli
 
 // Rows 0, n, 2 n, ...
 Rows EveryNth(const Rows& rows, Eigen::Index n) {
-  Rows kept((rows.rows() + n - 1) / n, rows.cols());
-  for (Eigen::Index i = 0; i < kept.rows(); ++i) kept.row(i) = rows.row(i * n);
-  return kept;
+  return rows(Eigen::seq(0, rows.rows() - 1, n), Eigen::all);
 }
 
 // Inverts EveryNth: linear between the kept rows, constant after the last.

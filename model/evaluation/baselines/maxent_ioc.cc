@@ -113,14 +113,12 @@ class MaxEntIoc : public ClassModel {
     const Rows cues = leader_.Project(all_cues), poses = follower_.Project(all_poses);
     regression_ = FitRegression(cues, poses, kRidge);
     std::vector<Rows> changes;
-    std::vector<const Rows*> parts;
     Eigen::Index first = 0;
     for (const StandardPair& pair : pairs) {
       changes.push_back(Changes(poses.middleRows(first, pair.cues.rows())));
       first += pair.cues.rows();
     }
-    for (const Rows& part : changes) parts.push_back(&part);
-    PrepareActions(StackRows(parts));
+    PrepareActions(StackRows(changes));
     PrepareValues(poses);
     std::vector<Demonstration> demonstrations;
     first = 0;

@@ -31,8 +31,8 @@ const Path& Cheapest(const Path& a, const Path& b, const Path& c) {
 constexpr double kNoVariance = 1e-10;
 
 Rows Stack(const std::vector<StandardPair>& pairs, Rows StandardPair::*part) {
-  std::vector<const Rows*> parts;
-  for (const StandardPair& pair : pairs) parts.push_back(&(pair.*part));
+  std::vector<Rows> parts;
+  for (const StandardPair& pair : pairs) parts.push_back(pair.*part);
   return StackRows(parts);
 }
 
@@ -68,13 +68,10 @@ Rows Seeds(const Rows& rows, int clusters, base::Random* random) {
   Eigen::Index pick =
       static_cast<Eigen::Index>(random->Uniform() * static_cast<double>(rows.rows()));
   int count = 0;
-  for (; count < clusters; ++count) {
-    centres.row(count) = rows.row(pick);
-    nearest = nearest.cwiseMin((rows.rowwise() - centres.row(count)).rowwise().squaredNorm());
-    if (nearest.sum() <= 0) {
-      ++count;
-      break;
-    }
+  while (count < clusters) {
+    centres.row(count++) = rows.row(pick);
+    nearest = nearest.cwiseMin((rows.rowwise() - rows.row(pick)).rowwise().squaredNorm());
+    if (nearest.sum() <= 0) break;
     pick = SampleIndex(nearest, random);
   }
   return centres.topRows(count);
@@ -117,10 +114,7 @@ motion::Poses FromRows(const Rows& rows) {
 StandardPair StandardLeader(const motion::Skeleton& skeleton, const dataset::Sequence& sequence) {
   const motion::Standardisation frame = BaselineStandardisation(skeleton, sequence);
   const motion::Poses& leader = sequence.pair.leader.poses;
-  StandardPair pair;
-  pair.leader = ToRows(frame.Apply(leader));
-  pair.cues = LeaderCues(frame, leader);
-  return pair;
+  return {ToRows(frame.Apply(leader)), LeaderCues(frame, leader), {}};
 }
 
 StandardPair StandardiseSequence(const motion::Skeleton& skeleton,
@@ -191,14 +185,14 @@ Rows PoseSpace::Reconstruct(const Rows& components) const {
   return (components * basis_.transpose()).rowwise() + mean_;
 }
 
-Rows StackRows(const std::vector<const Rows*>& parts) {
+Rows StackRows(const std::vector<Rows>& parts) {
   Eigen::Index rows = 0;
-  for (const Rows* part : parts) rows += part->rows();
-  Rows stacked(rows, parts.front()->cols());
+  for (const Rows& part : parts) rows += part.rows();
+  Rows stacked(rows, parts.front().cols());
   rows = 0;
-  for (const Rows* part : parts) {
-    stacked.middleRows(rows, part->rows()) = *part;
-    rows += part->rows();
+  for (const Rows& part : parts) {
+    stacked.middleRows(rows, part.rows()) = part;
+    rows += part.rows();
   }
   return stacked;
 }
@@ -211,7 +205,6 @@ Rows StackFollowers(const std::vector<StandardPair>& pairs) {
 
 std::vector<int> NearestCentres(const Rows& centres, const Rows& rows) {
   std::vector<int> nearest;
-  nearest.reserve(static_cast<size_t>(rows.rows()));
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     Eigen::Index of_row = 0;
     (centres.rowwise() - rows.row(i)).rowwise().squaredNorm().minCoeff(&of_row);

@@ -78,7 +78,7 @@ class PoseSpace {
 
 // Rows of several matrices with the same number of columns, one below the other. Requires at least
 // one matrix.
-Rows StackRows(const std::vector<const Rows*>& parts);
+Rows StackRows(const std::vector<Rows>& parts);
 
 // The cues, or the followers, of pairs, one below the other. Requires at least one pair.
 Rows StackCues(const std::vector<StandardPair>& pairs);

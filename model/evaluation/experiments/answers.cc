@@ -97,17 +97,13 @@ engine::LabelTrack TimeLineLabels(const dataset::Sequence& sequence, int classes
     }
     return weights;
   };
-  std::set<int> frames = {0};
-  for (const dataset::LabelSpan& span : sequence.labels) {
-    // Both sides of an edge, because weights are linear between key frames.
-    for (const int edge : {span.begin, span.end}) {
-      if (edge > 0) frames.insert({edge - 1, edge});
-    }
+  std::set<int> edges;
+  for (const dataset::LabelSpan& span : sequence.labels) edges.insert({span.begin, span.end});
+  engine::LabelTrack labels(at(0));
+  for (const int edge : edges) {
+    if (edge > 0) labels.Change(edge, /*ease_frames=*/0, at(edge));
   }
-  std::vector<engine::LabelKeyframe> keyframes;
-  keyframes.reserve(frames.size());
-  for (const int frame : frames) keyframes.push_back({frame, at(frame)});
-  return engine::LabelTrack(std::move(keyframes));
+  return labels;
 }
 
 absl::StatusOr<std::vector<motion::Poses>> SynthesizeSequences(

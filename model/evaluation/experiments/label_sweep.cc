@@ -73,13 +73,6 @@ void AddCurve(const SweepCurve& curve, LabelControl* sums) {
   sums->rank_correlation += RankCorrelation(SweepWeights(), raised);
 }
 
-report::TableRow ControlRow(const std::string& name, const std::vector<SweepCurve>& curves) {
-  const LabelControl control = MeasureControl(curves);
-  report::TableRow row{name, {}};
-  for (const Column& column : kColumns) row.values.push_back(control.*column.figure);
-  return row;
-}
-
 report::PlotSeries MeanLine(const std::string& name, const std::vector<SweepCurve>& curves,
                             int of_class) {
   const std::vector<double>& weights = SweepWeights();
@@ -157,13 +150,18 @@ report::Table ControlTable(const std::string& title, const std::vector<std::stri
                            const std::vector<SweepCurve>& curves, SweepKind kind) {
   report::Table table{title};
   for (const Column& column : kColumns) table.columns.push_back(column.name);
+  const auto add = [&table](const std::string& name, const std::vector<SweepCurve>& measured) {
+    const LabelControl control = MeasureControl(measured);
+    report::TableRow& row = table.rows.emplace_back(report::TableRow{name, {}});
+    for (const Column& column : kColumns) row.values.push_back(control.*column.figure);
+  };
   std::vector<SweepCurve> all;
   for (size_t c = 0; c < classes.size(); ++c) {
     const std::vector<SweepCurve> selected = Select(curves, kind, static_cast<int>(c));
-    table.rows.push_back(ControlRow(classes[c], selected));
+    add(classes[c], selected);
     all.insert(all.end(), selected.begin(), selected.end());
   }
-  table.rows.push_back(ControlRow("all", all));
+  add("all", all);
   table.notes = {
       "Shares of answers whose probability of the class goes the way its weight goes. Level: by "
       "0.001 or less, either way. Steps: by 0.25, from weight 0 to 1. Rank correlation: "

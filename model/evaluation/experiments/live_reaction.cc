@@ -66,14 +66,6 @@ Leaders MakeLeaders(const dataset::Sequence& sequence) {
   return {WithLeader(sequence, std::move(acting)), WithLeader(sequence, std::move(standing))};
 }
 
-// The class of the sequence until kLabelFrame, then the next one.
-engine::LabelTrack ChangingLabels(int classes, int own) {
-  return engine::LabelTrack(
-      std::vector<engine::LabelKeyframe>{{0, OneClass(classes, own)},
-                                         {kLabelFrame - 1, OneClass(classes, own)},
-                                         {kLabelFrame, OneClass(classes, (own + 1) % classes)}});
-}
-
 }  // namespace
 
 absl::StatusOr<LiveFigures> MeasureLiveReaction(const engine::Synthesizer& synthesizer,
@@ -83,7 +75,6 @@ absl::StatusOr<LiveFigures> MeasureLiveReaction(const engine::Synthesizer& synth
   DUET_RETURN_IF_ERROR(CheckModelFits(synthesizer.description(), dataset));
   const int classes = dataset.class_count();
   std::vector<Leaders> leaders;
-  leaders.reserve(sequences.size());
   for (const int index : sequences) {
     leaders.push_back(MakeLeaders(dataset.sequences[static_cast<std::size_t>(index)]));
   }
@@ -93,10 +84,11 @@ absl::StatusOr<LiveFigures> MeasureLiveReaction(const engine::Synthesizer& synth
     const int own = leaders[i].acting.interaction_class;
     const engine::Sampling sampling{seed * leaders.size() + i};
     const engine::LabelTrack labels(OneClass(classes, own));
+    engine::LabelTrack changing = labels;
+    changing.Change(kLabelFrame, /*ease_frames=*/0, OneClass(classes, (own + 1) % classes));
     asked.push_back({&leaders[i].acting, labels, sampling, true, live_delay});
     asked.push_back({&leaders[i].standing, labels, sampling, true, live_delay});
-    asked.push_back(
-        {&leaders[i].standing, ChangingLabels(classes, own), sampling, true, live_delay});
+    asked.push_back({&leaders[i].standing, std::move(changing), sampling, true, live_delay});
   }
   DUET_TRY(auto followers, SynthesizeSequences(synthesizer, asked, StartGiven::kNone));
   LiveFigures figures;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -50,21 +49,7 @@ constexpr Column kColumns[] = {{"trunk lean", &LongClipFigures::trunk_lean},
                                {"first speed", &LongClipFigures::first_speed, true},
                                {"last speed", &LongClipFigures::last_speed, true}};
 
-// Rows of one name, in order of first appearance.
-using Groups = std::vector<std::pair<std::string, std::vector<LongClipRow>>>;
-
-Groups GroupBy(const std::vector<LongClipRow>& rows,
-               const std::function<std::string(const LongClipRow&)>& name_of) {
-  Groups groups;
-  for (const LongClipRow& row : rows) {
-    const std::string name = name_of(row);
-    auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const auto& other) { return other.first == name; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {name, {}});
-    group->second.push_back(row);
-  }
-  return groups;
-}
+using Groups = report::Groups<LongClipRow>;
 
 report::Table LeanTable(const std::string& title, const std::vector<std::string>& classes,
                         const Groups& groups) {
@@ -143,9 +128,9 @@ LongClipFigures Worst(const std::vector<LongClipRow>& rows) {
 std::vector<report::Table> LongTables(const std::string& what,
                                       const std::vector<std::string>& classes,
                                       const std::vector<LongClipRow>& rows) {
-  const Groups leaders = GroupBy(
+  const Groups leaders = report::GroupBy(
       rows, [](const LongClipRow& row) { return absl::StrCat(row.model, ": ", row.leader); });
-  const Groups by_class = GroupBy(rows, [&](const LongClipRow& row) {
+  const Groups by_class = report::GroupBy(rows, [&](const LongClipRow& row) {
     return absl::StrCat(row.model, ": ", classes[static_cast<size_t>(row.interaction_class)]);
   });
   return {LeanTable(absl::StrCat("Largest lean, degrees, ", what), classes, leaders),

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 
 #include "model/base/angle.h"
@@ -37,9 +36,7 @@ constexpr double kHandsMetres = 0.25;
 
 Vec3 At(Pose pose, int joint) { return pose[static_cast<std::size_t>(joint)]; }
 
-double Mean(double sum, int count) {
-  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
-}
+double Mean(double sum, int count) { return count > 0 ? sum / count : NAN; }
 
 // How near the leader's fists and feet come to the follower's body while they reach out.
 class Strikes {

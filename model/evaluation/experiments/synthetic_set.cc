@@ -36,27 +36,13 @@ training::TrainingOptions::Augmentation Variations() {
   return augmentation;
 }
 
-std::vector<int> OfClass(const dataset::Dataset& dataset, const std::vector<int>& sequences,
-                         int interaction_class) {
-  std::vector<int> found;
-  for (const int index : sequences) {
-    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-    if (sequence.interaction_class == interaction_class) found.push_back(index);
-  }
-  return found;
-}
-
-int DrawOtherClass(int classes, int own, base::Random* random) {
-  const int drawn = static_cast<int>(random->Below(classes - 1));
-  return drawn < own ? drawn : drawn + 1;
-}
-
 std::vector<float> DrawLabels(int classes, int own, bool mix, base::Random* random) {
   std::vector<float> labels(static_cast<size_t>(classes), 0);
   const double weight = random->Uniform(kLeastOwn, mix ? kMostOwnMixed : kMostOwn);
   labels[static_cast<size_t>(own)] = static_cast<float>(weight);
   if (!mix) return labels;
-  const int other = DrawOtherClass(classes, own, random);
+  int other = static_cast<int>(random->Below(classes - 1));
+  if (other >= own) ++other;
   labels[static_cast<size_t>(other)] = static_cast<float>(random->Uniform(kLeastOther, kMostOther));
   return labels;
 }
@@ -179,7 +165,11 @@ std::vector<SyntheticJob> PlanSyntheticSet(const dataset::Dataset& dataset,
   base::Random random(options.seed, 0);
   std::vector<SyntheticJob> jobs;
   for (int c = 0; c < dataset.class_count(); ++c) {
-    std::vector<int> leaders = OfClass(dataset, train, c);
+    std::vector<int> leaders;
+    for (const int index : train) {
+      const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+      if (sequence.interaction_class == c) leaders.push_back(index);
+    }
     random.Shuffle(&leaders);
     for (int i = 0; i < options.match + options.mix; ++i) {
       const int leader = leaders[static_cast<size_t>(i) % leaders.size()];

@@ -55,17 +55,15 @@ Gaussian Fit(const FeatureSet& features) {
         Eigen::Map<const Eigen::RowVectorXf>(features[static_cast<size_t>(i)].data(), width)
             .cast<double>();
   }
-  Gaussian gaussian;
-  gaussian.mean = rows.colwise().mean();
-  rows.rowwise() -= gaussian.mean;
+  const Eigen::RowVectorXd mean = rows.colwise().mean();
+  rows.rowwise() -= mean;
   rows /= std::sqrt(static_cast<double>(samples - 1));
   if (samples > width) {
     // rows = Q R: the same covariance with as many rows as features.
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows);
     rows = Eigen::MatrixXd(qr.matrixQR().topRows(width).triangularView<Eigen::Upper>());
   }
-  gaussian.factor = std::move(rows);
-  return gaussian;
+  return {mean, std::move(rows)};
 }
 
 // The classes of the nearest other samples, the nearest first.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "model/base/statistics.h"
 #include "model/body/liveliness.h"
 #include "model/body/motion_quality.h"
 #include "model/body/penetration.h"
@@ -43,8 +44,6 @@ motion::Poses WithoutRoot(motion::Poses poses, int root) {
   }
   return poses;
 }
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 size_t MotionCount(const SampledMotions& samples) {
   return samples.empty() ? 0 : samples.front().size();
@@ -117,7 +116,7 @@ std::map<std::string, double> ScoreMotion(const dataset::Dataset& dataset,
       {"skating_ratio", slide.skating_ratio},
       {"foot_slide_cm", slide.centimetres_a_frame},
       {"penetration_frequency", penetration.frequency},
-      {"penetration_depth_m", penetration.frequency > 0 ? penetration.mean_depth_metres : kNone},
+      {"penetration_depth_m", penetration.frequency > 0 ? penetration.mean_depth_metres : NAN},
       {"joint_speed", body::JointSpeed(calm, rate)},
       {"range_of_motion_m", body::RangeOfMotion(calm)},
       {"filtered_jerk", body::Jitter(calm, rate)},
@@ -129,24 +128,20 @@ std::map<std::string, double> ScoreMotion(const dataset::Dataset& dataset,
 
 FiguresByMetric ScoreByClass(const dataset::Dataset& dataset,
                              const std::vector<ScoredMotion>& motions) {
-  FiguresByMetric sums, counts;
+  std::map<std::string, std::vector<std::vector<double>>> scores;  // [classes][motions] each
   for (const ScoredMotion& motion : motions) {
     const auto c = static_cast<size_t>(SequenceOf(dataset, motion).interaction_class);
     for (const auto& [metric, score] : ScoreMotion(dataset, motion)) {
-      sums[metric].resize(dataset.classes.size());
-      counts[metric].resize(dataset.classes.size());
-      // NaN: the motion has no such figure; without contact there is no depth.
-      if (std::isnan(score)) continue;
-      sums[metric][c] += score;
-      ++counts[metric][c];
+      scores[metric].resize(dataset.classes.size());
+      scores[metric][c].push_back(score);
     }
   }
-  for (auto& [metric, figures] : sums) {
-    for (size_t c = 0; c < figures.size(); ++c) {
-      figures[c] /= counts[metric][c];  // NaN without any
-    }
+  FiguresByMetric figures;
+  for (const auto& [metric, by_class] : scores) {
+    // NaN: the motion has no such figure; without contact there is no depth.
+    for (const auto& of_class : by_class) figures[metric].push_back(base::Mean(of_class));
   }
-  return sums;
+  return figures;
 }
 
 std::vector<int> ClassesOf(const dataset::Dataset& dataset, const std::vector<int>& sequences) {

@@ -102,28 +102,9 @@ absl::Status RunDirection(const ExperimentFlags& flags) {
 using experiments::TiltedFigures;
 
 struct TiltArguments : ExperimentFlags {
-  TiltArguments() {
-    starts = {"none"};
-    asked.samples = 4;
-  }
-
   std::vector<double> degrees = {10};
   bool as_captured = false;
 };
-
-// The tilts of a table: with an angle, towards each of four sides.
-std::vector<experiments::Camera> CamerasOf(double degrees) {
-  std::vector<experiments::Camera> cameras;
-  for (const double azimuth : {0, 90, 180, 270}) cameras.push_back({degrees, azimuth});
-  return cameras;
-}
-
-// One model for everything answers all sequences; otherwise, each fold's model answers its own.
-absl::StatusOr<std::vector<Fold>> FoldsOf(const TiltArguments& arguments,
-                                          const dataset::Dataset& dataset) {
-  if (!arguments.models.one_for_all()) return LeaveOut(dataset, arguments.subjects);
-  return std::vector<Fold>{{"", {{}, dataset::AllSequences(dataset)}}};
-}
 
 // Adds figures of so many sequences to those before.
 void AddFigures(const std::vector<TiltedFigures>& more, double weight,
@@ -174,7 +155,11 @@ absl::StatusOr<report::Table> MeasureTilt(const TiltArguments& arguments,
 
 absl::Status RunTilt(const TiltArguments& arguments) {
   DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
-  DUET_TRY(std::vector<Fold> folds, FoldsOf(arguments, dataset));
+  // One model for everything answers all sequences; otherwise, each fold's model answers its own.
+  std::vector<Fold> folds = {{"", {{}, dataset::AllSequences(dataset)}}};
+  if (!arguments.models.one_for_all()) {
+    DUET_TRY(folds, LeaveOut(dataset, arguments.subjects));
+  }
   DUET_TRY(std::vector<FoldModel> models, OpenModels(arguments.models));
   const Experiment experiment{std::move(dataset), std::move(folds), std::move(models)};
   report::ResultSection section = BeginAnswers(
@@ -196,9 +181,11 @@ absl::Status RunTilt(const TiltArguments& arguments) {
         DUET_TRY(section.tables.emplace_back(), measure("tilted as captured", {{0, std::nullopt}}));
       }
       for (const double degrees : arguments.degrees) {
+        std::vector<experiments::Camera> cameras;
+        for (const double azimuth : {0, 90, 180, 270}) cameras.push_back({degrees, azimuth});
         DUET_TRY(section.tables.emplace_back(),
                  measure(absl::StrFormat("tilted by %g degrees to each of four sides", degrees),
-                         CamerasOf(degrees)));
+                         cameras));
       }
     }
   }
@@ -229,6 +216,8 @@ void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen) {
 void AddTiltCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] = AddCommand(
       "tilt", "What a camera's tilt costs, and what levelling saves", RunTilt, app, chosen);
+  arguments->starts = {"none"};
+  arguments->asked.samples = 4;
   AddAnswersFlags("07_tilt", "Leaders of a tilted camera", arguments, command);
   AddNumber("--degrees", &arguments->degrees, 0.0, 44.0,
             "tilts of the camera, to each of four sides", command)

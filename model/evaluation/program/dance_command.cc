@@ -1,26 +1,27 @@
 #include <algorithm>
 #include <iostream>
 #include <limits>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "model/base/statistics.h"
 #include "model/base/status_macros.h"
 #include "model/body/dance.h"
+#include "model/checkpoint/checkpoint.h"
 #include "model/evaluation/baselines/other_people.h"
 #include "model/evaluation/experiments/dance.h"
 #include "model/evaluation/experiments/looped_leaders.h"
 #include "model/evaluation/program/commands.h"
-#include "model/evaluation/program/dance_variants.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/result_section.h"
 #include "model/motion/resample.h"
 #include "model/motion/standardise.h"
+#include "model/torch_engine/torch_synthesizer.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -30,6 +31,7 @@ using experiments::DanceRow;
 constexpr double kPartSeconds = 60;                  // of a looped take: its beginning and its end
 constexpr int kPositionSeconds = 5, kPositions = 6;  // of a take, for the error by position
 constexpr double kTurnWeights[] = {-1, -0.5, 0, 0.5, 1};
+constexpr int kCandidates = 4;  // of the ablation that asks for them
 
 struct DanceFlags : ExperimentFlags {
   double loop_minutes = 0;
@@ -68,41 +70,52 @@ motion::Poses MovedTo(const motion::Skeleton& skeleton, const dataset::Sequence&
   return frame(take.pair.leader.poses).Invert(cut);
 }
 
+// The figures of a follower of a take.
+std::vector<double> Measure(const dataset::Dataset& dataset, const body::DanceJoints& joints,
+                            const Take& take, const motion::Poses& follower) {
+  const motion::ClipPair& pair = take.sequence->pair;
+  return experiments::MeasureDance(dataset, joints, pair.leader.poses, follower,
+                                   &pair.follower.poses);
+}
+
 // Answers takes with one model and one kind of start.
 struct Dancer {
   const Experiment& experiment;
   const body::DanceJoints& joints;
   const FoldModel& model;
-  const DanceFlags& flags;
+  const experiments::AskedSamples& asked;
   experiments::StartGiven start;
 
   std::string name() const { return absl::StrCat(model.name, StartSuffix(start)); }
 
-  engine::Sampling Sampling(int n) const {
-    return {flags.asked.seed + static_cast<uint64_t>(n), flags.asked.variety,
-            flags.asked.candidates};
-  }
-
-  absl::StatusOr<motion::Poses> Answer(const Take& take, engine::LabelTrack labels,
-                                       const engine::Sampling& sampling) const {
+  // The answer with the n-th seed.
+  absl::StatusOr<motion::Poses> Answer(const Take& take, engine::LabelTrack labels, int n) const {
     DUET_TRY(SharedSynthesizer synthesizer, model.load(take.fold->subject));
     DUET_RETURN_IF_ERROR(CheckModelTakes(synthesizer->description(), experiment.dataset, start));
-    const experiments::LabelledLeader leader = {take.sequence, std::move(labels), sampling, true,
-                                                flags.asked.live_delay};
+    const experiments::LabelledLeader leader =
+        Ask(*take.sequence, std::move(labels), asked, asked.seed + static_cast<uint64_t>(n));
     DUET_TRY(auto answer, SynthesizeSequences(*synthesizer, {&leader, 1}, start));
     return std::move(answer.front());
   }
 
   // With the labels of the take's time line.
-  absl::StatusOr<motion::Poses> Answer(const Take& take, const engine::Sampling& sampling) const {
-    return Answer(take,
-                  experiments::TimeLineLabels(*take.sequence, experiment.dataset.class_count()),
-                  sampling);
+  absl::StatusOr<motion::Poses> Answer(const Take& take, int n) const {
+    const int classes = experiment.dataset.class_count();
+    return Answer(take, experiments::TimeLineLabels(*take.sequence, classes), n);
   }
 
-  std::vector<double> Measure(const motion::Poses& leader, const motion::Poses& follower,
-                              const motion::Poses* captured) const {
-    return experiments::MeasureDance(experiment.dataset, joints, leader, follower, captured);
+  // The answers to all takes with each seed. Shapes: returns [seeds][takes].
+  absl::StatusOr<std::vector<std::vector<motion::Poses>>> AnswerAll(
+      const std::vector<Take>& takes) const {
+    std::vector<std::vector<motion::Poses>> seeds;
+    for (int n = 0; n < asked.samples; ++n) {
+      seeds.emplace_back();
+      for (const Take& take : takes) {
+        DUET_TRY(seeds.back().emplace_back(), Answer(take, n));
+      }
+      std::cerr << name() << ": seed " << n + 1 << " of " << asked.samples << "\n";
+    }
+    return seeds;
   }
 };
 
@@ -133,27 +146,22 @@ report::Table PositionTable() {
 absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows,
                         report::Table* positions) {
   std::vector<std::vector<double>> errors;
+  const dataset::Dataset& dataset = dancer.experiment.dataset;
   const std::vector<Take> takes = TakesOf(dancer.experiment);
   DanceRow own = {dancer.name(), {}}, chance = {absl::StrCat(dancer.name(), ", other lead"), {}};
-  for (int n = 0; n < dancer.flags.asked.samples; ++n) {
-    std::vector<motion::Poses> followers;
-    for (const Take& take : takes) {
-      DUET_TRY(followers.emplace_back(), dancer.Answer(take, dancer.Sampling(n)));
-    }
+  DUET_TRY(const auto seeds, dancer.AnswerAll(takes));
+  for (const std::vector<motion::Poses>& followers : seeds) {
     for (size_t i = 0; i < takes.size(); ++i) {
-      const motion::ClipPair& pair = takes[i].sequence->pair;
-      errors.push_back(ErrorByPosition(followers[i], pair.follower.poses,
-                                       dancer.experiment.dataset.frame_rate_hz));
-      own.takes.push_back(dancer.Measure(pair.leader.poses, followers[i], &pair.follower.poses));
+      errors.push_back(ErrorByPosition(followers[i], takes[i].sequence->pair.follower.poses,
+                                       dataset.frame_rate_hz));
+      own.takes.push_back(Measure(dataset, dancer.joints, takes[i], followers[i]));
       const size_t other = (i + 1) % takes.size();
       if (other == i) continue;
       const motion::Poses moved =
-          MovedTo(dancer.experiment.dataset.skeleton, *takes[i].sequence,
-                  takes[other].sequence->pair.leader.poses, followers[other]);
-      chance.takes.push_back(dancer.Measure(pair.leader.poses, moved, &pair.follower.poses));
+          MovedTo(dataset.skeleton, *takes[i].sequence, takes[other].sequence->pair.leader.poses,
+                  followers[other]);
+      chance.takes.push_back(Measure(dataset, dancer.joints, takes[i], moved));
     }
-    std::cerr << dancer.name() << ": seed " << n + 1 << " of " << dancer.flags.asked.samples
-              << "\n";
   }
   positions->rows.push_back({dancer.name(), report::ColumnMeans(errors)});
   rows->push_back(std::move(own));
@@ -162,7 +170,7 @@ absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows,
 }
 
 // The first and the last minute of answers to takes whose leader is looped.
-absl::Status AddLoops(const Dancer& dancer, std::vector<DanceRow>* rows) {
+absl::Status AddLoops(const Dancer& dancer, double minutes, std::vector<DanceRow>* rows) {
   const dataset::Dataset& dataset = dancer.experiment.dataset;
   DanceRow first = {absl::StrCat(dancer.name(), ", first minute"), {}},
            last = {absl::StrCat(dancer.name(), ", last minute"), {}};
@@ -171,13 +179,13 @@ absl::Status AddLoops(const Dancer& dancer, std::vector<DanceRow>* rows) {
       return absl::InvalidArgumentError(absl::StrCat(
           "--loop-minutes: expected takes of more than a second, got ", take.sequence->id));
     }
-    const dataset::Sequence looped =
-        experiments::LoopTake(dataset, *take.sequence, 60 * dancer.flags.loop_minutes);
-    DUET_TRY(motion::Poses follower, dancer.Answer({&looped, take.fold}, dancer.Sampling(0)));
+    const dataset::Sequence looped = experiments::LoopTake(dataset, *take.sequence, 60 * minutes);
+    DUET_TRY(motion::Poses follower, dancer.Answer({&looped, take.fold}, 0));
     const int part = static_cast<int>(kPartSeconds * dataset.frame_rate_hz);
     const auto measure = [&](int begin) {
-      return dancer.Measure(motion::Part(looped.pair.leader.poses, begin, part),
-                            motion::Part(follower, begin, part), nullptr);
+      return experiments::MeasureDance(dataset, dancer.joints,
+                                       motion::Part(looped.pair.leader.poses, begin, part),
+                                       motion::Part(follower, begin, part), nullptr);
     };
     first.takes.push_back(measure(0));
     last.takes.push_back(measure(follower.frame_count() - part));
@@ -198,12 +206,12 @@ absl::Status AddTurns(const Dancer& dancer, int turn_class, report::Table* table
           experiments::FindTurnStretches(*take.sequence, turn_class, dataset.frame_rate_hz);
       for (const bool is_led : {false, true}) {
         const std::vector<experiments::FrameSpan>& spans = is_led ? found.led : found.not_led;
-        for (int n = 0; n < dancer.flags.asked.samples; ++n) {
+        for (int n = 0; n < dancer.asked.samples; ++n) {
           DUET_TRY(motion::Poses follower,
                    dancer.Answer(take,
                                  experiments::LabelsWithTurn(*take.sequence, dataset.class_count(),
                                                              turn_class, spans, weight),
-                                 dancer.Sampling(n)));
+                                 n));
           stretches[is_led] += static_cast<int>(spans.size());
           turned[is_led] += experiments::CountTurned(
               spans,
@@ -234,45 +242,76 @@ report::Table TurnTable(const std::string& turn_class) {
   return table;
 }
 
-// The figures of a dancer with each seed, mean over the takes. Shapes: returns [seeds][columns].
-absl::StatusOr<std::vector<std::vector<double>>> FiguresOfSeeds(const Dancer& dancer) {
-  std::vector<std::vector<double>> seeds;
-  for (int n = 0; n < dancer.flags.asked.samples; ++n) {
-    std::vector<std::vector<double>> figures;
-    for (const Take& take : TakesOf(dancer.experiment)) {
-      DUET_TRY(const motion::Poses follower, dancer.Answer(take, dancer.Sampling(n)));
-      const motion::ClipPair& pair = take.sequence->pair;
-      figures.push_back(dancer.Measure(pair.leader.poses, follower, &pair.follower.poses));
-    }
-    seeds.push_back(report::ColumnMeans(figures));
-  }
-  return seeds;
+// A model and how it is asked.
+struct Change {
+  std::string name;
+  engine::ModelDescription model;
+  bool clean_up = true;
+  experiments::AskedSamples asked;
+};
+
+// The noise of training, in the varieties that the checkpoint knows. 1 if it stores all of it.
+float VarietyOfTraining(const checkpoint::Manifest& manifest) {
+  const auto share = manifest.training.find("flow.noise_share");
+  float stored = 1;
+  if (share == manifest.training.end() || !absl::SimpleAtof(share->second, &stored)) return 1;
+  return stored > 0 ? 1 / stored : 1;
+}
+
+// The model of a checkpoint as it is served, then with one change each: without labels that choose
+// turns, without steps in time, without raised hips, without clean-up, with four candidates, and
+// with all the noise of its training (if its manifest has flow.noise_share). Nothing is trained.
+std::vector<Change> Changes(const checkpoint::Manifest& manifest,
+                            const experiments::AskedSamples& asked) {
+  const Change served = {"as served", manifest.model, true, asked};
+  std::vector<Change> changes = {served};
+  const auto add = [&](const char* name) -> Change& {
+    changes.push_back(served);
+    changes.back().name = name;
+    return changes.back();
+  };
+  add("labels do not choose turns").model.turning_classes.clear();
+  add("no steps in time").model.steps_in_time = false;
+  add("hips are not raised").model.hip_height = 0;
+  add("no clean-up").clean_up = false;
+  add("four candidates").asked.candidates = kCandidates;
+  const float variety = VarietyOfTraining(manifest);
+  if (variety != 1) add("all the noise of training").asked.variety *= variety;
+  return changes;
 }
 
 // The checkpoint as it is served, and without each of its parts: means over the seeds, and their
 // deviations.
 absl::StatusOr<report::Table> AblationTable(const DanceFlags& flags, const Experiment& experiment,
                                             const body::DanceJoints& joints) {
-  DUET_TRY(const auto checkpoint, checkpoint::ReadCheckpoint(flags.models.checkpoint));
-  DUET_TRY(const auto variants, DanceVariants(checkpoint, flags.asked));
+  DUET_TRY(auto checkpoint, checkpoint::ReadCheckpoint(flags.models.checkpoint));
   report::Table table = experiments::DanceTable("Without parts", {});
-  for (const DanceVariant& variant : variants) {
-    DanceFlags varied = flags;
-    varied.asked = variant.asked;
-    const FoldModel model = {variant.name, [&](const std::string&) { return variant.synthesizer; }};
-    DUET_TRY(const auto seeds,
-             FiguresOfSeeds({experiment, joints, model, varied, experiments::StartGiven::kPose}));
-    report::TableRow mean = {variant.name, {}}, deviation = {variant.name + ", deviation", {}};
+  const std::vector<Take> takes = TakesOf(experiment);
+  for (Change& change : Changes(checkpoint.manifest, flags.asked)) {
+    checkpoint.manifest.model = std::move(change.model);
+    DUET_TRY(SharedSynthesizer synthesizer,
+             torch_engine::MakeTorchSynthesizer(checkpoint, {true, true, change.clean_up}));
+    const FoldModel model = {change.name, [&](const std::string&) { return synthesizer; }};
+    const Dancer dancer = {experiment, joints, model, change.asked, experiments::StartGiven::kPose};
+    DUET_TRY(const auto seeds, dancer.AnswerAll(takes));
+    std::vector<std::vector<double>> means;  // over the takes, [seeds][columns]
+    for (const std::vector<motion::Poses>& followers : seeds) {
+      std::vector<std::vector<double>> figures;
+      for (size_t i = 0; i < takes.size(); ++i) {
+        figures.push_back(Measure(experiment.dataset, joints, takes[i], followers[i]));
+      }
+      means.push_back(report::ColumnMeans(figures));
+    }
+    report::TableRow mean = {change.name, {}}, deviation = {change.name + ", deviation", {}};
     for (size_t column = 0; column < table.columns.size(); ++column) {
       std::vector<double> values;
-      for (const std::vector<double>& seed : seeds) values.push_back(seed[column]);
+      for (const std::vector<double>& seed : means) values.push_back(seed[column]);
       const base::MeanAndDeviation summary = base::Summarise(values);
       mean.values.push_back(summary.mean);
       deviation.values.push_back(summary.deviation);
     }
     table.rows.push_back(std::move(mean));
     table.rows.push_back(std::move(deviation));
-    std::cerr << variant.name << "\n";
   }
   table.notes.push_back("Deviation: over the seeds, of the mean over the takes.");
   return table;
@@ -285,20 +324,21 @@ void AddBaselines(const Experiment& experiment, const body::DanceJoints& joints,
            nearest = {"nearest seconds", {}}, captured = {"captured", {}};
   for (const Take& take : TakesOf(experiment)) {
     const std::vector<int>& train = take.fold->split.train;
-    const motion::ClipPair& pair = take.sequence->pair;
+    const dataset::Sequence& sequence = *take.sequence;
     const auto add = [&](const motion::Poses& follower, DanceRow* row) {
-      row->takes.push_back(experiments::MeasureDance(dataset, joints, pair.leader.poses, follower,
-                                                     &pair.follower.poses));
+      row->takes.push_back(Measure(dataset, joints, take, follower));
     };
-    add(baselines::FirstPoseHeld(*take.sequence), &held);
-    add(baselines::MeanOfClass(dataset, train, *take.sequence), &mean);
-    add(baselines::NearestSeconds(dataset, train, *take.sequence), &nearest);
-    add(pair.follower.poses, &captured);
+    add(baselines::FirstPoseHeld(sequence), &held);
+    add(baselines::MeanOfClass(dataset, train, sequence), &mean);
+    add(baselines::NearestSeconds(dataset, train, sequence), &nearest);
+    add(sequence.pair.follower.poses, &captured);
   }
   for (DanceRow* row : {&held, &mean, &nearest, &captured}) rows->push_back(std::move(*row));
 }
 
+// 0 without --turn-class.
 absl::StatusOr<int> FindTurnClass(const DanceFlags& flags, const dataset::Dataset& dataset) {
+  if (flags.turn_class.empty()) return 0;
   const auto found = std::find(dataset.classes.begin(), dataset.classes.end(), flags.turn_class);
   if (found != dataset.classes.end()) return static_cast<int>(found - dataset.classes.begin());
   return absl::InvalidArgumentError(
@@ -311,24 +351,19 @@ absl::Status Run(const DanceFlags& flags) {
   }
   DUET_TRY(Experiment experiment, OpenExperiment(flags));
   DUET_TRY(body::DanceJoints joints, body::FindDanceJoints(experiment.dataset.skeleton));
-  int turn_class = 0;
-  if (!flags.turn_class.empty()) {
-    DUET_TRY(turn_class, FindTurnClass(flags, experiment.dataset));
-  }
+  DUET_TRY(const int turn_class, FindTurnClass(flags, experiment.dataset));
   std::vector<DanceRow> rows, loops;
   report::Table turns = TurnTable(flags.turn_class), positions = PositionTable();
   AddBaselines(experiment, joints, &rows);
   for (const FoldModel& model : experiment.models) {
     for (const std::string& start : flags.starts) {
-      const Dancer dancer = {experiment, joints, model, flags, ParseStart(start)};
+      const Dancer dancer = {experiment, joints, model, flags.asked, ParseStart(start)};
       DUET_RETURN_IF_ERROR(AddAnswers(dancer, &rows, &positions));
-      if (flags.loop_minutes > 0) DUET_RETURN_IF_ERROR(AddLoops(dancer, &loops));
+      if (flags.loop_minutes > 0) {
+        DUET_RETURN_IF_ERROR(AddLoops(dancer, flags.loop_minutes, &loops));
+      }
       if (!flags.turn_class.empty()) DUET_RETURN_IF_ERROR(AddTurns(dancer, turn_class, &turns));
     }
-  }
-  std::optional<report::Table> ablations;
-  if (flags.ablations) {
-    DUET_TRY(ablations, AblationTable(flags, experiment, joints));
   }
   report::ResultSection section = BeginExperiment(
       flags, experiment,
@@ -345,7 +380,9 @@ absl::Status Run(const DanceFlags& flags) {
         absl::StrFormat("The same leaders looped for %g minutes", flags.loop_minutes), loops));
   }
   if (!turns.rows.empty()) section.tables.push_back(std::move(turns));
-  if (ablations) section.tables.push_back(*std::move(ablations));
+  if (flags.ablations) {
+    DUET_TRY(section.tables.emplace_back(), AblationTable(flags, experiment, joints));
+  }
   return FinishSection(flags.section, section);
 }
 

@@ -16,21 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-absl::StatusOr<fs::path> FindCheckpoint(const fs::path& run) {
-  std::vector<fs::path> found;
-  std::error_code error;
-  for (const auto& name : fs::directory_iterator(run / "checkpoint", error)) {
-    for (const auto& version : fs::directory_iterator(name.path(), error)) {
-      // A dot marks an unfinished write of an interrupted run.
-      if (version.path().filename().string().front() != '.') found.push_back(version.path());
-    }
-  }
-  if (found.size() == 1) return found[0];
-  return absl::NotFoundError(absl::StrCat(run.string(),
-                                          ": expected one finished run of duet-train, got ",
-                                          found.size(), " checkpoints"));
-}
-
 absl::StatusOr<SharedSynthesizer> LoadOne(const ModelChoice& choice) {
   const engine::PipelineOptions options{choice.as_served, choice.as_served, choice.as_served};
   if (!choice.embedded) return torch_engine::LoadTorchSynthesizer(choice.checkpoint, options);
@@ -56,8 +41,18 @@ absl::StatusOr<NamedRuns> ParseRuns(const std::string& text) {
 }
 
 absl::StatusOr<checkpoint::Checkpoint> ReadRunCheckpoint(const fs::path& run) {
-  DUET_TRY(fs::path folder, FindCheckpoint(run));
-  return checkpoint::ReadCheckpoint(folder);
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const auto& name : fs::directory_iterator(run / "checkpoint", error)) {
+    for (const auto& version : fs::directory_iterator(name.path(), error)) {
+      // A dot marks an unfinished write of an interrupted run.
+      if (version.path().filename().string().front() != '.') found.push_back(version.path());
+    }
+  }
+  if (found.size() == 1) return checkpoint::ReadCheckpoint(found[0]);
+  return absl::NotFoundError(absl::StrCat(run.string(),
+                                          ": expected one finished run of duet-train, got ",
+                                          found.size(), " checkpoints"));
 }
 
 absl::StatusOr<SharedSynthesizer> LoadFoldModel(const fs::path& runs, const std::string& subject,
@@ -74,10 +69,10 @@ absl::StatusOr<std::vector<FoldModel>> OpenModels(const ModelChoice& choice) {
   }
   for (const std::string& text : choice.runs) {
     DUET_TRY(NamedRuns runs, ParseRuns(text));
-    const bool as_served = choice.as_served;
-    models.push_back({runs.name, [runs = runs, as_served](const std::string& subject) {
-                        return LoadFoldModel(runs.folder, subject, as_served);
-                      }});
+    models.push_back(
+        {runs.name, [runs = runs, as_served = choice.as_served](const std::string& subject) {
+           return LoadFoldModel(runs.folder, subject, as_served);
+         }});
   }
   return models;
 }

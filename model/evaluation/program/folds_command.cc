@@ -23,8 +23,6 @@ namespace {
 constexpr char kNoBaseline[] = "none";
 
 struct Arguments : ExperimentFlags {
-  Arguments() { starts = StartNames(); }
-
   std::vector<std::string> baselines = {"class_mean", "frozen_first_frame"};
   std::vector<std::string> metrics = {"afd", "afd_squared"};
   std::vector<std::string> printed;
@@ -136,17 +134,12 @@ absl::Status Run(const Arguments& arguments) {
   return FinishSection(arguments.section, section);
 }
 
-std::vector<std::string> MetricNames() {
-  std::vector<std::string> names;
-  for (const report::MetricStyle& style : report::MetricStyles()) names.push_back(style.name);
-  return names;
-}
-
 }  // namespace
 
 void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] = AddCommand(
       "folds", "Figures of models and baselines, leaving one subject out", Run, app, chosen);
+  arguments->starts = StartNames();
   AddExperimentFlags("10_folds", "Leave one subject out", arguments, command);
   AddModelFlags(ModelNeeded::kNo, &arguments->models, command);
   AddStartsFlag(&arguments->starts, command);
@@ -154,7 +147,9 @@ void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
   baselines.push_back(kNoBaseline);
   AddNames("--baselines", &arguments->baselines, baselines, "rows of baselines; none: no such row",
            command);
-  AddNames("--metrics", &arguments->metrics, MetricNames(), "tables to print", command);
+  std::vector<std::string> metrics;
+  for (const report::MetricStyle& style : report::MetricStyles()) metrics.push_back(style.name);
+  AddNames("--metrics", &arguments->metrics, metrics, "tables to print", command);
   command->add_option("--printed", arguments->printed, "add the paper's rows: afd, fid")
       ->delimiter(',')
       ->check(CLI::IsMember({"afd", "fid"}));

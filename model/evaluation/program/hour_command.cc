@@ -32,32 +32,24 @@ struct Arguments {
 
 // A class each minute, in their order; in the last one, the first.
 engine::LabelTrack ClassAfterClass(int classes, double seconds, double rate) {
-  std::vector<engine::LabelKeyframe> keyframes;
+  engine::LabelTrack labels(experiments::OneClass(classes, 0));
   const int minutes = static_cast<int>(std::ceil(seconds / kSecondsOfAClass));
-  for (int m = 0; m < minutes; ++m) {
+  for (int m = 1; m < minutes; ++m) {
     const int own = m + 1 == minutes ? 0 : m % classes;
-    std::vector<float> weights = experiments::OneClass(classes, own);
     const int frame = static_cast<int>(std::lround(m * kSecondsOfAClass * rate));
-    // Changes at once, not gradually over the minute before.
-    if (m > 0) keyframes.push_back({frame - 1, keyframes.back().weights});
-    keyframes.push_back({frame, std::move(weights)});
+    labels.Change(frame, /*ease_frames=*/0, experiments::OneClass(classes, own));
   }
-  return engine::LabelTrack(std::move(keyframes));
-}
-
-absl::Status CheckModel(const engine::ModelDescription& model, const std::string& name) {
-  if (model.skeleton.joint_names != motion::SbuSkeleton().joint_names) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        name, ": expected a model with the joints of SBU, which the leaders have, got ",
-        model.skeleton.joint_names.size(), " other joints"));
-  }
-  return absl::OkStatus();
+  return labels;
 }
 
 absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const std::string& name,
                                          const engine::Synthesizer& model) {
   const engine::ModelDescription& description = model.description();
-  DUET_RETURN_IF_ERROR(CheckModel(description, name));
+  if (description.skeleton.joint_names != motion::SbuSkeleton().joint_names) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        name, ": expected a model with the joints of SBU, which the leaders have, got ",
+        description.skeleton.joint_names.size(), " other joints"));
+  }
   std::vector<dataset::Sequence> leaders;
   for (const char* const leader : authoring::kHourLeaders) {
     leaders.push_back(

@@ -38,9 +38,8 @@ absl::StatusOr<std::vector<int>> ChooseClips(const dataset::Dataset& dataset,
   DUET_TRY(dataset::Split split, LeaveSubjectOut(dataset, subject));
   if (which == "test") return split.test;
   if (which == "train") return split.train;
-  std::vector<int> all = split.test;
-  all.insert(all.end(), split.train.begin(), split.train.end());
-  return all;
+  split.test.insert(split.test.end(), split.train.begin(), split.train.end());
+  return split.test;
 }
 
 std::string FigureName(std::string text) {
@@ -84,21 +83,17 @@ absl::Status AddSpace(const dataset::Dataset& dataset, const FoldCheckpoint& fol
   return absl::OkStatus();
 }
 
-// The checkpoint of a fold of duet-train --protocol loso, or of a single run.
-absl::StatusOr<checkpoint::Checkpoint> ReadFold(const std::filesystem::path& runs,
-                                                const std::string& subject) {
-  std::error_code error;
-  const bool is_run = std::filesystem::exists(runs / "checkpoint", error);
-  return ReadRunCheckpoint(is_run ? runs : runs / subject);
-}
-
 // A model that reads labels is measured a second time without the label, which by itself separates
 // the classes.
 absl::Status AddModel(const dataset::Dataset& dataset, const NamedRuns& runs,
                       const std::vector<std::string>& subjects, const Arguments& arguments,
                       report::ResultSection* section) {
+  std::error_code error;
+  // Of duet-train --protocol loso, a run for each fold; otherwise a single one.
+  const bool is_run = std::filesystem::exists(runs.folder / "checkpoint", error);
   for (const std::string& subject : subjects) {
-    DUET_TRY(checkpoint::Checkpoint checkpoint, ReadFold(runs.folder, subject));
+    DUET_TRY(checkpoint::Checkpoint checkpoint,
+             ReadRunCheckpoint(is_run ? runs.folder : runs.folder / subject));
     const FoldCheckpoint fold = {runs.name, subject, std::move(checkpoint)};
     DUET_RETURN_IF_ERROR(
         AddSpace(dataset, fold, experiments::LatentLabels::kOwnClass, arguments, section));

@@ -33,10 +33,9 @@ double Milliseconds(std::vector<double> seconds, double share) {
 
 report::TableRow Row(const std::string& name, const experiments::LiveFigures& figures,
                      double whole_jerk) {
-  const double clips = figures.clips;
   return {name,
           {Milliseconds(figures.reaction_seconds, 0.5), Milliseconds(figures.reaction_seconds, 0.9),
-           100 * static_cast<double>(figures.reaction_seconds.size()) / clips,
+           100 * static_cast<double>(figures.reaction_seconds.size()) / figures.clips,
            Milliseconds(figures.label_seconds, 0.5), Milliseconds(figures.label_seconds, 0.9),
            figures.speed, figures.jerk / whole_jerk}};
 }

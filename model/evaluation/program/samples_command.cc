@@ -23,10 +23,9 @@ absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset
   const std::string row = model.name + StartSuffix(ParseStart(start));
   std::vector<metrics::SampledMotions> answers;
   for (const Fold& fold : scorer.folds()) {
-    DUET_TRY(auto of_fold, Answers(dataset, model, fold, fold.split.test, start, asked));
+    DUET_TRY(answers.emplace_back(), Answers(dataset, model, fold, fold.split.test, start, asked));
     std::cerr << absl::StrCat(row, " without ", fold.subject, ": ", fold.split.test.size(),
-                              " leaders, ", of_fold.size(), " answers each\n");
-    answers.push_back(std::move(of_fold));
+                              " leaders, ", answers.back().size(), " answers each\n");
   }
   return scorer.ScoreSamples(row, answers);
 }

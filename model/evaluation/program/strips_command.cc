@@ -14,9 +14,6 @@
 namespace duet::evaluation::program {
 namespace {
 
-// Two answers show the variety of a model that samples.
-constexpr int kAnswers = 2;
-
 struct Arguments : ExperimentFlags {
   std::string start = "none";
 };
@@ -49,11 +46,10 @@ absl::StatusOr<std::vector<report::PicturedPair>> Pairs(const Experiment& experi
   const dataset::Dataset& dataset = experiment.dataset;
   const motion::ClipPair& pair = dataset.sequences[static_cast<size_t>(example.sequence)].pair;
   std::vector<report::PicturedPair> pairs = {{"captured", pair.leader.poses, pair.follower.poses}};
-  experiments::AskedSamples asked = arguments.asked;
-  asked.samples = kAnswers;
   for (const FoldModel& model : experiment.models) {
     DUET_TRY(metrics::SampledMotions answers,
-             Answers(dataset, model, *example.fold, {example.sequence}, arguments.start, asked));
+             Answers(dataset, model, *example.fold, {example.sequence}, arguments.start,
+                     arguments.asked));
     for (size_t n = 0; n < answers.size(); ++n) {
       const std::string name = n == 0 ? model.name : absl::StrCat(model.name, ", another seed");
       pairs.push_back({name, pair.leader.poses, answers[n].front().follower});
@@ -102,6 +98,7 @@ absl::Status Run(const Arguments& arguments) {
 void AddStripsCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] = AddCommand(
       "strips", "Pictures of captured and synthesised pairs, still and moving", Run, app, chosen);
+  arguments->asked.samples = 2;  // show the variety of a model that samples
   AddExperimentFlags("18_strips", "Captured and synthesised, side by side", arguments, command);
   command->get_option("--out")->required();
   AddModelFlags(ModelNeeded::kYes, &arguments->models, command);

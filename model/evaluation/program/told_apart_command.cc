@@ -1,5 +1,6 @@
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_format.h"
@@ -28,16 +29,13 @@ absl::StatusOr<dataset::Dataset> Captured(const dataset::Dataset& dataset, const
                                           const Fold& fold, const std::string& start,
                                           const Arguments& arguments) {
   if (!arguments.finish_captured) return dataset;
-  const absl::StatusOr<SharedSynthesizer> synthesizer = model.load(fold.subject);
-  if (!synthesizer.ok()) return synthesizer.status();
-  return experiments::WithFinishedFollowers((*synthesizer)->description(), dataset,
-                                            ParseStart(start));
+  DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
+  return experiments::WithFinishedFollowers(synthesizer->description(), dataset, ParseStart(start));
 }
 
 absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, const Fold& fold,
                      const std::string& start, const Arguments& arguments, Accuracies* accuracies) {
-  experiments::AskedSamples asked = arguments.asked;
-  asked.samples = 1;
+  const experiments::AskedSamples& asked = arguments.asked;
   DUET_TRY(auto training, Answers(dataset, model, fold, fold.split.train, start, asked));
   DUET_TRY(auto test, Answers(dataset, model, fold, fold.split.test, start, asked));
   DUET_TRY(const auto captured, Captured(dataset, model, fold, start, arguments));
@@ -51,21 +49,6 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, co
     (*accuracies)[i].push_back(accuracy);
   }
   return absl::OkStatus();
-}
-
-// A column per fold, their mean, and the deviation of that mean over the classifiers' seeds.
-report::TableRow Row(const std::string& name, const Accuracies& accuracies) {
-  report::TableRow row = {name, {}};
-  for (size_t fold = 0; fold < accuracies.front().size(); ++fold) {
-    std::vector<double> of_seeds;
-    for (const std::vector<double>& of_folds : accuracies) of_seeds.push_back(of_folds[fold]);
-    row.values.push_back(base::Mean(of_seeds));
-  }
-  std::vector<double> means;
-  for (const std::vector<double>& of_folds : accuracies) means.push_back(base::Mean(of_folds));
-  const base::MeanAndDeviation of_seeds = base::Summarise(means);
-  row.values.insert(row.values.end(), {of_seeds.mean, of_seeds.deviation});
-  return row;
 }
 
 absl::StatusOr<report::Table> Measure(const Experiment& experiment, const Arguments& arguments) {
@@ -83,7 +66,11 @@ absl::StatusOr<report::Table> Measure(const Experiment& experiment, const Argume
         DUET_RETURN_IF_ERROR(
             AddFold(experiment.dataset, model, fold, start, arguments, &accuracies));
       }
-      table.rows.push_back(Row(model.name + StartSuffix(ParseStart(start)), accuracies));
+      std::vector<double> values = report::ColumnMeans(accuracies), means;
+      for (const std::vector<double>& of_folds : accuracies) means.push_back(base::Mean(of_folds));
+      const base::MeanAndDeviation of_seeds = base::Summarise(means);
+      values.insert(values.end(), {of_seeds.mean, of_seeds.deviation});
+      table.rows.push_back({model.name + StartSuffix(ParseStart(start)), std::move(values)});
     }
   }
   return table;
@@ -110,6 +97,7 @@ void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] =
       AddCommand("told-apart", "How well a classifier distinguishes answers from captured pairs",
                  Run, app, chosen);
+  arguments->asked.samples = 1;
   AddAnswersFlags("17_told_apart", "Told apart from captured pairs", arguments, command);
   AddOption("--seeds", &arguments->seeds, "seeds; one classifier per seed", command)
       ->delimiter(',');

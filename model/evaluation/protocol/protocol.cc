@@ -20,8 +20,7 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
 // scoring well.
 dataset::Sequence WithoutAnswer(const dataset::Sequence& sequence, bool keep_first_pose) {
   dataset::Sequence hidden = sequence;
-  motion::Clip& follower = hidden.pair.follower;
-  follower.poses.Resize(keep_first_pose ? 1 : 0);
+  hidden.pair.follower.poses.Resize(keep_first_pose ? 1 : 0);
   return hidden;
 }
 

@@ -1,8 +1,8 @@
 #include "model/evaluation/report/metric_tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -25,7 +25,6 @@ void AddNotes(const MetricStyle& style, Table* table) {
   }
 }
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr char kSpeedRatio[] = "speed_ratio", kRangeRatio[] = "range_ratio";
 constexpr char kSpeed[] = "joint_speed", kRange[] = "range_of_motion_m";
 
@@ -56,9 +55,8 @@ std::vector<MetricStyle> SampleStyles() {
   constexpr Best kLow = Best::kLowest, kNoBest = Best::kNone;
   std::vector<MetricStyle> styles = {
       {kSpeedRatio, "Mean speed of the joints, ratio to captured, both without noise", 2, kNoBest,
-       false, true},
-      {kRangeRatio, "Range of motion, ratio to captured, both without noise", 2, kNoBest, false,
        true},
+      {kRangeRatio, "Range of motion, ratio to captured, both without noise", 2, kNoBest, true},
       {kMeanAnswerAfd, "Average frame distance of the mean answer, SBU's raw unit", 3, kLow},
       {kMeanAnswerAfdMetres, "Average frame distance of the mean answer, metres", 3, kLow},
       {kBestAnswerAfd, "Average frame distance of the best answer, SBU's raw unit", 3, kLow},
@@ -73,47 +71,30 @@ std::vector<MetricStyle> SampleStyles() {
 
 double Figure(const MethodFigures& method, const std::string& name) {
   const auto found = method.by_metric.find(name);
-  return found == method.by_metric.end() ? kNone : base::Mean(found->second);
-}
-
-void AddRatio(const std::string& figure, const std::string& ratio, const MethodFigures& captured,
-              MethodFigures* method) {
-  const auto made = method->by_metric.find(figure);
-  const auto real = captured.by_metric.find(figure);
-  if (made == method->by_metric.end() || real == captured.by_metric.end()) return;
-  std::vector<double> ratios;
-  for (size_t c = 0; c < made->second.size(); ++c) {
-    ratios.push_back(made->second[c] / real->second[c]);
-  }
-  method->by_metric[ratio] = std::move(ratios);
+  return found == method.by_metric.end() ? NAN : base::Mean(found->second);
 }
 
 std::vector<MethodFigures> WithRatios(std::vector<MethodFigures> methods) {
   const auto found = std::find_if(methods.begin(), methods.end(),
                                   [](const MethodFigures& method) { return method.captured; });
   if (found == methods.end()) return methods;
-  const MethodFigures captured = *found;
-  for (MethodFigures& method : methods) {
-    AddRatio(kSpeed, kSpeedRatio, captured, &method);
-    AddRatio(kRange, kRangeRatio, captured, &method);
+  const auto captured = found->by_metric;
+  for (auto& [name, is_captured, figures] : methods) {
+    for (const auto& [figure, ratio] :
+         {std::pair(kSpeed, kSpeedRatio), std::pair(kRange, kRangeRatio)}) {
+      const auto made = figures.find(figure);
+      const auto real = captured.find(figure);
+      if (made == figures.end() || real == captured.end()) continue;
+      for (size_t c = 0; c < made->second.size(); ++c) {
+        figures[ratio].push_back(made->second[c] / real->second[c]);
+      }
+    }
   }
   return methods;
 }
 
-// Groups of rows of one name, in order of first appearance.
-std::vector<std::vector<MethodFigures>> ByName(const std::vector<MethodFigures>& rows) {
-  std::vector<std::vector<MethodFigures>> groups;
-  for (const MethodFigures& row : rows) {
-    const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& other) {
-      return other.front().name == row.name;
-    });
-    if (group == groups.end()) {
-      groups.push_back({row});
-    } else {
-      group->push_back(row);
-    }
-  }
-  return groups;
+Groups<MethodFigures> ByName(const std::vector<MethodFigures>& rows) {
+  return GroupBy(rows, [](const MethodFigures& row) { return row.name; });
 }
 
 MethodFigures MeanOfRows(const std::vector<MethodFigures>& rows) {
@@ -138,7 +119,7 @@ Table EmptySummary(const std::string& title) {
 // One row per name: rows with the same name (a model trained with several seeds) become their mean.
 std::vector<MethodFigures> MeanByName(const std::vector<MethodFigures>& rows) {
   std::vector<MethodFigures> means;
-  for (const std::vector<MethodFigures>& group : ByName(rows)) means.push_back(MeanOfRows(group));
+  for (const auto& [name, group] : ByName(rows)) means.push_back(MeanOfRows(group));
   return means;
 }
 
@@ -157,27 +138,26 @@ const std::vector<MetricStyle>& MetricStyles() {
       {"afd_squared", "Average squared frame distance, raw unit squared", 3, kLow},
       {"afd_m", "Average frame distance, metres", 3, kLow},
       {"afd_squared_m", "Average squared frame distance, m^2", 3, kLow},
-      {"root_aligned_afd", "Average frame distance about the own root, SBU's raw unit", 3, kLow,
-       false, false},
+      {"root_aligned_afd", "Average frame distance about the own root, SBU's raw unit", 3, kLow},
       {"root_aligned_afd_m", "Average frame distance about the own root, metres", 3, kLow},
       {"velocity_error", "Velocity error, m/s", 3, kLow},
-      {"bone_length_drift", "Drift of bone lengths, share of the length", 4, kNone, false, true},
-      {"jitter", "Jitter, m/s^3", 1, kNone, false, true},
-      {"skating_ratio", "Steps on the floor faster than 0.5 m/s, share", 3, kNone, false, true},
-      {"foot_slide_cm", "Feet on the floor slide, centimetres a frame", 2, kNone, false, true},
+      {"bone_length_drift", "Drift of bone lengths, share of the length", 4, kNone, true},
+      {"jitter", "Jitter, m/s^3", 1, kNone, true},
+      {"skating_ratio", "Steps on the floor faster than 0.5 m/s, share", 3, kNone, true},
+      {"foot_slide_cm", "Feet on the floor slide, centimetres a frame", 2, kNone, true},
       {"penetration_frequency", "Frames in which the bodies touch or overlap, share", 3, kNone,
-       false, true},
-      {"penetration_depth_m", "Depth of overlap in those frames, metres", 3, kNone, false, true},
-      {"joint_speed", "Mean speed of the joints without noise, m/s", 3, kNone, false, true},
-      {"range_of_motion_m", "Range of motion without noise, metres", 3, kNone, false, true},
-      {"filtered_jerk", "Jitter without noise, m/s^3", 1, kNone, false, true},
-      {"lean_degrees", "Lean from hips to neck, degrees", 1, kNone, false, true},
-      {"facing_degrees", "Turned away from the leader, degrees", 1, kNone, false, true},
-      {"root_distance_m", "Distance to the leader, metres", 3, kNone, false, true},
-      {"touch", "Frames in which a hand or foot touches the leader, share", 3, kNone, false, true},
+       true},
+      {"penetration_depth_m", "Depth of overlap in those frames, metres", 3, kNone, true},
+      {"joint_speed", "Mean speed of the joints without noise, m/s", 3, kNone, true},
+      {"range_of_motion_m", "Range of motion without noise, metres", 3, kNone, true},
+      {"filtered_jerk", "Jitter without noise, m/s^3", 1, kNone, true},
+      {"lean_degrees", "Lean from hips to neck, degrees", 1, kNone, true},
+      {"facing_degrees", "Turned away from the leader, degrees", 1, kNone, true},
+      {"root_distance_m", "Distance to the leader, metres", 3, kNone, true},
+      {"touch", "Frames in which a hand or foot touches the leader, share", 3, kNone, true},
       {kAccuracy, "Accuracy of the fold's judge", 3, kHigh, true, true},
       {kFrechet, "Frechet distance to captured followers, features of the fold's judge", 2, kLow,
-       true, false},
+       false, true},
       {kDiversity, "Diversity: mean distance between motions of a class, the judge's features", 2,
        kNone, true, true},
   };
@@ -234,9 +214,9 @@ Table SampleSummary(const std::vector<MethodFigures>& methods) {
 
 Table SampleSpread(const std::vector<MethodFigures>& methods) {
   Table table = EmptySummary("Spread over training seeds, standard deviation");
-  for (const std::vector<MethodFigures>& group : ByName(WithRatios(methods))) {
+  for (const auto& [name, group] : ByName(WithRatios(methods))) {
     if (group.size() < 2) continue;
-    TableRow row = {group.front().name, {}};
+    TableRow row = {name, {}};
     for (const Column& column : kSummary) {
       std::vector<double> values;
       for (const MethodFigures& method : group) values.push_back(Figure(method, column.figure));

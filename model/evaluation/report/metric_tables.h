@@ -19,8 +19,8 @@ struct MetricStyle {
   std::string title;  // of its table
   int decimals = 2;
   Best best = Best::kNone;
-  bool judged = false;       // needs a classifier
   bool of_captured = false;  // meaningful for captured followers by themselves
+  bool judged = false;       // needs a classifier
 };
 
 // Every figure of the tables: those of ScoreMotion, then the judge's.

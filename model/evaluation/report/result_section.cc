@@ -97,8 +97,6 @@ ordered_json KindToJson(const PosePlot& plot) {
           {"pairs", std::move(pairs)}};
 }
 
-using nlohmann::ordered_json;
-
 constexpr int kFormatVersion = 1;
 constexpr size_t kMaxNameBytes = 64;
 constexpr const char* kBestNames[] = {"none", "lowest", "highest"};  // as in Best

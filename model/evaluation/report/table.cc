@@ -40,12 +40,9 @@ size_t Width(const std::string& text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-std::string PadLeft(const std::string& text, size_t width) {
-  return std::string(width - std::min(width, Width(text)), ' ') + text;
-}
-
-std::string PadRight(const std::string& text, size_t width) {
-  return text + std::string(width - std::min(width, Width(text)), ' ');
+// The spaces that bring a text to a width.
+std::string Padding(const std::string& text, size_t width) {
+  return std::string(width - std::min(width, Width(text)), ' ');
 }
 
 }  // namespace
@@ -62,11 +59,7 @@ std::vector<double> ColumnMeans(const std::vector<std::vector<double>>& rows) {
 
 void AddMeanColumn(Table* table) {
   table->columns.push_back("mean");
-  for (TableRow& row : table->rows) {
-    double sum = 0;
-    for (const double value : row.values) sum += value;
-    row.values.push_back(sum / static_cast<double>(row.values.size()));
-  }
+  for (TableRow& row : table->rows) row.values.push_back(base::Summarise(row.values).mean);
 }
 
 std::string ToPlainText(const Table& table) {
@@ -86,8 +79,8 @@ std::string ToPlainText(const Table& table) {
   }
   std::string text = table.title + '\n';
   for (const std::vector<std::string>& line : lines) {
-    text += PadRight(line[0], widths[0]);
-    for (size_t i = 1; i < line.size(); ++i) text += "  " + PadLeft(line[i], widths[i]);
+    text += line[0] + Padding(line[0], widths[0]);
+    for (size_t i = 1; i < line.size(); ++i) text += "  " + Padding(line[i], widths[i]) + line[i];
     text += '\n';
   }
   for (const std::string& note : table.notes) text += "  " + note + '\n';
