@@ -390,7 +390,8 @@ TEST(SynthesizeTest, AnswersTenMinutesWithABoundedBuffer) {
   EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
   const std::vector<int> chunks = reply.ChunkFrames();
   EXPECT_EQ(std::accumulate(chunks.begin(), chunks.end(), 0), 9000);
-  EXPECT_LT(running.calls().WaitFor(1).peak_buffered_frames, 60 + 46);
+  // The last window of 46 frames also brings two that the spline held back before.
+  EXPECT_LT(running.calls().WaitFor(1).peak_buffered_frames, 60 + 46 + 2);
 }
 
 TEST(SynthesizeTest, AnswersManyCallsAtOnce) {
