@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "model/base/median.h"
+#include "model/base/statistics.h"
 #include "model/cleanup/stand_up.h"
 #include "model/motion/limb_lengths.h"
 
@@ -13,15 +14,6 @@ namespace {
 
 constexpr double kClearlyOther = 0.02;  // of the size
 constexpr double kFewestSeconds = 10, kFewestSecondsTogether = 30;
-
-// The value that all but `share` of the values exceed.
-template <typename Number>
-Number Quantile(std::vector<Number> values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 }  // namespace
 
@@ -47,8 +39,8 @@ void BodyFit::Add(const motion::Poses& leader, const motion::Poses& follower) {
 
 std::vector<double> BodyFit::BoneRatios() const {
   if (sizes_.empty()) return {};
-  const bool smaller = Quantile(sizes_, 0.9) <= 1 - kClearlyOther,
-             larger = Quantile(sizes_, 0.1) >= 1 + kClearlyOther;
+  const bool smaller = base::Quantile(sizes_, 0.9) <= 1 - kClearlyOther,
+             larger = base::Quantile(sizes_, 0.1) >= 1 + kClearlyOther;
   std::vector<double> medians;
   if (!smaller && !larger) return medians;
   for (const std::vector<double>& ratios : ratios_) medians.push_back(base::Median(ratios));
@@ -57,7 +49,7 @@ std::vector<double> BodyFit::BoneRatios() const {
 
 double BodyFit::HipHeight() const {
   if (static_cast<double>(heights_.size()) < kFewestSecondsTogether * frame_rate_hz_) return 0;
-  return double{Quantile(heights_, 0.1)};
+  return base::Quantile(heights_, 0.1);
 }
 
 }  // namespace duet::engine

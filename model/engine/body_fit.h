@@ -34,7 +34,7 @@ class BodyFit {
   body::Body body_;
   std::vector<std::vector<double>> ratios_;  // of every bone, [pairs]
   std::vector<double> sizes_;                // of every pair: the follower's bones, together
-  std::vector<float> heights_;               // of every frame
+  std::vector<double> heights_;              // of every frame
 };
 
 }  // namespace duet::engine

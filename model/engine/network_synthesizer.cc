@@ -144,7 +144,8 @@ class NetworkSynthesizer : public Synthesizer {
     if (!answers.ok()) return answers.status();
     std::vector<WindowResult> followers = {std::move(first)};
     for (const motion::Poses& answer : *answers) {
-      // The network's own hips can be turned over or shrunk to a point.
+      // Turns are measured after finishing, because the network's own hips can be turned over or
+      // shrunk to a point.
       followers.push_back(Finish(window, standardisation, answer, window.pins));
       if (!followers.back().ok()) return std::move(followers.back());
       samples.push_back(turns.TurnsOf(window.leader, *followers.back()));
