@@ -32,15 +32,18 @@ std::string BadFrames(const std::vector<FrameRun>& runs) {
   return absl::StrCat(absl::StrJoin(frames, ", "), shown < runs.size() ? ", ..." : "");
 }
 
+// A share that rounds to 0 but is not 0 is told apart from none.
+std::string Percent(double share) {
+  return share > 0 && share < 0.005 ? "< 1 %" : absl::StrFormat("%.0f %%", 100 * share);
+}
+
 }  // namespace
 
 std::string DescribeGrade(const MotionGrade& grade) {
   std::string text = absl::StrFormat(
-      "          graded: twisted %.0f %%, both feet move %.0f %% (leader %.0f %%), overlapping "
-      "%.0f "
-      "%%\n",
-      100 * grade.twisted, 100 * grade.skating, 100 * grade.leader_skating,
-      100 * grade.overlapping);
+      "          graded: twisted %s, both feet move %s (leader %s), overlapping %s\n",
+      Percent(grade.twisted), Percent(grade.skating), Percent(grade.leader_skating),
+      Percent(grade.overlapping));
   if (!grade.bad_runs.empty()) {
     absl::StrAppend(&text, "          twisted or overlapping in frames ", BadFrames(grade.bad_runs),
                     "\n");

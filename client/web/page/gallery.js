@@ -6,7 +6,10 @@ const gallery = {tiles: [], thumbnails: [], order: 'grade'};
 // Describes a MotionGrade, which leaves out figures that are 0; '' without one.
 function describeGrade(grade) {
   if (!grade) return '';
-  const percent = (name) => `${Math.round(100 * (grade[name] ?? 0))} %`;
+  const percent = (name) => {
+    const share = grade[name] ?? 0;
+    return share > 0 && share < 0.005 ? 'below 1 %' : `${Math.round(100 * share)} %`;
+  };
   return `Twisted ${percent('twisted')}, both feet move ${percent('skating')} (leader ${
       percent('leader_skating')}), overlapping ${percent('overlapping')}.`;
 }

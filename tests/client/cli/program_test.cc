@@ -642,7 +642,7 @@ TEST_F(ProgramTest, PrintsTheGradeIfTheServerReportsIt) {
   EXPECT_FALSE(nlohmann::json::parse(out_.str()).contains("grade"));
   ASSERT_EQ(Synthesize("pair.csv"), 0);
   EXPECT_THAT(out_.str(), Not(HasSubstr("graded")));
-  MotionGrade grade{0, 0.21f, 0.45f, 0, {}};
+  MotionGrade grade{0, 0.21f, 0.45f, 0.002f, {}};
   EXPECT_CALL(*connection_, Synthesize)
       .WillRepeatedly([&grade](const SynthesisRequest& request, const ChunkCallback&) {
         absl::StatusOr<SynthesisResult> result = Follow(request);
@@ -651,7 +651,7 @@ TEST_F(ProgramTest, PrintsTheGradeIfTheServerReportsIt) {
       });
   ASSERT_EQ(Synthesize("pair.csv"), 0);
   EXPECT_THAT(out_.str(), HasSubstr("          graded: twisted 0 %, both feet move 21 % (leader 45 "
-                                    "%), overlapping 0 %\n"));
+                                    "%), overlapping < 1 %\n"));
   EXPECT_THAT(out_.str(), Not(HasSubstr("in frames")));
   grade.overlapping = 0.35f;
   grade.bad_runs = {{0, 1}, {3, 2}, {6, 1}, {8, 1}, {10, 1}, {12, 1}};
