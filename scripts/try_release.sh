@@ -9,8 +9,8 @@
 #   scripts/try_release.sh noble COMMAND...     any other command, in the clone
 # --again before the release keeps the clone's build folder from an earlier run. KEYRING, a file, replaces the
 # release's archive keys, and MIRROR the address of its archive: by default the one that this machine's
-# apt uses for the same distribution, else debootstrap's. DUET_TRAINING and JOBS are passed on. Remove a root with
-# `rm -rf --one-file-system`.
+# apt uses for the same distribution, else debootstrap's. DUET_TRAINING, JOBS and CI are passed on. `packages` has a
+# root of its own. Remove a root with `rm -rf --one-file-system`.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -139,6 +139,8 @@ main() {
   [[ "$(id -u)" -eq 0 ]] || fail "expected root, which debootstrap and chroot need"
   release="$1" root="${roots}/$1"
   shift
+  # The packages are tried where nothing is installed that only a build needs.
+  [[ "$1" != packages ]] || root+=.packages
   shown="$*"
   [[ -d "${root}" ]] || make_root "${release}" "${root}"
   case "$1" in

@@ -92,6 +92,15 @@ class TryReleaseTest(unittest.TestCase):
         self.assertIn("debootstrap failed", done.stderr)
         self.assertFalse(self.clone.exists())
 
+    def test_packages_have_a_root_without_what_builds_install(self):
+        self.attempt("trixie", "demo")
+        self.write(self.source / "build/release/packages/duet.deb", "")
+        done = self.attempt("trixie", "packages")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("trixie.packages.new http", self.ran[0])  # made anew
+        self.assertTrue((self.source / "build/roots/trixie.packages/packages/duet.deb").exists())
+        self.assertFalse((self.source / "build/roots/trixie/packages").exists())
+
     def test_calls_without_what_they_need_are_rejected(self):
         for words, environment, message in (
                 (["trixie"], {}, "usage"), (["trixie", "demo"], {"USER_ID": "1000"}, "expected root"),
