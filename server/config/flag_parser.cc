@@ -4,12 +4,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
@@ -42,14 +45,27 @@ CLI::Option* AddValueFlag(CLI::App& app, const Setting& setting, Setter<Value> s
       setting.help());
 }
 
+// Returns the mistake in a switch's value, or "". CLI11 2.4 takes a value that it cannot read for
+// false.
+std::string CheckSwitch(const std::string& value) {
+  static constexpr std::array<absl::string_view, 14> kWords = {
+      "true", "t", "yes", "y", "on", "enable", "+", "false", "f", "no", "n", "off", "disable", "-"};
+  const std::string word = absl::AsciiStrToLower(value);
+  std::int64_t number = 0;
+  if (std::find(kWords.begin(), kWords.end(), word) != kWords.end()) return "";
+  if (absl::SimpleAtoi(value, &number)) return "";
+  return absl::StrCat("expected true or false, got ", base::Quoted(value));
+}
+
 // "--reflection" and "--no-reflection".
 void AddSwitch(CLI::App& app, const Setting& setting, ServerConfig* config) {
   app.add_flag_function(
-      absl::StrCat("--", setting.flag(), ",!--no-", setting.flag()),
-      [setting, config](std::int64_t count) {
-        config->GetReflection()->SetBool(config, &setting.field(), count > 0);
-      },
-      setting.help());
+         absl::StrCat("--", setting.flag(), ",!--no-", setting.flag()),
+         [setting, config](std::int64_t count) {
+           config->GetReflection()->SetBool(config, &setting.field(), count > 0);
+         },
+         setting.help())
+      ->check(CheckSwitch);
 }
 
 void SetChoice(const Setting& setting, const std::string& value, ServerConfig* config) {

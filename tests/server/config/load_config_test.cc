@@ -244,7 +244,7 @@ TEST(ParseCommandLineTest, RejectsARepeatedFlag) {
 }
 
 TEST(ParseCommandLineTest, RejectsASwitchThatIsNeitherTrueNorFalse) {
-  for (const std::string value : {"maybe", "99999999999999999999"}) {
+  for (const std::string value : {"maybe", "99999999999999999999", "1x", "tr"}) {
     const std::string mistake = "expected true or false, got \"" + value + "\"";
     EXPECT_THAT(Parse({"--reflection=" + value}),
                 StatusIs(kInvalidArgument, "--reflection: " + mistake));
