@@ -87,7 +87,7 @@ class BlenderTest(tools.FolderTest):
         self.assertEqual(self.state["finished"], ["FINISHED"])
         self.assertEqual(self.state["bones"], 21)
         self.assertGreater(self.state["vertices"], 1000)
-        self.assertIn("Duet follower", self.state["materials"])  # in a colour of their own
+        self.assertIn("Duet follower", self.state["materials"])  # in a colour of their own, the same in each answer
 
     def test_animated_labels_are_sent_as_keyframes(self):
         flags = self.state["flags"]

@@ -114,7 +114,8 @@ def add(scene, path, scale=1, first_frame=None):
     things, actions = set(bpy.data.objects), set(bpy.data.actions)
     render = scene.render
     kept = (render.fps, render.fps_base, scene.frame_start, scene.frame_end, scene.frame_current)
-    bpy.ops.import_scene.gltf(filepath=str(path))
+    # Bones point to the next joint; the default of Blender 4 lets them point upwards.
+    bpy.ops.import_scene.gltf(filepath=str(path), bone_heuristic="TEMPERANCE")
     render.fps, render.fps_base, scene.frame_start, scene.frame_end = kept[:4]
     new = [thing for thing in bpy.data.objects if thing not in things]
     armatures = [thing for thing in new if thing.type == "ARMATURE"]
@@ -137,9 +138,15 @@ def add(scene, path, scale=1, first_frame=None):
 
 
 def _colour(materials):
-    """Sets the follower's colour, because a single person is written in the leader's colour."""
-    for material in materials:
+    """Gives the person the follower's material, because a single person is written in the leader's colour. All followers
+    share it, so a colour that the user chooses stays."""
+    for index, material in enumerate(materials):
         if not material.name.startswith("person"):
+            continue
+        shared = bpy.data.materials.get(NAME)
+        if shared:
+            materials[index] = shared
+            bpy.data.materials.remove(material)
             continue
         material.name = NAME
         material.diffuse_color = COLOUR
