@@ -9,6 +9,7 @@
 #include "model/authoring/made_leaders.h"
 #include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
+#include "model/dataset/lone_leaders.h"
 #include "model/evaluation/experiments/answers.h"
 #include "model/evaluation/experiments/looped_leaders.h"
 #include "model/evaluation/experiments/plausibility.h"
@@ -41,13 +42,9 @@ struct Arguments {
 
 // The motion files below a folder as leaders of a model, in the order of their paths, each cut to
 // `seconds`. Reports files that cannot be read, and leaves them out.
-std::vector<dataset::Sequence> ReadLeaders(const Arguments& arguments,
-                                           const motion::Skeleton& skeleton) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(arguments.leaders)) {
-    if (entry.is_regular_file() && formats::IsReadable(entry.path())) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
+absl::StatusOr<std::vector<dataset::Sequence>> ReadLeaders(const Arguments& arguments,
+                                                           const motion::Skeleton& skeleton) {
+  DUET_TRY(const std::vector<fs::path> files, dataset::MotionFilesBelow(arguments.leaders));
   std::vector<dataset::Sequence> leaders;
   formats::ReadOptions options;
   options.skeleton = skeleton;
@@ -176,7 +173,7 @@ absl::Status AddModel(const Arguments& arguments, const std::string& name,
                      ": expected a skeleton with hips, feet, a chest and two arms whose "
                      "joints are named left and right"));
   }
-  std::vector<dataset::Sequence> leaders = ReadLeaders(arguments, model.skeleton);
+  DUET_TRY(std::vector<dataset::Sequence> leaders, ReadLeaders(arguments, model.skeleton));
   if (leaders.empty()) {
     return absl::InvalidArgumentError(
         absl::StrCat("--leaders: expected a folder with motion files, got ", arguments.leaders));
