@@ -38,6 +38,8 @@ void Read(base::ObjectReader* reader, FlowTraining::Drift* out) {
   out->tilt = reader->Number("tilt", 0, 4);
   out->bend = reader->Number("bend", 0, 4);
   out->turn = reader->Number("turn", 0, 4);
+  // Optional: configurations of version 1.0 do not have it.
+  if (reader->Has("twist")) out->twist = reader->Number("twist", 0, 4);
   out->root = reader->Number("root", 0, 10);
   out->height = reader->Number("height", 0, 10);
   out->joints = reader->Number("joints", 0, 10);
@@ -118,6 +120,7 @@ void Describe(const FlowTraining& f, Description* out) {
                {"drift.tilt", Text(f.drift.tilt)},
                {"drift.bend", Text(f.drift.bend)},
                {"drift.turn", Text(f.drift.turn)},
+               {"drift.twist", Text(f.drift.twist)},
                {"drift.root", Text(f.drift.root)},
                {"drift.height", Text(f.drift.height)},
                {"drift.joints", Text(f.drift.joints)},

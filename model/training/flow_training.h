@@ -50,6 +50,7 @@ struct FlowTraining {
     double tilt = 0;      // radians, of the whole body about a point on the floor
     double bend = 0;      // radians, of everything except the legs about the hips
     double turn = 0;      // radians, about the vertical
+    double twist = 0;     // radians, of everything above the hips about the vertical
     double root = 0;      // metres along the floor
     double height = 0;    // metres
     double joints = 0;    // metres, of each joint independently

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "model/training/named_configs.h"
@@ -73,11 +74,20 @@ TEST(TrainingOptionsTest, InvalidFlowSettingsAreRejectedByName) {
   EXPECT_THAT(refusal("generator.heads", "7"), HasSubstr("generator.heads: expected a divisor"));
   EXPECT_THAT(refusal("generator.noise.white", "-1"), HasSubstr("generator.noise.white"));
   EXPECT_THAT(refusal("flow.unlabelled", "2"), HasSubstr("flow.unlabelled"));
+  EXPECT_THAT(refusal("drift.twist", "-1"), HasSubstr("drift.twist"));
   EXPECT_THAT(refusal("optimiser.schedule", "constant"),
               HasSubstr("optimiser: unknown field \"last_share\""));
   const auto tuned = ParseTrainingOptions(FlowJson(), {{"generator.steps", "5"}});
   ASSERT_THAT(tuned, IsOk());
   EXPECT_EQ(std::get<FlowTraining>(tuned->method).architecture.steps, 5);
+}
+
+TEST(TrainingOptionsTest, ConfigurationsOfVersionOneAreRead) {
+  nlohmann::json old = nlohmann::json::parse(FlowJson());
+  old["drift"].erase("twist");
+  const auto options = ParseTrainingOptions(old.dump());
+  ASSERT_THAT(options, IsOk());
+  EXPECT_EQ(Describe(*options).at("drift.twist"), "0");
 }
 
 TEST(TrainingOptionsTest, DerivedConfigurationChangesItsBase) {
