@@ -124,22 +124,31 @@ std::vector<int> MirroredJoints(const motion::Skeleton& skeleton) {
   return retargeting::CounterpartJoints(skeleton.joint_names);
 }
 
-void Mirror(const std::vector<int>& mirrored_joints, dataset::Sequence* sequence) {
-  for (motion::Clip* clip : {&sequence->pair.leader, &sequence->pair.follower}) {
-    const motion::Poses before = clip->poses;
-    for (int t = 0; t < before.frame_count(); ++t) {
-      for (size_t j = 0; j < mirrored_joints.size(); ++j) {
-        const motion::Vec3 point = before.at(t, mirrored_joints[j]);
-        clip->poses[t][j] = {-point.x, point.y, point.z};
-      }
+void Mirror(const std::vector<int>& mirrored_joints, motion::Poses* poses) {
+  const motion::Poses before = *poses;
+  for (int t = 0; t < before.frame_count(); ++t) {
+    for (size_t j = 0; j < mirrored_joints.size(); ++j) {
+      const motion::Vec3 point = before.at(t, mirrored_joints[j]);
+      (*poses)[t][j] = {-point.x, point.y, point.z};
     }
   }
+}
+
+void Mirror(const std::vector<int>& mirrored_joints, dataset::Sequence* sequence) {
+  Mirror(mirrored_joints, &sequence->pair.leader.poses);
+  Mirror(mirrored_joints, &sequence->pair.follower.poses);
   if (sequence->partner_direction) sequence->partner_direction->x *= -1;
 }
 
 void SwapRoles(dataset::Sequence* sequence) {
   std::swap(sequence->pair.leader, sequence->pair.follower);
   if (sequence->partner_direction) sequence->partner_direction = -*sequence->partner_direction;
+}
+
+void DisturbLeader(const TrainingOptions::Augmentation& options, base::Random* random,
+                   motion::Clip* leader) {
+  if (options.noise > 0) AddNoise(options.noise, random, leader);
+  if (options.body_noise > 0) AddBodyNoise(options.body_noise, random, leader);
 }
 
 dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
@@ -173,8 +182,7 @@ dataset::Sequence Augment(const dataset::Dataset& dataset, const dataset::Sequen
   if (options.leader_yaw > 0) {
     TurnLeader(dataset.skeleton.root, random->Normal(options.leader_yaw), &pair->leader);
   }
-  if (options.noise > 0) AddNoise(options.noise, random, &pair->leader);
-  if (options.body_noise > 0) AddBodyNoise(options.body_noise, random, &pair->leader);
+  DisturbLeader(options, random, &pair->leader);
   return variant;
 }
 

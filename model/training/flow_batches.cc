@@ -9,6 +9,7 @@
 #include "model/training/drift.h"
 #include "model/training/frame_labels.h"
 #include "model/training/live_leader.h"
+#include "model/training/lone_leader.h"
 
 namespace duet::training {
 namespace {
@@ -77,6 +78,21 @@ FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dat
   return example;
 }
 
+// Every training sequence, augmented, some of them with another leader.
+std::vector<dataset::Sequence> DrawSequences(const checkpoint::Manifest& manifest,
+                                             const dataset::Dataset& dataset,
+                                             const std::vector<int>& train,
+                                             const TrainingOptions& options, base::Random* random) {
+  std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, random);
+  const double share = std::get<FlowTraining>(options.method).leaders.share;
+  if (share == 0) return sequences;
+  for (dataset::Sequence& sequence : sequences) {
+    if (!random->Chance(share)) continue;
+    ReplaceLeader(manifest.model, dataset, options.augmentation, random, &sequence);
+  }
+  return sequences;
+}
+
 int64_t BatchesPerPass(const TrainingOptions& options, size_t sequences) {
   const int64_t batches = (static_cast<int64_t>(sequences) + options.batch - 1) / options.batch;
   return std::max<int64_t>(1, batches);
@@ -138,7 +154,8 @@ FlowEpoch DrawFlowEpoch(const checkpoint::Manifest& manifest, const dataset::Dat
   FlowEpoch batches;
   const int64_t passes = PassesPerEpoch(options, train.size());
   for (int64_t pass = 0; pass < passes; ++pass) {
-    const std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, &random);
+    const std::vector<dataset::Sequence> sequences =
+        DrawSequences(manifest, dataset, train, options, &random);
     for (const std::vector<int>& piece : BatchesByLength(sequences, options.batch, &random)) {
       std::vector<FlowExample>& examples = batches.emplace_back();
       for (const int index : piece) {

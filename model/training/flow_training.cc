@@ -46,6 +46,10 @@ void Read(base::ObjectReader* reader, FlowTraining::Drift* out) {
   out->frames = reader->Int("frames", 1, 1000);
 }
 
+void Read(base::ObjectReader* reader, FlowTraining::Leaders* out) {
+  out->share = Probability(reader, "share");
+}
+
 void Read(base::ObjectReader* reader, FlowTraining::Live* out) {
   out->share = Probability(reader, "share");
   out->several_known = Probability(reader, "several_known");
@@ -91,7 +95,8 @@ void ReadSections(base::ObjectReader* root, FlowTraining* out) {
   section("live", &out->live);
   section("own", &out->own);
   section("energy", &out->energy);
-  // Optional: configurations of earlier versions do not have it.
+  // Optional: configurations of earlier versions do not have them.
+  if (root->Has("leaders")) section("leaders", &out->leaders);
   if (root->Has("critic")) section("critic", &out->critic);
 }
 
@@ -125,6 +130,7 @@ void Describe(const FlowTraining& f, Description* out) {
                {"drift.height", Text(f.drift.height)},
                {"drift.joints", Text(f.drift.joints)},
                {"drift.frames", Text(f.drift.frames)},
+               {"leaders.share", Text(f.leaders.share)},
                {"live.share", Text(f.live.share)},
                {"live.several_known", Text(f.live.several_known)},
                {"live.remade_seconds", Text(f.live.remade_seconds)},

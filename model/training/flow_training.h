@@ -57,6 +57,11 @@ struct FlowTraining {
     int64_t frames = 20;  // from the last known frame until the captured motion is reached
   } drift;
 
+  // A fraction of the clips gets a leader who was not captured with a partner (lone_leader.h).
+  struct Leaders {
+    double share = 0;  // of the clips
+  } leaders;
+
   // A fraction of the clips is trained as a live session answers them (live_leader.h): the leader's
   // future is unknown.
   struct Live {

@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "model/dataset/lone_leaders.h"
 #include "model/dataset/time_line.h"
 #include "model/engine/body_fit.h"
 #include "model/engine/leader_statistics.h"
@@ -21,6 +22,7 @@
 #include "model/training/class_fits.h"
 #include "model/training/critic_trainer.h"
 #include "model/training/direction_fit.h"
+#include "model/training/lone_leader.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
 #include "model/training/take_errors.h"
@@ -48,6 +50,9 @@ void NoteData(const dataset::Dataset& dataset, const std::vector<int>& train,
   (*notes)["seconds"] = absl::StrCat(std::lround(seconds));
   (*notes)["people"] = absl::StrJoin(people, " ").substr(0, kMostPeopleBytes);
   (*notes)["levelled"] = levelled ? "true" : "false";
+  if (dataset.lone_leaders.empty()) return;
+  (*notes)["leaders"] =
+      absl::StrCat(dataset.lone_leaders.size(), " ", dataset::DigestOf(dataset.lone_leaders));
 }
 
 checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& dataset) {
@@ -318,6 +323,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   const std::vector<int> takes = train;
   const std::vector<dataset::Sequence> held_takes = WholeTakes(plan.options, whole, validation);
   const dataset::Dataset dataset = CutIfAsked(plan.options, whole, &train, &validation);
+  if (status = CheckLoneLeaders(plan.options, dataset); !status.ok()) return status;
   checkpoint::Manifest manifest = MakeManifest(plan, whole);
   manifest.model.window_frames = dataset.LongestFrameCount();
   manifest.model.lookahead_frames = LookaheadFrames(plan.options, whole.frame_rate_hz);

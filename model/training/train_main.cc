@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -9,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/checkpoint/manifest.h"
+#include "model/dataset/lone_leaders.h"
 #include "model/network/device.h"
 #include "model/network/exceptions.h"
 #include "model/training/named_configs.h"
@@ -27,6 +29,7 @@ struct Arguments {
   std::string fold;
   std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
   std::vector<std::string> settings;
+  std::string leaders;
   std::string from;
   bool critic_only = false;
   int threads = 1;
@@ -130,6 +133,20 @@ absl::StatusOr<std::vector<duet::training::RunPlan>> Plans(
   return PlanOnAll(arguments, common, dataset);
 }
 
+// Adds the leaders without followers, if the arguments name any.
+absl::Status AddLeaders(const Arguments& arguments, duet::dataset::Dataset* dataset) {
+  if (arguments.leaders.empty()) return absl::OkStatus();
+  absl::StatusOr<std::vector<duet::dataset::LoneLeader>> leaders =
+      duet::dataset::ReadLoneLeaders(arguments.leaders, dataset->skeleton, dataset->frame_rate_hz);
+  if (!leaders.ok()) return leaders.status();
+  int frames = 0;
+  for (const duet::dataset::LoneLeader& leader : *leaders) frames += leader.poses.frame_count();
+  std::cout << "leaders without followers: " << leaders->size() << " motions, "
+            << std::lround(frames / dataset->frame_rate_hz) << " s\n";
+  dataset->lone_leaders = *std::move(leaders);
+  return absl::OkStatus();
+}
+
 absl::Status Train(const Arguments& arguments) {
   if (absl::Status status = duet::training::SetTrainingThreads(arguments.threads); !status.ok()) {
     return status;
@@ -142,6 +159,7 @@ absl::Status Train(const Arguments& arguments) {
   absl::StatusOr<duet::dataset::Dataset> dataset = duet::dataset::ReadDataset(arguments.data);
   if (!dataset.ok()) return dataset.status();
   for (const std::string& note : dataset->notes) std::cout << "assumed: " << note << "\n";
+  if (absl::Status status = AddLeaders(arguments, &*dataset); !status.ok()) return status;
   absl::StatusOr<std::vector<duet::training::RunPlan>> plans = Plans(arguments, *options, *dataset);
   if (!plans.ok()) return plans.status();
   std::cout << "model: " << plans->front().model_name << " " << arguments.version << "\n";
@@ -162,6 +180,10 @@ void Declare(Arguments* arguments, CLI::App* app) {
   app->add_option("--config", arguments->config, "named configuration, or JSON file")
       ->capture_default_str();
   app->add_option("--set", arguments->settings, "override a setting: section.field=value");
+  app->add_option(
+      "--leaders", arguments->leaders,
+      "folder of motions of leaders without followers (docs/datasets.md), for the share "
+      "leaders.share of the clips");
   app->add_option("--from", arguments->from,
                   "checkpoint folder whose weights the training begins with (default: random)");
   app->add_flag("--critic-only", arguments->critic_only,

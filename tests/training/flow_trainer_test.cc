@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <utility>
+
 #include "model/network/batch.h"
 #include "model/training/flow_statistics.h"
 #include "tests/support/matchers.h"
@@ -81,6 +83,53 @@ TEST_F(FlowTrainerTest, ResumedRunOfOwnMotionAndLiveClipsIsTheSame) {
     EXPECT_NE(Make().RunEpoch().generator, first);
     *share = 0.5;
   }
+}
+
+TEST_F(FlowTrainerTest, ResumedRunWithLoneLeadersAndTwistIsTheSame) {
+  dataset_.lone_leaders = {{"walks", SwayingMotion(60, dataset_.frame_rate_hz)}};
+  options_.start = {0, 1};
+  FlowOf(&options_).leaders.share = FlowOf(&options_).drift.share = 0.5;
+  FlowOf(&options_).drift.twist = 0.4;
+  FlowTrainer straight = Make();
+  const double first = straight.RunEpoch().generator;
+  ASSERT_THAT(straight.SaveState(folder_ / "state"), IsOk());
+  straight.RunEpoch();
+  FlowTrainer resumed = Make();
+  ASSERT_THAT(resumed.LoadState(folder_ / "state"), IsOk());
+  resumed.RunEpoch();
+  EXPECT_TRUE(Equal(resumed.BestTensors(), straight.BestTensors()));
+  for (double* setting : {&FlowOf(&options_).leaders.share, &FlowOf(&options_).drift.twist}) {
+    const double before = std::exchange(*setting, 0);
+    FlowTrainer without = Make();
+    EXPECT_NE(without.RunEpoch().generator, first);  // the setting changes the training
+    *setting = before;
+  }
+}
+
+TEST_F(FlowTrainerTest, LoneLeadersAreGivenToTheirShareOfTheClips) {
+  options_.augmentation.noise = 0;
+  options_.augmentation.mirror = 0;
+  FlowOf(&options_).passes = 60;
+  const auto drawn = [this] {
+    std::vector<motion::Poses> leaders;
+    for (const auto& batch : DrawFlowEpoch(manifest_, dataset_, AllOf(dataset_), options_, 0)) {
+      for (const FlowExample& example : batch) leaders.push_back(example.input.leader);
+    }
+    return leaders;
+  };
+  const std::vector<motion::Poses> captured = drawn();
+  dataset_.lone_leaders = {{"walks", SwayingMotion(60, dataset_.frame_rate_hz)}};
+  EXPECT_EQ(drawn(), captured);  // share 0 draws no random number
+  // A leader who is far larger than the captured ones is recognised.
+  for (motion::Vec3& point : dataset_.lone_leaders[0].poses.all()) point = point * 3;
+  FlowOf(&options_).leaders.share = 0.3;
+  int lone = 0, all = 0;
+  for (const motion::Poses& leader : drawn()) {
+    lone += Distance(leader.at(0, 0), leader.at(0, 11)) > 2.5f;
+    ++all;
+  }
+  EXPECT_EQ(all, 420);
+  EXPECT_NEAR(lone, 0.3 * all, 40);
 }
 
 TEST_F(FlowTrainerTest, StateOfAnotherRunIsRejected) {

@@ -7,6 +7,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "model/checkpoint/critic_tensors.h"
+#include "model/dataset/lone_leaders.h"
 #include "model/engine/leader_statistics.h"
 #include "model/torch_engine/torch_synthesizer.h"
 #include "model/training/named_configs.h"
@@ -212,6 +213,37 @@ TEST_F(RunTest, BeginsWithTheWeightsOfACheckpoint) {
     }
     EXPECT_EQ(second->manifest.training.at("from"), "made_up@1 " + first->manifest.weights.sha256);
   }
+}
+
+TEST_F(RunTest, NotesLeadersWithoutFollowers) {
+  plan_.options = SmallFlowOptions();
+  plan_.options.epochs = 1;
+  FlowOf(&plan_.options).leaders.share = 0.5;
+  dataset_.lone_leaders = {{"walks", SwayingMotion(60, dataset_.frame_rate_hz)}};
+  ASSERT_THAT(Go(), IsOk());
+  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(checkpoint, IsOk());
+  EXPECT_EQ(checkpoint->manifest.training.at("leaders.share"), "0.5");
+  EXPECT_EQ(checkpoint->manifest.training.at("leaders"),
+            "1 " + dataset::DigestOf(dataset_.lone_leaders));
+}
+
+TEST_F(RunTest, AStateOfOtherLeadersIsRejected) {
+  plan_.options = SmallFlowOptions();
+  FlowOf(&plan_.options).leaders.share = 0.5;
+  dataset_.lone_leaders = {{"walks", SwayingMotion(60, dataset_.frame_rate_hz)}};
+  ASSERT_THAT(Go(), IsOk());
+  std::filesystem::remove_all(CheckpointFolder(plan_));
+  dataset_.lone_leaders[0].poses.at(7, 7).x += 0.01f;
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kFailedPrecondition,
+                             HasSubstr("expected the state of this run")));
+}
+
+TEST_F(RunTest, LeadersMustFitTheOptionsBeforeAnythingIsWritten) {
+  plan_.options = SmallFlowOptions();
+  FlowOf(&plan_.options).leaders.share = 0.5;
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("leaders.share")));
+  EXPECT_FALSE(std::filesystem::exists(plan_.folder));
 }
 
 TEST_F(RunTest, RejectsTheCheckpointOfAnotherModel) {

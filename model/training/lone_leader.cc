@@ -1,0 +1,205 @@
+#include "model/training/lone_leader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "model/base/angle.h"
+#include "model/engine/finished_motions.h"
+#include "model/engine/window_standardisation.h"
+#include "model/motion/filter.h"
+#include "model/motion/posture.h"
+#include "model/motion/resample.h"
+#include "model/motion/standardise.h"
+#include "model/training/augment.h"
+#include "model/training/frame_labels.h"
+#include "model/training/sampler.h"
+
+namespace duet::training {
+namespace {
+
+using motion::Poses;
+using motion::Vec3;
+
+// A follower does not copy every shake of the leader's root and hips.
+constexpr double kSmoothingSeconds = 0.3;
+// How a follower walks around a leader who turns: it takes so long to get in front of the leader,
+// and it never walks faster than this around the leader, radians per second.
+constexpr double kTurnSeconds = 1.5, kFastestTurn = 0.6;
+// The share of the frames in which the lower foot is below the floor.
+constexpr double kFloorShare = 0.25;
+
+const FlowTraining* FlowIn(const TrainingOptions& options) {
+  return std::get_if<FlowTraining>(&options.method);
+}
+
+int LongestOf(const dataset::Dataset& dataset) {
+  int longest = 0;
+  for (const dataset::LoneLeader& leader : dataset.lone_leaders) {
+    longest = std::max(longest, leader.poses.frame_count());
+  }
+  return longest;
+}
+
+Poses Smooth(const Poses& poses, double frame_rate_hz) {
+  return motion::GaussianFilter(poses, kSmoothingSeconds * frame_rate_hz);
+}
+
+// One joint as a motion of its own.
+Poses JointAlone(const Poses& poses, int joint) {
+  Poses alone(poses.frame_count(), 1);
+  for (int t = 0; t < poses.frame_count(); ++t) alone.at(t, 0) = poses.at(t, joint);
+  return alone;
+}
+
+// Where a person faces in every frame, as the yaw that takes it to -z.
+std::vector<double> FacingYaws(const motion::Skeleton& skeleton, const Poses& poses,
+                               double frame_rate_hz) {
+  Poses facing(poses.frame_count(), 1);
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    const Vec3 right = poses.at(t, skeleton.hips->right) - poses.at(t, skeleton.hips->left);
+    facing.at(t, 0) = Cross({0, 1, 0}, right);
+  }
+  const Poses smooth = Smooth(facing, frame_rate_hz);
+  std::vector<double> yaws;
+  for (const Vec3& direction : smooth.all()) yaws.push_back(motion::FacingYaw(direction));
+  return yaws;
+}
+
+// The direction of a follower who tries to be in front of a person who faces `facing`.
+std::vector<double> FollowTurns(const std::vector<double>& facing, double frame_rate_hz) {
+  std::vector<double> yaws = {facing.front()};
+  const double most = kFastestTurn / frame_rate_hz;
+  for (std::size_t t = 1; t < facing.size(); ++t) {
+    const double behind = std::remainder(facing[t] - yaws.back(), 2 * base::kPi);
+    const double turned = behind / (kTurnSeconds * frame_rate_hz);
+    yaws.push_back(yaws.back() + std::clamp(turned, -most, most));
+  }
+  return yaws;
+}
+
+float FloorOf(const motion::Skeleton& skeleton, const Poses& poses) {
+  const std::vector<Vec3> feet = LowerFeet(skeleton, poses);
+  return feet.empty() ? 0 : motion::HeightQuantile(feet, kFloorShare);
+}
+
+// The frame that a follower's place and direction refer to, in every frame of a leader.
+struct Place {
+  std::vector<Vec3> origins;  // the leader's root without shakes, on the floor
+  std::vector<double> yaws;
+};
+
+std::vector<Vec3> Origins(const motion::Skeleton& skeleton, const Poses& leader,
+                          double frame_rate_hz) {
+  const float floor = FloorOf(skeleton, leader);
+  const Poses roots = Smooth(JointAlone(leader, skeleton.root), frame_rate_hz);
+  std::vector<Vec3> origins;
+  for (const Vec3& root : roots.all()) origins.push_back({root.x, floor, root.z});
+  return origins;
+}
+
+// A captured leader; its follower's direction is the one that the capture states, or else that of
+// the leader's hips in the first frame.
+Place CapturedPlace(const dataset::Dataset& dataset, const dataset::Sequence& sequence) {
+  const motion::Clip& leader = sequence.pair.leader;
+  engine::SynthesisWindow window;
+  window.leader = leader.poses;
+  window.partner_direction = sequence.partner_direction;
+  const double yaw = WindowStandardisation(dataset.skeleton, window).yaw();
+  return {Origins(dataset.skeleton, leader.poses, dataset.frame_rate_hz),
+          std::vector<double>(static_cast<std::size_t>(leader.frame_count()), yaw)};
+}
+
+// Draws a leader of at least `frames` frames.
+const Poses* DrawLeader(const dataset::Dataset& dataset, int frames, base::Random* random) {
+  std::vector<const Poses*> long_enough;
+  for (const dataset::LoneLeader& leader : dataset.lone_leaders) {
+    if (leader.poses.frame_count() >= frames) long_enough.push_back(&leader.poses);
+  }
+  if (long_enough.empty()) return nullptr;
+  const auto count = static_cast<int64_t>(long_enough.size());
+  return long_enough[static_cast<std::size_t>(random->Below(count))];
+}
+
+// The follower at its place `from`, moved to `to`, frame by frame from `first` on.
+Poses Carry(const Place& from, const Place& to, int first, const Poses& follower) {
+  Poses carried = follower;
+  for (int t = 0; t < carried.frame_count(); ++t) {
+    const auto f = static_cast<std::size_t>(t), n = static_cast<std::size_t>(first + t);
+    for (Vec3& point : carried[t]) {
+      point = to.origins[n] + RotateY(point - from.origins[f], from.yaws[f] - to.yaws[n]);
+    }
+  }
+  return carried;
+}
+
+// The follower of a sequence as a server would return it.
+void FinishFollower(const engine::ModelDescription& model, const dataset::Dataset& dataset,
+                    base::Random* random, dataset::Sequence* sequence) {
+  engine::SynthesisWindow window =
+      MakeWindow(dataset, CapturedExample(dataset, *sequence, StartKnowledge::kPose));
+  window.labels = DrawFrameLabels(*sequence, dataset.class_count(), {}, random);
+  std::vector<engine::WindowResult> finished =
+      FinishMotions(model, {window}, {sequence->pair.follower.poses});
+  if (finished.front().ok()) sequence->pair.follower.poses = *std::move(finished.front());
+}
+
+}  // namespace
+
+absl::Status CheckLoneLeaders(const TrainingOptions& options, const dataset::Dataset& dataset) {
+  const double share = FlowIn(options) == nullptr ? 0 : FlowIn(options)->leaders.share;
+  if (share == 0 && dataset.lone_leaders.empty()) return absl::OkStatus();
+  if (dataset.lone_leaders.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "leaders.share: expected 0 without motions of leaders (--leaders), got ", share));
+  }
+  if (share == 0) {
+    return absl::InvalidArgumentError(
+        "leaders.share: expected a share above 0 of the clips of a sampling generator for the "
+        "motions of leaders (--leaders), got 0");
+  }
+  if (!dataset.skeleton.hips) {
+    return absl::InvalidArgumentError(
+        "leaders.share: expected a skeleton with hips, which show where a leader faces, got none");
+  }
+  const int longest = LongestOf(dataset), needed = dataset.LongestFrameCount();
+  if (longest >= needed) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrFormat("leaders: expected a motion of at least %.2f s, as long as the longest clip "
+                      "of the data, got at most %.2f s",
+                      needed / dataset.frame_rate_hz, longest / dataset.frame_rate_hz));
+}
+
+void ReplaceLeader(const engine::ModelDescription& model, const dataset::Dataset& dataset,
+                   const TrainingOptions::Augmentation& options, base::Random* random,
+                   dataset::Sequence* sequence) {
+  const motion::Skeleton& skeleton = dataset.skeleton;
+  const int frames = sequence->pair.leader.frame_count();
+  const Poses* drawn = DrawLeader(dataset, frames, random);
+  if (drawn == nullptr) return;
+  Poses leader = *drawn;
+  const bool mirrors = options.mirror > 0 || options.mirror_handed > 0;
+  if (mirrors && random->Chance(0.5)) Mirror(MirroredJoints(skeleton), &leader);
+  const int first = static_cast<int>(random->Below(leader.frame_count() - frames + 1));
+
+  const double rate = dataset.frame_rate_hz;
+  const Place from = CapturedPlace(dataset, *sequence);
+  const Place to = {Origins(skeleton, leader, rate),
+                    FollowTurns(FacingYaws(skeleton, leader, rate), rate)};
+  motion::ClipPair& pair = sequence->pair;
+  pair.follower.poses = Carry(from, to, first, pair.follower.poses);
+  pair.leader.poses = motion::Part(leader, first, frames);
+  if (sequence->partner_direction) {
+    sequence->partner_direction =
+        RotateY(Vec3{0, 0, -1}, -to.yaws[static_cast<std::size_t>(first)]);
+  }
+  FinishFollower(model, dataset, random, sequence);
+  DisturbLeader(options, random, &pair.leader);
+}
+
+}  // namespace duet::training
