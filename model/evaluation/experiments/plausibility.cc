@@ -155,6 +155,16 @@ std::vector<double> RigTurns(const motion::Skeleton& skeleton, const Poses& pose
   return turns;
 }
 
+// The largest distance of the two roots along the floor.
+double FarthestRoots(const motion::Skeleton& skeleton, const Poses& leader, const Poses& follower) {
+  double farthest = 0;
+  for (int t = 0; t < leader.frame_count(); ++t) {
+    const Vec3 apart = follower.at(t, skeleton.root) - leader.at(t, skeleton.root);
+    farthest = std::max(farthest, std::hypot(double{apart.x}, double{apart.z}));
+  }
+  return farthest;
+}
+
 }  // namespace
 
 Plausibility::Plausibility(const motion::Skeleton& skeleton)
@@ -167,7 +177,7 @@ std::vector<PairFigure> Plausibility::Figures() {
           {"leader's"},      {"heads"},   {"trunks"},         {"hands"},
           {"distance"},      {"speed"},   {"leader's speed"}, {"strikes"},
           {"through"},       {"planes"},  {"turns"},          {"fastest turn", true},
-          {"lean"}};
+          {"lean"},          {"facing"},  {"farthest"}};
 }
 
 std::vector<std::string> Plausibility::Notes() {
@@ -186,7 +196,10 @@ std::vector<std::string> Plausibility::Notes() {
       "Planes: share of answers in which the plane of a bent arm or leg turns by more than 45 "
       "degrees in a frame. Turns: share of answers in which a joint of the rig turns faster than "
       "900 degrees a second; fastest turn: the fastest of all, degrees a second. Lean: largest of "
-      "the trunk over one second, degrees."};
+      "the trunk over one second, degrees.",
+      "Facing: how far hips and shoulders are turned away from the leader, mean over the frames, "
+      "degrees. Farthest: the largest distance of the roots in an answer, mean over the answers, "
+      "metres."};
 }
 
 PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, double rate,
@@ -222,24 +235,25 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
   const body::Grade grade = sum.Get();
   const double fastest = *std::max_element(turns.begin(), turns.end());
   const double frames = leader.frame_count();
-  figures.values = {
-      One(most_twisted > kTwistedClipDegrees),
-      grade.twisted,
-      shoulders / frames,
-      grade.skating,
-      grade.leader_skating,
-      heads / frames,
-      trunks / frames,
-      base::Mean(hands),
-      body::RootDistance(leader, follower, skeleton_),
-      body::JointSpeed(motion::WithoutNoise(follower, rate), rate),
-      body::JointSpeed(motion::WithoutNoise(leader, rate), rate),
-      strikes.short_by(),
-      strikes.through(),
-      One(plane > kPlaneDegrees),
-      One(fastest > kTurnDegreesPerSecond),
-      fastest,
-      body::MeasureLean(follower, skeleton_, rate, body::LeanFrom::kHips).max_degrees};
+  figures.values = {One(most_twisted > kTwistedClipDegrees),
+                    grade.twisted,
+                    shoulders / frames,
+                    grade.skating,
+                    grade.leader_skating,
+                    heads / frames,
+                    trunks / frames,
+                    base::Mean(hands),
+                    body::RootDistance(leader, follower, skeleton_),
+                    body::JointSpeed(motion::WithoutNoise(follower, rate), rate),
+                    body::JointSpeed(motion::WithoutNoise(leader, rate), rate),
+                    strikes.short_by(),
+                    strikes.through(),
+                    One(plane > kPlaneDegrees),
+                    One(fastest > kTurnDegreesPerSecond),
+                    fastest,
+                    body::MeasureLean(follower, skeleton_, rate, body::LeanFrom::kHips).max_degrees,
+                    body::FacingDegrees(leader, follower, skeleton_),
+                    FarthestRoots(skeleton_, leader, follower)};
   return figures;
 }
 

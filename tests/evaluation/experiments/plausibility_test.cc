@@ -64,6 +64,22 @@ TEST(PlausibilityTest, AStandingPairHasNoFaults) {
   for (const double fault : figures.faults) EXPECT_EQ(fault, 0);
 }
 
+TEST(PlausibilityTest, AFollowerWhoTurnsAwayAndLeaves) {
+  motion::Poses follower = Partner(1.2f);
+  EXPECT_LT(Figure(Person(), follower, "facing"), 20);
+  EXPECT_NEAR(Figure(Person(), follower, "farthest"), 1.2, 0.15);
+  // Half of the frames, farther away and with the back to the leader.
+  const int frames = follower.frame_count();
+  const motion::Poses person = Person();
+  for (int t = frames / 2; t < frames; ++t) {
+    for (int j = 0; j < follower.joint_count(); ++j) {
+      follower.at(t, j) = person.at(t, j) + Vec3{0, 0, -3};
+    }
+  }
+  EXPECT_NEAR(Figure(Person(), follower, "facing"), 90, 15);
+  EXPECT_NEAR(Figure(Person(), follower, "farthest"), 3, 0.15);
+}
+
 TEST(PlausibilityTest, HandsAreMeasuredWhileOneIsReachedOut) {
   const motion::Poses leader = ReachingOut(kRightHand, 0.7f, 1.1f);
   const double near = Figure(leader, Partner(0.9f), "hands");
