@@ -137,8 +137,8 @@ Vec3 Shortened(Vec3 v, float most) {
   return length > most ? v * (most / length) : v;
 }
 
-// The way of the body that lets the arm reach in a frame, along the floor.
-Vec3 Approach(const Offer& pair, Vec3 target, absl::Span<const Vec3> pose) {
+// The way of the body that lets the arm reach in a frame, along the floor, without its last part.
+Vec3 Approach(const Offer& pair, Vec3 target, float left_out, absl::Span<const Vec3> pose) {
   const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
   const body::Limb& arm = *pair.follower;
   const float length =
@@ -146,8 +146,9 @@ Vec3 Approach(const Offer& pair, Vec3 target, absl::Span<const Vec3> pose) {
   const Vec3 way = target - at(arm.upper), level = {way.x, 0, way.z};
   const float reach = kComfortable * length, rise = std::abs(way.y);
   const float across = rise < reach ? std::sqrt(reach * reach - rise * rise) : 0;
-  if (Norm(level) <= across || Norm(level) < kNoDirection) return {};
-  return level * (1 - across / Norm(level));
+  const float near = across + left_out;
+  if (Norm(level) <= near || Norm(level) < kNoDirection) return {};
+  return level * (1 - near / Norm(level));
 }
 
 }  // namespace
@@ -164,9 +165,8 @@ void ApproachHand(const motion::Skeleton& skeleton, const body::Body& body,
     for (int t = offer.begin; t < offer.end; ++t) {
       const std::size_t at = static_cast<std::size_t>(t);
       const Vec3 target = Target(offer, leader[t], meetings[at].metres, (*follower)[t]);
-      shifts[at] =
-          Shortened(Approach(offer, target, (*follower)[t]), Float(options.farthest_body_metres)) *
-          offers.weights[at];
+      const Vec3 way = Approach(offer, target, meetings[at].left_out_metres, (*follower)[t]);
+      shifts[at] = Shortened(way, Float(options.farthest_body_metres)) * offers.weights[at];
     }
   }
   shifts = LowPass(shifts, timing.Frames(kBodySmoothSeconds));

@@ -20,6 +20,10 @@ constexpr double kJoinSeconds = 0.1;
 // How far from the surface of the follower's body a fist ends. Captured people keep 0.1 m (push)
 // and 0.3 m (punch), because they only act.
 constexpr float kStrikeMetres = 0.15f;
+// How much of the way to an offered hand the body leaves out in live sessions. A body that has come
+// does not go back: the next plan begins where it is, and comes as much nearer as this plan still
+// would have (docs/decisions/0065-live-by-planning-again.md).
+constexpr float kLiveLeftOutMetres = 0.2f;
 
 // The place of a class in the label vector; the number of classes if there is none of the name.
 std::size_t ClassIndex(const std::vector<std::string>& classes, const std::string& name) {
@@ -122,7 +126,9 @@ cleanup::Meetings MeetingsOf(const ModelDescription& description, const Synthesi
       meetings[t].strike_metres = kStrikeMetres;
     }
   }
+  const bool live = window.options.sampling.first_frame.has_value();
   for (cleanup::Meeting& meeting : meetings) {
+    meeting.left_out_metres = live ? kLiveLeftOutMetres : 0;
     if (meeting.weight > 0) meeting.metres /= meeting.weight;
     meeting.weight = std::min(1.0f, meeting.weight);
     meeting.fist = std::min(1.0f, meeting.fist);

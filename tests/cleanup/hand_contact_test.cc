@@ -72,6 +72,21 @@ TEST(HandContact, TheBodyComesNearerWhereTheArmIsTooShort) {
   EXPECT_LT(Gap(leader, met, kFrames - 1), 0.2f);
 }
 
+TEST(HandContact, TheBodyLeavesOutTheLastPartOfItsWay) {
+  const motion::Poses leader = Offering();
+  const motion::Poses far = Changed(Opposite(), [](int, Vec3 joint) {
+    return joint + Vec3{0, 0, 0.3f};
+  });
+  Meetings meetings = Wanted();
+  for (Meeting& meeting : meetings) meeting.left_out_metres = 0.1f;
+  const motion::Poses whole = Met(leader, far, Wanted()), part = Met(leader, far, meetings);
+  const auto way = [&](const motion::Poses& met) {
+    return far.at(kFrames - 1, kTorso).z - met.at(kFrames - 1, kTorso).z;
+  };
+  EXPECT_NEAR(way(part), way(whole) - 0.1f, 0.02f);
+  EXPECT_GT(way(part), 0.02f);
+}
+
 TEST(HandContact, LeavesSettledFramesAndDoesNotJump) {
   const motion::Poses leader = Offering(), met = Met(leader, Opposite(), Wanted(), 30);
   for (int t = 0; t < 30; ++t) EXPECT_EQ(met[t], Opposite()[t]);

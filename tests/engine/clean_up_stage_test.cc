@@ -229,5 +229,15 @@ TEST(CleanUpStage, BodiesTouchAsFarAsATouchingClasssLabelGoes) {
   EXPECT_EQ(TouchOf(description, window), (cleanup::Touch{0, 0, 0}));
 }
 
+TEST(CleanUpStage, ALiveBodyLeavesOutTheLastPartOfTheWayToAHand) {
+  const ModelDescription description = FakeDescription();
+  SynthesisWindow window;
+  window.leader = SwayingMotion(2, 15);
+  window.labels.assign(2 * description.classes.size(), 0);
+  EXPECT_EQ(MeetingsOf(description, window)[1].left_out_metres, 0);
+  window.options.sampling.first_frame = 30;
+  EXPECT_GT(MeetingsOf(description, window)[1].left_out_metres, 0.1f);
+}
+
 }  // namespace
 }  // namespace duet::engine
