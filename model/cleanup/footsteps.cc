@@ -84,7 +84,7 @@ class Foot {
 
   void StartStep(int frame) {
     from_ = Level(place_ - At(track_, frame - 1));
-    Aim(frame - 1, TrackSteps(frame) ? Landing(frame) : frame + StepFrames());
+    Aim(frame - 1, TrackSteps(frame) ? Landing(frame, frame) : frame + StepFrames());
   }
 
   void Place(int frame) {
@@ -114,18 +114,38 @@ class Foot {
   void Begin() {
     const int last = timing_.settled - 1;
     place_ = Level(At(track_, std::max(0, last)));
-    const bool moves = last > 0 && Distance(At(track_, last), At(track_, last - 1)) *
-                                           Float(timing_.frame_rate_hz) >
-                                       Float(options_.slow_metres_per_second);
-    if (moves || (last >= 0 && Height(last) > Float(options_.high_metres))) {
+    if (last < 0) return;
+    const bool high = Height(last) > Float(options_.high_metres);
+    // The last frame before the foot began to move, or to stand.
+    const int begin = timing_.continues_steps ? LastOther(last) : last;
+    const bool over = last - begin >= StepFrames() && Height(last) < Float(options_.low_metres);
+    if (high || (Moved(last) && !over)) {
       from_ = {};
-      Aim(last, Landing(last + 1));
+      Aim(last, Landing(begin + 1, last + 1));
+      lift_begin_ = begin;
+    } else if (Moved(last)) {
+      stands_since_ = last;
+    } else if (timing_.continues_steps && begin > 0) {
+      stands_since_ = begin + 1;
     }
+  }
+
+  // Whether the settled foot moved to get to a frame.
+  bool Moved(int frame) const {
+    return frame > 0 &&
+           Distance(At(track_, frame), At(track_, frame - 1)) * Float(timing_.frame_rate_hz) >
+               Float(options_.slow_metres_per_second);
+  }
+  // The last settled frame in which the foot did not do what it does in frame `last`; or 0.
+  int LastOther(int last) const {
+    int frame = last;
+    while (frame > 0 && Moved(frame) == Moved(last)) --frame;
+    return frame;
   }
 
   void Aim(int begin, int end) {
     steps_ = true;
-    begin_ = begin;
+    begin_ = lift_begin_ = begin;
     end_ = end;
     const Vec3 aim = MeanFrom(end);
     to_ = end <= last() ? Level(aim - At(track_, end)) : Vec3{};
@@ -146,11 +166,12 @@ class Foot {
            2;
   }
 
-  // The frame in which the track comes to rest, or in which a step ends if it goes on; while the
-  // foot is in the air, the one in which it comes down. Beyond the last if it does not.
-  int Landing(int frame) const {
-    const int longest = frame + StepFrames();
-    for (int t = frame + StepFrames() / 2; t <= last(); ++t) {
+  // The frame, `first` or later, in which the track comes to rest after a step from `frame` on, or
+  // in which the step ends if it goes on; while the foot is in the air, the one in which it comes
+  // down. Beyond the last if it does not.
+  int Landing(int frame, int first) const {
+    const int longest = std::max(first, frame + StepFrames());
+    for (int t = std::max(first, frame + StepFrames() / 2); t <= last(); ++t) {
       const bool rests = Speed(t) < Float(options_.slow_metres_per_second);
       if (Height(t) < Float(options_.low_metres) && (rests || t >= longest)) return t;
     }
@@ -179,7 +200,7 @@ class Foot {
            to_ * Progress(frame, whole);
   }
   float LiftAt(int frame) const {
-    const float at = Float(frame - begin_) / Float(std::max(1, end_ - begin_));
+    const float at = Float(frame - lift_begin_) / Float(std::max(1, end_ - lift_begin_));
     const float lift = std::min(kHighestLift, kLift + kLiftPerMetre * way_);
     return lift * 4 * std::clamp(at * (1 - at), 0.0f, 0.25f);
   }
@@ -193,7 +214,8 @@ class Foot {
   bool steps_ = false;
   Vec3 place_;  // while it stands; at height 0
   int stands_since_ = std::numeric_limits<int>::min() / 2;
-  int begin_ = 0, end_ = 0;  // of the step
+  int begin_ = 0, end_ = 0;  // of the step, or of the part of it that is planned
+  int lift_begin_ = 0;       // of the whole step
   Vec3 from_, to_;           // the foot's offset from its track at both ends of the step
   float way_ = 0;            // metres
   FootPath path_;

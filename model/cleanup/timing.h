@@ -17,6 +17,9 @@ struct Timing {
   // How far a foot looks ahead for a reason to step. Such windows would put off every step that
   // begins later than that.
   double anticipation_seconds = 0;
+  // Whether a step in the settled frames goes on as it began. In such windows, a step that begins
+  // anew would never end.
+  bool continues_steps = false;
 
   double Frames(double seconds) const { return seconds * frame_rate_hz; }
 };

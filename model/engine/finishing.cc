@@ -146,6 +146,7 @@ cleanup::Timing FeetTiming(const ModelDescription& description, const SynthesisW
   if (window.options.sampling.first_frame) {
     timing.ease_seconds = kEndlessEaseSeconds;
     timing.anticipation_seconds = kEndlessAnticipationSeconds;
+    timing.continues_steps = true;
   }
   return timing;
 }

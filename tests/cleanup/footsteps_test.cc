@@ -131,6 +131,48 @@ TEST(WalkInSteps, ContinuesTheContactsOfSettledFrames) {
   EXPECT_LT(LargestStep(held), 1.2f * LargestStep(sliding));
 }
 
+// The paths of two feet that are planned again in every frame, as in a live session: what follows
+// the frames that were sent glides on from them.
+motion::Poses PlannedInEveryFrame(double metres_per_second) {
+  const float way = static_cast<float>(metres_per_second / kRate);
+  motion::Poses sent(2, {{0.12f, kFloor, 0}, {-0.12f, kFloor, 0}});
+  while (sent.frame_count() < kFrames) {
+    Timing timing{kRate, sent.frame_count()};
+    timing.ease_seconds = 0;
+    timing.anticipation_seconds = 0.2;
+    timing.continues_steps = true;
+    std::vector<std::vector<Vec3>> tracks(2);
+    for (int t = 0; t < timing.settled + 8; ++t) {
+      for (int foot = 0; foot < 2; ++foot) {
+        const int known = std::min(t, timing.settled - 1);
+        Vec3 at = sent.at(known, foot);
+        at.z += way * static_cast<float>(t - known);
+        at.y = kFloor + (at.y - kFloor) * std::pow(0.6f, static_cast<float>(t - known));
+        tracks[static_cast<std::size_t>(foot)].push_back(at);
+      }
+    }
+    const std::vector<FootPath> paths = PlanFootsteps(tracks, kFloor, {}, timing);
+    const std::size_t next = static_cast<std::size_t>(timing.settled);
+    sent.Append(std::vector<Vec3>{paths[0].places[next], paths[1].places[next]});
+  }
+  return sent;
+}
+
+TEST(PlanFootsteps, AStepThatIsPlannedAgainEnds) {
+  const motion::Poses sent = PlannedInEveryFrame(/*metres_per_second=*/0.6);
+  for (int foot = 0; foot < 2; ++foot) {
+    int moved = 0, longest = 0, stands = 0;
+    for (int t = 1; t < sent.frame_count(); ++t) {
+      moved = Speed(sent, foot, t) > 0.3 ? moved + 1 : 0;
+      longest = std::max(longest, moved);
+      stands += moved == 0;
+    }
+    EXPECT_GE(longest, 3) << foot;
+    EXPECT_LE(longest, 6) << foot;
+    EXPECT_GT(stands, kFrames / 4) << foot;
+  }
+}
+
 TEST(WalkInSteps, NeedsLegsOfTwoBones) {
   EXPECT_EQ(Walked(Sliding(), 0, WithoutFeet()), Sliding());
 }

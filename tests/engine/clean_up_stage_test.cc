@@ -229,14 +229,16 @@ TEST(CleanUpStage, BodiesTouchAsFarAsATouchingClasssLabelGoes) {
   EXPECT_EQ(TouchOf(description, window), (cleanup::Touch{0, 0, 0}));
 }
 
-TEST(CleanUpStage, ALiveBodyLeavesOutTheLastPartOfTheWayToAHand) {
+TEST(CleanUpStage, LivePlansGoOnWhereTheLastOneCame) {
   const ModelDescription description = FakeDescription();
   SynthesisWindow window;
   window.leader = SwayingMotion(2, 15);
   window.labels.assign(2 * description.classes.size(), 0);
   EXPECT_EQ(MeetingsOf(description, window)[1].left_out_metres, 0);
+  EXPECT_FALSE(FeetTiming(description, window).continues_steps);
   window.options.sampling.first_frame = 30;
   EXPECT_GT(MeetingsOf(description, window)[1].left_out_metres, 0.1f);
+  EXPECT_TRUE(FeetTiming(description, window).continues_steps);
 }
 
 }  // namespace
