@@ -13,6 +13,7 @@
 #include "client/batch/encode.h"
 #include "client/batch/flow/bounded_queue.h"
 #include "client/batch/leader_sharing.h"
+#include "model/base/counted.h"
 #include "model/motion/resample.h"
 
 namespace duet::client::batch {
@@ -190,9 +191,8 @@ absl::Status BadLinesError(const PlanCheck& check) {
   std::string lines = absl::StrJoin(check.bad_lines, "\n  ");
   const auto more = check.bad_line_count - static_cast<int64_t>(check.bad_lines.size());
   if (more > 0) absl::StrAppend(&lines, "\n  and ", more, " more");
-  return absl::InvalidArgumentError(
-      absl::StrCat(check.bad_line_count, check.bad_line_count == 1 ? " bad line" : " bad lines",
-                   "; no call was made:\n  ", lines));
+  return absl::InvalidArgumentError(absl::StrCat(base::Counted(check.bad_line_count, "bad line"),
+                                                 "; no call was made:\n  ", lines));
 }
 
 }  // namespace duet::client::batch

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/counted.h"
 
 namespace duet::client::capture {
 namespace {
@@ -114,7 +115,7 @@ std::string CaptureStream::Summary() const {
   add(counts.bridged_frames, "interpolated");
   add(counts.held_frames, "held");
   add(rejected_, "datagrams not understood");
-  return absl::StrCat(frame_count_, " frames", parts.empty() ? "" : "; ",
+  return absl::StrCat(base::Counted(frame_count_, "frame"), parts.empty() ? "" : "; ",
                       absl::StrJoin(parts, ", "));
 }
 

@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "model/base/counted.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
@@ -13,10 +14,6 @@ namespace {
 
 // Maximum number of causes in the summary; failed.tsv lists all.
 constexpr size_t kCausesShown = 5;
-
-std::string Counted(int64_t count, const char* what) {
-  return absl::StrCat(count, " ", what, count == 1 ? "" : "s");
-}
 
 std::string Line(const nlohmann::ordered_json& event) {
   return event.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -29,10 +26,11 @@ void WriteMore(int64_t all, size_t shown, const ProgramEnvironment& environment)
 
 void WriteBadLeaders(const batch::PlanCheck& check, const ProgramEnvironment& environment) {
   if (check.bad_leader_count == 0) return;
-  *environment.err << Counted(check.bad_leader_count, "leader") << " cannot be used, of "
-                   << Counted(check.items_of_bad_leaders, "item") << ":\n";
+  *environment.err << base::Counted(check.bad_leader_count, "leader") << " cannot be used, of "
+                   << base::Counted(check.items_of_bad_leaders, "item") << ":\n";
   for (const batch::BadLeader& leader : check.bad_leaders) {
-    *environment.err << "  " << leader.message << " (" << Counted(leader.items, "item") << ")\n";
+    *environment.err << "  " << leader.message << " (" << base::Counted(leader.items, "item")
+                     << ")\n";
   }
   WriteMore(check.bad_leader_count, check.bad_leaders.size(), environment);
 }
@@ -47,13 +45,13 @@ std::vector<std::string> Problems(const batch::PlanCheck& check) {
 void WriteCauses(const std::vector<batch::FailureCause>& causes, std::ostream& out) {
   for (size_t i = 0; i < std::min(causes.size(), kCausesShown); ++i) {
     const batch::FailureCause& cause = causes[i];
-    out << "  " << Counted(cause.items, "item");
-    if (cause.leaders > 0) out << " of " << Counted(cause.leaders, "leader");
+    out << "  " << base::Counted(cause.items, "item");
+    if (cause.leaders > 0) out << " of " << base::Counted(cause.leaders, "leader");
     out << ": " << cause.code << (cause.code.empty() ? "" : ": ") << cause.message << "\n";
   }
   if (causes.size() > kCausesShown) {
-    out << "  and " << Counted(static_cast<int64_t>(causes.size() - kCausesShown), "other cause")
-        << "\n";
+    out << "  and "
+        << base::Counted(static_cast<int64_t>(causes.size() - kCausesShown), "other cause") << "\n";
   }
 }
 
@@ -112,15 +110,16 @@ void Report(const BatchArguments& arguments, const batch::PlanCheck& check,
     *environment.out << Line(event) << "\n";
     return;
   }
-  *environment.out << Counted(check.items, "item") << " of " << Counted(check.leaders, "leader")
-                   << ", " << Counted(check.frames, "frame");
+  *environment.out << base::Counted(check.items, "item") << " of "
+                   << base::Counted(check.leaders, "leader") << ", "
+                   << base::Counted(check.frames, "frame");
   if (estimate.bytes > 0) {
     *environment.out << absl::StrFormat(": about %.0f s of calls one after the other, %.1f MB",
                                         estimate.seconds, estimate.bytes / 1e6);
   }
   *environment.out << "\n";
   if (check.bad_line_count > 0) {
-    *environment.err << Counted(check.bad_line_count, "bad line") << ":\n";
+    *environment.err << base::Counted(check.bad_line_count, "bad line") << ":\n";
     for (const std::string& line : check.bad_lines) *environment.err << "  " << line << "\n";
     WriteMore(check.bad_line_count, check.bad_lines.size(), environment);
   }

@@ -7,8 +7,8 @@
 #include "CLI/CLI.hpp"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "client/cli/usage_text.h"
 #include "model/base/text.h"
+#include "model/base/usage_text.h"
 
 namespace duet::client::cli {
 namespace {
@@ -255,7 +255,7 @@ ParsedFlags FlagSet::Parse(const std::vector<std::string>& arguments) {
     parsed.text = out.str();
   } catch (const CLI::ParseError& error) {
     parsed.outcome = ParsedFlags::Outcome::kError;
-    parsed.error = UsageText(error.what());
+    parsed.error = base::UsageText(error.what());
     parsed.text = absl::StrCat(parsed.error, "\nRun with --help for more information.\n");
   }
   return parsed;

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "model/base/counted.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
@@ -100,7 +101,7 @@ std::string DescribeChecks(const std::vector<analysis::Check>& checks, const Sty
 
 std::string DescribeLength(const motion::Clip& clip) {
   const int frames = clip.frame_count();
-  std::string text = absl::StrCat(frames, frames == 1 ? " frame" : " frames");
+  std::string text = base::Counted(frames, "frame");
   if (clip.frame_rate_hz > 0) {
     absl::StrAppendFormat(&text, ", %.2f s at %g Hz", frames / clip.frame_rate_hz,
                           clip.frame_rate_hz);
@@ -120,7 +121,7 @@ std::string DescribeUnlikeLength(const motion::Clip& first, const motion::Clip& 
 }
 
 std::string DescribePeople(int people) {
-  return absl::StrCat(people, people == 1 ? " person" : " people",
+  return absl::StrCat(base::Counted(people, "person", "people"),
                       people > 2 ? " (the first two are read)" : "");
 }
 
@@ -175,8 +176,7 @@ std::string DescribeVertical(const motion::VerticalEstimate& vertical) {
     absl::StrAppendFormat(&text, "; --level %.3f,%.3f,%.3f", vertical.up.x, vertical.up.y,
                           vertical.up.z);
   }
-  return absl::StrCat(text, "; feet rest in ", vertical.places,
-                      vertical.places == 1 ? " place" : " places");
+  return absl::StrCat(text, "; feet rest in ", base::Counted(vertical.places, "place"));
 }
 
 json VerticalJson(const motion::VerticalEstimate& vertical) {

@@ -5,6 +5,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "client/cli/report.h"
+#include "model/base/counted.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
@@ -17,22 +18,19 @@ std::string Describe(const live::Latencies& latency) {
                          absl::ToDoubleMilliseconds(latency.p99));
 }
 
-// "1 frame", "2 leader frames".
-std::string Frames(int count, const char* what = "") {
-  return absl::StrCat(count, what, count == 1 ? " frame" : " frames");
-}
-
 // What went wrong, in words; empty if nothing did.
 std::string DescribeLosses(const live::LiveProgress& totals) {
   std::vector<std::string> parts;
   if (totals.gap_frames > 0) {
-    parts.push_back(absl::StrCat(Frames(totals.gap_frames, " missing leader"), " interpolated"));
+    parts.push_back(
+        absl::StrCat(base::Counted(totals.gap_frames, "missing leader frame"), " interpolated"));
   }
   if (totals.late_frames > 0) {
-    parts.push_back(absl::StrCat(Frames(totals.late_frames, " late leader"), " dropped"));
+    parts.push_back(
+        absl::StrCat(base::Counted(totals.late_frames, "late leader frame"), " dropped"));
   }
   if (totals.skipped_frames > 0) {
-    parts.push_back(absl::StrCat(Frames(totals.skipped_frames, " follower"),
+    parts.push_back(absl::StrCat(base::Counted(totals.skipped_frames, "follower frame"),
                                  " from an older plan, because the server could not keep up"));
   }
   return absl::StrJoin(parts, "; ");
@@ -54,14 +52,15 @@ std::string DescribeLive(const live::LiveReport& report) {
   std::string text;
   for (const std::string& note : report.notes) absl::StrAppend(&text, "note      ", note, "\n");
   absl::StrAppend(&text, "model     ", report.info.model_name, "@", report.info.model_version,
-                  ", seed ", report.info.seed, ", delay ", Frames(report.info.delay_frames), "\n");
+                  ", seed ", report.info.seed, ", delay ",
+                  base::Counted(report.info.delay_frames, "frame"), "\n");
   absl::StrAppendFormat(&text, "live      %.1f s, %d follower frames at %g Hz\n",
                         absl::ToDoubleSeconds(totals.time), totals.frames, report.frame_rate_hz);
   absl::StrAppend(&text, "latency   ", Describe(totals.latency), "\n");
   const std::string losses = DescribeLosses(totals);
   if (!losses.empty()) absl::StrAppend(&text, "losses    ", losses, "\n");
   if (totals.resumed > 0) {
-    absl::StrAppend(&text, "resumed   ", totals.resumed, totals.resumed == 1 ? " time" : " times",
+    absl::StrAppend(&text, "resumed   ", base::Counted(totals.resumed, "time"),
                     ", without losing a frame\n");
   }
   for (const std::string& line : report.written) absl::StrAppend(&text, "wrote     ", line, "\n");

@@ -7,6 +7,7 @@
 #include "client/cli/grade_report.h"
 #include "client/cli/pin_report.h"
 #include "client/error_details.h"
+#include "model/base/counted.h"
 #include "model/motion/reading_setting.h"
 #include "nlohmann/json.hpp"
 
@@ -20,10 +21,6 @@ constexpr double kFarUnfamiliarity = 1.5;
 
 std::string Milliseconds(absl::Duration duration) {
   return absl::StrFormat("%.0f ms", absl::ToDoubleMilliseconds(duration));
-}
-
-std::string Plural(int count, const std::string& noun) {
-  return absl::StrCat(count, " ", noun, count == 1 ? "" : "s");
 }
 
 std::string Join(const std::vector<ClassWeight>& weights) {
@@ -148,7 +145,8 @@ std::string DescribeRequest(const Synthesis& synthesis, const std::vector<std::s
   const motion::Clip& leader = synthesis.result.pair.leader;
   std::string text;
   absl::StrAppendFormat(&text, "leader    %s: %s, %.2f s at %g Hz\n",
-                        synthesis.leader_file.string(), Plural(leader.frame_count(), "frame"),
+                        synthesis.leader_file.string(),
+                        base::Counted(leader.frame_count(), "frame"),
                         leader.frame_count() / leader.frame_rate_hz, leader.frame_rate_hz);
   for (const std::string& note : notes) absl::StrAppend(&text, "          ", note, "\n");
   absl::StrAppend(&text, "reaction  ", DescribeWeights(synthesis.request), "\n");
@@ -161,7 +159,7 @@ std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& writt
   absl::StrAppendFormat(&text, "follower  from %s@%d in %s, first frames after %s (%s, %s)\n",
                         result.model_name, result.model_version, Milliseconds(result.timings.total),
                         Milliseconds(result.timings.first_chunk),
-                        Plural(result.window_count, "window"),
+                        base::Counted(result.window_count, "window"),
                         absl::StrCat(Milliseconds(result.timings.compute), " in the network"));
   std::vector<std::string> settings;
   if (synthesis.sampled) {
@@ -189,7 +187,7 @@ std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& writt
   if (result.grade) text += DescribeGrade(*result.grade);
   text += DescribePins(synthesis.request.constraints, result.constraint_metres);
   if (result.attempt_count > 1) {
-    absl::StrAppend(&text, "          ", Plural(result.attempt_count, "attempt"), "\n");
+    absl::StrAppend(&text, "          ", base::Counted(result.attempt_count, "attempt"), "\n");
   }
   for (size_t i = 0; i < written.files.size(); ++i) {
     absl::StrAppend(&text, i == 0 ? "wrote     " : "          ", written.files[i].string(), "\n");

@@ -12,18 +12,15 @@
 #include "absl/time/clock.h"
 #include "client/error_details.h"
 #include "client/internal/grpc_status.h"
+#include "model/base/counted.h"
 
 namespace duet::client::internal {
 namespace {
 
-std::string Attempts(int count) {
-  return absl::StrCat(count, count == 1 ? " attempt" : " attempts");
-}
-
 absl::Status AfterAttempts(const absl::Status& status, int attempts, std::string_view reason) {
   if (attempts == 1 && reason.empty()) return status;
-  return AppendMessage(status,
-                       absl::StrCat(" (after ", Attempts(attempts), std::string(reason), ")"));
+  return AppendMessage(status, absl::StrCat(" (after ", base::Counted(attempts, "attempt"),
+                                            std::string(reason), ")"));
 }
 
 absl::Status NoServer(const absl::Status& status, int attempts, const RetryLimits& limits,
@@ -31,7 +28,7 @@ absl::Status NoServer(const absl::Status& status, int attempts, const RetryLimit
   return absl::Status(
       status.code(),
       absl::StrCat("server_address: expected a Duet server at ", limits.server_address, ", got \"",
-                   status.message(), "\" (", Attempts(attempts), " in ",
+                   status.message(), "\" (", base::Counted(attempts, "attempt"), " in ",
                    absl::ToInt64Milliseconds(spent) / 1000.0, " s)"));
 }
 

@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "model/base/counted.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::live {
@@ -32,7 +33,8 @@ absl::Status JsonLinesSink::Accept(const LiveFrames& frames) {
 absl::StatusOr<std::vector<std::string>> JsonLinesSink::Finish(const LiveInfo& /*info*/) {
   absl::Status status = Flush();
   if (!status.ok()) return status;
-  return std::vector<std::string>{absl::StrCat("standard output: ", frames_, " frames")};
+  return std::vector<std::string>{
+      absl::StrCat("standard output: ", base::Counted(frames_, "frame"))};
 }
 
 absl::Status JsonLinesSink::Flush() {

@@ -7,6 +7,7 @@
 #include "client/load/figures.h"
 #include "client/load/report_json.h"
 #include "client/load/report_page.h"
+#include "model/base/counted.h"
 
 namespace duet::client::load {
 namespace {
@@ -95,7 +96,7 @@ Json ToJson(const LiveMeasurement& step) {
 }  // namespace
 
 std::string StepName(const LiveMeasurement& step) {
-  return absl::StrCat(step.sessions, step.sessions == 1 ? " session" : " sessions");
+  return base::Counted(step.sessions, "session");
 }
 
 std::string ToText(const LiveReport& report) {

@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/load/figures.h"
+#include "model/base/counted.h"
 #include "model/base/text.h"
 
 namespace duet::client::load {
@@ -62,7 +63,7 @@ std::string StepName(const Step& step) {
     base::AppendNumber(&rate, step.rate_hz);
     return absl::StrCat(rate, " calls/s");
   }
-  return absl::StrCat(step.callers, step.callers == 1 ? " caller" : " callers");
+  return base::Counted(step.callers, "caller");
 }
 
 std::string CodeName(absl::StatusCode code) {
@@ -82,7 +83,7 @@ std::string WhyNotKeptUp(const Measurement& measurement) {
 }
 
 std::string Describe(const KindName& kind) {
-  return absl::StrCat(kind.model, ", ", kind.frames, " frames");
+  return absl::StrCat(kind.model, ", ", base::Counted(kind.frames, "frame"));
 }
 
 std::string ToText(const Report& report) {

@@ -4,12 +4,14 @@
 
 #include <cstddef>
 #include <iostream>
+#include <optional>
 #include <string>
 
 #include "CLI/CLI.hpp"
 #include "absl/status/status.h"
 #include "model/authoring/keyframes.h"
 #include "model/base/file.h"
+#include "model/base/program_flags.h"
 #include "model/formats/bvh/bvh_export.h"
 #include "model/motion/skeleton.h"
 
@@ -39,7 +41,7 @@ int main(int argc, char** argv) {
   std::string keyframes, out;
   app.add_option("keyframes", keyframes, "Key-frame file (docs/formats.md)")->required();
   app.add_option("--out", out, "The BVH file to write")->required();
-  CLI11_PARSE(app, argc, argv);
+  if (const std::optional<int> code = duet::base::ParseFlags(argc, argv, &app)) return *code;
   const absl::Status status = duet::authoring::Convert(keyframes, out);
   if (status.ok()) return 0;
   std::cerr << "duet-keyframe: " << status.message() << "\n";

@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "model/base/counted.h"
 #include "model/base/file.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
@@ -198,7 +199,8 @@ class Importer {
     std::map<std::string, int> people;
     for (const std::string& note : notes) ++people[note];
     for (const auto& [note, count] : people) {
-      Assume("joint map", absl::StrCat(note, ", for ", count, " people"), "--joint-map JOINT=NAME");
+      Assume("joint map", absl::StrCat(note, ", for ", base::Counted(count, "person", "people")),
+             "--joint-map JOINT=NAME");
     }
     if (captures_.empty()) return AllRefused();
     return absl::OkStatus();
@@ -206,7 +208,7 @@ class Importer {
 
   absl::Status AllRefused() const {
     return absl::InvalidArgumentError(
-        absl::StrCat("none of the ", report_.refused.size(), " pairs can be used"));
+        absl::StrCat("no pair can be used, of ", report_.refused.size()));
   }
 
   std::vector<const motion::Poses*> People() const {
@@ -290,9 +292,8 @@ class Importer {
     if (captures_.empty()) return AllRefused();
     if (differ > 0) {
       Assume("length",
-             absl::StrFormat("%d pairs whose people differ by up to %.2f s: cut to the "
-                             "shorter",
-                             differ, most),
+             absl::StrFormat("%s whose people differ by up to %.2f s: cut to the shorter",
+                             base::Counted(differ, "pair"), most),
              "");
     }
     return absl::OkStatus();
@@ -334,7 +335,7 @@ class Importer {
     if (!status.ok()) return status;
     for (const dataset::ClassLayout& one : classes_) {
       Assume("class",
-             absl::StrCat(one.name, ": ", counts[one.name], " pairs; ",
+             absl::StrCat(one.name, ": ", base::Counted(counts[one.name], "pair"), "; ",
                           one.symmetric ? "either may lead" : "one leads", ", ",
                           one.handed ? "always with the same hand" : "with either hand", ", ",
                           one.touches ? "bodies may touch" : "bodies are kept apart"),
@@ -394,8 +395,10 @@ class Importer {
     }
     for (const auto& [source, count] : by_source) {
       const bool guess = absl::StartsWith(source, "guess");
-      Assume("leader", absl::StrCat(count, " pairs by ", guess ? "who moves farther" : source),
-             guess ? "--table FILE, names with _leader and _follower" : "");
+      Assume(
+          "leader",
+          absl::StrCat(base::Counted(count, "pair"), " by ", guess ? "who moves farther" : source),
+          guess ? "--table FILE, names with _leader and _follower" : "");
     }
     for (const dataset::ClassLayout& one : classes_) {
       if (ruled.count(one.name) == 0) continue;
@@ -405,8 +408,7 @@ class Importer {
     }
     if (!close.empty()) {
       Assume("leader",
-             absl::StrCat(close.size(),
-                          close.size() == 1 ? " close call: " : " close calls: ", ListSome(close)),
+             absl::StrCat(base::Counted(close.size(), "close call"), ": ", ListSome(close)),
              "--table FILE");
     }
   }
@@ -466,8 +468,8 @@ class Importer {
     sequences_ = std::move(all);
     if (cut == 0) return;
     Assume("longest",
-           absl::StrFormat("%g s: %d longer pairs were cut into pieces", options_.longest_seconds,
-                           cut),
+           absl::StrFormat("%g s: cut %s into pieces", options_.longest_seconds,
+                           base::Counted(cut, "longer pair")),
            "--longest SECONDS");
   }
 

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
+#include "model/base/counted.h"
+#include "model/base/program_flags.h"
 #include "model/importing/import.h"
 #include "model/motion/coordinates.h"
 
@@ -143,7 +146,7 @@ int main(int argc, char** argv) {
                "duet-import");
   app.set_version_flag("--version", "duet-import " DUET_VERSION);
   Declare(&options, &words, &app);
-  CLI11_PARSE(app, argc, argv);
+  if (const std::optional<int> code = duet::base::ParseFlags(argc, argv, &app)) return *code;
   duet::importing::ImportReport report;
   absl::Status status = duet::importing::Parse(words, &options);
   if (status.ok()) status = duet::importing::Import(options, &report);
@@ -152,7 +155,8 @@ int main(int argc, char** argv) {
     std::cerr << "duet-import: " << status.message() << "\n";
     return 1;
   }
-  std::cout << options.out.string() << ": " << report.sequences << " sequences of " << report.pairs
-            << " pairs; " << report.refused.size() << " refused\n";
+  std::cout << options.out.string() << ": " << duet::base::Counted(report.sequences, "sequence")
+            << " of " << duet::base::Counted(report.pairs, "pair") << "; " << report.refused.size()
+            << " refused\n";
   return 0;
 }

@@ -6,9 +6,11 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/program_flags.h"
 #include "model/checkpoint/manifest.h"
 #include "model/dataset/lone_leaders.h"
 #include "model/network/device.h"
@@ -218,7 +220,7 @@ int main(int argc, char** argv) {
   CLI::App app("Trains a generator on a folder of captures and writes a checkpoint.");
   app.set_version_flag("--version", "duet-train " DUET_VERSION);
   Declare(&arguments, &app);
-  CLI11_PARSE(app, argc, argv);
+  if (const std::optional<int> code = duet::base::ParseFlags(argc, argv, &app)) return *code;
   const absl::Status status =
       duet::network::CatchExceptions([&arguments] { return Train(arguments); });
   if (status.ok()) return 0;

@@ -11,6 +11,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
+#include "model/base/counted.h"
 #include "model/base/text.h"
 #include "server/common/join_status.h"
 
@@ -106,7 +107,7 @@ absl::StatusOr<Caller> ReadCaller(absl::string_view line) {
   if (words.size() < 3) {
     return absl::InvalidArgumentError(
         absl::StrCat("expected a name, its roles and sha256:DIGEST or cert:NAME, got ",
-                     words.size(), words.size() == 1 ? " word" : " words"));
+                     base::Counted(words.size(), "word")));
   }
   Caller caller;
   caller.name = std::string(words[0]);

@@ -441,8 +441,8 @@ TEST_F(ImportTest, LongPairsAreCutAndUnequalOnesTrimmed) {
   ASSERT_THAT(Go(), IsOk());
   EXPECT_EQ(report_.pairs, 4);
   EXPECT_EQ(report_.sequences, 12);
-  EXPECT_THAT(Assumed("length"), HasSubstr("1 pairs whose people differ by up to 0.33 s"));
-  EXPECT_THAT(Assumed("longest"), HasSubstr("4 longer pairs were cut"));
+  EXPECT_THAT(Assumed("length"), HasSubstr("1 pair whose people differ by up to 0.33 s"));
+  EXPECT_THAT(Assumed("longest"), HasSubstr("cut 4 longer pairs"));
   const dataset::Dataset dataset = Read();
   EXPECT_EQ(dataset.sequences[0].id, "kick/kick_01_p1.txt");
   int frames = 0;

@@ -1,7 +1,9 @@
 // duet-eval: measures trained models and baselines on captures.
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <optional>
 
+#include "model/base/program_flags.h"
 #include "model/evaluation/program/commands.h"
 #include "model/network/exceptions.h"
 #include "model/torch_engine/torch_synthesizer.h"
@@ -22,7 +24,7 @@ int main(int argc, char** argv) {
         program::AddHourCommand}) {
     add(&app, &chosen);
   }
-  CLI11_PARSE(app, argc, argv);
+  if (const std::optional<int> code = duet::base::ParseFlags(argc, argv, &app)) return *code;
   const absl::Status status = duet::network::CatchExceptions([&chosen] {
     absl::Status prepared = duet::torch_engine::SetTorchThreads(1);
     return prepared.ok() ? chosen() : prepared;

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/strict_json.h"
@@ -366,12 +367,20 @@ class DocumentReader {
   GltfDocument document_;
 };
 
+absl::string_view WithoutPrelude(absl::string_view text) {
+  return absl::StripLeadingAsciiWhitespace(base::SkipByteOrderMark(text));
+}
+
 absl::StatusOr<GltfDocument> Parse(absl::string_view content) {
   Parts parts{content, std::nullopt};
   if (absl::StartsWith(content, kMagic)) {
     absl::StatusOr<Parts> split = SplitBinary(content);
     if (!split.ok()) return split.status();
     parts = *std::move(split);
+  } else if (!absl::StartsWith(WithoutPrelude(content), "{")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("expected glTF, a JSON object or binary that starts with \"glTF\", got ",
+                     content.empty() ? "an empty file" : "another kind of file"));
   }
   const absl::StatusOr<Json> json = base::ParseHandwrittenJson(parts.json, kMaxDepth);
   if (!json.ok()) return json.status();

@@ -79,6 +79,13 @@ TEST(GltfDocument, IgnoresUnknownChunks) {
   EXPECT_FALSE(document->binary.has_value());
 }
 
+TEST(GltfDocument, RejectsOtherKindsOfFiles) {
+  EXPECT_THAT(ParseError(""), HasSubstr("a.gltf: expected glTF, a JSON object or binary"));
+  EXPECT_THAT(ParseError(""), HasSubstr("got an empty file"));
+  EXPECT_THAT(ParseError("glT"), HasSubstr("got another kind of file"));
+  EXPECT_THAT(ParseError("HIERARCHY"), HasSubstr("got another kind of file"));
+}
+
 TEST(GltfDocument, RejectsInvalidBinaryFiles) {
   std::string binary = test::BinaryGltf(kArm, "1234");
   EXPECT_THAT(ParseError(binary.substr(0, 11)),
