@@ -36,15 +36,21 @@ class Batches:
     def fits(self, source, batch):
         if len(batch) == self.size or self.names[source].alone or self.names[batch[0]].alone:
             return False
-        return not any(self.mentions_own_name_of(other, source) for other in batch)
+        included = frozenset()  # before the own names of `other`
+        for other in batch:
+            included |= self.tree.reach(other)
+            if self.mentions_own_name_of(other, source, included):
+                return False
+        return True
 
-    def mentions_own_name_of(self, other, source):
-        """Whether `source`, or a header that it includes and `other` does not, mentions a name that `other` keeps to itself."""
+    def mentions_own_name_of(self, other, source, included):
+        """Whether `source`, or a header that it adds to those `included`, mentions a name that `other` keeps to itself."""
         names, own = self.names[source], self.names[other].own
-        foreign = {name for name, alias in own.items() if alias is None or names.own.get(name) != alias}
-        headers = self.tree.reach(source) - self.tree.reach(other)
-        mentions = (cpp_names.mentioned_in(self.tree.root / header) for header in headers if self.tree.exists(header))
-        return not foreign.isdisjoint(names.mentioned) or any(not foreign.isdisjoint(mentioned) for mentioned in mentions)
+        foreign = {name: one for name, one in own.items()
+                   if one.alias is None or name not in names.own or names.own[name].alias != one.alias}
+        headers = self.tree.reach(source) - included
+        files = [names] + [cpp_names.names_of(self.tree.root / header) for header in headers if self.tree.exists(header)]
+        return any(file.can_reach(name, one) for file in files for name, one in foreign.items())
 
 
 def sources_of(target, build_dir):

@@ -11,8 +11,12 @@ import source_tree
 import test_project
 
 
-def inside(code):
-    return f"namespace duet::motion {{\nnamespace {{\n{code}\n}}  // namespace\n}}  // namespace duet::motion\n"
+def outside(code, space="duet::motion"):
+    return f"namespace {space} {{\n{code}\n}}  // namespace {space}\n"
+
+
+def inside(code, space="duet::motion"):
+    return outside(f"namespace {{\n{code}\n}}  // namespace", space)
 
 
 class NamesTest(unittest.TestCase):
@@ -53,7 +57,11 @@ class NamesTest(unittest.TestCase):
         self.assertFalse(cpp_names.read_names('#include "a.h"\n#ifdef X\n#endif\n' + inside("void F() { using namespace x; }")).alone)
 
     def test_members_and_names_of_the_library_are_not_mentions(self):
-        self.assertEqual(cpp_names.mentioned_names("a.b(c->d, std::e, motion::f)"), {"a", "c", "std", "motion", "f"})
+        self.assertEqual(set(cpp_names.mentioned_names("a.b(c->d, std::e, motion::f)")), {"a", "c", "std", "motion", "f"})
+
+    def test_mentions_have_their_qualifiers(self):
+        self.assertEqual(cpp_names.mentioned_names("f(motion::f, engine:: f, Table<int>::g, ::h)"),
+                         {"f": {"", "motion", "engine"}, "motion": {""}, "engine": {""}, "Table": {""}, "int": {""}, "g": {"int"}, "h": {"g"}})
 
 
 class BatchesTest(test_project.ProjectTestCase):
@@ -75,7 +83,25 @@ class BatchesTest(test_project.ProjectTestCase):
 
     def test_call_that_could_reach_an_overload_of_another_file_sets_apart(self):
         self.write("model/a.cc", text=inside("int Length(int x) { return x; }"))
-        self.write("model/b.cc", text="namespace duet::motion {\nint F() { return motion::Length(1); }\n}  // namespace duet::motion\n")
+        for code in (outside("int F() { return Length(1); }"), outside("int F() { return motion::Length(1); }"),
+                     outside("int F() { return Length(1); }", "duet::motion::inner"),
+                     outside("int F() { return motion::Length(1); }", "duet::other"),
+                     outside("namespace m = duet::motion;\nint F() { return m::Length(1); }", "duet::other")):
+            with self.subTest(code):
+                self.write("model/b.cc", text=code)
+                self.assertEqual(self.batches(), [["a.cc"], ["b.cc"]])
+
+    def test_names_of_other_namespaces_share_a_batch(self):
+        self.write("model/a.cc", text=inside("int Length(int x) { return x; }"))
+        for code in (inside("int Length(int x) { return x + 1; }", "duet::formats"), inside("int F() { return Length(1); }", "duet"),
+                     outside("int F() { return formats::Length(1); }")):
+            with self.subTest(code):
+                self.write("model/b.cc", text=code)
+                self.assertEqual(self.batches(), [["a.cc", "b.cc"]])
+
+    def test_static_function_is_reached_from_every_namespace(self):  # through the arguments of a call
+        self.write("model/a.cc", text=outside("static int Length(Clip x) { return 1; }"))
+        self.write("model/b.cc", text=outside("int F(motion::Clip x) { return Length(x); }", "duet::formats"))
         self.assertEqual(self.batches(), [["a.cc"], ["b.cc"]])
 
     def test_own_name_is_not_seen_by_files_before(self):
@@ -84,7 +110,7 @@ class BatchesTest(test_project.ProjectTestCase):
         self.assertEqual(self.batches(), [["a.cc", "b.cc"]])
 
     def test_header_after_an_own_name_counts(self):
-        self.write("model/deep.h", text="inline int Deep() { return Length(1); }\n")
+        self.write("model/deep.h", text=outside("inline int Deep() { return Length(1); }"))
         self.write("model/wide.h", "model/deep.h")
         self.write("model/a.cc", text=inside("int Length(int x) { return x; }"))
         self.write("model/b.cc", "model/wide.h")
