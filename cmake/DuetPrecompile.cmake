@@ -43,6 +43,9 @@ endfunction()
 if(DUET_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # It predefines a macro, in which all targets must agree.
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-pthread>)
+  # GCC collects garbage from 128 MB on, which takes a sixth of the time of a file of ours. From 400 MB on, a batch takes up to 850 MB
+  # instead of 700, and one with LibTorch 1.2 GB as before.
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=400000>)
   set(library_headers <algorithm> <cstdint> <functional> <memory> <optional> <string> <string_view>
       <utility> <vector> <absl/status/status.h> <absl/status/statusor.h> <absl/strings/str_cat.h>
       <absl/strings/str_format.h> <absl/types/span.h>)
