@@ -13,6 +13,7 @@ CleanUp::CleanUp(const motion::Skeleton& skeleton, const Options& options)
 
 void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
                     const Timing& timing, motion::Poses* follower) const {
+  CorrectTrunk(leader, timing, follower);
   CorrectBody(leader, touch, meetings, timing, follower);
   PlaceFeetAndHands(leader, meetings, timing, follower);
 }
@@ -22,8 +23,8 @@ std::optional<float> CleanUp::Floor(const motion::Poses& leader) const {
   return FloorHeight(*skeleton_.feet, leader);
 }
 
-void CleanUp::CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
-                          const Timing& timing, motion::Poses* follower) const {
+void CleanUp::CorrectTrunk(const motion::Poses& leader, const Timing& timing,
+                           motion::Poses* follower) const {
   // The trunk and the whole body first, then the limbs, so that fixed feet stay fixed.
   if (options_.shoulders.enabled) {
     LimitShoulders(skeleton_, body_, leader, options_.shoulders, timing, follower);
@@ -41,6 +42,10 @@ void CleanUp::CorrectBody(const motion::Poses& leader, const Touch& touch, const
   if (options_.spacing.enabled) {
     KeepSpacing(skeleton_.root, leader, options_.spacing, timing, follower);
   }
+}
+
+void CleanUp::CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
+                          const Timing& timing, motion::Poses* follower) const {
   if (options_.capsules.enabled) {
     PartBodies(skeleton_, body_, radii_, leader, touch, options_.capsules, timing, follower);
   }

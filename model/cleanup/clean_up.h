@@ -56,8 +56,11 @@ class CleanUp {
   void Apply(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
              const Timing& timing, motion::Poses* follower) const;
 
-  // The two parts of Apply, for a caller who changes the follower between them: trunk, place, arms
-  // and joints; then feet that stand and hands that meet.
+  // The three parts of Apply, for a caller who looks at the follower or changes it between them:
+  // the trunk and how far people are apart; then overlaps, arms and joints; then feet that stand
+  // and hands that meet. The second and the third hardly turn the trunk.
+  void CorrectTrunk(const motion::Poses& leader, const Timing& timing,
+                    motion::Poses* follower) const;
   void CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
                    const Timing& timing, motion::Poses* follower) const;
   void PlaceFeetAndHands(const motion::Poses& leader, const Meetings& meetings,
