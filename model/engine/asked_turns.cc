@@ -18,10 +18,20 @@ constexpr double kEnoughSpeed = 0.6;
 constexpr double kFreeDegrees = 120;  // of turning that no label avoids
 constexpr double kLeastTurn = 230;    // degrees
 constexpr std::size_t kFewestStretches = 3;
-constexpr double kMostDraws = 7;
-// How often the first sample of a window misses: measured with answers to takes that were left out
-// of training (docs/results/README.md, "The dance").
-constexpr double kTurnsMissed = 0.6, kOthersMissed = 0.03;
+// Degrees that followers may turn in other classes. 98 % of captured followers turn less within the
+// frames of a window.
+constexpr double kMostInOthers = 180;
+constexpr double kMostDraws = 6;
+constexpr int kDrawnTogether = 2;
+// Fraction of these samples that a window draws on average, measured on held-out takes
+// (docs/results/README.md, "The dance").
+constexpr double kDrawnForTurns = 0.8, kDrawnForOthers = 0.05;
+// Samples agree on the direction of a turn if the difference between both directions is at least
+// this fraction of all their turning.
+constexpr double kAgreement = 0.6;
+constexpr std::size_t kFewestVotes = 3;
+// Weight of turning in the direction that the samples did not agree on.
+constexpr double kAgainstTheOthers = 0.7;
 constexpr float kMostGain = 4;
 constexpr int kGains = 4;  // different gains, evenly up to the largest
 // What a mean difference of a whole turn from the other samples costs.
@@ -90,6 +100,44 @@ Turned Split(const std::vector<double>& turns, const std::vector<double>& wanted
   return turned;
 }
 
+// What the labels of one frame request.
+struct FrameLabels {
+  double degrees = 0;             // of turning; negative to avoid turns
+  double asked = 0, avoided = 0;  // sum of the absolute weights of turns
+  double other = 0;               // largest weight of another class, if no turn has a weight
+};
+
+// `turning`: TurningIndices.
+FrameLabels ReadLabels(const ModelDescription& description, const std::vector<std::size_t>& turning,
+                       const float* weights) {
+  FrameLabels labels;
+  for (std::size_t k = 0; k < turning.size(); ++k) {
+    const double weight = std::clamp(double{weights[turning[k]]}, -1.0, 1.0);
+    labels.degrees +=
+        weight * description.turning_classes[k].degrees_per_second / description.frame_rate_hz;
+    (weight > 0 ? labels.asked : labels.avoided) += std::abs(weight);
+  }
+  const double most = *std::max_element(weights, weights + description.classes.size());
+  if (labels.asked + labels.avoided == 0) labels.other = std::clamp(most, 0.0, 1.0);
+  return labels;
+}
+
+// Where turns are asked for: the sum of the samples' turns, whose sign is the direction in which
+// they turn farther, and the sum of the absolute values.
+struct Votes {
+  double way = 0, all = 0;
+};
+
+Votes VotesOf(const AskedTurns& turns, const std::vector<std::vector<double>>& samples) {
+  Votes votes;
+  for (const std::vector<double>& sample : samples) {
+    const double asked = turns.Asked(sample);
+    votes.way += asked;
+    votes.all += std::abs(asked);
+  }
+  return votes;
+}
+
 // How far the turns of two samples differ, in whole turns. Shapes: both alike.
 double Apart(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0;
@@ -103,30 +151,25 @@ AskedTurns::AskedTurns(const ModelDescription& description, const SynthesisWindo
   if (description.turning_classes.empty() || !description.skeleton.hips) return;
   root_ = description.skeleton.root;
   hips_ = *description.skeleton.hips;
-  first_ = std::max(1, SettledFrames(window));
+  const int judged = std::max(1, SettledFrames(window));
   const int end = window.leader.frame_count() - description.lookahead_frames;
-  if (end <= first_) return;
-  wanted_.resize(static_cast<std::size_t>(end - first_));
-  other_.resize(wanted_.size());
+  if (end <= judged) return;
   const std::vector<std::size_t> turning = TurningIndices(description);
   const std::size_t classes = description.classes.size();
-  for (std::size_t i = 0; i < wanted_.size(); ++i) {
-    const float* weights = window.labels.data() + (static_cast<std::size_t>(first_) + i) * classes;
-    double largest = 0;
-    for (std::size_t k = 0; k < turning.size(); ++k) {
-      const double weight = std::clamp(double{weights[turning[k]]}, -1.0, 1.0);
-      wanted_[i] +=
-          weight * description.turning_classes[k].degrees_per_second / description.frame_rate_hz;
-      (weight > 0 ? share_asked_ : share_avoided_) += std::abs(weight);
-      largest = std::max(largest, std::abs(weight));
-    }
-    asked_ += std::max(0.0, wanted_[i]);
-    const double most = std::min(1.0, double{*std::max_element(weights, weights + classes)});
-    other_[i] = largest == 0 && most > 0;
-    if (other_[i]) share_other_ += most;
+  for (int t = 1; t < end; ++t) {
+    const FrameLabels labels = ReadLabels(
+        description, turning, window.labels.data() + static_cast<std::size_t>(t) * classes);
+    const bool is_judged = t >= judged;
+    wanted_.push_back(is_judged ? labels.degrees : 0);
+    other_.push_back(labels.other > 0);
+    if (!is_judged) continue;
+    asked_ += std::max(0.0, labels.degrees);
+    share_asked_ += labels.asked;
+    share_avoided_ += labels.avoided;
+    share_other_ += labels.other;
   }
   for (double* share : {&share_asked_, &share_avoided_, &share_other_}) {
-    *share /= static_cast<double>(wanted_.size());
+    *share /= end - judged;
   }
   demand_ = share_asked_ + share_avoided_ > 0 ? share_asked_ + share_avoided_ : share_other_;
   if (demand_ < kLeastDemand) demand_ = 0;
@@ -137,7 +180,7 @@ std::vector<double> AskedTurns::TurnsOf(const motion::Poses& leader,
   std::vector<double> turns;
   double sum = 0;
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
-    sum += TurnedAt(hips_, root_, follower, leader, first_ + static_cast<int>(i));
+    sum += TurnedAt(hips_, root_, follower, leader, static_cast<int>(i) + 1);
     turns.push_back(sum);
   }
   return turns;
@@ -155,27 +198,30 @@ double AskedTurns::Miss(const std::vector<double>& turns, double way) const {
   double miss = 0;
   if (asked_ > 0) {
     const double most = std::max(forwards, backwards);
-    const double counts = way == 0 ? most : way > 0 ? forwards : backwards;
+    const double right = way == 0 ? most : way > 0 ? forwards : backwards;
+    const double counts = right + kAgainstTheOthers * (most - right);
     miss += share_asked_ * std::max(0.0, 1 - counts / (kEnoughSpeed * asked_));
   }
   miss += share_avoided_ * std::max(0.0, turned.avoided.farthest() - kFreeDegrees) / kLeastTurn;
-  // Whole turns only: in other classes, people turn a little.
-  return miss + std::max(0.0, turned.other.farthest() / kLeastTurn - 1);
+  return miss + std::max(0.0, turned.other.farthest() / kMostInOthers - 1);
 }
 
 int AskedTurns::further_samples() const {
   return static_cast<int>(std::ceil(kMostDraws * std::min(1.0, demand_)));
 }
 
-double AskedTurns::often_missed() const {
-  return share_asked_ + share_avoided_ > 0 ? kTurnsMissed : kOthersMissed;
+double AskedTurns::share_drawn() const {
+  return share_asked_ + share_avoided_ > 0 ? kDrawnForTurns : kDrawnForOthers;
 }
 
-std::vector<NetworkInput> DrawnAgain(const ModelDescription& description, const AskedTurns& turns,
-                                     const SynthesisWindow& window, const NetworkInput& input) {
-  std::vector<NetworkInput> inputs;
+std::vector<std::vector<NetworkInput>> DrawnAgain(const ModelDescription& description,
+                                                  const AskedTurns& turns,
+                                                  const SynthesisWindow& window,
+                                                  const NetworkInput& input) {
+  std::vector<std::vector<NetworkInput>> groups;
   for (int n = 1; n <= turns.further_samples(); ++n) {
-    NetworkInput& again = inputs.emplace_back(input);
+    if ((n - 1) % kDrawnTogether == 0) groups.emplace_back();
+    NetworkInput& again = groups.back().emplace_back(input);
     const Sampling& sampling = window.options.sampling;
     again.sampling.seed = CandidateSeed(sampling.seed, sampling.candidates + n - 1);
     const float gain = 1 + (kMostGain - 1) * static_cast<float>(n % kGains + 1) / kGains;
@@ -185,12 +231,22 @@ std::vector<NetworkInput> DrawnAgain(const ModelDescription& description, const 
       }
     }
   }
-  return inputs;
+  return groups;
+}
+
+bool IsDecided(const AskedTurns& turns, const std::vector<std::vector<double>>& samples) {
+  const Votes votes = VotesOf(turns, samples);
+  if (turns.asks() &&
+      (samples.size() < kFewestVotes || std::abs(votes.way) < kAgreement * votes.all)) {
+    return false;
+  }
+  return std::any_of(samples.begin(), samples.end(), [&](const std::vector<double>& sample) {
+    return turns.Miss(sample, votes.way) <= turns.tolerated();
+  });
 }
 
 std::size_t MostAsAsked(const AskedTurns& turns, const std::vector<std::vector<double>>& samples) {
-  double way = 0;
-  for (const std::vector<double>& sample : samples) way += turns.Asked(sample);
+  const double way = VotesOf(turns, samples).way;
   std::vector<double> costs;
   for (const std::vector<double>& sample : samples) {
     const double miss = turns.Miss(sample, way);
@@ -218,7 +274,7 @@ double ExpectedSamples(const ModelDescription& description, const SynthesisWindo
   const int candidates = CandidateCount(description, sampling);
   if (!description.samples || sampling.first_frame) return candidates;
   const AskedTurns turns(description, window);
-  return candidates + turns.often_missed() * turns.further_samples();
+  return candidates + turns.share_drawn() * turns.further_samples();
 }
 
 void TurningFit::Add(const motion::Poses& leader, const motion::Poses& follower, int begin,

@@ -16,7 +16,8 @@ namespace duet::engine {
 // The turns of the follower that the labels of a window ask for (a positive weight of one of
 // ModelDescription::turning_classes) or avoid: a negative weight of such a class, or a positive
 // weight of another class where those of turns are 0. Judged are the frames between the settled
-// ones and the lookahead.
+// ones and the lookahead. Turns in settled frames only count where another class avoids them: a
+// turn must not continue unnoticed from one window to the next.
 class AskedTurns {
  public:
   AskedTurns(const ModelDescription& description, const SynthesisWindow& window);
@@ -25,8 +26,12 @@ class AskedTurns {
   // are all 0, of the other classes. 0 if they say nothing, or too little to be judged.
   double demand() const { return demand_; }
 
-  // How far a follower has turned, seen from the leader, in each frame that is judged. Degrees, not
-  // limited to whole turns. Shapes: follower as the window's leader; returns [judged frames].
+  // Whether labels ask for turns.
+  bool asks() const { return asked_ > 0; }
+
+  // How far a follower has turned, seen from the leader, in each frame but the first, up to the
+  // lookahead. Degrees, not limited to whole turns. Shapes: follower as the window's leader;
+  // returns [frames].
   std::vector<double> TurnsOf(const motion::Poses& leader, const motion::Poses& follower) const;
 
   // How far the largest turn goes where turns are asked for: above 0 one way, below 0 the other.
@@ -34,22 +39,23 @@ class AskedTurns {
 
   // How far a follower is from doing what the labels say: 0 if it does, at most demand() for a
   // follower that does not turn where it should, and more if it turns against the labels.
-  // `way`: above 0 or below it if only turns that way count; 0 if both do.
+  // `way`: the sign of the direction whose turns count fully, while the others count less; 0 if
+  // both directions count fully.
   double Miss(const std::vector<double>& turns, double way = 0) const;
 
   // A miss of at most this is not worth more samples.
   double tolerated() const { return 0.1 * demand_; }
 
-  // The number of samples that are drawn after one that misses more: up to seven, the more the
-  // labels demand.
+  // The number of samples that are drawn at most after the first: up to six, the more the labels
+  // demand.
   int further_samples() const;
-  // How often the first sample of such a window misses more, 0 to 1.
-  double often_missed() const;
+  // The fraction of them that such a window draws on average.
+  double share_drawn() const;
 
  private:
   int root_ = 0;
   motion::JointPair hips_;
-  int first_ = 0;               // of the frames that are judged
+  // Of every frame but the first, up to the lookahead.
   std::vector<double> wanted_;  // degrees per frame; below 0 where a negative weight avoids turns
   std::vector<bool> other_;     // where another class avoids turns
   double asked_ = 0;            // the sum of what is wanted
@@ -59,14 +65,23 @@ class AskedTurns {
 
 // The inputs of AskedTurns::further_samples() samples: with other seeds, and with labels of turns
 // that are enlarged by up to four, because the network gives them less weight than its leader.
-// `input`: of the window's first sample.
-std::vector<NetworkInput> DrawnAgain(const ModelDescription& description, const AskedTurns& turns,
-                                     const SynthesisWindow& window, const NetworkInput& input);
+// Returns groups to draw one after the other until IsDecided. `input`: of the window's first
+// sample.
+std::vector<std::vector<NetworkInput>> DrawnAgain(const ModelDescription& description,
+                                                  const AskedTurns& turns,
+                                                  const SynthesisWindow& window,
+                                                  const NetworkInput& input);
 
-// The index of the sample that best does what the labels say. Where they ask for turns, only turns
-// in the direction count in which the samples turn farther in total: most of them follow the lead.
+// Whether a window needs no more samples: at least one does what the labels say and, if they ask
+// for turns, there are at least three samples that agree on the direction.
+// Shapes: samples, TurnsOf each.
+bool IsDecided(const AskedTurns& turns, const std::vector<std::vector<double>>& samples);
+
+// The index of the sample that best does what the labels say. Where they ask for turns, the
+// direction in which the samples turn farther in total counts more: most of them follow the lead.
 // Of those that do what the labels say, the one whose turns are nearest to those of the others is
-// chosen. Shapes: samples, TurnsOf each.
+// chosen.
+// Shapes: samples, TurnsOf each.
 std::size_t MostAsAsked(const AskedTurns& turns, const std::vector<std::vector<double>>& samples);
 
 // The number of samples that a window is expected to cost: its candidates, and those that are drawn

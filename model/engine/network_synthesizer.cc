@@ -129,8 +129,8 @@ class NetworkSynthesizer : public Synthesizer {
     return followers;
   }
 
-  // If a follower does not turn as the labels ask, draws more candidates, and returns the one that
-  // does so best. Windows of an endless motion keep their noise.
+  // Draws more samples until one turns as the labels ask, and returns the one that does so best.
+  // Windows of an endless motion keep their noise.
   WindowResult TurnAsAsked(const SynthesisWindow& window,
                            const motion::Standardisation& standardisation,
                            const NetworkInput& input, WindowResult first) const {
@@ -138,19 +138,24 @@ class NetworkSynthesizer : public Synthesizer {
     const AskedTurns turns(description_, window);
     if (turns.demand() == 0) return first;
     std::vector<std::vector<double>> samples = {turns.TurnsOf(window.leader, *first)};
-    if (turns.Miss(samples[0]) <= turns.tolerated()) return first;
-    const absl::StatusOr<std::vector<motion::Poses>> answers =
-        RunNetwork(DrawnAgain(description_, turns, window, input), 1);
-    if (!answers.ok()) return answers.status();
-    std::vector<WindowResult> followers = {std::move(first)};
-    for (const motion::Poses& answer : *answers) {
-      // Turns are measured after finishing, because the network's own hips can be turned over or
-      // shrunk to a point.
-      followers.push_back(Finish(window, standardisation, answer, window.pins));
-      if (!followers.back().ok()) return std::move(followers.back());
-      samples.push_back(turns.TurnsOf(window.leader, *followers.back()));
+    if (IsDecided(turns, samples)) return first;
+    std::vector<motion::Poses> followers = {*std::move(first)};
+    for (const std::vector<NetworkInput>& inputs : DrawnAgain(description_, turns, window, input)) {
+      const absl::StatusOr<std::vector<motion::Poses>> answers = RunNetwork(inputs, 1);
+      if (!answers.ok()) return answers.status();
+      for (const motion::Poses& answer : *answers) {
+        // Turns are measured once the trunk is finished, because the network's own hips can be
+        // turned over or shrunk to a point.
+        WindowResult follower = FinishTrunk(window, standardisation, answer);
+        if (!follower.ok()) return follower;
+        samples.push_back(turns.TurnsOf(window.leader, *follower));
+        followers.push_back(*std::move(follower));
+      }
+      if (IsDecided(turns, samples)) break;
     }
-    return std::move(followers[MostAsAsked(turns, samples)]);
+    const std::size_t best = MostAsAsked(turns, samples);
+    if (best == 0) return std::move(followers[0]);
+    return FinishBody(window, window.pins, std::move(followers[best]));
   }
 
   // The best of a window's candidates, finished. Fails if one of them is not finite.
@@ -178,10 +183,29 @@ class NetworkSynthesizer : public Synthesizer {
 
   WindowResult Finish(const SynthesisWindow& window, const motion::Standardisation& standardisation,
                       const motion::Poses& standard, const motion::Pins& pins) const {
+    WindowResult trunk = FinishTrunk(window, standardisation, standard);
+    if (!trunk.ok()) return trunk;
+    return FinishBody(window, pins, *std::move(trunk));
+  }
+
+  // The first stages of Finish. The others hardly turn the follower.
+  WindowResult FinishTrunk(const SynthesisWindow& window,
+                           const motion::Standardisation& standardisation,
+                           const motion::Poses& standard) const {
     motion::Poses follower = standardisation.Invert(standard);
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
     if (options_.keep_limb_lengths) KeepLimbLengths(description_, window, &follower);
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
+    if (IsCleanedUp(window)) {
+      clean_up_.CorrectTrunk(window.leader, {description_.frame_rate_hz, SettledFrames(window)},
+                             &follower);
+    }
+    return follower;
+  }
+
+  // The other stages of Finish.
+  motion::Poses FinishBody(const SynthesisWindow& window, const motion::Pins& pins,
+                           motion::Poses follower) const {
     const bool cleans = IsCleanedUp(window);
     const cleanup::Meetings meetings = MeetingsOf(description_, window);
     if (cleans) {

@@ -1,6 +1,8 @@
 #include "model/engine/asked_turns.h"
 
 #include <cmath>
+#include <cstdint>
+#include <set>
 
 #include "gmock/gmock.h"
 #include "tests/cleanup/bodies.h"
@@ -94,18 +96,38 @@ TEST(AskedTurns, OneWayIsEnoughUnlessItIsGiven) {
   EXPECT_NEAR(std::abs(turns), kSpeed * (kFrames - 1) / kRate, 20);
   EXPECT_NEAR(TurnedOneWay(Turning(-kSpeed)), -turns, 1);
   EXPECT_EQ(Miss(Window(1), Turning(kSpeed), 0, turns), 0);
-  EXPECT_GT(Miss(Window(1), Turning(-kSpeed), 0, turns), 0.9);
+  // Turning the other way counts less, but more than not turning.
+  EXPECT_EQ(Miss(Window(1), Turning(0.7 * kSpeed), 0, turns), 0);
+  const double other_way = Miss(Window(1), Turning(-0.7 * kSpeed), 0, turns);
+  EXPECT_GT(other_way, 0.1);
+  EXPECT_LT(other_way, 0.4);
+  EXPECT_NEAR(Miss(Window(1), Turning(0), 0, turns), 1, 1e-6);
 }
 
 TEST(AskedTurns, AnotherClassAvoidsWholeTurns) {
   SynthesisWindow window = WithAnother(Window(0), 0, kFrames);
   EXPECT_EQ(AskedTurns(Description(), window).demand(), 1);
-  EXPECT_EQ(Miss(window, Turning(70)), 0);  // two thirds of a turn
+  EXPECT_EQ(Miss(window, Turning(55)), 0);  // nearly half a turn
+  EXPECT_GT(Miss(window, Turning(70)), 0);  // nearly two thirds of one
   EXPECT_GT(Miss(window, Turning(kSpeed)), 1);
   // Where a turn is asked for as well, only the other frames are kept free of turns.
   window = WithAnother(Window(1, 0, 25), 0, kFrames);
   EXPECT_EQ(Miss(window, Turning(kSpeed, 0, 25)), 0);
   EXPECT_GT(Miss(window, Turning(kSpeed)), 0.2);
+}
+
+TEST(AskedTurns, ATurnInOtherClassesCountsFromTheSettledFramesOn) {
+  SynthesisWindow window = WithAnother(Window(0), 0, kFrames);
+  window.settled = Puppet({}, 15);
+  // 150 degrees before the judged frames and 150 in them.
+  const Poses follower = Turning(150, 0, 30);
+  EXPECT_GT(Miss(window, follower), 0.3);
+  EXPECT_EQ(Miss(window, Turning(150, 0, 15)), 0);
+  EXPECT_EQ(Miss(window, Turning(150, 15, 30)), 0);
+  // What was asked for in the settled frames is no turn of another class.
+  window = WithAnother(Window(1, 0, 15), 15, kFrames);
+  window.settled = Puppet({}, 15);
+  EXPECT_EQ(Miss(window, follower), 0);
 }
 
 TEST(AskedTurns, AnAvoidedTurnIsAMiss) {
@@ -141,13 +163,42 @@ TEST(AskedTurns, OnlyFramesBetweenTheSettledOnesAndTheLookaheadAreJudged) {
   EXPECT_EQ(AskedTurns(Description(10), window).demand(), 0);
 }
 
-std::size_t Best(const SynthesisWindow& window, const std::vector<Poses>& followers) {
+std::vector<std::vector<double>> TurnsOf(const SynthesisWindow& window,
+                                         const std::vector<Poses>& followers) {
   const AskedTurns turns(Description(), window);
   std::vector<std::vector<double>> samples;
   for (const Poses& follower : followers) {
     samples.push_back(turns.TurnsOf(window.leader, follower));
   }
-  return MostAsAsked(turns, samples);
+  return samples;
+}
+
+bool Decided(const SynthesisWindow& window, const std::vector<Poses>& followers) {
+  return IsDecided(AskedTurns(Description(), window), TurnsOf(window, followers));
+}
+
+TEST(IsDecided, WhereNoTurnIsAskedForByOneSampleThatDoesNotTurn) {
+  EXPECT_TRUE(Decided(Window(-1), {Turning(0)}));
+  EXPECT_FALSE(Decided(Window(-1), {Turning(kSpeed)}));
+  EXPECT_TRUE(Decided(Window(-1), {Turning(kSpeed), Turning(0)}));
+  const SynthesisWindow other = WithAnother(Window(0), 0, kFrames);
+  EXPECT_TRUE(Decided(other, {Turning(0)}));
+  EXPECT_FALSE(Decided(other, {Turning(kSpeed), Turning(-kSpeed)}));
+}
+
+TEST(IsDecided, WhereATurnIsAskedForByThreeSamplesThatAgreeOnItsWay) {
+  const Poses turn = Turning(kSpeed), back = Turning(-kSpeed), little = Turning(20);
+  EXPECT_FALSE(Decided(Window(1), {turn}));
+  EXPECT_FALSE(Decided(Window(1), {turn, turn}));
+  EXPECT_TRUE(Decided(Window(1), {turn, turn, turn}));
+  EXPECT_TRUE(Decided(Window(1), {little, turn, little}));
+  EXPECT_FALSE(Decided(Window(1), {little, little, little}));
+  EXPECT_FALSE(Decided(Window(1), {turn, back, turn}));
+  EXPECT_TRUE(Decided(Window(1), {turn, back, turn, turn, turn, turn}));
+}
+
+std::size_t Best(const SynthesisWindow& window, const std::vector<Poses>& followers) {
+  return MostAsAsked(AskedTurns(Description(), window), TurnsOf(window, followers));
 }
 
 TEST(MostAsAsked, ChoosesASampleThatTurns) {
@@ -156,8 +207,16 @@ TEST(MostAsAsked, ChoosesASampleThatTurns) {
 }
 
 TEST(MostAsAsked, MostOfTheTurnsDecideTheWay) {
-  EXPECT_EQ(Best(Window(1), {Turning(0), Turning(-kSpeed), Turning(kSpeed), Turning(150)}), 2u);
-  EXPECT_EQ(Best(Window(1), {Turning(0), Turning(-kSpeed), Turning(kSpeed), Turning(-150)}), 1u);
+  const Poses turn = Turning(kSpeed), back = Turning(-kSpeed);
+  EXPECT_EQ(Best(Window(1), {Turning(0), back, turn, turn}), 2u);
+  EXPECT_EQ(Best(Window(1), {Turning(0), back, turn, back}), 1u);
+}
+
+TEST(MostAsAsked, ATurnAgainstTheOthersIsChosenOnlyIfTheseHardlyTurn) {
+  const Poses enough = Turning(0.55 * kSpeed), little = Turning(0.4 * kSpeed);
+  EXPECT_EQ(Best(Window(1), {enough, enough, Turning(-kSpeed)}), 0u);
+  EXPECT_EQ(Best(Window(1), {little, little, little, Turning(-kSpeed)}), 3u);
+  EXPECT_EQ(Best(Window(1), {little, little, little, Turning(-0.5 * kSpeed)}), 0u);
 }
 
 TEST(MostAsAsked, OfGoodSamplesTheMostTypicalIsChosen) {
@@ -167,13 +226,34 @@ TEST(MostAsAsked, OfGoodSamplesTheMostTypicalIsChosen) {
   EXPECT_EQ(Best(Window(1), {middle, early, late}), 0u);
 }
 
+TEST(DrawnAgain, DrawsPairsWithOtherSeedsAndLargerLabelsOfTurns) {
+  const SynthesisWindow window = Window(1);
+  const AskedTurns turns(Description(), window);
+  NetworkInput input;
+  input.labels = window.labels;
+  std::set<uint64_t> seeds = {window.options.sampling.seed};
+  std::size_t drawn = 0;
+  for (const std::vector<NetworkInput>& pair : DrawnAgain(Description(), turns, window, input)) {
+    EXPECT_EQ(pair.size(), 2u);
+    for (const NetworkInput& again : pair) {
+      EXPECT_TRUE(seeds.insert(again.sampling.seed).second);
+      EXPECT_GT(again.labels[kTurn], 1);
+      EXPECT_LE(again.labels[kTurn], 4);
+      EXPECT_EQ(again.labels[kTurn + 1], 0);
+      ++drawn;
+    }
+  }
+  EXPECT_EQ(drawn, static_cast<std::size_t>(turns.further_samples()));
+  EXPECT_EQ(drawn, 6u);
+}
+
 TEST(ExpectedSamples, CountsThoseThatLabelsOfTurnsAreExpectedToCost) {
   ModelDescription description = Description();
   description.samples = true;
   SynthesisWindow asking = Window(1), silent = Window(0);
   EXPECT_EQ(ExpectedSamples(description, silent), 1);
   EXPECT_GT(ExpectedSamples(description, asking), 2);
-  EXPECT_LE(ExpectedSamples(description, asking), 8);
+  EXPECT_LE(ExpectedSamples(description, asking), 7);
   const double half = ExpectedSamples(description, Window(0.5f));
   EXPECT_GT(half, 1);
   EXPECT_LT(half, ExpectedSamples(description, asking));

@@ -414,17 +414,46 @@ TEST(NetworkSynthesizer, DrawsAgainUntilTheFollowerDoesNotTurnWhereLabelsAvoidIt
   EXPECT_LT(TurnedDegrees(window, *calm), 150);
 }
 
-TEST(NetworkSynthesizer, AFollowerWhoDoesAsTheLabelsAskIsDrawnOnce) {
+TEST(NetworkSynthesizer, AChosenSampleIsFinishedAsIfItWereTheFirst) {
   int seen = 0;
-  const auto model =
-      Model(Turner([](uint64_t) { return 240.0; }, &seen), kAsTheNetworkSays, TurningDescription());
+  const PipelineOptions all_stages = {true, true, true};
+  const auto turn = [](uint64_t) { return 240.0; };
+  const auto all_but_the_first = [](uint64_t seed) { return seed == 1 ? 0.0 : 240.0; };
+  SynthesisWindow window = AskingToTurn(1);
+  window.options.sampling.seed = 1;
+  ModelDescription without_turns = TurningDescription();
+  without_turns.turning_classes.clear();
+  const WindowResult alone = RunOne(*Model(Turner(turn, &seen), all_stages, without_turns), window);
+  const WindowResult chosen =
+      RunOne(*Model(Turner(all_but_the_first, &seen), all_stages, TurningDescription()), window);
+  ASSERT_THAT(alone, IsOk());
+  ASSERT_THAT(chosen, IsOk());
+  EXPECT_EQ(*chosen, *alone);
+  EXPECT_NE(*alone, *RunOne(*Model(Turner(turn, &seen), kAsTheNetworkSays, without_turns), window));
+}
+
+TEST(NetworkSynthesizer, SamplesAreDrawnUntilTheyAgreeOnATurn) {
+  int seen = 0;
+  const auto turn = [](uint64_t) { return 240.0; };
+  const auto model = Model(Turner(turn, &seen), kAsTheNetworkSays, TurningDescription());
   ASSERT_THAT(RunOne(*model, AskingToTurn(1)), IsOk());
+  EXPECT_EQ(seen, 3);
+  // Where no turn is wanted, one that does not turn is enough.
+  seen = 0;
+  const auto stands = [](uint64_t) { return 0.0; };
+  const auto calm = Model(Turner(stands, &seen), kAsTheNetworkSays, TurningDescription());
+  ASSERT_THAT(RunOne(*calm, AskingToTurn(-1)), IsOk());
   EXPECT_EQ(seen, 1);
+  // If no sample does as the labels ask, seven are drawn.
+  seen = 0;
+  ASSERT_THAT(RunOne(*calm, AskingToTurn(1)), IsOk());
+  EXPECT_EQ(seen, 7);
   // A window of an endless motion is never drawn again: its noise belongs to the frames.
-  SynthesisWindow live = AskingToTurn(-1);
+  seen = 0;
+  SynthesisWindow live = AskingToTurn(1);
   live.options.sampling.first_frame = 0;
-  ASSERT_THAT(RunOne(*model, live), IsOk());
-  EXPECT_EQ(seen, 2);
+  ASSERT_THAT(RunOne(*calm, live), IsOk());
+  EXPECT_EQ(seen, 1);
 }
 
 }  // namespace
