@@ -63,12 +63,10 @@ class NetworkSynthesizer : public Synthesizer {
     std::size_t first = 0;
     for (std::size_t i = 0; i < windows.size(); ++i) {
       const std::size_t count = static_cast<std::size_t>(Candidates(*windows[i]));
-      results.push_back(
-          IsCancelled(inputs[first])
-              ? absl::CancelledError("cancelled while it was being answered")
-              : TurnAsAsked(*windows[i], standardisations[i], inputs[first],
-                            Choose(*windows[i], standardisations[i],
-                                   absl::MakeConstSpan(*followers).subspan(first, count))));
+      results.push_back(IsCancelled(inputs[first])
+                            ? absl::CancelledError("cancelled while it was being answered")
+                            : Answer(*windows[i], standardisations[i], inputs[first],
+                                     absl::MakeConstSpan(*followers).subspan(first, count)));
       first += count;
     }
     return results;
@@ -129,17 +127,33 @@ class NetworkSynthesizer : public Synthesizer {
     return followers;
   }
 
-  // Draws more samples until one turns as the labels ask, and returns the one that does so best.
-  // Windows of an endless motion keep their noise.
-  WindowResult TurnAsAsked(const SynthesisWindow& window,
-                           const motion::Standardisation& standardisation,
-                           const NetworkInput& input, WindowResult first) const {
-    if (!first.ok() || !description_.samples || window.options.sampling.first_frame) return first;
-    const AskedTurns turns(description_, window);
-    if (turns.demand() == 0) return first;
-    std::vector<std::vector<double>> samples = {turns.TurnsOf(window.leader, *first)};
-    if (IsDecided(turns, samples)) return first;
+  // The answer to a window, of the network's candidates. `input`: of the first one.
+  WindowResult Answer(const SynthesisWindow& window, const motion::Standardisation& standardisation,
+                      const NetworkInput& input, absl::Span<const motion::Poses> candidates) const {
+    // Only candidates that are compared with each other need all stages at once.
+    const bool is_finished = candidates.size() > 1;
+    WindowResult first = is_finished ? Choose(window, standardisation, candidates)
+                                     : FinishTrunk(window, standardisation, candidates[0]);
+    if (!first.ok()) return first;
     std::vector<motion::Poses> followers = {*std::move(first)};
+    const absl::StatusOr<std::size_t> best =
+        TurnAsAsked(window, standardisation, input, &followers);
+    if (!best.ok()) return best.status();
+    if (is_finished && *best == 0) return std::move(followers[0]);
+    return FinishBody(window, window.pins, std::move(followers[*best]));
+  }
+
+  // Adds samples to the first one until one turns as the labels ask. Returns the index of the one
+  // that does so best. Windows of an endless motion keep their noise.
+  absl::StatusOr<std::size_t> TurnAsAsked(const SynthesisWindow& window,
+                                          const motion::Standardisation& standardisation,
+                                          const NetworkInput& input,
+                                          std::vector<motion::Poses>* followers) const {
+    if (!description_.samples || window.options.sampling.first_frame) return 0;
+    const AskedTurns turns(description_, window);
+    if (turns.demand() == 0) return 0;
+    std::vector<std::vector<double>> samples = {turns.TurnsOf(window.leader, (*followers)[0])};
+    if (IsDecided(turns, samples)) return 0;
     for (const std::vector<NetworkInput>& inputs : DrawnAgain(description_, turns, window, input)) {
       const absl::StatusOr<std::vector<motion::Poses>> answers = RunNetwork(inputs, 1);
       if (!answers.ok()) return answers.status();
@@ -147,23 +161,18 @@ class NetworkSynthesizer : public Synthesizer {
         // Turns are measured once the trunk is finished, because the network's own hips can be
         // turned over or shrunk to a point.
         WindowResult follower = FinishTrunk(window, standardisation, answer);
-        if (!follower.ok()) return follower;
+        if (!follower.ok()) return follower.status();
         samples.push_back(turns.TurnsOf(window.leader, *follower));
-        followers.push_back(*std::move(follower));
+        followers->push_back(*std::move(follower));
       }
       if (IsDecided(turns, samples)) break;
     }
-    const std::size_t best = MostAsAsked(turns, samples);
-    if (best == 0) return std::move(followers[0]);
-    return FinishBody(window, window.pins, std::move(followers[best]));
+    return MostAsAsked(turns, samples);
   }
 
   // The best of a window's candidates, finished. Fails if one of them is not finite.
   WindowResult Choose(const SynthesisWindow& window, const motion::Standardisation& standardisation,
                       absl::Span<const motion::Poses> candidates) const {
-    if (candidates.size() == 1) {
-      return Finish(window, standardisation, candidates[0], window.pins);
-    }
     std::vector<motion::Poses> followers;
     for (const motion::Poses& candidate : candidates) {
       WindowResult finished = Finish(window, standardisation, candidate, /*pins=*/{});
