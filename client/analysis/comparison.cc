@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/index.h"
 #include "model/body/limbs.h"
 #include "model/body/liveliness.h"
 #include "model/body/motion_quality.h"
@@ -22,7 +23,7 @@
 namespace duet::client::analysis {
 namespace {
 
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+using base::Index;
 
 absl::Status Check(const char* name, const Answer& answer) {
   if (!answer.partner || answer.partner->frame_count() == answer.person.frame_count()) {

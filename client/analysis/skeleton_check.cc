@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
 #include "model/base/angle.h"
+#include "model/base/index.h"
 #include "model/base/median.h"
 #include "model/body/limbs.h"
 #include "model/cleanup/floor.h"
@@ -44,7 +45,7 @@ constexpr double kMostForwardLean = 12, kMostOtherLean = 5;
 // Rotation of the shoulders against the hips in degrees. People reach 50, and more for a moment.
 constexpr double kMostTwist = 60, kMostTimeTwisted = 0.02;
 
-std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+using base::Index;
 
 std::string Percent(double share) { return absl::StrFormat("%.1f %%", 100 * share); }
 

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/index.h"
 #include "model/base/text.h"
 
 namespace duet::client::capture {
@@ -21,7 +22,7 @@ constexpr double kNoOffset = 1e-6;              // metres
 // After this many frames, bones that have not come are reported.
 constexpr int kNotesAfterFrames = 30;
 
-std::size_t Index(int bone) { return static_cast<std::size_t>(bone); }
+using base::Index;
 
 // Between Unity's axes and right-handed ones; its own inverse.
 Vec3d Mirrored(Vec3d a) { return {-a.x, a.y, a.z}; }

@@ -5,6 +5,7 @@
 
 #include "client/capture/humanoid.h"
 #include "client/capture/osc.h"
+#include "model/base/index.h"
 #include "model/motion/clip.h"
 #include "model/motion/poses.h"
 #include "model/retargeting/foot_pose.h"
@@ -47,7 +48,7 @@ constexpr char kTransformTypes[] = "sfffffff";
 // The bytes of one bone's message, at most.
 constexpr std::size_t kBoneBytes = 96;
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 motion::Skeleton FittedSkeleton() {
   motion::Skeleton skeleton;

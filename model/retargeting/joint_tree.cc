@@ -2,12 +2,14 @@
 
 #include <cstddef>
 
+#include "model/base/index.h"
+
 namespace duet::retargeting {
 namespace {
 
 constexpr Vec3d kLeft = {1, 0, 0}, kRight = {-1, 0, 0}, kUp = {0, 1, 0}, kDown = {0, -1, 0};
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 class StraightFigure {
  public:

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/base/index.h"
 #include "model/retargeting/foot_pose.h"
 
 namespace duet::retargeting {
@@ -13,7 +14,7 @@ constexpr double kNoLength = 0.01;
 // Radians. The slopes of feet that stand at rest, and how far outwards they point.
 constexpr double kLeastSlope = -0.2, kMostSlope = 0.9, kMostToeOut = 0.8;
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 // The clip's joint in a role that is one joint, which wrists and ankles always are.
 int JointOf(const BodyRoles& roles, const char* role) {

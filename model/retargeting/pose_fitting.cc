@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/base/angle.h"
+#include "model/base/index.h"
 
 namespace duet::retargeting {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kDirectionWeight = 10;
 constexpr double kPreviousPrior = 0.05;
 constexpr double kSwingPrior = 0.02;
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 // The axis about which a limb's next joint bends in the rest pose: elbows of a T pose bend about
 // the vertical, knees about the line through both.

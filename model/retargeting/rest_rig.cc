@@ -2,10 +2,12 @@
 
 #include <cstddef>
 
+#include "model/base/index.h"
+
 namespace duet::retargeting {
 namespace {
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 }  // namespace
 

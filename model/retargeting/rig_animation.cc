@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "model/base/index.h"
 #include "model/retargeting/foot_pose.h"
 #include "model/retargeting/rig_fitting.h"
 
@@ -12,7 +13,7 @@ namespace {
 // Metres, and radians.
 constexpr double kSamePlace = 2e-5, kNoTurn = 1e-6;
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 }  // namespace
 

@@ -4,12 +4,13 @@
 #include <utility>
 
 #include "model/base/angle.h"
+#include "model/base/index.h"
 #include "model/retargeting/foot_pose.h"
 
 namespace duet::retargeting {
 namespace {
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 bool IsFoot(const motion::Skeleton& skeleton, int joint) {
   return skeleton.feet && (joint == skeleton.feet->left || joint == skeleton.feet->right);

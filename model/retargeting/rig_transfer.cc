@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/index.h"
 #include "model/base/median.h"
 #include "model/motion/recorded_motion.h"
 #include "model/retargeting/body_roles.h"
@@ -28,7 +29,7 @@ constexpr double kShinHangs = 0.8;
 // Weight of the previous rotation, for directions that a fit does not determine.
 constexpr double kPreviousPrior = 1e-3;
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 std::vector<motion::Vec3> ToFloats(const std::vector<Vec3d>& positions) {
   std::vector<motion::Vec3> floats;

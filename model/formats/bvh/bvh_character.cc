@@ -7,6 +7,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/index.h"
 #include "model/retargeting/rest_rig.h"
 
 namespace duet::formats::bvh {
@@ -20,7 +21,7 @@ constexpr char kEndSuffix[] = ".end";
 // Length of a last bone if its file does not state it, as a fraction of the bone before it.
 constexpr double kLastBone = 0.25;
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 class HierarchyWriter {
  public:

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/index.h"
 #include "model/base/text.h"
 #include "model/motion/coordinates.h"
 #include "model/retargeting/rest_rig.h"
@@ -22,7 +23,7 @@ using retargeting::Vec3d;
 
 constexpr double kNoTurn = 1e-4;  // radians
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 // One person's joints, without the motion.
 BvhDocument PersonOf(const BvhDocument& document, int person) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "model/base/index.h"
 #include "model/formats/gltf/gltf_parts.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/retargeting/mannequin.h"
@@ -20,7 +21,7 @@ using retargeting::Vec3d;
 
 constexpr char kName[] = "follower";
 
-std::size_t Index(int joint) { return static_cast<std::size_t>(joint); }
+using base::Index;
 
 // Adds a parent node, then the joints in the rig's order below it. Returns the parent.
 int AddJoints(const CharacterRig& rig, GltfWriter* writer) {

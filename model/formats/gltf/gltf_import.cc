@@ -11,6 +11,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/index.h"
 #include "model/base/median.h"
 #include "model/base/text.h"
 #include "model/formats/gltf/gltf_animation.h"
@@ -31,7 +32,7 @@ constexpr double kRateTolerance = 0.01;
 constexpr std::size_t kMostCharacters = 64;
 constexpr std::size_t kMostNames = 20;  // of animations, in messages
 
-std::size_t Index(int node) { return static_cast<std::size_t>(node); }
+using base::Index;
 
 Affine FromMatrix(const std::array<double, 16>& m) {
   return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};

@@ -9,6 +9,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/index.h"
 #include "model/formats/gltf/gltf_compaction.h"
 #include "model/formats/gltf/gltf_document.h"
 #include "model/formats/gltf/gltf_parts.h"
@@ -28,7 +29,7 @@ using retargeting::Vec3d;
 constexpr double kNoTurn = 1e-6;  // radians
 constexpr std::size_t kJsonBegins = 20, kJsonLengthAt = 12, kAlignment = 4;
 
-std::size_t Index(int node) { return static_cast<std::size_t>(node); }
+using base::Index;
 
 // The document's text; the first chunk of a .glb. Requires a file that ParseGltf accepts.
 absl::string_view JsonOf(absl::string_view content) {

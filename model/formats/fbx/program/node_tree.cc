@@ -8,6 +8,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "assimp/version.h"
+#include "model/base/index.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::fbx::program {
@@ -24,7 +25,7 @@ Vec3d ToVector(ai_real x, ai_real y, ai_real z) {
   return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
 }
 
-std::size_t Index(int node) { return static_cast<std::size_t>(node); }
+using base::Index;
 
 // The local transform that the file was saved with.
 Affine SavedPose(const Node& node, const Affine& root) {

@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "assimp/material.h"
+#include "model/base/index.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::formats::fbx::program {
@@ -23,7 +24,7 @@ using retargeting::Vec3d;
 constexpr unsigned kMostVertices = 4'000'000;
 constexpr std::size_t kInfluences = 4;
 
-std::size_t Index(int node) { return static_cast<std::size_t>(node); }
+using base::Index;
 
 std::vector<Vec3d> ToVectors(const aiVector3D* vectors, unsigned count) {
   std::vector<Vec3d> converted;
