@@ -140,8 +140,8 @@ absl::Status Act(const AdminArguments& arguments, AdminClient& client) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<ExitCode> Run(const AdminArguments& arguments,
-                             const ProgramEnvironment& environment) {
+absl::StatusOr<ExitCode> RunAdmin(const AdminArguments& arguments,
+                                  const ProgramEnvironment& environment) {
   const absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
   const absl::StatusOr<std::unique_ptr<AdminClient>> client = environment.connect_admin(*options);
@@ -226,7 +226,7 @@ Command AddAdminCommand(FlagSet* program) {
   const auto arguments = std::make_shared<AdminArguments>();
   FlagSet* app = program->AddCommand("admin", "Change which models a running server serves");
   AddFlags(app, arguments.get());
-  return MakeServerCommand(app, arguments, Run);
+  return MakeServerCommand(app, arguments, RunAdmin);
 }
 
 }  // namespace duet::client::cli

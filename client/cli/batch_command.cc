@@ -258,8 +258,8 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   return code;
 }
 
-absl::StatusOr<ExitCode> Run(const BatchArguments& arguments,
-                             const ProgramEnvironment& environment) {
+absl::StatusOr<ExitCode> RunBatch(const BatchArguments& arguments,
+                                  const ProgramEnvironment& environment) {
   const absl::Status inputs = batch::CheckInputs(arguments.leaders, arguments.out);
   if (!inputs.ok()) return inputs;
   Prepared prepared;
@@ -307,7 +307,7 @@ absl::StatusOr<ExitCode> RunVerify(const BatchArguments& arguments,
     there.out = std::filesystem::absolute(arguments.out);
     absl::Status status = EnterFolderOf(arguments.out);
     if (!status.ok()) return status;
-    const absl::StatusOr<ExitCode> repaired = Run(*command, environment);
+    const absl::StatusOr<ExitCode> repaired = RunBatch(*command, environment);
     if (!repaired.ok()) return repaired.status();
     code = *repaired;
     report = VerifyAndRecord(there, environment);
@@ -327,7 +327,7 @@ absl::StatusOr<ExitCode> RunAction(const BatchArguments& arguments,
     case BatchArguments::Action::kRun:
       break;
   }
-  return Run(arguments, environment);
+  return RunBatch(arguments, environment);
 }
 
 }  // namespace

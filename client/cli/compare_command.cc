@@ -48,7 +48,7 @@ absl::StatusOr<ComparedTakes> CompareTakes(const TakeArguments& arguments,
   return compared;
 }
 
-absl::Status Run(const CompareArguments& arguments, const ProgramEnvironment& environment) {
+absl::Status RunCompare(const CompareArguments& arguments, const ProgramEnvironment& environment) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   const absl::StatusOr<ComparedTakes> compared =
       CompareTakes(arguments.takes, skeleton, environment.in);
@@ -96,7 +96,7 @@ Command AddCompareCommand(FlagSet* program) {
   FlagSet* app = program->AddCommand(
       "compare", "Print how two motions differ: displacement, speed, lean, contact");
   AddFlags(app, arguments.get());
-  return MakeCommand(app, arguments, Run);
+  return MakeCommand(app, arguments, RunCompare);
 }
 
 }  // namespace duet::client::cli

@@ -330,7 +330,7 @@ nlohmann::json ToJson(const Conversion& conversion, const std::vector<Written>& 
           {"outputs", outputs}};
 }
 
-absl::Status Run(const ConvertArguments& arguments, const ProgramEnvironment& environment) {
+absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironment& environment) {
   const absl::StatusOr<Conversion> conversion = ReadConversion(arguments, environment.in);
   if (!conversion.ok()) return conversion.status();
   std::vector<Written> all;
@@ -415,7 +415,7 @@ Examples:
 duet help exit-codes explains the exit codes.
 )");
   AddFlags(app, arguments.get());
-  return MakeCommand(app, arguments, Run);
+  return MakeCommand(app, arguments, RunConvert);
 }
 
 }  // namespace duet::client::cli

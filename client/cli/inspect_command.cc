@@ -87,7 +87,7 @@ Inspection Inspect(const std::filesystem::path& file, const InputArguments& inpu
   return inspection;
 }
 
-ExitCode Run(const InspectArguments& arguments, const ProgramEnvironment& environment) {
+ExitCode RunInspect(const InspectArguments& arguments, const ProgramEnvironment& environment) {
   const Style style = environment.OutStyle();
   ExitCode worst = kExitDone;
   nlohmann::json files = nlohmann::json::array();
@@ -138,7 +138,7 @@ Examples:
 duet help exit-codes explains the exit codes.
 )");
   AddFlags(app, arguments.get());
-  return MakeCommand(app, arguments, Run);
+  return MakeCommand(app, arguments, RunInspect);
 }
 
 }  // namespace duet::client::cli

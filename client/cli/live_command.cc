@@ -79,7 +79,7 @@ absl::StatusOr<live::LiveReport> RunSession(const LiveArguments& arguments, cons
   return report;
 }
 
-absl::Status Run(const LiveArguments& arguments, const ProgramEnvironment& environment) {
+absl::Status RunLive(const LiveArguments& arguments, const ProgramEnvironment& environment) {
   Stopper stopper;
   const StopSignals signals([&stopper] { stopper.Stop(); });
   if (!arguments.leader.empty()) {
@@ -133,7 +133,7 @@ Command AddLiveCommand(FlagSet* program) {
   FlagSet* app = program->AddCommand("live", "Answer a leader while it still moves");
   AddLiveFlags(app, arguments.get());
   app->Footer(kFooter);
-  return MakeServerCommand(app, arguments, Run);
+  return MakeServerCommand(app, arguments, RunLive);
 }
 
 }  // namespace duet::client::cli

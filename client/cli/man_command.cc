@@ -18,7 +18,7 @@ struct ManArguments {
   std::filesystem::path folder;
 };
 
-absl::StatusOr<ExitCode> Run(const ManArguments& arguments, const CommandContext& context) {
+absl::StatusOr<ExitCode> RunMan(const ManArguments& arguments, const CommandContext& context) {
   if (!arguments.folder.empty()) return Done(WriteManualPages(context.program, arguments.folder));
   const std::string page = ManualPage(context.program, arguments.command);
   if (page.empty()) {
@@ -41,7 +41,7 @@ Command AddManCommand(FlagSet* program) {
       ->Form("COMMAND");
   command.app->Add("--out", &arguments->folder, "Write all pages into this folder instead")
       ->Form("FOLDER");
-  command.run = [arguments](const CommandContext& context) { return Run(*arguments, context); };
+  command.run = [arguments](const CommandContext& context) { return RunMan(*arguments, context); };
   command.uses_settings = false;
   return command;
 }

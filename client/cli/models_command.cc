@@ -16,7 +16,7 @@ struct ModelsArguments {
   bool json = false;
 };
 
-absl::Status Run(const ModelsArguments& arguments, const ProgramEnvironment& environment) {
+absl::Status RunModels(const ModelsArguments& arguments, const ProgramEnvironment& environment) {
   const absl::StatusOr<Client> client = Connect(arguments.server, environment);
   if (!client.ok()) return client.status();
   const absl::StatusOr<std::vector<ModelInfo>> models = client->ListModels();
@@ -32,7 +32,7 @@ Command AddModelsCommand(FlagSet* program) {
   FlagSet* app = program->AddCommand("models", "List the models that the server serves");
   AddServerFlags(app, &arguments->server);
   app->AddSwitch("--json", &arguments->json, "Print JSON");
-  return MakeServerCommand(app, arguments, Run);
+  return MakeServerCommand(app, arguments, RunModels);
 }
 
 }  // namespace duet::client::cli

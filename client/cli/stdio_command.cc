@@ -31,7 +31,7 @@ int RunLine(const std::string& line, const CommandContext& context,
   return kExitUsage;
 }
 
-ExitCode Run(const CommandContext& context) {
+ExitCode RunStdio(const CommandContext& context) {
   const ProgramEnvironment& environment = context.environment;
   if (environment.in == nullptr) return kExitDone;
   for (std::string line; std::getline(*environment.in, line);) {
@@ -64,7 +64,7 @@ the JSON states.
 Example:
   echo '["convert", "walk.bvh", "--out", "-", "--output-format", "json"]' | duet stdio
 )");
-  command.run = Run;
+  command.run = RunStdio;
   return command;
 }
 

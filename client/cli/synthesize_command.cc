@@ -118,7 +118,8 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
   return absl::OkStatus();
 }
 
-absl::Status Run(const SynthesizeArguments& arguments, const ProgramEnvironment& environment) {
+absl::Status RunSynthesize(const SynthesizeArguments& arguments,
+                           const ProgramEnvironment& environment) {
   absl::Status inputs = CheckInputs(arguments);
   if (!inputs.ok()) return inputs;
   const absl::StatusOr<Client> client = Connect(arguments.server, environment);
@@ -135,7 +136,7 @@ Command AddSynthesizeCommand(FlagSet* program) {
   FlagSet* app = program->AddCommand("synthesize", "Synthesise the follower of a leader");
   AddSynthesizeFlags(app, arguments.get());
   app->Footer(kExitCodesFooter);
-  return MakeServerCommand(app, arguments, Run);
+  return MakeServerCommand(app, arguments, RunSynthesize);
 }
 
 }  // namespace duet::client::cli

@@ -108,7 +108,7 @@ absl::Status ViewItem(const ViewArguments& arguments, const ProgramEnvironment& 
   return Write(arguments, *page, absl::StrCat("shown     ", name, " of ", set, "\n"), environment);
 }
 
-absl::Status Run(const ViewArguments& arguments, const ProgramEnvironment& environment) {
+absl::Status RunView(const ViewArguments& arguments, const ProgramEnvironment& environment) {
   if (IsOfSet(arguments)) return ViewItem(arguments, environment);
   const absl::StatusOr<motion::Skeleton> skeleton = SkeletonOf(arguments.skeleton);
   if (!skeleton.ok()) return skeleton.status();
@@ -165,7 +165,7 @@ Command AddViewCommand(FlagSet* program) {
   const auto arguments = std::make_shared<ViewArguments>();
   FlagSet* app = program->AddCommand("view", "Make a page that plays motions side by side");
   AddFlags(app, arguments.get());
-  return MakeCommand(app, arguments, Run);
+  return MakeCommand(app, arguments, RunView);
 }
 
 }  // namespace duet::client::cli

@@ -10,11 +10,11 @@ namespace {
 
 using test::SwayingMotion;
 
-constexpr int kFrames = 12;
+constexpr int kFadedFrames = 12;
 
 // A motion and another one that is turned by a quarter and moved.
 struct Pair {
-  motion::Poses from = SwayingMotion(kFrames, 15);
+  motion::Poses from = SwayingMotion(kFadedFrames, 15);
   motion::Poses to = from;
   Pair() {
     for (motion::Vec3& p : to.all()) p = RotateY(p, 1.5) + motion::Vec3{0.3f, 0, 0.1f};
@@ -41,7 +41,7 @@ TEST(CrossFade, GoesSmoothlyFromOneToTheOther) {
   const motion::Poses blended = Blended(pair);
   const int root = motion::SbuSkeleton().root;
   float previous = 0, steepest = 0;
-  for (int t = 0; t < kFrames; ++t) {
+  for (int t = 0; t < kFadedFrames; ++t) {
     const motion::Vec3 from = pair.from.at(t, root), to = pair.to.at(t, root);
     const float weight = Distance(blended.at(t, root), from) / Distance(to, from);
     EXPECT_GT(weight, previous) << t;
@@ -58,7 +58,7 @@ TEST(CrossFade, GoesSmoothlyFromOneToTheOther) {
 TEST(CrossFade, KeepsLimbLengths) {
   const Pair pair;
   const motion::Poses blended = Blended(pair);
-  for (int t = 0; t < kFrames; ++t) {
+  for (int t = 0; t < kFadedFrames; ++t) {
     for (const motion::Bone& bone : motion::SbuSkeleton().bones) {
       // Both motions have the same limbs here, in other directions.
       const float wanted = Distance(pair.from.at(t, bone.parent), pair.from.at(t, bone.child));
@@ -91,7 +91,7 @@ TEST(CrossFade, TakesBonesInAnyOrder) {
 TEST(CrossFade, NoSharedFramesChangeNothing) {
   Pair pair;
   const motion::Poses before = pair.from;
-  CrossFade(motion::SbuSkeleton()).Blend(pair.to, kFrames, &pair.from);
+  CrossFade(motion::SbuSkeleton()).Blend(pair.to, kFadedFrames, &pair.from);
   EXPECT_EQ(pair.from, before);
 }
 
@@ -102,7 +102,7 @@ TEST(CrossFade, LeavesTheFramesBeforeTheSharedOnes) {
   const motion::Poses before = blended;
   CrossFade(motion::SbuSkeleton()).Blend(pair.to, 3, &blended);
   for (int t = 0; t < 3; ++t) EXPECT_EQ(blended[t], before[t]) << t;
-  for (int t = 0; t < kFrames; ++t) EXPECT_EQ(blended[3 + t], Blended(pair)[t]) << t;
+  for (int t = 0; t < kFadedFrames; ++t) EXPECT_EQ(blended[3 + t], Blended(pair)[t]) << t;
 }
 
 }  // namespace

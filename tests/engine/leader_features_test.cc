@@ -14,11 +14,11 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr double kRate = 15;
+constexpr double kFeatureRate = 15;
 
 std::map<std::string, double> Measure(const motion::Poses& leader,
                                       const motion::Skeleton& skeleton = PlainSkeleton(),
-                                      double frame_rate_hz = kRate) {
+                                      double frame_rate_hz = kFeatureRate) {
   const std::vector<LeaderFeature> features = LeaderFeatures(skeleton);
   const std::vector<double> values = MeasureLeader(skeleton, leader, frame_rate_hz);
   EXPECT_EQ(features.size(), values.size());
@@ -48,7 +48,7 @@ TEST(LeaderFeatures, SomebodyWhoStands) {
 }
 
 TEST(LeaderFeatures, SomebodyWhoWalks) {
-  const auto walking = Measure(Walking(31, 1 / kRate));
+  const auto walking = Measure(Walking(31, 1 / kFeatureRate));
   EXPECT_NEAR(walking.at("mean_joint_speed"), 1, 1e-4);
   EXPECT_NEAR(walking.at("highest_joint_speed"), 1, 1e-4);
   EXPECT_NEAR(walking.at("root_path_speed"), 1, 1e-4);
@@ -58,10 +58,10 @@ TEST(LeaderFeatures, SomebodyWhoWalks) {
 }
 
 TEST(LeaderFeatures, TravelIsTheFarthestPointAndThePathTheWholeWay) {
-  motion::Poses there_and_back = Walking(61, 1 / kRate);
+  motion::Poses there_and_back = Walking(61, 1 / kFeatureRate);
   for (int t = 31; t < 61; ++t) {
     for (motion::Vec3& joint : there_and_back[t])
-      joint.x -= static_cast<float>(2 * (t - 30) / kRate);
+      joint.x -= static_cast<float>(2 * (t - 30) / kFeatureRate);
   }
   const auto walking = Measure(there_and_back);
   EXPECT_NEAR(walking.at("root_travel"), 2, 0.1);
@@ -71,7 +71,7 @@ TEST(LeaderFeatures, TravelIsTheFarthestPointAndThePathTheWholeWay) {
 TEST(LeaderFeatures, ClimbingIsNoPathAlongTheFloor) {
   motion::Poses rising = Standing(31);
   for (int t = 0; t < 31; ++t) {
-    for (motion::Vec3& joint : rising[t]) joint.y += static_cast<float>(t / kRate);
+    for (motion::Vec3& joint : rising[t]) joint.y += static_cast<float>(t / kFeatureRate);
   }
   EXPECT_EQ(Measure(rising).at("root_path_speed"), 0);
   EXPECT_EQ(Measure(rising).at("root_travel"), 0);
@@ -80,7 +80,7 @@ TEST(LeaderFeatures, ClimbingIsNoPathAlongTheFloor) {
 
 TEST(LeaderFeatures, OneFastHand) {
   motion::Poses waving = Standing(31);
-  for (int t = 0; t < 31; ++t) waving.at(t, 7).z += static_cast<float>(2 * t / kRate);
+  for (int t = 0; t < 31; ++t) waving.at(t, 7).z += static_cast<float>(2 * t / kFeatureRate);
   const auto fast = Measure(waving);
   EXPECT_NEAR(fast.at("highest_joint_speed"), 2, 1e-3);
   EXPECT_NEAR(fast.at("mean_joint_speed"), 2.0 / 8, 1e-3);

@@ -16,20 +16,20 @@ namespace {
 using test::FakeDescription;
 
 constexpr int kWindow = 16;
-constexpr double kRate = 15;
+constexpr double kNetworkRate = 15;
 
 // Trained on people who stand.
 ModelDescription TrainedOnStanding() {
   ModelDescription model = FakeDescription();
   model.skeleton = PlainSkeleton();
-  model.frame_rate_hz = kRate;
+  model.frame_rate_hz = kNetworkRate;
   model.window_frames = kWindow;
   const motion::Poses standing = Standing(kWindow);
-  model.leader_statistics = FitLeaderStatistics(model.skeleton, {&standing}, kRate);
+  model.leader_statistics = FitLeaderStatistics(model.skeleton, {&standing}, kNetworkRate);
   return model;
 }
 
-ClipRequest Request(motion::Poses leader, double frame_rate_hz = kRate) {
+ClipRequest Request(motion::Poses leader, double frame_rate_hz = kNetworkRate) {
   return {std::move(leader), frame_rate_hz, LabelTrack(std::vector<float>(6, 0)),
           std::nullopt,      std::nullopt,  {}};
 }
@@ -39,7 +39,8 @@ motion::Poses WalkingIn(int walked, int windows) {
   const int frames = 1 + windows * (kWindow - 1), steps = walked * (kWindow - 1);
   motion::Poses leader = Standing(frames);
   for (int t = 0; t < frames; ++t) {
-    for (motion::Vec3& joint : leader[t]) joint.x += static_cast<float>(std::min(t, steps) / kRate);
+    for (motion::Vec3& joint : leader[t])
+      joint.x += static_cast<float>(std::min(t, steps) / kNetworkRate);
   }
   return leader;
 }
@@ -53,19 +54,21 @@ TEST(Unfamiliarity, IsNotKnownWithoutStatistics) {
 TEST(Unfamiliarity, OfOneWindowIsItsLeaders) {
   const ModelDescription model = TrainedOnStanding();
   EXPECT_NEAR(*Unfamiliarity(model, Request(Standing(kWindow))), 0, 1e-6);
-  const motion::Poses walking = Walking(kWindow, 1 / kRate);
-  const double far = Unfamiliarity(*model.leader_statistics, model.skeleton, walking, kRate);
+  const motion::Poses walking = Walking(kWindow, 1 / kNetworkRate);
+  const double far = Unfamiliarity(*model.leader_statistics, model.skeleton, walking, kNetworkRate);
   EXPECT_GT(far, 2);
   EXPECT_NEAR(*Unfamiliarity(model, Request(walking)), far, 1e-6);
 }
 
 TEST(Unfamiliarity, IsMeasuredAtTheModelsRate) {
   const ModelDescription model = TrainedOnStanding();
-  const double far = *Unfamiliarity(model, Request(Walking(kWindow, 1 / kRate)));
-  EXPECT_NEAR(*Unfamiliarity(model, Request(Walking(2 * kWindow - 1, 0.5 / kRate), 2 * kRate)), far,
-              1e-3);
+  const double far = *Unfamiliarity(model, Request(Walking(kWindow, 1 / kNetworkRate)));
+  EXPECT_NEAR(*Unfamiliarity(
+                  model, Request(Walking(2 * kWindow - 1, 0.5 / kNetworkRate), 2 * kNetworkRate)),
+              far, 1e-3);
   // The same frames at twice the rate.
-  EXPECT_GT(*Unfamiliarity(model, Request(Walking(kWindow, 1 / kRate), 2 * kRate)), far * 1.2);
+  EXPECT_GT(*Unfamiliarity(model, Request(Walking(kWindow, 1 / kNetworkRate), 2 * kNetworkRate)),
+            far * 1.2);
 }
 
 TEST(Unfamiliarity, OfALongClipIsThatOfItsFarthestTenth) {

@@ -17,7 +17,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments {
+struct AugmentationArguments {
   std::string data;
   std::string runs;
   std::vector<uint64_t> seeds = {1, 2, 3, 4, 5};
@@ -30,10 +30,9 @@ struct Arguments {
   SectionFlags section = {"40_augmentation", "Synthetic motion as training material (Table 6)"};
 };
 
-absl::StatusOr<std::vector<experiments::SyntheticJob>> PlanHalf(const dataset::Dataset& dataset,
-                                                                const dataset::Split& split,
-                                                                const Arguments& arguments,
-                                                                uint64_t seed) {
+absl::StatusOr<std::vector<experiments::SyntheticJob>> PlanHalf(
+    const dataset::Dataset& dataset, const dataset::Split& split,
+    const AugmentationArguments& arguments, uint64_t seed) {
   if (arguments.plan.match + arguments.plan.mix < 1) {
     return absl::InvalidArgumentError(
         "--match and --mix: expected at least one motion a class, got 0 and 0");
@@ -48,7 +47,8 @@ absl::StatusOr<std::vector<experiments::SyntheticJob>> PlanHalf(const dataset::D
 }
 
 absl::StatusOr<experiments::DataHalf> PrepareHalf(const dataset::Dataset& dataset,
-                                                  const Arguments& arguments, uint64_t seed) {
+                                                  const AugmentationArguments& arguments,
+                                                  uint64_t seed) {
   experiments::DataHalf half;
   half.seed = seed;
   DUET_TRY(half.split, SplitInHalves(dataset, seed));
@@ -59,7 +59,8 @@ absl::StatusOr<experiments::DataHalf> PrepareHalf(const dataset::Dataset& datase
   return half;
 }
 
-report::ResultSection MakeSection(const dataset::Dataset& dataset, const Arguments& arguments,
+report::ResultSection MakeSection(const dataset::Dataset& dataset,
+                                  const AugmentationArguments& arguments,
                                   const experiments::Trials& trials) {
   report::ResultSection section = BeginSection(
       arguments.section,
@@ -89,7 +90,7 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset, const Argumen
   return section;
 }
 
-absl::Status WriteJobs(const dataset::Dataset& dataset, const Arguments& arguments) {
+absl::Status WriteJobs(const dataset::Dataset& dataset, const AugmentationArguments& arguments) {
   if (arguments.seeds.size() != 1) {
     return absl::InvalidArgumentError(
         absl::StrCat("--seeds: expected one with --write-jobs, got ", arguments.seeds.size()));
@@ -100,7 +101,7 @@ absl::Status WriteJobs(const dataset::Dataset& dataset, const Arguments& argumen
   return WriteSyntheticJobs(dataset, jobs, seed, arguments.write_jobs);
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunAugmentation(const AugmentationArguments& arguments) {
   DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
   if (!arguments.write_jobs.empty()) return WriteJobs(dataset, arguments);
   if (arguments.runs.empty()) {
@@ -131,8 +132,8 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] = AddCommand(
-      "augmentation", "A classifier with and without synthetic training motion (Table 6)", Run, app,
-      chosen);
+      "augmentation", "A classifier with and without synthetic training motion (Table 6)",
+      RunAugmentation, app, chosen);
   AddDataFlag(&arguments->data, command);
   CLI::Option* runs =
       command->add_option("--runs", arguments->runs, "output of duet-train --protocol half")

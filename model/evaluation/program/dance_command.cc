@@ -345,7 +345,7 @@ absl::StatusOr<int> FindTurnClass(const DanceFlags& flags, const dataset::Datase
       absl::StrCat("--turn-class: expected a class of the data, got ", flags.turn_class));
 }
 
-absl::Status Run(const DanceFlags& flags) {
+absl::Status RunDance(const DanceFlags& flags) {
   if (flags.ablations && flags.models.checkpoint.empty()) {
     return absl::InvalidArgumentError("--ablations: expected --checkpoint, got none");
   }
@@ -390,7 +390,7 @@ absl::Status Run(const DanceFlags& flags) {
 
 void AddDanceCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [flags, command] =
-      AddCommand("dance", "Followers of whole takes of a couple's dance", Run, app, chosen);
+      AddCommand("dance", "Followers of whole takes of a couple's dance", RunDance, app, chosen);
   flags->starts = {"pose"};
   flags->asked.samples = 3;
   AddAnswersFlags("18_dance", "Whole takes of a dance", flags, command);

@@ -22,7 +22,7 @@ namespace {
 // Value of --baselines for only the models' rows.
 constexpr char kNoBaseline[] = "none";
 
-struct Arguments : ExperimentFlags {
+struct FoldsArguments : ExperimentFlags {
   std::vector<std::string> baselines = {"class_mean", "frozen_first_frame"};
   std::vector<std::string> metrics = {"afd", "afd_squared"};
   std::vector<std::string> printed;
@@ -62,7 +62,7 @@ absl::StatusOr<report::MethodFigures> ScoreModel(const dataset::Dataset& dataset
 
 absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experiment,
                                                         const FoldScorer& scorer,
-                                                        const Arguments& arguments) {
+                                                        const FoldsArguments& arguments) {
   std::vector<report::MethodFigures> rows;
   for (const std::string& name : arguments.baselines) {
     if (name == kNoBaseline) continue;
@@ -90,7 +90,7 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::vector<report::Table> Tables(const dataset::Dataset& dataset, const Arguments& arguments,
+std::vector<report::Table> Tables(const dataset::Dataset& dataset, const FoldsArguments& arguments,
                                   const std::vector<report::MethodFigures>& rows) {
   std::vector<report::Table> tables;
   for (const report::MetricStyle& style : report::MetricStyles()) {
@@ -114,7 +114,7 @@ bool NeedsJudge(const std::vector<std::string>& metrics) {
   });
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunFolds(const FoldsArguments& arguments) {
   DUET_TRY(Experiment experiment, OpenExperiment(arguments));
   DUET_TRY(FoldScorer scorer,
            FoldScorer::Create(experiment.dataset, experiment.folds,
@@ -138,7 +138,7 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] = AddCommand(
-      "folds", "Figures of models and baselines, leaving one subject out", Run, app, chosen);
+      "folds", "Figures of models and baselines, leaving one subject out", RunFolds, app, chosen);
   arguments->starts = StartNames();
   AddExperimentFlags("10_folds", "Leave one subject out", arguments, command);
   AddModelFlags(ModelNeeded::kNo, &arguments->models, command);

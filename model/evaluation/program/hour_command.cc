@@ -21,7 +21,7 @@ namespace {
 // So that every class is seen many times, and the first and the last minute have the same one.
 constexpr double kSecondsOfAClass = 60;
 
-struct Arguments {
+struct HourArguments {
   ModelChoice models;
   double minutes = 60;
   double rate = 30;
@@ -42,7 +42,7 @@ engine::LabelTrack ClassAfterClass(int classes, double seconds, double rate) {
   return labels;
 }
 
-absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const std::string& name,
+absl::StatusOr<report::Table> ModelTable(const HourArguments& arguments, const std::string& name,
                                          const engine::Synthesizer& model) {
   const engine::ModelDescription& description = model.description();
   if (description.skeleton.joint_names != motion::SbuSkeleton().joint_names) {
@@ -91,7 +91,7 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments, const std::
   return table;
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunHour(const HourArguments& arguments) {
   report::ResultSection section = BeginSection(
       arguments.section,
       "Long live sessions with leaders that formulas make: one stands and sways, one whirls, leaps "
@@ -113,7 +113,7 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddHourCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] =
-      AddCommand("hour", "Posture and place of live followers for an hour", Run, app, chosen);
+      AddCommand("hour", "Posture and place of live followers for an hour", RunHour, app, chosen);
   arguments->models.as_served = true;
   AddModelFlags(ModelNeeded::kYes, &arguments->models, command);
   AddNumber("--minutes", &arguments->minutes, 0.1, 240.0, "length of each session", command);

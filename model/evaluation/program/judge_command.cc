@@ -17,7 +17,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments {
+struct JudgeArguments {
   std::string data;
   std::string out;
   std::string hold_out;
@@ -58,7 +58,7 @@ std::string Recognised(const dataset::Dataset& dataset, const metrics::Confusion
 
 // Tells whether the classes can be told apart: every follower is judged once, by a judge that was
 // trained without its part.
-absl::Status CrossValidate(const dataset::Dataset& dataset, const Arguments& arguments) {
+absl::Status CrossValidate(const dataset::Dataset& dataset, const JudgeArguments& arguments) {
   metrics::Confusion confusion(dataset.class_count());
   for (int part = 0; part < arguments.parts; ++part) {
     const dataset::Split split = LeavePartOut(dataset, part, arguments.parts);
@@ -77,7 +77,7 @@ absl::Status CrossValidate(const dataset::Dataset& dataset, const Arguments& arg
   return absl::OkStatus();
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunJudge(const JudgeArguments& arguments) {
   DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
   FaceFollowers(&dataset);
   dataset::Split split{dataset::AllSequences(dataset), {}};
@@ -106,8 +106,9 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 
 void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto [arguments, command] = AddCommand(
-      "judge", "Train a classifier of followers, for the filter of duet batch", Run, app, chosen);
+  const auto [arguments, command] =
+      AddCommand("judge", "Train a classifier of followers, for the filter of duet batch", RunJudge,
+                 app, chosen);
   AddDataFlag(&arguments->data, command);
   command->add_option("--out", arguments->out, "folder to write the classifier to")->required();
   CLI::Option* hold_out =

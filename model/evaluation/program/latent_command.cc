@@ -22,7 +22,7 @@ namespace {
 // The columns of the table: how many nearest neighbours vote on a clip's class.
 constexpr int kNeighbours[] = {1, 5};
 
-struct Arguments {
+struct LatentArguments {
   std::string data;
   std::vector<std::string> runs;
   std::vector<std::string> subjects;
@@ -59,7 +59,7 @@ struct FoldCheckpoint {
 
 // Measures one latent space: a figure and a row of the table.
 absl::Status AddSpace(const dataset::Dataset& dataset, const FoldCheckpoint& fold,
-                      experiments::LatentLabels labels, const Arguments& arguments,
+                      experiments::LatentLabels labels, const LatentArguments& arguments,
                       report::ResultSection* section) {
   DUET_TRY(std::vector<int> clips, ChooseClips(dataset, fold.subject, arguments.clips));
   DUET_TRY(metrics::FeatureSet features, LatentFeatures(fold.checkpoint, dataset, clips, labels));
@@ -86,7 +86,7 @@ absl::Status AddSpace(const dataset::Dataset& dataset, const FoldCheckpoint& fol
 // A model that reads labels is measured a second time without the label, which by itself separates
 // the classes.
 absl::Status AddModel(const dataset::Dataset& dataset, const NamedRuns& runs,
-                      const std::vector<std::string>& subjects, const Arguments& arguments,
+                      const std::vector<std::string>& subjects, const LatentArguments& arguments,
                       report::ResultSection* section) {
   std::error_code error;
   // Of duet-train --protocol loso, a run for each fold; otherwise a single one.
@@ -108,7 +108,7 @@ absl::Status AddModel(const dataset::Dataset& dataset, const NamedRuns& runs,
 
 report::ResultSection MakeSection(const dataset::Dataset& dataset,
                                   const std::vector<std::string>& subjects,
-                                  const Arguments& arguments) {
+                                  const LatentArguments& arguments) {
   report::ResultSection section = BeginSection(
       arguments.section,
       "A clip is one point: the concatenated output of the generator's encoders, averaged over the "
@@ -129,7 +129,7 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset,
   return section;
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunLatent(const LatentArguments& arguments) {
   DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
   std::vector<std::string> subjects = arguments.subjects;
   if (subjects.empty()) subjects = dataset.Subjects();
@@ -146,7 +146,7 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddLatentCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] = AddCommand(
-      "latent", "Maps of the generator's latent space (Figures 6 and 7)", Run, app, chosen);
+      "latent", "Maps of the generator's latent space (Figures 6 and 7)", RunLatent, app, chosen);
   AddDataFlag(&arguments->data, command);
   command
       ->add_option("--runs", arguments->runs,

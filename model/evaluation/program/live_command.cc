@@ -17,7 +17,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments {
+struct LiveArguments {
   std::string data;
   ModelChoice models;
   std::vector<int> delays = {0, 2, 5, 10};
@@ -40,7 +40,7 @@ report::TableRow Row(const std::string& name, const experiments::LiveFigures& fi
            figures.speed, figures.jerk / whole_jerk}};
 }
 
-absl::StatusOr<report::Table> ModelTable(const Arguments& arguments,
+absl::StatusOr<report::Table> ModelTable(const LiveArguments& arguments,
                                          const dataset::Dataset& dataset, const std::string& name,
                                          const engine::Synthesizer& model) {
   const std::vector<int> sequences = dataset::AllSequences(dataset);
@@ -72,7 +72,7 @@ absl::StatusOr<report::Table> ModelTable(const Arguments& arguments,
   return table;
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunLive(const LiveArguments& arguments) {
   DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
   report::ResultSection section = BeginSection(
       arguments.section,
@@ -93,7 +93,7 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddLiveCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] =
-      AddCommand("live", "How fast and how smoothly live followers react", Run, app, chosen);
+      AddCommand("live", "How fast and how smoothly live followers react", RunLive, app, chosen);
   arguments->models.as_served = true;
   AddDataFlag(&arguments->data, command);
   AddModelFlags(ModelNeeded::kYes, &arguments->models, command);

@@ -15,7 +15,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments : ExperimentFlags {
+struct LongArguments : ExperimentFlags {
   std::vector<double> seconds = {60, 600};
 };
 
@@ -67,7 +67,7 @@ std::vector<experiments::LongClipRow> CapturedRows(const Experiment& experiment)
   return rows;
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunLong(const LongArguments& arguments) {
   DUET_TRY(Experiment experiment, OpenExperiment(arguments));
   report::ResultSection section = BeginAnswers(
       arguments, experiment,
@@ -101,7 +101,7 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddLongCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] =
-      AddCommand("long", "Posture and place of followers in long clips", Run, app, chosen);
+      AddCommand("long", "Posture and place of followers in long clips", RunLong, app, chosen);
   AddAnswersFlags("16_long", "Clips of a minute and of ten", arguments, command);
   AddNumber("--seconds", &arguments->seconds, 1.0, 3600.0, "lengths of the leaders, seconds",
             command)

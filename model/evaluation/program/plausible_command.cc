@@ -30,7 +30,7 @@ using motion::Poses;
 // Length of the pictures of the worst answers.
 constexpr double kPictureSeconds = 4;
 
-struct Arguments {
+struct PlausibleArguments {
   std::string leaders;
   double seconds = 60;
   std::string data;  // captured pairs; may be empty
@@ -42,7 +42,7 @@ struct Arguments {
 
 // The motion files below a folder as leaders of a model, in the order of their paths, each cut to
 // `seconds`. Reports files that cannot be read, and leaves them out.
-absl::StatusOr<std::vector<dataset::Sequence>> ReadLeaders(const Arguments& arguments,
+absl::StatusOr<std::vector<dataset::Sequence>> ReadLeaders(const PlausibleArguments& arguments,
                                                            const motion::Skeleton& skeleton) {
   DUET_TRY(const std::vector<fs::path> files, dataset::MotionFilesBelow(arguments.leaders));
   std::vector<dataset::Sequence> leaders;
@@ -88,7 +88,7 @@ experiments::ClassContacts ContactsOf(const engine::ModelDescription& model, int
 }
 
 // The answers to all leaders with one seed each, for one class.
-absl::Status AddAnswers(const Arguments& arguments, const engine::Synthesizer& synthesizer,
+absl::Status AddAnswers(const PlausibleArguments& arguments, const engine::Synthesizer& synthesizer,
                         const std::vector<dataset::Sequence>& leaders, int label, int sample,
                         const experiments::Plausibility& plausibility,
                         std::vector<Answer>* answers) {
@@ -163,7 +163,7 @@ void AddPictures(const engine::ModelDescription& model, const std::vector<Answer
   }
 }
 
-absl::Status AddModel(const Arguments& arguments, const std::string& name,
+absl::Status AddModel(const PlausibleArguments& arguments, const std::string& name,
                       const engine::Synthesizer& synthesizer, report::ResultSection* section) {
   const engine::ModelDescription& model = synthesizer.description();
   const experiments::Plausibility plausibility(model.skeleton);
@@ -224,7 +224,7 @@ absl::Status AddCaptured(const std::string& folder, report::ResultSection* secti
   return absl::OkStatus();
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunPlausible(const PlausibleArguments& arguments) {
   DUET_TRY(std::vector<FoldModel> models, OpenModels(arguments.models));
   report::ResultSection section =
       BeginSection(arguments.section,
@@ -246,8 +246,9 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 
 void AddPlausibleCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto [arguments, command] = AddCommand(
-      "plausible", "What a viewer would notice in followers of any leaders", Run, app, chosen);
+  const auto [arguments, command] =
+      AddCommand("plausible", "What a viewer would notice in followers of any leaders",
+                 RunPlausible, app, chosen);
   arguments->models.as_served = true;
   arguments->asked.samples = 1;
   AddSectionFlags(&arguments->section, command);

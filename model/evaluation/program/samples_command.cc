@@ -66,7 +66,7 @@ absl::StatusOr<std::vector<report::MethodFigures>> Rows(const Experiment& experi
   return rows;
 }
 
-absl::Status Run(const ExperimentFlags& flags) {
+absl::Status RunSamples(const ExperimentFlags& flags) {
   DUET_TRY(Experiment experiment, OpenExperiment(flags));
   DUET_TRY(FoldScorer scorer, FoldScorer::Create(experiment.dataset, experiment.folds,
                                                  FoldScorer::Judging::kFiltered));
@@ -97,7 +97,7 @@ absl::Status Run(const ExperimentFlags& flags) {
 
 void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [flags, command] =
-      AddCommand("samples", "Figures of many answers to each leader", Run, app, chosen);
+      AddCommand("samples", "Figures of many answers to each leader", RunSamples, app, chosen);
   AddAnswersFlags("14_samples", "Many answers to one leader", flags, command);
   AddNumber("--samples", &flags->asked.samples, 1, 1000,
             "answers to each leader by a model that samples", command);

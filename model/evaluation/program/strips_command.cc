@@ -14,7 +14,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments : ExperimentFlags {
+struct StripsArguments : ExperimentFlags {
   std::string start = "none";
 };
 
@@ -42,7 +42,7 @@ std::optional<Example> FindExample(const Experiment& experiment, int interaction
 
 absl::StatusOr<std::vector<report::PicturedPair>> Pairs(const Experiment& experiment,
                                                         const Example& example,
-                                                        const Arguments& arguments) {
+                                                        const StripsArguments& arguments) {
   const dataset::Dataset& dataset = experiment.dataset;
   const motion::ClipPair& pair = dataset.sequences[static_cast<size_t>(example.sequence)].pair;
   std::vector<report::PicturedPair> pairs = {{"captured", pair.leader.poses, pair.follower.poses}};
@@ -59,7 +59,7 @@ absl::StatusOr<std::vector<report::PicturedPair>> Pairs(const Experiment& experi
 }
 
 absl::Status AddPictures(const Experiment& experiment, const std::string& class_name,
-                         const Example& example, const Arguments& arguments,
+                         const Example& example, const StripsArguments& arguments,
                          report::ResultSection* section) {
   DUET_TRY(std::vector<report::PicturedPair> pairs, Pairs(experiment, example, arguments));
   const dataset::Sequence& sequence =
@@ -76,7 +76,7 @@ absl::Status AddPictures(const Experiment& experiment, const std::string& class_
   return absl::OkStatus();
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunStrips(const StripsArguments& arguments) {
   DUET_TRY(Experiment experiment, OpenExperiment(arguments));
   report::ResultSection section = BeginAnswers(
       arguments, experiment,
@@ -96,8 +96,9 @@ absl::Status Run(const Arguments& arguments) {
 }  // namespace
 
 void AddStripsCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto [arguments, command] = AddCommand(
-      "strips", "Pictures of captured and synthesised pairs, still and moving", Run, app, chosen);
+  const auto [arguments, command] =
+      AddCommand("strips", "Pictures of captured and synthesised pairs, still and moving",
+                 RunStrips, app, chosen);
   arguments->asked.samples = 2;  // show the variety of a model that samples
   AddExperimentFlags("18_strips", "Captured and synthesised, side by side", arguments, command);
   command->get_option("--out")->required();

@@ -16,7 +16,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments : ExperimentFlags {
+struct SweepArguments : ExperimentFlags {
   std::vector<uint64_t> sample_seeds = {0};
 };
 
@@ -68,7 +68,7 @@ absl::StatusOr<SweepFold> OpenFold(const dataset::Dataset& dataset, const FoldMo
 absl::StatusOr<std::vector<experiments::SweepCurve>> SweepFolds(const dataset::Dataset& dataset,
                                                                 const std::vector<SweepFold>& folds,
                                                                 experiments::StartGiven start,
-                                                                const Arguments& arguments) {
+                                                                const SweepArguments& arguments) {
   std::vector<experiments::SweepCurve> curves;
   for (const SweepFold& fold : folds) {
     // A model that does not sample has the same answer for every seed.
@@ -92,7 +92,7 @@ experiments::SweepNames Names(experiments::StartGiven start) {
   return {root ? "given the first root" : "given the first pose", root ? "_root" : "_pose"};
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunSweep(const SweepArguments& arguments) {
   DUET_TRY(Experiment experiment, OpenExperiment(arguments));
   const dataset::Dataset& dataset = experiment.dataset;
   std::vector<SweepFold> folds;
@@ -126,7 +126,7 @@ absl::Status Run(const Arguments& arguments) {
 
 void AddSweepCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] =
-      AddCommand("sweep", "Effect of raising and lowering label weights", Run, app, chosen);
+      AddCommand("sweep", "Effect of raising and lowering label weights", RunSweep, app, chosen);
   AddExperimentFlags("30_sweep", "Mix, match and avoid: what label weights do", arguments, command);
   arguments->models.runs.resize(1);
   command

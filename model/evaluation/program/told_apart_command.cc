@@ -16,7 +16,7 @@
 namespace duet::evaluation::program {
 namespace {
 
-struct Arguments : ExperimentFlags {
+struct ToldApartArguments : ExperimentFlags {
   std::vector<uint64_t> seeds = {1, 2, 3};
   bool finish_captured = false;
 };
@@ -27,14 +27,15 @@ using Accuracies = std::vector<std::vector<double>>;
 // The data with which a model's answers are compared.
 absl::StatusOr<dataset::Dataset> Captured(const dataset::Dataset& dataset, const FoldModel& model,
                                           const Fold& fold, const std::string& start,
-                                          const Arguments& arguments) {
+                                          const ToldApartArguments& arguments) {
   if (!arguments.finish_captured) return dataset;
   DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
   return experiments::WithFinishedFollowers(synthesizer->description(), dataset, ParseStart(start));
 }
 
 absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, const Fold& fold,
-                     const std::string& start, const Arguments& arguments, Accuracies* accuracies) {
+                     const std::string& start, const ToldApartArguments& arguments,
+                     Accuracies* accuracies) {
   const experiments::AskedSamples& asked = arguments.asked;
   DUET_TRY(auto training, Answers(dataset, model, fold, fold.split.train, start, asked));
   DUET_TRY(auto test, Answers(dataset, model, fold, fold.split.test, start, asked));
@@ -51,7 +52,8 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, co
   return absl::OkStatus();
 }
 
-absl::StatusOr<report::Table> Measure(const Experiment& experiment, const Arguments& arguments) {
+absl::StatusOr<report::Table> Measure(const Experiment& experiment,
+                                      const ToldApartArguments& arguments) {
   report::Table table{"Balanced accuracy of telling synthesised from captured pairs"};
   for (const Fold& fold : experiment.folds) table.columns.push_back(fold.subject);
   table.columns.insert(table.columns.end(), {"mean", "spread"});
@@ -76,7 +78,7 @@ absl::StatusOr<report::Table> Measure(const Experiment& experiment, const Argume
   return table;
 }
 
-absl::Status Run(const Arguments& arguments) {
+absl::Status RunToldApart(const ToldApartArguments& arguments) {
   DUET_TRY(Experiment experiment, OpenExperiment(arguments));
   report::ResultSection section = BeginAnswers(
       arguments, experiment,
@@ -96,7 +98,7 @@ absl::Status Run(const Arguments& arguments) {
 void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen) {
   const auto [arguments, command] =
       AddCommand("told-apart", "How well a classifier distinguishes answers from captured pairs",
-                 Run, app, chosen);
+                 RunToldApart, app, chosen);
   arguments->asked.samples = 1;
   AddAnswersFlags("17_told_apart", "Told apart from captured pairs", arguments, command);
   AddOption("--seeds", &arguments->seeds, "seeds; one classifier per seed", command)

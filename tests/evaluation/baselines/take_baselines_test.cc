@@ -9,7 +9,7 @@
 namespace duet::evaluation::baselines {
 namespace {
 
-constexpr double kRate = 10;
+constexpr double kTakeRate = 10;
 constexpr int kFrames = 40;
 
 // The follower stands as far in front of the leader as the leader's rhythm tells.
@@ -18,7 +18,7 @@ dataset::Sequence Take(double rhythm, int interaction_class) {
   take.interaction_class = interaction_class;
   motion::Poses leader(0, 15), follower(0, 15);
   for (int t = 0; t < kFrames; ++t) {
-    std::vector<motion::Vec3> pose = test::SwayingPose(rhythm * t / kRate);
+    std::vector<motion::Vec3> pose = test::SwayingPose(rhythm * t / kTakeRate);
     leader.Append(pose);
     for (motion::Vec3& p : pose) p = p + motion::Vec3{0, 0, static_cast<float>(-rhythm)};
     follower.Append(pose);
@@ -32,7 +32,7 @@ dataset::Dataset Takes() {
   dataset::Dataset takes;
   takes.skeleton = motion::SbuSkeleton();
   takes.classes = {"slow", "fast"};
-  takes.frame_rate_hz = kRate;
+  takes.frame_rate_hz = kTakeRate;
   takes.sequences = {Take(1, 0), Take(2, 1)};
   return takes;
 }

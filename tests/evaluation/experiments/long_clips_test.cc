@@ -11,13 +11,13 @@
 namespace duet::evaluation::experiments {
 namespace {
 
-constexpr double kRate = 15;
+constexpr double kClipRate = 15;
 
 TEST(LongClipsTest, MeasuresFallingAndDrifting) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  motion::Poses leader = authoring::MakeLeader("idle", 40, kRate);
+  motion::Poses leader = authoring::MakeLeader("idle", 40, kClipRate);
   for (motion::Vec3& p : leader.all()) p.y += 2;  // the floor is the leader's
-  const LongClipFigures upright = MeasureLongClip(skeleton, leader, leader, kRate);
+  const LongClipFigures upright = MeasureLongClip(skeleton, leader, leader, kClipRate);
   EXPECT_LT(upright.trunk_lean, 5);
   EXPECT_LT(upright.body_lean, 5);
   EXPECT_LT(upright.feet_above, 0.01);
@@ -31,7 +31,7 @@ TEST(LongClipsTest, MeasuresFallingAndDrifting) {
   for (int t = 300; t < follower.frame_count(); ++t) {
     for (motion::Vec3& p : follower[t]) p = {p.y + 3, 2.4f, p.z};
   }
-  const LongClipFigures fallen = MeasureLongClip(skeleton, leader, follower, kRate);
+  const LongClipFigures fallen = MeasureLongClip(skeleton, leader, follower, kClipRate);
   EXPECT_NEAR(fallen.trunk_lean, 90, 5);
   EXPECT_NEAR(fallen.body_lean, 90, 5);
   EXPECT_NEAR(fallen.feet_above, 0.4, 0.01);
@@ -41,12 +41,13 @@ TEST(LongClipsTest, MeasuresFallingAndDrifting) {
 }
 
 TEST(LongClipsTest, LastSecondsShowWhetherItStoodUpAgain) {
-  const motion::Poses leader = authoring::MakeLeader("idle", 40, kRate);
+  const motion::Poses leader = authoring::MakeLeader("idle", 40, kClipRate);
   motion::Poses follower = leader;
   for (int t = 200; t < 300; ++t) {
     for (motion::Vec3& p : follower[t]) p = {p.y, 0.4f, p.z};
   }
-  const LongClipFigures figures = MeasureLongClip(motion::SbuSkeleton(), leader, follower, kRate);
+  const LongClipFigures figures =
+      MeasureLongClip(motion::SbuSkeleton(), leader, follower, kClipRate);
   EXPECT_NEAR(figures.trunk_lean, 90, 5);
   EXPECT_NEAR(figures.feet_above, 0.4, 0.01);
   EXPECT_LT(figures.last_lean, 5);
@@ -54,12 +55,12 @@ TEST(LongClipsTest, LastSecondsShowWhetherItStoodUpAgain) {
 }
 
 TEST(LongClipsTest, FirstAndLastSecondsAreMeasuredSeparately) {
-  const motion::Poses leader = authoring::MakeLeader("dance", 40, kRate);
+  const motion::Poses leader = authoring::MakeLeader("dance", 40, kClipRate);
   motion::Poses stops = leader;
   for (int t = 200; t < stops.frame_count(); ++t) {
     for (int j = 0; j < stops.joint_count(); ++j) stops.at(t, j) = stops.at(200, j);
   }
-  const LongClipFigures figures = MeasureLongClip(motion::SbuSkeleton(), leader, stops, kRate);
+  const LongClipFigures figures = MeasureLongClip(motion::SbuSkeleton(), leader, stops, kClipRate);
   EXPECT_GT(figures.first_speed, 0.3);
   EXPECT_NEAR(figures.last_speed, 0, 1e-6);
 }

@@ -17,7 +17,7 @@ namespace {
 
 using body::LeanFrom;
 
-constexpr double kRate = 15;
+constexpr double kLeaderRate = 15;
 
 float LargestStep(const motion::Poses& poses) {
   float largest = 0;
@@ -32,13 +32,14 @@ float LargestStep(const motion::Poses& poses) {
 TEST(MadeLeadersTest, StandOnTheFloorWithLimbsOfOneLength) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
   for (const std::string name : authoring::kMadeLeaders) {
-    const motion::Poses leader = authoring::MakeLeader(name, 30, kRate);
+    const motion::Poses leader = authoring::MakeLeader(name, 30, kLeaderRate);
     ASSERT_EQ(leader.frame_count(), 451) << name;
     EXPECT_LT(body::BoneLengthDrift(leader, skeleton), 1e-3) << name;
     const body::FloorGap gap = body::MeasureFloorGap(leader, skeleton, 0);
     EXPECT_LT(gap.above, 0.02) << name;
     EXPECT_LT(gap.below, 0.02) << name;
-    EXPECT_LT(body::MeasureLean(leader, skeleton, kRate, LeanFrom::kHips).max_degrees, 35) << name;
+    EXPECT_LT(body::MeasureLean(leader, skeleton, kLeaderRate, LeanFrom::kHips).max_degrees, 35)
+        << name;
     EXPECT_LT(LargestStep(leader), 0.35f) << name;
   }
 }
@@ -54,9 +55,9 @@ TEST(MadeLeadersTest, StandingFeetDoNotSlide) {
 
 TEST(MadeLeadersTest, MoveAsTheirNamesSay) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  const auto made = [](const char* name) { return authoring::MakeLeader(name, 14, kRate); };
-  EXPECT_LT(body::JointSpeed(made("idle"), kRate), 0.1);
-  EXPECT_GT(body::JointSpeed(made("dance"), kRate), 0.3);
+  const auto made = [](const char* name) { return authoring::MakeLeader(name, 14, kLeaderRate); };
+  EXPECT_LT(body::JointSpeed(made("idle"), kLeaderRate), 0.1);
+  EXPECT_GT(body::JointSpeed(made("dance"), kLeaderRate), 0.3);
   // An eight: wide, and where it began at the end.
   const motion::Poses walk = made("walk_eight");
   float widest = 0;
@@ -77,18 +78,19 @@ TEST(MadeLeadersTest, MoveAsTheirNamesSay) {
 
 TEST(LoopTakeTest, NeedsMoreThanTheTwoFades) {
   dataset::Sequence take;
-  take.pair.leader = {motion::SbuSkeleton().joint_names, kRate,
-                      duet::test::SwayingMotion(15, kRate)};
+  take.pair.leader = {motion::SbuSkeleton().joint_names, kLeaderRate,
+                      duet::test::SwayingMotion(15, kLeaderRate)};
   EXPECT_FALSE(IsLoopable(take));
-  take.pair.leader.poses = duet::test::SwayingMotion(16, kRate);
+  take.pair.leader.poses = duet::test::SwayingMotion(16, kLeaderRate);
   EXPECT_TRUE(IsLoopable(take));
 }
 
 TEST(LoopTakeTest, RepeatsTheLabelsWithTheLeader) {
   dataset::Dataset dataset = duet::test::MadeUpPairs(1);
-  dataset.frame_rate_hz = kRate;
+  dataset.frame_rate_hz = kLeaderRate;
   dataset::Sequence take;
-  take.pair.leader = {dataset.skeleton.joint_names, kRate, duet::test::SwayingMotion(60, kRate)};
+  take.pair.leader = {dataset.skeleton.joint_names, kLeaderRate,
+                      duet::test::SwayingMotion(60, kLeaderRate)};
   take.pair.follower = take.pair.leader;
   take.labels = {{1, 0, 20}, {2, 30, 60}};
   ASSERT_TRUE(IsLoopable(take));
@@ -107,10 +109,10 @@ TEST(LoopTakeTest, RepeatsTheLabelsWithTheLeader) {
 
 TEST(LoopClipsTest, JoinsClipsWithoutAJump) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  const motion::Poses clip = test::SwayingMotion(40, kRate);
+  const motion::Poses clip = test::SwayingMotion(40, kLeaderRate);
   motion::Poses elsewhere = clip;
   for (motion::Vec3& p : elsewhere.all()) p = RotateY(p, 2) + motion::Vec3{5, 0, -3};
-  const motion::Poses looped = LoopClips(skeleton, {clip, elsewhere}, 20, kRate);
+  const motion::Poses looped = LoopClips(skeleton, {clip, elsewhere}, 20, kLeaderRate);
   ASSERT_EQ(looped.frame_count(), 301);
   EXPECT_LT(LargestStep(looped), 3 * LargestStep(clip));
   // Every clip begins where the first one does.

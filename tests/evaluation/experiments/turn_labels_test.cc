@@ -7,13 +7,13 @@
 namespace duet::evaluation::experiments {
 namespace {
 
-constexpr double kRate = 10;
+constexpr double kDanceRate = 10;
 
 // Twelve seconds; a turn from 4.5 to 6 s, and from 6 to 7 s beside class 0.
 dataset::Sequence Take() {
   dataset::Sequence take;
-  take.pair.leader = {motion::SbuSkeleton().joint_names, kRate,
-                      duet::test::SwayingMotion(120, kRate)};
+  take.pair.leader = {motion::SbuSkeleton().joint_names, kDanceRate,
+                      duet::test::SwayingMotion(120, kDanceRate)};
   take.labels = {{0, 0, 45}, {1, 45, 60}, {1, 60, 70}, {0, 60, 120}};
   return take;
 }
@@ -25,7 +25,7 @@ std::vector<float> At(const engine::LabelTrack& labels, int frame) {
 }
 
 TEST(TurnStretches, AreTheTurnsAndStretchesOfFourSecondsWithoutOne) {
-  const TurnStretches stretches = FindTurnStretches(Take(), 1, kRate);
+  const TurnStretches stretches = FindTurnStretches(Take(), 1, kDanceRate);
   ASSERT_EQ(stretches.led.size(), 1u);
   EXPECT_EQ(stretches.led[0].begin, 45);
   EXPECT_EQ(stretches.led[0].end, 70);
@@ -46,9 +46,9 @@ TEST(LabelsWithTurn, HaveOnlyTheTurnInTheStretches) {
 
 TEST(CountTurned, CountsStretchesWithTheMiddleOfATurn) {
   const std::vector<FrameSpan> stretches = {{0, 40}, {70, 110}};
-  EXPECT_EQ(CountTurned(stretches, {}, kRate), 0);
-  EXPECT_EQ(CountTurned(stretches, {{1, 2, 360}, {2.5, 3.5, -360}}, kRate), 1);
-  EXPECT_EQ(CountTurned(stretches, {{3.5, 4.5, 360}, {6, 8.2, 360}}, kRate), 1);
+  EXPECT_EQ(CountTurned(stretches, {}, kDanceRate), 0);
+  EXPECT_EQ(CountTurned(stretches, {{1, 2, 360}, {2.5, 3.5, -360}}, kDanceRate), 1);
+  EXPECT_EQ(CountTurned(stretches, {{3.5, 4.5, 360}, {6, 8.2, 360}}, kDanceRate), 1);
 }
 
 }  // namespace

@@ -13,15 +13,10 @@
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
-#include "tests/support/status_matchers.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
-
-using test::IsOk;
-using test::StatusIs;
-
-using ::testing::HasSubstr;
 
 using absl::StatusCode;
 

@@ -19,6 +19,7 @@
 #include "tests/server/support/sample_request.h"
 #include "tests/server/support/timed_context.h"
 #include "tests/support/fake_synthesizer.h"
+#include "tests/support/matchers.h"
 
 namespace duet::server::service {
 namespace {
@@ -30,10 +31,6 @@ using test::Refusal;
 using test::RunningService;
 using test::SampleRequest;
 using test::TimedContext;
-
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 using absl::StatusCode;
 using Message = v1::SynthesizeLiveRequest;
