@@ -12,22 +12,28 @@ constexpr float kNoDirection = 1e-4f;
 
 }  // namespace
 
+Girdle GirdleOf(const body::Body& body, const std::optional<motion::JointPair>& joints,
+                absl::Span<const Vec3> pose, const Girdle& before) {
+  if (!joints || !body.chest || body.legs.size() != 2) return before;
+  const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
+  const Vec3 hips = Lerp(at(body.legs[0].upper), at(body.legs[1].upper), 0.5f);
+  const Vec3 up = at(*body.chest) - hips;
+  const Vec3 front = Cross(at(joints->left) - at(joints->right), up);
+  const float height = Norm(up), area = Norm(front);
+  if (height <= kNoDirection || area <= kNoDirection * height) return before;
+  Girdle girdle;
+  girdle.up = up / height;
+  girdle.front = front / area;
+  girdle.left = Cross(girdle.up, girdle.front);
+  return girdle;
+}
+
 Girdles GirdlesOf(const body::Body& body, const std::optional<motion::JointPair>& joints,
                   const motion::Poses& poses) {
   Girdles girdles(static_cast<std::size_t>(poses.frame_count()));
-  if (!joints || !body.chest || body.legs.size() != 2) return girdles;
   Girdle girdle;
   for (int t = 0; t < poses.frame_count(); ++t) {
-    const Vec3 hips = Lerp(poses.at(t, body.legs[0].upper), poses.at(t, body.legs[1].upper), 0.5f);
-    const Vec3 up = poses.at(t, *body.chest) - hips;
-    const Vec3 front = Cross(poses.at(t, joints->left) - poses.at(t, joints->right), up);
-    const float height = Norm(up), area = Norm(front);
-    // A trunk without directions keeps those of the frame before.
-    if (height > kNoDirection && area > kNoDirection * height) {
-      girdle.up = up / height;
-      girdle.front = front / area;
-      girdle.left = Cross(girdle.up, girdle.front);
-    }
+    girdle = GirdleOf(body, joints, poses[t], girdle);
     girdles[static_cast<std::size_t>(t)] = girdle;
   }
   return girdles;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "model/body/limbs.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
@@ -20,6 +21,12 @@ struct Girdle {
   motion::Vec3 Outwards(motion::Vec3 v) const { return left * v.x + up * v.y + front * v.z; }
 };
 using Girdles = std::vector<Girdle>;
+
+// The girdle between two joints in a frame: that of the shoulders or of the hips. That of `before`
+// for a trunk without directions, without joints, and for a body without a chest or two legs.
+// Shapes: pose [joints].
+Girdle GirdleOf(const body::Body& body, const std::optional<motion::JointPair>& joints,
+                absl::Span<const motion::Vec3> pose, const Girdle& before = {});
 
 // The girdle between two joints in every frame: that of the shoulders or of the hips. The world's
 // axes without joints, and for a body without a chest or two legs. Shapes: returns [frames].

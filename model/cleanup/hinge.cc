@@ -31,12 +31,9 @@ Vec3 AnyAcross(Vec3 along) {
   return across / Norm(across);
 }
 
-// `v`, which is across `from`, after the shortest turn that takes `from` to `to`.
-Vec3 Carried(Vec3 from, Vec3 to, Vec3 v) {
-  // Opposite directions have no shortest turn.
-  constexpr float kOpposite = -0.999f;
-  const float cosine = Dot(from, to);
-  if (cosine > kOpposite) v += (from + to) * (-Dot(to, v) / (1 + cosine));
+// `v`, which is across `from`, after the shortest turn that takes `from` to `to`; of length 1.
+Vec3 CarriedAcross(Vec3 from, Vec3 to, Vec3 v) {
+  v = Carried(from, to, v);
   const Vec3 across = v - to * Dot(to, v);
   const float length = Norm(across);
   return length > kNoDirection ? across / length : AnyAcross(to);
@@ -51,7 +48,7 @@ std::vector<Hinge> HingesOf(const Track& upper, const Track& lower) {
     hinge.sine = Norm(across);
     hinge.cosine = Dot(upper[t], lower[t]);
     hinge.carried =
-        t == 0 ? AnyAcross(upper[0]) : Carried(upper[t - 1], upper[t], hinges[t - 1].normal);
+        t == 0 ? AnyAcross(upper[0]) : CarriedAcross(upper[t - 1], upper[t], hinges[t - 1].normal);
     const bool clear = hinge.sine > (t == 0 ? kNoDirection : kClearBend);
     hinge.normal = clear ? across / hinge.sine : hinge.carried;
     hinges.push_back(hinge);

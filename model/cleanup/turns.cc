@@ -21,7 +21,7 @@ Vec3 AnyAcross(Vec3 along) {
 }
 
 // `from` turned towards `to` by a share of the way, and by at most `most` radians.
-Vec3 TurnTowards(Vec3 from, Vec3 to, float share, float most) {
+Vec3 TurnPart(Vec3 from, Vec3 to, float share, float most) {
   const Vec3 axis = Cross(from, to);
   const float sine = Norm(axis), cosine = Dot(from, to);
   const float way = share * std::atan2(sine, cosine);
@@ -40,7 +40,7 @@ bool HasFastTurn(const Track& track, std::size_t begin, float most) {
 
 void TurnLate(std::size_t begin, float most, Track* track) {
   for (std::size_t t = begin; t < track->size(); ++t) {
-    (*track)[t] = TurnTowards((*track)[t - 1], (*track)[t], 1, most);
+    (*track)[t] = TurnPart((*track)[t - 1], (*track)[t], 1, most);
   }
 }
 
@@ -71,10 +71,10 @@ void LimitTurns(int first, float most, Track* track) {
   Track late = *track, early = *track;
   TurnLate(begin, most, &late);
   for (std::size_t t = early.size() - 1; t > settled; --t) {
-    early[t - 1] = TurnTowards(early[t], early[t - 1], 1, most);
+    early[t - 1] = TurnPart(early[t], early[t - 1], 1, most);
   }
   for (std::size_t t = settled; t < track->size(); ++t) {
-    (*track)[t] = late[t] == early[t] ? late[t] : TurnTowards(late[t], early[t], 0.5f, HUGE_VALF);
+    (*track)[t] = late[t] == early[t] ? late[t] : TurnPart(late[t], early[t], 0.5f, HUGE_VALF);
   }
   TurnLate(begin, most, track);
 }
@@ -92,6 +92,16 @@ void LimitSlopes(int first, float most, std::vector<float>* track) {
     (*track)[t] = (*track)[t] == early[t] ? early[t] : ((*track)[t] + early[t]) / 2;
   }
   FollowLate(begin, most, track);
+}
+
+Vec3 TurnTowards(Vec3 from, Vec3 to, float most) { return TurnPart(from, to, 1, most); }
+
+Vec3 Carried(Vec3 from, Vec3 to, Vec3 v) {
+  constexpr float kOpposite = -0.999f;
+  const float cosine = Dot(from, to);
+  if (cosine <= kOpposite) return v;
+  // What `v` has along `from` is along `to` afterwards; the rest turns in their plane.
+  return v + to * (2 * Dot(from, v)) - (from + to) * (Dot(from + to, v) / (1 + cosine));
 }
 
 float SignedAngle(Vec3 a, Vec3 b, Vec3 axis) {

@@ -19,6 +19,14 @@ void LimitTurns(int first, float most, std::vector<motion::Vec3>* track);
 // The same for a track of numbers: limits how far it rises or falls in a frame.
 void LimitSlopes(int first, float most, std::vector<float>* track);
 
+// `from` turned towards `to`, both of length 1, by at most `most` radians; `to` itself if that is
+// enough.
+motion::Vec3 TurnTowards(motion::Vec3 from, motion::Vec3 to, float most);
+
+// `v` after the shortest turn that takes `from` to `to`, both of length 1. Opposite directions have
+// no shortest turn: `v` does not change.
+motion::Vec3 Carried(motion::Vec3 from, motion::Vec3 to, motion::Vec3 v);
+
 // The angle from `a` to `b` about `axis`, -pi to pi; all of length 1, `axis` across both.
 float SignedAngle(motion::Vec3 a, motion::Vec3 b, motion::Vec3 axis);
 

@@ -1,11 +1,13 @@
 #include "model/engine/clip_synthesis.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
 #include <utility>
 
+#include "model/cleanup/frame_turns.h"
 #include "model/engine/window_seed.h"
 #include "model/motion/resample.h"
 
@@ -17,6 +19,8 @@ constexpr int kFramesBefore = 1;
 constexpr int kFramesAfter = 2;
 // A window prepares for pins that come this soon after it.
 constexpr double kPinAheadSeconds = 1;
+// The frames nearer to a pin than this move as the pin has them.
+constexpr double kNearPinSeconds = 1;
 
 }  // namespace
 
@@ -30,6 +34,8 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
           motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz),
           model_.window_frames, WindowOverlap(model_))),
       state_(model_.skeleton.joint_count()),
+      body_(body::FindBody(model_.skeleton)),
+      slows_down_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
       pin_distances_(request_.pins.size()),
       grader_(ClipGrader::Create(model_.skeleton, request_.frame_rate_hz)) {}
 
@@ -114,9 +120,24 @@ motion::Poses ClipSynthesis::TakeFinalFrames() {
     const double at = ToModelFrame(next_frame_);
     if (static_cast<int>(at) >= final_end - kFramesAfter) break;
     SampleCubic(state_.follower(), at - state_.begin(), absl::MakeSpan(pose));
+    SlowDown(absl::MakeSpan(pose));
     frames.Append(pose);
   }
   return frames;
+}
+
+bool ClipSynthesis::IsNearPin(int frame) const {
+  const double near = kNearPinSeconds * request_.frame_rate_hz;
+  return std::any_of(request_.pins.begin(), request_.pins.end(),
+                     [&](const motion::Pin& pin) { return std::abs(pin.frame - frame) < near; });
+}
+
+void ClipSynthesis::SlowDown(absl::Span<motion::Vec3> pose) {
+  if (!slows_down_) return;
+  if (!last_.empty() && !IsNearPin(next_frame_)) {
+    cleanup::SlowFrame(body_, {}, request_.frame_rate_hz, last_, pose);
+  }
+  last_.assign(pose.begin(), pose.end());
 }
 
 void ClipSynthesis::DropFrames() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/body/grade.h"
+#include "model/body/limbs.h"
 #include "model/engine/clip_grader.h"
 #include "model/engine/cross_fade.h"
 #include "model/engine/label_track.h"
@@ -92,6 +93,10 @@ class ClipSynthesis {
   motion::Pins PinsOfWindow(int first) const;
   void MeasurePins(const motion::Poses& frames);
   motion::Poses TakeFinalFrames();
+  // Slows down limbs of next_frame_ that turn too fast after the frame before it, unless a pin is
+  // near: pins have speeds of their own.
+  void SlowDown(absl::Span<motion::Vec3> pose);
+  bool IsNearPin(int frame) const;
   void DropFrames();
 
   ModelDescription model_;
@@ -101,6 +106,9 @@ class ClipSynthesis {
   double model_frames_per_frame_;  // model rate / caller's rate
   WindowPlan plan_;                // in model frames
   WindowState state_;
+  const body::Body body_;
+  const bool slows_down_;               // see SlowDown
+  std::vector<motion::Vec3> last_;      // the frame before next_frame_
   int next_frame_ = 0;                  // the caller's next frame to hand out
   std::vector<float> pin_distances_;    // [pins]
   std::unique_ptr<ClipGrader> grader_;  // null if the skeleton lacks joints

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "model/cleanup/frame_turns.h"
 #include "model/cleanup/live_frame.h"
 #include "model/engine/direction_estimate.h"
 #include "model/engine/resting_leader.h"
@@ -130,8 +131,11 @@ LiveFrames LiveSynthesis::Plan(int count) const {
 LiveFrames LiveSynthesis::Sample(int count) const {
   LiveFrames frames{next_follower_frame(), Poses(0, leader_.joint_count())};
   Poses pose(1, leader_.joint_count());
+  const auto last = [](const Poses& poses) {
+    return poses.empty() ? absl::Span<const Vec3>() : poses[poses.frame_count() - 1];
+  };
   for (int i = 0; i < count; ++i) {
-    SampleJoined(frames.first + i, &pose);
+    SampleJoined(frames.first + i, last(i == 0 ? follower_ : frames.poses), &pose);
     frames.poses.Append(pose.all());
   }
   return frames;
@@ -141,7 +145,7 @@ void LiveSynthesis::SamplePlan(int frame, absl::Span<Vec3> pose) const {
   SampleCubic(plan_, timing_.ToModelFrame(frame) - plan_begin_, pose);
 }
 
-void LiveSynthesis::SampleJoined(int frame, Poses* pose) const {
+void LiveSynthesis::SampleJoined(int frame, absl::Span<const Vec3> before, Poses* pose) const {
   SamplePlan(frame, (*pose)[0]);
   if (!offset_.empty()) {
     const double frames = kJoinSeconds * request_.frame_rate_hz, since = frame - join_frame_ + 1;
@@ -152,7 +156,11 @@ void LiveSynthesis::SampleJoined(int frame, Poses* pose) const {
   const Poses interpolated = *pose;
   // Interpolation and offsets shorten limbs, and later plans continue from these.
   SetBoneLengths(model_.skeleton, bone_lengths_, pose);
-  if (cleans_up_) CorrectFrame(frame, interpolated[0], (*pose)[0]);
+  if (!cleans_up_) return;
+  CorrectFrame(frame, interpolated[0], (*pose)[0]);
+  if (!before.empty()) {
+    cleanup::SlowFrame(body_, {}, request_.frame_rate_hz, before, (*pose)[0]);
+  }
 }
 
 void LiveSynthesis::CorrectFrame(int frame, absl::Span<const Vec3> interpolated,

@@ -121,7 +121,8 @@ class LiveSynthesis {
   int PlannedEnd() const;
   // A frame of the plan held, without and with what remains of the plan before it.
   void SamplePlan(int frame, absl::Span<motion::Vec3> pose) const;
-  void SampleJoined(int frame, motion::Poses* pose) const;
+  // `before`: the frame before it; empty for the first.
+  void SampleJoined(int frame, absl::Span<const motion::Vec3> before, motion::Poses* pose) const;
   // Corrects what only the frame itself shows (cleanup/live_frame.h). `interpolated`: the pose
   // before its bones had their lengths.
   void CorrectFrame(int frame, absl::Span<const motion::Vec3> interpolated,

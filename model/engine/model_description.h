@@ -70,8 +70,11 @@ struct ModelDescription {
   // the leader's hips face.
   std::optional<DirectionRegression> partner_direction;
 
+  // Whether the synthesizer cleans up at all unless a caller asks for it (PipelineOptions).
+  bool clean_up = true;
+
   // The default of SynthesisOptions::clean_up. True for models that sample.
-  bool cleaned_up_by_default() const { return samples; }
+  bool cleaned_up_by_default() const { return samples && clean_up; }
 
   int class_count() const { return static_cast<int>(classes.size()); }
 };

@@ -45,7 +45,9 @@ class NetworkSynthesizer : public Synthesizer {
         live_bounds_(description_.skeleton),
         body_(body::FindBody(description_.skeleton)),
         clean_up_(description_.skeleton, options.cleaning),
-        judge_(description_.skeleton, std::move(critic)) {}
+        judge_(description_.skeleton, std::move(critic)) {
+    description_.clean_up = options.clean_up;
+  }
 
   const ModelDescription& description() const override { return description_; }
 
@@ -270,11 +272,10 @@ class NetworkSynthesizer : public Synthesizer {
   }
 
   bool IsCleanedUp(const SynthesisWindow& window) const {
-    return window.options.clean_up.value_or(options_.clean_up &&
-                                            description_.cleaned_up_by_default());
+    return window.options.clean_up.value_or(description_.cleaned_up_by_default());
   }
 
-  const ModelDescription description_;
+  ModelDescription description_;
   const motion::StandardOrigin origin_;
   const std::unique_ptr<const Network> network_;
   const PipelineOptions options_;
