@@ -72,6 +72,9 @@ void CleanUp::PlaceFeetAndHands(const motion::Poses& leader, const Meetings& mee
                                 const Timing& timing, motion::Poses* follower) const {
   // Last, so that standing feet stand and hands meet.
   const std::optional<float> floor = Floor(leader);
+  if (options_.raised_limbs.enabled) {
+    LowerLimbs(skeleton_, body_, floor, leader, options_.raised_limbs, timing, follower);
+  }
   if (floor && options_.footsteps.enabled) {
     WalkInSteps(skeleton_, body_, *floor, options_.footsteps, timing, follower);
   }

@@ -13,6 +13,7 @@
 #include "model/cleanup/joint_ranges.h"
 #include "model/cleanup/limb_swings.h"
 #include "model/cleanup/pins.h"
+#include "model/cleanup/raised_limbs.h"
 #include "model/cleanup/shoulders.h"
 #include "model/cleanup/spacing.h"
 #include "model/cleanup/strikes.h"
@@ -34,6 +35,7 @@ struct Options {
   CapsuleOptions capsules;
   JointRangeOptions joint_ranges;
   FloorOptions floor;
+  RaisedLimbOptions raised_limbs;
   FootstepOptions footsteps;
   HandContactOptions hand_contact;
   StrikeOptions strikes;
@@ -57,8 +59,8 @@ class CleanUp {
              const Timing& timing, motion::Poses* follower) const;
 
   // The three parts of Apply, for a caller who looks at the follower or changes it between them:
-  // the trunk and how far people are apart; then overlaps, arms and joints; then feet that stand
-  // and hands that meet. The second and the third hardly turn the trunk.
+  // the trunk and how far people are apart; then overlaps, arms and joints; then limbs that stay up,
+  // feet that stand and hands that meet. The second and the third hardly turn the trunk.
   void CorrectTrunk(const motion::Poses& leader, const Timing& timing,
                     motion::Poses* follower) const;
   void CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,

@@ -55,8 +55,8 @@ TEST(CleanUp, BonesKeepTheirLengths) {
 TEST(CleanUp, EveryStageHasItsSwitch) {
   Options none;
   none.upright.enabled = none.spacing.enabled = none.capsules.enabled = false;
-  none.waist.enabled = none.floor.enabled = none.footsteps.enabled = none.joint_ranges.enabled =
-      false;
+  none.waist.enabled = none.floor.enabled = none.footsteps.enabled = none.raised_limbs.enabled =
+      none.joint_ranges.enabled = false;
   none.shoulders.enabled = none.limb_swings.enabled = false;
   const motion::Poses soiled = Moved(Soiled(), {3, 0, 0});
   EXPECT_EQ(Cleaned(soiled, 0, none), soiled);

@@ -19,7 +19,7 @@ TableRow Row(const Table& table, const std::string& name) {
 TEST(CleanUpTableTest, HasARowForEachStageAndNoneMovesCaptures) {
   const Table table = CleanUpTable(MadeUpPairs(2));
   ASSERT_EQ(table.columns.size(), 5u);
-  EXPECT_EQ(table.rows.size(), 11u);
+  EXPECT_EQ(table.rows.size(), 12u);
   const TableRow captured = Row(table, "captured");
   for (int column = 0; column < 3; ++column) EXPECT_EQ(captured.values[column], 0) << column;
 }
