@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "model/base/angle.h"
 #include "model/base/index.h"
@@ -16,6 +17,8 @@ constexpr double kBranchPrior = 1e-3;
 constexpr double kDirectionWeight = 10;
 constexpr double kPreviousPrior = 0.05;
 constexpr double kSwingPrior = 0.02;
+// So many twists are tried where a joint would turn too fast.
+constexpr int kTwists = 17;
 
 using base::Index;
 
@@ -44,10 +47,18 @@ Quaternion FitBranch(const RigJoint& joint, Quaternion to_parent, Quaternion pre
 PoseFitter::PoseFitter(const Rig& rig, double frame_rate_hz, BoneLengths lengths)
     : rig_(rig),
       max_twist_(base::kRadiansPerDegree * std::min(kMaxTwist, kMaxTwistSpeed / frame_rate_hz)),
+      max_turn_(base::kRadiansPerDegree * kMaxTurnSpeed / frame_rate_hz),
       lengths_(lengths),
-      world_(rig.joints.size()) {
+      world_(rig.joints.size()),
+      aims_(rig.joints.size(), -1) {
   pose_.rotations.resize(rig.joints.size());
   pose_.translations.resize(rig.joints.size());
+  for (std::size_t j = 0; j < rig.joints.size(); ++j) {
+    const int parent = rig.joints[j].parent;
+    if (parent < 0 || rig.joints[Index(parent)].kind != RigJoint::Kind::kAim) continue;
+    const bool aims = rig.joints[j].kind == RigJoint::Kind::kAim;
+    if (aims) aims_[Index(parent)] = static_cast<int>(j);
+  }
 }
 
 const RigPose& PoseFitter::Fit(absl::Span<const motion::Vec3> positions) {
@@ -72,7 +83,7 @@ const RigPose& PoseFitter::Fit(absl::Span<const motion::Vec3> positions) {
     } else if (joint.kind == RigJoint::Kind::kAim) {
       rotation = FitAim(joint, stands_at[j], to_parent, rotation, positions);
       if (!first_) {
-        rotation = to_parent * LimitTwist(joint.rest_direction, world_[j], parent_world * rotation);
+        rotation = to_parent * LimitTwist(j, to_parent, parent_world * rotation, positions);
       }
     }
     world_[j] = parent_world * rotation;
@@ -111,16 +122,46 @@ Quaternion PoseFitter::FitBend(const RigJoint& joint, Vec3d direction, Vec3d nex
 }
 
 // Rotations in the world, so that a trunk that turns over in one frame does not take limbs along.
-Quaternion PoseFitter::LimitTwist(Vec3d rest_direction, Quaternion previous, Quaternion fit) const {
-  const Vec3d direction = Rotate(fit, rest_direction);
-  const Vec3d before = Rotate(previous, rest_direction);
+Quaternion PoseFitter::LimitTwist(std::size_t j, Quaternion to_parent, Quaternion fit,
+                                  absl::Span<const motion::Vec3> positions) const {
+  const RigJoint& joint = rig_.joints[j];
+  const Quaternion previous = world_[j];
+  const Vec3d direction = Rotate(fit, joint.rest_direction);
+  const Vec3d before = Rotate(previous, joint.rest_direction);
   const Quaternion carried =
-      ShortestArc(before, direction, Rotate(previous, HingeAxis(rest_direction))) * previous;
+      ShortestArc(before, direction, Rotate(previous, HingeAxis(joint.rest_direction))) * previous;
   const Quaternion twist = fit * Inverse(carried);
   const double angle = 2 * std::atan2(Dot(Vec3d{twist.x, twist.y, twist.z}, direction), twist.w);
   const double shorter = std::remainder(angle, 2 * base::kPi);
-  if (std::abs(shorter) <= max_twist_) return fit;
-  return AxisAngle(direction, std::clamp(shorter, -max_twist_, max_twist_)) * carried;
+  const bool far = std::abs(shorter) > max_twist_;
+  const double wanted = std::clamp(shorter, -max_twist_, max_twist_);
+  const auto twisted = [&](double by) { return AxisAngle(direction, by) * carried; };
+  const Quaternion limited = far ? twisted(wanted) : fit;
+  if (joint.bend < 0) return limited;
+  const Vec3d next_bone =
+      ToDouble(positions[Index(joint.bend)]) - ToDouble(positions[Index(joint.aim)]);
+  const auto too_fast = [&](Quaternion world) {
+    return LargestTurn(j, to_parent, world, next_bone) > max_turn_;
+  };
+  if (!too_fast(limited)) return limited;
+  // The nearest twist with which no joint is too fast, if there is one.
+  std::optional<double> best;
+  for (int n = 0; n < kTwists; ++n) {
+    const double by = max_twist_ * (2.0 * n / (kTwists - 1) - 1);
+    const bool nearer = !best || std::abs(by - wanted) < std::abs(*best - wanted);
+    if (nearer && !too_fast(twisted(by))) best = by;
+  }
+  return best ? twisted(*best) : limited;
+}
+
+double PoseFitter::LargestTurn(std::size_t j, Quaternion to_parent, Quaternion world,
+                               Vec3d next_bone) const {
+  const double own = Angle(pose_.rotations[j], to_parent * world);
+  if (aims_[j] < 0) return own;
+  const std::size_t next = Index(aims_[j]);
+  const Vec3d rest = rig_.joints[next].rest_direction;
+  const Vec3d direction = Unit(Rotate(Inverse(world), next_bone), rest);
+  return std::max(own, Angle(pose_.rotations[next], ShortestArc(rest, direction, HingeAxis(rest))));
 }
 
 }  // namespace duet::retargeting

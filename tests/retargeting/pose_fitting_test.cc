@@ -1,9 +1,11 @@
 #include "model/retargeting/pose_fitting.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "gtest/gtest.h"
+#include "model/base/angle.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/rig.h"
 #include "tests/support/expect_near.h"
@@ -124,6 +126,28 @@ TEST_F(Arm, AStraightArmOppositeToItsRestPoseKeepsAllOfItsTwist) {
   const Quaternion bent = upper_;
   Fit({0, -kUpperArm, 0}, {0, -kForearm, 0});
   EXPECT_LT(Angle(upper_, bent), 1e-4);
+}
+
+// An arm that was straight bends in another plane than before: the turn of the upper arm about
+// itself, which moves no joint, waits until the elbow has bent.
+TEST_F(Arm, ATwistThatCatchesUpMakesNoJointTurnTooFast) {
+  const auto bent = [](double bend, double plane) {
+    const double across = kForearm * std::sin(bend);
+    return motion::Vec3{static_cast<float>(kForearm * std::cos(bend)),
+                        static_cast<float>(across * std::cos(plane)),
+                        static_cast<float>(across * std::sin(plane))};
+  };
+  Fit({kUpperArm, 0, 0}, bent(1, 0));
+  Fit({kUpperArm, 0, 0}, bent(0, 0));
+  Quaternion before = Inverse(upper_) * lower_;
+  for (int t = 1; t <= 8; ++t) {
+    Fit({kUpperArm, 0, 0}, bent(0.34 * std::min(t, 4), 2.5));
+    const Quaternion elbow = Inverse(upper_) * lower_;
+    // 0.34 radians in a frame are 584 degrees per second.
+    EXPECT_LT(Angle(before, elbow) * base::kDegreesPerRadian * 30, 860) << t;
+    ExpectNear(Rotate(upper_, kUp), {1, 0, 0});
+    before = elbow;
+  }
 }
 
 TEST_F(Arm, ABoneWithoutLengthStaysAsItWas) {
