@@ -17,6 +17,9 @@ constexpr double kEndlessEaseSeconds = 0;
 constexpr double kEndlessAnticipationSeconds = 0.2;
 // The time of the spring that joins a window to the frames that were sent.
 constexpr double kJoinSeconds = 0.1;
+// Hands aim at this share of the captured mean distance, because they come and go within an offer,
+// and an arm may not reach. In classes whose bodies touch, a partner's hand is never far.
+constexpr float kMeetsWithin = 0.6f;
 // How far from the surface of the follower's body a fist ends. Captured people keep 0.1 m (push)
 // and 0.3 m (punch), because they only act.
 constexpr float kStrikeMetres = 0.15f;
@@ -111,10 +114,13 @@ cleanup::Meetings MeetingsOf(const ModelDescription& description, const Synthesi
   cleanup::Meetings meetings(static_cast<std::size_t>(window.leader.frame_count()));
   for (const HandContact& contact : description.hand_contacts) {
     const std::size_t c = ClassIndex(classes, contact.interaction_class);
+    const auto& touching = description.touching_classes;
+    const bool touches = ClassIndex(touching, contact.interaction_class) < touching.size();
+    const float nearer = touches ? 1 : kMeetsWithin;
     for (std::size_t t = 0; t < meetings.size() && c < classes.size(); ++t) {
       const float weight = std::max(0.0f, window.labels[t * classes.size() + c]);
       meetings[t].weight += weight;
-      meetings[t].metres += weight * static_cast<float>(contact.metres);
+      meetings[t].metres += weight * static_cast<float>(contact.metres) * nearer;
     }
   }
   for (const Strike& strike : description.strikes) {

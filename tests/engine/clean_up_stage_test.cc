@@ -241,5 +241,20 @@ TEST(CleanUpStage, LivePlansGoOnWhereTheLastOneCame) {
   EXPECT_TRUE(FeetTiming(description, window).continues_steps);
 }
 
+// Hands aim nearer than captured ones are on average, but not in classes whose bodies touch.
+TEST(MeetingsOf, HandsAimNearerWhereBodiesDoNotTouch) {
+  ModelDescription description = FakeDescription();
+  description.classes = {"shake", "dance", "walk"};
+  description.touching_classes = {"dance"};
+  description.hand_contacts = {{"shake", 0.2}, {"dance", 0.4}};
+  SynthesisWindow window;
+  window.leader = SwayingMotion(3, 15);
+  window.labels = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const cleanup::Meetings meetings = MeetingsOf(description, window);
+  EXPECT_FLOAT_EQ(meetings[0].metres, 0.12f);
+  EXPECT_FLOAT_EQ(meetings[1].metres, 0.4f);
+  EXPECT_EQ(meetings[2].weight, 0);
+}
+
 }  // namespace
 }  // namespace duet::engine
