@@ -19,7 +19,7 @@ constexpr double kEndlessAnticipationSeconds = 0.2;
 constexpr double kJoinSeconds = 0.1;
 // Hands aim at this share of the captured mean distance, because they come and go within an offer,
 // and an arm may not reach. In classes whose bodies touch, a partner's hand is never far.
-constexpr float kMeetsWithin = 0.6f;
+constexpr float kMeetsWithin = 0.65f;
 // How far from the surface of the follower's body a fist ends. Captured people keep 0.1 m (push)
 // and 0.3 m (punch), because they only act.
 constexpr float kStrikeMetres = 0.15f;

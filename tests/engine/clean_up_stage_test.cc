@@ -251,7 +251,7 @@ TEST(MeetingsOf, HandsAimNearerWhereBodiesDoNotTouch) {
   window.leader = SwayingMotion(3, 15);
   window.labels = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const cleanup::Meetings meetings = MeetingsOf(description, window);
-  EXPECT_FLOAT_EQ(meetings[0].metres, 0.12f);
+  EXPECT_FLOAT_EQ(meetings[0].metres, 0.13f);
   EXPECT_FLOAT_EQ(meetings[1].metres, 0.4f);
   EXPECT_EQ(meetings[2].weight, 0);
 }
