@@ -30,6 +30,20 @@ void PlaceFeetBetween(const motion::Skeleton& skeleton, const body::Body& body,
   }
 }
 
+float HeightOf(const body::Body& body, absl::Span<const Vec3> pose) {
+  if (body.legs.size() != 2) return 0;
+  const auto height = [&](const body::Limb& leg) {
+    return pose[static_cast<std::size_t>(leg.end)].y;
+  };
+  return std::min(height(body.legs[0]), height(body.legs[1]));
+}
+
+void KeepHeight(const body::Body& body, float height, absl::Span<Vec3> pose) {
+  const float lift = height - HeightOf(body, pose);
+  if (body.legs.size() != 2 || lift == 0) return;
+  for (Vec3& joint : pose) joint.y += lift;
+}
+
 void KeepApart(int root, absl::Span<const Vec3> leader, absl::Span<Vec3> follower) {
   const std::size_t at = static_cast<std::size_t>(root);
   const Vec3 offset = Level(follower[at] - leader[at]);

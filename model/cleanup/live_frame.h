@@ -21,6 +21,12 @@ void PlaceFeetBetween(const motion::Skeleton& skeleton, const body::Body& body,
                       absl::Span<const motion::Vec3> before, absl::Span<const motion::Vec3> after,
                       absl::Span<const motion::Vec3> interpolated, absl::Span<motion::Vec3> pose);
 
+// Moves the body vertically, so that its lower foot is at `height` again: legs that SlowFrame holds
+// back would leave it above or below the floor. Does nothing without two legs.
+void KeepHeight(const body::Body& body, float height, absl::Span<motion::Vec3> pose);
+// The height of the lower foot, metres; 0 without two legs.
+float HeightOf(const body::Body& body, absl::Span<const motion::Vec3> pose);
+
 // Moves a follower that stands in its leader along the floor, until their roots are 0.17 m apart.
 void KeepApart(int root, absl::Span<const motion::Vec3> leader, absl::Span<motion::Vec3> follower);
 

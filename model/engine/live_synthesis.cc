@@ -159,7 +159,9 @@ void LiveSynthesis::SampleJoined(int frame, absl::Span<const Vec3> before, Poses
   if (!cleans_up_) return;
   CorrectFrame(frame, interpolated[0], (*pose)[0]);
   if (!before.empty()) {
+    const float height = cleanup::HeightOf(body_, (*pose)[0]);
     cleanup::SlowFrame(body_, {}, request_.frame_rate_hz, before, (*pose)[0]);
+    cleanup::KeepHeight(body_, height, (*pose)[0]);
   }
 }
 

@@ -74,6 +74,21 @@ TEST(LiveFrameTest, AFrameWhoseFeetAreInPlaceKeepsItsPose) {
   EXPECT_EQ(pose, standing);
 }
 
+TEST(LiveFrameTest, ABodyWhoseLegsWereHeldBackComesBackToItsHeight) {
+  const body::Body body = body::FindBody(kSkeleton);
+  motion::Poses pose = Turned(0);
+  const float height = HeightOf(body, pose[0]);
+  EXPECT_EQ(height, LowerFoot(pose));
+  const motion::Poses before = pose;
+  KeepHeight(body, height, pose[0]);
+  EXPECT_EQ(pose, before);
+  pose.at(0, kLeftFoot).y += 0.1f;
+  pose.at(0, kRightFoot).y += 0.08f;
+  KeepHeight(body, height, pose[0]);
+  EXPECT_NEAR(LowerFoot(pose), height, 1e-6);
+  EXPECT_NEAR(pose.at(0, kSkeleton.root).y, before.at(0, kSkeleton.root).y - 0.08f, 1e-6);
+}
+
 TEST(LiveFrameTest, AFollowerInItsLeaderIsMovedAway) {
   const motion::Poses leader = Puppet({}, 1);
   for (const Vec3 offset : {Vec3{0, 0, 0}, Vec3{0.1f, 0, 0}, Vec3{-0.03f, 0.2f, 0.04f}}) {
