@@ -59,8 +59,8 @@ class CleanUp {
              const Timing& timing, motion::Poses* follower) const;
 
   // The three parts of Apply, for a caller who looks at the follower or changes it between them:
-  // the trunk and how far people are apart; then overlaps, arms and joints; then limbs that stay up,
-  // feet that stand and hands that meet. The second and the third hardly turn the trunk.
+  // the trunk and how far people are apart; then overlaps, arms and joints; then limbs that stay
+  // up, feet that stand and hands that meet. The second and the third hardly turn the trunk.
   void CorrectTrunk(const motion::Poses& leader, const Timing& timing,
                     motion::Poses* follower) const;
   void CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
