@@ -22,7 +22,7 @@ struct LiveBoundOptions {
   double near_metres = 0.3, nearest_metres = 0.18;
   double far_metres = 2.3, farthest_metres = 2.65;
   // Height of the lower foot above or below the floor, metres.
-  double low_metres = 0.02, lowest_metres = 0.04;
+  double low_metres = 0.018, lowest_metres = 0.036;
   // Maximum speed of the corrections of the whole body, so that it is not dragged after a leader
   // who jumps.
   double fastest_metres_per_second = 2;
