@@ -16,6 +16,13 @@ namespace {
 
 using test::TemporaryFolder;
 
+bool Equal(const std::vector<checkpoint::Tensor>& a, const std::vector<checkpoint::Tensor>& b) {
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (a[i].values != b[i].values) return false;
+  }
+  return a.size() == b.size();
+}
+
 class FlowTrainerTest : public ::testing::Test {
  protected:
   FlowTrainerTest() { torch::set_num_threads(1); }
@@ -31,6 +38,19 @@ class FlowTrainerTest : public ::testing::Test {
     }
     return batches;
   }
+  // Expects a run that is resumed after its first epoch to equal an uninterrupted one. Returns the
+  // loss of that epoch.
+  double ExpectToResume() {
+    FlowTrainer straight = Make();
+    const double first = straight.RunEpoch().generator;
+    EXPECT_THAT(straight.SaveState(folder_ / "state"), IsOk());
+    straight.RunEpoch();
+    FlowTrainer resumed = Make();
+    EXPECT_THAT(resumed.LoadState(folder_ / "state"), IsOk());
+    resumed.RunEpoch();
+    EXPECT_TRUE(Equal(resumed.BestTensors(), straight.BestTensors()));
+    return first;
+  }
 
   dataset::Dataset dataset_ = MadeUpDataset();
   TrainingOptions options_ = SmallFlowOptions();
@@ -38,13 +58,6 @@ class FlowTrainerTest : public ::testing::Test {
   torch::Tensor base_poses_ = torch::zeros({3, 45});
   TemporaryFolder folder_;
 };
-
-bool Equal(const std::vector<checkpoint::Tensor>& a, const std::vector<checkpoint::Tensor>& b) {
-  for (size_t i = 0; i < a.size(); ++i) {
-    if (a[i].values != b[i].values) return false;
-  }
-  return a.size() == b.size();
-}
 
 TEST_F(FlowTrainerTest, ResumedRunEqualsAnUninterruptedOneBitForBit) {
   FlowTrainer straight = Make();
@@ -70,14 +83,7 @@ TEST_F(FlowTrainerTest, ResumedRunOfOwnMotionAndLiveClipsIsTheSame) {
   FlowOf(&options_).several_known = 1;
   FlowOf(&options_).own.share = FlowOf(&options_).live.share = 0.5;
   FlowOf(&options_).energy.from = 0;
-  FlowTrainer straight = Make();
-  const double first = straight.RunEpoch().generator;
-  ASSERT_THAT(straight.SaveState(folder_ / "state"), IsOk());
-  straight.RunEpoch();
-  FlowTrainer resumed = Make();
-  ASSERT_THAT(resumed.LoadState(folder_ / "state"), IsOk());
-  resumed.RunEpoch();
-  EXPECT_TRUE(Equal(resumed.BestTensors(), straight.BestTensors()));
+  const double first = ExpectToResume();
   for (double* share : {&FlowOf(&options_).own.share, &FlowOf(&options_).live.share}) {
     *share = 0;
     EXPECT_NE(Make().RunEpoch().generator, first);
@@ -90,14 +96,7 @@ TEST_F(FlowTrainerTest, ResumedRunWithLoneLeadersAndTwistIsTheSame) {
   options_.start = {0, 1};
   FlowOf(&options_).leaders.share = FlowOf(&options_).drift.share = 0.5;
   FlowOf(&options_).drift.twist = 0.4;
-  FlowTrainer straight = Make();
-  const double first = straight.RunEpoch().generator;
-  ASSERT_THAT(straight.SaveState(folder_ / "state"), IsOk());
-  straight.RunEpoch();
-  FlowTrainer resumed = Make();
-  ASSERT_THAT(resumed.LoadState(folder_ / "state"), IsOk());
-  resumed.RunEpoch();
-  EXPECT_TRUE(Equal(resumed.BestTensors(), straight.BestTensors()));
+  const double first = ExpectToResume();
   for (double* setting : {&FlowOf(&options_).leaders.share, &FlowOf(&options_).drift.twist}) {
     const double before = std::exchange(*setting, 0);
     FlowTrainer without = Make();
