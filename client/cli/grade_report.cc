@@ -32,7 +32,7 @@ std::string BadFrames(const std::vector<FrameRun>& runs) {
   return absl::StrCat(absl::StrJoin(frames, ", "), shown < runs.size() ? ", ..." : "");
 }
 
-// A share that rounds to 0 but is not 0 is told apart from none.
+// "< 1 %" if it would round to 0 %, which only a share of 0 is.
 std::string Percent(double share) {
   return share > 0 && share < 0.005 ? "< 1 %" : absl::StrFormat("%.0f %%", 100 * share);
 }
