@@ -154,6 +154,10 @@ TEST(StuckThreadTest, SigtermEndsTheProcessThoughAWorkerNeverReturns) {
 TEST(StuckThreadTest, ASecondSignalIsHeardThoughTheMainThreadHangs) {
   Process server(Flags({"--watchdog-seconds", "0", "--grace-seconds", "3600"}));
   const json serving = server.WaitForEvent("serving");
+  // After it logged this, the main thread lists the models once more. A call before that would
+  // block it there instead of while it drains. It handles a reload only afterwards.
+  server.Signal(SIGHUP);
+  ASSERT_FALSE(server.WaitForEvent("reloaded").is_null());
   const BlockingCall call(serving, "hug");
   ASSERT_FALSE(server.WaitForEvent("call").is_null());
   server.Signal(SIGTERM);
