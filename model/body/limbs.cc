@@ -182,6 +182,11 @@ std::vector<double> CapsuleRadii(const motion::Skeleton& skeleton, const Body& b
   return motion::CapsuleRadii(skeleton, LimbParts(body));
 }
 
+float LengthOf(const Limb& limb, absl::Span<const Vec3> pose) {
+  const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
+  return Distance(at(limb.upper), at(limb.middle)) + Distance(at(limb.middle), at(limb.end));
+}
+
 Vec3 BendOf(const Limb& limb, absl::Span<const Vec3> pose) {
   const Vec3 upper = pose[static_cast<std::size_t>(limb.upper)];
   const Vec3 way = pose[static_cast<std::size_t>(limb.end)] - upper;

@@ -60,6 +60,9 @@ void Reach(const Limb& limb, motion::Vec3 target, motion::Vec3 forward,
 void ReachBent(const Limb& limb, motion::Vec3 target, motion::Vec3 bend,
                absl::Span<motion::Vec3> pose);
 
+// Returns the length of both bones of a limb. Shapes: pose [joints].
+float LengthOf(const Limb& limb, absl::Span<const motion::Vec3> pose);
+
 // Returns the offset of a limb's middle joint from the line between its ends. Near zero for a limb
 // that is nearly straight. Shapes: pose [joints].
 motion::Vec3 BendOf(const Limb& limb, absl::Span<const motion::Vec3> pose);

@@ -264,8 +264,7 @@ float Sink(const body::Body& body, const std::vector<FootPath>& paths, std::size
   for (std::size_t leg = 0; leg < paths.size(); ++leg) {
     const body::Limb& limb = body.legs[leg];
     const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
-    const float length =
-        Distance(at(limb.upper), at(limb.middle)) + Distance(at(limb.middle), at(limb.end));
+    const float length = LengthOf(limb, pose);
     const Vec3 way = paths[leg].places[frame] - at(limb.upper);
     const float across = Norm(Level(way)), reach = kLongestReach * length;
     const float deepest = across < reach ? std::sqrt(reach * reach - across * across) : 0;

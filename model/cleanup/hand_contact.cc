@@ -141,8 +141,7 @@ Vec3 Shortened(Vec3 v, float most) {
 Vec3 Approach(const Offer& pair, Vec3 target, float left_out, absl::Span<const Vec3> pose) {
   const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
   const body::Limb& arm = *pair.follower;
-  const float length =
-      Distance(at(arm.upper), at(arm.middle)) + Distance(at(arm.middle), at(arm.end));
+  const float length = LengthOf(arm, pose);
   const Vec3 way = target - at(arm.upper), level = {way.x, 0, way.z};
   const float reach = kComfortable * length, rise = std::abs(way.y);
   const float across = rise < reach ? std::sqrt(reach * reach - rise * rise) : 0;

@@ -104,11 +104,6 @@ float HeelRise(Vec3 hip, Vec3 foot, float length, float highest) {
   return std::max(0.0f, -way.y - std::sqrt(reach * reach - across * across));
 }
 
-float LengthOf(const body::Limb& limb, absl::Span<const Vec3> pose) {
-  const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
-  return Distance(at(limb.upper), at(limb.middle)) + Distance(at(limb.middle), at(limb.end));
-}
-
 // The part of `way` by which a body can move while its feet stay in their places and their heels
 // rise by at most `highest`: all of it unless that takes a leg beyond its reach.
 float ShareWithFeet(const body::Body& body, Vec3 way, float highest, absl::Span<const Vec3> pose) {

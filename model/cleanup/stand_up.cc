@@ -20,14 +20,9 @@ constexpr float kLongestReach = 0.99f;    // of a leg, in its length
 
 Vec3 At(Pose pose, int joint) { return pose[static_cast<std::size_t>(joint)]; }
 
-float Length(const body::Limb& leg, Pose pose) {
-  return Distance(At(pose, leg.upper), At(pose, leg.middle)) +
-         Distance(At(pose, leg.middle), At(pose, leg.end));
-}
-
 float MeanLength(const body::Body& body, Pose pose) {
   float sum = 0;
-  for (const body::Limb& leg : body.legs) sum += Length(leg, pose);
+  for (const body::Limb& leg : body.legs) sum += LengthOf(leg, pose);
   return sum / static_cast<float>(body.legs.size());
 }
 
@@ -46,7 +41,7 @@ float Room(const body::Body& body, Pose pose) {
   float room = INFINITY;
   for (const body::Limb& leg : body.legs) {
     const Vec3 way = At(pose, leg.end) - At(pose, leg.upper);
-    const float across = std::hypot(way.x, way.z), reach = kLongestReach * Length(leg, pose);
+    const float across = std::hypot(way.x, way.z), reach = kLongestReach * LengthOf(leg, pose);
     const float down = across < reach ? std::sqrt(reach * reach - across * across) : 0;
     room = std::min(room, down + way.y);
   }
