@@ -10,6 +10,7 @@
 #include "model/body/grade.h"
 #include "model/body/hands.h"
 #include "model/body/liveliness.h"
+#include "model/body/passing_poses.h"
 #include "model/body/posture.h"
 #include "model/motion/filter.h"
 #include "model/retargeting/rig_animation.h"
@@ -177,7 +178,8 @@ std::vector<PairFigure> Plausibility::Figures() {
           {"leader's"},      {"heads"},   {"trunks"},         {"hands"},
           {"distance"},      {"speed"},   {"leader's speed"}, {"strikes"},
           {"through"},       {"planes"},  {"turns"},          {"fastest turn", true},
-          {"lean"},          {"facing"},  {"farthest"}};
+          {"lean"},          {"facing"},  {"farthest"},       {"astride"},
+          {"held out"}};
 }
 
 std::vector<std::string> Plausibility::Notes() {
@@ -199,7 +201,11 @@ std::vector<std::string> Plausibility::Notes() {
       "the trunk over one second, degrees.",
       "Facing: how far hips and shoulders are turned away from the leader, mean over the frames, "
       "degrees. Farthest: the largest distance of the roots in an answer, mean over the answers, "
-      "metres."};
+      "metres.",
+      "Astride: the longest time in an answer for which the feet stay farther apart than 0.75 "
+      "lengths of the leg. Held out: the longest time for which a hand that neither reaches for "
+      "the leader nor is near a hand of the leader stays higher than 0.3 lengths of the arm below "
+      "its shoulder. Means over the answers, seconds."};
 }
 
 PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, double rate,
@@ -207,6 +213,7 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
   body::PairMeter meter(skeleton_, body_, rate);
   body::GradeSum sum;
   Strikes strikes(skeleton_, body_, surface_, contacts.strikes);
+  body::LongestPoses longest(skeleton_, body_);
   const std::vector<double> turns = RigTurns(skeleton_, follower, rate);
   double most_twisted = 0, shoulders = 0, heads = 0, trunks = 0, plane = 0;
   std::vector<double> hands;
@@ -222,6 +229,7 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
     const std::optional<double> apart =
         body::OfferedHandDistance(body_, skeleton_.root, leader[t], follower[t]);
     if (apart) hands.push_back(*apart);
+    longest.Add(leader[t], follower[t]);
     const bool through = strikes.Add(leader[t], follower[t]);
     const double turned = LargestPlaneTurn(body_, follower, t);
     plane = std::max(plane, turned);
@@ -253,7 +261,9 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
                     fastest,
                     body::MeasureLean(follower, skeleton_, rate, body::LeanFrom::kHips).max_degrees,
                     body::FacingDegrees(leader, follower, skeleton_),
-                    FarthestRoots(skeleton_, leader, follower)};
+                    FarthestRoots(skeleton_, leader, follower),
+                    longest.Get(rate).astride,
+                    longest.Get(rate).held_out};
   return figures;
 }
 

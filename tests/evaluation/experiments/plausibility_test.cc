@@ -144,6 +144,30 @@ TEST(PlausibilityTest, ShouldersOneAboveTheOther) {
   EXPECT_NEAR(Figure(Person(), follower, "shoulders"), 0.5, 0.02);
 }
 
+TEST(PlausibilityTest, FeetThatStayApart) {
+  motion::Poses follower = Partner(1.2f);
+  EXPECT_EQ(Figure(Person(), follower, "astride"), 0);
+  for (int t = 10; t < 40; ++t) follower.at(t, kRightFoot).z -= 0.8f;
+  follower.at(30, kRightFoot).z += 0.8f;
+  EXPECT_NEAR(Figure(Person(), follower, "astride"), 20 / kRate, 1e-6);
+}
+
+TEST(PlausibilityTest, AHandThatIsHeldOut) {
+  const motion::Poses person = Person();
+  const auto held_out = [&person](Vec3 from_shoulder) {
+    motion::Poses follower = Partner(1.2f);
+    for (int t = 5; t < 35; ++t) {
+      follower.at(t, kLeftHand) = follower.at(t, kLeftShoulder) + from_shoulder;
+      follower.at(t, kLeftElbow) =
+          Lerp(follower.at(t, kLeftShoulder), follower.at(t, kLeftHand), 0.5f);
+    }
+    return Figure(person, follower, "held out");
+  };
+  EXPECT_NEAR(held_out({-0.5f, 0, 0}), 30 / kRate, 1e-6) << "to the side";
+  EXPECT_EQ(held_out({0, -0.5f, 0}), 0) << "down";
+  EXPECT_EQ(held_out({0, 0, 0.5f}), 0) << "to the leader";
+}
+
 TEST(PlausibilityTest, CombinesMeansAndLargest) {
   PairFigures a, b;
   a.values.assign(Plausibility::Figures().size(), 1);
