@@ -38,6 +38,8 @@ constexpr char kTurningClasses[] = "turning_classes";
 constexpr char kStepsInTime[] = "steps_in_time";
 constexpr char kBoneRatios[] = "bone_ratios";
 constexpr char kHipHeight[] = "hip_height";
+constexpr char kAstrideSeconds[] = "astride_seconds";
+constexpr char kHeldOutSeconds[] = "held_out_seconds";
 constexpr char kStrikes[] = "strikes";
 constexpr char kFist[] = "fist", kFoot[] = "foot";
 constexpr char kTerms[] = "terms";
@@ -184,7 +186,7 @@ void ReadStrikes(base::ObjectReader* reader, engine::ModelDescription* model) {
 
 // What people do in some of the classes. Older checkpoints have no such fields.
 void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
-  constexpr double kFarthestHands = 1, kFastestTurn = 1440;
+  constexpr double kFarthestHands = 1, kFastestTurn = 1440, kLongestPose = 60;
   ReadClassNumbers(reader, kHandContacts, model->classes, kFarthestHands,
                    [model](const std::string& name, double metres) {
                      model->hand_contacts.push_back({name, metres});
@@ -195,6 +197,13 @@ void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
                    });
   if (reader->Has(kStepsInTime)) model->steps_in_time = reader->Bool(kStepsInTime);
   if (reader->Has(kHipHeight)) model->hip_height = reader->Number(kHipHeight, 0, 1);
+  body::PoseSeconds& longest = model->longest_poses;
+  if (reader->Has(kAstrideSeconds)) {
+    longest.astride = reader->Number(kAstrideSeconds, 0, kLongestPose);
+  }
+  if (reader->Has(kHeldOutSeconds)) {
+    longest.held_out = reader->Number(kHeldOutSeconds, 0, kLongestPose);
+  }
   ReadStrikes(reader, model);
 }
 
@@ -355,6 +364,9 @@ std::string SerializeManifest(const Manifest& manifest) {
   if (model.steps_in_time) root[kStepsInTime] = true;
   if (!model.bone_ratios.empty()) root[kBoneRatios] = model.bone_ratios;
   if (model.hip_height > 0) root[kHipHeight] = model.hip_height;
+  const body::PoseSeconds& longest = model.longest_poses;
+  if (longest.astride > 0) root[kAstrideSeconds] = longest.astride;
+  if (longest.held_out > 0) root[kHeldOutSeconds] = longest.held_out;
   for (const engine::Strike& strike : model.strikes) {
     root[kStrikes][strike.interaction_class] =
         strike.limb == engine::StrikingLimb::kFoot ? kFoot : kFist;

@@ -75,6 +75,9 @@ void CleanUp::PlaceFeetAndHands(const motion::Poses& leader, const Meetings& mee
   if (options_.raised_limbs.enabled) {
     LowerLimbs(skeleton_, body_, floor, leader, options_.raised_limbs, timing, follower);
   }
+  if (options_.stance.enabled) {
+    NarrowStance(skeleton_, body_, options_.stance, timing, follower);
+  }
   if (floor && options_.footsteps.enabled) {
     WalkInSteps(skeleton_, body_, *floor, options_.footsteps, timing, follower);
   }

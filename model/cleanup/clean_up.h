@@ -16,6 +16,7 @@
 #include "model/cleanup/raised_limbs.h"
 #include "model/cleanup/shoulders.h"
 #include "model/cleanup/spacing.h"
+#include "model/cleanup/stance.h"
 #include "model/cleanup/strikes.h"
 #include "model/cleanup/timing.h"
 #include "model/cleanup/upright.h"
@@ -36,6 +37,7 @@ struct Options {
   JointRangeOptions joint_ranges;
   FloorOptions floor;
   RaisedLimbOptions raised_limbs;
+  StanceOptions stance;
   FootstepOptions footsteps;
   HandContactOptions hand_contact;
   StrikeOptions strikes;
@@ -60,7 +62,8 @@ class CleanUp {
 
   // The three parts of Apply, for a caller who looks at the follower or changes it between them:
   // the trunk and how far people are apart; then overlaps, arms and joints; then limbs that stay
-  // up, feet that stand and hands that meet. The second and the third hardly turn the trunk.
+  // up or apart, feet that stand and hands that meet. The second and the third hardly turn the
+  // trunk.
   void CorrectTrunk(const motion::Poses& leader, const Timing& timing,
                     motion::Poses* follower) const;
   void CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,

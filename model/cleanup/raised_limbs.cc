@@ -5,7 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "model/cleanup/turns.h"
+#include "model/body/passing_poses.h"
+#include "model/cleanup/lasting.h"
 
 namespace duet::cleanup {
 namespace {
@@ -14,25 +15,6 @@ using motion::Vec3;
 
 // How far a hand that came down is from its shoulder, in lengths of the arm.
 constexpr float kHanging = 0.93f;
-
-// How far a limb is lowered in each frame, 0 to 1. `raised`: whether it is up in a frame; so it was
-// for `before` seconds before the first. Empty if it is lowered in no frame. Shapes: returns
-// [frames].
-std::vector<float> Lowered(const std::function<bool(int)>& raised, double longest, double before,
-                           double ease, const Timing& timing, int frames) {
-  std::vector<float> lowered(static_cast<std::size_t>(frames));
-  bool any = false;
-  double since = before;  // seconds
-  for (int t = 0; t < frames; ++t) {
-    since = raised(t) ? since + 1 / timing.frame_rate_hz : 0;
-    if (t < timing.settled || since <= longest) continue;
-    lowered[static_cast<std::size_t>(t)] = SmoothStep((since - longest) / ease);
-    any = true;
-  }
-  if (!any) return {};
-  LimitSlopes(timing.settled, static_cast<float>(1 / timing.Frames(ease)), &lowered);
-  return lowered;
-}
 
 // Moves the end of a limb by a share of its way to a place that depends on the pose. `forwards`: 1
 // for a knee, -1 for an elbow, which bends backwards.
@@ -48,20 +30,15 @@ void Lower(const body::Limb& limb, const std::vector<float>& lowered,
   }
 }
 
-double LengthOf(const body::Limb& limb, absl::Span<const Vec3> pose) {
-  const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
-  return double{Distance(at(limb.upper), at(limb.middle)) +
-                Distance(at(limb.middle), at(limb.end))};
-}
-
 void LowerFoot(const motion::Skeleton& skeleton, const body::Limb& leg, float floor,
                const RaisedLimbOptions& options, const Timing& timing, motion::Poses* poses) {
   const float high = floor + static_cast<float>(options.foot_metres);
   const auto raised = [&](int t) { return poses->at(t, leg.end).y > high; };
-  const double before =
-      timing.settled > 0 ? 0 : options.longest_foot_seconds + options.ease_seconds;
-  const std::vector<float> lowered = Lowered(raised, options.longest_foot_seconds, before,
-                                             options.ease_seconds, timing, poses->frame_count());
+  Lasting lasting{options.longest_foot_seconds, options.ease_seconds};
+  if (timing.settled == 0) {
+    lasting.before_seconds = options.longest_foot_seconds + options.ease_seconds;
+  }
+  const std::vector<float> lowered = SharesOfLasting(raised, lasting, timing, poses->frame_count());
   const auto below_hip = [&](absl::Span<const Vec3> pose) {
     const Vec3 hip = pose[static_cast<std::size_t>(leg.upper)];
     return Vec3{hip.x, floor, hip.z};
@@ -69,9 +46,22 @@ void LowerFoot(const motion::Skeleton& skeleton, const body::Limb& leg, float fl
   Lower(leg, lowered, below_hip, /*forwards=*/1, *skeleton.hips, timing, poses);
 }
 
-void LowerHand(const motion::Skeleton& skeleton, const body::Body& body, const body::Limb& arm,
-               const motion::Poses& leader, const RaisedLimbOptions& options, const Timing& timing,
-               motion::Poses* poses) {
+// Moves the hand to its place beside the body where `up` lasts longer than a time.
+void LowerHand(const motion::Skeleton& skeleton, const body::Limb& arm,
+               const std::function<bool(int)>& up, double longest_seconds,
+               const RaisedLimbOptions& options, const Timing& timing, motion::Poses* poses) {
+  const std::vector<float> lowered =
+      SharesOfLasting(up, {longest_seconds, options.ease_seconds}, timing, poses->frame_count());
+  const auto beside_body = [&](absl::Span<const Vec3> pose) {
+    const Vec3 shoulder = pose[static_cast<std::size_t>(arm.upper)];
+    return shoulder - Vec3{0, kHanging * LengthOf(arm, pose), 0};
+  };
+  Lower(arm, lowered, beside_body, /*forwards=*/-1, *skeleton.hips, timing, poses);
+}
+
+void LowerHands(const motion::Skeleton& skeleton, const body::Body& body, const body::Limb& arm,
+                const motion::Poses& leader, const RaisedLimbOptions& options, const Timing& timing,
+                motion::Poses* poses) {
   const float high = static_cast<float>(options.hand_metres);
   const auto held = [&](int t) {
     return std::any_of(body.arms.begin(), body.arms.end(), [&](const body::Limb& other) {
@@ -82,13 +72,12 @@ void LowerHand(const motion::Skeleton& skeleton, const body::Body& body, const b
   const auto raised = [&](int t) {
     return poses->at(t, arm.end).y > poses->at(t, arm.upper).y + high && !held(t);
   };
-  const std::vector<float> lowered = Lowered(raised, options.longest_hand_seconds, 0,
-                                             options.ease_seconds, timing, poses->frame_count());
-  const auto beside_body = [&](absl::Span<const Vec3> pose) {
-    const Vec3 shoulder = pose[static_cast<std::size_t>(arm.upper)];
-    return shoulder - Vec3{0, kHanging * static_cast<float>(LengthOf(arm, pose)), 0};
+  LowerHand(skeleton, arm, raised, options.longest_hand_seconds, options, timing, poses);
+  if (options.longest_held_out_seconds == 0) return;
+  const auto held_out = [&](int t) {
+    return IsHeldOut(body, arm, skeleton.root, leader[t], (*poses)[t]);
   };
-  Lower(arm, lowered, beside_body, /*forwards=*/-1, *skeleton.hips, timing, poses);
+  LowerHand(skeleton, arm, held_out, options.longest_held_out_seconds, options, timing, poses);
 }
 
 }  // namespace
@@ -102,7 +91,7 @@ void LowerLimbs(const motion::Skeleton& skeleton, const body::Body& body,
   }
   if (!body.shoulders) return;
   for (const body::Limb& arm : body.arms) {
-    LowerHand(skeleton, body, arm, leader, options, timing, follower);
+    LowerHands(skeleton, body, arm, leader, options, timing, follower);
   }
 }
 

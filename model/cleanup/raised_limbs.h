@@ -17,6 +17,8 @@ struct RaisedLimbOptions {
   // The same for a hand above its shoulder, unless a hand of the leader is this near.
   double hand_metres = 0.15, longest_hand_seconds = 1.5;
   double held_metres = 0.35;
+  // A hand that is held out (body::IsHeldOut) for longer than this comes down, too. 0: never.
+  double longest_held_out_seconds = 0;
   // How long a limb takes to come down.
   double ease_seconds = 0.5;
 };

@@ -4,13 +4,14 @@
 #include <vector>
 
 #include "model/body/limbs.h"
+#include "model/body/passing_poses.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::engine {
 
-// Finds out from captured pairs how large followers are beside their leaders, and how upright they
-// stand.
+// Finds out from captured pairs how large followers are beside their leaders, how upright they
+// stand, and for how long they keep poses.
 class BodyFit {
  public:
   // `skeleton` must outlive the fit.
@@ -28,13 +29,21 @@ class BodyFit {
   // time. 0 for less than half a minute, or without legs.
   double HipHeight() const;
 
+  // The longest time of each pose in a pair that 95 of 100 pairs do not exceed, but at least half a
+  // second. 0 for less than half a minute of motion.
+  body::PoseSeconds LongestPoses() const;
+
  private:
+  void MeasurePoses(const motion::Poses& leader, const motion::Poses& follower);
+
   const motion::Skeleton& skeleton_;
   double frame_rate_hz_;
   body::Body body_;
   std::vector<std::vector<double>> ratios_;  // of every bone, [pairs]
   std::vector<double> sizes_;                // of every pair: the follower's bones, together
   std::vector<double> heights_;              // of every frame
+  std::vector<double> astride_, held_out_;   // of every pair: the longest time, seconds
+  int frames_ = 0;
 };
 
 }  // namespace duet::engine

@@ -142,6 +142,12 @@ cleanup::Meetings MeetingsOf(const ModelDescription& description, const Synthesi
   return meetings;
 }
 
+cleanup::Options CleaningOf(const ModelDescription& description, cleanup::Options options) {
+  options.stance.longest_seconds = description.longest_poses.astride;
+  options.raised_limbs.longest_held_out_seconds = description.longest_poses.held_out;
+  return options;
+}
+
 int SettledFrames(const SynthesisWindow& window) {
   return std::max(window.settled.frame_count(), window.start ? 1 : 0);
 }

@@ -41,6 +41,9 @@ cleanup::Touch TouchOf(const ModelDescription& description, const SynthesisWindo
 // Shapes: returns [frames].
 cleanup::Meetings MeetingsOf(const ModelDescription& description, const SynthesisWindow& window);
 
+// Returns `options` with the limits of a model: how long its followers keep poses.
+cleanup::Options CleaningOf(const ModelDescription& description, cleanup::Options options);
+
 // Returns the number of the window's first frames that must not change: the settled frames, or the
 // frame of the start.
 int SettledFrames(const SynthesisWindow& window);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "model/body/passing_poses.h"
 #include "model/engine/direction_estimate.h"
 #include "model/engine/leader_statistics.h"
 #include "model/motion/skeleton.h"
@@ -55,6 +56,8 @@ struct ModelDescription {
   // A follower does not stay in a crouch in which its hips are lower than this
   // (cleanup::LastingHipHeights). 0: as low as the network has them.
   double hip_height = 0;
+  // The longest time for which a follower keeps such a pose. 0: as long as the network does.
+  body::PoseSeconds longest_poses;
   // The classes in which the leader strikes at the body.
   std::vector<Strike> strikes;
   double frame_rate_hz = 0;  // the network's own

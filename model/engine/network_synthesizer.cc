@@ -44,7 +44,7 @@ class NetworkSynthesizer : public Synthesizer {
         options_(options),
         live_bounds_(description_.skeleton),
         body_(body::FindBody(description_.skeleton)),
-        clean_up_(description_.skeleton, options.cleaning),
+        clean_up_(description_.skeleton, CleaningOf(description_, options.cleaning)),
         judge_(description_.skeleton, std::move(critic)) {
     description_.clean_up = options.clean_up;
   }

@@ -92,6 +92,7 @@ void MeasureBodies(const dataset::Dataset& dataset, const std::vector<int>& sequ
   }
   model->bone_ratios = fit.BoneRatios();
   model->hip_height = fit.HipHeight();
+  model->longest_poses = fit.LongestPoses();
 }
 
 engine::LeaderStatistics MeasureLeaders(const dataset::Dataset& dataset,

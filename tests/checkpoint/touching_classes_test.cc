@@ -145,6 +145,25 @@ TEST(BodiesInManifest, HaveAHipHeightInLegs) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("hip_height")));
 }
 
+TEST(LongestPosesInManifest, RoundTrip) {
+  Manifest manifest = CompleteManifest();
+  EXPECT_EQ(ParseManifest(SerializeManifest(manifest))->model.longest_poses.astride, 0);
+  manifest.model.longest_poses = {0.6, 1.2};
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->model.longest_poses.astride, 0.6);
+  EXPECT_EQ(read->model.longest_poses.held_out, 1.2);
+}
+
+TEST(LongestPosesInManifest, AreSeconds) {
+  for (const char* field : {"astride_seconds", "held_out_seconds"}) {
+    json root = json::parse(SerializeManifest(CompleteManifest()));
+    root[field] = 61;
+    EXPECT_THAT(ParseManifest(root.dump()),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(field)));
+  }
+}
+
 TEST(StrikesInManifest, RoundTrip) {
   Manifest manifest = CompleteManifest();
   manifest.model.strikes = {{"hug", engine::StrikingLimb::kFist},

@@ -9,7 +9,7 @@ using motion::Vec3;
 
 const motion::Skeleton kSkeleton = motion::SbuSkeleton();
 const body::Body kBody = body::FindBody(kSkeleton);
-constexpr int kHand = 8, kShoulder = 6, kFoot = 14, kHip = 12, kOtherFoot = 11;
+constexpr int kHand = 8, kElbow = 7, kShoulder = 6, kFoot = 14, kHip = 12, kOtherFoot = 11;
 constexpr float kFloor = static_cast<float>(kAnkle);
 
 // The leader stands three metres away.
@@ -32,6 +32,14 @@ motion::Poses HandUp(double begin, double end) {
 motion::Poses Lowered(motion::Poses poses, int settled = 0,
                       const motion::Poses& leader = Leader()) {
   LowerLimbs(kSkeleton, kBody, kFloor, leader, {}, {kRate, settled}, &poses);
+  return poses;
+}
+
+// With a limit for hands that are held out, too.
+motion::Poses LoweredHands(motion::Poses poses, const motion::Poses& leader = Leader()) {
+  RaisedLimbOptions options;
+  options.longest_held_out_seconds = 1.2;
+  LowerLimbs(kSkeleton, kBody, kFloor, leader, options, {kRate, 0}, &poses);
   return poses;
 }
 
@@ -80,6 +88,34 @@ TEST(LowerLimbs, AHandThatStaysUpComesDownBesideTheBody) {
   EXPECT_LT(lowered.at(end, kHand).y, lowered.at(end, kShoulder).y - 0.4f);
   EXPECT_LT(LargestLengthChange(lowered, up), 1e-3f);
   EXPECT_EQ(Lowered(HandUp(0.5, 1.8)), HandUp(0.5, 1.8)) << "a greeting";
+}
+
+// The right arm is stretched out in a direction between two times in seconds.
+motion::Poses ArmOut(Vec3 direction, double begin, double end) {
+  motion::Poses poses = Puppet();
+  for (int t = FrameAt(begin); t < FrameAt(end); ++t) {
+    const Vec3 shoulder = poses.at(t, kShoulder);
+    const float upper = Distance(shoulder, poses.at(t, kElbow));
+    const float whole = upper + Distance(poses.at(t, kElbow), poses.at(t, kHand));
+    poses.at(t, kElbow) = shoulder + direction * upper;
+    poses.at(t, kHand) = shoulder + direction * whole;
+  }
+  return poses;
+}
+
+TEST(LowerLimbs, AHandThatIsHeldOutForTooLongComesDown) {
+  const motion::Poses out = ArmOut({-1, 0, 0}, 0.5, 3.1), lowered = LoweredHands(out);
+  EXPECT_EQ(lowered[FrameAt(1.5)], out[FrameAt(1.5)]);
+  const int end = FrameAt(2.8);
+  EXPECT_LT(lowered.at(end, kHand).y, lowered.at(end, kShoulder).y - 0.4f);
+  EXPECT_EQ(LoweredHands(ArmOut({-1, 0, 0}, 0.5, 1.6)), ArmOut({-1, 0, 0}, 0.5, 1.6));
+  EXPECT_EQ(Lowered(out), out) << "no limit";
+}
+
+TEST(LowerLimbs, AHandThatReachesForTheLeaderStays) {
+  const motion::Poses out = ArmOut({0, 0, 1}, 0.5, 3.1);
+  EXPECT_EQ(LoweredHands(out), out);
+  EXPECT_NE(LoweredHands(out, Moved(Puppet(), {0, 0, -3})), out) << "the leader is behind";
 }
 
 TEST(LowerLimbs, AHandThatTheLeaderHoldsStaysUp) {

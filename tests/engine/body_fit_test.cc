@@ -72,5 +72,26 @@ TEST(BodyFit, PosturesNeedTimeAndLegs) {
   EXPECT_EQ(fit.HipHeight(), 0);
 }
 
+// `count` pairs of three seconds; in `lunging` of them the follower stands astride for two.
+body::PoseSeconds LongestPoses(int count, int lunging) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  BodyFit fit(skeleton, kRate);
+  for (int i = 0; i < count; ++i) {
+    const motion::Poses follower = Puppet([&](double at, PuppetPose* pose) {
+      if (i < lunging && at < 2) pose->right_foot.target = {-0.12, cleanup::kAnkle, -0.8};
+    });
+    fit.Add(cleanup::Moved(Puppet(), {0, 0, 1}), follower);
+  }
+  return fit.LongestPoses();
+}
+
+TEST(BodyFit, FindsHowLongPeopleKeepPoses) {
+  EXPECT_EQ(LongestPoses(20, 0).astride, 0.5);
+  EXPECT_EQ(LongestPoses(20, 10).astride, 2);
+  EXPECT_EQ(LongestPoses(40, 1).astride, 0.5) << "one of many";
+  EXPECT_EQ(LongestPoses(20, 10).held_out, 0.5);
+  EXPECT_EQ(LongestPoses(5, 5).astride, 0) << "too little motion to know";
+}
+
 }  // namespace
 }  // namespace duet::engine
