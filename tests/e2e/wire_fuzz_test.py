@@ -116,8 +116,11 @@ class CorpusTest(unittest.TestCase):
         *starts, frames, change = self.requests[corpus.LIVE]
         for start in starts:
             self.accepted(corpus.LIVE, start)
-        opening = corpus.opening(corpus.LIVE, self.requests[corpus.LIVE])
-        answers = self.accepted(corpus.LIVE, opening, change, frames)
+        resumed, *others = corpus.openings(corpus.LIVE, self.requests[corpus.LIVE])
+        self.assertEqual(len(others), 3)
+        for opening in others:
+            self.accepted(corpus.LIVE, opening, change, frames)
+        answers = self.accepted(corpus.LIVE, resumed, change, frames)
         self.assertEqual(protobuf.values(protobuf.values(answers[-1], 4)[0], 1), [2])  # frames
         rotations = [part for answer in answers for frames in protobuf.values(answer, 2)
                      for part in protobuf.values(frames, 9)]

@@ -23,7 +23,7 @@ def requests_of_methods(source):
     """"service/method" -> its requests, the simplest first. `source`: the project's folder."""
     samples = pathlib.Path(source) / "tests/fuzz/corpus/synthesis_request"
     synthesize = [(samples / name).read_bytes() for name in ("sample", "options")]
-    synthesize.append(with_rotations(synthesize[0]))
+    synthesize += [with_rotations(synthesize[0]), with_time_line(synthesize[0])]
     version, label = message(f1=SPARE, f2=1), message(f1=SPARE, f2="blue", f3=1)
     return {
         SYNTHESIZE: synthesize,
@@ -51,20 +51,42 @@ def with_rotations(sample):
     return sample + message(f7=1, f12=1, f13=2, f14=1, f15=message(f1=0.05, f2=1.0))
 
 
-def live_messages(sample):
-    """Starts of a new and of a resumed session, then what may follow a start. The fields that a LiveStart
-    and a clip's request share have the same numbers."""
+def with_time_line(sample):
+    """A request with weights that change over time, a pose to start from, a vertical and a pin."""
     leader, labels = values(sample, 2)[0], values(sample, 3)[0]
+    pin = message(f1="right_hand", f2=1, f3=message(f1=0.5, f2=1.0, f3=0.5), f4=0.5)
+    return (message(f2=leader, f13=4, f14=1, f15=message(f1=0.05, f2=1.0), f16=pin) +
+            time_line_and_pose(leader, labels))
+
+
+def time_line_and_pose(leader, labels):
+    """The fields label_keyframes and follower_start. The follower stands where the leader does."""
+    return (message(f4=message(f2=labels)) + message(f4=message(f1=1, f2=labels)) +
+            message(f5=message(f2=message(f1=first_frame(leader)))))
+
+
+def first_frame(leader):
     positions = values(leader, 6)[0]  # of two frames
-    first = positions[:len(positions) // 2]
+    return positions[:len(positions) // 2]
+
+
+def live_messages(sample):
+    """Starts of a new and of a resumed session, and of one with a pose, then what may follow a start. The
+    fields that a LiveStart and a clip's request share have the same numbers."""
+    leader, labels = values(sample, 2)[0], values(sample, 3)[0]
+    positions, first = values(leader, 6)[0], first_frame(leader)
     history = message(f1=5, f2=2, f3=positions, f4=first, f5=first)
     resumed = message(f2=leader, f4=message(f2=labels), f7=7, f8=0.5, f9=1, f10=2,
                       f11=message(f1=0.05, f2=1.0), f12=2, f13=3, f14=history, f15=1)
     return [message(f1=sample), message(f1=sample + message(f15=1)), message(f1=resumed),
+            message(f1=message(f2=leader, f10=4, f11=message(f1=0.05, f2=1.0), f12=2, f13=3, f15=1) +
+                    time_line_and_pose(leader, labels)),
             message(f2=message(f1=7, f2=2, f3=positions)),
             message(f3=message(f2=labels, f3=3))]
 
 
-def opening(method, requests):
-    """The message that must come before others in a call of a method; None if each stands alone."""
-    return requests[2] if method == LIVE else None
+def openings(method, requests):
+    """The messages of which one must come before others in a call of a method, the one with the most
+    fields first; none if each message stands alone."""
+    starts = requests[:-2] if method == LIVE else []
+    return sorted(starts, key=len, reverse=True)

@@ -15,6 +15,7 @@ SERVICE, ADMIN, METRICS = "service", "admin", "metrics"
 EMPTY_CALLS = 60  # fewer than one client may have at a time
 EMPTY_WAVES = 60  # of calls of Synthesize, each of which begins when the last one is over
 CALLS_A_CONNECTION = 40
+MOST_BETWEEN = 3  # messages between the opening of a live session and its last one
 ADMIN_CALLS = 4  # each may load a model, one after the other
 LARGE_WINDOW = 2**31 - 1
 
@@ -63,9 +64,9 @@ class Rounds:
         for port, method, requests in self._methods:
             changed = list(dict.fromkeys(
                 change for request in requests for change in mutation.systematic(request)))
-            opening = corpus.opening(method, requests)
             changed = [(change,) for change in changed] + [
-                (opening, change) for change in changed if opening is not None]
+                (opening, change) for opening in corpus.openings(method, requests)[:1]
+                for change in changed]
             for at in range(0, len(changed), 2 * CALLS_A_CONNECTION):
                 halves = (changed[at:at + CALLS_A_CONNECTION],
                           changed[at + CALLS_A_CONNECTION:at + 2 * CALLS_A_CONNECTION])
@@ -83,9 +84,13 @@ class Rounds:
         return random.choice(chosen if chosen and random.random() < 0.5 else offered)
 
     def _messages(self, random, method, requests):
-        """The message of a call, behind the one that must come before it."""
-        opening, message = corpus.opening(method, requests), self._message(random, requests)
-        return (message,) if opening is None or random.random() < 0.4 else (opening, message)
+        """The messages of a call: one, or an opening and a few of those that may follow it."""
+        openings, message = corpus.openings(method, requests), self._message(random, requests)
+        if not openings or random.random() < 0.4:
+            return (message,)
+        between = [self._message(random, requests[len(openings):])
+                   for _ in range(random.randrange(MOST_BETWEEN + 1))]
+        return (random.choice(openings), *between, message)
 
     def _message(self, random, requests):
         request, other = random.choice(requests), random.choice(requests)
