@@ -116,7 +116,7 @@ class KeyframeParser {
     for (std::size_t i = 1; i < words.size(); ++i) {
       float value = 0;
       if (!motion::ParseCoordinate(words[i], &value)) {
-        return Error(absl::StrCat(words[0], ": expected a number, got ", base::Quoted(words[i])));
+        return Error(absl::StrCat(words[0], ": ", motion::ExpectedCoordinate(words[i])));
       }
       values->push_back(static_cast<double>(value));
     }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "model/base/text.h"
 
 namespace duet::motion {
@@ -19,6 +20,14 @@ bool ParseCoordinate(absl::string_view text, float* value) {
   if (!base::ParseNumber(text, &number) || std::abs(number) > kMaxCoordinate) return false;
   *value = static_cast<float>(number);
   return true;
+}
+
+std::string ExpectedCoordinate(absl::string_view text) {
+  double number = 0;
+  const bool too_large = base::ParseNumber(text, &number);
+  return absl::StrCat("expected a finite number",
+                      too_large ? absl::StrFormat(" within +-%.0f", kMaxCoordinate) : "", ", got ",
+                      base::Quoted(text));
 }
 
 }  // namespace duet::motion

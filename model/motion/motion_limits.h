@@ -2,6 +2,7 @@
 #define DUET_MODEL_MOTION_MOTION_LIMITS_H_
 
 #include <cstddef>
+#include <string>
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
@@ -26,6 +27,9 @@ absl::Status CheckFrameRate(absl::string_view source, double frame_rate_hz);
 
 // Parses all of `text` as one number within +-kMaxCoordinate; returns false otherwise.
 bool ParseCoordinate(absl::string_view text, float* value);
+
+// What to report about a text that ParseCoordinate rejects: "expected ..., got ...".
+std::string ExpectedCoordinate(absl::string_view text);
 
 }  // namespace duet::motion
 

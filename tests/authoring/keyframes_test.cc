@@ -113,7 +113,8 @@ TEST(Keyframes, NamesThePlaceOfAnError) {
   EXPECT_THAT(ParseError("at 0\ntail 0 1 0\n"), HasSubstr("such as torso, got \"tail\""));
   EXPECT_THAT(ParseError("at 0\ntorso 0 1\n"),
               HasSubstr("a.txt:2: torso: expected 3 values, got 2"));
-  EXPECT_THAT(ParseError("at 0\ntorso 0 x 1\n"), HasSubstr("torso: expected a number, got \"x\""));
+  EXPECT_THAT(ParseError("at 0\ntorso 0 x 1\n"),
+              HasSubstr("torso: expected a finite number, got \"x\""));
   EXPECT_THAT(ParseError("torso 0 1 0\n"), HasSubstr("expected \"at 0\" first, got torso"));
   EXPECT_THAT(ParseError("at 1\n"), HasSubstr("at: expected 0 first, got 1"));
   EXPECT_THAT(ParseError("at 0\nat 1\nat 1\n"), HasSubstr("a.txt:3: at: expected more than 1"));

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/matchers.h"
@@ -33,6 +34,15 @@ TEST(ParseCoordinate, AcceptsNumbersWithinTheLimit) {
     EXPECT_FALSE(ParseCoordinate(text, &value)) << text;
   }
   EXPECT_EQ(value, 2.5f) << "a refused text leaves the value as it was";
+}
+
+TEST(ExpectedCoordinate, NamesTheLimitOfANumberBeyondIt) {
+  EXPECT_EQ(ExpectedCoordinate("-1e30"),
+            "expected a finite number within +-10000000, got \"-1e30\"");
+  for (const char* text : {"nan", "x", "1e999"}) {
+    EXPECT_EQ(ExpectedCoordinate(text),
+              absl::StrCat("expected a finite number, got \"", text, "\""));
+  }
 }
 
 }  // namespace

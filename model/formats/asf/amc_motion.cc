@@ -118,8 +118,8 @@ class AmcParser {
     float* values = motion_.values.data() + motion_.values.size() - width_ + found->second.start;
     for (std::size_t i = 0; i < freedoms.size(); ++i) {
       if (!motion::ParseCoordinate(words[i + 1], &values[i])) {
-        return Error(absl::StrCat(base::Quoted(name), ": expected a finite number, got ",
-                                  base::Quoted(words[i + 1])));
+        return Error(
+            absl::StrCat(base::Quoted(name), ": ", motion::ExpectedCoordinate(words[i + 1])));
       }
       if (freedoms[i] >= AsfFreedom::kRx && !radians_)
         values[i] *= static_cast<float>(base::kRadiansPerDegree);

@@ -236,9 +236,9 @@ class BvhParser {
     for (absl::string_view word = words.Word(); !word.empty(); word = words.Word(), ++count) {
       float value = 0;
       if (!motion::ParseCoordinate(word, &value)) {
-        return base::ErrorAt(source_, number,
-                             absl::StrCat("channel value ", count + 1,
-                                          ": expected a finite number, got ", base::Quoted(word)));
+        return base::ErrorAt(
+            source_, number,
+            absl::StrCat("channel value ", count + 1, ": ", motion::ExpectedCoordinate(word)));
       }
       if (count < expected) document_.values.push_back(value);
     }

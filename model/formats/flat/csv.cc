@@ -179,8 +179,7 @@ class CsvParser {
   absl::Status ParsePosition(const CsvRow& row, std::size_t column, float* value) const {
     if (motion::ParseCoordinate(row[column], value)) return absl::OkStatus();
     if (motion::ParseCoordinate(WithPoint(row[column]), value)) return absl::OkStatus();
-    return ErrorInColumn(column + 1,
-                         absl::StrCat("expected a finite number, got ", base::Quoted(row[column])));
+    return ErrorInColumn(column + 1, motion::ExpectedCoordinate(row[column]));
   }
 
   // Converts a decimal comma ("0,05"), as many European spreadsheets write it, unless commas

@@ -48,7 +48,7 @@ class SbuLine {
         return base::ErrorAt(
             source_, number_, column,
             absl::StrCat(person == 0 ? "left" : "right", " person's ", joint_names_[joint], " ",
-                         kAxes[axis], ": expected a finite number, got ", base::Quoted(field)));
+                         kAxes[axis], ": ", motion::ExpectedCoordinate(field)));
       }
     }
     return absl::OkStatus();
