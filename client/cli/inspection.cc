@@ -8,6 +8,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "model/base/counted.h"
+#include "model/base/printable.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
@@ -24,16 +25,17 @@ std::string DescribeSetting(const char* name, const std::optional<Setting>& sett
                             const Style& style) {
   if (!setting.has_value()) return "";
   std::string origin(OriginName(setting->origin));
-  if (!setting->why.empty()) absl::StrAppend(&origin, ": ", setting->why);
-  return absl::StrFormat("  %-11s %s  %s\n", name, setting->value,
+  if (!setting->why.empty()) absl::StrAppend(&origin, ": ", base::EscapeControls(setting->why));
+  return absl::StrFormat("  %-11s %s  %s\n", name, base::EscapeControls(setting->value),
                          style.Faint(absl::StrCat("(", origin, ")")));
 }
 
 // "Spine1", or "0.50 Head + 0.50 HeadTop".
 std::string DescribeParts(const std::vector<JointReading::Part>& parts) {
-  if (parts.size() == 1 && parts[0].weight == 1) return parts[0].name;
+  if (parts.size() == 1 && parts[0].weight == 1) return base::EscapeControls(parts[0].name);
   return absl::StrJoin(parts, " + ", [](std::string* out, const JointReading::Part& part) {
-    absl::StrAppendFormat(out, "%.2f %s", static_cast<double>(part.weight), part.name);
+    absl::StrAppendFormat(out, "%.2f %s", static_cast<double>(part.weight),
+                          base::EscapeControls(part.name));
   });
 }
 
@@ -47,7 +49,9 @@ std::string DescribeJoints(const std::vector<JointReading>& joints, const Style&
     }
     absl::StrAppend(&text, DescribeParts(joint.parts));
     const std::string why = joint.origin == retargeting::Origin::kGiven ? "given" : joint.why;
-    if (!why.empty()) absl::StrAppend(&text, "  ", style.Faint(absl::StrCat("(", why, ")")));
+    if (!why.empty()) {
+      absl::StrAppend(&text, "  ", style.Faint(absl::StrCat("(", base::EscapeControls(why), ")")));
+    }
     text += "\n";
   }
   return text;
@@ -73,7 +77,7 @@ std::string DescribeUnused(const retargeting::ReadingReport& report) {
   const std::vector<std::string> some(unused.begin(),
                                       unused.begin() + static_cast<std::ptrdiff_t>(shown));
   return absl::StrCat(
-      "    not used: ", absl::StrJoin(some, ", "),
+      "    not used: ", base::EscapeControls(absl::StrJoin(some, ", ")),
       shown < unused.size() ? absl::StrCat(" and ", unused.size() - shown, " more") : "", "\n");
 }
 
@@ -83,7 +87,7 @@ std::string DescribeReading(const retargeting::ReadingReport& report, const Styl
                                   DescribeSetting("unit", report.unit, style),
                                   DescribeSetting("up axis", report.up_axis, style));
   for (const std::string& remark : report.remarks) {
-    absl::StrAppend(&text, "  ", style.Warning(remark), "\n");
+    absl::StrAppend(&text, "  ", style.Warning(base::EscapeControls(remark)), "\n");
   }
   if (!report.joints.empty()) absl::StrAppend(&text, DescribeJoints(report.joints, style));
   return text + DescribeUnused(report);
@@ -191,7 +195,7 @@ json VerticalJson(const motion::VerticalEstimate& vertical) {
 }
 
 std::string DescribeInspection(const Inspection& inspection, const Style& style) {
-  std::string text = style.Heading(inspection.file);
+  std::string text = style.Heading(base::EscapeControls(inspection.file));
   const retargeting::ReadingReport& first = inspection.people[0].report;
   if (!first.format.empty()) absl::StrAppend(&text, ": ", first.format);
   if (first.people > 0) absl::StrAppend(&text, ", ", DescribePeople(first.people));

@@ -13,6 +13,10 @@ namespace duet::base {
 // For a name, prefer Quoted (text.h).
 std::string Printable(absl::string_view text, std::size_t longest);
 
+// Escapes control characters, with which a name could move a terminal's cursor or end the line, and
+// keeps letters of every script. For names in reports; errors use Quoted or Printable.
+std::string EscapeControls(absl::string_view text);
+
 }  // namespace duet::base
 
 #endif  // DUET_MODEL_BASE_PRINTABLE_H_

@@ -22,5 +22,12 @@ TEST(Printable, ShowsOnlyTheBeginningOfALongText) {
   EXPECT_EQ(Printable(std::string(9, 'x'), 8), "xxxxxxxx...");
 }
 
+TEST(EscapeControls, KeepsLettersOfEveryScript) {
+  EXPECT_EQ(EscapeControls("\x1b[31mh\xc3\xbc"
+                           "ftgelenk\x07\n\x7f"),
+            "\\x1b[31mh\xc3\xbc"
+            "ftgelenk\\x07\\n\\x7f");
+}
+
 }  // namespace
 }  // namespace duet::base
