@@ -11,6 +11,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/missing_file.h"
 #include "model/formats/motion_file.h"
 #include "model/formats/research/smpl_motion.h"
 #include "model/motion/reading_setting.h"
@@ -96,8 +97,9 @@ absl::Status AddFolder(const fs::path& folder, const std::optional<formats::Form
   std::error_code error;
   for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
        it.increment(error)) {
-    const bool missing = it->is_symlink() && !it->exists();
-    if ((missing || it->is_regular_file()) && MayLead(it->path(), format)) {
+    std::error_code unknown;
+    const bool missing = it->is_symlink(unknown) && !it->exists(unknown);
+    if ((missing || it->is_regular_file(unknown)) && MayLead(it->path(), format)) {
       files.push_back(it->path());
     }
   }
@@ -169,10 +171,6 @@ absl::Status AddPattern(const fs::path& pattern, const std::optional<formats::Fo
       absl::StrCat(pattern.string(), ": no motion file matches this pattern"));
 }
 
-absl::Status Missing(const fs::path& path) {
-  return absl::NotFoundError(absl::StrCat(path.string(), ": no such file or folder"));
-}
-
 absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>& format,
                       LeaderList* list, std::vector<std::string>* passed_over) {
   std::error_code error;
@@ -183,7 +181,7 @@ absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>
                     motion::ReadingSetting::kFormat);
   }
   if (IsPattern(path)) return AddPattern(path, format, list);
-  return Missing(path);
+  return base::MissingFile(path, "file or folder");
 }
 
 // Whether a path is the folder or below it.
@@ -216,7 +214,8 @@ absl::Status CheckInputs(const std::vector<std::string>& inputs, const fs::path&
   std::error_code error;
   const fs::path set = fs::weakly_canonical(fs::absolute(out), error);
   for (const std::string& input : inputs) {
-    if (!fs::exists(input, error) && !IsPattern(input)) return Missing(input);
+    if (!fs::exists(input, error) && !IsPattern(input))
+      return base::MissingFile(input, "file or folder");
     if (!fs::is_directory(input, error) || !IsWithin(set, fs::canonical(input, error))) continue;
     return absl::InvalidArgumentError(absl::StrCat("--out: expected a folder outside ", input,
                                                    ", whose files are leaders, got ", out.string(),

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/file.h"
+#include "model/base/missing_file.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/stated_unit.h"
@@ -94,7 +95,7 @@ absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
 absl::Status CheckExists(const std::filesystem::path& path) {
   std::error_code error;
   if (std::filesystem::exists(path, error)) return absl::OkStatus();
-  return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
+  return base::MissingFile(path);
 }
 
 absl::Status CheckInput(const std::filesystem::path& path,

@@ -11,6 +11,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/descriptor.h"
+#include "model/base/missing_file.h"
 
 namespace duet::base {
 namespace {
@@ -45,8 +46,8 @@ absl::StatusOr<std::string> ReadFile(const fs::path& path, std::size_t max_bytes
                                      absl::string_view expected) {
   // O_NONBLOCK: otherwise, opening a named pipe waits for its writer.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  if (!file.ok() && (errno == ENOENT || errno == ENOTDIR)) {
-    return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
+  if (!file.ok() && (errno == ENOENT || errno == ENOTDIR || errno == ELOOP)) {
+    return MissingFile(path);
   }
   if (!file.ok()) {
     return absl::PermissionDeniedError(absl::StrCat(path.string(), ": cannot be opened"));

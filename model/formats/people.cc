@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/missing_file.h"
 #include "model/motion/reading_setting.h"
 #include "model/retargeting/reading_report.h"
 
@@ -32,7 +33,7 @@ absl::StatusOr<ReadPeople> ReadAllPeople(PersonReader read, const ReadOptions& o
 absl::Status CheckReadable(const std::filesystem::path& path, const std::optional<Format>& format) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
-    return absl::NotFoundError(absl::StrCat(path.string(), ": no such file"));
+    return base::MissingFile(path);
   }
   if (std::filesystem::is_directory(path, error)) {
     return absl::InvalidArgumentError(

@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "model/base/file.h"
+#include "model/base/missing_file.h"
 #include "model/dataset/dataset.h"
 #include "model/formats/flat/sbu_text.h"
 #include "model/motion/skeleton_json.h"
@@ -102,7 +103,7 @@ absl::Status MoveThere(const fs::path& written, const fs::path& out) {
   const fs::path replaced = Beside(out, "replaced");
   std::error_code error;
   fs::remove_all(replaced, error);
-  const bool replaces = fs::exists(out);
+  const bool replaces = fs::exists(out, error);
   if (replaces) fs::rename(out, replaced, error);
   if (!error) fs::rename(written, out, error);
   if (error) return absl::PermissionDeniedError(absl::StrCat(out.string(), ": ", error.message()));
@@ -114,7 +115,9 @@ absl::Status MoveThere(const fs::path& written, const fs::path& out) {
 
 absl::Status CheckOut(const fs::path& out, bool overwrite) {
   std::error_code error;
-  if (!fs::exists(out, error)) return absl::OkStatus();
+  if (!fs::exists(out, error)) {
+    return fs::is_symlink(out, error) ? base::MissingFile(out, "folder") : absl::OkStatus();
+  }
   if (!fs::is_directory(out, error)) {
     return absl::AlreadyExistsError(absl::StrCat(out.string(), ": expected a folder, got a file"));
   }

@@ -468,6 +468,9 @@ TEST_F(ImportTest, ReplacesOnlyDatasetsAndOnlyWhenAsked) {
   EXPECT_THAT(
       Go(), StatusIs(absl::StatusCode::kAlreadyExists, HasSubstr("got a folder with other files")));
   EXPECT_TRUE(fs::exists(options_.out / "chapter1"));
+  fs::create_symlink("loop", folder_ / "loop");
+  options_.out = folder_ / "loop";
+  EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kNotFound, HasSubstr("loop: no such folder")));
   options_.out = options_.from / "inside";
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
                              HasSubstr("--out: expected a folder outside --from")));

@@ -230,6 +230,14 @@ TEST_F(ListLeadersTest, ALinkToAMissingFileIsALeader) {
       << "which fails when it is read";
 }
 
+TEST_F(ListLeadersTest, ALinkToItselfDoesNotStopTheList) {
+  std::filesystem::create_symlink("loop", folder_ / "walks/loop");
+  std::filesystem::create_symlink("e.bvh", folder_ / "walks/e.bvh");
+  const auto keys = List({"walks"});
+  ASSERT_THAT(keys, IsOk());
+  EXPECT_THAT(*keys, ElementsAre("a", "a_csv", "b", "e"));
+}
+
 TEST_F(ListLeadersTest, ADataSetAmongItsLeadersIsRejected) {
   const auto check = [&](const std::string& input, const std::filesystem::path& out) {
     return CheckInputs({(folder_ / "c.npy").string(), (folder_ / input).string()}, out);
