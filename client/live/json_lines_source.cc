@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "model/base/strict_json.h"
+#include "model/base/text.h"
 
 namespace duet::client::live {
 namespace {
@@ -43,7 +44,8 @@ absl::StatusOr<motion::Vec3> ReadPoint(const nlohmann::json& row, std::size_t in
     return motion::Vec3{row[0].get<float>(), row[1].get<float>(), row[2].get<float>()};
   }
   return absl::InvalidArgumentError(absl::StrCat("positions[", index,
-                                                 "]: expected three numbers, got ",
+                                                 "]: expected three numbers within +-",
+                                                 static_cast<int64_t>(kMaxPosition), ", got ",
                                                  row.is_array() ? row.dump() : base::Shown(row)));
 }
 
@@ -69,7 +71,9 @@ absl::StatusOr<std::optional<nlohmann::json>> JsonLinesSource::NextObject() {
     absl::StatusOr<std::optional<std::string>> line = lines_->Next();
     if (!line.ok()) return InLine(line.status());
     if (!line->has_value()) return std::nullopt;
-    const absl::string_view text = absl::StripAsciiWhitespace(**line);
+    // Shells of Windows begin a stream with a byte order mark.
+    const absl::string_view text = absl::StripAsciiWhitespace(
+        line_ == 1 ? base::SkipByteOrderMark(**line) : absl::string_view(**line));
     if (text.empty()) continue;
     absl::StatusOr<nlohmann::json> object =
         base::ParseStrictJson(std::string_view(text.data(), text.size()), kMaxDepth);

@@ -98,6 +98,14 @@ TEST(JsonLinesSourceTest, ReadsFramesAndLabels) {
   EXPECT_EQ(labels.ease, absl::Milliseconds(300));
 }
 
+TEST(JsonLinesSourceTest, IgnoresTheByteOrderMarkOfAShell) {
+  EXPECT_THAT(Text("\xef\xbb\xbf" + Header() + Frame() + Frame()).Indices(),
+              ::testing::ElementsAre(0, 1));
+  EXPECT_THAT(Text(Header() + "\xef\xbb\xbf" + Frame()).ReadAll(),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("line 2: not a JSON object")))
+      << "a mark is only expected at the beginning";
+}
+
 TEST(JsonLinesSourceTest, TheFormatHasTheModelsJoints) {
   Text text(Header({{"rate", 59.94}}));
   const auto format = text->Open();
@@ -157,11 +165,11 @@ TEST(JsonLinesSourceTest, ErrorsNameTheLineAndTheField) {
       {Header() + Frame({{"positions", {{1, 2, 3}}}}),
        "line 2: positions: expected 15 points, one for each joint, got 1"},
       {Header() + absl::StrReplaceAll(Frame(), {{"]]}", ",9]]}"}}),
-       "line 2: positions[14]: expected three numbers, got ["},
+       "line 2: positions[14]: expected three numbers within +-1000000, got ["},
       {Header() + absl::StrReplaceAll(Frame(), {{"[[", "[[null,"}}),
        "line 2: positions[0]: expected"},
       {Header() + absl::StrReplaceAll(Frame(), {{"[[", "[[1e300,"}}),
-       "line 2: positions[0]: expected"},
+       "line 2: positions[0]: expected three numbers within +-1000000, got [1e+300,"},
       {Header() + Frame({{"pose", 1}}), "line 2: "},
       {Header() + Frame({{"frame", -1}}), "line 2: frame: expected"},
       {Header() + Frame({{"frame", 9}}) + Frame({{"frame", 8}}),
