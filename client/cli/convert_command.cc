@@ -359,7 +359,8 @@ void CheckTogether(const ConvertArguments& arguments) {
     if (arguments.output_layout && !is_npy) {
       RejectFlag("--output-layout", absl::StrCat("expected --out FILE.npy, got ", output.string()));
     }
-    const absl::Status status = CheckOutput(output, arguments.file, PageAllowed::kNo);
+    const absl::Status status =
+        CheckOutput(output, {arguments.file, arguments.rig.file}, PageAllowed::kNo);
     if (!status.ok()) RejectFlag("--out", std::string(status.message()));
   }
   CheckRigFlags(arguments.rig, arguments.outputs);

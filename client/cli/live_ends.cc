@@ -106,7 +106,7 @@ absl::StatusOr<LiveInput> OpenSource(const LiveArguments& arguments,
   return OpenFile(arguments, skeleton);
 }
 
-absl::Status CheckSink(const std::string& to, const std::string& from) {
+absl::Status CheckSink(const std::string& to, const LiveArguments& arguments) {
   if (capture::IsCaptureAddress(to)) {
     const absl::StatusOr<capture::CaptureAddress> address = capture::ParseCaptureAddress(to);
     return address.ok() ? live::VmcSink::Check(*address) : address.status();
@@ -116,7 +116,7 @@ absl::Status CheckSink(const std::string& to, const std::string& from) {
     return absl::InvalidArgumentError(
         absl::StrCat(to, ": expected a format that can hold one person, got SBU text"));
   }
-  return CheckOutput(to, IsFile(from) ? from : "");
+  return CheckOutput(to, {IsFile(arguments.from) ? arguments.from : "", arguments.follower_start});
 }
 
 absl::StatusOr<std::unique_ptr<live::FollowerSink>> OpenSink(

@@ -36,7 +36,7 @@ absl::StatusOr<LiveInput> OpenSource(const LiveArguments& arguments,
                                      std::function<void(const std::string&)> on_note);
 
 // Checks a value of --to before any work is done. `from`: the value of --from.
-absl::Status CheckSink(const std::string& to, const std::string& from);
+absl::Status CheckSink(const std::string& to, const LiveArguments& arguments);
 
 absl::StatusOr<std::unique_ptr<live::FollowerSink>> OpenSink(const std::string& to,
                                                              const LiveArguments& arguments,

@@ -14,7 +14,7 @@ absl::Status LiveFileSink::Start(const live::LeaderFormat& format) {
   leader_.frame_rate_hz = format.frame_rate_hz;
   leader_.poses = motion::Poses(0, leader_.joint_count());
   follower_ = leader_;
-  return absl::OkStatus();
+  return CheckCanCreate(path_);
 }
 
 absl::Status LiveFileSink::Accept(const LiveFrames& frames) {

@@ -13,7 +13,8 @@
 namespace duet::client::cli {
 
 // Keeps a whole session, and writes it at its end: the follower alone to a motion file, both people
-// to a page. Files name the labels of the beginning, not later changes.
+// to a page. Files name the labels of the beginning, not later changes. A file that cannot be
+// created is reported at the start, before any motion would be lost.
 class LiveFileSink final : public live::FollowerSink {
  public:
   LiveFileSink(std::filesystem::path path, LiveArguments arguments, motion::Skeleton skeleton)

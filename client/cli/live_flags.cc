@@ -90,7 +90,7 @@ void CheckTogether(const LiveArguments& arguments) {
     RejectFlag("--json", "cannot be used with --to -: both print to standard output");
   }
   for (const std::string& to : arguments.to) {
-    const absl::Status status = CheckSink(to, arguments.from);
+    const absl::Status status = CheckSink(to, arguments);
     if (!status.ok()) RejectFlag("--to", std::string(status.message()));
   }
 }

@@ -1,5 +1,7 @@
 #include "client/cli/output.h"
 
+#include <cerrno>
+#include <fstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -100,6 +102,11 @@ bool HasRig(const std::filesystem::path& output, const Synthesis& synthesis) {
   return written && rig && formats::FitsRig(*written, *rig);
 }
 
+// "pair.follower.glb" of "pair.glb".
+std::filesystem::path FollowerBeside(std::filesystem::path output) {
+  return output.replace_extension(absl::StrCat(".follower", output.extension().string()));
+}
+
 // Writes the follower on another rig: BVH replaces the file on Duet's skeleton, glTF is one more
 // file.
 absl::StatusOr<WrittenFiles> WriteWithRig(const std::filesystem::path& output,
@@ -117,11 +124,7 @@ absl::StatusOr<WrittenFiles> WriteWithRig(const std::filesystem::path& output,
       output, pair, synthesis.skeleton, WritingOf(synthesis, provenance, nullptr));
   if (!files.ok()) return files.status();
   written.files = *std::move(files);
-  if (format != formats::Format::kBvh) {
-    std::filesystem::path beside = output;
-    beside.replace_extension(absl::StrCat(".follower", output.extension().string()));
-    written.files.push_back(beside);
-  }
+  if (format != formats::Format::kBvh) written.files.push_back(FollowerBeside(output));
   absl::Status status = base::WriteFile(written.files.back(), *follower);
   if (!status.ok()) return status;
   return written;
@@ -129,8 +132,33 @@ absl::StatusOr<WrittenFiles> WriteWithRig(const std::filesystem::path& output,
 
 }  // namespace
 
-absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& input,
-                         PageAllowed page) {
+std::vector<std::filesystem::path> PairFiles(const std::filesystem::path& output,
+                                             bool has_follower_rig) {
+  const std::optional<formats::Format> format = formats::FormatOf(output);
+  std::vector<std::filesystem::path> files = {output};
+  if (format == formats::Format::kBvh) {
+    files.push_back(std::filesystem::path(output).replace_extension(".leader.bvh"));
+    files.push_back(std::filesystem::path(output).replace_extension(".follower.bvh"));
+  } else if (has_follower_rig &&
+             (format == formats::Format::kGlb || format == formats::Format::kGltf)) {
+    files.push_back(FollowerBeside(output));
+  }
+  return files;
+}
+
+absl::Status CheckReplacesNone(const std::filesystem::path& written,
+                               const std::vector<std::filesystem::path>& inputs) {
+  for (const std::filesystem::path& input : inputs) {
+    std::error_code error;
+    if (!std::filesystem::equivalent(written, input, error)) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(written.string(), ": would replace the file that is read, ", input.string()));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckOutput(const std::filesystem::path& output,
+                         const std::vector<std::filesystem::path>& inputs, PageAllowed page) {
   if (output == kStandardStream) return absl::OkStatus();
   const bool page_allowed = page == PageAllowed::kYes;
   if (!formats::IsWritable(output) && !(page_allowed && IsPage(output))) {
@@ -139,10 +167,25 @@ absl::Status CheckOutput(const std::filesystem::path& output, const std::filesys
   }
   if (absl::Status status = formats::CheckFolderOf(output); !status.ok()) return status;
   std::error_code error;
-  if (std::filesystem::equivalent(output, input, error)) {
+  if (std::filesystem::is_directory(output, error)) {
     return absl::InvalidArgumentError(
-        absl::StrCat(output.string(), ": would replace the file that is read"));
+        absl::StrCat(output.string(), ": expected a file, got a folder"));
   }
+  return CheckReplacesNone(output, inputs);
+}
+
+absl::Status CheckCanCreate(const std::filesystem::path& output) {
+  std::error_code error;
+  // A pipe or a device must not be opened twice.
+  if (std::filesystem::is_other(output, error)) return absl::OkStatus();
+  const std::filesystem::path probe = output.string() + ".partial";
+  errno = 0;
+  if (!std::ofstream(probe, std::ios::binary | std::ios::app)) {
+    const std::error_code why(errno, std::generic_category());
+    return NotWritten(absl::PermissionDeniedError(
+        absl::StrCat(output.string(), ": cannot be written: ", why.message())));
+  }
+  std::filesystem::remove(probe, error);
   return absl::OkStatus();
 }
 

@@ -35,9 +35,21 @@ struct Synthesis {
 
 enum class PageAllowed { kNo, kYes };
 // Whether an output can be written at all, before any work is done for it: a known extension, a
-// folder that exists, and not the file that is read. Standard output always is. INVALID_ARGUMENT.
-absl::Status CheckOutput(const std::filesystem::path& output, const std::filesystem::path& input,
+// folder that exists, and neither a folder nor one of the files that are read. Standard output
+// always is. INVALID_ARGUMENT.
+absl::Status CheckOutput(const std::filesystem::path& output,
+                         const std::vector<std::filesystem::path>& inputs,
                          PageAllowed page = PageAllowed::kYes);
+// INVALID_ARGUMENT if `written` is one of `inputs`, also by another path. Inputs that are empty or
+// no files are ignored.
+absl::Status CheckReplacesNone(const std::filesystem::path& written,
+                               const std::vector<std::filesystem::path>& inputs);
+// ABORTED if the file cannot be created now, as on a read-only disk. For outputs that are written
+// long after the work began: creates a file beside it, and removes it.
+absl::Status CheckCanCreate(const std::filesystem::path& output);
+// The output, and the files that WriteOutput may write beside or in place of it.
+std::vector<std::filesystem::path> PairFiles(const std::filesystem::path& output,
+                                             bool has_follower_rig);
 
 struct WrittenFiles {
   std::vector<std::filesystem::path> files;

@@ -195,6 +195,21 @@ void CheckKeyframes(const SynthesizeArguments& arguments) {
   }
 }
 
+// A pair in a format with one file for each person has other files than its output.
+void CheckOutputs(const SynthesizeArguments& arguments) {
+  const std::vector<std::filesystem::path> inputs = {arguments.leader, arguments.follower_start,
+                                                     arguments.follower_rig};
+  for (int sample = 0; sample < arguments.samples; ++sample) {
+    for (const std::filesystem::path& output : SampleOutputs(arguments, sample)) {
+      absl::Status status = CheckOutput(output, inputs);
+      for (const std::filesystem::path& file : PairFiles(output, !arguments.follower_rig.empty())) {
+        status.Update(CheckReplacesNone(file, inputs));
+      }
+      if (!status.ok()) RejectFlag("--out", std::string(status.message()));
+    }
+  }
+}
+
 // Checks flags that depend on each other.
 void CheckTogether(const SynthesizeArguments& arguments) {
   if (arguments.weights.empty() && arguments.keyframes.empty()) {
@@ -218,12 +233,7 @@ void CheckTogether(const SynthesizeArguments& arguments) {
                absl::StrCat("expected at most ", left + 1, " with --seed ", arguments.seed,
                             ", so that no seed exceeds the largest, got ", arguments.samples));
   }
-  for (int sample = 0; sample < arguments.samples; ++sample) {
-    for (const std::filesystem::path& output : SampleOutputs(arguments, sample)) {
-      const absl::Status status = CheckOutput(output, arguments.leader);
-      if (!status.ok()) RejectFlag("--out", std::string(status.message()));
-    }
-  }
+  CheckOutputs(arguments);
 }
 
 }  // namespace

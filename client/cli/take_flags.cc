@@ -46,7 +46,7 @@ void CheckPage(const char* flag, const std::filesystem::path& page) {
     RejectFlag(flag,
                absl::StrCat(page.string(), ": extension: expected .html, got \"", extension, "\""));
   }
-  const absl::Status status = CheckOutput(page, "");
+  const absl::Status status = CheckOutput(page, {});
   if (!status.ok()) RejectFlag(flag, std::string(status.message()));
 }
 

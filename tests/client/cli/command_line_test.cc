@@ -340,5 +340,32 @@ TEST_F(CommandLineTest, NoSampleReplacesTheLeader) {
                    "would replace the file that is read");
 }
 
+TEST_F(CommandLineTest, NoFileOfAPairReplacesAnInput) {
+  for (const char* name : {"pair.leader.bvh", "pair.follower.bvh", "pair.follower.glb",
+                           "start.json", "rig.glb", "leader.csv"}) {
+    WriteTestFile(Out(name), "");
+  }
+  const auto refused = [this](Strings flags, const std::string& replaced) {
+    flags.insert(flags.begin(), {"synthesize", "--label", "kick=1"});
+    ExpectUsageError(flags, Out(replaced) + ": would replace the file that is read");
+  };
+  const std::string leader = Out("leader.csv"), bvh = Out("pair.bvh"), glb = Out("pair.glb");
+  refused({"--leader", Out("pair.leader.bvh"), "--out", bvh}, "pair.leader.bvh");
+  refused({"--leader", Out("pair.follower.bvh"), "--out", bvh}, "pair.follower.bvh");
+  refused({"--leader", leader, "--follower-start", Out("start.json"), "--out", Out("start.json")},
+          "start.json");
+  refused({"--leader", leader, "--follower-rig", Out("rig.glb"), "--out", Out("rig.glb")},
+          "rig.glb");
+  refused({"--leader", leader, "--follower-rig", Out("pair.follower.bvh"), "--out", bvh},
+          "pair.follower.bvh");
+  refused({"--leader", Out("pair.follower.glb"), "--follower-rig", "leader", "--out", glb},
+          "pair.follower.glb");
+  // Without a rig, the answer to the follower is one file.
+  EXPECT_THAT(Arguments({"synthesize", "--label", "kick", "--leader", Out("pair.follower.glb"),
+                         "--out", glb})
+                  .outputs,
+              ElementsAre(glb));
+}
+
 }  // namespace
 }  // namespace duet::client::cli

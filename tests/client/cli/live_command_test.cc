@@ -1,6 +1,7 @@
 // duet live in one process: real files and streams, a server that mirrors the leader.
 #include "client/cli/live_command.h"
 
+#include <filesystem>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -264,6 +265,9 @@ TEST_F(LiveCommandTest, UsageErrorsAreFoundBeforeTheServerIsCalled) {
   refuses({"--from", "-", "--to", Path("a.mov")}, "extension");
   refuses({"--from", "-", "--to", Path("a.txt")}, "expected a format that can hold one person");
   refuses({"--from", Leader(), "--to", Leader()}, "would replace the file that is read");
+  refuses({"--from", "-", "--to", Leader(), "--follower-start", Leader()}, "would replace");
+  std::filesystem::create_directory(Path("folder.csv"));
+  refuses({"--from", "-", "--to", Path("folder.csv")}, "expected a file, got a folder");
   refuses({"--from", "-", "--to", "-", "--delay", "11"}, "--delay");
   refuses({"--from", "-", "--to", "-", "--plan", "31"}, "--plan");
   labelled_ = true;
@@ -271,6 +275,15 @@ TEST_F(LiveCommandTest, UsageErrorsAreFoundBeforeTheServerIsCalled) {
   refuses({"--from", "-", "--to", "-", "--keyframe", "8b:hug"},
           "--keyframe: expected a frame, got the position 8b in beats");
   EXPECT_THAT(mirror_.starts(), IsEmpty());
+}
+
+// A session may last for an hour, and cannot be repeated.
+TEST_F(LiveCommandTest, AFileThatCannotBeCreatedIsReportedBeforeTheSession) {
+  EXPECT_EQ(Run({"--from", Leader(), "--to", "/proc/follower.csv"}), kExitRetry);
+  EXPECT_THAT(err_.str(), HasSubstr("/proc/follower.csv: cannot be written: "));
+  EXPECT_THAT(mirror_.starts(), IsEmpty());
+  ASSERT_EQ(Run({"--from", Leader(), "--to", Path("follower.csv")}), 0) << err_.str();
+  EXPECT_FALSE(std::filesystem::exists(Path("follower.csv.partial")));
 }
 
 TEST_F(LiveCommandTest, InvalidInputsAreNamed) {

@@ -208,6 +208,24 @@ TEST_F(MotionCommandsTest, InspectNamesWhatIsMissing) {
   EXPECT_THAT(out_.str(), HasSubstr("    left_hand       paw  (given)\n"));
 }
 
+// A name with an escape sequence must not reach the terminal, whether or not its joint is used.
+TEST_F(MotionCommandsTest, InspectEscapesControlCharactersInNames) {
+  WriteTestFile(folder_ / "odd.bvh", absl::StrReplaceAll(ReadTestFile(folder_ / "one.bvh"),
+                                                         {{"torso_to_neck", "\x1b[31mspare"},
+                                                          {"left_hand", "\x07paw"}}));
+  ASSERT_EQ(Run({"inspect", Path("odd.bvh"), "--joint-map", "left_hand=\x07paw"}), 0);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("    left_hand       \\x07paw  (given)\n"),
+                                HasSubstr("    not used: \\x1b[31mspare"), Not(HasSubstr("\x1b")),
+                                Not(HasSubstr("\x07"))));
+}
+
+TEST_F(MotionCommandsTest, InspectRecognisesLinksInACircle) {
+  std::filesystem::create_symlink("loop.bvh", folder_ / "loop.bvh");
+  EXPECT_EQ(Run({"inspect", Path("loop.bvh")}), 42);
+  EXPECT_THAT(out_.str(),
+              HasSubstr("loop.bvh: no such file; it is a symbolic link that leads back"));
+}
+
 TEST_F(MotionCommandsTest, InspectSuggestsTheNearestJoint) {
   EXPECT_EQ(Run({"inspect", Path("one.bvh"), "--joint-map", "left_hnd=left_hand"}), 42);
   EXPECT_THAT(out_.str(), HasSubstr("did you mean left_hand?"));
@@ -496,6 +514,9 @@ TEST_F(MotionCommandsTest, EmptyPipeIsRejected) {
 TEST_F(MotionCommandsTest, ConvertNeverOverwritesItsInput) {
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.csv")}), 2);
   EXPECT_THAT(err_.str(), HasSubstr("would replace the file that is read"));
+  EXPECT_EQ(Run({"convert", Path("one.csv"), "--rig", Path("one.bvh"), "--out", Path("one.bvh")}),
+            2);
+  EXPECT_THAT(err_.str(), HasSubstr("would replace the file that is read, " + Path("one.bvh")));
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.html")}), 2);
   EXPECT_THAT(err_.str(),
               HasSubstr("expected .glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt"));
