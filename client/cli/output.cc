@@ -237,7 +237,7 @@ absl::Status WriteToStream(const std::string& content, std::ostream& out) {
 absl::Status NotWritten(const absl::Status& status) {
   if (status.ok()) return status;
   const auto code = absl::IsPermissionDenied(status) ? absl::StatusCode::kAborted : status.code();
-  return absl::Status(code, absl::StrCat("cannot write the result: ", status.message()));
+  return {code, absl::StrCat("cannot write the result: ", status.message())};
 }
 
 }  // namespace duet::client::cli
