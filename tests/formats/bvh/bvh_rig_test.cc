@@ -237,6 +237,29 @@ INSTANTIATE_TEST_SUITE_P(Families, BvhRig, ::testing::ValuesIn(test::RigFamilies
                            return name;
                          });
 
+TEST(OntoBvhRig, WritesOnlyTheChosenPersonOfAFileWithTwo) {
+  const BvhDocument first = test::RigFamilies()[0].document;
+  const BvhDocument second = test::RigFamilies()[1].document;
+  BvhDocument both = first;
+  for (BvhJoint joint : second.joints) {
+    if (joint.parent >= 0) joint.parent += static_cast<int>(first.joints.size());
+    both.joints.push_back(std::move(joint));
+  }
+  both.values.insert(both.values.end(), second.values.begin(), second.values.end());
+  BvhImportOptions options;
+  for (const BvhDocument& person : {first, second}) {
+    const absl::StatusOr<BvhDocument> written =
+        OntoBvhRig(Follower(), both, "rig.bvh", options, {});
+    ASSERT_THAT(written, IsOk()) << options.person;
+    ASSERT_EQ(written->joints.size(), person.joints.size()) << options.person;
+    for (std::size_t j = 0; j < person.joints.size(); ++j) {
+      EXPECT_EQ(written->joints[j].name, person.joints[j].name);
+      EXPECT_EQ(written->joints[j].parent, person.joints[j].parent);
+    }
+    ++options.person;
+  }
+}
+
 TEST(OntoBvhRig, RejectsARigThatCannotBeAPerson) {
   BvhDocument rig = test::RigFamilies()[1].document;
   for (BvhJoint& joint : rig.joints) {

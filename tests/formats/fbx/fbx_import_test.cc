@@ -111,6 +111,21 @@ std::string TextFile(const std::vector<std::pair<std::string, std::string>>& rep
   return absl::StrReplaceAll(text, replacements);
 }
 
+// The modes of FbxTime (FBX SDK, FbxTime::EMode) in the order of their numbers. Mode 0 is the
+// default of the SDK; the file states 24 Hz beside it.
+TEST_F(FbxTest, EachTimeModeIsARate) {
+  const double ntsc = 30000.0 / 1001, film = 24000.0 / 1001;
+  const std::vector<double> rates = {24, 120,  100,  60, 50, 48,   30,
+                                     30, ntsc, ntsc, 25, 24, 1000, film};
+  const std::string mode = "\"TimeMode\", \"enum\", \"\", \"\", ";
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    const absl::StatusOr<motion::Clip> read =
+        FromFbx(TextFile({{mode + "11\n", absl::StrCat(mode, i, "\n")}}), "a.fbx");
+    ASSERT_THAT(read, IsOk()) << i;
+    EXPECT_NEAR(read->frame_rate_hz, rates[i], 1e-3) << "mode " << i;
+  }
+}
+
 TEST_F(FbxTest, ATextOfEachVersionGivesTheSourcesPositions) {
   ExpectNear(ReadLeader(File("text_z_up_24")), Sample("kick", 12, 24));
   for (const char* version : {"7100", "7200", "7300", "7400", "7500", "7700"}) {
