@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/cleanup/directions.h"
 #include "model/cleanup/low_pass.h"
 #include "model/cleanup/spacing.h"
 #include "model/motion/capsules.h"
@@ -17,8 +18,6 @@ using motion::Vec3;
 constexpr double kBodySmoothSeconds = 0.2, kArmSmoothSeconds = 0.07;
 // Maximum number of pushes per frame. Each resolves the deepest remaining overlap.
 constexpr int kPushes = 5;
-// Metres. A shorter offset has no direction.
-constexpr float kNoDirection = 1e-4f;
 
 // Two bounding spheres that are nearer than this count as touching, whatever rounding says; metres.
 constexpr float kRounding = 1e-5f;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "model/base/angle.h"
+#include "model/cleanup/directions.h"
 #include "model/cleanup/girdle.h"
 #include "model/cleanup/turns.h"
 
@@ -17,8 +18,6 @@ using Pose = absl::Span<const Vec3>;
 
 // The sine of the smallest bend that shows its plane: 6 degrees.
 constexpr float kClearBend = 0.1f;
-// Metres. A shorter bone has no direction.
-constexpr float kNoDirection = 1e-4f;
 
 Vec3 At(Pose pose, int joint) { return pose[static_cast<std::size_t>(joint)]; }
 

@@ -2,13 +2,12 @@
 
 #include <cstddef>
 
+#include "model/cleanup/directions.h"
+
 namespace duet::cleanup {
 namespace {
 
 using motion::Vec3;
-
-// Metres. A shorter vector has no direction.
-constexpr float kNoDirection = 1e-4f;
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "model/body/hands.h"
+#include "model/cleanup/directions.h"
 #include "model/cleanup/low_pass.h"
 #include "model/cleanup/spacing.h"
 
@@ -17,8 +18,6 @@ using motion::Vec3;
 constexpr double kHandSmoothSeconds = 0.1, kBodySmoothSeconds = 0.2;
 // How far an arm reaches comfortably, in lengths of the arm.
 constexpr float kComfortable = 0.95f;
-// Metres. A shorter offset has no direction.
-constexpr float kNoDirection = 1e-3f;
 constexpr float kLeastOffer = 0.01f;
 
 float Float(double value) { return static_cast<float>(value); }
@@ -127,7 +126,7 @@ Vec3 Target(const Offer& pair, absl::Span<const Vec3> leader, float metres,
             absl::Span<const Vec3> follower) {
   const Vec3 hand = leader[static_cast<std::size_t>(pair.leader->end)];
   const Vec3 way = follower[static_cast<std::size_t>(pair.follower->end)] - hand;
-  if (Norm(way) < kNoDirection) return hand;
+  if (Norm(way) < kNoOffset) return hand;
   return hand + way * (metres / Norm(way));
 }
 
@@ -146,7 +145,7 @@ Vec3 Approach(const Offer& pair, Vec3 target, float left_out, absl::Span<const V
   const float reach = kComfortable * length, rise = std::abs(way.y);
   const float across = rise < reach ? std::sqrt(reach * reach - rise * rise) : 0;
   const float near = across + left_out;
-  if (Norm(level) <= near || Norm(level) < kNoDirection) return {};
+  if (Norm(level) <= near || Norm(level) < kNoOffset) return {};
   return level * (1 - near / Norm(level));
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "model/base/angle.h"
+#include "model/cleanup/directions.h"
 #include "model/cleanup/turns.h"
 
 namespace duet::cleanup {
@@ -15,8 +16,6 @@ using Track = std::vector<Vec3>;
 
 // The sine of the smallest bend that shows its plane: 12 degrees.
 constexpr float kClearBend = 0.2f;
-// A sine, or a length. A shorter vector has no direction.
-constexpr float kNoDirection = 1e-4f;
 
 // A limb in one frame.
 struct Hinge {

@@ -13,8 +13,8 @@ namespace {
 using motion::Vec3;
 
 constexpr float kRadiansPerDegree = 0.01745329252f;
-// Metres, or a sine. A shorter vector has no direction.
-constexpr float kNoDirection = 1e-5f;
+// Metres, radians or a sine. Less counts as nothing.
+constexpr float kNothing = 1e-5f;
 // Degrees by which an arm at rest points forwards of straight down: half the difference between the
 // outward and inward rotation of shoulders.
 constexpr float kArmRestDegrees = 17.5f;
@@ -41,7 +41,7 @@ struct Axes {
 std::optional<Axes> AxesOf(Vec3 trunk, Vec3 across) {
   const Vec3 forward = Cross(across, trunk);
   const float height = Norm(trunk), area = Norm(forward);
-  if (height < kNoDirection || area < kNoDirection * height) return std::nullopt;
+  if (height < kNothing || area < kNothing * height) return std::nullopt;
   return Axes{trunk / height, forward / area};
 }
 
@@ -106,7 +106,7 @@ struct DirectionFix {
     const Bend now{bend.ahead + (limited.ahead - bend.ahead) * share,
                    bend.aside + (limited.aside - bend.aside) * share};
     const float angle = std::hypot(now.ahead, now.aside);
-    if (angle < kNoDirection) return inner;
+    if (angle < kNothing) return inner;
     const Vec3 way = (ahead * now.ahead + aside * now.aside) / angle;
     return inner * std::cos(angle * kRadiansPerDegree) + way * std::sin(angle * kRadiansPerDegree);
   }
@@ -119,7 +119,7 @@ std::optional<DirectionFix> FindFix(Vec3 inner, Vec3 outer, const Hinge& hinge,
   const float cosine = Dot(inner, outer);
   const Vec3 across = outer - inner * cosine;
   const float sine = Norm(across);
-  if (certainty == 0 || sine < kNoDirection) return std::nullopt;
+  if (certainty == 0 || sine < kNothing) return std::nullopt;
   const Vec3 ahead = Swing(hinge.rest, inner, hinge.bend), aside = Cross(inner, ahead);
   const float degrees = std::atan2(sine, cosine) / kRadiansPerDegree;
   const Bend bend{Dot(across, ahead) / sine * degrees, Dot(across, aside) / sine * degrees};
@@ -142,7 +142,7 @@ class LimbFix {
                                      const JointRangeOptions& options) {
     const float thigh = Distance(upper, middle), shin = Distance(middle, end);
     const float reach = Distance(upper, end);
-    if (std::min({thigh, shin, reach}) < kNoDirection) return std::nullopt;
+    if (std::min({thigh, shin, reach}) < kNothing) return std::nullopt;
     const Vec3 outer = (end - middle) / shin;
     const auto direction = FindFix((middle - upper) / thigh, outer, hinge, options);
     if (!direction) return std::nullopt;
@@ -156,7 +156,7 @@ class LimbFix {
     if (right == outer_) return std::nullopt;
     const Vec3 bent = direction_.inner * thigh_ + right * shin_;
     const float reach = Norm(bent);
-    if (reach < kNoDirection) return std::nullopt;
+    if (reach < kNothing) return std::nullopt;
     return Placed{upper_ + Swing(bent / reach, to_, direction_.inner) * thigh_,
                   upper_ + to_ * reach};
   }
@@ -222,7 +222,7 @@ void LimitNeck(const body::Neck& neck, Vec3 up, const JointRangeOptions& options
   const float sine = Norm(axis);
   const float degrees = std::atan2(sine, Dot(head, up)) / kRadiansPerDegree;
   const float excess = degrees - Within(options.neck, degrees);
-  if (excess <= 0 || sine < kNoDirection) return;
+  if (excess <= 0 || sine < kNothing) return;
   for (const int joint : neck.branch) {
     Vec3& position = pose[static_cast<std::size_t>(joint)];
     position = base + RotateAbout(position - base, axis / sine, excess * share * kRadiansPerDegree);

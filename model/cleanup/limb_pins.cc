@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/types/span.h"
+#include "model/cleanup/directions.h"
 #include "model/cleanup/pinned_joint.h"
 
 namespace duet::cleanup {
@@ -16,8 +17,6 @@ using motion::Pin;
 using motion::Pins;
 using motion::Vec3;
 
-// Metres. A shorter offset has no direction.
-constexpr float kNoDirection = 1e-4f;
 // Metres. What remains after a swing is corrected on the straight way if it is less: it comes from
 // pins between two frames. More remains if the limb does not reach, or has not the time.
 constexpr float kCorrectable = 0.02f;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "model/cleanup/directions.h"
 #include "model/cleanup/girdle.h"
 #include "model/cleanup/hinge.h"
 #include "model/cleanup/turns.h"
@@ -16,8 +17,6 @@ using Track = std::vector<Vec3>;
 // Metres. An elbow that is nearer to the line of its arm does not show in which direction it
 // points.
 constexpr float kClearBend = 0.03f;
-// Metres. A shorter vector has no direction.
-constexpr float kNoDirection = 1e-4f;
 
 // The direction in which the elbow points, of length 1, in every frame. A nearly straight arm keeps
 // the direction of the frame before.

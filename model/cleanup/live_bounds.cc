@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/base/angle.h"
+#include "model/cleanup/directions.h"
 #include "model/cleanup/floor.h"
 #include "model/cleanup/trunk_bend.h"
 #include "model/motion/feet.h"
@@ -16,8 +17,6 @@ namespace {
 
 using motion::Vec3;
 
-// Metres. A shorter offset has no direction.
-constexpr float kNoDirection = 1e-3f;
 // The share of the largest lean up to which a trunk is not corrected.
 constexpr float kFreeShare = 0.8f;
 
@@ -100,7 +99,7 @@ void LiveBounds::LimitDistance(const motion::Poses& leader, const Timing& timing
     Vec3 offset = follower->at(t, skeleton_.root) - leader.at(t, skeleton_.root);
     offset.y = 0;
     const float distance = Norm(offset);
-    if (distance > kNoDirection) direction = offset / distance;
+    if (distance > kNoOffset) direction = offset / distance;
     if (t < timing.settled) continue;
     const float way = Way(timing, t);
     const Vec3 shift = direction * std::clamp(AllowedDistance(distance) - distance, -way, way);

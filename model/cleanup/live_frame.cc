@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "model/cleanup/directions.h"
+
 namespace duet::cleanup {
 namespace {
 
 using motion::Vec3;
 
 constexpr float kNearestMetres = 0.17f;
-// Metres. A shorter offset has no direction.
-constexpr float kNoDirection = 1e-3f;
 
 Vec3 Level(Vec3 v) { return {v.x, 0, v.z}; }
 
@@ -49,7 +49,7 @@ void KeepApart(int root, absl::Span<const Vec3> leader, absl::Span<Vec3> followe
   const Vec3 offset = Level(follower[at] - leader[at]);
   const float distance = Norm(offset);
   if (distance >= kNearestMetres) return;
-  const Vec3 direction = distance > kNoDirection ? offset / distance : Vec3{0, 0, 1};
+  const Vec3 direction = distance > kNoOffset ? offset / distance : Vec3{0, 0, 1};
   const Vec3 shift = direction * kNearestMetres - offset;
   for (Vec3& joint : follower) joint += shift;
 }

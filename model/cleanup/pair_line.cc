@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/base/median.h"
+#include "model/cleanup/directions.h"
 
 namespace duet::cleanup {
 namespace {
@@ -13,8 +14,6 @@ namespace {
 using motion::Vec3;
 
 constexpr float kDegree = 0.01745329252f;
-// Metres. A shorter vector has no direction.
-constexpr float kNoDirection = 1e-4f;
 
 }  // namespace
 

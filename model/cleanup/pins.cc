@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "absl/types/span.h"
+#include "model/cleanup/directions.h"
 #include "model/cleanup/offset_track.h"
 #include "model/cleanup/pinned_joint.h"
 
@@ -19,8 +20,6 @@ using motion::Vec3;
 constexpr float kComfortable = 0.95f;
 // How far a leg reaches while its foot stands, in lengths of the leg.
 constexpr float kLongestReach = 0.998f;
-// Metres. A shorter offset has no direction.
-constexpr float kNoDirection = 1e-4f;
 constexpr int kBisections = 8;
 // Frames. Pins that are this near concern the body at the same time.
 constexpr double kSameTime = 0.5;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "model/cleanup/directions.h"
 #include "model/cleanup/pair_line.h"
 #include "model/cleanup/turns.h"
 
@@ -14,8 +15,6 @@ namespace {
 using motion::Vec3;
 using Pose = absl::Span<Vec3>;
 
-// Metres. A shorter vector has no direction.
-constexpr float kNoDirection = 1e-4f;
 // Shoulders that are nearer together than this fraction of a person's, seen along the trunk, do not
 // show where the person faces.
 constexpr float kUncertain = 0.3f;

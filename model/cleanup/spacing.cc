@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "model/cleanup/directions.h"
 #include "model/cleanup/low_pass.h"
 
 namespace duet::cleanup {
@@ -12,12 +13,10 @@ using motion::Vec3;
 
 // The distance that the correction approaches, as a fraction of the maximum distance.
 constexpr float kSoftness = 1.1f;
-// Metres. A shorter offset has no direction.
-constexpr float kNoDirection = 1e-3f;
 
 Vec3 ShiftFor(Vec3 offset, const SpacingOptions& options) {
   const float distance = Norm(offset);
-  if (distance < kNoDirection) return {};
+  if (distance < kNoOffset) return {};
   const float farthest = static_cast<float>(options.farthest_metres);
   const float target = std::max(static_cast<float>(options.nearest_metres),
                                 SoftLimit(distance, farthest, farthest * kSoftness));

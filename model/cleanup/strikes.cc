@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/body/hands.h"
+#include "model/cleanup/directions.h"
 #include "model/cleanup/offset_track.h"
 
 namespace duet::cleanup {
@@ -13,8 +14,6 @@ namespace {
 
 using motion::Vec3;
 
-// Metres. A shorter vector has no direction.
-constexpr float kNoDirection = 1e-3f;
 // The way is found in so many steps: the nearest point of the surface changes on it.
 constexpr int kRounds = 6;
 
@@ -23,7 +22,7 @@ Vec3 WayTo(Vec3 point, double metres, double farthest, int root, const body::Sur
            absl::Span<const Vec3> pose) {
   const Vec3 from = pose[static_cast<std::size_t>(root)];
   const Vec3 across = {point.x - from.x, 0, point.z - from.z};
-  if (Norm(across) < kNoDirection) return {};
+  if (Norm(across) < kNoOffset) return {};
   const Vec3 direction = across / Norm(across);
   double way = 0;
   for (int round = 0; round < kRounds; ++round) {
