@@ -21,19 +21,18 @@ libraries_of() {
     done
 }
 
-# Prints the package of a library file.
-package_of() {
-  local file="$1"
-  # /lib is a link to /usr/lib; packages use either path.
-  { dpkg-query -S "${file}" || dpkg-query -S "${file#/usr}" || echo "${file}: of no package"; } \
-    2>/dev/null | sed -n '1s/:.*//p'
-}
-
-# Prints the packages of the libraries that programs load by name.
+# Prints the packages of the libraries that programs load by name; a file of no package as itself.
 packages_of() {
-  local program
-  for program in "$@"; do
-    libraries_of "${bin_dir}/${program}" | while read -r file; do package_of "${file}"; done
+  local program line file
+  local -a files
+  local -A owners
+  mapfile -t files < <(for program in "$@"; do libraries_of "${bin_dir}/${program}"; done | sort -u)
+  # All files in one query, because it reads the lists of every package. /lib is a link to /usr/lib; packages use either path.
+  while IFS= read -r line; do
+    owners["${line##*: }"]="${line%%:*}"
+  done < <(dpkg-query -S "${files[@]}" "${files[@]#/usr}" 2>/dev/null || true)
+  for file in "${files[@]}"; do
+    echo "${owners["${file}"]:-${owners["${file#/usr}"]:-${file}}}"
   done | sort -u
 }
 
