@@ -47,8 +47,8 @@ class Surveyor {
                                                         const JobIdentity& identity,
                                                         bool retry_failed);
 
-  // Adds an item of the part that the run makes. Returns whether it is settled. Call it for each
-  // item of the part, in the order of the plan. Errors: FAILED_PRECONDITION, with the item or the
+  // Adds an item of this run's share of the plan. Returns whether it is settled. Call it for each
+  // item of the share, in the order of the plan. Errors: FAILED_PRECONDITION, with the item or the
   // leader, if the set was begun with another plan or a leader's file has changed since; ABORTED,
   // DATA_LOSS as in Open.
   absl::StatusOr<bool> Add(const Item& item);

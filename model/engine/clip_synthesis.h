@@ -27,8 +27,8 @@ struct ClipRequest {
   double frame_rate_hz = 0;  // the caller's
   LabelTrack labels;         // keyframes in the caller's frames
   std::optional<FollowerStart> start;
-  // Horizontal, of any length but 0; see SynthesisWindow. Absent, with no start either: estimated
-  // from the leader's motion in the window, where the model knows how
+  // Horizontal, of any length above 0; see SynthesisWindow. If this and `start` are absent, it is
+  // estimated from the leader's motion in the window, provided that the model can
   // (ModelDescription::partner_direction).
   std::optional<motion::Vec3> partner_direction;
   SynthesisOptions options = {};
@@ -39,19 +39,20 @@ struct ClipRequest {
 // Turns a clip of any length into network windows and their results back into one motion.
 //
 // The leader is resampled to the model's rate and cut into overlapping windows no longer than the
-// network was trained for, spread evenly. Where the model accepts a follower start, each later
-// window starts from the pose that the one before it reached; a model that samples besides goes on
-// from all frames that the two share (SynthesisWindow::settled), since another draw would be
-// another motion, and each window has a seed of its own (WindowSeed). The last frames of a window
-// with a lookahead (ModelDescription::lookahead_frames) are replaced by the next. Overlaps are
-// cross-faded; settled frames change by no more in that than the network's answer differs from
-// them. Frames at the caller's rate are handed out as soon as no later window can change them.
+// network was trained for, spread evenly. If the model accepts a follower start, each later window
+// starts from the pose that the window before it reached. A model that samples continues from all
+// frames that both windows share (SynthesisWindow::settled), because another sample would be
+// another motion; each window has its own seed (WindowSeed). If the model has a lookahead
+// (ModelDescription::lookahead_frames), the next window replaces the last frames of a window.
+// Overlaps are cross-faded; this changes a settled frame by at most its difference from the
+// network's answer. Frames at the caller's rate are returned as soon as no later window can change
+// them.
 //
 //   ClipSynthesis clip(description, std::move(request));
 //   while (clip.HasNextWindow()) {
 //     SynthesisWindow window = clip.NextWindow();
 //     ... result = synthesizer.Synthesize({&window}) ...
-//     motion::Poses frames = clip.Accept(*result);   // perhaps none, but for the last
+//     motion::Poses frames = clip.Accept(*result);   // may be empty, except for the last window
 //   }
 //
 // Cost:    time linear in the clip's length; memory beyond the leader bounded by one window.

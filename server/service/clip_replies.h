@@ -17,14 +17,15 @@ namespace duet::server::service {
 
 // The replies of Synthesize: header, chunks and summary of one clip.
 //
-// With rotations, the header waits for the first frames, whose bone lengths its rig has.
+// With rotations, the header follows once the first frames exist, because its rig has their bone
+// lengths.
 //
 // Chunks hold at most request.chunk_frames frames. Model failures become INTERNAL without details;
 // CallRecord::cause has the details for the log.
 class ClipReplies final : public ReplySource {
  public:
-  // `scheduler` outlives every window given to it. request.clip.options.clean_up is the resolved
-  // choice, not absent. options.priority is ignored: the request's counts.
+  // `scheduler` must outlive every window that it is given. Requires request.clip.options.clean_up
+  // to be set. Uses the priority of the request and ignores options.priority.
   ClipReplies(std::shared_ptr<const engine::Synthesizer> model, ValidatedRequest request,
               ClipStreamOptions options, batching::WindowScheduler& scheduler);
 
