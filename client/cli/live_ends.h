@@ -35,7 +35,7 @@ absl::StatusOr<LiveInput> OpenSource(const LiveArguments& arguments,
                                      const ProgramEnvironment& environment,
                                      std::function<void(const std::string&)> on_note);
 
-// Checks a value of --to before any work is done. `from`: the value of --from.
+// Checks a value of --to before any work is done: it may not replace a file that is read.
 absl::Status CheckSink(const std::string& to, const LiveArguments& arguments);
 
 absl::StatusOr<std::unique_ptr<live::FollowerSink>> OpenSink(const std::string& to,
