@@ -157,6 +157,27 @@ class ElementTest(tools.FolderTest):
         page.next_frame()
         self.sees(page, follower=False)
 
+    def test_new_motions_share_a_renderer_and_free_the_old_scene(self):
+        page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
+        held = "(({memory, programs}) => [memory.geometries, memory.textures, programs.length])" \
+               "(elements[0].stage.renderer.info)"
+        page.evaluate("window.first = elements[0].stage.renderer")
+        before = page.evaluate(held)
+        for _ in range(2):
+            page.evaluate("elements[0].motion = elements[0].motion")
+            page.evaluate("elements[0].setFollower(elements[0].motion.people.follower.slice())")
+            page.evaluate("elements[0].draw()")
+        self.assertEqual(page.evaluate(held), before)
+        self.assertTrue(page.evaluate("elements[0].stage.renderer === window.first"))
+        self.sees(page)
+
+    def test_new_motion_is_drawn_after_the_context_is_lost(self):
+        page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
+        page.evaluate("elements[0].stage.renderer.forceContextLoss()")
+        page.evaluate("elements[0].motion = elements[0].motion")
+        page.next_frame()
+        self.sees(page)
+
     def test_attributes_set_frame_speed_and_view(self):
         page = self.open('<duet-motion src="pair.json" paused frame="12" view="top" speed="2" once>'
                          '</duet-motion>')

@@ -140,19 +140,19 @@ class DuetMotion extends HTMLElement {
   get motion() { return this.shown; }
   set motion(data) {
     this.data = data;
-    this.leaveStage();
     this.parts.message.hidden = true;
     try {
       this.shown = Motion.of(data);
       this.stand();
     } catch (error) {
+      this.leaveStage();
       this.fail(error.message);
     }
   }
 
   // Builds the scenery of the motion and restarts playback.
   stand() {
-    if (!drawsWebGl()) throw new Error(NO_WEBGL);
+    if (!this.renderer && !drawsWebGl()) throw new Error(NO_WEBGL);
     const player = this.player = new Player(this.shown);
     player.playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
     for (const name of ['paused', 'once', 'speed', 'frame', 'view']) {
@@ -164,12 +164,12 @@ class DuetMotion extends HTMLElement {
     this.tell('ready', {frames: this.shown.frames, frameRate: this.shown.frameRate});
   }
 
+  // Replaces the scenery. The renderer stays, because compiling its shaders takes the longest.
   build() {
-    // A canvas keeps its renderer, so each motion gets a new canvas.
-    const canvas = this.canvas.cloneNode();
-    this.canvas.replaceWith(canvas);
-    this.canvas = canvas;
-    this.stage = new Stage(canvas, this.shown);
+    if (this.renderer && this.renderer.getContext().isContextLost()) this.leaveStage();
+    if (!this.renderer) this.newRenderer();
+    const before = this.stage;
+    this.stage = new Stage(this.renderer, this.shown);
     this.stage.controls.addEventListener('change', () => this.touch());
     this.stage.controls.addEventListener('start', () => {
       this.view = null;
@@ -185,13 +185,22 @@ class DuetMotion extends HTMLElement {
     this.resize();
     if (this.hasAttribute('track')) this.stage.track(true);
     this.look(this.view || 'reset');
+    if (before) before.dispose();  // now that the new scene has been drawn with the same shaders
+  }
+
+  newRenderer() {
+    // A canvas never gets a second context.
+    const canvas = this.canvas.cloneNode();
+    this.canvas.replaceWith(canvas);
+    this.canvas = canvas;
+    this.renderer = makeRenderer(canvas);
   }
 
   leaveStage() {
     if (!this.stage) return;
     this.stage.controls.dispose();
-    this.stage.renderer.forceContextLoss();
-    this.stage = this.people = null;
+    this.renderer.forceContextLoss();
+    this.stage = this.people = this.renderer = null;
   }
 
   fail(message) {
@@ -249,13 +258,13 @@ class DuetMotion extends HTMLElement {
     this.shown.people.follower = positions;
     if (isFirst) {
       // The scenery depends on the size of the motion.
-      this.leaveStage();
       this.build();
       return;
     }
     const {follower} = this.people;
-    this.stage.scene.remove(follower.path);
+    const before = follower.path;
     follower.path = this.stage.addPath('follower', COLOURS.follower);
+    this.stage.removePath(before);
     if (this.stage.path) this.stage.track(true);
     this.touch();
   }

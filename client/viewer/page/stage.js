@@ -1,12 +1,18 @@
-// Scenery and camera of one motion. Draws only on request.
+// Frees what an object of a scene holds of the renderer's memory. The renderer keeps a shader while another object uses it.
+function release({geometry, material, shadow}) {
+  const parts = [geometry, material, material && material.map, shadow && shadow.map];
+  for (const part of parts.filter(Boolean)) part.dispose();
+}
+
+// Scenery and camera of one motion, which a renderer shows. Draws only on request.
 class Stage {
-  constructor(canvas, motion) {
-    this.canvas = canvas;
+  constructor(renderer, motion) {
+    this.renderer = renderer;
+    this.canvas = renderer.domElement;
     this.motion = motion;
-    this.renderer = makeRenderer(canvas);
-    this.scenery = new Scenery(motion, this.renderer, 2048);
+    this.scenery = new Scenery(motion, renderer, 2048);
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.05, 400);
-    this.controls = makeControls(this.camera, canvas, this.scenery.reach);
+    this.controls = makeControls(this.camera, this.canvas, this.scenery.reach);
     this.moved = new THREE.Vector3();  // from the motion's own place
     this.path = null;                  // while the camera tracks the characters: Motion.path()
   }
@@ -40,6 +46,11 @@ class Stage {
 
   addPath(person, colour) {
     return this.scenery.addPath(person, colour);
+  }
+
+  removePath(path) {
+    this.scene.remove(path);
+    release(path);
   }
 
   // Moves the camera so that the whole motion is in view, or the characters in every frame while it tracks them.
@@ -80,5 +91,10 @@ class Stage {
   draw() {
     this.renderer.render(this.scene, this.camera);
     return this.renderer.info.render.triangles;
+  }
+
+  dispose() {
+    this.controls.dispose();
+    this.scene.traverse(release);
   }
 }
