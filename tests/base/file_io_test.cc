@@ -1,6 +1,9 @@
 #include "model/base/file_io.h"
 
+#include <sys/resource.h>
 #include <sys/stat.h>
+
+#include <csignal>
 
 #include "gtest/gtest.h"
 #include "tests/support/matchers.h"
@@ -96,6 +99,38 @@ TEST(WriteFolder, LeavesNothingWhenAFileCannotBeWritten) {
   const TemporaryFolder folder;
   EXPECT_THAT(WriteFolder(folder / "x", {{"a", "1"}, {"no/such/folder", "2"}}),
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("no/such/folder")));
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+// Within a lifetime, no file may become larger, as on a full disk.
+class LargestFile {
+ public:
+  explicit LargestFile(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit = {bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~LargestFile() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  LargestFile(const LargestFile&) = delete;
+  LargestFile& operator=(const LargestFile&) = delete;
+
+ private:
+  void (*const handler_)(int) = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before_ = {};
+};
+
+TEST(WriteFolder, LeavesNothingWhenTheDiskIsFullWithinAFile) {
+  const TemporaryFolder folder;
+  absl::Status status;
+  {
+    const LargestFile limit(1000);
+    status = WriteFolder(folder / "x", {{"a", std::string(1001, 'a')}});
+  }
+  EXPECT_FALSE(status.ok());
+  EXPECT_THAT(std::string(status.message()), HasSubstr("/a"));
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 

@@ -133,7 +133,10 @@ TEST(MetricsEndpointTimeTest, ConnectionEndsAtItsMaximumDuration) {
 
 TEST_F(MetricsEndpointTest, LongReplyArrivesCompletely) {
   text_ = std::string(20'000'000, 'x');
-  EXPECT_GT(Get("/metrics").size(), text_.size());
+  const std::string response = Get("/metrics");
+  const std::size_t body = response.find("\r\n\r\n") + 4;
+  ASSERT_EQ(response.size(), body + text_.size());
+  EXPECT_TRUE(response.compare(body, text_.size(), text_) == 0);
 }
 
 TEST_F(MetricsEndpointTest, SecondEndpointOnThePortFailsWithTheAddress) {
