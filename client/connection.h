@@ -30,12 +30,15 @@ class Connection {
   virtual absl::StatusOr<SynthesisResult> Synthesize(const SynthesisRequest& request,
                                                      const ChunkCallback& on_chunk) = 0;
   // Makes one attempt. The default implementation blocks and calls `done` before it returns.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): other implementations keep the request.
   virtual void SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) {
     done(Synthesize(request, nullptr));
   }
   // The default implementation returns UNIMPLEMENTED, for connections without live sessions.
-  virtual absl::StatusOr<std::unique_ptr<LiveSession>> StartLive(const LiveRequest& /*request*/,
-                                                                 LiveCallbacks /*callbacks*/) {
+  virtual absl::StatusOr<std::unique_ptr<LiveSession>> StartLive(
+      const LiveRequest& /*request*/,
+      // NOLINTNEXTLINE(performance-unnecessary-value-param): other implementations keep it.
+      LiveCallbacks /*callbacks*/) {
     return absl::UnimplementedError("this connection has no live sessions");
   }
 };

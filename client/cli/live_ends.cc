@@ -22,7 +22,7 @@ namespace {
 
 LiveRequest ToLiveRequest(SynthesisRequest request, const LiveArguments& arguments) {
   LiveRequest live;
-  static_cast<ReactionOptions&>(live) = request;
+  static_cast<ReactionOptions&>(live) = static_cast<const ReactionOptions&>(request);
   live.model = std::move(request.model);
   live.weights = std::move(request.weights);
   live.keyframes = std::move(request.keyframes);

@@ -46,7 +46,8 @@ absl::StatusOr<std::vector<std::string>> LiveFileSink::Finish(const LiveInfo& in
   leader_.poses.Resize(frames);
   follower_.poses.Resize(frames);
   Synthesis synthesis;
-  static_cast<SynthesisOptions&>(synthesis.request) = arguments_;
+  static_cast<SynthesisOptions&>(synthesis.request) =
+      static_cast<const SynthesisOptions&>(arguments_);
   synthesis.request.weights = arguments_.weights;
   for (const KeyframeArgument& keyframe : arguments_.keyframes) {
     synthesis.request.keyframes.push_back({keyframe.frame, keyframe.weights});

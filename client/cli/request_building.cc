@@ -142,7 +142,7 @@ absl::StatusOr<SynthesisRequest> BuildReaction(const SynthesizeArguments& argume
   const absl::StatusOr<formats::ReadOptions> options = ToReadOptions(arguments.input, skeleton);
   if (!options.ok()) return options.status();
   SynthesisRequest request;
-  static_cast<SynthesisOptions&>(request) = arguments;
+  static_cast<SynthesisOptions&>(request) = static_cast<const SynthesisOptions&>(arguments);
   if (!arguments.follower_start.empty()) {
     absl::StatusOr<FollowerStart> start = ReadStart(arguments, *options);
     if (!start.ok()) return start.status();
