@@ -35,6 +35,7 @@ constexpr std::size_t kSha256HexBytes = 64;
 constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kHandContacts[] = "hand_contacts";
 constexpr char kTurningClasses[] = "turning_classes";
+constexpr char kFacingClasses[] = "facing_classes";
 constexpr char kStepsInTime[] = "steps_in_time";
 constexpr char kBoneRatios[] = "bone_ratios";
 constexpr char kHipHeight[] = "hip_height";
@@ -186,7 +187,7 @@ void ReadStrikes(base::ObjectReader* reader, engine::ModelDescription* model) {
 
 // What people do in some of the classes. Older checkpoints have no such fields.
 void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
-  constexpr double kFarthestHands = 1, kFastestTurn = 1440, kLongestPose = 60;
+  constexpr double kFarthestHands = 1, kFastestTurn = 1440, kTurnedRound = 180, kLongestPose = 60;
   ReadClassNumbers(reader, kHandContacts, model->classes, kFarthestHands,
                    [model](const std::string& name, double metres) {
                      model->hand_contacts.push_back({name, metres});
@@ -194,6 +195,10 @@ void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
   ReadClassNumbers(reader, kTurningClasses, model->classes, kFastestTurn,
                    [model](const std::string& name, double speed) {
                      model->turning_classes.push_back({name, speed});
+                   });
+  ReadClassNumbers(reader, kFacingClasses, model->classes, kTurnedRound,
+                   [model](const std::string& name, double degrees) {
+                     model->facing_classes.push_back({name, degrees});
                    });
   if (reader->Has(kStepsInTime)) model->steps_in_time = reader->Bool(kStepsInTime);
   if (reader->Has(kHipHeight)) model->hip_height = reader->Number(kHipHeight, 0, 1);
@@ -360,6 +365,9 @@ std::string SerializeManifest(const Manifest& manifest) {
   }
   for (const engine::TurningClass& turning : model.turning_classes) {
     root[kTurningClasses][turning.interaction_class] = turning.degrees_per_second;
+  }
+  for (const engine::FacingClass& facing : model.facing_classes) {
+    root[kFacingClasses][facing.interaction_class] = facing.degrees;
   }
   if (model.steps_in_time) root[kStepsInTime] = true;
   if (!model.bone_ratios.empty()) root[kBoneRatios] = model.bone_ratios;

@@ -87,6 +87,12 @@ void CleanUp::PlaceFeetAndHands(const motion::Poses& leader, const Meetings& mee
   if (options_.limb_swings.enabled) CalmLimbs(body_, options_.limb_swings, timing, follower);
 }
 
+void CleanUp::FaceLeader(const motion::Poses& leader, const std::vector<float>& most_away,
+                         const Timing& timing, motion::Poses* follower) const {
+  if (!options_.facing.enabled || most_away.empty()) return;
+  cleanup::FaceLeader(skeleton_, body_, leader, most_away, options_.facing, timing, follower);
+}
+
 PinnedMotion CleanUp::ApproachPins(const motion::Poses& leader, const Touch& touch,
                                    const motion::Pins& pins, const Timing& timing,
                                    motion::Poses* follower) const {

@@ -7,6 +7,7 @@
 #include "model/body/limbs.h"
 #include "model/body/surface.h"
 #include "model/cleanup/capsules.h"
+#include "model/cleanup/facing.h"
 #include "model/cleanup/floor.h"
 #include "model/cleanup/footsteps.h"
 #include "model/cleanup/hand_contact.h"
@@ -33,6 +34,7 @@ struct Options {
   WaistOptions waist;
   UprightOptions upright;
   SpacingOptions spacing;
+  FacingOptions facing;
   CapsuleOptions capsules;
   JointRangeOptions joint_ranges;
   FloorOptions floor;
@@ -70,6 +72,12 @@ class CleanUp {
                    const Timing& timing, motion::Poses* follower) const;
   void PlaceFeetAndHands(const motion::Poses& leader, const Meetings& meetings,
                          const Timing& timing, motion::Poses* follower) const;
+
+  // Turns a follower that looks past its leader back to it (facing.h). Not part of Apply: to be
+  // called before CorrectBody, or in a live session once the frames that were sent are joined.
+  // Empty limits: does nothing. Shapes: most_away [frames], or empty.
+  void FaceLeader(const motion::Poses& leader, const std::vector<float>& most_away,
+                  const Timing& timing, motion::Poses* follower) const;
 
   // The same for a follower with pins, around PlaceFeetAndHands: the body comes to its pins, but
   // not into the leader; then the limbs do, within the ranges of their joints. Pins in settled

@@ -23,6 +23,8 @@ constexpr float kMeetsWithin = 0.65f;
 // How far from the surface of the follower's body a fist ends. Captured people keep 0.1 m (push)
 // and 0.3 m (punch), because they only act.
 constexpr float kStrikeMetres = 0.15f;
+// How far a follower may be turned away in a class in which it does not face its leader, degrees.
+constexpr float kTurnedRound = 180;
 // How much of the way to an offered hand the body leaves out in live sessions. A body that has come
 // does not go back: the next plan begins where it is, and comes as much nearer as this plan still
 // would have (docs/decisions/0065-live-by-planning-again.md).
@@ -146,6 +148,28 @@ cleanup::Options CleaningOf(const ModelDescription& description, cleanup::Option
   options.stance.longest_seconds = description.longest_poses.astride;
   options.raised_limbs.longest_held_out_seconds = description.longest_poses.held_out;
   return options;
+}
+
+std::vector<float> MostAwayOf(const ModelDescription& description, const SynthesisWindow& window) {
+  if (description.facing_classes.empty()) return {};
+  const std::size_t classes = description.classes.size();
+  std::vector<float> limits(classes, kTurnedRound);
+  for (const FacingClass& facing : description.facing_classes) {
+    const std::size_t c = ClassIndex(description.classes, facing.interaction_class);
+    if (c < classes) limits[c] = static_cast<float>(facing.degrees);
+  }
+  std::vector<float> most_away(static_cast<std::size_t>(window.leader.frame_count()));
+  for (std::size_t t = 0; t < most_away.size(); ++t) {
+    float sum = 0, weights = 0;
+    for (std::size_t c = 0; c < classes; ++c) {
+      const float weight = std::max(0.0f, window.labels[t * classes + c]);
+      sum += weight * limits[c];
+      weights += weight;
+    }
+    // A follower of no class may do what those of any class do.
+    most_away[t] = weights > 0 ? sum / weights : *std::max_element(limits.begin(), limits.end());
+  }
+  return most_away;
 }
 
 int SettledFrames(const SynthesisWindow& window) {

@@ -1,6 +1,8 @@
 #ifndef DUET_MODEL_ENGINE_FINISHING_H_
 #define DUET_MODEL_ENGINE_FINISHING_H_
 
+#include <vector>
+
 #include "absl/status/status.h"
 #include "model/cleanup/clean_up.h"
 #include "model/engine/model_description.h"
@@ -43,6 +45,11 @@ cleanup::Meetings MeetingsOf(const ModelDescription& description, const Synthesi
 
 // Returns `options` with the limits of a model: how long its followers keep poses.
 cleanup::Options CleaningOf(const ModelDescription& description, cleanup::Options options);
+
+// Returns how far the follower may be turned away from its leader in each frame, degrees: the mean
+// of its classes by weight. Empty if the model has no class in which followers face their leaders.
+// Shapes: returns [frames], or empty.
+std::vector<float> MostAwayOf(const ModelDescription& description, const SynthesisWindow& window);
 
 // Returns the number of the window's first frames that must not change: the settled frames, or the
 // frame of the start.

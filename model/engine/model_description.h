@@ -24,6 +24,12 @@ struct TurningClass {
   double degrees_per_second = 0;
 };
 
+// A class in which the follower faces its leader, and how far it is turned away at most.
+struct FacingClass {
+  std::string interaction_class;
+  double degrees = 0;
+};
+
 // A class in which the leader strikes at the follower's body, and the limb that does.
 enum class StrikingLimb { kFist, kFoot };
 struct Strike {
@@ -48,6 +54,8 @@ struct ModelDescription {
   std::vector<HandContact> hand_contacts;
   // The classes whose weight decides whether the follower turns (asked_turns.h).
   std::vector<TurningClass> turning_classes;
+  // The classes in which clean-up turns a follower back to its leader.
+  std::vector<FacingClass> facing_classes;
   // The follower's steps fall on those of its leader, as in a dance.
   bool steps_in_time = false;
   // The follower's limb lengths as multiples of the leader's, unless its pose is known. Empty: the

@@ -219,14 +219,22 @@ class NetworkSynthesizer : public Synthesizer {
                            motion::Poses follower) const {
     const bool cleans = IsCleanedUp(window);
     const cleanup::Meetings meetings = MeetingsOf(description_, window);
+    const cleanup::Timing timing = FeetTiming(description_, window);
+    const bool bounded = cleans && window.options.sampling.first_frame.has_value();
+    const auto face_leader = [&] {
+      clean_up_.FaceLeader(window.leader, MostAwayOf(description_, window), timing, &follower);
+    };
     if (cleans) {
+      // A live body goes on from what was sent, which is joined below.
+      if (!bounded) face_leader();
       clean_up_.CorrectBody(window.leader, TouchOf(description_, window), meetings,
                             {description_.frame_rate_hz, SettledFrames(window)}, &follower);
     }
     JoinSent(description_, window, &follower);
-    const cleanup::Timing timing = FeetTiming(description_, window);
-    const bool bounded = cleans && window.options.sampling.first_frame.has_value();
-    if (bounded) live_bounds_.BoundBody(window.leader, timing, &follower);
+    if (bounded) {
+      face_leader();
+      live_bounds_.BoundBody(window.leader, timing, &follower);
+    }
     std::optional<cleanup::PinnedMotion> pinned;
     if (!pins.empty()) {
       pinned.emplace(clean_up_.ApproachPins(window.leader, TouchOf(description_, window), pins,

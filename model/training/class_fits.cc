@@ -1,11 +1,13 @@
 #include "model/training/class_fits.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
 
 #include "model/engine/asked_turns.h"
+#include "model/engine/facing_fit.h"
 #include "model/engine/hand_contact_fit.h"
 #include "model/engine/strike_fit.h"
 
@@ -54,6 +56,18 @@ std::vector<engine::TurningClass> FindTurningClasses(const dataset::Dataset& dat
     AddStretches(dataset, sequences, c, &fit);
     const std::optional<double> speed = fit.DegreesPerSecond(dataset.frame_rate_hz);
     if (speed) classes.push_back({dataset.classes[static_cast<size_t>(c)], *speed});
+  }
+  return classes;
+}
+
+std::vector<engine::FacingClass> FindFacingClasses(const dataset::Dataset& dataset,
+                                                   const std::vector<int>& sequences) {
+  std::vector<engine::FacingClass> classes;
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    engine::FacingFit fit(dataset.skeleton, dataset.frame_rate_hz);
+    AddStretches(dataset, sequences, c, &fit);
+    const std::optional<double> degrees = fit.Degrees();
+    if (degrees) classes.push_back({dataset.classes[static_cast<size_t>(c)], std::round(*degrees)});
   }
   return classes;
 }

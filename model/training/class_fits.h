@@ -18,6 +18,10 @@ void FindContacts(const dataset::Dataset& dataset, const std::vector<int>& seque
 std::vector<engine::TurningClass> FindTurningClasses(const dataset::Dataset& dataset,
                                                      const std::vector<int>& sequences);
 
+// The classes in which the follower faces its leader.
+std::vector<engine::FacingClass> FindFacingClasses(const dataset::Dataset& dataset,
+                                                   const std::vector<int>& sequences);
+
 }  // namespace duet::training
 
 #endif  // DUET_MODEL_TRAINING_CLASS_FITS_H_

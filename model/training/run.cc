@@ -340,6 +340,10 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   manifest.model.leader_statistics = MeasureLeaders(dataset, train);
   FindContacts(dataset, train, &manifest.model);
   manifest.model.turning_classes = FindTurningClasses(whole, takes);
+  // Followers who turn when they are told to are not to be turned back.
+  if (manifest.model.turning_classes.empty()) {
+    manifest.model.facing_classes = FindFacingClasses(whole, takes);
+  }
   manifest.model.steps_in_time = StepInTime(whole, takes);
   MeasureBodies(whole, takes, &manifest.model);
   const bool fits_direction = std::visit(

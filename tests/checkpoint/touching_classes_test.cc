@@ -94,6 +94,28 @@ TEST(TurningClassesInManifest, AreClassesWithASpeed) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("turning_classes.hug")));
 }
 
+TEST(FacingClassesInManifest, RoundTrip) {
+  Manifest manifest = CompleteManifest();
+  EXPECT_THAT(ParseManifest(SerializeManifest(manifest))->model.facing_classes, IsEmpty());
+  manifest.model.facing_classes = {{"hug", 64}};
+  const absl::StatusOr<Manifest> read = ParseManifest(SerializeManifest(manifest));
+  ASSERT_THAT(read, IsOk());
+  ASSERT_EQ(read->model.facing_classes.size(), 1u);
+  EXPECT_EQ(read->model.facing_classes[0].interaction_class, "hug");
+  EXPECT_EQ(read->model.facing_classes[0].degrees, 64);
+}
+
+TEST(FacingClassesInManifest, AreClassesWithAnAngle) {
+  json root = json::parse(SerializeManifest(CompleteManifest()));
+  root["facing_classes"] = {{"walk", 60}};
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("facing_classes: expected one of classes, got \"walk\"")));
+  root["facing_classes"] = {{"hug", 181}};
+  EXPECT_THAT(ParseManifest(root.dump()),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("facing_classes.hug")));
+}
+
 TEST(StepsInTimeInManifest, RoundTrip) {
   Manifest manifest = CompleteManifest();
   EXPECT_FALSE(ParseManifest(SerializeManifest(manifest))->model.steps_in_time);

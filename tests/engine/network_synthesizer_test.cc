@@ -8,6 +8,8 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/base/angle.h"
+#include "model/cleanup/facing.h"
 #include "model/cleanup/stand_up.h"
 #include "model/engine/asked_turns.h"
 #include "model/engine/window_standardisation.h"
@@ -237,6 +239,49 @@ TEST(NetworkSynthesizer, RaisesACrouchingFollowerOfAModelWithAHipHeight) {
   EXPECT_GT(low, 0.5f);
   EXPECT_GT(height(0.95, {}), low + 0.04f);
   EXPECT_NEAR(height(0.95, 0), height(0, 0), 1e-6);  // not in live windows
+}
+
+// How far the follower of a window is turned away at the end, degrees, if the network turns it away
+// by 150 all the time. `weights` are those of the first classes.
+float AwayAtTheEnd(const std::vector<FacingClass>& facing, std::vector<float> weights,
+                   std::optional<int64_t> first_frame = {}, bool clean_up = true) {
+  ModelDescription description = test::SamplingDescription();
+  description.facing_classes = facing;
+  weights.resize(description.classes.size());
+  SynthesisWindow window = Window(45);
+  window.leader = cleanup::Puppet({}, 45);
+  window.labels.clear();
+  for (int t = 0; t < 45; ++t) {
+    window.labels.insert(window.labels.end(), weights.begin(), weights.end());
+  }
+  window.options.clean_up = clean_up;
+  window.options.sampling.first_frame = first_frame;
+  const motion::Poses away = cleanup::Changed(cleanup::Puppet({}, 45), [](int, motion::Vec3 joint) {
+    return RotateY(joint, 150 * base::kRadiansPerDegree) + motion::Vec3{0, 0, -1};
+  });
+  const auto model =
+      Model([&](Inputs inputs) { return std::vector<motion::Poses>(inputs.size(), away); }, {},
+            description);
+  const WindowResult result = RunOne(*model, window);
+  if (!result.ok()) return 0;
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  return std::abs(cleanup::DegreesAway(skeleton, body::FindBody(skeleton), window.leader, *result,
+                                       /*sigma_frames=*/0.01)
+                      .back());
+}
+
+TEST(NetworkSynthesizer, TurnsAFollowerBackInClassesInWhichPeopleFaceEachOther) {
+  const std::vector<std::string> classes = test::SamplingDescription().classes;
+  ASSERT_GE(classes.size(), 2u);
+  const std::vector<FacingClass> first = {{classes[0], 50}};
+  const std::vector<FacingClass> both = {{classes[0], 50}, {classes[1], 30}};
+  EXPECT_NEAR(AwayAtTheEnd({}, {1}), 150, 3);
+  EXPECT_LT(AwayAtTheEnd(first, {1}), 50);
+  EXPECT_LT(AwayAtTheEnd(first, {1}, 0), 60);  // live, too
+  EXPECT_NEAR(AwayAtTheEnd(first, {1}, {}, /*clean_up=*/false), 150, 3);
+  EXPECT_NEAR(AwayAtTheEnd(first, {0, 1}), 150, 3);  // people turn round in this one
+  EXPECT_NEAR(AwayAtTheEnd(both, {-1, 0}), AwayAtTheEnd({}, {1}), 3);  // nothing told
+  EXPECT_LT(AwayAtTheEnd(both, {0.5f, 0.5f}), 50);
 }
 
 float LowestFoot(const motion::Poses& poses) {

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
+#include "model/body/limbs.h"
 #include "model/checkpoint/critic_tensors.h"
 #include "model/dataset/lone_leaders.h"
 #include "model/engine/leader_statistics.h"
@@ -125,10 +126,36 @@ TEST_F(RunTest, NotesWhatPeopleDoInTheClassesOfADance) {
   EXPECT_EQ(model.turning_classes[0].interaction_class, "kick");
   // Against the line to the leader, who sways.
   EXPECT_NEAR(model.turning_classes[0].degrees_per_second, 430, 120);
+  EXPECT_TRUE(model.facing_classes.empty());  // turns are not undone
   EXPECT_FALSE(model.steps_in_time);
   ASSERT_EQ(model.bone_ratios.size(), dataset_.skeleton.bones.size());
   EXPECT_NEAR(model.bone_ratios[0], 0.9, 0.02);
   EXPECT_EQ(model.hip_height, 0);  // of takes of ten seconds
+}
+
+TEST_F(RunTest, NotesTheClassesInWhichPeopleFaceEachOther) {
+  plan_.options = SmallFlowOptions();
+  plan_.options.epochs = 1;
+  for (dataset::Sequence& take : dataset_.sequences) {
+    const motion::Poses& leader = take.pair.leader.poses;
+    take.labels = {{0, 0, 12}};
+    take.interaction_class = 0;
+    for (int t = 0; t < leader.frame_count(); ++t) {
+      const motion::Vec3 root = leader.at(t, dataset_.skeleton.root);
+      const motion::Vec3 ahead = body::Facing(*dataset_.skeleton.hips, leader[t]);
+      for (int j = 0; j < leader.joint_count(); ++j) {
+        // Turned round, and a little farther.
+        take.pair.follower.poses.at(t, j) = root + ahead + RotateY(leader.at(t, j) - root, 3.49);
+      }
+    }
+  }
+  ASSERT_THAT(Go(), IsOk());
+  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(checkpoint, IsOk());
+  const auto& facing = checkpoint->manifest.model.facing_classes;
+  ASSERT_EQ(facing.size(), 1u);
+  EXPECT_EQ(facing[0].interaction_class, "kick");
+  EXPECT_NEAR(facing[0].degrees, 15, 8);
 }
 
 TEST_F(RunTest, NotesTheLookaheadOfItsWindows) {
