@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "model/base/random.h"
+#include "model/base/open_uniforms.h"
 #include "model/cpu_engine/kernels/gemm_f32.h"
 #include "model/cpu_engine/kernels/normal.h"
 #include "model/engine/frame_noise.h"
@@ -75,8 +75,7 @@ FlowNoise::Drawn FlowNoise::DrawWindow(uint64_t seed, bool known, int frames,
   // First the part that becomes smooth in time, then the white part.
   float* const drawn = scratch->Take<float>(2 * count);
   double* const uniform = scratch->Take<double>(4 * count);
-  base::Random random(seed, 0);
-  for (std::ptrdiff_t i = 0; i < 4 * count; ++i) uniform[i] = random.OpenUniform();
+  base::FillOpenUniform(seed, /*part=*/0, 4 * count, uniform);
   kernels::StandardNormals(2 * count, uniform, drawn);
   std::vector<float> longer;
   if (frames > frames_) {
