@@ -135,7 +135,7 @@ bool ClipSynthesis::IsNearPin(int frame) const {
 void ClipSynthesis::SlowDown(absl::Span<motion::Vec3> pose) {
   if (!slows_down_) return;
   if (!last_.empty() && !IsNearPin(next_frame_)) {
-    cleanup::SlowFrame(body_, {}, request_.frame_rate_hz, last_, pose);
+    cleanup::SlowFrame(model_.skeleton, body_, {}, request_.frame_rate_hz, last_, pose);
   }
   last_.assign(pose.begin(), pose.end());
 }

@@ -160,7 +160,7 @@ void LiveSynthesis::SampleJoined(int frame, absl::Span<const Vec3> before, Poses
   CorrectFrame(frame, interpolated[0], (*pose)[0]);
   if (!before.empty()) {
     const float height = cleanup::HeightOf(body_, (*pose)[0]);
-    cleanup::SlowFrame(body_, {}, request_.frame_rate_hz, before, (*pose)[0]);
+    cleanup::SlowFrame(model_.skeleton, body_, {}, request_.frame_rate_hz, before, (*pose)[0]);
     cleanup::KeepHeight(body_, height, (*pose)[0]);
   }
 }

@@ -15,7 +15,8 @@ using motion::Vec3;
 constexpr int kShoulder = 6, kElbow = 7, kHand = 8, kHip = 12, kKnee = 13, kFoot = 14;
 constexpr double kFrameRate = 30;
 
-const body::Body kBody = body::FindBody(motion::SbuSkeleton());
+const motion::Skeleton kPerson = motion::SbuSkeleton();
+const body::Body kBody = body::FindBody(kPerson);
 
 // One frame of a puppet with its right hand in front of it.
 motion::Poses Raised() {
@@ -32,7 +33,7 @@ motion::Poses Crouching() {
 }
 
 motion::Poses Slowed(const motion::Poses& before, motion::Poses pose) {
-  SlowFrame(kBody, {}, kFrameRate, before[0], pose[0]);
+  SlowFrame(kPerson, kBody, {}, kFrameRate, before[0], pose[0]);
   return pose;
 }
 
@@ -103,10 +104,52 @@ TEST(SlowFrame, TheFootOfAKneeThatChangesItsSideStays) {
 TEST(SlowFrame, ALimbThatTurnsWithItsTrunkIsNotSlowedDown) {
   const motion::Poses before = Raised();
   motion::Poses turned = before;
-  // By 20 degrees in a frame: the planes of the limbs turn less than they may.
-  for (Vec3& joint : turned[0]) joint = RotateY(joint, 0.35f);
+  // By 14 degrees in a frame: trunk and planes of the limbs turn less than they may.
+  for (Vec3& joint : turned[0]) joint = RotateY(joint, 0.25f);
   const motion::Poses slowed = Slowed(before, turned);
   EXPECT_LT(LargestDistance(slowed, turned), 0.01f);
+}
+
+// The hips and shoulders of `poses` turned about the vertical by `degrees`; the feet stay.
+motion::Poses Swivelled(motion::Poses poses, double degrees) {
+  for (const int joint : {3, 4, 5, kShoulder, kElbow, kHand, 9, 10, kHip, kKnee}) {
+    poses.at(0, joint) = RotateY(poses.at(0, joint), degrees * base::kRadiansPerDegree);
+  }
+  return poses;
+}
+
+TEST(SlowFrame, ATrunkThatTurnsRoundTurnsNoFasterThanItCan) {
+  constexpr int kLeftShoulder = 3, kLeftHip = 9, kLeftFoot = 11;
+  const motion::Poses before = Crouching(), turned = Swivelled(before, 75);
+  const motion::Poses slowed = Slowed(before, turned);
+  EXPECT_GT(TurnOf(kShoulder, kLeftShoulder, before, turned), 2000);
+  EXPECT_LT(TurnOf(kShoulder, kLeftShoulder, before, slowed), 660);
+  EXPECT_LT(TurnOf(kHip, kLeftHip, before, slowed), 601);
+  EXPECT_GT(TurnOf(kHip, kLeftHip, before, slowed), 550) << "it follows as fast as it can";
+  EXPECT_LT(LargestLengthChange(slowed, turned), 1e-4f);
+  for (const int foot : {kLeftFoot, kFoot}) {
+    EXPECT_LT(Distance(slowed.at(0, foot), before.at(0, foot)), 1e-4f);
+  }
+}
+
+TEST(SlowFrame, ATrunkThatTurnedArrivesInTheNextFrames) {
+  motion::Poses now = Crouching();
+  const motion::Poses turned = Swivelled(now, 75);
+  for (int t = 0; t < 20; ++t) now = Slowed(now, turned);
+  EXPECT_LT(Distance(now.at(0, kShoulder), turned.at(0, kShoulder)), 1e-3f);
+  EXPECT_LT(Distance(now.at(0, kHip), turned.at(0, kHip)), 1e-3f);
+}
+
+TEST(SlowFrame, ShouldersThatAreNotAttachedToTheChestAreLeftAlone) {
+  motion::Skeleton skeleton = kPerson;
+  for (motion::Bone& bone : skeleton.bones) {
+    if (bone.child == kShoulder || bone.child == 3) bone.parent = 2;
+  }
+  const motion::Poses before = Crouching();
+  motion::Poses pose = Swivelled(before, 75);
+  const Vec3 shoulder = pose.at(0, kShoulder);
+  SlowFrame(skeleton, kBody, {}, kFrameRate, before[0], pose[0]);
+  EXPECT_EQ(pose.at(0, kShoulder), shoulder);
 }
 
 TEST(SlowFrame, SlowLimbsStayBitForBit) {
