@@ -23,14 +23,16 @@ struct HandContactOptions {
 };
 
 // In each frame, how much the hands are to meet, 0 to 1, and the distance at which they do, metres;
-// how much a fist of the leader is to end near the body, and how near; and how much of the way to a
-// hand the body leaves out, metres.
+// how much a fist and a foot of the leader are to end near the body, and how near; and how much of
+// the way to a hand the body leaves out, metres.
 struct Meeting {
   float weight = 0;
   float metres = 0;
   float fist = 0;
   float strike_metres = 0;
   float left_out_metres = 0;
+  float foot = 0;
+  float foot_metres = 0;
 };
 using Meetings = std::vector<Meeting>;
 

@@ -41,24 +41,25 @@ class LimbStrikes {
               const motion::Poses& leader, const motion::Poses& follower)
       : root_(skeleton.root), surface_(surface), leader_(leader), follower_(follower) {}
 
-  void Add(const body::Limb& limb, const Meetings& meetings, const StrikeOptions& options,
-           int first, std::vector<Offset>* offsets) const {
+  // `weight`, `metres`: of the limb. `least_reach`: from which reach on it strikes.
+  void Add(const body::Limb& limb, float Meeting::*weight, float Meeting::*metres,
+           double least_reach, const Meetings& meetings, const StrikeOptions& options, int first,
+           std::vector<Offset>* offsets) const {
     double nearest = HUGE_VAL;
     int frame = -1;
     const auto end = [&] {
       if (frame >= first) {
         const Meeting& meeting = meetings[static_cast<std::size_t>(frame)];
-        const Vec3 way = WayTo(leader_.at(frame, limb.end), double{meeting.strike_metres},
+        const Vec3 way = WayTo(leader_.at(frame, limb.end), double{meeting.*metres},
                                options.farthest_metres, root_, surface_, follower_[frame]);
-        if (Norm(way) > 0) offsets->push_back({double(frame), way * (meeting.fist)});
+        if (Norm(way) > 0) offsets->push_back({double(frame), way * (meeting.*weight)});
       }
       nearest = HUGE_VAL;
       frame = -1;
     };
     for (int t = 0; t < follower_.frame_count(); ++t) {
-      if (meetings[static_cast<std::size_t>(t)].fist == 0 ||
-          body::ReachTowards(limb, root_, leader_[t], follower_.at(t, root_)) <
-              body::kOffersReach) {
+      if (meetings[static_cast<std::size_t>(t)].*weight == 0 ||
+          body::ReachTowards(limb, root_, leader_[t], follower_.at(t, root_)) < least_reach) {
         end();
         continue;
       }
@@ -87,7 +88,12 @@ void ApproachStrikes(const motion::Skeleton& skeleton, const body::Body& body,
   const LimbStrikes strikes(skeleton, surface, leader, *follower);
   std::vector<Offset> offsets;
   for (const body::Limb& arm : body.arms) {
-    strikes.Add(arm, meetings, options, timing.settled, &offsets);
+    strikes.Add(arm, &Meeting::fist, &Meeting::strike_metres, body::kOffersReach, meetings, options,
+                timing.settled, &offsets);
+  }
+  for (const body::Limb& leg : body.legs) {
+    strikes.Add(leg, &Meeting::foot, &Meeting::foot_metres, body::kKicksReach, meetings, options,
+                timing.settled, &offsets);
   }
   if (offsets.empty()) return;
   std::stable_sort(offsets.begin(), offsets.end(),

@@ -19,10 +19,9 @@ struct StrikeOptions {
   double fastest_metres_per_second = 1.0;
 };
 
-// Lets a fist that the leader reaches out end near the follower's body where the labels ask for it:
-// the follower comes by the time at which it is nearest, and goes back afterwards. Moves the whole
-// body along the floor. Feet are left out: people step away from a kick. `meetings` has as many
-// frames as the follower.
+// Lets a fist or foot that the leader reaches out end near the follower's body where the labels ask
+// for it: the follower comes by the time at which it is nearest, and goes back afterwards. Moves
+// the whole body along the floor. `meetings` has as many frames as the follower.
 void ApproachStrikes(const motion::Skeleton& skeleton, const body::Body& body,
                      const body::Surface& surface, const motion::Poses& leader,
                      const Meetings& meetings, const StrikeOptions& options, const Timing& timing,

@@ -23,6 +23,9 @@ constexpr float kMeetsWithin = 0.65f;
 // How far from the surface of the follower's body a fist ends. Captured people keep 0.1 m (push)
 // and 0.3 m (punch), because they only act.
 constexpr float kStrikeMetres = 0.15f;
+// The same of a foot. Captured people keep 0.38 m on average, and step away from a kick: a follower
+// who comes nearer than this leaves what they do (docs/decisions/0064-a-follower-with-a-body.md).
+constexpr float kKickMetres = 0.46f;
 // How far a follower may be turned away in a class in which it does not face its leader, degrees.
 constexpr float kTurnedRound = 180;
 // How much of the way to an offered hand the body leaves out in live sessions. A body that has come
@@ -126,12 +129,13 @@ cleanup::Meetings MeetingsOf(const ModelDescription& description, const Synthesi
     }
   }
   for (const Strike& strike : description.strikes) {
-    if (strike.limb != StrikingLimb::kFist) continue;
+    const bool kicks = strike.limb == StrikingLimb::kFoot;
     const std::size_t c = ClassIndex(classes, strike.interaction_class);
     for (std::size_t t = 0; t < meetings.size() && c < classes.size(); ++t) {
       const float weight = std::max(0.0f, window.labels[t * classes.size() + c]);
-      meetings[t].fist += weight;
+      (kicks ? meetings[t].foot : meetings[t].fist) += weight;
       meetings[t].strike_metres = kStrikeMetres;
+      meetings[t].foot_metres = kKickMetres;
     }
   }
   const bool live = window.options.sampling.first_frame.has_value();
@@ -140,6 +144,7 @@ cleanup::Meetings MeetingsOf(const ModelDescription& description, const Synthesi
     if (meeting.weight > 0) meeting.metres /= meeting.weight;
     meeting.weight = std::min(1.0f, meeting.weight);
     meeting.fist = std::min(1.0f, meeting.fist);
+    meeting.foot = std::min(1.0f, meeting.foot);
   }
   return meetings;
 }

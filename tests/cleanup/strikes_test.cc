@@ -7,7 +7,7 @@ namespace {
 
 using motion::Vec3;
 
-constexpr int kTorso = 2, kRightHand = 8;
+constexpr int kTorso = 2, kRightHand = 8, kKicker = 14;
 constexpr float kApart = 1.25f, kNear = 0.1f;
 // The frame in which the fist or foot is stretched out farthest.
 constexpr int kPeak = 22;
@@ -39,6 +39,8 @@ motion::Poses Opposite(float apart = kApart) {
 
 Meetings Fists(float weight = 1) { return Meetings(kFrames, {0, 0, weight, kNear}); }
 
+Meetings Feet(float weight = 1) { return Meetings(kFrames, {0, 0, 0, 0, 0, weight, kNear}); }
+
 motion::Poses Struck(const motion::Poses& leader, const Meetings& meetings, int settled = 0,
                      motion::Poses follower = Opposite()) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
@@ -67,8 +69,14 @@ TEST(Strikes, TheBodyComesBeforeAndGoesBackAfterwards) {
   EXPECT_LT(LargestStep(struck), 1.1f / kRate);
 }
 
-TEST(Strikes, OnlyFistsAndOnlyWhereTheLabelsAskForThem) {
+TEST(Strikes, AKickEndsNearTheBody) {
+  EXPECT_GT(Missing(Kicking(), kKicker, Opposite()), 0.2);
+  EXPECT_NEAR(Missing(Kicking(), kKicker, Struck(Kicking(), Feet())), kNear, 0.03);
+}
+
+TEST(Strikes, OnlyTheLimbAndOnlyWhereTheLabelsAskForThem) {
   EXPECT_EQ(Struck(Kicking(), Fists()), Opposite());
+  EXPECT_EQ(Struck(Punching(), Feet()), Opposite());
   EXPECT_EQ(Struck(Punching(), Fists(0)), Opposite());
   const double half = Missing(Punching(), kRightHand, Struck(Punching(), Fists(0.5f)));
   EXPECT_GT(half, kNear + 0.05);

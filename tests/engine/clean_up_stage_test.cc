@@ -241,6 +241,23 @@ TEST(CleanUpStage, LivePlansGoOnWhereTheLastOneCame) {
   EXPECT_TRUE(FeetTiming(description, window).continues_steps);
 }
 
+// A kick ends farther from the body than a punch.
+TEST(MeetingsOf, TheLimbThatStrikesEndsAtItsOwnDistance) {
+  ModelDescription description = FakeDescription();
+  description.classes = {"kick", "punch", "walk"};
+  description.strikes = {{"kick", StrikingLimb::kFoot}, {"punch", StrikingLimb::kFist}};
+  SynthesisWindow window;
+  window.leader = SwayingMotion(3, 15);
+  window.labels = {1, 0, 0, 0.25f, 2, 0, 0, 0, 1};
+  const cleanup::Meetings meetings = MeetingsOf(description, window);
+  EXPECT_EQ(meetings[0].foot, 1);
+  EXPECT_EQ(meetings[0].fist, 0);
+  EXPECT_EQ(meetings[1].foot, 0.25f);
+  EXPECT_EQ(meetings[1].fist, 1);
+  EXPECT_EQ(meetings[2].foot + meetings[2].fist, 0);
+  EXPECT_GT(meetings[0].foot_metres, meetings[1].strike_metres + 0.1f);
+}
+
 // Hands aim nearer than captured ones are on average, but not in classes whose bodies touch.
 TEST(MeetingsOf, HandsAimNearerWhereBodiesDoNotTouch) {
   ModelDescription description = FakeDescription();
