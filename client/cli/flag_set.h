@@ -11,7 +11,7 @@
 // The flags of a program and its commands. Only flag_set.cc includes CLI11, which parses them: its
 // header takes two seconds to compile, in each file that includes it.
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 has this name.
 class App;
 class Option;
 }  // namespace CLI

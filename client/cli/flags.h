@@ -38,6 +38,7 @@ template <typename T>
 Flag* AddChoice(FlagSet* app, const std::string& flag, const std::map<std::string, T>& names,
                 std::function<void(T)> sink, const std::string& help) {
   std::vector<std::string> allowed;
+  allowed.reserve(names.size());
   for (const auto& [name, value] : names) allowed.push_back(name);
   const auto read = [&names, sink = std::move(sink)](const std::string& name) {
     sink(names.at(name));

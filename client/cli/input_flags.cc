@@ -86,7 +86,9 @@ void AddInputFlags(FlagSet* app, InputArguments* input) {
       ->Group(kInputGroup);
   AddParsed<std::pair<std::string, std::string>>(
       app, "--joint-map", "MODEL_JOINT=FILE_JOINT", ParseJointPair,
-      [input](std::pair<std::string, std::string> joints) { input->joints.insert(joints); },
+      [input](std::pair<std::string, std::string> joints) {
+        input->joints.insert(std::move(joints));
+      },
       "Joint of the file for a joint of the model, if its name is not recognised; repeatable")
       ->Group(kInputGroup);
   app->Add("--joint-map-file", &input->joint_table,

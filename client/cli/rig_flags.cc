@@ -36,7 +36,7 @@ void AddRigFlags(FlagSet* app, RigArguments* rig) {
       ->Group(kOutputGroup);
   AddParsed<std::pair<std::string, std::string>>(
       app, "--rig-joint-map", "MODEL_JOINT=RIG_JOINT", ParseJointPair,
-      [rig](std::pair<std::string, std::string> joints) { rig->joints.insert(joints); },
+      [rig](std::pair<std::string, std::string> joints) { rig->joints.insert(std::move(joints)); },
       "Joint of the rig for a joint of the model, if its name is not recognised; repeatable")
       ->Needs(file)
       ->Group(kOutputGroup);

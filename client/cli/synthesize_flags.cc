@@ -116,7 +116,7 @@ void AddOutputFlags(FlagSet* app, SynthesizeArguments* arguments) {
   AddParsed<std::pair<std::string, std::string>>(
       app, "--follower-rig-joint-map", "MODEL_JOINT=RIG_JOINT", ParseJointPair,
       [arguments](std::pair<std::string, std::string> joints) {
-        arguments->rig_joints.insert(joints);
+        arguments->rig_joints.insert(std::move(joints));
       },
       "Joint of --follower-rig FILE for a joint of the model, if its name is not recognised; "
       "repeatable (for the leader's rig, use --joint-map)")
