@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
-#include "model/base/angle.h"
 #include "model/base/median.h"
 #include "model/engine/candidates.h"
 #include "model/engine/finishing.h"
@@ -13,10 +13,17 @@ namespace duet::engine {
 namespace {
 
 constexpr double kLeastDemand = 0.1;  // a label that only touches the end of a window
-// The share of the speed of captured turns that counts as doing what is asked.
-constexpr double kEnoughSpeed = 0.6;
-constexpr double kFreeDegrees = 120;  // of turning that no label avoids
-constexpr double kLeastTurn = 230;    // degrees
+// Degrees of a turn that is asked for.
+constexpr double kTurn = 360;
+// Captured followers turn once for a label of up to three seconds, whether it is short or long.
+// Longer labels have a turn in every so many times that a whole turn takes at the captured speed.
+constexpr double kTurnsPerLabel = 1.5;
+// A window whose judged frames end within this fraction of a turn does not ask for it: the samples
+// find its direction no more often than chance.
+constexpr double kLeastSeen = 1.0 / 3;
+// Degrees of turning that no label avoids, also back during a turn.
+constexpr double kFreeDegrees = 120;
+constexpr double kLeastTurn = 230;  // degrees
 constexpr std::size_t kFewestStretches = 3;
 // Degrees that followers may turn in other classes. 98 % of captured followers turn less within the
 // frames of a window.
@@ -37,14 +44,6 @@ constexpr int kGains = 4;  // different gains, evenly up to the largest
 // What a mean difference of a whole turn from the other samples costs.
 constexpr double kUntypical = 0.5;
 
-// The direction of a person's hips against the line to the partner, degrees; jumps by whole turns.
-double Direction(const motion::JointPair& hips, int root, const motion::Poses& person,
-                 const motion::Poses& partner, int frame) {
-  const motion::Vec3 across = person.at(frame, hips.left) - person.at(frame, hips.right);
-  const motion::Vec3 line = partner.at(frame, root) - person.at(frame, root);
-  return (std::atan2(across.z, across.x) - std::atan2(line.z, line.x)) / base::kRadiansPerDegree;
-}
-
 // The places of the turning classes in the label vector.
 std::vector<std::size_t> TurningIndices(const ModelDescription& description) {
   const auto& classes = description.classes;
@@ -56,53 +55,17 @@ std::vector<std::size_t> TurningIndices(const ModelDescription& description) {
   return indices;
 }
 
-// How far the person turns from one frame to the next, degrees.
-double TurnedAt(const motion::JointPair& hips, int root, const motion::Poses& person,
-                const motion::Poses& partner, int frame) {
-  const double turned = Direction(hips, root, person, partner, frame) -
-                        Direction(hips, root, person, partner, frame - 1);
-  return turned - 360 * std::round(turned / 360);
-}
-
-// The largest turn each way, with or without pauses and small turns back.
-class TurnedRange {
- public:
-  void Add(double degrees) {
-    at_ += degrees;
-    lowest_ = std::min(lowest_, at_);
-    highest_ = std::max(highest_, at_);
-    forwards_ = std::max(forwards_, at_ - lowest_);
-    backwards_ = std::max(backwards_, highest_ - at_);
+// How many frames with a label have one turn, as far as the label is long enough for several.
+double FramesPerTurn(const ModelDescription& description) {
+  std::vector<double> speeds;
+  for (const TurningClass& turning : description.turning_classes) {
+    speeds.push_back(turning.degrees_per_second);
   }
-  double forwards() const { return forwards_; }
-  double backwards() const { return backwards_; }
-  double farthest() const { return std::max(forwards_, backwards_); }
-
- private:
-  double at_ = 0, lowest_ = 0, highest_ = 0, forwards_ = 0, backwards_ = 0;
-};
-
-// How far a follower turns where turns are asked for, where a negative weight avoids them, and
-// where another class does.
-struct Turned {
-  TurnedRange asked, avoided, other;
-};
-
-Turned Split(const std::vector<double>& turns, const std::vector<double>& wanted,
-             const std::vector<bool>& other) {
-  Turned turned;
-  for (std::size_t i = 0; i < turns.size(); ++i) {
-    const double degrees = turns[i] - (i == 0 ? 0 : turns[i - 1]);
-    if (wanted[i] > 0) turned.asked.Add(degrees);
-    if (wanted[i] < 0) turned.avoided.Add(degrees);
-    if (other[i]) turned.other.Add(degrees);
-  }
-  return turned;
+  return kTurnsPerLabel * kTurn / base::Median(speeds) * description.frame_rate_hz;
 }
 
 // What the labels of one frame request.
 struct FrameLabels {
-  double degrees = 0;             // of turning; negative to avoid turns
   double asked = 0, avoided = 0;  // sum of the absolute weights of turns
   double other = 0;               // largest weight of another class, if no turn has a weight
 };
@@ -113,8 +76,6 @@ FrameLabels ReadLabels(const ModelDescription& description, const std::vector<st
   FrameLabels labels;
   for (std::size_t k = 0; k < turning.size(); ++k) {
     const double weight = std::clamp(double{weights[turning[k]]}, -1.0, 1.0);
-    labels.degrees +=
-        weight * description.turning_classes[k].degrees_per_second / description.frame_rate_hz;
     (weight > 0 ? labels.asked : labels.avoided) += std::abs(weight);
   }
   const double most = *std::max_element(weights, weights + description.classes.size());
@@ -122,88 +83,177 @@ FrameLabels ReadLabels(const ModelDescription& description, const std::vector<st
   return labels;
 }
 
-// Where turns are asked for: the sum of the samples' turns, whose sign is the direction in which
-// they turn farther, and the sum of the absolute values.
+// For each turn that is asked for: the sum of the samples' turns, whose sign is the direction in
+// which they turn farther, and the sum of the absolute values.
 struct Votes {
-  double way = 0, all = 0;
+  std::vector<double> ways, all;
 };
 
 Votes VotesOf(const AskedTurns& turns, const std::vector<std::vector<double>>& samples) {
   Votes votes;
   for (const std::vector<double>& sample : samples) {
-    const double asked = turns.Asked(sample);
-    votes.way += asked;
-    votes.all += std::abs(asked);
+    const std::vector<double> asked = turns.Asked(sample);
+    votes.ways.resize(asked.size());
+    votes.all.resize(asked.size());
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      votes.ways[i] += asked[i];
+      votes.all[i] += std::abs(asked[i]);
+    }
   }
   return votes;
+}
+
+bool DoAgree(const Votes& votes) {
+  for (std::size_t i = 0; i < votes.ways.size(); ++i) {
+    if (std::abs(votes.ways[i]) < kAgreement * votes.all[i]) return false;
+  }
+  return true;
+}
+
+// The largest rotation in the frames that are set. Shapes: both alike.
+double Farthest(const std::vector<double>& turns, const std::vector<bool>& frames) {
+  TurnedRange range;
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    if (frames[i]) range.Add(turns[i] - (i == 0 ? 0 : turns[i - 1]));
+  }
+  return range.farthest();
 }
 
 // How far the turns of two samples differ, in whole turns. Shapes: both alike.
 double Apart(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
-  return sum / 360 / std::max(1.0, static_cast<double>(a.size()));
+  return sum / kTurn / std::max(1.0, static_cast<double>(a.size()));
 }
 
 }  // namespace
+
+bool AsksForTurn(const ModelDescription& description, const float* weights) {
+  const std::vector<std::size_t> turning = TurningIndices(description);
+  return std::any_of(turning.begin(), turning.end(),
+                     [weights](std::size_t c) { return weights[c] > 0; });
+}
 
 AskedTurns::AskedTurns(const ModelDescription& description, const SynthesisWindow& window) {
   if (description.turning_classes.empty() || !description.skeleton.hips) return;
   root_ = description.skeleton.root;
   hips_ = *description.skeleton.hips;
-  const int judged = std::max(1, SettledFrames(window));
-  const int end = window.leader.frame_count() - description.lookahead_frames;
-  if (end <= judged) return;
+  const int frames = window.leader.frame_count();
+  const JudgedFrames judged = {std::max(1, SettledFrames(window)),
+                               frames - description.lookahead_frames};
+  if (judged.end <= judged.begin) return;
   const std::vector<std::size_t> turning = TurningIndices(description);
   const std::size_t classes = description.classes.size();
-  for (int t = 1; t < end; ++t) {
+  std::vector<double> weights;
+  for (int t = 0; t < frames; ++t) {
     const FrameLabels labels = ReadLabels(
         description, turning, window.labels.data() + static_cast<std::size_t>(t) * classes);
-    const bool is_judged = t >= judged;
-    wanted_.push_back(is_judged ? labels.degrees : 0);
+    weights.push_back(labels.asked);
+    if (t == 0 || t >= judged.end) continue;
+    const bool is_judged = t >= judged.begin;
+    avoided_.push_back(is_judged && labels.avoided > labels.asked);
     other_.push_back(labels.other > 0);
     if (!is_judged) continue;
-    asked_ += std::max(0.0, labels.degrees);
     share_asked_ += labels.asked;
     share_avoided_ += labels.avoided;
     share_other_ += labels.other;
   }
   for (double* share : {&share_asked_, &share_avoided_, &share_other_}) {
-    *share /= end - judged;
+    *share /= judged.end - judged.begin;
   }
   demand_ = share_asked_ + share_avoided_ > 0 ? share_asked_ + share_avoided_ : share_other_;
   if (demand_ < kLeastDemand) demand_ = 0;
+  frames_per_turn_ = FramesPerTurn(description);
+  const auto asks = [&](int frame) { return weights[static_cast<std::size_t>(frame)] > 0; };
+  for (int begin = 0, end = 0; begin < frames; begin = end) {
+    for (end = begin + 1; end < frames && asks(end) == asks(begin);) ++end;
+    if (asks(begin)) AddAsked(window, begin, end, weights, judged);
+  }
+}
+
+void AskedTurns::AddAsked(const SynthesisWindow& window, int begin, int end,
+                          const std::vector<double>& weights, JudgedFrames judged) {
+  const TurnsAround& around = window.turns_around;
+  if (begin == 0) begin = 1 - static_cast<int>(around.before.size());
+  if (end == window.leader.frame_count()) end += around.after;
+  const int frames = end - begin;
+  const int count = std::max(1, static_cast<int>(std::lround(frames / frames_per_turn_)));
+  for (int k = 0; k < count; ++k) {
+    const int first = begin + frames * k / count, last = begin + frames * (k + 1) / count;
+    AskedTurn turn;
+    turn.begin = std::max(first, judged.begin);
+    turn.end = std::min(last, judged.end);
+    if (turn.begin >= turn.end) continue;
+    const double weight =
+        std::accumulate(weights.begin() + turn.begin, weights.begin() + turn.end, 0.0);
+    const double seen = static_cast<double>(turn.end - first) / (last - first);
+    turn.share = weight / (judged.end - judged.begin);
+    if (seen >= kLeastSeen) turn.degrees = kTurn * seen * weight / (turn.end - turn.begin);
+    for (int t = first; t < turn.begin; ++t) {
+      if (t <= 0) {
+        turn.before.Add(around.before[static_cast<std::size_t>(t - begin)]);
+      } else if (t < window.settled.frame_count()) {
+        turn.before.Add(TurnedAt(hips_, root_, window.settled, window.leader, t));
+      }
+    }
+    asked_.push_back(turn);
+  }
+}
+
+TurnedRange AskedTurns::RangeOf(const AskedTurn& turn, const std::vector<double>& turns) const {
+  TurnedRange range = turn.before;
+  for (int t = turn.begin; t < turn.end; ++t) {
+    const std::size_t i = static_cast<std::size_t>(t - 1);
+    range.Add(turns[i] - (i == 0 ? 0 : turns[i - 1]));
+  }
+  return range;
+}
+
+bool AskedTurns::asks() const {
+  return std::any_of(asked_.begin(), asked_.end(),
+                     [](const AskedTurn& turn) { return turn.before.farthest() < turn.degrees; });
 }
 
 std::vector<double> AskedTurns::TurnsOf(const motion::Poses& leader,
                                         const motion::Poses& follower) const {
   std::vector<double> turns;
   double sum = 0;
-  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+  for (std::size_t i = 0; i < other_.size(); ++i) {
     sum += TurnedAt(hips_, root_, follower, leader, static_cast<int>(i) + 1);
     turns.push_back(sum);
   }
   return turns;
 }
 
-double AskedTurns::Asked(const std::vector<double>& turns) const {
-  const TurnedRange asked = Split(turns, wanted_, other_).asked;
-  return asked.forwards() > asked.backwards() ? asked.forwards() : -asked.backwards();
+std::vector<double> AskedTurns::Asked(const std::vector<double>& turns) const {
+  std::vector<double> asked;
+  for (const AskedTurn& turn : asked_) {
+    const TurnedRange range = RangeOf(turn, turns);
+    asked.push_back(range.forwards() > range.backwards() ? range.forwards() : -range.backwards());
+  }
+  return asked;
 }
 
-double AskedTurns::Miss(const std::vector<double>& turns, double way) const {
+double AskedTurns::MissOf(const AskedTurn& turn, const std::vector<double>& turns,
+                          double way) const {
+  const TurnedRange range = RangeOf(turn, turns);
+  const double most = range.farthest();
+  const double right = way == 0 ? most : way > 0 ? range.forwards() : range.backwards();
+  const double counts = right + kAgainstTheOthers * (most - right);
+  // One turn goes one way.
+  const double back = std::min(range.forwards(), range.backwards());
+  const double missing = turn.degrees == 0 ? 0 : std::max(0.0, 1 - counts / turn.degrees);
+  return turn.share * (missing + std::max(0.0, back - kFreeDegrees) / kLeastTurn);
+}
+
+double AskedTurns::Miss(const std::vector<double>& turns, const std::vector<double>& ways) const {
   if (demand_ == 0) return 0;
-  const Turned turned = Split(turns, wanted_, other_);
-  const double forwards = turned.asked.forwards(), backwards = turned.asked.backwards();
   double miss = 0;
-  if (asked_ > 0) {
-    const double most = std::max(forwards, backwards);
-    const double right = way == 0 ? most : way > 0 ? forwards : backwards;
-    const double counts = right + kAgainstTheOthers * (most - right);
-    miss += share_asked_ * std::max(0.0, 1 - counts / (kEnoughSpeed * asked_));
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    miss += MissOf(asked_[i], turns, ways.empty() ? 0 : ways[i]);
   }
-  miss += share_avoided_ * std::max(0.0, turned.avoided.farthest() - kFreeDegrees) / kLeastTurn;
-  return miss + std::max(0.0, turned.other.farthest() / kMostInOthers - 1);
+  miss += share_avoided_ * std::max(0.0, Farthest(turns, avoided_) - kFreeDegrees) / kLeastTurn;
+  return miss + std::max(0.0, Farthest(turns, other_) / kMostInOthers - 1);
 }
 
 int AskedTurns::further_samples() const {
@@ -236,20 +286,17 @@ std::vector<std::vector<NetworkInput>> DrawnAgain(const ModelDescription& descri
 
 bool IsDecided(const AskedTurns& turns, const std::vector<std::vector<double>>& samples) {
   const Votes votes = VotesOf(turns, samples);
-  if (turns.asks() &&
-      (samples.size() < kFewestVotes || std::abs(votes.way) < kAgreement * votes.all)) {
-    return false;
-  }
+  if (turns.asks() && (samples.size() < kFewestVotes || !DoAgree(votes))) return false;
   return std::any_of(samples.begin(), samples.end(), [&](const std::vector<double>& sample) {
-    return turns.Miss(sample, votes.way) <= turns.tolerated();
+    return turns.Miss(sample, votes.ways) <= turns.tolerated();
   });
 }
 
 std::size_t MostAsAsked(const AskedTurns& turns, const std::vector<std::vector<double>>& samples) {
-  const double way = VotesOf(turns, samples).way;
+  const std::vector<double> ways = VotesOf(turns, samples).ways;
   std::vector<double> costs;
   for (const std::vector<double>& sample : samples) {
-    const double miss = turns.Miss(sample, way);
+    const double miss = turns.Miss(sample, ways);
     costs.push_back(miss <= turns.tolerated() ? 0 : miss);
   }
   const double least = *std::min_element(costs.begin(), costs.end());

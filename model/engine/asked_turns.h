@@ -8,16 +8,24 @@
 #include "model/engine/model_description.h"
 #include "model/engine/network.h"
 #include "model/engine/synthesizer.h"
+#include "model/engine/turned_range.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::engine {
 
+// Whether a label vector has a positive weight of a turn. Shapes: weights [classes].
+bool AsksForTurn(const ModelDescription& description, const float* weights);
+
 // The turns of the follower that the labels of a window ask for (a positive weight of one of
 // ModelDescription::turning_classes) or avoid: a negative weight of such a class, or a positive
 // weight of another class where those of turns are 0. Judged are the frames between the settled
-// ones and the lookahead. Turns in settled frames only count where another class avoids them: a
-// turn must not continue unnoticed from one window to the next.
+// ones and the lookahead. Turns before them count as well, as far as the window knows them
+// (SynthesisWindow::settled and turns_around): neither may a turn of another class grow unnoticed
+// from one window to the next, nor is a turn asked for again that the follower has completed.
+//
+// A label asks for one turn in one direction or, if it is long, for several. A window that ends
+// within a turn asks for that fraction of it; one that sees only the beginning asks for nothing.
 class AskedTurns {
  public:
   AskedTurns(const ModelDescription& description, const SynthesisWindow& window);
@@ -26,22 +34,23 @@ class AskedTurns {
   // are all 0, of the other classes. 0 if they say nothing, or too little to be judged.
   double demand() const { return demand_; }
 
-  // Whether labels ask for turns.
-  bool asks() const { return asked_ > 0; }
+  // Whether labels ask for a turn that the follower did not complete before the window.
+  bool asks() const;
 
   // How far a follower has turned, seen from the leader, in each frame but the first, up to the
   // lookahead. Degrees, not limited to whole turns. Shapes: follower as the window's leader;
   // returns [frames].
   std::vector<double> TurnsOf(const motion::Poses& leader, const motion::Poses& follower) const;
 
-  // How far the largest turn goes where turns are asked for: above 0 one way, below 0 the other.
-  double Asked(const std::vector<double>& turns) const;
+  // How far the largest rotation goes in each turn that is asked for, with what the follower turned
+  // before the window: above 0 one way, below 0 the other. Shapes: returns [asked turns].
+  std::vector<double> Asked(const std::vector<double>& turns) const;
 
   // How far a follower is from doing what the labels say: 0 if it does, at most demand() for a
   // follower that does not turn where it should, and more if it turns against the labels.
-  // `way`: the sign of the direction whose turns count fully, while the others count less; 0 if
-  // both directions count fully.
-  double Miss(const std::vector<double>& turns, double way = 0) const;
+  // `ways`: for each turn that is asked for, the sign of the direction that counts fully, while the
+  // other counts less. Empty, or 0: both directions count fully.
+  double Miss(const std::vector<double>& turns, const std::vector<double>& ways = {}) const;
 
   // A miss of at most this is not worth more samples.
   double tolerated() const { return 0.1 * demand_; }
@@ -53,12 +62,28 @@ class AskedTurns {
   double share_drawn() const;
 
  private:
+  struct AskedTurn {
+    int begin = 0, end = 0;  // its judged frames
+    TurnedRange before;      // of its frames before these
+    double share = 0;        // of the judged frames, times their weight
+    double degrees = 0;      // that the follower has to turn by the end of the judged frames
+  };
+  struct JudgedFrames {
+    int begin = 0, end = 0;
+  };
+  // Adds the turns that frames [begin, end) with the label of a turn ask for.
+  void AddAsked(const SynthesisWindow& window, int begin, int end,
+                const std::vector<double>& weights, JudgedFrames judged);
+  TurnedRange RangeOf(const AskedTurn& turn, const std::vector<double>& turns) const;
+  double MissOf(const AskedTurn& turn, const std::vector<double>& turns, double way) const;
+
   int root_ = 0;
   motion::JointPair hips_;
-  // Of every frame but the first, up to the lookahead.
-  std::vector<double> wanted_;  // degrees per frame; below 0 where a negative weight avoids turns
-  std::vector<bool> other_;     // where another class avoids turns
-  double asked_ = 0;            // the sum of what is wanted
+  double frames_per_turn_ = 0;
+  std::vector<AskedTurn> asked_;
+  // Of every frame but the first, up to the lookahead: where a negative weight of a turn or another
+  // class avoids turns.
+  std::vector<bool> avoided_, other_;
   double share_asked_ = 0, share_avoided_ = 0, share_other_ = 0;
   double demand_ = 0;
 };

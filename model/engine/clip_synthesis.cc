@@ -34,6 +34,9 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
           motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz),
           model_.window_frames, WindowOverlap(model_))),
       state_(model_.skeleton.joint_count()),
+      turns_(
+          model_, request_.labels, request_.frame_rate_hz,
+          motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz)),
       body_(body::FindBody(model_.skeleton)),
       slows_down_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
       pin_distances_(request_.pins.size()),
@@ -44,13 +47,13 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
   const int index = state_.window_count();
   const int first = NextWindowStart();
   SynthesisWindow window;
-  window.leader = motion::Poses(plan_.length, model_.skeleton.joint_count());
+  window.leader = LeaderAt(first, first + plan_.length);
   window.labels.resize(static_cast<std::size_t>(plan_.length) * classes);
   for (int t = 0; t < plan_.length; ++t) {
-    const double frame = ToCallerFrame(first + t);
-    SampleLinear(request_.leader, frame, window.leader[t]);
-    request_.labels.At(frame, window.labels.data() + static_cast<std::size_t>(t) * classes);
+    request_.labels.At(ToCallerFrame(first + t),
+                       window.labels.data() + static_cast<std::size_t>(t) * classes);
   }
+  window.turns_around = turns_.Around(first, first + plan_.length);
   if (index == 0) {
     window.start = request_.start;
   } else {
@@ -78,11 +81,24 @@ motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {
   if (HasNextWindow() && ContinuesFromSettledFrames(model_)) {
     state_.DropLast(model_.lookahead_frames);
   }
+  if (HasNextWindow() && turns_.is_used()) {
+    const int begin = turns_.end() - 1, end = NextWindowStart() + 1;
+    turns_.Add(model_.skeleton, LeaderAt(begin, end),
+               motion::Part(state_.follower(), begin - state_.begin(), end - begin));
+  }
   motion::Poses frames = TakeFinalFrames();
   DropFrames();
   MeasurePins(frames);
   if (grader_) grader_->Add(request_.leader, frames);
   return frames;
+}
+
+motion::Poses ClipSynthesis::LeaderAt(int begin, int end) const {
+  motion::Poses leader(end - begin, model_.skeleton.joint_count());
+  for (int t = begin; t < end; ++t) {
+    SampleLinear(request_.leader, ToCallerFrame(t), leader[t - begin]);
+  }
+  return leader;
 }
 
 motion::Pins ClipSynthesis::PinsOfWindow(int first) const {

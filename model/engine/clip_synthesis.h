@@ -13,6 +13,7 @@
 #include "model/engine/label_track.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
+#include "model/engine/turn_history.h"
 #include "model/engine/window_plan.h"
 #include "model/engine/window_state.h"
 #include "model/motion/pin.h"
@@ -99,6 +100,8 @@ class ClipSynthesis {
   void SlowDown(absl::Span<motion::Vec3> pose);
   bool IsNearPin(int frame) const;
   void DropFrames();
+  // The leader in model frames [begin, end).
+  motion::Poses LeaderAt(int begin, int end) const;
 
   ModelDescription model_;
   ClipRequest request_;
@@ -107,6 +110,7 @@ class ClipSynthesis {
   double model_frames_per_frame_;  // model rate / caller's rate
   WindowPlan plan_;                // in model frames
   WindowState state_;
+  TurnHistory turns_;
   const body::Body body_;
   const bool slows_down_;               // see SlowDown
   std::vector<motion::Vec3> last_;      // the frame before next_frame_

@@ -53,16 +53,27 @@ SynthesisWindow Window(float weight, int begin = 0, int end = kFrames) {
 }
 
 double Miss(const SynthesisWindow& window, const Poses& follower, int lookahead = 0,
-            double way = 0) {
+            const std::vector<double>& ways = {}) {
   const AskedTurns turns(Description(lookahead), window);
-  return turns.Miss(turns.TurnsOf(window.leader, follower), way);
+  return turns.Miss(turns.TurnsOf(window.leader, follower), ways);
 }
 
-// The farthest turn of a follower in the frames of Window(1).
-double TurnedOneWay(const Poses& follower) {
-  const AskedTurns turns(Description(), Window(1));
-  return turns.Asked(turns.TurnsOf(Window(1).leader, follower));
+// The farthest turn of a follower in each turn that the window asks for.
+std::vector<double> TurnedOneWay(const SynthesisWindow& window, const Poses& follower) {
+  const AskedTurns turns(Description(), window);
+  return turns.Asked(turns.TurnsOf(window.leader, follower));
 }
+
+// The window, whose label of a turn began `frames` frames before it, in which the follower turned
+// by `degrees` in all, and goes on for `after` frames.
+SynthesisWindow GoingOn(SynthesisWindow window, int frames, double degrees, int after = 0) {
+  // Frame 0 of the window has the label as well.
+  window.turns_around.before.assign(static_cast<std::size_t>(frames) + 1, degrees / (frames + 1));
+  window.turns_around.after = after;
+  return window;
+}
+
+bool Asks(const SynthesisWindow& window) { return AskedTurns(Description(), window).asks(); }
 
 // The window, with another class at 1 in frames [begin, end).
 SynthesisWindow WithAnother(SynthesisWindow window, int begin, int end) {
@@ -73,12 +84,69 @@ SynthesisWindow WithAnother(SynthesisWindow window, int begin, int end) {
   return window;
 }
 
-TEST(AskedTurns, ATurnAtTheSpeedOfTheClassIsWhatIsAskedFor) {
+TEST(AskedTurns, AWholeTurnIsWhatIsAskedFor) {
   for (const double speed : {kSpeed, -kSpeed}) EXPECT_EQ(Miss(Window(1), Turning(speed)), 0);
   EXPECT_NEAR(Miss(Window(1), Turning(0)), 1, 1e-6);
   const double half = Miss(Window(1), Turning(kSpeed / 4));
   EXPECT_GT(half, 0.4);
   EXPECT_LT(half, 0.8);
+}
+
+TEST(AskedTurns, AShortLabelAsksForAWholeTurnToo) {
+  const SynthesisWindow window = Window(1, 0, 20);
+  EXPECT_EQ(Miss(window, Turning(1.3 * kSpeed, 0, 20)), 0);
+  EXPECT_GT(Miss(window, Turning(0.6 * kSpeed, 0, 20)), 0.1);
+}
+
+TEST(AskedTurns, ALongLabelAsksForSeveralTurns) {
+  EXPECT_EQ(TurnedOneWay(Window(1), Turning(kSpeed)).size(), 1u);
+  // 6 s with the label, and 2.25 s for each turn.
+  const std::vector<double> turned = TurnedOneWay(GoingOn(Window(1), 45, 0), Turning(kSpeed));
+  EXPECT_EQ(turned.size(), 2u);
+}
+
+TEST(AskedTurns, WhatTheFollowerTurnedBeforeTheWindowCounts) {
+  const SynthesisWindow window = Window(1, 0, 15);
+  EXPECT_GT(Miss(window, Turning(0)), 0.3);
+  EXPECT_TRUE(Asks(window));
+  for (const double turned : {370.0, -370.0}) {
+    EXPECT_EQ(Miss(GoingOn(window, 15, turned), Turning(0)), 0);
+    EXPECT_FALSE(Asks(GoingOn(window, 15, turned)));
+  }
+  // The rest of a turn goes the same way.
+  const Poses rest = Turning(200, 0, 15);
+  EXPECT_EQ(Miss(GoingOn(window, 15, TurnedOneWay(window, rest)[0]), rest), 0);
+  EXPECT_GT(Miss(GoingOn(window, 15, -TurnedOneWay(window, rest)[0]), rest), 0.1);
+}
+
+TEST(AskedTurns, SettledFramesCountAsWell) {
+  SynthesisWindow window = Window(1, 0, 25);
+  window.settled = Turning(370, 0, 15);
+  window.settled.Resize(16);
+  EXPECT_FALSE(Asks(window));
+  window.settled = Puppet({}, 16);
+  EXPECT_TRUE(Asks(window));
+}
+
+TEST(AskedTurns, AWindowThatSeesTheBeginningOfATurnAsksForLessOrNothing) {
+  const auto begins = [](int after) { return GoingOn(Window(1, 30), 0, 0, after); };
+  EXPECT_GT(Miss(begins(0), Turning(0)), 0.3);
+  EXPECT_GT(Miss(begins(0), Turning(kSpeed, 30)), 0.05);
+  EXPECT_EQ(Miss(begins(15), Turning(kSpeed, 30)), 0);
+  EXPECT_GT(Miss(begins(15), Turning(0)), 0.3);
+  const SynthesisWindow little = GoingOn(Window(1, 38), 0, 0, 22);
+  EXPECT_EQ(Miss(little, Turning(0)), 0);
+  EXPECT_FALSE(Asks(little));
+}
+
+TEST(AskedTurns, OneTurnGoesOneWay) {
+  EXPECT_EQ(Miss(Window(1), Turning(2 * kSpeed, 0, 23)), 0);
+  const auto turned = [](int t, Vec3 joint) {
+    const double degrees = 2 * kSpeed * (t < 23 ? t : 46 - t) / kRate;
+    return RotateY(joint, degrees * 3.14159265 / 180);
+  };
+  const Poses back = Moved(Changed(Puppet({}, kFrames), turned), {0, 0, 0.8f});
+  EXPECT_GT(Miss(Window(1), back), 0.3);
 }
 
 TEST(AskedTurns, SwayingIsNoTurn) {
@@ -92,13 +160,14 @@ TEST(AskedTurns, SwayingIsNoTurn) {
 }
 
 TEST(AskedTurns, OneWayIsEnoughUnlessItIsGiven) {
-  const double turns = TurnedOneWay(Turning(kSpeed));
-  EXPECT_NEAR(std::abs(turns), kSpeed * (kFrames - 1) / kRate, 20);
-  EXPECT_NEAR(TurnedOneWay(Turning(-kSpeed)), -turns, 1);
+  const std::vector<double> turns = TurnedOneWay(Window(1), Turning(kSpeed));
+  ASSERT_EQ(turns.size(), 1u);
+  EXPECT_NEAR(std::abs(turns[0]), kSpeed * (kFrames - 1) / kRate, 20);
+  EXPECT_NEAR(TurnedOneWay(Window(1), Turning(-kSpeed))[0], -turns[0], 1);
   EXPECT_EQ(Miss(Window(1), Turning(kSpeed), 0, turns), 0);
   // Turning the other way counts less, but more than not turning.
-  EXPECT_EQ(Miss(Window(1), Turning(0.7 * kSpeed), 0, turns), 0);
-  const double other_way = Miss(Window(1), Turning(-0.7 * kSpeed), 0, turns);
+  EXPECT_EQ(Miss(Window(1), Turning(0.6 * kSpeed), 0, turns), 0);
+  const double other_way = Miss(Window(1), Turning(-0.6 * kSpeed), 0, turns);
   EXPECT_GT(other_way, 0.1);
   EXPECT_LT(other_way, 0.4);
   EXPECT_NEAR(Miss(Window(1), Turning(0), 0, turns), 1, 1e-6);
@@ -157,7 +226,7 @@ TEST(AskedTurns, OnlyFramesBetweenTheSettledOnesAndTheLookaheadAreJudged) {
   SynthesisWindow window = Window(1);
   EXPECT_GT(Miss(window, Turning(kSpeed, 30)), 0.3);
   window.settled = Puppet({}, 29);
-  EXPECT_EQ(Miss(window, Turning(kSpeed, 28)), 0);
+  EXPECT_EQ(Miss(window, Turning(1.5 * kSpeed, 28)), 0);
   EXPECT_EQ(Miss(Window(1), Turning(kSpeed, 0, 20), kFrames - 20), 0);
   window.settled = Puppet({}, 40);
   EXPECT_EQ(AskedTurns(Description(10), window).demand(), 0);

@@ -424,7 +424,7 @@ SynthesisWindow AskingToTurn(float weight) {
 
 double TurnedDegrees(const SynthesisWindow& window, const motion::Poses& follower) {
   AskedTurns turns(TurningDescription(), AskingToTurn(1));
-  return std::abs(turns.Asked(turns.TurnsOf(window.leader, follower)));
+  return std::abs(turns.Asked(turns.TurnsOf(window.leader, follower))[0]);
 }
 
 TEST(NetworkSynthesizer, DrawsAgainUntilTheFollowerTurnsAsTheLabelsAsk) {
