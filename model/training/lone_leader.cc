@@ -18,6 +18,7 @@
 #include "model/motion/standardise.h"
 #include "model/training/augment.h"
 #include "model/training/frame_labels.h"
+#include "model/training/reaction_pace.h"
 #include "model/training/sampler.h"
 
 namespace duet::training {
@@ -28,6 +29,8 @@ using motion::Vec3;
 
 // A follower does not copy every shake of the leader's root and hips.
 constexpr double kSmoothingSeconds = 0.3;
+// Turning points of a borrowed reaction are rounded by a Gaussian of this deviation, seconds.
+constexpr double kRoundingSeconds = 0.1;
 // How a follower walks around a leader who turns: it takes so long to get in front of the leader,
 // and it never walks faster than this around the leader, radians per second.
 constexpr double kTurnSeconds = 1.5, kFastestTurn = 0.6;
@@ -126,6 +129,25 @@ const Poses* DrawLeader(const dataset::Dataset& dataset, int frames, base::Rando
   return long_enough[static_cast<std::size_t>(random->Below(count))];
 }
 
+// Points and poses at other times, in frames.
+std::vector<Vec3> At(const std::vector<double>& frames, const std::vector<Vec3>& points) {
+  std::vector<Vec3> sampled;
+  for (const double frame : frames) {
+    const auto before = static_cast<std::size_t>(frame);
+    const std::size_t after = std::min(before + 1, points.size() - 1);
+    sampled.push_back(Lerp(points[before], points[after],
+                           static_cast<float>(frame - static_cast<double>(before))));
+  }
+  return sampled;
+}
+Poses At(const std::vector<double>& frames, const Poses& poses) {
+  Poses sampled(static_cast<int>(frames.size()), poses.joint_count());
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    SampleLinear(poses, frames[t], sampled[static_cast<int>(t)]);
+  }
+  return sampled;
+}
+
 // The follower at its place `from`, moved to `to`, frame by frame from `first` on.
 Poses Carry(const Place& from, const Place& to, int first, const Poses& follower) {
   Poses carried = follower;
@@ -188,10 +210,17 @@ void ReplaceLeader(const engine::ModelDescription& model, const dataset::Dataset
   const int first = static_cast<int>(random->Below(leader.frame_count() - frames + 1));
 
   const double rate = dataset.frame_rate_hz;
-  const Place from = CapturedPlace(dataset, *sequence);
+  Place from = CapturedPlace(dataset, *sequence);
   const Place to = {Origins(skeleton, leader, rate),
                     FollowTurns(FacingYaws(skeleton, leader, rate), rate)};
   motion::ClipPair& pair = sequence->pair;
+  if (sequence->labels.empty()) {  // a take with labels on a time line keeps its time
+    const std::vector<double> reached =
+        ReactionFrames(ActingShares(leader, rate), first, frames, rate, random);
+    from.origins = At(reached, from.origins);
+    pair.follower.poses =
+        motion::GaussianFilter(At(reached, pair.follower.poses), kRoundingSeconds * rate);
+  }
   pair.follower.poses = Carry(from, to, first, pair.follower.poses);
   pair.leader.poses = motion::Part(leader, first, frames);
   if (sequence->partner_direction) {

@@ -17,9 +17,10 @@ absl::Status CheckLoneLeaders(const TrainingOptions& options, const dataset::Dat
 // Gives a captured follower another leader: a random part of one of dataset.lone_leaders. The
 // follower moves as captured, but its place and direction are those that it had relative to its
 // own leader. If the new leader turns, the follower walks around it, at most as fast as people do,
-// so that it is sometimes beside or behind a leader who turns quickly. Then it passes the stages of
-// a server, so that feet step where the follower is carried along and bodies keep apart. A leader
-// without a follower thus has the distribution of captured followers of the class as its target.
+// so that it is sometimes beside or behind a leader who turns quickly. Beside one who rests, it
+// goes back to its first pose (reaction_pace.h). Then it passes the stages of a server, so that
+// feet step where the follower is carried along and bodies keep apart. A leader without a follower
+// thus has the distribution of captured followers of the class as its target.
 //
 // The new leader is mirrored in half of the cases if the options mirror any class, and gets the
 // noise of a captured one. A sequence that is longer than every such leader does not change.

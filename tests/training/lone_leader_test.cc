@@ -115,6 +115,31 @@ TEST_F(LoneLeaderTest, FollowerDoesNotOrbitALeaderWhoSpins) {
   EXPECT_LT(fastest, 1.2);  // with the leader it would be 7 m/s
 }
 
+// The follower walks away from its leader, by 0.6 m, and gets one who stands.
+TEST_F(LoneLeaderTest, FollowerOfARestingLeaderGoesBackUnlessItsLabelsHaveTimes) {
+  const auto last_distance = [this](const std::vector<dataset::LabelSpan>& labels) {
+    double most = 0;
+    for (uint64_t seed = 0; seed < 20; ++seed) {
+      dataset_.lone_leaders = {{"made", StandingAt(40, {}, 0)}};
+      dataset::Sequence sequence = Captured();
+      sequence.labels = labels;
+      motion::Clip& walking = sequence.pair.follower;
+      const int last = walking.frame_count() - 1;
+      for (int t = 0; t <= last; ++t) {
+        for (Vec3& joint : walking.poses[t]) joint.z -= 0.6f * static_cast<float>(t) / last;
+      }
+      base::Random random(seed);
+      const checkpoint::Manifest manifest = ManifestFor(options_, dataset_);
+      ReplaceLeader(manifest.model, dataset_, augmentation_, &random, &sequence);
+      const double apart = Distance(Root(walking, last), Root(sequence.pair.leader, last));
+      most = std::max(most, apart);
+    }
+    return most;
+  };
+  EXPECT_LT(last_distance({}), 1.65);  // it may have begun at the farthest place, and sway
+  EXPECT_GT(last_distance({{0, 0, 18}}), 1.7);
+}
+
 TEST_F(LoneLeaderTest, FollowerSharesTheFloorOfTheLeader) {
   const dataset::Sequence pair = Replaced(StandingAt(40, {0, 2, 0}, 0));
   EXPECT_NEAR(LowestFoot(*dataset_.skeleton.feet, pair.pair.follower.poses),
