@@ -25,6 +25,8 @@ void Read(base::ObjectReader* reader, FlowTraining* out) {
   out->slide_speed = reader->Number("slide_speed", 0, 100);
   out->least_remaining = reader->Number("least_remaining", 1e-6, 1);
   out->noise_share = reader->Number("noise_share", 0, 2);
+  // Optional: configurations of earlier versions do not have it.
+  if (reader->Has("kept_share")) out->kept_share = Probability(reader, "kept_share");
 }
 
 void Read(base::ObjectReader* reader, FlowTraining::FrameLabels* out) {
@@ -118,6 +120,7 @@ void Describe(const FlowTraining& f, Description* out) {
                {"flow.slide_speed", Text(f.slide_speed)},
                {"flow.least_remaining", Text(f.least_remaining)},
                {"flow.noise_share", Text(f.noise_share)},
+               {"flow.kept_share", Text(f.kept_share)},
                {"frame_labels.shift", Text(f.frame_labels.shift)},
                {"frame_labels.unlabelled", Text(f.frame_labels.unlabelled)},
                {"frame_labels.avoided", Text(f.frame_labels.avoided)},

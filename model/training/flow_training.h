@@ -33,6 +33,7 @@ struct FlowTraining {
   double slide_speed = 0.3;       // metres per second; a captured foot below it stands
   double least_remaining = 0.15;  // losses are divided by 1 - t, but at least by this
   double noise_share = 1;         // of the noise of training that the checkpoint's answers have
+  double kept_share = 0;          // of the weights that the run began with, in the checkpoint's
 
   // Labels in training with frame_labels. By default every class of a frame has weight 1 and all
   // others 0.

@@ -196,6 +196,13 @@ absl::StatusOr<checkpoint::Checkpoint> ReadFrom(const RunPlan& plan,
   return from;
 }
 
+absl::Status CheckKeptShare(const RunPlan& plan) {
+  const auto* flow = std::get_if<FlowTraining>(&plan.options.method);
+  if (flow == nullptr || flow->kept_share == 0 || !plan.from.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("flow.kept_share: expected 0 without --from, got ", flow->kept_share));
+}
+
 absl::Status StartFrom(const RunPlan& plan, const checkpoint::Checkpoint& from,
                        EpochTrainer* trainer) {
   if (plan.from.empty()) return absl::OkStatus();
@@ -253,9 +260,27 @@ absl::Status TrainCriticOnly(const RunPlan& plan, const dataset::Dataset& datase
   return Write(plan, std::move(from));
 }
 
+// Moves the trained weights back, a share of the way, to those that the run began with.
+void KeepShare(const TrainingOptions& options, const checkpoint::Checkpoint& from,
+               std::vector<checkpoint::Tensor>* tensors) {
+  const auto* flow = std::get_if<FlowTraining>(&options.method);
+  if (flow == nullptr || flow->kept_share == 0) return;
+  for (checkpoint::Tensor& tensor : *tensors) {
+    if (tensor.name == "base.poses" || tensor.name == "noise.roots") continue;  // measured
+    for (const checkpoint::Tensor& first : from.tensors) {
+      if (first.name != tensor.name || first.shape != tensor.shape) continue;
+      for (size_t i = 0; i < tensor.values.size(); ++i) {
+        tensor.values[i] = static_cast<float>(flow->kept_share * first.values[i] +
+                                              (1 - flow->kept_share) * tensor.values[i]);
+      }
+    }
+  }
+}
+
 absl::Status Finish(const RunPlan& plan, const dataset::Dataset& dataset,
                     const std::vector<int>& train, checkpoint::Manifest manifest,
-                    const EpochReport& last, EpochTrainer* trainer, std::ostream* progress) {
+                    const checkpoint::Checkpoint& from, const EpochReport& last,
+                    EpochTrainer* trainer, std::ostream* progress) {
   manifest.git_revision = kGitRevision;
   manifest.metrics["training.reconstruction"] = last.reconstruction;
   if (std::isfinite(trainer->best_afd())) {
@@ -263,6 +288,7 @@ absl::Status Finish(const RunPlan& plan, const dataset::Dataset& dataset,
     manifest.metrics["validation.epoch"] = static_cast<double>(trainer->best_epoch());
   }
   std::vector<checkpoint::Tensor> tensors = trainer->BestTensors();
+  KeepShare(plan.options, from, &tensors);
   checkpoint::Checkpoint checkpoint{std::move(manifest), std::move(tensors), {}};
   if (absl::Status status = AddCritic(plan, dataset, train, progress, &checkpoint); !status.ok()) {
     return status;
@@ -314,6 +340,7 @@ fs::path CheckpointFolder(const RunPlan& plan) {
 absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, bool terminal,
                          std::ostream* progress) {
   absl::Status status = CheckAgainst(plan.options, whole);
+  if (status.ok()) status = CheckKeptShare(plan);
   if (!status.ok()) return status;
   if (fs::exists(CheckpointFolder(plan))) {
     *progress << plan.title << " is finished: " << CheckpointFolder(plan).string() << "\n";
@@ -387,7 +414,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   if (!report.error_by_position.empty()) {
     *progress << plan.title << ": last epoch: " << PositionsLine(report.error_by_position) << "\n";
   }
-  return Finish(plan, dataset, train, manifest, report, trainer.get(), progress);
+  return Finish(plan, dataset, train, manifest, *from, report, trainer.get(), progress);
 }
 
 }  // namespace duet::training
