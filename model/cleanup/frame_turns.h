@@ -11,7 +11,7 @@ namespace duet::cleanup {
 struct FrameTurnOptions {
   // The fastest turn of a shoulder about the chest and of the hips about the trunk, degrees per
   // second.
-  double fastest_shoulder = 600, fastest_hips = 600;
+  double fastest_shoulder = 400, fastest_hips = 360;
   // The fastest turn of a bone against the bone or the trunk that it hangs from, degrees per
   // second. A rig's shoulders move besides.
   double fastest_bone = 720, fastest_upper_arm = 550;

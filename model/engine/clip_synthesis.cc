@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "model/cleanup/frame_turns.h"
+#include "model/engine/finishing.h"
 #include "model/engine/window_seed.h"
 #include "model/motion/resample.h"
 
@@ -151,7 +152,8 @@ bool ClipSynthesis::IsNearPin(int frame) const {
 void ClipSynthesis::SlowDown(absl::Span<motion::Vec3> pose) {
   if (!slows_down_) return;
   if (!last_.empty() && !IsNearPin(next_frame_)) {
-    cleanup::SlowFrame(model_.skeleton, body_, {}, request_.frame_rate_hz, last_, pose);
+    cleanup::SlowFrame(model_.skeleton, body_, FrameTurnsOf(model_), request_.frame_rate_hz, last_,
+                       pose);
   }
   last_.assign(pose.begin(), pose.end());
 }

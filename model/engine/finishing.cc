@@ -177,6 +177,13 @@ std::vector<float> MostAwayOf(const ModelDescription& description, const Synthes
   return most_away;
 }
 
+cleanup::FrameTurnOptions FrameTurnsOf(const ModelDescription& description) {
+  cleanup::FrameTurnOptions options;
+  if (description.turning_classes.empty()) return options;
+  options.fastest_shoulder = options.fastest_hips = options.fastest_plane_of_girdle = HUGE_VAL;
+  return options;
+}
+
 int SettledFrames(const SynthesisWindow& window) {
   return std::max(window.settled.frame_count(), window.start ? 1 : 0);
 }

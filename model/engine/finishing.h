@@ -5,6 +5,7 @@
 
 #include "absl/status/status.h"
 #include "model/cleanup/clean_up.h"
+#include "model/cleanup/frame_turns.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
 #include "model/motion/poses.h"
@@ -50,6 +51,10 @@ cleanup::Options CleaningOf(const ModelDescription& description, cleanup::Option
 // of its classes by weight. Empty if the model has no class in which followers face their leaders.
 // Shapes: returns [frames], or empty.
 std::vector<float> MostAwayOf(const ModelDescription& description, const SynthesisWindow& window);
+
+// Returns how fast shoulders, hips and limbs turn in frames that the caller gets. The trunk of a
+// follower that turns when the labels ask for it is as fast as its dance.
+cleanup::FrameTurnOptions FrameTurnsOf(const ModelDescription& description);
 
 // Returns the number of the window's first frames that must not change: the settled frames, or the
 // frame of the start.

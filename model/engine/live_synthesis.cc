@@ -9,6 +9,7 @@
 #include "model/cleanup/frame_turns.h"
 #include "model/cleanup/live_frame.h"
 #include "model/engine/direction_estimate.h"
+#include "model/engine/finishing.h"
 #include "model/engine/resting_leader.h"
 #include "model/engine/window_state.h"
 #include "model/motion/limb_lengths.h"
@@ -160,7 +161,8 @@ void LiveSynthesis::SampleJoined(int frame, absl::Span<const Vec3> before, Poses
   CorrectFrame(frame, interpolated[0], (*pose)[0]);
   if (!before.empty()) {
     const float height = cleanup::HeightOf(body_, (*pose)[0]);
-    cleanup::SlowFrame(model_.skeleton, body_, {}, request_.frame_rate_hz, before, (*pose)[0]);
+    cleanup::SlowFrame(model_.skeleton, body_, FrameTurnsOf(model_), request_.frame_rate_hz, before,
+                       (*pose)[0]);
     cleanup::KeepHeight(body_, height, (*pose)[0]);
   }
 }

@@ -241,6 +241,14 @@ TEST(CleanUpStage, LivePlansGoOnWhereTheLastOneCame) {
   EXPECT_TRUE(FeetTiming(description, window).continues_steps);
 }
 
+TEST(FrameTurnsOf, ADancerTurnsAsFastAsItsDance) {
+  ModelDescription description = FakeDescription();
+  EXPECT_LT(FrameTurnsOf(description).fastest_hips, 900);
+  description.turning_classes = {{description.classes[0], 264}};
+  EXPECT_GT(FrameTurnsOf(description).fastest_hips, 10'000);
+  EXPECT_GT(FrameTurnsOf(description).fastest_shoulder, 10'000);
+}
+
 // A kick ends farther from the body than a punch.
 TEST(MeetingsOf, TheLimbThatStrikesEndsAtItsOwnDistance) {
   ModelDescription description = FakeDescription();
