@@ -116,7 +116,7 @@ cleanup::Options NoStage() {
   cleanup::Options none;
   none.upright.enabled = none.spacing.enabled = none.capsules.enabled = false;
   none.waist.enabled = none.hand_contact.enabled = none.floor.enabled = none.footsteps.enabled =
-      none.raised_limbs.enabled = none.stance.enabled = none.joint_ranges.enabled = false;
+      none.raised_limbs.enabled = none.joint_ranges.enabled = false;
   none.shoulders.enabled = none.limb_swings.enabled = false;
   return none;
 }
@@ -137,7 +137,6 @@ std::vector<std::pair<std::string, cleanup::Options>> Variants() {
           {"capsules", Only(&cleanup::Options::capsules)},
           {"floor", Only(&cleanup::Options::floor)},
           {"raised limbs", Only(&cleanup::Options::raised_limbs)},
-          {"stance", Only(&cleanup::Options::stance)},
           {"footsteps", Only(&cleanup::Options::footsteps)},
           {"joint ranges", Only(&cleanup::Options::joint_ranges)},
           {"limb swings", Only(&cleanup::Options::limb_swings)},
