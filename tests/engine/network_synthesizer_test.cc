@@ -9,6 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
+#include "model/body/passing_poses.h"
 #include "model/cleanup/facing.h"
 #include "model/cleanup/stand_up.h"
 #include "model/engine/asked_turns.h"
@@ -239,6 +240,39 @@ TEST(NetworkSynthesizer, RaisesACrouchingFollowerOfAModelWithAHipHeight) {
   EXPECT_GT(low, 0.5f);
   EXPECT_GT(height(0.95, {}), low + 0.04f);
   EXPECT_NEAR(height(0.95, 0), height(0, 0), 1e-6);  // not in live windows
+}
+
+TEST(NetworkSynthesizer, EndsPosesThatLastLongerThanTheModelsFollowersKeepThem) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const body::Body body = body::FindBody(skeleton);
+  const motion::Poses posing = cleanup::Moved(cleanup::Puppet(
+                                                  [](double, authoring::PuppetPose* pose) {
+                                                    pose->left_foot.target = {0.12, 0.08, 0.4};
+                                                    pose->right_foot.target = {-0.12, 0.08, -0.4};
+                                                    pose->left_hand.target = {0.6, 0.05, 0};
+                                                  },
+                                                  45),
+                                              {0, 0, -1});
+  const auto longest = [&](body::PoseSeconds most) {
+    ModelDescription description = test::SamplingDescription();
+    description.longest_poses = most;
+    SynthesisWindow window = Window(45);
+    window.leader = cleanup::Puppet({}, 45);
+    const auto model =
+        Model([&](Inputs inputs) { return std::vector<motion::Poses>(inputs.size(), posing); }, {},
+              description);
+    const WindowResult result = RunOne(*model, window);
+    body::LongestPoses poses(skeleton, body);
+    for (int t = 0; result.ok() && t < result->frame_count(); ++t) {
+      poses.Add(window.leader[t], (*result)[t]);
+    }
+    return poses.Get(15);
+  };
+  EXPECT_GT(longest({}).astride, 2.5);
+  EXPECT_GT(longest({}).held_out, 2.5);
+  EXPECT_LT(longest({0.5, 0}).astride, 1.1);
+  EXPECT_GT(longest({0.5, 0}).held_out, 2.5);
+  EXPECT_LT(longest({0, 1}).held_out, 1.6);
 }
 
 // How far the follower of a window is turned away at the end, degrees, if the network turns it away
