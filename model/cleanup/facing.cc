@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "model/base/angle.h"
+#include "model/cleanup/directions.h"
 #include "model/cleanup/low_pass.h"
 #include "model/cleanup/turns.h"
 
@@ -15,18 +16,17 @@ using motion::Vec3;
 using Track = std::vector<Vec3>;
 
 constexpr Vec3 kUp{0, 1, 0};
-constexpr float kPi = 3.14159265f;
 
 float Float(double value) { return static_cast<float>(value); }
 
 // An angle as -pi to pi.
-float Wrapped(float angle) { return std::remainder(angle, 2 * kPi); }
+float Wrapped(float angle) { return std::remainder(angle, Float(2 * base::kPi)); }
 
 // `v` along the floor, of length 1; {} if it has no direction.
 Vec3 LevelUnit(Vec3 v) {
-  v.y = 0;
-  const float length = Norm(v);
-  return length > 0 ? v / length : Vec3{};
+  const Vec3 level = Level(v);
+  const float length = Norm(level);
+  return length > 0 ? level / length : Vec3{};
 }
 
 // The angle about the vertical from `from` to `to`.
@@ -48,7 +48,7 @@ class View {
       facing_.push_back(
           LevelUnit(Cross(kUp, across(*skeleton.hips, t) + across(*body.shoulders, t))));
       const Vec3 way = leader.at(t, skeleton.root) - follower.at(t, skeleton.root);
-      offset_.push_back({way.x, 0, way.z});
+      offset_.push_back(Level(way));
     }
   }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "model/cleanup/directions.h"
 #include "model/cleanup/low_pass.h"
 
 namespace duet::cleanup {
@@ -35,8 +36,6 @@ constexpr float kClearBend = 0.06f;
 constexpr double kKneeSmoothSeconds = 0.1;
 
 float Float(double value) { return static_cast<float>(value); }
-
-Vec3 Level(Vec3 v) { return {v.x, 0, v.z}; }
 
 // One foot: its track, and where the plan has it.
 class Foot {

@@ -12,8 +12,6 @@ using motion::Vec3;
 
 constexpr float kNearestMetres = 0.17f;
 
-Vec3 Level(Vec3 v) { return {v.x, 0, v.z}; }
-
 }  // namespace
 
 void PlaceFeetBetween(const motion::Skeleton& skeleton, const body::Body& body,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "model/body/passing_poses.h"
+#include "model/cleanup/directions.h"
 #include "model/cleanup/lasting.h"
 
 namespace duet::cleanup {
@@ -13,8 +14,6 @@ using motion::Vec3;
 
 // How far feet that came together are apart, in lengths of the leg.
 constexpr float kNarrow = 0.4f;
-
-Vec3 Level(Vec3 v) { return {v.x, 0, v.z}; }
 
 // Moves both feet by a share of their way to places below the middle of the hips.
 void ComeTogether(const motion::JointPair& hips, const body::Body& body, float share,
