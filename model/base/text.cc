@@ -6,6 +6,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
@@ -86,9 +87,12 @@ absl::string_view SkipByteOrderMark(absl::string_view text) {
   return text;
 }
 
+LineReader::LineReader(absl::string_view text)
+    : rest_(text), end_(absl::StrContains(text, '\n') ? '\n' : '\r') {}
+
 bool LineReader::Next(absl::string_view* line) {
   if (rest_.empty()) return false;
-  const std::size_t end = rest_.find('\n');
+  const std::size_t end = rest_.find(end_);
   *line = rest_.substr(0, end);
   rest_.remove_prefix(end == absl::string_view::npos ? rest_.size() : end + 1);
   if (!line->empty() && line->back() == '\r') line->remove_suffix(1);

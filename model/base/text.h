@@ -37,13 +37,13 @@ absl::Status ErrorAt(absl::string_view source, int line, int column, absl::strin
 // `text` without the byte order mark that some editors and spreadsheets write.
 absl::string_view SkipByteOrderMark(absl::string_view text);
 
-// Walks a text line by line, without the line ends (LF or CR LF).
+// Walks a text line by line, without the line ends: LF or CR LF, or CR in a text without LF.
 //
 //   LineReader lines(text);
 //   for (absl::string_view line; lines.Next(&line);) ... lines.number() ...
 class LineReader {
  public:
-  explicit LineReader(absl::string_view text) : rest_(text) {}
+  explicit LineReader(absl::string_view text);
   // False at the end of the text.
   bool Next(absl::string_view* line);
   // The number of the line that Next returned last, from 1.
@@ -51,6 +51,7 @@ class LineReader {
 
  private:
   absl::string_view rest_;
+  char end_;
   int number_ = 0;
 };
 

@@ -101,5 +101,12 @@ TEST(LineReader, GivesLinesWithoutTheirEnds) {
   EXPECT_EQ(lines.number(), 4);
 }
 
+TEST(LineReader, CarriageReturnsAloneEndLines) {
+  LineReader lines("a\r\rb\r");
+  std::vector<std::string> read;
+  for (absl::string_view line; lines.Next(&line);) read.emplace_back(line);
+  EXPECT_THAT(read, ElementsAre("a", "", "b"));
+}
+
 }  // namespace
 }  // namespace duet::base

@@ -47,7 +47,7 @@ class Cursor {
   // The next word, empty at the end of the text.
   absl::string_view Word() {
     while (!rest_.empty() && absl::ascii_isspace(static_cast<unsigned char>(rest_[0]))) {
-      line_ += rest_[0] == '\n' ? 1 : 0;
+      line_ += EndsLine() ? 1 : 0;
       rest_.remove_prefix(1);
     }
     std::size_t size = 0;
@@ -59,7 +59,7 @@ class Cursor {
 
   // The rest of the line up to a brace, stripped of white space: names may contain spaces.
   absl::string_view Name() {
-    const std::size_t end = rest_.find_first_of("{}\n");
+    const std::size_t end = rest_.find_first_of("{}\r\n");
     return absl::StripAsciiWhitespace(Take(end == absl::string_view::npos ? rest_.size() : end));
   }
 
@@ -67,6 +67,11 @@ class Cursor {
   int line() const { return line_; }
 
  private:
+  bool EndsLine() const {
+    if (rest_[0] == '\r') return rest_.size() == 1 || rest_[1] != '\n';
+    return rest_[0] == '\n';
+  }
+
   absl::string_view Take(std::size_t size) {
     const absl::string_view taken = rest_.substr(0, size);
     rest_.remove_prefix(size);

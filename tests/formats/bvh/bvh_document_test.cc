@@ -64,6 +64,16 @@ TEST(BvhDocument, ReadsAnyHierarchy) {
   EXPECT_DOUBLE_EQ(document->frame_time_s, 0.04);
 }
 
+TEST(BvhDocument, LinesMayEndWithCarriageReturnsAlone) {
+  std::string text = absl::StrReplaceAll(kArm, {{"\r\n", "\r"}, {"\n", "\r"}});
+  const absl::StatusOr<BvhDocument> document = ParseBvh(text, "a.bvh");
+  ASSERT_TRUE(document.ok()) << document.status();
+  EXPECT_EQ(document->joints[1].name, "Fore Arm");
+  EXPECT_EQ(document->frame_count, 2);
+  absl::StrReplaceAll({{"Frames:\t2", "Frames:\tx"}}, &text);
+  EXPECT_THAT(ParseError(text), HasSubstr("a.bvh:16: "));
+}
+
 TEST(BvhDocument, AppliesChannelsInTheFilesOrder) {
   const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
   ASSERT_TRUE(document.ok()) << document.status();
