@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <limits>
 #include <numeric>
 
 #include "model/base/median.h"
@@ -28,8 +30,17 @@ constexpr std::size_t kFewestStretches = 3;
 // Degrees that followers may turn in other classes. 98 % of captured followers turn less within the
 // frames of a window.
 constexpr double kMostInOthers = 180;
-constexpr double kMostDraws = 6;
+// How further samples differ from the first one: by what the labels that ask for turns, those that
+// avoid them, and the noise are multiplied. Each pair differs more than the last.
+struct Draw {
+  float asked, avoided, noise;
+};
+constexpr Draw kDraws[] = {{2, 4, 1}, {4, 8, 1.4f}, {8, 16, 2}};
 constexpr int kDrawnTogether = 2;
+constexpr double kMostDraws = kDrawnTogether * std::size(kDraws);
+// The last pair turns most often, but not as the lead shows. It is drawn only if every sample before
+// misses at least this fraction of what the labels demand.
+constexpr double kHardlyTurns = 0.5;
 // Fraction of these samples that a window draws on average, measured on held-out takes
 // (docs/results/README.md, "The dance").
 constexpr double kDrawnForTurns = 0.8, kDrawnForOthers = 0.05;
@@ -39,8 +50,6 @@ constexpr double kAgreement = 0.6;
 constexpr std::size_t kFewestVotes = 3;
 // Weight of turning in the direction that the samples did not agree on.
 constexpr double kAgainstTheOthers = 0.7;
-constexpr float kMostGain = 4;
-constexpr int kGains = 4;  // different gains, evenly up to the largest
 // What a mean difference of a whole turn from the other samples costs.
 constexpr double kUntypical = 0.5;
 
@@ -274,10 +283,11 @@ std::vector<std::vector<NetworkInput>> DrawnAgain(const ModelDescription& descri
     NetworkInput& again = groups.back().emplace_back(input);
     const Sampling& sampling = window.options.sampling;
     again.sampling.seed = CandidateSeed(sampling.seed, sampling.candidates + n - 1);
-    const float gain = 1 + (kMostGain - 1) * static_cast<float>(n % kGains + 1) / kGains;
+    const Draw& draw = kDraws[groups.size() - 1];
+    again.sampling.variety *= draw.noise;
     for (const std::size_t c : TurningIndices(description)) {
       for (std::size_t i = c; i < again.labels.size(); i += description.classes.size()) {
-        again.labels[i] *= gain;
+        again.labels[i] *= again.labels[i] > 0 ? draw.asked : draw.avoided;
       }
     }
   }
@@ -286,10 +296,15 @@ std::vector<std::vector<NetworkInput>> DrawnAgain(const ModelDescription& descri
 
 bool IsDecided(const AskedTurns& turns, const std::vector<std::vector<double>>& samples) {
   const Votes votes = VotesOf(turns, samples);
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& sample : samples) {
+    least = std::min(least, turns.Miss(sample, votes.ways));
+  }
+  if (samples.size() > kMostDraws - kDrawnTogether && least < kHardlyTurns * turns.demand()) {
+    return true;
+  }
   if (turns.asks() && (samples.size() < kFewestVotes || !DoAgree(votes))) return false;
-  return std::any_of(samples.begin(), samples.end(), [&](const std::vector<double>& sample) {
-    return turns.Miss(sample, votes.ways) <= turns.tolerated();
-  });
+  return least <= turns.tolerated();
 }
 
 std::size_t MostAsAsked(const AskedTurns& turns, const std::vector<std::vector<double>>& samples) {

@@ -88,17 +88,18 @@ class AskedTurns {
   double demand_ = 0;
 };
 
-// The inputs of AskedTurns::further_samples() samples: with other seeds, and with labels of turns
-// that are enlarged by up to four, because the network gives them less weight than its leader.
-// Returns groups to draw one after the other until IsDecided. `input`: of the window's first
-// sample.
+// The inputs of AskedTurns::further_samples() samples: with other seeds, with labels of turns that
+// are enlarged, because the network gives them less weight than its leader, and with more noise, so
+// that they differ more. Returns groups to draw one after the other until IsDecided. `input`: of
+// the window's first sample.
 std::vector<std::vector<NetworkInput>> DrawnAgain(const ModelDescription& description,
                                                   const AskedTurns& turns,
                                                   const SynthesisWindow& window,
                                                   const NetworkInput& input);
 
 // Whether a window needs no more samples: at least one does what the labels say and, if they ask
-// for turns, there are at least three samples that agree on the direction.
+// for turns, there are at least three samples that agree on the direction. The last group is not
+// worth drawing if a sample does more than half of what the labels say.
 // Shapes: samples, TurnsOf each.
 bool IsDecided(const AskedTurns& turns, const std::vector<std::vector<double>>& samples);
 

@@ -266,6 +266,13 @@ TEST(IsDecided, WhereATurnIsAskedForByThreeSamplesThatAgreeOnItsWay) {
   EXPECT_TRUE(Decided(Window(1), {turn, back, turn, turn, turn, turn}));
 }
 
+TEST(IsDecided, AfterFiveSamplesOfWhichOneTurnsMoreThanHalfway) {
+  const Poses halfway = Turning(kSpeed / 3), little = Turning(20);
+  EXPECT_FALSE(Decided(Window(1), {halfway, little, little}));
+  EXPECT_TRUE(Decided(Window(1), {halfway, little, little, little, little}));
+  EXPECT_FALSE(Decided(Window(1), {little, little, little, little, little}));
+}
+
 std::size_t Best(const SynthesisWindow& window, const std::vector<Poses>& followers) {
   return MostAsAsked(AskedTurns(Description(), window), TurnsOf(window, followers));
 }
@@ -295,23 +302,33 @@ TEST(MostAsAsked, OfGoodSamplesTheMostTypicalIsChosen) {
   EXPECT_EQ(Best(Window(1), {middle, early, late}), 0u);
 }
 
-TEST(DrawnAgain, DrawsPairsWithOtherSeedsAndLargerLabelsOfTurns) {
+TEST(DrawnAgain, EachPairHasLargerLabelsOfTurnsAndNoLessNoise) {
   const SynthesisWindow window = Window(1);
   const AskedTurns turns(Description(), window);
   NetworkInput input;
   input.labels = window.labels;
+  input.sampling.variety = 0.5f;
   std::set<uint64_t> seeds = {window.options.sampling.seed};
   std::size_t drawn = 0;
+  float label = 1, variety = 0.5f;
   for (const std::vector<NetworkInput>& pair : DrawnAgain(Description(), turns, window, input)) {
-    EXPECT_EQ(pair.size(), 2u);
+    ASSERT_EQ(pair.size(), 2u);
+    EXPECT_GT(pair[0].labels[kTurn], label);
+    EXPECT_GE(pair[0].sampling.variety, variety);
+    label = pair[0].labels[kTurn];
+    variety = pair[0].sampling.variety;
     for (const NetworkInput& again : pair) {
       EXPECT_TRUE(seeds.insert(again.sampling.seed).second);
-      EXPECT_GT(again.labels[kTurn], 1);
-      EXPECT_LE(again.labels[kTurn], 4);
+      EXPECT_EQ(again.labels[kTurn], label);
+      EXPECT_EQ(again.sampling.variety, variety);
       EXPECT_EQ(again.labels[kTurn + 1], 0);
       ++drawn;
     }
   }
+  EXPECT_GT(variety, 0.5f);
+  input.labels = Window(-1).labels;
+  const auto avoiding = DrawnAgain(Description(), turns, window, input);
+  EXPECT_LT(avoiding.back().back().labels[kTurn], -label);  // enlarged more than labels that ask
   EXPECT_EQ(drawn, static_cast<std::size_t>(turns.further_samples()));
   EXPECT_EQ(drawn, 6u);
 }
