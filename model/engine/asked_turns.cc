@@ -38,8 +38,8 @@ struct Draw {
 constexpr Draw kDraws[] = {{2, 4, 1}, {4, 8, 1.4f}, {8, 16, 2}};
 constexpr int kDrawnTogether = 2;
 constexpr double kMostDraws = kDrawnTogether * std::size(kDraws);
-// The last pair turns most often, but not as the lead shows. It is drawn only if every sample before
-// misses at least this fraction of what the labels demand.
+// The last pair turns most often, but not as the lead shows. It is drawn only if every sample
+// before misses at least this fraction of what the labels demand.
 constexpr double kHardlyTurns = 0.5;
 // Fraction of these samples that a window draws on average, measured on held-out takes
 // (docs/results/README.md, "The dance").

@@ -367,9 +367,12 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   manifest.model.leader_statistics = MeasureLeaders(dataset, train);
   FindContacts(dataset, train, &manifest.model);
   manifest.model.turning_classes = FindTurningClasses(whole, takes);
-  // Followers who turn when they are told to are not to be turned back.
   if (manifest.model.turning_classes.empty()) {
     manifest.model.facing_classes = FindFacingClasses(whole, takes);
+  } else {
+    // A dance: followers who turn when they are told to are not to be turned back, and hands that
+    // lead them are no fists.
+    manifest.model.strikes.clear();
   }
   manifest.model.steps_in_time = StepInTime(whole, takes);
   MeasureBodies(whole, takes, &manifest.model);

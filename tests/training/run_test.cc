@@ -104,9 +104,31 @@ TEST_F(RunTest, ReportsTheErrorByPositionInTakesThatAreHeldBack) {
   EXPECT_THAT(ReadTestFile(plan_.folder / "log.csv"), HasSubstr(",whole_answers\n1,"));
 }
 
+// The leader's right hand reaches for the follower in every frame.
+void ReachForTheFollower(dataset::Dataset* dataset) {
+  const motion::Skeleton& skeleton = dataset->skeleton;
+  const int shoulder = skeleton.Find("right_shoulder"), elbow = skeleton.Find("right_elbow"),
+            hand = skeleton.Find("right_hand");
+  for (dataset::Sequence& take : dataset->sequences) {
+    motion::Poses& leader = take.pair.leader.poses;
+    for (int t = 0; t < leader.frame_count(); ++t) {
+      const motion::Vec3 partner = take.pair.follower.poses.at(t, skeleton.root);
+      const motion::Vec3 arm = partner - leader.at(t, shoulder);
+      leader.at(t, elbow) = leader.at(t, shoulder) + arm * 0.4f;
+      leader.at(t, hand) = leader.at(t, shoulder) + arm * 0.8f;
+    }
+  }
+}
+
 TEST_F(RunTest, NotesWhatPeopleDoInTheClassesOfADance) {
   plan_.options = SmallFlowOptions();
   plan_.options.epochs = 1;
+  ReachForTheFollower(&dataset_);
+  ASSERT_THAT(Go(), IsOk());
+  const auto fight = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+  ASSERT_THAT(fight, IsOk());
+  EXPECT_FALSE(fight->manifest.model.strikes.empty());
+  plan_.folder = folder_.path() / "dance";
   for (dataset::Sequence& take : dataset_.sequences) {
     motion::Poses& follower = take.pair.follower.poses;
     take.labels = {{0, 0, 12}};
@@ -128,6 +150,7 @@ TEST_F(RunTest, NotesWhatPeopleDoInTheClassesOfADance) {
   // Against the line to the leader, who sways.
   EXPECT_NEAR(model.turning_classes[0].degrees_per_second, 430, 120);
   EXPECT_TRUE(model.facing_classes.empty());  // turns are not undone
+  EXPECT_TRUE(model.strikes.empty());
   EXPECT_FALSE(model.steps_in_time);
   ASSERT_EQ(model.bone_ratios.size(), dataset_.skeleton.bones.size());
   EXPECT_NEAR(model.bone_ratios[0], 0.9, 0.02);
