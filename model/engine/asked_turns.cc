@@ -43,7 +43,7 @@ constexpr double kMostDraws = kDrawnTogether * std::size(kDraws);
 constexpr double kHardlyTurns = 0.5;
 // Fraction of these samples that a window draws on average, measured on held-out takes
 // (docs/results/README.md, "The dance").
-constexpr double kDrawnForTurns = 0.8, kDrawnForOthers = 0.05;
+constexpr double kDrawnForTurns = 0.6, kDrawnForOthers = 0.03;
 // Samples agree on the direction of a turn if the difference between both directions is at least
 // this fraction of all their turning.
 constexpr double kAgreement = 0.6;
