@@ -10,8 +10,9 @@
 namespace duet::test {
 namespace {
 
+// The least significant byte first.
 void Append(std::uint32_t value, int bytes, std::string* out) {
-  for (int i = 0; i < bytes; ++i) out->push_back(static_cast<char>(value >> (8 * i) & 0xff));
+  for (int i = 0; i < bytes; ++i, value >>= 8) out->push_back(static_cast<char>(value & 0xff));
 }
 
 std::string Deflated(const std::string& content) {
