@@ -370,8 +370,8 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   if (manifest.model.turning_classes.empty()) {
     manifest.model.facing_classes = FindFacingClasses(whole, takes);
   } else {
-    // A dance: followers who turn when they are told to are not to be turned back, and hands that
-    // lead them are no fists.
+    // In a dance, followers turn when they are told to, so clean-up must not turn them back. The
+    // hands that lead them are not fists.
     manifest.model.strikes.clear();
   }
   manifest.model.steps_in_time = StepInTime(whole, takes);
