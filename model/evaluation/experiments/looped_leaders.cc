@@ -88,6 +88,10 @@ bool IsLoopable(const dataset::Sequence& take) {
   return leader.frame_count() > 2 * kFadeSeconds * leader.frame_rate_hz;
 }
 
+int LoopFrames(const dataset::Dataset& dataset, const dataset::Sequence& take) {
+  return take.pair.leader.frame_count() - FadeFrames(dataset.frame_rate_hz);
+}
+
 dataset::Sequence LoopTake(const dataset::Dataset& dataset, const dataset::Sequence& take,
                            double seconds) {
   dataset::Sequence looped = take;
@@ -96,7 +100,7 @@ dataset::Sequence LoopTake(const dataset::Dataset& dataset, const dataset::Seque
   looped.pair.follower.poses.Resize(1);
   looped.labels.clear();
   const int frames = looped.pair.leader.frame_count();
-  const int step = take.pair.leader.frame_count() - FadeFrames(dataset.frame_rate_hz);
+  const int step = LoopFrames(dataset, take);
   for (int first = 0; first < frames; first += step) {
     for (const dataset::LabelSpan& span : take.labels) {
       const int begin = first + span.begin;

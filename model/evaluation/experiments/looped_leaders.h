@@ -24,6 +24,9 @@ motion::Poses LoopClips(const motion::Skeleton& skeleton, const std::vector<moti
 // Whether a take is long enough for LoopClips.
 bool IsLoopable(const dataset::Sequence& take);
 
+// Frames from where a looped take begins to where it begins again. Requires IsLoopable.
+int LoopFrames(const dataset::Dataset& dataset, const dataset::Sequence& take);
+
 // The take with its leader looped for `seconds` and its labels repeated. The follower has only its
 // first pose. Requires IsLoopable.
 dataset::Sequence LoopTake(const dataset::Dataset& dataset, const dataset::Sequence& take,

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <limits>
 #include <string>
@@ -28,7 +29,7 @@ namespace {
 
 using experiments::DanceRow;
 
-constexpr double kPartSeconds = 60;                  // of a looped take: its beginning and its end
+constexpr double kLoopPartSeconds = 60;  // of the answer to a looped take, where a loop begins
 constexpr int kPositionSeconds = 5, kPositions = 6;  // of a take, for the error by position
 constexpr double kTurnWeights[] = {-1, -0.5, 0, 0.5, 1};
 constexpr int kCandidates = 4;  // of the ablation that asks for them
@@ -169,30 +170,55 @@ absl::Status AddAnswers(const Dancer& dancer, std::vector<DanceRow>* rows,
   return absl::OkStatus();
 }
 
-// The first and the last minute of answers to takes whose leader is looped.
+// The frames at which the measured minutes of a looped take begin: its start, the second time that
+// the take begins, and the last time with a minute left. The leader does the same in all of them.
+absl::StatusOr<std::array<int, 3>> LoopParts(const dataset::Dataset& dataset,
+                                             const dataset::Sequence& take, double minutes) {
+  if (!experiments::IsLoopable(take)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--loop-minutes: expected takes of more than a second, got ", take.id));
+  }
+  const int loop = experiments::LoopFrames(dataset, take);
+  const double rest = (60 * minutes - kLoopPartSeconds) * dataset.frame_rate_hz;
+  if (rest < loop) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "--loop-minutes: expected at least %.2f, a minute more than %s lasts, got %g",
+        (kLoopPartSeconds + loop / dataset.frame_rate_hz) / 60, take.id, minutes));
+  }
+  return std::array<int, 3>{0, loop, static_cast<int>(rest) / loop * loop};
+}
+
+// Three minutes of each answer to a take whose leader is looped (LoopParts).
 absl::Status AddLoops(const Dancer& dancer, double minutes, std::vector<DanceRow>* rows) {
   const dataset::Dataset& dataset = dancer.experiment.dataset;
-  DanceRow first = {absl::StrCat(dancer.name(), ", first minute"), {}},
-           last = {absl::StrCat(dancer.name(), ", last minute"), {}};
+  DanceRow parts[] = {{absl::StrCat(dancer.name(), ", first minute"), {}},
+                      {absl::StrCat(dancer.name(), ", from the second loop"), {}},
+                      {absl::StrCat(dancer.name(), ", last minute"), {}}};
+  const int length = static_cast<int>(kLoopPartSeconds * dataset.frame_rate_hz);
   for (const Take& take : TakesOf(dancer.experiment)) {
-    if (!experiments::IsLoopable(*take.sequence)) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          "--loop-minutes: expected takes of more than a second, got ", take.sequence->id));
-    }
+    DUET_TRY(const auto begins, LoopParts(dataset, *take.sequence, minutes));
     const dataset::Sequence looped = experiments::LoopTake(dataset, *take.sequence, 60 * minutes);
-    DUET_TRY(motion::Poses follower, dancer.Answer({&looped, take.fold}, 0));
-    const int part = static_cast<int>(kPartSeconds * dataset.frame_rate_hz);
-    const auto measure = [&](int begin) {
-      return experiments::MeasureDance(dataset, dancer.joints,
-                                       motion::Part(looped.pair.leader.poses, begin, part),
-                                       motion::Part(follower, begin, part), nullptr);
-    };
-    first.takes.push_back(measure(0));
-    last.takes.push_back(measure(follower.frame_count() - part));
+    for (int n = 0; n < dancer.asked.samples; ++n) {
+      DUET_TRY(motion::Poses follower, dancer.Answer({&looped, take.fold}, n));
+      for (size_t part = 0; part < begins.size(); ++part) {
+        parts[part].takes.push_back(experiments::MeasureDance(
+            dataset, dancer.joints, motion::Part(looped.pair.leader.poses, begins[part], length),
+            motion::Part(follower, begins[part], length), nullptr));
+      }
+    }
   }
-  rows->push_back(std::move(first));
-  rows->push_back(std::move(last));
+  for (DanceRow& part : parts) rows->push_back(std::move(part));
   return absl::OkStatus();
+}
+
+report::Table LoopTable(double minutes, const std::vector<DanceRow>& rows) {
+  report::Table table = experiments::DanceTable(
+      absl::StrFormat("The same leaders looped for %g minutes", minutes), rows);
+  table.notes.insert(
+      table.notes.begin(),
+      "Three minutes of each answer, all from where the leader's take begins: at the start, where "
+      "the follower is given; the second time; and the last time with a minute left.");
+  return table;
 }
 
 // The share of stretches in which the follower turns, by the weight of the turn's class.
@@ -375,10 +401,7 @@ absl::Status RunDance(const DanceFlags& flags) {
   section.settings.emplace_back("live", LiveText(flags.asked));
   section.tables = {experiments::DanceTable("Followers of whole takes, mean over the takes", rows)};
   if (!positions.rows.empty()) section.tables.push_back(std::move(positions));
-  if (!loops.empty()) {
-    section.tables.push_back(experiments::DanceTable(
-        absl::StrFormat("The same leaders looped for %g minutes", flags.loop_minutes), loops));
-  }
+  if (!loops.empty()) section.tables.push_back(LoopTable(flags.loop_minutes, loops));
   if (!turns.rows.empty()) section.tables.push_back(std::move(turns));
   if (flags.ablations) {
     DUET_TRY(section.tables.emplace_back(), AblationTable(flags, experiment, joints));
@@ -397,8 +420,9 @@ void AddDanceCommand(CLI::App* app, ChosenCommand* chosen) {
   AddNumber("--samples", &flags->asked.samples, 1, 1000, "answers to each take, each with its seed",
             command);
   command
-      ->add_option("--loop-minutes", flags->loop_minutes,
-                   "loop the takes, and compare the first and the last minute of the answers")
+      ->add_option(
+          "--loop-minutes", flags->loop_minutes,
+          "loop the takes, and compare minutes of the answers in which the leader does the same")
       ->check(CLI::Range(1.0, 60.0));
   command->add_option("--turn-class", flags->turn_class,
                       "class of a turn: measure how its weight decides that the follower turns");

@@ -98,6 +98,7 @@ TEST(LoopTakeTest, RepeatsTheLabelsWithTheLeader) {
   EXPECT_EQ(looped.pair.leader.frame_count(), 121);
   EXPECT_EQ(looped.pair.follower.frame_count(), 1);
   // The last half second (8 frames) of the take is faded into its next beginning.
+  ASSERT_EQ(LoopFrames(dataset, take), 52);
   ASSERT_EQ(looped.labels.size(), 5u);
   const int begins[] = {0, 30, 52, 82, 104}, ends[] = {20, 52, 72, 104, 121};
   for (size_t i = 0; i < looped.labels.size(); ++i) {

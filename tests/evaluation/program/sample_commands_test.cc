@@ -74,11 +74,18 @@ TEST(SampleCommandsTest, DanceLoopsLeadersAndWeighsTurns) {
   EXPECT_EQ(tables[1].at("columns").at(1), "5 to 10 s");
   EXPECT_THAT(RowNames(tables[1]), ElementsAre("duet+pose"));
   EXPECT_THAT(RowNames(tables[2]),
-              ElementsAre("duet+pose, first minute", "duet+pose, last minute"));
+              ElementsAre("duet+pose, first minute", "duet+pose, from the second loop",
+                          "duet+pose, last minute"));
   EXPECT_TRUE(tables[2]["rows"][0].at("values").at(0).is_null());  // no captured follower
-  EXPECT_GT(tables[2]["rows"][1].at("values").at(1), 0);
+  EXPECT_GT(tables[2]["rows"][2].at("values").at(1), 0);
   EXPECT_EQ(tables[3].at("columns"), nlohmann::json({"-1", "-0.5", "0", "0.5", "1"}));
   EXPECT_THAT(RowNames(tables[3]), ElementsAre("duet+pose, not led", "duet+pose, led"));
+}
+
+TEST(SampleCommandsTest, DanceNeedsAMinuteAfterTheFirstLoop) {
+  EXPECT_THAT(RunCommand(AddDanceCommand, {"dance", "--samples", "1", "--loop-minutes", "1"}),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("--loop-minutes: expected at least 1.0")));
 }
 
 // A checkpoint of the captures' people and classes that samples, with weights by a rule.
