@@ -36,6 +36,8 @@ struct Draw {
   float asked, avoided, noise;
 };
 constexpr Draw kDraws[] = {{2, 4, 1}, {4, 8, 1.4f}, {8, 16, 2}};
+// The variety up to which further samples get more noise: the largest that the server accepts.
+constexpr float kMostVariety = 2;
 constexpr int kDrawnTogether = 2;
 constexpr double kMostDraws = kDrawnTogether * std::size(kDraws);
 // The last pair turns most often, but not as the lead shows. It is drawn only if every sample
@@ -284,7 +286,8 @@ std::vector<std::vector<NetworkInput>> DrawnAgain(const ModelDescription& descri
     const Sampling& sampling = window.options.sampling;
     again.sampling.seed = CandidateSeed(sampling.seed, sampling.candidates + n - 1);
     const Draw& draw = kDraws[groups.size() - 1];
-    again.sampling.variety *= draw.noise;
+    again.sampling.variety = std::max(again.sampling.variety,
+                                      std::min(kMostVariety, again.sampling.variety * draw.noise));
     for (const std::size_t c : TurningIndices(description)) {
       for (std::size_t i = c; i < again.labels.size(); i += description.classes.size()) {
         again.labels[i] *= again.labels[i] > 0 ? draw.asked : draw.avoided;

@@ -302,6 +302,17 @@ TEST(MostAsAsked, OfGoodSamplesTheMostTypicalIsChosen) {
   EXPECT_EQ(Best(Window(1), {middle, early, late}), 0u);
 }
 
+TEST(DrawnAgain, NoSampleHasMoreNoiseThanACallerMayAskFor) {
+  const SynthesisWindow window = Window(1);
+  NetworkInput input;
+  input.labels = window.labels;
+  for (const float variety : {0.0f, 0.5f, 1.5f, 2.0f}) {
+    input.sampling.variety = variety;
+    const auto groups = DrawnAgain(Description(), AskedTurns(Description(), window), window, input);
+    EXPECT_EQ(groups.back().back().sampling.variety, std::min(2.0f, 2 * variety));
+  }
+}
+
 TEST(DrawnAgain, EachPairHasLargerLabelsOfTurnsAndNoLessNoise) {
   const SynthesisWindow window = Window(1);
   const AskedTurns turns(Description(), window);
