@@ -21,6 +21,9 @@ constexpr double kStandSeconds = 0.4;
 // The heights between which a standing foot is left above the floor, metres.
 constexpr float kStandsBelow = -0.005f, kStandsAbove = 0.015f;
 constexpr double kHeightSmoothSeconds = 0.03;
+// How fast a foot comes down, and rises again, that stands for no longer than this: m/s, seconds.
+constexpr float kFastestSink = 0.6f;
+constexpr double kMomentSeconds = 0.2;
 // The height of a step, metres, and what a metre of way adds to it, up to the highest.
 constexpr float kLift = 0.02f, kLiftPerMetre = 0.15f, kHighestLift = 0.06f;
 // The body's part in the way of its feet, and how smoothly it follows.
@@ -99,7 +102,8 @@ class Foot {
     std::vector<float> sink;
     for (std::size_t t = 0; t < path_.places.size(); ++t) {
       const float height = path_.places[t].y - floor_;
-      sink.push_back(path_.stands[t] ? std::clamp(height, kStandsBelow, kStandsAbove) - height : 0);
+      const float wanted = std::clamp(height, kStandsBelow, kStandsAbove) - height;
+      sink.push_back(path_.stands[t] ? std::max(wanted, -DeepestSink(t)) : 0);
     }
     sink = LowPass(sink, timing_.Frames(kHeightSmoothSeconds));
     for (std::size_t t = static_cast<std::size_t>(timing_.settled); t < sink.size(); ++t) {
@@ -163,6 +167,22 @@ class Foot {
   float Speed(int frame) const {
     return Distance(At(smooth_, frame + 1), At(smooth_, frame - 1)) * Float(timing_.frame_rate_hz) /
            2;
+  }
+
+  // How far a foot may come down in a frame in which it stands. Where it stands for a moment, it
+  // also needs time to get there from its last step, and back to its next one.
+  float DeepestSink(std::size_t frame) const {
+    const std::size_t settled = static_cast<std::size_t>(timing_.settled);
+    std::size_t begin = frame, end = frame + 1;
+    while (begin > settled && path_.stands[begin - 1]) --begin;
+    while (end < path_.stands.size() && path_.stands[end]) ++end;
+    const bool between_steps = begin > settled && end < path_.stands.size();
+    if (!between_steps ||
+        Float(static_cast<double>(end - begin)) > timing_.Frames(kMomentSeconds)) {
+      return std::numeric_limits<float>::max();
+    }
+    const std::size_t frames = std::min(frame + 1 - begin, end - frame);
+    return kFastestSink * Float(static_cast<double>(frames) / timing_.frame_rate_hz);
   }
 
   // The frame, `first` or later, in which the track comes to rest after a step from `frame` on, or

@@ -1,6 +1,7 @@
 #include "model/cleanup/limb_swings.h"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "model/cleanup/directions.h"
@@ -65,17 +66,35 @@ struct BoneSpeeds {
   double upper = 0, lower = 0;  // degrees per second
 };
 
-// Limits the turns of both bones of a limb and of its hinge, as the girdle sees them.
+// Where the end of a limb is from its upper joint, as the girdle sees it, no faster than `fastest`,
+// metres per second. Shapes: returns [frames].
+Track SlowEnds(const body::Limb& limb, const Girdles& girdles, double fastest, const Timing& timing,
+               const motion::Poses& poses) {
+  Track ends;
+  ends.reserve(static_cast<std::size_t>(poses.frame_count()));
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    const Vec3 way = poses.at(t, limb.end) - poses.at(t, limb.upper);
+    ends.push_back(girdles[static_cast<std::size_t>(t)].Inwards(way));
+  }
+  LimitSteps(timing.settled, static_cast<float>(fastest / timing.frame_rate_hz), &ends);
+  return ends;
+}
+
+// Limits the turns of both bones of a limb and of its hinge, as the girdle sees them. With
+// `fastest_end`, metres per second, the end keeps its path unless that is faster: a knee that
+// changes sides would throw its foot about, because half-way between two bent legs that end at one
+// place is a leg that ends elsewhere.
 void SlowLimb(const body::Limb& limb, const Girdles& girdles, const BoneSpeeds& fastest,
-              const HingeLimits& hinge, bool holds_end, const Timing& timing,
+              const HingeLimits& hinge, std::optional<double> fastest_end, const Timing& timing,
               motion::Poses* poses) {
   const Track upper = BoneDirections(limb.upper, limb.middle, girdles, *poses);
   const Track lower = BoneDirections(limb.middle, limb.end, girdles, *poses);
   Track slow_upper = upper, slow_lower = lower;
   LimitTurns(timing.settled, MostInAFrame(fastest.upper, timing), &slow_upper);
   LimitTurns(timing.settled, MostInAFrame(fastest.lower, timing), &slow_lower);
-  const Track before_hinge = slow_lower;
   LimitHinge(slow_upper, hinge, timing, &slow_lower);
+  Track ends;
+  if (fastest_end) ends = SlowEnds(limb, girdles, *fastest_end, timing, *poses);
   for (int t = timing.settled; t < poses->frame_count(); ++t) {
     const std::size_t at = static_cast<std::size_t>(t);
     if (slow_upper[at] == upper[at] && slow_lower[at] == lower[at]) continue;
@@ -86,9 +105,10 @@ void SlowLimb(const body::Limb& limb, const Girdles& girdles, const BoneSpeeds& 
     poses->at(t, limb.middle) = from + to_middle;
     poses->at(t, limb.end) = from + to_middle + to_end;
     for (const int joint : limb.beyond) poses->at(t, joint) += poses->at(t, limb.end) - end;
-    // A foot stays where only its knee turns.
-    const bool only_hinge = slow_upper[at] == upper[at] && before_hinge[at] == lower[at];
-    if (holds_end && only_hinge) ReachBent(limb, end, BendOf(limb, (*poses)[t]), (*poses)[t]);
+    if (fastest_end) {
+      ReachBent(limb, from + girdles[at].Outwards(ends[at]), BendOf(limb, (*poses)[t]),
+                (*poses)[t]);
+    }
   }
 }
 
@@ -100,14 +120,14 @@ void CalmLimbs(const body::Body& body, const LimbSwingOptions& options, const Ti
   for (const body::Limb& arm : body.arms) {
     SlowElbow(arm, shoulders, options, timing, poses);
     SlowLimb(arm, shoulders, {options.fastest_upper_arm, options.fastest_forearm}, options.hinge,
-             /*holds_end=*/false, timing, poses);
+             std::nullopt, timing, poses);
   }
   if (body.legs.size() != 2) return;
   const motion::JointPair hip_joints{body.legs[0].upper, body.legs[1].upper};
   const Girdles hips = GirdlesOf(body, hip_joints, *poses);
   for (const body::Limb& leg : body.legs) {
     SlowLimb(leg, hips, {options.fastest_thigh, options.fastest_shin}, options.hinge,
-             /*holds_end=*/true, timing, poses);
+             options.fastest_foot, timing, poses);
   }
 }
 

@@ -15,6 +15,7 @@ struct LimbSwingOptions {
   double fastest_upper_arm = 350, fastest_forearm = 500;
   double fastest_thigh = 500, fastest_shin = 700;
   double fastest_elbow = 400;
+  double fastest_foot = 4.5;  // metres per second, seen from the hips
   // Of elbows and knees.
   HingeLimits hinge{400, 600, 155};
 };
@@ -22,8 +23,8 @@ struct LimbSwingOptions {
 // Slows down limbs that snap from one frame to the next. Limits how fast an elbow turns about the
 // line from shoulder to hand, how fast each bone turns, and how fast the plane turns in which a
 // limb bends. A faster turn is spread over more frames before and after it. Turns are measured
-// relative to the trunk, which moves its limbs. Moves hands and feet only where a bone is too fast,
-// preserves bone lengths, and leaves slower limbs unchanged.
+// relative to the trunk, which moves its limbs. Moves hands only where a bone is too fast, and feet
+// only where they are. Preserves bone lengths, and leaves slower limbs unchanged.
 void CalmLimbs(const body::Body& body, const LimbSwingOptions& options, const Timing& timing,
                motion::Poses* poses);
 

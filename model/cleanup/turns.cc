@@ -44,17 +44,38 @@ void TurnLate(std::size_t begin, float most, Track* track) {
   }
 }
 
-bool HasSteepSlope(const std::vector<float>& track, std::size_t begin, float most) {
-  for (std::size_t t = begin; t < track.size(); ++t) {
-    if (std::abs(track[t] - track[t - 1]) > most) return true;
-  }
-  return false;
+// `to`, moved to within `most` of `from`.
+float StepTowards(float from, float to, float most) {
+  return std::clamp(to, from - most, from + most);
+}
+Vec3 StepTowards(Vec3 from, Vec3 to, float most) {
+  const Vec3 way = to - from;
+  const float length = Norm(way);
+  return length > most ? from + way * (most / length) : to;
 }
 
-void FollowLate(std::size_t begin, float most, std::vector<float>* track) {
+template <typename Value>
+void StepLate(std::size_t begin, float most, std::vector<Value>* track) {
   for (std::size_t t = begin; t < track->size(); ++t) {
-    (*track)[t] = std::clamp((*track)[t], (*track)[t - 1] - most, (*track)[t - 1] + most);
+    (*track)[t] = StepTowards((*track)[t - 1], (*track)[t], most);
   }
+}
+
+template <typename Value>
+void LimitStepsOf(int first, float most, std::vector<Value>* track) {
+  const std::size_t settled = static_cast<std::size_t>(first);
+  const std::size_t begin = std::max<std::size_t>(1, settled);
+  std::vector<Value> late = *track;
+  StepLate(begin, most, &late);
+  if (late == *track) return;
+  std::vector<Value> early = *track;
+  for (std::size_t t = early.size() - 1; t > settled; --t) {
+    early[t - 1] = StepTowards(early[t], early[t - 1], most);
+  }
+  for (std::size_t t = settled; t < track->size(); ++t) {
+    (*track)[t] = late[t] == early[t] ? early[t] : (late[t] + early[t]) / 2;
+  }
+  StepLate(begin, most, track);
 }
 
 }  // namespace
@@ -80,19 +101,10 @@ void LimitTurns(int first, float most, Track* track) {
 }
 
 void LimitSlopes(int first, float most, std::vector<float>* track) {
-  const std::size_t settled = static_cast<std::size_t>(first);
-  const std::size_t begin = std::max<std::size_t>(1, settled);
-  if (!HasSteepSlope(*track, begin, most)) return;
-  std::vector<float> early = *track;
-  FollowLate(begin, most, track);
-  for (std::size_t t = early.size() - 1; t > settled; --t) {
-    early[t - 1] = std::clamp(early[t - 1], early[t] - most, early[t] + most);
-  }
-  for (std::size_t t = settled; t < track->size(); ++t) {
-    (*track)[t] = (*track)[t] == early[t] ? early[t] : ((*track)[t] + early[t]) / 2;
-  }
-  FollowLate(begin, most, track);
+  LimitStepsOf(first, most, track);
 }
+
+void LimitSteps(int first, float most, Track* track) { LimitStepsOf(first, most, track); }
 
 Vec3 TurnTowards(Vec3 from, Vec3 to, float most) { return TurnPart(from, to, 1, most); }
 

@@ -19,6 +19,9 @@ void LimitTurns(int first, float most, std::vector<motion::Vec3>* track);
 // The same for a track of numbers: limits how far it rises or falls in a frame.
 void LimitSlopes(int first, float most, std::vector<float>* track);
 
+// The same for a point that moves: the longest way in a frame, metres.
+void LimitSteps(int first, float most, std::vector<motion::Vec3>* track);
+
 // `from` turned towards `to`, both of length 1, by at most `most` radians; `to` itself if that is
 // enough.
 motion::Vec3 TurnTowards(motion::Vec3 from, motion::Vec3 to, float most);

@@ -93,6 +93,23 @@ TEST(WalkInSteps, ABodyThatSlidesSteps) {
   EXPECT_LT(LargestLengthChange(walked, sliding), 1e-5f);
 }
 
+// A foot that hovers takes a step of its own, has landed for a moment, and is raised.
+TEST(PlanFootsteps, AFootThatStandsForAMomentDoesNotDrop) {
+  constexpr float kHovers = 0.115f;
+  for (int raised = 14; raised < 20; ++raised) {
+    std::vector<Vec3> still(kFrames, Vec3{0.3f, kFloor, 0}), hovering;
+    for (int t = 0; t < kFrames; ++t) {
+      const float x = 0.3f * static_cast<float>(std::max(0, t - 8) / kRate);
+      hovering.push_back({x, kFloor + kHovers + (t >= raised ? 0.08f : 0), 0});
+    }
+    const FootPath path = PlanFootsteps({hovering, still}, kFloor, {}, {kRate, 0}).front();
+    for (int t = 11; t + 1 < kFrames; ++t) {
+      const auto height = [&](int frame) { return path.places[static_cast<std::size_t>(frame)].y; };
+      EXPECT_GT(height(t), std::min(height(t - 1), height(t + 1)) - 0.05f) << raised << ", " << t;
+    }
+  }
+}
+
 TEST(WalkInSteps, AStepIsLifted) {
   const motion::Poses walked = Walked(Changed(Puppet(), [](int t, Vec3 joint) {
     return joint + Vec3{0.3f * static_cast<float>(t / kRate), 0, 0};

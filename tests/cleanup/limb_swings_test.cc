@@ -143,6 +143,28 @@ TEST(CalmLimbs, ThePlaneOfAKneeTakesItsTimeToTurn) {
             0.02f);
 }
 
+// Thigh and shin are both too fast, but their foot is not.
+TEST(CalmLimbs, AFootKeepsItsPlaceWhileItsKneeChangesSides) {
+  const body::Limb leg{kRightHip, kRightKnee, kRightFoot, {}};
+  motion::Poses poses = Puppet();
+  for (int t = 0; t < kFrames; ++t) {
+    const Vec3 foot = poses.at(t, kRightHip) + Vec3{0.05f, -0.5f, 0.1f};
+    ReachBent(leg, foot, {t < kMiddle ? 0.0f : 1.0f, 0, t < kMiddle ? 1.0f : -0.3f}, poses[t]);
+  }
+  const auto fastest_knee = [](const motion::Poses& motion) {
+    float fastest = 0;
+    for (int t = 1; t < kFrames; ++t) {
+      fastest = std::max(fastest, Distance(motion.at(t, kRightKnee), motion.at(t - 1, kRightKnee)));
+    }
+    return fastest;
+  };
+  const motion::Poses calmed = Calmed(poses);
+  EXPECT_LT(fastest_knee(calmed), 0.6f * fastest_knee(poses));
+  for (int t = 0; t < kFrames; ++t) {
+    EXPECT_LT(Distance(calmed.at(t, kRightFoot), poses.at(t, kRightFoot)), 0.01f) << t;
+  }
+}
+
 // The direction in which a limb bends is seen only while it is bent.
 TEST(CalmLimbs, AStraightLegRemembersItsPlane) {
   motion::Poses poses = KneeThatChangesSides();

@@ -101,6 +101,24 @@ TEST(LimitSlopes, LeavesGentleTracksAndTheFramesBeforeTheFirst) {
   EXPECT_EQ(late.back(), 1);
 }
 
+TEST(LimitSteps, AJumpTakesTimeBeforeAndAfter) {
+  const Vec3 way = {0.6f, 0, 0.8f};
+  Track jump(20, Vec3{}), limited;
+  jump.resize(40, way);
+  limited = jump;
+  LimitSteps(0, kMost, &limited);
+  for (std::size_t t = 1; t < 40; ++t) {
+    EXPECT_LT(Distance(limited[t - 1], limited[t]), 1.01f * kMost) << t;
+  }
+  EXPECT_EQ(limited.front(), Vec3{});
+  EXPECT_EQ(limited.back(), way);
+  EXPECT_GT(Norm(limited[18]), 0.05f);           // begins before it
+  EXPECT_GT(Distance(limited[21], way), 0.05f);  // ends after it
+  Track slow = limited;
+  LimitSteps(0, 1.01f * kMost, &slow);
+  EXPECT_EQ(slow, limited);
+}
+
 TEST(SignedAngle, IsPositiveAboutItsAxis) {
   EXPECT_NEAR(SignedAngle({0, 0, 1}, {1, 0, 0}, {0, 1, 0}), 1.5708, 1e-4);
   EXPECT_NEAR(SignedAngle({1, 0, 0}, {0, 0, 1}, {0, 1, 0}), -1.5708, 1e-4);
