@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "model/cleanup/frame_turns.h"
+#include "model/cleanup/live_frame.h"
 #include "model/engine/finishing.h"
 #include "model/engine/window_seed.h"
+#include "model/motion/limb_lengths.h"
 #include "model/motion/resample.h"
 
 namespace duet::engine {
@@ -22,6 +24,8 @@ constexpr int kFramesAfter = 2;
 constexpr double kPinAheadSeconds = 1;
 // The frames nearer to a pin than this move as the pin has them.
 constexpr double kNearPinSeconds = 1;
+// Frames. A time this near to a frame of the model is that frame.
+constexpr double kEpsilon = 1e-6;
 
 }  // namespace
 
@@ -39,7 +43,7 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
           model_, request_.labels, request_.frame_rate_hz,
           motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz)),
       body_(body::FindBody(model_.skeleton)),
-      slows_down_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
+      cleans_up_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
       pin_distances_(request_.pins.size()),
       grader_(ClipGrader::Create(model_.skeleton, request_.frame_rate_hz)) {}
 
@@ -80,7 +84,7 @@ motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {
   }
   state_.Add(NextWindowStart(), follower, cross_fade_);
   if (HasNextWindow() && ContinuesFromSettledFrames(model_)) {
-    state_.DropLast(model_.lookahead_frames);
+    state_.DropFrom(SettledEnd());
   }
   if (HasNextWindow() && turns_.is_used()) {
     const int begin = turns_.end() - 1, end = NextWindowStart() + 1;
@@ -92,6 +96,18 @@ motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {
   MeasurePins(frames);
   if (grader_) grader_->Add(request_.leader, frames);
   return frames;
+}
+
+int ClipSynthesis::SettledEnd() const {
+  const int start = NextWindowStart();
+  int end = start + SettledOverlap(model_.window_frames);
+  // A pin that this window reaches is not reached anew from a few frames before it.
+  const int farthest = std::min(state_.end(), start + model_.window_frames / 2);
+  for (const motion::Pin& pin : request_.pins) {
+    const int after = static_cast<int>(std::ceil(ToModelFrame(pin.frame))) + 1;
+    if (after <= farthest) end = std::max(end, after);
+  }
+  return end;
 }
 
 motion::Poses ClipSynthesis::LeaderAt(int begin, int end) const {
@@ -131,16 +147,29 @@ motion::Poses ClipSynthesis::TakeFinalFrames() {
   const int joints = model_.skeleton.joint_count();
   // The next window may change its first frame and all that follow.
   const int final_end = HasNextWindow() ? NextWindowStart() : std::numeric_limits<int>::max();
-  motion::Poses frames(0, joints);
-  std::vector<motion::Vec3> pose(static_cast<std::size_t>(joints));
+  motion::Poses frames(0, joints), pose(1, joints);
   for (; next_frame_ < frame_count_; ++next_frame_) {
     const double at = ToModelFrame(next_frame_);
     if (static_cast<int>(at) >= final_end - kFramesAfter) break;
-    SampleCubic(state_.follower(), at - state_.begin(), absl::MakeSpan(pose));
-    SlowDown(absl::MakeSpan(pose));
-    frames.Append(pose);
+    SampleCubic(state_.follower(), at - state_.begin(), pose[0]);
+    KeepLengths(at - state_.begin(), &pose);
+    SlowDown(pose[0]);
+    frames.Append(pose.all());
   }
   return frames;
+}
+
+void ClipSynthesis::KeepLengths(double at, motion::Poses* pose) const {
+  const motion::Poses& follower = state_.follower();
+  const int before = static_cast<int>(at);
+  if (!cleans_up_ || at - before < kEpsilon || IsNearPin(next_frame_)) return;
+  const int after = std::min(before + 1, follower.frame_count() - 1);
+  const motion::Poses interpolated = *pose;
+  const std::vector<float> lengths =
+      motion::MedianBoneLengths(model_.skeleton, motion::Part(follower, before, 1));
+  motion::SetBoneLengths(model_.skeleton, lengths, pose);
+  cleanup::PlaceFeetBetween(model_.skeleton, body_, follower[before], follower[after],
+                            interpolated[0], (*pose)[0]);
 }
 
 bool ClipSynthesis::IsNearPin(int frame) const {
@@ -150,7 +179,7 @@ bool ClipSynthesis::IsNearPin(int frame) const {
 }
 
 void ClipSynthesis::SlowDown(absl::Span<motion::Vec3> pose) {
-  if (!slows_down_) return;
+  if (!cleans_up_) return;
   if (!last_.empty() && !IsNearPin(next_frame_)) {
     cleanup::SlowFrame(model_.skeleton, body_, FrameTurnsOf(model_), request_.frame_rate_hz, last_,
                        pose);

@@ -41,10 +41,11 @@ struct ClipRequest {
 //
 // The leader is resampled to the model's rate and cut into overlapping windows no longer than the
 // network was trained for, spread evenly. If the model accepts a follower start, each later window
-// starts from the pose that the window before it reached. A model that samples continues from all
-// frames that both windows share (SynthesisWindow::settled), because another sample would be
-// another motion; each window has its own seed (WindowSeed). If the model has a lookahead
-// (ModelDescription::lookahead_frames), the next window replaces the last frames of a window.
+// starts from the pose that the window before it reached. A model that samples continues from the
+// first SettledOverlap frames that both windows share (SynthesisWindow::settled), because another
+// sample would be another motion; each window has its own seed (WindowSeed). The next window
+// replaces the other frames that they share, among them the lookahead
+// (ModelDescription::lookahead_frames).
 // Overlaps are cross-faded; this changes a settled frame by at most its difference from the
 // network's answer. Frames at the caller's rate are returned as soon as no later window can change
 // them.
@@ -91,10 +92,18 @@ class ClipSynthesis {
   int NextWindowStart() const {
     return plan_.starts[static_cast<std::size_t>(state_.window_count())];
   }
+  // The model frame from which on the next window answers anew: SettledOverlap after its start, or
+  // after a pin that this window reaches. Windows that are spread evenly may share more frames; a
+  // network that must continue from most of a window makes a follower who jumps after them.
+  int SettledEnd() const;
   // The pins that concern a window from `first` on, in its frames.
   motion::Pins PinsOfWindow(int first) const;
   void MeasurePins(const motion::Poses& frames);
   motion::Poses TakeFinalFrames();
+  // Gives the bones of next_frame_, a pose between two frames of the model, their lengths again,
+  // which splines change, and puts its feet between those of both frames; not near a pin. `at`: in
+  // the frames of state_.follower().
+  void KeepLengths(double at, motion::Poses* pose) const;
   // Slows down limbs of next_frame_ that turn too fast after the frame before it, unless a pin is
   // near: pins have speeds of their own.
   void SlowDown(absl::Span<motion::Vec3> pose);
@@ -112,7 +121,7 @@ class ClipSynthesis {
   WindowState state_;
   TurnHistory turns_;
   const body::Body body_;
-  const bool slows_down_;               // see SlowDown
+  const bool cleans_up_;                // see KeepLengths, SlowDown
   std::vector<motion::Vec3> last_;      // the frame before next_frame_
   int next_frame_ = 0;                  // the caller's next frame to hand out
   std::vector<float> pin_distances_;    // [pins]

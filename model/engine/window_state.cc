@@ -15,8 +15,8 @@ void WindowState::Add(int start, const motion::Poses& window, const CrossFade& c
   ++window_count_;
 }
 
-void WindowState::DropLast(int frames) {
-  follower_.Resize(std::max(0, follower_.frame_count() - frames));
+void WindowState::DropFrom(int frame) {
+  follower_.Resize(std::clamp(frame - begin_, 0, follower_.frame_count()));
 }
 
 void WindowState::DropBefore(int frame) {

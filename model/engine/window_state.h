@@ -38,8 +38,8 @@ class WindowState {
   // that it shares with follower() are cross-faded. Requires `window` to reach end() or beyond.
   void Add(int start, const motion::Poses& window, const CrossFade& cross_fade);
 
-  // Drops the last frames, so that the next window replaces them instead of continuing from them.
-  void DropLast(int frames);
+  // Drops the frames from `frame` on, so that the next window answers them again.
+  void DropFrom(int frame);
 
   // Drops the frames before `frame`. Does nothing if they were dropped already.
   void DropBefore(int frame);
@@ -50,8 +50,8 @@ class WindowState {
   motion::Poses follower_;  // blended
 };
 
-// True if each window of the model continues from all frames that the window before it settled,
-// rather than from their first pose only. Another sample would be another motion.
+// True if each window of the model continues from frames that the window before it settled, rather
+// than from their first pose only. Another sample would be another motion.
 bool ContinuesFromSettledFrames(const ModelDescription& model);
 
 // Number of frames that neighbouring windows of the model share.

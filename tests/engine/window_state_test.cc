@@ -115,12 +115,12 @@ TEST(WindowStateTest, DroppedLastFramesAreThoseOfTheNextWindow) {
   const ModelDescription model = WithStart(SamplingDescription(), true);
   WindowState state(kJoints);
   state.Add(0, Frames(0, 20), CrossFade(model.skeleton));
-  state.DropLast(6);
+  state.DropFrom(14);
   EXPECT_EQ(state.end(), 14);
   state.Add(14, Frames(100, 20), CrossFade(model.skeleton));
   EXPECT_EQ(state.end(), 34);
   EXPECT_EQ(state.follower().at(14, 3), Frames(100, 20).at(0, 3));
-  state.DropLast(1000);
+  state.DropFrom(-1000);
   EXPECT_EQ(state.end(), state.begin());
 }
 
