@@ -23,6 +23,13 @@ Vec3 ShiftFor(Vec3 offset, const SpacingOptions& options) {
   return offset * (target / distance - 1);
 }
 
+// The leader's mean speed along the floor, metres per second.
+double LeaderSpeed(int root, const motion::Poses& leader, const Timing& timing) {
+  const int last = leader.frame_count() - 1;
+  if (last < 1) return 0;
+  return Norm(Level(leader.at(last, root) - leader.at(0, root))) * timing.frame_rate_hz / last;
+}
+
 }  // namespace
 
 void ShiftBody(const std::vector<Vec3>& shifts, double fastest_metres_per_second,
@@ -41,12 +48,14 @@ void KeepSpacing(int root, const motion::Poses& leader, const SpacingOptions& op
                  const Timing& timing, motion::Poses* follower) {
   std::vector<Vec3> shifts;
   for (int t = 0; t < follower->frame_count(); ++t) {
-    const Vec3 offset = follower->at(t, root) - leader.at(t, root);
-    shifts.push_back({offset.x, 0, offset.z});
+    shifts.push_back(Level(follower->at(t, root) - leader.at(t, root)));
   }
   shifts = LowPass(shifts, timing.Frames(options.sigma_seconds));
   for (Vec3& shift : shifts) shift = ShiftFor(shift, options);
-  ShiftBody(shifts, options.fastest_metres_per_second, timing, follower);
+  const double fastest =
+      std::min(options.fastest_metres_per_second,
+               LeaderSpeed(root, leader, timing) + options.faster_metres_per_second);
+  ShiftBody(shifts, fastest, timing, follower);
 }
 
 }  // namespace duet::cleanup

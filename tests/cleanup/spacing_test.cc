@@ -48,5 +48,25 @@ TEST(KeepSpacing, SettledFramesAreUnchangedAndSpeedIsLimited) {
   EXPECT_NEAR(DistanceAt(near, kFrames - 1), 2.75f, 0.02f);
 }
 
+TEST(KeepSpacing, AFollowerKeepsUpWithALeaderWhoWalks) {
+  const motion::Poses walking = Changed(Puppet(), [](int t, Vec3 joint) {
+    return joint - Vec3{1.2f * static_cast<float>(t / kRate), 0, 0};
+  });
+  motion::Poses follower = Moved(Puppet(), {2.4f, 0, 0});
+  const motion::Poses stands = follower;
+  KeepSpacing(2, walking, {}, {kRate, 15}, &follower);
+  for (int t = 0; t < kFrames; ++t) {
+    if (t < 15) EXPECT_EQ(follower[t], stands[t]);
+    EXPECT_LT(Distance(follower.at(t, 2), walking.at(t, 2)), 3.6f) << t;
+  }
+  EXPECT_GT(Distance(stands.at(kFrames - 1, 2), walking.at(kFrames - 1, 2)), 4.5f);
+  // A leader who jumps does not drag it along.
+  motion::Poses jumping = Puppet();
+  for (Vec3& joint : jumping[kFrames - 1]) joint.x -= 100;
+  follower = stands;
+  KeepSpacing(2, jumping, {}, {kRate, 15}, &follower);
+  EXPECT_LT(LargestStep(follower), 2.0f / static_cast<float>(kRate) + 1e-4f);
+}
+
 }  // namespace
 }  // namespace duet::cleanup
