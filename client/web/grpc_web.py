@@ -102,8 +102,15 @@ def why_refused(head, body):
 
 
 def timeout_of(headers):
-    found = TIMEOUT.fullmatch(headers.get("grpc-timeout", ""))
-    return min(int(found[1]) * SECONDS[found[2]] if found else LONGEST_SECONDS, LONGEST_SECONDS)
+    """The seconds of a call: those that its caller asks for, but at most LONGEST_SECONDS."""
+    text = headers.get("grpc-timeout")
+    if text is None:
+        return LONGEST_SECONDS
+    found = TIMEOUT.fullmatch(text)
+    if found is None:
+        raise Rejected(400, "grpc-timeout: expected at most 8 digits and one of H, M, S, m, u and n, "
+                            f"got {shown(text)}")
+    return min(int(found[1]) * SECONDS[found[2]], LONGEST_SECONDS)
 
 
 def metadata_of(headers):
