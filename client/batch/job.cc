@@ -310,7 +310,8 @@ absl::StatusOr<JobReport> Job::Finish() {
   const absl::StatusOr<JournalReader> journal = JournalReader::Open(folder.journal());
   if (!journal.ok()) return journal.status();
   JobReport report;
-  report.planned = std::max<int64_t>(planned_, journal->count());
+  // A run that was stopped has not reached all of them. Earlier runs may have settled more.
+  report.planned = std::max<int64_t>(parts_.planned, journal->count());
   report.unfinished = unfinished_;
   report.unfinished_causes = unfinished_causes_.Largest(kCausesReported);
   absl::Status status = DrawContactSheet(*journal);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,12 @@ namespace duet::client::batch {
 
 // The result of verifying a data set.
 struct VerifyReport {
-  int64_t items = 0;    // done items
-  int64_t files = 0;    // of done items
-  int64_t missing = 0;  // planned items that are neither done, rejected nor failed
+  int64_t items = 0;  // done items
+  int64_t files = 0;  // of done items
   int64_t problem_count = 0;
+  // Planned items that are neither done, rejected nor failed. Absent: unknown, because only
+  // summary.json has the plan, and no run has written it yet, or it cannot be read.
+  std::optional<int64_t> missing;
   std::vector<std::string> problems;  // the first hundred: files that are missing or were changed
   Damage damage;                      // the same for the next run
 };

@@ -300,7 +300,7 @@ absl::StatusOr<ExitCode> RunVerify(const BatchArguments& arguments,
   absl::StatusOr<batch::VerifyReport> report = VerifyAndRecord(arguments, environment);
   if (!report.ok()) return report.status();
   ExitCode code = kExitDone;
-  if (arguments.repair && (report->problem_count > 0 || report->missing > 0)) {
+  if (arguments.repair && (report->problem_count > 0 || report->missing.value_or(0) > 0)) {
     absl::StatusOr<BatchArguments> command = CommandOf(arguments);
     if (!command.ok()) return command.status();
     BatchArguments there = arguments;
@@ -314,7 +314,7 @@ absl::StatusOr<ExitCode> RunVerify(const BatchArguments& arguments,
     if (!report.ok()) return report.status();
   }
   if (report->problem_count > 0) return kExitBadInput;
-  return report->missing > 0 ? kExitRetry : code;
+  return report->missing.value_or(0) > 0 ? kExitRetry : code;
 }
 
 absl::StatusOr<ExitCode> RunAction(const BatchArguments& arguments,

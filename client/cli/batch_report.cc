@@ -157,17 +157,22 @@ void Report(const BatchArguments& arguments, const batch::MergeReport& report,
 void Report(const BatchArguments& arguments, const batch::VerifyReport& report,
             const ProgramEnvironment& environment) {
   if (arguments.json) {
-    const nlohmann::ordered_json object = {{"items", report.items},
-                                           {"files", report.files},
-                                           {"missing", report.missing},
-                                           {"problem_count", report.problem_count},
-                                           {"problems", report.problems}};
+    nlohmann::ordered_json object = {{"items", report.items},
+                                     {"files", report.files},
+                                     {"missing", nullptr},
+                                     {"problem_count", report.problem_count},
+                                     {"problems", report.problems}};
+    if (report.missing) object["missing"] = *report.missing;
     *environment.out << object.dump() << "\n";
     return;
   }
   *environment.out << arguments.out.string() << ": " << report.items << " items, " << report.files
-                   << " files, " << report.problem_count << " problems, " << report.missing
-                   << " items missing\n";
+                   << " files, " << report.problem_count << " problems, ";
+  if (report.missing) {
+    *environment.out << *report.missing << " items missing\n";
+  } else {
+    *environment.out << "unknown how many items are missing\n";
+  }
   for (const std::string& problem : report.problems) *environment.err << problem << "\n";
   if (report.problem_count == 0 || arguments.repair) return;
   *environment.err << "duet: to request missing and changed items again, use duet batch verify "

@@ -423,6 +423,7 @@ class BatchTest(tools.ServedTest):
         result = tools.run(*self.command(out, recipe), preexec_fn=fill_disk)
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("cannot write", result.stderr)
+        self.assertIn(" 48 items missing", tools.duet("batch", "verify", out).stdout)
         self.assertEqual(list(out.rglob("*.npy")), [])
         self.batch(out, recipe)
         self.assertEqual(digests(out), digests(self.whole))
@@ -458,8 +459,10 @@ class BatchTest(tools.ServedTest):
         made = entries(out)
         self.assertGreater(len(made), 0)
         self.assertLess(len(made), 48)
-        self.verified(out, 0 if json.loads((out / "summary.json").read_text())["missing"] == 0
-                      else 1)
+        missing = 48 - len(made)
+        self.assertIn(f"{len(made)} done, 0 rejected, 0 failed, {missing} missing", said.decode())
+        self.assertEqual(json.loads((out / "summary.json").read_text())["missing"], missing)
+        self.assertIn(f" {missing} items missing", self.verified(out, 1).stdout)
         self.batch(out, recipe)
         self.assertEqual(len(entries(out)), 48)
 

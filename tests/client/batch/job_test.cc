@@ -426,6 +426,11 @@ TEST_F(JobTest, StopsBetweenItems) {
   const auto report = Run("set", options);
   ASSERT_THAT(report, IsOk());
   EXPECT_EQ(report->set.done, 4);
+  // The run has not reached the end of the plan, which the check before it has counted.
+  EXPECT_EQ(report->planned, kItems);
+  EXPECT_EQ(nlohmann::json::parse(Read("set/summary.json"))["missing"], kItems - 4);
+  EXPECT_EQ(nlohmann::json::parse(Read("set/dataset.json"))["items"]["missing"], kItems - 4);
+  EXPECT_EQ(Verify(folder_ / "set")->missing, kItems - 4);
   connection().answer = nullptr;
   ASSERT_THAT(Run("set"), IsOk());
   ExpectSameAsUndisturbed("set");
@@ -610,6 +615,18 @@ TEST_F(JobTest, DamagedJournalLineLosesOnlyItsItem) {
   ASSERT_THAT(Run("set"), IsOk());
   EXPECT_EQ(connection().calls, kItems + 1);
   ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, WithoutASummaryTheNumberOfMissingItemsIsUnknown) {
+  JobOptions options;
+  options.limit = 5;
+  ASSERT_THAT(Run("set", options), IsOk());
+  // As after a first run that was killed.
+  std::filesystem::remove(folder_ / "set/summary.json");
+  const auto found = Verify(folder_ / "set");
+  ASSERT_THAT(found, IsOk());
+  EXPECT_EQ(found->missing, std::nullopt);
+  EXPECT_THAT(found->problems, ::testing::Contains(HasSubstr("summary.json")));
 }
 
 TEST_F(JobTest, AChangedIndexIsWrittenAgain) {
