@@ -80,6 +80,10 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
                      << report.planned - settled << " missing\n";
   }
   if (arguments.json) return;
+  if (report.planned == 0) {
+    *environment.err << "duet: the plan has no items: the list of leaders is empty, or --limit, "
+                        "--sample or --shard leaves none\n";
+  }
   if (!report.set.failures.empty()) {
     *environment.err << "failed permanently, by leader in " << (folder / "failed.tsv").string()
                      << ":\n";

@@ -413,6 +413,11 @@ class BatchTest(tools.ServedTest):
         result = self.batch(out, self.recipe(), "--patience", "0.2", code=1, server="127.0.0.1:1")
         self.assertIn("Does a duet-server listen", result.stderr)
 
+    def test_set_without_items_is_pointed_out(self):
+        result = self.batch(self.out(), self.recipe(), "--limit", "0")
+        self.assertIn("0 done, 0 rejected, 0 failed, 0 missing", result.stdout)
+        self.assertIn("duet: the plan has no items: ", result.stderr)
+
     def test_full_disk_exits_with_retry(self):
         recipe, out = self.recipe(), self.out()
 
