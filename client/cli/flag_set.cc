@@ -7,6 +7,7 @@
 #include "CLI/CLI.hpp"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/base/program_flags.h"
 #include "model/base/text.h"
 #include "model/base/usage_text.h"
 
@@ -29,8 +30,9 @@ std::string Choices(const std::vector<std::string>& choices) {
 }
 
 template <typename Number>
-CLI::Validator ExpectsRange(const std::string& what, Number least, Number most) {
-  return Expects(absl::StrCat(what, " from ", least, " to ", most), CLI::Range(least, most));
+CLI::Validator ExpectsRange(const std::string& what, Number least, Number most,
+                            const CLI::Validator& range) {
+  return Expects(absl::StrCat(what, " from ", least, " to ", most), range);
 }
 
 // CLI11's own validator prints the largest double in --help.
@@ -103,17 +105,17 @@ Flag* Flag::Environment(const std::string& variable) {
 }
 
 Flag* Flag::InRange(int least, int most) {
-  option_->check(ExpectsRange("a whole number", least, most));
+  option_->check(ExpectsRange("a whole number", least, most, base::InRange(least, most)));
   return this;
 }
 
 Flag* Flag::InRange(std::int64_t least, std::int64_t most) {
-  option_->check(ExpectsRange("a whole number", least, most));
+  option_->check(ExpectsRange("a whole number", least, most, CLI::Range(least, most)));
   return this;
 }
 
 Flag* Flag::InRange(double least, double most) {
-  option_->check(ExpectsRange("a number", least, most));
+  option_->check(ExpectsRange("a number", least, most, base::InRange(least, most)));
   return this;
 }
 

@@ -72,4 +72,20 @@ std::optional<int> ParseFlags(int argc, const char* const* argv, CLI::App* app) 
   return ParseFlags(argc, argv, app, &std::cout, &std::cerr);
 }
 
+CLI::Validator InRange(int least, int most) { return CLI::Range(least, most); }
+
+CLI::Validator InRange(double least, double most) {
+  const auto check = [least, most](const std::string& text) {
+    double value = 0;
+    if (ParseNumber(text, &value) && value >= least && value <= most) return std::string();
+    std::string error = "expected ";
+    AppendNumber(&error, least);
+    error += " to ";
+    AppendNumber(&error, most);
+    return absl::StrCat(error, ", got ", Quoted(text));
+  };
+  const CLI::Validator range = CLI::Range(least, most);
+  return CLI::Validator(check, range.get_description());
+}
+
 }  // namespace duet::base

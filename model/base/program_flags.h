@@ -15,6 +15,11 @@ std::optional<int> ParseFlags(int argc, const char* const* argv, CLI::App* app, 
 // The same with the standard streams.
 std::optional<int> ParseFlags(int argc, const char* const* argv, CLI::App* app);
 
+// Accepts a number from `least` to `most`. CLI::Range alone accepts NaN too, because it only
+// rejects what is less or more.
+CLI::Validator InRange(int least, int most);
+CLI::Validator InRange(double least, double most);
+
 }  // namespace duet::base
 
 #endif  // DUET_MODEL_BASE_PROGRAM_FLAGS_H_

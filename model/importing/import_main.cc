@@ -51,7 +51,7 @@ void Declare(ImportOptions* options, Words* words, CLI::App* app) {
       ->type_name("JOINT=FILE_JOINT");
   app->add_option("--frame-rate", options->frame_rate_hz,
                   "Frame rate of the files (default: the rate that they state)")
-      ->check(CLI::Range(1.0, 1000.0))
+      ->check(base::InRange(1.0, 1000.0))
       ->type_name("HZ");
   app->add_option("--layout", words->layout,
                   "Layout of .npy files of research (default: positions of the skeleton's joints)")
@@ -61,11 +61,11 @@ void Declare(ImportOptions* options, Words* words, CLI::App* app) {
   app->add_option("--to-rate", options->to_rate_hz,
                   "Frame rate of the data set (default: that of the files, at most "
                   "30)")
-      ->check(CLI::Range(1.0, 240.0))
+      ->check(base::InRange(1.0, 240.0))
       ->type_name("HZ");
   app->add_option("--metres-per-unit", options->metres_per_unit,
                   "Metres in one unit of the files, 0.01 for centimetres (default: inferred)")
-      ->check(CLI::Range(1e-6, 1e6))
+      ->check(base::InRange(1e-6, 1e6))
       ->type_name("METRES");
   app->add_option("--up-axis", words->up_axis,
                   "Up axis of the files (default: the axis along which people "
@@ -73,7 +73,7 @@ void Declare(ImportOptions* options, Words* words, CLI::App* app) {
       ->type_name("y-up|z-up|y-down");
   app->add_option("--longest", options->longest_seconds,
                   "Maximum length of a sequence; longer ones are cut")
-      ->check(CLI::Range(0.1, 86400.0))
+      ->check(base::InRange(0.1, 86400.0))
       ->capture_default_str()
       ->type_name("SECONDS");
   app->add_option("--symmetric", options->symmetric, "Classes in which either person may lead")

@@ -21,8 +21,8 @@ class ProgramFlags : public ::testing::Test {
     command->add_option("--data", data_)->required();
     command->add_option("--seed", seed_);
     command->add_option("--share", share_);
-    command->add_option("--threads", threads_)->check(CLI::Range(1, 256));
-    command->add_option("--ratio", share_)->check(CLI::Range(0.5, 2.0));
+    command->add_option("--threads", threads_)->check(InRange(1, 256));
+    command->add_option("--ratio", share_)->check(InRange(0.5, 2.0));
     command->add_option("--protocol", protocol_)
         ->check(CLI::IsMember(std::vector<std::string>{"all", "loso", "half"}));
     command->add_option("--folder", folder_)->check(CLI::ExistingDirectory);
@@ -77,6 +77,11 @@ TEST_F(ProgramFlags, ErrorsStateWhatWasExpected) {
   EXPECT_EQ(Error({"fit", "--data", "x", "--threads", "1000"}),
             "--threads: expected 1 to 256, got \"1000\"");
   EXPECT_EQ(Error({"fit", "--data", "x", "--ratio", "3"}), "--ratio: expected 0.5 to 2, got \"3\"");
+  // Comparisons with NaN are false.
+  EXPECT_EQ(Error({"fit", "--data", "x", "--ratio", "nan"}),
+            "--ratio: expected 0.5 to 2, got \"nan\"");
+  EXPECT_EQ(Error({"fit", "--data", "x", "--ratio", "half"}),
+            "--ratio: expected 0.5 to 2, got \"half\"");
   EXPECT_EQ(Error({"fit", "--data", "x", "--protocol", "none"}),
             "--protocol: expected all, loso or half, got \"none\"");
   EXPECT_EQ(Error({"fit", "--data", "x", "--folder", "/no/such"}),

@@ -423,7 +423,7 @@ void AddDanceCommand(CLI::App* app, ChosenCommand* chosen) {
       ->add_option(
           "--loop-minutes", flags->loop_minutes,
           "loop the takes, and compare minutes of the answers in which the leader does the same")
-      ->check(CLI::Range(1.0, 60.0));
+      ->check(base::InRange(1.0, 60.0));
   command->add_option("--turn-class", flags->turn_class,
                       "class of a turn: measure how its weight decides that the follower turns");
   command->add_flag("--ablations", flags->ablations,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "model/base/program_flags.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/experiments/answers.h"
 #include "model/evaluation/program/commands.h"
@@ -42,7 +43,7 @@ CLI::Option* AddOption(const char* name, Value* value, const char* help, CLI::Ap
 template <typename Value, typename Number>
 CLI::Option* AddNumber(const char* name, Value* value, Number least, Number most, const char* help,
                        CLI::App* command) {
-  return AddOption(name, value, help, command)->check(CLI::Range(least, most));
+  return AddOption(name, value, help, command)->check(base::InRange(least, most));
 }
 // The same for values of `among`, separated by commas.
 CLI::Option* AddNames(const char* name, std::vector<std::string>* values,

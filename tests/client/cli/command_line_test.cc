@@ -253,6 +253,13 @@ TEST_F(CommandLineTest, ErrorsStateWhatIsExpectedAndGiven) {
                 "--server: expected one value, got 2");
   ExpectRefused({"--label", "kick", "--json=maybe"},
                 "--json: expected true or false, got \"maybe\"");
+  // Comparisons with NaN are false.
+  for (const char* flag : {"--wait", "--timeout"}) {
+    ExpectRefused({"--label", "kick", flag, "nan"},
+                  absl::StrCat(flag, ": expected a number from "));
+  }
+  ExpectUsageError({"batch", "leaders", "--sample", "nan"},
+                   "--sample: expected a number from 0 to 1, got \"nan\"");
   ExpectUsageError({"models", "extra"}, "Unexpected argument \"extra\"");
   ExpectUsageError({"compare", "a.bvh"}, "files: expected at least 2 values, got 1");
   ExpectUsageError({"completion", "tcsh"}, "expected bash, zsh or fish, got \"tcsh\"");
