@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "client/cli/program.h"
+#include "model/base/program_output.h"
 
 namespace {
 
@@ -20,8 +21,9 @@ int main(int argc, char** argv) {
   // without an error, for example for a proxy without a health service.
   setenv("GRPC_VERBOSITY", "NONE", 0);
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  return duet::client::cli::RunProgram(
+  const int code = duet::client::cli::RunProgram(
       arguments,
       {duet::client::Client::Create, &std::cout, &std::cerr, &std::cin, isatty(STDERR_FILENO) == 1,
        isatty(STDOUT_FILENO) == 1, isatty(STDIN_FILENO) == 1, STDIN_FILENO, Variable});
+  return duet::base::FinishOutput("duet", code);
 }

@@ -12,6 +12,7 @@
 #include "absl/strings/str_format.h"
 #include "client/viewer/page.h"
 #include "model/base/file.h"
+#include "model/base/program_output.h"
 #include "model/formats/motion_file.h"
 #include "model/formats/people.h"
 
@@ -229,9 +230,7 @@ absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synth
 
 absl::Status WriteToStream(const std::string& content, std::ostream& out) {
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.flush();
-  if (out.good()) return absl::OkStatus();
-  return NotWritten(absl::AbortedError("standard output: cannot write all of it"));
+  return NotWritten(base::FlushOutput(&out));
 }
 
 absl::Status NotWritten(const absl::Status& status) {

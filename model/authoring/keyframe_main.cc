@@ -12,6 +12,7 @@
 #include "model/authoring/keyframes.h"
 #include "model/base/file.h"
 #include "model/base/program_flags.h"
+#include "model/base/program_output.h"
 #include "model/formats/bvh/bvh_export.h"
 #include "model/motion/skeleton.h"
 
@@ -32,18 +33,22 @@ absl::Status Convert(const std::string& keyframes, const std::string& out) {
   return base::WriteFile(out, FormatBvh(*document));
 }
 
-}  // namespace
-}  // namespace duet::authoring
-
-int main(int argc, char** argv) {
+int Run(int argc, char** argv) {
   CLI::App app("Converts a handwritten key-frame file to a BVH clip.", "duet-keyframe");
   app.set_version_flag("--version", "duet-keyframe " DUET_VERSION);
   std::string keyframes, out;
   app.add_option("keyframes", keyframes, "Key-frame file (docs/formats.md)")->required();
   app.add_option("--out", out, "The BVH file to write")->required();
-  if (const std::optional<int> code = duet::base::ParseFlags(argc, argv, &app)) return *code;
-  const absl::Status status = duet::authoring::Convert(keyframes, out);
+  if (const std::optional<int> code = base::ParseFlags(argc, argv, &app)) return *code;
+  const absl::Status status = Convert(keyframes, out);
   if (status.ok()) return 0;
   std::cerr << "duet-keyframe: " << status.message() << "\n";
   return 1;
+}
+
+}  // namespace
+}  // namespace duet::authoring
+
+int main(int argc, char** argv) {
+  return duet::base::FinishOutput("duet-keyframe", duet::authoring::Run(argc, argv));
 }

@@ -14,6 +14,7 @@
 #include "absl/strings/str_split.h"
 #include "model/base/counted.h"
 #include "model/base/program_flags.h"
+#include "model/base/program_output.h"
 #include "model/importing/import.h"
 #include "model/motion/coordinates.h"
 
@@ -136,27 +137,30 @@ void Print(const ImportReport& report) {
   }
 }
 
-}  // namespace
-}  // namespace duet::importing
-
-int main(int argc, char** argv) {
-  duet::importing::ImportOptions options;
-  duet::importing::Words words;
+int Run(int argc, char** argv) {
+  ImportOptions options;
+  Words words;
   CLI::App app("Converts a folder of motion files of two people to a data set for training.",
                "duet-import");
   app.set_version_flag("--version", "duet-import " DUET_VERSION);
   Declare(&options, &words, &app);
-  if (const std::optional<int> code = duet::base::ParseFlags(argc, argv, &app)) return *code;
-  duet::importing::ImportReport report;
-  absl::Status status = duet::importing::Parse(words, &options);
-  if (status.ok()) status = duet::importing::Import(options, &report);
-  duet::importing::Print(report);
+  if (const std::optional<int> code = base::ParseFlags(argc, argv, &app)) return *code;
+  ImportReport report;
+  absl::Status status = Parse(words, &options);
+  if (status.ok()) status = Import(options, &report);
+  Print(report);
   if (!status.ok()) {
     std::cerr << "duet-import: " << status.message() << "\n";
     return 1;
   }
-  std::cout << options.out.string() << ": " << duet::base::Counted(report.sequences, "sequence")
-            << " of " << duet::base::Counted(report.pairs, "pair") << "; " << report.refused.size()
-            << " refused\n";
+  std::cout << options.out.string() << ": " << base::Counted(report.sequences, "sequence") << " of "
+            << base::Counted(report.pairs, "pair") << "; " << report.refused.size() << " refused\n";
   return 0;
+}
+
+}  // namespace
+}  // namespace duet::importing
+
+int main(int argc, char** argv) {
+  return duet::base::FinishOutput("duet-import", duet::importing::Run(argc, argv));
 }

@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/program_flags.h"
+#include "model/base/program_output.h"
 #include "model/checkpoint/manifest.h"
 #include "model/dataset/lone_leaders.h"
 #include "model/network/device.h"
@@ -213,9 +214,7 @@ void Declare(Arguments* arguments, CLI::App* app) {
       ->capture_default_str();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int Run(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Trains a generator on a folder of captures and writes a checkpoint.");
   app.set_version_flag("--version", "duet-train " DUET_VERSION);
@@ -227,3 +226,7 @@ int main(int argc, char** argv) {
   std::cerr << "duet-train: " << status.message() << "\n";
   return 1;
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return duet::base::FinishOutput("duet-train", Run(argc, argv)); }

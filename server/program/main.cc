@@ -11,6 +11,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "duet/v1/server_config.pb.h"
+#include "model/base/program_output.h"
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/cpu_engine/kernels/gemm_bf16_amx.h"
@@ -94,7 +95,8 @@ int main(int argc, char** argv) {
   // Never deleted (see RunServer); static, so that LeakSanitizer still finds it when the process
   // ends.
   static auto* const stop = new duet::server::watchdog::StopSignal;
-  return duet::server::lifecycle::RunServer(
+  const int code = duet::server::lifecycle::RunServer(
       argc, argv, OpenEngine, *stop,
       std::make_shared<duet::server::metrics::StreamLogSink>(stderr));
+  return duet::base::FinishOutput("duet-server", code);
 }

@@ -1,6 +1,8 @@
-"""The spelling of the programs' flags: kebab-case everywhere."""
+"""What the command lines of all programs have in common: the spelling of flags (kebab-case everywhere),
+versions, output that cannot be written."""
 
 import re
+import subprocess
 import unittest
 
 import tools
@@ -44,6 +46,19 @@ class FlagsTest(unittest.TestCase):
             result = tools.run(tools.PROGRAMS / program, "--version")
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertEqual(result.stdout, f"{program} {version}\n")
+
+    def test_output_that_cannot_be_written_is_an_error(self):
+        commands = [(program, "--help") for program in PROGRAMS + PROGRAMS_OF_SERVING]
+        commands += [("duet", "man"), ("duet", "completion", "bash"), ("duet", "help", "joints"),
+                     ("duet", "inspect", tools.sample("kick"), "--json"),
+                     ("duet", "compare", tools.sample("kick"), tools.sample("hug")),
+                     ("duet-server", "--print-config")]
+        for program, *arguments in commands:
+            with self.subTest((program, *arguments)), open("/dev/full", "wb") as full:
+                result = subprocess.run([tools.PROGRAMS / program, *arguments], stdout=full,
+                                        stderr=subprocess.PIPE, text=True, check=False)
+                self.assertEqual(result.returncode, 1, result.stderr)
+                self.assertIn(f"{program}: standard output: cannot write all of it", result.stderr)
 
     def test_flags_of_the_client_are_documented(self):
         client = ("synthesize", "live", "models", "inspect", "convert", "view", "compare", "man")

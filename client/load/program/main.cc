@@ -7,6 +7,7 @@
 
 #include "client/cli/stop_signals.h"
 #include "client/load/program/load_program.h"
+#include "model/base/program_output.h"
 
 int main(int argc, char** argv) {
   // What goes wrong is in the statuses that are counted.
@@ -14,6 +15,7 @@ int main(int argc, char** argv) {
   std::atomic<bool> stopped{false};
   const duet::client::cli::StopSignals signals([&stopped] { stopped = true; });
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  return duet::client::load::program::RunLoadProgram(
+  const int code = duet::client::load::program::RunLoadProgram(
       arguments, {&std::cout, &std::cerr, [&stopped] { return stopped.load(); }});
+  return duet::base::FinishOutput("duet-load", code);
 }

@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "model/base/file.h"
+#include "model/base/program_output.h"
 
 namespace duet::client::load::program {
 namespace {
@@ -31,8 +32,8 @@ absl::Status WriteReport(const std::string& text, const std::vector<ReportFile>&
   const auto standard = std::find_if(files.begin(), files.end(), [](const ReportFile& file) {
     return file.path == kStandardOutput;
   });
-  *out << (standard == files.end() ? text : standard->content()) << std::flush;
-  if (!*out) return absl::InvalidArgumentError("standard output: could not write all of it");
+  *out << (standard == files.end() ? text : standard->content());
+  if (const absl::Status written = base::FlushOutput(out); !written.ok()) return written;
   for (const ReportFile& file : files) {
     if (file.path.empty() || file.path == kStandardOutput) continue;
     absl::Status status = base::WriteFile(file.path, file.content());

@@ -4,13 +4,16 @@
 #include <optional>
 
 #include "model/base/program_flags.h"
+#include "model/base/program_output.h"
 #include "model/evaluation/program/commands.h"
 #include "model/network/exceptions.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
 namespace program = duet::evaluation::program;
 
-int main(int argc, char** argv) {
+namespace {
+
+int Run(int argc, char** argv) {
   CLI::App app("Measures trained models and baselines on captures.");
   app.set_version_flag("--version", "duet-eval " DUET_VERSION);
   app.require_subcommand(1);
@@ -33,3 +36,7 @@ int main(int argc, char** argv) {
   std::cerr << "duet-eval: " << status.message() << "\n";
   return 1;
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return duet::base::FinishOutput("duet-eval", Run(argc, argv)); }

@@ -29,9 +29,9 @@ TEST(WriteReportTest, FileOnStandardOutputReplacesTheText) {
 
 TEST(WriteReportTest, FullStandardOutputIsAnError) {
   std::ofstream out("/dev/full");
-  EXPECT_THAT(WriteReport("text", {}, &out),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("standard output: could not write all of it")));
+  EXPECT_THAT(
+      WriteReport("text", {}, &out),
+      StatusIs(absl::StatusCode::kAborted, HasSubstr("standard output: cannot write all of it")));
 }
 
 }  // namespace
