@@ -61,7 +61,8 @@ struct ReactionOptions {
   // sliding, keeps joints within human ranges, and resolves overlaps with the leader. Absent: the
   // server's setting. By default, the server cleans up only the results of sampling models.
   std::optional<bool> clean_up;
-  // ID of the call in the server's log. Empty: the server generates one.
+  // ID of the call in the server's log, of 1 to 128 printable ASCII characters without spaces.
+  // Empty: the server generates one.
   std::string request_id;
 };
 

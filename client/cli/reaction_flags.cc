@@ -9,6 +9,7 @@
 #include "client/cli/flags.h"
 #include "client/cli/input_flags.h"
 #include "client/cli/value_syntax.h"
+#include "model/base/request_id.h"
 
 namespace duet::client::cli {
 namespace {
@@ -110,8 +111,11 @@ void AddCleanUpFlag(FlagSet* app, SynthesizeArguments* arguments) {
 }
 
 void AddRequestIdFlag(FlagSet* app, SynthesizeArguments* arguments) {
-  app->Add("--request-id", &arguments->request_id, "Name of the call in the server's log")
-      ->Form("ID")
+  AddParsed<std::string>(
+      app, "--request-id", "ID", ParseRequestId,
+      [arguments](std::string id) { arguments->request_id = std::move(id); },
+      absl::StrCat("Name of the call in the server's log: ", base::kRequestIdForm))
+      ->LastOnly()
       ->Group(kReactionGroup);
 }
 

@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "model/base/request_id.h"
 #include "model/base/text.h"
 
 namespace duet::client::cli {
@@ -90,6 +91,12 @@ absl::StatusOr<float> ParseVariety(absl::string_view text) {
   float variety = 0;
   if (absl::SimpleAtof(text, &variety) && variety >= 0 && variety <= 2) return variety;
   return Expected("a number from 0 to 2", text);
+}
+
+absl::StatusOr<std::string> ParseRequestId(absl::string_view text) {
+  absl::Status status = base::CheckRequestId(text);
+  if (!status.ok()) return status;
+  return std::string(text);
 }
 
 absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text) {

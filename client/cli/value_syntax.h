@@ -42,6 +42,9 @@ absl::StatusOr<std::pair<std::string, std::string>> ParseJointPair(absl::string_
 // "0.5": a number from 0 to 2
 absl::StatusOr<float> ParseVariety(absl::string_view text);
 
+// "job-7": as model/base/request_id.h says
+absl::StatusOr<std::string> ParseRequestId(absl::string_view text);
+
 // "millimetres", "z-up": as ParseLengthUnit and ParseUpAxis know them
 absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text);
 absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text);

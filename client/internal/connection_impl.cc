@@ -9,6 +9,7 @@
 #include "client/internal/grpc_status.h"
 #include "client/internal/live_session_impl.h"
 #include "client/internal/proto_conversion.h"
+#include "client/internal/reaction_conversion.h"
 
 namespace duet::client::internal {
 namespace {
@@ -25,6 +26,14 @@ absl::Status ModelIsGone(const absl::Status& status, const v1::ModelSelector& pi
       status, absl::AbortedError(absl::StrCat("the stream broke after ", frames,
                                               " frames and cannot be resumed: ", pinned.name(), "@",
                                               pinned.version(), " is no longer served")));
+}
+
+// INVALID_ARGUMENT, naming the field, for values that neither the message nor the metadata of a
+// call can carry.
+absl::StatusOr<v1::SynthesizeRequest> ToWire(const SynthesisRequest& request) {
+  absl::Status status = CheckRequestId(request.request_id);
+  if (!status.ok()) return status;
+  return ToProto(request);
 }
 
 // Assembles the reply of an asynchronous call.
@@ -118,7 +127,7 @@ absl::StatusOr<ModelDetails> ConnectionImpl::GetModel(const ModelChoice& choice)
 
 absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisRequest& request,
                                                            const ChunkCallback& on_chunk) {
-  absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
+  absl::StatusOr<v1::SynthesizeRequest> wire = ToWire(request);
   if (!wire.ok()) return wire.status();
   const absl::Time start = environment_.now();
   const CallContext call{start + deadline_, request.request_id};
@@ -149,7 +158,7 @@ absl::StatusOr<SynthesisResult> ConnectionImpl::Synthesize(const SynthesisReques
 }
 
 void ConnectionImpl::SynthesizeAsync(SynthesisRequest request, const SynthesisCallback& done) {
-  const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
+  const absl::StatusOr<v1::SynthesizeRequest> wire = ToWire(request);
   if (!wire.ok()) return done(wire.status());
   const CallContext call{Deadline(), request.request_id};
   stub_->Start(call, *wire,

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/error_details.h"
 #include "client/internal/grpc_status.h"
+#include "client/internal/reaction_conversion.h"
 
 namespace duet::client::internal {
 namespace {
@@ -38,6 +39,8 @@ absl::StatusOr<std::unique_ptr<LiveSession>> LiveSessionImpl::Start(std::shared_
   if (!callbacks.on_frames) {
     return absl::InvalidArgumentError("on_frames: expected a function, got none");
   }
+  absl::Status accepted = CheckRequestId(request.request_id);
+  if (!accepted.ok()) return accepted;
   absl::StatusOr<LiveState> state = LiveState::Create(request);
   if (!state.ok()) return state.status();
   std::unique_ptr<LiveSessionImpl> session(

@@ -2,6 +2,8 @@
 
 #include <variant>
 
+#include "model/base/request_id.h"
+
 namespace duet::client::internal {
 
 void AppendPositions(absl::Span<const motion::Vec3> points,
@@ -52,6 +54,13 @@ absl::Status Fill(const WeightKeyframe& keyframe, std::size_t index, v1::LabelKe
   out->set_frame(static_cast<uint32_t>(keyframe.frame));
   Fill(keyframe.weights, out->mutable_label_vector());
   return absl::OkStatus();
+}
+
+absl::Status CheckRequestId(const std::string& request_id) {
+  if (request_id.empty()) return absl::OkStatus();
+  const absl::Status status = base::CheckRequestId(request_id);
+  if (status.ok()) return status;
+  return absl::Status(status.code(), absl::StrCat("request_id: ", status.message()));
 }
 
 }  // namespace duet::client::internal

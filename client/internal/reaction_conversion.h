@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -16,7 +17,7 @@
 #include "model/motion/vec3.h"
 
 // The fields that SynthesizeRequest and LiveStart have in common. Errors: INVALID_ARGUMENT, naming
-// the field, only for values that the proto cannot represent.
+// the field, only for values that neither the proto nor the metadata of a call can represent.
 namespace duet::client::internal {
 
 void AppendPositions(absl::Span<const motion::Vec3> points,
@@ -25,6 +26,8 @@ void Fill(const std::vector<ClassWeight>& weights, v1::LabelVector* labels);
 void Fill(const FollowerStart& start, v1::FollowerStart* out);
 void Fill(const motion::Vec3& direction, v1::Direction* out);
 v1::CleanUp ToProto(std::optional<bool> clean_up);
+// An empty ID is one that the server generates.
+absl::Status CheckRequestId(const std::string& request_id);
 // Also checks that the index is not negative.
 absl::Status Fill(const WeightKeyframe& keyframe, std::size_t index, v1::LabelKeyframe* out);
 

@@ -11,11 +11,11 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "model/base/request_id.h"
 
 namespace duet::server::service {
 namespace {
 
-constexpr std::size_t kMaxRequestIdBytes = 128;
 constexpr std::size_t kMaxClientBytes = 256;
 
 std::string Metadata(const grpc::ServerContextBase& context, const std::string& key) {
@@ -29,7 +29,7 @@ std::string Metadata(const grpc::ServerContextBase& context, const std::string& 
 CallIdentity IdentifyCall(const grpc::ServerContextBase& context, const std::string& client_key) {
   CallIdentity identity;
   identity.request_id = Metadata(context, "x-request-id");
-  if (!IsRequestId(identity.request_id)) identity.request_id = NewRequestId();
+  if (!base::IsRequestId(identity.request_id)) identity.request_id = NewRequestId();
   identity.traceparent = Metadata(context, "traceparent");
   if (!IsTraceparent(identity.traceparent)) identity.traceparent.clear();
   identity.peer = context.peer();
@@ -59,12 +59,6 @@ std::string ClientOf(std::string_view peer) {
   char network[INET6_ADDRSTRLEN] = {};
   inet_ntop(AF_INET6, &address, network, sizeof(network));
   return absl::StrCat("ipv6:", network, "/64");
-}
-
-bool IsRequestId(std::string_view text) {
-  return !text.empty() && text.size() <= kMaxRequestIdBytes &&
-         std::all_of(text.begin(), text.end(),
-                     [](unsigned char c) { return absl::ascii_isgraph(c); });
 }
 
 bool IsTraceparent(std::string_view text) {

@@ -19,8 +19,9 @@ struct CallIdentity {
   std::string client;
 };
 
-// Reads a call's metadata. Malformed values are ignored: a request ID must have 1 to 128 printable
-// ASCII characters without spaces, and a traceparent must have the W3C format.
+// Reads a call's metadata. Malformed values are ignored: a request ID must be one of
+// model/base/request_id.h, and a traceparent must have the W3C format. A call does not fail because
+// of them, because a proxy may have written them.
 //
 // `client_key`: the metadata key in which a trusted proxy names its client; empty if there is none.
 CallIdentity IdentifyCall(const grpc::ServerContextBase& context, const std::string& client_key);
@@ -28,7 +29,6 @@ CallIdentity IdentifyCall(const grpc::ServerContextBase& context, const std::str
 // Returns the client of a gRPC peer string, such as "ipv4:192.0.2.7:4711" or "ipv6:%5B::1%5D:4711".
 std::string ClientOf(std::string_view peer);
 
-bool IsRequestId(std::string_view text);
 bool IsTraceparent(std::string_view text);
 
 // Returns 128 random bits in hexadecimal.

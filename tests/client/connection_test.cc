@@ -1,4 +1,5 @@
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -67,6 +68,24 @@ TEST_F(ConnectionTest, EveryAttemptCarriesTheSameDeadlineAndRequestId) {
   ASSERT_THAT(stub_->contexts, SizeIs(2));
   EXPECT_THAT(stub_->contexts, Each(Field(&CallContext::deadline, deadline)));
   EXPECT_THAT(stub_->contexts, Each(Field(&CallContext::request_id, "mine")));
+}
+
+TEST_F(ConnectionTest, RefusesARequestIdThatMetadataCannotCarry) {
+  for (const std::string& id : {std::string("caf\xc3\xa9"), std::string("a\nb"),
+                                std::string("two words"), std::string(129, 'x')}) {
+    request_.request_id = id;
+    const auto refused = StatusIs(absl::StatusCode::kInvalidArgument,
+                                  ::testing::StartsWith("request_id: expected 1 to 128 printable "
+                                                        "ASCII characters without spaces, got "));
+    EXPECT_THAT(Synthesize(), refused);
+    absl::Status ended;
+    ConnectionImpl(stub_, options_, time_.Environment())
+        .SynthesizeAsync(request_, [&ended](const absl::StatusOr<SynthesisResult>& result) {
+          ended = result.status();
+        });
+    EXPECT_THAT(ended, refused);
+  }
+  EXPECT_THAT(stub_->contexts, ::testing::IsEmpty());
 }
 
 TEST_F(ConnectionTest, BrokenStreamIsRetried) {

@@ -131,6 +131,13 @@ class LiveSessionTest : public ::testing::Test {
   std::unique_ptr<LiveSession> session_;
 };
 
+TEST_F(LiveSessionTest, RefusesARequestIdThatMetadataCannotCarry) {
+  request_.request_id = "a\nb";
+  EXPECT_THAT(Start(), StatusIs(absl::StatusCode::kInvalidArgument,
+                                "request_id: expected 1 to 128 printable ASCII characters without "
+                                "spaces, got \"a\\nb\""));
+}
+
 TEST_F(LiveSessionTest, RotationsKeepTheirSignsOverAnInterruption) {
   request_.rotations = true;
   mirror_.before_frame = [](int stream, int frame) {

@@ -21,6 +21,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "duet/v1/synthesis.pb.h"
+#include "model/base/request_id.h"
 #include "model/engine/clip_synthesis.h"
 #include "server/common/clock.h"
 #include "server/common/trace_context.h"
@@ -185,7 +186,7 @@ Broken CallMetadata(absl::string_view input) {
   if (trace.has_value() && !server::service::IsTraceparent(Traceparent(*trace))) {
     return "a trace goes on under a traceparent that is none";
   }
-  if (server::service::IsRequestId(lines[1]) && absl::StrContains(lines[1], ' ')) {
+  if (base::IsRequestId(lines[1]) && absl::StrContains(lines[1], ' ')) {
     return "a request id has blanks";
   }
   return server::service::ClientOf(lines[2]).size() > lines[2].size() + 64

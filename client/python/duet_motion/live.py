@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from duet_motion.motion import Motion, Positions
-from duet_motion.request import (Labels, check_answering, check_integer, check_points, check_weights,
-                                 short)
+from duet_motion.request import (Labels, check_answering, check_integer, check_points,
+                                 check_request_id, check_weights, short)
 from duet_motion.result import FrameRun, JointRotations
 
 MAX_DELAY, MAX_PLAN = 10, 30
@@ -126,7 +126,8 @@ class LiveRequest:
         up_axis: ``"y-up"``, ``"z-up"`` or ``"y-down"``.
         rotations: whether the final frames have joint rotations beside the positions, for engines
             (docs/rotations.md).
-        request_id: identifies the call in the server's log. Empty: the server creates one.
+        request_id: identifies the call in the server's log: 1 to 128 printable ASCII characters
+            without spaces. Empty: the server creates one.
         on_notice: called with each :class:`duet_motion.LiveNotice`. It must not block.
 
     Raises:
@@ -166,8 +167,7 @@ class LiveRequest:
         check_points("up", self.up, ((3,),))
         if not isinstance(self.rotations, (bool, np.bool_)):
             raise ValueError(f"rotations: expected True or False, got {short(self.rotations)}")
-        if not isinstance(self.request_id, str):
-            raise ValueError(f"request_id: expected a str, got {short(self.request_id)}")
+        check_request_id(self.request_id)
 
     def leader(self) -> Motion:
         """A leader without frames, in the session's joints, rate, unit and axis."""

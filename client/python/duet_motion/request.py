@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import numbers
+import re
 import reprlib
 from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Union
 
@@ -24,6 +25,8 @@ Labels = Mapping[str, float]
 """Weights by interaction class, from -2 to 2: 1 requests a class, 0 is neutral, -1 avoids it."""
 
 LEVELS = ("auto", "off")
+
+_REQUEST_ID = re.compile(r"[!-~]{1,128}")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -91,7 +94,8 @@ class SynthesisRequest:
             tilted like the leader. None: ``leader.up_axis``, unless ``level`` finds another one.
         priority: ``"interactive"``, or ``"bulk"``, which yields to interactive calls.
         chunk_frames: frames per chunk of the reply. None: the server's default.
-        request_id: identifies the call in the server's log. Empty: the server creates one.
+        request_id: identifies the call in the server's log: 1 to 128 printable ASCII characters
+            without spaces. Empty: the server creates one.
         timeout: seconds for the whole call, including all its attempts. None: the client's.
         candidates: how many samples a model that samples draws for each window, 1 to 16. The server
             returns the one with the best grade (``SynthesisResult.grade``). More take longer.
@@ -148,8 +152,7 @@ class SynthesisRequest:
                              f"{short(self.priority)}")
         if self.chunk_frames is not None:
             check_integer("chunk_frames", self.chunk_frames, 1, 2**32 - 1)
-        if not isinstance(self.request_id, str):
-            raise ValueError(f"request_id: expected a str, got {short(self.request_id)}")
+        check_request_id(self.request_id)
         if self.timeout is not None:
             checked_number("timeout", self.timeout, above=0)
         check_constraints(self.constraints)
@@ -296,6 +299,15 @@ def check_answering(request: Union[SynthesisRequest, LiveRequest]) -> None:
     to_selector(request.model)
     if request.clean_up is not None and not isinstance(request.clean_up, (bool, np.bool_)):
         raise ValueError(f"clean_up: expected True, False or None, got {short(request.clean_up)}")
+
+
+def check_request_id(request_id: str) -> None:
+    """Raises ValueError unless it is empty or names a call in the server's log."""
+    if not isinstance(request_id, str):
+        raise ValueError(f"request_id: expected a str, got {short(request_id)}")
+    if request_id and not _REQUEST_ID.fullmatch(request_id):
+        raise ValueError("request_id: expected 1 to 128 printable ASCII characters without spaces, "
+                         f"got {short(request_id)}")
 
 
 def check_integer(name: str, value: object, least: int, most: int) -> None:

@@ -248,6 +248,12 @@ TEST_F(CommandLineTest, ErrorsStateWhatIsExpectedAndGiven) {
                 "--wait: expected a number from 0 to 86400, got \"x\"");
   ExpectRefused({"--label", "kick", "--priority", "high"},
                 "--priority: expected bulk or interactive, got \"high\"");
+  ExpectRefused({"--label", "kick", "--request-id", "caf\xc3\xa9"},
+                "--request-id: expected 1 to 128 printable ASCII characters without spaces, got "
+                "\"caf\\xc3\\xa9\"");
+  ExpectUsageError(
+      {"live", "--from", "-", "--to", "-", "--label", "kick", "--request-id", "two words"},
+      "--request-id: expected 1 to 128");
   ExpectRefused({"--label", "kick", "--timeout"}, "--timeout: expected a value, got none");
   ExpectRefused({"--label", "kick", "--server", "a", "--server", "b"},
                 "--server: expected one value, got 2");

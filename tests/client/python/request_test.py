@@ -105,6 +105,11 @@ class RequestTest(unittest.TestCase):
                 ({"candidates": 2.5}, "candidates: expected an integer from 1 to 16, got 2.5"),
                 ({"clean_up": "auto"}, "clean_up: expected True, False or None, got 'auto'"),
                 ({"request_id": 7}, "request_id: expected a str, got 7"),
+                ({"request_id": "caf\u00e9"}, "request_id: expected 1 to 128 printable ASCII characters "
+                                               "without spaces, got 'caf\u00e9'"),
+                ({"request_id": "a\n"}, "request_id: expected 1 to 128"),
+                ({"request_id": "a b"}, "request_id: expected 1 to 128"),
+                ({"request_id": "x" * 129}, "request_id: expected 1 to 128"),
                 ({"timeout": 0}, "timeout: expected a finite number above 0, got 0"),
                 ({"timeout": float("inf")}, "timeout: expected a finite number above 0, got inf"),
                 ({"keyframes": {-1: {}}}, "keyframes: frame: expected an integer .* got -1"),
