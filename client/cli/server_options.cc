@@ -9,6 +9,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "client/internal/check_tls.h"
 #include "model/base/file.h"
 
 namespace duet::client::cli {
@@ -33,8 +34,23 @@ absl::Status ReadPem(const std::string& path, std::string* pem) {
   if (path.empty()) return absl::OkStatus();
   absl::StatusOr<std::string> content = base::ReadFile(path, kMaxPemBytes, "a PEM file");
   if (!content.ok()) return content.status();
+  // Without authorities, a client would trust those of the system.
+  if (content->empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(path, ": expected PEM, got an empty file"));
+  }
   *pem = *std::move(content);
   return absl::OkStatus();
+}
+
+absl::Status ReadTls(const ServerArguments& arguments, TlsOptions* tls) {
+  tls->server_name = arguments.tls_server_name;
+  absl::Status status = ReadPem(arguments.tls_ca_file, &tls->root_certificates);
+  status.Update(ReadPem(arguments.tls_certificate_file, &tls->certificate_chain));
+  status.Update(ReadPem(arguments.tls_key_file, &tls->private_key));
+  if (!status.ok()) return status;
+  return internal::CheckTls(*tls, {absl::StrCat("tls_ca: ", arguments.tls_ca_file),
+                                   absl::StrCat("tls_cert: ", arguments.tls_certificate_file),
+                                   absl::StrCat("tls_key: ", arguments.tls_key_file)});
 }
 
 void ReportWaiting(const ServerArguments& arguments, std::ostream& err, ClientOptions* options) {
@@ -61,10 +77,7 @@ absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) 
                          !arguments.tls_server_name.empty();
   if (!encrypted) return options;
   TlsOptions tls;
-  tls.server_name = arguments.tls_server_name;
-  status = ReadPem(arguments.tls_ca_file, &tls.root_certificates);
-  status.Update(ReadPem(arguments.tls_certificate_file, &tls.certificate_chain));
-  status.Update(ReadPem(arguments.tls_key_file, &tls.private_key));
+  status = ReadTls(arguments, &tls);
   if (!status.ok()) return status;
   options.tls = std::move(tls);
   return options;

@@ -10,6 +10,7 @@
 #include "absl/strings/strip.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "client/internal/check_tls.h"
 #include "client/internal/connection_impl.h"
 #include "client/internal/grpc_stub.h"
 #include "grpcpp/create_channel.h"
@@ -89,12 +90,7 @@ absl::Status Check(const ClientOptions& options) {
     return absl::InvalidArgumentError(
         absl::StrCat("token: expected TLS to ", options.server_address, ", got plain text"));
   }
-  if (options.tls.has_value() &&
-      options.tls->certificate_chain.empty() != options.tls->private_key.empty()) {
-    return absl::InvalidArgumentError(
-        "tls: expected certificate_chain and private_key or neither, got one of the two");
-  }
-  return absl::OkStatus();
+  return options.tls.has_value() ? CheckTls(*options.tls) : absl::OkStatus();
 }
 
 std::shared_ptr<grpc::ChannelCredentials> Credentials(const ClientOptions& options) {

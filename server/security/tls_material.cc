@@ -1,18 +1,15 @@
 #include "server/security/tls_material.h"
 
-#include <openssl/err.h>
-#include <openssl/evp.h>
-#include <openssl/pem.h>
 #include <openssl/x509.h>
 
 #include <cstddef>
 #include <ctime>
-#include <memory>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "model/base/file.h"
+#include "model/base/pem.h"
 #include "server/common/join_status.h"
 
 namespace duet::server::security {
@@ -20,33 +17,6 @@ namespace {
 
 // A bundle of all public authorities has about 200 kB; a far larger file is a mistake.
 constexpr std::size_t kMaxPemBytes = std::size_t{1} << 20;
-
-using Bio = std::unique_ptr<BIO, decltype(&BIO_free)>;
-using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
-using Certificate = std::unique_ptr<X509, decltype(&X509_free)>;
-
-Bio Reading(const std::string& text) {
-  return {BIO_new_mem_buf(text.data(), static_cast<int>(text.size())), BIO_free};
-}
-
-// OpenSSL would ask for a password on the terminal.
-int NoPassword(char*, int, int, void*) { return -1; }
-
-std::vector<Certificate> ReadCertificates(const std::string& pem) {
-  std::vector<Certificate> certificates;
-  const Bio bio = Reading(pem);
-  while (X509* certificate = PEM_read_bio_X509(bio.get(), nullptr, NoPassword, nullptr)) {
-    certificates.emplace_back(certificate, X509_free);
-  }
-  ERR_clear_error();  // the end of the text is an error to OpenSSL
-  return certificates;
-}
-
-Key ReadKey(const std::string& pem) {
-  Key key(PEM_read_bio_PrivateKey(Reading(pem).get(), nullptr, NoPassword, nullptr), EVP_PKEY_free);
-  ERR_clear_error();
-  return key;
-}
 
 absl::Time ToTime(const ASN1_TIME* time) {
   std::tm fields = {};
@@ -65,7 +35,7 @@ absl::Status ReadPem(absl::string_view setting, const std::filesystem::path& pat
   return absl::OkStatus();
 }
 
-absl::Status CheckChain(const std::vector<Certificate>& chain, absl::Time now) {
+absl::Status CheckChain(const std::vector<base::Certificate>& chain, absl::Time now) {
   if (chain.empty()) {
     return absl::InvalidArgumentError(
         "tls_certificate_file: expected PEM, the server's own certificate first, got none");
@@ -79,22 +49,19 @@ absl::Status CheckChain(const std::vector<Certificate>& chain, absl::Time now) {
                    absl::FormatTime(from), " to ", absl::FormatTime(until)));
 }
 
-absl::Status CheckKey(const std::vector<Certificate>& chain, const Key& key) {
+absl::Status CheckKey(const std::vector<base::Certificate>& chain, const base::PrivateKey& key) {
   if (key == nullptr) {
     return absl::InvalidArgumentError(
         "tls_key_file: expected a private key in PEM without a password, got none");
   }
-  if (chain.empty() || X509_check_private_key(chain.front().get(), key.get()) == 1) {
-    return absl::OkStatus();
-  }
-  ERR_clear_error();
+  if (chain.empty() || base::IsKeyOf(chain.front(), key)) return absl::OkStatus();
   return absl::InvalidArgumentError(
       "tls_key_file: expected the key of the first certificate in tls_certificate_file, got "
       "another certificate's key");
 }
 
 absl::Status CheckAuthorities(const std::string& pem) {
-  if (pem.empty() || !ReadCertificates(pem).empty()) return absl::OkStatus();
+  if (pem.empty() || !base::ReadCertificates(pem).empty()) return absl::OkStatus();
   return absl::InvalidArgumentError(
       "tls_client_ca_file: expected PEM certificates of those who sign clients', got none");
 }
@@ -117,8 +84,8 @@ absl::StatusOr<TlsMaterial> ReadTlsMaterial(const TlsFiles& files) {
 }
 
 absl::StatusOr<absl::Time> CheckTlsMaterial(const TlsMaterial& material, absl::Time now) {
-  const std::vector<Certificate> chain = ReadCertificates(material.certificate_chain);
-  const Key key = ReadKey(material.private_key);
+  const std::vector<base::Certificate> chain = base::ReadCertificates(material.certificate_chain);
+  const base::PrivateKey key = base::ReadPrivateKey(material.private_key);
   const absl::Status status = common::Join({CheckChain(chain, now), CheckKey(chain, key),
                                             CheckAuthorities(material.client_authorities)});
   if (!status.ok()) return status;

@@ -106,6 +106,25 @@ TEST_F(TlsTest, AuthorityIsSent) {
   EXPECT_THAT(Call(), IsOk());
 }
 
+TEST(TlsOptionsTest, WhatIsNoPemIsRefusedBeforeACall) {
+  const TestCertificate own = MakeTestCertificate("client.test");
+  const auto refused = [](const char* message) {
+    return StatusIs(absl::StatusCode::kInvalidArgument, StartsWith(message));
+  };
+  ClientOptions options;
+  options.tls.emplace().root_certificates = "junk";
+  EXPECT_THAT(Client::Create(options),
+              refused("tls.root_certificates: expected PEM certificates, got none"));
+  options.tls.emplace().certificate_chain = own.certificate;
+  EXPECT_THAT(Client::Create(options), refused("tls: expected certificate_chain and private_key"));
+  options.tls->private_key = "junk";
+  EXPECT_THAT(Client::Create(options), refused("tls.private_key: expected a private key in PEM"));
+  options.tls->private_key = MakeTestCertificate("other.test").private_key;
+  EXPECT_THAT(Client::Create(options), refused("tls.private_key: expected the key of the first"));
+  options.tls->private_key = own.private_key;
+  EXPECT_THAT(Client::Create(options), IsOk());
+}
+
 TEST(TokenTest, IsSentInPlainTextOnlyToThisMachine) {
   ClientOptions options;
   options.token = "secret-1";

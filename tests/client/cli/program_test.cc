@@ -20,6 +20,7 @@
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test_certificate.h"
 
 namespace duet::client::cli {
 namespace {
@@ -896,17 +897,19 @@ TEST_F(ProgramTest, ModelWithoutHipsAndFeetIsAccepted) {
 }
 
 TEST_F(ProgramTest, CertificatesAreReadFromTheirFiles) {
-  WriteTestFile(folder_ / "ca.pem", "authority");
-  WriteTestFile(folder_ / "cert.pem", "certificate");
-  WriteTestFile(folder_ / "key.pem", "key");
+  const test::TestCertificate authority = test::MakeTestCertificate("authority.test");
+  const test::TestCertificate own = test::MakeTestCertificate("client.test");
+  WriteTestFile(folder_ / "ca.pem", authority.certificate);
+  WriteTestFile(folder_ / "cert.pem", own.certificate);
+  WriteTestFile(folder_ / "key.pem", own.private_key);
   EXPECT_CALL(*connection_, ListModels).WillOnce(Return(std::vector<ModelInfo>{}));
   EXPECT_EQ(Run({"models", "--tls-ca", Path("ca.pem"), "--tls-cert", Path("cert.pem"), "--tls-key",
                  Path("key.pem"), "--tls-server-name", "duet"}),
             0);
   ASSERT_TRUE(options_.tls.has_value());
-  EXPECT_EQ(options_.tls->root_certificates, "authority");
-  EXPECT_EQ(options_.tls->certificate_chain, "certificate");
-  EXPECT_EQ(options_.tls->private_key, "key");
+  EXPECT_EQ(options_.tls->root_certificates, authority.certificate);
+  EXPECT_EQ(options_.tls->certificate_chain, own.certificate);
+  EXPECT_EQ(options_.tls->private_key, own.private_key);
   EXPECT_EQ(options_.tls->server_name, "duet");
   EXPECT_EQ(out_.str(), "The server serves no model.\n");
 }
@@ -931,6 +934,28 @@ TEST_F(ProgramTest, ATokenFileWithoutATokenIsBadInput) {
 TEST_F(ProgramTest, AMissingCertificateIsBadInput) {
   EXPECT_EQ(Run({"models", "--tls-ca", Path("no.pem")}), 42);
   EXPECT_THAT(err_.str(), HasSubstr("no.pem"));
+}
+
+TEST_F(ProgramTest, AFileWithoutACertificateIsBadInput) {
+  const test::TestCertificate own = test::MakeTestCertificate("client.test");
+  WriteTestFile(folder_ / "junk.pem", "certificate");
+  WriteTestFile(folder_ / "empty.pem", "");
+  WriteTestFile(folder_ / "cert.pem", own.certificate);
+  WriteTestFile(folder_ / "other.pem", test::MakeTestCertificate("other.test").private_key);
+  const std::string cert = Path("cert.pem"), junk = Path("junk.pem"), other = Path("other.pem");
+  EXPECT_EQ(Run({"models", "--tls-ca", junk}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("tls_ca: " + junk + ": expected PEM certificates, got none"));
+  EXPECT_EQ(Run({"models", "--tls-ca", Path("empty.pem")}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("empty.pem: expected PEM, got an empty file"));
+  EXPECT_EQ(Run({"models", "--tls-cert", junk, "--tls-key", other}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("tls_cert: " + junk + ": expected PEM certificates, "));
+  EXPECT_EQ(Run({"models", "--tls-cert", cert, "--tls-key", junk}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("tls_key: " + junk + ": expected a private key in PEM "));
+  EXPECT_EQ(Run({"models", "--tls-cert", cert, "--tls-key", other}), 42);
+  EXPECT_THAT(err_.str(), HasSubstr("tls_key: " + other +
+                                    ": expected the key of the first "
+                                    "certificate in tls_cert: " +
+                                    cert + ", got another"));
 }
 
 TEST_F(ProgramTest, AFileTooLargeForACertificateIsBadInput) {

@@ -13,6 +13,18 @@ from duet_motion.v1 import synthesis_pb2
 
 LISTING = synthesis_pb2.ListModelsResponse(models=[{"name": "m"}])
 
+# Of the name "x", with a key that nobody has.
+CERTIFICATE = """-----BEGIN CERTIFICATE-----
+MIIBLjCB4aADAgECAhQJBM6A1Vg3Y8+tSRMjCH7XOnYqhzAFBgMrZXAwDDEKMAgG
+A1UEAwwBeDAgFw0yNjExMjcwMDM4MDZaGA8yMTI2MTEwMzAwMzgwNlowDDEKMAgG
+A1UEAwwBeDAqMAUGAytlcAMhAAOhhtO3t0TZ8XVHD8XcQt0uvle26W4bzdWzoho7
+XSQ0o1MwUTAdBgNVHQ4EFgQUF2HqBzpDdPS4f8QntG90E0xPz38wHwYDVR0jBBgw
+FoAUF2HqBzpDdPS4f8QntG90E0xPz38wDwYDVR0TAQH/BAUwAwEB/zAFBgMrZXAD
+QQBmiIoKiE3eHJgEIYbU/LSfTqmzxkWSvQ9P74c7BAv9LTJ6yYyO4/38kKdVzXqJ
+rsO0bo5ZeaWeO2MT/+PYXJQF
+-----END CERTIFICATE-----
+"""
+
 
 class SettingsTest(unittest.TestCase):
     def setUp(self):
@@ -61,10 +73,10 @@ class SettingsTest(unittest.TestCase):
                 settings.seconds("timeout"), settings.tls(), settings.token()
 
     def test_credentials_are_read_from_files(self):
-        ca = self.write("CA", "ca.pem")
+        ca = self.write(CERTIFICATE, "ca.pem")
         token = self.write(" secret\n", "token")
         settings = self.settings(f"tls-ca = {ca}\ntls-server-name = x\ntoken-file = {token}\nout = y")
-        self.assertEqual(settings.tls(), duet.TlsOptions(b"CA", server_name="x"))
+        self.assertEqual(settings.tls(), duet.TlsOptions(CERTIFICATE.encode(), server_name="x"))
         self.assertEqual(settings.token(), "secret")
         self.assertEqual(self.settings("tls = true").tls(), duet.TlsOptions())
         self.assertIsNone(self.settings("tls = false").tls())

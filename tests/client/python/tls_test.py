@@ -61,6 +61,19 @@ class TlsTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "tls.private_key: expected one beside certificate_chain"):
             self.options(ca="server.crt", cert="client.crt")
 
+    def test_text_that_is_no_pem_is_rejected_before_a_call(self):
+        junk = self.folder / "junk.pem"
+        junk.write_text("certificate", encoding="utf-8")
+        self.addCleanup(junk.unlink)
+        for files, message in (
+                ({"ca": "junk.pem"}, "tls.root_certificates: expected PEM certificates, got none"),
+                ({"cert": "junk.pem", "key": "client.key"},
+                 "tls.certificate_chain: expected PEM certificates, got none"),
+                ({"cert": "client.crt", "key": "junk.pem"},
+                 "tls.private_key: expected a private key in PEM, got none")):
+            with self.subTest(files=files), self.assertRaisesRegex(ValueError, message):
+                self.options(**files)
+
 
 if __name__ == "__main__":
     unittest.main()
