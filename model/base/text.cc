@@ -55,6 +55,18 @@ bool ParseInteger(absl::string_view text, int* value) {
 void AppendNumber(std::string* out, float value) { AppendShortest(out, value); }
 void AppendNumber(std::string* out, double value) { AppendShortest(out, value); }
 
+std::string NumberText(float value) {
+  std::string text;
+  AppendNumber(&text, value);
+  return text;
+}
+
+std::string NumberText(double value) {
+  std::string text;
+  AppendNumber(&text, value);
+  return text;
+}
+
 void AppendFixed(std::string* out, double value, int decimals) {
   char buffer[512];  // the largest double has 309 digits before the point
   const auto result =

@@ -21,6 +21,10 @@ bool ParseInteger(absl::string_view text, int* value);
 // Appends the shortest text that parses to the same number.
 void AppendNumber(std::string* out, float value);
 void AppendNumber(std::string* out, double value);
+// The same as a text of its own, for messages about limits: absl::StrCat prints six digits, with
+// which 2.0000002 is "2".
+std::string NumberText(float value);
+std::string NumberText(double value);
 // Appends fixed notation; never "-0.000".
 void AppendFixed(std::string* out, double value, int decimals);
 

@@ -10,9 +10,9 @@ namespace duet::motion {
 
 absl::Status CheckFrameRate(absl::string_view source, double frame_rate_hz) {
   if (frame_rate_hz > 0 && frame_rate_hz <= kMaxFrameRateHz) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(source,
-                                                 ": frame rate: expected more than 0 and at most ",
-                                                 kMaxFrameRateHz, " Hz, got ", frame_rate_hz));
+  return absl::InvalidArgumentError(
+      absl::StrCat(source, ": frame rate: expected more than 0 and at most ", kMaxFrameRateHz,
+                   " Hz, got ", base::NumberText(frame_rate_hz)));
 }
 
 bool ParseCoordinate(absl::string_view text, float* value) {

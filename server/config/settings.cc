@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
+#include "model/base/text.h"
 #include "server/common/http_origin.h"
 #include "server/config/listen_address.h"
 #include "server/config/memory_plan.h"
@@ -22,6 +23,12 @@ namespace {
 
 using v1::ServerConfig;
 
+std::string TextOf(double value) { return base::NumberText(value); }
+template <typename Whole>
+std::string TextOf(Whole value) {
+  return absl::StrCat(value);
+}
+
 // Returns `value`, or `min` after a mistake. The setting's range has the maximum.
 template <typename Number>
 Number CheckRange(const Setting& setting, Number value, Number min, Mistakes& mistakes) {
@@ -32,7 +39,7 @@ Number CheckRange(const Setting& setting, Number value, Number min, Mistakes& mi
   if (value >= min && value <= max) return value;
   if (range.or_zero() && value == 0) return value;
   mistakes.Add(setting.name(), absl::StrCat(range.or_zero() ? "0, or " : "", min, " to ", max),
-               absl::StrCat(value));
+               TextOf(value));
   return min;
 }
 

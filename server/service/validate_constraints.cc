@@ -93,7 +93,7 @@ Vec3 ConstraintCheck::Position(int index, const v1::JointConstraint& constraint)
 void ConstraintCheck::Softness(int index, float softness) {
   // Negated, so that NaN is rejected.
   if (softness >= 0 && softness <= 1) return;
-  violations_.Malformed(Field(index, "softness"), "a value in [0, 1]", absl::StrCat(softness));
+  violations_.Malformed(Field(index, "softness"), "a value in [0, 1]", base::NumberText(softness));
 }
 
 // Takes quadratic time; the number of constraints is limited.

@@ -84,7 +84,7 @@ std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVect
       violations.Malformed(absl::StrCat(at, ".weight"),
                            absl::StrCat("a finite value in [-", limits.max_abs_weight, ", ",
                                         limits.max_abs_weight, "]"),
-                           absl::StrCat(entry.weight()));
+                           base::NumberText(entry.weight()));
     }
     if (found == model.classes.end()) continue;
     const auto index = static_cast<std::size_t>(found - model.classes.begin());

@@ -127,17 +127,17 @@ void ValidateTiming(const v1::Motion& leader, const RequestLimits& limits, Viola
     violations.Malformed("leader.frame_rate_hz",
                          absl::StrCat(limits.min_frame_rate_hz, " to ", limits.max_frame_rate_hz,
                                       " frames per second"),
-                         absl::StrCat(rate));
+                         base::NumberText(rate));
   }
   const uint32_t frames = leader.frame_count();
   if (frames < static_cast<uint32_t>(limits.min_frames)) {
     violations.Malformed("leader.frame_count", absl::StrCat("at least ", limits.min_frames),
                          absl::StrCat(frames));
   } else if (rate_fits && frames > limits.max_duration_seconds * rate) {
-    violations.Malformed(
-        "leader.frame_count",
-        absl::StrCat("a duration of at most ", limits.max_duration_seconds, " s"),
-        absl::StrCat(frames, " frames, ", frames / rate, " s at ", rate, " frames per second"));
+    violations.Malformed("leader.frame_count",
+                         absl::StrCat("a duration of at most ", limits.max_duration_seconds, " s"),
+                         absl::StrCat(frames, " frames, ", base::NumberText(frames / rate),
+                                      " s at ", base::NumberText(rate), " frames per second"));
   }
 }
 

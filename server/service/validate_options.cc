@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/text.h"
 
 namespace duet::server::service {
 namespace {
@@ -30,7 +31,7 @@ engine::Sampling ValidateSampling(const v1::SynthesizeRequest& request, const Re
   // Negated, so that NaN is rejected.
   if (!(sampling.variety >= 0 && sampling.variety <= limits.max_variety)) {
     violations.Malformed("variety", absl::StrCat("a finite value in [0, ", limits.max_variety, "]"),
-                         absl::StrCat(sampling.variety));
+                         base::NumberText(request.variety()));
   }
   sampling.candidates = ValidateCandidates(request, limits, violations);
   return sampling;

@@ -92,6 +92,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"otlp_endpoint: expected http://HOST:PORT or https://HOST:PORT, got "
                   "\"ftp://x\"",
                   [](v1::ServerConfig& c) { c.set_otlp_endpoint("ftp://x"); }},
+        BadConfig{"trace_ratio: expected 0 to 1, got 1.0000001",
+                  [](v1::ServerConfig& c) { c.set_trace_ratio(1.0000001); }},
         BadConfig{"trace_ratio: expected 0 to 1, got nan", [](v1::ServerConfig& c) {
                     c.set_trace_ratio(std::numeric_limits<double>::quiet_NaN());
                   }}));
