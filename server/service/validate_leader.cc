@@ -136,8 +136,8 @@ void ValidateTiming(const v1::Motion& leader, const RequestLimits& limits, Viola
   } else if (rate_fits && frames > limits.max_duration_seconds * rate) {
     violations.Malformed("leader.frame_count",
                          absl::StrCat("a duration of at most ", limits.max_duration_seconds, " s"),
-                         absl::StrCat(frames, " frames, ", base::NumberText(frames / rate),
-                                      " s at ", base::NumberText(rate), " frames per second"));
+                         absl::StrCat(frames, " frames, ", frames / rate, " s at ",
+                                      base::NumberText(rate), " frames per second"));
   }
 }
 

@@ -35,6 +35,20 @@ float SizeOf(absl::Span<const motion::Vec3> pose) {
   return base::Median(std::move(distances));
 }
 
+// Whether all joints of the pose are in one place.
+bool IsPoint(absl::Span<const motion::Vec3> pose) {
+  return std::all_of(pose.begin(), pose.end(),
+                     [&pose](const motion::Vec3& joint) { return joint == pose.front(); });
+}
+
+// A clip in which nobody was ever captured. It needs every frame: those with a person may be few.
+bool ShowsNobody(const motion::Poses& poses) {
+  for (int frame = 0; frame < poses.frame_count(); ++frame) {
+    if (!IsPoint(poses[frame])) return false;
+  }
+  return poses.joint_count() > 1;
+}
+
 }  // namespace
 
 void ValidateSize(absl::string_view field, const motion::Poses& poses, Violations& violations) {
@@ -47,13 +61,15 @@ void ValidateSize(absl::string_view field, const motion::Poses& poses, Violation
     sizes.push_back(SizeOf(poses[frame]));
   }
   const float size = base::Median(std::move(sizes));
-  if (size == 0 || (size >= kSmallestMetres && size <= kLargestMetres)) return;
+  const bool nobody = size == 0 && ShowsNobody(poses);
+  if (!nobody && (size == 0 || (size >= kSmallestMetres && size <= kLargestMetres))) return;
   violations.Malformed(std::string(field),
                        absl::StrCat("the size of a person (half of the joints ", kSmallestMetres,
                                     " to ", kLargestMetres, " m from the middle)"),
-                       absl::StrFormat("%.3g m; check leader.unit (convert centimetres to "
-                                       "millimetres)",
-                                       size));
+                       nobody ? "all joints in one point in every frame"
+                              : absl::StrFormat("%.3g m; check leader.unit (convert centimetres to "
+                                                "millimetres)",
+                                                size));
 }
 
 }  // namespace duet::server::service

@@ -8,8 +8,9 @@
 namespace duet::server::service {
 
 // Adds a violation under `field` if the poses, in metres, are far larger or smaller than a person:
-// positions in another unit than the declared one. Single lost joints and frames do not matter.
-// Accepts poses without a size: no frames, or frames with most joints in one place.
+// positions in another unit than the declared one. Single lost joints and frames do not matter: a
+// tracker that has lost the person reports most joints in one place, even in most of the frames.
+// But in some frame, some joint must be elsewhere. Accepts poses without frames.
 void ValidateSize(absl::string_view field, const motion::Poses& poses, Violations& violations);
 
 }  // namespace duet::server::service

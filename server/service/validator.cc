@@ -158,6 +158,8 @@ std::optional<engine::FollowerStart> Validation::Start() {
   if (joints_.empty()) return std::nullopt;
   std::vector<motion::Vec3> pose = StartPositions("follower_start.pose.positions", values, joints_);
   if (pose.empty()) return std::nullopt;
+  ValidateSize("follower_start.pose.positions", motion::Poses(static_cast<int>(pose.size()), pose),
+               violations_);
   const motion::Vec3 root = pose[static_cast<std::size_t>(model_.skeleton.root)];
   return engine::FollowerStart{root, std::move(pose)};
 }

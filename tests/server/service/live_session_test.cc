@@ -612,6 +612,14 @@ TEST_F(LiveSessionTest, ALeaderInCentimetresEndsTheSessionWithItsFirstFrame) {
   EXPECT_THAT(Take().error, IsInvalid("frames.positions: expected the size of a person"));
 }
 
+TEST_F(LiveSessionTest, ALeaderInOnePointEndsTheSessionWithItsFirstFrame) {
+  Create();
+  Message zeros = Frames(0, 1);
+  for (float& value : *zeros.mutable_frames()->mutable_positions()) value = 0;
+  Send(zeros);
+  EXPECT_THAT(Take().error, IsInvalid("frames.positions: expected the size of a person"));
+}
+
 TEST_F(LiveSessionTest, ATimeOfCaptureMayBeAnyNumber) {
   Create();
   Message frames = Frames(0, 1);

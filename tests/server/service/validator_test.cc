@@ -116,6 +116,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "leader.positions[17]", "expected a finite number, got nan"},
         Spoiled{"centimetres", [](Request& r) { Scale(r, 100); }, "leader.positions",
                 "m from the middle), got 4"},
+        Spoiled{"zeros", [](Request& r) { Scale(r, 0); }, "leader.positions",
+                "m from the middle), got all joints in one point in every frame"},
         Spoiled{"metres_as_millimetres",
                 [](Request& r) { r.mutable_leader()->set_unit(v1::LENGTH_UNIT_MILLIMETRES); },
                 "leader.positions", "check leader.unit"},
@@ -144,6 +146,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "leader.frame_rate_hz", "expected 1 to 240 frames per second, got 0"},
         Spoiled{"negative_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(-15); },
                 "leader.frame_rate_hz", "expected 1 to 240 frames per second, got -15"},
+        Spoiled{"slightly_high_rate",
+                [](Request& r) { r.mutable_leader()->set_frame_rate_hz(240.00002); },
+                "leader.frame_rate_hz", "frames per second, got 240.00002"},
         Spoiled{"high_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(240.5); },
                 "leader.frame_rate_hz", "frames per second, got 240.5"},
         Spoiled{"nan_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(kNan); },
@@ -244,6 +249,10 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"repeated_class",
                 [](Request& r) { AddWeight(*r.mutable_label_vector(), "kick", 1); },
                 "label_vector.weights[1].interaction_class", "got \"kick\" again after weights[0]"},
+        Spoiled{"slightly_large",
+                [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", 2.0000002F); },
+                "label_vector.weights[1].weight",
+                "expected a finite value in [-2, 2], got 2.0000002"},
         Spoiled{"too_large", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", 2.5F); },
                 "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got 2.5"},
         Spoiled{"too_small", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", -2.5F); },
@@ -304,6 +313,12 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     FollowerStart, RefusalTest,
     ::testing::Values(
+        Spoiled{"pose_of_zeros",
+                [](Request& r) {
+                  auto* positions = r.mutable_follower_start()->mutable_pose()->mutable_positions();
+                  positions->Resize(3 * kJoints, 0);
+                },
+                "follower_start.pose.positions", "got all joints in one point in every frame"},
         Spoiled{"empty", [](Request& r) { r.mutable_follower_start(); }, "follower_start.start",
                 "expected root_position or pose, got neither"},
         Spoiled{"nan", [](Request& r) { SetRoot(r, 0, kNan, 0); },
@@ -556,6 +571,13 @@ TEST(ValidateRequestTest, BringsJointsIntoTheModelsOrder) {
   EXPECT_EQ(reversed->reply.joints.front(), 14);
 }
 
+TEST(ValidateRequestTest, ALeaderWhomTheTrackerLosesIsValid) {
+  v1::SynthesizeRequest request = SampleRequest();
+  auto& positions = *request.mutable_leader()->mutable_positions();
+  for (int i = 3 * kJoints; i < positions.size(); ++i) positions[i] = 0;
+  EXPECT_THAT(Validate(request), IsOk()) << "its first frame shows a person";
+}
+
 TEST(ValidateRequestTest, ConvertsUnitAndUpAxisToTheWorld) {
   v1::SynthesizeRequest request = SampleRequest();
   Scale(request, 1000);
@@ -629,12 +651,12 @@ TEST(ValidateRequestTest, LevelsAStartPose) {
   v1::SynthesizeRequest request = SampleRequest();
   auto* positions = request.mutable_follower_start()->mutable_pose()->mutable_positions();
   for (int joint = 0; joint < kJoints; ++joint) {
-    for (const float value : {0.0F, 3.0F, 4.0F}) positions->Add(value);
+    for (const float value : {0.1F * static_cast<float>(joint), 3.0F, 4.0F}) positions->Add(value);
   }
   SetVertical(request, 0, 4, 3);
   const absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
-  EXPECT_LT(Distance(validated->clip.start->pose[5], {0, 4.8F, 1.4F}), 1e-5F);
+  EXPECT_LT(Distance(validated->clip.start->pose[5], {0.5F, 4.8F, 1.4F}), 1e-5F);
   EXPECT_EQ(validated->clip.start->root, validated->clip.start->pose[2]);
 }
 
@@ -649,13 +671,14 @@ TEST(ValidateRequestTest, ReadsAStartPoseInTheLeadersJointOrder) {
   ReverseJoints(*request.mutable_leader());
   auto* positions = request.mutable_follower_start()->mutable_pose()->mutable_positions();
   for (int joint = 0; joint < kJoints; ++joint) {
-    for (int axis = 0; axis < 3; ++axis) positions->Add(static_cast<float>(joint + axis * 100));
+    const float offset = 0.125F * static_cast<float>(joint);
+    for (const float at : {0.0F, 100.0F, 200.0F}) positions->Add(at + offset);
   }
   const absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
   const engine::FollowerStart& start = *validated->clip.start;
   ASSERT_EQ(start.pose.size(), static_cast<std::size_t>(kJoints));
-  EXPECT_EQ(start.pose[0], (motion::Vec3{14, 114, 214}));
+  EXPECT_EQ(start.pose[0], (motion::Vec3{1.75F, 101.75F, 201.75F}));
   EXPECT_EQ(start.pose[14], (motion::Vec3{0, 100, 200}));
   EXPECT_EQ(start.root, start.pose[FakeDescription().skeleton.root]);
 }
@@ -711,12 +734,6 @@ TEST(ValidateRequestTest, PicksReplyJoints) {
   ASSERT_THAT(validated, IsOk());
   EXPECT_THAT(validated->reply.joint_names, ElementsAre("torso", "head"));
   EXPECT_THAT(validated->reply.joints, ElementsAre(2, 0));
-}
-
-TEST(ValidateRequestTest, AcceptsALeaderWhoseJointsCoincide) {
-  v1::SynthesizeRequest request = SampleRequest();
-  for (float& value : *request.mutable_leader()->mutable_positions()) value = 0;
-  EXPECT_THAT(Validate(request), IsOk());
 }
 
 INSTANTIATE_TEST_SUITE_P(
