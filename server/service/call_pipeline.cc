@@ -39,8 +39,10 @@ void CallPipeline::Report(CallScope& scope, const absl::Status& status,
 }
 
 absl::Status CallPipeline::CheckSize(const grpc::ByteBuffer& bytes, std::size_t max_bytes) const {
-  const std::size_t most = std::min(max_bytes, max_request_bytes_);
-  return bytes.Length() <= most ? absl::OkStatus() : TooLargeRefusal(bytes.Length(), most);
+  const std::size_t length = bytes.Length();
+  if (length > max_request_bytes_) return TooLargeRefusal(length, max_request_bytes_);
+  if (length > max_bytes) return LiveMessageTooLargeRefusal(length, max_bytes);
+  return absl::OkStatus();
 }
 
 // By value, so that the bytes are freed as soon as they are parsed.

@@ -15,7 +15,9 @@ namespace {
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 20;
 
 absl::StatusOr<v1::SynthesizeLiveRequest> Parse(grpc::ByteBuffer bytes) {
-  if (bytes.Length() > kMaxMessageBytes) return TooLargeRefusal(bytes.Length(), kMaxMessageBytes);
+  if (bytes.Length() > kMaxMessageBytes) {
+    return LiveMessageTooLargeRefusal(bytes.Length(), kMaxMessageBytes);
+  }
   v1::SynthesizeLiveRequest message;
   const absl::Status parsed = ParseMessage(std::move(bytes), message);
   if (!parsed.ok()) return parsed;

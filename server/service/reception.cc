@@ -141,7 +141,7 @@ void Reception::CheckTime(common::TimePoint now) {
     common::MutexLock lock(mutex_);
     if (state_ == State::kReceiving) arrival = CheckArrival(common::SecondsBetween(begin_, now));
     if (reading_ && common::SecondsBetween(reading_->begin, now) >= reading_->timeout_seconds) {
-      next = ReceiveTimeoutRefusal(reading_->timeout_seconds);
+      next = LiveIdleRefusal(reading_->timeout_seconds);
     }
     call = call_;
   }

@@ -60,6 +60,13 @@ absl::Status ReceiveTimeoutRefusal(double seconds) {
   return status;
 }
 
+absl::Status LiveIdleRefusal(double seconds) {
+  absl::Status status = absl::DeadlineExceededError(
+      absl::StrCat("the live session got no message for live_idle_seconds = ", seconds));
+  common::AddErrorInfo(status, common::kReasonReceiveTimeout);
+  return status;
+}
+
 absl::Status WriteTimeoutRefusal(double seconds) {
   absl::Status status = absl::DeadlineExceededError(
       absl::StrCat("the caller read no reply for write_timeout_seconds = ", seconds));
@@ -93,6 +100,15 @@ absl::Status TooLargeRefusal(std::size_t bytes, std::size_t limit) {
   common::AddErrorInfo(
       status, common::kReasonRequestTooLarge,
       {{"max_request_bytes", absl::StrCat(limit)}, {"request_bytes", absl::StrCat(bytes)}});
+  return status;
+}
+
+absl::Status LiveMessageTooLargeRefusal(std::size_t bytes, std::size_t limit) {
+  absl::Status status = absl::ResourceExhaustedError(
+      absl::StrCat("message of a live session: expected at most ", limit, " bytes, got ", bytes));
+  common::AddErrorInfo(
+      status, common::kReasonRequestTooLarge,
+      {{"max_message_bytes", absl::StrCat(limit)}, {"message_bytes", absl::StrCat(bytes)}});
   return status;
 }
 

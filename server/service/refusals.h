@@ -27,6 +27,8 @@ absl::Status TooManyBytesRefusal(std::size_t bytes, std::size_t held, std::size_
 absl::Status TooManySlowRequestsRefusal(std::size_t limit);
 // DEADLINE_EXCEEDED: the request did not arrive, or a reply was not read, within the time limit.
 absl::Status ReceiveTimeoutRefusal(double seconds);
+// The same for the next message of a live session, which has a time limit of its own.
+absl::Status LiveIdleRefusal(double seconds);
 absl::Status WriteTimeoutRefusal(double seconds);
 // RESOURCE_EXHAUSTED: other calls waited for the place of a call whose reader had stalled.
 absl::Status StalledReaderRefusal(double seconds);
@@ -37,6 +39,8 @@ absl::Status NoMessageRefusal();
 absl::Status QueueRefusal(const absl::Status& scheduler_status);
 // RESOURCE_EXHAUSTED: the message is larger than the limit.
 absl::Status TooLargeRefusal(std::size_t bytes, std::size_t limit);
+// The same for a message of a live session, whose limit no setting changes.
+absl::Status LiveMessageTooLargeRefusal(std::size_t bytes, std::size_t limit);
 // NOT_FOUND, naming the field that matches no served model.
 absl::Status ModelNotFoundRefusal(const registry::ModelNotFound& not_found);
 // INTERNAL: the model failed. The message has no details; the log has them under the request ID.

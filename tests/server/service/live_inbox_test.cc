@@ -78,7 +78,9 @@ TEST_F(LiveInboxTest, ATooLargeMessageEndsTheSessionUnparsed) {
               StatusIs(StatusCode::kInvalidArgument, ::testing::_));
   SetUp();
   EXPECT_THAT(Send(std::string(kMaxBytes + 1, '\0')),
-              StatusIs(StatusCode::kResourceExhausted, HasSubstr("got 1048577")));
+              StatusIs(StatusCode::kResourceExhausted,
+                       HasSubstr("message of a live session: expected at most 1048576 bytes, got "
+                                 "1048577")));
 }
 
 TEST_F(LiveInboxTest, ManyTinyFieldsEndTheSessionUnparsed) {

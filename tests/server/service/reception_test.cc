@@ -250,6 +250,15 @@ TEST_F(FurtherMessagesTest, AreReadOnlyOnRequestOneAtATime) {
   EXPECT_EQ(sink_->ends, 0);
 }
 
+TEST_F(FurtherMessagesTest, SilenceEndsTheCallInTheNameOfTheSettingOfLiveSessions) {
+  EXPECT_TRUE(reception_->ReadNext(4));
+  clock_.Advance(milliseconds(4000));
+  reception_->CheckTime(clock_.Now());
+  ASSERT_TRUE(writer_.finished.has_value());
+  EXPECT_THAT(*writer_.finished, StatusIs(StatusCode::kDeadlineExceeded,
+                                          ::testing::HasSubstr("live_idle_seconds = 4")));
+}
+
 TEST_F(FurtherMessagesTest, EndOfMessagesLeavesTheCallRunning) {
   EXPECT_TRUE(reception_->ReadNext(30));
   reception_->EndOfMessages();
