@@ -73,12 +73,15 @@ class Mapper {
  public:
   Mapper(absl::string_view source, const std::vector<std::string>& names,
          const motion::Skeleton& skeleton, std::vector<JointReading>* readings)
-      : source_(source), names_(names), skeleton_(skeleton), readings_(readings) {
+      : source_(source),
+        names_(names),
+        parsed_(ParseJointNames(names)),
+        skeleton_(skeleton),
+        readings_(readings) {
     found_.resize(skeleton.joint_names.size());
     why_.resize(skeleton.joint_names.size());
     overridden_.resize(skeleton.joint_names.size(), false);
     used_.resize(names.size(), false);
-    for (const std::string& name : names) parsed_.push_back(ParseJointName(name));
   }
 
   absl::StatusOr<JointMap> MapPoses(const motion::Poses& poses, const JointOverrides& overrides) {
@@ -485,9 +488,9 @@ class Mapper {
 
   absl::string_view source_;
   const std::vector<std::string>& names_;
+  std::vector<ParsedJointName> parsed_;  // [names]
   const motion::Skeleton& skeleton_;
   std::vector<JointReading>* readings_;                   // may be null
-  std::vector<ParsedJointName> parsed_;                   // [names]
   std::vector<bool> used_;                                // [names]
   std::vector<std::optional<JointSource>> found_;         // [skeleton joints]
   std::vector<bool> overridden_;                          // [skeleton joints] named by the user

@@ -1,6 +1,9 @@
 #include "model/retargeting/joint_names.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -10,6 +13,16 @@
 
 namespace duet::retargeting {
 namespace {
+
+using WordList = std::vector<std::string>;
+
+enum class NamePart { kPrefix, kSuffix };
+
+// A word is a prefix or suffix of a file if this share of its names have it, and at least so many:
+// ends and helpers often lack it. No part of the body is in so many names.
+constexpr double kShared = 0.75;
+constexpr std::size_t kFewestShared = 8;
+constexpr char kEndWord[] = "end";
 
 struct AliasRow {
   const char* base;  // the skeleton's
@@ -54,8 +67,8 @@ bool IsUpper(char c) { return absl::ascii_isupper(static_cast<unsigned char>(c))
 bool IsLower(char c) { return absl::ascii_islower(static_cast<unsigned char>(c)); }
 
 // "LeftUpLeg" -> left up leg; "RThigh" -> r thigh; "LEFT_HIP" -> left hip.
-std::vector<std::string> Words(absl::string_view name) {
-  std::vector<std::string> words;
+WordList Words(absl::string_view name) {
+  WordList words;
   std::string word;
   const auto end_word = [&] {
     if (!word.empty()) words.push_back(std::exchange(word, ""));
@@ -106,12 +119,12 @@ void SplitJoinedSide(ParsedJointName* name) {
   }
 }
 
-}  // namespace
-
-ParsedJointName ParseJointName(absl::string_view name) {
+absl::string_view WithoutNamespace(absl::string_view name) {
   const std::size_t space = name.find_last_of(":|");
-  if (space != absl::string_view::npos) name.remove_prefix(space + 1);
-  std::vector<std::string> words = Words(name);
+  return space == absl::string_view::npos ? name : name.substr(space + 1);
+}
+
+ParsedJointName ParseWords(WordList words) {
   while (words.size() > 1 && IsNoise(words.front())) words.erase(words.begin());
   ParsedJointName parsed;
   for (auto word = words.begin(); word != words.end() && words.size() > 1; ++word) {
@@ -122,6 +135,63 @@ ParsedJointName ParseJointName(absl::string_view name) {
   }
   parsed.base = absl::StrJoin(words, "");
   if (parsed.side == BodySide::kMiddle) SplitJoinedSide(&parsed);
+  return parsed;
+}
+
+// The place of the word that may be a prefix or a suffix of the name, if words of its own would be
+// left. The end of a bone has its joint's name and "end".
+WordList::const_iterator FindAffix(NamePart part, const WordList& words) {
+  const bool is_end = words.size() > 1 && words.back() == kEndWord;
+  if (words.size() < (is_end ? 3U : 2U)) return words.end();
+  const auto place = part == NamePart::kPrefix ? words.begin() : words.end() - (is_end ? 2 : 1);
+  return SideOf(*place) == BodySide::kMiddle ? place : words.end();
+}
+
+// The word that most of the names have as their prefix or suffix; empty if there is none.
+std::string FindShared(NamePart part, const std::vector<WordList>& all) {
+  std::map<std::string, std::size_t> counts;
+  for (const WordList& words : all) {
+    const auto place = FindAffix(part, words);
+    if (place != words.end()) ++counts[*place];
+  }
+  for (const auto& [word, count] : counts) {
+    if (count >= kFewestShared && count >= kShared * static_cast<double>(all.size())) return word;
+  }
+  return "";
+}
+
+// Removes a shared word from the names, unless names that differed would then be the same.
+bool StripShared(NamePart part, std::vector<WordList>* all) {
+  const std::string shared = FindShared(part, *all);
+  if (shared.empty()) return false;
+  std::vector<WordList> stripped = *all;
+  for (WordList& words : stripped) {
+    const auto place = FindAffix(part, words);
+    if (place != words.end() && *place == shared) words.erase(place);
+  }
+  const auto different = [](const std::vector<WordList>& names) {
+    return std::set<WordList>(names.begin(), names.end()).size();
+  };
+  if (different(stripped) < different(*all)) return false;
+  *all = std::move(stripped);
+  return true;
+}
+
+}  // namespace
+
+ParsedJointName ParseJointName(absl::string_view name) {
+  return ParseWords(Words(WithoutNamespace(name)));
+}
+
+std::vector<ParsedJointName> ParseJointNames(const std::vector<std::string>& names) {
+  std::vector<WordList> all;
+  for (const std::string& name : names) all.push_back(Words(WithoutNamespace(name)));
+  for (const NamePart part : {NamePart::kPrefix, NamePart::kSuffix}) {
+    while (StripShared(part, &all)) {
+    }
+  }
+  std::vector<ParsedJointName> parsed;
+  for (WordList& words : all) parsed.push_back(ParseWords(std::move(words)));
   return parsed;
 }
 

@@ -22,6 +22,9 @@ struct ParsedJointName {
   }
 };
 ParsedJointName ParseJointName(absl::string_view name);
+// The names of a file's joints. Words that most of them share as a prefix or suffix are removed
+// (CC_Base_Hip, Bob_Hips, hips_JNT, upleg.L.001), unless names that differ would then be the same.
+std::vector<ParsedJointName> ParseJointNames(const std::vector<std::string>& names);
 
 // The bases that files use for the joint that a skeleton calls `base`, in order of preference.
 std::vector<std::string> JointAliases(const std::string& base);

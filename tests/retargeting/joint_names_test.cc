@@ -1,6 +1,9 @@
 #include "model/retargeting/joint_names.h"
 
 #include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -93,6 +96,55 @@ TEST(JointKinds, SpineAndNeckAreInTheMiddleAndNoEnds) {
     EXPECT_FALSE(IsSpine(ParseJointName(name))) << name;
     EXPECT_FALSE(IsNeck(ParseJointName(name))) << name;
   }
+}
+
+// The names of a person, with `affix` around each.
+std::vector<std::string> Rig(const std::string& prefix, const std::string& suffix) {
+  std::vector<std::string> names;
+  for (const char* name : {"Hips", "Spine", "Spine1", "Neck", "Head", "LeftArm", "LeftForeArm",
+                           "LeftHand", "RightArm", "RightForeArm", "RightHand", "LeftUpLeg",
+                           "LeftLeg", "LeftFoot", "RightUpLeg", "RightLeg", "RightFoot"}) {
+    names.push_back(prefix + name + suffix);
+  }
+  return names;
+}
+
+TEST(ParseJointNames, RemovesWhatMostNamesShare) {
+  const std::vector<ParsedJointName> plain = ParseJointNames(Rig("", ""));
+  EXPECT_EQ(plain[11], (ParsedJointName{BodySide::kLeft, "upleg"}));
+  for (const auto& [prefix, suffix] : {std::pair<const char*, const char*>{"CC_Base_", ""},
+                                       {"Bob_", ""},
+                                       {"Char01_", ""},
+                                       {"Take001:Skeleton1_", ""},
+                                       {"", "_JNT"},
+                                       {"", "_jnt"},
+                                       {"", ".001"},
+                                       {"My_", "_jnt_01"},
+                                       {"bob", ""}}) {
+    EXPECT_EQ(ParseJointNames(Rig(prefix, suffix)), plain) << prefix << "*" << suffix;
+  }
+}
+
+TEST(ParseJointNames, EndsAndHelpersNeedNotShareIt) {
+  std::vector<std::string> names = Rig("", "_jnt");
+  names.push_back("HeadTop_End");
+  names.push_back("Head_jnt.end");
+  names.push_back("jnt");
+  const std::vector<ParsedJointName> parsed = ParseJointNames(names);
+  EXPECT_EQ(parsed[4], (ParsedJointName{BodySide::kMiddle, "head"}));
+  EXPECT_EQ(parsed[17], (ParsedJointName{BodySide::kMiddle, "headtopend"}));
+  EXPECT_EQ(parsed[18], (ParsedJointName{BodySide::kMiddle, "headend"}));
+  EXPECT_EQ(parsed[19], (ParsedJointName{BodySide::kMiddle, "jnt"})) << "never empty";
+}
+
+TEST(ParseJointNames, KeepsWhatTellsNamesApart) {
+  std::vector<std::string> names = Rig("Bob_", "");
+  names.push_back("Hips");
+  EXPECT_EQ(ParseJointNames(names)[0], (ParsedJointName{BodySide::kMiddle, "bobhips"}));
+  // A side is no prefix, and a few names share words by chance.
+  const std::vector<std::string> arm = {"left_arm", "left_hand", "left_elbow"};
+  EXPECT_EQ(ParseJointNames(arm)[0], (ParsedJointName{BodySide::kLeft, "arm"}));
+  EXPECT_EQ(ParseJointNames({"mid_arm", "mid_leg"})[0], ParseJointName("mid_arm"));
 }
 
 }  // namespace
