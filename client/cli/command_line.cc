@@ -73,6 +73,7 @@ class Settled {
       const std::string flag = absl::StrCat("--", setting.name);
       if (!Knows(*chosen, flag)) continue;
       if (IsGiven(flag, arguments) || IsExcluded(*chosen, flag, arguments)) continue;
+      chosen->Find(flag)->MarkAsSetting();
       added.push_back(absl::StrCat(flag, "=", setting.value));
       used_.push_back(setting);
     }

@@ -80,8 +80,8 @@ void AddFlags(FlagSet* command, CompareArguments* arguments) {
       ->Form("FILE")
       ->Group(kOutputGroup);
   command->Footer(kTakesFooter);
-  command->Check([arguments] {
-    CheckTakes(arguments->takes);
+  command->Check([command, arguments] {
+    CheckTakes(*command, arguments->takes);
     if (arguments->out == kStandardStream) {
       RejectFlag("--out", "expected a file, got standard output");
     }

@@ -56,7 +56,11 @@ class Flag {
   Flag* OneOf(const std::vector<std::string>& choices);
   Flag* ExistingFile();
 
+  // A value comes from the command line, or from the configuration file.
   bool is_given() const;
+  // The same, but not from the configuration file, whose flags only apply where they fit.
+  bool is_typed() const { return is_given() && !is_setting_; }
+  void MarkAsSetting() { is_setting_ = true; }
   std::vector<std::string> values() const;
 
   bool is_argument() const;
@@ -71,6 +75,7 @@ class Flag {
 
  private:
   CLI::Option* option_;
+  bool is_setting_ = false;
 };
 
 // The result of parsing a command line.

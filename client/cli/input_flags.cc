@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/cli/flags.h"
 #include "client/cli/value_syntax.h"
 
@@ -39,6 +41,17 @@ std::vector<std::string> NamesOf(const std::map<std::string, Value>& choices) {
 const std::map<std::string, double> kBvhUnits = {{"centimetres", formats::kCentimetre},
                                                  {"metres", 1}};
 
+// Rejects a flag that only `format` needs, with the article and extension `what`.
+void CheckOnlyFor(Format format, const char* what, const Flag& flag, const InputArguments& input,
+                  const std::vector<std::filesystem::path>& files) {
+  if (!flag.is_typed()) return;
+  const auto has_format = [&input, format](const std::filesystem::path& file) {
+    return (input.format ? input.format : formats::FormatOf(file)) == format;
+  };
+  if (std::any_of(files.begin(), files.end(), has_format)) return;
+  RejectFlag(flag.name(), absl::StrCat("expected ", what, " motion, got ", files.front().string()));
+}
+
 }  // namespace
 
 const std::map<std::string, formats::Side> kSides = {{"left", formats::Side::kLeft},
@@ -66,8 +79,7 @@ void AddInputFlags(FlagSet* app, InputArguments* input) {
       ->LastOnly()
       ->Group(kInputGroup);
   app->Add("--metres-per-unit", &input->metres_per_unit,
-           "BVH, glTF, FBX, ASF: metres in one unit of the file (0.01 for centimetres); overrides "
-           "--unit")
+           "Metres in one unit of the file (0.01 for centimetres); overrides --unit")
       ->AboveZero()
       ->Form("METRES")
       ->Group(kInputGroup);
@@ -95,6 +107,12 @@ void AddInputFlags(FlagSet* app, InputArguments* input) {
            "File with one MODEL_JOINT=FILE_JOINT on each line; --joint-map overrides it")
       ->Form("FILE")
       ->Group(kInputGroup);
+}
+
+void CheckInputFlags(const FlagSet& command, const InputArguments& input,
+                     const std::vector<std::filesystem::path>& files) {
+  CheckOnlyFor(Format::kNpy, "a .npy", *command.Find("--layout"), input, files);
+  CheckOnlyFor(Format::kNpz, "a .npz", *command.Find("--body-model"), input, files);
 }
 
 std::vector<std::string> InputFormatNames() { return NamesOf(kInputFormats); }
@@ -128,6 +146,28 @@ void AddBvhFlags(FlagSet* app, BvhArguments* bvh) {
       ->ShowDefault()
       ->Form("COUNT")
       ->Group(kOutputGroup);
+}
+
+void CheckBvhFlags(const FlagSet& command, const std::vector<std::filesystem::path>& outputs,
+                   const std::optional<OutputFormat>& format) {
+  if (WritesFormat(Format::kBvh, outputs, format)) return;
+  const auto append = [](std::string* out, const std::filesystem::path& path) {
+    out->append(path.string());
+  };
+  for (const char* name : {"--bvh-unit", "--bvh-keys-per-frame"}) {
+    if (!command.Find(name)->is_typed()) continue;
+    RejectFlag(name, absl::StrCat("expected an output FILE.bvh, got ",
+                                  absl::StrJoin(outputs, ", ", append)));
+  }
+}
+
+bool WritesFormat(Format wanted, const std::vector<std::filesystem::path>& outputs,
+                  const std::optional<OutputFormat>& format) {
+  const auto has_format = [wanted, &format](const std::filesystem::path& output) {
+    if (output != kStandardStream) return formats::FormatOf(output) == wanted;
+    return format && format->motion == wanted;
+  };
+  return std::any_of(outputs.begin(), outputs.end(), has_format);
 }
 
 bool WritesToStandardOutput(const std::vector<std::filesystem::path>& outputs) {

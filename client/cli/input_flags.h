@@ -1,7 +1,9 @@
 #ifndef DUET_CLIENT_CLI_INPUT_FLAGS_H_
 #define DUET_CLIENT_CLI_INPUT_FLAGS_H_
 
+#include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,10 @@ namespace duet::client::cli {
 
 // How motion files are to be read: --frame-rate, --unit, --joint-map and so on.
 void AddInputFlags(FlagSet* app, InputArguments* input);
+
+// Rejects --layout and --body-model if none of `files` has the format that they describe.
+void CheckInputFlags(const FlagSet& command, const InputArguments& input,
+                     const std::vector<std::filesystem::path>& files);
 
 // The values of --input-format and of --layout.
 std::vector<std::string> InputFormatNames();
@@ -25,6 +31,14 @@ void AddOutputLayoutFlag(FlagSet* app, std::optional<formats::research::Layout>*
 
 // --bvh-unit and --bvh-keys-per-frame, of what is written.
 void AddBvhFlags(FlagSet* app, BvhArguments* bvh);
+
+// Rejects these flags without an output in BVH.
+void CheckBvhFlags(const FlagSet& command, const std::vector<std::filesystem::path>& outputs,
+                   const std::optional<OutputFormat>& format);
+
+// Whether one of the outputs has this format; `format` is that of standard output.
+bool WritesFormat(formats::Format wanted, const std::vector<std::filesystem::path>& outputs,
+                  const std::optional<OutputFormat>& format);
 
 // What standard output cannot take: several results, a summary besides, a result without
 // --output-format. Throws what CLI11 reports as a usage error.

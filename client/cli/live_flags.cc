@@ -72,7 +72,7 @@ void AddSinkFlags(FlagSet* app, LiveArguments* arguments) {
 }
 
 // Checks flags that depend on each other.
-void CheckTogether(const LiveArguments& arguments) {
+void CheckTogether(const FlagSet& command, const LiveArguments& arguments) {
   if (arguments.weights.empty() && arguments.keyframes.empty()) {
     RejectMissing("--label or --keyframe");
   }
@@ -84,6 +84,8 @@ void CheckTogether(const LiveArguments& arguments) {
   if (const absl::Status status = CheckSource(arguments.from); !status.ok()) {
     RejectFlag("--from", std::string(status.message()));
   }
+  if (!arguments.leader.empty()) CheckInputFlags(command, arguments.input, {arguments.leader});
+  CheckBvhFlags(command, {arguments.to.begin(), arguments.to.end()}, std::nullopt);
   const auto outs = std::count(arguments.to.begin(), arguments.to.end(), kStandardStream);
   if (outs > 1) RejectFlag("--to", "expected - once, got it twice");
   if (outs > 0 && arguments.json) {
@@ -102,9 +104,9 @@ void AddLiveFlags(FlagSet* command, LiveArguments* arguments) {
   AddReactionFlags(command, arguments);
   AddSinkFlags(command, arguments);
   AddServerFlags(command, &arguments->server);
-  command->Check([arguments] {
+  command->Check([command, arguments] {
     if (IsFile(arguments->from)) arguments->leader = arguments->from;
-    CheckTogether(*arguments);
+    CheckTogether(*command, *arguments);
   });
 }
 

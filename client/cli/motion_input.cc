@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "model/base/file.h"
 #include "model/base/missing_file.h"
+#include "model/motion/inferred_coordinates.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/stated_unit.h"
@@ -17,6 +19,8 @@ namespace duet::client::cli {
 namespace {
 
 constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
+// The legs of a small child and of a giant, metres.
+constexpr double kShortestLikelyLeg = 0.2, kLongestLikelyLeg = 4;
 constexpr char kStandardInput[] = "standard input";
 
 absl::StatusOr<std::string> ReadWhole(std::istream* in) {
@@ -32,6 +36,21 @@ absl::StatusOr<std::string> ReadWhole(std::istream* in) {
     }
   }
   return content;
+}
+
+// A stated unit may be wrong. An inferred one always gives the legs of a person.
+void WarnOfSize(const motion::Clip& clip, const formats::ReadOptions& options) {
+  if (!options.skeleton.feet) return;
+  const double leg = LegLength(options.skeleton, clip.poses);
+  if (leg >= kShortestLikelyLeg && leg <= kLongestLikelyLeg) return;
+  const std::optional<motion::InferredUnit> unit = motion::InferUnit({leg});
+  const std::string warning = absl::StrCat(
+      "warning: size: as the file was read, the distance from foot to ",
+      options.skeleton.joint_names[static_cast<std::size_t>(options.skeleton.root)], " is ",
+      absl::StrFormat("%.3g", leg), " m; ",
+      unit.has_value() ? absl::StrCat(unit->name, " would fit; ") : "", "specify the unit");
+  if (options.notes != nullptr) options.notes->push_back(warning);
+  if (options.report != nullptr) options.report->remarks.push_back(warning);
 }
 
 }  // namespace
@@ -52,8 +71,11 @@ absl::StatusOr<MotionInput> MotionInput::Open(const std::filesystem::path& path,
 }
 
 absl::StatusOr<motion::Clip> MotionInput::Read(const formats::ReadOptions& options) const {
-  return content_.has_value() ? formats::ParseLeader(*content_, name_, options)
-                              : formats::ReadLeader(name_, options);
+  absl::StatusOr<motion::Clip> clip = content_.has_value()
+                                          ? formats::ParseLeader(*content_, name_, options)
+                                          : formats::ReadLeader(name_, options);
+  if (clip.ok()) WarnOfSize(*clip, options);
+  return clip;
 }
 
 absl::StatusOr<formats::ReadPeople> ReadAllPeople(const MotionInput& input,

@@ -25,7 +25,7 @@ class MotionInput {
   // Its name in errors and reports.
   const std::string& name() const { return name_; }
 
-  // Like formats::ReadLeader.
+  // Like formats::ReadLeader. Warns in the notes and the report of a person of no likely size.
   absl::StatusOr<motion::Clip> Read(const formats::ReadOptions& options) const;
 
  private:

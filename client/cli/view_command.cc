@@ -146,7 +146,7 @@ void AddFlags(FlagSet* command, ViewArguments* arguments) {
       ->Group(kOutputGroup);
   command->AddSwitch("--quiet", &arguments->quiet, "Print only errors")->Group(kOutputGroup);
   command->Footer(absl::StrCat(kTakesFooter, kSetFooter));
-  command->Check([arguments] {
+  command->Check([command, arguments] {
     if (IsOfSet(*arguments) && arguments->takes.takes.size() != 2) {
       const size_t words = arguments->takes.takes.size();
       RejectFlag("files", words == 1
@@ -154,7 +154,7 @@ void AddFlags(FlagSet* command, ViewArguments* arguments) {
                               : absl::StrCat("expected a data set and one of its items, got ",
                                              words - 1, " words after the data set"));
     }
-    CheckTakes(arguments->takes);
+    CheckTakes(*command, arguments->takes);
     CheckPage("--out", arguments->out);
   });
 }

@@ -32,6 +32,7 @@
 #include "model/motion/reading_setting.h"
 #include "model/motion/recorded_motion.h"
 #include "model/motion/sbu.h"
+#include "model/motion/stated_unit.h"
 #include "model/retargeting/character.h"
 
 namespace duet::formats {
@@ -89,6 +90,29 @@ void ReportCoordinates(const motion::Coordinates& coordinates, Origin unit, Orig
   report->up_axis = Setting{std::string(UpAxisName(coordinates.up_axis)), up_axis, ""};
 }
 
+// Unless the caller names the unit.
+void ReportMetresPerUnit(const ReadOptions& options) {
+  if (!options.metres_per_unit.has_value()) return;
+  if (options.coordinates.has_value() &&
+      motion::StatedMetresPerUnit(std::nullopt, options.coordinates->unit) ==
+          options.metres_per_unit) {
+    return;
+  }
+  options.report->unit = Setting{absl::StrCat(*options.metres_per_unit, " m"), Origin::kGiven, ""};
+}
+
+// The coordinates of a file of positions, which has those of `file` unless the caller states
+// others. Positions in a unit of `metres_per_unit` are multiplied by it, which makes them metres.
+motion::Coordinates CoordinatesOf(const ReadOptions& options, const motion::Coordinates& file) {
+  motion::Coordinates coordinates = options.coordinates.value_or(file);
+  if (options.metres_per_unit.has_value()) coordinates.unit = motion::LengthUnit::kMetres;
+  return coordinates;
+}
+
+float ScaleOf(const ReadOptions& options) {
+  return static_cast<float>(options.metres_per_unit.value_or(1));
+}
+
 // Reports what a file of positions states. SBU text states nothing.
 void Report(const motion::RecordedMotion& motion, const motion::Clip& person,
             const ReadOptions& options) {
@@ -101,10 +125,12 @@ void Report(const motion::RecordedMotion& motion, const motion::Clip& person,
                                  motion.rate_from_times ? "its column of times" : ""};
   }
   if (options.coordinates.has_value()) {
-    return ReportCoordinates(*options.coordinates, Origin::kGiven, Origin::kGiven, report);
+    ReportCoordinates(*options.coordinates, Origin::kGiven, Origin::kGiven, report);
+  } else {
+    ReportCoordinates(motion.coordinates, motion.says_unit ? Origin::kFile : Origin::kDefault,
+                      motion.says_up_axis ? Origin::kFile : Origin::kDefault, report);
   }
-  ReportCoordinates(motion.coordinates, motion.says_unit ? Origin::kFile : Origin::kDefault,
-                    motion.says_up_axis ? Origin::kFile : Origin::kDefault, report);
+  ReportMetresPerUnit(options);
 }
 
 // SBU text has the skeleton's joints in its order.
@@ -117,6 +143,7 @@ void ReportSbu(const flat::SbuOptions& sbu, const ReadOptions& options) {
                                "as SBU's captures have; K3HI's have 30"};
   const Origin origin = options.coordinates.has_value() ? Origin::kGiven : Origin::kDefault;
   ReportCoordinates(sbu.coordinates, origin, origin, report);
+  ReportMetresPerUnit(options);
   for (const std::string& joint : sbu.joint_names) {
     report->joints.push_back({joint, {{joint, 1}}, Origin::kDefault, ""});
   }
@@ -135,13 +162,15 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
   if (options.notes != nullptr) {
     options.notes->insert(options.notes->end(), map->notes.begin(), map->notes.end());
   }
-  const motion::Coordinates coordinates = options.coordinates.value_or(motion.coordinates);
+  const motion::Coordinates coordinates = CoordinatesOf(options, motion.coordinates);
   motion::Clip clip;
   clip.joint_names = options.skeleton.joint_names;
   clip.frame_rate_hz = person.frame_rate_hz;
   for (int frame = 0; frame < person.frame_count(); ++frame) {
     std::vector<motion::Vec3> pose = ApplyJointMap(*map, person.poses[frame]);
-    for (motion::Vec3& position : pose) position = ToWorld(coordinates, position);
+    for (motion::Vec3& position : pose) {
+      position = ToWorld(coordinates, position * ScaleOf(options));
+    }
     clip.Append(pose);
   }
   if (!options.coordinates.has_value()) WarnOfUpAxis(clip, options);
@@ -153,11 +182,16 @@ absl::StatusOr<motion::Clip> ReadSbuPerson(const std::string& text, const std::s
   flat::SbuOptions sbu;
   sbu.joint_names = options.skeleton.joint_names;
   sbu.frame_rate_hz = options.frame_rate_hz.value_or(motion::kSbuFrameRateHz);
-  sbu.coordinates = options.coordinates.value_or(sbu.coordinates);
+  // The axis of SBU's unit belongs to that unit.
+  const bool own_unit = !options.metres_per_unit.has_value();
+  sbu.coordinates = CoordinatesOf(options, own_unit ? sbu.coordinates : motion::Coordinates{});
   ReportSbu(sbu, options);
   absl::StatusOr<flat::SbuRecording> recording = ParseSbu(text, source, sbu);
   if (!recording.ok()) return recording.status();
-  return options.side == Side::kLeft ? std::move(recording->left) : std::move(recording->right);
+  motion::Clip person =
+      options.side == Side::kLeft ? std::move(recording->left) : std::move(recording->right);
+  for (motion::Vec3& position : person.poses.all()) position = position * ScaleOf(options);
+  return person;
 }
 
 absl::StatusOr<motion::Clip> ReadBvhPerson(const std::string& text, const std::string& source,
@@ -332,6 +366,10 @@ absl::StatusOr<motion::Clip> ReadAtRate(Format format, const std::string& conten
 }
 
 absl::Status CheckOptions(const ReadOptions& options) {
+  if (options.metres_per_unit.has_value()) {
+    absl::Status status = retargeting::CheckMetresPerUnit(*options.metres_per_unit);
+    if (!status.ok()) return status;
+  }
   if (!options.frame_rate_hz.has_value()) return absl::OkStatus();
   return motion::CheckFrameRate("frame rate given", *options.frame_rate_hz);
 }

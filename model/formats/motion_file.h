@@ -58,8 +58,9 @@ struct ReadOptions {
   // Overrides the file's coordinates. Defaults: SBU text has the data set's normalised unit; CSV
   // and JSON have what they state, or metres, y up; NPY has metres, y up.
   std::optional<motion::Coordinates> coordinates;
-  // BVH, glTF, FBX, ASF: metres in one unit of the file (0.01 for centimetres). If absent, the unit
-  // that the file states, or else an inferred one (model/motion/inferred_coordinates.h).
+  // Metres in one unit of the file (0.01 for centimetres); overrides the unit of `coordinates`. If
+  // absent, BVH, glTF, FBX and ASF have the unit that the file states, or else an inferred one
+  // (model/motion/inferred_coordinates.h).
   std::optional<double> metres_per_unit;
   // glTF, FBX: the name of the animation (of FBX: a take). If absent, the first that moves the
   // person. Other formats hold one motion and reject a name.

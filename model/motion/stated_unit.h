@@ -7,8 +7,8 @@
 
 namespace duet::motion {
 
-// The metres in one unit of a file with a hierarchy, as a caller states them: directly, or else by
-// the unit's name. Absent if neither does; SBU's unit is none of such a file.
+// The metres in one unit of a file, as a caller states them: directly, or else by the unit's name.
+// Absent if neither does, or for SBU's unit, which is no mere scale.
 inline std::optional<double> StatedMetresPerUnit(const std::optional<double>& metres_per_unit,
                                                  const std::optional<LengthUnit>& unit) {
   if (metres_per_unit.has_value()) return metres_per_unit;

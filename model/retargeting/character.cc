@@ -87,12 +87,6 @@ class ClipMaker {
     }
   }
 
-  static absl::StatusOr<double> CheckUnit(double metres) {
-    if (metres > 0 && metres <= kLargestUnit) return metres;
-    return absl::InvalidArgumentError(absl::StrCat(
-        "metres per unit: expected more than 0 and at most ", kLargestUnit, ", got ", metres));
-  }
-
   absl::Status UnitNeeded(absl::string_view why) const {
     return MendedBy(absl::InvalidArgumentError(
                         absl::StrCat(source_, ": size: ", why, "; specify the metres per unit")),
@@ -102,7 +96,9 @@ class ClipMaker {
   absl::StatusOr<double> MetresPerUnit(const std::vector<motion::Vec3>& straight) {
     if (options_.metres_per_unit.has_value()) {
       ReportUnit({absl::StrCat(*options_.metres_per_unit, " m"), Origin::kGiven, ""});
-      return CheckUnit(*options_.metres_per_unit);
+      const absl::Status valid = CheckMetresPerUnit(*options_.metres_per_unit);
+      if (!valid.ok()) return valid;
+      return *options_.metres_per_unit;
     }
     if (!options_.skeleton.feet) {
       return UnitNeeded("expected a skeleton with feet to infer the unit, got none");
@@ -180,6 +176,12 @@ class ClipMaker {
 };
 
 }  // namespace
+
+absl::Status CheckMetresPerUnit(double metres) {
+  if (metres > 0 && metres <= kLargestUnit) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      "metres per unit: expected more than 0 and at most ", kLargestUnit, ", got ", metres));
+}
 
 absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_view source,
                                     const CharacterOptions& options) {

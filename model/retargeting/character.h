@@ -52,6 +52,9 @@ struct CharacterOptions {
   CharacterFit* fit = nullptr;                // receives them as values; may be null
 };
 
+// INVALID_ARGUMENT unless a file's unit may have this length.
+absl::Status CheckMetresPerUnit(double metres);
+
 // Converts a character's motion to the skeleton's joints in metres, y up.
 //
 // Errors: INVALID_ARGUMENT naming `source` if joints cannot be mapped or the character has no size.

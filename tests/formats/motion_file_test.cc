@@ -164,6 +164,27 @@ TEST_F(MotionFile, WritesBothPeopleAsGltfOrGlbByExtension) {
   }
 }
 
+TEST_F(MotionFile, MetresPerUnitScaleEveryFormatOfPositions) {
+  for (const char* name : {"a.csv", "a.json", "a.npy", "a.txt"}) {
+    ASSERT_TRUE(WritePair(folder_ / name, pair_, motion::SbuSkeleton()).ok());
+    ReadOptions options;
+    options.frame_rate_hz = 30;
+    options.coordinates = motion::Coordinates{};
+    const absl::StatusOr<motion::Clip> metres = ReadLeader(folder_ / name, options);
+    ASSERT_TRUE(metres.ok()) << metres.status();
+    options.coordinates.reset();
+    options.metres_per_unit = 0.5;
+    const absl::StatusOr<motion::Clip> half = ReadLeader(folder_ / name, options);
+    ASSERT_TRUE(half.ok()) << half.status();
+    motion::Clip expected = *metres;
+    for (motion::Vec3& p : expected.poses.all()) p = p * 0.5F;
+    EXPECT_LT(LargestDistance(*half, expected), 1e-5F) << name;
+    options.metres_per_unit = 2000;
+    EXPECT_THAT(ReadLeader(folder_ / name, options),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("metres per unit")));
+  }
+}
+
 TEST_F(MotionFile, WritesBvhInTheRequestedUnit) {
   WriteOptions metres;
   metres.bvh_metres_per_unit = 1;

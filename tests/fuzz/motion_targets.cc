@@ -58,7 +58,7 @@ Broken CheckWritten(const motion::Clip& clip, const motion::Skeleton& skeleton, 
   formats::ReadOptions options;
   options.format = format;
   // Of a body that is no human's size, nobody can tell the unit.
-  options.metres_per_unit = format == Format::kBvh ? formats::kCentimetre : 1;
+  if (format == Format::kBvh) options.metres_per_unit = formats::kCentimetre;
   const absl::StatusOr<motion::Clip> again = formats::ParseLeader(*text, kSource, options);
   if (!again.ok()) return CheckRefusal(again.status());
   return again->frame_count() == clip.frame_count() ? "" : "a written clip has other frames";

@@ -38,7 +38,7 @@ def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float
         frame_rate_hz: frames per second; overrides the file's.
         unit: ``"metres"``, ``"millimetres"`` or ``"sbu-normalised"``; overrides the file's.
         up_axis: ``"y-up"``, ``"z-up"`` or ``"y-down"``; overrides the file's.
-        metres_per_unit: metres in one unit of the file, for BVH, glTF and ASF.
+        metres_per_unit: metres in one unit of the file; overrides `unit`.
         joint_map: from joints of Duet to joints of the file, for names that are not recognised.
         resample_hz: frames per second of the result; the motion keeps its speed.
         layout: the meaning of a .npy array of research: ``"humanml3d"``, ``"humanml3d-263"``,
@@ -66,7 +66,7 @@ def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = 
         frame_rate_hz: frames per second; overrides the file's.
         unit: of length; overrides the file's.
         up_axis: overrides the file's.
-        metres_per_unit: metres in one unit of the file, for BVH, glTF and ASF.
+        metres_per_unit: metres in one unit of the file; overrides `unit`.
         joint_map: from joints of Duet to joints of the file.
         resample_hz: frames per second of the result; the motion keeps its speed.
         layout: the meaning of a .npy array of research, as for :func:`read_motion`.
