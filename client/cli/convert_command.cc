@@ -24,7 +24,6 @@
 #include "model/formats/motion_file.h"
 #include "model/formats/research/body_joints.h"
 #include "model/formats/research/layout.h"
-#include "model/motion/reading_setting.h"
 #include "model/motion/resample.h"
 #include "model/motion/sbu.h"
 #include "nlohmann/json.hpp"
@@ -144,8 +143,8 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
     return absl::InvalidArgumentError(
         "--side: expected left or right with --rig for a file with two people, got both");
   }
-  absl::StatusOr<std::optional<formats::FollowerRig>> rig =
-      ReadRigArguments(arguments.rig, conversion.skeleton);
+  if (arguments.rig.file.empty()) return conversion;
+  absl::StatusOr<formats::FollowerRig> rig = ReadRigArguments(arguments.rig, conversion.skeleton);
   if (!rig.ok()) return rig.status();
   conversion.rig = *std::move(rig);
   return conversion;
@@ -166,7 +165,7 @@ absl::StatusOr<double> ErrorOf(const std::string& content, Format format, Clips 
   options.frame_rate_hz = people[0].frame_rate_hz;
   // SBU text always has the coordinates of the format.
   if (format != Format::kSbuText) options.coordinates = motion::Coordinates{};
-  options.metres_per_unit = format == Format::kBvh ? conversion.writing.bvh_metres_per_unit : 1;
+  if (format == Format::kBvh) options.metres_per_unit = conversion.writing.bvh_metres_per_unit;
   const int keys = format == Format::kBvh ? conversion.writing.bvh_keys_per_frame : 1;
   double largest = 0;
   for (std::size_t i = 0; i < people.size(); ++i) {
@@ -223,19 +222,15 @@ absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversio
   return contents;
 }
 
-// The error of a rig's file: the joint map that would fix it is the rig's.
-absl::Status OfRig(const absl::Status& status) {
-  if (motion::MendingSetting(status) != motion::ReadingSetting::kJointMap) return status;
-  return MendedBy(status, motion::ReadingSetting::kRigJointMap);
-}
-
 absl::StatusOr<Written> WriteOntoRig(const Conversion& conversion,
                                      const std::filesystem::path& output, Format format) {
   Written written;
   formats::WriteOptions writing = conversion.writing;
   writing.notes = &written.notes;
+  formats::FollowerRig rig = *conversion.rig;
+  rig.reading.notes = &written.notes;
   const absl::StatusOr<std::string> content =
-      formats::FormatOntoRig(conversion.people[0], *conversion.rig, format, writing);
+      formats::FormatOntoRig(conversion.people[0], rig, format, writing);
   if (!content.ok()) return OfRig(content.status());
   absl::Status status = base::WriteFile(output, *content);
   if (!status.ok()) return NotWritten(status);
@@ -348,8 +343,10 @@ absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironm
   return absl::OkStatus();
 }
 
-void CheckTogether(const ConvertArguments& arguments) {
+void CheckTogether(const FlagSet& command, const ConvertArguments& arguments) {
+  CheckInputFlags(command, arguments.input, {arguments.file});
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
+  CheckBvhFlags(command, arguments.outputs, arguments.output_format);
   if (arguments.output_format && !arguments.output_format->motion) {
     RejectFlag("--output-format", "html is not a motion format. Use duet view to make a page");
   }
@@ -399,7 +396,7 @@ void AddFlags(FlagSet* command, ConvertArguments* arguments) {
   AddRigFlags(command, &arguments->rig);
   command->AddSwitch("--json", &arguments->json, "Print the summary as JSON")->Group(kOutputGroup);
   command->AddSwitch("--quiet", &arguments->quiet, "Print only errors")->Group(kOutputGroup);
-  command->Check([arguments] { CheckTogether(*arguments); });
+  command->Check([command, arguments] { CheckTogether(*command, *arguments); });
 }
 
 }  // namespace

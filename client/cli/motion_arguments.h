@@ -29,6 +29,16 @@ struct InputArguments {
   std::filesystem::path body_model;
 };
 
+// The rig that a person is written onto, and how to read its file.
+struct RigArguments {
+  std::filesystem::path file;  // empty: Duet's own rig
+  std::optional<formats::Side> side;
+  std::optional<motion::UpAxis> up_axis;
+  std::optional<double> metres_per_unit;
+  retargeting::JointOverrides joints;
+  std::filesystem::path joint_table;  // a file of joints, which `joints` override
+};
+
 // The kind of output: a motion, or an HTML page.
 struct OutputFormat {
   std::optional<formats::Format> motion;  // absent: a page

@@ -13,11 +13,11 @@
 #include "client/batch/level.h"
 #include "client/batch/text_values.h"
 #include "client/cli/motion_input.h"
+#include "client/cli/rig_flags.h"
 #include "client/cli/value_syntax.h"
 #include "model/base/nearest.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
-#include "model/motion/reading_setting.h"
 #include "model/motion/vertical.h"
 
 namespace duet::client::cli {
@@ -48,13 +48,15 @@ absl::StatusOr<FollowerStart> ReadStart(const SynthesizeArguments& arguments,
   return FollowerStart(*std::move(pose));
 }
 
+double SecondsOf(const motion::Clip& clip) { return clip.frame_count() / clip.frame_rate_hz; }
+
 // The frame of a position in beats: the nearest one.
-absl::StatusOr<int> FrameAt(const motion::Beat& beat, double beats, double frame_rate_hz) {
-  const double frame = std::round(beat.SecondsAt(beats) * frame_rate_hz);
-  if (frame >= 0 && frame <= std::numeric_limits<int>::max()) return static_cast<int>(frame);
-  return absl::InvalidArgumentError(
-      absl::StrCat("--keyframe: expected a beat in the leader's motion, got ", beats, "b, at ",
-                   beat.SecondsAt(beats), " s"));
+absl::StatusOr<int> FrameAt(const motion::Beat& beat, double beats, const motion::Clip& leader) {
+  const double frame = std::round(beat.SecondsAt(beats) * leader.frame_rate_hz);
+  if (frame >= 0 && frame < leader.frame_count()) return static_cast<int>(frame);
+  return absl::InvalidArgumentError(absl::StrCat(
+      "--keyframe: expected a beat in the ", SecondsOf(leader), " s of the leader's motion, got ",
+      beats, "b, at ", beat.SecondsAt(beats), " s"));
 }
 
 absl::StatusOr<std::vector<WeightKeyframe>> ToKeyframes(const SynthesizeArguments& arguments,
@@ -63,8 +65,7 @@ absl::StatusOr<std::vector<WeightKeyframe>> ToKeyframes(const SynthesizeArgument
   for (const KeyframeArgument& keyframe : arguments.keyframes) {
     keyframes.push_back({keyframe.frame, keyframe.weights});
     if (!keyframe.beats) continue;
-    const absl::StatusOr<int> frame =
-        FrameAt(*arguments.beat, *keyframe.beats, leader.frame_rate_hz);
+    const absl::StatusOr<int> frame = FrameAt(*arguments.beat, *keyframe.beats, leader);
     if (!frame.ok()) return frame.status();
     keyframes.back().frame = *frame;
   }
@@ -73,18 +74,30 @@ absl::StatusOr<std::vector<WeightKeyframe>> ToKeyframes(const SynthesizeArgument
 
 // A first beat after the end is probably in milliseconds.
 absl::Status CheckBeat(const motion::Beat& beat, const motion::Clip& leader) {
-  const double seconds = leader.frame_count() / leader.frame_rate_hz;
+  const double seconds = SecondsOf(leader);
   if (beat.first_seconds < seconds) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat("--beat: expected the first beat within the ",
                                                  seconds, " s of the leader's motion, got ",
                                                  beat.first_seconds, " s"));
 }
 
-// Checks the follower's rig before the first call.
-absl::Status CheckFollowerRig(const formats::FollowerRig& rig) {
-  absl::Status status = formats::CheckRig(rig);
-  if (motion::MendingSetting(status) != motion::ReadingSetting::kJointMap) return status;
-  return MendedBy(std::move(status), motion::ReadingSetting::kRigJointMap);
+// A rig from a file of its own, checked before the first call.
+absl::StatusOr<formats::FollowerRig> ReadOtherRig(const SynthesizeArguments& arguments,
+                                                  const motion::Skeleton& skeleton,
+                                                  std::vector<std::string>* notes) {
+  RigArguments reading = arguments.rig;
+  reading.file = arguments.follower_rig;
+  absl::StatusOr<formats::FollowerRig> rig = ReadRigArguments(reading, skeleton);
+  if (!rig.ok()) return rig.status();
+  std::vector<std::string> remarks;
+  rig->reading.notes = &remarks;
+  const absl::Status status = formats::CheckRig(*rig);
+  if (!status.ok()) return OfRig(status);
+  rig->reading.notes = nullptr;
+  for (const std::string& remark : remarks) {
+    if (notes != nullptr) notes->push_back(absl::StrCat("follower's rig: ", remark));
+  }
+  return rig;
 }
 
 // Everybody whom the camera captured: the leader and, in a file with two people, the other person.
@@ -109,7 +122,7 @@ absl::Status CheckInputs(const SynthesizeArguments& arguments) {
   if (const auto& table = arguments.input.joint_table; status.ok() && !table.empty()) {
     status = CheckExists(table);
   }
-  if (const auto& table = arguments.rig_joint_table; status.ok() && !table.empty()) {
+  if (const auto& table = arguments.rig.joint_table; status.ok() && !table.empty()) {
     status = CheckExists(table);
   }
   const std::string& start = arguments.follower_start;
@@ -191,21 +204,12 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
 }
 
 absl::StatusOr<formats::FollowerRig> BuildFollowerRig(const SynthesizeArguments& arguments,
-                                                      const motion::Skeleton& skeleton) {
-  formats::FollowerRig rig;
-  if (arguments.follower_rig != kLeadersRig) {
-    rig.file = arguments.follower_rig;
-    rig.reading.skeleton = skeleton;
-    absl::StatusOr<retargeting::JointOverrides> joints =
-        ReadJoints(arguments.rig_joints, arguments.rig_joint_table);
-    if (!joints.ok()) return joints.status();
-    rig.reading.joint_overrides = *std::move(joints);
-    absl::Status status = CheckFollowerRig(rig);
-    if (!status.ok()) return status;
-    return rig;
-  }
+                                                      const motion::Skeleton& skeleton,
+                                                      std::vector<std::string>* notes) {
+  if (arguments.follower_rig != kLeadersRig) return ReadOtherRig(arguments, skeleton, notes);
   absl::StatusOr<formats::ReadOptions> reading = ToReadOptions(arguments.input, skeleton);
   if (!reading.ok()) return reading.status();
+  formats::FollowerRig rig;
   rig.file = arguments.leader;
   rig.reading = *std::move(reading);
   rig.reading.side = arguments.leader_side;

@@ -33,9 +33,11 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
                                               std::vector<std::string>* notes,
                                               std::istream* in = nullptr);
 
-// The rig for the follower. The leader's rig is read with the leader's flags.
+// The rig for the follower. The leader's rig is read with the leader's flags. `notes` receives the
+// choices that were made while reading another rig.
 absl::StatusOr<formats::FollowerRig> BuildFollowerRig(const SynthesizeArguments& arguments,
-                                                      const motion::Skeleton& skeleton);
+                                                      const motion::Skeleton& skeleton,
+                                                      std::vector<std::string>* notes);
 
 }  // namespace duet::client::cli
 

@@ -8,6 +8,7 @@
 #include "client/cli/input_flags.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/value_syntax.h"
+#include "model/motion/reading_setting.h"
 
 namespace duet::client::cli {
 
@@ -22,29 +23,34 @@ void AddRigFlags(FlagSet* app, RigArguments* rig) {
       "The person in a --rig file with two people (default: left)")
       ->Needs(file)
       ->Group(kOutputGroup);
-  AddParsed<motion::UpAxis>(
-      app, "--rig-up-axis", "y-up|z-up|y-down", ParseAxis,
-      [rig](motion::UpAxis axis) { rig->up_axis = axis; }, "Up axis of the rig; overrides the file")
-      ->LastOnly()
-      ->Needs(file)
-      ->Group(kOutputGroup);
-  app->Add("--rig-metres-per-unit", &rig->metres_per_unit,
-           "Metres in one unit of the rig's file (0.01 for centimetres)")
-      ->AboveZero()
-      ->Form("METRES")
-      ->Needs(file)
-      ->Group(kOutputGroup);
-  AddParsed<std::pair<std::string, std::string>>(
-      app, "--rig-joint-map", "MODEL_JOINT=RIG_JOINT", ParseJointPair,
-      [rig](std::pair<std::string, std::string> joints) { rig->joints.insert(std::move(joints)); },
-      "Joint of the rig for a joint of the model, if its name is not recognised; repeatable")
-      ->Needs(file)
-      ->Group(kOutputGroup);
-  app->Add("--rig-joint-map-file", &rig->joint_table,
-           "File with one MODEL_JOINT=RIG_JOINT on each line; --rig-joint-map overrides it")
-      ->Form("FILE")
-      ->Needs(file)
-      ->Group(kOutputGroup);
+  for (Flag* flag : AddRigReadingFlags(app, "--rig", "the rig", rig)) flag->Needs(file);
+}
+
+std::vector<Flag*> AddRigReadingFlags(FlagSet* app, const std::string& prefix,
+                                      const std::string& what, RigArguments* rig) {
+  const std::vector<Flag*> flags = {
+      AddParsed<motion::UpAxis>(
+          app, absl::StrCat(prefix, "-up-axis"), "y-up|z-up|y-down", ParseAxis,
+          [rig](motion::UpAxis axis) { rig->up_axis = axis; },
+          absl::StrCat("Up axis of ", what, "; overrides the file"))
+          ->LastOnly(),
+      app->Add(absl::StrCat(prefix, "-metres-per-unit"), &rig->metres_per_unit,
+               absl::StrCat("Metres in one unit of ", what, " (0.01 for centimetres)"))
+          ->AboveZero()
+          ->Form("METRES"),
+      AddParsed<std::pair<std::string, std::string>>(
+          app, absl::StrCat(prefix, "-joint-map"), "MODEL_JOINT=RIG_JOINT", ParseJointPair,
+          [rig](std::pair<std::string, std::string> joints) {
+            rig->joints.insert(std::move(joints));
+          },
+          absl::StrCat("Joint of ", what,
+                       " for a joint of the model, if its name is not recognised; repeatable")),
+      app->Add(absl::StrCat(prefix, "-joint-map-file"), &rig->joint_table,
+               absl::StrCat("File with one MODEL_JOINT=RIG_JOINT on each line; ", prefix,
+                            "-joint-map overrides it"))
+          ->Form("FILE")};
+  for (Flag* flag : flags) flag->Group(kOutputGroup);
+  return flags;
 }
 
 void CheckRigFlags(const RigArguments& rig, const std::vector<std::filesystem::path>& outputs) {
@@ -62,9 +68,8 @@ void CheckRigFlags(const RigArguments& rig, const std::vector<std::filesystem::p
   }
 }
 
-absl::StatusOr<std::optional<formats::FollowerRig>> ReadRigArguments(
-    const RigArguments& arguments, const motion::Skeleton& skeleton) {
-  if (arguments.file.empty()) return std::nullopt;
+absl::StatusOr<formats::FollowerRig> ReadRigArguments(const RigArguments& arguments,
+                                                      const motion::Skeleton& skeleton) {
   formats::FollowerRig rig;
   rig.file = arguments.file;
   rig.reading.skeleton = skeleton;
@@ -78,6 +83,11 @@ absl::StatusOr<std::optional<formats::FollowerRig>> ReadRigArguments(
   if (!joints.ok()) return joints.status();
   rig.reading.joint_overrides = *std::move(joints);
   return rig;
+}
+
+absl::Status OfRig(const absl::Status& status) {
+  if (motion::MendingSetting(status) != motion::ReadingSetting::kJointMap) return status;
+  return MendedBy(status, motion::ReadingSetting::kRigJointMap);
 }
 
 }  // namespace duet::client::cli

@@ -3,35 +3,35 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/cli/flag_set.h"
+#include "client/cli/motion_arguments.h"
 #include "model/formats/follower_rig.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
 
-// The rig that `duet convert` writes a person onto, and how to read its file.
-struct RigArguments {
-  std::filesystem::path file;  // empty: Duet's own rig
-  std::optional<formats::Side> side;
-  std::optional<motion::UpAxis> up_axis;
-  std::optional<double> metres_per_unit;
-  retargeting::JointOverrides joints;
-  std::filesystem::path joint_table;  // a file of joints, which `joints` override
-};
-
-// --rig and the flags that describe its file.
+// --rig of `duet convert` and the flags that describe its file.
 void AddRigFlags(FlagSet* app, RigArguments* rig);
+
+// The flags that specify how the file of a rig is read: `prefix` with -up-axis, -metres-per-unit,
+// -joint-map and -joint-map-file. `what` is the file in help. Returns the flags.
+std::vector<Flag*> AddRigReadingFlags(FlagSet* app, const std::string& prefix,
+                                      const std::string& what, RigArguments* rig);
 
 // Checks that the rig can be written in the format of every output. Calls RejectFlag if it cannot,
 // for use during parsing.
 void CheckRigFlags(const RigArguments& rig, const std::vector<std::filesystem::path>& outputs);
 
-// The rig, or nullopt without --rig. Errors: those of reading the table of joints.
-absl::StatusOr<std::optional<formats::FollowerRig>> ReadRigArguments(
-    const RigArguments& arguments, const motion::Skeleton& skeleton);
+// The rig that `arguments` names. Errors: those of reading the table of joints.
+absl::StatusOr<formats::FollowerRig> ReadRigArguments(const RigArguments& arguments,
+                                                      const motion::Skeleton& skeleton);
+
+// The error of reading a rig's file: the joint map that would fix it is the rig's.
+absl::Status OfRig(const absl::Status& status);
 
 }  // namespace duet::client::cli
 

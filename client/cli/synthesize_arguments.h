@@ -41,9 +41,8 @@ struct SynthesizeArguments : SynthesisOptions {
   std::optional<formats::research::Layout> output_layout;  // of .npy
   BvhArguments bvh;
   formats::flat::RotationForm rotation_form = formats::flat::RotationForm::kQuaternions;
-  std::string follower_rig;                // empty, kLeadersRig or a file
-  retargeting::JointOverrides rig_joints;  // if it is a file
-  std::filesystem::path rig_joint_table;   // a file of joints, which `rig_joints` override
+  std::string follower_rig;  // empty, kLeadersRig or a file
+  RigArguments rig;          // how to read that file; its `file` is not set
   bool json = false;
   bool quiet = false;
 };

@@ -72,7 +72,8 @@ absl::StatusOr<Job> PrepareJob(const SynthesizeArguments& arguments, const Clien
   job.skeleton = *std::move(skeleton);
   job.sampled = details->model.samples;
   if (!arguments.follower_rig.empty()) {
-    absl::StatusOr<formats::FollowerRig> rig = BuildFollowerRig(arguments, job.skeleton);
+    absl::StatusOr<formats::FollowerRig> rig =
+        BuildFollowerRig(arguments, job.skeleton, &job.notes);
     if (!rig.ok()) return rig.status();
     job.follower_rig = *std::move(rig);
   }

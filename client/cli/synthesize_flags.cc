@@ -6,13 +6,16 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/strip.h"
 #include "client/cli/flags.h"
 #include "client/cli/input_flags.h"
 #include "client/cli/output.h"
 #include "client/cli/reaction_flags.h"
+#include "client/cli/rig_flags.h"
 #include "client/cli/server_flags.h"
 #include "client/cli/value_syntax.h"
 #include "model/formats/follower_rig.h"
@@ -94,7 +97,15 @@ void AddReactionFlags(FlagSet* app, SynthesizeArguments* arguments) {
   AddRequestIdFlag(app, arguments);
 }
 
-void AddOutputFlags(FlagSet* app, SynthesizeArguments* arguments) {
+// "a.bvh --out b.json"
+std::string OutputsText(const std::vector<std::filesystem::path>& outputs) {
+  return absl::StrJoin(outputs, " --out ", [](std::string* out, const std::filesystem::path& path) {
+    out->append(path.string());
+  });
+}
+
+// Returns the flags that specify how the follower's rig is read.
+std::vector<Flag*> AddOutputFlags(FlagSet* app, SynthesizeArguments* arguments) {
   app->Add(
          "--out", &arguments->outputs,
          "File to write: .html (a page to watch), .glb, .gltf or .usda (both people, for Blender "
@@ -113,38 +124,25 @@ void AddOutputFlags(FlagSet* app, SynthesizeArguments* arguments) {
          "rig of another .bvh, .amc, .glb or .gltf (default: Duet's rig)")
       ->Form("leader|FILE")
       ->Group(kOutputGroup);
-  AddParsed<std::pair<std::string, std::string>>(
-      app, "--follower-rig-joint-map", "MODEL_JOINT=RIG_JOINT", ParseJointPair,
-      [arguments](std::pair<std::string, std::string> joints) {
-        arguments->rig_joints.insert(std::move(joints));
-      },
-      "Joint of --follower-rig FILE for a joint of the model, if its name is not recognised; "
-      "repeatable (for the leader's rig, use --joint-map)")
-      ->Group(kOutputGroup);
-  app->Add("--follower-rig-joint-map-file", &arguments->rig_joint_table,
-           "File with one MODEL_JOINT=RIG_JOINT on each line; --follower-rig-joint-map "
-           "overrides it")
-      ->Form("FILE")
-      ->Group(kOutputGroup);
+  std::vector<Flag*> rig_flags =
+      AddRigReadingFlags(app, "--follower-rig", "--follower-rig FILE", &arguments->rig);
   app->AddSwitch("--json", &arguments->json, "Print the summary as JSON")->Group(kOutputGroup);
   app->AddSwitch("--quiet", &arguments->quiet, "Print only errors")->Group(kOutputGroup);
+  return rig_flags;
 }
 
-// "a.bvh --out b.json"
-std::string OutputsText(const SynthesizeArguments& arguments) {
-  return absl::StrJoin(
-      arguments.outputs, " --out ",
-      [](std::string* out, const std::filesystem::path& path) { out->append(path.string()); });
+// "--joint-map" of "--follower-rig-joint-map"
+std::string LeadersFlag(const Flag& rig_flag) {
+  return absl::StrCat("-", absl::StripPrefix(rig_flag.name(), "--follower-rig"));
 }
 
-void CheckFollowerRig(const SynthesizeArguments& arguments) {
+void CheckFollowerRig(const SynthesizeArguments& arguments, const std::vector<Flag*>& rig_flags) {
   const bool leaders = arguments.follower_rig == kLeadersRig;
-  const bool names_joints = !arguments.rig_joints.empty() || !arguments.rig_joint_table.empty();
-  if (names_joints && (leaders || arguments.follower_rig.empty())) {
-    RejectFlag(
-        arguments.rig_joints.empty() ? "--follower-rig-joint-map-file" : "--follower-rig-joint-map",
-        "is only valid with --follower-rig FILE. For the leader's rig, use --joint-map or "
-        "--joint-map-file");
+  for (const Flag* flag : rig_flags) {
+    if (!flag->is_typed() || (!leaders && !arguments.follower_rig.empty())) continue;
+    RejectFlag(flag->name(),
+               absl::StrCat("is only valid with --follower-rig FILE. For the leader's rig, use ",
+                            LeadersFlag(*flag)));
   }
   if (arguments.follower_rig.empty()) return;
   const std::filesystem::path file =
@@ -159,22 +157,23 @@ void CheckFollowerRig(const SynthesizeArguments& arguments) {
   RejectFlag("--follower-rig",
              absl::StrCat("expected ", formats::kRigExtensions, " and --out FILE with ",
                           formats::kRigOutputExtensions, ", got ", file.string(), " and --out ",
-                          OutputsText(arguments)));
+                          OutputsText(arguments.outputs)));
 }
 
-// Whether an output has this format.
 bool Writes(formats::Format format, const SynthesizeArguments& arguments) {
-  const auto has_format = [&arguments, format](const std::filesystem::path& output) {
-    if (output != kStandardStream) return formats::FormatOf(output) == format;
-    return arguments.output_format && arguments.output_format->motion == format;
-  };
-  return std::any_of(arguments.outputs.begin(), arguments.outputs.end(), has_format);
+  return WritesFormat(format, arguments.outputs, arguments.output_format);
 }
 
 void CheckLayout(const SynthesizeArguments& arguments) {
   if (!arguments.output_layout || Writes(formats::Format::kNpy, arguments)) return;
   RejectFlag("--output-layout",
-             absl::StrCat("expected --out FILE.npy, got --out ", OutputsText(arguments)));
+             absl::StrCat("expected --out FILE.npy, got --out ", OutputsText(arguments.outputs)));
+}
+
+void CheckInputs(const FlagSet& command, const SynthesizeArguments& arguments) {
+  std::vector<std::filesystem::path> files = {arguments.leader};
+  if (!arguments.follower_start.empty()) files.emplace_back(arguments.follower_start);
+  CheckInputFlags(command, arguments.input, files);
 }
 
 void CheckRotations(const SynthesizeArguments& arguments) {
@@ -183,7 +182,7 @@ void CheckRotations(const SynthesizeArguments& arguments) {
   }
   if (!arguments.rotations || Writes(formats::Format::kJson, arguments)) return;
   RejectFlag("--rotations", absl::StrCat("expected --out FILE.json, which holds them, got --out ",
-                                         OutputsText(arguments)));
+                                         OutputsText(arguments.outputs)));
 }
 
 void CheckKeyframes(const SynthesizeArguments& arguments) {
@@ -211,12 +210,15 @@ void CheckOutputs(const SynthesizeArguments& arguments) {
 }
 
 // Checks flags that depend on each other.
-void CheckTogether(const SynthesizeArguments& arguments) {
+void CheckTogether(const FlagSet& command, const SynthesizeArguments& arguments,
+                   const std::vector<Flag*>& rig_flags) {
   if (arguments.weights.empty() && arguments.keyframes.empty()) {
     RejectMissing("--label or --keyframe");
   }
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
-  CheckFollowerRig(arguments);
+  CheckFollowerRig(arguments, rig_flags);
+  CheckInputs(command, arguments);
+  CheckBvhFlags(command, arguments.outputs, arguments.output_format);
   CheckRotations(arguments);
   CheckLayout(arguments);
   CheckKeyframes(arguments);
@@ -241,9 +243,10 @@ void CheckTogether(const SynthesizeArguments& arguments) {
 void AddSynthesizeFlags(FlagSet* command, SynthesizeArguments* arguments) {
   AddLeaderFlags(command, arguments);
   AddReactionFlags(command, arguments);
-  AddOutputFlags(command, arguments);
+  const std::vector<Flag*> rig_flags = AddOutputFlags(command, arguments);
   AddServerFlags(command, &arguments->server);
-  command->Check([arguments] { CheckTogether(*arguments); });
+  command->Check(
+      [command, arguments, rig_flags] { CheckTogether(*command, *arguments, rig_flags); });
 }
 
 }  // namespace duet::client::cli

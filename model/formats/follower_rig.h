@@ -25,13 +25,14 @@ inline constexpr char kRigOutputExtensions[] = ".bvh, .glb or .gltf";
 // Whether a follower on a rig of the format `rig` can be written in the format `written`.
 bool FitsRig(Format written, Format rig);
 
-// Checks that the rig can be read; it need not be animated. Errors: those of reading it.
+// Checks that the rig can be read; it need not be animated. Adds to rig.reading.notes, like every
+// reader. Errors: those of reading it.
 absl::Status CheckRig(const FollowerRig& rig);
 
 // Formats the follower on the rig. In the rig's own format, everything in its file except the
 // motion is kept (bvh::OntoBvhRig, gltf::OntoGltfRig). In another format, names, hierarchy and bone
 // lengths are kept (bvh::ToBvh, gltf::FormatCharacter); from FBX to glTF, skins and meshes too
-// (fbx::OntoFbxRig).
+// (fbx::OntoFbxRig). Adds to rig.reading.notes, like every reader.
 //
 // Errors: those of reading the rig; INVALID_ARGUMENT for an unsuitable rig, or a format that
 //         FitsRig does not accept.

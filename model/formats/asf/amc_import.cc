@@ -69,8 +69,6 @@ absl::StatusOr<retargeting::CharacterRig> AmcRig(const AsfSkeleton& skeleton,
   retargeting::CharacterFit fit;
   AmcImportOptions reading = options;
   reading.fit = &fit;
-  reading.notes = nullptr;
-  reading.report = nullptr;
   const absl::StatusOr<motion::Clip> read = FromAmc(skeleton, motion, source, reading);
   if (!read.ok()) return read.status();
   return RestRig(TreeOf(skeleton, AsfKinematics(skeleton, motion).ends()), fit);

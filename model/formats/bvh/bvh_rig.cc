@@ -58,8 +58,6 @@ absl::StatusOr<retargeting::CharacterFit> FitOf(const BvhDocument& document,
   retargeting::CharacterFit fit;
   BvhImportOptions reading = options;
   reading.fit = &fit;
-  reading.notes = nullptr;
-  reading.report = nullptr;
   const absl::StatusOr<motion::Clip> read = FromBvh(document, source, reading);
   if (!read.ok()) return read.status();
   return fit;

@@ -19,8 +19,6 @@ absl::StatusOr<retargeting::CharacterFit> FitOf(const FbxScene& scene, absl::str
   gltf::GltfImportOptions reading = GltfOptionsOf(scene, options);
   reading.fit = &fit;
   reading.nodes = &nodes;
-  reading.notes = nullptr;
-  reading.report = nullptr;
   const absl::StatusOr<motion::Clip> read = FromGltf(*document, source, NoFileBeside, reading);
   if (!read.ok()) return read.status();
   return fit;
@@ -49,6 +47,7 @@ absl::StatusOr<std::string> OntoFbxRig(const motion::Clip& clip, absl::string_vi
   gltf::GltfImportOptions reading = GltfOptionsOf(*in_world, options);
   reading.metres_per_unit = 1;
   reading.up_axis = motion::UpAxis::kYUp;
+  reading.notes = nullptr;  // FitOf added them
   return gltf::OntoGltfRig(clip, in_world->glb, source, NoFileBeside, reading, container);
 }
 

@@ -199,8 +199,6 @@ absl::StatusOr<RigFile> ReadRigFile(absl::string_view content, absl::string_view
   GltfImportOptions reading = options;
   reading.fit = &file.fit;
   reading.nodes = &file.nodes;
-  reading.notes = nullptr;
-  reading.report = nullptr;
   const absl::StatusOr<motion::Clip> read = FromGltf(file.document, source, read_file, reading);
   if (!read.ok()) return read.status();
   return file;

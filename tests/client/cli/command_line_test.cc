@@ -302,6 +302,44 @@ TEST_F(CommandLineTest, InvalidValueIsNamed) {
   ExpectRefused({"--label", "kick=1", "--tls-cert", "a.pem"}, "--tls-key");
 }
 
+TEST_F(CommandLineTest, FlagsOfOneFormatAreRejectedWithoutIt) {
+  const Strings convert = {"convert", "a.bvh", "--out", Out("a.csv")};
+  const auto with = [&convert](const std::string& flag, const std::string& value) {
+    Strings arguments = convert;
+    arguments.insert(arguments.end(), {flag, value});
+    return arguments;
+  };
+  ExpectUsageError(with("--body-model", "foo.npz"),
+                   "--body-model: expected a .npz motion, got a.bvh");
+  ExpectUsageError(with("--layout", "humanml3d"), "--layout: expected a .npy motion, got a.bvh");
+  ExpectUsageError(with("--bvh-unit", "metres"), "--bvh-unit: expected an output FILE.bvh, got ");
+  ExpectUsageError(with("--bvh-keys-per-frame", "2"), "--bvh-keys-per-frame: expected an output");
+  ExpectUsageError({"inspect", "a.bvh", "--body-model", "foo.npz"}, "--body-model");
+  ExpectUsageError({"view", "a=a.bvh", "--layout", "inter-x", "--out", Out("a.html")}, "--layout");
+  ExpectRefused({"--label", "kick", "--layout", "inter-x"}, "--layout");
+  ExpectRefused({"--label", "kick", "--out", Out("a.glb"), "--bvh-unit", "metres"}, "--bvh-unit");
+  CommandLine array;
+  EXPECT_EQ(
+      array.Parse({"convert", "a.npy", "--layout", "inter-x", "--out", Out("a.csv")}).exit_code, 0);
+  // The configuration file holds flags for every command and format.
+  CommandLine line;
+  EXPECT_EQ(line.Parse(convert, {{"bvh-unit", "metres", "config:1"}}).exit_code, 0);
+}
+
+TEST_F(CommandLineTest, FlagsOfAnotherRigNeedOne) {
+  for (const char* name : {"up-axis", "metres-per-unit", "joint-map", "joint-map-file"}) {
+    const std::string value = name == std::string("up-axis")           ? "y-up"
+                              : name == std::string("metres-per-unit") ? "1"
+                                                                       : "head=Top";
+    ExpectRefused({"--label", "kick", "--out", Out("pair.bvh"), "--follower-rig", "leader",
+                   absl::StrCat("--follower-rig-", name), value},
+                  absl::StrCat("--follower-rig-", name,
+                               ": is only valid with --follower-rig FILE. For the leader's rig, "
+                               "use --",
+                               name));
+  }
+}
+
 TEST_F(CommandLineTest, RigRequiresAnOutputFormatWithARig) {
   ExpectRefused(
       {"--label", "kick", "--out", Out("pair.bvh"), "--follower-rig", "rig.csv"},

@@ -449,6 +449,18 @@ TEST_F(MotionCommandsTest, TheUnitOfAHierarchyCanBeNamed) {
   EXPECT_LT(Distance(Read("same.csv").at(9, 4), leader_.at(9, 4)), 0.01F);
 }
 
+TEST_F(MotionCommandsTest, AGiantIsWarnedOf) {
+  for (const char* file : {"one.bvh", "one.csv"}) {
+    ASSERT_EQ(Run({"convert", Path(file), "--metres-per-unit", "100", "--out", Path("big.json")}),
+              0)
+        << err_.str();
+    EXPECT_THAT(out_.str(), HasSubstr("warning: size: as the file was read, the distance from foot"
+                                      " to "));
+  }
+  ASSERT_EQ(Run({"convert", Path("one.csv"), "--out", Path("same.json")}), 0);
+  EXPECT_THAT(out_.str(), Not(HasSubstr("warning")));
+}
+
 TEST_F(MotionCommandsTest, ResampleKeepsTheDurationAndFrameRateChangesIt) {
   ASSERT_EQ(Run({"convert", Path("one.csv"), "--resample", "15", "--out", Path("slow.csv")}), 0);
   const motion::Clip resampled = Read("slow.csv");

@@ -246,6 +246,22 @@ TEST_F(ProgramTest, WritesTheFollowerOnTheLeadersRig) {
   EXPECT_EQ(HierarchyOf(folder_ / "other.follower.bvh"), HierarchyOf(folder_ / "rig.leader.bvh"));
 }
 
+TEST_F(ProgramTest, AGuessedUnitOfTheFollowersRigIsNoted) {
+  formats::WriteOptions unit;
+  unit.bvh_metres_per_unit = 0.0175;  // legs of 60 units
+  const motion::ClipPair pair{leader_, leader_};
+  ASSERT_THAT(formats::WritePair(folder_ / "small.bvh", pair, motion::SbuSkeleton(), unit), IsOk());
+  const std::string rig = Path("small.leader.bvh");
+  ASSERT_EQ(Synthesize("a.bvh", {"--follower-rig", rig}), 0) << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("follower's rig: warning: unit: a guess"));
+  ASSERT_EQ(Synthesize("b.bvh", {"--follower-rig", rig, "--follower-rig-metres-per-unit", "0.0175",
+                                 "--follower-rig-up-axis", "y-up"}),
+            0)
+      << err_.str();
+  EXPECT_THAT(out_.str(), Not(HasSubstr("a guess")));
+  EXPECT_NE(ReadTestFile(folder_ / "a.follower.bvh"), ReadTestFile(folder_ / "b.follower.bvh"));
+}
+
 TEST_F(ProgramTest, WritesTheFollowerOnAGltfRigBesideThePair) {
   const motion::ClipPair pair{leader_, leader_};
   ASSERT_THAT(formats::WritePair(folder_ / "rig.glb", pair, motion::SbuSkeleton()), IsOk());
