@@ -57,7 +57,7 @@ void AddModelFlag(FlagSet* app, SynthesizeArguments* arguments) {
 void AddStartFlags(FlagSet* app, SynthesizeArguments* arguments) {
   app->Add("--follower-start", &arguments->follower_start,
            "Start of the follower: a motion file (its first frame), or X,Y,Z of the root "
-           "joint in metres, y up")
+           "joint in metres, y up; Y is about 1 above the floor for a person who stands")
       ->Form("FILE|X,Y,Z")
       ->Group(kReactionGroup);
   AddChoice<formats::Side>(

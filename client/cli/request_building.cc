@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <system_error>
 #include <utility>
+#include <variant>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "client/batch/level.h"
 #include "client/batch/text_values.h"
@@ -18,10 +21,14 @@
 #include "model/base/nearest.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/inferred_coordinates.h"
 #include "model/motion/vertical.h"
 
 namespace duet::client::cli {
 namespace {
+
+// The heights of a root joint, as shares of the leader's leg, of a person who sits or leaps.
+constexpr double kLowestRoot = 0.3, kHighestRoot = 1.6;
 
 // In the leader's own file, the follower is the other person.
 formats::Side FollowerStartSide(const SynthesizeArguments& arguments) {
@@ -79,6 +86,28 @@ absl::Status CheckBeat(const motion::Beat& beat, const motion::Clip& leader) {
   return absl::InvalidArgumentError(absl::StrCat("--beat: expected the first beat within the ",
                                                  seconds, " s of the leader's motion, got ",
                                                  beat.first_seconds, " s"));
+}
+
+// Warns of a start on the floor, such as 0,0,1.2, or in the air: it is the place of the root joint.
+void WarnOfHeight(const FollowerStart& start, const motion::Clip& leader,
+                  const motion::Skeleton& skeleton, std::vector<std::string>* notes) {
+  const motion::Vec3* root = std::get_if<motion::Vec3>(&start);
+  if (root == nullptr || notes == nullptr || !skeleton.feet) return;
+  float floor = std::numeric_limits<float>::max();
+  for (int frame = 0; frame < leader.frame_count(); ++frame) {
+    for (const int foot : {skeleton.feet->left, skeleton.feet->right}) {
+      floor = std::min(floor, leader.at(frame, foot).y);
+    }
+  }
+  const double leg = LegLength(skeleton, leader.poses);
+  const double height = static_cast<double>(root->y - floor);
+  if (height >= kLowestRoot * leg && height <= kHighestRoot * leg) return;
+  notes->push_back(
+      absl::StrFormat("warning: --follower-start: expected Y near %.2f m, where the %s of a "
+                      "standing person is, got "
+                      "%g: it is a place of that joint, not of the floor",
+                      static_cast<double>(floor) + leg,
+                      skeleton.joint_names[static_cast<std::size_t>(skeleton.root)], root->y));
 }
 
 // A rig from a file of its own, checked before the first call.
@@ -193,6 +222,9 @@ absl::StatusOr<SynthesisRequest> BuildRequest(const SynthesizeArguments& argumen
           : batch::LevelBy(arguments.level);
   request.up = levelled.up;
   if (notes != nullptr && !levelled.note.empty()) notes->push_back(levelled.note);
+  if (request.follower_start && !request.up) {
+    WarnOfHeight(*request.follower_start, request.leader, skeleton, notes);
+  }
   if (arguments.beat) {
     const absl::Status beat = CheckBeat(*arguments.beat, request.leader);
     if (!beat.ok()) return beat;

@@ -47,6 +47,44 @@ TEST(BuildRequest, UnitOrAxisWithoutTheOtherUsesItsDefault) {
   ExpectPoint(input, {LengthUnit::kSbuNormalised, UpAxis::kYDown});
 }
 
+TEST(BuildRequest, MetresPerUnitScalePositionsOfEveryUnit) {
+  InputArguments input;
+  input.metres_per_unit = 0.01;
+  EXPECT_LT(Distance(ReadPoint(input), {0.01F, 0.02F, 0.03F}), 1e-6F);
+  input.unit = motion::LengthUnit::kMillimetres;
+  input.up_axis = motion::UpAxis::kZUp;
+  EXPECT_LT(Distance(ReadPoint(input), {0.01F, 0.03F, -0.02F}), 1e-6F);
+}
+
+// The notes on a follower's start for a leader who stands: 0.9 m from foot to pelvis.
+std::vector<std::string> NotesOnStart(const std::string& start) {
+  const test::TemporaryFolder folder;
+  SynthesizeArguments arguments;
+  arguments.leader = folder / "leader.csv";
+  arguments.input.frame_rate_hz = 30;
+  arguments.level.automatic = false;
+  arguments.follower_start = start;
+  test::WriteTestFile(arguments.leader,
+                      "frame,pelvis_x,pelvis_y,pelvis_z,left_foot_x,left_foot_y,left_foot_z,"
+                      "right_foot_x,right_foot_y,right_foot_z\n0,0,1,0,0,0.1,0,0,0.1,0\n");
+  motion::Skeleton skeleton;
+  skeleton.joint_names = {"pelvis", "left_foot", "right_foot"};
+  skeleton.bones = {{0, 1}, {0, 2}};
+  skeleton.feet = motion::JointPair{1, 2};
+  std::vector<std::string> notes;
+  EXPECT_THAT(BuildRequest(arguments, skeleton, &notes), IsOk());
+  return notes;
+}
+
+TEST(BuildRequest, AStartOnTheFloorOrInTheAirGetsAWarning) {
+  EXPECT_THAT(NotesOnStart("0,0,1.2"),
+              ElementsAre(HasSubstr("warning: --follower-start: expected Y near 1.00 m, where the "
+                                    "pelvis of a standing person is, got 0")));
+  EXPECT_THAT(NotesOnStart("0,5,1.2"), ElementsAre(HasSubstr("got 5")));
+  EXPECT_THAT(NotesOnStart("0,0.5,1.2"), ElementsAre());
+  EXPECT_THAT(NotesOnStart("0,1.1,1.2"), ElementsAre());
+}
+
 // The request of these keyframes and this beat for a leader of 10 s at a rate.
 absl::StatusOr<SynthesisRequest> RequestToMusic(const motion::Beat& beat, double frame_rate_hz,
                                                 std::vector<KeyframeArgument> keyframes) {
@@ -95,8 +133,11 @@ TEST(BuildRequest, BeatsOutsideTheMotionAreRejected) {
   constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
   EXPECT_THAT(
       RequestToMusic({120, -0.25}, 30, {AtBeat(0)}),
-      StatusIs(kInvalid, HasSubstr("--keyframe: expected a beat in the leader's motion, got "
-                                   "0b, at -0.25 s")));
+      StatusIs(kInvalid, HasSubstr("--keyframe: expected a beat in the 10 s of the leader's "
+                                   "motion, got 0b, at -0.25 s")));
+  EXPECT_THAT(FramesOf(RequestToMusic({120, 0}, 30, {AtBeat(19.9)})), ElementsAre(299));
+  EXPECT_THAT(RequestToMusic({120, 0}, 30, {AtBeat(20)}),
+              StatusIs(kInvalid, HasSubstr("got 20b, at 10 s")));
   EXPECT_THAT(FramesOf(RequestToMusic({120, -0.25}, 30, {AtBeat(0.5)})), ElementsAre(0));
   EXPECT_THAT(RequestToMusic({120, 0}, 30, {AtBeat(1e12)}),
               StatusIs(kInvalid, HasSubstr("1e+12b")));
