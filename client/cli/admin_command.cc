@@ -1,6 +1,7 @@
 #include "client/cli/admin_command.h"
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -184,7 +185,9 @@ void AddModel(FlagSet* command, AdminArguments* arguments) {
 }
 
 Flag* AddVersion(FlagSet* command, AdminArguments* arguments) {
-  return command->Add("version", &arguments->version, "Version of the model")->Form("VERSION");
+  return command->Add("version", &arguments->version, "Version of the model")
+      ->InRange(std::int64_t{1}, std::int64_t{std::numeric_limits<uint32_t>::max()})
+      ->Form("VERSION");
 }
 
 void AddFlags(FlagSet* command, AdminArguments* arguments) {

@@ -64,6 +64,17 @@ class AdminCommandTest : public ::testing::Test {
   std::ostringstream err_;
 };
 
+TEST_F(AdminCommandTest, AVersionIsAWholeNumber) {
+  for (const char* action : {"load", "unload"}) {
+    for (const char* version : {"x", "-1", "0", "1.5", "99999999999"}) {
+      err_.str("");
+      EXPECT_EQ(Run({action, "sbu", version}), kExitUsage);
+      EXPECT_THAT(err_.str(), HasSubstr("version: expected a whole number from 1 to 4294967295"))
+          << version;
+    }
+  }
+}
+
 TEST_F(AdminCommandTest, ListsModels) {
   EXPECT_EQ(Run({"models"}), kExitDone);
   EXPECT_EQ(out_.str(),
