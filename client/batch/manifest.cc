@@ -217,7 +217,12 @@ class Manifest final : public LeaderSource {
       return absl::StrCat(KeyOf(std::filesystem::path(leader).replace_extension()), "-", line_);
     }
     std::string key = KeyOf(id);
-    if (!key.empty() && ids_.insert(absl::Hash<std::string>()(key)).second) return key;
+    if (key.empty()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("id: expected a name, or names separated by /, other than . and .., got ",
+                       base::Quoted(id)));
+    }
+    if (ids_.insert(absl::Hash<std::string>()(key)).second) return key;
     return absl::InvalidArgumentError(
         absl::StrCat("id: expected one that no other line has, got ", base::Quoted(id)));
   }

@@ -118,6 +118,9 @@ INSTANTIATE_TEST_SUITE_P(
                     "m:2: constraints: expected each joint once in a frame"},
         BadManifest{"leader\tid\na.bvh\tx\nb.bvh\tx\n",
                     "m:3: id: expected one that no other line has, got \"x\""},
+        BadManifest{"leader\tid\na.bvh\t..\n",
+                    "m:2: id: expected a name, or names separated by /, other than . and .., got "
+                    "\"..\""},
         BadManifest{"leader\tid\na.bvh\tx\nb.bvh\t\n",
                     "m:3: id: expected one, as on the lines before, got nothing"},
         BadManifest{"{\"leader\": \"a.bvh\"}\nnot json\n",
