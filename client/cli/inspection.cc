@@ -180,6 +180,7 @@ std::string DescribeVertical(const motion::VerticalEstimate& vertical) {
     absl::StrAppendFormat(&text, "; --level %.3f,%.3f,%.3f", vertical.up.x, vertical.up.y,
                           vertical.up.z);
   }
+  if (vertical.places == 0) return absl::StrCat(text, "; no foot rests in several places");
   return absl::StrCat(text, "; feet rest in ", base::Counted(vertical.places, "place"));
 }
 

@@ -61,7 +61,8 @@ void AddSinkFlags(FlagSet* app, LiveArguments* arguments) {
   app->Add("--to", &arguments->to,
            "Where the follower goes: a motion file (.bvh, .glb, .gltf, .usda, .csv, .npy or "
            ".json), a page with both people (.html), - for lines of JSON on standard "
-           "output, or vmc://HOST[:PORT] for game engines and Blender; repeatable")
+           "output, or vmc://HOST[:PORT] for game engines and Blender; repeatable. A file other "
+           "than a page holds the follower alone, as the first person")
       ->Required()
       ->OneValueEach()
       ->Form("FILE|-|ADDRESS")
