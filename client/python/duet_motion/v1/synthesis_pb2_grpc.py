@@ -28,7 +28,9 @@ class MotionSynthesisStub(object):
     DEADLINE_EXCEEDED    The deadline passed, or the server cannot finish before it. Work that has
     not started by then never starts. Also returned if the request takes too
     long to arrive, if the caller stops reading the response, and if the call
-    exceeds the server's maximum call duration. ErrorInfo contains the reason.
+    exceeds the server's maximum call duration. ErrorInfo contains the reason,
+    except for a caller who stopped reading: details cannot overtake the
+    messages that it did not take, so only the status reaches it.
     INTERNAL             The model failed. The message contains no internal details.
     """
 
@@ -82,7 +84,9 @@ class MotionSynthesisServicer(object):
     DEADLINE_EXCEEDED    The deadline passed, or the server cannot finish before it. Work that has
     not started by then never starts. Also returned if the request takes too
     long to arrive, if the caller stops reading the response, and if the call
-    exceeds the server's maximum call duration. ErrorInfo contains the reason.
+    exceeds the server's maximum call duration. ErrorInfo contains the reason,
+    except for a caller who stopped reading: details cannot overtake the
+    messages that it did not take, so only the status reaches it.
     INTERNAL             The model failed. The message contains no internal details.
     """
 
@@ -171,7 +175,9 @@ class MotionSynthesis(object):
     DEADLINE_EXCEEDED    The deadline passed, or the server cannot finish before it. Work that has
     not started by then never starts. Also returned if the request takes too
     long to arrive, if the caller stops reading the response, and if the call
-    exceeds the server's maximum call duration. ErrorInfo contains the reason.
+    exceeds the server's maximum call duration. ErrorInfo contains the reason,
+    except for a caller who stopped reading: details cannot overtake the
+    messages that it did not take, so only the status reaches it.
     INTERNAL             The model failed. The message contains no internal details.
     """
 
