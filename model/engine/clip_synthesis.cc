@@ -99,15 +99,9 @@ motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {
 }
 
 int ClipSynthesis::SettledEnd() const {
-  const int start = NextWindowStart();
-  int end = start + SettledOverlap(model_.window_frames);
-  // A pin that this window reaches is not reached anew from a few frames before it.
-  const int farthest = std::min(state_.end(), start + model_.window_frames / 2);
-  for (const motion::Pin& pin : request_.pins) {
-    const int after = static_cast<int>(std::ceil(ToModelFrame(pin.frame))) + 1;
-    if (after <= farthest) end = std::max(end, after);
-  }
-  return end;
+  // A window that reached a pin settles it: the next one would have to reach it anew.
+  if (!request_.pins.empty()) return state_.end() - model_.lookahead_frames;
+  return NextWindowStart() + SettledOverlap(model_.window_frames);
 }
 
 motion::Poses ClipSynthesis::LeaderAt(int begin, int end) const {

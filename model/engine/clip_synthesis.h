@@ -92,9 +92,10 @@ class ClipSynthesis {
   int NextWindowStart() const {
     return plan_.starts[static_cast<std::size_t>(state_.window_count())];
   }
-  // The model frame from which on the next window answers anew: SettledOverlap after its start, or
-  // after a pin that this window reaches. Windows that are spread evenly may share more frames; a
-  // network that must continue from most of a window makes a follower who jumps after them.
+  // The model frame from which on the next window answers anew: SettledOverlap after its start;
+  // with pins, after all frames that both share but the lookahead. Windows that are spread evenly
+  // may share more frames; a network that must continue from most of a window makes a follower who
+  // jumps after them.
   int SettledEnd() const;
   // The pins that concern a window from `first` on, in its frames.
   motion::Pins PinsOfWindow(int first) const;
