@@ -21,7 +21,7 @@ constexpr double kStandSeconds = 0.4;
 // The heights between which a standing foot is left above the floor, metres.
 constexpr float kStandsBelow = -0.005f, kStandsAbove = 0.015f;
 constexpr double kHeightSmoothSeconds = 0.03;
-// How fast a foot comes down, and rises again, that stands for no longer than this: m/s, seconds.
+// A foot that stands for kMomentSeconds or less comes down and rises at up to this speed, m/s.
 constexpr float kFastestSink = 0.6f;
 constexpr double kMomentSeconds = 0.2;
 // The height of a step, metres, and what a metre of way adds to it, up to the highest.

@@ -24,7 +24,7 @@ struct LimbSwingOptions {
 // line from shoulder to hand, how fast each bone turns, and how fast the plane turns in which a
 // limb bends. A faster turn is spread over more frames before and after it. Turns are measured
 // relative to the trunk, which moves its limbs. Moves hands only where a bone is too fast, and feet
-// only where they are. Preserves bone lengths, and leaves slower limbs unchanged.
+// only where the feet are. Preserves bone lengths, and leaves slower limbs unchanged.
 void CalmLimbs(const body::Body& body, const LimbSwingOptions& options, const Timing& timing,
                motion::Poses* poses);
 

@@ -6,7 +6,8 @@
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
 
-// Corrections of one frame that a live session sends. Plans are corrected at the model's rate
+// Corrections of one frame that the caller gets. Clips use PlaceFeetBetween only; live sessions use
+// all of them. Plans are corrected at the model's rate
 // (LiveBounds); frames between two planned ones, and leaders who jump after a plan was made, need
 // more.
 //

@@ -16,9 +16,9 @@ struct SpacingOptions {
   double farthest_metres = 2.5;
   // Standard deviation of the Gaussian that removes short violations.
   double sigma_seconds = 0.5;
-  // Maximum speed of the correction: more than the leader's own mean speed along the floor by the
-  // first value, so that a follower keeps up with a leader who walks; never above the second, so
-  // that it is not dragged after one who jumps.
+  // Maximum speed of the correction: the leader's mean speed along the floor plus the first value,
+  // so that a follower keeps up with a leader who walks, but at most the second, so that it is not
+  // dragged after one who jumps.
   double faster_metres_per_second = 0.5, fastest_metres_per_second = 2;
 };
 
