@@ -62,6 +62,7 @@ LiveSynthesis::LiveSynthesis(ModelDescription model, LiveRequest request)
   leader_.Append(request_.leader.frames(unread, request_.leader.frame_count() - unread));
   follower_.Append(request_.follower.frames(unread, sent - unread));
   request_.leader = request_.follower = {};
+  first_join_ = follower_.empty() ? 0 : follower_begin_ + 1;
 }
 
 void LiveSynthesis::AddLeader(const Poses& frames) { leader_.Append(frames.all()); }
@@ -75,8 +76,8 @@ int LiveSynthesis::DueEnd() const {
 }
 
 int LiveSynthesis::JoinFrame(int evaluation) const {
-  // An evaluation before the first regular one: the leader ended within the delay.
-  return std::max(0, evaluation - timing_.delay_frames());
+  // Earlier if the leader ended within the delay.
+  return std::max(first_join_, evaluation - timing_.delay_frames());
 }
 
 std::optional<int> LiveSynthesis::NextEvaluation() const {
@@ -88,9 +89,11 @@ std::optional<int> LiveSynthesis::NextEvaluation() const {
 std::optional<int> LiveSynthesis::FirstEvaluation(int newest) const {
   if (next_follower_frame() >= DueEnd() || newest < 0) return std::nullopt;
   if (newest < timing_.delay_frames()) return newest;
-  // The plan that was held when the last frame was sent, unless the next one has its own.
-  return timing_.EvaluationNotAfter(
-      std::min(newest, next_follower_frame() + timing_.delay_frames()));
+  // The plan that was held when the last frame was sent, unless the next one has its own. If the
+  // history begins later than that plan, a plan is made from what there is.
+  const int due = std::min(newest, next_follower_frame() + timing_.delay_frames());
+  const int regular = timing_.EvaluationNotAfter(due);
+  return regular - timing_.delay_frames() < first_join_ ? due : regular;
 }
 
 std::optional<int> LiveSynthesis::FurtherEvaluation(int newest) const {

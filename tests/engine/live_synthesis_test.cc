@@ -151,6 +151,56 @@ TEST(LiveSynthesisTest, AResumedSessionContinuesWithTheSameFrames) {
   }
 }
 
+// Indices of frames: each one up to 30, then in steps that meet every phase of the evaluations.
+std::vector<int> Indices(int first, int end) {
+  std::vector<int> indices;
+  for (int i = first; i < end; i += i < 30 ? 1 : 7) indices.push_back(i);
+  return indices;
+}
+
+// What a caller sends who kept `sent` frames of both motions from frame `first` on, and `delay`
+// frames of the leader more.
+LiveRequest Resumed(const Poses& leader, double rate, int first, int sent, int delay) {
+  LiveRequest request = Request(delay, rate);
+  request.first_frame = first;
+  request.leader = Frames(leader, first, sent + delay);
+  request.follower = Frames(leader, first, sent);
+  return request;
+}
+
+TEST(LiveSynthesisTest, ASessionResumesFromAHistoryOfAnyLength) {
+  for (const double rate : {10.0, 15.0, 24.0, 30.0, 60.0, 90.0, 240.0}) {
+    const int seconds_2 = static_cast<int>(2 * rate);
+    const Poses leader = SwayingMotion(2 * seconds_2 + 40, rate);
+    for (const int delay : {0, 1, 4, 10}) {
+      if (delay > 0.5 * rate) continue;
+      for (const int first : Indices(0, seconds_2)) {
+        for (const int sent : Indices(1, seconds_2)) {
+          Session session(Resumed(leader, rate, first, sent, delay));
+          session.Send(Frames(leader, first + sent + delay, 2));
+          ASSERT_EQ(session.follower().frame_count(), 2)
+              << rate << " Hz, first frame " << first << ", " << sent << " frames, delay " << delay;
+          if (sent % 2 == 0) session.Send(Frames(leader, first + sent + delay + 2, 20), true);
+          session.End();
+          ASSERT_TRUE(session.live().done());
+        }
+      }
+    }
+  }
+}
+
+TEST(LiveSynthesisTest, AShortHistoryIsContinuedFromItsLastFrame) {
+  Poses leader = SwayingMotion(80, kRate);
+  LiveRequest request = Resumed(leader, kRate, /*first=*/31, /*sent=*/1, /*delay=*/0);
+  for (motion::Vec3& joint : request.follower.all()) joint += motion::Vec3{2, 0, 0};
+  const Poses sent = request.follower;
+  Session session(std::move(request));
+  session.Send(Frames(leader, 32, 1));
+  ASSERT_FALSE(session.windows().empty());
+  const SynthesisWindow& window = session.windows().front();
+  EXPECT_EQ(window.settled[window.settled.frame_count() - 1], sent[0]);
+}
+
 TEST(LiveSynthesisTest, HistoryThatNoEvaluationReadsChangesNothing) {
   const Poses leader = SwayingMotion(400, kRate);
   Session whole;
