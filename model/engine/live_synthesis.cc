@@ -32,13 +32,6 @@ constexpr float kVarietyShare = 0.92f;
 // the plan before it.
 constexpr double kJoinSeconds = 0.06;
 
-// Frames [0, end) of `poses`, so that a spline does not read what came later.
-Poses Until(const Poses& poses, int end) {
-  Poses until(0, poses.joint_count());
-  until.Append(poses.frames(0, std::min(end, poses.frame_count())));
-  return until;
-}
-
 }  // namespace
 
 bool AnswersLive(const ModelDescription& model) { return ContinuesFromSettledFrames(model); }
@@ -76,7 +69,7 @@ int LiveSynthesis::DueEnd() const {
 }
 
 int LiveSynthesis::JoinFrame(int evaluation) const {
-  // Earlier if the leader ended within the delay.
+  // The difference is smaller than first_join_ if the leader ended within the delay.
   return std::max(first_join_, evaluation - timing_.delay_frames());
 }
 
@@ -89,8 +82,8 @@ std::optional<int> LiveSynthesis::NextEvaluation() const {
 std::optional<int> LiveSynthesis::FirstEvaluation(int newest) const {
   if (next_follower_frame() >= DueEnd() || newest < 0) return std::nullopt;
   if (newest < timing_.delay_frames()) return newest;
-  // The plan that was held when the last frame was sent, unless the next one has its own. If the
-  // history begins later than that plan, a plan is made from what there is.
+  // The plan that was held when the last frame was sent, unless the next one has its own. A history
+  // that is too short for that plan gets a plan of its own.
   const int due = std::min(newest, next_follower_frame() + timing_.delay_frames());
   const int regular = timing_.EvaluationNotAfter(due);
   return regular - timing_.delay_frames() < first_join_ ? due : regular;
@@ -269,7 +262,7 @@ std::vector<float> LiveSynthesis::WindowLabels(int begin, int frames, int join) 
 
 Poses LiveSynthesis::WindowLeader(int begin, int frames, int newest, int* hidden) const {
   const int last = newest - leader_begin_;  // the newest frame in `known`
-  const Poses known = Until(leader_, last + 1);
+  const Poses known = Part(leader_, 0, std::min(last + 1, leader_.frame_count()));
   Poses leader(frames, known.joint_count());
   std::vector<double> unknown;  // seconds after the newest frame
   for (int t = 0; t < frames; ++t) {
@@ -286,7 +279,8 @@ Poses LiveSynthesis::WindowLeader(int begin, int frames, int newest, int* hidden
 }
 
 Poses LiveSynthesis::WindowFollower(int begin, int end, int join) const {
-  const Poses sent = Until(follower_, join - follower_begin_);
+  // A spline must not read what came later.
+  const Poses sent = Part(follower_, 0, std::min(join - follower_begin_, follower_.frame_count()));
   Poses settled(end - begin, sent.joint_count());
   for (int t = begin; t < end; ++t) {
     SampleCubic(sent, timing_.ToCallerFrame(t) - follower_begin_, settled[t - begin]);

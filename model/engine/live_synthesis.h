@@ -145,8 +145,8 @@ class LiveSynthesis {
 
   motion::Poses leader_, follower_;  // at the caller's rate
   int leader_begin_, follower_begin_;
-  // The first frame that a plan may change: 0, or the second one of the history, because a plan
-  // continues from at least one frame.
+  // No plan changes earlier frames: 0, or the second frame of the history, because a plan continues
+  // from at least one frame.
   int first_join_ = 0;
   bool ended_ = false;
 
