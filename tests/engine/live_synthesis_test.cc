@@ -151,15 +151,16 @@ TEST(LiveSynthesisTest, AResumedSessionContinuesWithTheSameFrames) {
   }
 }
 
-// Indices of frames: each one up to 30, then in steps that meet every phase of the evaluations.
+// Indices of frames: each one up to 16, then every 23rd, which meets evaluations at different
+// times.
 std::vector<int> Indices(int first, int end) {
   std::vector<int> indices;
-  for (int i = first; i < end; i += i < 30 ? 1 : 7) indices.push_back(i);
+  for (int i = first; i < end; i += i < 16 ? 1 : 23) indices.push_back(i);
   return indices;
 }
 
-// What a caller sends who kept `sent` frames of both motions from frame `first` on, and `delay`
-// frames of the leader more.
+// The request of a caller that kept `sent` frames of both motions from frame `first` on, and
+// `delay` further frames of the leader.
 LiveRequest Resumed(const Poses& leader, double rate, int first, int sent, int delay) {
   LiveRequest request = Request(delay, rate);
   request.first_frame = first;
@@ -170,12 +171,12 @@ LiveRequest Resumed(const Poses& leader, double rate, int first, int sent, int d
 
 TEST(LiveSynthesisTest, ASessionResumesFromAHistoryOfAnyLength) {
   for (const double rate : {10.0, 15.0, 24.0, 30.0, 60.0, 90.0, 240.0}) {
-    const int seconds_2 = static_cast<int>(2 * rate);
-    const Poses leader = SwayingMotion(2 * seconds_2 + 40, rate);
+    const int two_seconds = static_cast<int>(2 * rate);
+    const Poses leader = SwayingMotion(2 * two_seconds + 40, rate);
     for (const int delay : {0, 1, 4, 10}) {
       if (delay > 0.5 * rate) continue;
-      for (const int first : Indices(0, seconds_2)) {
-        for (const int sent : Indices(1, seconds_2)) {
+      for (const int first : Indices(0, two_seconds)) {
+        for (const int sent : Indices(1, two_seconds)) {
           Session session(Resumed(leader, rate, first, sent, delay));
           session.Send(Frames(leader, first + sent + delay, 2));
           ASSERT_EQ(session.follower().frame_count(), 2)
