@@ -1,4 +1,5 @@
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "absl/strings/str_cat.h"
@@ -100,6 +101,17 @@ motion::Coordinates ReadCoordinates(base::ObjectReader* document) {
   return coordinates;
 }
 
+std::optional<motion::Vec3> ReadPeopleAxis(base::ObjectReader* document) {
+  if (!document->Has("people_axis")) return std::nullopt;
+  const std::string axis = document->String("people_axis", kMaxNameBytes);
+  if (axis == "x") return motion::Vec3{1, 0, 0};
+  if (axis == "z") return motion::Vec3{0, 0, 1};
+  if (document->ok()) {
+    document->Fail("people_axis", absl::StrCat("expected x or z, got ", base::Quoted(axis)));
+  }
+  return std::nullopt;
+}
+
 bool ReadLevel(base::ObjectReader* document, const motion::Skeleton& skeleton) {
   if (!document->Has("level")) return false;
   const bool level = document->Bool("level");
@@ -126,6 +138,7 @@ absl::StatusOr<DatasetLayout> ParseDatasetLayout(std::string_view text) {
   layout.coordinates = ReadCoordinates(&document);
   ReadSkeleton(&document, &layout);
   layout.level = ReadLevel(&document, layout.skeleton);
+  layout.people_axis = ReadPeopleAxis(&document);
   layout.classes = ReadClasses(&document, layout.skeleton);
   if (const absl::Status status = document.Finish(); !status.ok()) return in_file(status);
   return layout;

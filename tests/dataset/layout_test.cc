@@ -152,6 +152,15 @@ TEST(DatasetLayoutTest, OwnDataIsLevelUnlessItSaysOtherwise) {
   EXPECT_TRUE(layout->level);
 }
 
+TEST(DatasetLayoutTest, PeopleMayStandAlongAnAxis) {
+  Json json = Complete();
+  EXPECT_FALSE(ParseDatasetLayout(json.dump())->people_axis.has_value());
+  json["people_axis"] = "z";
+  const absl::StatusOr<DatasetLayout> layout = ParseDatasetLayout(json.dump());
+  ASSERT_TRUE(layout.ok()) << layout.status();
+  EXPECT_EQ(layout->people_axis, (motion::Vec3{0, 0, 1}));
+}
+
 TEST(DatasetLayoutTest, LevellingNeedsFeet) {
   Json json = Complete();
   json["skeleton"].erase("left_foot");
@@ -191,6 +200,7 @@ TEST(DatasetLayoutTest, RejectsEveryWrongValueByName) {
       {"/unit", "\"feet\"", "unit: expected metres, millimetres or sbu-normalised, got \"feet\""},
       {"/unit", "\"sbu-normalised\"", "up_axis: expected y-down"},
       {"/up_axis", "3", "up_axis: expected y-up"},
+      {"/people_axis", "\"y\"", "people_axis: expected x or z, got \"y\""},
       {"/level", "\"yes\"", "level: expected true or false, got \"yes\""},
       {"/rate", "3", "unknown field \"rate\""},
       {"/skeleton/tail", "3", "unknown field \"tail\""},
