@@ -27,7 +27,8 @@ std::string LayoutText(const dataset::DatasetLayout& layout) {
     for (const int joint : one.effectors) {
       effectors.push_back(layout.skeleton.joint_names[static_cast<std::size_t>(joint)]);
     }
-    ordered_json object = {{"name", one.name}, {"effectors", effectors}};
+    ordered_json object = {{"name", one.name}};
+    if (!effectors.empty()) object["effectors"] = effectors;
     if (one.symmetric) object["symmetric"] = true;
     if (one.handed) object["handed"] = true;
     if (one.touches) object["touches"] = true;
@@ -40,6 +41,7 @@ std::string LayoutText(const dataset::DatasetLayout& layout) {
                        {"level", layout.level},
                        {"skeleton", SkeletonToJson(layout.skeleton, layout.parts)},
                        {"classes", classes}};
+  if (layout.people_axis) root["people_axis"] = layout.people_axis->x != 0 ? "x" : "z";
   return root.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -63,6 +65,21 @@ std::string IndexText(const std::vector<ImportedSequence>& sequences) {
                     Cell(files.second), "\n");
   }
   return text;
+}
+
+// The classes on a time line; empty if no sequence has one.
+std::string TimeLinesText(const dataset::DatasetLayout& layout,
+                          const std::vector<ImportedSequence>& sequences) {
+  std::string text;
+  for (const ImportedSequence& sequence : sequences) {
+    for (const dataset::LabelSpan& span : sequence.labels) {
+      absl::StrAppend(&text, PathOf(sequence), "\t",
+                      layout.classes[static_cast<std::size_t>(span.interaction_class)].name, "\t",
+                      span.begin / layout.frame_rate_hz, "\t", span.end / layout.frame_rate_hz,
+                      "\n");
+    }
+  }
+  return text.empty() ? text : absl::StrCat("path\tclass\tfrom_seconds\tto_seconds\n", text);
 }
 
 absl::Status WriteAll(const fs::path& folder, const dataset::DatasetLayout& layout,
@@ -90,6 +107,10 @@ absl::Status WriteAll(const fs::path& folder, const dataset::DatasetLayout& layo
     if (absl::Status status = base::WriteFile(path, *text); !status.ok()) return status;
   }
   absl::Status status = base::WriteFile(folder / "index.tsv", IndexText(sequences));
+  const std::string time_lines = TimeLinesText(layout, sequences);
+  if (status.ok() && !time_lines.empty()) {
+    status = base::WriteFile(folder / "labels.tsv", time_lines);
+  }
   if (status.ok()) status = base::WriteFile(folder / "dataset.json", LayoutText(layout));
   return status;
 }

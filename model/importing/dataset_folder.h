@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "model/dataset/dataset.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
 #include "model/importing/capture.h"
@@ -17,6 +18,7 @@ struct ImportedSequence {
   Capture capture;  // metres, y up
   dataset::LeaderSide leader_side = dataset::LeaderSide::kUnknown;
   std::string leader_source;
+  std::vector<dataset::LabelSpan> labels;  // on a time line; empty: the class of its folder
 };
 
 // Checks that WriteDataset may write `out`: it does not exist, is an empty folder, or is a data set

@@ -387,7 +387,8 @@ class Importer {
     std::vector<std::string> close;
     std::set<std::string> ruled;  // classes with inferred leaders
     for (const Capture& capture : captures_) {
-      ImportedSequence sequence{capture, dataset::LeaderSide::kLeft, capture.files.leader_source};
+      ImportedSequence sequence{
+          capture, dataset::LeaderSide::kLeft, capture.files.leader_source, {}};
       if (sequence.leader_source.empty()) RuleByMotion(&sequence, &close);
       if (capture.files.leader_source.empty()) ruled.insert(capture.files.label);
       ++by_source[sequence.leader_source];
@@ -462,7 +463,7 @@ class Importer {
       const std::vector<Capture> pieces = Cut(sequence.capture, longest);
       if (pieces.size() > 1) ++cut;
       for (const Capture& piece : pieces) {
-        all.push_back({piece, sequence.leader_side, sequence.leader_source});
+        all.push_back({piece, sequence.leader_side, sequence.leader_source, {}});
       }
     }
     sequences_ = std::move(all);

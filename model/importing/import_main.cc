@@ -1,21 +1,25 @@
 // duet-import: converts a folder of motion files of two people to a data set for training.
 //
 //   duet-import --from captures --out studio
+//   duet-import --solve studio --out studio-solved
 
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "model/base/counted.h"
 #include "model/base/program_flags.h"
 #include "model/base/program_output.h"
 #include "model/importing/import.h"
+#include "model/importing/solve.h"
 #include "model/motion/coordinates.h"
 
 namespace duet::importing {
@@ -23,6 +27,7 @@ namespace {
 
 // Flags that Parse reads, because CLI11 does not know their types.
 struct Words {
+  std::string solve;  // a data set
   std::string up_axis;
   std::string level;
   std::string layout;
@@ -31,7 +36,14 @@ struct Words {
 };
 
 void Declare(ImportOptions* options, Words* words, CLI::App* app) {
-  app->add_option("--from", options->from, "Folder of motion files")->required()->type_name("DIR");
+  CLI::Option* const from =
+      app->add_option("--from", options->from, "Folder of motion files")->type_name("DIR");
+  app->add_option(
+         "--solve", words->solve,
+         "Data set whose people to turn into bodies: constant bones, feet that stand; with "
+         "--out and --overwrite only")
+      ->type_name("DIR")
+      ->excludes(from);
   app->add_option("--out", options->out, "Data set to write")->required()->type_name("DIR");
   app->add_option("--name", options->name, "Name of the data set (default: the name of its folder)")
       ->type_name("NAME");
@@ -137,6 +149,54 @@ void Print(const ImportReport& report) {
   }
 }
 
+void PrintChange(const char* what, int digits, double before, double after) {
+  std::cout << absl::StrFormat("%-36s%10.*f%10.*f\n", what, digits, before, digits, after);
+}
+
+void Print(const SolveReport& report) {
+  const BodyFigures &before = report.before, &after = report.after;
+  std::cout << absl::StrFormat("moved %.1f cm on average", report.moved * 100);
+  for (const MovedPart& one : report.parts) {
+    std::cout << absl::StrFormat(", %s %.1f", one.part, one.metres * 100);
+  }
+  std::cout << "\n" << absl::StrFormat("%-36s%10s%10s\n", "", "before", "after");
+  PrintChange("deviation of bones, mm", 1, before.bone_noise * 1000, after.bone_noise * 1000);
+  PrintChange("narrowest hips, of their width", 2, before.narrowest_hips, after.narrowest_hips);
+  PrintChange("widest hips, of their width", 2, before.widest_hips, after.widest_hips);
+  PrintChange("bend of the knees, degrees", 1, before.knee_degrees, after.knee_degrees);
+  PrintChange("speed of the slower foot, cm/s", 1, before.slower_foot * 100,
+              after.slower_foot * 100);
+  PrintChange("height of hips over leg length", 3, before.hips_over_leg, after.hips_over_leg);
+  for (const SolvedSequence& one : report.most_moved) {
+    std::cout << absl::StrFormat("moved %.1f cm: %s\n", one.metres * 100, one.id);
+  }
+}
+
+int Fail(const absl::Status& status) {
+  std::cerr << "duet-import: " << status.message() << "\n";
+  return 1;
+}
+
+// The first given flag that has no meaning with --solve.
+std::optional<std::string> FlagBesideSolve(const CLI::App& app) {
+  const std::set<std::string> meant = {"--solve", "--out", "--overwrite"};
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = "--" + option->get_single_name();
+    if (option->count() > 0 && meant.count(name) == 0) return name;
+  }
+  return std::nullopt;
+}
+
+int RunSolve(const std::string& from, const ImportOptions& options) {
+  SolveReport report;
+  const absl::Status status = Solve(from, options.out, options.overwrite, &report);
+  if (!status.ok()) return Fail(status);
+  Print(report);
+  std::cout << options.out.string() << ": " << base::Counted(report.sequences, "sequence")
+            << " solved\n";
+  return 0;
+}
+
 int Run(int argc, char** argv) {
   ImportOptions options;
   Words words;
@@ -145,14 +205,19 @@ int Run(int argc, char** argv) {
   app.set_version_flag("--version", "duet-import " DUET_VERSION);
   Declare(&options, &words, &app);
   if (const std::optional<int> code = base::ParseFlags(argc, argv, &app)) return *code;
+  if (!words.solve.empty()) {
+    const std::optional<std::string> beside = FlagBesideSolve(app);
+    if (beside) return Fail(Wrong(*beside, "it", "only --out and --overwrite with --solve"));
+    return RunSolve(words.solve, options);
+  }
   ImportReport report;
   absl::Status status = Parse(words, &options);
+  if (status.ok() && options.from.empty()) {
+    status = absl::InvalidArgumentError("--from: expected a folder of motion files, got none");
+  }
   if (status.ok()) status = Import(options, &report);
   Print(report);
-  if (!status.ok()) {
-    std::cerr << "duet-import: " << status.message() << "\n";
-    return 1;
-  }
+  if (!status.ok()) return Fail(status);
   std::cout << options.out.string() << ": " << base::Counted(report.sequences, "sequence") << " of "
             << base::Counted(report.pairs, "pair") << "; " << report.refused.size() << " refused\n";
   return 0;

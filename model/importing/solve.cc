@@ -1,0 +1,260 @@
+#include "model/importing/solve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/strip.h"
+#include "model/body/limbs.h"
+#include "model/dataset/dataset.h"
+#include "model/importing/dataset_folder.h"
+#include "model/solver/body_model.h"
+#include "model/solver/person.h"
+
+namespace duet::importing {
+namespace {
+
+namespace fs = std::filesystem;
+using motion::Poses;
+using motion::Vec3;
+
+constexpr std::size_t kMostListed = 5;
+// Bones of optical captures vary by less than this, of depth cameras by several times as much.
+// Metres, mean of a data set.
+constexpr double kNoisyBones = 0.002;
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+
+class Mean {
+ public:
+  void Add(double value) {
+    sum_ += value;
+    ++count_;
+  }
+  double value() const { return count_ > 0 ? sum_ / count_ : 0; }
+
+ private:
+  double sum_ = 0;
+  int count_ = 0;
+};
+
+float Median(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double BendDegrees(const body::Limb& limb, absl::Span<const Vec3> pose) {
+  const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
+  const Vec3 thigh = at(limb.middle) - at(limb.upper), shin = at(limb.end) - at(limb.middle);
+  const double lengths = Norm(thigh) * Norm(shin);
+  return lengths > 0 ? std::acos(std::clamp(Dot(thigh, shin) / lengths, -1.0, 1.0)) * kDegrees : 0;
+}
+
+// Adds people to the figures of their bodies.
+class BodyMeter {
+ public:
+  BodyMeter(const motion::Skeleton& skeleton, double rate)
+      : skeleton_(skeleton), legs_(body::FindBody(skeleton).legs), rate_(rate) {}
+
+  void Add(const Poses& person) {
+    noise_.Add(solver::BodyModel::BoneNoise(skeleton_, person));
+    const motion::JointPair hips = *skeleton_.hips, feet = *skeleton_.feet;
+    std::vector<float> widths, leg_lengths;
+    for (int t = 0; t < person.frame_count(); ++t) {
+      widths.push_back(Distance(person.at(t, hips.left), person.at(t, hips.right)));
+      leg_lengths.push_back(body::LengthOf(legs_[0], person[t]));
+    }
+    const float width = Median(widths), leg = Median(leg_lengths);
+    for (int t = 0; t < person.frame_count(); ++t) {
+      const double share = widths[static_cast<std::size_t>(t)] / width;
+      figures_.narrowest_hips = std::min(figures_.narrowest_hips, share);
+      figures_.widest_hips = std::max(figures_.widest_hips, share);
+      for (const body::Limb& one : legs_) knees_.Add(BendDegrees(one, person[t]));
+      const float lower = std::min(person.at(t, feet.left).y, person.at(t, feet.right).y);
+      height_.Add(((person.at(t, hips.left).y + person.at(t, hips.right).y) / 2 - lower) / leg);
+      if (t > 0) foot_.Add(rate_ * std::min(Way(person, t, feet.left), Way(person, t, feet.right)));
+    }
+  }
+
+  BodyFigures figures() const {
+    BodyFigures figures = figures_;
+    figures.bone_noise = noise_.value();
+    figures.knee_degrees = knees_.value();
+    figures.slower_foot = foot_.value();
+    figures.hips_over_leg = height_.value();
+    return figures;
+  }
+
+ private:
+  static double Way(const Poses& person, int t, int joint) {
+    return Distance(person.at(t, joint), person.at(t - 1, joint));
+  }
+
+  const motion::Skeleton& skeleton_;
+  std::vector<body::Limb> legs_;
+  double rate_;
+  BodyFigures figures_;
+  Mean noise_, knees_, foot_, height_;
+};
+
+// Which part of the body each joint counts as.
+std::vector<std::string> PartOfJoints(const motion::Skeleton& skeleton) {
+  const body::Body body = body::FindBody(skeleton);
+  std::vector<std::string> parts(skeleton.joint_names.size(), "trunk and head");
+  const auto name = [&](const body::Limb& limb, const char* middle, const char* end) {
+    parts[static_cast<std::size_t>(limb.middle)] = middle;
+    parts[static_cast<std::size_t>(limb.end)] = end;
+    for (const int joint : limb.beyond) parts[static_cast<std::size_t>(joint)] = end;
+  };
+  for (const body::Limb& arm : body.arms) name(arm, "elbows", "hands");
+  for (const body::Limb& leg : body.legs) name(leg, "knees", "feet");
+  return parts;
+}
+
+// The path of a solved sequence: its class's folder, and a name from its place in the data set.
+PairFiles PathOf(const dataset::Dataset& dataset, const dataset::Sequence& sequence) {
+  PairFiles files;
+  std::string place = sequence.id;
+  if (absl::EndsWith(place, "/skeleton_pos.txt")) {
+    place.resize(place.size() - std::string("/skeleton_pos.txt").size());
+  }
+  place = std::string(absl::StripSuffix(place, ".txt"));
+  const std::size_t slash = place.find('/');
+  const bool own_folder = slash != std::string::npos && sequence.set.empty();
+  files.label = sequence.labels.empty()
+                    ? dataset.classes[static_cast<std::size_t>(sequence.interaction_class)]
+                : own_folder ? place.substr(0, slash)
+                             : "takes";
+  files.name = absl::StrReplaceAll(own_folder ? place.substr(slash + 1) : place, {{"/", "_"}});
+  files.first = files.second = sequence.id;
+  files.subjects = sequence.subjects;
+  return files;
+}
+
+dataset::DatasetLayout LayoutOf(const dataset::Dataset& dataset) {
+  dataset::DatasetLayout layout;
+  layout.name = dataset.name;
+  layout.frame_rate_hz = dataset.frame_rate_hz;
+  layout.skeleton = dataset.skeleton;
+  layout.parts = dataset.parts;
+  for (std::size_t i = 0; i < dataset.classes.size(); ++i) {
+    dataset::ClassLayout one;
+    one.name = one.folder = dataset.classes[i];
+    one.symmetric = dataset.symmetric[i];
+    one.handed = dataset.handed[i];
+    one.touches = dataset.touches[i];
+    layout.classes.push_back(std::move(one));
+  }
+  const auto& direction = dataset.sequences[0].partner_direction;
+  if (direction) layout.people_axis = direction->x != 0 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
+  return layout;
+}
+
+// Solves a data set in place and measures it before and after.
+class Solving {
+ public:
+  explicit Solving(dataset::Dataset* dataset)
+      : dataset_(*dataset),
+        skeleton_(dataset->skeleton),
+        parts_(PartOfJoints(dataset->skeleton)),
+        before_(dataset->skeleton, dataset->frame_rate_hz),
+        after_(dataset->skeleton, dataset->frame_rate_hz) {}
+
+  absl::Status Run(SolveReport* report) {
+    for (const dataset::Sequence& sequence : dataset_.sequences) {
+      before_.Add(sequence.pair.leader.poses);
+      before_.Add(sequence.pair.follower.poses);
+    }
+    for (dataset::Sequence& sequence : dataset_.sequences) {
+      if (absl::Status status = SolvePair(&sequence); !status.ok()) return status;
+    }
+    report->sequences = static_cast<int>(dataset_.sequences.size());
+    report->before = before_.figures();
+    report->after = after_.figures();
+    report->moved = moved_.value();
+    for (const auto& [part, mean] : moved_parts_) report->parts.push_back({part, mean.value()});
+    std::sort(sequences_.begin(), sequences_.end(),
+              [](const SolvedSequence& a, const SolvedSequence& b) { return a.metres > b.metres; });
+    sequences_.resize(std::min(sequences_.size(), kMostListed));
+    report->most_moved = sequences_;
+    return absl::OkStatus();
+  }
+
+ private:
+  absl::Status SolvePair(dataset::Sequence* sequence) {
+    Poses* const people[] = {&sequence->pair.leader.poses, &sequence->pair.follower.poses};
+    double floors[] = {solver::StandingHeight(skeleton_, *people[0]),
+                       solver::StandingHeight(skeleton_, *people[1])};
+    if (before_.figures().bone_noise > kNoisyBones) {
+      floors[0] = floors[1] = (floors[0] + floors[1]) / 2;
+    }
+    SolvedSequence moved{sequence->id, 0};
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+      absl::StatusOr<Poses> solved =
+          solver::SolvePerson(skeleton_, *people[i], dataset_.frame_rate_hz, floors[i]);
+      if (!solved.ok()) {
+        return absl::InvalidArgumentError(
+            absl::StrCat(sequence->id, ": ", solved.status().message()));
+      }
+      after_.Add(*solved);
+      moved.metres = std::max(moved.metres, MeasureWay(*people[i], *solved));
+      *people[i] = *std::move(solved);
+    }
+    sequences_.push_back(std::move(moved));
+    return absl::OkStatus();
+  }
+
+  double MeasureWay(const Poses& captured, const Poses& solved) {
+    Mean own;
+    for (int t = 0; t < captured.frame_count(); ++t) {
+      for (int joint = 0; joint < captured.joint_count(); ++joint) {
+        const double way = Distance(captured.at(t, joint), solved.at(t, joint));
+        own.Add(way);
+        moved_.Add(way);
+        moved_parts_[parts_[static_cast<std::size_t>(joint)]].Add(way);
+      }
+    }
+    return own.value();
+  }
+
+  dataset::Dataset& dataset_;
+  const motion::Skeleton& skeleton_;
+  std::vector<std::string> parts_;
+  BodyMeter before_, after_;
+  Mean moved_;
+  std::map<std::string, Mean> moved_parts_;
+  std::vector<SolvedSequence> sequences_;
+};
+
+absl::Status CheckSkeleton(const dataset::Dataset& dataset) {
+  const dataset::Sequence& sequence = dataset.sequences[0];
+  return solver::BodyModel::Measure(dataset.skeleton, sequence.pair.leader.poses).status();
+}
+
+}  // namespace
+
+absl::Status Solve(const fs::path& from, const fs::path& out, bool overwrite, SolveReport* report) {
+  if (absl::Status status = CheckOut(out, overwrite); !status.ok()) return status;
+  absl::StatusOr<dataset::Dataset> dataset = dataset::ReadDataset(from);
+  if (!dataset.ok()) return dataset.status();
+  absl::Status status = CheckSkeleton(*dataset);
+  if (status.ok()) status = Solving(&*dataset).Run(report);
+  if (!status.ok()) return status;
+  std::vector<ImportedSequence> sequences;
+  for (dataset::Sequence& sequence : dataset->sequences) {
+    const bool stated = sequence.leader_source == "index";
+    sequences.push_back({{PathOf(*dataset, sequence), std::move(sequence.pair.leader),
+                          std::move(sequence.pair.follower)},
+                         dataset::LeaderSide::kLeft,
+                         stated ? "index" : absl::StrCat("guess: ", sequence.leader_source),
+                         std::move(sequence.labels)});
+  }
+  return WriteDataset(out, LayoutOf(*dataset), sequences);
+}
+
+}  // namespace duet::importing
