@@ -20,24 +20,20 @@
 #include "model/formats/fbx/fbx_program.h"
 #include "model/formats/follower_rig.h"
 #include "model/formats/motion_file.h"
+#include "tests/formats/fbx/fbx_fixture.h"
 #include "tests/support/matchers.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::formats::fbx {
 namespace {
 
 namespace fs = std::filesystem;
+using test::FbxTest;
 using test::LargestDistance;
+using test::Variable;
 
 constexpr float kOneMillimetre = 0.001f;
 constexpr int kFirst = 20;  // of the samples' frames, as in make_files.py
-constexpr char kProgramVariable[] = "DUET_FBX_PROGRAM";
-
-std::string Variable(const char* name) {
-  const char* const value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
 
 fs::path File(const std::string& name) {
   return fs::path(Variable("DUET_SOURCE_DIR")) / "tests/formats/fbx/files" / (name + ".fbx");
@@ -58,19 +54,6 @@ motion::Clip Sample(const std::string& name, int frames, double rate_hz = 30) {
   EXPECT_TRUE(whole.ok()) << whole.status();
   return whole.ok() ? Part(*whole, frames, rate_hz) : motion::Clip();
 }
-
-class FbxTest : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const fs::path program = fs::path(Variable("DUET_BIN_DIR")) / "duet-fbx";
-    if (!fs::exists(program))
-      GTEST_SKIP() << "duet-fbx is not built; it needs libassimp-dev (CMake option DUET_FBX)";
-    setenv(kProgramVariable, program.c_str(), 1);
-  }
-  void TearDown() override { unsetenv(kProgramVariable); }
-
-  const test::TemporaryFolder temporary_;
-};
 
 void ExpectNear(const absl::StatusOr<motion::Clip>& read, const motion::Clip& source) {
   ASSERT_TRUE(read.ok()) << read.status();
@@ -348,7 +331,7 @@ TEST_F(FbxTest, TruncatedFilesAreRejected) {
 }
 
 TEST_F(FbxTest, WithoutTheProgramTheErrorSaysHowToGetIt) {
-  setenv(kProgramVariable, (temporary_.path() / "duet-fbx").c_str(), 1);
+  setenv(test::kFbxProgramVariable, (temporary_.path() / "duet-fbx").c_str(), 1);
   const absl::Status status = ReadLeader(File("still_skin")).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(status.message(), AllOf(HasSubstr("libassimp-dev"), HasSubstr(".glb")));
@@ -359,7 +342,7 @@ TEST_F(FbxTest, AReaderThatEndsIsAnErrorOfTheFile) {
   const std::map<std::string, std::string> ends = {{"SEGV", "assimp fails (signal 11)"},
                                                    {"XCPU", "takes longer"}};
   const fs::path program = temporary_.path() / "duet-fbx";
-  setenv(kProgramVariable, program.c_str(), 1);
+  setenv(test::kFbxProgramVariable, program.c_str(), 1);
   for (const auto& [signal, message] : ends) {
     ASSERT_TRUE(base::WriteFile(program, absl::StrCat("#!/bin/sh\nkill -", signal, " $$\n")).ok());
     fs::permissions(program, fs::perms::owner_all);

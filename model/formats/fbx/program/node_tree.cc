@@ -3,12 +3,14 @@
 #include <cstddef>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "assimp/version.h"
 #include "model/base/index.h"
+#include "model/formats/fbx/program/scale_inheritance.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::fbx::program {
@@ -17,8 +19,9 @@ namespace {
 using retargeting::Affine;
 using retargeting::Vec3d;
 
-// Nodes that assimp adds for pivots.
-constexpr char kPivot[] = "_$AssimpFbx$_";
+// Nodes that assimp adds for pivots, and those of them for the offset of a node's meshes.
+constexpr char kPivot[] = "_$AssimpFbx$_", kGeometry[] = "_$AssimpFbx$_Geometric";
+constexpr char kInverse[] = "Inverse";
 constexpr std::size_t kMostNodes = 4 * motion::kMaxFileJoints;  // cameras, lights and meshes too
 
 Vec3d ToVector(ai_real x, ai_real y, ai_real z) {
@@ -27,11 +30,26 @@ Vec3d ToVector(ai_real x, ai_real y, ai_real z) {
 
 using base::Index;
 
-// The local transform that the file was saved with.
-Affine SavedPose(const Node& node, const Affine& root) {
-  Affine local = node.parent < 0 ? root : Affine{};
-  for (const aiNode* link : node.chain) local = local * ToAffine(link->mTransformation);
-  return local;
+Affine Product(const std::vector<const aiNode*>& chain, Affine product = {}) {
+  for (const aiNode* link : chain) product = product * ToAffine(link->mTransformation);
+  return product;
+}
+
+// The local transforms that the file was saved with.
+std::vector<Affine> SavedPose(const NodeTree& tree) {
+  std::vector<Affine> locals;
+  for (const Node& node : tree.nodes) locals.push_back(Product(node.chain));
+  if (InheritsPlainly(tree, locals)) {
+    for (std::size_t n = 0; n < locals.size(); ++n) {
+      if (tree.nodes[n].parent < 0) locals[n] = Product(tree.nodes[n].chain, tree.root);
+    }
+    return locals;
+  }
+  std::vector<Affine> rest;
+  for (const retargeting::Parts& parts : InheritScales(tree, locals)) {
+    rest.push_back(FromParts(parts));
+  }
+  return rest;
 }
 
 std::vector<Affine> WorldOf(const NodeTree& tree) {
@@ -66,7 +84,7 @@ Affine ToJoint(const aiBone& bone, const Node& holder, const Affine& place) {
   const Affine offset = ToAffine(bone.mOffsetMatrix);
   if (!StatesBonesRelativeToParent()) return offset;
   // The scene's root had no transform when assimp computed the offset.
-  const aiNode& above = *holder.chain.front()->mParent;
+  const aiNode& above = *holder.outermost->mParent;
   const Affine local = above.mParent == nullptr ? Affine{} : ToAffine(above.mTransformation);
   return offset * Inverse(local).value_or(Affine{}) * place;
 }
@@ -83,7 +101,7 @@ void TakeRestOfSkins(const aiScene& scene, NodeTree* tree) {
     for (unsigned b = 0; b < scene.mMeshes[m]->mNumBones; ++b) {
       const aiBone& bone = *scene.mMeshes[m]->mBones[b];
       const Affine to_joint = ToJoint(bone, tree->nodes[holder], to_file * world[holder]);
-      tree->to_joint[&bone] = to_joint;
+      tree->to_joint[&bone] = to_joint * Product(tree->nodes[holder].geometry);
       const int node = tree->Find(bone.mName.C_Str());
       if (node < 0 || tree->bound[Index(node)]) continue;
       const std::optional<Affine> from_joint = Inverse(to_joint);
@@ -103,18 +121,45 @@ void TakeRestOfSkins(const aiScene& scene, NodeTree* tree) {
   }
 }
 
-// A node that is still to be visited, below `parent` and the pivots `chain`.
+// A node that is still to be visited, below `parent` and its own pivots.
 struct Open {
   const aiNode* node;
   int parent;
-  std::vector<const aiNode*> chain;
+  std::vector<const aiNode*> pivots;
 };
+
+// Sorts the pivots of a node. Those that undo the offset of the parent's meshes are dropped.
+Node MakeNode(const Open& found) {
+  Node node;
+  node.name = found.node->mName.C_Str();
+  node.parent = found.parent;
+  node.outermost = found.pivots.empty() ? found.node : found.pivots.front();
+  for (const aiNode* pivot : found.pivots) {
+    const absl::string_view name = pivot->mName.C_Str();
+    if (!absl::StrContains(name, kGeometry)) {
+      node.chain.push_back(pivot);
+    } else if (!absl::EndsWith(name, kInverse)) {
+      node.geometry.push_back(pivot);
+    }
+  }
+  node.chain.push_back(found.node);
+  int type = static_cast<int>(Inherits::kAll);
+  const aiMetadata* const stated = found.node->mMetaData;
+  if (stated != nullptr && stated->Get("InheritType", type) && type >= 0 && type <= 2) {
+    node.inherits = static_cast<Inherits>(type);
+  }
+  return node;
+}
 
 }  // namespace
 
 Affine ToAffine(const aiMatrix4x4& m) {
   return {ToVector(m.a1, m.b1, m.c1), ToVector(m.a2, m.b2, m.c2), ToVector(m.a3, m.b3, m.c3),
           ToVector(m.a4, m.b4, m.c4)};
+}
+
+std::string PivotName(const std::string& node, const char* part) {
+  return absl::StrCat(node, kPivot, part);
 }
 
 int NodeTree::Find(const std::string& name) const {
@@ -129,20 +174,19 @@ absl::StatusOr<NodeTree> MakeNodeTree(const aiScene& scene, const Affine& to_wor
   tree.root = to_world;
   std::vector<Open> open;
   const auto push_children = [&open](const aiNode& node, int parent,
-                                     const std::vector<const aiNode*>& chain) {
+                                     const std::vector<const aiNode*>& pivots) {
     for (unsigned i = node.mNumChildren; i-- > 0;) {
-      open.push_back({node.mChildren[i], parent, chain});
+      open.push_back({node.mChildren[i], parent, pivots});
     }
   };
   push_children(*scene.mRootNode, -1, {});
   while (!open.empty()) {
     Open next = std::move(open.back());
     open.pop_back();
-    next.chain.push_back(next.node);
-    const std::string name = next.node->mName.C_Str();
-    if (absl::StrContains(name, kPivot)) {
-      if (next.chain.size() > kMostNodes) break;
-      push_children(*next.node, next.parent, next.chain);
+    if (absl::StrContains(next.node->mName.C_Str(), kPivot)) {
+      next.pivots.push_back(next.node);
+      if (next.pivots.size() > kMostNodes) break;
+      push_children(*next.node, next.parent, next.pivots);
       continue;
     }
     if (tree.nodes.size() == kMostNodes) {
@@ -150,12 +194,12 @@ absl::StatusOr<NodeTree> MakeNodeTree(const aiScene& scene, const Affine& to_wor
           absl::StrCat("nodes: expected at most ", kMostNodes, ", got more"));
     }
     const int index = static_cast<int>(tree.nodes.size());
-    tree.by_name.emplace(name, index);
-    ++tree.counts[name];
-    tree.nodes.push_back({name, next.parent, std::move(next.chain)});
+    tree.nodes.push_back(MakeNode(next));
+    tree.by_name.emplace(tree.nodes.back().name, index);
+    ++tree.counts[tree.nodes.back().name];
     push_children(*next.node, index, {});
   }
-  for (const Node& node : tree.nodes) tree.rest.push_back(SavedPose(node, tree.root));
+  tree.rest = SavedPose(tree);
   tree.bound.resize(tree.nodes.size());
   TakeRestOfSkins(scene, &tree);
   return tree;

@@ -13,13 +13,32 @@ namespace duet::formats::fbx::program {
 
 retargeting::Affine ToAffine(const aiMatrix4x4& matrix);
 
+// How a node takes over its parent's scale: FbxTransform::EInheritType, in the order of its
+// numbers.
+enum class Inherits {
+  kScaleAfterRotation,    // RrSs: the parent's scale applies along the node's own axes
+  kAll,                   // RSrs: as in most programs
+  kAllButTheParentsScale  // Rrs: the parent's own scale does not apply ("segment scale compensate")
+};
+
 // A node of the file. assimp splits the pivots and the parts of its transform into several nodes,
 // which are a chain here.
 struct Node {
   std::string name;
-  int parent = -1;                   // an earlier node
-  std::vector<const aiNode*> chain;  // from the outermost; their product is the local transform
+  int parent = -1;                      // an earlier node
+  std::vector<const aiNode*> chain;     // from the outermost; their product is the local transform
+  std::vector<const aiNode*> geometry;  // from the node to its meshes; does not apply to children
+  const aiNode* outermost = nullptr;    // of all of them
+  Inherits inherits = Inherits::kAll;
 };
+
+// The name of the node that assimp adds for a part of a node's transform ("PreRotation").
+std::string PivotName(const std::string& node, const char* part);
+// The parts that a local transform may have, from the outermost.
+inline constexpr const char* kTransformParts[] = {
+    "Translation",  "RotationOffset", "RotationPivot",        "PreRotation",
+    "Rotation",     "PostRotation",   "RotationPivotInverse", "ScalingOffset",
+    "ScalingPivot", "Scaling",        "ScalingPivotInverse"};
 
 // The nodes below the scene's root, parents first.
 struct NodeTree {

@@ -1,0 +1,53 @@
+#ifndef DUET_TESTS_FORMATS_FBX_TEXT_FBX_H_
+#define DUET_TESTS_FORMATS_FBX_TEXT_FBX_H_
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "model/motion/vec3.h"
+#include "model/retargeting/affine.h"
+#include "model/retargeting/rotation.h"
+
+// FBX as text, with every part that the local transform of a node can have, and where its nodes are
+// according to the FBX SDK.
+
+namespace duet::test {
+
+struct FbxBone {
+  std::string name;
+  int parent = -1;  // an earlier bone
+  // The properties of the file that differ from their defaults: "PreRotation" in degrees, ...
+  std::map<std::string, retargeting::Vec3d> properties;
+  int rotation_order = 0;  // FbxEuler::EOrder: XYZ, XZY, YZX, YXZ, ZXY, ZYX
+  int inherit_type = 1;    // FbxTransform::EInheritType: RrSs, RSrs, Rrs
+};
+
+// The keys of one property of one bone, one for each frame.
+struct FbxTrack {
+  int bone = 0;
+  std::string property;  // "Lcl Rotation"
+  std::vector<retargeting::Vec3d> keys;
+};
+
+struct FbxTake {
+  std::string name;
+  std::vector<FbxTrack> tracks;
+  int first_frame = 0;
+};
+
+inline constexpr double kTextFbxRateHz = 30;
+
+// Metres, y up, kTextFbxRateHz.
+std::string TextFbx(const std::vector<FbxBone>& bones, const std::vector<FbxTake>& takes);
+
+// The places of the bones in a frame of a take. [bones]
+std::vector<motion::Vec3> FbxWorld(const std::vector<FbxBone>& bones, const FbxTake& take,
+                                   int frame);
+
+// The joints of motion::SbuSkeleton as bones whose translations are those of `pose`.
+std::vector<FbxBone> FbxPerson(const std::vector<motion::Vec3>& pose);
+
+}  // namespace duet::test
+
+#endif  // DUET_TESTS_FORMATS_FBX_TEXT_FBX_H_
