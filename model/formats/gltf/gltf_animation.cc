@@ -10,6 +10,14 @@
 #include "absl/strings/str_cat.h"
 
 namespace duet::formats::gltf {
+namespace {
+
+// Relative. The times of keys are float32; a frame's time differs from its key by their rounding.
+constexpr double kSameTime = 1e-6;
+// Seconds. Keys nearer than this to each other stand for a jump between two values.
+constexpr double kJump = 1e-3;
+
+}  // namespace
 
 using retargeting::Normalised;
 using retargeting::Quaternion;
@@ -48,6 +56,9 @@ GltfTrack::Place GltfTrack::Find(double seconds) const {
   const std::size_t key = static_cast<std::size_t>(after - times_.begin()) - 1;
   if (after == times_.end()) return {key, 0, 0};
   const double from = static_cast<double>(times_[key]), to = static_cast<double>(*after);
+  // Elsewhere, neighbouring values hardly differ.
+  const bool jumps = channel_.interpolation == GltfInterpolation::kStep || to - from < kJump;
+  if (jumps && to - seconds <= kSameTime * std::max(1.0, std::abs(to))) return Find(to);
   return {key, (seconds - from) / (to - from), to - from};
 }
 

@@ -54,6 +54,34 @@ TEST(GltfTrack, StaysUntilTheNextStep) {
   ExpectNear(track->VectorAt(3), {2, 2, 2});
 }
 
+// The frames' times are exact, those of the keys are rounded up or down.
+TEST(GltfTrack, HasAKeyAtTheTimeOfItsFrame) {
+  constexpr double kRateHz = 30;
+  std::vector<float> times, values;
+  for (int frame = 0; frame < 3000; ++frame) {
+    times.push_back(static_cast<float>(2 + frame / kRateHz));
+    values.insert(values.end(), 3, static_cast<float>(frame));
+  }
+  for (const GltfInterpolation interpolation :
+       {GltfInterpolation::kLinear, GltfInterpolation::kStep}) {
+    const auto track = Track(GltfPath::kTranslation, interpolation, times, values);
+    ASSERT_THAT(track, IsOk());
+    for (int frame = 0; frame < 3000; ++frame) {
+      EXPECT_NEAR(track->VectorAt(2 + frame / kRateHz).x, frame, 1e-3);
+    }
+  }
+}
+
+// A program may write a jump as two keys, a rounding error apart.
+TEST(GltfTrack, JumpsAtTheLaterOfTwoKeysAtOneTime) {
+  const float before = 1.5f, after = std::nextafter(before, 2.0f);
+  const auto track = Track(GltfPath::kScale, GltfInterpolation::kLinear, {1, before, after, 2},
+                           {1, 1, 1, 1, 1, 1, 5, 5, 5, 5, 5, 5});
+  ASSERT_THAT(track, IsOk());
+  ExpectNear(track->VectorAt(1.4999), {1, 1, 1});
+  ExpectNear(track->VectorAt(1.5), {5, 5, 5});
+}
+
 // 2 t^3 - 3 t^2 + 1 and its neighbours at t = 1/4 and 2 s between keys.
 TEST(GltfTrack, FollowsSplines) {
   const auto track = Track(GltfPath::kTranslation, GltfInterpolation::kCubicSpline, {0, 2},

@@ -54,9 +54,7 @@ TEST(GltfImport, ReadsAPersonWithEveryInterpolation) {
     const absl::StatusOr<motion::Clip> read = Read(OnePerson(clip, options));
     ASSERT_TRUE(read.ok()) << read.status();
     EXPECT_EQ(read->frame_rate_hz, 30);
-    // Keys fall between frames by rounding: a step may be a frame early or late.
-    const float close = std::string(interpolation) == "STEP" ? 0.2f : kOneMillimetre;
-    EXPECT_LT(LargestDistance(*read, clip), close) << interpolation;
+    EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre) << interpolation;
   }
 }
 
