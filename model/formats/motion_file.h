@@ -62,8 +62,8 @@ struct ReadOptions {
   // absent, BVH, glTF, FBX and ASF have the unit that the file states, or else an inferred one
   // (model/motion/inferred_coordinates.h).
   std::optional<double> metres_per_unit;
-  // glTF, FBX: the name of the animation (of FBX: a take). If absent, the first that moves the
-  // person. Other formats hold one motion and reject a name.
+  // glTF, FBX: the name of the animation (of FBX: a take). If absent, the first in which the
+  // person moves. Other formats hold one motion and reject a name.
   std::optional<std::string> animation;
   retargeting::JointOverrides joint_overrides;
   // The meaning of a .npy array. If absent, research::GuessLayout; if that has none, positions of

@@ -12,37 +12,20 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/index.h"
-#include "model/base/median.h"
 #include "model/base/text.h"
-#include "model/formats/gltf/gltf_animation.h"
+#include "model/formats/gltf/gltf_puppet.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/motion_limits.h"
-#include "model/retargeting/affine.h"
 
 namespace duet::formats::gltf {
 namespace {
 
-using retargeting::Affine;
-using retargeting::Quaternion;
-using retargeting::Vec3d;
-
-// Keys farther apart than this were set by hand and do not indicate a rate.
-constexpr double kSlowestKeysHz = 15, kHandKeyedRateHz = 30, kFastestRateHz = 240;
-constexpr double kRateTolerance = 0.01;
 constexpr std::size_t kMostCharacters = 64;
 constexpr std::size_t kMostNames = 20;  // of animations, in messages
+// A body that moves less, as a fraction of its size, stands still: a T pose with constant keys.
+constexpr double kLeastTravel = 0.01;
 
 using base::Index;
-
-Affine FromMatrix(const std::array<double, 16>& m) {
-  return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
-}
-
-// The nodes of a character and their ancestors.
-struct Members {
-  std::vector<int> above;  // from the outermost one to the root's parent
-  std::vector<int> nodes;  // the root and all below it, parents first
-};
 
 class Hierarchy {
  public:
@@ -126,141 +109,6 @@ class CharacterFinder {
   std::vector<int> roots_;
 };
 
-// The nodes of a character with their tracks.
-class Puppet {
- public:
-  Puppet(const GltfDocument& document, Members members)
-      : document_(document), members_(std::move(members)) {
-    tracks_.resize(document.nodes.size());
-    world_.resize(document.nodes.size());
-    is_member_.resize(document.nodes.size());
-    moves_.resize(document.nodes.size());
-    for (int node : members_.nodes) is_member_[Index(node)] = moves_[Index(node)] = true;
-    for (int node : members_.above) moves_[Index(node)] = true;
-  }
-
-  const Members& members() const { return members_; }
-
-  bool IsMovedBy(const GltfAnimation& animation) const {
-    return std::any_of(
-        animation.channels.begin(), animation.channels.end(),
-        [this](const GltfChannel& channel) { return is_member_[Index(channel.node)]; });
-  }
-
-  absl::Status ReadTracks(const GltfAnimation& animation, GltfBuffers* buffers) {
-    for (const GltfChannel& channel : animation.channels) {
-      if (!moves_[Index(channel.node)]) continue;
-      absl::StatusOr<GltfTrack> track = GltfTrack::Read(channel, buffers);
-      if (!track.ok()) return track.status();
-      tracks_[Index(channel.node)].push_back(*std::move(track));
-    }
-    return absl::OkStatus();
-  }
-
-  template <typename Visit>
-  void ForEachTrack(Visit visit) const {
-    for (const std::vector<GltfTrack>& tracks : tracks_) {
-      for (const GltfTrack& track : tracks) visit(track);
-    }
-  }
-
-  // The rest pose: lengths in the world's unit, each bone in its parent's axes.
-  retargeting::JointTree Tree() {
-    Stand(std::nullopt);
-    retargeting::JointTree tree;
-    std::vector<int> places(document_.nodes.size(), -1);
-    for (int node : members_.nodes) {
-      const GltfNode& written = document_.nodes[Index(node)];
-      const int parent = tree.names.empty() ? -1 : places[Index(written.parent)];
-      const double scale = written.parent < 0 ? 1 : world_[Index(written.parent)].Scale();
-      const Vec3d at = Local(node, std::nullopt).origin;
-      places[Index(node)] = static_cast<int>(tree.names.size());
-      tree.names.push_back(written.name);
-      tree.parents.push_back(parent);
-      tree.offsets.push_back(parent < 0 ? Vec3d{} : at * scale);
-    }
-    return tree;
-  }
-
-  std::vector<motion::Vec3> PoseAt(double seconds) {
-    Stand(seconds);
-    std::vector<motion::Vec3> pose;
-    pose.reserve(members_.nodes.size());
-    for (int node : members_.nodes) pose.push_back(ToFloat(world_[Index(node)].origin));
-    return pose;
-  }
-
- private:
-  // The transform in the parent's axes; at rest if `seconds` is absent.
-  Affine Local(int node, std::optional<double> seconds) const {
-    const GltfNode& written = document_.nodes[Index(node)];
-    const std::vector<GltfTrack>& tracks = tracks_[Index(node)];
-    if (written.matrix.has_value() && (tracks.empty() || !seconds.has_value())) {
-      return FromMatrix(*written.matrix);
-    }
-    Vec3d translation = written.translation, scale = written.scale;
-    Quaternion rotation = Normalised(written.rotation);
-    for (const GltfTrack& track : tracks) {
-      if (!seconds.has_value()) break;
-      if (track.channel().path == GltfPath::kRotation) rotation = track.RotationAt(*seconds);
-      if (track.channel().path == GltfPath::kTranslation) translation = track.VectorAt(*seconds);
-      if (track.channel().path == GltfPath::kScale) scale = track.VectorAt(*seconds);
-    }
-    return retargeting::FromParts({translation, rotation, scale});
-  }
-
-  void Stand(std::optional<double> seconds) {
-    for (const std::vector<int>* nodes : {&members_.above, &members_.nodes}) {
-      for (int node : *nodes) {
-        const int parent = document_.nodes[Index(node)].parent;
-        const Affine local = Local(node, seconds);
-        world_[Index(node)] = parent < 0 ? local : world_[Index(parent)] * local;
-      }
-    }
-  }
-
-  const GltfDocument& document_;
-  Members members_;
-  std::vector<std::vector<GltfTrack>> tracks_;  // [nodes]
-  std::vector<bool> is_member_;                 // [nodes]
-  std::vector<bool> moves_;                     // [nodes], members and their ancestors
-  std::vector<Affine> world_;                   // [nodes]
-};
-
-// The times of the first and last keys of all tracks, and the rate of keys.
-struct Timing {
-  double start = 0, end = 0;
-  double rate_hz = kHandKeyedRateHz;
-};
-
-double RateOfKeys(const std::vector<float>& times) {
-  if (times.size() < 2) return 0;
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    steps.push_back(static_cast<double>(times[i]) - static_cast<double>(times[i - 1]));
-  }
-  const double rate = 1 / base::Median(std::move(steps)), whole = std::round(rate);
-  return std::abs(rate - whole) < kRateTolerance * whole ? whole : rate;
-}
-
-Timing FindTiming(const Puppet& puppet) {
-  Timing timing;
-  std::size_t most_keys = 0;
-  bool first = true;
-  puppet.ForEachTrack([&](const GltfTrack& track) {
-    const double start = static_cast<double>(track.times().front());
-    const double end = static_cast<double>(track.times().back());
-    timing.start = first ? start : std::min(timing.start, start);
-    timing.end = first ? end : std::max(timing.end, end);
-    first = false;
-    if (track.times().size() <= most_keys) return;
-    most_keys = track.times().size();
-    const double rate = RateOfKeys(track.times());
-    timing.rate_hz = rate < kSlowestKeysHz ? kHandKeyedRateHz : std::min(rate, kFastestRateHz);
-  });
-  return timing;
-}
-
 class Importer {
  public:
   Importer(const GltfDocument& document, const GltfFileReader& read_file,
@@ -280,14 +128,12 @@ class Importer {
                                         " nodes, got ", puppet.members().nodes.size()));
     }
     if (options_.nodes != nullptr) *options_.nodes = puppet.members().nodes;
-    const absl::StatusOr<const GltfAnimation*> chosen = Choose(puppet, source);
-    if (!chosen.ok()) return chosen.status();
-    const GltfAnimation* animation = *chosen;
-    if (animation == nullptr && options_.nodes == nullptr) {
+    const absl::StatusOr<std::vector<const GltfAnimation*>> candidates = Candidates(puppet, source);
+    if (!candidates.ok()) return candidates.status();
+    if (candidates->empty() && options_.nodes == nullptr) {
       return Error(source, "expected an animation of the skeleton, got none");
     }
-    const absl::Status status =
-        animation == nullptr ? absl::OkStatus() : puppet.ReadTracks(*animation, &buffers_);
+    const absl::Status status = Choose(*candidates, &puppet);
     if (!status.ok()) return Error(source, status.message(), status.code());
     return Play(&puppet, source);
   }
@@ -302,34 +148,64 @@ class Importer {
     if (options_.notes != nullptr) options_.notes->push_back(std::move(note));
   }
 
-  // The animation of the given name, or the first, of those that move the character; null if none
-  // moves it.
-  absl::StatusOr<const GltfAnimation*> Choose(const Puppet& puppet,
-                                              absl::string_view source) const {
-    std::vector<const GltfAnimation*> moving;
-    std::vector<std::string> names;
+  // Adds a note and a remark, which `duet inspect` prints.
+  void Remark(const std::string& what) const {
+    if (options_.report != nullptr) options_.report->remarks.push_back(what);
+    Note(what);
+  }
+
+  // The animations with keys for the character; only the one of the given name if there is a name.
+  absl::StatusOr<std::vector<const GltfAnimation*>> Candidates(const Puppet& puppet,
+                                                               absl::string_view source) const {
+    std::vector<const GltfAnimation*> candidates;
     for (const GltfAnimation& animation : document_.animations) {
-      if (!puppet.IsMovedBy(animation)) continue;
-      moving.push_back(&animation);
-      if (names.size() < kMostNames) names.push_back(base::Quoted(animation.name));
+      if (puppet.IsMovedBy(animation)) candidates.push_back(&animation);
     }
-    if (moving.size() > names.size()) names.push_back("...");
-    const std::string all = absl::StrJoin(names, ", ");
-    if (options_.animation.has_value()) {
-      for (const GltfAnimation* animation : moving) {
-        if (IsNamed(*animation, *options_.animation)) return animation;
-      }
-      return Error(source, absl::StrCat("animation: expected ", moving.empty() ? "one" : all,
-                                        ", got ", base::Quoted(*options_.animation)));
+    if (!options_.animation.has_value()) return candidates;
+    for (const GltfAnimation* animation : candidates) {
+      if (IsNamed(*animation, *options_.animation)) return std::vector{animation};
     }
-    if (moving.empty()) return nullptr;
-    if (moving.size() > 1) {
-      const std::string note = absl::StrCat("animation: ", names[0], ", the first of ",
-                                            moving.size(), " that move the skeleton: ", all);
-      if (options_.report != nullptr) options_.report->remarks.push_back(note);
-      Note(note);
+    return Error(source, absl::StrCat("animation: expected ",
+                                      candidates.empty() ? "one" : NamesOf(candidates), ", got ",
+                                      base::Quoted(*options_.animation)));
+  }
+
+  static std::string NamesOf(const std::vector<const GltfAnimation*>& animations) {
+    std::vector<std::string> names;
+    for (const GltfAnimation* animation : animations) {
+      if (names.size() < kMostNames) names.push_back(base::Quoted(animation->name));
     }
-    return moving[0];
+    if (animations.size() > names.size()) names.push_back("...");
+    return absl::StrJoin(names, ", ");
+  }
+
+  // Gives the puppet the tracks of the first animation in which the body moves. If it moves in
+  // none, the one in which it moves most.
+  absl::Status Choose(const std::vector<const GltfAnimation*>& candidates, Puppet* puppet) {
+    const Puppet still = *puppet;
+    std::size_t chosen = 0;
+    double most = -1;
+    for (std::size_t i = 0; i < candidates.size() && most < kLeastTravel; ++i) {
+      Puppet candidate = still;
+      const absl::Status status = candidate.ReadTracks(*candidates[i], &buffers_);
+      if (!status.ok()) return status;
+      const double travel = candidate.Travel();
+      if (travel <= most) continue;
+      most = travel;
+      chosen = i;
+      *puppet = std::move(candidate);
+    }
+    if (candidates.size() > 1) {
+      Remark(
+          absl::StrCat("animation: ", base::Quoted(candidates[chosen]->name),
+                       chosen == 0 ? ", the first of " : ", the first in which the body moves of ",
+                       candidates.size(), " that move the skeleton: ", NamesOf(candidates)));
+    }
+    if (!candidates.empty() && most == 0) {
+      Remark(absl::StrCat("warning: animation: ", base::Quoted(candidates[chosen]->name),
+                          ": no joint moves"));
+    }
+    return absl::OkStatus();
   }
 
   // Blender prefixes an animation with its armature ("Rig|walk").
@@ -338,7 +214,7 @@ class Importer {
   }
 
   absl::StatusOr<motion::Clip> Play(Puppet* puppet, absl::string_view source) const {
-    Timing timing = FindTiming(*puppet);
+    Timing timing = puppet->FindTiming();
     const std::optional<double> stated = StatedRate();
     if (options_.frame_rate_hz.has_value()) {
       timing.rate_hz = *options_.frame_rate_hz;

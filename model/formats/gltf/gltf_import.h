@@ -24,7 +24,7 @@ struct GltfImportOptions : retargeting::CharacterOptions {
   // set, only the rig is needed, and a character without an animation is accepted in its rest pose.
   std::vector<int>* nodes = nullptr;
   // The animation to use, by its name, or by the part of it that follows "|". If absent, the first
-  // that moves the character.
+  // in which the character moves; poses that are held do not count.
   std::optional<std::string> animation = std::nullopt;
   // What the file that was converted to this one states; absent for glTF itself.
   std::optional<double> stated_frame_rate_hz = std::nullopt;

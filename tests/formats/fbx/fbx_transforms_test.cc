@@ -163,6 +163,26 @@ TEST_F(FbxTest, ATakeKeepsPartsThatAnotherTakeDoesNotAnimate) {
   ExpectPlacesOfTheSdk(bones, {turning, moving}, moving);
 }
 
+// Mixamo's files have a take with the T pose before the motion.
+TEST_F(FbxTest, TheTakeInWhichTheBodyMovesIsRead) {
+  const std::vector<FbxBone> bones = Person();
+  FbxTake pose{"Take 001", {}};
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    pose.tracks.push_back({static_cast<int>(b), "Lcl Rotation", {Vec3d{}, Vec3d{}}});
+  }
+  const FbxTake turning = Turning(bones);
+  std::vector<std::string> notes;
+  FbxImportOptions options;
+  options.metres_per_unit = 1;
+  options.notes = &notes;
+  const absl::StatusOr<motion::Clip> read =
+      FromFbx(test::TextFbx(bones, {pose, turning}), "a.fbx", options);
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->frame_count(), kFrames);
+  EXPECT_THAT(notes, Contains(AllOf(HasSubstr("\"Take 001\", \"move\""),
+                                    HasSubstr("animation: \"move\", the first in which"))));
+}
+
 TEST_F(FbxTest, ATakeThatStartsLateHasNoFrameBefore) {
   const std::vector<FbxBone> bones = With({{"RotationPivot", {.1, -.2, .05}}});
   FbxTake late = Turning(bones);

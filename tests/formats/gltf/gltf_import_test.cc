@@ -157,6 +157,56 @@ TEST(GltfImport, UsesTheFirstOfSeveralAnimationsWithANote) {
               Contains(HasSubstr("animation: \"walk\", the first of 2 that move the skeleton")));
 }
 
+// Puts an animation before the others in which joints only tremble, radians.
+void AddPose(const std::string& name, float tremble, GltfBuilder* builder) {
+  const int times = builder->AddAccessor({0, 0.5f, 1}, "SCALAR");
+  const int turns = builder->AddAccessor({0, 0, 0, 1, tremble / 2, 0, 0, 1, 0, 0, 0, 1}, "VEC4");
+  nlohmann::json& animations = builder->json()["animations"];
+  nlohmann::json pose = {{"name", name}};
+  pose["samplers"] = nlohmann::json::array({{{"input", times}, {"output", turns}}});
+  for (nlohmann::json channel : animations[0]["channels"]) {
+    if (channel["target"]["path"] != "rotation") continue;
+    channel["sampler"] = 0;
+    pose["channels"].push_back(channel);
+  }
+  animations.insert(animations.begin(), pose);
+}
+
+TEST(GltfImport, UsesTheFirstAnimationInWhichTheBodyMoves) {
+  const motion::Clip clip = MakePerson();
+  for (const float tremble : {0.0f, 0.002f}) {
+    GltfBuilder builder;
+    AddPerson(clip, {}, &builder);
+    nlohmann::json other = builder.json()["animations"][0];
+    other["name"] = "run";
+    builder.json()["animations"].push_back(other);
+    AddPose("T pose", tremble, &builder);
+    std::vector<std::string> notes;
+    GltfImportOptions options;
+    options.notes = &notes;
+    const absl::StatusOr<motion::Clip> read = Read(builder.Binary(), options);
+    ASSERT_THAT(read, IsOk());
+    ASSERT_EQ(read->frame_count(), clip.frame_count());
+    EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+    EXPECT_THAT(notes, Contains(HasSubstr("animation: \"walk\", the first in which the body moves "
+                                          "of 3 that move the skeleton: \"T pose\", \"walk\"")));
+    options.animation = "T pose";
+    EXPECT_EQ(Read(builder.Binary(), options)->frame_count(), 31);
+  }
+}
+
+TEST(GltfImport, WarnsOfAnAnimationInWhichNothingMoves) {
+  GltfBuilder builder;
+  AddPerson(MakePerson(), {}, &builder);
+  AddPose("T pose", 0, &builder);
+  builder.json()["animations"].erase(1);
+  std::vector<std::string> notes;
+  GltfImportOptions options;
+  options.notes = &notes;
+  ASSERT_THAT(Read(builder.Binary(), options), IsOk());
+  EXPECT_THAT(notes, Contains("warning: animation: \"T pose\": no joint moves"));
+}
+
 TEST(GltfImport, AnAnimationIsChosenByItsName) {
   GltfBuilder builder;
   AddPerson(MakePerson(), {}, &builder);

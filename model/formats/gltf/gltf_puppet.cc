@@ -1,0 +1,161 @@
+#include "model/formats/gltf/gltf_puppet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "model/base/index.h"
+#include "model/base/median.h"
+
+namespace duet::formats::gltf {
+namespace {
+
+using base::Index;
+using retargeting::Affine;
+using retargeting::Quaternion;
+using retargeting::Vec3d;
+
+// Keys farther apart than this were set by hand and do not indicate a rate.
+constexpr double kSlowestKeysHz = 15, kHandKeyedRateHz = 30, kFastestRateHz = 240;
+constexpr double kRateTolerance = 0.01;
+// Frames, spread over an animation, in which its travel is measured.
+constexpr int kMeasuredFrames = 64;
+
+Affine FromMatrix(const std::array<double, 16>& m) {
+  return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+}
+
+double RateOfKeys(const std::vector<float>& times) {
+  if (times.size() < 2) return 0;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    steps.push_back(static_cast<double>(times[i]) - static_cast<double>(times[i - 1]));
+  }
+  const double rate = 1 / base::Median(std::move(steps)), whole = std::round(rate);
+  return std::abs(rate - whole) < kRateTolerance * whole ? whole : rate;
+}
+
+}  // namespace
+
+Puppet::Puppet(const GltfDocument& document, Members members)
+    : document_(&document), members_(std::move(members)) {
+  tracks_.resize(document.nodes.size());
+  world_.resize(document.nodes.size());
+  is_member_.resize(document.nodes.size());
+  moves_.resize(document.nodes.size());
+  for (int node : members_.nodes) is_member_[Index(node)] = moves_[Index(node)] = true;
+  for (int node : members_.above) moves_[Index(node)] = true;
+}
+
+bool Puppet::IsMovedBy(const GltfAnimation& animation) const {
+  return std::any_of(
+      animation.channels.begin(), animation.channels.end(),
+      [this](const GltfChannel& channel) { return is_member_[Index(channel.node)]; });
+}
+
+absl::Status Puppet::ReadTracks(const GltfAnimation& animation, GltfBuffers* buffers) {
+  for (std::vector<GltfTrack>& tracks : tracks_) tracks.clear();
+  for (const GltfChannel& channel : animation.channels) {
+    if (!moves_[Index(channel.node)]) continue;
+    absl::StatusOr<GltfTrack> track = GltfTrack::Read(channel, buffers);
+    if (!track.ok()) return track.status();
+    tracks_[Index(channel.node)].push_back(*std::move(track));
+  }
+  return absl::OkStatus();
+}
+
+Timing Puppet::FindTiming() const {
+  Timing timing;
+  timing.rate_hz = kHandKeyedRateHz;
+  std::size_t most_keys = 0;
+  bool first = true;
+  for (const std::vector<GltfTrack>& tracks : tracks_) {
+    for (const GltfTrack& track : tracks) {
+      const double start = static_cast<double>(track.times().front());
+      const double end = static_cast<double>(track.times().back());
+      timing.start = first ? start : std::min(timing.start, start);
+      timing.end = first ? end : std::max(timing.end, end);
+      first = false;
+      if (track.times().size() <= most_keys) continue;
+      most_keys = track.times().size();
+      const double rate = RateOfKeys(track.times());
+      timing.rate_hz = rate < kSlowestKeysHz ? kHandKeyedRateHz : std::min(rate, kFastestRateHz);
+    }
+  }
+  return timing;
+}
+
+retargeting::JointTree Puppet::Tree() {
+  Stand(std::nullopt);
+  retargeting::JointTree tree;
+  std::vector<int> places(document_->nodes.size(), -1);
+  for (int node : members_.nodes) {
+    const GltfNode& written = document_->nodes[Index(node)];
+    const int parent = tree.names.empty() ? -1 : places[Index(written.parent)];
+    const double scale = written.parent < 0 ? 1 : world_[Index(written.parent)].Scale();
+    const Vec3d at = Local(node, std::nullopt).origin;
+    places[Index(node)] = static_cast<int>(tree.names.size());
+    tree.names.push_back(written.name);
+    tree.parents.push_back(parent);
+    tree.offsets.push_back(parent < 0 ? Vec3d{} : at * scale);
+  }
+  return tree;
+}
+
+std::vector<motion::Vec3> Puppet::PoseAt(double seconds) {
+  Stand(seconds);
+  std::vector<motion::Vec3> pose;
+  pose.reserve(members_.nodes.size());
+  for (int node : members_.nodes) pose.push_back(ToFloat(world_[Index(node)].origin));
+  return pose;
+}
+
+double Puppet::Travel() {
+  const Timing timing = FindTiming();
+  std::vector<motion::Vec3> first;
+  std::vector<float> farthest(members_.nodes.size());
+  float size = 0;
+  for (int frame = 0; frame < kMeasuredFrames; ++frame) {
+    const double share = static_cast<double>(frame) / (kMeasuredFrames - 1);
+    const std::vector<motion::Vec3> pose =
+        PoseAt(timing.start + (timing.end - timing.start) * share);
+    if (frame == 0) first = pose;
+    for (std::size_t j = 0; j < pose.size(); ++j) {
+      farthest[j] = std::max(farthest[j], Distance(pose[j], first[j]));
+      size = std::max(size, Distance(pose[j], pose[0]));
+    }
+  }
+  double sum = 0;
+  for (float distance : farthest) sum += static_cast<double>(distance);
+  return size > 0 ? sum / static_cast<double>(farthest.size()) / static_cast<double>(size) : 0;
+}
+
+Affine Puppet::Local(int node, std::optional<double> seconds) const {
+  const GltfNode& written = document_->nodes[Index(node)];
+  const std::vector<GltfTrack>& tracks = tracks_[Index(node)];
+  if (written.matrix.has_value() && (tracks.empty() || !seconds.has_value())) {
+    return FromMatrix(*written.matrix);
+  }
+  Vec3d translation = written.translation, scale = written.scale;
+  Quaternion rotation = Normalised(written.rotation);
+  for (const GltfTrack& track : tracks) {
+    if (!seconds.has_value()) break;
+    if (track.channel().path == GltfPath::kRotation) rotation = track.RotationAt(*seconds);
+    if (track.channel().path == GltfPath::kTranslation) translation = track.VectorAt(*seconds);
+    if (track.channel().path == GltfPath::kScale) scale = track.VectorAt(*seconds);
+  }
+  return retargeting::FromParts({translation, rotation, scale});
+}
+
+void Puppet::Stand(std::optional<double> seconds) {
+  for (const std::vector<int>* nodes : {&members_.above, &members_.nodes}) {
+    for (int node : *nodes) {
+      const int parent = document_->nodes[Index(node)].parent;
+      const Affine local = Local(node, seconds);
+      world_[Index(node)] = parent < 0 ? local : world_[Index(parent)] * local;
+    }
+  }
+}
+
+}  // namespace duet::formats::gltf

@@ -1,0 +1,68 @@
+#ifndef DUET_MODEL_FORMATS_GLTF_GLTF_PUPPET_H_
+#define DUET_MODEL_FORMATS_GLTF_GLTF_PUPPET_H_
+
+#include <optional>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "model/formats/gltf/gltf_animation.h"
+#include "model/formats/gltf/gltf_buffers.h"
+#include "model/formats/gltf/gltf_document.h"
+#include "model/motion/vec3.h"
+#include "model/retargeting/affine.h"
+#include "model/retargeting/joint_tree.h"
+
+namespace duet::formats::gltf {
+
+// The nodes of a character and their ancestors.
+struct Members {
+  std::vector<int> above;  // from the outermost one to the root's parent
+  std::vector<int> nodes;  // the root and all below it, parents first
+};
+
+// The times of the first and last keys of all tracks, and the rate of keys.
+struct Timing {
+  double start = 0, end = 0;
+  double rate_hz = 0;
+};
+
+// The nodes of a character with their tracks.
+class Puppet {
+ public:
+  // `document` must outlive this object.
+  Puppet(const GltfDocument& document, Members members);
+
+  const Members& members() const { return members_; }
+  bool IsMovedBy(const GltfAnimation& animation) const;
+
+  // Replaces the tracks. Errors: those of GltfTrack::Read.
+  absl::Status ReadTracks(const GltfAnimation& animation, GltfBuffers* buffers);
+
+  // Hand-keyed animations, whose keys are far apart, have a rate of 30 Hz.
+  Timing FindTiming() const;
+
+  // The rest pose: lengths in the world's unit, each bone in its parent's axes.
+  retargeting::JointTree Tree();
+  // The places of the members in the world.
+  std::vector<motion::Vec3> PoseAt(double seconds);
+
+  // How far the joints move from where they start: the mean of their largest distances, as a
+  // fraction of the character's size.
+  double Travel();
+
+ private:
+  // The transform in the parent's axes; at rest if `seconds` is absent.
+  retargeting::Affine Local(int node, std::optional<double> seconds) const;
+  void Stand(std::optional<double> seconds);
+
+  const GltfDocument* document_;
+  Members members_;
+  std::vector<std::vector<GltfTrack>> tracks_;  // [nodes]
+  std::vector<bool> is_member_;                 // [nodes]
+  std::vector<bool> moves_;                     // [nodes], members and their ancestors
+  std::vector<retargeting::Affine> world_;      // [nodes]
+};
+
+}  // namespace duet::formats::gltf
+
+#endif  // DUET_MODEL_FORMATS_GLTF_GLTF_PUPPET_H_
