@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <optional>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -22,7 +21,7 @@ namespace {
 // Limits the values of all accessors: they may share bytes, so a small file could yield many.
 constexpr std::size_t kMaxValues = std::size_t{64} << 20;
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
-              kFloat = 5126;
+              kUnsignedInt = 5125, kFloat = 5126;
 
 std::size_t ComponentBytes(const GltfAccessor& accessor) {
   switch (accessor.component_type) {
@@ -37,6 +36,13 @@ std::size_t ComponentBytes(const GltfAccessor& accessor) {
     default:
       return 0;
   }
+}
+
+// 0 for a type that indices must not have.
+std::size_t IndexBytes(int component_type) {
+  if (component_type == kUnsignedByte) return 1;
+  if (component_type == kUnsignedShort) return 2;
+  return component_type == kUnsignedInt ? 4 : 0;
 }
 
 float Value(const char* bytes, int component_type) {
@@ -55,21 +61,18 @@ float Value(const char* bytes, int component_type) {
   return value;
 }
 
-// "my%20file.bin" -> my file.bin. Absent if no hex number follows a %.
-std::optional<std::string> Unescaped(absl::string_view uri) {
+// "my%20file.bin" -> my file.bin. A % without a hex number stays: some programs do not escape it.
+std::string Unescaped(absl::string_view uri) {
+  const auto is_digit = [](char c) { return absl::ascii_isxdigit(static_cast<unsigned char>(c)); };
   std::string name;
   for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] != '%') {
-      name.push_back(uri[i]);
-      continue;
-    }
     const absl::string_view digits = uri.substr(i + 1, 2);
-    if (digits.size() < 2 || !absl::ascii_isxdigit(static_cast<unsigned char>(digits[0])) ||
-        !absl::ascii_isxdigit(static_cast<unsigned char>(digits[1]))) {
-      return std::nullopt;
+    if (uri[i] == '%' && digits.size() == 2 && is_digit(digits[0]) && is_digit(digits[1])) {
+      name += base::BytesOfHex(digits);
+      i += 2;
+    } else {
+      name.push_back(uri[i]);
     }
-    name += base::BytesOfHex(digits);
-    i += 2;
   }
   return name;
 }
@@ -98,12 +101,18 @@ absl::StatusOr<std::string> GltfBuffers::Load(const GltfBuffer& buffer) const {
     return absl::InvalidArgumentError("uri: expected one, got none; the file has no binary chunk");
   }
   if (absl::StartsWith(buffer.uri, "data:")) return DecodeData(buffer.uri);
-  const std::optional<std::string> name = Unescaped(buffer.uri);
-  if (!name.has_value() || !IsPlainName(*name)) {
+  const std::string name = Unescaped(buffer.uri);
+  if (!IsPlainName(name)) {
     return absl::InvalidArgumentError(
         absl::StrCat("uri: expected a file in the same folder, got ", base::Quoted(buffer.uri)));
   }
-  return read_file_(*name);
+  absl::StatusOr<std::string> bytes = read_file_(name);
+  // The name itself, "100%20.bin", if a program did not escape it.
+  if (absl::IsNotFound(bytes.status()) && name != buffer.uri && IsPlainName(buffer.uri)) {
+    absl::StatusOr<std::string> unescaped = read_file_(buffer.uri);
+    if (unescaped.ok()) return unescaped;
+  }
+  return bytes;
 }
 
 absl::StatusOr<const std::string*> GltfBuffers::Whole(int buffer) {
@@ -130,42 +139,96 @@ absl::StatusOr<const std::string*> GltfBuffers::Whole(int buffer) {
   return &found->second;
 }
 
-absl::StatusOr<std::vector<float>> GltfBuffers::Read(int index, int components) {
-  const auto error = [index](absl::string_view message) {
-    return absl::InvalidArgumentError(absl::StrCat("accessors[", index, "]: ", message));
-  };
-  const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(index)];
-  const std::size_t bytes = ComponentBytes(accessor);
-  if (accessor.components != components || bytes == 0) {
-    return error(absl::StrCat("expected ", components, " floats or normalized whole numbers, got ",
-                              accessor.components, " of type ", accessor.component_type));
-  }
-  if (accessor.view < 0 || accessor.sparse)
-    return error("expected values in a bufferView, got sparse ones");
-  const GltfView& view = document_.views[static_cast<size_t>(accessor.view)];
-  const std::size_t width = bytes * static_cast<std::size_t>(components);
-  const std::size_t stride = view.stride == 0 ? width : view.stride;
+absl::Status GltfBuffers::CheckItems(const Items& items) {
+  const GltfView& view = document_.views[static_cast<size_t>(items.view)];
+  const std::size_t stride = view.stride == 0 ? items.width : view.stride;
   const absl::StatusOr<const std::string*> buffer = Whole(view.buffer);
   if (!buffer.ok()) return buffer.status();
   // Every number is below 2^32, so 64 bits hold each product.
-  const uint64_t end = accessor.count == 0 ? 0
-                                           : uint64_t{accessor.offset} +
-                                                 uint64_t{accessor.count - 1} * stride + width;
-  if (stride < width || end > view.length ||
-      uint64_t{view.offset} + view.length > (*buffer)->size()) {
-    return error(
-        absl::StrCat("expected values within the buffer, got ", accessor.count, " beyond it"));
+  const uint64_t end =
+      items.count == 0 ? 0
+                       : uint64_t{items.offset} + uint64_t{items.count - 1} * stride + items.width;
+  if (stride >= items.width && end <= view.length &&
+      uint64_t{view.offset} + view.length <= (*buffer)->size()) {
+    return absl::OkStatus();
   }
+  return absl::InvalidArgumentError(absl::StrCat(
+      items.name, ": expected values within the buffer, got ", items.count, " beyond it"));
+}
+
+absl::StatusOr<std::string> GltfBuffers::ReadItems(const Items& items) {
+  const absl::Status status = CheckItems(items);
+  if (!status.ok()) return status;
+  const GltfView& view = document_.views[static_cast<size_t>(items.view)];
+  const std::size_t stride = view.stride == 0 ? items.width : view.stride;
+  const std::string& buffer = **Whole(view.buffer);
+  std::string bytes;
+  bytes.reserve(items.count * items.width);
+  for (std::size_t i = 0; i < items.count; ++i) {
+    bytes.append(buffer, view.offset + items.offset + i * stride, items.width);
+  }
+  return bytes;
+}
+
+absl::Status GltfBuffers::ReplaceSparse(const GltfAccessor& accessor, const std::string& name,
+                                        std::size_t width, std::string* bytes) {
+  const GltfSparse& sparse = *accessor.sparse;
+  const std::size_t index_width = IndexBytes(sparse.index_type);
+  if (index_width == 0 || sparse.count > accessor.count) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": sparse: expected at most ", accessor.count,
+                     " items with unsigned whole numbers as indices, got ", sparse.count,
+                     " of type ", sparse.index_type));
+  }
+  const absl::StatusOr<std::string> indices =
+      ReadItems({absl::StrCat(name, ": sparse.indices"), sparse.index_view, sparse.index_offset,
+                 sparse.count, index_width});
+  if (!indices.ok()) return indices.status();
+  const absl::StatusOr<std::string> values =
+      ReadItems({absl::StrCat(name, ": sparse.values"), sparse.value_view, sparse.value_offset,
+                 sparse.count, width});
+  if (!values.ok()) return values.status();
+  for (std::size_t i = 0; i < sparse.count; ++i) {
+    std::size_t index = 0;
+    for (std::size_t byte = index_width; byte-- > 0;) {
+      index = index << 8 | static_cast<uint8_t>((*indices)[i * index_width + byte]);
+    }
+    if (index >= accessor.count) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          name, ": sparse: index ", i, ": expected one below ", accessor.count, ", got ", index));
+    }
+    bytes->replace(index * width, width, *values, i * width, width);
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::vector<float>> GltfBuffers::Read(int index, int components) {
+  const std::string name = absl::StrCat("accessors[", index, "]");
+  const auto error = [&name](absl::string_view message) {
+    return absl::InvalidArgumentError(absl::StrCat(name, ": ", message));
+  };
+  const GltfAccessor& accessor = document_.accessors[static_cast<size_t>(index)];
+  const std::size_t component_bytes = ComponentBytes(accessor);
+  if (accessor.components != components || component_bytes == 0) {
+    return error(absl::StrCat("expected ", components, " floats or normalized whole numbers, got ",
+                              accessor.components, " of type ", accessor.component_type));
+  }
+  const std::size_t width = component_bytes * static_cast<std::size_t>(components);
+  const Items items{name, std::max(accessor.view, 0), accessor.offset, accessor.count, width};
+  absl::Status status = accessor.view < 0 ? absl::OkStatus() : CheckItems(items);
+  if (!status.ok()) return status;
   const std::size_t count = accessor.count * static_cast<std::size_t>(components);
   if (count > kMaxValues - values_read_)
     return error(absl::StrCat("expected at most ", kMaxValues, " values in all, got more"));
+  absl::StatusOr<std::string> bytes =
+      accessor.view < 0 ? std::string(accessor.count * width, '\0') : ReadItems(items);
+  if (!bytes.ok()) return bytes.status();
+  if (accessor.sparse.has_value()) status = ReplaceSparse(accessor, name, width, &*bytes);
+  if (!status.ok()) return status;
   values_read_ += count;
   std::vector<float> values(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t component = i % static_cast<std::size_t>(components);
-    const std::size_t at = view.offset + accessor.offset +
-                           i / static_cast<std::size_t>(components) * stride + component * bytes;
-    values[i] = Value((*buffer)->data() + at, accessor.component_type);
+    values[i] = Value(bytes->data() + i * component_bytes, accessor.component_type);
     if (!(std::abs(values[i]) <= static_cast<float>(motion::kMaxCoordinate))) {
       return error(absl::StrCat("value ", i, ": expected a finite number within +-",
                                 motion::kMaxCoordinate, ", got ", values[i]));

@@ -46,15 +46,22 @@ struct GltfAnimation {
   std::vector<GltfChannel> channels;  // without morph targets
 };
 
+// Items of an accessor that have other values than its view.
+struct GltfSparse {
+  std::size_t count = 0;
+  int index_view = 0, value_view = 0;
+  std::size_t index_offset = 0, value_offset = 0;
+  int index_type = 0;  // a glTF constant
+};
 // The place of values in a buffer.
 struct GltfAccessor {
-  int view = -1;  // -1: none
+  int view = -1;  // -1: none, all values are zero
   std::size_t offset = 0;
   int component_type = 0;  // a glTF constant
   bool normalized = false;
   std::size_t count = 0;
   int components = 1;
-  bool sparse = false;
+  std::optional<GltfSparse> sparse;
 };
 struct GltfView {
   int buffer = 0;

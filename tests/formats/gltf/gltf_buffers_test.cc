@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gmock/gmock.h"
@@ -80,12 +81,60 @@ TEST_F(Buffers, RejectValuesOfAnotherKind) {
               HasSubstr("expected 4 floats or normalized whole numbers, got 3 of type 5126"));
   Accessor()["componentType"] = 5125;
   EXPECT_THAT(ReadError(builder_.Binary(), 3), HasSubstr("of type 5125"));
-  Accessor()["componentType"] = 5126;
-  Accessor()["sparse"] = nlohmann::json::object();
-  EXPECT_THAT(ReadError(builder_.Binary(), 3), HasSubstr("sparse"));
-  Accessor().erase("sparse");
+}
+
+TEST_F(Buffers, AreZeroWithoutAView) {
   Accessor().erase("bufferView");
-  EXPECT_THAT(ReadError(builder_.Binary(), 3), HasSubstr("expected values in a bufferView"));
+  EXPECT_THAT(*Read(builder_.Binary(), 3), ElementsAre(0, 0, 0, 0, 0, 0));
+  Accessor()["count"] = 4294967295u;
+  EXPECT_THAT(ReadError(builder_.Binary(), 3), HasSubstr("expected at most 67108864 values"));
+}
+
+// Adds the items {7, 8, 9} at `index`, which is written with the component type.
+void AddSparse(std::size_t index, int type, std::size_t bytes, test::GltfBuilder* builder) {
+  const int values = builder->AddAccessor({7, 8, 9}, "VEC3");
+  const int indices = builder->AddAccessor({0}, "SCALAR");
+  nlohmann::json& json = builder->json();
+  const std::size_t at = json["bufferViews"][static_cast<std::size_t>(indices)]["byteOffset"];
+  for (std::size_t byte = 0; byte < bytes; ++byte) {
+    builder->buffer()[at + byte] = static_cast<char>(index >> 8 * byte);
+  }
+  json["accessors"][0]["sparse"] = {{"count", 1},
+                                    {"indices", {{"bufferView", indices}, {"componentType", type}}},
+                                    {"values", {{"bufferView", values}}}};
+}
+
+TEST_F(Buffers, HaveSparseItems) {
+  const std::string whole = builder_.json().dump(), buffer = builder_.buffer();
+  for (const auto& [type, bytes] : {std::pair{5121, 1}, {5123, 2}, {5125, 4}}) {
+    builder_.json() = nlohmann::json::parse(whole);
+    builder_.buffer() = buffer;
+    AddSparse(1, type, static_cast<std::size_t>(bytes), &builder_);
+    EXPECT_THAT(*Read(builder_.Binary(), 3), ElementsAre(1, 2, 3, 7, 8, 9));
+    Accessor().erase("bufferView");
+    EXPECT_THAT(*Read(builder_.Binary(), 3), ElementsAre(0, 0, 0, 7, 8, 9));
+  }
+}
+
+TEST_F(Buffers, RejectSparseItemsThatAreNotThere) {
+  AddSparse(2, 5125, 4, &builder_);
+  EXPECT_THAT(ReadError(builder_.Binary(), 3),
+              HasSubstr("accessors[0]: sparse: index 0: expected one below 2, got 2"));
+  nlohmann::json& sparse = Accessor()["sparse"];
+  sparse["indices"]["byteOffset"] = 4;
+  EXPECT_THAT(ReadError(builder_.Binary(), 3),
+              HasSubstr("accessors[0]: sparse.indices: expected values within the buffer"));
+  sparse["indices"]["componentType"] = 5126;
+  EXPECT_THAT(ReadError(builder_.Binary(), 3), HasSubstr("sparse: expected at most 2 items"));
+  sparse["indices"]["componentType"] = 5125;
+  sparse["count"] = 3;
+  EXPECT_THAT(ReadError(builder_.Binary(), 3), HasSubstr("sparse: expected at most 2 items"));
+  for (const char* missing : {"indices", "values"}) {
+    test::GltfBuilder other = builder_;
+    other.json()["accessors"][0]["sparse"].erase(missing);
+    EXPECT_THAT(ParseGltf(other.Binary(), "a.glb").status().message(),
+                HasSubstr(std::string("accessors[0].sparse.") + missing));
+  }
 }
 
 TEST_F(Buffers, StayWithinTheirBytes) {
@@ -124,12 +173,22 @@ TEST_F(Buffers, RejectValuesThatAreNotFinite) {
 
 TEST_F(Buffers, ReadOnlyFilesInTheSameFolder) {
   for (const char* uri : {"../a.bin", "/etc/passwd", "b/a.bin", "%2e%2e%2fa.bin", "..", ".",
-                          "file:a.bin", "http://x/a.bin", "a%00.bin", "a%2", "c:\\\\a.bin"}) {
+                          "file:a.bin", "http://x/a.bin", "a%00.bin", "c:\\\\a.bin"}) {
     EXPECT_THAT(ReadError(builder_.WithFile(uri), 3),
                 HasSubstr("expected a file in the same folder"))
         << uri;
   }
   EXPECT_EQ(Read(builder_.WithFile("a.bin"), 3).status().code(), absl::StatusCode::kNotFound);
+}
+
+// The % of "50%.bin" need not be escaped; "50%25.bin" may be either file.
+TEST_F(Buffers, ReadFilesWithAPercentSign) {
+  for (const char* file : {"50%.bin", "50%25.bin", "%zz", "a%2"}) {
+    const auto beside = [&](const std::string& name) {
+      return name == file ? absl::StatusOr<std::string>(builder_.buffer()) : NoFiles(name);
+    };
+    EXPECT_THAT(Read(builder_.WithFile(file), 3, beside), IsOk()) << file;
+  }
 }
 
 TEST_F(Buffers, RejectInvalidBase64) {
