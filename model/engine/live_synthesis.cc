@@ -107,7 +107,7 @@ LiveFrames LiveSynthesis::TakeDue() const {
   if (!evaluation_ || pending_) return {next_follower_frame(), Poses(0, leader_.joint_count())};
   int end = std::min(DueEnd(), PlannedEnd());
   if (const std::optional<int> next = NextEvaluation()) end = std::min(end, JoinFrame(*next));
-  return Sample(end - next_follower_frame());
+  return Sample(std::min(1, end - next_follower_frame()));
 }
 
 LiveFrames LiveSynthesis::Plan(int count) const {
@@ -177,8 +177,8 @@ void LiveSynthesis::CorrectFrame(int frame, absl::Span<const Vec3> interpolated,
   }
 }
 
-void LiveSynthesis::Settle(const Poses& frames) {
-  follower_.Append(frames.all());
+void LiveSynthesis::Settle(const Poses& frame) {
+  follower_.Append(frame.all());
   DropOldFrames();
 }
 

@@ -52,7 +52,7 @@ bool AnswersLive(const ModelDescription& model);
 //   LiveSynthesis live(description, request);
 //   live.AddLeader(frames);                       // as they arrive
 //   for (;;) {
-//     LiveFrames due = live.TakeDue();
+//     LiveFrames due = live.TakeDue();  // one frame
 //     if (due.poses.frame_count() > 0) { ... send; live.Settle(as sent) ... }
 //     else if (live.NeedsWindow()) { ... live.Accept(result of live.NextWindow()) ... }
 //     else break;
@@ -86,10 +86,12 @@ class LiveSynthesis {
   // Changes the labels from `frame` on, which is not final; see LabelTrack::Change.
   void ChangeLabels(int frame, int ease_frames, const std::vector<float>& weights);
 
-  // Takes the frames that are due and that the plan answers. Settle must follow if there are any.
+  // Takes the next frame that is due and that the plan answers; no frame if there is none. Settle
+  // must follow if there is one. A frame depends on the frame before it as the caller got that, so
+  // several at a time would be other frames.
   LiveFrames TakeDue() const;
-  // Makes the frames that TakeDue returned final, as the caller gets them: rounded to its units.
-  void Settle(const motion::Poses& frames);
+  // Makes the frame that TakeDue returned final, as the caller gets it: rounded to its units.
+  void Settle(const motion::Poses& frame);
 
   // Whether a window is to be evaluated. Requires that no frames are due from the plan held.
   bool NeedsWindow() const;

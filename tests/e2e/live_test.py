@@ -224,6 +224,21 @@ class LiveTest(unittest.TestCase):
         start.start.reply_rotations = True
         self.check_resumes(start, leader, ((7, 0), (200, 0)))
 
+    def test_frames_do_not_depend_on_the_size_of_messages(self):
+        """In units in which a position is rounded on its way to the caller."""
+        leader = [[1000 * value for value in pose] for pose in person(live.SBU_JOINTS, 90, 2 * FRAMES)]
+        start = start_message(rate=90, label="kick")
+        start.start.leader.unit = motion_pb2.LENGTH_UNIT_MILLIMETRES
+        one = self.lockstep(start, leader)
+        other = Session(self.channel, start)
+        for first in range(0, len(leader), 5):
+            other.send(frames_message(first, leader[first:first + 5]))
+            other.wait_for(first + 4)
+        other.drain()
+        self.assertEqual(other.summary.skipped_frames, 0)
+        different = [frame for frame in one.frames if one.frames[frame] != other.frames[frame]]
+        self.assertEqual(different, [])
+
     def test_sessions_at_the_same_time_have_the_frames_of_one_alone(self):
         seeds = range(8)
         alone = [self.lockstep(start_message(seed=seed)).frames for seed in seeds]

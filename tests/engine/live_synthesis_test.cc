@@ -56,8 +56,9 @@ class Session {
       const LiveFrames due = live_.TakeDue();
       if (due.poses.frame_count() > 0) {
         EXPECT_EQ(due.first, live_.next_follower_frame());
-        follower_.Append(due.poses.all());
-        live_.Settle(due.poses);
+        const Poses sent = AsSent(due.poses);
+        follower_.Append(sent.all());
+        live_.Settle(sent);
       } else if (live_.NeedsWindow()) {
         windows_.push_back(live_.NextWindow());
         live_.Accept(*fake_.Synthesize({&windows_.back()}).front());
@@ -67,14 +68,27 @@ class Session {
     }
   }
 
+  // Rounds frames to multiples of `metres`, as the units of a caller do.
+  void RoundTo(float metres) { grid_ = metres; }
+
   const Poses& follower() const { return follower_; }
   const std::vector<SynthesisWindow>& windows() const { return windows_; }
   LiveSynthesis& live() { return live_; }
   FakeSynthesizer& fake() { return fake_; }
 
  private:
+  Poses AsSent(Poses poses) const {
+    if (grid_ == 0) return poses;
+    for (motion::Vec3& joint : poses.all()) {
+      joint = {std::round(joint.x / grid_) * grid_, std::round(joint.y / grid_) * grid_,
+               std::round(joint.z / grid_) * grid_};
+    }
+    return poses;
+  }
+
   FakeSynthesizer fake_;
   LiveSynthesis live_;
+  float grid_ = 0;
   Poses follower_{0, kJoints};
   std::vector<SynthesisWindow> windows_;
 };
@@ -200,6 +214,21 @@ TEST(LiveSynthesisTest, AShortHistoryIsContinuedFromItsLastFrame) {
   ASSERT_FALSE(session.windows().empty());
   const SynthesisWindow& window = session.windows().front();
   EXPECT_EQ(window.settled[window.settled.frame_count() - 1], sent[0]);
+}
+
+TEST(LiveSynthesisTest, FramesDoNotDependOnHowTheyArriveWhenTheCallerRoundsThem) {
+  for (const double rate : {30.0, 72.41, 240.0}) {
+    const Poses leader = SwayingMotion(240, rate);
+    Session one_by_one(Request(/*delay=*/0, rate)), together(Request(/*delay=*/0, rate));
+    for (Session* session : {&one_by_one, &together}) session->RoundTo(0.01f);
+    one_by_one.Send(leader);
+    constexpr int kMessage = 2;  // with at most one evaluation
+    for (int t = 0; t < leader.frame_count(); t += kMessage) {
+      together.Send(Frames(leader, t, kMessage), /*together=*/true);
+    }
+    ASSERT_EQ(together.live().skipped_frames(), 0);
+    EXPECT_EQ(one_by_one.follower(), together.follower()) << rate;
+  }
 }
 
 TEST(LiveSynthesisTest, HistoryThatNoEvaluationReadsChangesNothing) {
