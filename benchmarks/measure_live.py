@@ -6,6 +6,7 @@ in a browser.
     benchmarks/measure_live.py BUILD hour [--minutes 60] [--sessions 4]
     benchmarks/measure_live.py BUILD killed [--times 20]
     benchmarks/measure_live.py BUILD page [--seconds 60]
+    benchmarks/measure_live.py BUILD candidates [--seconds 10]
 
 hostile: regular sessions of duet-load at 30 frames a second, first without and then beside callers that
 never send, never read, end at once, send tiny, impossible, huge or malformed messages, or disconnect.
@@ -22,8 +23,12 @@ page: the Spar page in Chromium, through the gateway, with each model that answe
 second. Prints the time from the page's sending of a leader frame until its script has the follower's
 frame. Software draws the page, on the same processor as the server: a graphics card takes that load off.
 
-Exits with 1 if a regular session lost a frame or did not end with OK, or if memory grew by more than
-MEMORY_MB. Needs python3-grpcio and protobuf-compiler; page also chromium, python3-aiohttp and python3-numpy.
+candidates: short clips and one live session of a client, alone and beside eight live sessions of another client with
+1, 8 and 16 candidates. Prints the time of a clip, the latency of the live session, and the frames that were
+answered from an older plan.
+
+Exits with 1 if a regular session lost a frame or did not end with OK, if memory grew by more than
+MEMORY_MB, or if the session beside candidates was answered from an older plan. Needs python3-grpcio and protobuf-compiler; page also chromium, python3-aiohttp and python3-numpy.
 """
 
 import argparse
@@ -34,6 +39,7 @@ import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
@@ -49,10 +55,10 @@ def say(figure, value):
     print(f"| {figure} | {value} |", flush=True)
 
 
-def load(args, server, seconds):
+def load(args, server, seconds, sessions=None):
     """Regular sessions; duet-load's figures of them."""
     printed = subprocess.run(
-        [args.build / "bin/duet-load", "--server", server.address, "--live", str(args.sessions),
+        [args.build / "bin/duet-load", "--server", server.address, "--live", str(sessions or args.sessions),
          "--seconds", str(seconds), "--deadline", str(seconds + 60), "--json", "-", "--quiet"],
         stdout=subprocess.PIPE, text=True, check=False).stdout
     return json.loads(printed)["live"][0]
@@ -65,7 +71,8 @@ def say_load(name, step):
     say(f"{name}: added at the server, ms",
         f"p50 {step['at_server_ms']['p50']:.1f}, p99 {step['at_server_ms']['p99']:.1f}")
     say(f"{name}: frames answered of those sent", f"{step['answered']} of {step['sent']}")
-    say(f"{name}: lost, doubled", f"{step['lost']}, {step['doubled']}")
+    say(f"{name}: lost, doubled, answered from an older plan",
+        f"{step['lost']}, {step['doubled']}, {step['skipped']}")
     say(f"{name}: sessions by status", ", ".join(f"{count} {code}"
                                                  for code, count in step["ended"].items()))
 
@@ -190,6 +197,39 @@ def killed(args):
     return resumed > 0 and same == in_time
 
 
+class Sessions:
+    """Live sessions in real time of a client of its own, from a process of their own."""
+
+    def __init__(self, server, count, samples):
+        self.process = subprocess.Popen(
+            [sys.executable, "-B", SOURCE / "benchmarks/live_beside.py", server.address, CLIENT_KEY, str(count),
+             str(samples)], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+
+    def __enter__(self):
+        self.process.stdout.readline()  # all are answered
+        return self
+
+    def __exit__(self, *_):
+        self.process.communicate()
+
+
+def candidates(args):
+    import hostile_tools as tools  # pylint: disable=import-outside-toplevel
+    kept = True
+    with args.running(args.build / "bin/duet-server", "--client-key", CLIENT_KEY) as server, \
+            tempfile.TemporaryDirectory() as folder:
+        request = tools.sample_request(tools.load_protos(folder), frames=30)
+        for name, count in (("alone", 0), ("1 candidate", 1), ("8 candidates", 8), ("16 candidates", 16)):
+            with Sessions(server, 8, count) if count else contextlib.nullcontext():
+                with tools.Beside(server, tools.SYNTHESIZE, request, pause=0.037) as clips:
+                    step = load(args, server, args.seconds, sessions=1)
+            times = sorted(1000 * outcome.seconds for outcome in clips.outcomes)
+            say(f"{name}: a clip, ms", f"p50 {times[len(times) // 2]:.1f}, p99 {times[len(times) * 99 // 100]:.1f}")
+            say_load(name, step)
+            kept = kept and step["skipped"] == step["lost"] == 0
+    return kept
+
+
 COUNT = """{
   const add = spar.strip.add.bind(spar.strip);
   spar.strip.add = (latency) => { window.parts.push(latency); add(latency); };
@@ -238,9 +278,9 @@ def page(args):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("measured", choices=("hostile", "hour", "killed", "page"))
+    parser.add_argument("measured", choices=("hostile", "hour", "killed", "page", "candidates"))
     parser.add_argument("--seconds", type=float, default=600,
-                        help="of the hostile sessions, or on the page")
+                        help="of the hostile sessions, on the page, or beside candidates")
     parser.add_argument("--minutes", type=float, default=60, help="of frames at 30 a second")
     parser.add_argument("--times", type=int, default=20, help="servers that are killed")
     parser.add_argument("--sessions", type=int, default=4, help="regular sessions side by side")
@@ -250,7 +290,7 @@ def main():
     os.environ.setdefault("DUET_BIN_DIR", str(args.build / "bin"))
     from hostile_tools import running  # pylint: disable=import-outside-toplevel
     args.running = running
-    measure = {"hostile": hostile, "hour": hour, "killed": killed, "page": page}[args.measured]
+    measure = {"hostile": hostile, "hour": hour, "killed": killed, "page": page, "candidates": candidates}[args.measured]
     return 0 if measure(args) else 1
 
 

@@ -1,6 +1,7 @@
 #include "server/batching/batch_decision.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -23,7 +24,8 @@ constexpr std::chrono::seconds kPatience(1);
 constexpr double kThroughputKept = 0.75;
 // Fraction of the time from arrival to deadline that is reserved for sending the reply.
 constexpr int kWayBack = 8;
-// While short calls arrive, a batch of a lower lane may take as long as this many single windows.
+// While short calls arrive, a batch of a lower lane may take as long as this many single windows of
+// one candidate.
 // Short calls are considered to arrive until none has arrived for this time.
 constexpr double kHeldUp = 3;
 constexpr std::chrono::seconds kShortCallsCome(1);
@@ -38,8 +40,11 @@ class Decider {
 
  private:
   const WaitingWindow& Window(std::size_t index) const { return state_.windows[index]; }
-  const CostEstimate& CostOf(std::size_t index) const {
-    return state_.models[Window(index).model].cost;
+  const ModelLoad& ModelOf(std::size_t index) const { return state_.models[Window(index).model]; }
+  const CostEstimate& CostOf(std::size_t index) const { return ModelOf(index).cost; }
+  // The most frames of a batch of the window's model.
+  int MostFrames(std::size_t index) const {
+    return limits_.max_windows * ModelOf(index).window_frames;
   }
   // When the window's evaluation must have finished.
   TimePoint DueAt(std::size_t index) const {
@@ -58,7 +63,7 @@ class Decider {
   std::size_t NotHeldUp(const Indices& line) const;
   Indices InTime(const Indices& line, std::size_t most) const;
   Indices ForTheMostUrgent(const Indices& full) const;
-  Indices WithTimeFor(double seconds, const Indices& line, std::size_t most) const;
+  Indices WithTimeFor(const Indices& full, const Indices& line) const;
   double Throughput(const Indices& batch) const;
   Indices NextBatch() const;
   std::optional<TimePoint> WaitFor(const Indices& batch) const;
@@ -157,12 +162,16 @@ Indices Decider::WantedFirst(Lane lane, std::size_t model) const {
   return InTurns(line);
 }
 
-// Returns the same windows, with clients taking turns.
+// Returns the same windows, of one model, with clients taking turns.
 Indices Decider::InTurns(const Indices& line) const {
-  std::map<std::size_t, std::size_t> had;  // client -> number of its windows so far
-  std::vector<std::pair<std::size_t, std::size_t>> turns;
+  std::map<std::size_t, std::int64_t> had;  // client -> its turns so far
+  std::vector<std::pair<std::int64_t, std::size_t>> turns;
   turns.reserve(line.size());
-  for (const std::size_t i : line) turns.emplace_back(had[Window(i).client]++, i);
+  for (const std::size_t i : line) {
+    std::int64_t& of_client = had.emplace(Window(i).client, Window(i).client_turns).first->second;
+    of_client += TurnsOf(Window(i).frames, ModelOf(i).window_frames);
+    turns.emplace_back(of_client, i);
+  }
   std::stable_sort(turns.begin(), turns.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   Indices taking_turns;
@@ -171,19 +180,24 @@ Indices Decider::InTurns(const Indices& line) const {
   return taking_turns;
 }
 
-// Returns the maximum number of windows in a batch.
+// Returns the number of the first windows, at least 1, that a batch holds at most.
 std::size_t Decider::MostOf(const Indices& line) const {
   std::vector<double> busy_seconds;
   for (const TimePoint end : state_.busy_until) {
     busy_seconds.push_back(std::max(0.0, SecondsBetween(now_, end)));
   }
-  const CostEstimate& cost = CostOf(line.front());
-  const double mean_frames =
-      static_cast<double>(FramesOf(alive_)) / static_cast<double>(alive_.size());
-  const int share =
-      EvenShare(static_cast<int>(alive_.size()), state_.free_workers, std::move(busy_seconds),
-                {cost.batch_seconds, cost.frame_seconds * mean_frames});
-  return std::min(line.size(), static_cast<std::size_t>(std::min(limits_.max_windows, share)));
+  const int share = EvenShare(FramesOf(alive_), state_.free_workers, std::move(busy_seconds),
+                              CostOf(line.front()));
+  const std::size_t most = std::min(line.size(), static_cast<std::size_t>(limits_.max_windows));
+  std::size_t count = 1;
+  int frames = Window(line.front()).frames;
+  for (; count < most; ++count) {
+    const int more = Window(line[count]).frames;
+    // A window of which the larger part exceeds the share is for another worker.
+    if (frames + more > MostFrames(line.front()) || frames + more / 2 > share) break;
+    frames += more;
+  }
+  return count;
 }
 
 // Returns the maximum number of windows that do not delay a short call too long.
@@ -191,7 +205,9 @@ std::size_t Decider::NotHeldUp(const Indices& line) const {
   if (now_ >= state_.last_short + kShortCallsCome) return line.size();
   const CostEstimate& cost = CostOf(line.front());
   // Slightly more, so that rounding errors do not remove a window.
-  const double longest = (kHeldUp + 1e-6) * cost.Seconds(Window(line.front()).frames);
+  const double longest =
+      (kHeldUp + 1e-6) *
+      cost.Seconds(std::min(Window(line.front()).frames, ModelOf(line.front()).window_frames));
   std::size_t count = 1;
   int frames = Window(line.front()).frames;
   for (; count < line.size(); ++count) {
@@ -207,7 +223,7 @@ Indices Decider::InTime(const Indices& line, std::size_t most) const {
   Indices urgent = ForTheMostUrgent(full);
   // Otherwise the largest batch that finishes in time for enough of its windows.
   for (; full.size() > urgent.size(); full.resize(full.size() / 2)) {
-    Indices others = WithTimeFor(SecondsOf(full), line, full.size());
+    Indices others = WithTimeFor(full, line);
     if (others.empty()) continue;
     if (Throughput(urgent) < kThroughputKept * Throughput(others)) return others;
   }
@@ -229,15 +245,16 @@ Indices Decider::ForTheMostUrgent(const Indices& full) const {
   return batch;
 }
 
-// Returns the first windows, at most the given number, that have this much time left and whose
-// batch takes no longer.
-Indices Decider::WithTimeFor(double seconds, const Indices& line, std::size_t most) const {
+// Returns the first windows that have time left for a full batch, and of which it holds as many.
+Indices Decider::WithTimeFor(const Indices& full, const Indices& line) const {
+  const double seconds = SecondsOf(full);
+  int room = FramesOf(full);
   Indices batch;
   for (const std::size_t window : line) {
-    if (batch.size() == most) break;
-    if (SecondsLeft(window) < seconds) continue;
+    if (batch.size() == full.size()) break;
+    if (SecondsLeft(window) < seconds || Window(window).frames > room) continue;
+    room -= Window(window).frames;
     batch.push_back(window);
-    if (SecondsOf(batch) > seconds) batch.pop_back();
   }
   return batch;
 }
@@ -249,7 +266,10 @@ double Decider::Throughput(const Indices& batch) const {
 
 // Returns until when a batch waits for windows of other calls; absent if it starts now.
 std::optional<TimePoint> Decider::WaitFor(const Indices& batch) const {
-  const bool full = batch.size() == static_cast<std::size_t>(limits_.max_windows);
+  // No further window of one candidate may join.
+  const bool full =
+      batch.size() == static_cast<std::size_t>(limits_.max_windows) ||
+      FramesOf(batch) + ModelOf(batch.front()).window_frames > MostFrames(batch.front());
   if (full || batch.size() < alive_.size()) return std::nullopt;
   TimePoint end = TimePoint::max();
   if (state_.busy_until.empty()) end = state_.last_company + limits_.max_delay;

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -17,8 +18,9 @@ namespace duet::server::batching {
 struct WaitingWindow {
   std::size_t model = 0;  // index into QueueState::models
   Lane lane = Lane::kShort;
-  std::size_t client = 0;  // index of the client among those with waiting windows
-  int frames = 0;          // that the model computes: those of the window, once for each candidate
+  std::size_t client = 0;         // index of the client among those with waiting windows
+  std::int64_t client_turns = 0;  // TurnsOf the windows of the client that have started in the lane
+  int frames = 0;  // that the model computes: those of the window, once for each candidate
   common::TimePoint queued_at;
   common::TimePoint deadline = common::TimePoint::max();
   bool cancelled = false;
@@ -29,7 +31,13 @@ struct WaitingWindow {
 struct ModelLoad {
   CostEstimate cost;
   double served_seconds = 0;  // computing time that its windows have used
+  int window_frames = 1;      // of its longest window with one candidate
 };
+
+// What a window costs as a number of windows of one candidate and of `window_frames`, rounded up.
+constexpr int TurnsOf(int frames, int window_frames) {
+  return (frames + window_frames - 1) / window_frames;
+}
 
 // Number of frames of higher lanes that may overtake each frame of a lane. A lane thus gets at
 // least an eighth of the work.
@@ -52,7 +60,9 @@ struct QueueState {
 };
 
 struct BatchLimits {
-  int max_windows = 1;  // of a batch, 1 or more
+  // Of a batch, 1 or more: neither more windows, nor more frames than so many of the model's
+  // longest windows with one candidate. A window with more frames than that runs alone.
+  int max_windows = 1;
   // Maximum time that a batch that is not full waits for windows of other calls, if any are likely.
   std::chrono::nanoseconds max_delay{0};
 };
@@ -78,21 +88,21 @@ struct Decision {
 // 2. Choose the highest lane with windows, unless a lower lane has been overtaken by kOvertaking
 //    times as many frames as its next batch holds. No lane starves.
 // 3. Within the lane, choose the model whose windows have used the least computing time.
-// 4. Choose windows of the clients in rounds: one window of each client, then the second of each,
-//    and so on. Within a client and within a round, the order is by urgency: the earliest of the
-//    deadline, the time at which it is due, and one second after arrival. Take at most
-//    max_windows, and no more than let all workers finish at about the same time. While short calls
-//    arrive, a batch of a lower lane takes no longer than three of its windows would take alone,
-//    because the next short call waits for it.
+// 4. Choose windows of the clients in turns: first those after which their client has had the
+//    fewest. A window with 16 candidates takes 16 turns, so clients share the work and not the
+//    number of windows. Within a client and among equal turns, the order is by urgency: the
+//    earliest of the deadline, the time at which it is due, and one second after arrival. Take at
+//    most max_windows, and no more than let all workers finish at about the same time. While short
+//    calls arrive, a batch of a lower lane takes no longer than three windows of one candidate
+//    would take alone, because the next short call waits for it.
 // 5. Reduce the batch so that its most urgent window finishes in time, unless that costs more than
-// a
-//    quarter of the throughput. In that case, take as many windows as finish in time.
+//    a quarter of the throughput. In that case, take as many windows as finish in time.
 // 6. A batch that is not full waits for up to max_delay, if no other batch waits and windows of
-// other
-//    calls are likely: another worker is busy, or windows of several calls were present within
-//    max_delay. A single call on an idle server does not wait.
+//    other calls are likely: another worker is busy, or windows of several calls were present
+//    within max_delay. A single call on an idle server does not wait.
 //
-// Costs are counted in frames. The engine computes no padding, so windows are not sorted by length.
+// Costs are counted in frames that the model computes: those of a window, once for each candidate.
+// The engine computes no padding, so windows are not sorted by length.
 Decision Decide(const QueueState& state, const BatchLimits& limits, common::TimePoint now);
 
 }  // namespace duet::server::batching

@@ -27,9 +27,10 @@ constexpr common::StepKind kAnswering{"worker", "passing a result on"};
 absl::Status ShuttingDown() { return absl::UnavailableError("the server is shutting down"); }
 
 absl::Status QueueFull(std::size_t capacity) {
-  return absl::ResourceExhaustedError(
-      "the queue is full: at most " + std::to_string(capacity) +
-      " calls may wait for their first window, and no client's calls may fill all of it");
+  return absl::ResourceExhaustedError("the queue is full: at most " + std::to_string(capacity) +
+                                      " first windows of calls may wait, each counted once for "
+                                      "each candidate, and no client's calls "
+                                      "may fill all of it");
 }
 
 absl::Status QueueTooLong(const WindowJob& job, common::TimePoint now) {
@@ -102,7 +103,7 @@ class Batcher final : public WindowScheduler {
   mutable common::Mutex mutex_;
   common::CondVar changed_;
   WindowQueue queue_ DUET_GUARDED_BY(mutex_);
-  std::atomic<std::size_t> queued_{0};  // size of queue_, readable without the lock
+  std::atomic<std::size_t> queued_{0};  // candidates in queue_, readable without the lock
   bool stopping_ DUET_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> workers_;
 };
@@ -147,9 +148,10 @@ absl::Status Batcher::CheckRoom(Priority priority, const std::string& client) co
 std::size_t Batcher::queued_windows() const { return queued_; }
 
 void Batcher::CountQueue() {
-  const std::size_t before = queued_.exchange(queue_.size());
+  const std::size_t now = queue_.candidates();
+  const std::size_t before = queued_.exchange(now);
   common::ProcessVitals().queued_windows +=
-      static_cast<std::int64_t>(queue_.size()) - static_cast<std::int64_t>(before);
+      static_cast<std::int64_t>(now) - static_cast<std::int64_t>(before);
 }
 
 void Batcher::Work() {
@@ -209,11 +211,12 @@ void Batcher::Run(Batch batch) {
   }
   WindowTimings timings;
   timings.compute_seconds = common::SecondsBetween(batch.started_at, end);
-  timings.batch_size = static_cast<int>(batch.windows.size());
+  timings.batch_size = batch.Candidates();
   if (observer_ != nullptr) observer_->BatchFinished(timings);
   for (std::size_t i = 0; i < batch.windows.size(); ++i) {
     QueuedWindow& window = batch.windows[i];
     timings.queue_seconds = common::SecondsBetween(window.queued_at, batch.started_at);
+    timings.frames = window.frames;
     Answer(std::move(window), std::move(results[i]), timings);
   }
 }

@@ -11,7 +11,7 @@ namespace duet::server::batching {
 
 struct BatcherOptions {
   int workers = 1;
-  int max_queued_windows = 1;  // calls waiting for their first window
+  int max_queued_windows = 1;  // see WindowQueueOptions::capacity
   BatchLimits limits;
   double client_share = 1;  // see WindowQueueOptions
 };

@@ -10,7 +10,7 @@ namespace duet::server::batching {
 // The queues in which windows wait, the most urgent first. A batch contains windows of one lane
 // only, so that long calls do not delay short ones.
 enum class Lane {
-  kShort,  // interactive calls of few windows, and the first window of long ones
+  kShort,  // interactive calls of little work, and the first window of long ones
   kLong,   // the other windows of long interactive calls
   kBulk
 };
@@ -19,8 +19,10 @@ inline constexpr std::size_t kLanes = 3;
 // A call of more windows is long: more than about 20 s at 15 frames a second.
 inline constexpr int kShortCallWindows = 8;
 
-// `call_windows`: number of windows of the whole call. The caller waits for the first frames of a
-// long call as for those of a short one. Later frames only have to keep up with playback.
+// `call_windows`: number of windows of the whole call, each counted once for each candidate: a call
+// with many candidates delays others as much as one that is as many times longer. The caller waits
+// for the first frames of a long call as for those of a short one. Later frames only have to keep
+// up with playback.
 constexpr Lane LaneOf(Priority priority, int call_windows, bool continues_call) {
   if (priority == Priority::kBulk) return Lane::kBulk;
   return continues_call && call_windows > kShortCallWindows ? Lane::kLong : Lane::kShort;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "model/engine/asked_turns.h"
+#include "model/engine/candidates.h"
 
 namespace duet::server::batching {
 namespace {
@@ -24,8 +25,12 @@ int FramesOf(const WindowJob& job) {
                   engine::ExpectedSamples(job.model->description(), job.window)));
 }
 
+int CandidatesOf(const WindowJob& job) {
+  return engine::CandidateCount(job.model->description(), job.window.options.sampling);
+}
+
 Lane LaneOf(const WindowJob& job) {
-  return LaneOf(job.priority, job.call_windows, job.continues_call);
+  return LaneOf(job.priority, job.call_windows * CandidatesOf(job), job.continues_call);
 }
 
 bool IsCancelled(const WindowJob& job) { return job.cancelled->load(std::memory_order_acquire); }
@@ -38,16 +43,28 @@ int Batch::Frames() const {
   return frames;
 }
 
-bool WindowQueue::HasRoomFor(Priority priority, const std::string& client, TimePoint now) const {
+int Batch::Candidates() const {
+  int candidates = 0;
+  for (const QueuedWindow& window : windows) candidates += window.candidates;
+  return candidates;
+}
+
+bool WindowQueue::HasRoomFor(const WindowJob& job, TimePoint now) const {
+  return job.continues_call || HasRoomFor(job.priority, job.client, now, CandidatesOf(job));
+}
+
+bool WindowQueue::HasRoomFor(Priority priority, const std::string& client, TimePoint now,
+                             int candidates) const {
   const std::size_t most = ShareOf(options_.capacity, priority);
   std::size_t taken = 0, held = 0;
   for (const QueuedWindow& window : waiting_) {
     const WindowJob& job = window.job;
     if (job.continues_call || IsCancelled(job) || now >= job.deadline) continue;
-    ++taken;
-    held += job.client == client ? 1 : 0;
+    taken += static_cast<std::size_t>(window.candidates);
+    if (job.client == client) held += static_cast<std::size_t>(window.candidates);
   }
-  if (taken >= most) return false;
+  if (taken == 0) return true;
+  if (taken + static_cast<std::size_t>(candidates) > most) return false;
   return held == 0 || (1 - options_.client_share) * static_cast<double>(held) <
                           options_.client_share * static_cast<double>(most - taken);
 }
@@ -55,12 +72,13 @@ bool WindowQueue::HasRoomFor(Priority priority, const std::string& client, TimeP
 bool WindowQueue::ComesInTime(const WindowJob& job, TimePoint now) const {
   double work = 0, batch_seconds = 0;
   int windows = 0;
-  for (const auto& [waiting, queued_at, frames] : waiting_) {
+  for (const QueuedWindow& window : waiting_) {
+    const WindowJob& waiting = window.job;
     if (LaneOf(waiting) > LaneOf(job) || IsCancelled(waiting) || now >= waiting.deadline) continue;
     const CostEstimate cost = CostOf(waiting, now);
-    work += cost.frame_seconds * frames;
+    work += cost.frame_seconds * window.frames;
     batch_seconds = std::max(batch_seconds, cost.batch_seconds);
-    ++windows;
+    windows += TurnsOf(window.frames, waiting.model->description().window_frames);
   }
   if (windows == 0) return true;
   const int batches = (windows + options_.limits.max_windows - 1) / options_.limits.max_windows;
@@ -84,8 +102,12 @@ void WindowQueue::Push(WindowJob job, TimePoint now) {
   }
   ++account.waiting;
   if (LaneOf(job) == Lane::kShort) last_short_ = now;
-  const int frames = FramesOf(job);
-  waiting_.push_back({std::move(job), now, frames});
+  LaneClients& clients = ClientsOf(job);
+  ClientTurns& client =
+      clients.waiting.emplace(job.client, ClientTurns{clients.turns_by_now}).first->second;
+  ++client.waiting;
+  const int frames = FramesOf(job), candidates = CandidatesOf(job);
+  waiting_.push_back({std::move(job), now, frames, candidates});
 }
 
 Turn WindowQueue::Next(TimePoint now) {
@@ -95,7 +117,10 @@ Turn WindowQueue::Next(TimePoint now) {
   for (Decision::Drop& drop : decision.dropped) {
     turn.dropped.push_back({TakeOut(drop.window), std::move(drop.reason)});
   }
-  for (const std::size_t index : decision.batch) turn.batch.windows.push_back(TakeOut(index));
+  for (const std::size_t index : decision.batch) {
+    CountTurns(waiting_[index]);
+    turn.batch.windows.push_back(TakeOut(index));
+  }
   RemoveTaken();
   CountOvertaking(turn.batch);
   if (!turn.batch.windows.empty()) Start(turn.batch, now);
@@ -135,19 +160,44 @@ WindowQueue::Account& WindowQueue::AccountOf(const WindowJob& job) {
   return account;
 }
 
+WindowQueue::LaneClients& WindowQueue::ClientsOf(const WindowJob& job) {
+  return clients_[static_cast<std::size_t>(LaneOf(job))];
+}
+
+void WindowQueue::CountTurns(const QueuedWindow& window) {
+  LaneClients& clients = ClientsOf(window.job);
+  ClientTurns& client = clients.waiting[window.job.client];
+  client.turns += TurnsOf(window.frames, window.job.model->description().window_frames);
+  clients.turns_by_now = std::max(clients.turns_by_now, client.turns);
+}
+
+std::size_t WindowQueue::candidates() const {
+  std::size_t candidates = 0;
+  for (const QueuedWindow& window : waiting_) {
+    candidates += static_cast<std::size_t>(window.candidates);
+  }
+  return candidates;
+}
+
 QueueState WindowQueue::StateAt(TimePoint now) const {
   QueueState state;
   std::map<const engine::Synthesizer*, std::size_t> index;
   for (const auto& [model, account] : accounts_) {
     index[model] = state.models.size();
-    state.models.push_back({account.cost.At(now), account.served_seconds});
+    const std::shared_ptr<const engine::Synthesizer> served = account.model.lock();
+    state.models.push_back({account.cost.At(now), account.served_seconds,
+                            served == nullptr ? 1 : served->description().window_frames});
   }
   std::map<std::string_view, std::size_t> clients;
   state.windows.reserve(waiting_.size());
-  for (const auto& [job, queued_at, frames] : waiting_) {
+  for (const QueuedWindow& window : waiting_) {
+    const WindowJob& job = window.job;
+    const Lane lane = LaneOf(job);
     const std::size_t client = clients.emplace(job.client, clients.size()).first->second;
-    state.windows.push_back({index[job.model.get()], LaneOf(job), client, frames, queued_at,
-                             job.deadline, IsCancelled(job), job.due});
+    const std::int64_t turns =
+        clients_[static_cast<std::size_t>(lane)].waiting.at(job.client).turns;
+    state.windows.push_back({index[job.model.get()], lane, client, turns, window.frames,
+                             window.queued_at, job.deadline, IsCancelled(job), job.due});
   }
   state.overtaken_frames = overtaken_frames_;
   state.free_workers = options_.workers - static_cast<int>(running_.size());
@@ -158,7 +208,11 @@ QueueState WindowQueue::StateAt(TimePoint now) const {
 }
 
 QueuedWindow WindowQueue::TakeOut(std::size_t index) {
-  --AccountOf(waiting_[index].job).waiting;
+  const WindowJob& job = waiting_[index].job;
+  --AccountOf(job).waiting;
+  std::map<std::string, ClientTurns>& clients = ClientsOf(job).waiting;
+  const auto client = clients.find(job.client);
+  if (--client->second.waiting == 0) clients.erase(client);
   return std::exchange(waiting_[index], {});
 }
 

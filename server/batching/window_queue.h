@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -16,12 +17,12 @@
 
 namespace duet::server::batching {
 
-// A job, its time of arrival, and the frames that its model is expected to compute: those of the
-// window, once for each sample.
+// A job, its time of arrival, and what it costs.
 struct QueuedWindow {
   WindowJob job;
   common::TimePoint queued_at;
-  int frames = 0;
+  int frames = 0;      // that its model is expected to compute: the window's, once for each sample
+  int candidates = 0;  // 1 for a model that does not sample
 };
 
 // A window that will never start, and the reason.
@@ -37,7 +38,9 @@ struct Batch {
   double expected_seconds = 0;
   int number = 0;  // unique within a queue
 
-  int Frames() const;  // of all windows
+  // Of all windows.
+  int Frames() const;
+  int Candidates() const;
 };
 
 // The work that a worker gets from the queue.
@@ -49,17 +52,19 @@ struct Turn {
 };
 
 struct WindowQueueOptions {
-  std::size_t capacity = 1;  // maximum number of calls that wait for their first window
+  // Maximum number of first windows of calls that wait, each counted once for each candidate. A
+  // single call may wait whatever it costs.
+  std::size_t capacity = 1;
   int workers = 1;
   BatchLimits limits;
   // Fraction of the capacity that a single client can fill, in (0, 1]. A client may queue another
-  // call while its waiting calls are fewer than client_share / (1 - client_share) times the free
+  // call while its waiting calls take less than client_share / (1 - client_share) times the free
   // room.
   double client_share = 1;
 };
 
 // The waiting windows, and the history that Decide needs: running batches, the computing time that
-// each model has used, and the cost of its batches.
+// each model has used, the cost of its batches, and the turns that clients have had.
 //
 //   Turn turn = queue.Next(now);    // for a free worker
 //   ... evaluates turn.batch ...
@@ -70,14 +75,13 @@ class WindowQueue {
  public:
   explicit WindowQueue(const WindowQueueOptions& options) : options_(options) {}
 
-  // Returns true if the first window of a call may join: the number of waiting first windows of all
-  // priorities is below this priority's share of the capacity, and the number of those of its
-  // client is below the client's share. Cancelled and expired windows do not count. Further windows
-  // of a call may always join.
-  bool HasRoomFor(Priority priority, const std::string& client, common::TimePoint now) const;
-  bool HasRoomFor(const WindowJob& job, common::TimePoint now) const {
-    return job.continues_call || HasRoomFor(job.priority, job.client, now);
-  }
+  // Returns true if the first window of a call may join: with it, the waiting first windows of all
+  // priorities fit into this priority's share of the capacity, and those of its client are below
+  // the client's share. Cancelled and expired windows do not count. Further windows of a call may
+  // always join.
+  bool HasRoomFor(Priority priority, const std::string& client, common::TimePoint now,
+                  int candidates = 1) const;
+  bool HasRoomFor(const WindowJob& job, common::TimePoint now) const;
   // Returns true if a first window would finish by its deadline after every window that waits in
   // its lane and above, at recent costs. Returns true if no window waits before it: Decide checks
   // whether the window itself finishes in time.
@@ -92,6 +96,8 @@ class WindowQueue {
   std::vector<DroppedWindow> DropAll(const absl::Status& reason, common::TimePoint now);
 
   std::size_t size() const { return waiting_.size(); }
+  // Of all waiting windows.
+  std::size_t candidates() const;
   std::size_t capacity() const { return options_.capacity; }
 
  private:
@@ -102,7 +108,21 @@ class WindowQueue {
     double served_seconds = 0;
     int waiting = 0;
   };
+  // A client with waiting windows in a lane.
+  struct ClientTurns {
+    std::int64_t turns = 0;  // see WaitingWindow::client_turns
+    int waiting = 0;
+  };
+  // The clients of a lane. A client that comes, or comes back, continues from the turns of the
+  // client whose window started last: it neither claims the time in which it was idle nor waits for
+  // the others to catch up (self-clocked fair queueing, Golestani 1994).
+  struct LaneClients {
+    std::map<std::string, ClientTurns> waiting;
+    std::int64_t turns_by_now = 0;
+  };
 
+  LaneClients& ClientsOf(const WindowJob& job);
+  void CountTurns(const QueuedWindow& window);
   Account& AccountOf(const WindowJob& job);
   CostEstimate CostOf(const WindowJob& job, common::TimePoint now) const;
   QueueState StateAt(common::TimePoint now) const;
@@ -117,6 +137,7 @@ class WindowQueue {
   std::map<const engine::Synthesizer*, Account> accounts_;
   std::map<int, common::TimePoint> running_;  // batch number -> expected end
   std::array<int, kLanes> overtaken_frames_ = {};
+  std::array<LaneClients, kLanes> clients_;
   common::TimePoint last_company_ = common::TimePoint::min();
   common::TimePoint last_short_ = common::TimePoint::min();
   // The computing time that the model whose batch started last had used by then. A model without

@@ -18,7 +18,10 @@ namespace duet::server::batching {
 struct WindowTimings {
   double queue_seconds = 0;
   double compute_seconds = 0;  // of the batch that the window was part of
-  int batch_size = 0;          // windows evaluated together; 0 when the window never started
+  // Windows evaluated together, each counted once for each candidate; 0 when the window never
+  // started.
+  int batch_size = 0;
+  int frames = 0;  // of the window, once for each sample that was to be expected; 0 likewise
 };
 
 struct WindowOutcome {
@@ -44,7 +47,7 @@ struct WindowJob {
   bool continues_call = false;
   // The client of the call. Clients take turns. The empty string is a client too.
   std::string client;
-  // Number of windows of the whole call, at least 1. Long calls yield to short ones.
+  // Number of windows of the whole call, at least 1. Calls of much work yield to others (LaneOf).
   int call_windows = 1;
   // Called once, on a thread of the scheduler, under no lock. Must not throw.
   std::function<void(WindowOutcome)> done;
@@ -82,10 +85,11 @@ class WindowScheduler {
   virtual absl::Status Submit(WindowJob job) = 0;
 
   // Returns what Submit would return now for the first window of a call of this priority and
-  // client, without regard to its deadline. Called before a call is processed.
+  // client, with one candidate and without regard to its deadline. Called before a call is
+  // processed.
   virtual absl::Status CheckRoom(Priority priority, const std::string& client) const = 0;
 
-  // Returns the number of waiting windows.
+  // Returns the number of waiting windows, each counted once for each candidate.
   virtual std::size_t queued_windows() const = 0;
 };
 

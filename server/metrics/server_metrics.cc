@@ -93,6 +93,10 @@ ServerMetrics::ServerMetrics()
                   .Name("duet_frames_total")
                   .Help("Follower frames sent.")
                   .Register(registry_)),
+      computed_frames_(BuildCounter()
+                           .Name("duet_computed_frames_total")
+                           .Help("Frames of evaluated windows, once for each expected sample.")
+                           .Register(registry_)),
       queue_seconds_(BuildHistogram()
                          .Name("duet_queue_seconds")
                          .Help("Time that a window waited for a worker.")
@@ -104,7 +108,7 @@ ServerMetrics::ServerMetrics()
                            .Add({}, SecondsBuckets())),
       batch_size_(BuildHistogram()
                       .Name("duet_batch_size")
-                      .Help("Windows evaluated together.")
+                      .Help("Windows evaluated together, once for each candidate.")
                       .Register(registry_)
                       .Add({}, BatchBuckets())),
       windows_dropped_(
@@ -114,7 +118,7 @@ ServerMetrics::ServerMetrics()
               .Register(registry_)),
       queued_windows_(BuildGauge()
                           .Name("duet_queued_windows")
-                          .Help("Windows waiting for a worker.")
+                          .Help("Windows waiting for a worker, once for each candidate.")
                           .Register(registry_)
                           .Add({})),
       load_seconds_(BuildGauge()
@@ -214,6 +218,8 @@ void ServerMetrics::WindowFinished(batching::Priority priority,
   queue_seconds_.Add(PriorityLabels(priority), SecondsBuckets()).Observe(timings.queue_seconds);
   if (timings.batch_size == 0) {
     windows_dropped_.Add(PriorityLabels(priority)).Increment();
+  } else {
+    computed_frames_.Add(PriorityLabels(priority)).Increment(timings.frames);
   }
 }
 
@@ -273,8 +279,10 @@ void ServerMetrics::SetCapacity(const Capacity& capacity) {
   const auto set = [this](const char* name, const char* help, int value) {
     BuildGauge().Name(name).Help(help).Register(registry_).Add({}).Set(value);
   };
-  set("duet_max_calls", "Synthesize RPCs that may be answered at a time.", capacity.calls);
-  set("duet_max_queued_windows", "First windows of RPCs that may wait for a worker.",
+  set("duet_max_calls", "Synthesize RPCs and live sessions that may be answered at a time.",
+      capacity.calls);
+  set("duet_max_queued_windows",
+      "First windows of RPCs that may wait for a worker, once for each candidate.",
       capacity.queued_windows);
   set("duet_workers", "Batches that may be evaluated at a time.", capacity.workers);
 }

@@ -54,11 +54,12 @@ struct ServedVersion {
 // Of windows:
 //   duet_queue_seconds{priority}                       one window's wait for a worker
 //   duet_windows_dropped_total{priority}               never started: cancelled or too late
-//   duet_queued_windows                                waiting now
-//   duet_max_queued_windows                            first windows that may wait
+//   duet_queued_windows                                waiting now, once for each candidate
+//   duet_max_queued_windows                            first windows that may wait, likewise
+//   duet_computed_frames_total{priority}               of evaluated windows, once for each sample
 // Of batches:
 //   duet_compute_seconds                               one batch in the network
-//   duet_batch_size                                    windows of one batch
+//   duet_batch_size                                    windows of one batch, likewise
 //   duet_workers                                       batches that may be evaluated at a time
 // Of the server as a whole:
 //   duet_ready                                         1 while /readyz returns 200, otherwise 0
@@ -133,6 +134,7 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   prometheus::Family<prometheus::Gauge>& in_flight_;
   prometheus::Family<prometheus::Histogram>& first_chunk_seconds_;
   prometheus::Family<prometheus::Counter>& frames_;
+  prometheus::Family<prometheus::Counter>& computed_frames_;
   prometheus::Family<prometheus::Histogram>& queue_seconds_;
   prometheus::Histogram& compute_seconds_;
   prometheus::Histogram& batch_size_;

@@ -118,7 +118,9 @@ absl::Status CallPass::HoldFrames(std::int64_t frames) {
   absl::Status status =
       Refusal(absl::StatusCode::kResourceExhausted,
               absl::StrCat("expected at most ", limit,
-                           " frames of this caller in progress, got a call of ", frames),
+                           " frames of this caller in progress, each counted once for each "
+                           "candidate, got a call of ",
+                           frames),
               common::kReasonFramesInFlight, {{"frames_in_flight", absl::StrCat(limit)}});
   if (frames <= limit) common::AddRetryInfo(status, kFramesDelay);
   return status;

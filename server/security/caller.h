@@ -22,8 +22,8 @@ inline const char* RoleName(Role role) { return role == Role::kAdmin ? "admin" :
 // Limits of a caller; an absent one means no limit of its own.
 struct CallerLimits {
   std::optional<double> calls_per_second;  // above 0; bursts of up to one second's calls
-  std::optional<std::int64_t>
-      frames_in_flight;  // leader frames of calls being answered, at least 1
+  // Leader frames of calls being answered, each counted once for each candidate; at least 1.
+  std::optional<std::int64_t> frames_in_flight;
 };
 
 // A caller: its credentials, its roles and its limits.

@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_SERVICE_CALL_SCOPE_H_
 #define DUET_SERVER_SERVICE_CALL_SCOPE_H_
 
+#include <cstdint>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -23,7 +24,7 @@ class CallScope {
   // Keeps the guard's pass until Finish, and returns its status: OK if the call may proceed.
   absl::Status Enter(security::CallPass pass);
   // Takes frames from the caller's quota. Returns RESOURCE_EXHAUSTED if too few are left.
-  absl::Status HoldFrames(int frames) { return pass_.HoldFrames(frames); }
+  absl::Status HoldFrames(std::int64_t frames) { return pass_.HoldFrames(frames); }
 
   // Filled in while the call runs.
   metrics::CallRecord& record() { return record_; }

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <variant>
 
+#include "model/engine/candidates.h"
 #include "server/common/activity.h"
 #include "server/service/call_deadline.h"
 #include "server/service/clip_replies.h"
@@ -42,6 +44,12 @@ constexpr std::size_t kMaxLiveStartBytes = std::size_t{4} << 20;
 // A reader that has taken nothing for this long has stalled. Longer than delays of a network or a
 // busy machine, and short enough for rejected callers, which retry every second.
 constexpr double kStalledSeconds = 5;
+
+// What a call's leader frames count in its caller's quota: once for each candidate.
+std::int64_t FramesOf(const engine::ModelDescription& model,
+                      const engine::SynthesisOptions& options, int leader_frames) {
+  return std::int64_t{leader_frames} * engine::CandidateCount(model, options.sampling);
+}
 
 // Returns a call's deadline on the scheduler's clock: the earlier one of the caller's and the
 // server's.
@@ -249,7 +257,8 @@ absl::StatusOr<MotionSynthesisService::Prepared> MotionSynthesisService::Prepare
   const engine::ModelDescription& model = served->model->description();
   absl::StatusOr<ValidatedRequest> validated = ValidateRequest(request, model, parts_.limits);
   if (!validated.ok()) return validated.status();
-  const absl::Status frames = reception.HoldFrames(validated->clip.leader.frame_count());
+  const absl::Status frames = reception.HoldFrames(
+      FramesOf(model, validated->clip.options, validated->clip.leader.frame_count()));
   if (!frames.ok()) return frames;
   std::optional<bool>& clean_up = validated->clip.options.clean_up;
   if (!clean_up.has_value()) clean_up = CleansUp(model);
@@ -348,7 +357,8 @@ absl::StatusOr<MotionSynthesisService::PreparedLive> MotionSynthesisService::Pre
   parts.buffered_frames = parts_.buffered_frames;
   const common::TimePoint deadline = parts.deadline;
   auto session = std::make_shared<LiveSession>(std::move(parts), *std::move(valid));
-  const absl::Status frames = reception.HoldFrames(session->history_frames());
+  const absl::Status frames =
+      reception.HoldFrames(FramesOf(model, chosen, session->history_frames()));
   if (!frames.ok()) return frames;
   auto replies = std::make_unique<LiveReplies>(session, std::move(header), std::move(served->model),
                                                chosen, *parts_.clock);

@@ -4,6 +4,7 @@
 #include <grpcpp/support/byte_buffer.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -88,8 +89,9 @@ class Reception final : public ActiveCall {
   void Refuse(const absl::Status& reason);
   // Ends the call successfully. The caller closes the returned scope.
   std::unique_ptr<CallScope> Answer();
-  // Takes frames from the caller's share. Returns RESOURCE_EXHAUSTED if too few are left.
-  absl::Status HoldFrames(int frames) { return parts_.scope->HoldFrames(frames); }
+  // Takes frames from the caller's share, each once for each candidate. Returns RESOURCE_EXHAUSTED
+  // if too few are left.
+  absl::Status HoldFrames(std::int64_t frames) { return parts_.scope->HoldFrames(frames); }
   // Moves scope and place to a call that goes on.
   std::unique_ptr<CallScope> TakeScope();
   ShareLease TakePlace();

@@ -47,7 +47,7 @@ WaitingWindow Due(milliseconds left) {
 QueueState State(std::vector<WaitingWindow> windows, std::size_t models = 1) {
   QueueState state;
   state.windows = std::move(windows);
-  state.models.assign(models, {kCost, 0});
+  state.models.assign(models, {kCost, 0, kFrames});
   return state;
 }
 
@@ -291,7 +291,7 @@ TEST(DecideTest, LowerLaneBatchesAreShortWhileShortCallsArrive) {
     state.windows[1].frames *= 3;
     EXPECT_THAT(BatchOf(state), ElementsAreArray(UpTo(5)));
     state.last_short = kNow - seconds(1);
-    EXPECT_EQ(BatchOf(state).size(), 16u);
+    EXPECT_EQ(BatchOf(state).size(), 14u) << "as many frames as 16 windows have";
   }
 }
 
@@ -324,7 +324,7 @@ TEST(DecideTest, LeavesAShareForAWorkerThatIsSoonFree) {
 
 TEST(DecideTest, WindowsOfOtherModelsOccupyOtherWorkers) {
   QueueState state = Waiting(4);
-  state.models.resize(2, {kCost, 1});
+  state.models.resize(2, {kCost, 1, kFrames});
   state.windows.resize(8, Window(Lane::kShort, 1));
   state.free_workers = 2;
   EXPECT_THAT(BatchOf(state), ElementsAre(0, 1, 2, 3));
@@ -397,13 +397,15 @@ QueueState RandomState(std::mt19937& random) {
   };
   QueueState state;
   for (int i = 0; i <= below(3); ++i) {
-    state.models.push_back({{0.001 * below(20), 0.0001 * below(3)}, 0.1 * below(5)});
+    state.models.push_back({{0.001 * below(20), 0.0001 * below(3)}, 0.1 * below(5), 46});
   }
   for (int i = below(40); i > 0; --i) {
     WaitingWindow window =
         Window(static_cast<Lane>(below(3)),
                static_cast<std::size_t>(below(static_cast<int>(state.models.size()))));
-    window.frames = 2 + below(45);
+    window.frames = (2 + below(45)) * (below(3) == 0 ? 1 + below(16) : 1);
+    window.client = static_cast<std::size_t>(below(3));
+    window.client_turns = 10 * static_cast<int>(window.client);
     window.queued_at = kNow - milliseconds(below(3000));
     if (below(2) == 0) window.deadline = kNow + milliseconds(below(200) - 10);
     window.cancelled = below(10) == 0;
@@ -445,6 +447,9 @@ void Check(const QueueState& state, const BatchLimits& limits, const Decision& d
   }
   for (const std::size_t i : decision.batch) {
     ASSERT_LE(cost(i).Seconds(frames), left(i));
+    if (decision.batch.size() > 1) {
+      ASSERT_LE(frames, limits.max_windows * state.models[state.windows[i].model].window_frames);
+    }
   }
   // A worker rests only when nothing waits, or until a time to come.
   if (decision.batch.empty() && decision.dropped.size() < state.windows.size()) {
@@ -473,6 +478,69 @@ TEST(BatchDecisionTest, ClientsTakeTurns) {
   EXPECT_THAT(Decide(State(windows), limits, kNow).batch, ElementsAre(0, 4, 1));
   windows[5].client = 2;
   EXPECT_THAT(Decide(State(windows), limits, kNow).batch, ElementsAre(0, 4, 5));
+}
+
+TEST(BatchDecisionTest, WindowWithCandidatesTakesAsManyTurns) {
+  std::vector<WaitingWindow> windows(6, Window());
+  windows[0].frames = 3 * kFrames;
+  for (const std::size_t i : {2, 3, 4, 5}) windows[i].client = 1;
+  // Client 0 has had 3 turns after window 0, and 4 after window 1.
+  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(2, 3, 0, 4, 1, 5));
+}
+
+TEST(BatchDecisionTest, ClientThatHadFewerTurnsRunsFirst) {
+  std::vector<WaitingWindow> windows(4, Window());
+  for (const std::size_t i : {0, 1}) windows[i].client_turns = 17;
+  for (const std::size_t i : {2, 3}) {
+    windows[i].client = 1;
+    windows[i].client_turns = 16;
+  }
+  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(2, 0, 3, 1));
+}
+
+TEST(BatchDecisionTest, ShortWindowTakesAWholeTurn) {
+  std::vector<WaitingWindow> windows(4, Window());
+  for (const std::size_t i : {0, 1, 2}) windows[i].frames = kFrames / 10;
+  windows[3].client = 1;
+  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(0, 3, 1, 2));
+}
+
+TEST(BatchDecisionTest, CandidatesFillABatch) {
+  std::vector<WaitingWindow> windows(4, Window());
+  for (WaitingWindow& window : windows) window.frames = 6 * kFrames;
+  EXPECT_THAT(BatchOf(State(windows), 16), ElementsAre(0, 1));
+  EXPECT_THAT(BatchOf(State(windows), 18), ElementsAre(0, 1, 2));
+  EXPECT_THAT(BatchOf(State(windows), 2), ElementsAre(0)) << "more than a batch, alone";
+}
+
+TEST(BatchDecisionTest, WindowWithCandidatesDoesNotJoinThatOfAnotherClient) {
+  std::vector<WaitingWindow> windows(3, Window());
+  for (const std::size_t i : {0, 1}) windows[i].frames = 16 * kFrames;
+  windows[2].client = 1;
+  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(2));
+}
+
+TEST(BatchDecisionTest, FreeWorkersShareFramesAndNotWindows) {
+  std::vector<WaitingWindow> windows(5, Window());
+  windows[4].frames = 4 * kFrames;
+  QueueState state = State(windows);
+  state.free_workers = 2;
+  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1, 2, 3));
+}
+
+TEST(BatchDecisionTest, LowerLaneRunsOneWindowWithManyCandidatesWhileShortCallsArrive) {
+  QueueState state = State(std::vector<WaitingWindow>(16, Window(Lane::kBulk)));
+  for (WaitingWindow& window : state.windows) window.frames = 4 * kFrames;
+  EXPECT_EQ(BatchOf(state).size(), 4u);
+  state.last_short = kNow;
+  EXPECT_EQ(BatchOf(state).size(), 1u);
+}
+
+TEST(BatchDecisionTest, ABatchOfCandidatesIsFullAndDoesNotWait) {
+  QueueState state = WithCompany();
+  EXPECT_THAT(Decide(state, kPatient, kNow).batch, IsEmpty());
+  state.windows[1].frames = 15 * kFrames;
+  EXPECT_THAT(Decide(state, kPatient, kNow).batch, ElementsAre(0, 1));
 }
 
 }  // namespace

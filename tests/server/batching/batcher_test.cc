@@ -112,9 +112,9 @@ TEST(BatcherTest, RejectsANewCallWhenTheQueueIsFull) {
   model.WaitUntilStarted(1);
   ASSERT_THAT(batcher->Submit(waiting.Job(model.get())), IsOk());
   EXPECT_EQ(batcher->queued_windows(), 1u);
-  EXPECT_THAT(
-      batcher->Submit(refused.Job(model.get())),
-      StatusIs(kResourceExhausted, HasSubstr("at most 1 calls may wait for their first window")));
+  EXPECT_THAT(batcher->Submit(refused.Job(model.get())),
+              StatusIs(kResourceExhausted,
+                       HasSubstr("at most 1 first windows of calls may wait, each counted once")));
   WindowJob next = continued.Job(model.get());
   next.continues_call = true;
   EXPECT_THAT(batcher->Submit(std::move(next)), IsOk());

@@ -5,8 +5,8 @@
 namespace duet::server::batching {
 namespace {
 
-constexpr WindowCost kUnknown;
-constexpr WindowCost kCost = {1, 1};  // a batch of n windows takes n + 1 s
+constexpr CostEstimate kUnknown;
+constexpr CostEstimate kCost = {1, 1};  // a batch of n frames takes n + 1 s
 
 TEST(EvenShareTest, FreeWorkersGetEqualSharesWithUnknownCost) {
   EXPECT_EQ(EvenShare(8, 2, {}, kUnknown), 4);
@@ -36,7 +36,7 @@ TEST(EvenShareTest, TakesAllWithoutOtherWorkers) {
 }
 
 TEST(EvenShareTest, CountsEveryWorkerThatIsFreeInTimeInAnyOrder) {
-  // (8 + 1 + 1 + 2 + 1 + 3) / 3 = 16 / 3 s: 4.33 windows of its own.
+  // (8 + 1 + 1 + 2 + 1 + 3) / 3 = 16 / 3 s: 4.33 frames of its own.
   EXPECT_EQ(EvenShare(8, 1, {3, 50, 2}, kCost), 5);
 }
 

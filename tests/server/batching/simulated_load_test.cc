@@ -32,9 +32,8 @@ TimePoint After(TimePoint start, double seconds) {
 struct Engine {
   double batch_seconds = 0;
   double window_seconds = 0;
-  double Seconds(std::size_t windows) const {
-    return batch_seconds + window_seconds * static_cast<double>(windows);
-  }
+  // `windows`: each counted once for each candidate.
+  double Seconds(int windows) const { return batch_seconds + window_seconds * windows; }
 };
 constexpr Engine kFast = {0.001, 0.0007};
 constexpr Engine kSlow = {0.008, 0.005};
@@ -61,16 +60,19 @@ class Simulation {
   void Submit(int call_windows, bool continues_call, Priority priority, TimePoint deadline,
               const std::function<void(bool)>& done) {
     WindowJob job;
-    job.model = model_;
-    job.window.leader = motion::Poses(kFrames, 1);
     job.priority = priority;
     job.deadline = deadline;
-    job.cancelled = never_;
     job.call_windows = call_windows;
     job.continues_call = continues_call;
+    Submit(std::move(job), done);
+  }
+  void Submit(WindowJob job, const std::function<void(bool)>& done) {
+    job.model = model_;
+    job.window.leader = motion::Poses(kFrames, 1);
+    job.cancelled = never_;
     job.done = [done](const WindowOutcome& outcome) { done(outcome.result.ok()); };
     if (!queue_.HasRoomFor(job, now_)) return done(false);
-    if (!continues_call && !queue_.ComesInTime(job, now_)) {
+    if (!job.continues_call && !queue_.ComesInTime(job, now_)) {
       ++too_late_;
       return done(false);
     }
@@ -91,7 +93,7 @@ class Simulation {
   }
   void Evaluate(Batch batch) {
     ++busy_;
-    const TimePoint end = After(now_, engine_.Seconds(batch.windows.size()));
+    const TimePoint end = After(now_, engine_.Seconds(batch.Candidates()));
     At(end, [this, batch = std::move(batch)] {
       queue_.Finished(batch, now_);
       --busy_;
@@ -103,7 +105,7 @@ class Simulation {
   const Engine engine_;
   WindowQueue queue_;
   const std::shared_ptr<const engine::Synthesizer> model_ =
-      std::make_shared<test::FakeSynthesizer>();
+      std::make_shared<test::FakeSynthesizer>(test::SamplingDescription());
   const std::shared_ptr<std::atomic<bool>> never_ = std::make_shared<std::atomic<bool>>(false);
   std::multimap<TimePoint, std::function<void()>> events_;
   TimePoint now_ = kStart;
@@ -219,6 +221,82 @@ TEST(SimulatedLoadTest, NoLaneStarvesBesideEndlessShortCalls) {
   const double all = bulk + long_calls + short_calls;
   EXPECT_NEAR(bulk / all, 1.0 / 8, 0.02);
   EXPECT_NEAR(long_calls / (all - bulk), 1.0 / 8, 0.02);
+}
+
+// A live session: a window for each frame at 30 Hz, or as soon as the one before is answered.
+class Session {
+ public:
+  Session(Simulation& simulation, std::string client, int candidates, double first_seconds)
+      : simulation_(simulation), client_(std::move(client)), candidates_(candidates) {
+    simulation_.At(After(kStart, first_seconds), [this] { Ask(); });
+  }
+  // Of the slowest answer.
+  double longest_seconds() const { return longest_seconds_; }
+
+ private:
+  static constexpr double kFrameSeconds = 1.0 / 30;
+
+  void Ask() {
+    WindowJob job;
+    job.window.options.sampling.candidates = candidates_;
+    job.client = client_;
+    job.continues_call = true;
+    job.due = After(simulation_.now(), kFrameSeconds);
+    simulation_.Submit(std::move(job), [this, begin = simulation_.now()](bool) {
+      longest_seconds_ =
+          std::max(longest_seconds_, common::SecondsBetween(begin, simulation_.now()));
+      simulation_.At(std::max(simulation_.now(), After(begin, kFrameSeconds)), [this] { Ask(); });
+    });
+  }
+
+  Simulation& simulation_;
+  const std::string client_;
+  const int candidates_;
+  double longest_seconds_ = 0;
+};
+
+// The longest that a client waits for an answer beside eight live sessions of another one.
+struct Longest {
+  double clip_seconds = 0;  // of one window
+  double live_seconds = 0;  // of a frame of its own live session
+};
+
+Longest BesideSessions(int candidates) {
+  Simulation simulation(kFast, 16);
+  std::vector<std::unique_ptr<Session>> others;
+  for (int i = 0; i < 8; ++i) {
+    others.push_back(std::make_unique<Session>(simulation, "other", candidates, 0.0041 * i));
+  }
+  Session own(simulation, "own", 1, 0.5);
+  constexpr int kClips = 200;
+  Longest longest;
+  int answered = 0;
+  for (int i = 0; i < kClips; ++i) {
+    simulation.At(After(kStart, 1 + 0.0371 * i), [&] {
+      WindowJob job;
+      job.client = "own";
+      simulation.Submit(std::move(job), [&, begin = simulation.now()](bool) {
+        longest.clip_seconds =
+            std::max(longest.clip_seconds, common::SecondsBetween(begin, simulation.now()));
+        ++answered;
+      });
+    });
+  }
+  simulation.RunUntil(After(kStart, 10));
+  EXPECT_EQ(answered, kClips);
+  longest.live_seconds = own.longest_seconds();
+  return longest;
+}
+
+TEST(SimulatedLoadTest, ClientWaitsForAtMostOneWindowWithCandidatesOfAnother) {
+  for (const int candidates : {1, 8, 16}) {
+    const Longest longest = BesideSessions(candidates);
+    // Windows of one candidate share a batch: those of the other client's sessions, and its own.
+    const double most = kFast.Seconds(candidates == 1 ? 8 : candidates) + kFast.Seconds(10);
+    EXPECT_LT(longest.clip_seconds, most) << candidates;
+    EXPECT_LT(longest.live_seconds, most) << candidates;
+    EXPECT_LT(longest.live_seconds, 1.0 / 30) << "no frame is skipped";
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -396,6 +397,98 @@ TEST(WindowQueueTest, AClientLeavesRoomForOthers) {
   }
   EXPECT_EQ(greedy, 6);
   EXPECT_TRUE(queue.HasRoomFor(JobOf(model, "other"), kNow));
+}
+
+// A job of a model that samples, whose window is as long as its windows can be.
+WindowJob SamplingJob(const Model& model, int candidates, const std::string& client = "") {
+  WindowJob job = Job(model, Priority::kInteractive, model->description().window_frames);
+  job.window.options.sampling.candidates = candidates;
+  job.client = client;
+  return job;
+}
+
+Model NewSampler() { return std::make_shared<FakeSynthesizer>(test::SamplingDescription()); }
+
+TEST(WindowQueueTest, CandidatesTakeRoom) {
+  const Model sampler = NewSampler();
+  WindowQueue queue({8, 1, {1}});
+  queue.Push(SamplingJob(sampler, 5), kNow);
+  EXPECT_TRUE(queue.HasRoomFor(SamplingJob(sampler, 3), kNow));
+  EXPECT_FALSE(queue.HasRoomFor(SamplingJob(sampler, 4), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(Priority::kInteractive, "", kNow));
+  WindowJob without_samples = Job(NewModel());
+  without_samples.window.options.sampling.candidates = 4;
+  EXPECT_TRUE(queue.HasRoomFor(without_samples, kNow)) << "its model ignores them";
+  EXPECT_EQ(queue.candidates(), 5u);
+}
+
+TEST(WindowQueueTest, EmptyQueueHasRoomForAnyNumberOfCandidates) {
+  const Model sampler = NewSampler();
+  WindowQueue queue({8, 1, {1}});
+  EXPECT_TRUE(queue.HasRoomFor(SamplingJob(sampler, 16), kNow));
+  queue.Push(SamplingJob(sampler, 16), kNow);
+  EXPECT_FALSE(queue.HasRoomFor(SamplingJob(sampler, 1), kNow));
+}
+
+TEST(WindowQueueTest, CandidatesCountInAClientsShareOfTheRoom) {
+  const Model sampler = NewSampler();
+  WindowQueueOptions options{8, 1, {1}};
+  options.client_share = 0.75;
+  WindowQueue queue(options);
+  queue.Push(SamplingJob(sampler, 6, "greedy"), kNow);
+  EXPECT_FALSE(queue.HasRoomFor(SamplingJob(sampler, 1, "greedy"), kNow));
+  EXPECT_TRUE(queue.HasRoomFor(SamplingJob(sampler, 1, "other"), kNow));
+}
+
+TEST(WindowQueueTest, CallWithManyCandidatesIsLong) {
+  const Model sampler = NewSampler();
+  WindowQueue queue(Options(1, 1));
+  for (const int candidates : {kShortCallWindows + 1, kShortCallWindows}) {
+    WindowJob job = SamplingJob(sampler, candidates);
+    job.continues_call = true;
+    queue.Push(std::move(job), kNow);
+  }
+  EXPECT_EQ(queue.Next(kNow).batch.Candidates(), kShortCallWindows);
+}
+
+// Two clients that always have a window waiting: one with eight candidates, the other with one.
+TEST(WindowQueueTest, ClientsShareTheWorkWhateverTheirCandidates) {
+  const Model sampler = NewSampler();
+  WindowQueue queue(Options(1, 16));
+  std::map<std::string, int> frames;
+  const auto push = [&](const std::string& client) {
+    queue.Push(SamplingJob(sampler, client == "heavy" ? 8 : 1, client), kNow);
+  };
+  for (int i = 0; i < 20; ++i) {
+    push("heavy");
+    push("light");
+  }
+  for (int i = 0; i < 400; ++i) {
+    const Turn turn = queue.Next(kNow);
+    queue.Finished(turn.batch, kNow + milliseconds(1));
+    for (const QueuedWindow& window : turn.batch.windows) {
+      frames[window.job.client] += window.frames;
+      push(window.job.client);
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(frames["heavy"]) / frames["light"], 1, 0.02);
+}
+
+TEST(WindowQueueTest, ReturningClientClaimsNoTurnsOfItsAbsence) {
+  const Model model = NewModel();
+  WindowQueue queue(Options(1, 1));
+  queue.Push(JobOf(model, "returning"), kNow);
+  for (int i = 0; i < 100; ++i) queue.Push(JobOf(model, "busy"), kNow);
+  const auto next = [&] {
+    const Turn turn = queue.Next(kNow);
+    queue.Finished(turn.batch, kNow);
+    return turn.batch.windows[0].job.client;
+  };
+  for (int i = 0; i < 50; ++i) next();
+  for (int i = 0; i < 4; ++i) queue.Push(JobOf(model, "returning"), kNow);
+  std::vector<std::string> order;
+  for (int i = 0; i < 6; ++i) order.push_back(next());
+  EXPECT_EQ(std::count(order.begin(), order.end(), "busy"), 3);
 }
 
 TEST(WindowQueueTest, BatchHoldsWindowsOfEachClient) {

@@ -109,9 +109,10 @@ TEST(ServerMetricsTest, LabelsNeverContainTextOfACaller) {
 
 TEST(ServerMetricsTest, CountsFinishedAndDroppedWindows) {
   ServerMetrics metrics;
-  metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0.04, 1});
+  metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0.04, 16, 720});
   metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0, 0});
   const std::string text = metrics.Render();
+  EXPECT_THAT(text, HasSubstr(R"(duet_computed_frames_total{priority="bulk"} 720)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_queue_seconds_count{priority="bulk"} 2)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_windows_dropped_total{priority="bulk"} 1)"));
 }

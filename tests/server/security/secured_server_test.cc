@@ -289,6 +289,25 @@ TEST_F(SecuredServerTest, FramesInFlightAreACallersOwn) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(call("s", kFrames).ok()) << i;
 }
 
+TEST_F(SecuredServerTest, FramesInFlightCountOnceForEachCandidate) {
+  UseAccess(
+      absl::StrCat("studio synthesise ", Known("s"), " frames_in_flight=", 2 * kFrames, "\n"));
+  const auto refusal = [this](uint32_t candidates) {
+    v1::SynthesizeRequest request = SampleRequest(kFrames);
+    request.set_candidates(candidates);
+    TimedContext context;
+    context.AddMetadata("authorization", "Bearer s");
+    return Decode(Call(*v1::MotionSynthesis::NewStub(PlainText()), request, context).status);
+  };
+  Start(std::make_shared<FakeSynthesizer>(test::SamplingDescription()));
+  EXPECT_EQ(refusal(2).code, absl::StatusCode::kOk);
+  EXPECT_EQ(refusal(3).reason, "FRAMES_IN_FLIGHT_EXCEEDED");
+  EXPECT_THAT(refusal(3).message, HasSubstr("got a call of 120"));
+  server_.reset();
+  Start();  // a model that does not sample
+  EXPECT_EQ(refusal(3).code, absl::StatusCode::kOk);
+}
+
 TEST_F(SecuredServerTest, PlacesAreSharedByCallerNotByAddress) {
   UseAccess(
       absl::StrCat("studio synthesise ", Known("s"), "\n", "farm synthesise ", Known("f"), "\n"));
