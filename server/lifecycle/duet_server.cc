@@ -145,6 +145,7 @@ DuetServer::DuetServer(const v1::ServerConfig& settings, metrics::LogSink& sink,
   control_.AddReloadable({"certificates and access file", [this] { return ReloadSecrets(); },
                           [this] { return secrets_->state(); }});
   metrics_.SetQueueLength([this] { return static_cast<double>(scheduler_->queued_windows()); });
+  metrics_.SetPlacesInUse([this] { return static_cast<double>(admission_.calls()); });
   metrics_.SetCapacity({static_cast<int>(settings_.max_calls()),
                         static_cast<int>(settings_.max_queued_windows()),
                         static_cast<int>(settings_.workers())});

@@ -255,6 +255,10 @@ void ServerMetrics::SetQueueLength(std::function<double()> queued_windows) {
   queue_length_ = std::move(queued_windows);
 }
 
+void ServerMetrics::SetPlacesInUse(std::function<double()> places_in_use) {
+  places_in_use_ = std::move(places_in_use);
+}
+
 void ServerMetrics::SetDroppedLogLines(std::function<double()> dropped_log_lines) {
   dropped_log_lines_ = std::move(dropped_log_lines);
 }
@@ -309,6 +313,11 @@ std::string ServerMetrics::Render() {
   }
   std::vector<prometheus::MetricFamily> families = registry_.Collect();
   if (models_) families.push_back(ModelInfo(models_()));
+  if (places_in_use_) {
+    families.push_back(Gauge("duet_places_in_use",
+                             "Places, of duet_max_calls, that calls and live sessions hold.",
+                             places_in_use_()));
+  }
   if (ready_) {
     families.push_back(
         Gauge("duet_ready", "1 while the server accepts and answers calls.", ready_() ? 1 : 0));

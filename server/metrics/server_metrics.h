@@ -50,7 +50,8 @@ struct ServedVersion {
 //   duet_frames_total{model, version}                  follower frames sent
 //   duet_refusals_total{reason}                        calls refused, by the reason of ErrorInfo
 //   duet_caller_calls_total{caller, grpc_code}         calls of the access file's callers
-//   duet_max_calls                                     calls that may be answered at a time
+//   duet_max_calls                                     calls that may be answered at a time: places
+//   duet_places_in_use                                 places that calls and live sessions hold
 // Of windows:
 //   duet_queue_seconds{priority}                       one window's wait for a worker
 //   duet_windows_dropped_total{priority}               never started: cancelled or too late
@@ -109,6 +110,7 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
 
   // Set the sources of values that every scrape reads. Call before the first Render.
   void SetQueueLength(std::function<double()> queued_windows);
+  void SetPlacesInUse(std::function<double()> places_in_use);
   void SetDroppedLogLines(std::function<double()> dropped_log_lines);
   void SetReady(std::function<bool()> ready);
   void SetLongestStep(std::function<double()> seconds);
@@ -156,6 +158,7 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   std::function<double()> certificate_end_;
   std::function<SpanCounts()> spans_;
   std::function<double()> queue_length_;
+  std::function<double()> places_in_use_;
   std::function<double()> dropped_log_lines_;
   std::function<bool()> ready_;
   std::function<double()> longest_step_;

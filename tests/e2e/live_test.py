@@ -365,6 +365,8 @@ class LiveTest(unittest.TestCase):
     def test_the_log_and_the_metrics_tell_of_a_session(self):
         session = Session(self.channel, start_message(), metadata=(("x-request-id", "mine"),))
         session.send(frames_message(0, self.leader[:20]))
+        session.wait_for(0)
+        self.assertRegex(self.server.page("/metrics")[1], "duet_places_in_use [1-9]")
         session.drain()
         self.assertEqual(session.header.request_id, "mine")
 

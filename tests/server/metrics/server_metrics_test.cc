@@ -137,6 +137,16 @@ TEST(ServerMetricsTest, ReadsTheQueueLengthAtEveryScrape) {
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_queued_windows 5\n"));
 }
 
+TEST(ServerMetricsTest, ReadsThePlacesInUseAtEveryScrape) {
+  ServerMetrics metrics;
+  EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_places_in_use")));
+  double places = 3;
+  metrics.SetPlacesInUse([&] { return places; });
+  EXPECT_THAT(metrics.Render(), HasSubstr("duet_places_in_use 3\n"));
+  places = 0;
+  EXPECT_THAT(metrics.Render(), HasSubstr("duet_places_in_use 0\n"));
+}
+
 TEST(ServerMetricsTest, CountsDroppedLogLines) {
   ServerMetrics metrics;
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 0\n"));
