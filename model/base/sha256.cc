@@ -32,7 +32,8 @@ std::string Sha256Hex(std::string_view bytes) {
   return absl::BytesToHexString({reinterpret_cast<const char*>(digest), size});
 }
 
-absl::StatusOr<std::string> Sha256HexOfFile(const std::filesystem::path& path) {
+absl::StatusOr<std::string> Sha256HexOfFile(const std::filesystem::path& path,
+                                            const std::function<bool()>& stop) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return absl::PermissionDeniedError(absl::StrCat(path.string(), ": cannot be opened"));
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
@@ -40,6 +41,7 @@ absl::StatusOr<std::string> Sha256HexOfFile(const std::filesystem::path& path) {
   Require(EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr));
   std::vector<char> block(kReadBlock);
   while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
+    if (stop && stop()) return absl::CancelledError(absl::StrCat(path.string(), ": stopped"));
     const auto count = static_cast<std::size_t>(file.gcount());
     Require(EVP_DigestUpdate(context.get(), block.data(), count));
   }

@@ -2,6 +2,7 @@
 #define DUET_MODEL_BASE_SHA256_H_
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -14,8 +15,10 @@ std::string Sha256Hex(std::string_view bytes);
 
 // The same for a file's content, which is read in blocks of constant size. Fails with
 // PERMISSION_DENIED if the file does not exist or cannot be opened, and with DATA_LOSS if it cannot
-// be read to its end. Both messages name the path.
-absl::StatusOr<std::string> Sha256HexOfFile(const std::filesystem::path& path);
+// be read to its end. Both messages name the path. `stop`: called before each block; if it returns
+// true, fails with CANCELLED.
+absl::StatusOr<std::string> Sha256HexOfFile(const std::filesystem::path& path,
+                                            const std::function<bool()>& stop = nullptr);
 
 }  // namespace duet::base
 

@@ -1,6 +1,7 @@
 #include "model/checkpoint/checkpoint.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 #include <map>
 #include <string>
@@ -109,7 +110,9 @@ absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder) {
   if (!text.ok()) return text.status();
   const absl::StatusOr<Manifest> manifest = ParseManifest(*text);
   if (!manifest.ok()) return manifest.status();
-  const absl::StatusOr<std::string> weights = files->Read(manifest->weights.file, kMaxWeightsBytes);
+  // A larger file is rejected before it is read.
+  const absl::StatusOr<std::string> weights =
+      files->Read(manifest->weights.file, static_cast<std::size_t>(manifest->weights.bytes));
   if (!weights.ok()) return weights.status();
   return ParseCheckpoint(*text, *weights);
 }

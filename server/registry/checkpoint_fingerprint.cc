@@ -36,8 +36,8 @@ bool IsSettled(const struct stat& file, CheckpointFingerprint::Time now) {
   return CheckpointFingerprint::Time(seconds) + kSettling < now;
 }
 
-std::string DigestOf(const fs::path& path) {
-  return base::Sha256HexOfFile(path).value_or(std::string());
+std::string DigestOf(const fs::path& path, const CheckpointFingerprint::Stop& stop) {
+  return base::Sha256HexOfFile(path, stop).value_or(std::string());
 }
 
 }  // namespace
@@ -51,29 +51,40 @@ CheckpointFingerprint::Files CheckpointFingerprint::List(const fs::path& folder,
     if (absl::StartsWith(name, ".") || absl::EndsWith(name, ".md")) continue;
     struct stat file = {};
     if (stat(entry->path().c_str(), &file) != 0 || !S_ISREG(file.st_mode)) continue;
-    files[name] = {StampOf(file), IsSettled(file, now), ""};
+    files[name] = {StampOf(file), IsSettled(file, now), file.st_size, ""};
   }
   return files;
 }
 
 CheckpointFingerprint CheckpointFingerprint::Of(const fs::path& folder, Time now) {
-  const fs::path resolved = ResolveCheckpoint(folder);
   CheckpointFingerprint fingerprint;
-  fingerprint.files_ = List(resolved, now);
-  for (auto& [name, file] : fingerprint.files_) file.digest = DigestOf(resolved / name);
+  fingerprint.files_ = List(ResolveCheckpoint(folder), now);
   return fingerprint;
 }
 
-bool CheckpointFingerprint::Matches(const fs::path& folder, Time now) {
+void CheckpointFingerprint::ReadContent(const fs::path& folder, const Stop& stop) {
+  const fs::path resolved = ResolveCheckpoint(folder);
+  for (auto& [name, file] : files_) file.digest = DigestOf(resolved / name, stop);
+}
+
+bool CheckpointFingerprint::HasSizesOf(const Files& found) const {
+  return std::equal(found.begin(), found.end(), files_.begin(), files_.end(),
+                    [](const auto& a, const auto& b) {
+                      return a.first == b.first && a.second.bytes == b.second.bytes;
+                    });
+}
+
+bool CheckpointFingerprint::Matches(const fs::path& folder, Time now, const Stop& stop) {
   const fs::path resolved = ResolveCheckpoint(folder);
   Files found = List(resolved, now);
-  if (files_.empty() || found.size() != files_.size()) return false;
+  // Before any file is read.
+  if (files_.empty() || !HasSizesOf(found)) return false;
   for (auto& [name, file] : found) {
-    const auto before = files_.find(name);
-    if (before == files_.end() || before->second.digest.empty()) return false;
-    const bool untouched = before->second.settled && file.stamp == before->second.stamp;
-    file.digest = untouched ? before->second.digest : DigestOf(resolved / name);
-    if (file.digest != before->second.digest) return false;
+    const File& before = files_.at(name);
+    if (before.digest.empty()) return false;
+    const bool untouched = before.settled && file.stamp == before.stamp;
+    file.digest = untouched ? before.digest : DigestOf(resolved / name, stop);
+    if (file.digest != before.digest) return false;
   }
   files_ = std::move(found);
   return true;

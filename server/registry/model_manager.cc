@@ -123,8 +123,11 @@ absl::StatusOr<ReloadReport> ModelManager::Reload(const std::function<bool()>& s
     common::MutexLock lock(mutex_);
     for (const auto& [name, versions] : models_) (*folders)[name];
   }
+  // Remembered, because `stop` may return true only once: as a signal arrives.
+  bool stopped = false;
+  const auto stops = [&stopped, &stop] { return stopped = stopped || stop(); };
   for (const auto& [name, versions] : *folders) {
-    if (!ReloadModel(name, versions, stop, report)) {
+    if (!ReloadModel(name, versions, stops, report) || stopped) {
       return absl::CancelledError("loading was stopped");
     }
   }
@@ -147,11 +150,11 @@ bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_ty
       PassOver(name, version);
       continue;
     }
-    if (IsUnchanged(name, version, folder)) {
+    if (IsUnchanged(name, version, folder, stop)) {
       ++report.unchanged;
     } else {
       if (stop()) return false;
-      const bool loaded = LoadFolder(name, version, folder).ok();
+      const bool loaded = LoadFolder(name, version, folder, stop).ok();
       (loaded ? report.loaded : report.refused).push_back(SourceOf(name, version));
     }
     // A version that cannot be loaded leaves its place to the next older one.
@@ -234,7 +237,8 @@ bool ModelManager::WillBeLabelled(const std::string& name, uint32_t version) con
   });
 }
 
-bool ModelManager::IsUnchanged(const std::string& name, uint32_t version, const fs::path& folder) {
+bool ModelManager::IsUnchanged(const std::string& name, uint32_t version, const fs::path& folder,
+                               const std::function<bool()>& stop) {
   CheckpointFingerprint fingerprint;
   {
     common::MutexLock lock(mutex_);
@@ -243,14 +247,14 @@ bool ModelManager::IsUnchanged(const std::string& name, uint32_t version, const 
     fingerprint = known->fingerprint;
   }
   // Not under the lock: it may read the weights.
-  if (!fingerprint.Matches(folder)) return false;
+  if (!fingerprint.Matches(folder, CheckpointFingerprint::Clock::now(), stop)) return false;
   common::MutexLock lock(mutex_);
   models_[name][version].fingerprint = std::move(fingerprint);
   return true;
 }
 
 absl::Status ModelManager::LoadFolder(const std::string& name, uint32_t version,
-                                      const fs::path& folder) {
+                                      const fs::path& folder, const std::function<bool()>& stop) {
   ModelLoader loader;
   {
     common::MutexLock lock(mutex_);
@@ -259,6 +263,8 @@ absl::Status ModelManager::LoadFolder(const std::string& name, uint32_t version,
   }
   CheckpointFingerprint fingerprint = CheckpointFingerprint::Of(folder);
   const LoadReport report = LoadCheckpoint(folder, loader);
+  // Only what the loader accepted is worth reading again.
+  if (report.model.ok()) fingerprint.ReadContent(folder, stop);
   // If the files changed meanwhile, it is unknown which of them were loaded: the next reload loads
   // them again.
   if (!fingerprint.IsUntouched(folder)) fingerprint = {};
@@ -302,7 +308,8 @@ void ModelManager::Retire(const std::string& name, uint32_t version, ReloadRepor
   report.unloaded.push_back(SourceOf(name, version));
 }
 
-absl::Status ModelManager::Load(absl::string_view name, uint32_t version) {
+absl::Status ModelManager::Load(absl::string_view name, uint32_t version,
+                                const std::function<bool()>& stop) {
   common::MutexLock working(work_mutex_);
   if (absl::Status status = CheckRepository(); !status.ok()) return status;
   const absl::StatusOr<Folders> folders = Scan();
@@ -312,7 +319,7 @@ absl::Status ModelManager::Load(absl::string_view name, uint32_t version) {
     return absl::NotFoundError(absl::StrCat("version ", version, " of model ", base::Quoted(name),
                                             " is not in the repository"));
   }
-  const absl::Status loaded = LoadFolder(model->first, version, model->second.at(version));
+  const absl::Status loaded = LoadFolder(model->first, version, model->second.at(version), stop);
   if (!loaded.ok()) {
     return absl::FailedPreconditionError(
         absl::StrCat(SourceOf(name, version), " cannot be loaded: ", loaded.message()));

@@ -53,14 +53,14 @@ class ModelManager {
 
   // Loads new and changed checkpoints and those that failed before, as policies, labels and the
   // operator's requests specify, and removes versions that these exclude. Stops before the next
-  // checkpoint if `stop` returns true. Fails, without changes, if the repository cannot be read or
-  // is empty.
+  // checkpoint, or while files are compared, if `stop` returns true. Fails, without changes, if the
+  // repository cannot be read or is empty.
   absl::StatusOr<ReloadReport> Reload(const std::function<bool()>& stop);
 
   // Loads a version even if policies exclude it or it is already served. Policies do not unload it
-  // later. Returns NOT_FOUND if the repository does not contain it, and FAILED_PRECONDITION with
-  // the reason if it does not load or there is no repository.
-  absl::Status Load(absl::string_view name, uint32_t version);
+  // later. `stop` as in Reload. Returns NOT_FOUND if the repository does not contain it, and
+  // FAILED_PRECONDITION with the reason if it does not load or there is no repository.
+  absl::Status Load(absl::string_view name, uint32_t version, const std::function<bool()>& stop);
 
   // Stops serving a version until Load is called for it. Returns NOT_FOUND if it is not served, and
   // FAILED_PRECONDITION if a label or the default model needs it or there is no repository.
@@ -119,9 +119,10 @@ class ModelManager {
   bool WillBeLabelled(const std::string& name, uint32_t version) const;
   // Returns true if the served version is the one in `folder`. Returns false if the last load
   // failed, even if the previous files were restored: only a successful load clears the error.
-  bool IsUnchanged(const std::string& name, uint32_t version, const std::filesystem::path& folder);
+  bool IsUnchanged(const std::string& name, uint32_t version, const std::filesystem::path& folder,
+                   const std::function<bool()>& stop);
   absl::Status LoadFolder(const std::string& name, uint32_t version,
-                          const std::filesystem::path& folder);
+                          const std::filesystem::path& folder, const std::function<bool()>& stop);
   void Take(const std::string& name, uint32_t version, const LoadReport& report,
             CheckpointFingerprint fingerprint);
   void Retire(const std::string& name, uint32_t version, ReloadReport& report);

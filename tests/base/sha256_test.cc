@@ -32,5 +32,14 @@ TEST(Sha256, OfAFileEqualsThatOfItsContent) {
               test::StatusIs(absl::StatusCode::kDataLoss, testing::HasSubstr("cannot be read")));
 }
 
+TEST(Sha256, OfAFileCanBeStopped) {
+  const test::TemporaryFolder folder;
+  test::WriteTestFile(folder / "file", std::string(1000000, 'a'));
+  int blocks = 0;
+  EXPECT_THAT(Sha256HexOfFile(folder / "file", [&blocks] { return ++blocks > 2; }),
+              test::StatusIs(absl::StatusCode::kCancelled, testing::HasSubstr("file: stopped")));
+  EXPECT_EQ(blocks, 3);
+}
+
 }  // namespace
 }  // namespace duet::base

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -26,7 +27,14 @@ class CheckpointFingerprintTest : public ::testing::Test {
     WriteTestFile(manifest_, "{}");
     WriteTestFile(weights_, "weights");
   }
-  CheckpointFingerprint Fingerprint() const { return CheckpointFingerprint::Of(folder_.path()); }
+  static CheckpointFingerprint FingerprintOf(
+      const fs::path& folder,
+      CheckpointFingerprint::Time now = CheckpointFingerprint::Clock::now()) {
+    CheckpointFingerprint fingerprint = CheckpointFingerprint::Of(folder, now);
+    fingerprint.ReadContent(folder);
+    return fingerprint;
+  }
+  CheckpointFingerprint Fingerprint() const { return FingerprintOf(folder_.path()); }
   // Replaces a file's content and gives it the times that it had, as a disk that rots does.
   void RestoringTimes(const fs::path& path, const std::string& content) {
     struct stat before = {};
@@ -69,7 +77,7 @@ TEST_F(CheckpointFingerprintTest, UntouchedFileIsNotReadAgain) {
   constexpr long kBytes = 1 << 22;
   WriteTestFile(weights_, std::string(kBytes, 'w'));
   const auto later = CheckpointFingerprint::Clock::now() + std::chrono::hours(1);
-  CheckpointFingerprint settled = CheckpointFingerprint::Of(folder_.path(), later);
+  CheckpointFingerprint settled = FingerprintOf(folder_.path(), later);
   CheckpointFingerprint fresh = Fingerprint();
   const long before = BytesRead();
   EXPECT_TRUE(settled.Matches(folder_.path(), later));
@@ -80,6 +88,36 @@ TEST_F(CheckpointFingerprintTest, UntouchedFileIsNotReadAgain) {
   EXPECT_GE(after - between, kBytes) << "its times prove nothing yet";
   EXPECT_TRUE(fresh.Matches(folder_.path(), later));
   EXPECT_LT(BytesRead() - after, kBytes) << "now they do";
+}
+
+TEST_F(CheckpointFingerprintTest, ContentThatWasNotReadMatchesNothing) {
+  EXPECT_FALSE(CheckpointFingerprint::Of(folder_.path()).Matches(folder_.path()));
+}
+
+TEST_F(CheckpointFingerprintTest, FilesOfAnotherSizeAreNotRead) {
+  constexpr long kBytes = 1 << 22;
+  WriteTestFile(folder_ / "large", std::string(kBytes, 'w'));
+  CheckpointFingerprint fingerprint = Fingerprint();
+  fs::resize_file(weights_, std::uintmax_t{64} << 30);  // sparse
+  const long before = BytesRead();
+  EXPECT_FALSE(fingerprint.Matches(folder_.path()));
+  EXPECT_LT(BytesRead() - before, kBytes) << "nor any other file";
+}
+
+TEST_F(CheckpointFingerprintTest, ReadingCanBeStopped) {
+  CheckpointFingerprint whole = Fingerprint();
+  int blocks = 0;
+  const auto stop = [&blocks] { return ++blocks > 3; };
+  fs::resize_file(weights_, std::uintmax_t{64} << 30);  // sparse
+  CheckpointFingerprint fingerprint = CheckpointFingerprint::Of(folder_.path());
+  fingerprint.ReadContent(folder_.path(), stop);
+  fs::resize_file(weights_, 7);
+  EXPECT_FALSE(fingerprint.Matches(folder_.path()));
+  WriteTestFile(weights_, "weights");
+  blocks = 0;
+  EXPECT_FALSE(
+      whole.Matches(folder_.path(), CheckpointFingerprint::Clock::now(), [] { return true; }));
+  EXPECT_TRUE(whole.Matches(folder_.path())) << "nothing was forgotten";
 }
 
 TEST_F(CheckpointFingerprintTest, ACopyOfTheSameContentIsNoChange) {
@@ -112,7 +150,7 @@ TEST_F(CheckpointFingerprintTest, OfNothingMatchesNothing) {
   CheckpointFingerprint nothing;
   EXPECT_FALSE(nothing.Matches(folder_.path()));
   TemporaryFolder empty;
-  nothing = CheckpointFingerprint::Of(empty.path());
+  nothing = FingerprintOf(empty.path());
   EXPECT_FALSE(nothing.Matches(empty.path()));
   EXPECT_FALSE(nothing.Matches("/nonexistent"));
 }
@@ -136,7 +174,7 @@ TEST_F(CheckpointFingerprintTest, FollowsAVolumesLinkToTheNextGeneration) {
     fs::rename(volume / "..next", volume / "..data");
   };
   publish("..1");
-  CheckpointFingerprint fingerprint = CheckpointFingerprint::Of(volume);
+  CheckpointFingerprint fingerprint = FingerprintOf(volume);
   publish("..2");
   EXPECT_TRUE(fingerprint.Matches(volume));
   publish("..3");
