@@ -9,6 +9,7 @@
 #include "duet/v1/synthesis.pb.h"
 #include "server/service/validate_labels.h"
 #include "server/service/validate_leader.h"
+#include "server/service/validate_size.h"
 #include "server/service/validator.h"
 #include "server/service/violations.h"
 
@@ -99,11 +100,10 @@ void ReadHistory(const v1::LiveStart& start, const RequestLimits& limits, Valida
   }
   constexpr char kField[] = "history.follower_positions";
   if (!ValidateFinite(kField, positions, violations)) return;
-  if (ReadPositions(kField, positions, valid->reply.joints, valid->reply.coordinates, limits,
-                    violations)
-          .empty()) {
-    return;
-  }
+  const motion::Poses follower = ReadPositions(kField, positions, valid->reply.joints,
+                                               valid->reply.coordinates, limits, violations);
+  ValidateSize(kField, follower, violations);
+  if (follower.empty()) return;
   valid->live.first_frame = static_cast<int>(history.first_frame());
   valid->live.follower = FromPositions(valid->reply, positions);
 }
@@ -120,11 +120,14 @@ motion::Poses ReadRigPose(const std::string& field,
                          absl::StrCat(positions.size()));
     return motion::Poses(0, static_cast<int>(reply.joints.size()));
   }
-  if (!ValidateFinite(field, positions, violations) ||
-      ReadPositions(field, positions, reply.joints, reply.coordinates, limits, violations)
-          .empty()) {
+  if (!ValidateFinite(field, positions, violations)) {
     return motion::Poses(0, static_cast<int>(reply.joints.size()));
   }
+  const motion::Poses pose =
+      ReadPositions(field, positions, reply.joints, reply.coordinates, limits, violations);
+  if (pose.empty()) return motion::Poses(0, static_cast<int>(reply.joints.size()));
+  // A session may begin with a frame without a person.
+  if (!IsPoint(pose[0])) ValidateSize(field, pose, violations);
   return FromPositions(reply, positions);
 }
 

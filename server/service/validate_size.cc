@@ -6,9 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/types/span.h"
 #include "model/base/median.h"
-#include "model/motion/vec3.h"
 
 namespace duet::server::service {
 namespace {
@@ -35,12 +33,6 @@ float SizeOf(absl::Span<const motion::Vec3> pose) {
   return base::Median(std::move(distances));
 }
 
-// Whether all joints of the pose are in one place.
-bool IsPoint(absl::Span<const motion::Vec3> pose) {
-  return std::all_of(pose.begin(), pose.end(),
-                     [&pose](const motion::Vec3& joint) { return joint == pose.front(); });
-}
-
 // A clip in which nobody was ever captured. It needs every frame: those with a person may be few.
 bool ShowsNobody(const motion::Poses& poses) {
   for (int frame = 0; frame < poses.frame_count(); ++frame) {
@@ -50,6 +42,11 @@ bool ShowsNobody(const motion::Poses& poses) {
 }
 
 }  // namespace
+
+bool IsPoint(absl::Span<const motion::Vec3> pose) {
+  return std::all_of(pose.begin(), pose.end(),
+                     [&pose](const motion::Vec3& joint) { return joint == pose.front(); });
+}
 
 void ValidateSize(absl::string_view field, const motion::Poses& poses, Violations& violations) {
   const int frames = poses.frame_count();

@@ -2,7 +2,9 @@
 #define DUET_SERVER_SERVICE_VALIDATE_SIZE_H_
 
 #include "absl/strings/string_view.h"
+#include "absl/types/span.h"
 #include "model/motion/poses.h"
+#include "model/motion/vec3.h"
 #include "server/service/violations.h"
 
 namespace duet::server::service {
@@ -12,6 +14,9 @@ namespace duet::server::service {
 // tracker that has lost the person reports most joints in one place, even in most of the frames.
 // But in some frame, some joint must be elsewhere. Accepts poses without frames.
 void ValidateSize(absl::string_view field, const motion::Poses& poses, Violations& violations);
+
+// Whether all joints of a pose are in one place: a tracker has lost the person.
+bool IsPoint(absl::Span<const motion::Vec3> pose);
 
 }  // namespace duet::server::service
 

@@ -112,6 +112,12 @@ TEST(ValidateLiveStartTest, AHistoryFromFrameZeroHasTheFirstFrames) {
   EXPECT_EQ(valid->rig_follower[0][2].y, valid->live.follower[0][2].y);
 }
 
+TEST(ValidateLiveStartTest, ResumedSessionMayHaveBegunWithoutAPerson) {
+  v1::LiveStart start = ResumedWithRotations();
+  for (float& value : *start.mutable_history()->mutable_rig_leader_positions()) value = 0.25F;
+  EXPECT_THAT(Validate(start), IsOk());
+}
+
 TEST(ValidateLiveStartTest, ANewSessionWithRotationsHasNoFirstFramesYet) {
   v1::LiveStart start = New();
   start.set_reply_rotations(true);
@@ -210,6 +216,11 @@ std::string NameOf(const ::testing::TestParamInfo<Spoiled<Message>>& info) {
   return info.param.name;
 }
 
+// Centimetres that are declared as metres.
+void Scale(google::protobuf::RepeatedField<float>* metres) {
+  for (float& value : *metres) value *= 100;
+}
+
 using Start = v1::LiveStart;
 class StartRefusalTest : public ::testing::TestWithParam<Spoiled<Start>> {};
 
@@ -277,7 +288,10 @@ INSTANTIATE_TEST_SUITE_P(
                        "start.history.follower_positions[9]", "finite"},
         Spoiled<Start>{"far",
                        [](Start& s) { s.mutable_history()->set_follower_positions(9, 20000); },
-                       "start.history.follower_positions[9..11]", ""}),
+                       "start.history.follower_positions[9..11]", ""},
+        Spoiled<Start>{"centimetres",
+                       [](Start& s) { Scale(s.mutable_history()->mutable_follower_positions()); },
+                       "start.history.follower_positions", "the size of a person"}),
     NameOf<Start>);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -306,6 +320,19 @@ INSTANTIATE_TEST_SUITE_P(
                                        s.mutable_history()->set_rig_follower_positions(9, 20000);
                                      },
                                      "start.history.rig_follower_positions[9..11]", ""},
+                      Spoiled<Start>{"rig_leader_centimetres",
+                                     [](Start& s) {
+                                       s = ResumedWithRotations();
+                                       Scale(s.mutable_history()->mutable_rig_leader_positions());
+                                     },
+                                     "start.history.rig_leader_positions", "the size of a person"},
+                      Spoiled<Start>{"rig_follower_centimetres",
+                                     [](Start& s) {
+                                       s = ResumedWithRotations();
+                                       Scale(s.mutable_history()->mutable_rig_follower_positions());
+                                     },
+                                     "start.history.rig_follower_positions",
+                                     "the size of a person"},
                       Spoiled<Start>{"unit_without_rotations",
                                      [](Start& s) {
                                        s = New();
