@@ -56,24 +56,40 @@ void ActiveCalls::CheckTime(common::TimePoint now) {
 
 std::optional<std::size_t> ActiveCalls::GiveUpSlowestReader(
     const std::optional<std::string>& client, common::TimePoint now, double seconds) {
-  using Waiting = std::pair<common::TimePoint, std::shared_ptr<ActiveCall>>;
-  std::vector<Waiting> waiting;
-  for (std::shared_ptr<ActiveCall>& call : All()) {
-    if (client.has_value() && call->client() != *client) continue;
-    const std::optional<common::TimePoint> since = call->waiting_since();
-    if (since.has_value()) waiting.emplace_back(*since, std::move(call));
-  }
-  std::sort(waiting.begin(), waiting.end(),
-            [](const Waiting& a, const Waiting& b) { return a.first < b.first; });
-  for (const Waiting& each : waiting) {
-    const std::optional<std::size_t> held = each.second->GiveUpReader(now, seconds);
+  for (const std::shared_ptr<ActiveCall>& call : LongestFirst(client, &ActiveCall::waiting_since)) {
+    const std::optional<std::size_t> held = call->GiveUpReader(now, seconds);
     if (held.has_value()) return held;
   }
   return std::nullopt;
 }
 
-std::vector<std::shared_ptr<ActiveCall>> ActiveCalls::All() {
-  std::vector<std::shared_ptr<ActiveCall>> alive;
+bool ActiveCalls::GiveUpLongestIdle(const std::string& client, common::TimePoint now,
+                                    double seconds) {
+  const Calls idle = LongestFirst(client, &ActiveCall::idle_since);
+  return std::any_of(idle.begin(), idle.end(), [&](const std::shared_ptr<ActiveCall>& call) {
+    return call->GiveUpIdle(now, seconds);
+  });
+}
+
+ActiveCalls::Calls ActiveCalls::LongestFirst(const std::optional<std::string>& client,
+                                             Since since) {
+  using Waiting = std::pair<common::TimePoint, std::shared_ptr<ActiveCall>>;
+  std::vector<Waiting> waiting;
+  for (std::shared_ptr<ActiveCall>& call : All()) {
+    if (client.has_value() && call->client() != *client) continue;
+    const std::optional<common::TimePoint> begin = (*call.*since)();
+    if (begin.has_value()) waiting.emplace_back(*begin, std::move(call));
+  }
+  std::sort(waiting.begin(), waiting.end(),
+            [](const Waiting& a, const Waiting& b) { return a.first < b.first; });
+  Calls calls;
+  calls.reserve(waiting.size());
+  for (Waiting& each : waiting) calls.push_back(std::move(each.second));
+  return calls;
+}
+
+ActiveCalls::Calls ActiveCalls::All() {
+  Calls alive;
   common::MutexLock lock(mutex_);
   RemoveDead(calls_);
   alive.reserve(calls_.size());

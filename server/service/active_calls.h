@@ -33,6 +33,12 @@ class ActiveCall {
   // returns the size of its request in bytes, which are free when the call has ended. Returns
   // nullopt otherwise.
   virtual std::optional<std::size_t> GiveUpReader(common::TimePoint now, double seconds) = 0;
+
+  // Since when the call has waited for a further message of its caller, to whom it owes nothing.
+  // Absent if it does not wait.
+  virtual std::optional<common::TimePoint> idle_since() const = 0;
+  // If the call has been idle for `seconds`, ends it, frees its place, and returns true.
+  virtual bool GiveUpIdle(common::TimePoint now, double seconds) = 0;
 };
 
 // All active calls. Does not keep them alive.
@@ -51,9 +57,18 @@ class ActiveCalls {
   // `seconds`: of this client, or of any client if absent. Returns its result.
   std::optional<std::size_t> GiveUpSlowestReader(const std::optional<std::string>& client,
                                                  common::TimePoint now, double seconds);
+  // Calls GiveUpIdle for the call of this client that has been idle longest, at least `seconds`.
+  // Returns its result.
+  bool GiveUpLongestIdle(const std::string& client, common::TimePoint now, double seconds);
 
  private:
-  std::vector<std::shared_ptr<ActiveCall>> All();
+  using Calls = std::vector<std::shared_ptr<ActiveCall>>;
+  using Since = std::optional<common::TimePoint> (ActiveCall::*)() const;
+
+  // The calls of a client, or of any client if absent, for which `since` is present: the earliest
+  // first.
+  Calls LongestFirst(const std::optional<std::string>& client, Since since);
+  Calls All();
 
   common::Mutex mutex_;
   bool draining_ DUET_GUARDED_BY(mutex_) = false;

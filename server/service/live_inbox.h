@@ -19,6 +19,7 @@ class LiveInbox final : public MessageSink {
   void OnMessage(grpc::ByteBuffer bytes) override;
   void OnEndOfMessages() override { session_->OnEndOfMessages(); }
   void OnDraining() override { session_->OnDraining(); }
+  bool OwesAnswers() const override { return session_->OwesAnswers(); }
 
  private:
   const std::shared_ptr<LiveSession> session_;

@@ -404,6 +404,11 @@ void LiveSession::FillFrames(v1::FollowerFrames* frames) {
   frames->set_capture_seconds(capture_seconds_);
 }
 
+bool LiveSession::OwesAnswers() const {
+  common::MutexLock lock(mutex_);
+  return in_flight_ || !ready_.empty() || !notices_.empty() || !error_.ok();
+}
+
 void LiveSession::Cancel() { cancelled_->store(true, std::memory_order_release); }
 
 LiveStats LiveSession::stats() const {

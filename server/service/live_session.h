@@ -93,6 +93,8 @@ class LiveSession final : public std::enable_shared_from_this<LiveSession> {
   void OnDraining();
 
   LiveOutput Take();
+  // Returns true while a window is evaluated, or frames, a notice or an error wait to be taken.
+  bool OwesAnswers() const;
   void Cancel();
 
   int first_frame() const { return first_frame_; }

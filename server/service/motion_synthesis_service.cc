@@ -41,8 +41,9 @@ constexpr std::size_t kLargeRequestBytes = std::size_t{1} << 20;
 // Far above ten seconds of two motions of any skeleton at any rate.
 constexpr std::size_t kMaxLiveStartBytes = std::size_t{4} << 20;
 
-// A reader that has taken nothing for this long has stalled. Longer than delays of a network or a
-// busy machine, and short enough for rejected callers, which retry every second.
+// A reader that has taken nothing for this long has stalled, and a live session without a message
+// is idle. Longer than delays of a network or a busy machine, and short enough for rejected
+// callers, which retry every second.
 constexpr double kStalledSeconds = 5;
 
 // What a call's leader frames count in its caller's quota: once for each candidate.
@@ -128,16 +129,19 @@ void MotionSynthesisService::FinishAborted(double seconds) {
 absl::StatusOr<ShareLease> MotionSynthesisService::Admit(const std::string& client) {
   absl::StatusOr<ShareLease> place = parts_.admission->Admit(client);
   while (absl::IsResourceExhausted(place.status())) {
-    // Calls of this client first: a client that has used its share must not displace others.
-    const bool full = parts_.admission->calls() >= parts_.admission->max_calls();
-    const common::TimePoint now = parts_.clock->Now();
-    if (!calls_.GiveUpSlowestReader(client, now, kStalledSeconds).has_value() &&
-        !(full && calls_.GiveUpSlowestReader(std::nullopt, now, kStalledSeconds).has_value())) {
-      break;
-    }
+    if (!FreePlaceFor(client)) break;
     place = parts_.admission->Admit(client);
   }
   return place;
+}
+
+bool MotionSynthesisService::FreePlaceFor(const std::string& client) {
+  // Calls of this client first: a client that has used its share must not displace others.
+  const bool full = parts_.admission->calls() >= parts_.admission->max_calls();
+  const common::TimePoint now = parts_.clock->Now();
+  return calls_.GiveUpSlowestReader(client, now, kStalledSeconds).has_value() ||
+         calls_.GiveUpLongestIdle(client, now, kStalledSeconds) ||
+         (full && calls_.GiveUpSlowestReader(std::nullopt, now, kStalledSeconds).has_value());
 }
 
 absl::StatusOr<ShareLease> MotionSynthesisService::Hold(const std::string& client,

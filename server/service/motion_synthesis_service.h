@@ -152,8 +152,12 @@ class MotionSynthesisService final : public RawService {
   // Serves a unary method. `answer` maps const Request& to StatusOr<Response>.
   template <typename Request, typename Answer>
   void ServeUnary(const char* path, const metrics::MethodInfo& method, Answer answer);
-  // Takes a place for a call. If there is none, gives up calls whose readers have stalled.
+  // Takes a place for a call. If there is none, gives up calls with FreePlaceFor.
   absl::StatusOr<ShareLease> Admit(const std::string& client);
+  // Ends a call of this client whose reader has stalled, an idle live session of this client, or,
+  // if no place is left at all, a call of any client whose reader has stalled. Returns false if
+  // there is none.
+  bool FreePlaceFor(const std::string& client);
   // Reserves bytes for a request. If too few are left, fails, and gives up calls of this client
   // whose readers have stalled, so that its next attempt succeeds.
   absl::StatusOr<ShareLease> Hold(const std::string& client, const grpc::ByteBuffer& bytes);

@@ -166,6 +166,32 @@ std::optional<std::size_t> Reception::GiveUpReader(common::TimePoint now, double
   return answering == nullptr ? std::nullopt : answering->GiveUpReader(now, seconds);
 }
 
+std::optional<common::TimePoint> Reception::idle_since() const {
+  std::optional<common::TimePoint> since;
+  std::shared_ptr<StreamingCall> call;
+  std::shared_ptr<MessageSink> sink;
+  {
+    common::MutexLock lock(mutex_);
+    if (state_ != State::kAnswering || !reading_.has_value() || given_up_) return std::nullopt;
+    since = reading_->begin;
+    call = call_;
+    sink = further_;
+  }
+  const bool owes = sink == nullptr || sink->OwesAnswers() || call->waiting_since().has_value();
+  return owes ? std::nullopt : since;
+}
+
+bool Reception::GiveUpIdle(common::TimePoint now, double seconds) {
+  const std::optional<common::TimePoint> since = idle_since();
+  if (!since.has_value() || common::SecondsBetween(*since, now) < seconds) return false;
+  {
+    common::MutexLock lock(mutex_);
+    if (std::exchange(given_up_, true)) return false;
+  }
+  call()->Abort(DisplacedSessionRefusal(seconds));
+  return true;
+}
+
 absl::Status Reception::CheckArrival(double waited) {
   if (waited >= parts_.limits.timeout_seconds) {
     return ReceiveTimeoutRefusal(parts_.limits.timeout_seconds);

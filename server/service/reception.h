@@ -39,7 +39,8 @@ class MessageReader {
 
 // Receives the messages that follow the first one of a call.
 //
-// Threads: one call at a time, under no lock; OnDraining may run beside another. Must not block.
+// Threads: one call at a time, under no lock; OnDraining and OwesAnswers may run beside another.
+// Must not block.
 class MessageSink {
  public:
   virtual ~MessageSink() = default;
@@ -50,6 +51,8 @@ class MessageSink {
   virtual void OnEndOfMessages() = 0;
   // The server has begun to drain; the call goes on. Called at most once.
   virtual void OnDraining() = 0;
+  // Returns false while the caller has everything that follows from its messages so far.
+  virtual bool OwesAnswers() const = 0;
 };
 
 // One call from its headers to its status. Waits for the first message and passes the call on; then
@@ -118,6 +121,8 @@ class Reception final : public ActiveCall {
   void CheckTime(common::TimePoint now) override;
   std::optional<common::TimePoint> waiting_since() const override;
   std::optional<std::size_t> GiveUpReader(common::TimePoint now, double seconds) override;
+  std::optional<common::TimePoint> idle_since() const override;
+  bool GiveUpIdle(common::TimePoint now, double seconds) override;
 
  private:
   enum class State { kReceiving, kHandling, kAnswering, kEnded };
@@ -146,6 +151,7 @@ class Reception final : public ActiveCall {
   std::shared_ptr<MessageSink> further_ DUET_GUARDED_BY(mutex_);  // null after the last message
   bool draining_ DUET_GUARDED_BY(mutex_) = false;
   std::optional<Reading> reading_ DUET_GUARDED_BY(mutex_);
+  bool given_up_ DUET_GUARDED_BY(mutex_) = false;            // GiveUpIdle has ended the call
   std::optional<absl::Status> end_ DUET_GUARDED_BY(mutex_);  // set while the message is handled
 };
 

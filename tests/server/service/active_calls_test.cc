@@ -34,7 +34,16 @@ class FakeCall final : public ActiveCall {
     return 7;
   }
 
+  std::optional<common::TimePoint> idle_since() const override { return idle; }
+  bool GiveUpIdle(common::TimePoint now, double least) override {
+    if (!idle.has_value() || common::SecondsBetween(*idle, now) < least) return false;
+    idle = std::nullopt;
+    given_up = true;
+    return true;
+  }
+
   std::optional<absl::Status> aborted;
+  std::optional<common::TimePoint> idle;  // since when it waits for a message
   bool given_up = false;
   int drains = 0;
 
@@ -97,6 +106,24 @@ TEST(ActiveCallsTest, KeepsAReaderThatStalledForLessThanTheLimit) {
   const auto call = AddCall(calls, "a", kBegin);
   EXPECT_EQ(calls.GiveUpSlowestReader("a", kBegin + seconds(1), 2), std::nullopt);
   EXPECT_FALSE(call->given_up);
+}
+
+TEST(ActiveCallsTest, EndsTheCallOfAClientThatHasBeenIdleLongest) {
+  ActiveCalls calls;
+  const auto late = AddCall(calls, "a", std::nullopt), early = AddCall(calls, "a", std::nullopt);
+  const auto other = AddCall(calls, "b", std::nullopt), busy = AddCall(calls, "a", std::nullopt);
+  late->idle = kBegin + seconds(2);
+  early->idle = kBegin + seconds(1);
+  other->idle = kBegin;
+  EXPECT_FALSE(calls.GiveUpLongestIdle("a", kBegin + seconds(2), 2)) << "not idle for long enough";
+  EXPECT_TRUE(calls.GiveUpLongestIdle("a", kBegin + seconds(4), 2));
+  EXPECT_TRUE(early->given_up);
+  EXPECT_FALSE(late->given_up);
+  EXPECT_TRUE(calls.GiveUpLongestIdle("a", kBegin + seconds(4), 2));
+  EXPECT_TRUE(late->given_up);
+  EXPECT_FALSE(calls.GiveUpLongestIdle("a", kBegin + seconds(4), 2));
+  EXPECT_FALSE(other->given_up);
+  EXPECT_FALSE(busy->given_up);
 }
 
 }  // namespace

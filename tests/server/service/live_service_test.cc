@@ -4,6 +4,7 @@
 #include <grpcpp/support/sync_stream.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "duet/v1/live.pb.h"
+#include "tests/server/support/fake_clock.h"
 #include "tests/server/support/puppet_scheduler.h"
 #include "tests/server/support/raw_call.h"
 #include "tests/server/support/refusal.h"
@@ -224,8 +226,33 @@ TEST(LiveServiceTest, SessionsThatOpenAtOnceNeedNoRoomInTheQueue) {
   }
 }
 
-TEST(LiveServiceTest, SessionsAreBoundedByThePlacesOfCalls) {
+TEST(LiveServiceTest, IdleSessionsOfAClientDoNotShutItsOwnClipsOut) {
+  test::FakeClock clock;
   RunningService::Setup setup = LiveSetup();
+  setup.clock = &clock;
+  setup.admission.max_calls = 2;
+  RunningService running(setup);
+  Session first(running, Start());
+  EXPECT_TRUE(first.Read().has_header());
+  Session second(running, Start());
+  EXPECT_TRUE(second.Read().has_header());
+  const auto clip = [&] { return test::Call(running.stub(), SampleRequest()).status; };
+  EXPECT_EQ(Decode(clip()).reason, "TOO_MANY_CALLS") << "neither has been idle for long";
+  // Idle counts from the moment at which the server began to wait for a message.
+  while (!clip().ok()) clock.Advance(std::chrono::seconds(5));
+  EXPECT_EQ(running.admission().calls(), 1u) << "the other session goes on";
+  int displaced = 0;
+  for (Session* session : {&first, &second}) {
+    const Refusal refusal = Decode(session->Finish());
+    displaced += refusal.code == StatusCode::kResourceExhausted && refusal.retry_seconds > 0;
+  }
+  EXPECT_EQ(displaced, 1);
+}
+
+TEST(LiveServiceTest, SessionsAreBoundedByThePlacesOfCalls) {
+  test::FakeClock clock;  // no session becomes idle
+  RunningService::Setup setup = LiveSetup();
+  setup.clock = &clock;
   setup.admission.max_calls = 3;
   RunningService running(setup);
   std::vector<std::unique_ptr<Session>> sessions;

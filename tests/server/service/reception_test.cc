@@ -194,6 +194,8 @@ class RecordingSink final : public MessageSink {
   void OnMessage(grpc::ByteBuffer bytes) override { sizes.push_back(bytes.Length()); }
   void OnEndOfMessages() override { ++ends; }
   void OnDraining() override { ++drains; }
+  bool OwesAnswers() const override { return owes; }
+  bool owes = false;
   std::vector<std::size_t> sizes;
   int ends = 0, drains = 0;
 };
@@ -282,6 +284,30 @@ TEST_F(FurtherMessagesTest, TimeLimitAppliesOnlyWhileAMessageIsRead) {
   reception_->HandOn(Bytes(1));
   clock_.Advance(std::chrono::hours(1));
   reception_->CheckTime(clock_.Now());
+  EXPECT_FALSE(writer_.finished.has_value());
+}
+
+TEST_F(FurtherMessagesTest, IdleCallGivesItsPlaceUp) {
+  EXPECT_EQ(reception_->idle_since(), std::nullopt) << "no message is read";
+  EXPECT_TRUE(reception_->ReadNext(60));
+  EXPECT_EQ(reception_->idle_since(), clock_.Now());
+  clock_.Advance(milliseconds(4999));
+  EXPECT_FALSE(reception_->GiveUpIdle(clock_.Now(), 5));
+  clock_.Advance(milliseconds(1));
+  EXPECT_EQ(admission_.calls(), 1u);
+  EXPECT_TRUE(reception_->GiveUpIdle(clock_.Now(), 5));
+  EXPECT_EQ(admission_.calls(), 0u);
+  EXPECT_EQ(writer_.finished->code(), StatusCode::kResourceExhausted);
+  EXPECT_GT(test::Decode(*writer_.finished).retry_seconds, 0);
+  EXPECT_FALSE(reception_->GiveUpIdle(clock_.Now(), 5)) << "only once";
+}
+
+TEST_F(FurtherMessagesTest, CallThatOwesAnswersIsNotIdle) {
+  EXPECT_TRUE(reception_->ReadNext(60));
+  clock_.Advance(std::chrono::seconds(9));
+  sink_->owes = true;
+  EXPECT_EQ(reception_->idle_since(), std::nullopt);
+  EXPECT_FALSE(reception_->GiveUpIdle(clock_.Now(), 5));
   EXPECT_FALSE(writer_.finished.has_value());
 }
 
