@@ -86,6 +86,28 @@ absl::Status OfSetting(absl::string_view setting, const absl::Status& status) {
   return absl::Status(status.code(), absl::StrCat(setting, ": ", status.message()));
 }
 
+// Maximum number of lines of one kind in the text of /readyz, which load balancers fetch often.
+constexpr std::size_t kMostLines = 20;
+
+// `kind` precedes each line; `kinds` is its plural.
+void AppendLines(const std::vector<std::string>& lines, absl::string_view kind,
+                 absl::string_view kinds, std::string* text) {
+  const std::size_t shown = std::min(lines.size(), kMostLines);
+  for (std::size_t i = 0; i < shown; ++i) absl::StrAppend(text, kind, " ", lines[i], "\n");
+  if (lines.size() == shown) return;
+  absl::StrAppend(text, "and ", lines.size() - shown, " more ", kinds,
+                  "; duet admin models lists all\n");
+}
+
+std::string LineOf(const registry::ModelStatus& model) {
+  return absl::StrCat(model.name, "/", model.version, ": ",
+                      model.state == registry::ModelState::kServed    ? "served"
+                      : model.state == registry::ModelState::kLoading ? "loading"
+                                                                      : "failed",
+                      model.outdated ? ", outdated" : "", model.error.empty() ? "" : ": ",
+                      model.error);
+}
+
 std::vector<metrics::ServedVersion> Served(const registry::ModelRegistry& registry) {
   std::vector<metrics::ServedVersion> served;
   for (const registry::ServedModel& model : registry.List()) {
@@ -316,21 +338,18 @@ std::string DuetServer::Describe() const {
   std::string text;
   if (draining_) text = "draining\n";
   if (!reachable_) absl::StrAppend(&text, "self-check: failed, see the log\n");
+  std::vector<std::string> failed, others, skipped;
   for (const registry::ModelStatus& model : manager_.List()) {
     if (model.state == registry::ModelState::kUnloaded) continue;
-    absl::StrAppend(&text, "model ", model.name, "/", model.version, ": ",
-                    model.state == registry::ModelState::kServed    ? "served"
-                    : model.state == registry::ModelState::kLoading ? "loading"
-                                                                    : "failed",
-                    model.outdated ? ", outdated" : "", model.error.empty() ? "" : ": ",
-                    model.error, "\n");
+    (model.error.empty() ? others : failed).push_back(LineOf(model));
   }
+  failed.insert(failed.end(), others.begin(), others.end());
   for (const registry::SkippedFolder& folder : manager_.skipped()) {
-    absl::StrAppend(&text, "skipped ", folder.folder, ": ", folder.reason, "\n");
+    skipped.push_back(absl::StrCat(folder.folder, ": ", folder.reason));
   }
-  for (const std::string& problem : control_.problems()) {
-    absl::StrAppend(&text, "problem ", problem, "\n");
-  }
+  AppendLines(failed, "model", "models", &text);
+  AppendLines(skipped, "skipped", "skipped folders", &text);
+  AppendLines(control_.problems(), "problem", "problems", &text);
   return text;
 }
 

@@ -104,7 +104,7 @@ class DuetServer {
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
   // Takes no lock: a lock that is held forever must not hide that the server is not ready.
   bool Ready() const;
-  // Describes the state of each model for people, one line each.
+  // Describes the state of each model for people, one line each, up to a limit.
   std::string Describe() const;
   // Sets the status of the server and of each model in gRPC's health service.
   void SetHealth(bool serving);

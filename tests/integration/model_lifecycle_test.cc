@@ -252,6 +252,24 @@ TEST_F(ModelLifecycleTest, AFolderThatIsNoCheckpointShowsEverywhere) {
   EXPECT_EQ(server_->log.Events("folder_skipped").size(), 1u) << "once, however often it is seen";
 }
 
+TEST_F(ModelLifecycleTest, TextOfReadinessStaysShortWithManyFoldersAndModels) {
+  ASSERT_THAT(server().Serve(), IsOk());
+  for (int i = 0; i < 300; ++i) fs::create_directories(folder_ / absl::StrCat("foreign", i));
+  for (int i = 0; i < 30; ++i) Write(absl::StrCat("more", 10 + i, "/1"), i == 29 ? "bad" : "good");
+  admin::ReloadResponse reloaded;
+  ASSERT_TRUE(Reload(&reloaded).ok());
+  const std::string text = HttpGet(server().metrics_port(), "/readyz");
+  EXPECT_LT(text.size(), 8000u);
+  EXPECT_THAT(text, HasSubstr("ready\nmodel more39/1: failed: weights")) << "failed ones first";
+  EXPECT_THAT(text, HasSubstr("and 11 more models; duet admin models lists all\n"));
+  EXPECT_THAT(text, HasSubstr("skipped foreign0: has no folder of a version"));
+  EXPECT_THAT(text, HasSubstr("and 280 more skipped folders; duet admin models lists all\n"));
+  TimedContext context;
+  admin::ListModelsResponse list;
+  ASSERT_TRUE(stub_->ListModels(&context, admin::ListModelsRequest(), &list).ok());
+  EXPECT_EQ(list.skipped_folders_size(), 300);
+}
+
 TEST_F(ModelLifecycleTest, NoCallFailsWhileModelsAreReplacedUnderIt) {
   ASSERT_THAT(server().Serve(), IsOk());
   std::atomic<bool> over{false};
