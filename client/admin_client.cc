@@ -6,6 +6,7 @@
 #include "absl/time/time.h"
 #include "client/internal/connect.h"
 #include "client/internal/grpc_status.h"
+#include "client/internal/retry.h"
 #include "duet/admin/v1/admin.grpc.pb.h"
 #include "grpcpp/client_context.h"
 
@@ -61,6 +62,7 @@ class GrpcAdminClient final : public AdminClient {
   GrpcAdminClient(std::shared_ptr<grpc::Channel> channel, const ClientOptions& options)
       : stub_(v1::Admin::NewStub(std::move(channel))),
         deadline_(options.deadline),
+        server_address_(options.server_address),
         authorization_(options.token.empty() ? "" : "Bearer " + options.token) {}
 
   absl::StatusOr<ServedModels> ListModels() override {
@@ -120,11 +122,13 @@ class GrpcAdminClient final : public AdminClient {
     grpc::ClientContext context;
     context.set_deadline(absl::ToChronoTime(absl::Now() + deadline_));
     if (!authorization_.empty()) context.AddMetadata("authorization", authorization_);
-    return internal::FromGrpc((*stub_.*method)(&context, request, response));
+    return internal::Explained(internal::FromGrpc((*stub_.*method)(&context, request, response)),
+                               server_address_);
   }
 
   const std::unique_ptr<v1::Admin::Stub> stub_;
   const absl::Duration deadline_;
+  const std::string server_address_;
   const std::string authorization_;  // a whole "Bearer TOKEN", or empty
 };
 

@@ -110,9 +110,9 @@ std::string Advice(const absl::Status& status, const std::string& server_address
   if (ExitCodeFor(status) != kExitRetry) return "";
   // An error reason shows that a Duet server answered.
   if (absl::IsUnavailable(status) && ErrorReason(status).empty()) {
-    return absl::StrCat(
-        "Does a duet-server listen at ", server_address,
-        "? (Choose a server with --server, and use --tls or --tls-ca FILE if it encrypts.)\n");
+    return absl::StrCat("Start a duet-server at ", server_address,
+                        ", or name another one with --server HOST:PORT (and --tls or --tls-ca FILE "
+                        "if it encrypts).\n");
   }
   return "Trying again later may help.\n";
 }

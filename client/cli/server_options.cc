@@ -9,6 +9,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "client/error_details.h"
 #include "client/internal/check_tls.h"
 #include "model/base/file.h"
 
@@ -58,7 +59,10 @@ void ReportWaiting(const ServerArguments& arguments, std::ostream& err, ClientOp
                             waits = std::make_shared<std::atomic<int>>(0)](const absl::Status& why,
                                                                            absl::Duration) {
     if (++*waits != 2) return;
-    err << "duet: " << address << " does not answer: " << why.message() << "; retrying\n";
+    // Only a server's own error has a reason; the others name the address.
+    const bool answered = !ErrorReason(why).empty();
+    err << "duet: " << (answered ? absl::StrCat("the server at ", address, " is not ready: ") : "")
+        << why.message() << "; retrying\n";
   };
 }
 

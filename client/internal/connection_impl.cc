@@ -39,8 +39,10 @@ absl::StatusOr<v1::SynthesizeRequest> ToWire(const SynthesisRequest& request) {
 // Assembles the reply of an asynchronous call.
 class ReplyListener final : public StreamListener {
  public:
-  ReplyListener(SynthesisRequest request, SynthesisCallback done, std::function<absl::Time()> now)
+  ReplyListener(SynthesisRequest request, std::string server_address, SynthesisCallback done,
+                std::function<absl::Time()> now)
       : request_(std::move(request)),
+        server_address_(std::move(server_address)),
         done_(std::move(done)),
         now_(std::move(now)),
         start_(now_()),
@@ -57,7 +59,7 @@ class ReplyListener final : public StreamListener {
 
   void OnEnd(const absl::Status& status) override {
     const absl::Status ended = accepted_.ok() ? reply_.EndStream(status) : accepted_;
-    if (!ended.ok()) return done_(ended);
+    if (!ended.ok()) return done_(Explained({ended, reply_.header().has_value()}, server_address_));
     SynthesisResult result = std::move(reply_).TakeResult();
     result.attempt_count = 1;
     result.timings.first_chunk = first_chunk_ - start_;
@@ -67,6 +69,7 @@ class ReplyListener final : public StreamListener {
 
  private:
   const SynthesisRequest request_;
+  const std::string server_address_;
   const SynthesisCallback done_;
   const std::function<absl::Time()> now_;
   const absl::Time start_;
@@ -161,8 +164,9 @@ void ConnectionImpl::SynthesizeAsync(SynthesisRequest request, const SynthesisCa
   const absl::StatusOr<v1::SynthesizeRequest> wire = ToWire(request);
   if (!wire.ok()) return done(wire.status());
   const CallContext call{Deadline(), request.request_id};
-  stub_->Start(call, *wire,
-               std::make_unique<ReplyListener>(std::move(request), done, environment_.now));
+  stub_->Start(
+      call, *wire,
+      std::make_unique<ReplyListener>(std::move(request), server_address_, done, environment_.now));
 }
 
 absl::StatusOr<std::unique_ptr<LiveSession>> ConnectionImpl::StartLive(const LiveRequest& request,

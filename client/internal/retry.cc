@@ -12,6 +12,7 @@
 #include "absl/time/clock.h"
 #include "client/error_details.h"
 #include "client/internal/grpc_status.h"
+#include "client/internal/unreachable.h"
 #include "model/base/counted.h"
 
 namespace duet::client::internal {
@@ -23,19 +24,21 @@ absl::Status AfterAttempts(const absl::Status& status, int attempts, std::string
                                             std::string(reason), ")"));
 }
 
-absl::Status NoServer(const absl::Status& status, int attempts, const RetryLimits& limits,
-                      absl::Duration spent) {
-  return absl::Status(
-      status.code(),
-      absl::StrCat("server_address: expected a Duet server at ", limits.server_address, ", got \"",
-                   status.message(), "\" (", base::Counted(attempts, "attempt"), " in ",
-                   absl::ToInt64Milliseconds(spent) / 1000.0, " s)"));
+absl::Status NoServer(const absl::Status& status, int attempts, absl::Duration spent) {
+  return AppendMessage(status, absl::StrCat(" (", base::Counted(attempts, "attempt"), " in ",
+                                            absl::ToInt64Milliseconds(spent) / 1000.0, " s)"));
 }
 
 bool HasDetails(const absl::Status& status) {
   bool any = false;
   status.ForEachPayload([&any](absl::string_view, const absl::Cord&) { any = true; });
   return any;
+}
+
+// Whether the status is gRPC's own and not that of a server.
+bool HasNoServer(const AttemptEnd& end) {
+  return end.status.code() == absl::StatusCode::kUnavailable && !end.answered &&
+         !HasDetails(end.status);
 }
 
 // Thread-safe random numbers in [0, 1). Copies share one generator.
@@ -81,8 +84,12 @@ absl::Duration RetryWait(const RetryOptions& options, int attempt, const absl::S
 
 bool IsUnreachable(const AttemptEnd& end) {
   // "backend unhealthy" is how gRPC reports NOT_SERVING.
-  return end.status.code() == absl::StatusCode::kUnavailable && !end.answered &&
-         !HasDetails(end.status) && !absl::StrContains(end.status.message(), "unhealthy");
+  return HasNoServer(end) && !absl::StrContains(end.status.message(), "unhealthy");
+}
+
+absl::Status Explained(const AttemptEnd& end, absl::string_view server_address) {
+  if (!HasNoServer(end)) return end.status;
+  return absl::Status(end.status.code(), DescribeUnreachable(server_address, end.status.message()));
 }
 
 absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environment,
@@ -93,13 +100,13 @@ absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environm
   absl::Time away_since = absl::InfiniteFuture();
   for (int made = 1;; ++made) {
     const AttemptEnd end = attempt();
-    const absl::Status& status = end.status;
-    if (status.ok()) return status;
+    if (end.status.ok()) return end.status;
+    const bool unreachable = IsUnreachable(end);
+    const absl::Status status = Explained(end, limits.server_address);
     if (!IsRetryable(status, priority) || made >= options.max_attempts) {
       return AfterAttempts(status, made, "");
     }
     const absl::Time now = environment.now();
-    const bool unreachable = IsUnreachable(end);
     away_since = unreachable ? std::min(away_since, now) : absl::InfiniteFuture();
     const absl::Duration left = away_since + limits.wait - now;
     // Make the last attempt at the end of the wait, not up to a whole backoff earlier.
@@ -107,7 +114,7 @@ absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environm
         std::min(left, RetryWait(options, made, status, environment.uniform()));
     const bool too_late = now + wait >= limits.deadline;
     if (unreachable && (too_late || left <= absl::ZeroDuration())) {
-      return NoServer(status, made, limits, now - begin);
+      return NoServer(status, made, now - begin);
     }
     if (too_late) return AfterAttempts(status, made, ", the deadline leaves no time for another");
     if (options.on_wait) options.on_wait(status, wait);

@@ -7,6 +7,7 @@
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
+#include "absl/strings/string_view.h"
 #include "absl/time/time.h"
 #include "client/options.h"
 #include "client/request.h"
@@ -59,9 +60,13 @@ struct AttemptEnd {
 // UNAVAILABLE from a Duet server. A server whose health service reports NOT_SERVING is reachable.
 bool IsUnreachable(const AttemptEnd& end);
 
+// Returns the status of an attempt, with DescribeUnreachable in place of gRPC's own message if gRPC
+// had no server for it.
+absl::Status Explained(const AttemptEnd& end, absl::string_view server_address);
+
 // Calls `attempt` until it succeeds, fails with a status that is not retryable, or a limit is
 // reached. Returns the last attempt's status. Its message contains the number of attempts, if there
-// were several, and the server's address if the server was unreachable for `limits.wait`.
+// were several, and is otherwise that of Explained.
 absl::Status Retry(const RetryOptions& options, const RetryEnvironment& environment,
                    Priority priority, const RetryLimits& limits,
                    absl::FunctionRef<AttemptEnd()> attempt);

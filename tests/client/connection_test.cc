@@ -131,7 +131,8 @@ TEST_F(ConnectionTest, AsynchronousCallIsNotRetried) {
   EXPECT_EQ(results[0]->pair.follower.poses, FollowerFor(request_.leader));
   EXPECT_EQ(results[0]->attempt_count, 1);
   EXPECT_THAT(results[1], StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 2 of 5")));
-  EXPECT_THAT(results[2], StatusIs(absl::StatusCode::kUnavailable, "away"));
+  EXPECT_THAT(results[2], StatusIs(absl::StatusCode::kUnavailable,
+                                   "the server at localhost:50051 cannot be reached: away"));
   EXPECT_THAT(results[3], StatusIs(absl::StatusCode::kInternal, HasSubstr("chunk.first_frame")));
   EXPECT_EQ(stub_->cancelled, 1);
   EXPECT_THAT(results[4], StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("chunk_frames")));

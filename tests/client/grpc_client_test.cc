@@ -159,7 +159,7 @@ TEST_F(GrpcClientTest, MissingServerIsReportedWithItsAddressAfterTheWait) {
   options_.server_address = "127.0.0.1:1";
   options_.wait = absl::Milliseconds(50);
   EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kUnavailable,
-                                     HasSubstr("expected a Duet server at 127.0.0.1:1, got")));
+                                     HasSubstr("the server at 127.0.0.1:1 is not running: ")));
 }
 
 TEST_F(GrpcClientTest, MissingServerIsUnavailableAfterEveryAttempt) {

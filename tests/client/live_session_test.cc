@@ -363,7 +363,7 @@ TEST_F(LiveSessionTest, GivesUpWhenNoServerAnswers) {
   server_.Kill();
   ASSERT_TRUE(ended.WaitForNotificationWithTimeout(kLongestCall));
   EXPECT_THAT(session_->Finish(), StatusIs(absl::StatusCode::kUnavailable,
-                                           HasSubstr("server_address: expected a Duet server")));
+                                           HasSubstr("is not running: it refused the connection")));
   EXPECT_THAT(Send(10, 11), StatusIs(absl::StatusCode::kUnavailable, HasSubstr("")));
 }
 

@@ -1,7 +1,9 @@
 #include "client/internal/retry.h"
 
+#include <string>
 #include <vector>
 
+#include "client/internal/unreachable.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"
@@ -82,8 +84,8 @@ TEST_F(RetryTest, UnreachableServerIsRetriedForTheWaitAndThenReported) {
   const absl::Time begin = time_.now;
   const absl::Status status = Run(std::vector<absl::Status>(100, Refused()));
   EXPECT_THAT(status, StatusIs(absl::StatusCode::kUnavailable,
-                               HasSubstr("server_address: expected a Duet server at lab:50051, got "
-                                         "\"Connection refused\" (8 attempts in 5 s)")));
+                               "the server at lab:50051 is not running: it refused the connection "
+                               "(8 attempts in 5 s)"));
   EXPECT_EQ(time_.now - begin, wait_);
 }
 
@@ -97,9 +99,53 @@ TEST_F(RetryTest, UnreachableServerIsTriedOnceWithoutAWait) {
 TEST_F(RetryTest, TheWaitEndsAtTheDeadline) {
   wait_ = absl::Hours(1);
   deadline_ = absl::Seconds(2);
-  EXPECT_THAT(
-      Run(std::vector<absl::Status>(100, Refused())),
-      StatusIs(absl::StatusCode::kUnavailable, HasSubstr("expected a Duet server at lab:50051")));
+  EXPECT_THAT(Run(std::vector<absl::Status>(100, Refused())),
+              StatusIs(absl::StatusCode::kUnavailable,
+                       HasSubstr("the server at lab:50051 is not running")));
+}
+
+TEST_F(RetryTest, UnreachableServerIsDescribedInWordsAlsoAfterTheLastAttempt) {
+  options_.max_attempts = 2;
+  std::vector<std::string> told;
+  options_.on_wait = [&](const absl::Status& why, absl::Duration) {
+    told.emplace_back(why.message());
+  };
+  const std::string words = "the server at lab:50051 is not running: it refused the connection";
+  EXPECT_THAT(Run({Refused(), Refused()}),
+              StatusIs(absl::StatusCode::kUnavailable, words + " (after 2 attempts)"));
+  EXPECT_THAT(told, ElementsAre(words));
+}
+
+TEST(DescribeUnreachableTest, NamesTheCauseWithoutSocketsAndSystemCalls) {
+  const auto told = [](const std::string& last) {
+    return DescribeUnreachable("a:1", "failed to connect to all addresses; last error: " + last);
+  };
+  EXPECT_EQ(told("UNKNOWN: ipv4:10.0.0.1:1: Failed to connect to remote host: Connection refused"),
+            "the server at a:1 is not running: it refused the connection");
+  EXPECT_EQ(told("UNKNOWN: unix:/run/duet.sock: No such file or directory"),
+            "the server at a:1 is not running: its socket does not exist");
+  EXPECT_EQ(DescribeUnreachable("a:1",
+                                "DNS resolution failed for a:1: C-ares status is not "
+                                "ARES_SUCCESS qtype=AAAA name=a: Domain name not found"),
+            "the server at a:1 cannot be found: the name has no address");
+  EXPECT_EQ(told("INTERNAL: ipv4:10.0.0.1:1: Trying to connect an http1.x server"),
+            "the server at a:1 is not a Duet server: it speaks HTTP/1");
+  EXPECT_EQ(told("UNKNOWN: ipv4:10.0.0.1:1: Ssl handshake failed: SSL_ERROR_SSL: "
+                 "error:0A00010B:SSL routines::wrong version number"),
+            "the server at a:1 does not encrypt, but this client does");
+  EXPECT_EQ(told("UNKNOWN: ipv4:10.0.0.1:1: Ssl handshake failed: SSL_ERROR_SSL: "
+                 "error:0A000086:SSL routines::certificate verify failed"),
+            "the server at a:1 is not trusted: its certificate was not accepted");
+  EXPECT_EQ(told("UNKNOWN: ipv4:10.0.0.1:1: connection attempt timed out before receiving "
+                 "SETTINGS frame"),
+            "the server at a:1 does not answer: the connection timed out");
+  EXPECT_EQ(
+      told("UNAVAILABLE: ipv4:10.0.0.1:1: Socket closed"),
+      "the server at a:1 closes every connection: it may expect TLS, or a client certificate");
+  EXPECT_EQ(told("UNAVAILABLE: backend unhealthy"),
+            "the server at a:1 is not ready: it loads its models, or it shuts down");
+  EXPECT_EQ(DescribeUnreachable("a:1", "Socket closed"),
+            "the server at a:1 cannot be reached: Socket closed");
 }
 
 TEST_F(RetryTest, AnyReplyRestartsTheWait) {

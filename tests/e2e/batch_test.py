@@ -411,7 +411,7 @@ class BatchTest(tools.ServedTest):
     def test_missing_server_exits_with_retry(self):
         out = self.out()
         result = self.batch(out, self.recipe(), "--patience", "0.2", code=1, server="127.0.0.1:1")
-        self.assertIn("Does a duet-server listen", result.stderr)
+        self.assertIn("Start a duet-server at 127.0.0.1:1", result.stderr)
 
     def test_set_without_items_is_pointed_out(self):
         result = self.batch(self.out(), self.recipe(), "--limit", "0")

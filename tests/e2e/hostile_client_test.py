@@ -182,7 +182,7 @@ class RestartTest(unittest.TestCase):
                  server.address, "--wait", str(tools.RUN_SECONDS)],
                 stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
             with call:
-                self.assertIn("does not answer", call.stderr.readline())
+                self.assertIn("is not running", call.stderr.readline())
                 again = tools.Server(port=server.port)
                 self.addCleanup(again.stop)
                 _, error = call.communicate(timeout=tools.RUN_SECONDS)

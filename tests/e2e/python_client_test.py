@@ -223,7 +223,7 @@ class PythonClientTest(tools.ServedTest):
                 next(stream)
                 server.kill()
                 with self.assertRaisesRegex(duet.UnavailableError,
-                                            f"expected a Duet server at {server.address}"):
+                                            f"the server at {server.address} "):
                     stream.result()
 
     def test_every_packing_of_a_data_set_is_read_alike(self):

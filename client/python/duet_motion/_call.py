@@ -11,11 +11,12 @@ import grpc
 
 from duet_motion._fields import with_joint_names
 from duet_motion._reply import ReplyAssembler
+from duet_motion._unreachable import describe_unreachable
 from duet_motion.errors import DuetError, make_error
 from duet_motion.motion import checked_number
 from duet_motion.request import SynthesisRequest, to_proto
 from duet_motion.result import FollowerChunk, SynthesisResult
-from duet_motion.retry import RetryOptions, is_retryable, is_unreachable, retry_wait
+from duet_motion.retry import RetryOptions, has_no_server, is_retryable, is_unreachable, retry_wait
 from duet_motion.v1 import synthesis_pb2
 
 Metadata = Tuple[Tuple[str, str], ...]
@@ -77,12 +78,15 @@ class Attempts:
         ``answered``: the server sent part of a reply before the attempt failed.
         """
         options = self._settings.retry
+        unreachable = not answered and is_unreachable(error)
+        if not answered and has_no_server(error):
+            error = error.with_message(describe_unreachable(self._settings.address, error.message))
         is_last = options.max_attempts is not None and self.made >= options.max_attempts
         if is_last or not is_retryable(error):
             raise self._after_attempts(error, "")
         environment = self._settings.environment
         now, wait = environment.now(), retry_wait(options, self.made, error, environment.uniform())
-        if answered or not is_unreachable(error):
+        if not unreachable:
             self._away_since = None
         else:
             self._away_since = now if self._away_since is None else self._away_since
@@ -102,9 +106,9 @@ class Attempts:
 
     def _no_server(self, error: DuetError) -> DuetError:
         return error.with_message(
-            f"address: expected a Duet server at {self._settings.address}, got {error.message!r} "
-            f"({self._count()} in {self.elapsed():.1f} s); start duet-server there, set another "
-            "address (DUET_SERVER), or wait longer (duet_motion.Client(wait=SECONDS))")
+            f"{error.message} ({self._count()} in {self.elapsed():.1f} s); start it with "
+            "duet-server, name another one (DUET_SERVER, or duet_motion.Client(ADDRESS)), or wait "
+            "longer (wait=SECONDS)")
 
     def _after_attempts(self, error: DuetError, reason: str) -> DuetError:
         if self.made == 1 and not reason:

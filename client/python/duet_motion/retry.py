@@ -56,11 +56,15 @@ def is_retryable(error: DuetError) -> bool:
             and error.retry_delay is not None)
 
 
+def has_no_server(error: DuetError) -> bool:
+    """Whether UNAVAILABLE comes from gRPC itself. Duet servers add details to theirs."""
+    return error.code is grpc.StatusCode.UNAVAILABLE and not _has_details(error)
+
+
 def is_unreachable(error: DuetError) -> bool:
-    """Whether UNAVAILABLE comes from gRPC itself. Duet servers add details to theirs, and a server
-    whose health service reports NOT_SERVING ("backend unhealthy") is reachable."""
-    return (error.code is grpc.StatusCode.UNAVAILABLE and not _has_details(error)
-            and "unhealthy" not in error.message)
+    """Whether no server was reached. A server whose health service reports NOT_SERVING ("backend
+    unhealthy") is reachable."""
+    return has_no_server(error) and "unhealthy" not in error.message
 
 
 def _has_details(error: DuetError) -> bool:

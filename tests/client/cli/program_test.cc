@@ -859,10 +859,9 @@ TEST_F(ProgramTest, RejectionListsEveryField) {
 TEST_F(ProgramTest, MissingServerIsNamedAndExitsWithRetry) {
   EXPECT_CALL(*connection_, GetModel).WillOnce(Return(absl::UnavailableError("refused")));
   EXPECT_EQ(Synthesize("pair.html", {"--server", "duet:1"}), 1);
-  EXPECT_EQ(
-      err_.str(),
-      "duet: refused (UNAVAILABLE)\nDoes a duet-server listen at duet:1? (Choose a server with "
-      "--server, and use --tls or --tls-ca FILE if it encrypts.)\n");
+  EXPECT_EQ(err_.str(),
+            "duet: refused (UNAVAILABLE)\nStart a duet-server at duet:1, or name another one with "
+            "--server HOST:PORT (and --tls or --tls-ca FILE if it encrypts).\n");
 }
 
 TEST_F(ProgramTest, DrainingServerExitsWithRetry) {

@@ -119,7 +119,8 @@ class Calls:
                          lambda client: client.synthesize(self.leader, {"hug": 1})):
                 with self.assertRaisesRegex(
                         duet.UnavailableError,
-                        f"expected a Duet server at {address}, got .*(Connection refused|connect)"):
+                        f"^UNAVAILABLE: the server at {address} is not running: it refused the "
+                        r"connection \(\d+ attempts? in [\d.]+ s\); start it with duet-server"):
                     self.run_calls(address, lambda client, get, _: get(call(client)), wait=0.05,
                                    timeout=support.LONGEST_CALL)
 

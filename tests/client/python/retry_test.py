@@ -1,11 +1,14 @@
 """Retries, by the rules of the C++ client (tests/client/retry_test.cc)."""
 
 import dataclasses
+import pathlib
+import re
 import unittest
 
 import support
 import duet_motion as duet
 import grpc
+from duet_motion._unreachable import describe_unreachable
 from duet_motion._call import Attempts, CallSettings, Environment
 from duet_motion.errors import make_error
 from duet_motion.retry import is_retryable, is_unreachable, retry_wait
@@ -31,6 +34,17 @@ class RetryTest(unittest.TestCase):
         self.assertFalse(is_unreachable(make_error(UNAVAILABLE, "", retry_delay=1.0)))
         self.assertFalse(is_unreachable(make_error(UNAVAILABLE, "backend unhealthy")))
         self.assertFalse(is_unreachable(make_error(FULL, "")))
+
+    def test_causes_of_gone_servers_are_named_as_by_the_other_client(self):
+        source = (pathlib.Path(__file__).parents[3] / "client/internal/unreachable.cc").read_text(
+            encoding="utf-8")
+        causes = re.findall(r'^    {"(.+)", "(.+)"},$', source, re.MULTILINE)
+        self.assertGreater(len(causes), 9)
+        for sign, text in causes:
+            self.assertEqual(describe_unreachable("a:1", f"failed: {sign}"), f"the server at a:1 {text}")
+        self.assertIn("it may expect TLS", describe_unreachable("a:1", "failed to connect: Socket closed"))
+        self.assertEqual(describe_unreachable("a:1", "Socket closed"),
+                         "the server at a:1 cannot be reached: Socket closed")
 
     def test_backoff_doubles_up_to_its_maximum(self):
         error, options = make_error(UNAVAILABLE, ""), duet.RetryOptions(max_backoff=1)
@@ -78,7 +92,8 @@ class AttemptsTest(unittest.TestCase):
         self.attempts.begin()
         with self.assertRaisesRegex(duet.UnavailableError, r"away \(after 4 attempts\)"):
             self.attempts.wait_after(make_error(UNAVAILABLE, "away"))
-        self.assertEqual(self.waits, [("away", 0.1), ("away", 0.2), ("away", 0.4)])
+        away = "the server at lab:50051 cannot be reached: away"
+        self.assertEqual(self.waits, [(away, 0.1), (away, 0.2), (away, 0.4)])
 
     def fail(self, error, **settings):
         """Makes attempts that fail with the error until there is no further one."""
@@ -98,14 +113,17 @@ class AttemptsTest(unittest.TestCase):
         start = self.now
         with self.assertRaisesRegex(
                 duet.UnavailableError,
-                r"address: expected a Duet server at lab:50051, got 'refused' \(7 attempts in 5.0 s\); "
+                r"^UNAVAILABLE: the server at lab:50051 is not running: it refused the connection "
+                r"\(7 attempts in 5.0 s\); "
                 r"start .*DUET_SERVER.*wait=SECONDS"):
-            self.fail(make_error(UNAVAILABLE, "refused"), wait=5.0)
+            self.fail(make_error(UNAVAILABLE, "failed to connect to all addresses; last error: UNKNOWN: "
+                                 "ipv4:10.0.0.1:50051: Failed to connect to remote host: Connection "
+                                 "refused"), wait=5.0)
         self.assertAlmostEqual(self.now - start, 5)
         with self.assertRaisesRegex(duet.UnavailableError, r"\(1 attempt in 0.0 s\)"):
-            self.fail(make_error(UNAVAILABLE, "refused"), wait=0.0)
-        with self.assertRaisesRegex(duet.UnavailableError, "at lab:50051, got 'refused' .7 attempts"):
-            self.fail(make_error(UNAVAILABLE, "refused"), wait=60.0)  # the deadline comes first
+            self.fail(make_error(UNAVAILABLE, "Connection refused"), wait=0.0)
+        with self.assertRaisesRegex(duet.UnavailableError, "at lab:50051 is not running: .* .7 attempts"):
+            self.fail(make_error(UNAVAILABLE, "Connection refused"), wait=60.0)  # the deadline comes first
 
     def test_partial_reply_restarts_the_wait(self):
         attempts = Attempts(dataclasses.replace(self.settings, retry=duet.RetryOptions(), wait=1.0))
@@ -113,7 +131,7 @@ class AttemptsTest(unittest.TestCase):
             attempts.begin()
             self.now += 0.9 + attempts.wait_after(make_error(UNAVAILABLE, "away"), answered)
         attempts.begin()
-        with self.assertRaisesRegex(duet.UnavailableError, "expected a Duet server"):
+        with self.assertRaisesRegex(duet.UnavailableError, "the server at lab:50051 cannot"):
             attempts.wait_after(make_error(UNAVAILABLE, "away"))
 
     def test_timeout_of_a_call_overrides_the_clients(self):

@@ -1,0 +1,53 @@
+#include "client/internal/unreachable.h"
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+
+namespace duet::client::internal {
+namespace {
+
+struct Cause {
+  absl::string_view sign;  // part of gRPC's message
+  absl::string_view text;  // what follows the address
+};
+
+// The first one whose sign is in the message applies: gRPC's message of a failed handshake contains
+// its cause.
+constexpr Cause kCauses[] = {
+    {"unhealthy", "is not ready: it loads its models, or it shuts down"},
+    {"Connection refused", "is not running: it refused the connection"},
+    {"No such file or directory", "is not running: its socket does not exist"},
+    {"DNS resolution failed", "cannot be found: the name has no address"},
+    {"http1.x", "is not a Duet server: it speaks HTTP/1"},
+    {"wrong version number", "does not encrypt, but this client does"},
+    {"certificate verify failed", "is not trusted: its certificate was not accepted"},
+    {"CERTIFICATE_VERIFY_FAILED", "is not trusted: its certificate was not accepted"},
+    {"Ssl handshake failed", "cannot be reached: the TLS handshake failed"},
+    {"timed out", "does not answer: the connection timed out"},
+    {"No route to host", "cannot be reached: there is no route to it"},
+    {"Network is unreachable", "cannot be reached: there is no route to it"},
+};
+
+// Whether the server closes connections before gRPC's handshake, as one that encrypts does if the
+// client does not.
+bool HangsUp(absl::string_view message) {
+  return absl::StrContains(message, "failed to connect") &&
+         (absl::StrContains(message, "Connection reset") ||
+          absl::StrContains(message, "Socket closed"));
+}
+
+}  // namespace
+
+std::string DescribeUnreachable(absl::string_view address, absl::string_view message) {
+  const std::string server = absl::StrCat("the server at ", address, " ");
+  for (const Cause& cause : kCauses) {
+    if (absl::StrContains(message, cause.sign)) return absl::StrCat(server, cause.text);
+  }
+  if (HangsUp(message)) {
+    return absl::StrCat(server,
+                        "closes every connection: it may expect TLS, or a client certificate");
+  }
+  return absl::StrCat(server, "cannot be reached: ", message);
+}
+
+}  // namespace duet::client::internal

@@ -1,0 +1,34 @@
+"""Says in words why gRPC had no server for a call, like the C++ client (client/internal/unreachable.cc)."""
+
+from __future__ import annotations
+
+# Part of gRPC's message, and what follows the address. The first one that is found applies: gRPC's
+# message of a failed handshake contains its cause.
+_CAUSES = (
+    ("unhealthy", "is not ready: it loads its models, or it shuts down"),
+    ("Connection refused", "is not running: it refused the connection"),
+    ("No such file or directory", "is not running: its socket does not exist"),
+    ("DNS resolution failed", "cannot be found: the name has no address"),
+    ("http1.x", "is not a Duet server: it speaks HTTP/1"),
+    ("wrong version number", "does not encrypt, but this client does"),
+    ("certificate verify failed", "is not trusted: its certificate was not accepted"),
+    ("CERTIFICATE_VERIFY_FAILED", "is not trusted: its certificate was not accepted"),
+    ("Ssl handshake failed", "cannot be reached: the TLS handshake failed"),
+    ("timed out", "does not answer: the connection timed out"),
+    ("No route to host", "cannot be reached: there is no route to it"),
+    ("Network is unreachable", "cannot be reached: there is no route to it"),
+)
+
+
+def describe_unreachable(address: str, message: str) -> str:
+    """A sentence about the server at ``address``. ``message``, gRPC's own, is part of it only if the
+    cause is unknown."""
+    for sign, text in _CAUSES:
+        if sign in message:
+            return f"the server at {address} {text}"
+    # A server that encrypts closes the connection of a client that does not.
+    if "failed to connect" in message and ("Connection reset" in message
+                                           or "Socket closed" in message):
+        return (f"the server at {address} closes every connection: it may expect TLS, or a client "
+                "certificate")
+    return f"the server at {address} cannot be reached: {message}"
