@@ -114,8 +114,8 @@ frames or change the labels:
 --to - writes {"joints": ...} and then {"frame": 0, "positions": ...} for each final frame.
 
 While a file or a capture plays, labels can be typed: hug=1 kick=0 ease=0.3, then Enter. Ctrl-C ends
-the leader's motion: the frames that are due arrive, and files are written. A second Ctrl-C ends the
-program at once.
+the leader's motion: the frames that are due arrive, and files are written. Another Ctrl-C, more than
+a second later, ends the program at once.
 
 Motion capture (--from vmc://, xsens:// or rokoko://, with [HOST][:PORT]) is received over UDP: VMC,
 Xsens MVN and Rokoko Studio. --frame-rate states the rate; otherwise the first second measures it.

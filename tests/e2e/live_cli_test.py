@@ -130,6 +130,21 @@ class LiveCliTest(unittest.TestCase):
         motion = json.loads(follower.read_text(encoding="utf-8"))
         self.assertEqual(len(motion["leader"]), count)
 
+    def test_two_signals_at_once_are_one_interrupt(self):
+        follower = pathlib.Path(self.folder.name) / "twice.json"
+        with subprocess.Popen(
+                [tools.PROGRAMS / "duet", "live", "--server", self.server.address, "--label",
+                 "hug=1", "--from", tools.sample("hug"), "--realtime", "--to", "-", "--to",
+                 follower], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            lines = [process.stdout.readline() for _ in range(11)]
+            # Two numbers: the system would merge two equal ones that nobody has read.
+            process.send_signal(signal.SIGINT)
+            process.send_signal(signal.SIGTERM)
+            rest, errors = rest_of(process)
+        self.assertEqual(process.returncode, 0, errors)
+        motion = json.loads(follower.read_text(encoding="utf-8"))
+        self.assertEqual(len(motion["leader"]), len(frames_of("".join(lines) + rest)))
+
     def test_a_terminal_shows_figures_and_takes_labels(self):
         terminal, end = os.openpty()
         with subprocess.Popen(
