@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/capture/capture_address.h"
+#include "client/cli/leader_watch.h"
 #include "client/cli/live_file_sink.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
@@ -98,12 +99,14 @@ absl::Status CheckSource(const std::string& from) {
 absl::StatusOr<LiveInput> OpenSource(const LiveArguments& arguments,
                                      const motion::Skeleton& skeleton,
                                      const ProgramEnvironment& environment,
-                                     std::function<void(const std::string&)> on_note) {
-  if (capture::IsCaptureAddress(arguments.from)) {
-    return OpenCapture(arguments, skeleton, std::move(on_note));
-  }
-  if (!IsFile(arguments.from)) return OpenStandardInput(arguments, skeleton, environment);
-  return OpenFile(arguments, skeleton);
+                                     const std::function<void(const std::string&)>& on_note) {
+  absl::StatusOr<LiveInput> input =
+      capture::IsCaptureAddress(arguments.from) ? OpenCapture(arguments, skeleton, on_note)
+      : IsFile(arguments.from)                  ? OpenFile(arguments, skeleton)
+                               : OpenStandardInput(arguments, skeleton, environment);
+  if (!input.ok()) return input;
+  input->source = std::make_unique<LeaderWatch>(std::move(input->source), skeleton, on_note);
+  return input;
 }
 
 absl::Status CheckSink(const std::string& to, const LiveArguments& arguments) {

@@ -33,7 +33,7 @@ struct LiveInput {
 absl::StatusOr<LiveInput> OpenSource(const LiveArguments& arguments,
                                      const motion::Skeleton& skeleton,
                                      const ProgramEnvironment& environment,
-                                     std::function<void(const std::string&)> on_note);
+                                     const std::function<void(const std::string&)>& on_note);
 
 // Checks a value of --to before any work is done: it may not replace a file that is read.
 absl::Status CheckSink(const std::string& to, const LiveArguments& arguments);

@@ -24,6 +24,7 @@
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test_motion.h"
 
 namespace duet::client::cli {
 namespace {
@@ -153,6 +154,23 @@ TEST_F(LiveCommandTest, AFileIsAnsweredIntoFiles) {
   EXPECT_EQ(start.seed(), 7u);
   EXPECT_EQ(start.delay_frames(), 2u);
   EXPECT_EQ(start.leader().frame_rate_hz(), 15);
+}
+
+TEST_F(LiveCommandTest, LeaderWithSwappedSidesIsReportedOnce) {
+  leader_ = test::MakePerson();
+  in_.str(Lines(leader_.frame_count()));
+  ASSERT_EQ(Run({"--from", "-", "--to", Path("follower.csv")}), 0) << err_.str();
+  EXPECT_EQ(err_.str(), "");
+  EXPECT_THAT(out_.str(), Not(HasSubstr("swapped")));
+  for (motion::Vec3& at : leader_.poses.all()) at.x = -at.x;  // axes of the other hand
+  in_.clear();
+  in_.str(Lines(leader_.frame_count()));
+  ASSERT_EQ(Run({"--from", "-", "--to", Path("follower.csv")}), 0) << err_.str();
+  const std::string note =
+      "leader: knees and elbows bend the wrong way (100 % of their bending): "
+      "left and right may be swapped; if the sender is left-handed";
+  EXPECT_THAT(err_.str(), ::testing::StartsWith("duet: " + note));
+  EXPECT_THAT(out_.str(), HasSubstr("note      " + note));
 }
 
 TEST_F(LiveCommandTest, FlagsReachTheServer) {
