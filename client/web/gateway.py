@@ -37,10 +37,10 @@ TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".b
 class Gateway:
     """The handlers of the gateway."""
 
-    def __init__(self, program, channel):
+    def __init__(self, program, backend):
         self._program = program
-        self._channel = channel
-        self.live = live_socket.LiveSockets(channel)
+        self._backend = backend
+        self.live = live_socket.LiveSockets(backend)
         self._uploads = uploads.Uploads()
 
     def routes(self):
@@ -68,7 +68,7 @@ class Gateway:
         return routes
 
     async def call(self, request):
-        return await grpc_web.forward(request, self._channel, self._uploads)
+        return await grpc_web.forward(request, self._backend, self._uploads)
 
     async def read(self, request):
         """Converts a motion file to {"notes": [...], "motion": its leader as "duet-motion" JSON}.
@@ -139,14 +139,14 @@ async def run(options):
         print(f"http://{host}:{address[1]}", flush=True)
 
     # An open channel can prevent the process from ending.
-    channel = grpc_web.connect(options.server, tls)
+    backend = grpc_web.connect(options.server, tls)
     try:
-        gateway = Gateway(program, channel)
+        gateway = Gateway(program, backend)
         server = serving.Server(gateway.routes(),
                                 serving.allowed_hosts(options.listen, options.host))
         await serving.serve(server, options.listen, started, gateway.live.close)
     finally:
-        await channel.close()
+        await backend.channel.close()
 
 
 def main(arguments):

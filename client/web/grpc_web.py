@@ -5,10 +5,12 @@ import asyncio
 import base64
 import os
 import re
+import typing
 import urllib.parse
 
 import duet_motion as duet
 import duet_motion._channel
+import duet_motion._unreachable
 import grpc
 import grpc.aio
 from aiohttp import web
@@ -24,18 +26,26 @@ PRINTABLE = re.compile(r"[ -~]*")
 TIMEOUT = re.compile(r"([0-9]{1,8})([HMSmun])")
 SECONDS = {"H": 3600, "M": 60, "S": 1, "m": 1e-3, "u": 1e-6, "n": 1e-9}
 LONGEST_SECONDS = 600  # of a call
+DETAILS = "grpc-status-details-bin"  # of an error that a Duet server reports
+
+
+class Backend(typing.NamedTuple):
+    """The Duet server behind the gateway."""
+    address: str
+    channel: grpc.aio.Channel
 
 
 def connect(server, tls):
-    """Creates a channel to the server. Call it in the event loop that uses the channel."""
+    """Returns the Backend of an address. Call it in the event loop that uses its channel."""
     target = duet._channel.target(server)
     arguments = duet._channel.channel_arguments(duet.RetryOptions(), tls)
     if tls is None:
-        return grpc.aio.insecure_channel(target, arguments)
-    return grpc.aio.secure_channel(target, duet._channel.credentials(tls), arguments)
+        return Backend(server, grpc.aio.insecure_channel(target, arguments))
+    credentials = duet._channel.credentials(tls)
+    return Backend(server, grpc.aio.secure_channel(target, credentials, arguments))
 
 
-async def forward(request, channel, uploads):
+async def forward(request, backend, uploads):
     """Forwards a browser's call to the server and its reply to the browser, message by message."""
     if request.content_type not in CONTENT_TYPES:
         raise Rejected(415, f"Content-Type: expected {CONTENT_TYPES[1]}, got "
@@ -51,7 +61,7 @@ async def forward(request, channel, uploads):
             if refused is None:
                 # A stream of one message is the same on the wire as a unary request, but its memory
                 # is freed once it has been sent instead of at the call's end.
-                call = channel.stream_stream(request.path)(timeout=seconds, metadata=metadata)
+                call = backend.channel.stream_stream(request.path)(timeout=seconds, metadata=metadata)
                 await send(call, body.read())
         await response.prepare(request)
         if refused is not None:
@@ -59,8 +69,7 @@ async def forward(request, channel, uploads):
             return response
         while (message := await next_message(call)) is not None:
             await response.write(frame(0, message))
-        await response.write(trailers(await call.code(), await call.details() or "",
-                                      await call.trailing_metadata() or ()))
+        await response.write(trailers(*await end_of(call, backend)))
         return response
     finally:
         if call is not None:
@@ -83,6 +92,18 @@ async def next_message(call):
     except grpc.RpcError:
         return None
     return None if message is grpc.aio.EOF else message
+
+
+async def end_of(call, backend):
+    """The code, the message and the trailing metadata of a call that has ended. If gRPC had no server
+    for it, the message says so to a person."""
+    code, message = await call.code(), await call.details() or ""
+    metadata = await call.trailing_metadata() or ()
+    if code is grpc.StatusCode.UNAVAILABLE and all(key != DETAILS for key, _ in metadata):
+        away = duet._unreachable.describe_unreachable(backend.address, message)
+        message = (f"{away[0].upper()}{away[1:]}. Start it with duet-server, or start the gateway "
+                   "with another one (--server HOST:PORT).")
+    return code, message, metadata
 
 
 def why_refused(head, body):

@@ -43,8 +43,8 @@ class Ended(Exception):
 class LiveSockets:
     """The sessions of a gateway."""
 
-    def __init__(self, channel):
-        self._channel = channel
+    def __init__(self, backend):
+        self._backend = backend
         self._sessions = set()
 
     async def answer(self, request):
@@ -78,9 +78,9 @@ class LiveSockets:
             await asyncio.wait(self._sessions, timeout=serving.SHUTDOWN_SECONDS)
 
     async def _session(self, request, socket, metadata):
-        call = self._channel.stream_stream(METHOD)(metadata=metadata)
+        call = self._backend.channel.stream_stream(METHOD)(metadata=metadata)
         sending = asyncio.ensure_future(to_server(socket, call))
-        receiving = asyncio.ensure_future(to_browser(socket, call))
+        receiving = asyncio.ensure_future(to_browser(socket, call, self._backend))
         code, message = FAILED, ""
         try:
             await asyncio.wait({sending, receiving}, return_when=asyncio.FIRST_COMPLETED)
@@ -148,11 +148,11 @@ async def received(socket):
     raise ConnectionError("the browser has left")
 
 
-async def to_browser(socket, call):
+async def to_browser(socket, call, backend):
     """Passes messages on until the call ends, then its status."""
     while (message := await grpc_web.next_message(call)) is not None:
         await send(socket.send_bytes(message))
-    await send(socket.send_str(await status_of(call)))
+    await send(socket.send_str(status_of(*await grpc_web.end_of(call, backend))))
 
 
 async def send(sending):
@@ -164,11 +164,9 @@ async def send(sending):
         raise ConnectionError("the browser does not read") from None
 
 
-async def status_of(call):
-    details = b"".join(value for key, value in await call.trailing_metadata() or ()
-                       if key == "grpc-status-details-bin")
-    return json.dumps({"code": (await call.code()).value[0],
-                       "message": await call.details() or "",
+def status_of(code, message, metadata):
+    details = b"".join(value for key, value in metadata if key == grpc_web.DETAILS)
+    return json.dumps({"code": code.value[0], "message": message,
                        "details": base64.b64encode(details).decode()})
 
 

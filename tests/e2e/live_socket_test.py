@@ -308,6 +308,7 @@ class LiveSocketTest(tools.ServedTest):
 
         _, status = self.session(talk, gateway)
         self.assertEqual(status["code"], UNAVAILABLE)
+        self.assertRegex(status["message"], rf"^The server at {server.address} .*Start it with duet-server")
         server = tools.Server(port=port)
         self.addCleanup(server.stop)
         # The gateway's connection may still wait before it tries to connect again.

@@ -26,7 +26,7 @@ async function readLeader(name, bytes) {
     for (const value of values.filter(Boolean)) query.append(setting, value);
   }
   const skeleton = skeletonOf(modelNamed(settings.model));
-  const response = await fetch(`/read?${query}&skeleton=${skeleton}`, {method: 'POST', body: bytes});
+  const response = await fetchFrom(`/read?${query}&skeleton=${skeleton}`, {method: 'POST', body: bytes});
   if (!response.ok) throw new CallError(await messageIn(response));
   const {notes, motion} = await response.json();
   return {
@@ -59,7 +59,7 @@ async function download(kind) {
   const query = new URLSearchParams({
     format: kind, name: downloadName(state.takes[state.chosen]), skeleton: 'own'});
   if (settings.resample !== '') query.set('resample', settings.resample);
-  await save(await fetch(`/write?${query}`, {method: 'POST', body: pairJson()}));
+  await save(await fetchFrom(`/write?${query}`, {method: 'POST', body: pairJson()}));
 }
 
 // The settings for the rig's file: for the leader's own, those for reading it.
@@ -83,7 +83,7 @@ async function downloadOnRig() {
     files: [{name: 'pair.json', bytes: pair.size}, {name: safeName(name), bytes: bytes.byteLength}],
   };
   tell('Writing the follower on the rig …');
-  await save(await fetch('/write_on_rig', {
+  await save(await fetchFrom('/write_on_rig', {
     method: 'POST', body: new Blob([JSON.stringify(head), '\n', pair, bytes])}));
 }
 

@@ -2,11 +2,53 @@
 // One call over gRPC-web: sends one frame; receives frames with messages and a last one with
 // trailers.
 
-// A failed call: the server's message, and one problem for each invalid field.
+// A failed call: the server's message, and one problem for each invalid field. `isAway`: the gateway
+// or the server cannot be reached, so the same call may succeed later.
 class CallError extends Error {
-  constructor(message, problems = []) {
+  constructor(message, problems = [], isAway = false) {
     super(message);
     this.problems = problems;
+    this.isAway = isAway;
+  }
+}
+
+const UNAVAILABLE = '14';
+const AWAY_SECONDS = 2;  // between two questions to a server that is away
+
+// As fetch. A browser's own error does not name the program that is missing.
+async function fetchFrom(path, options) {
+  try {
+    return await fetch(path, options);
+  } catch (error) {
+    if (error.name === 'AbortError') throw error;
+    throw new CallError(`The gateway at ${location.host} does not answer. Start it with ` +
+                        'client/web/gateway.py.', [], true);
+  }
+}
+
+const pause = (seconds) => new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+
+// What a page begins with: {about, models}.
+async function askServer() {
+  const response = await fetchFrom('/about.json');
+  if (!response.ok) throw new CallError(await messageIn(response));
+  const about = await response.json();
+  let models = [];
+  for await (const answer of callServer('ListModels', 'ListModelsRequest', {}, 'ListModelsResponse')) {
+    models = answer.models;
+  }
+  return {about, models};
+}
+
+// The first answer of askServer. Calls `tellWhy` with each error before it.
+async function awaitServer(tellWhy) {
+  for (;;) {
+    try {
+      return await askServer();
+    } catch (error) {
+      tellWhy(error);
+      await pause(AWAY_SECONDS);
+    }
   }
 }
 
@@ -64,7 +106,7 @@ async function* callServer(method, request, message, answer, signal) {
   const frame = new Uint8Array(5 + body.length);
   new DataView(frame.buffer).setUint32(1, body.length);
   frame.set(body, 5);
-  const response = await fetch(`/duet.v1.MotionSynthesis/${method}`, {
+  const response = await fetchFrom(`/duet.v1.MotionSynthesis/${method}`, {
     method: 'POST', body: frame, signal, headers: {'Content-Type': 'application/grpc-web+proto'},
   });
   if (!response.ok) throw new CallError(await messageIn(response));
@@ -77,7 +119,8 @@ async function* callServer(method, request, message, answer, signal) {
     const trailers = readTrailers(next.data);
     if (trailers['grpc-status'] === '0') return;
     throw new CallError(decodeURIComponent(trailers['grpc-message'] || 'The call failed.'),
-                        problemsIn(trailers['grpc-status-details-bin']));
+                        problemsIn(trailers['grpc-status-details-bin']),
+                        trailers['grpc-status'] === UNAVAILABLE);
   }
   throw new CallError('The reply broke off. Press React again.');
 }

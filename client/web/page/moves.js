@@ -13,7 +13,7 @@ const FIGURES = [
 ];
 
 async function sampleOf(name, joints) {
-  const response = await fetch(`/samples/${name}.bvh`);
+  const response = await fetchFrom(`/samples/${name}.bvh`);
   if (!response.ok) throw new CallError(await messageIn(response));
   return readBvh(await response.text(), joints);
 }

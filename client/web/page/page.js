@@ -14,6 +14,7 @@ const state = {
   asked: '',       // askedFor() of the takes
   rig: null,       // {name, bytes} of the rig's file; null: the leader's own
   call: null,      // the AbortController of the running calls
+  isAway: false,   // the page waits for the server
   answers: 0,
 };
 
@@ -29,6 +30,18 @@ function tell(text, failed = false, problems = []) {
 function tellError(error) {
   const problems = error.problems ?? [];
   tell(problems.length ? 'The server rejected the request:' : error.message, true, problems);
+  if (error.isAway) tellReturn(error.message);
+}
+
+// Tells when the server is back, unless the page tells something else by then.
+async function tellReturn(message) {
+  if (state.isAway) return;
+  state.isAway = true;
+  const isTold = () => root.dataset.failed === 'true' && element('status').textContent === message;
+  await pause(AWAY_SECONDS);
+  await awaitServer((error) => { if (isTold()) tell(message = error.message, true); });
+  state.isAway = false;
+  if (isTold()) tell('The server is back. Try again.');
 }
 
 function addButton(parent, text, act) {
@@ -295,7 +308,7 @@ function modelOfSample(name) {
 }
 
 async function takeSample(name) {
-  const response = await fetch(`/samples/${name}.bvh`);
+  const response = await fetchFrom(`/samples/${name}.bvh`);
   if (!response.ok) throw new CallError(await messageIn(response));
   const model = modelOfSample(name);
   if (model !== state.model) {
@@ -363,11 +376,16 @@ function followStage() {
 }
 
 async function start() {
-  const response = await fetch('/about.json');
-  if (!response.ok) throw new CallError(await messageIn(response));
-  const about = await response.json();
-  const answers = callServer('ListModels', 'ListModelsRequest', {}, 'ListModelsResponse');
-  for await (const answer of answers) state.models = answer.models;
+  // A file that is dropped too early must not replace the page.
+  for (const kind of ['dragover', 'drop']) {
+    window.addEventListener(kind, (event) => event.preventDefault());
+  }
+  const {about, models} = await awaitServer((error) => {
+    tell(`${error.message} This page goes on by itself then.`, true);
+    root.dataset.state = 'failed';
+  });
+  tell('');
+  state.models = models;
   state.samples = about.samples;
   const optionOf = (model) => new Option(nameOf(model) + (model.is_default ? ' (default)' : ''),
                                          nameOf(model));
@@ -398,6 +416,6 @@ async function start() {
 }
 
 start().catch((error) => {
-  tell(`The server does not respond: ${error.message}`, true);
+  tellError(error);
   root.dataset.state = 'failed';
 });

@@ -36,6 +36,13 @@ function tell(text, failed = false) {
 function tellAway(text) {
   element('away').textContent = text;
   element('away').hidden = !text;
+  element('away').classList.remove('calm');
+}
+
+// Until the first session opens.
+function tellComing() {
+  tellAway('Your partner is on the way …');
+  element('away').classList.add('calm');
 }
 
 const attempt = (act) => async (...all) => {
@@ -66,7 +73,7 @@ function connect() {
         spar.wasAway = false;
       } else if (name === 'away') {
         spar.wasAway = true;
-        tellAway(`The server is away${message ? ` (${message})` : ''}. Your partner returns when it does.`);
+        tellAway(`The server is away. Your partner returns when it does.${message ? ` (${message})` : ''}`);
       } else {
         tellAway(`The server rejected the session: ${message}`);
       }
@@ -416,19 +423,19 @@ async function record(format) {
   if (recording.frames < 2) throw new Error('There is nothing to record yet.');
   tell('Writing the file …');
   const query = new URLSearchParams({format, name: `spar_${model.name}@${model.version}`});
-  await save(await fetch(`/write?${query}`, {
+  await save(await fetchFrom(`/write?${query}`, {
     method: 'POST', body: recording.write(model.joint_names, FRAME_RATE)}));
 }
 
 async function start() {
-  const response = await fetch('/about.json');
-  if (!response.ok) throw new CallError(await messageIn(response));
-  spar.samples = (await response.json()).samples;
-  const answers = callServer('ListModels', 'ListModelsRequest', {}, 'ListModelsResponse');
-  for await (const answer of answers) {
-    spar.models = answer.models.filter((model) => model.answers_live);
-  }
-  if (!spar.models.length) throw new Error('it serves no model that answers live.');
+  const {about, models} = await awaitServer((error) => {
+    tellAway(error.message);
+    root.dataset.state = 'failed';
+  });
+  tellComing();
+  spar.samples = about.samples;
+  spar.models = models.filter((model) => model.answers_live);
+  if (!spar.models.length) throw new Error('The server has no model that answers live.');
   element('model').replaceChildren(...spar.models.map((model) => new Option(nameOf(model))));
   const asked = new URLSearchParams(location.search).get('model');
   const model = spar.models.find((one) => [nameOf(one), one.name].includes(asked))
@@ -442,20 +449,7 @@ async function start() {
   root.dataset.state = 'ready';
 }
 
-// Until the server is there.
-async function begin() {
-  for (;;) {
-    try {
-      await start();
-      tellAway('');
-      return;
-    } catch (error) {
-      tellAway(`The server does not respond: ${error.message}`);
-      root.dataset.state = 'failed';
-      if (spar.models.length) return;
-      await new Promise((resolve) => setTimeout(resolve, 2000));
-    }
-  }
-}
-
-begin();
+start().catch((error) => {
+  tellAway(error.message);
+  root.dataset.state = 'failed';
+});
