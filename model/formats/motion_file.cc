@@ -33,6 +33,7 @@
 #include "model/motion/recorded_motion.h"
 #include "model/motion/sbu.h"
 #include "model/motion/stated_unit.h"
+#include "model/retargeting/body_check.h"
 #include "model/retargeting/character.h"
 
 namespace duet::formats {
@@ -62,17 +63,22 @@ struct Source {
   }
 };
 
+// Adds a note and a remark, which `duet inspect` prints.
+void Remark(const std::string& what, const ReadOptions& options) {
+  if (options.notes != nullptr) options.notes->push_back(what);
+  if (options.report != nullptr) options.report->remarks.push_back(what);
+}
+
 // A file of positions may not state its up axis, which is z for Blender.
 void WarnOfUpAxis(const motion::Clip& clip, const ReadOptions& options) {
   if (!options.skeleton.feet) return;
   const std::optional<motion::UpAxis> up = motion::InferUpAxis(options.skeleton, {&clip.poses});
   if (up == motion::UpAxis::kYUp) return;
-  const std::string warning = absl::StrCat(
-      "warning: up axis: as the file was read, the feet are not below the root along y; ",
-      up.has_value() ? absl::StrCat(motion::UpAxisName(*up), " would fit; ") : "",
-      "specify the up axis");
-  if (options.notes != nullptr) options.notes->push_back(warning);
-  if (options.report != nullptr) options.report->remarks.push_back(warning);
+  Remark(absl::StrCat(
+             "warning: up axis: as the file was read, the feet are not below the root along y; ",
+             up.has_value() ? absl::StrCat(motion::UpAxisName(*up), " would fit; ") : "",
+             "specify the up axis"),
+         options);
 }
 
 // Names the layouts of research where an array is not one of positions of the skeleton's joints.
@@ -172,6 +178,12 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
       position = ToWorld(coordinates, position * ScaleOf(options));
     }
     clip.Append(pose);
+  }
+  const absl::Status body =
+      CheckBody(source, options.skeleton, clip.poses, *map, person.joint_names);
+  if (!body.ok()) return body;
+  for (const std::string& line : retargeting::UnequalBones(options.skeleton, clip.poses)) {
+    Remark(absl::StrCat("warning: ", line), options);
   }
   if (!options.coordinates.has_value()) WarnOfUpAxis(clip, options);
   return clip;

@@ -8,6 +8,7 @@
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/poses.h"
 #include "model/motion/reading_setting.h"
+#include "model/retargeting/body_check.h"
 
 namespace duet::retargeting {
 namespace {
@@ -47,6 +48,10 @@ class ClipMaker {
     for (motion::Vec3& position : clip.poses.all()) {
       position = ToWorld(coordinates, position * static_cast<float>(*scale));
     }
+    const absl::Status body =
+        CheckBody(source_, options_.skeleton, clip.poses, *map, character_.tree.names);
+    if (!body.ok()) return body;
+    for (const std::string& line : UnequalBones(options_.skeleton, clip.poses)) Warn(line);
     if (options_.fit != nullptr) {
       *options_.fit = {*scale, coordinates.up_axis, *std::move(map)};
     }

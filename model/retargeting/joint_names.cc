@@ -22,6 +22,8 @@ enum class NamePart { kPrefix, kSuffix };
 // ends and helpers often lack it. No part of the body is in so many names.
 constexpr double kShared = 0.75;
 constexpr std::size_t kFewestShared = 8;
+// The share of running numbers that are different.
+constexpr double kDifferent = 0.9;
 constexpr char kEndWord[] = "end";
 
 struct AliasRow {
@@ -177,6 +179,27 @@ bool StripShared(NamePart part, std::vector<WordList>* all) {
   return true;
 }
 
+bool IsNumber(absl::string_view word) {
+  return std::all_of(word.begin(), word.end(),
+                     [](unsigned char c) { return absl::ascii_isdigit(c); });
+}
+
+// Removes the number of the joint in its file, which some programs append (LeftArm_08): most names
+// end in a number, and hardly any number is there twice.
+void StripRunningNumbers(std::vector<WordList>* all) {
+  std::set<std::string> numbers;
+  std::vector<WordList*> numbered;
+  for (WordList& words : *all) {
+    if (words.size() < 2 || !IsNumber(words.back())) continue;
+    numbers.insert(words.back());
+    numbered.push_back(&words);
+  }
+  const auto count = static_cast<double>(numbered.size());
+  if (numbered.size() < kFewestShared || count < kShared * static_cast<double>(all->size())) return;
+  if (static_cast<double>(numbers.size()) < kDifferent * count) return;
+  for (WordList* words : numbered) words->pop_back();
+}
+
 }  // namespace
 
 ParsedJointName ParseJointName(absl::string_view name) {
@@ -186,6 +209,7 @@ ParsedJointName ParseJointName(absl::string_view name) {
 std::vector<ParsedJointName> ParseJointNames(const std::vector<std::string>& names) {
   std::vector<WordList> all;
   for (const std::string& name : names) all.push_back(Words(WithoutNamespace(name)));
+  StripRunningNumbers(&all);
   for (const NamePart part : {NamePart::kPrefix, NamePart::kSuffix}) {
     while (StripShared(part, &all)) {
     }

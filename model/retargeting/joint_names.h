@@ -24,6 +24,7 @@ struct ParsedJointName {
 ParsedJointName ParseJointName(absl::string_view name);
 // The names of a file's joints. Words that most of them share as a prefix or suffix are removed
 // (CC_Base_Hip, Bob_Hips, hips_JNT, upleg.L.001), unless names that differ would then be the same.
+// So are running numbers at the end of most names (mixamorig:LeftArm_08).
 std::vector<ParsedJointName> ParseJointNames(const std::vector<std::string>& names);
 
 // The bases that files use for the joint that a skeleton calls `base`, in order of preference.

@@ -601,6 +601,108 @@ TEST(JointMapping, KeepsWristAndHandApartForASkeletonWithBoth) {
   EXPECT_EQ(ApplyJointMap(*map, pose)[0].x, 2);
 }
 
+// A person in the names of one program, with helpers and copies.
+class NamesakeTest : public ::testing::Test {
+ protected:
+  int Add(const std::string& name, int parent, Vec3d offset) {
+    tree_.names.push_back(name);
+    tree_.parents.push_back(parent);
+    tree_.offsets.push_back(offset);
+    return static_cast<int>(tree_.names.size()) - 1;
+  }
+
+  // Adds head and neck, and on each side an arm and a leg that `add_limbs` adds.
+  template <typename AddLimbs>
+  void AddPerson(AddLimbs add_limbs) {
+    hips_ = Add("Hips", -1, {});
+    chest_ = Add("Spine", hips_, {0, 0.4, 0});
+    Add("Head", Add("Neck", chest_, {0, 0.1, 0}), {0, 0.15, 0});
+    for (const char side : {'L', 'R'}) add_limbs(std::string(1, side), side == 'L' ? 1.0 : -1.0);
+  }
+
+  // The number in the file of the joint that was found for `target`.
+  int Find(const std::string& target) {
+    const motion::Skeleton skeleton = motion::SbuSkeleton();
+    const absl::StatusOr<JointMap> map = MapJoints("a.bvh", tree_, skeleton);
+    EXPECT_THAT(map, IsOk());
+    if (!map.ok()) return -1;
+    notes_ = map->notes;
+    return map->sources[static_cast<std::size_t>(skeleton.Find(target))].terms[0].joint;
+  }
+
+  JointTree tree_;
+  int hips_ = 0, chest_ = 0;
+  std::vector<std::string> notes_;
+};
+
+// MakeHuman's rigs have `__UpLeg_L` in the pelvis above `UpLeg_L`, with nothing else in its name.
+TEST_F(NamesakeTest, AHelperAtThePelvisIsNoHip) {
+  std::map<std::string, int> joints;
+  AddPerson([&](const std::string& side, double sign) {
+    const int helper = Add("__UpLeg_" + side, hips_, {});
+    joints["hip" + side] = Add("UpLeg_" + side, helper, {0.1 * sign, -0.05, 0});
+    Add("Foot_" + side, Add("LoLeg_" + side, joints["hip" + side], {0, -0.45, 0}), {0, -0.42, 0});
+    const int shoulder = Add("__UpArm_" + side, chest_, {});
+    joints["shoulder" + side] = Add("UpArm_" + side, shoulder, {0.18 * sign, 0, 0});
+    Add("Hand_" + side, Add("LoArm_" + side, joints["shoulder" + side], {0.28 * sign, 0, 0}),
+        {0.25 * sign, 0, 0});
+  });
+  EXPECT_EQ(Find("left_hip"), joints["hipL"]);
+  EXPECT_EQ(Find("right_hip"), joints["hipR"]);
+  EXPECT_EQ(Find("left_shoulder"), joints["shoulderL"]);
+  EXPECT_EQ(Find("right_shoulder"), joints["shoulderR"]);
+  EXPECT_THAT(notes_, Contains("left_hip: UpLeg_L (of 2 joints of that name, the one that makes a "
+                               "limb)"));
+}
+
+// Half way down the thigh, and in the shin: twist joints that have lost their own words.
+TEST_F(NamesakeTest, AJointWithinABoneIsNoEndOfIt) {
+  std::map<std::string, int> joints;
+  AddPerson([&](const std::string& side, double sign) {
+    joints["hip" + side] = Add("UpLeg_" + side, hips_, {0.1 * sign, -0.05, 0});
+    const int within = Add("_UpLeg_" + side, joints["hip" + side], {0, -0.2, 0});
+    const int knee = Add("LoLeg_" + side, within, {0, -0.25, 0});
+    const int shin = Add("_LoLeg_" + side, knee, {0, -0.2, 0});
+    joints["knee" + side] = knee;
+    Add("Foot_" + side, shin, {0, -0.22, 0});
+    const int shoulder = Add("UpArm_" + side, chest_, {0.18 * sign, 0, 0});
+    Add("Hand_" + side, Add("LoArm_" + side, shoulder, {0.28 * sign, 0, 0}), {0.25 * sign, 0, 0});
+  });
+  for (const char* side : {"left_", "right_"}) {
+    const std::string letter = side[0] == 'l' ? "L" : "R";
+    EXPECT_EQ(Find(std::string(side) + "hip"), joints["hip" + letter]);
+    EXPECT_EQ(Find(std::string(side) + "knee"), joints["knee" + letter]);
+  }
+}
+
+TEST_F(NamesakeTest, TheHandIsTheOneOfTheArm) {
+  std::map<std::string, int> hands;
+  AddPerson([&](const std::string& side, double sign) {
+    Add("Hand_" + side, hips_, {0.6 * sign, 0.3, 0});  // a target of inverse kinematics
+    const int shoulder = Add("UpArm_" + side, chest_, {0.18 * sign, 0, 0});
+    const int elbow = Add("LoArm_" + side, shoulder, {0.28 * sign, 0, 0});
+    hands[side] = Add("Hand_" + side, elbow, {0.25 * sign, 0, 0});
+    Add("Hand_" + side, hands[side], {0.4 * sign, 0, 0});  // what it holds
+    const int hip = Add("UpLeg_" + side, hips_, {0.1 * sign, -0.05, 0});
+    Add("Foot_" + side, Add("LoLeg_" + side, hip, {0, -0.45, 0}), {0, -0.42, 0});
+  });
+  EXPECT_EQ(Find("left_hand"), hands["L"]);
+  EXPECT_EQ(Find("right_hand"), hands["R"]);
+  EXPECT_THAT(notes_, Contains(HasSubstr("left_hand: Hand_L (of 3 joints of that name")));
+}
+
+TEST_F(NamesakeTest, AnotherJointIsTheFirstOfItsNameWithANote) {
+  AddPerson([&](const std::string& side, double sign) {
+    const int shoulder = Add("UpArm_" + side, chest_, {0.18 * sign, 0, 0});
+    Add("Hand_" + side, Add("LoArm_" + side, shoulder, {0.28 * sign, 0, 0}), {0.25 * sign, 0, 0});
+    const int hip = Add("UpLeg_" + side, hips_, {0.1 * sign, -0.05, 0});
+    Add("Foot_" + side, Add("LoLeg_" + side, hip, {0, -0.45, 0}), {0, -0.42, 0});
+  });
+  Add("Head", hips_, {0, 1, 0});
+  EXPECT_EQ(tree_.names[static_cast<std::size_t>(Find("head"))], "Head");
+  EXPECT_THAT(notes_, Contains("head: Head (the first of 2 joints of that name)"));
+}
+
 TEST(JointMapping, SurvivesNamesOfEveryKind) {
   const std::vector<std::string> names = {"",     ":",        "_",    "l",
                                           "Left", "\xff\xfe", "head", "head.end"};

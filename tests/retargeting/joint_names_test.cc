@@ -125,6 +125,27 @@ TEST(ParseJointNames, RemovesWhatMostNamesShare) {
   }
 }
 
+// Programs that write glTF number all nodes.
+TEST(ParseJointNames, RemovesRunningNumbers) {
+  const std::vector<ParsedJointName> plain = ParseJointNames(Rig("", ""));
+  for (const char* prefix : {"mixamorig:", "Bob_", ""}) {
+    std::vector<std::string> names = Rig(prefix, "");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      names[i] += (i < 10 ? "_0" : "_") + std::to_string(i);
+    }
+    names.push_back("_rootJoint");
+    std::vector<ParsedJointName> parsed = ParseJointNames(names);
+    parsed.pop_back();
+    EXPECT_EQ(parsed, plain) << prefix;
+  }
+  // Numbers that tell the joints of a spine apart are no running numbers.
+  std::vector<std::string> names = Rig("", "");
+  for (const char* name : {"spine_01", "spine_02", "spine_03", "thumb_01", "thumb_02"}) {
+    names.emplace_back(name);
+  }
+  EXPECT_EQ(ParseJointNames(names)[17], (ParsedJointName{BodySide::kMiddle, "spine01"}));
+}
+
 TEST(ParseJointNames, EndsAndHelpersNeedNotShareIt) {
   std::vector<std::string> names = Rig("", "_jnt");
   names.push_back("HeadTop_End");
