@@ -12,27 +12,29 @@ from wire import corpus, judge, protobuf, rounds
 from wire.protobuf import message
 
 KEPT_LINES = 2000
-# What never comes, or is never read, is given up soon, so that rounds follow quickly.
-FLAGS = ("--receive-timeout-seconds", "1", "--write-timeout-seconds", "2",
-         "--live-idle-seconds", "1", "--admin-listen", "127.0.0.1:0", "--default-model", "sbu", "--log-success-ratio", "0",
+FLAGS = ("--admin-listen", "127.0.0.1:0", "--default-model", "sbu", "--log-success-ratio", "0",
          "--self-check-seconds", "1")
+# What never comes, or is never read, is given up soon, so that rounds follow quickly.
+IMPATIENT = ("--receive-timeout-seconds", "1", "--write-timeout-seconds", "2", "--live-idle-seconds", "1")
 REPORTS = ("Sanitizer", "runtime error:", "Assertion", "terminate called", "buffer overflow",
            "stack smashing")
 
 
 class Target:
-    """A running server with a repository of two models, "sbu" and one to play with."""
+    """A running server. Without `flags`, it has no patience and a repository of two models, "sbu" and one to play
+    with."""
 
-    def __init__(self, program=None):
+    def __init__(self, program=None, flags=None):
         self._resources = contextlib.ExitStack()
         with contextlib.ExitStack() as on_failure:
             on_failure.callback(self._resources.close)
-            folder = self._resources.enter_context(tempfile.TemporaryDirectory())
-            copy_model("sbu/2", pathlib.Path(folder, "sbu/2"), "sbu")
-            copy_model("sbu/1", pathlib.Path(folder, corpus.SPARE, "1"), corpus.SPARE)
+            if flags is None:
+                folder = self._resources.enter_context(tempfile.TemporaryDirectory())
+                copy_model("sbu/2", pathlib.Path(folder, "sbu/2"), "sbu")
+                copy_model("sbu/1", pathlib.Path(folder, corpus.SPARE, "1"), corpus.SPARE)
+                flags = (*IMPATIENT, "--model-repository", folder)
             options = {} if program is None else {"program": program}
-            self.server = tools.Server(*FLAGS, "--model-repository", folder,
-                                       metrics="127.0.0.1:0", kept_lines=KEPT_LINES, **options)
+            self.server = tools.Server(*FLAGS, *flags, metrics="127.0.0.1:0", kept_lines=KEPT_LINES, **options)
             on_failure.pop_all()
         self.ports = {rounds.SERVICE: self.server.port, rounds.METRICS: self.server.metrics_port,
                       rounds.ADMIN: self.server.events("serving")[0]["admin_port"]}
