@@ -91,6 +91,17 @@ class KubernetesTest(unittest.TestCase):
                 self.assertEqual(resources["requests"], resources["limits"])
                 self.assertRegex(resources["limits"]["cpu"], r"^\d+$")
 
+    def test_only_overlays_without_an_autoscaler_state_the_number_of_pods(self):
+        """Where both do, each apply sets back what the autoscaler has chosen."""
+        for overlay in OVERLAYS:
+            objects = objects_of(f"overlays/{overlay}")
+            scaled = [one["spec"]["scaleTargetRef"]["name"]
+                      for kind in ("HorizontalPodAutoscaler", "ScaledObject") for one in of_kind(objects, kind)]
+            for deployment in of_kind(objects, "Deployment"):
+                with self.subTest(overlay=overlay):
+                    self.assertEqual("replicas" in deployment["spec"],
+                                     deployment["metadata"]["name"] not in scaled)
+
     def test_selectors_distinguish_servers_and_canary(self):
         stable = objects_of("overlays/production")
         canary = objects_of("overlays/canary")
