@@ -247,11 +247,15 @@ absl::Status DuetServer::ListenForAdmin() {
 }
 
 absl::Status DuetServer::Listen(std::function<absl::Status()> self_check) {
-  absl::StatusOr<GrpcServer> grpc = StartGrpcServer(
-      {ListenAddressOf(settings_), settings_.reflection(), settings_.max_request_bytes(),
-       settings_.max_transport_bytes(), static_cast<int>(settings_.max_calls()),
-       settings_.max_call_seconds(), Credentials(), &transport_.quota()},
-      service_);
+  GrpcServerOptions options;
+  options.listen = ListenAddressOf(settings_);
+  options.reflection = settings_.reflection();
+  options.max_request_bytes = settings_.max_request_bytes();
+  options.max_transport_bytes = settings_.max_transport_bytes();
+  options.max_calls = static_cast<int>(settings_.max_calls());
+  options.credentials = Credentials();
+  options.quota = &transport_.quota();
+  absl::StatusOr<GrpcServer> grpc = StartGrpcServer(options, service_);
   if (!grpc.ok()) return OfSetting("listen", grpc.status());
   grpc_ = *std::move(grpc);
   SetHealth(false);

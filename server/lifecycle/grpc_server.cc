@@ -43,10 +43,11 @@ void SetConnectionLimits(grpc::ServerBuilder& builder, const GrpcServerOptions& 
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 30 * kSecond);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 5 * kMinute);
-  // Old connections are closed, so that clients discover new replicas; the longest call may finish.
-  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, 30 * kMinute);
-  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS,
-                             static_cast<int>(options.max_call_seconds * kSecond));
+  // Old connections take no new calls, so that clients discover new replicas. Running calls end by
+  // themselves at max_call_seconds, but live sessions may last: the connection has no grace period,
+  // at whose end gRPC would end them.
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS,
+                             static_cast<int>(options.connection_age_seconds * kSecond));
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, 10 * kSecond);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 2 * options.max_calls);
   // A second server on the same port fails to start instead of taking half of the connections.

@@ -20,7 +20,8 @@ struct GrpcServerOptions {
   std::size_t max_request_bytes = 0;
   std::size_t max_transport_bytes = 0;
   int max_calls = 0;
-  double max_call_seconds = 660;
+  // After this time a connection takes no new calls, and ends with its last call.
+  double connection_age_seconds = 1800;
   std::shared_ptr<grpc::ServerCredentials> credentials = nullptr;  // null: plain text
   // Outlives the server. Null: a quota of max_transport_bytes for this server only.
   const grpc::ResourceQuota* quota = nullptr;
