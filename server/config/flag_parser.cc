@@ -151,13 +151,16 @@ void AddFlags(CLI::App& app, Flags& flags) {
   app.add_flag_callback(
       "--print-config", [&flags] { flags.task = Task::kPrintConfig; },
       "Print every setting and its source, and exit");
+  app.add_flag_callback(
+      "--check-health", [&flags] { flags.task = Task::kCheckHealth; },
+      "Ask the server that runs here with these settings whether it is healthy, and exit");
   for (const Setting& setting : AllSettings()) AddFlag(app, setting, &flags.config);
 }
 
 // Flags that request a single action are not settings.
 bool IsSetting(const std::string& flag) {
   return flag != "--help" && flag != "--version" && flag != "--check-config" &&
-         flag != "--print-config";
+         flag != "--print-config" && flag != "--check-health";
 }
 
 // "expected ..., got ..." for the value of a flag.

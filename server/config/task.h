@@ -8,6 +8,7 @@ enum class Task {
   kServe,
   kCheckConfig,  // load everything, report every mistake, and exit
   kPrintConfig,  // print every setting and its source, and exit
+  kCheckHealth,  // ask the running server whether it is healthy, and exit
 };
 
 }  // namespace duet::server::config

@@ -21,6 +21,7 @@
 #include "server/config/memory_plan.h"
 #include "server/config/print_config.h"
 #include "server/lifecycle/check_config.h"
+#include "server/lifecycle/check_health.h"
 #include "server/lifecycle/duet_server.h"
 #include "server/lifecycle/library_logs.h"
 #include "server/lifecycle/systemd_notifier.h"
@@ -59,6 +60,9 @@ constexpr common::StepKind kEnding{"main", "joining threads", /*is_bounded=*/fal
 // Maximum time to exit when no call is left: gRPC sends statuses for a second; a running self-check
 // and a stuck log take at most five seconds each.
 constexpr double kEndSeconds = 10;
+
+// Less than the image's HEALTHCHECK waits.
+constexpr double kHealthSeconds = 4;
 
 WatchdogOptions WatchdogOf(const v1::ServerConfig& values) {
   WatchdogOptions wanted;
@@ -161,6 +165,13 @@ void Complain(const std::vector<std::string>& mistakes) {
   for (const std::string& mistake : mistakes) std::cerr << "duet-server: " << mistake << "\n";
 }
 
+int ReportHealth(const v1::ServerConfig& values) {
+  const absl::Status health = CheckHealth(values, kHealthSeconds);
+  if (health.ok()) return kExitStopped;
+  Complain({std::string(health.message())});
+  return kExitFailed;
+}
+
 }  // namespace
 
 int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine, StopSignal& stop,
@@ -175,10 +186,14 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   }
   const int cores = config::AvailableCores();
   const std::uint64_t memory = config::AvailableMemory();
-  if (command_line.task == config::CommandLine::Task::kPrintConfig) {
+  if (command_line.task == config::CommandLine::Task::kPrintConfig ||
+      command_line.task == config::CommandLine::Task::kCheckHealth) {
     const config::Settings settings = config::ReadSettings(command_line, cores, memory);
     Complain(settings.mistakes);
     if (!settings.mistakes.empty()) return kExitUsage;
+    if (command_line.task == config::CommandLine::Task::kCheckHealth) {
+      return ReportHealth(settings.values);
+    }
     std::cout << config::PrintConfig(settings.values, command_line.sources);
     return kExitStopped;
   }

@@ -314,6 +314,7 @@ TEST(ParseCommandLineTest, SwitchesSelectTheTask) {
   EXPECT_EQ(Parse({})->task, CommandLine::Task::kServe);
   EXPECT_EQ(Parse({"--check-config"})->task, CommandLine::Task::kCheckConfig);
   EXPECT_EQ(Parse({"--print-config"})->task, CommandLine::Task::kPrintConfig);
+  EXPECT_EQ(Parse({"--check-health"})->task, CommandLine::Task::kCheckHealth);
 }
 
 TEST(ResolveSettingsTest, ReportsTheMistakesOfEverySourceWithTheSource) {
