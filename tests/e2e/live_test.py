@@ -7,6 +7,7 @@ import threading
 import time
 import unittest
 
+import http2_client as http2
 import live_clients as live
 import tools
 from live_clients import (Session, frames_message, grpc, label_message, live_pb2, lockstep,
@@ -426,6 +427,26 @@ class IdleTest(unittest.TestCase):
             code, text, _ = session.error()
             session.finish()
             self.assertEqual(code, "DEADLINE_EXCEEDED", text)
+
+    def test_frequent_pings_do_not_end_a_silent_session(self):
+        """The pauses are what is tested. gRPC forgives two pings that come too early, and those right
+        after a message."""
+        with tools.running_server() as server:
+            connection = http2.Connection(server.port)
+            self.addCleanup(connection.close)
+            connection.open("/duet.v1.MotionSynthesis/SynthesizeLive", end=False,
+                            payload=start_message().SerializeToString())
+            frames = connection.frames()
+            self.assertTrue(any(kind == http2.DATA for kind, *_ in frames), "the header")
+            for number, pause in enumerate((0, 0, 6, 6, 6, 0)):
+                time.sleep(pause)
+                ping = number.to_bytes(8, "big")
+                connection.socket.sendall(http2.frame(http2.PING, 0, 0, ping))
+                answered = False
+                while not answered:
+                    kind, flags, _, payload = next(frames, (http2.GOAWAY, 0, 0, b"closed"))
+                    self.assertNotEqual(kind, http2.GOAWAY, f"ping {number}: {payload}")
+                    answered = kind == http2.PING and flags & http2.ACK and payload == ping
 
 
 if __name__ == "__main__":
