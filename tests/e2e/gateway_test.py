@@ -27,6 +27,17 @@ FLOODS_OF_FIELDS = () if gateways.has_new_aiohttp() else (
 CALLS = "/duet.v1.MotionSynthesis"
 MEBIBYTE = 2**20
 LARGEST = 32 * MEBIBYTE
+# Writes the greatest number of open files at the beginning of a connection.
+COUNT_DESCRIPTORS = """
+import os, pathlib
+serving.MAX_CONNECTIONS = 8
+made, most = serving.Connection.connection_made, [0]
+def counted(self, transport):
+    made(self, transport)
+    most[0] = max(most[0], len(os.listdir("/proc/self/fd")))
+    pathlib.Path({file!r}).write_text(str(most[0]))
+serving.Connection.connection_made = counted
+"""
 HEAD = b"POST /read?name=a.bvh HTTP/1.1\r\nHost: localhost\r\n"
 HIDDEN = b"GET /about.json HTTP/1.1\r\nHost: localhost\r\n\r\n"
 CHUNKED = HEAD + b"Transfer-Encoding: chunked\r\n"
@@ -300,6 +311,40 @@ class GatewayTest(tools.ServedTest):
             for _ in range(40):
                 stack.enter_context(connect(gateway.port))
             self.read(gateway)
+
+    def test_limit_of_connections_holds_under_a_burst(self):
+        most = self.folder / "descriptors"
+        gateway = self.started(bounds=COUNT_DESCRIPTORS.format(file=str(most)))
+        self.read(gateway)
+        alone = int(most.read_text(encoding="ascii"))
+        with contextlib.ExitStack() as stack:
+            gateway.send(signal.SIGSTOP)  # so that all of them wait to be accepted
+            try:
+                for _ in range(100):
+                    stack.enter_context(connect(gateway.port))
+            finally:
+                gateway.send(signal.SIGCONT)
+            self.read(gateway)
+        # Eight instead of one, and one that waits for its place.
+        self.assertLessEqual(int(most.read_text(encoding="ascii")), alone + 8)
+
+    def test_connections_that_all_answer_leave_no_room(self):
+        gateway = self.started(bounds="serving.MAX_CONNECTIONS = 2")
+        with contextlib.ExitStack() as stack:
+            for _ in range(2):
+                busy = stack.enter_context(connect(gateway.port))
+                busy.sendall(post("/read?name=a.bvh", b"x", Content_Length=9, Expect="100-continue"))
+                self.assertTrue(busy.recv(100).startswith(b"HTTP/1.1 100 "))
+            with connect(gateway.port) as refused:
+                self.assertEqual(gateways.read_all(refused), b"")
+        tools.wait_until(lambda: self.has_room(gateway), "the connections to end")
+
+    def has_room(self, gateway):
+        """Whether the gateway answers another connection."""
+        with connect(gateway.port) as connection:
+            with contextlib.suppress(ConnectionError):
+                connection.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
+            return gateways.read_all(connection).startswith(b"HTTP/1.1 200 ")
 
     def test_program_is_limited_in_time_and_memory(self):
         bounds = ["conversions.PROGRAM_SECONDS = 0"]
