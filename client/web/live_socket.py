@@ -17,6 +17,7 @@ import grpc
 import grpc.aio
 import grpc_web
 import serving
+import visitors
 from aiohttp import web
 
 METHOD = "/duet.v1.MotionSynthesis/SynthesizeLive"
@@ -43,9 +44,11 @@ class Ended(Exception):
 class LiveSockets:
     """The sessions of a gateway."""
 
-    def __init__(self, backend):
+    def __init__(self, backend, proxies, most_of_one):
         self._backend = backend
-        self._sessions = set()
+        self._proxies = proxies
+        self._most_of_one = most_of_one
+        self._sessions = {}  # the visitor of each session's task
 
     async def answer(self, request):
         """Handles a request for a session, until its end."""
@@ -53,12 +56,17 @@ class LiveSockets:
         if len(self._sessions) >= MAX_SESSIONS:
             raise serving.Rejected(503, f"sessions: expected fewer than {MAX_SESSIONS}, got one "
                                         "more; try again later")
+        visitor = visitors.visitor_of(request, self._proxies)
+        if list(self._sessions.values()).count(visitor) >= self._most_of_one:
+            raise serving.Rejected(429, f"sessions: expected at most {self._most_of_one} from one "
+                                        "address, got one more; close another page, or start the "
+                                        "gateway with --proxy ADDRESS if a proxy stands before it")
         metadata = grpc_web.metadata_of(request.headers)
         # Without compression, a small message cannot become a large one.
         socket = web.WebSocketResponse(heartbeat=PING_SECONDS, compress=False,
                                        max_msg_size=MAX_MESSAGE_BYTES, timeout=SEND_SECONDS)
         task = asyncio.current_task()
-        self._sessions.add(task)
+        self._sessions[task] = visitor
         try:
             try:
                 await socket.prepare(request)
@@ -67,7 +75,7 @@ class LiveSockets:
             serving.without_time_limit(request)
             await self._session(request, socket, metadata)
         finally:
-            self._sessions.discard(task)
+            self._sessions.pop(task, None)
         return socket
 
     async def close(self):
