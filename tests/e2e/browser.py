@@ -135,11 +135,19 @@ class Page:
                       features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
         if not sharp:
             self.call("Page.addScriptToEvaluateOnNewDocument", source=WITHOUT_ANTIALIASING)
-        self.call("Page.navigate", url=url)
-        # Before this event, a command may run in the blank page of a new tab.
+        self._load("Page.navigate", url=url)
+
+    def reload(self):
+        """As the visitor's browser does it."""
+        self._load("Page.reload")
+
+    def _load(self, method, **parameters):
+        loads = len(self.events("Page.loadEventFired")) + 1
+        self.call(method, **parameters)
+        # Before this event, a command may run in the page of before.
         deadline = time.monotonic() + WAIT_SECONDS
-        while not self.events("Page.loadEventFired"):
-            browser.events.append(browser.read(deadline))
+        while len(self.events("Page.loadEventFired")) < loads:
+            self._browser.events.append(self._browser.read(deadline))
         self.wait_until("['ready', 'failed'].includes(document.documentElement.dataset.state)")
 
     def call(self, method, **parameters):

@@ -87,6 +87,83 @@ class WebTest(StudioTest):
         self.react(stranger)
         np.testing.assert_allclose(self.shown(stranger), before, atol=1e-6)
 
+    def take_sample(self, page, name):
+        page.evaluate(f"attempt(takeSample)('{name}')")
+        page.wait_until(f"state.leader.name === '{name}.bvh'")
+        return page.evaluate("Object.fromEntries(Object.entries(settings.labels).filter("
+                             "([, weight]) => weight !== 0))")
+
+    def test_next_sample_replaces_labels_that_nobody_has_set(self):
+        page = self.open_still()
+        self.assertEqual(self.take_sample(page, "hug"), {"hug": 1})
+        self.assertEqual(self.take_sample(page, "kick"), {"kick": 1})
+        self.assertEqual(self.take_sample(page, "salsa"), {"basic": 1})  # of another model
+        self.assertEqual(self.take_sample(page, "kick"), {"kick": 1})
+        self.label(page, "push", 0.5)
+        self.assertEqual(self.take_sample(page, "hug"), {"kick": 1, "push": 0.5})
+        self.label(page, "kick", 0)
+        self.assertEqual(self.take_sample(page, "punch"), {"push": 0.5})
+
+    def test_reload_keeps_undo_and_redo(self):
+        page = self.open_still()
+        self.take_sample(page, "hug")
+        self.react(page)
+        self.label(page, "push", 0.5)
+        page.evaluate("undoHistory.endGesture()")
+        self.label(page, "kick", 0.25)
+        page.evaluate("undoHistory.undo(); undoHistory.endGesture()")
+        titles = "[element('undo').title, element('redo').title]"
+        before = page.evaluate(titles)
+        self.assertEqual(before, ["Undo: weight of push", "Redo: weight of kick"])
+        page.reload()
+        self.assertEqual(page.evaluate(titles), before)
+        self.assertEqual(page.evaluate("[settings.labels.push, state.takes.length]"), [0.5, 1])
+        for steps, (takes, push) in enumerate(((1, 0), (0, 0))):
+            page.evaluate("undoHistory.undo()")
+            self.assertEqual(page.evaluate("[state.takes.length, settings.labels.push ?? 0]"),
+                             [takes, push], steps)
+        page.evaluate("undoHistory.redo()")
+        self.assertEqual(len(self.shown(page)), 91)
+        # Another tab has the work, but not what this one did.
+        other = self.open_still(page.evaluate("location.hash"))
+        self.assertEqual(other.evaluate("[state.leader.name, element('undo').disabled]"), ["hug.bvh", True])
+
+    def test_single_pose_is_refused(self):
+        page = self.open_still()
+        lines = re.sub("Frames: .*", "Frames: 1", tools.sample("hug").read_text("utf-8")).split("\n")
+        first = next(i for i, line in enumerate(lines) if line.startswith("Frame Time: ")) + 1
+        text = "\n".join([*lines[:first + 1], ""])
+        page.evaluate(f"attempt(takeFile)(new File([{json.dumps(text)}], 'pose.bvh'))")
+        self.assertEqual(page.text("#status"), "pose.bvh: expected a motion of at least 2 frames, got 1. "
+                                               "A single pose has no reaction.")
+        self.assertIsNone(page.evaluate("state.leader"))
+
+    def test_scene_keeps_its_height_with_everything_open(self):
+        page = self.open_still("#leader=hug.bvh&labels=hug:1", width=1280, height=720)
+        self.press(page, "show-eight")
+        page.evaluate("element('curves').open = element('pins').open = true")
+        page.next_frame()
+        self.assertGreaterEqual(page.evaluate("element('view').clientHeight"), 0.45 * 720 - 1)
+        top, bottom = page.evaluate("(({top, bottom}) => [top, bottom])("
+                                    "element('transport').getBoundingClientRect())")
+        self.assertTrue(0 < top < bottom < 720, (top, bottom))
+
+    def test_react_is_on_the_screen_of_a_phone_held_sideways(self):
+        for width, height in ((667, 375), (844, 390), (915, 412)):
+            with self.subTest(width=width):
+                page = self.open_still("#leader=hug.bvh&labels=hug:1", width=width, height=height)
+                box = page.evaluate("(({left, top, right, bottom}) => [left, top, right, bottom])("
+                                    "element('react').getBoundingClientRect())")
+                self.assertTrue(0 <= box[0] < box[2] <= width and 0 <= box[1] < box[3] <= height, box)
+                self.assertGreaterEqual(box[3] - box[1], 40)
+                self.assertTrue(page.evaluate(f"""document.elementFromPoint({(box[0] + box[2]) / 2},
+                    {(box[1] + box[3]) / 2}) === element('react')"""))
+                self.assertGreaterEqual(page.evaluate("element('scene').clientHeight"), 120)
+                self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth"), width)
+                # The last control can be scrolled out from under it.
+                page.evaluate("document.querySelector('aside').scrollTo(0, 1e6)")
+                self.assertLessEqual(page.evaluate("element('share').getBoundingClientRect().bottom"), box[1])
+
     def test_link_opens_a_sample_and_invalid_links_are_harmless(self):
         page = self.open_still("#leader=hug.bvh&labels=hug:1,push:-0.25&seed=3")
         self.react(page)

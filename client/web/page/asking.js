@@ -116,12 +116,12 @@ async function finish(seconds, seeds) {
   const missed = takes[chosen].pins.filter(({metres}) => metres >= 0.01).length;
   const pins = missed > 0 ? ` ${missed} of ${takes[chosen].pins.length} pins missed.` : '';
   tell(`Answered in ${seconds.toFixed(2)} s, ${describeSeeds(seeds, takes[chosen])}.${stays}${pins}${far}`);
-  if (takes.length > 1 && !matchMedia('(min-width: 761px)').matches) {
+  if (takes.length > 1 && isNarrow()) {
     element('gallery').scrollIntoView({block: 'nearest'});
   }
   state.answers += 1;
   root.dataset.answers = state.answers;
-  await keepWork();
+  await keepNow();
 }
 
 // Shows another answer of the gallery.
@@ -134,7 +134,7 @@ async function choose(index) {
   showFields();
   changed(`choose seed ${settings.seed}`);
   tell(`Seed ${settings.seed}.`);
-  await keepWork();
+  await keepNow();
 }
 
 function connectAsking() {

@@ -1,5 +1,6 @@
 'use strict';
 // Uploads and downloads through the gateway.
+const LEAST_FRAMES = 2;  // of a leader
 
 // The message of an error response: the gateway's JSON, or a proxy's status.
 async function messageIn(response) {
@@ -29,6 +30,10 @@ async function readLeader(name, bytes) {
   const response = await fetchFrom(`/read?${query}&skeleton=${skeleton}`, {method: 'POST', body: bytes});
   if (!response.ok) throw new CallError(await messageIn(response));
   const {notes, motion} = await response.json();
+  if (motion.leader.length < LEAST_FRAMES) {
+    throw new Error(`${name}: expected a motion of at least ${LEAST_FRAMES} frames, got ${
+        motion.leader.length}. A single pose has no reaction.`);
+  }
   return {
     name, bytes, notes, file: fingerprint(bytes),
     reading: readingOf(settings),

@@ -18,7 +18,7 @@ async function takeLeader(name, bytes) {
   Object.assign(settings, {leader: name, file: leader.file, keep: 0});
   showLeader();
   changed(`open ${name}`);
-  await keepWork();
+  await keepNow();
 }
 
 // Opens the text of a session file, as one step that can be undone.
@@ -79,7 +79,7 @@ async function takeRig(file) {
   state.rig = {name: file.name, bytes: await file.arrayBuffer()};
   showRig();
   changed('rig');
-  await keepWork();
+  await keepNow();
 }
 
 function showRig() {

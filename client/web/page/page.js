@@ -61,6 +61,10 @@ const attempt = (act) => async (...all) => {
   }
 };
 
+// Whether the settings are below the scene, as in the style sheets.
+const isNarrow = () => matchMedia(
+    '(max-width: 480px), (max-width: 760px) and (orientation: portrait)').matches;
+
 const nameOf = (model) => `${model.name}@${model.version}`;
 const modelNamed = (name) => state.models.find((model) => nameOf(model) === name);
 const seedsOf = (takes) => takes.map((take) => take.seed);
@@ -85,6 +89,7 @@ function changed(what) {
   followFrame();
   marker.draw();
   pinHandles.draw();
+  if (state.leader) keepSoon();
 }
 
 function isStale() {
@@ -203,7 +208,6 @@ function showWork() {
   showLeader();
   showRig();
   changed('');
-  if (state.leader) keepWork();
   tellShown();
 }
 
@@ -307,21 +311,34 @@ function modelOfSample(name) {
   return [...standard, ...state.models].find(suits) ?? state.model;
 }
 
+// The class that a sample of this name sets: its own, or the first one of its model.
+function classOfSample(name, model) {
+  const classes = model.interaction_classes;
+  return classes.includes(name) ? name : model.name === name ? classes[0] : null;
+}
+
+// Whether the visitor has set no label: there is none, or the sample that is shown has set it.
+function areLabelsOfSample() {
+  const {labels, leader} = settings;
+  const shown = stemOf(leader);
+  const own = state.samples.includes(shown) ? classOfSample(shown, state.model) : null;
+  const set = state.model.interaction_classes.filter((name) => (labels[name] ?? 0) !== 0);
+  return set.length === 0 || (set.length === 1 && set[0] === own && labels[own] === 1);
+}
+
 async function takeSample(name) {
   const response = await fetchFrom(`/samples/${name}.bvh`);
   if (!response.ok) throw new CallError(await messageIn(response));
   const model = modelOfSample(name);
+  const own = classOfSample(name, model);
+  const isOpen = areLabelsOfSample();
   if (model !== state.model) {
     settings.model = nameOf(model);
     showFields();
     showModel();
   }
-  // The sample's own class, or the first one of its model, is a useful first setting.
-  const classes = model.interaction_classes;
-  if (!isAnyWeight()) {
-    const own = classes.includes(name) ? name : model.name === name ? classes[0] : null;
-    if (own) settings.labels = {...settings.labels, [own]: 1};
-  }
+  if (own && isOpen) settings.labels = {[own]: 1};
+  else if (own && !isAnyWeight()) settings.labels = {...settings.labels, [own]: 1};
   await takeLeader(`${name}.bvh`, await response.arrayBuffer());
 }
 
@@ -335,8 +352,13 @@ async function restore() {
       await takeLeader(name, kept.leader.bytes);
       return;
     }
-    const {leader, rig = null} = kept;
-    Object.assign(state, kept.asked === askedFor() ? {...kept, rig} : {leader, rig});
+    const {leader, takes, chosen, asked, rig = null} = kept;
+    const isReload = Boolean(kept.history) && kept.tab === tabName();
+    if (isReload) undoHistory.resume(kept.history);
+    const isSame = isReload && addressOf(kept.history.now.settings) === addressOf(settings);
+    if (isSame) Object.assign(settings, structuredClone(kept.history.now.settings));
+    const isAnswered = isSame || asked === askedFor();
+    Object.assign(state, isAnswered ? {leader, takes, chosen, asked, rig} : {leader, rig});
     showLeader();
     showRig();
     return;
@@ -406,6 +428,7 @@ async function start() {
   connectPins();
   connectUndo(undoHistory);
   connectKeys();
+  window.addEventListener('pagehide', keepNow);
   await takeLink();
   window.addEventListener('hashchange', attempt(async () => {
     stopCalls();

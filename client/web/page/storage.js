@@ -1,29 +1,44 @@
 'use strict';
-// Stores the visitor's leader and the answers in the browser (IndexedDB), so that a reload loses
-// nothing. The gateway stores no files.
+// Stores the visitor's leader, the answers and the undo history in the browser (IndexedDB), so that a
+// reload loses nothing. The gateway stores no files.
 const STORE = 'work';
+const MAX_KEPT_BYTES = 2 ** 26;  // of the undo history
+const KEEP_SECONDS = 0.5;
+
+// Identifies this tab over reloads. Another tab's work has the same leader, but not its history.
+function tabName() {
+  try {
+    sessionStorage.duetTab ??= Math.random().toString(36).slice(2);
+    return sessionStorage.duetTab;
+  } catch {
+    return '';  // the browser stores nothing
+  }
+}
+
+let database = null;  // stays open: a page that is left has no time to open it
 
 function openStore() {
   return new Promise((resolve, reject) => {
     const opening = indexedDB.open('duet', 1);
     opening.onupgradeneeded = () => opening.result.createObjectStore(STORE);
-    opening.onsuccess = () => resolve(opening.result);
+    opening.onsuccess = () => {
+      database = opening.result;
+      database.onclose = () => { database = null; };
+      resolve();
+    };
     opening.onerror = () => reject(opening.error);
   });
 }
 
 async function inStore(mode, act) {
-  const database = await openStore();
-  try {
-    return await new Promise((resolve, reject) => {
-      const transaction = database.transaction(STORE, mode);
-      const request = act(transaction.objectStore(STORE));
-      transaction.oncomplete = () => resolve(request.result);
-      transaction.onerror = transaction.onabort = () => reject(transaction.error);
-    });
-  } finally {
-    database.close();
-  }
+  if (!database) await openStore();
+  return new Promise((resolve, reject) => {
+    const transaction = database.transaction(STORE, mode);
+    const request = act(transaction.objectStore(STORE));
+    transaction.oncomplete = () => resolve(request.result);
+    transaction.onerror = transaction.onabort = () => reject(transaction.error);
+    transaction.commit();
+  });
 }
 
 // Stores the leader, {name, file, bytes, motion, notes, reading}, the answers and the rig. The page also
@@ -31,11 +46,34 @@ async function inStore(mode, act) {
 async function keepWork() {
   const {leader, takes, chosen, asked, rig} = state;
   try {
-    await inStore('readwrite', (store) => store.put({leader, takes, chosen, asked, rig}, 'current'));
+    // Equal parts of the work and of the history are stored once, because they are the same objects.
+    const work = {leader, takes, chosen, asked, rig, tab: tabName(), history: undoHistory.kept(MAX_KEPT_BYTES)};
+    await inStore('readwrite', (store) => store.put(work, 'current'));
     root.dataset.kept = Number(root.dataset.kept ?? 0) + 1;
   } catch (error) {
     console.warn(`The browser cannot store this page's work: ${error}`);
   }
+}
+
+const keeping = {isWanted: false, isRunning: false, last: null};
+
+// As keepWork, but at most twice a second, for changes that follow each other quickly.
+async function keepSoon() {
+  keeping.isWanted = true;
+  if (keeping.isRunning) return;
+  keeping.isRunning = true;
+  while (keeping.isWanted) {
+    await keepNow();
+    await pause(KEEP_SECONDS);
+  }
+  keeping.isRunning = false;
+}
+
+// Stores what keepSoon has not stored yet, and waits for what it stores.
+function keepNow() {
+  if (keeping.isWanted) keeping.last = keepWork();
+  keeping.isWanted = false;
+  return keeping.last;
 }
 
 async function keptWork() {
