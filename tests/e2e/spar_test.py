@@ -105,6 +105,54 @@ class SparTest(unittest.TestCase):
                 self.assertTrue(0.3 < fastest < 12, fastest)  # metres a second
                 self.assertEqual(page.state()["move"], "")
 
+    def test_nothing_is_asked_for_until_a_move_and_after_it(self):
+        page = self.open(frozen=True)
+        self.assertEqual(self.weights(page), {})
+        page.evaluate("""(() => {
+          window.sent = [];
+          const send = spar.session.send.bind(spar.session);
+          spar.session.send = (message) => { window.sent.push(message); send(message); };
+        })()""")
+        page.press("1")
+        self.assertEqual(self.weights(page), {"kick": 1})
+        self.pass_time(page, 6)
+        self.assertEqual((page.state()["move"], self.weights(page)), ("", {}))
+        eases = page.evaluate("window.sent.filter((message) => message.label_change).map("
+                              "(message) => message.label_change.ease_frames)")
+        self.assertEqual(eases, [9, 30])
+        # What the visitor sets by hand stays.
+        page.press("1")
+        page.evaluate("""(() => {
+          const slider = document.querySelector('#labels input[name=hug]');
+          slider.value = 0.5;
+          slider.dispatchEvent(new Event('input', {bubbles: true}));
+        })()""")
+        self.pass_time(page, 6)
+        self.assertEqual(self.weights(page), {"kick": 1, "hug": 0.5})
+
+    def test_partner_stands_there_before_the_server_answers(self):
+        page = self.open(width=1000, height=700)
+        page.evaluate("""(async () => {
+          window.WebSocket = class extends EventTarget { close() {} };
+          await chooseModel(spar.model);
+        })()""")
+        page.next_frame()
+        picture = page.picture()
+        area = {"left": 0, "right": 0.6, "top": 0.05, "bottom": 0.8}
+        self.assertGreater(picture.count(tools.is_follower_teal, **area), 1000)
+        self.assertFalse(page.evaluate("spar.seen"))
+
+    def test_help_is_about_fingers_on_a_phone(self):
+        page = self.open(width=390, height=720)
+        self.assertRegex(page.text("#help"), "^Keys 1 to 6 throw a move")
+        page.call("Emulation.setDeviceMetricsOverride", width=390, height=720, deviceScaleFactor=0.5,
+                  mobile=True)
+        page.call("Emulation.setTouchEmulationEnabled", enabled=True)
+        page.reload()
+        page.wait_until("element('help').textContent")
+        self.assertRegex(page.text("#help"), "^Tap a move")
+        self.assertNotRegex(page.text("#help"), "[Kk]ey")
+
     def test_limbs_keep_their_lengths(self):
         page = self.open(frozen=True)
         stretched = page.evaluate("""(() => {

@@ -2,12 +2,16 @@
 // The follower between the frames that have arrived, and the recording of both people.
 
 const SETTLE_SECONDS = 0.08;   // in which a plan that was shown gives way to the final frames
+const ARRIVE_SECONDS = 0.4;    // as SETTLE_SECONDS, from a pose that nobody has synthesised
 const RECORDED_FRAMES = 900;
 
 // Shows the follower at any time, counted in frames. Frames that are not final yet come from the
 // newest plan.
 class Playback {
-  constructor() { this.clear(); }
+  constructor() {
+    this.settle = SETTLE_SECONDS;
+    this.clear();
+  }
 
   clear() {
     this.store = null;
@@ -16,6 +20,12 @@ class Playback {
     this.last = null;      // {time, pose} without the offset
     this.offset = null;
     this.carried = this.shown ?? null;
+  }
+
+  // Shows a pose until the first frame arrives, and goes over to it.
+  standAt(pose) {
+    this.shown = this.carried = pose;
+    this.settle = ARRIVE_SECONDS;
   }
 
   take(store, part) {
@@ -43,7 +53,8 @@ class Playback {
     // What was shown for the last time, if it is known better now, and what a session before showed.
     const [was, is] = this.carried ? [this.carried, pose]
         : this.last ? [this.last.pose, this.at(this.last.time)] : [pose, pose];
-    const left = Math.exp(-seconds / SETTLE_SECONDS);
+    this.settle = mix(this.settle, SETTLE_SECONDS, Math.min(1, seconds));
+    const left = Math.exp(-seconds / this.settle);
     this.offset = pose.map((_, i) => ((this.offset?.[i] ?? 0) + was[i] - is[i]) * left);
     this.carried = null;
     this.last = {time: Math.max(0, time), pose};

@@ -11,6 +11,7 @@ const LATE_SECONDS = 1.5;     // in which the slowest answer decides how far beh
 const PIXELS_TO_BEND = 220;
 const CAMERA_SECONDS = 0.7;
 const SLOW_SECONDS = 0.05;    // between two pictures, on average; below, the picture gets coarser
+const AFTER_MOVE_SECONDS = 1;  // in which the reaction to a move ends
 const COARSEST = 0.5;         // pixels of the picture for each of the screen, along one axis
 const KEYS = {ArrowUp: 'forward', ArrowDown: 'back', ArrowLeft: 'left', ArrowRight: 'right',
               w: 'forward', s: 'back', a: 'left', d: 'right'};
@@ -24,6 +25,7 @@ const spar = {
   lates: [],       // [time, frames] by which answers were late
   behind: 2,       // frames by which the follower is shown late
   seen: false,     // the follower has arrived
+  asked: null,     // the class that a move has set
 };
 const stage = element('stage');
 
@@ -106,14 +108,24 @@ function takeFrames(part) {
   root.dataset.recorded = spar.recording.frames;
 }
 
-// Changes the labels. `weights` of the classes that are not named are 0.
-function setWeights(weights) {
+// Changes the labels within `ease` seconds. `weights` of the classes that are not named are 0.
+function setWeights(weights, ease = Number(element('ease').value)) {
   spar.weights = Object.fromEntries(spar.model.interaction_classes.map(
       (name) => [name, weights[name] ?? 0]));
   for (const label of element('labels').children) {
     setSlider(label, spar.weights[label.querySelector('input').name]);
   }
-  spar.session?.changeLabels(spar.weights, Number(element('ease').value));
+  spar.session?.changeLabels(spar.weights, ease);
+}
+
+// Sets the reaction to a move, or eases to neutral after one. Weights that the visitor has set since
+// then stay.
+function followMove(move) {
+  const isOwn = spar.asked && Object.entries(spar.weights).every(
+      ([name, weight]) => weight === (name === spar.asked ? 1 : 0));
+  if (move && element('follow').checked) setWeights({[move.label]: 1});
+  else if (!move && isOwn) setWeights({}, Math.max(AFTER_MOVE_SECONDS, Number(element('ease').value)));
+  spar.asked = move && element('follow').checked ? move.label : null;
 }
 
 // The model.
@@ -126,22 +138,29 @@ async function chooseModel(model) {
   spar.session = null;
   const leader = new Leader(body, moves.rest);
   const choreography = new Choreography(leader, moves);
-  Object.assign(spar, {model, body, leader, choreography, recording: new Recording(), seen: false});
-  spar.playback = new Playback();
+  Object.assign(spar, {model, body, leader, choreography, recording: new Recording(), seen: false, asked: null});
+  spar.playback = new Playback();  // it begins where showStage places the partner
   choreography.began = (move) => {
-    if (move && element('follow').checked) setWeights({[move.label]: 1});
+    followMove(move);
     showMoves();
   };
   showStage();
   showSliders(model.interaction_classes);
   makeMoves();
   showMusic();
-  element('help').textContent = moves.isDance
-      ? 'Keys 1 to 4 dance: press 1 for the basic step, and the others for figures. Arrows walk. Drag to bend.'
-      : `Keys 1 to ${moves.moves.length} throw a move. Arrows walk. Drag to bend.`;
-  const calm = model.interaction_classes.find((name) => ['apart', 'shake_hands'].includes(name));
-  setWeights({[calm ?? moves.moves[0].label]: 1});
+  element('help').textContent = helpFor(moves);
+  setWeights({});
   connect();
+}
+
+// How the moves are thrown, by touch or by keys.
+function helpFor({moves, isDance}) {
+  if (matchMedia('(pointer: coarse)').matches) {
+    return `${isDance ? 'Tap the basic step, then figures.' : 'Tap a move.'} Hold an arrow to walk. ` +
+        'Drag with one finger to bend; two fingers turn the view.';
+  }
+  return (isDance ? 'Keys 1 to 4 dance: press 1 for the basic step, and the others for figures.'
+                  : `Keys 1 to ${moves.length} throw a move.`) + ' Arrows walk. Drag to bend.';
 }
 
 function showStage() {
@@ -153,7 +172,7 @@ function showStage() {
                   leader: Float32Array.from(leader.pose), follower: partner};
   if (!stage.stage) throw new Error('This browser shows no WebGL.');
   for (const {path} of Object.values(stage.people)) path.visible = false;
-  stage.show('follower', false);
+  spar.playback.standAt(partner);
   Object.assign(spar, {camera: {x: 0, z: 0.55}, partner});
   // The left button bends the leader, so the right one turns the view.
   const {mouseButtons} = stage.stage.controls;
@@ -254,8 +273,7 @@ function showFollower(seconds) {
   const pose = spar.session && spar.playback.show(frameNow() - spar.behind, seconds);
   if (!pose) return;
   stage.setPose('follower', pose);
-  if (!spar.seen) stage.show('follower', true);
-  spar.seen = true;
+  if (spar.playback.store) spar.seen = true;
   spar.partner = pose;
 }
 
