@@ -1,7 +1,9 @@
 #include "model/retargeting/rest_rig.h"
 
 #include <cstddef>
+#include <string>
 
+#include "absl/strings/str_cat.h"
 #include "model/base/index.h"
 
 namespace duet::retargeting {
@@ -30,6 +32,25 @@ CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit) {
     rig.moves.push_back(parent < 0);
   }
   return rig;
+}
+
+CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit,
+                     const std::vector<Vec3d>& positions) {
+  const Quaternion to_world = ToWorldAxes(fit.up_axis);
+  CharacterRig rig = RestRig(tree, fit);
+  for (std::size_t j = 0; j < positions.size(); ++j) {
+    const Vec3d from_root = positions[j] - positions[0];
+    rig.positions[j] = Rotate(to_world, from_root) * fit.metres_per_unit;
+  }
+  return rig;
+}
+
+void NoteRestFrame(int frame, const CharacterOptions& options) {
+  const std::string note =
+      absl::StrCat("rest pose: that of frame ", frame,
+                   ", because the bones of the rig at rest make no standing person");
+  if (options.notes != nullptr) options.notes->push_back(note);
+  if (options.report != nullptr) options.report->remarks.push_back(note);
 }
 
 LocalPose ToLocal(const CharacterRig& rig, const CharacterPose& pose) {

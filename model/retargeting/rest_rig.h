@@ -20,6 +20,14 @@ Quaternion ToWorldAxes(motion::UpAxis up_axis);
 // `fit` is the result of ToClip for the same tree.
 CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit);
 
+// The same rig with another pose as its rest pose. `positions` are those of the tree's joints in
+// the file's unit and axes.
+CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit,
+                     const std::vector<Vec3d>& positions);
+
+// Reports that a frame of a rig's motion replaces its rest pose (FindRestFrame).
+void NoteRestFrame(int frame, const CharacterOptions& options);
+
 // One frame of such a rig, relative to parents. [rig joints]
 struct LocalPose {
   std::vector<Quaternion> turns;  // in the parent's axes

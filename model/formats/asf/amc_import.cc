@@ -1,11 +1,13 @@
 #include "model/formats/asf/amc_import.h"
 
 #include <cstddef>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/file.h"
 #include "model/motion/motion_limits.h"
+#include "model/retargeting/rest_pose.h"
 #include "model/retargeting/rest_rig.h"
 
 namespace duet::formats::asf {
@@ -71,7 +73,14 @@ absl::StatusOr<retargeting::CharacterRig> AmcRig(const AsfSkeleton& skeleton,
   reading.fit = &fit;
   const absl::StatusOr<motion::Clip> read = FromAmc(skeleton, motion, source, reading);
   if (!read.ok()) return read.status();
-  return RestRig(TreeOf(skeleton, AsfKinematics(skeleton, motion).ends()), fit);
+  const AsfKinematics kinematics(skeleton, motion);
+  const retargeting::JointTree tree = TreeOf(skeleton, kinematics.ends());
+  retargeting::CharacterRig rig = RestRig(tree, fit);
+  const absl::StatusOr<std::optional<int>> frame = retargeting::FindRestFrame(rig, *read, source);
+  if (!frame.ok()) return frame.status();
+  if (!frame->has_value()) return rig;
+  NoteRestFrame(**frame, options);
+  return RestRig(tree, fit, kinematics.Positions(**frame));
 }
 
 absl::StatusOr<AsfSkeleton> ReadSkeletonBeside(const std::filesystem::path& motion_file) {

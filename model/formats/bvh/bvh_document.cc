@@ -430,10 +430,10 @@ BvhKinematics::Local BvhKinematics::LocalTransform(std::size_t joint, const floa
   return local;
 }
 
-std::vector<retargeting::Vec3d> BvhKinematics::Positions(int frame) const {
+BvhKinematics::Pose BvhKinematics::PoseAt(int frame) const {
   const std::size_t count = document_.joints.size();
-  std::vector<retargeting::Vec3d> positions(count);
-  std::vector<retargeting::Quaternion> rotations(count);
+  Pose pose{std::vector<retargeting::Vec3d>(count), std::vector<retargeting::Quaternion>(count)};
+  auto& [positions, rotations] = pose;
   const float* values =
       document_.values.data() +
       static_cast<std::size_t>(frame) * static_cast<std::size_t>(document_.ChannelCount());
@@ -450,7 +450,7 @@ std::vector<retargeting::Vec3d> BvhKinematics::Positions(int frame) const {
     positions[j] = positions[parent] + Rotate(rotations[parent], local.translation);
     rotations[j] = rotations[parent] * local.rotation;
   }
-  return positions;
+  return pose;
 }
 
 }  // namespace duet::formats::bvh

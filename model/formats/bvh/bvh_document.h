@@ -72,7 +72,14 @@ class BvhKinematics {
  public:
   // `document` must outlive the kinematics.
   explicit BvhKinematics(const BvhDocument& document);
-  std::vector<retargeting::Vec3d> Positions(int frame) const;
+  std::vector<retargeting::Vec3d> Positions(int frame) const { return PoseAt(frame).positions; }
+
+  // Positions and the rotations of the joints' axes, in the file's axes. [joints]
+  struct Pose {
+    std::vector<retargeting::Vec3d> positions;
+    std::vector<retargeting::Quaternion> rotations;
+  };
+  Pose PoseAt(int frame) const;
 
  private:
   struct Local {

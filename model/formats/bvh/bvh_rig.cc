@@ -11,6 +11,7 @@
 #include "model/base/index.h"
 #include "model/base/text.h"
 #include "model/motion/coordinates.h"
+#include "model/retargeting/rest_pose.h"
 #include "model/retargeting/rest_rig.h"
 #include "model/retargeting/rig_transfer.h"
 
@@ -25,17 +26,22 @@ constexpr double kNoTurn = 1e-4;  // radians
 
 using base::Index;
 
+// The root of a person, or of the last one if there are fewer.
+int FirstJointOf(const BvhDocument& document, int person) {
+  int root = -1, first = 0;
+  for (std::size_t j = 0; j < document.joints.size(); ++j) {
+    if (document.joints[j].parent < 0 && ++root <= person) first = static_cast<int>(j);
+  }
+  return first;
+}
+
 // One person's joints, without the motion.
 BvhDocument PersonOf(const BvhDocument& document, int person) {
   BvhDocument alone;
-  int root = -1, first = 0;
-  for (std::size_t j = 0; j < document.joints.size(); ++j) {
+  const int first = FirstJointOf(document, person);
+  for (std::size_t j = Index(first); j < document.joints.size(); ++j) {
     BvhJoint joint = document.joints[j];
-    if (joint.parent < 0 && ++root <= person) {
-      alone.joints.clear();
-      first = static_cast<int>(j);
-    }
-    if (root > person) break;
+    if (joint.parent < 0 && !alone.joints.empty()) break;
     if (joint.parent >= 0) joint.parent -= first;
     alone.joints.push_back(std::move(joint));
   }
@@ -52,29 +58,58 @@ retargeting::JointTree TreeOf(const BvhDocument& person) {
   return tree;
 }
 
-absl::StatusOr<retargeting::CharacterFit> FitOf(const BvhDocument& document,
-                                                absl::string_view source,
-                                                const BvhImportOptions& options) {
+// A person's rig, and what its file needs to be written again.
+struct Rig {
+  BvhDocument person;
   retargeting::CharacterFit fit;
+  retargeting::CharacterRig rig;
+  std::vector<Quaternion> axes;  // [joints], of the joints at rest, in the file's axes
+};
+
+// The rest pose is that of the offsets, or of a frame if the offsets make no standing person.
+absl::StatusOr<Rig> ReadRig(const BvhDocument& document, absl::string_view source,
+                            const BvhImportOptions& options) {
+  Rig rig;
   BvhImportOptions reading = options;
-  reading.fit = &fit;
+  reading.fit = &rig.fit;
   const absl::StatusOr<motion::Clip> read = FromBvh(document, source, reading);
   if (!read.ok()) return read.status();
-  return fit;
+  rig.person = PersonOf(document, options.person);
+  const std::size_t count = rig.person.joints.size();
+  const retargeting::JointTree tree = TreeOf(rig.person);
+  rig.rig = RestRig(tree, rig.fit);
+  rig.axes.resize(count);
+  const absl::StatusOr<std::optional<int>> frame =
+      retargeting::FindRestFrame(rig.rig, *read, source);
+  if (!frame.ok()) return frame.status();
+  if (!frame->has_value()) return rig;
+  NoteRestFrame(**frame, options);
+  BvhKinematics::Pose pose = BvhKinematics(document).PoseAt(**frame);
+  const auto first = static_cast<std::ptrdiff_t>(FirstJointOf(document, options.person));
+  const auto last = first + static_cast<std::ptrdiff_t>(count);
+  rig.rig = RestRig(tree, rig.fit, {pose.positions.begin() + first, pose.positions.begin() + last});
+  rig.axes.assign(pose.rotations.begin() + first, pose.rotations.begin() + last);
+  return rig;
 }
 
 class RigWriter {
  public:
-  RigWriter(BvhDocument rig, absl::string_view source, const retargeting::CharacterFit& fit,
-            std::optional<PositionChannels> positions)
-      : document_(std::move(rig)),
+  RigWriter(Rig rig, absl::string_view source, std::optional<PositionChannels> positions)
+      : document_(std::move(rig.person)),
         source_(source),
-        fit_(fit),
+        fit_(std::move(rig.fit)),
+        rig_(std::move(rig.rig)),
+        axes_(std::move(rig.axes)),
         adds_to_offset_(positions == PositionChannels::kAddToOffset),
-        to_world_(retargeting::ToWorldAxes(fit.up_axis)) {}
+        to_world_(retargeting::ToWorldAxes(fit_.up_axis)) {
+    // Joints below the root may also have position channels.
+    for (std::size_t j = 0; j < document_.joints.size(); ++j) {
+      rig_.moves[j] = document_.joints[j].channels.size() == 6;
+    }
+  }
 
   absl::StatusOr<BvhDocument> Write(const motion::Clip& clip, const BvhKeys& keys) {
-    const absl::StatusOr<std::vector<CharacterPose>> poses = TransferToRig(clip, Rig(), source_);
+    const absl::StatusOr<std::vector<CharacterPose>> poses = TransferToRig(clip, rig_, source_);
     if (!poses.ok()) return poses.status();
     std::vector<BvhTrack> tracks(document_.joints.size());
     for (const CharacterPose& pose : *poses) AppendFrame(pose, &tracks);
@@ -91,30 +126,22 @@ class RigWriter {
     return Rotate(Inverse(to_world_), in_world) * (1 / fit_.metres_per_unit);
   }
 
-  // Joints below the root may also have position channels.
-  retargeting::CharacterRig Rig() const {
-    retargeting::CharacterRig rig = RestRig(TreeOf(document_), fit_);
-    for (std::size_t j = 0; j < document_.joints.size(); ++j) {
-      rig.moves[j] = document_.joints[j].channels.size() == 6;
-    }
-    return rig;
-  }
-
   void AppendFrame(const CharacterPose& pose, std::vector<BvhTrack>* tracks) const {
     for (std::size_t j = 0; j < document_.joints.size(); ++j) {
       const BvhJoint& joint = document_.joints[j];
-      const Quaternion above =
-          joint.parent < 0 ? Quaternion{} : InFile(pose.turns[Index(joint.parent)]);
+      const Quaternion above = joint.parent < 0 ? Quaternion{} : AxesIn(pose, Index(joint.parent));
       const Vec3d parent_at = joint.parent < 0 ? Vec3d{} : pose.positions[Index(joint.parent)];
       Vec3d place = Rotate(Inverse(above), ToFile(pose.positions[j] - parent_at));
       if (joint.parent >= 0 && adds_to_offset_) place = place - joint.offset;
-      (*tracks)[j].turns.push_back(Inverse(above) * InFile(pose.turns[j]));
+      (*tracks)[j].turns.push_back(Inverse(above) * AxesIn(pose, j));
       (*tracks)[j].places.push_back(place);
     }
   }
 
-  // Converts a rotation in world axes to the file's axes.
-  Quaternion InFile(Quaternion turn) const { return Inverse(to_world_) * turn * to_world_; }
+  // A joint's axes in the file's.
+  Quaternion AxesIn(const CharacterPose& pose, std::size_t joint) const {
+    return Inverse(to_world_) * pose.turns[joint] * to_world_ * axes_[joint];
+  }
 
   absl::Status CheckTurns(const BvhJoint& joint, const BvhTrack& track) const {
     const auto turns = [](Quaternion turn) { return Angle(turn, {}) > kNoTurn; };
@@ -131,6 +158,8 @@ class RigWriter {
   BvhDocument document_;
   std::string source_;
   retargeting::CharacterFit fit_;
+  retargeting::CharacterRig rig_;
+  std::vector<Quaternion> axes_;  // [joints], at rest
   bool adds_to_offset_;
   Quaternion to_world_;
 };
@@ -140,18 +169,17 @@ class RigWriter {
 absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocument& rig,
                                        absl::string_view source, const BvhImportOptions& options,
                                        const BvhKeys& keys) {
-  const absl::StatusOr<retargeting::CharacterFit> fit = FitOf(rig, source, options);
-  if (!fit.ok()) return fit.status();
-  return RigWriter(PersonOf(rig, options.person), source, *fit, FindPositionChannels(rig))
-      .Write(clip, keys);
+  absl::StatusOr<Rig> read = ReadRig(rig, source, options);
+  if (!read.ok()) return read.status();
+  return RigWriter(*std::move(read), source, FindPositionChannels(rig)).Write(clip, keys);
 }
 
 absl::StatusOr<retargeting::CharacterRig> BvhRig(const BvhDocument& document,
                                                  absl::string_view source,
                                                  const BvhImportOptions& options) {
-  const absl::StatusOr<retargeting::CharacterFit> fit = FitOf(document, source, options);
-  if (!fit.ok()) return fit.status();
-  return RestRig(TreeOf(PersonOf(document, options.person)), *fit);
+  absl::StatusOr<Rig> read = ReadRig(document, source, options);
+  if (!read.ok()) return read.status();
+  return std::move(read->rig);
 }
 
 }  // namespace duet::formats::bvh

@@ -237,6 +237,10 @@ class Importer {
       return Error(source, absl::StrCat("animation: expected at most ", motion::kMaxMotionFrames,
                                         " frames, got ", timing.end - timing.start, " s"));
     }
+    if (options_.posed != nullptr) {
+      *options_.posed = document_;
+      puppet->Pose(timing.start + options_.posed_frame / timing.rate_hz, options_.posed);
+    }
     retargeting::Character character;
     character.tree = puppet->Tree();
     character.frame_count = static_cast<int>(frames);

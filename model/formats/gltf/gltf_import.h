@@ -26,6 +26,9 @@ struct GltfImportOptions : retargeting::CharacterOptions {
   // The animation to use, by its name, or by the part of it that follows "|". If absent, the first
   // in which the character moves; poses that are held do not count.
   std::optional<std::string> animation = std::nullopt;
+  // Receives the document with the character in the pose of `posed_frame` of the clip; may be null.
+  GltfDocument* posed = nullptr;
+  int posed_frame = 0;
   // What the file that was converted to this one states; absent for glTF itself.
   std::optional<double> stated_frame_rate_hz = std::nullopt;
   std::optional<double> stated_metres_per_unit = std::nullopt;

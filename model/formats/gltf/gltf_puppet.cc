@@ -13,7 +13,6 @@ namespace {
 
 using base::Index;
 using retargeting::Affine;
-using retargeting::Quaternion;
 using retargeting::Vec3d;
 
 // Keys farther apart than this were set by hand and do not indicate a rate.
@@ -131,21 +130,36 @@ double Puppet::Travel() {
   return size > 0 ? sum / static_cast<double>(farthest.size()) / static_cast<double>(size) : 0;
 }
 
+retargeting::Parts Puppet::PartsAt(int node, double seconds) const {
+  const GltfNode& written = document_->nodes[Index(node)];
+  retargeting::Parts parts{written.translation, Normalised(written.rotation), written.scale};
+  for (const GltfTrack& track : tracks_[Index(node)]) {
+    if (track.channel().path == GltfPath::kRotation) parts.rotation = track.RotationAt(seconds);
+    if (track.channel().path == GltfPath::kTranslation) parts.translation = track.VectorAt(seconds);
+    if (track.channel().path == GltfPath::kScale) parts.scale = track.VectorAt(seconds);
+  }
+  return parts;
+}
+
 Affine Puppet::Local(int node, std::optional<double> seconds) const {
   const GltfNode& written = document_->nodes[Index(node)];
-  const std::vector<GltfTrack>& tracks = tracks_[Index(node)];
-  if (written.matrix.has_value() && (tracks.empty() || !seconds.has_value())) {
-    return FromMatrix(*written.matrix);
+  if (seconds.has_value() && !tracks_[Index(node)].empty()) {
+    return FromParts(PartsAt(node, *seconds));
   }
-  Vec3d translation = written.translation, scale = written.scale;
-  Quaternion rotation = Normalised(written.rotation);
-  for (const GltfTrack& track : tracks) {
-    if (!seconds.has_value()) break;
-    if (track.channel().path == GltfPath::kRotation) rotation = track.RotationAt(*seconds);
-    if (track.channel().path == GltfPath::kTranslation) translation = track.VectorAt(*seconds);
-    if (track.channel().path == GltfPath::kScale) scale = track.VectorAt(*seconds);
+  if (written.matrix.has_value()) return FromMatrix(*written.matrix);
+  return retargeting::FromParts({written.translation, Normalised(written.rotation), written.scale});
+}
+
+void Puppet::Pose(double seconds, GltfDocument* document) const {
+  for (std::size_t node = 0; node < tracks_.size(); ++node) {
+    if (tracks_[node].empty()) continue;
+    const retargeting::Parts parts = PartsAt(static_cast<int>(node), seconds);
+    GltfNode& posed = document->nodes[node];
+    posed.matrix.reset();
+    posed.translation = parts.translation;
+    posed.rotation = parts.rotation;
+    posed.scale = parts.scale;
   }
-  return retargeting::FromParts({translation, rotation, scale});
 }
 
 void Puppet::Stand(std::optional<double> seconds) {

@@ -46,11 +46,16 @@ class Puppet {
   // The places of the members in the world.
   std::vector<motion::Vec3> PoseAt(double seconds);
 
+  // Puts the nodes of `document`, a copy of the puppet's, in the pose of a time.
+  void Pose(double seconds, GltfDocument* document) const;
+
   // How far the joints move from where they start: the mean of their largest distances, as a
   // fraction of the character's size.
   double Travel();
 
  private:
+  // The parts of a node's transform that tracks move, and those that they do not.
+  retargeting::Parts PartsAt(int node, double seconds) const;
   // The transform in the parent's axes; at rest if `seconds` is absent.
   retargeting::Affine Local(int node, std::optional<double> seconds) const;
   void Stand(std::optional<double> seconds);

@@ -15,6 +15,7 @@
 #include "model/formats/gltf/gltf_parts.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/coordinates.h"
+#include "model/retargeting/rest_pose.h"
 #include "model/retargeting/rest_rig.h"
 #include "model/retargeting/rig_transfer.h"
 
@@ -66,9 +67,11 @@ Place LocalPlace(const GltfNode& node) {
 
 class RigAnimator {
  public:
-  RigAnimator(const GltfDocument& document, std::vector<int> nodes,
+  // `file` is the document as it was read, `document` has the character in its rest pose.
+  RigAnimator(const GltfDocument& file, const GltfDocument& document, std::vector<int> nodes,
               const retargeting::CharacterFit& fit)
-      : document_(document),
+      : file_(file),
+        document_(document),
         nodes_(std::move(nodes)),
         fit_(fit),
         to_world_(retargeting::ToWorldAxes(fit.up_axis)) {
@@ -123,7 +126,7 @@ class RigAnimator {
 
   void AddJoint(std::size_t j, const std::vector<CharacterPose>& poses, GltfWriter* writer,
                 AnimationWriter* animation) const {
-    const Place rest = LocalPlace(document_.nodes[Index(nodes_[j])]);
+    const Place written = LocalPlace(file_.nodes[Index(nodes_[j])]);
     std::vector<Quaternion> turns;
     std::vector<Vec3d> places;
     bool turned = false, moved = false;
@@ -134,11 +137,11 @@ class RigAnimator {
         turn = {-turn.w, -turn.x, -turn.y, -turn.z};
       turns.push_back(turn);
       places.push_back(Rotate(Inverse(above.turn), here.at - above.at) * (1 / above.scale));
-      turned = turned || Angle(turn, rest.turn) > kNoTurn;
-      moved = moved || Norm(places.back() - rest.at) > 1e-5 * (1 + Norm(rest.at));
+      turned = turned || Angle(turn, written.turn) > kNoTurn;
+      moved = moved || Norm(places.back() - written.at) > 1e-5 * (1 + Norm(written.at));
     }
     if (!turned && !moved) return;
-    MakeMovable(nodes_[j], rest, writer);
+    MakeMovable(nodes_[j], written, writer);
     if (moved) animation->Translate(nodes_[j], places);
     if (turned) animation->Rotate(nodes_[j], turns);
   }
@@ -153,6 +156,7 @@ class RigAnimator {
     written["scale"] = {rest.scale, rest.scale, rest.scale};
   }
 
+  const GltfDocument& file_;
   const GltfDocument& document_;
   std::vector<int> nodes_;    // [joints]
   std::vector<int> parents_;  // [joints]
@@ -183,11 +187,17 @@ absl::StatusOr<GltfWriter> Gather(absl::string_view content, const GltfDocument&
   return GltfWriter(std::move(json), std::move(all));
 }
 
-// A character of a file.
+// A character of a file. The rest pose is that of the nodes, or of a frame of the animation if the
+// nodes make no standing person.
 struct RigFile {
   GltfDocument document;
+  std::optional<GltfDocument> at_rest;  // if it is not the document itself
   std::vector<int> nodes;
   retargeting::CharacterFit fit;
+
+  RigAnimator Animator() const {
+    return {document, at_rest.has_value() ? *at_rest : document, nodes, fit};
+  }
 };
 
 absl::StatusOr<RigFile> ReadRigFile(absl::string_view content, absl::string_view source,
@@ -195,11 +205,22 @@ absl::StatusOr<RigFile> ReadRigFile(absl::string_view content, absl::string_view
                                     const GltfImportOptions& options) {
   absl::StatusOr<GltfDocument> document = ParseGltf(content, source);
   if (!document.ok()) return document.status();
-  RigFile file{*std::move(document), {}, {}};
+  RigFile file{*std::move(document), std::nullopt, {}, {}};
   GltfImportOptions reading = options;
   reading.fit = &file.fit;
   reading.nodes = &file.nodes;
-  const absl::StatusOr<motion::Clip> read = FromGltf(file.document, source, read_file, reading);
+  absl::StatusOr<motion::Clip> read = FromGltf(file.document, source, read_file, reading);
+  if (!read.ok()) return read.status();
+  const absl::StatusOr<std::optional<int>> frame =
+      retargeting::FindRestFrame(file.Animator().Rig(), *read, source);
+  if (!frame.ok()) return frame.status();
+  if (!frame->has_value()) return file;
+  NoteRestFrame(**frame, options);
+  reading.notes = nullptr;
+  reading.report = nullptr;
+  reading.posed = &file.at_rest.emplace();
+  reading.posed_frame = **frame;
+  read = FromGltf(file.document, source, read_file, reading);
   if (!read.ok()) return read.status();
   return file;
 }
@@ -212,7 +233,7 @@ absl::StatusOr<retargeting::CharacterRig> ReadGltfRig(absl::string_view content,
                                                       const GltfImportOptions& options) {
   const absl::StatusOr<RigFile> file = ReadRigFile(content, source, read_file, options);
   if (!file.ok()) return file.status();
-  return RigAnimator(file->document, file->nodes, file->fit).Rig();
+  return file->Animator().Rig();
 }
 
 absl::StatusOr<std::string> OntoGltfRig(const motion::Clip& clip, absl::string_view content,
@@ -220,7 +241,7 @@ absl::StatusOr<std::string> OntoGltfRig(const motion::Clip& clip, absl::string_v
                                         const GltfImportOptions& options, GltfContainer container) {
   const absl::StatusOr<RigFile> file = ReadRigFile(content, source, read_file, options);
   if (!file.ok()) return file.status();
-  RigAnimator animator(file->document, file->nodes, file->fit);
+  RigAnimator animator = file->Animator();
   const absl::StatusOr<std::vector<CharacterPose>> poses =
       TransferToRig(clip, animator.Rig(), source);
   if (!poses.ok()) return poses.status();

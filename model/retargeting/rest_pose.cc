@@ -1,0 +1,91 @@
+#include "model/retargeting/rest_pose.h"
+
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "model/motion/skeleton.h"
+#include "model/retargeting/body_roles.h"
+#include "model/retargeting/rotation.h"
+
+namespace duet::retargeting {
+namespace {
+
+// Cosines to the direction up the trunk: at most so much for the way from a hip to its foot, and to
+// its knee. A person who sits has 0 for the thighs.
+constexpr double kFootHangs = -0.3, kKneeHangs = 0.5;
+// Cosine to the arm's own side: at least so much for the way from shoulder to hand.
+constexpr double kArmAcross = -0.8;
+
+// The joints of a body by name.
+class BodyPose {
+ public:
+  explicit BodyPose(absl::Span<const motion::Vec3> body) : body_(body) {}
+
+  Vec3d At(const std::string& joint) const {
+    static const auto* const kSkeleton = new motion::Skeleton(motion::SbuSkeleton());
+    return ToDouble(body_[static_cast<std::size_t>(kSkeleton->Find(joint))]);
+  }
+
+  Vec3d Way(const std::string& from, const std::string& to) const {
+    return Unit(At(to) - At(from), {});
+  }
+
+  Vec3d Up() const { return Unit(At("neck") - (At("left_hip") + At("right_hip")) * 0.5, {}); }
+
+ private:
+  absl::Span<const motion::Vec3> body_;
+};
+
+// How upright a person stands in the world, with straight limbs.
+double Uprightness(const BodyPose& pose) {
+  const Vec3d up = {0, 1, 0};
+  double sum = 2 * Dot(pose.Up(), up);
+  for (const std::string side : {"left_", "right_"}) {
+    sum -= Dot(pose.Way(side + "hip", side + "knee"), up);
+    sum -= Dot(pose.Way(side + "knee", side + "foot"), up);
+    sum += 0.5 * Dot(pose.Way(side + "shoulder", side + "elbow"),
+                     pose.Way(side + "elbow", side + "hand"));
+  }
+  return sum;
+}
+
+}  // namespace
+
+bool IsStanding(absl::Span<const motion::Vec3> body) {
+  const BodyPose pose(body);
+  const Vec3d up = pose.Up(), left = pose.Way("right_hip", "left_hip");
+  if (!(Dot(left, pose.Way("right_shoulder", "left_shoulder")) > 0)) return false;
+  for (const std::string side : {"left_", "right_"}) {
+    if (!(Dot(up, pose.Way(side + "hip", side + "foot")) < kFootHangs)) return false;
+    if (!(Dot(up, pose.Way(side + "hip", side + "knee")) < kKneeHangs)) return false;
+    const Vec3d outwards = side == "left_" ? left : -left;
+    if (!(Dot(outwards, pose.Way(side + "shoulder", side + "hand")) > kArmAcross)) return false;
+  }
+  return true;
+}
+
+absl::StatusOr<std::optional<int>> FindRestFrame(const CharacterRig& rig, const motion::Clip& read,
+                                                 absl::string_view source) {
+  const absl::StatusOr<BodyRoles> roles = FindBodyRoles(source, read);
+  if (!roles.ok()) return std::nullopt;
+  std::vector<motion::Vec3> at_rest;
+  for (const Vec3d& position : rig.positions) at_rest.push_back(ToFloat(position));
+  if (IsStanding(ApplyJointMap(Compose(rig.joints, roles->body), at_rest))) return std::nullopt;
+  std::optional<int> best;
+  double most = 0;
+  for (int frame = 0; frame < read.frame_count(); ++frame) {
+    const std::vector<motion::Vec3> body = ApplyJointMap(roles->body, read.poses[frame]);
+    const double upright = Uprightness(BodyPose(body));
+    if (!IsStanding(body) || (best.has_value() && upright <= most)) continue;
+    best = frame;
+    most = upright;
+  }
+  if (best.has_value()) return best;
+  return absl::InvalidArgumentError(
+      absl::StrCat(source,
+                   ": rig: rest pose: expected a standing person, at rest or in a frame of its "
+                   "motion, got neither; export the rig in its T pose"));
+}
+
+}  // namespace duet::retargeting
