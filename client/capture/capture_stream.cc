@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/counted.h"
@@ -13,6 +14,15 @@ namespace duet::client::capture {
 namespace {
 
 constexpr std::size_t kMaxNotes = 64;
+
+// An error without the numbers and values that differ from datagram to datagram.
+std::string KindOf(absl::string_view message) {
+  std::string kind(message.substr(0, message.find(", got ")));
+  kind.erase(std::remove_if(kind.begin(), kind.end(),
+                            [](unsigned char c) { return absl::ascii_isdigit(c); }),
+             kind.end());
+  return kind;
+}
 
 }  // namespace
 
@@ -29,6 +39,7 @@ void CaptureStream::Receive(absl::string_view datagram, absl::string_view sender
     }
     return;
   }
+  if (++datagram_count_ == 1) first_heard_ = now;
   std::vector<CaptureFrame> frames;
   StreamReader& reader = ReaderOf(sender);
   NoteError(reader.Read(datagram, &frames));
@@ -68,10 +79,12 @@ void CaptureStream::ReceiveFrame(CaptureFrame frame, double now) {
 }
 
 std::optional<TimedFrame> CaptureStream::Next(double now) {
+  NoteSilence(now);
   return clock_.has_value() ? clock_->Next(now) : std::nullopt;
 }
 
 double CaptureStream::NextDue() const {
+  if (IsSilent()) return *first_heard_ + kPatience;
   return clock_.has_value() ? clock_->NextDue() : std::numeric_limits<double>::infinity();
 }
 
@@ -79,8 +92,20 @@ void CaptureStream::NoteError(const absl::Status& status) {
   if (status.ok()) return;
   ++rejected_;
   if (errors_.size() >= kMaxKindsOfErrors) return;
-  std::string message(status.message());
-  if (errors_.insert(message).second) notes_.push_back(std::move(message));
+  if (errors_.insert(KindOf(status.message())).second) notes_.emplace_back(status.message());
+}
+
+// Datagrams arrive, but no frame.
+void CaptureStream::NoteSilence(double now) {
+  if (!IsSilent() || now < *first_heard_ + kPatience) return;
+  first_heard_.reset();
+  std::string missing;
+  for (const Sender& sender : senders_) {
+    if (missing.empty()) missing = sender.reader->Missing();
+  }
+  notes_.push_back(absl::StrCat("warning: ", base::Counted(datagram_count_, "datagram"),
+                                " arrived in ", kPatience, " s, but no frame",
+                                missing.empty() ? "" : "; ", missing));
 }
 
 void CaptureStream::NoteEvent(const ClockEvent& event) {

@@ -30,6 +30,8 @@ class CaptureStream {
  public:
   static constexpr double kSenderSilence = 2;  // seconds
   static constexpr int kMaxNotesOfAKind = 3;
+  // Seconds after which a stream of datagrams without a frame is reported.
+  static constexpr double kPatience = 1.5;
 
   // rate_hz: of the output; 0: measured in the first second, whose frames are not passed on.
   CaptureStream(std::function<std::unique_ptr<StreamReader>()> make_reader, double rate_hz);
@@ -64,6 +66,8 @@ class CaptureStream {
 
   void ReceiveFrame(CaptureFrame frame, double now);
   void NoteError(const absl::Status& status);
+  bool IsSilent() const { return first_heard_.has_value() && frame_count_ == 0; }
+  void NoteSilence(double now);
   void NoteEvent(const ClockEvent& event);
 
   const std::function<std::unique_ptr<StreamReader>()> make_reader_;
@@ -75,6 +79,8 @@ class CaptureStream {
   std::string leader_;  // a sender's address; empty: none
   double leader_heard_ = 0;
   bool other_senders_ = false;
+  std::optional<double> first_heard_;  // when the first datagram arrived, until silence is reported
+  int64_t datagram_count_ = 0;
   int64_t frame_count_ = 0, rejected_ = 0;
   std::set<std::string> errors_;  // that were noted
   std::map<ClockEvent::Kind, int> noted_events_;

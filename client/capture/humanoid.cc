@@ -1,6 +1,47 @@
 #include "client/capture/humanoid.h"
 
+#include <map>
+#include <string>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "model/retargeting/joint_names.h"
+
 namespace duet::client::capture {
+namespace {
+
+using retargeting::BodySide;
+using BoneName = std::pair<BodySide, std::string>;
+
+// The bones of the names that files have for joints. Unity's own names come first: LeftShoulder is
+// the collar bone.
+std::map<BoneName, int> MakeAliases() {
+  const auto& bones = HumanoidBones();
+  std::map<BoneName, int> aliases;
+  std::map<std::string, std::string> joints = {
+      {"hips", "hips"},      {"neck", "neck"}, {"head", "head"},     {"upperarm", "shoulder"},
+      {"lowerarm", "elbow"}, {"hand", "hand"}, {"lowerleg", "knee"}, {"upperleg", "hip"},
+      {"foot", "foot"},      {"toes", "toe"}};
+  const auto parse = [&bones](std::size_t bone) {
+    return retargeting::ParseJointName(bones[bone].name);
+  };
+  for (std::size_t bone = 0; bone < bones.size(); ++bone) {
+    aliases.emplace(BoneName{parse(bone).side, parse(bone).base}, static_cast<int>(bone));
+  }
+  // Knees first: LeftLeg is the lower leg wherever there is a LeftUpLeg.
+  for (const char* base : {"lowerleg", "upperleg", "upperarm", "lowerarm", "hand", "foot", "toes",
+                           "hips", "neck", "head"}) {
+    for (std::size_t bone = 0; bone < bones.size(); ++bone) {
+      if (parse(bone).base != base) continue;
+      for (const std::string& alias : retargeting::JointAliases(joints[base])) {
+        aliases.emplace(BoneName{parse(bone).side, alias}, static_cast<int>(bone));
+      }
+    }
+  }
+  return aliases;
+}
+
+}  // namespace
 
 using retargeting::Vec3d;
 
@@ -36,9 +77,12 @@ const std::array<HumanoidBone, kHumanoidBoneCount>& HumanoidBones() {
 int FindHumanoidBone(absl::string_view name) {
   const auto& bones = HumanoidBones();
   for (std::size_t bone = 0; bone < bones.size(); ++bone) {
-    if (name == bones[bone].name) return static_cast<int>(bone);
+    if (absl::EqualsIgnoreCase(name, bones[bone].name)) return static_cast<int>(bone);
   }
-  return -1;
+  static const auto* const kAliases = new std::map<BoneName, int>(MakeAliases());
+  const retargeting::ParsedJointName parsed = retargeting::ParseJointName(name);
+  const auto found = kAliases->find({parsed.side, parsed.base});
+  return found == kAliases->end() ? -1 : found->second;
 }
 
 std::vector<Vec3d> HumanoidRestPositions() {

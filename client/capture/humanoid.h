@@ -23,7 +23,8 @@ struct HumanoidBone {
 inline constexpr std::size_t kHumanoidBoneCount = 22;
 const std::array<HumanoidBone, kHumanoidBoneCount>& HumanoidBones();
 
-// The index of a bone, or -1.
+// The index of a bone, or -1. The name is Unity's, VRM 1.0's (leftUpperArm), or one that files have
+// for the joint (retargeting::JointAliases), such as LeftArm for LeftUpperArm.
 int FindHumanoidBone(absl::string_view name);
 
 // The positions of the bones of the built-in person, who stands on the floor at the origin.

@@ -119,6 +119,10 @@ absl::Status RokokoReader::Read(absl::string_view datagram, std::vector<CaptureF
   return absl::OkStatus();
 }
 
+std::string RokokoReader::Missing() const {
+  return "Rokoko: expected an actor with a body, got none";
+}
+
 std::vector<std::string> RokokoReader::TakeNotes() { return std::exchange(notes_, {}); }
 
 }  // namespace duet::client::capture

@@ -22,6 +22,7 @@ class RokokoReader : public StreamReader {
   const std::vector<std::string>& joint_names() const override { return names_; }
   absl::Status Read(absl::string_view datagram, std::vector<CaptureFrame>* frames) override;
   std::vector<std::string> TakeNotes() override;
+  std::string Missing() const override;
 
  private:
   std::vector<std::string> names_;

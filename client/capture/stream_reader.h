@@ -44,6 +44,9 @@ class StreamReader {
   // What the user should know about the stream, such as bones that the sender leaves out. Each
   // note is returned once.
   virtual std::vector<std::string> TakeNotes() { return {}; }
+  // What has arrived, and what would make frames, for a stream that has made none: "VMC: expected
+  // ..., got ...". Empty if only errors can tell.
+  virtual std::string Missing() const { return ""; }
 };
 
 inline constexpr int kMaxFramesInDatagram = 8;

@@ -21,11 +21,17 @@ constexpr std::size_t kTransformArguments = 8;  // a name, a position and a quat
 constexpr double kNoOffset = 1e-6;              // metres
 // After this many frames, bones that have not come are reported.
 constexpr int kNotesAfterFrames = 30;
+constexpr std::size_t kMostRemembered = 6;
 
 using base::Index;
 
 // Between Unity's axes and right-handed ones; its own inverse.
 Vec3d Mirrored(Vec3d a) { return {-a.x, a.y, a.z}; }
+
+// Keeps a few different names, for a message.
+void Remember(absl::string_view name, std::set<std::string>* names) {
+  if (names->size() < kMostRemembered) names->emplace(name.substr(0, base::kLongestQuote));
+}
 
 absl::Status BadTransform(const OscMessage& message, absl::string_view got) {
   return absl::InvalidArgumentError(
@@ -51,6 +57,18 @@ absl::Status VmcReader::Read(absl::string_view datagram, std::vector<CaptureFram
   return status;
 }
 
+std::string VmcReader::Missing() const {
+  const std::set<std::string>& others = other_bones_.empty() ? other_addresses_ : other_bones_;
+  return absl::StrCat("VMC: expected ", kBone, " with Unity's bones (", absl::StrJoin(names_, ", "),
+                      "), got ",
+                      others.empty()         ? "none of them"
+                      : other_bones_.empty() ? "only "
+                                             : "only the bones ",
+                      absl::StrJoin(others, ", ", [](std::string* out, const std::string& name) {
+                        absl::StrAppend(out, base::Quoted(name));
+                      }));
+}
+
 std::vector<std::string> VmcReader::TakeNotes() { return std::exchange(notes_, {}); }
 
 absl::Status VmcReader::ReadMessage(const OscMessage& message, std::vector<CaptureFrame>* frames) {
@@ -62,7 +80,10 @@ absl::Status VmcReader::ReadMessage(const OscMessage& message, std::vector<Captu
     root_ = *root;
     return absl::OkStatus();
   }
-  if (message.address != kTime) return absl::OkStatus();
+  if (message.address != kTime) {
+    Remember(message.address, &other_addresses_);
+    return absl::OkStatus();
+  }
   const absl::StatusOr<std::vector<OscArgument>> arguments = ReadOscArguments(message);
   if (!arguments.ok()) return arguments.status();
   if (arguments->empty() || (*arguments)[0].is_text ||
@@ -80,7 +101,10 @@ absl::Status VmcReader::ReadBone(const OscMessage& message, std::vector<CaptureF
   const absl::StatusOr<Transform> transform = ReadTransform(message, &name);
   if (!transform.ok()) return transform.status();
   const int bone = FindHumanoidBone(name);
-  if (bone < 0) return absl::OkStatus();
+  if (bone < 0) {
+    Remember(name, &other_bones_);
+    return absl::OkStatus();
+  }
   if (arrived_[Index(bone)]) CloseFrame(frames);
   arrived_[Index(bone)] = true;
   bones_[Index(bone)] = *transform;

@@ -4,6 +4,7 @@
 #include <array>
 #include <bitset>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ namespace duet::client::capture {
 //   bone itself stands between the two; without children it is in its rest pose.
 // - Bones at position zero, as senders of rotations have them, get the offsets of the built-in
 //   person.
+// - Names may also be those of VRM 1.0 (leftUpperArm) or of files (docs/formats.md).
 // - Fingers, face, cameras and devices are ignored.
 //
 // Source: github.com/sh-akira/VirtualMotionCaptureProtocol.
@@ -34,6 +36,7 @@ class VmcReader : public StreamReader {
   const std::vector<std::string>& joint_names() const override { return names_; }
   absl::Status Read(absl::string_view datagram, std::vector<CaptureFrame>* frames) override;
   std::vector<std::string> TakeNotes() override;
+  std::string Missing() const override;
 
  private:
   // Relative to the parent, in Unity's axes.
@@ -60,6 +63,7 @@ class VmcReader : public StreamReader {
   std::optional<double> seconds_;  // since the last frame
   int frame_count_ = 0;
   std::vector<std::string> notes_;
+  std::set<std::string> other_bones_, other_addresses_;  // that arrived, a few of them
 };
 
 }  // namespace duet::client::capture

@@ -65,6 +65,11 @@ absl::Status XsensReader::Read(absl::string_view datagram, std::vector<CaptureFr
   return status;
 }
 
+std::string XsensReader::Missing() const {
+  return absl::StrCat("Xsens: expected the ", kSegments, " segments of a body, got ",
+                      arrived_.count());
+}
+
 std::vector<std::string> XsensReader::TakeNotes() { return std::exchange(notes_, {}); }
 
 bool XsensReader::IsLeader(uint8_t character) {

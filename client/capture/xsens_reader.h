@@ -28,6 +28,7 @@ class XsensReader : public StreamReader {
   const std::vector<std::string>& joint_names() const override { return names_; }
   absl::Status Read(absl::string_view datagram, std::vector<CaptureFrame>* frames) override;
   std::vector<std::string> TakeNotes() override;
+  std::string Missing() const override;
 
  private:
   struct Header {

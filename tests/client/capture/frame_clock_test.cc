@@ -12,8 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "client/capture/capture_stream.h"
+#include "client/capture/osc.h"
 #include "client/capture/rate_estimate.h"
+#include "client/capture/rokoko_reader.h"
 #include "client/capture/vmc_reader.h"
 #include "model/base/random.h"
 #include "tests/client/capture/datagrams.h"
@@ -348,6 +351,54 @@ TEST(CaptureStreamTest, SaysOnceWhatItDoesNotUnderstand) {
   for (int i = 0; i < 100; ++i) stream.Receive("MXTP02", "a", i);
   EXPECT_THAT(stream.TakeNotes(), ElementsAre(HasSubstr("OSC address")));
   EXPECT_THAT(stream.Summary(), HasSubstr("100 datagrams not understood"));
+}
+
+TEST(CaptureStreamTest, SaysOneReasonOnceWhateverItsNumbers) {
+  CaptureStream stream([] { return std::make_unique<RokokoReader>(); }, 30);
+  for (int i = 0; i < 20; ++i) {
+    stream.Receive(absl::StrCat("{\"scene\":{\"actors\":", i, "}}"), "a", i);
+  }
+  EXPECT_THAT(stream.TakeNotes(), ElementsAre(HasSubstr("scene.actors: expected a list, got 0")));
+}
+
+// Within two seconds after the first datagram, also if no other arrives.
+TEST(CaptureStreamTest, SaysWhatIsMissingInAStreamWithoutFrames) {
+  const std::string bones = test::VmcDatagram({1.0f, {{"mBone", {0, 1, 0}}, {"mBody", {0, 1, 0}}}});
+  const auto notes_of = [](const std::string& datagram, auto make_reader) {
+    CaptureStream stream(make_reader, 30);
+    stream.Receive(datagram, "a", 100);
+    EXPECT_EQ(stream.Next(100), std::nullopt);
+    EXPECT_LE(stream.NextDue(), 102);
+    EXPECT_EQ(stream.Next(stream.NextDue()), std::nullopt);
+    const std::vector<std::string> notes = stream.TakeNotes();
+    EXPECT_EQ(stream.Next(200), std::nullopt);
+    EXPECT_THAT(stream.TakeNotes(), IsEmpty()) << "once";
+    return notes;
+  };
+  const auto warning = HasSubstr("warning: 1 datagram arrived in 1.5 s, but no frame; ");
+  EXPECT_THAT(notes_of(bones, MakeVmcReader),
+              ElementsAre(AllOf(warning,
+                                HasSubstr("VMC: expected /VMC/Ext/Bone/Pos with Unity's "
+                                          "bones (Hips, Spine,"),
+                                HasSubstr("got only the bones \"mBody\", \"mBone\""))));
+  OscBundle other;
+  other.Begin("/VMC/Ext/OK", "i");
+  other.Add(1);
+  EXPECT_THAT(notes_of(other.bytes(), MakeVmcReader),
+              ElementsAre(AllOf(warning, HasSubstr("got only \"/VMC/Ext/OK\""))));
+  EXPECT_THAT(
+      notes_of(R"({"scene":{"actors":[]}})", [] { return std::make_unique<RokokoReader>(); }),
+      ElementsAre(AllOf(warning, HasSubstr("an actor with a body"))));
+}
+
+TEST(CaptureStreamTest, AStreamWithFramesIsNotSilent) {
+  CaptureStream stream(MakeVmcReader, 30);
+  for (int i = 0; i < 60; ++i) {
+    stream.Receive(Hips(static_cast<float>(i) / 30, 1), "a", i / 30.0);
+    while (stream.Next(i / 30.0)) {
+    }
+  }
+  EXPECT_THAT(stream.TakeNotes(), Not(Contains(HasSubstr("no frame"))));
 }
 
 }  // namespace

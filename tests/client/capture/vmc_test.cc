@@ -76,6 +76,31 @@ TEST(VmcReaderTest, AddsUpTheBonesOfAFrame) {
   }
 }
 
+// The same bones with the names of VRM 1.0, and with those that files have.
+TEST(VmcReaderTest, AcceptsTheNamesOfVrmAndOfFiles) {
+  const std::vector<std::pair<std::string, std::string>> others = {{"LeftUpperArm", "LeftArm"},
+                                                                   {"LeftLowerArm", "LeftForeArm"},
+                                                                   {"LeftHand", "l_wrist"},
+                                                                   {"RightUpperLeg", "RightUpLeg"},
+                                                                   {"RightLowerLeg", "RightLeg"},
+                                                                   {"RightFoot", "ankle.R"},
+                                                                   {"RightToes", "RightToeBase"},
+                                                                   {"Hips", "pelvis"},
+                                                                   {"Head", "head"}};
+  for (const auto& [bone, other] : others) {
+    EXPECT_EQ(FindHumanoidBone(other), FindHumanoidBone(bone)) << other;
+  }
+  for (const HumanoidBone& bone : HumanoidBones()) {
+    std::string vrm = bone.name;
+    vrm[0] = static_cast<char>(vrm[0] + 'a' - 'A');
+    EXPECT_EQ(FindHumanoidBone(vrm), FindHumanoidBone(bone.name)) << vrm;
+  }
+  for (const char* other : {"LeftEye", "Jaw", "LeftThumbProximal", "leftIndexDistal", "", "left"}) {
+    EXPECT_EQ(FindHumanoidBone(other), -1) << other;
+  }
+  EXPECT_EQ(FindHumanoidBone("LeftShoulder"), 6) << "the collar bone, as in Unity";
+}
+
 // Unity is left-handed: a positive rotation about y turns from z towards x.
 TEST(VmcReaderTest, TurnsChildrenWithTheirParentsInRightHandedAxes) {
   std::vector<test::VmcBone> bones = RestBones();
