@@ -9,9 +9,21 @@ namespace {
 
 constexpr double kMeasuredSeconds = 1;
 constexpr double kUsualRates[] = {10, 12, 15, 20, 24, 25, 30, 50, 60, 72, 75, 90, 100, 120};
-constexpr double kNear = 0.03;  // of a usual rate
+constexpr double kNear = 0.04;  // of a usual rate
 // Intervals beyond this part of the median are lost frames or bursts.
 constexpr double kOutlier = 0.5;
+
+// The usual rate nearest to a measured one, or the measured one if none is near.
+double Usual(double rate) {
+  double nearest = rate, least = kNear;
+  for (const double usual : kUsualRates) {
+    const double difference = std::abs(rate - usual) / usual;
+    if (difference > least) continue;
+    nearest = usual;
+    least = difference;
+  }
+  return nearest;
+}
 
 }  // namespace
 
@@ -45,10 +57,7 @@ std::optional<double> RateEstimate::rate_hz() const {
   }
   double rate = count / sum;
   rate /= std::ceil(rate / kMaxRateHz - kNear);
-  for (const double usual : kUsualRates) {
-    if (std::abs(rate - usual) <= kNear * usual) return usual;
-  }
-  return std::max(rate, 1.0);
+  return std::max(Usual(rate), 1.0);
 }
 
 }  // namespace duet::client::capture

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/capture/lz4_frame.h"
 #include "model/base/strict_json.h"
@@ -108,6 +109,15 @@ absl::Status RokokoReader::Read(absl::string_view datagram, std::vector<CaptureF
     CaptureFrame frame;
     frame.sender_seconds = TimeOf(*scene);
     for (const std::string& joint : names_) {
+      const bool at_the_foot =
+          absl::EndsWith(joint, "Toe") && Field(body, joint.c_str()) == nullptr;
+      if (at_the_foot && !std::exchange(no_toes_, true)) {
+        notes_.emplace_back("Rokoko: the actor has no toes; they are placed at the feet");
+      }
+      if (at_the_foot) {
+        frame.positions.push_back(frame.positions.back());  // the foot is before its toe
+        continue;
+      }
       const absl::StatusOr<motion::Vec3> position = ReadPosition(*body, joint);
       if (!position.ok()) return position.status();
       frame.positions.push_back(*position);

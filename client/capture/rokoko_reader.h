@@ -12,6 +12,7 @@ namespace duet::client::capture {
 // Reads the live stream of Rokoko Studio: JSON v3, plain or as an LZ4 frame. Joints are at world
 // positions in Unity's left-handed axes. Every datagram is a frame.
 //
+// Toes that an actor does not have are placed at the feet.
 // The first actor with a body leads, and later the actor of the same name; others are ignored.
 class RokokoReader : public StreamReader {
  public:
@@ -27,7 +28,7 @@ class RokokoReader : public StreamReader {
  private:
   std::vector<std::string> names_;
   std::string actor_;  // empty: none has come
-  bool others_ = false;
+  bool others_ = false, no_toes_ = false;
   std::vector<std::string> notes_;
 };
 

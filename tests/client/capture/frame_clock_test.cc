@@ -275,6 +275,22 @@ TEST(RateEstimateTest, FindsUsualRatesInSpiteOfLossAndRounding) {
   }
 }
 
+// A sender of 60 Hz that draws its frames unevenly, as VMC's do: some intervals count as lost
+// frames.
+TEST(RateEstimateTest, FindsTheUsualRateNearAnUnevenOne) {
+  for (const auto& [measured, usual] : {std::pair{62.1, 60.0},
+                                        {58.2, 60.0},
+                                        {30.9, 30.0},
+                                        {24.1, 24.0},
+                                        {25.4, 25.0},
+                                        {73.9, 75.0},
+                                        {64.0, 64.0}}) {
+    RateEstimate estimate;
+    for (int i = 0; i <= 100; ++i) estimate.Add(i / measured);
+    EXPECT_NEAR(estimate.rate_hz().value_or(0), usual, 1e-6) << measured;
+  }
+}
+
 TEST(RateEstimateTest, HalvesRatesThatAreTooHigh) {
   RateEstimate estimate;
   for (int i = 0; i <= 300; ++i) estimate.Add(i / 240.0);

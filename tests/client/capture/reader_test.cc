@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -161,6 +162,22 @@ TEST_F(RokokoReaderTest, NamesWhatIsWrong) {
               HasSubstr("body.leftLeg.position.x: expected a number within 1000 m, got none"));
   EXPECT_THAT(ErrorOf(&reader_, absl::StrReplaceAll(Json(1), {{"\"y\":0.5", "\"y\":1e9"}})),
               HasSubstr("body.hip.position.y"));
+}
+
+TEST_F(RokokoReaderTest, ToesThatAreMissingAreAtTheFeet) {
+  const std::string text =
+      absl::StrReplaceAll(Json(1), {{"leftToe", "leftTip"}, {"rightToe", "rightTip"}});
+  ASSERT_TRUE(reader_.Read(text, &frames_).ok());
+  ASSERT_TRUE(reader_.Read(text, &frames_).ok());
+  ASSERT_THAT(frames_, SizeIs(2));
+  const auto at = [this](const std::string& joint) {
+    const std::vector<std::string>& names = reader_.joint_names();
+    const auto found = std::find(names.begin(), names.end(), joint);
+    return frames_[0].positions[static_cast<std::size_t>(found - names.begin())];
+  };
+  EXPECT_EQ(at("leftToe"), at("leftFoot"));
+  EXPECT_EQ(at("rightToe"), at("rightFoot"));
+  EXPECT_THAT(reader_.TakeNotes(), ElementsAre(HasSubstr("no toes")));
 }
 
 TEST_F(RokokoReaderTest, ATimestampThatIsNoNumberIsNoTime) {
