@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/angle.h"
 #include "model/base/text.h"
+#include "model/formats/bvh/frame_time.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::bvh {
@@ -209,6 +210,7 @@ class BvhParser {
         !(document_.frame_time_s >= 1 / motion::kMaxFrameRateHz && document_.frame_time_s <= 10)) {
       return Unexpected(word, "a frame time of 0.001 to 10 seconds");
     }
+    document_.frame_time_decimals = DecimalsOf(word);
     return absl::OkStatus();
   }
 
@@ -220,18 +222,25 @@ class BvhParser {
       line = absl::StripAsciiWhitespace(line);
       if (line.empty()) continue;
       const int number = first_line + lines.number() - 1;
-      if (frames == document_.frame_count) {
+      // Some programs count from 0, or do not count the rest pose.
+      if (frames > document_.frame_count) {
         return base::ErrorAt(source_, number,
-                             absl::StrCat("expected the ", frames, " frames of Frames:, got more"));
+                             absl::StrCat("expected the ", document_.frame_count,
+                                          " frames of Frames:, got at least 2 more"));
       }
       absl::Status status = ParseFrame(line, number);
       if (!status.ok()) return status;
       ++frames;
     }
     if (frames == document_.frame_count) return absl::OkStatus();
-    return base::ErrorAt(
-        source_, first_line + lines.number(),
-        absl::StrCat("expected the ", document_.frame_count, " frames of Frames:, got ", frames));
+    if (frames == 0 || frames < document_.frame_count - 1 || frames > motion::kMaxMotionFrames) {
+      return base::ErrorAt(
+          source_, first_line + lines.number(),
+          absl::StrCat("expected the ", document_.frame_count, " frames of Frames:, got ", frames,
+                       "; if the file is whole, correct the number"));
+    }
+    document_.stated_frame_count = std::exchange(document_.frame_count, frames);
+    return absl::OkStatus();
   }
 
   absl::Status ParseFrame(absl::string_view line, int number) {

@@ -36,7 +36,10 @@ struct BvhJoint {
 struct BvhDocument {
   std::vector<BvhJoint> joints;
   double frame_time_s = 0;
+  std::optional<int> frame_time_decimals;  // of the number in the file, if it is rounded to some
   int frame_count = 0;
+  // The frames that the file states, if there is one more or one fewer.
+  std::optional<int> stated_frame_count;
   std::vector<float> values;  // [frame_count, channels of all joints in order]
 
   int ChannelCount() const;

@@ -1,19 +1,16 @@
 #include "model/formats/bvh/bvh_import.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/formats/bvh/frame_time.h"
 
 namespace duet::formats::bvh {
 namespace {
-
-// Relative. Files write frame times with 3 to 7 digits.
-constexpr double kRateTolerance = 5e-4;
 
 // The joints below one ROOT.
 std::vector<int> JointsOfPerson(const BvhDocument& document, int person) {
@@ -43,20 +40,29 @@ retargeting::JointTree TreeOf(const BvhDocument& document, const std::vector<int
 }
 
 double FrameRate(const BvhDocument& document) {
-  const double rate = 1 / document.frame_time_s;
-  const double whole = std::round(rate);
-  return whole >= 1 && std::abs(rate - whole) < kRateTolerance * whole ? whole : rate;
+  return RateOfFrameTime(document.frame_time_s, document.frame_time_decimals);
+}
+
+// Adds a note and a remark, which `duet inspect` prints.
+void Remark(const std::string& what, const BvhImportOptions& options) {
+  if (options.notes != nullptr) options.notes->push_back(what);
+  if (options.report != nullptr) options.report->remarks.push_back(what);
+}
+
+void NoteFrameCount(const BvhDocument& document, const BvhImportOptions& options) {
+  if (!document.stated_frame_count.has_value()) return;
+  Remark(absl::StrCat("frames: the file has ", document.frame_count, ", and states ",
+                      *document.stated_frame_count),
+         options);
 }
 
 void NotePositionChannels(const BvhDocument& document, const BvhImportOptions& options) {
   const std::optional<PositionChannels> found = FindPositionChannels(document);
   if (!found.has_value()) return;
   const bool replace = *found == PositionChannels::kReplaceOffset;
-  const std::string note =
-      absl::StrCat("position channels below the root: ", replace ? "in place of" : "added to",
-                   " OFFSET (as most joints have it)");
-  if (options.notes != nullptr) options.notes->push_back(note);
-  if (options.report != nullptr) options.report->remarks.push_back(note);
+  Remark(absl::StrCat("position channels below the root: ", replace ? "in place of" : "added to",
+                      " OFFSET (as most joints have it)"),
+         options);
 }
 
 void Report(const BvhDocument& document, double frame_rate_hz, retargeting::ReadingReport* report) {
@@ -75,6 +81,7 @@ absl::StatusOr<motion::Clip> FromBvh(const BvhDocument& document, absl::string_v
                                      const BvhImportOptions& options) {
   const std::vector<int> joints = JointsOfPerson(document, options.person);
   const BvhKinematics kinematics(document);
+  NoteFrameCount(document, options);
   NotePositionChannels(document, options);
   Report(document, FrameRate(document), options.report);
   retargeting::Character character;

@@ -238,15 +238,20 @@ TEST(BvhDocument, NamesThePlaceOfAnError) {
               HasSubstr("a.bvh:18: expected 7 channel values, got 6"));
   EXPECT_THAT(ErrorWith("90 0 0 7 8 9 0", "90 0 0 7 8 nan 0"),
               HasSubstr("a.bvh:18: channel value 6: expected a finite number, got \"nan\""));
-  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 3"),
-              HasSubstr("expected the 3 frames of Frames:, got 2"));
-  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 1"),
-              HasSubstr("expected the 1 frames of Frames:, got more"));
+  EXPECT_THAT(ErrorWith("Frames:\t2", "Frames: 4"),
+              HasSubstr("expected the 4 frames of Frames:, got 2"));
+  const std::string row = "0 0 90 0 0 0 90\n";
+  EXPECT_THAT(ParseError(absl::StrCat(kArm, row, row)),
+              HasSubstr("a.bvh:22: expected the 2 frames of Frames:, got at least 2 more"));
 }
 
 TEST(BvhDocument, RejectsEveryTruncation) {
   const std::string text(kArm, sizeof(kArm) - 6);  // without the last value and what follows
-  for (std::size_t size = 0; size < text.size(); ++size) ParseError(text.substr(0, size));
+  const std::size_t second_frame = text.find("0 0 90");
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    // One frame fewer than stated is read.
+    if (size + 2 < second_frame || size > second_frame) ParseError(text.substr(0, size));
+  }
 }
 
 TEST(BvhDocument, RejectsEndlessNesting) {

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/formats/bvh/bvh_export.h"
@@ -211,6 +214,39 @@ TEST(BvhImport, RoundsFrameTimesToTheIntendedRate) {
     BvhDocument broadcast = Export(MakePerson({2}));
     broadcast.frame_time_s = 1 / rate;
     EXPECT_NEAR(FromBvh(broadcast, "a.bvh")->frame_rate_hz, rate, 1e-6);
+  }
+}
+
+// Exporters round frame times to few decimals, or cut the others off.
+TEST(BvhImport, FindsTheRateOfAFrameTimeWithFewDecimals) {
+  const std::pair<const char*, double> rates[] = {
+      {".0333", 30},          {"0.0333", 30}, {".033", 30},     {".0167", 60},  {"0.0166", 60},
+      {".017", 60},           {".0083", 120}, {"0.00833", 120}, {".0084", 119}, {".0417", 24},
+      {"0.0416", 24},         {".042", 24},   {".0111", 90},    {".0139", 72},  {".0069", 144},
+      {".0042", 240},         {".0667", 15},  {".0334", 29.97}, {".016", 62.5}, {".008", 125},
+      {"3.33e-2", 1 / 0.0333}};
+  const std::string text = FormatBvh(Export(MakePerson({2})));
+  for (const auto& [frame_time, rate] : rates) {
+    const absl::StatusOr<BvhDocument> document =
+        ParseBvh(absl::StrReplaceAll(
+                     text, {{"Frame Time: 0.033333333", absl::StrCat("Frame Time: ", frame_time)}}),
+                 "a.bvh");
+    ASSERT_THAT(document, IsOk());
+    EXPECT_EQ(FromBvh(*document, "a.bvh")->frame_rate_hz, rate) << frame_time;
+  }
+}
+
+TEST(BvhImport, ReadsOneFrameMoreOrFewerThanStatedWithANote) {
+  const std::string text = FormatBvh(Export(MakePerson({10})));
+  for (const int stated : {9, 11}) {
+    const absl::StatusOr<BvhDocument> document = ParseBvh(
+        absl::StrReplaceAll(text, {{"Frames: 10", absl::StrCat("Frames: ", stated)}}), "a.bvh");
+    ASSERT_THAT(document, IsOk());
+    std::vector<std::string> notes;
+    BvhImportOptions options;
+    options.notes = &notes;
+    EXPECT_EQ(FromBvh(*document, "a.bvh", options)->frame_count(), 10);
+    EXPECT_THAT(notes, Contains(absl::StrCat("frames: the file has 10, and states ", stated)));
   }
 }
 
