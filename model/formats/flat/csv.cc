@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "model/base/text.h"
 #include "model/formats/flat/csv_header.h"
 #include "model/formats/flat/csv_joint_rows.h"
 #include "model/formats/flat/csv_times.h"
+#include "model/formats/flat/utf16.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {
@@ -67,6 +69,7 @@ class CsvParser {
   // `status` fails.
   bool NextLine(absl::string_view* line, absl::Status* status) {
     while (lines_.Next(line)) {
+      if (TakeSeparator(*line)) continue;
       *line = absl::StripAsciiWhitespace(*line);
       if (line->empty()) continue;
       if (line->front() != '#') return true;
@@ -74,6 +77,15 @@ class CsvParser {
       if (!status->ok()) return false;
     }
     return false;
+  }
+
+  // Spreadsheets read and write the separator as the first line: "sep=;".
+  bool TakeSeparator(absl::string_view line) {
+    if (lines_.number() != 1 || line.size() != 5 || !absl::StartsWithIgnoreCase(line, "sep=")) {
+      return false;
+    }
+    separator_ = line.back();
+    return true;
   }
 
   // Returns first the rows that ParseLevels read beyond the header.
@@ -126,7 +138,7 @@ class CsvParser {
       return status.ok() ? Error("header: expected frame,head_x,head_y,head_z,..., got no line")
                          : status;
     }
-    delimiter_ = FindDelimiter(line);
+    delimiter_ = separator_.value_or(FindDelimiter(line));
     std::vector<CsvRow> rows = {SplitRow(line, delimiter_)};
     if (rows[0].size() > kMaxColumns) {
       return Error(
@@ -182,11 +194,11 @@ class CsvParser {
     return ErrorInColumn(column + 1, motion::ExpectedCoordinate(row[column]));
   }
 
-  // Converts a decimal comma ("0,05"), as many European spreadsheets write it, unless commas
-  // separate the columns.
-  std::string WithPoint(absl::string_view field) const {
+  // Converts a decimal comma ("0,05"), as many European spreadsheets write it. If commas separate
+  // the columns, such a field was quoted.
+  static std::string WithPoint(absl::string_view field) {
     std::string text(field);
-    if (delimiter_ != ',' && std::count(text.begin(), text.end(), ',') == 1) {
+    if (std::count(text.begin(), text.end(), ',') == 1) {
       std::replace(text.begin(), text.end(), ',', '.');
     }
     return text;
@@ -246,6 +258,7 @@ class CsvParser {
 
   base::LineReader lines_;
   absl::string_view source_;
+  std::optional<char> separator_;  // that the first line states
   char delimiter_ = ',';
   CsvHeader header_;
   std::vector<CsvRow> waiting_;
@@ -293,7 +306,8 @@ std::string Format(const std::vector<const motion::Clip*>& people) {
 }  // namespace
 
 absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source) {
-  return CsvParser(text, source).Parse();
+  const std::optional<std::string> converted = FromUtf16(text);
+  return CsvParser(converted.has_value() ? *converted : text, source).Parse();
 }
 
 std::string FormatCsv(const motion::ClipPair& pair) {

@@ -47,6 +47,37 @@ TEST(Csv, ReadsQuotedFieldsAndAByteOrderMark) {
   EXPECT_EQ(motion->people[0].at(0, 0), (motion::Vec3{1, -2.5f, 3}));
 }
 
+// "Unicode text" of a spreadsheet.
+std::string Utf16(const std::string& ascii, bool little) {
+  std::string bytes = little ? "\xFF\xFE" : "\xFE\xFF";
+  for (char c : ascii) {
+    if (!little) bytes.push_back('\0');
+    bytes.push_back(c);
+    if (little) bytes.push_back('\0');
+  }
+  return bytes;
+}
+
+TEST(Csv, ReadsWhatSpreadsheetsWrite) {
+  const std::string rows = "frame;a_x;a_y;a_z\r\n0;1,5;-2,5;3\r\n";
+  const std::string texts[] = {
+      rows,
+      "sep=;\r\n" + rows,
+      "\xEF\xBB\xBFsep=;\n" + rows,
+      Utf16("sep=;\r\n" + rows, true),
+      Utf16(rows, false),
+      Utf16(absl::StrReplaceAll(rows, {{";", "\t"}}), true),
+      "SEP=\t\n" + absl::StrReplaceAll(rows, {{";", "\t"}}),
+      "sep=,\nframe,a_x,a_y,a_z\n0,\"1,5\",\"-2,5\",3\n",
+  };
+  for (const std::string& text : texts) {
+    const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv(text, "a.csv");
+    ASSERT_THAT(motion, IsOk()) << text;
+    ASSERT_THAT(motion->people[0].joint_names, ElementsAre("a"));
+    EXPECT_EQ(motion->people[0].at(0, 0), (motion::Vec3{1.5f, -2.5f, 3})) << text;
+  }
+}
+
 TEST(Csv, ReturnsNoRateIfTheFileHasNone) {
   const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv("a_x,a_y,a_z\n1,2,3\n", "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
