@@ -25,6 +25,8 @@ constexpr absl::string_view kPrefixes[] = {"leader.", "follower."};
 constexpr const char* kSuffixes[] = {"_x", "_y", "_z"};
 constexpr std::size_t kMaxColumns = std::size_t{motion::kMaxFileJoints} * 6 + 2;
 constexpr std::size_t kMostHeaderRows = 3;
+// Far beyond kMaxColumns names or numbers.
+constexpr std::size_t kLongestLine = std::size_t{4} << 20;
 
 float* AxisOf(motion::Vec3* position, int axis) {
   return axis == 0 ? &position->x : axis == 1 ? &position->y : &position->z;
@@ -69,6 +71,11 @@ class CsvParser {
   // `status` fails.
   bool NextLine(absl::string_view* line, absl::Status* status) {
     while (lines_.Next(line)) {
+      if (line->size() > kLongestLine) {
+        *status = Error(absl::StrCat("expected a line of at most ", kLongestLine, " bytes, got ",
+                                     line->size()));
+        return false;
+      }
       if (TakeSeparator(*line)) continue;
       *line = absl::StripAsciiWhitespace(*line);
       if (line->empty()) continue;

@@ -78,6 +78,13 @@ TEST(Csv, ReadsWhatSpreadsheetsWrite) {
   }
 }
 
+TEST(Csv, BoundsTheLengthOfALine) {
+  const std::string longest(std::size_t{5} << 20, ',');
+  EXPECT_THAT(ParseError("a_x,a_y,a_z\n1,2,3\n" + longest),
+              HasSubstr("a.csv:3: expected a line of at most 4194304 bytes, got 5242880"));
+  EXPECT_THAT(ParseError(longest), HasSubstr("a.csv:1: expected a line of at most"));
+}
+
 TEST(Csv, ReturnsNoRateIfTheFileHasNone) {
   const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv("a_x,a_y,a_z\n1,2,3\n", "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
