@@ -11,6 +11,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "model/base/text.h"
 #include "model/formats/flat/csv_header.h"
 #include "model/formats/flat/csv_joint_rows.h"
@@ -212,6 +213,18 @@ class CsvParser {
   }
   void AddTime(absl::string_view time) { times_.Add(WithPoint(time)); }
 
+  // Programs write a number that they do not have as "nan".
+  absl::Status CheckFrameNumber(const CsvRow& row, std::size_t column) const {
+    absl::string_view word = row[column];
+    absl::ConsumePrefix(&word, "-");
+    for (absl::string_view bad : {"nan", "inf", "infinity"}) {
+      if (!absl::EqualsIgnoreCase(word, bad)) continue;
+      return ErrorInColumn(column + 1, absl::StrCat("frame number: expected a number, got ",
+                                                    base::Quoted(row[column])));
+    }
+    return absl::OkStatus();
+  }
+
   absl::Status ParseFrameRow(const CsvRow& row) {
     absl::Status status = CheckRow(row);
     if (!status.ok()) return status;
@@ -226,6 +239,7 @@ class CsvParser {
     for (std::size_t i = 0; i < row.size() && status.ok(); ++i) {
       const CsvColumn& column = header_.columns[i];
       if (column.kind == CsvColumn::Kind::kTime) AddTime(row[i]);
+      if (column.kind == CsvColumn::Kind::kFrame) status = CheckFrameNumber(row, i);
       if (column.kind != CsvColumn::Kind::kPosition) continue;
       motion::Vec3& at = motion_.people[static_cast<size_t>(column.person)].at(frame, column.joint);
       status = ParsePosition(row, i, AxisOf(&at, column.axis));
@@ -242,7 +256,10 @@ class CsvParser {
       if (column.kind == CsvColumn::Kind::kPosition) {
         status = ParsePosition(row, i, AxisOf(&parsed.position, column.axis));
       }
-      if (column.kind == CsvColumn::Kind::kFrame) parsed.frame = row[i];
+      if (column.kind == CsvColumn::Kind::kFrame) {
+        parsed.frame = row[i];
+        status = CheckFrameNumber(row, i);
+      }
       if (column.kind == CsvColumn::Kind::kTime) time = row[i];
       if (column.kind == CsvColumn::Kind::kJoint) parsed.joint = row[i];
       if (column.kind == CsvColumn::Kind::kPerson) parsed.person = row[i];

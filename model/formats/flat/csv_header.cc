@@ -29,6 +29,7 @@ bool IsOneOf(absl::string_view text, std::initializer_list<absl::string_view> wo
 bool IsTime(absl::string_view name) {
   return IsOneOf(name, {"time", "time_s", "t", "seconds", "timestamp"});
 }
+bool IsFrame(absl::string_view name) { return IsOneOf(name, {"frame", "frame_number"}); }
 // An index has no name, or the name that pandas gives it when it reads it back.
 bool IsIndex(absl::string_view name) {
   return IsOneOf(name, {"", "frame", "index", "frame_number", "unnamed: 0"});
@@ -179,7 +180,7 @@ class HeaderReader {
       column.kind = CsvColumn::Kind::kPerson;
     } else if (IsTime(name)) {
       column.kind = CsvColumn::Kind::kTime;
-    } else if (IsOneOf(name, {"frame", "frame_number"})) {
+    } else if (IsFrame(name)) {
       column.kind = CsvColumn::Kind::kFrame;
     }
     header_.columns.push_back(column);
@@ -206,6 +207,7 @@ class HeaderReader {
   absl::Status AddColumn(std::size_t number, absl::string_view name) {
     CsvColumn column;
     if (IsTime(name)) column.kind = CsvColumn::Kind::kTime;
+    if (IsFrame(name)) column.kind = CsvColumn::Kind::kFrame;
     if (!IsTime(name) && !IsIndex(name)) {
       column.kind = CsvColumn::Kind::kPosition;
       absl::string_view joint = name;

@@ -14,11 +14,11 @@ namespace duet::formats::flat {
 // The content of a column.
 struct CsvColumn {
   enum class Kind {
-    kPassedOver,  // a frame number, an index
+    kPassedOver,  // an index
     kPosition,    // one axis of a joint's position
     kTime,        // seconds
+    kFrame,       // a frame number
     // In a file with a row for each joint:
-    kFrame,
     kPerson,
     kJoint,
   };

@@ -85,6 +85,16 @@ TEST(Csv, BoundsTheLengthOfALine) {
   EXPECT_THAT(ParseError(longest), HasSubstr("a.csv:1: expected a line of at most"));
 }
 
+TEST(Csv, RejectsAFrameNumberThatIsNone) {
+  for (const char* number : {"nan", "NaN", "-inf", "Infinity"}) {
+    EXPECT_THAT(ParseError(absl::StrCat("frame,a_x,a_y,a_z\n0,1,2,3\n", number, ",1,2,3\n")),
+                HasSubstr(absl::StrCat("a.csv:3: column 1: frame number: expected a number, got \"",
+                                       number, "\"")));
+    EXPECT_THAT(ParseError(absl::StrCat("joint,frame,x,y,z\na,", number, ",1,2,3\n")),
+                HasSubstr("a.csv:2: column 2: frame number: expected a number"));
+  }
+}
+
 TEST(Csv, ReturnsNoRateIfTheFileHasNone) {
   const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv("a_x,a_y,a_z\n1,2,3\n", "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
