@@ -90,6 +90,11 @@ absl::string_view UpAxisName(UpAxis axis) { return kAxes[static_cast<size_t>(axi
 std::optional<LengthUnit> ParseLengthUnit(absl::string_view name) {
   return ValueOf<LengthUnit>(kUnits, name);
 }
-std::optional<UpAxis> ParseUpAxis(absl::string_view name) { return ValueOf<UpAxis>(kAxes, name); }
+std::optional<UpAxis> ParseUpAxis(absl::string_view name) {
+  if (name == "y") return UpAxis::kYUp;
+  if (name == "z") return UpAxis::kZUp;
+  if (name == "-y") return UpAxis::kYDown;
+  return ValueOf<UpAxis>(kAxes, name);
+}
 
 }  // namespace duet::motion

@@ -101,6 +101,12 @@ TEST(Coordinates, HaveOneSpellingThatReadsBack) {
   EXPECT_EQ(UpAxisName(UpAxis::kYDown), "y-down");
 }
 
+TEST(Coordinates, AcceptTheNameOfTheAxisAlone) {
+  EXPECT_EQ(ParseUpAxis("y"), UpAxis::kYUp);
+  EXPECT_EQ(ParseUpAxis("z"), UpAxis::kZUp);
+  EXPECT_EQ(ParseUpAxis("-y"), UpAxis::kYDown);
+}
+
 TEST(Coordinates, RejectUnknownNames) {
   for (const char* name : {"", "feet", "Metres", "metre", "m", "sbu_normalised", "y-up"}) {
     EXPECT_EQ(ParseLengthUnit(name), std::nullopt) << name;
