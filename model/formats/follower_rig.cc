@@ -10,6 +10,7 @@
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_rig.h"
 #include "model/formats/fbx/fbx_rig.h"
+#include "model/formats/file_beside.h"
 #include "model/formats/format_options.h"
 #include "model/formats/gltf/gltf_character.h"
 #include "model/formats/gltf/gltf_rig.h"
@@ -39,8 +40,8 @@ fbx::FbxImportOptions FbxOptionsOf(const FollowerRig& rig) {
 }
 
 gltf::GltfFileReader FilesBeside(const FollowerRig& rig) {
-  return [folder = rig.file.parent_path()](const std::string& name) {
-    return base::ReadFile(folder / name, motion::kMaxMotionFileBytes, "a buffer");
+  return [rig_file = rig.file](const std::string& name) {
+    return ReadFileBeside(rig_file, name, "a buffer");
   };
 }
 

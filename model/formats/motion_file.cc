@@ -15,6 +15,7 @@
 #include "model/formats/bvh/bvh_export.h"
 #include "model/formats/bvh/bvh_import.h"
 #include "model/formats/fbx/fbx_import.h"
+#include "model/formats/file_beside.h"
 #include "model/formats/flat/csv.h"
 #include "model/formats/flat/json_motion.h"
 #include "model/formats/flat/npy.h"
@@ -54,7 +55,7 @@ struct Source {
   // `what` names the kind of file, with its article.
   absl::StatusOr<std::string> ReadBeside(const std::string& file, const char* what) const {
     if (folder.has_value()) {
-      return base::ReadFile(*folder / file, motion::kMaxMotionFileBytes, what);
+      return ReadFileBeside(name, file, what);
     }
     return absl::InvalidArgumentError(absl::StrCat(name, ": expected ", what, " ",
                                                    base::Quoted(file),

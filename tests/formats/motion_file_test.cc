@@ -13,6 +13,7 @@
 #include "gtest/gtest.h"
 #include "model/base/file.h"
 #include "model/formats/flat/sbu_text.h"
+#include "model/formats/follower_rig.h"
 #include "tests/formats/asf/asf_fixture.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/matchers.h"
@@ -232,6 +233,33 @@ TEST_F(MotionFile, ReadsEitherPersonOfAGltfFileAndItsBufferBesideIt) {
     }
     EXPECT_TRUE(IsWritable(name));
   }
+}
+
+TEST_F(MotionFile, ABufferIsNoLinkToAnotherFolder) {
+  test::GltfBuilder builder;
+  test::AddPerson(pair_.leader, {}, &builder);
+  for (const char* name : {"here", "store", "elsewhere"}) fs::create_directory(folder_ / name);
+  ASSERT_TRUE(base::WriteFile(folder_ / "here/a.gltf", builder.WithFile("a.bin")).ok());
+  ASSERT_TRUE(base::WriteFile(folder_ / "elsewhere/a.bin", builder.buffer()).ok());
+  fs::create_symlink(folder_ / "elsewhere/a.bin", folder_ / "here/a.bin");
+  const auto refused = StatusIs(absl::StatusCode::kInvalidArgument,
+                                HasSubstr("got a link to a file in another folder"));
+  EXPECT_THAT(ReadLeader(folder_ / "here/a.gltf").status(), refused);
+  EXPECT_THAT(FormatOntoRig(pair_.leader, {folder_ / "here/a.gltf", {}}, Format::kGlb).status(),
+              refused);
+  EXPECT_THAT(CheckRig({folder_ / "here/a.gltf", {}}), refused);
+  // A link to a neighbour.
+  ASSERT_TRUE(base::WriteFile(folder_ / "here/b.bin", builder.buffer()).ok());
+  fs::remove(folder_ / "here/a.bin");
+  fs::create_symlink("b.bin", folder_ / "here/a.bin");
+  EXPECT_THAT(ReadLeader(folder_ / "here/a.gltf").status(), IsOk());
+  // Both are links to one folder, as in a cache of downloads.
+  fs::remove(folder_ / "here/a.bin");
+  fs::rename(folder_ / "here/a.gltf", folder_ / "store/1");
+  fs::rename(folder_ / "here/b.bin", folder_ / "store/2");
+  fs::create_symlink(folder_ / "store/1", folder_ / "here/a.gltf");
+  fs::create_symlink(folder_ / "store/2", folder_ / "here/a.bin");
+  EXPECT_THAT(ReadLeader(folder_ / "here/a.gltf").status(), IsOk());
 }
 
 TEST_F(MotionFile, ReadsAnAmcFileWithTheSkeletonBesideIt) {
