@@ -121,8 +121,15 @@ absl::StatusOr<WrittenFiles> WriteWithRig(const std::filesystem::path& output,
                              WritingOf(synthesis, provenance, &written.notes));
   if (!follower.ok()) return follower.status();
   // The follower on Duet's skeleton is replaced, so it is not reported.
-  absl::StatusOr<std::vector<std::filesystem::path>> files = formats::WritePair(
-      output, pair, synthesis.skeleton, WritingOf(synthesis, provenance, nullptr));
+  formats::WriteOptions writing = WritingOf(synthesis, provenance, nullptr);
+  const absl::StatusOr<double> unit = formats::BvhUnitOnRig(*synthesis.follower_rig, writing);
+  if (!unit.ok()) return unit.status();
+  if (format == formats::Format::kBvh && *unit != writing.bvh_metres_per_unit) {
+    written.notes.push_back(absl::StrCat("both BVH files have the unit of the rig, ", *unit, " m"));
+  }
+  writing.bvh_metres_per_unit = *unit;
+  absl::StatusOr<std::vector<std::filesystem::path>> files =
+      formats::WritePair(output, pair, synthesis.skeleton, writing);
   if (!files.ok()) return files.status();
   written.files = *std::move(files);
   if (format != formats::Format::kBvh) written.files.push_back(FollowerBeside(output));

@@ -107,6 +107,10 @@ absl::StatusOr<retargeting::CharacterRig> ReadRig(Format format, const std::stri
   return gltf::ReadGltfRig(content, rig.file.string(), FilesBeside(rig), GltfOptionsOf(rig));
 }
 
+absl::StatusOr<std::string> ReadRigFile(const FollowerRig& rig) {
+  return base::ReadFile(rig.file, motion::kMaxMotionFileBytes, "a rig");
+}
+
 }  // namespace
 
 bool FitsRig(Format written, Format rig) {
@@ -121,10 +125,25 @@ absl::Status CheckRig(const FollowerRig& rig) {
     return absl::InvalidArgumentError(
         absl::StrCat(rig.file.string(), ": rig: expected ", kRigExtensions));
   }
-  const absl::StatusOr<std::string> content =
-      base::ReadFile(rig.file, motion::kMaxMotionFileBytes, "a rig");
+  const absl::StatusOr<std::string> content = ReadRigFile(rig);
   if (!content.ok()) return content.status();
   return ReadRig(*format, *content, rig).status();
+}
+
+absl::StatusOr<double> BvhUnitOnRig(const FollowerRig& rig, const WriteOptions& options) {
+  if (FormatOf(rig.file) != Format::kBvh) return options.bvh_metres_per_unit;
+  const absl::StatusOr<std::string> content = ReadRigFile(rig);
+  if (!content.ok()) return content.status();
+  const absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(*content, rig.file.string());
+  if (!document.ok()) return document.status();
+  retargeting::CharacterFit fit;
+  bvh::BvhImportOptions reading = BvhOptionsOf(rig);
+  reading.fit = &fit;
+  reading.notes = nullptr;
+  reading.report = nullptr;
+  const absl::StatusOr<motion::Clip> read = FromBvh(*document, rig.file.string(), reading);
+  if (!read.ok()) return read.status();
+  return fit.metres_per_unit;
 }
 
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
@@ -135,8 +154,7 @@ absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const Fo
     return absl::InvalidArgumentError(absl::StrCat(source, ": rig: expected ", kRigExtensions,
                                                    "; it is written as ", kRigOutputExtensions));
   }
-  const absl::StatusOr<std::string> content =
-      base::ReadFile(rig.file, motion::kMaxMotionFileBytes, "a rig");
+  const absl::StatusOr<std::string> content = ReadRigFile(rig);
   if (!content.ok()) return content.status();
   if (format == Format::kBvh && *rigs == Format::kBvh) {
     return OntoBvh(follower, *content, rig, options);

@@ -39,6 +39,10 @@ absl::Status CheckRig(const FollowerRig& rig);
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
                                           Format format, const WriteOptions& options = {});
 
+// The unit in which FormatOntoRig writes a BVH: the rig's own if it is a BVH, or else that of
+// `options`. Errors: those of reading the rig.
+absl::StatusOr<double> BvhUnitOnRig(const FollowerRig& rig, const WriteOptions& options);
+
 }  // namespace duet::formats
 
 #endif  // DUET_MODEL_FORMATS_FOLLOWER_RIG_H_

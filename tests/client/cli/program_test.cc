@@ -239,7 +239,14 @@ TEST_F(ProgramTest, WritesTheFollowerOnTheLeadersRig) {
             0)
       << err_.str();
   EXPECT_EQ(HierarchyOf(folder_ / "pair.follower.bvh"), HierarchyOf(folder_ / "rig.leader.bvh"));
-  EXPECT_NE(HierarchyOf(folder_ / "pair.leader.bvh"), HierarchyOf(folder_ / "rig.leader.bvh"));
+  for (const char* file : {"pair.leader.bvh", "pair.follower.bvh"}) {
+    formats::ReadOptions options;
+    retargeting::ReadingReport report;
+    options.report = &report;
+    ASSERT_THAT(formats::ReadLeader(folder_ / file, options).status(), IsOk());
+    EXPECT_EQ(report.unit->value, "metres") << file << ": both in one unit";
+  }
+  EXPECT_THAT(out_.str(), HasSubstr("both BVH files have the unit of the rig, 1 m"));
   EXPECT_TRUE(Exists("pair.glb"));
   // Another's rig, for a leader without one.
   ASSERT_EQ(Synthesize("other.bvh", {"--follower-rig", Path("rig.leader.bvh")}), 0) << err_.str();
