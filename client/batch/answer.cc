@@ -75,7 +75,7 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
   request.partner_direction = item.leader->partner_direction;
   request.constraints = item.leader->pins;
   request.up = recipe.input.up;
-  request.seed = SeedOf(item, recipe.seed, retry);
+  request.seed = SeedOf(item, recipe.seed, leader.sha256 + leader.start_sha256, retry);
   request.variety = recipe.variety;
   request.candidates = recipe.candidates;
   request.priority = Priority::kBulk;

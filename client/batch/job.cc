@@ -86,7 +86,8 @@ absl::Status Job::Feed() {
     if (!item->has_value() || (*item)->number >= options_.limit) {
       return absl::AbortedError("the list of leaders was changed during the run");
     }
-    if (!parts_.identity.shard.Has((*item)->id) || !InShare((*item)->id, options_.share)) continue;
+    const std::string& place = (*item)->place;
+    if (!parts_.identity.shard.Has(place) || !InShare(place, options_.share)) continue;
     ++planned_;
     if (parts_.survey->IsSettled((*item)->number)) {
       ++resumed_;

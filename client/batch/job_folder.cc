@@ -50,7 +50,8 @@ std::string ToJson(const JobIdentity& identity) {
                                    {"layout", static_cast<int>(identity.layout)},
                                    {"packing", static_cast<int>(identity.packing)},
                                    {"shard_bytes", identity.shard_bytes},
-                                   {"description", ToJson(identity.description)}};
+                                   {"description", ToJson(identity.description)},
+                                   {"seed_rule", static_cast<int>(identity.seed_rule)}};
   if (identity.up) object["up"] = {identity.up->x, identity.up->y, identity.up->z};
   return object.dump(2) + "\n";
 }
@@ -98,6 +99,9 @@ absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
     reader.Update(description.status());
     if (description.ok()) identity.description = *std::move(description);
   }
+  identity.seed_rule = reader.Has("seed_rule")
+                           ? static_cast<SeedRule>(reader.Int("seed_rule", 1, 2))
+                           : SeedRule::kPath;
   if (reader.Has("up")) identity.up = ReadUp(&reader);
   absl::Status status = reader.Finish();
   if (!status.ok()) return status;

@@ -28,6 +28,7 @@ struct JobIdentity {
   std::vector<motion::Skeleton> skeletons;  // of the models
   SetDescription description;
   std::optional<motion::Vec3> up;  // of every leader (SynthesisOptions::up)
+  SeedRule seed_rule = SeedRule::kContent;
 };
 
 // A data set's folder, held by one process.

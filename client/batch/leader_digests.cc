@@ -16,6 +16,14 @@ uint64_t KeyOfFile(const LeaderEntry& leader) {
   return absl::Hash<std::string>()(leader.file.lexically_normal().string());
 }
 
+// The first 64 bits of a digest, and their text.
+uint64_t FirstBits(const std::string& sha256) {
+  uint64_t digest = 0;
+  (void)absl::SimpleHexAtoi(sha256.substr(0, kDigits), &digest);
+  return digest;
+}
+std::string Hex(uint64_t digest) { return absl::StrCat(absl::Hex(digest, absl::kZeroPad16)); }
+
 }  // namespace
 
 bool LeaderDigests::Knows(const LeaderEntry& leader) const {
@@ -24,8 +32,7 @@ bool LeaderDigests::Knows(const LeaderEntry& leader) const {
 }
 
 absl::Status LeaderDigests::Check(const LeaderEntry& leader, const std::string& sha256) {
-  uint64_t digest = 0;
-  (void)absl::SimpleHexAtoi(sha256.substr(0, kDigits), &digest);
+  const uint64_t digest = FirstBits(sha256);
   uint64_t known = 0;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -34,8 +41,7 @@ absl::Status LeaderDigests::Check(const LeaderEntry& leader, const std::string& 
   if (known == digest) return absl::OkStatus();
   return absl::FailedPreconditionError(absl::StrCat(
       "leader ", leader.given, ": expected the file that earlier answers were made of (sha256 ",
-      absl::Hex(known, absl::kZeroPad16), "...), got a changed one (sha256 ",
-      sha256.substr(0, kDigits),
+      Hex(known), "...), got a changed one (sha256 ", sha256.substr(0, kDigits),
       "...). Restore the file, or make another data set with another "
       "--out"));
 }
@@ -46,6 +52,15 @@ absl::Status LeaderDigests::CheckRecord(const nlohmann::ordered_json& record) {
   leader.file = leader.given;
   const std::string sha256 = record.value("leader_sha256", "");
   return sha256.empty() ? absl::OkStatus() : Check(leader, sha256);
+}
+
+std::string ReadDigests::Of(const LeaderEntry& leader) {
+  const uint64_t key = KeyOfFile(leader);
+  const auto known = digests_.find(key);
+  if (known != digests_.end()) return Hex(known->second);
+  const absl::StatusOr<std::string> digest = DigestOfLeader(leader);
+  if (!digest.ok()) return "";
+  return Hex(digests_[key] = FirstBits(*digest));
 }
 
 absl::StatusOr<std::string> DigestOfLeader(const LeaderEntry& leader) {

@@ -33,6 +33,17 @@ class LeaderDigests {
   absl::flat_hash_map<uint64_t, uint64_t> digests_;  // by hash of the path; the first 64 bits
 };
 
+// The current digests of leaders' files, each of which is read once. Takes 16 to 32 bytes for each
+// file.
+class ReadDigests {
+ public:
+  // The first 16 hex digits; empty if the file cannot be read.
+  std::string Of(const LeaderEntry& leader);
+
+ private:
+  absl::flat_hash_map<uint64_t, uint64_t> digests_;  // by hash of the path; the first 64 bits
+};
+
 // The current digest of the leader's file. Errors: those of base::ReadFile.
 absl::StatusOr<std::string> DigestOfLeader(const LeaderEntry& leader);
 

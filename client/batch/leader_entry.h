@@ -18,6 +18,7 @@ namespace duet::client::batch {
 struct LeaderEntry {
   // Unique name of its outputs: a path relative to the data set, without extension.
   std::string key;
+  bool has_id = false;  // the key is the `id` of a manifest
   std::string given;  // as listed
   std::string line;   // "MANIFEST:NUMBER" if it comes from a manifest
   std::filesystem::path file;

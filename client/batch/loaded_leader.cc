@@ -22,6 +22,13 @@ absl::StatusOr<FollowerStart> ReadStart(const std::filesystem::path& file,
   return FollowerStart(*std::move(pose));
 }
 
+absl::StatusOr<std::string> DigestOf(const std::filesystem::path& file) {
+  const absl::StatusOr<std::string> content =
+      base::ReadFile(file, motion::kMaxMotionFileBytes, "a motion");
+  if (!content.ok()) return content.status();
+  return base::Sha256Hex(*content);
+}
+
 absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const LeaderInput& input,
                       formats::ReadOptions options, LoadedLeader* loaded) {
   const std::string& start = entry.follower_start;
@@ -40,6 +47,10 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
   absl::StatusOr<FollowerStart> pose = ReadStart(file, options);
   if (!pose.ok()) return pose.status();
   loaded->follower_start = *std::move(pose);
+  if (own) return absl::OkStatus();
+  absl::StatusOr<std::string> digest = DigestOf(file);
+  if (!digest.ok()) return digest.status();
+  loaded->start_sha256 = *std::move(digest);
   return absl::OkStatus();
 }
 
@@ -77,12 +88,11 @@ absl::StatusOr<LoadedLeader> Load(const LeaderEntry& entry, formats::Side side,
   if (!clip.ok()) return clip.status();
   absl::Status status = CheckLimits(entry.file, *clip, limits);
   if (!status.ok()) return status;
-  const absl::StatusOr<std::string> content =
-      base::ReadFile(entry.file, motion::kMaxMotionFileBytes, "a motion");
-  if (!content.ok()) return content.status();
+  absl::StatusOr<std::string> digest = DigestOf(entry.file);
+  if (!digest.ok()) return digest.status();
   LoadedLeader loaded;
   loaded.clip = *std::move(clip);
-  loaded.sha256 = base::Sha256Hex(*content);
+  loaded.sha256 = *std::move(digest);
   status = SetStart(entry, side, input, options, &loaded);
   if (!status.ok()) return status;
   return loaded;

@@ -19,7 +19,8 @@ namespace duet::client::batch {
 // A leader's motion in a model's joints, and the start of its follower.
 struct LoadedLeader {
   motion::Clip clip;
-  std::string sha256;  // of the file
+  std::string sha256;        // of the file
+  std::string start_sha256;  // of the file of the follower's start, if that is another one
   std::optional<FollowerStart> follower_start;
 };
 

@@ -200,6 +200,7 @@ class Manifest final : public LeaderSource {
     if (!entry.ok()) return entry;
     if (!key.ok()) return key.status();
     entry->key = *std::move(key);
+    entry->has_id = !id.empty();
     entry->line = absl::StrCat(name_, ":", line_);
     return entry;
   }

@@ -88,6 +88,11 @@ absl::StatusOr<Part> OpenPart(const fs::path& out, const JobIdentity& identity, 
                      ": expected the vertical of the other shards (input.level), got "
                      "another: their leaders differ"));
   }
+  if (begun.seed_rule != identity.seed_rule) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        path.string(),
+        ": expected seeds as of the other shards, got those of another version of duet batch"));
+  }
   absl::StatusOr<JournalReader> journal = JournalReader::Open(part.folder->journal());
   if (!journal.ok()) return journal.status();
   part.journal = std::make_shared<JournalReader>(*std::move(journal));

@@ -37,13 +37,13 @@ std::string Text(const Labels& labels) {
   return text;
 }
 
-// The whole request as text, unique to each item.
-std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model) {
+// What is asked of the leader `who`, as text; `start` is the follower's start.
+std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model,
+                  const std::string& who, const std::string& start) {
   const LeaderEntry& leader = *item.leader;
-  std::string text =
-      absl::StrCat(leader.key, "\n", leader.given, "\n", SideName(item.side), "\n", item.reaction,
-                   "\n", Text(item.labels), "\n", model.name, "@", model.version, "\n", item.sample,
-                   "\n", recipe.variety, "\n", leader.follower_start, "\n");
+  std::string text = absl::StrCat(who, "\n", SideName(item.side), "\n", item.reaction, "\n",
+                                  Text(item.labels), "\n", model.name, "@", model.version, "\n",
+                                  item.sample, "\n", recipe.variety, "\n", start, "\n");
   for (const Schedule::Keyframe& keyframe : item.keyframes) {
     absl::StrAppend(&text, keyframe.at, ":", Text(keyframe.labels), "\n");
   }
@@ -65,6 +65,27 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
   }
   absl::StrAppend(&text, "seed ", leader.seed ? absl::StrCat(*leader.seed) : "", " ", recipe.seed);
   return text;
+}
+
+std::string Digest(const std::string& text) {
+  return base::Sha256Hex(text).substr(0, kIdDigits);
+}
+
+// Sets the digests of the request, of which the id is unique to each item.
+void SetDigests(const Recipe& recipe, const ModelInfo& model, Item* item) {
+  const LeaderEntry& leader = *item->leader;
+  item->id = Digest(Asked(*item, recipe, model, absl::StrCat(leader.key, "\n", leader.given),
+                          leader.follower_start));
+  item->place = item->id;
+  if (recipe.seed_rule == SeedRule::kPath) return;
+  // Without the paths, which the content of the files stands for.
+  const bool is_point = ParsePoint(leader.follower_start).has_value();
+  item->asked = Digest(Asked(*item, recipe, model, leader.has_id ? leader.key : "",
+                             is_point ? leader.follower_start : ""));
+  // Without labels, which may be drawn from the content: an item whose leader is mended stays in
+  // its shard.
+  item->place = Digest(absl::StrCat(leader.key, "\n", SideName(item->side), "\n", item->reaction,
+                                    "\n", item->model, "\n", item->sample));
 }
 
 // All combinations of a grid's weights; the last axis changes fastest.
@@ -121,11 +142,13 @@ std::string NameOfLabels(const Labels& labels) {
   return name;
 }
 
-uint64_t SeedOf(const Item& item, uint64_t recipe_seed, int retry) {
+uint64_t SeedOf(const Item& item, uint64_t recipe_seed, absl::string_view content, int retry) {
   if (item.leader->seed.has_value() && retry == 0) {
     return *item.leader->seed + static_cast<uint64_t>(item.sample);
   }
-  return DrawnNumber(absl::StrCat("seed ", recipe_seed, " ", item.id, " ", retry));
+  const std::string from =
+      item.asked.empty() ? item.id : absl::StrCat(content, " ", item.asked);
+  return DrawnNumber(absl::StrCat("seed ", recipe_seed, " ", from, " ", retry));
 }
 
 Plan::Plan(Recipe recipe, std::vector<ModelInfo> models, std::unique_ptr<LeaderSource> leaders)
@@ -249,11 +272,19 @@ absl::Status Plan::CheckClassifier(const ModelInfo& model) const {
   return absl::OkStatus();
 }
 
+// An id decides the labels by itself, so that no file is read for them.
+std::string Plan::DrawnFrom(const LeaderEntry& leader) {
+  if (drawn_.empty() || leader.has_id || recipe_.seed_rule == SeedRule::kPath) return leader.key;
+  const std::string digest = digests_.Of(leader);
+  return digest.empty() ? leader.key : absl::StrCat("content ", digest);
+}
+
 void Plan::DrawFor(const LeaderEntry& leader) {
+  const std::string from = DrawnFrom(leader);
   for (size_t i = 0; i < drawn_.size(); ++i) {
-    base::Random random(DrawnNumber(absl::StrCat("mixes ", recipe_.seed, " ", i, " ", leader.key)));
+    base::Random random(DrawnNumber(absl::StrCat("mixes ", recipe_.seed, " ", i, " ", from)));
     for (DrawnLabels& one : Draw(drawn_[i], ClassesOr(ClassesOf(drawn_[i])), &random)) {
-      reactions_.push_back({std::move(one.name), std::move(one.labels), {}});
+      reactions_.push_back({std::move(one.name), std::move(one.labels), {}, true});
     }
   }
 }
@@ -346,14 +377,14 @@ absl::StatusOr<Item> Plan::MakeItem() {
   item.reaction = reaction.name;
   item.labels = reaction.labels;
   item.keyframes = reaction.keyframes;
+  item.drawn = reaction.drawn;
   item.model = leader_models_[model_];
   item.sample = sample_;
   absl::StatusOr<std::string> name = NameOf(item);
   if (!name.ok()) return name.status();
   item.name = FitFileName(*name);
   if (item.name != *name) item.full_name = *std::move(name);
-  const ModelInfo& model = models_[static_cast<size_t>(item.model)];
-  item.id = base::Sha256Hex(Asked(item, recipe_, model)).substr(0, kIdDigits);
+  SetDigests(recipe_, models_[static_cast<size_t>(item.model)], &item);
   return item;
 }
 

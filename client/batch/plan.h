@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "client/batch/leader_digests.h"
 #include "client/batch/leader_entry.h"
 #include "client/batch/leader_source.h"
 #include "client/batch/recipe.h"
@@ -20,6 +22,8 @@ namespace duet::client::batch {
 struct Item {
   int64_t number = 0;     // from 0, in the order of the leaders
   std::string id;         // 32 hex digits: the digest of the whole request
+  std::string asked;      // the same of what is asked of the leader's file; empty: SeedRule::kPath
+  std::string place;      // 32 hex digits that decide the shard and the share that have the item
   std::string name;       // unique path of its files, without extension
   std::string full_name;  // the name before it was shortened; empty if it was not
   std::shared_ptr<const LeaderEntry> leader;
@@ -27,13 +31,15 @@ struct Item {
   std::string reaction;
   Labels labels;                              // or keyframes
   std::vector<Schedule::Keyframe> keyframes;  // times as fractions of the leader's length
+  bool drawn = false;                         // the labels are drawn for the leader
   int model = 0;                              // index into the plan's models
   int sample = 0;
 };
 
-// The seed of an item's answer; `retry` 0 is the first. Below 2^53 unless the manifest specifies
-// it, so that every JSON reader can represent it.
-uint64_t SeedOf(const Item& item, uint64_t recipe_seed, int retry);
+// The seed of an item's answer; `retry` 0 is the first. `content` are the digests of the leader's
+// file and of that of the follower's start. Below 2^53 unless the manifest specifies it, so that
+// every JSON reader can represent it.
+uint64_t SeedOf(const Item& item, uint64_t recipe_seed, absl::string_view content, int retry);
 
 // The items of a recipe and a list of leaders, one after the other. Memory does not depend on the
 // length of the list.
@@ -55,6 +61,7 @@ class Plan {
     std::string name;
     Labels labels;
     std::vector<Schedule::Keyframe> keyframes;
+    bool drawn = false;
   };
 
   Plan(Recipe recipe, std::vector<ModelInfo> models, std::unique_ptr<LeaderSource> leaders);
@@ -66,6 +73,7 @@ class Plan {
   std::string ModelNames() const;
   absl::Status CheckForModels(const LeaderEntry& leader) const;
   std::vector<std::string> ClassesOr(const std::vector<std::string>& classes) const;
+  std::string DrawnFrom(const LeaderEntry& leader);
   void DrawFor(const LeaderEntry& leader);
   absl::Status BeginLeader(LeaderEntry leader);
   absl::StatusOr<Item> MakeItem();
@@ -77,6 +85,7 @@ class Plan {
   std::unique_ptr<LeaderSource> leaders_;
   std::vector<LabelledReaction> fixed_;  // the same for each leader
   std::vector<Reaction> drawn_;          // different for each leader
+  ReadDigests digests_;
 
   // The current leader, and the position of the next item in it.
   std::shared_ptr<const LeaderEntry> leader_;

@@ -173,7 +173,7 @@ class Checker {
 }  // namespace
 
 bool PlanPart::Has(const Item& item) const {
-  return item.number < limit && shard.Has(item.id) && InShare(item.id, share);
+  return item.number < limit && shard.Has(item.place) && InShare(item.place, share);
 }
 
 absl::StatusOr<PlanCheck> CheckPlan(const Recipe& recipe,

@@ -112,6 +112,13 @@ struct Output {
   std::optional<double> frame_rate_hz;  // of every item; absent: the rate of its leader
 };
 
+// How seeds and drawn labels follow from a recipe and a list. A set keeps the rule that it was begun
+// with, so that sets of earlier versions can be continued.
+enum class SeedRule {
+  kPath = 1,     // from paths as they are listed; the rule of earlier versions
+  kContent = 2,  // from the content of the leaders' files, and their ids
+};
+
 struct Recipe {
   uint64_t seed = 0;
   std::vector<ModelChoice> models;  // at least one
@@ -123,9 +130,10 @@ struct Recipe {
   QualityFilter filter;
   Output output;
   Splits splits;
-  // Digest of everything above in hex. Recipes with the same digest are equal.
+  SeedRule seed_rule = SeedRule::kContent;  // not written in recipes
+  // Digest of everything above, except the rule, in hex. Recipes with the same digest are equal.
   std::string digest;
-  // Everything above as one JSON object with the proto's field names. Files that the recipe names
+  // The same as one JSON object with the proto's field names. Files that the recipe names
   // are represented by their content.
   std::string json;
 };

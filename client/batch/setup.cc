@@ -27,6 +27,7 @@ JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard) {
   identity.recipe_json = recipe.json;
   identity.shard = shard;
   identity.up = recipe.input.up;
+  identity.seed_rule = recipe.seed_rule;
   identity.layout = recipe.output.layout;
   identity.packing = recipe.output.packing;
   identity.shard_bytes = recipe.output.shard_bytes;

@@ -15,13 +15,13 @@ struct Shard {
   int index = 0;
   int count = 1;
 
-  // Whether an item belongs to this shard. Depends only on a hash of its id, so that the shards
-  // have similar sizes on every machine and for every order of the leaders.
-  bool Has(absl::string_view item_id) const;
+  // Whether an item belongs to this shard. Depends only on a hash of Item::place, so that the
+  // shards have similar sizes on every machine and for every order of the leaders.
+  bool Has(absl::string_view place) const;
 };
 
 // Whether an item is in a share of a plan, 0 to 1. Independent of the shard of the item.
-bool InShare(absl::string_view item_id, double share);
+bool InShare(absl::string_view place, double share);
 
 // "2/8": the third of eight. INVALID_ARGUMENT.
 absl::StatusOr<Shard> ParseShard(absl::string_view text);

@@ -37,6 +37,13 @@ std::string DescribeChange(const ordered_json& record, const Item& item,
          "follower_start_side, partner_direction, constraints or keyframes";
 }
 
+// Whether only the labels may differ, which are drawn from the content of the leader: the item failed
+// because of a leader that was mended since.
+bool IsDrawnAnew(const ordered_json& record, const Item& item) {
+  return item.drawn && record["state"] == kFailed &&
+         record.value("leader", "") == item.leader->given && record.value("name", "") == item.name;
+}
+
 absl::StatusOr<Survey> OpenSurvey(const JobFolder& folder, const JobIdentity& identity) {
   for (const fs::path& file : {folder.journal(), folder.shards()}) {
     absl::Status status = RepairJournal(file, folder.temporary() / "journal");
@@ -80,14 +87,16 @@ absl::StatusOr<bool> Surveyor::Add(const Item& item) {
   if (!entry.ok()) return entry.status();
   const absl::StatusOr<ordered_json> record = ParseRecord(entry->record);
   if (!record.ok()) return false;  // the run requests it again
-  if (record->value("id", "") != item.id) {
+  // A changed leader comes first, because it may also change the labels that are drawn from it.
+  const bool same_leader = record->value("leader", "") == item.leader->given;
+  absl::Status status = same_leader ? CheckLeader(*item.leader, *record) : absl::OkStatus();
+  if (!status.ok()) return status;
+  if (record->value("id", "") != item.id && !IsDrawnAnew(*record, item)) {
     return absl::FailedPreconditionError(absl::StrCat(
         folder_.out().string(), ": item ", item.number, " (", item.name,
         "): ", DescribeChange(*record, item, identity_),
         ". Keep the leaders in their order and add new ones at the end, or use another --out"));
   }
-  absl::Status status = CheckLeader(*item.leader, *record);
-  if (!status.ok()) return status;
   const absl::StatusOr<bool> settled = IsSettled(item.number, *record, entry->place);
   if (!settled.ok() || !*settled) return settled;
   const auto at = static_cast<size_t>(item.number);

@@ -116,9 +116,10 @@ struct Prepared {
 };
 
 absl::Status Prepare(const BatchArguments& arguments, const ProgramEnvironment& environment,
-                     const std::vector<ModelChoice>& begun, Prepared* prepared) {
+                     const batch::JobIdentity& begun, Prepared* prepared) {
+  if (!begun.models.empty()) prepared->recipe.seed_rule = begun.seed_rule;
   absl::StatusOr<batch::ResolvedModels> resolved =
-      AskModels(arguments, environment, prepared->recipe, begun);
+      AskModels(arguments, environment, prepared->recipe, begun.models);
   if (!resolved.ok()) return resolved.status();
   for (const ModelInfo& model : resolved->models) {
     absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(model);
@@ -178,14 +179,12 @@ absl::Status ChooseVertical(const BatchArguments& arguments, const ProgramEnviro
 
 absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
                                 const ProgramEnvironment& environment, Prepared prepared) {
-  const absl::StatusOr<batch::JobIdentity> begun =
-      batch::ReadJobIdentity(ShardFolder(arguments.out, prepared.shard));
-  absl::Status status = Prepare(arguments, environment,
-                                begun.ok() ? begun->models : std::vector<ModelChoice>(), &prepared);
+  const batch::JobIdentity begun =
+      batch::ReadJobIdentity(ShardFolder(arguments.out, prepared.shard))
+          .value_or(batch::JobIdentity());
+  absl::Status status = Prepare(arguments, environment, begun, &prepared);
   if (status.ok()) {
-    status = ChooseVertical(
-        arguments, environment, begun.ok() ? *begun : batch::JobIdentity(), [] { return false; },
-        &prepared);
+    status = ChooseVertical(arguments, environment, begun, [] { return false; }, &prepared);
   }
   if (!status.ok()) return status;
   const absl::StatusOr<batch::PlanCheck> check =
@@ -213,7 +212,7 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   batch::JobIdentity wanted = IdentityOf(prepared.recipe, prepared.shard);
   batch::JobIdentity begun;
   absl::Status status = folder.OpenForRun(wanted, &begun);
-  if (status.ok()) status = Prepare(arguments, environment, begun.models, &prepared);
+  if (status.ok()) status = Prepare(arguments, environment, begun, &prepared);
   if (!status.ok()) return status;
   BatchArguments repeatable = arguments;
   status = CopyManifest(folder.temporary(), environment.in, &repeatable);
@@ -223,6 +222,7 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   }
   if (!status.ok()) return status;
   wanted.up = prepared.recipe.input.up;
+  wanted.seed_rule = prepared.recipe.seed_rule;
   const absl::StatusOr<batch::JobIdentity> identity =
       GoOn(begun, WithModels(wanted, prepared.models, prepared.skeletons));
   if (!identity.ok()) return identity.status();

@@ -10,6 +10,7 @@ import hashlib
 import json
 import math
 import os
+import pathlib
 import random
 import re
 import resource
@@ -209,6 +210,49 @@ class BatchTest(tools.ServedTest):
         self.verified(out)
         (out / "far" / "push-kick-s1.npy").write_bytes(b"changed")
         self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
+
+    def test_motions_do_not_depend_on_how_leaders_are_listed(self):
+        recipe, link = self.recipe(), self.out("link")
+        link.symlink_to(self.leaders)
+        shutil.copytree(self.leaders, self.out("copy"))
+        expected = {name: digest for name, digest in digests(self.whole).items()
+                    if name.endswith(".npy")}
+        for number, leaders in enumerate(["leaders", "./leaders/", "../leaders", link,
+                                          self.out("copy")]):
+            with self.subTest(leaders):
+                out = self.out(number)
+                cwd = self.leaders if str(leaders).startswith("..") else self.folder
+                result = tools.run(*self.command(out, recipe, leaders=leaders), cwd=cwd)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual({name: digest for name, digest in digests(out).items()
+                                  if name.endswith(".npy")}, expected)
+        # The same leaders in a list have other names, and the same seeds and labels.
+        asked = ("leader_sha256", "reaction", "labels", "seed")
+        expected = sorted(json.dumps([entry[field] for field in asked])
+                          for entry in entries(self.whole))
+        manifest = self.out("list.tsv")
+        for folder in ("leaders", self.out("copy")):
+            manifest.write_text("leader\n" + "".join(f"{folder}/{name}.bvh\n" for name in
+                                                    ("far/push", "hug", "kick")), encoding="utf-8")
+            out = self.out(f"list-{pathlib.Path(folder).name}")
+            result = tools.duet("batch", "--manifest", manifest, "--recipe", recipe, "--out", out,
+                                "--server", self.server.address)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(sorted(json.dumps([entry[field] for field in asked])
+                                    for entry in entries(out)), expected)
+
+    def test_sets_of_earlier_versions_keep_the_seeds_of_their_paths(self):
+        out, recipe = self.out(), self.recipe()
+        self.batch(out, recipe, "--limit", "0")
+        job = out / ".duet-batch" / "job.json"
+        begun = json.loads(job.read_text(encoding="utf-8"))
+        self.assertEqual(begun.pop("seed_rule"), 2)
+        job.write_text(json.dumps(begun), encoding="utf-8")
+        self.batch(out, recipe)
+        for entry in entries(out):
+            digest = hashlib.sha256(f"seed 7 {entry['id']} 0".encode()).hexdigest()
+            self.assertEqual(entry["seed"], int(digest[:13], 16))
+        self.verified(out)
 
     def test_each_split_has_its_table_its_shards_and_its_leaders(self):
         digest = {name: hashlib.sha256(tools.sample(name).read_bytes()).hexdigest()

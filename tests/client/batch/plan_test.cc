@@ -145,20 +145,98 @@ TEST(Plan, LabelsSeedAndModelOfALineOverrideTheRecipe) {
                             {Model("sbu"), Model("k3hi")});
   ASSERT_THAT(items, IsOk());
   EXPECT_THAT(Names(*items), ElementsAre("a-2-hug-k3hi_2-s0", "a-2-hug-k3hi_2-s1"));
-  EXPECT_EQ(SeedOf((*items)[1], 0, 0), 10u);
-  EXPECT_NE(SeedOf((*items)[1], 0, 1), 10u);
+  EXPECT_EQ(SeedOf((*items)[1], 0, "content", 0), 10u);
+  EXPECT_NE(SeedOf((*items)[1], 0, "content", 1), 10u);
 }
 
 TEST(Plan, SeedsDifferFromItemToItem) {
   const auto items = PlanOf(std::string(kKick) + "samples: 20");
   std::set<uint64_t> seeds;
   for (const Item& item : *items) {
-    EXPECT_LT(SeedOf(item, 0, 0), uint64_t{1} << 53);
-    seeds.insert(SeedOf(item, 0, 0));
-    seeds.insert(SeedOf(item, 0, 1));
-    seeds.insert(SeedOf(item, 1, 0));
+    const std::string content = item.leader->given;
+    EXPECT_LT(SeedOf(item, 0, content, 0), uint64_t{1} << 53);
+    seeds.insert(SeedOf(item, 0, content, 0));
+    seeds.insert(SeedOf(item, 0, content, 1));
+    seeds.insert(SeedOf(item, 1, content, 0));
   }
   EXPECT_EQ(seeds.size(), 3 * items->size());
+}
+
+// Folders with the same leader in each, as different people list it.
+class ListedLeaders : public ::testing::Test {
+ protected:
+  ListedLeaders() {
+    std::filesystem::create_directory(folder_ / "walks");
+    test::WriteTestFile(folder_ / "walks/a.bvh", "a walk");
+    test::WriteTestFile(folder_ / "walks/b.bvh", "another walk");
+    std::filesystem::create_directory_symlink(folder_ / "walks", folder_ / "link");
+    ways_ = {(folder_ / "walks/a.bvh").string(), (folder_ / "walks/./a.bvh").string(),
+             (folder_ / "link/../walks/a.bvh").string(), (folder_ / "link/a.bvh").string()};
+  }
+  // The items of one leader, which is the second of the list, so that its line has another number.
+  std::vector<Item> Of(const std::string& recipe, const std::string& path,
+                       const std::string& id = "") {
+    const std::string other = (folder_ / "walks/b.bvh").string();
+    const std::string list = id.empty() ? absl::StrCat("leader\n", other, "\n", path, "\n")
+                                        : absl::StrCat("leader\tid\n", path, "\t", id, "\n");
+    std::vector<Item> items = *PlanOf(recipe, list);
+    const auto others = static_cast<std::ptrdiff_t>(items.size() / 2);
+    if (id.empty()) items.erase(items.begin(), items.begin() + others);
+    return items;
+  }
+  test::TemporaryFolder folder_;
+  std::vector<std::string> ways_;
+};
+
+TEST_F(ListedLeaders, SeedsAndMixesFollowTheContentAndNotThePath) {
+  const std::string recipe = absl::StrCat(kKick, " reactions { mixes { count: 2 } } samples: 2");
+  const std::vector<Item> first = Of(recipe, ways_[0]);
+  for (const std::string& way : ways_) {
+    const std::vector<Item> items = Of(recipe, way);
+    ASSERT_EQ(items.size(), 6u);
+    for (size_t i = 0; i < items.size(); ++i) {
+      EXPECT_EQ(SeedOf(items[i], 7, "content", 0), SeedOf(first[i], 7, "content", 0)) << way;
+      EXPECT_NE(SeedOf(items[i], 7, "content", 0), SeedOf(first[i], 7, "other", 0)) << way;
+      EXPECT_EQ(NameOfLabels(items[i].labels), NameOfLabels(first[i].labels)) << way;
+    }
+  }
+  const std::vector<Item> other = Of(recipe, (folder_ / "walks/b.bvh").string());
+  EXPECT_NE(NameOfLabels(other[2].labels), NameOfLabels(first[2].labels));
+}
+
+TEST_F(ListedLeaders, SeedsAndMixesFollowTheIdWhereThereIsOne) {
+  const std::string recipe = absl::StrCat(kKick, " reactions { mixes { count: 1 } }");
+  const std::vector<Item> one = Of(recipe, ways_[0], "one"), again = Of(recipe, ways_[3], "one"),
+                          two = Of(recipe, ways_[0], "two");
+  EXPECT_EQ(SeedOf(one[0], 7, "content", 0), SeedOf(again[0], 7, "content", 0));
+  EXPECT_NE(SeedOf(one[0], 7, "content", 0), SeedOf(two[0], 7, "content", 0));
+  EXPECT_EQ(NameOfLabels(one[1].labels), NameOfLabels(again[1].labels));
+  EXPECT_NE(NameOfLabels(one[1].labels), NameOfLabels(two[1].labels));
+}
+
+TEST_F(ListedLeaders, FollowersStartCountsByItsContentToo) {
+  const auto seed = [this](const std::string& start, const std::string& content) {
+    const std::string list =
+        absl::StrCat("leader\tfollower_start\n", ways_[0], "\t", start, "\n");
+    return SeedOf((*PlanOf(kKick, list))[0], 7, content, 0);
+  };
+  EXPECT_EQ(seed(ways_[1], "content"), seed(ways_[2], "content"));
+  EXPECT_NE(seed(ways_[1], "content"), seed(ways_[1], "content and another start"));
+  EXPECT_NE(seed("1,0,1", "content"), seed("1,0,2", "content"));
+}
+
+TEST(Plan, SetsOfEarlierVersionsKeepTheirSeeds) {
+  absl::StatusOr<Recipe> recipe =
+      ParseRecipe(absl::StrCat(kKick, " output { formats: FORMAT_NPY }"), false);
+  ASSERT_THAT(recipe, IsOk());
+  recipe->seed_rule = SeedRule::kPath;
+  std::istringstream in("leader\na.bvh\n");
+  absl::StatusOr<Plan> plan = Plan::Create(*recipe, {Model("sbu")}, ReadManifest(in, "", "m"));
+  ASSERT_THAT(plan, IsOk());
+  const Item item = **plan->Next();
+  EXPECT_EQ(item.place, "54e9b2a470fe12910b8bf016da00fb89");
+  // The first 13 hex digits of the SHA-256 of "seed 0 54e9b2a470fe12910b8bf016da00fb89 0".
+  EXPECT_EQ(SeedOf(item, 0, "any content", 0), 0xada9b806bd8e5u);
 }
 
 TEST(Plan, BothSidesLeadAndClassFoldersGoByTheLargestWeight) {
