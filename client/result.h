@@ -93,6 +93,10 @@ struct SynthesisResult {
   float variety = 0;                             // used by the server
   int candidates = 1;                            // samples that the model drew for each window
   bool cleaned_up = false;                       // the server cleaned up the follower
+  // How the server computes, as "cpu, bf16, AVX-512", and its version. Empty: it does not state
+  // them.
+  std::string engine;
+  std::string server_version;
   // Distance of the leader from the model's training data. A tenth of the training leaders have a
   // distance above 1; results for a leader far above 1 are unreliable. Absent if the model has no
   // statistics of its training data.

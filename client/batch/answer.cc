@@ -105,6 +105,7 @@ RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const Synthesi
   answer.unfamiliarity = result.unfamiliarity;
   answer.pin_metres = result.constraint_metres;
   answer.answers = retry + 1;
+  answer.made_by = MadeByOf(result);
   return answer;
 }
 

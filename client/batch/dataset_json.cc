@@ -53,7 +53,7 @@ void AddText(const char* name, const std::string& text, ordered_json* object) {
   if (!text.empty()) (*object)[name] = text;
 }
 
-ordered_json ModelsJson(const JobIdentity& identity) {
+ordered_json ModelsJson(const JobIdentity& identity, const DoneItems& done) {
   const std::vector<int> skeletons = SkeletonIndices(identity.skeletons);
   const std::vector<DescribedModel>& described = identity.description.models;
   ordered_json array = ordered_json::array();
@@ -69,6 +69,8 @@ ordered_json ModelsJson(const JobIdentity& identity) {
     model["skeleton"] = skeletons[i];
     if (about.frame_rate_hz > 0) model["frame_rate_hz"] = about.frame_rate_hz;
     model["samples"] = about.samples;
+    const MadeBy* const made_by = done.made_by(ModelText(identity.models[i]));
+    if (made_by != nullptr) AddMadeBy(*made_by, &model);
     array.push_back(std::move(model));
   }
   return array;
@@ -145,6 +147,9 @@ std::optional<double> CommonRate(const SetDescription& description, const DoneIt
 void DoneItems::Add(const ordered_json& record) {
   frames_ += record["frames"].get<uint64_t>();
   ++items_by_rate_[record["frame_rate_hz"].get<double>()];
+  if (const std::optional<MadeBy> made_by = MadeByOf(record)) {
+    made_by_.try_emplace(record["model"].get<std::string>(), *made_by);
+  }
   const auto named = record.find("split");
   OfSplit& split = splits_[named == record.end() ? kTrain : named->get<std::string>()];
   ++split.items;
@@ -152,6 +157,11 @@ void DoneItems::Add(const ordered_json& record) {
   if (shard == record.end() || !known_shards_.insert(shard->get<std::string>()).second) return;
   shards_.push_back(*shard);
   split.shards.push_back(*shard);
+}
+
+const MadeBy* DoneItems::made_by(const std::string& model) const {
+  const auto found = made_by_.find(model);
+  return found == made_by_.end() ? nullptr : &found->second;
 }
 
 const DoneItems::OfSplit& DoneItems::Of(const std::string& split) const {
@@ -187,7 +197,7 @@ std::string DatasetJson(const JobIdentity& identity, const SetCounts& counts, in
   }
   dataset["frame_rates"] = RatesJson(done.items_by_rate());
   dataset["skeletons"] = SkeletonsJson(identity.skeletons);
-  dataset["models"] = ModelsJson(identity);
+  dataset["models"] = ModelsJson(identity, done);
   dataset["interaction_classes"] = AllClasses(identity.description);
   dataset["files"] = AllFilesJson(identity);
   dataset["layout"] = LayoutName(identity.layout);

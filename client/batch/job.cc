@@ -135,12 +135,25 @@ void Job::KeepUntilClosed() {
   while (std::optional<Answered> answered = answers_.Take()) Receive(*std::move(answered));
 }
 
+// All answers of a set are made in the same way, by whatever server.
+absl::Status Job::CheckMaker(const SynthesisResult& result) const {
+  const std::string model = absl::StrCat(result.model_name, "@", result.model_version);
+  const absl::Status same = parts_.survey->makers->Check(model, MadeByOf(result));
+  if (same.ok()) return same;
+  return absl::FailedPreconditionError(
+      absl::StrCat(same.message(), ". Use servers that are set up alike, or choose another --out"));
+}
+
 // Finishes the item, or puts it back for another attempt.
 void Job::Receive(Answered answered) {
   const absl::Status status = answered.result.status();
   Work& work = answered.work;
   switch (MeaningOf(status)) {
     case Meaning::kAnswer:
+      if (const absl::Status same = CheckMaker(*answered.result); !same.ok()) {
+        StopWith(same);
+        break;
+      }
       answered.result->pair = AtOutputRate(std::move(answered.result->pair), parts_.recipe.output);
       return Judge(std::move(work), *answered.result);
     case Meaning::kWait:

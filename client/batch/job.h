@@ -126,6 +126,7 @@ class Job {
   void AskUntilDone();
   void Ask(Work work);
   void KeepUntilClosed();
+  absl::Status CheckMaker(const SynthesisResult& result) const;
   void Receive(Answered answered);
   void Judge(Work work, const SynthesisResult& result);
   void Keep(const Item& item, const RecordedAnswer& answer, const motion::ClipPair& pair);

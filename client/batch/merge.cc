@@ -16,6 +16,7 @@
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/leader_digests.h"
+#include "client/batch/made_by.h"
 #include "client/batch/packing.h"
 #include "client/batch/parse_record.h"
 #include "client/batch/record.h"
@@ -207,6 +208,7 @@ class Merger {
     if (!parsed.ok()) return parsed.status();
     const ordered_json& record = *parsed;
     absl::Status status = leaders_.CheckRecord(record);
+    if (status.ok()) status = makers_.CheckRecord(record);
     if (!status.ok()) return status;
     if (merged.Has(item)) {
       const absl::StatusOr<JournalEntry> moved = merged.Read(item);
@@ -266,6 +268,7 @@ class Merger {
   JournalWriter journal_;
   std::unique_ptr<ItemWriter> writer_;
   LeaderDigests leaders_;
+  Makers makers_;
   std::set<fs::path> folders_;
   uint64_t uncommitted_ = 0;  // bytes
   int64_t planned_ = 0;

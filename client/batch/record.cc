@@ -96,6 +96,7 @@ ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswe
   record["quality"] = QualityJson(answer.quality);
   AddIf("unfamiliarity", answer.unfamiliarity, &record);
   record["answers"] = answer.answers;
+  AddMadeBy(answer.made_by, &record);
   return record;
 }
 

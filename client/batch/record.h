@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "client/batch/made_by.h"
 #include "client/batch/plan.h"
 #include "client/batch/quality.h"
 #include "client/batch/split.h"
@@ -51,6 +52,7 @@ struct RecordedAnswer {
   std::optional<double> unfamiliarity;
   std::vector<float> pin_metres;  // of the leader's pins
   int answers = 1;
+  MadeBy made_by;
 };
 
 // One JSON object with the fields in the proto's order and without times, so that the same item

@@ -53,8 +53,12 @@ absl::StatusOr<Survey> OpenSurvey(const JobFolder& folder, const JobIdentity& id
   if (!journal.ok()) return journal.status();
   absl::StatusOr<ShardList> shards = OpenShards(*journal, identity, folder);
   if (!shards.ok()) return shards.status();
-  return Survey{
-      *std::move(journal), *std::move(shards), {}, true, std::make_unique<LeaderDigests>()};
+  return Survey{*std::move(journal),
+                *std::move(shards),
+                {},
+                true,
+                std::make_unique<LeaderDigests>(),
+                std::make_unique<Makers>()};
 }
 
 }  // namespace
@@ -97,6 +101,8 @@ absl::StatusOr<bool> Surveyor::Add(const Item& item) {
         "): ", DescribeChange(*record, item, identity_),
         ". Keep the leaders in their order and add new ones at the end, or use another --out"));
   }
+  status = survey_.makers->CheckRecord(*record);
+  if (!status.ok()) return status;
   const absl::StatusOr<bool> settled = IsSettled(item.number, *record, entry->place);
   if (!settled.ok() || !*settled) return settled;
   const auto at = static_cast<size_t>(item.number);

@@ -15,6 +15,7 @@
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/leader_digests.h"
+#include "client/batch/made_by.h"
 #include "client/batch/plan.h"
 #include "client/batch/shard_list.h"
 
@@ -30,6 +31,8 @@ struct Survey {
   bool all_packed = true;  // whether all done items are in a shard
   // Digests of all leaders that have an answer.
   std::unique_ptr<LeaderDigests> leaders;
+  // How all answers were made.
+  std::unique_ptr<Makers> makers;
 
   bool IsSettled(int64_t item) const {
     return item < static_cast<int64_t>(settled.size()) && settled[static_cast<size_t>(item)];

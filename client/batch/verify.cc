@@ -17,6 +17,7 @@
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/leader_digests.h"
+#include "client/batch/made_by.h"
 #include "client/batch/packing.h"
 #include "client/batch/parse_record.h"
 #include "client/batch/record.h"
@@ -37,6 +38,10 @@ constexpr char kIndexFile[] = "index.jsonl";  // which is compared line by line
 void AddProblem(absl::string_view problem, VerifyReport* report) {
   ++report->problem_count;
   if (report->problems.size() < kProblemsKept) report->problems.emplace_back(problem);
+}
+
+std::string AtItem(const ordered_json& record, const absl::Status& problem) {
+  return absl::StrCat(record["name"].get<std::string>(), ": ", problem.message());
 }
 
 // Reads shards in the order of the index.
@@ -74,6 +79,8 @@ class IndexVerifier {
 
   void Check(const ordered_json& record) {
     ++report_.items;
+    const absl::Status same_maker = makers_.CheckRecord(record);
+    if (!same_maker.ok()) AddProblem(AtItem(record, same_maker), &report_);
     const std::string shard = record.value("shard", "");
     for (const ordered_json& file : record["files"]) {
       ++report_.files;
@@ -88,6 +95,7 @@ class IndexVerifier {
  private:
   fs::path out_;
   ShardReader shards_;
+  Makers makers_;
   VerifyReport report_;
 };
 
@@ -163,6 +171,8 @@ class JournalVerifier {
     }
     const absl::Status same_leader = leaders_.CheckRecord(*record);
     if (!same_leader.ok()) Problem(same_leader.message());
+    const absl::Status same_maker = makers_.CheckRecord(*record);
+    if (!same_maker.ok()) Problem(AtItem(*record, same_maker));
     if ((*record)["state"] != kDone) return absl::OkStatus();
     ++report_.items;
     const ordered_json& files = (*record)["files"];
@@ -249,6 +259,7 @@ class JournalVerifier {
   int64_t index_line_ = 0;
   bool index_differs_ = false;
   LeaderDigests leaders_;
+  Makers makers_;
   VerifyReport report_;
 };
 

@@ -225,6 +225,8 @@ SynthesisResult ReplyAssembler::TakeResult() && {
   // Servers without candidates draw one sample and do not set the field.
   result.candidates = std::max(1, static_cast<int>(header_->candidates()));
   result.cleaned_up = header_->clean_up() == v1::CLEAN_UP_ON;
+  result.engine = header_->engine();
+  result.server_version = header_->server_version();
   if (summary_->has_unfamiliarity()) result.unfamiliarity = summary_->unfamiliarity();
   if (summary_->has_grade()) result.grade = FromProto(summary_->grade());
   result.constraint_metres = {summary_->constraint_metres().begin(),

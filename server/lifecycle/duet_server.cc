@@ -217,6 +217,8 @@ service::ServiceParts DuetServer::Parts() {
   parts.live_idle_seconds = settings_.live_idle_seconds();
   parts.client_key = settings_.client_key();
   parts.clean_up = CleanUpOf(settings_);
+  parts.engine = &engine_;
+  parts.version = DUET_VERSION;
   return parts;
 }
 
@@ -363,6 +365,7 @@ void DuetServer::Configure(const v1::ServerConfig& settings) {
 
 absl::Status DuetServer::Load(const registry::ModelSource& source,
                               const std::function<bool()>& stop) {
+  engine_ = source.engine;
   const absl::StatusOr<LoadFindings> findings =
       LoadModels(settings_, source, stop, manager_, registry_);
   if (!findings.ok()) return findings.status();

@@ -127,6 +127,7 @@ class DuetServer {
   service::Admission admission_;
   service::TransportQuota transport_;
   const std::unique_ptr<batching::WindowScheduler> scheduler_;
+  std::string engine_;  // of the models; changes before calls are admitted
   service::MotionSynthesisService service_;
   GrpcServer grpc_;
   std::atomic<bool> draining_{false};

@@ -15,6 +15,7 @@
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
 #include "model/cpu_engine/kernels/gemm_bf16_amx.h"
+#include "model/cpu_engine/kernels/instruction_set.h"
 #include "model/torch_plugin/torch_plugin.h"
 #include "server/lifecycle/heap_trimmer.h"
 #include "server/lifecycle/run_server.h"
@@ -54,8 +55,9 @@ absl::StatusOr<ModelSource> OpenCpuEngine(const ServerConfig& settings) {
     engine.precision = Precision::kBfloat16;
   }
   const char* const bf16 = duet::cpu_engine::kernels::HasAmx() ? "cpu, bf16 (AMX)" : "cpu, bf16";
+  const char* const name = engine.precision == Precision::kBfloat16 ? bf16 : "cpu, f32";
   return ModelSource{
-      engine.precision == Precision::kBfloat16 ? bf16 : "cpu, f32",
+      absl::StrCat(name, ", ", duet::cpu_engine::kernels::InstructionSet()),
       [engine](const std::filesystem::path& folder) {
         return Shared(duet::cpu_engine::LoadCpuSynthesizer(folder, engine));
       },

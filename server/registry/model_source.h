@@ -14,7 +14,7 @@ namespace duet::server::registry {
 
 // How models are loaded.
 struct ModelSource {
-  std::string engine;  // name of the engine for the log: "cpu, bf16"
+  std::string engine;  // for the log and replies (SynthesisHeader): "cpu, bf16, AVX-512"
   ModelLoader load_folder;
   // Loads the embedded models. The default model is the first.
   std::function<absl::StatusOr<std::vector<std::shared_ptr<const engine::Synthesizer>>>()>

@@ -38,12 +38,14 @@ v1::MotionGrade ToMessage(const body::Grade& grade) {
 }  // namespace
 
 ClipReplies::ClipReplies(std::shared_ptr<const engine::Synthesizer> model, ValidatedRequest request,
-                         ClipStreamOptions options, batching::WindowScheduler& scheduler)
+                         ClipStreamOptions options, batching::WindowScheduler& scheduler,
+                         ServerBuild build)
     : model_(std::move(model)),
       options_(request.clip.options),
       priority_(request.priority),
       mapping_(std::move(request.reply)),
       chunk_frames_(request.chunk_frames),
+      build_(std::move(build)),
       on_progress_(std::make_shared<std::function<void()>>()),
       stream_(std::make_shared<ClipStream>(model_, std::move(request.clip),
                                            WithPriority(std::move(options), priority_), scheduler,
@@ -118,6 +120,8 @@ void ClipReplies::FillHeader(const metrics::CallRecord& record) {
   header.set_variety(options_.sampling.variety);
   header.set_candidates(static_cast<uint32_t>(Candidates()));
   if (rig_ != nullptr) rig_->FillHeader(header);
+  header.set_engine(build_.engine);
+  header.set_server_version(build_.version);
   header.set_clean_up(options_.clean_up.value_or(false) ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF);
 }
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "absl/status/status.h"
 #include "duet/v1/synthesis.pb.h"
@@ -14,6 +15,12 @@
 #include "server/service/validator.h"
 
 namespace duet::server::service {
+
+// What decides the bits of a reply besides request and weights (SynthesisHeader).
+struct ServerBuild {
+  std::string engine;
+  std::string version;
+};
 
 // The replies of Synthesize: header, chunks and summary of one clip.
 //
@@ -27,7 +34,8 @@ class ClipReplies final : public ReplySource {
   // `scheduler` must outlive every window that it is given. Requires request.clip.options.clean_up
   // to be set. Uses the priority of the request and ignores options.priority.
   ClipReplies(std::shared_ptr<const engine::Synthesizer> model, ValidatedRequest request,
-              ClipStreamOptions options, batching::WindowScheduler& scheduler);
+              ClipStreamOptions options, batching::WindowScheduler& scheduler,
+              ServerBuild build = {});
 
   absl::Status Start(std::function<void()> on_progress) override;
   NextReply Next(CallScope& scope) override;
@@ -50,6 +58,7 @@ class ClipReplies final : public ReplySource {
   const batching::Priority priority_;
   const ReplyMapping mapping_;
   const int chunk_frames_;
+  const ServerBuild build_;
   // Shared with the stream, whose last window may outlive this. Set before the first window starts.
   const std::shared_ptr<std::function<void()>> on_progress_;
   const std::shared_ptr<ClipStream> stream_;

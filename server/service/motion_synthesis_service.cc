@@ -272,9 +272,11 @@ absl::StatusOr<MotionSynthesisService::Prepared> MotionSynthesisService::Prepare
   options.client = reception.client();
   StreamingCall::Parts call = CallParts(reception, options.deadline);
   call.held_bytes = std::move(held);
+  const std::string engine = parts_.engine == nullptr ? "" : *parts_.engine;
   return Prepared{std::move(call),
                   std::make_unique<ClipReplies>(std::move(served->model), *std::move(validated),
-                                                std::move(options), *parts_.scheduler)};
+                                                std::move(options), *parts_.scheduler,
+                                                ServerBuild{engine, parts_.version})};
 }
 
 absl::StatusOr<registry::ServedModel> MotionSynthesisService::FindModel(

@@ -57,6 +57,9 @@ struct ServiceParts {
   // Whether followers are cleaned up if the request does not specify it. Absent: the model's
   // default (ModelDescription::cleaned_up_by_default).
   std::optional<bool> clean_up;
+  // What replies state about the server. The engine is set before calls are admitted; null: none.
+  const std::string* engine = nullptr;
+  std::string version;
 };
 
 // Implements duet.v1.MotionSynthesis. No method blocks or occupies a gRPC thread for long.

@@ -372,6 +372,23 @@ class BatchTest(tools.ServedTest):
         quiet = self.batch(out, self.recipe(), "--limit", "1", "--quiet", leaders=leaders)
         self.assertEqual(quiet.stderr, "")
 
+    def test_a_server_that_answers_in_another_way_is_refused_by_name(self):
+        out, recipe = self.out(), self.recipe()
+        self.batch(out, recipe, "--limit", "3")
+        model = json.loads((out / "dataset.json").read_text(encoding="utf-8"))["models"][0]
+        self.assertIs(model["cleaned_up"], True)
+        self.assertRegex(model["engine"], "^cpu, (f32|bf16|bf16 \\(AMX\\)), [A-Z].*$")
+        self.assertRegex(model["server_version"], "^[0-9]+\\.[0-9]+\\.[0-9]+$")
+        other = tools.Server("--clean-up", "off")
+        try:
+            refused = self.batch(out, recipe, server=other.address, code=42)
+        finally:
+            other.stop()
+        self.assertIn("model sbu@2: an answer was made in another way than the set's first one: "
+                      "clean_up: expected on, got off", refused.stderr)
+        self.batch(out, recipe)
+        self.assertEqual(digests(out), digests(self.whole))
+
     def test_answer_equals_that_of_synthesize(self):
         out, single = self.whole, self.folder / "single.npy"
         entry = next(e for e in entries(out) if e["name"] == "hug-kick-s0")

@@ -10,6 +10,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -71,12 +72,16 @@ class FakeConnection : public Connection {
     result.seed = request.seed;
     result.candidates = request.candidates;
     result.grade = grade;
+    result.cleaned_up = made_by.cleaned_up;
+    result.engine = made_by.engine;
+    result.server_version = made_by.server_version;
     result.constraint_metres.assign(request.constraints.size(), 0.25f);
     return result;
   }
   std::function<absl::Status(const SynthesisRequest&, int call)> answer;
   float distance = 1;
   std::optional<MotionGrade> grade;
+  MadeBy made_by = {true, "cpu, bf16, AVX-512", "1.0.0"};
   std::atomic<int> calls{0};
 };
 
@@ -223,6 +228,70 @@ TEST_F(JobTest, RecordsCandidatesAndTheGrade) {
   EXPECT_THAT(rows[0], HasSubstr("\tvariety\tcandidates\t"));
   EXPECT_THAT(rows[0], HasSubstr("\ttwisted\tskating\tleader_skating\toverlapping\t"));
   EXPECT_THAT(rows[1], HasSubstr("\t0.125\t0.5\t0.25\t0.0\t"));
+}
+
+TEST_F(JobTest, AnswersThatAreMadeInAnotherWayAreRefusedByName) {
+  JobOptions some;
+  some.limit = 5;
+  ASSERT_THAT(Run("set", some), IsOk());
+  const auto record = nlohmann::json::parse(Lines("set/index.jsonl")[0]);
+  EXPECT_EQ(record["cleaned_up"], true);
+  EXPECT_EQ(record["engine"], "cpu, bf16, AVX-512");
+  EXPECT_EQ(record["server_version"], "1.0.0");
+  const auto model = nlohmann::json::parse(Read("set/dataset.json"))["models"][0];
+  EXPECT_EQ(model["cleaned_up"], true);
+  EXPECT_EQ(model["engine"], "cpu, bf16, AVX-512");
+  const MadeBy first = connection().made_by;
+  const std::string refusal = "model fake@3: an answer was made in another way";
+  const std::vector<std::pair<MadeBy, std::string>> others = {
+      {{false, first.engine, first.server_version}, "clean_up: expected on, got off"},
+      {{true, "cpu, f32, AVX-512", first.server_version},
+       "engine: expected \"cpu, bf16, AVX-512\", got \"cpu, f32, AVX-512\""},
+      {{true, first.engine, "1.1.0"}, "server_version: expected \"1.0.0\", got \"1.1.0\""}};
+  for (const auto& [made_by, named] : others) {
+    connection().made_by = made_by;
+    const auto report = Run("set");
+    ASSERT_THAT(report, IsOk());
+    EXPECT_THAT(report->stopped, StatusIs(absl::StatusCode::kFailedPrecondition,
+                                          AllOf(HasSubstr(refusal), HasSubstr(named))));
+    EXPECT_EQ(report->set.done, 5);
+  }
+  connection().made_by = first;
+  EXPECT_THAT(Run("set"), IsOk());
+  ExpectSameAsUndisturbed("set");
+}
+
+TEST_F(JobTest, OneOfSeveralServersThatDiffersIsFoundToo) {
+  connections_.push_back(std::make_shared<FakeConnection>());
+  connections_[1]->made_by.cleaned_up = false;
+  // The first call of either server waits until the other has one, so that both answer.
+  std::atomic<int> servers{0};
+  for (const auto& each : connections_) {
+    each->answer = [&servers](const SynthesisRequest&, int call) {
+      if (call == 0) ++servers;
+      while (servers < 2) std::this_thread::yield();
+      return absl::OkStatus();
+    };
+  }
+  const auto report = Run("set");
+  ASSERT_THAT(report, IsOk());
+  EXPECT_THAT(report->stopped,
+              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("clean_up: expected o")));
+  EXPECT_EQ(Verify(folder_ / "set")->problem_count, 0);
+}
+
+TEST_F(JobTest, VerifyFindsAMixtureOfAnswersThatWereMadeInDifferentWays) {
+  ASSERT_THAT(Run("set"), IsOk());
+  std::filesystem::remove_all(folder_ / "set/.duet-batch");
+  EXPECT_EQ(Verify(folder_ / "set")->problem_count, 0);
+  std::string index = Read("set/index.jsonl");
+  const size_t last = index.rfind("bf16");
+  test::WriteTestFile(folder_ / "set/index.jsonl", index.replace(last, 4, "f32"));
+  const auto report = Verify(folder_ / "set");
+  ASSERT_THAT(report, IsOk());
+  ASSERT_EQ(report->problem_count, 1);
+  EXPECT_THAT(report->problems[0], HasSubstr("engine: expected \"cpu, bf16, AVX-512\", got \"cpu, "
+                                             "f32, AVX-512\""));
 }
 
 TEST_F(JobTest, RejectsAnswersByTheirGrade) {

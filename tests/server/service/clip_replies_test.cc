@@ -88,7 +88,8 @@ class ClipRepliesTest : public ::testing::Test {
     options.buffered_frames = 240;
     options.client = "client";
     auto replies =
-        std::make_unique<ClipReplies>(std::move(model), *std::move(request), options, scheduler_);
+        std::make_unique<ClipReplies>(std::move(model), *std::move(request), options, scheduler_,
+                                      ServerBuild{"cpu, f32, AVX2", "1.0.0"});
     call_ = StreamingCall::Create(std::move(parts), std::move(replies), writer_);
   }
 
@@ -121,6 +122,8 @@ TEST_F(ClipRepliesTest, WritesOneMessageAtATimeAndThenEnds) {
   ASSERT_THAT(writer_.replies, SizeIs(1));
   EXPECT_TRUE(writer_.replies[0].has_header());
   EXPECT_EQ(writer_.replies[0].header().rig_size(), 0);
+  EXPECT_EQ(writer_.replies[0].header().engine(), "cpu, f32, AVX2");
+  EXPECT_EQ(writer_.replies[0].header().server_version(), "1.0.0");
   scheduler_.RunNext();
   EXPECT_THAT(writer_.replies, SizeIs(1)) << "the header is still under way";
   Written();

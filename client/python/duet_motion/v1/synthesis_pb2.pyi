@@ -92,9 +92,10 @@ class RequestLimits(_message.Message):
     def __init__(self, min_frame_rate_hz: _Optional[float] = ..., max_frame_rate_hz: _Optional[float] = ..., min_frames: _Optional[int] = ..., max_duration_seconds: _Optional[float] = ..., max_chunk_frames: _Optional[int] = ..., max_label_keyframes: _Optional[int] = ..., max_abs_weight: _Optional[float] = ..., max_request_bytes: _Optional[int] = ..., max_variety: _Optional[float] = ..., max_candidates: _Optional[int] = ..., max_delay_frames: _Optional[int] = ..., max_plan_frames: _Optional[int] = ..., max_constraints: _Optional[int] = ...) -> None: ...
 
 class SynthesisHeader(_message.Message):
-    __slots__ = ["candidates", "clean_up", "frame_count", "frame_rate_hz", "interaction_classes", "joint_names", "model_name", "model_version", "request_id", "rig", "seed", "unit", "up_axis", "variety"]
+    __slots__ = ["candidates", "clean_up", "engine", "frame_count", "frame_rate_hz", "interaction_classes", "joint_names", "model_name", "model_version", "request_id", "rig", "seed", "server_version", "unit", "up_axis", "variety"]
     CANDIDATES_FIELD_NUMBER: _ClassVar[int]
     CLEAN_UP_FIELD_NUMBER: _ClassVar[int]
+    ENGINE_FIELD_NUMBER: _ClassVar[int]
     FRAME_COUNT_FIELD_NUMBER: _ClassVar[int]
     FRAME_RATE_HZ_FIELD_NUMBER: _ClassVar[int]
     INTERACTION_CLASSES_FIELD_NUMBER: _ClassVar[int]
@@ -104,11 +105,13 @@ class SynthesisHeader(_message.Message):
     REQUEST_ID_FIELD_NUMBER: _ClassVar[int]
     RIG_FIELD_NUMBER: _ClassVar[int]
     SEED_FIELD_NUMBER: _ClassVar[int]
+    SERVER_VERSION_FIELD_NUMBER: _ClassVar[int]
     UNIT_FIELD_NUMBER: _ClassVar[int]
     UP_AXIS_FIELD_NUMBER: _ClassVar[int]
     VARIETY_FIELD_NUMBER: _ClassVar[int]
     candidates: int
     clean_up: _reaction_pb2.CleanUp
+    engine: str
     frame_count: int
     frame_rate_hz: float
     interaction_classes: _containers.RepeatedScalarFieldContainer[str]
@@ -118,10 +121,11 @@ class SynthesisHeader(_message.Message):
     request_id: str
     rig: _containers.RepeatedCompositeFieldContainer[_motion_pb2.RigJoint]
     seed: int
+    server_version: str
     unit: _motion_pb2.LengthUnit
     up_axis: _motion_pb2.UpAxis
     variety: float
-    def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., frame_count: _Optional[int] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., rig: _Optional[_Iterable[_Union[_motion_pb2.RigJoint, _Mapping]]] = ...) -> None: ...
+    def __init__(self, model_name: _Optional[str] = ..., model_version: _Optional[int] = ..., joint_names: _Optional[_Iterable[str]] = ..., frame_rate_hz: _Optional[float] = ..., unit: _Optional[_Union[_motion_pb2.LengthUnit, str]] = ..., up_axis: _Optional[_Union[_motion_pb2.UpAxis, str]] = ..., frame_count: _Optional[int] = ..., interaction_classes: _Optional[_Iterable[str]] = ..., request_id: _Optional[str] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., rig: _Optional[_Iterable[_Union[_motion_pb2.RigJoint, _Mapping]]] = ..., engine: _Optional[str] = ..., server_version: _Optional[str] = ...) -> None: ...
 
 class SynthesisSummary(_message.Message):
     __slots__ = ["chunk_count", "compute_seconds", "constraint_metres", "frame_count", "grade", "queue_seconds", "unfamiliarity", "window_count"]
