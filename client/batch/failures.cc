@@ -3,9 +3,12 @@
 #include <algorithm>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
+#include "absl/strings/strip.h"
+#include "model/base/text.h"
 
 namespace duet::client::batch {
 namespace {
@@ -35,6 +38,28 @@ absl::string_view WithoutFile(absl::string_view leader, absl::string_view messag
 }
 
 }  // namespace
+
+bool AllowedFailures::Allows(int64_t failed_leaders, int64_t all_leaders) const {
+  if (!share.has_value()) return failed_leaders <= leaders;
+  return static_cast<double>(failed_leaders) <= *share * static_cast<double>(all_leaders);
+}
+
+absl::StatusOr<AllowedFailures> ParseAllowedFailures(absl::string_view text) {
+  AllowedFailures allowed;
+  absl::string_view number = text;
+  if (absl::ConsumeSuffix(&number, "%")) {
+    double percent = 0;
+    if (absl::SimpleAtod(number, &percent) && percent >= 0 && percent <= 100) {
+      allowed.share = percent / 100;
+      return allowed;
+    }
+  } else if (absl::SimpleAtoi(number, &allowed.leaders) && allowed.leaders >= 0) {
+    return allowed;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("expected a number of leaders, or a share of them from 0% to 100%, got ",
+                   base::Quoted(text)));
+}
 
 ordered_json ToJson(const std::vector<FailureCause>& causes) {
   ordered_json array = ordered_json::array();
@@ -80,6 +105,7 @@ absl::Status FailureTable::Add(const ordered_json& record) {
     absl::Status status = WriteLeader();
     if (!status.ok()) return status;
     leader_ = leader;
+    leaders_.insert(leader);
   }
   const ordered_json error = record.value("error", ordered_json::object());
   names_[{Text(error, "code"), Text(error, "message")}].push_back(Text(record, "name"));

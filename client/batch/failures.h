@@ -5,15 +5,31 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/container/flat_hash_set.h"
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "client/batch/set_file.h"
 
 namespace duet::client::batch {
+
+// How many leaders of a run may have items that fail permanently, without the run counting as
+// failed: a number, or a share of its leaders.
+struct AllowedFailures {
+  int64_t leaders = 0;
+  std::optional<double> share;  // 0 to 1, instead of the number
+
+  bool Allows(int64_t failed_leaders, int64_t all_leaders) const;
+};
+
+// "5" or "2%". INVALID_ARGUMENT 'expected ..., got "text"'.
+inline constexpr char kAllowedFailuresForm[] = "COUNT|PERCENT%";
+absl::StatusOr<AllowedFailures> ParseAllowedFailures(absl::string_view text);
 
 // Why items failed, without file names, so that many leaders can have the same cause.
 struct FailureCause {
@@ -48,6 +64,8 @@ class FailureTable {
   absl::Status Add(const nlohmann::ordered_json& record);
   absl::Status Finish();
   const FailureCauses& causes() const { return causes_; }
+  // Different leaders, as listed.
+  int64_t leaders() const { return static_cast<int64_t>(leaders_.size()); }
 
  private:
   absl::Status WriteLeader();
@@ -56,6 +74,7 @@ class FailureTable {
   FailureCauses causes_;
   // For the current leader: code and message to the items' names.
   std::string leader_;
+  absl::flat_hash_set<std::string> leaders_;
   std::map<std::pair<std::string, std::string>, std::vector<std::string>> names_;
 };
 

@@ -111,6 +111,7 @@ class IndexWriter {
     absl::Status status = rejected_->Finish();
     status.Update(failed_.Finish());
     counts_.failures = failed_.causes().Largest(kCausesKept);
+    counts_.failed_leaders = failed_.leaders();
     status.Update(tables_.Finish());
     status.Update(tsv_->Finish());
     status.Update(json_->Finish());

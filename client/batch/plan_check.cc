@@ -7,6 +7,8 @@
 #include <thread>
 #include <utility>
 
+#include "absl/container/flat_hash_set.h"
+#include "absl/hash/hash.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/batch/dataset_json.h"
@@ -64,6 +66,7 @@ class Checker {
   }
 
   PlanCheck Result() {
+    check_.files = static_cast<int64_t>(files_.size());
     check_.bad_leader_count = static_cast<int64_t>(bad_.size());
     std::vector<std::pair<int64_t, BadLeader>> bad;
     for (auto& [message, found] : bad_) bad.push_back({found.first, {message, found.second}});
@@ -113,6 +116,7 @@ class Checker {
       current.first = item;
     }
     if (item.leader != last_entry_ || item.side != last_side_) ++check_.leaders;
+    if (item.leader != last_entry_) files_.insert(absl::Hash<std::string>()(item.leader->given));
     last_entry_ = item.leader;
     last_side_ = item.side;
     ++current.all;
@@ -162,6 +166,7 @@ class Checker {
   LastLeaders sharing_;
   std::vector<LeaderItems> current_;  // by skeleton
   std::shared_ptr<const LeaderEntry> last_entry_;
+  absl::flat_hash_set<size_t> files_;  // hashes of leaders as listed
   formats::Side last_side_ = formats::Side::kLeft;
   flow::BoundedQueue<LeaderItems> queue_;
   std::mutex mutex_;

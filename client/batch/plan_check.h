@@ -40,6 +40,7 @@ struct PlanCheck {
   int64_t items = 0;        // of the part, including settled ones
   bool whole_plan = false;  // whether the part, before sharding, has all items of the plan
   int64_t leaders = 0;      // leading people, counted as often as they are listed
+  int64_t files = 0;        // different leaders, as listed
   int64_t frames = 0;       // of all followers, at the output rate
   double seconds = 0;       // the same as a duration
 

@@ -13,6 +13,7 @@ struct SetCounts {
   int64_t done = 0;
   int64_t rejected = 0;
   int64_t failed = 0;
+  int64_t failed_leaders = 0;  // different files of items that failed
   uint64_t bytes = 0;
   std::vector<FailureCause> failures;  // the causes of most items
 };

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "client/batch/failures.h"
 #include "client/batch/flow/server_choice.h"
 #include "client/batch/recipe_file.h"
 #include "client/batch/shard.h"
@@ -38,6 +39,7 @@ struct BatchArguments {
   int64_t limit = std::numeric_limits<int64_t>::max();
   double share = 1;
   bool retry_failed = false;
+  batch::AllowedFailures allow_failed;
   bool dry_run = false;
   bool json = false;
   bool quiet = false;

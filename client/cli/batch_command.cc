@@ -85,24 +85,26 @@ ProgressDisplay::Kind DisplayKind(const BatchArguments& arguments,
                                      : ProgressDisplay::Kind::kLines;
 }
 
-ExitCode CodeOf(const batch::JobReport& report, bool stopped) {
+ExitCode CodeOf(const batch::JobReport& report, bool allowed, bool stopped) {
   if (stopped || report.unfinished > 0 || !report.complete()) return kExitRetry;
-  return report.set.failed > 0 ? kExitBadInput : kExitDone;
+  return allowed ? kExitDone : kExitBadInput;
 }
 
 absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job,
-                                const std::filesystem::path& folder, int64_t total,
+                                const std::filesystem::path& folder,
+                                const batch::PlanCheck& check,
                                 const ProgramEnvironment& environment, const RunningJob& running) {
   absl::StatusOr<batch::JobReport> report;
   {
-    const ProgressDisplay display(DisplayKind(arguments, environment), job, total,
+    const ProgressDisplay display(DisplayKind(arguments, environment), job, check.items,
                                   arguments.json ? *environment.out : *environment.err);
     report = job.Run();
   }
   if (!report.ok()) return report.status();
-  Report(arguments, folder, *report, environment);
+  const bool allowed = arguments.allow_failed.Allows(report->set.failed_leaders, check.files);
+  Report(arguments, folder, *report, allowed, environment);
   if (!report->stopped.ok()) return report->stopped;
-  return CodeOf(*report, running.stopped());
+  return CodeOf(*report, allowed, running.stopped());
 }
 
 // The state that a run and a dry run share.
@@ -190,7 +192,8 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
   const absl::StatusOr<batch::PlanCheck> check =
       Check(arguments, environment, prepared, nullptr, nullptr, [] { return false; });
   if (!check.ok()) return check.status();
-  const bool good = check->bad_line_count == 0 && check->bad_leader_count == 0;
+  const bool good = check->bad_line_count == 0 &&
+                    arguments.allow_failed.Allows(check->bad_leader_count, check->files);
   absl::StatusOr<batch::Estimate> estimate = batch::Estimate();
   if (check->bad_line_count == 0) {
     estimate = EstimateJob(prepared.recipe, prepared.models, prepared.skeletons, prepared.limits,
@@ -253,7 +256,7 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
                  *std::move(plan), ToJobOptions(arguments));
   running.Set(&job);
   absl::StatusOr<ExitCode> code =
-      RunJob(arguments, job, folder.out(), check->items, environment, running);
+      RunJob(arguments, job, folder.out(), *check, environment, running);
   running.Set(nullptr);
   return code;
 }

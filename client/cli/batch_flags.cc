@@ -24,7 +24,8 @@ Exit codes:
   0   every item is settled: done, or rejected by the recipe's filter
   1   run it again: stopped, a server away, a full disk, items that failed temporarily
   2   the command line is invalid
-  42  items failed permanently (failed.tsv), or the recipe, the input or the models are rejected
+  42  items of more leaders than --allow-failed permits failed permanently (failed.tsv), or the
+      recipe, the input or the models are rejected
 
 Example:
   duet batch walks/ --recipe mixes.textproto --out set
@@ -131,6 +132,13 @@ void AddOutputFlags(FlagSet* app, BatchArguments* arguments) {
       ->Group(kGroup);
   app->AddSwitch("--retry-failed", &arguments->retry_failed,
                  "Retry items that failed permanently; a packed set gets new shards for them")
+      ->Group(kGroup);
+  AddParsed<batch::AllowedFailures>(
+      app, "--allow-failed", batch::kAllowedFailuresForm, batch::ParseAllowedFailures,
+      [arguments](batch::AllowedFailures allowed) { arguments->allow_failed = allowed; },
+      "Exit with 0 although this many leaders, or this share of them, have items that failed "
+      "permanently")
+      ->LastOnly()
       ->Group(kGroup);
   app->AddSwitch(
          "--dry-run", &arguments->dry_run,

@@ -58,7 +58,8 @@ void WriteCauses(const std::vector<batch::FailureCause>& causes, std::ostream& o
 }  // namespace
 
 void Report(const BatchArguments& arguments, const std::filesystem::path& folder,
-            const batch::JobReport& report, const ProgramEnvironment& environment) {
+            const batch::JobReport& report, bool failures_allowed,
+            const ProgramEnvironment& environment) {
   const int64_t settled = report.set.done + report.set.rejected + report.set.failed;
   if (arguments.json) {
     const nlohmann::ordered_json event = {{"event", "end"},
@@ -67,6 +68,7 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
                                           {"done", report.set.done},
                                           {"rejected", report.set.rejected},
                                           {"failed", report.set.failed},
+                                          {"failed_leaders", report.set.failed_leaders},
                                           {"missing", report.planned - settled},
                                           {"bytes", report.set.bytes},
                                           {"packed", report.packed},
@@ -88,6 +90,10 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
     *environment.err << "failed permanently, by leader in " << (folder / "failed.tsv").string()
                      << ":\n";
     WriteCauses(report.set.failures, *environment.err);
+    if (failures_allowed) {
+      *environment.err << "duet: --allow-failed permits the "
+                       << base::Counted(report.set.failed_leaders, "leader") << " that failed\n";
+    }
   }
   if (!report.unfinished_causes.empty()) {
     *environment.err << "failed temporarily; run the command again:\n";

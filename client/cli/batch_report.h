@@ -16,8 +16,10 @@
 namespace duet::client::cli {
 
 // The output of duet batch: sentences, or with --json one event or object on each line.
+// `failures_allowed`: --allow-failed permits the leaders that failed.
 void Report(const BatchArguments& arguments, const std::filesystem::path& folder,
-            const batch::JobReport& report, const ProgramEnvironment& environment);
+            const batch::JobReport& report, bool failures_allowed,
+            const ProgramEnvironment& environment);
 // For a dry run. Problems go to the error stream.
 void Report(const BatchArguments& arguments, const batch::PlanCheck& check,
             const batch::Estimate& estimate, const ProgramEnvironment& environment);

@@ -588,6 +588,31 @@ class BatchTest(tools.ServedTest):
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual([cause["items"] for cause in summary["failures"]], [16])
 
+    def test_a_tolerated_share_of_bad_leaders_lets_shards_merge(self):
+        leaders, recipe = self.out("leaders"), self.recipe()
+        leaders.mkdir()
+        for name in ("kick", "hug", "push"):
+            shutil.copy(tools.sample(name), leaders)
+        (leaders / "broken.bvh").write_text("HIERARCHY", encoding="utf-8")
+        for number, (allowed, code) in enumerate((("0", 42), ("1", 0), ("24%", 42), ("25%", 0))):
+            with self.subTest(allowed):
+                for flags in ((), ("--dry-run",)):
+                    result = self.batch(self.out(number), recipe, "--allow-failed", allowed, *flags,
+                                        code=code, leaders=leaders)
+                self.assertEqual(len(entries(self.out(number))), 48)
+        result = self.batch(self.out(1), recipe, "--allow-failed", "1", leaders=leaders)
+        self.assertIn("16 failed", result.stdout)
+        self.assertIn("--allow-failed permits the 1 leader that failed", result.stderr)
+        for index in range(2):
+            self.batch(self.out(), recipe, "--shard", f"{index}/2", "--allow-failed", "25%",
+                       leaders=leaders)
+        merged = tools.duet("batch", "merge", self.out())
+        self.assertEqual(merged.returncode, 0, merged.stderr)
+        self.assertEqual(digests(self.out()), digests(self.out(1)))
+        self.verified(self.out())
+        wrong = self.batch(self.out("wrong"), recipe, "--allow-failed", "many", code=2)
+        self.assertIn("--allow-failed: expected a number of leaders, or a share", wrong.stderr)
+
     def test_causes_beyond_the_first_are_counted(self):
         leaders, out = self.out("leaders"), self.out()
         leaders.mkdir()

@@ -38,9 +38,34 @@ TEST(FailureTable, HasARowForEachLeaderAndCause) {
             "a.bvh\t1\tNOT_FOUND\tno pushes \ta-push\n"
             "a.bvh\t2\tNOT_FOUND\twalks/a.bvh: no such file\ta-kick,a-hug\n"
             "b.bvh\t1\tNOT_FOUND\twalks/b.bvh: no such file\tb-kick\n");
+  EXPECT_EQ(table.leaders(), 2);
   // The file is no part of the cause.
   EXPECT_THAT(table.causes().Largest(9),
               ElementsAre(Cause("no such file", 3, 2), Cause("no\tpushes\n", 1, 1)));
+}
+
+TEST(AllowedFailures, AreANumberOrAShareOfLeaders) {
+  EXPECT_TRUE(AllowedFailures().Allows(0, 0));
+  EXPECT_FALSE(AllowedFailures().Allows(1, 1000));
+  const auto five = ParseAllowedFailures("5");
+  ASSERT_THAT(five, IsOk());
+  EXPECT_TRUE(five->Allows(5, 5));
+  EXPECT_FALSE(five->Allows(6, 1000));
+  const auto share = ParseAllowedFailures("2%");
+  ASSERT_THAT(share, IsOk());
+  EXPECT_TRUE(share->Allows(5, 270));
+  EXPECT_FALSE(share->Allows(6, 270));
+  EXPECT_TRUE(ParseAllowedFailures("0.5%")->Allows(1, 200));
+}
+
+TEST(AllowedFailures, OtherTextsAreRejected) {
+  for (const char* text : {"", "%", "-1", "1.5", "-1%", "101%", "nan%", "5 %x", "five"}) {
+    EXPECT_THAT(ParseAllowedFailures(text),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         HasSubstr("expected a number of leaders, or a share of them from 0% to "
+                                   "100%, got \"")))
+        << text;
+  }
 }
 
 TEST(FailureCauses, OnlyTheLeadersOwnFileIsOmitted) {
