@@ -313,6 +313,26 @@ absl::Status Plan::CheckForModels(const LeaderEntry& leader) const {
   return absl::OkStatus();
 }
 
+// In this order: the manifest, the recipe, an index.tsv, left.
+absl::Status Plan::SetSides(LeaderEntry* leader) {
+  const std::optional<Sides>& asked = recipe_.input.side;
+  sides_ = {asked == Sides::kRight ? formats::Side::kRight : formats::Side::kLeft};
+  if (asked == Sides::kBoth) sides_ = {formats::Side::kLeft, formats::Side::kRight};
+  if (leader->side.has_value()) sides_ = {*leader->side};
+  if (recipe_.seed_rule == SeedRule::kPath || leader->side.has_value() || asked.has_value()) {
+    return absl::OkStatus();
+  }
+  const absl::StatusOr<const dataset::IndexEntry*> entry = indexes_.Find(leader->file);
+  if (!entry.ok()) return entry.status();
+  if (*entry == nullptr) return absl::OkStatus();
+  const dataset::LeaderSide side = (*entry)->leader_side;
+  ++(side == dataset::LeaderSide::kRight  ? indexed_sides_.right
+     : side == dataset::LeaderSide::kLeft ? indexed_sides_.left
+                                          : indexed_sides_.unknown);
+  if (side == dataset::LeaderSide::kRight) sides_ = {formats::Side::kRight};
+  return absl::OkStatus();
+}
+
 absl::Status Plan::BeginLeader(LeaderEntry leader) {
   reactions_ =
       leader.labels.empty()
@@ -323,9 +343,8 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
     return absl::InvalidArgumentError(absl::StrCat(
         PlaceOf(leader), ": labels: expected some, since the recipe has no reactions, got none"));
   }
-  sides_ = {recipe_.input.side == Sides::kRight ? formats::Side::kRight : formats::Side::kLeft};
-  if (recipe_.input.side == Sides::kBoth) sides_ = {formats::Side::kLeft, formats::Side::kRight};
-  if (leader.side.has_value()) sides_ = {*leader.side};
+  const absl::Status sides = SetSides(&leader);
+  if (!sides.ok()) return sides;
   leader_models_.clear();
   const absl::StatusOr<ModelChoice> choice =
       leader.model.empty() ? ModelChoice() : ParseModelChoice(leader.model);

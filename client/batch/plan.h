@@ -12,6 +12,7 @@
 #include "absl/strings/string_view.h"
 #include "client/batch/leader_digests.h"
 #include "client/batch/leader_entry.h"
+#include "client/batch/leader_indexes.h"
 #include "client/batch/leader_source.h"
 #include "client/batch/recipe.h"
 #include "client/result.h"
@@ -41,6 +42,13 @@ struct Item {
 // every JSON reader can represent it.
 uint64_t SeedOf(const Item& item, uint64_t recipe_seed, absl::string_view content, int retry);
 
+// The number of leaders whose side an index.tsv states, because neither the list nor the recipe does.
+struct IndexedSides {
+  int64_t left = 0;
+  int64_t right = 0;
+  int64_t unknown = 0;  // read as left
+};
+
 // The items of a recipe and a list of leaders, one after the other. Memory does not depend on the
 // length of the list.
 class Plan {
@@ -55,6 +63,9 @@ class Plan {
   // line of a manifest (such as an unknown class), the next call continues with the next leader.
   // Any other error ends the plan.
   absl::StatusOr<std::optional<Item>> Next();
+
+  // Of the leaders so far.
+  const IndexedSides& indexed_sides() const { return indexed_sides_; }
 
  private:
   struct LabelledReaction {
@@ -75,6 +86,7 @@ class Plan {
   std::vector<std::string> ClassesOr(const std::vector<std::string>& classes) const;
   std::string DrawnFrom(const LeaderEntry& leader);
   void DrawFor(const LeaderEntry& leader);
+  absl::Status SetSides(LeaderEntry* leader);
   absl::Status BeginLeader(LeaderEntry leader);
   absl::StatusOr<Item> MakeItem();
   absl::StatusOr<std::string> NameOf(const Item& item);
@@ -85,6 +97,8 @@ class Plan {
   std::unique_ptr<LeaderSource> leaders_;
   std::vector<LabelledReaction> fixed_;  // the same for each leader
   std::vector<Reaction> drawn_;          // different for each leader
+  LeaderIndexes indexes_;
+  IndexedSides indexed_sides_;
   ReadDigests digests_;
 
   // The current leader, and the position of the next item in it.

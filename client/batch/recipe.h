@@ -68,7 +68,7 @@ struct Level {
 };
 
 struct LeaderInput {
-  Sides side = Sides::kLeft;
+  std::optional<Sides> side;  // absent: as index.tsv states, or left
   bool starts_as_other_person = false;
   std::optional<double> frame_rate_hz;
   std::optional<double> metres_per_unit;
@@ -112,11 +112,11 @@ struct Output {
   std::optional<double> frame_rate_hz;  // of every item; absent: the rate of its leader
 };
 
-// How seeds and drawn labels follow from a recipe and a list. A set keeps the rule that it was begun
-// with, so that sets of earlier versions can be continued.
+// How seeds, drawn labels and sides follow from a recipe and a list. A set keeps the rule that it was
+// begun with, so that sets of earlier versions can be continued.
 enum class SeedRule {
   kPath = 1,     // from paths as they are listed; the rule of earlier versions
-  kContent = 2,  // from the content of the leaders' files, and their ids
+  kContent = 2,  // from the content of the leaders' files and their ids; sides from index.tsv
 };
 
 struct Recipe {

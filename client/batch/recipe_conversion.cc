@@ -187,6 +187,7 @@ Reaction ReadReaction(const v1::Reaction& proto, const std::string& field, Check
 LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
   LeaderInput input;
   check->Expect(v1::Side_IsValid(proto.side()), "input.side", absl::StrCat(proto.side()), "a side");
+  if (proto.side() == v1::SIDE_LEFT) input.side = Sides::kLeft;
   if (proto.side() == v1::SIDE_RIGHT) input.side = Sides::kRight;
   if (proto.side() == v1::SIDE_BOTH) input.side = Sides::kBoth;
   input.starts_as_other_person = proto.follower_start() == v1::FOLLOWER_START_OTHER_PERSON;

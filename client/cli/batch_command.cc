@@ -91,8 +91,7 @@ ExitCode CodeOf(const batch::JobReport& report, bool allowed, bool stopped) {
 }
 
 absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job,
-                                const std::filesystem::path& folder,
-                                const batch::PlanCheck& check,
+                                const std::filesystem::path& folder, const batch::PlanCheck& check,
                                 const ProgramEnvironment& environment, const RunningJob& running) {
   absl::StatusOr<batch::JobReport> report;
   {
@@ -152,8 +151,10 @@ absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
   if (surveyor != nullptr) {
     part.is_settled = [surveyor](const batch::Item& item) { return surveyor->Add(item); };
   }
-  return CheckPlan(prepared.recipe, prepared.skeletons, prepared.limits, part, &*plan, kept,
-                   stopped);
+  absl::StatusOr<batch::PlanCheck> check =
+      CheckPlan(prepared.recipe, prepared.skeletons, prepared.limits, part, &*plan, kept, stopped);
+  if (check.ok()) ReportIndexedSides(arguments, plan->indexed_sides(), environment);
+  return check;
 }
 
 // Chooses the vertical of the leaders if the recipe leaves it open: that which the set was begun
@@ -186,7 +187,8 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
           .value_or(batch::JobIdentity());
   absl::Status status = Prepare(arguments, environment, begun, &prepared);
   if (status.ok()) {
-    status = ChooseVertical(arguments, environment, begun, [] { return false; }, &prepared);
+    status = ChooseVertical(
+        arguments, environment, begun, [] { return false; }, &prepared);
   }
   if (!status.ok()) return status;
   const absl::StatusOr<batch::PlanCheck> check =

@@ -189,6 +189,16 @@ void Report(const BatchArguments& arguments, const batch::VerifyReport& report,
                       "--repair or the command that made the set\n";
 }
 
+void ReportIndexedSides(const BatchArguments& arguments, const batch::IndexedSides& sides,
+                        const ProgramEnvironment& environment) {
+  const int64_t all = sides.left + sides.right + sides.unknown;
+  if (all == 0 || arguments.quiet || arguments.json) return;
+  *environment.err << "leaders by index.tsv: " << sides.left << " left, " << sides.right
+                   << " right";
+  if (sides.unknown > 0) *environment.err << ", " << sides.unknown << " unknown, read as left";
+  *environment.err << "\n";
+}
+
 void ReportPassedOver(const BatchArguments& arguments, const std::vector<std::string>& files,
                       const ProgramEnvironment& environment) {
   if (files.empty() || arguments.quiet) return;

@@ -32,6 +32,9 @@ void Report(const BatchArguments& arguments, const batch::VerifyReport& report,
             const ProgramEnvironment& environment);
 
 // Reports the first of the files in folders that are not motions.
+// What an index.tsv decided.
+void ReportIndexedSides(const BatchArguments& arguments, const batch::IndexedSides& sides,
+                        const ProgramEnvironment& environment);
 void ReportPassedOver(const BatchArguments& arguments, const std::vector<std::string>& files,
                       const ProgramEnvironment& environment);
 

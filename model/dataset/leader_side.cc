@@ -18,6 +18,7 @@ struct Columns {
   int leader_side = -1;
   int subjects = -1;
   int source = -1;
+  int group = -1;
   size_t count = 0;
 };
 
@@ -35,6 +36,7 @@ absl::StatusOr<Columns> ParseHeader(absl::string_view line) {
     if (names[i] == "leader_side") columns.leader_side = static_cast<int>(i);
     if (names[i] == "subjects") columns.subjects = static_cast<int>(i);
     if (names[i] == "leader_source") columns.source = static_cast<int>(i);
+    if (names[i] == "group") columns.group = static_cast<int>(i);
   }
   if (columns.path < 0 || columns.leader_side < 0) {
     return Wrong(1, "a header of tab-separated names with path and leader_side", "others");
@@ -59,6 +61,10 @@ std::vector<std::string> ParseSubjects(absl::string_view text) {
 }
 
 }  // namespace
+
+bool LooksLikeIndex(absl::string_view text) {
+  return ParseHeader(absl::StripSuffix(text.substr(0, text.find('\n')), "\r")).ok();
+}
 
 absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view text) {
   std::map<std::string, IndexEntry> entries;
@@ -90,6 +96,7 @@ absl::StatusOr<std::map<std::string, IndexEntry>> ParseIndex(absl::string_view t
     if (columns.source >= 0) {
       entry.guessed = absl::StartsWith(cells[static_cast<size_t>(columns.source)], "guess");
     }
+    if (columns.group >= 0) entry.group = std::string(cells[static_cast<size_t>(columns.group)]);
     const std::string path(cells[static_cast<size_t>(columns.path)]);
     if (!entries.emplace(path, std::move(entry)).second) {
       return Wrong(line, "each path once", absl::StrCat(base::Quoted(path), " again"));

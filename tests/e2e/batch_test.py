@@ -360,6 +360,26 @@ class BatchTest(tools.ServedTest):
         self.assertIn('expected the name or the number of an item', refused.stderr)
         self.assertEqual(tools.duet("view", out, "--out", page).returncode, 2)
 
+    def test_captures_are_led_by_whom_their_index_names(self):
+        captures = self.out("captures")
+        self.batch(captures, self.recipe(
+            text="reactions { labels { weights { key: 'kick' value: 1 } } } "
+                 "output { layout: LAYOUT_SBU %s }"))
+        for folder in ("items", ".duet-batch"):
+            shutil.rmtree(captures / folder)
+        index = captures / "index.tsv"
+        rows = index.read_text(encoding="utf-8").splitlines()
+        side = rows[0].split("\t").index("leader_side")
+        changed = rows[2].split("\t")
+        changed[side] = "right"
+        index.write_text("\n".join([*rows[:2], "\t".join(changed), *rows[3:]]) + "\n",
+                         encoding="utf-8")
+        found = self.batch(self.out(), self.recipe(), leaders=captures / "s00s00")
+        self.assertIn("leaders by index.tsv: 2 left, 1 right\n", found.stderr)
+        path = changed[rows[0].split("\t").index("path")]
+        self.assertEqual({entry["leader"] for entry in entries(self.out())
+                          if entry["side"] == "right"}, {str(captures / path)})
+
     def test_files_without_motion_are_skipped(self):
         leaders, out = self.out("leaders"), self.out()
         leaders.mkdir()

@@ -225,6 +225,19 @@ TEST_F(ListedLeaders, FollowersStartCountsByItsContentToo) {
   EXPECT_NE(seed("1,0,1", "content"), seed("1,0,2", "content"));
 }
 
+TEST_F(ListedLeaders, IndexOfCapturesStatesTheSideThatNobodyElseStates) {
+  test::WriteTestFile(folder_ / "index.tsv", "path\tleader_side\nwalks/a.bvh\tright\n");
+  const auto side = [this](const std::string& recipe, const std::string& column = "") {
+    return (*PlanOf(kKick + recipe, absl::StrCat("leader\tside\n", (folder_ / "walks/a.bvh").string(),
+                                                 "\t", column, "\n")))[0]
+        .side;
+  };
+  EXPECT_EQ(side(""), formats::Side::kRight);
+  EXPECT_EQ(side("", "left"), formats::Side::kLeft);
+  EXPECT_EQ(side("input { side: SIDE_LEFT }"), formats::Side::kLeft);
+  EXPECT_EQ(Of(kKick, (folder_ / "walks/b.bvh").string())[0].side, formats::Side::kLeft);
+}
+
 TEST(Plan, SetsOfEarlierVersionsKeepTheirSeeds) {
   absl::StatusOr<Recipe> recipe =
       ParseRecipe(absl::StrCat(kKick, " output { formats: FORMAT_NPY }"), false);
