@@ -121,7 +121,8 @@ absl::Status ItemTables::Open(SetFiles* files) {
 }
 
 absl::Status ItemTables::Add(int64_t item, const ordered_json& record) {
-  const std::string split = SplitOf(identity_.description.splits, Field(record, "leader_sha256"));
+  const std::string named = SplitOfRecord(identity_.description.splits, record);
+  const std::string split = named.empty() ? kTrain : named;
   const size_t file = MainFile(record);
   return tables_[split]->Append(Row(record, split, PlaceOf(item, record, file), file));
 }

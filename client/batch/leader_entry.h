@@ -19,8 +19,8 @@ struct LeaderEntry {
   // Unique name of its outputs: a path relative to the data set, without extension.
   std::string key;
   bool has_id = false;  // the key is the `id` of a manifest
-  std::string given;  // as listed
-  std::string line;   // "MANIFEST:NUMBER" if it comes from a manifest
+  std::string given;    // as listed
+  std::string line;     // "MANIFEST:NUMBER" if it comes from a manifest
   std::filesystem::path file;
   std::optional<formats::Side> side;
   Labels labels;               // if not empty, override the recipe's reactions
@@ -28,6 +28,7 @@ struct LeaderEntry {
   std::string follower_start;  // a point or a file; empty: set by the recipe
   std::optional<formats::Side> follower_start_side;
   std::optional<motion::Vec3> partner_direction;
+  std::string group;  // whose leaders are all in one split; empty: none
   Pins pins;
   std::optional<uint64_t> seed;
   std::vector<std::pair<std::string, std::string>> extra;  // other columns, by name

@@ -106,6 +106,7 @@ absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns
   const std::filesystem::path path(entry.given);
   entry.file = path.is_absolute() ? path : folder / path;
   entry.model = Take("model", &columns);
+  entry.group = Take("group", &columns);
   entry.follower_start = Take("follower_start", &columns);
   if (!entry.follower_start.empty() && !ParsePoint(entry.follower_start).has_value() &&
       std::filesystem::path(entry.follower_start).is_relative()) {

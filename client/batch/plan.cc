@@ -67,15 +67,14 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
   return text;
 }
 
-std::string Digest(const std::string& text) {
-  return base::Sha256Hex(text).substr(0, kIdDigits);
-}
+std::string Digest(const std::string& text) { return base::Sha256Hex(text).substr(0, kIdDigits); }
 
 // Sets the digests of the request, of which the id is unique to each item.
 void SetDigests(const Recipe& recipe, const ModelInfo& model, Item* item) {
   const LeaderEntry& leader = *item->leader;
-  item->id = Digest(Asked(*item, recipe, model, absl::StrCat(leader.key, "\n", leader.given),
-                          leader.follower_start));
+  std::string who = absl::StrCat(leader.key, "\n", leader.given);
+  if (!leader.group.empty()) absl::StrAppend(&who, "\ngroup ", leader.group);
+  item->id = Digest(Asked(*item, recipe, model, who, leader.follower_start));
   item->place = item->id;
   if (recipe.seed_rule == SeedRule::kPath) return;
   // Without the paths, which the content of the files stands for.
@@ -146,8 +145,7 @@ uint64_t SeedOf(const Item& item, uint64_t recipe_seed, absl::string_view conten
   if (item.leader->seed.has_value() && retry == 0) {
     return *item.leader->seed + static_cast<uint64_t>(item.sample);
   }
-  const std::string from =
-      item.asked.empty() ? item.id : absl::StrCat(content, " ", item.asked);
+  const std::string from = item.asked.empty() ? item.id : absl::StrCat(content, " ", item.asked);
   return DrawnNumber(absl::StrCat("seed ", recipe_seed, " ", from, " ", retry));
 }
 
@@ -314,22 +312,33 @@ absl::Status Plan::CheckForModels(const LeaderEntry& leader) const {
 }
 
 // In this order: the manifest, the recipe, an index.tsv, left.
-absl::Status Plan::SetSides(LeaderEntry* leader) {
+void Plan::SetSides(const LeaderEntry& leader, const dataset::IndexEntry* indexed) {
   const std::optional<Sides>& asked = recipe_.input.side;
   sides_ = {asked == Sides::kRight ? formats::Side::kRight : formats::Side::kLeft};
   if (asked == Sides::kBoth) sides_ = {formats::Side::kLeft, formats::Side::kRight};
-  if (leader->side.has_value()) sides_ = {*leader->side};
-  if (recipe_.seed_rule == SeedRule::kPath || leader->side.has_value() || asked.has_value()) {
-    return absl::OkStatus();
-  }
-  const absl::StatusOr<const dataset::IndexEntry*> entry = indexes_.Find(leader->file);
-  if (!entry.ok()) return entry.status();
-  if (*entry == nullptr) return absl::OkStatus();
-  const dataset::LeaderSide side = (*entry)->leader_side;
+  if (leader.side.has_value()) sides_ = {*leader.side};
+  if (indexed == nullptr || leader.side.has_value() || asked.has_value()) return;
+  const dataset::LeaderSide side = indexed->leader_side;
   ++(side == dataset::LeaderSide::kRight  ? indexed_sides_.right
      : side == dataset::LeaderSide::kLeft ? indexed_sides_.left
                                           : indexed_sides_.unknown);
   if (side == dataset::LeaderSide::kRight) sides_ = {formats::Side::kRight};
+}
+
+// Sets what an index.tsv may state about a leader. Earlier versions read none, and knew no groups:
+// they copied that column like any other.
+absl::Status Plan::UseIndex(LeaderEntry* leader) {
+  if (recipe_.seed_rule == SeedRule::kPath) {
+    if (!leader->group.empty()) leader->extra.emplace_back("group", std::move(leader->group));
+    leader->group.clear();
+    std::sort(leader->extra.begin(), leader->extra.end());
+    SetSides(*leader, nullptr);
+    return absl::OkStatus();
+  }
+  const absl::StatusOr<const dataset::IndexEntry*> indexed = indexes_.Find(leader->file);
+  if (!indexed.ok()) return indexed.status();
+  if (*indexed != nullptr && leader->group.empty()) leader->group = (*indexed)->group;
+  SetSides(*leader, *indexed);
   return absl::OkStatus();
 }
 
@@ -343,8 +352,8 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
     return absl::InvalidArgumentError(absl::StrCat(
         PlaceOf(leader), ": labels: expected some, since the recipe has no reactions, got none"));
   }
-  const absl::Status sides = SetSides(&leader);
-  if (!sides.ok()) return sides;
+  const absl::Status indexed = UseIndex(&leader);
+  if (!indexed.ok()) return indexed;
   leader_models_.clear();
   const absl::StatusOr<ModelChoice> choice =
       leader.model.empty() ? ModelChoice() : ParseModelChoice(leader.model);

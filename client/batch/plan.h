@@ -42,7 +42,8 @@ struct Item {
 // every JSON reader can represent it.
 uint64_t SeedOf(const Item& item, uint64_t recipe_seed, absl::string_view content, int retry);
 
-// The number of leaders whose side an index.tsv states, because neither the list nor the recipe does.
+// The number of leaders whose side an index.tsv states, because neither the list nor the recipe
+// does.
 struct IndexedSides {
   int64_t left = 0;
   int64_t right = 0;
@@ -86,7 +87,8 @@ class Plan {
   std::vector<std::string> ClassesOr(const std::vector<std::string>& classes) const;
   std::string DrawnFrom(const LeaderEntry& leader);
   void DrawFor(const LeaderEntry& leader);
-  absl::Status SetSides(LeaderEntry* leader);
+  void SetSides(const LeaderEntry& leader, const dataset::IndexEntry* indexed);
+  absl::Status UseIndex(LeaderEntry* leader);
   absl::Status BeginLeader(LeaderEntry leader);
   absl::StatusOr<Item> MakeItem();
   absl::StatusOr<std::string> NameOf(const Item& item);

@@ -112,11 +112,12 @@ struct Output {
   std::optional<double> frame_rate_hz;  // of every item; absent: the rate of its leader
 };
 
-// How seeds, drawn labels and sides follow from a recipe and a list. A set keeps the rule that it was
-// begun with, so that sets of earlier versions can be continued.
+// How seeds, drawn labels and sides follow from a recipe and a list. A set keeps the rule that it
+// was begun with, so that sets of earlier versions can be continued.
 enum class SeedRule {
-  kPath = 1,     // from paths as they are listed; the rule of earlier versions
-  kContent = 2,  // from the content of the leaders' files and their ids; sides from index.tsv
+  kPath = 1,  // from paths as they are listed; the rule of earlier versions
+  // From the content of the leaders' files and their ids; sides and groups also from an index.tsv.
+  kContent = 2,
 };
 
 struct Recipe {

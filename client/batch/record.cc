@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "client/batch/text_values.h"
+#include "model/base/sha256.h"
 
 namespace duet::client::batch {
 namespace {
@@ -59,6 +60,7 @@ ordered_json Begin(const Item& item, const char* state) {
   record["leader"] = item.leader->given;
   record["leader_sha256"] = "";
   record["side"] = std::string(SideName(item.side));
+  if (!item.leader->group.empty()) record["group"] = item.leader->group;
   record["reaction"] = item.reaction;
   return record;
 }
@@ -151,9 +153,12 @@ std::string LargestClass(const ordered_json& record) {
 
 std::string SplitOfRecord(const Splits& splits, const ordered_json& record) {
   if (!splits.any()) return "";
-  const auto leader = record.find("leader_sha256");
-  const bool known = leader != record.end() && leader->is_string();
-  return SplitOf(splits, known ? leader->get<std::string>() : "");
+  const auto text = [&record](const char* field) {
+    const auto found = record.find(field);
+    return found != record.end() && found->is_string() ? found->get<std::string>() : "";
+  };
+  const std::string group = text("group");
+  return SplitOf(splits, group.empty() ? text("leader_sha256") : base::Sha256Hex(group));
 }
 
 std::string Line(const ordered_json& record) {

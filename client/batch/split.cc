@@ -28,8 +28,8 @@ std::vector<std::string> SplitNames(const Splits& splits) {
 
 // "test" has the lowest fractions and "validation" the highest, so that changing one share does not
 // move leaders of the other split.
-std::string SplitOf(const Splits& splits, absl::string_view leader_sha256) {
-  const double fraction = Fraction(leader_sha256);
+std::string SplitOf(const Splits& splits, absl::string_view sha256) {
+  const double fraction = Fraction(sha256);
   if (fraction < splits.test) return kTest;
   return fraction >= 1 - splits.validation ? kValidation : kTrain;
 }

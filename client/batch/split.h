@@ -21,10 +21,11 @@ inline constexpr char kTrain[] = "train";
 // The names of the splits with leaders, in their order: "train" first.
 std::vector<std::string> SplitNames(const Splits& splits);
 
-// The split of all items of a leader. It depends only on the digest of the leader's file, so a
-// leader stays in its split whatever leaders, shards of a job or reactions are added, and the same
-// file under two names is in one split. A larger share only moves leaders out of "train".
-std::string SplitOf(const Splits& splits, absl::string_view leader_sha256);
+// The split of all items of a leader. It depends only on the digest of the leader's file, or of the
+// leader's group, so a leader stays in its split whatever leaders, shards of a job or reactions are
+// added, and the same file under two names is in one split. A larger share only moves leaders out
+// of "train".
+std::string SplitOf(const Splits& splits, absl::string_view sha256);
 
 }  // namespace duet::client::batch
 

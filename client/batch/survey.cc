@@ -26,7 +26,7 @@ std::string DescribeChange(const ordered_json& record, const Item& item,
   const auto shown = [](const ordered_json& of, const char* field) {
     return of.contains(field) ? base::Shown(nlohmann::json(of[field])) : std::string("none");
   };
-  for (const char* field : {"leader", "side", "reaction", "labels", "model", "name"}) {
+  for (const char* field : {"leader", "side", "group", "reaction", "labels", "model", "name"}) {
     // The record of a failed item has no model.
     if (!record.contains(field) && field == std::string("model")) continue;
     const std::string was = shown(record, field), is = shown(now, field);
@@ -37,8 +37,8 @@ std::string DescribeChange(const ordered_json& record, const Item& item,
          "follower_start_side, partner_direction, constraints or keyframes";
 }
 
-// Whether only the labels may differ, which are drawn from the content of the leader: the item failed
-// because of a leader that was mended since.
+// Whether only the labels may differ, which are drawn from the content of the leader: the item
+// failed because of a leader that was mended since.
 bool IsDrawnAnew(const ordered_json& record, const Item& item) {
   return item.drawn && record["state"] == kFailed &&
          record.value("leader", "") == item.leader->given && record.value("name", "") == item.name;
@@ -53,12 +53,9 @@ absl::StatusOr<Survey> OpenSurvey(const JobFolder& folder, const JobIdentity& id
   if (!journal.ok()) return journal.status();
   absl::StatusOr<ShardList> shards = OpenShards(*journal, identity, folder);
   if (!shards.ok()) return shards.status();
-  return Survey{*std::move(journal),
-                *std::move(shards),
-                {},
-                true,
-                std::make_unique<LeaderDigests>(),
-                std::make_unique<Makers>()};
+  return Survey{
+      *std::move(journal),       *std::move(shards), {}, true, std::make_unique<LeaderDigests>(),
+      std::make_unique<Makers>()};
 }
 
 }  // namespace

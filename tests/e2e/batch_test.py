@@ -292,6 +292,33 @@ class BatchTest(tools.ServedTest):
         self.assertEqual(float(row["distance_metres"]), entry["quality"]["distance_metres"])
         self.assertEqual(row["sha256"], entry["files"][0]["sha256"])
 
+    def test_people_of_a_group_are_in_one_split(self):
+        manifest = self.out("groups.tsv")
+        rows = [(f"far/../{name}", group) for group in ("ann", "bob", "eve", "joe")
+                for name in ("kick", "hug", "far/push")]
+        manifest.write_text("leader\tgroup\tid\n" + "".join(
+            f"{self.leaders / name}.bvh\t{group}\t{group}-{number}\n"
+            for number, (name, group) in enumerate(rows)), encoding="utf-8")
+        for packing in ("none", "tar"):
+            out = self.out(packing)
+            result = tools.duet("batch", "--manifest", manifest, "--recipe", self.recipe(), "--out",
+                                out, "--server", self.server.address, "--validation", "0.3",
+                                "--test", "0.3", "--pack", packing)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            splits = collections.defaultdict(set)
+            for entry in entries(out):
+                splits[entry["group"]].add(entry["split"])
+            expected = {}
+            for group in ("ann", "bob", "eve", "joe"):
+                share = int(hashlib.sha256(group.encode()).hexdigest()[:8], 16) / 2**32
+                expected[group] = {"test" if share < 0.3 else
+                                   "validation" if share >= 0.7 else "train"}
+            self.assertEqual(splits, expected)
+            self.assertGreater(len(set.union(*splits.values())), 1)
+            names = {entry["id"]: entry["split"] for entry in entries(out)}
+            self.assertEqual({row["id"]: row["split"] for row in rows_of(out)}, names)
+            self.verified(out)
+
     def test_tar_members_are_grouped_as_webdataset_groups_them(self):
         out = self.out()
         self.batch(out, self.recipe("packing: PACKING_TAR formats: FORMAT_JSON formats: FORMAT_BVH"))

@@ -1,8 +1,12 @@
 #include "client/batch/split.h"
 
 #include <map>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 
+#include "absl/strings/str_cat.h"
+#include "client/batch/record.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/sha256.h"
@@ -29,6 +33,26 @@ TEST(SplitOf, LargerSharesMoveLeadersOnlyOutOfTraining) {
     if (was == "train") continue;
     EXPECT_EQ(SplitOf(after, Leader(i)), was) << i;
   }
+}
+
+TEST(SplitOfRecord, GroupsAreNeverDivided) {
+  const Splits splits{0.25, 0.25};
+  std::map<std::string, int> groups;
+  for (int person = 0; person < 100; ++person) {
+    std::set<std::string> found, without;
+    for (int take = 0; take < 20; ++take) {
+      nlohmann::ordered_json record = {{"leader_sha256", Leader(20 * person + take)}};
+      without.insert(SplitOfRecord(splits, record));
+      record["group"] = absl::StrCat("person ", person);
+      found.insert(SplitOfRecord(splits, record));
+    }
+    EXPECT_EQ(found.size(), 1u);
+    EXPECT_GT(without.size(), 1u);
+    ++groups[*found.begin()];
+  }
+  EXPECT_GT(groups["test"], 10);
+  EXPECT_GT(groups["validation"], 10);
+  EXPECT_GT(groups["train"], 30);
 }
 
 TEST(SplitOf, FollowsTheFirstEightDigits) {
