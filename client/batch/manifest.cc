@@ -97,6 +97,17 @@ void TakeParsed(const char* name, absl::StatusOr<Value> (*parse)(absl::string_vi
   *value = *std::move(parsed);
 }
 
+// `side` is the earlier name of the column.
+void TakeSide(Columns* columns, std::optional<formats::Side>* side, LineProblems* problems) {
+  std::optional<formats::Side> earlier;
+  TakeParsed("leader_side", ParseSide, columns, side, problems);
+  TakeParsed("side", ParseSide, columns, &earlier, problems);
+  if (side->has_value() && earlier.has_value()) {
+    problems->Add("side", "expected none beside leader_side, whose earlier name it is, got one");
+  }
+  if (!side->has_value()) *side = earlier;
+}
+
 // Fills all fields except the key.
 absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns columns) {
   LeaderEntry entry;
@@ -114,7 +125,7 @@ absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns
   }
   std::optional<Labels> labels;
   TakeParsed("labels", ParseLabels, &columns, &labels, &problems);
-  TakeParsed("side", ParseSide, &columns, &entry.side, &problems);
+  TakeSide(&columns, &entry.side, &problems);
   TakeParsed("follower_start_side", ParseSide, &columns, &entry.follower_start_side, &problems);
   TakeParsed("partner_direction", ParseDirection, &columns, &entry.partner_direction, &problems);
   std::optional<Pins> pins;

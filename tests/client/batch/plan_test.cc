@@ -149,6 +149,21 @@ TEST(Plan, LabelsSeedAndModelOfALineOverrideTheRecipe) {
   EXPECT_NE(SeedOf((*items)[1], 0, "content", 1), 10u);
 }
 
+TEST(Plan, LinesNameTheSideAsSynthesizeDoesOrByTheEarlierName) {
+  for (const char* column : {"leader_side", "side"}) {
+    const auto items = PlanOf(kKick, absl::StrCat("leader\t", column, "\na.bvh\tright\n"));
+    ASSERT_THAT(items, IsOk());
+    EXPECT_EQ((*items)[0].side, formats::Side::kRight) << column;
+    EXPECT_THAT((*items)[0].leader->extra, ::testing::IsEmpty()) << column;
+    EXPECT_THAT(PlanOf(kKick, absl::StrCat("leader\t", column, "\na.bvh\tlft\n")),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         absl::StrCat("m:2: ", column, ": expected left or right, got \"lft\"")));
+  }
+  EXPECT_THAT(PlanOf(kKick, "leader\tside\tleader_side\na.bvh\tright\tleft\n"),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       HasSubstr("side: expected none beside leader_side")));
+}
+
 TEST(Plan, SeedsDifferFromItemToItem) {
   const auto items = PlanOf(std::string(kKick) + "samples: 20");
   std::set<uint64_t> seeds;
@@ -216,8 +231,7 @@ TEST_F(ListedLeaders, SeedsAndMixesFollowTheIdWhereThereIsOne) {
 
 TEST_F(ListedLeaders, FollowersStartCountsByItsContentToo) {
   const auto seed = [this](const std::string& start, const std::string& content) {
-    const std::string list =
-        absl::StrCat("leader\tfollower_start\n", ways_[0], "\t", start, "\n");
+    const std::string list = absl::StrCat("leader\tfollower_start\n", ways_[0], "\t", start, "\n");
     return SeedOf((*PlanOf(kKick, list))[0], 7, content, 0);
   };
   EXPECT_EQ(seed(ways_[1], "content"), seed(ways_[2], "content"));
@@ -228,8 +242,9 @@ TEST_F(ListedLeaders, FollowersStartCountsByItsContentToo) {
 TEST_F(ListedLeaders, IndexOfCapturesStatesTheSideThatNobodyElseStates) {
   test::WriteTestFile(folder_ / "index.tsv", "path\tleader_side\nwalks/a.bvh\tright\n");
   const auto side = [this](const std::string& recipe, const std::string& column = "") {
-    return (*PlanOf(kKick + recipe, absl::StrCat("leader\tside\n", (folder_ / "walks/a.bvh").string(),
-                                                 "\t", column, "\n")))[0]
+    return (*PlanOf(
+        kKick + recipe,
+        absl::StrCat("leader\tside\n", (folder_ / "walks/a.bvh").string(), "\t", column, "\n")))[0]
         .side;
   };
   EXPECT_EQ(side(""), formats::Side::kRight);
@@ -239,8 +254,7 @@ TEST_F(ListedLeaders, IndexOfCapturesStatesTheSideThatNobodyElseStates) {
 }
 
 TEST_F(ListedLeaders, GroupComesFromTheManifestOrTheIndexAndChangesNoSeed) {
-  test::WriteTestFile(folder_ / "index.tsv",
-                      "path\tleader_side\tgroup\nwalks/a.bvh\tleft\tann\n");
+  test::WriteTestFile(folder_ / "index.tsv", "path\tleader_side\tgroup\nwalks/a.bvh\tleft\tann\n");
   const std::string leader = (folder_ / "walks/a.bvh").string();
   const Item indexed = (*PlanOf(kKick, absl::StrCat("leader\n", leader, "\n")))[0];
   EXPECT_EQ(indexed.leader->group, "ann");
