@@ -101,19 +101,19 @@ class Fuzzing:
             health.check_probes()
             health.check_memory()
             self.counts["rounds"] += 1
-            wrong = [line for lines in found for line in lines]
-            if wrong:
-                raise judge.Finding("\n".join(wrong))
+            if any(found):
+                raise judge.Finding("\n".join(filter(None, found)))
         health.check_no_call_is_left()
         health.check_probes()
         self.target.stop()
 
     def _judged(self, one, made):
-        """Plays a plan; returns what is wrong. Exceptions of a thread would be lost."""
+        """Plays a plan up to the first finding; returns what is wrong. Exceptions of a thread would be lost."""
         try:
-            return [f"{what}\nplan: {json.dumps(made)}" for what in self._play(one, made) if what]
+            what = next(filter(None, self._play(one, made)), None)
         except Exception as error:  # pylint: disable=broad-except
-            return [f"{error!r}\nplan: {json.dumps(made)}"]
+            what = repr(error)
+        return what and f"{what}\nplan: {json.dumps(made)}"
 
     def _play(self, one, made):
         whole = self._counted(one.play(made))
