@@ -1,13 +1,29 @@
 """The pages for Unity and Unreal: their conversions are compiled as they stand there and compared
-with the tables of numbers beside them."""
+with the tables of numbers beside them. Unity's live partner is compiled against a stub of the engine
+(folder engines) and holds a session with a real server."""
 
+import asyncio
+import importlib.util
+import os
 import pathlib
 import re
 import shutil
+import sys
 import tempfile
 import unittest
 
+import gateways
 import tools
+
+ENGINES = pathlib.Path(__file__).parent / "engines"
+FRAMES = 40  # of a live session
+# The joints of the model in the order of the pages' live partners, and bones that lie between two of them.
+JOINTS = ("torso neck head left_shoulder left_elbow left_hand right_shoulder right_elbow right_hand "
+          "left_hip left_knee left_foot right_hip right_knee right_foot").split()
+UNITY_LIMBS = {f"{side}{bone}": (f"{side.lower()}_{joint}", f"{side}{end}", f"{side.lower()}_{to}")
+               for side in ("Left", "Right") for bone, joint, end, to in (
+                   ("UpperArm", "shoulder", "LowerArm", "elbow"), ("LowerArm", "elbow", "Hand", "hand"),
+                   ("UpperLeg", "hip", "LowerLeg", "knee"), ("LowerLeg", "knee", "Foot", "foot"))}
 
 UNITY_STUB = """
 namespace UnityEngine {
@@ -74,8 +90,12 @@ def guide(name):
     return (tools.SOURCE / "docs" / "guides" / name).read_text(encoding="utf-8")
 
 
+def blocks(text, language):
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+
+
 def block(text, language):
-    return re.search(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)[1]
+    return blocks(text, language)[0]
 
 
 def rows(text):
@@ -86,6 +106,19 @@ def rows(text):
         if line.startswith("|") and len(numbers) == 2:
             found.append(numbers)
     return found
+
+
+async def live_follower(duet, address, leader):
+    """The follower of a live session, answered frame by frame."""
+    import numpy as np
+    found = []
+    async with duet.aio.Client(address, wait=tools.RUN_SECONDS) as client:
+        async with client.live(JOINTS, 30, {"hug": 1}, rotations=True) as session:
+            for frame in leader:
+                await session.send(frame)
+                found.append((await session.__anext__()).positions)
+            await session.finish()
+    return np.concatenate(found)
 
 
 class EngineGuidesTest(unittest.TestCase):
@@ -115,6 +148,59 @@ class EngineGuidesTest(unittest.TestCase):
         source.write_text(block(guide("unity.md"), "csharp") + UNITY_STUB, encoding="utf-8")
         tools.run("mcs", f"-out:{program}", source).check_returncode()
         self.check(guide("unity.md"), "mono", program)
+
+    def compile_unity(self):
+        """The program of the live partner of the page for Unity."""
+        if shutil.which("mcs") is None:
+            self.skipTest("no mcs; install the packages mono-mcs and mono-runtime")
+        program = self.folder / "live.exe"
+        sources = []
+        for number, text in enumerate(blocks(guide("unity.md"), "csharp")):
+            sources.append(self.folder / f"page{number}.cs")
+            sources[-1].write_text(text, encoding="utf-8")
+        self.assertEqual(len(sources), 3)
+        made = tools.run("mcs", "-warnaserror", f"-out:{program}", *sources, *ENGINES.glob("unity_*.cs"))
+        self.assertEqual(made.returncode, 0, made.stdout + made.stderr)
+        return program
+
+    def test_unity_keeps_a_distance_and_faces_the_leader(self):
+        ran = tools.run("mono", self.compile_unity())
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertEqual(ran.stdout.splitlines(), ["apart 0 1 0.3", "apart 3 1 0", "turn 60 0 0",
+                                                   "turn 0 0 0", "turn -60 0 0"])
+
+    def test_unity_shows_a_live_partner(self):
+        for module, package in gateways.NEEDED:
+            if importlib.util.find_spec(module) is None:
+                self.skipTest(f"no Python module {module}; install the package {package}")
+        program = self.compile_unity()
+        os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
+        sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
+        import duet_motion as duet
+        import numpy as np
+        hug = duet.read_motion(tools.sample("hug"))
+        leader = hug.positions[:FRAMES, [hug.joint_names.index(joint) for joint in JOINTS]]
+        lines = self.folder / "leader.txt"
+        lines.write_text("".join(" ".join(map(repr, map(float, frame.ravel()))) + "\n" for frame in leader),
+                         encoding="ascii")
+        with tools.running_server() as server:
+            gateway = gateways.Gateway(server.address)
+            self.addCleanup(gateway.stop)
+            ran = tools.run("mono", program, f"ws://127.0.0.1:{gateway.port}/live", lines)
+            self.assertEqual(ran.returncode, 0, ran.stdout[-500:] + ran.stderr)
+            wanted = asyncio.run(live_follower(duet, server.address, leader))
+        frames = ran.stdout.split("frame ")[1:]
+        self.assertEqual(len(frames), FRAMES)
+        for frame, text in enumerate(frames):
+            bones = {name: np.array([float(value) for value in values]) for name, *values in
+                     (line.split() for line in text.splitlines()[1:])}
+            joint = {name: wanted[frame, i] * (-1, 1, 1) for i, name in enumerate(JOINTS)}
+            for bone, (start, end, to) in UNITY_LIMBS.items():
+                shown, real = bones[end] - bones[bone], joint[to] - joint[start]
+                cosine = shown @ real / np.linalg.norm(shown) / np.linalg.norm(real)
+                self.assertGreater(cosine, np.cos(np.radians(1)), (frame, bone))
+            hips = (joint["left_hip"] + joint["right_hip"]) / 2
+            np.testing.assert_allclose(bones["Hips"][[0, 2]], hips[[0, 2]], atol=1e-3)
 
     def test_messages_for_unity_are_made(self):
         tools.run("protoc", f"--csharp_out={self.folder}", f"-I{tools.SOURCE / 'proto'}",
