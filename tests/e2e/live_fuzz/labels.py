@@ -2,7 +2,8 @@
 
 
 def are_held(keyframes, frame):
-    """Whether the weights at a frame are those of a keyframe, so that they need no interpolation."""
+    """Whether the weights at a frame are those of a keyframe. A change elsewhere makes keyframes of rounded weights, for
+    which live.proto does not promise equal frames."""
     return frame >= keyframes[-1][0] or frame <= keyframes[0][0]
 
 
