@@ -32,6 +32,14 @@ class MotionSynthesisStub(object):
     except for a caller who stopped reading: details cannot overtake the
     messages that it did not take, so only the status reaches it.
     INTERNAL             The model failed. The message contains no internal details.
+    UNIMPLEMENTED        The message is compressed.
+
+    Messages are not compressed in either direction, because positions shrink little and a small
+    message could become one of any size. Do not set gzip or deflate on a channel.
+
+    A client may send keepalive pings (HTTP/2 PING), also while a stream is silent, but not more often
+    than every ten seconds. The server closes a connection that sends pings much more often. Pings do
+    not count as messages: they do not keep a live session from its idle timeout.
     """
 
     def __init__(self, channel):
@@ -88,6 +96,14 @@ class MotionSynthesisServicer(object):
     except for a caller who stopped reading: details cannot overtake the
     messages that it did not take, so only the status reaches it.
     INTERNAL             The model failed. The message contains no internal details.
+    UNIMPLEMENTED        The message is compressed.
+
+    Messages are not compressed in either direction, because positions shrink little and a small
+    message could become one of any size. Do not set gzip or deflate on a channel.
+
+    A client may send keepalive pings (HTTP/2 PING), also while a stream is silent, but not more often
+    than every ten seconds. The server closes a connection that sends pings much more often. Pings do
+    not count as messages: they do not keep a live session from its idle timeout.
     """
 
     def Synthesize(self, request, context):
@@ -179,6 +195,14 @@ class MotionSynthesis(object):
     except for a caller who stopped reading: details cannot overtake the
     messages that it did not take, so only the status reaches it.
     INTERNAL             The model failed. The message contains no internal details.
+    UNIMPLEMENTED        The message is compressed.
+
+    Messages are not compressed in either direction, because positions shrink little and a small
+    message could become one of any size. Do not set gzip or deflate on a channel.
+
+    A client may send keepalive pings (HTTP/2 PING), also while a stream is silent, but not more often
+    than every ten seconds. The server closes a connection that sends pings much more often. Pings do
+    not count as messages: they do not keep a live session from its idle timeout.
     """
 
     @staticmethod
