@@ -1,6 +1,7 @@
 """The pages for Unity and Unreal: their conversions are compiled as they stand there and compared
-with the tables of numbers beside them. Unity's live partner is compiled against a stub of the engine
-(folder engines) and holds a session with a real server."""
+with the tables of numbers beside them. Their live partners are compiled against stubs of the engines
+(folder engines): Unity's holds a session with a real server; Unreal's writes messages for one, and
+reads its answers."""
 
 import asyncio
 import importlib.util
@@ -20,6 +21,12 @@ FRAMES = 40  # of a live session
 # The joints of the model in the order of the pages' live partners, and bones that lie between two of them.
 JOINTS = ("torso neck head left_shoulder left_elbow left_hand right_shoulder right_elbow right_hand "
           "left_hip left_knee left_foot right_hip right_knee right_foot").split()
+UNREAL_LIMBS = {f"{bone}_{end}": (f"{side}_{joint}", f"{next_bone}_{end}", f"{side}_{to}")
+                for side, end in (("left", "l"), ("right", "r")) for bone, joint, next_bone, to in (
+                    ("upperarm", "shoulder", "lowerarm", "elbow"), ("lowerarm", "elbow", "hand", "hand"),
+                    ("thigh", "hip", "calf", "knee"), ("calf", "knee", "foot", "foot"))}
+UNREAL_HEADERS = ("CoreMinimal.h", "IWebSocket.h", "WebSocketsModule.h", "Components/PoseableMeshComponent.h",
+                  "Components/SkeletalMeshComponent.h", "GameFramework/Actor.h", "DuetPartner.generated.h")
 UNITY_LIMBS = {f"{side}{bone}": (f"{side.lower()}_{joint}", f"{side}{end}", f"{side.lower()}_{to}")
                for side in ("Left", "Right") for bone, joint, end, to in (
                    ("UpperArm", "shoulder", "LowerArm", "elbow"), ("LowerArm", "elbow", "Hand", "hand"),
@@ -108,6 +115,12 @@ def rows(text):
     return found
 
 
+def leader_of(duet):
+    """The first frames of a sample, [frames, JOINTS, 3], metres, y up."""
+    hug = duet.read_motion(tools.sample("hug"))
+    return hug.positions[:FRAMES, [hug.joint_names.index(joint) for joint in JOINTS]]
+
+
 async def live_follower(duet, address, leader):
     """The follower of a live session, answered frame by frame."""
     import numpy as np
@@ -170,19 +183,10 @@ class EngineGuidesTest(unittest.TestCase):
                                                    "turn 0 0 0", "turn -60 0 0"])
 
     def test_unity_shows_a_live_partner(self):
-        for module, package in gateways.NEEDED:
-            if importlib.util.find_spec(module) is None:
-                self.skipTest(f"no Python module {module}; install the package {package}")
+        duet, np = self.modules()
         program = self.compile_unity()
-        os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
-        sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
-        import duet_motion as duet
-        import numpy as np
-        hug = duet.read_motion(tools.sample("hug"))
-        leader = hug.positions[:FRAMES, [hug.joint_names.index(joint) for joint in JOINTS]]
-        lines = self.folder / "leader.txt"
-        lines.write_text("".join(" ".join(map(repr, map(float, frame.ravel()))) + "\n" for frame in leader),
-                         encoding="ascii")
+        leader = leader_of(duet)
+        lines = self.write_frames(leader)
         with tools.running_server() as server:
             gateway = gateways.Gateway(server.address)
             self.addCleanup(gateway.stop)
@@ -192,15 +196,91 @@ class EngineGuidesTest(unittest.TestCase):
         frames = ran.stdout.split("frame ")[1:]
         self.assertEqual(len(frames), FRAMES)
         for frame, text in enumerate(frames):
-            bones = {name: np.array([float(value) for value in values]) for name, *values in
-                     (line.split() for line in text.splitlines()[1:])}
-            joint = {name: wanted[frame, i] * (-1, 1, 1) for i, name in enumerate(JOINTS)}
-            for bone, (start, end, to) in UNITY_LIMBS.items():
-                shown, real = bones[end] - bones[bone], joint[to] - joint[start]
-                cosine = shown @ real / np.linalg.norm(shown) / np.linalg.norm(real)
-                self.assertGreater(cosine, np.cos(np.radians(1)), (frame, bone))
-            hips = (joint["left_hip"] + joint["right_hip"]) / 2
-            np.testing.assert_allclose(bones["Hips"][[0, 2]], hips[[0, 2]], atol=1e-3)
+            bones = self.check_limbs(text, wanted[frame] * (-1, 1, 1), UNITY_LIMBS)
+            hips = wanted[frame, [JOINTS.index("left_hip"), JOINTS.index("right_hip")]].mean(axis=0)
+            np.testing.assert_allclose(bones["Hips"][[0, 2]], hips[[0, 2]] * (-1, 1), atol=1e-3)
+
+    def modules(self):
+        """The Python package and NumPy."""
+        for module, package in gateways.NEEDED:
+            if importlib.util.find_spec(module) is None:
+                self.skipTest(f"no Python module {module}; install the package {package}")
+        os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
+        sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
+        import duet_motion as duet
+        import numpy as np
+        return duet, np
+
+    def write_frames(self, leader):
+        lines = self.folder / "leader.txt"
+        lines.write_text("".join(" ".join(map(repr, map(float, frame.ravel()))) + "\n" for frame in leader),
+                         encoding="ascii")
+        return lines
+
+    def check_limbs(self, text, positions, limbs):
+        """Compares the directions of an avatar's limbs with those of a frame; returns its bones."""
+        import numpy as np
+        bones = {name: np.array([float(value) for value in values]) for name, *values in
+                 (line.split() for line in text.splitlines()[1:])}
+        joint = dict(zip(JOINTS, positions))
+        for bone, (start, end, to) in limbs.items():
+            shown, real = bones[end] - bones[bone], joint[to] - joint[start]
+            cosine = shown @ real / np.linalg.norm(shown) / np.linalg.norm(real)
+            self.assertGreater(cosine, np.cos(np.radians(1)), bone)
+        return bones
+
+    def compile_unreal(self):
+        """The program of the live partner of the page for Unreal."""
+        for header in UNREAL_HEADERS:
+            path = self.folder / header
+            path.parent.mkdir(exist_ok=True)
+            path.write_text('#include "unreal_stub.h"\n', encoding="ascii")
+        texts = blocks(guide("unreal.md"), "cpp")
+        for name, text in zip(("DuetAxes.h", "DuetLive.h", "DuetPartner.h"), texts, strict=True):
+            (self.folder / name).write_text(text, encoding="utf-8")
+        made = tools.run("g++", "-std=c++17", "-Wall", "-Wextra", "-Werror", f"-I{self.folder}", f"-I{ENGINES}",
+                         ENGINES / "unreal_live.cc", "-o", self.folder / "live")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        return self.folder / "live"
+
+    def test_unreal_keeps_a_distance_and_faces_the_leader(self):
+        ran = tools.run(self.compile_unreal())
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        found = [(name, *map(float, values)) for name, *values in map(str.split, ran.stdout.splitlines())]
+        self.assertEqual(found, [("apart", 30, 0, 90), ("apart", 300, 0, 90), ("turn", -60, 0, 0),
+                                 ("turn", 0, 0, 0), ("turn", 60, 0, 0)])
+
+    def test_unreal_shows_a_live_partner(self):
+        duet, np = self.modules()
+        program = self.compile_unreal()
+        import grpc
+        from duet_motion.v1 import live_pb2, synthesis_pb2_grpc
+        leader = leader_of(duet)
+        lines = self.write_frames(100 * leader[:, :, [0, 2, 1]])
+        ran = tools.run(program, lines)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        sent = [live_pb2.SynthesizeLiveRequest.FromString(bytes.fromhex(line)) for line in ran.stdout.split()]
+        self.assertEqual(len(sent), FRAMES + 1)
+        self.assertEqual(sent[0].start.leader.joint_names, JOINTS)
+        wire = np.reshape([message.frames.positions for message in sent[1:]], leader.shape)
+        np.testing.assert_allclose(wire, 1000 * leader[:, :, [0, 2, 1]] * (1, -1, 1), atol=0.1)
+        with tools.running_server() as server, grpc.insecure_channel(server.address) as channel:
+            stub = synthesis_pb2_grpc.MotionSynthesisStub(channel)
+            answers = list(stub.SynthesizeLive(iter(sent), timeout=tools.RUN_SECONDS))
+        messages = self.folder / "messages.txt"
+        messages.write_text("".join(answer.SerializeToString().hex() + "\n" for answer in answers) +
+                            b'{"code": 0}'.hex(), encoding="ascii")
+        ran = tools.run(program, lines, messages)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        shown = ran.stdout.split("message\n")[1:]
+        self.assertEqual(len(shown), len(answers) + 1)
+        checked = 0
+        for answer, text in zip(answers, shown):
+            if answer.WhichOneof("payload") == "frames":
+                last = np.reshape(answer.frames.positions, (-1, len(JOINTS), 3))[-1]
+                self.check_limbs("\n" + text, last * (0.1, -0.1, 0.1), UNREAL_LIMBS)
+                checked += answer.frames.frame_count
+        self.assertEqual(checked, FRAMES)
 
     def test_messages_for_unity_are_made(self):
         tools.run("protoc", f"--csharp_out={self.folder}", f"-I{tools.SOURCE / 'proto'}",
