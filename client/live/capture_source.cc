@@ -38,7 +38,11 @@ absl::StatusOr<LeaderFormat> CaptureSource::Open() {
   }
   absl::StatusOr<std::optional<capture::TimedFrame>> frame = NextFrame();
   if (!frame.ok()) return frame.status();
-  if (!frame->has_value()) return absl::UnavailableError("interrupted before the first frame");
+  // Not UNAVAILABLE, which the server would be.
+  if (!frame->has_value()) {
+    return absl::CancelledError(
+        absl::StrCat("interrupted before the first frame: ", stream_.Summary()));
+  }
   const motion::Poses pose(static_cast<int>((*frame)->positions.size()), (*frame)->positions);
   absl::StatusOr<retargeting::JointMap> map =
       retargeting::MapJoints(FormatCaptureAddress(options_.address), stream_.joint_names(), pose,
