@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -45,6 +46,11 @@ std::optional<motion::UpAxis> ToUpAxis(v1::UpAxis axis) {
     default:
       return std::nullopt;
   }
+}
+
+// " (head, neck, ...)".
+std::string NamesOf(const engine::ModelDescription& model) {
+  return absl::StrCat(" (", absl::StrJoin(model.skeleton.joint_names, ", "), ")");
 }
 
 void NameMissingJoints(const engine::ModelDescription& model, const std::vector<int>& first_use,
@@ -96,15 +102,16 @@ std::vector<int> ValidateJoints(const v1::Motion& leader, const engine::ModelDes
   }
   std::vector<int> joints;
   std::vector<int> first_use(model.skeleton.joint_names.size(), -1);
-  bool fits = true;
+  bool fits = true, listed = false;
   for (int i = 0; i < count; ++i) {
     const std::string& name = leader.joint_names(i);
     const int joint = model.skeleton.Find(name);
     joints.push_back(joint);
     if (joint < 0) {
       violations.Mismatch(At("leader.joint_names", i),
-                          absl::StrCat("a joint of model ", model.name),
-                          absl::StrCat(base::Quoted(name), "; GetModel lists the joints"));
+                          absl::StrCat("a joint of model ", model.name,
+                                       std::exchange(listed, true) ? "" : NamesOf(model)),
+                          base::Quoted(name));
     } else if (first_use[joint] >= 0) {
       violations.Mismatch(
           At("leader.joint_names", i), "each joint once",

@@ -185,47 +185,42 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Joints, RefusalTest,
-    ::testing::Values(Spoiled{"missing",
-                              [](Request& r) {
-                                r.mutable_leader()->mutable_joint_names()->RemoveLast();
-                                r.mutable_leader()->mutable_positions()->Truncate(40 * 14 * 3);
-                              },
-                              "leader.joint_names",
-                              "expected all 15 joints of model fake, got none for right_foot",
-                              kFailedPrecondition},
-                      Spoiled{"none",
-                              [](Request& r) {
-                                r.mutable_leader()->clear_joint_names();
-                                r.mutable_leader()->clear_positions();
-                              },
-                              "leader.joint_names", "got none for head, neck, torso",
-                              kFailedPrecondition},
-                      Spoiled{"extra",
-                              [](Request& r) {
-                                r.mutable_leader()->add_joint_names("tail");
-                                for (int i = 0; i < 40 * 3; ++i)
-                                  r.mutable_leader()->add_positions(0);
-                              },
-                              "leader.joint_names[15]",
-                              "expected a joint of model fake, got \"tail\"", kFailedPrecondition},
-                      Spoiled{"repeated",
-                              [](Request& r) {
-                                r.mutable_leader()->add_joint_names("head");
-                                for (int i = 0; i < 40 * 3; ++i)
-                                  r.mutable_leader()->add_positions(0);
-                              },
-                              "leader.joint_names[15]", "got \"head\" again after joint_names[0]",
-                              kFailedPrecondition},
-                      Spoiled{"absurdly_many",
-                              [](Request& r) {
-                                r.mutable_leader()->clear_positions();
-                                for (int i = 0; i < 100000; ++i)
-                                  r.mutable_leader()->add_joint_names("x");
-                                r.mutable_leader()->mutable_positions()->Resize(40 * 100015 * 3, 0);
-                              },
-                              "leader.joint_names",
-                              "expected the 15 joints of model fake, got 100015 names",
-                              kFailedPrecondition}),
+    ::testing::Values(
+        Spoiled{"missing",
+                [](Request& r) {
+                  r.mutable_leader()->mutable_joint_names()->RemoveLast();
+                  r.mutable_leader()->mutable_positions()->Truncate(40 * 14 * 3);
+                },
+                "leader.joint_names",
+                "expected all 15 joints of model fake, got none for right_foot",
+                kFailedPrecondition},
+        Spoiled{"none",
+                [](Request& r) {
+                  r.mutable_leader()->clear_joint_names();
+                  r.mutable_leader()->clear_positions();
+                },
+                "leader.joint_names", "got none for head, neck, torso", kFailedPrecondition},
+        Spoiled{"extra",
+                [](Request& r) {
+                  r.mutable_leader()->add_joint_names("tail");
+                  for (int i = 0; i < 40 * 3; ++i) r.mutable_leader()->add_positions(0);
+                },
+                "leader.joint_names[15]", "right_foot), got \"tail\"", kFailedPrecondition},
+        Spoiled{"repeated",
+                [](Request& r) {
+                  r.mutable_leader()->add_joint_names("head");
+                  for (int i = 0; i < 40 * 3; ++i) r.mutable_leader()->add_positions(0);
+                },
+                "leader.joint_names[15]", "got \"head\" again after joint_names[0]",
+                kFailedPrecondition},
+        Spoiled{"absurdly_many",
+                [](Request& r) {
+                  r.mutable_leader()->clear_positions();
+                  for (int i = 0; i < 100000; ++i) r.mutable_leader()->add_joint_names("x");
+                  r.mutable_leader()->mutable_positions()->Resize(40 * 100015 * 3, 0);
+                },
+                "leader.joint_names", "expected the 15 joints of model fake, got 100015 names",
+                kFailedPrecondition}),
     SpoiledName);
 
 INSTANTIATE_TEST_SUITE_P(
