@@ -16,8 +16,8 @@ namespace duet::retargeting {
 using LimbCandidates = std::array<std::vector<int>, 3>;
 
 // Chooses the joints that make a limb of a person: each below the one before it, with the fewest
-// bones between them, an upper and a lower bone of similar length, and the helper last. Of equal
-// ones, the first in the file.
+// bones between them, an upper and a lower bone of similar length, and no name that begins with
+// '_'. Of equal ones, the first in the file.
 //
 // `tree` is null for a file without a hierarchy; `distance` gives the distance of two joints.
 // Requires a candidate for each joint.
