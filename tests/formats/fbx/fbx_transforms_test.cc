@@ -11,6 +11,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/formats/fbx/fbx_import.h"
+#include "model/formats/fbx/fbx_rig.h"
 #include "tests/formats/fbx/fbx_fixture.h"
 #include "tests/formats/fbx/text_fbx.h"
 #include "tests/support/matchers.h"
@@ -149,6 +150,34 @@ TEST_F(FbxTest, EachKindOfInheritedScaleIsApplied) {
       FbxTake stretching = Turning(bones);
       Animate(bones, "Lcl Scaling", 0.2, &stretching);
       ExpectPlacesOfTheSdk(bones, {stretching}, stretching);
+    }
+  }
+}
+
+// A skin states where its bones were bound relative to the mesh's node, without the geometric
+// transform that moves the mesh. The file was saved in another pose.
+TEST_F(FbxTest, TheRestPoseOfASkinDoesNotDependOnTheMeshsOffset) {
+  for (const Properties& offset : {Properties{}, Properties{{"GeometricTranslation", {.2, .1, -.3}},
+                                                            {"GeometricRotation", {20, 70, -10}},
+                                                            {"Lcl Translation", {.5, 0, .1}},
+                                                            {"PreRotation", {0, 30, 0}}}}) {
+    SCOPED_TRACE(offset.size());
+    std::vector<FbxBone> saved = With({{"PreRotation", {-90, 20, 10}}});
+    const test::FbxSkin skin{{"body", -1, offset}, Person()};
+    for (std::size_t b = 0; b < saved.size(); ++b) {
+      saved[b].properties["Lcl Rotation"] = Some(b, 0, 50);
+    }
+    FbxImportOptions options;
+    options.metres_per_unit = 1;
+    const absl::StatusOr<retargeting::CharacterRig> rig =
+        ReadFbxRig(test::TextFbx(saved, {}, &skin), "a.fbx", options);
+    ASSERT_THAT(rig, IsOk());
+    const std::vector<motion::Vec3> places = test::FbxWorld(Person(), {}, 0);
+    for (std::size_t b = 0; b < places.size(); ++b) {
+      const auto found = std::find(rig->names.begin(), rig->names.end(), saved[b].name);
+      ASSERT_NE(found, rig->names.end());
+      const auto at = static_cast<std::size_t>(found - rig->names.begin());
+      EXPECT_LT(Distance(ToFloat(rig->positions[at]), places[b]), kOneMillimetre) << saved[b].name;
     }
   }
 }

@@ -19,6 +19,7 @@ using retargeting::Vec3d;
 
 constexpr std::int64_t kSecond = 46186158000;  // of FbxTime
 constexpr int kModel = 1000, kTake = 50000, kCurveNode = 100000;
+constexpr int kMesh = 9000, kGeometry = 9001, kSkin = 9002;
 
 constexpr char kHeader[] = R"(; FBX 7.4.0 project file
 FBXHeaderExtension:  {
@@ -54,9 +55,9 @@ Vec3d Property(const FbxBone& bone, const std::string& name) {
 
 std::string Three(Vec3d a) { return absl::StrFormat("%.9g,%.9g,%.9g", a.x, a.y, a.z); }
 
-void AddModel(std::size_t index, const FbxBone& bone, std::string* objects) {
-  absl::StrAppend(objects, "\tModel: ", kModel + index, ", \"Model::", bone.name,
-                  "\", \"LimbNode\" {\n\t\tVersion: 232\n\t\tProperties70:  {\n",
+void AddModel(std::size_t index, const FbxBone& bone, const char* kind, std::string* objects) {
+  absl::StrAppend(objects, "\tModel: ", kModel + index, ", \"Model::", bone.name, "\", \"", kind,
+                  "\" {\n\t\tVersion: 232\n\t\tProperties70:  {\n",
                   "\t\t\tP: \"RotationOrder\", \"enum\", \"\", \"\",", bone.rotation_order,
                   "\n\t\t\tP: \"InheritType\", \"enum\", \"\", \"\",", bone.inherit_type, "\n");
   for (const auto& [name, value] : bone.properties) {
@@ -181,15 +182,68 @@ Global GlobalOf(const FbxBone& bone, const FbxTake& take, int index, int frame,
   return global;
 }
 
+std::vector<Affine> Transforms(const std::vector<FbxBone>& bones, const FbxTake& take, int frame) {
+  std::vector<Global> globals;
+  std::vector<Affine> transforms;
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    const Global parent =
+        bones[b].parent < 0 ? Global() : globals[static_cast<std::size_t>(bones[b].parent)];
+    globals.push_back(GlobalOf(bones[b], take, static_cast<int>(b), frame, parent));
+    transforms.push_back(globals.back().transform);
+  }
+  return transforms;
+}
+
+std::string Array(const std::vector<double>& numbers) {
+  std::string text = absl::StrCat("*", numbers.size(), " {\n\t\t\ta: ");
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    absl::StrAppend(&text, i == 0 ? "" : ",", absl::StrFormat("%.9g", numbers[i]));
+  }
+  return text + "\n\t\t}\n";
+}
+
+std::string Matrix(const Affine& map) {
+  return Array({map.x.x, map.x.y, map.x.z, 0, map.y.x, map.y.y, map.y.z, 0, map.z.x, map.z.y,
+                map.z.z, 0, map.origin.x, map.origin.y, map.origin.z, 1});
+}
+
+void AddSkin(const FbxSkin& skin, std::string* objects, std::string* connections) {
+  const std::vector<Affine> bound = Transforms(skin.bound, {}, 0);
+  const Affine mesh = Transforms({skin.mesh}, {}, 0)[0];
+  std::vector<double> vertices, corners;
+  std::string clusters;
+  absl::StrAppend(connections, "\tC: \"OO\",", kMesh, ",0\n\tC: \"OO\",", kGeometry, ",", kMesh,
+                  "\n\tC: \"OO\",", kSkin, ",", kGeometry, "\n");
+  for (std::size_t b = 0; b < bound.size(); ++b) {
+    const double first = 3.0 * static_cast<double>(b);
+    vertices.insert(vertices.end(), {first, 0, 0, first, 1, 0, first, 0, 1});
+    corners.insert(corners.end(), {first, first + 1, -(first + 2) - 1});
+    absl::StrAppend(
+        &clusters, "\tDeformer: ", kSkin + 1 + b,
+        ", \"SubDeformer::\", \"Cluster\" {\n\t\tIndexes: ", Array({first, first + 1, first + 2}),
+        "\t\tWeights: ", Array({1, 1, 1}), "\t\tTransform: ", Matrix(Undone(bound[b]) * mesh),
+        "\t\tTransformLink: ", Matrix(bound[b]), "\t}\n");
+    absl::StrAppend(connections, "\tC: \"OO\",", kSkin + 1 + b, ",", kSkin, "\n\tC: \"OO\",",
+                    kModel + b, ",", kSkin + 1 + b, "\n");
+  }
+  AddModel(kMesh - kModel, skin.mesh, "Mesh", objects);
+  absl::StrAppend(objects, "\tGeometry: ", kGeometry,
+                  ", \"Geometry::\", \"Mesh\" {\n\t\tVertices: ", Array(vertices),
+                  "\t\tPolygonVertexIndex: ", Array(corners), "\t}\n\tDeformer: ", kSkin,
+                  ", \"Deformer::\", \"Skin\" {\n\t}\n", clusters);
+}
+
 }  // namespace
 
-std::string TextFbx(const std::vector<FbxBone>& bones, const std::vector<FbxTake>& takes) {
+std::string TextFbx(const std::vector<FbxBone>& bones, const std::vector<FbxTake>& takes,
+                    const FbxSkin* skin) {
   std::string objects, connections;
   for (std::size_t b = 0; b < bones.size(); ++b) {
-    AddModel(b, bones[b], &objects);
+    AddModel(b, bones[b], "LimbNode", &objects);
     absl::StrAppend(&connections, "\tC: \"OO\",", kModel + b, ",",
                     bones[b].parent < 0 ? 0 : kModel + bones[b].parent, "\n");
   }
+  if (skin != nullptr) AddSkin(*skin, &objects, &connections);
   int next = kCurveNode, take_id = kTake;
   for (const FbxTake& take : takes) {
     AddTake(take, take_id, &next, &objects, &connections);
@@ -200,13 +254,9 @@ std::string TextFbx(const std::vector<FbxBone>& bones, const std::vector<FbxTake
 
 std::vector<motion::Vec3> FbxWorld(const std::vector<FbxBone>& bones, const FbxTake& take,
                                    int frame) {
-  std::vector<Global> globals;
   std::vector<motion::Vec3> places;
-  for (std::size_t b = 0; b < bones.size(); ++b) {
-    const Global parent =
-        bones[b].parent < 0 ? Global() : globals[static_cast<std::size_t>(bones[b].parent)];
-    globals.push_back(GlobalOf(bones[b], take, static_cast<int>(b), frame, parent));
-    places.push_back(ToFloat(globals.back().transform.origin));
+  for (const Affine& transform : Transforms(bones, take, frame)) {
+    places.push_back(ToFloat(transform.origin));
   }
   return places;
 }

@@ -36,10 +36,17 @@ struct FbxTake {
   int first_frame = 0;
 };
 
+// A mesh with a triangle for each bone, bound to the bones where another take has them.
+struct FbxSkin {
+  FbxBone mesh;                // without a parent
+  std::vector<FbxBone> bound;  // the bones as they were when the skin was bound
+};
+
 inline constexpr double kTextFbxRateHz = 30;
 
-// Metres, y up, kTextFbxRateHz.
-std::string TextFbx(const std::vector<FbxBone>& bones, const std::vector<FbxTake>& takes);
+// Metres, y up, kTextFbxRateHz. `skin` may be null.
+std::string TextFbx(const std::vector<FbxBone>& bones, const std::vector<FbxTake>& takes,
+                    const FbxSkin* skin = nullptr);
 
 // The places of the bones in a frame of a take. [bones]
 std::vector<motion::Vec3> FbxWorld(const std::vector<FbxBone>& bones, const FbxTake& take,
