@@ -154,6 +154,15 @@ TEST_F(FbxTest, EachKindOfInheritedScaleIsApplied) {
   }
 }
 
+TEST_F(FbxTest, ABoneOfNoSizeHasItsChildrenInItsPlace) {
+  std::vector<FbxBone> bones = With({{"Lcl Scaling", {1.3, .8, 1.1}}});
+  for (FbxBone& bone : bones) {
+    bone.inherit_type = 0;
+    if (bone.name == "left_elbow") bone.properties["Lcl Scaling"] = {0, 0, 0};
+  }
+  ExpectPlacesOfTheSdk(bones, {Turning(bones)}, Turning(bones));
+}
+
 // A skin states where its bones were bound relative to the mesh's node, without the geometric
 // transform that moves the mesh. The file was saved in another pose.
 TEST_F(FbxTest, TheRestPoseOfASkinDoesNotDependOnTheMeshsOffset) {

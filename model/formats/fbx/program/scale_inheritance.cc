@@ -75,9 +75,11 @@ std::vector<Parts> InheritScales(const NodeTree& tree, const std::vector<Affine>
     world.scale = InheritedScale(parent, own, tree.nodes[n].inherits);
     world.origin = parent.origin + Rotate(parent.turn, parent.scale.Turn(own.translation));
     world.size = std::copysign(world.scale.Scale(), parent.size * own.scale.x);
-    const double size = world.size / parent.size;
+    // Some programs hide a bone by the scale 0. What is below it is in one place with it.
+    const double inside = parent.size == 0 ? 0 : 1 / parent.size;
+    const double size = world.size * inside;
     const Vec3d offset = Rotate(Inverse(parent.turn), world.origin - parent.origin);
-    Parts parts{offset * (1 / parent.size), own.rotation, {size, size, size}};
+    Parts parts{offset * inside, own.rotation, {size, size, size}};
     if (above < 0) parts = ToParts(tree.root * FromParts(parts));
     inherited.push_back(parts);
     worlds.push_back(world);
