@@ -13,6 +13,7 @@
 #include "client/cli/report.h"
 #include "client/cli/server_flags.h"
 #include "client/cli/server_options.h"
+#include "client/error_details.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
@@ -141,8 +142,8 @@ absl::Status Act(const AdminArguments& arguments, AdminClient& client) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<ExitCode> RunAdmin(const AdminArguments& arguments,
-                                  const ProgramEnvironment& environment) {
+absl::StatusOr<ExitCode> CallServer(const AdminArguments& arguments,
+                                    const ProgramEnvironment& environment) {
   const absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
   if (!options.ok()) return options.status();
   const absl::StatusOr<std::unique_ptr<AdminClient>> client = environment.connect_admin(*options);
@@ -159,6 +160,17 @@ absl::StatusOr<ExitCode> RunAdmin(const AdminArguments& arguments,
   if (!models.ok()) return models.status();
   PrintResult(*models, arguments.json, environment);
   return kExitDone;
+}
+
+absl::StatusOr<ExitCode> RunAdmin(const AdminArguments& arguments,
+                                  const ProgramEnvironment& environment) {
+  const absl::StatusOr<ExitCode> code = CallServer(arguments, environment);
+  // The hint about --server does not apply: the admin service has its own address and its own flag.
+  if (!absl::IsUnavailable(code.status()) || !ErrorReason(code.status()).empty()) return code;
+  *environment.err << "duet: " << code.status().message()
+                   << " (UNAVAILABLE)\nThe admin service is off unless the server's configuration "
+                      "sets admin_listen. Name its address with --admin-server HOST:PORT.\n";
+  return kExitRetry;
 }
 
 constexpr char kFooter[] = R"(

@@ -18,7 +18,8 @@ constexpr Cause kCauses[] = {
     {"Connection refused", "is not running: it refused the connection"},
     {"No such file or directory", "is not running: its socket does not exist"},
     {"DNS resolution failed", "cannot be found: the name has no address"},
-    {"http1.x", "is not a Duet server: it speaks HTTP/1"},
+    {"http1.x", "is not a Duet server: it does not speak gRPC"},
+    {"HTTP/2", "is not a Duet server: it does not speak gRPC"},
     {"wrong version number", "does not encrypt, but this client does"},
     {"certificate verify failed", "is not trusted: its certificate was not accepted"},
     {"CERTIFICATE_VERIFY_FAILED", "is not trusted: its certificate was not accepted"},
@@ -31,7 +32,7 @@ constexpr Cause kCauses[] = {
 // Whether the server closes connections before gRPC's handshake, as one that encrypts does if the
 // client does not.
 bool HangsUp(absl::string_view message) {
-  return absl::StrContains(message, "failed to connect") &&
+  return absl::StrContains(message, "last error") &&  // of all attempts to connect
          (absl::StrContains(message, "Connection reset") ||
           absl::StrContains(message, "Socket closed"));
 }

@@ -129,7 +129,7 @@ TEST(DescribeUnreachableTest, NamesTheCauseWithoutSocketsAndSystemCalls) {
                                 "ARES_SUCCESS qtype=AAAA name=a: Domain name not found"),
             "the server at a:1 cannot be found: the name has no address");
   EXPECT_EQ(told("INTERNAL: ipv4:10.0.0.1:1: Trying to connect an http1.x server"),
-            "the server at a:1 is not a Duet server: it speaks HTTP/1");
+            "the server at a:1 is not a Duet server: it does not speak gRPC");
   EXPECT_EQ(told("UNKNOWN: ipv4:10.0.0.1:1: Ssl handshake failed: SSL_ERROR_SSL: "
                  "error:0A00010B:SSL routines::wrong version number"),
             "the server at a:1 does not encrypt, but this client does");
@@ -139,8 +139,13 @@ TEST(DescribeUnreachableTest, NamesTheCauseWithoutSocketsAndSystemCalls) {
   EXPECT_EQ(told("UNKNOWN: ipv4:10.0.0.1:1: connection attempt timed out before receiving "
                  "SETTINGS frame"),
             "the server at a:1 does not answer: the connection timed out");
+  // As reported by the policy that distributes calls over several servers.
+  const std::string several = "connections to all backends failing; last error: ";
   EXPECT_EQ(
-      told("UNAVAILABLE: ipv4:10.0.0.1:1: Socket closed"),
+      DescribeUnreachable("a:1", several + "UNAVAILABLE: ipv4:10.0.0.1:1: Failed parsing HTTP/2"),
+      "the server at a:1 is not a Duet server: it does not speak gRPC");
+  EXPECT_EQ(
+      DescribeUnreachable("a:1", several + "UNAVAILABLE: ipv4:10.0.0.1:1: Socket closed"),
       "the server at a:1 closes every connection: it may expect TLS, or a client certificate");
   EXPECT_EQ(told("UNAVAILABLE: backend unhealthy"),
             "the server at a:1 is not ready: it loads its models, or it shuts down");

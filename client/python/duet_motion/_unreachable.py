@@ -9,7 +9,8 @@ _CAUSES = (
     ("Connection refused", "is not running: it refused the connection"),
     ("No such file or directory", "is not running: its socket does not exist"),
     ("DNS resolution failed", "cannot be found: the name has no address"),
-    ("http1.x", "is not a Duet server: it speaks HTTP/1"),
+    ("http1.x", "is not a Duet server: it does not speak gRPC"),
+    ("HTTP/2", "is not a Duet server: it does not speak gRPC"),
     ("wrong version number", "does not encrypt, but this client does"),
     ("certificate verify failed", "is not trusted: its certificate was not accepted"),
     ("CERTIFICATE_VERIFY_FAILED", "is not trusted: its certificate was not accepted"),
@@ -27,7 +28,7 @@ def describe_unreachable(address: str, message: str) -> str:
         if sign in message:
             return f"the server at {address} {text}"
     # A server that encrypts closes the connection of a client that does not.
-    if "failed to connect" in message and ("Connection reset" in message
+    if "last error" in message and ("Connection reset" in message
                                            or "Socket closed" in message):
         return (f"the server at {address} closes every connection: it may expect TLS, or a client "
                 "certificate")

@@ -127,6 +127,15 @@ TEST_F(AdminCommandTest, PrintsTheReasonOfAFailure) {
   EXPECT_THAT(err_.str(), HasSubstr("version label \"canary\" points at it"));
 }
 
+TEST_F(AdminCommandTest, MissingServiceIsExplainedByItsOwnFlag) {
+  EXPECT_CALL(*client_, ListModels).WillOnce(Return(absl::UnavailableError("refused")));
+  EXPECT_EQ(Run({"models"}), kExitRetry);
+  EXPECT_EQ(
+      err_.str(),
+      "duet: refused (UNAVAILABLE)\nThe admin service is off unless the server's configuration "
+      "sets admin_listen. Name its address with --admin-server HOST:PORT.\n");
+}
+
 TEST_F(AdminCommandTest, MovesAndDeletesLabels) {
   EXPECT_CALL(*client_, SetLabel("sbu", "canary", 4));
   EXPECT_EQ(Run({"label", "sbu", "canary", "4"}), kExitDone);
