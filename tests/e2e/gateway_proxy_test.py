@@ -37,6 +37,7 @@ class GatewayProxyTest(unittest.TestCase):
         cls.folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
         certificate(cls.folder)
         server = stack.enter_context(tools.running_server())
+        cls.server_address = server.address
         gateway = Gateway(server.address)
         stack.callback(gateway.stop)
         cls.gateway_port = gateway.port
@@ -103,6 +104,26 @@ class GatewayProxyTest(unittest.TestCase):
         [(status, _, _)] = self.ask(ask)
         self.assertEqual(status, 401)
         self.victim()
+
+    def test_visitor_cannot_claim_the_address_of_another(self):
+        gateway = Gateway(self.server_address, "--proxy", "127.0.0.1", "--sessions-per-address", "1")
+        self.addCleanup(gateway.stop)
+        port = tools.free_port()
+        with haproxy(self.folder, port, gateway.port), contextlib.ExitStack() as stack:
+            through, self.port = self.port, port
+            try:
+                statuses = []
+                for address in (b"192.0.2.1", b"192.0.2.2"):
+                    connection = stack.enter_context(self.connect())
+                    connection.sendall(allowed(
+                        b"GET /live HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\n"
+                        b"Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+                        b"Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\n"
+                        b"X-Forwarded-For: " + address + b"\r\n\r\n"))
+                    statuses.append(connection.recv(4096).split(b" ")[1])
+                self.assertEqual(statuses, [b"101", b"429"])
+            finally:
+                self.port = through
 
     def test_password_is_required(self):
         for headers in ({}, {"Authorization": "Basic ZHVldDpvcGVu"}):
