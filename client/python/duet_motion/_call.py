@@ -14,7 +14,7 @@ from duet_motion._reply import ReplyAssembler
 from duet_motion._unreachable import describe_unreachable
 from duet_motion.errors import DuetError, make_error
 from duet_motion.motion import checked_number
-from duet_motion.request import SynthesisRequest, to_proto
+from duet_motion.request import SynthesisRequest, check_kind, to_proto
 from duet_motion.result import FollowerChunk, SynthesisResult
 from duet_motion.retry import RetryOptions, has_no_server, is_retryable, is_unreachable, retry_wait
 from duet_motion.v1 import synthesis_pb2
@@ -123,6 +123,7 @@ class SynthesisCall:
     """One Synthesize call: its request and the reply so far."""
 
     def __init__(self, request: SynthesisRequest, settings: CallSettings) -> None:
+        check_kind(request, SynthesisRequest)
         self.attempts = Attempts(settings, request.timeout, request.request_id)
         self._wire = to_proto(request)
         self._leader = request.leader

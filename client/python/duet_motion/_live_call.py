@@ -18,7 +18,8 @@ from duet_motion._wire import CLEAN_UP, UNITS, UP_AXES
 from duet_motion.errors import DuetError, make_error
 from duet_motion.live import LiveHeader, LiveNotice, LivePart, LiveRequest, LiveSummary
 from duet_motion.motion import Positions
-from duet_motion.request import Labels, direction, fill, fill_start, floats, to_selector
+from duet_motion.request import (Labels, check_kind, direction, fill, fill_start, floats,
+                                 to_selector)
 from duet_motion.result import FrameRun
 from duet_motion.retry import is_retryable
 from duet_motion.v1 import live_pb2, motion_pb2, reaction_pb2
@@ -67,6 +68,7 @@ class LiveCall:
     """
 
     def __init__(self, request: LiveRequest, settings: CallSettings) -> None:
+        check_kind(request, LiveRequest)
         self.request = request
         self.motion = request.leader()
         self._settings = settings

@@ -138,9 +138,10 @@ class Client(_channel.Connected):
 
         Raises:
             ValueError: ``concurrency`` is below 1.
+            TypeError: a request is none; from the iterator, when its turn comes.
         """
         _channel.check_concurrency("concurrency", concurrency)
-        return self._many(iter(requests), concurrency)
+        return self._many(batch.checked(requests), concurrency)
 
     def _stream(self, call: SynthesisCall) -> SynthesisStream:
         return SynthesisStream(self._stub, self._channel, self._closed, call)

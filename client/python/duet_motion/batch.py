@@ -6,11 +6,11 @@ import collections
 import concurrent.futures
 import dataclasses
 import itertools
-from typing import Callable, Deque, Iterable, Iterator, Optional, Tuple
+from typing import Callable, Deque, Iterable, Iterator, Mapping, Optional, Tuple
 
 from duet_motion._channel import check_concurrency
 from duet_motion.errors import DuetError
-from duet_motion.request import SynthesisRequest
+from duet_motion.request import SynthesisRequest, check_kind
 from duet_motion.result import SynthesisResult
 
 
@@ -35,12 +35,26 @@ def ahead(concurrency: int) -> int:
     return 2 * concurrency
 
 
+def checked(requests: Iterable[SynthesisRequest]) -> Iterator[SynthesisRequest]:
+    """The requests. Raises TypeError, with its position, for anything else among them."""
+    if isinstance(requests, (SynthesisRequest, Mapping, str)):
+        raise TypeError("requests: expected several duet_motion.SynthesisRequest, got one "
+                        f"{type(requests).__name__}")
+    return _checked(requests)
+
+
+def _checked(requests: Iterable[SynthesisRequest]) -> Iterator[SynthesisRequest]:
+    for index, request in enumerate(requests):
+        check_kind(request, SynthesisRequest, f"requests[{index}]")
+        yield request
+
+
 def run(answer: Callable[[SynthesisRequest], SynthesisResult],
         requests: Iterable[SynthesisRequest], concurrency: int) -> Iterator[Outcome]:
     """Runs requests in threads and yields their outcomes in order. At most ``concurrency`` calls
     run at a time, and at most :func:`ahead` requests are taken but not yet yielded."""
     check_concurrency("concurrency", concurrency)
-    return _run(answer, requests, concurrency)
+    return _run(answer, checked(requests), concurrency)
 
 
 def _run(answer: Callable[[SynthesisRequest], SynthesisResult],

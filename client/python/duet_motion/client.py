@@ -139,6 +139,7 @@ class Client(_channel.Connected):
 
         Raises:
             ValueError: ``concurrency`` is below 1.
+            TypeError: a request is none; from the iterator, when its turn comes.
         """
         return batch.run(lambda request: self.stream_request(request).result(), requests,
                          concurrency)

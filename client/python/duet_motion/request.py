@@ -301,6 +301,19 @@ def check_answering(request: Union[SynthesisRequest, LiveRequest]) -> None:
         raise ValueError(f"clean_up: expected True, False or None, got {short(request.clean_up)}")
 
 
+def check_kind(request: object, kind: type, name: str = "request") -> None:
+    """Raises TypeError unless the request is of its class, with how to make one."""
+    if isinstance(request, kind):
+        return
+    hint = ""
+    if isinstance(request, Mapping):
+        hint = f"; make one of these fields: duet_motion.{kind.__name__}(**fields)"
+    elif isinstance(request, (tuple, list)):
+        hint = f"; make one of these values: duet_motion.{kind.__name__}(*values)"
+    raise TypeError(f"{name}: expected a duet_motion.{kind.__name__}, got "
+                    f"{type(request).__name__} {short(request)}{hint}")
+
+
 def check_request_id(request_id: str) -> None:
     """Raises ValueError unless it is empty or names a call in the server's log."""
     if not isinstance(request_id, str):

@@ -8,6 +8,7 @@ import unittest
 
 import support
 import duet_motion as duet
+from duet_motion._live_call import LiveCall
 import duet_motion.aio
 import grpc
 import numpy as np
@@ -244,6 +245,26 @@ class Calls:
         self.assertEqual(outcomes[4].unwrap().seed, 4)
         with self.assertRaises(duet.InvalidRequestError):
             outcomes[3].unwrap()
+
+    def test_anything_but_a_request_is_a_type_error_that_says_how_to_make_one(self):
+        fields = {"leader": support.leader(), "labels": {"hug": 1}}
+        request = duet.SynthesisRequest(**fields)
+        for wrong, message in (
+                ([request, fields], r"requests\[1\]: expected a duet_motion.SynthesisRequest, got "
+                                    r"dict .*; make one of these fields: "
+                                    r"duet_motion.SynthesisRequest\(\*\*fields\)"),
+                ([(support.leader(), {"hug": 1})], r"requests\[0\]: .* got tuple .*\(\*values\)"),
+                ([None], r"requests\[0\]: expected a duet_motion.SynthesisRequest, got NoneType None"),
+                (request, "requests: expected several .*, got one SynthesisRequest"),
+                (fields, "requests: expected several .*, got one dict")):
+            with self.subTest(message), self.assertRaisesRegex(TypeError, message):
+                self.calls(Script(), lambda client, _, gather, wrong=wrong:
+                           gather(client.synthesize_many(wrong)))
+        with self.assertRaisesRegex(TypeError, "^request: expected a duet_motion.SynthesisRequest, got "
+                                               "dict .*fields"):
+            self.calls(Script(), lambda client, get, _: get(client.synthesize_request(fields)))
+        with self.assertRaisesRegex(TypeError, "^request: expected a duet_motion.LiveRequest, got dict"):
+            LiveCall({"leader": None}, None)
 
     def test_concurrency_is_at_least_one(self):
         with self.assertRaisesRegex(ValueError, "concurrency: expected 1 or more, got 0"):
