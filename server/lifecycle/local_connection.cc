@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <utility>
 
@@ -75,33 +76,33 @@ absl::Status LocalConnection::Connect(const config::ListenAddress& address) {
   return error == 0 ? absl::OkStatus() : Failure("cannot connect", error);
 }
 
-bool LocalConnection::WaitFor(short events) const {
+bool LocalConnection::WaitFor(int events) const {
   while (true) {
     const int left = static_cast<int>(std::max(0.0, 1000 * (end_seconds_ - NowSeconds())));
-    pollfd wanted = {socket_, events, 0};
+    pollfd wanted = {socket_, static_cast<std::int16_t>(events), 0};
     const int ready = poll(&wanted, 1, left);
     if (ready > 0) return true;
     if (left <= 0 || (ready < 0 && errno != EINTR)) return false;
   }
 }
 
-absl::Status LocalConnection::Send(absl::string_view text) {
+absl::Status LocalConnection::Send(absl::string_view text) const {
   const ssize_t sent = send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
   if (sent < 0) return Failure("cannot send", errno);
   return static_cast<std::size_t>(sent) == text.size() ? absl::OkStatus()
                                                        : Failure("cannot send at once", 0);
 }
 
-absl::Status LocalConnection::EndOutput() {
+absl::Status LocalConnection::EndOutput() const {
   return shutdown(socket_, SHUT_WR) == 0 ? absl::OkStatus()
                                          : Failure("cannot shut the connection down", errno);
 }
 
-absl::Status LocalConnection::WaitForAnswer() {
+absl::Status LocalConnection::WaitForAnswer() const {
   return WaitFor(POLLIN) ? absl::OkStatus() : Failure("connected, but got no answer", 0);
 }
 
-absl::StatusOr<std::string> LocalConnection::ReadAll() {
+absl::StatusOr<std::string> LocalConnection::ReadAll() const {
   std::string answer;
   while (answer.size() < kMostAnswerBytes) {
     if (absl::Status status = WaitForAnswer(); !status.ok()) return status;

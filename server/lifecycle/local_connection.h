@@ -25,19 +25,19 @@ class LocalConnection {
   ~LocalConnection();
 
   // Sends a short text.
-  absl::Status Send(absl::string_view text);
+  absl::Status Send(absl::string_view text) const;
   // Sends nothing more.
-  absl::Status EndOutput();
+  absl::Status EndOutput() const;
   // Waits for data or the end of the connection.
-  absl::Status WaitForAnswer();
+  absl::Status WaitForAnswer() const;
   // Returns what the server sends until it ends the connection, at most 64 KiB of it.
-  absl::StatusOr<std::string> ReadAll();
+  absl::StatusOr<std::string> ReadAll() const;
 
  private:
   LocalConnection(int socket, double end_seconds) : socket_(socket), end_seconds_(end_seconds) {}
   absl::Status Connect(const config::ListenAddress& address);
   // Returns whether the socket is ready in time. Polls at least once.
-  bool WaitFor(short events) const;
+  bool WaitFor(int events) const;
 
   int socket_;
   double end_seconds_;  // of the steady clock
