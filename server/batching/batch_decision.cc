@@ -27,7 +27,7 @@ constexpr int kWayBack = 8;
 // While short calls arrive, a batch of a lower lane may take as long as this many single windows of
 // one candidate.
 // Short calls are considered to arrive until none has arrived for this time.
-constexpr double kHeldUp = 3;
+constexpr double kHeldUp = kLightTurns;
 constexpr std::chrono::seconds kShortCallsCome(1);
 
 // The steps of the decision for one state.
@@ -56,6 +56,10 @@ class Decider {
   double SecondsOf(const Indices& batch) const;  // of one model, not empty
 
   absl::Status ReasonToDrop(std::size_t index) const;
+  bool IsHeavy(std::size_t index) const {
+    return TurnsOf(Window(index).frames, ModelOf(index).window_frames) > kLightTurns;
+  }
+  bool LeavesAWorkerToOthers() const;
   Indices LaneBatch(Lane lane) const;
   Indices WantedFirst(Lane lane, std::size_t model) const;
   Indices InTurns(const Indices& line) const;
@@ -72,6 +76,7 @@ class Decider {
   const BatchLimits& limits_;
   const TimePoint now_;
   Indices alive_;  // windows that are not dropped
+  Indices ready_;  // those of them that this worker may take
 };
 
 Decision Decider::Decide() {
@@ -84,10 +89,15 @@ Decision Decider::Decide() {
       decision.dropped.push_back({i, std::move(reason)});
     }
   }
+  const bool takes_heavy = LeavesAWorkerToOthers();
+  for (const std::size_t i : alive_) {
+    if (takes_heavy || !IsHeavy(i)) ready_.push_back(i);
+  }
+  if (ready_.size() < alive_.size()) decision.look_again = state_.last_light + kShortCallsCome;
   Indices batch = NextBatch();
   if (batch.empty()) return decision;
   if (const std::optional<TimePoint> start_at = WaitFor(batch)) {
-    decision.look_again = *start_at;
+    decision.look_again = std::min(decision.look_again, *start_at);
   } else {
     decision.batch = std::move(batch);
   }
@@ -121,6 +131,14 @@ absl::Status Decider::ReasonToDrop(std::size_t index) const {
   return absl::OkStatus();
 }
 
+// Returns whether a worker remains for light windows if this one takes a heavy window, as far as
+// that is necessary.
+bool Decider::LeavesAWorkerToOthers() const {
+  const int workers = state_.free_workers + static_cast<int>(state_.busy_until.size());
+  return workers == 1 || state_.heavy_batches + 1 < workers ||
+         now_ >= state_.last_light + kShortCallsCome;
+}
+
 // Returns the batch of the lane whose turn it is; empty if no window waits.
 Indices Decider::NextBatch() const {
   Indices highest;
@@ -135,7 +153,7 @@ Indices Decider::NextBatch() const {
 
 Indices Decider::LaneBatch(Lane lane) const {
   std::optional<std::size_t> model;  // the least served; among equals, the first to arrive
-  for (const std::size_t i : alive_) {
+  for (const std::size_t i : ready_) {
     if (Window(i).lane != lane) continue;
     const std::size_t other = Window(i).model;
     if (!model || state_.models[other].served_seconds < state_.models[*model].served_seconds) {
@@ -143,7 +161,12 @@ Indices Decider::LaneBatch(Lane lane) const {
     }
   }
   if (!model) return {};
-  const Indices line = WantedFirst(lane, *model);
+  Indices line = WantedFirst(lane, *model);
+  // A batch ends for all of its windows at the same time.
+  const auto other_kind = [this, is_heavy = IsHeavy(line.front())](std::size_t i) {
+    return IsHeavy(i) != is_heavy;
+  };
+  line.erase(std::remove_if(line.begin(), line.end(), other_kind), line.end());
   std::size_t most = MostOf(line);
   if (lane != Lane::kShort) most = std::min(most, NotHeldUp(line));
   return InTime(line, most);
@@ -151,7 +174,7 @@ Indices Decider::LaneBatch(Lane lane) const {
 
 Indices Decider::WantedFirst(Lane lane, std::size_t model) const {
   Indices line;
-  for (const std::size_t i : alive_) {
+  for (const std::size_t i : ready_) {
     if (Window(i).lane == lane && Window(i).model == model) line.push_back(i);
   }
   const auto wanted_at = [&](std::size_t i) {

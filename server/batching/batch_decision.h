@@ -43,6 +43,10 @@ constexpr int TurnsOf(int frames, int window_frames) {
 // least an eighth of the work.
 inline constexpr int kOvertaking = 7;
 
+// A window of more turns than this is heavy: others would wait long for the worker that evaluates
+// it.
+inline constexpr int kLightTurns = 3;
+
 // Everything that a decision depends on.
 struct QueueState {
   std::vector<WaitingWindow> windows;  // in the order they came
@@ -53,10 +57,12 @@ struct QueueState {
   int free_workers = 1;  // including the one that asks
   // When the batches of the other workers are expected to end.
   std::vector<common::TimePoint> busy_until;
+  int heavy_batches = 0;  // of the other workers: those with a heavy window
   // When a batch with windows of more than one call last ended.
   common::TimePoint last_company = common::TimePoint::min();
-  // When the last window of a short call arrived.
+  // When the last window of a short call arrived, and the last one that is not heavy.
   common::TimePoint last_short = common::TimePoint::min();
+  common::TimePoint last_light = common::TimePoint::min();
 };
 
 struct BatchLimits {
@@ -87,6 +93,8 @@ struct Decision {
 //    would evaluate every window slightly too late.
 // 2. Choose the highest lane with windows, unless a lower lane has been overtaken by kOvertaking
 //    times as many frames as its next batch holds. No lane starves.
+//    While light windows of short calls arrive, heavy windows leave one worker to the others, if
+//    there are several workers. A batch has either heavy or light windows.
 // 3. Within the lane, choose the model whose windows have used the least computing time.
 // 4. Choose windows of the clients in turns: first those after which their client has had the
 //    fewest. A window with 16 candidates takes 16 turns, so clients share the work and not the

@@ -37,6 +37,8 @@ bool IsCancelled(const WindowJob& job) { return job.cancelled->load(std::memory_
 
 }  // namespace
 
+int QueuedWindow::Turns() const { return TurnsOf(frames, job.model->description().window_frames); }
+
 int Batch::Frames() const {
   int frames = 0;
   for (const QueuedWindow& window : windows) frames += window.frames;
@@ -78,13 +80,13 @@ bool WindowQueue::ComesInTime(const WindowJob& job, TimePoint now) const {
     const CostEstimate cost = CostOf(waiting, now);
     work += cost.frame_seconds * window.frames;
     batch_seconds = std::max(batch_seconds, cost.batch_seconds);
-    windows += TurnsOf(window.frames, waiting.model->description().window_frames);
+    windows += window.Turns();
   }
   if (windows == 0) return true;
   const int batches = (windows + options_.limits.max_windows - 1) / options_.limits.max_windows;
   work += batches * batch_seconds;
-  for (const auto& [number, end] : running_) {
-    work += std::max(0.0, common::SecondsBetween(now, end));
+  for (const auto& [number, batch] : running_) {
+    work += std::max(0.0, common::SecondsBetween(now, batch.end));
   }
   const double seconds = work / options_.workers + CostOf(job, now).Seconds(FramesOf(job));
   return job.deadline == TimePoint::max() || seconds <= common::SecondsBetween(now, job.deadline);
@@ -101,13 +103,15 @@ void WindowQueue::Push(WindowJob job, TimePoint now) {
     account.served_seconds = std::max(account.served_seconds, served_by_now_);
   }
   ++account.waiting;
-  if (LaneOf(job) == Lane::kShort) last_short_ = now;
+  const bool is_short = LaneOf(job) == Lane::kShort;
   LaneClients& clients = ClientsOf(job);
   ClientTurns& client =
       clients.waiting.emplace(job.client, ClientTurns{clients.turns_by_now}).first->second;
   ++client.waiting;
   const int frames = FramesOf(job), candidates = CandidatesOf(job);
   waiting_.push_back({std::move(job), now, frames, candidates});
+  if (is_short) last_short_ = now;
+  if (is_short && waiting_.back().Turns() <= kLightTurns) last_light_ = now;
 }
 
 Turn WindowQueue::Next(TimePoint now) {
@@ -167,7 +171,7 @@ WindowQueue::LaneClients& WindowQueue::ClientsOf(const WindowJob& job) {
 void WindowQueue::CountTurns(const QueuedWindow& window) {
   LaneClients& clients = ClientsOf(window.job);
   ClientTurns& client = clients.waiting[window.job.client];
-  client.turns += TurnsOf(window.frames, window.job.model->description().window_frames);
+  client.turns += window.Turns();
   clients.turns_by_now = std::max(clients.turns_by_now, client.turns);
 }
 
@@ -201,9 +205,13 @@ QueueState WindowQueue::StateAt(TimePoint now) const {
   }
   state.overtaken_frames = overtaken_frames_;
   state.free_workers = options_.workers - static_cast<int>(running_.size());
-  for (const auto& [number, end] : running_) state.busy_until.push_back(end);
+  for (const auto& [number, batch] : running_) {
+    state.busy_until.push_back(batch.end);
+    if (batch.is_heavy) ++state.heavy_batches;
+  }
   state.last_company = last_company_;
   state.last_short = last_short_;
+  state.last_light = last_light_;
   return state;
 }
 
@@ -240,7 +248,10 @@ void WindowQueue::Start(Batch& batch, TimePoint now) {
   batch.number = ++batches_;
   batch.started_at = now;
   batch.expected_seconds = account.cost.At(now).Seconds(batch.Frames());
-  running_[batch.number] = After(now, batch.expected_seconds);
+  const bool is_heavy =
+      std::any_of(batch.windows.begin(), batch.windows.end(),
+                  [](const QueuedWindow& window) { return window.Turns() > kLightTurns; });
+  running_[batch.number] = {After(now, batch.expected_seconds), is_heavy};
   served_by_now_ = std::max(served_by_now_, account.served_seconds);
   account.served_seconds += batch.expected_seconds;
 }

@@ -23,6 +23,8 @@ struct QueuedWindow {
   common::TimePoint queued_at;
   int frames = 0;      // that its model is expected to compute: the window's, once for each sample
   int candidates = 0;  // 1 for a model that does not sample
+
+  int Turns() const;  // TurnsOf its frames
 };
 
 // A window that will never start, and the reason.
@@ -135,11 +137,16 @@ class WindowQueue {
   const WindowQueueOptions options_;
   std::vector<QueuedWindow> waiting_;  // in order of arrival
   std::map<const engine::Synthesizer*, Account> accounts_;
-  std::map<int, common::TimePoint> running_;  // batch number -> expected end
+  struct Running {
+    common::TimePoint end;  // expected
+    bool is_heavy = false;
+  };
+  std::map<int, Running> running_;  // by batch number
   std::array<int, kLanes> overtaken_frames_ = {};
   std::array<LaneClients, kLanes> clients_;
   common::TimePoint last_company_ = common::TimePoint::min();
   common::TimePoint last_short_ = common::TimePoint::min();
+  common::TimePoint last_light_ = common::TimePoint::min();
   // The computing time that the model whose batch started last had used by then. A model without
   // waiting windows continues from here, because an idle model must not claim all the time that it
   // did not use.

@@ -417,6 +417,8 @@ QueueState RandomState(std::mt19937& random) {
   for (int i = below(3); i > 0; --i) state.busy_until.push_back(kNow + milliseconds(below(50) - 5));
   if (below(2) == 0) state.last_company = kNow - milliseconds(below(20));
   if (below(2) == 0) state.last_short = kNow - milliseconds(below(2000));
+  if (below(2) == 0) state.last_light = kNow - milliseconds(below(2000));
+  state.heavy_batches = below(static_cast<int>(state.busy_until.size()) + 1);
   return state;
 }
 
@@ -454,7 +456,8 @@ void Check(const QueueState& state, const BatchLimits& limits, const Decision& d
   // A worker rests only when nothing waits, or until a time to come.
   if (decision.batch.empty() && decision.dropped.size() < state.windows.size()) {
     ASSERT_GT(decision.look_again, kNow);
-    ASSERT_LE(decision.look_again, kNow + limits.max_delay);
+    ASSERT_LE(decision.look_again,
+              std::max(kNow + limits.max_delay, state.last_light + seconds(1)));
   }
 }
 
@@ -536,10 +539,64 @@ TEST(BatchDecisionTest, LowerLaneRunsOneWindowWithManyCandidatesWhileShortCallsA
   EXPECT_EQ(BatchOf(state).size(), 1u);
 }
 
+// Two workers, one of which evaluates a heavy window, while two heavy ones wait and light ones have
+// come 400 ms ago.
+QueueState BesideHeavy() {
+  QueueState state = Waiting(2);
+  for (WaitingWindow& window : state.windows) window.frames = 4 * kFrames;
+  state.busy_until = {kNow + seconds(1)};
+  state.heavy_batches = 1;
+  state.last_light = kNow - milliseconds(400);
+  return state;
+}
+
+TEST(BatchDecisionTest, HeavyWindowsLeaveAWorkerToLightOnes) {
+  QueueState state = BesideHeavy();
+  const Decision decision = Decide(state, {16}, kNow);
+  EXPECT_THAT(decision.batch, IsEmpty());
+  EXPECT_THAT(decision.dropped, IsEmpty());
+  EXPECT_EQ(decision.look_again, kNow + milliseconds(600));
+  state.windows.push_back(Window(Lane::kBulk));
+  EXPECT_THAT(BatchOf(state), ElementsAre(2));
+}
+
+TEST(BatchDecisionTest, HeavyWindowsTakeEveryWorkerWithoutLightOnes) {
+  QueueState state = BesideHeavy();
+  state.last_light = kNow - seconds(1);
+  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1));
+}
+
+TEST(BatchDecisionTest, HeavyWindowsTakeAWorkerIfAnotherRemains) {
+  QueueState state = BesideHeavy();
+  state.heavy_batches = 0;
+  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1)) << "the other one evaluates light windows";
+  state = BesideHeavy();
+  state.free_workers = 2;
+  EXPECT_THAT(BatchOf(state), ElementsAre(0));
+  state = BesideHeavy();
+  state.busy_until.clear();
+  state.heavy_batches = 0;
+  EXPECT_THAT(BatchOf(state), ElementsAre(0, 1)) << "there is only one";
+}
+
+TEST(BatchDecisionTest, HeavyWindowsDoNotDelayLightOnesInTheSameBatch) {
+  std::vector<WaitingWindow> windows(5, Window());
+  for (const std::size_t i : {1, 3}) windows[i].frames = 4 * kFrames;
+  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(0, 2, 4));
+  windows[1].due = kNow;
+  EXPECT_THAT(BatchOf(State(windows)), ElementsAre(1, 3)) << "the most urgent one determines it";
+}
+
+TEST(BatchDecisionTest, WindowOfThreeTurnsIsNotHeavy) {
+  QueueState state = BesideHeavy();
+  state.windows[1].frames = 3 * kFrames;
+  EXPECT_THAT(BatchOf(state), ElementsAre(1));
+}
+
 TEST(BatchDecisionTest, ABatchOfCandidatesIsFullAndDoesNotWait) {
   QueueState state = WithCompany();
   EXPECT_THAT(Decide(state, kPatient, kNow).batch, IsEmpty());
-  state.windows[1].frames = 15 * kFrames;
+  for (WaitingWindow& window : state.windows) window.frames = 8 * kFrames;
   EXPECT_THAT(Decide(state, kPatient, kNow).batch, ElementsAre(0, 1));
 }
 

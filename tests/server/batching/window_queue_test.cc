@@ -474,6 +474,24 @@ TEST(WindowQueueTest, ClientsShareTheWorkWhateverTheirCandidates) {
   EXPECT_NEAR(static_cast<double>(frames["heavy"]) / frames["light"], 1, 0.02);
 }
 
+TEST(WindowQueueTest, HeavyWindowsLeaveAWorkerWhileLightOnesArrive) {
+  const Model sampler = NewSampler();
+  WindowQueue queue(Options(2, 16));
+  queue.Push(SamplingJob(sampler, 1), kNow);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 1u);
+  for (int i = 0; i < 2; ++i) queue.Push(SamplingJob(sampler, 16), kNow);
+  const Turn first = queue.Next(kNow);
+  EXPECT_EQ(first.batch.Candidates(), 16);
+  const Turn none = queue.Next(kNow);
+  EXPECT_THAT(none.batch.windows, IsEmpty());
+  EXPECT_EQ(none.look_again, kNow + seconds(1));
+  queue.Push(SamplingJob(sampler, 3), kNow);
+  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 1u);
+  EXPECT_THAT(queue.Next(kNow).batch.windows, IsEmpty());
+  queue.Finished(first.batch, kNow + milliseconds(10));
+  EXPECT_EQ(queue.Next(kNow + milliseconds(10)).batch.Candidates(), 16);
+}
+
 TEST(WindowQueueTest, ReturningClientClaimsNoTurnsOfItsAbsence) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 1));
