@@ -44,9 +44,16 @@ absl::StatusOr<Split> LeaveSubjectOut(const Dataset& dataset, const std::string&
   }
   if (!split.test.empty()) return split;
   const std::vector<std::string> known = dataset.Subjects();
-  return absl::NotFoundError(absl::StrCat("subject: expected one of ", dataset.name, "'s: ",
-                                          known.empty() ? "(none)" : absl::StrJoin(known, ", "),
-                                          ", got ", base::Quoted(subject)));
+  if (known.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        dataset.name,
+        ": subjects: expected sequences that name their people, got none; to leave people out, "
+        "list "
+        "them in the column subjects of index.tsv, or of duet-import's table (docs/datasets.md)"));
+  }
+  return absl::NotFoundError(absl::StrCat("subject: expected one of ", dataset.name,
+                                          "'s: ", absl::StrJoin(known, ", "), ", got ",
+                                          base::Quoted(subject)));
 }
 
 Split LeavePartOut(const Dataset& dataset, int part, int parts) {

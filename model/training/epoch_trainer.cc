@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model/training/run_identity.h"
 
 namespace duet::training {
 namespace {
@@ -128,10 +129,9 @@ void EpochTrainer::CopyBest(torch::nn::Module* generator) const {
 
 // A saved state is only valid for a run with the same identity.
 std::string EpochTrainer::Identity() const {
-  return absl::StrCat(SerializeManifest(manifest_),
-                      absl::StrJoin(Describe(options_), "\n", absl::PairFormatter("=")), "\n",
-                      dataset_.name, " train ", absl::StrJoin(train_, ","), " validation ",
-                      absl::StrJoin(validation_, ","));
+  return RunIdentity(SerializeManifest(manifest_), Describe(options_),
+                     absl::StrCat(dataset_.name, " train ", absl::StrJoin(train_, ","),
+                                  " validation ", absl::StrJoin(validation_, ",")));
 }
 
 std::vector<std::pair<std::string, torch::Tensor>> EpochTrainer::StateTensors() {
@@ -184,10 +184,10 @@ absl::Status EpochTrainer::LoadState(const std::filesystem::path& file) {
     }
     archive.read("identity", value);
     if (value.toStringRef() != Identity()) {
-      return absl::FailedPreconditionError(absl::StrCat(
-          file.string(),
-          ": expected the state of this run, got that of one with other options or data; "
-          "choose another folder"));
+      return absl::FailedPreconditionError(
+          absl::StrCat(file.string(), ": was begun with other options or data: ",
+                       DescribeIdentityChange(value.toStringRef(), Identity()),
+                       "; use the same to resume it, or choose another folder"));
     }
     torch::NoGradGuard no_grad;
     for (auto& [name, tensor] : StateTensors()) {

@@ -108,8 +108,7 @@ absl::StatusOr<std::vector<duet::training::RunPlan>> PlanFolds(
     plans.push_back(plan);
   }
   if (!plans.empty()) return plans;
-  return absl::NotFoundError(
-      absl::StrCat("--fold ", arguments.fold, ": the data has no such subject"));
+  return LeaveSubjectOut(dataset, arguments.fold).status();  // says whom the data has
 }
 
 absl::StatusOr<std::vector<duet::training::RunPlan>> PlanHalves(

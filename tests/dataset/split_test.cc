@@ -54,6 +54,15 @@ TEST(LeaveSubjectOutTest, TestsOnEitherPlace) {
               HasSubstr("expected one of made up's: a, b, c, got \"z\""));
 }
 
+TEST(LeaveSubjectOutTest, DataWithoutPeopleGetsAHint) {
+  const absl::Status nobody = LeaveSubjectOut(MadeUp({4}), "a").status();
+  EXPECT_EQ(nobody.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(
+      std::string(nobody.message()),
+      AllOf(HasSubstr("made up: subjects: expected sequences that name their people, got none"),
+            HasSubstr("the column subjects of index.tsv")));
+}
+
 TEST(SplitInHalvesTest, HalvesEachClass) {
   const Dataset dataset = MadeUp({20, 7, 2});
   const absl::StatusOr<Split> split = SplitInHalves(dataset, 5);

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <set>
+#include <string>
 
+#include "absl/strings/str_cat.h"
 #include "model/network/losses.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -82,9 +84,12 @@ TEST_F(PaperTrainerTest, ResumesWithABinaryDiscriminatorToo) {
 TEST_F(PaperTrainerTest, StateOfAnotherRunIsRejected) {
   PaperTrainer trainer = Make();
   ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
+  const std::string bone = Describe(options_).at("losses.bone");
   PaperOf(&options_).losses.bone = 0.5;
   EXPECT_THAT(Make().LoadState(folder_ / "state"),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("other options or data")));
+              StatusIs(absl::StatusCode::kFailedPrecondition,
+                       HasSubstr(absl::StrCat("other options or data: losses.bone: expected ", bone,
+                                              ", got 0.5; use the same to resume it"))));
 }
 
 TEST_F(PaperTrainerTest, StateOfAnotherVersionIsRejected) {
@@ -102,7 +107,8 @@ TEST_F(PaperTrainerTest, StateOfASlightlyDifferentSettingIsRejected) {
   ASSERT_THAT(trainer.SaveState(folder_ / "state"), IsOk());
   options_.optimiser.learning_rate *= 1 + 1e-9;
   EXPECT_THAT(Make().LoadState(folder_ / "state"),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("other options or data")));
+              StatusIs(absl::StatusCode::kFailedPrecondition,
+                       HasSubstr("other options or data: optimiser.learning_rate: expected ")));
 }
 
 TEST_F(PaperTrainerTest, TornOrMissingStateIsAnError) {

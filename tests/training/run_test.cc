@@ -318,7 +318,7 @@ TEST_F(RunTest, AStateOfOtherLeadersIsRejected) {
   std::filesystem::remove_all(CheckpointFolder(plan_));
   dataset_.lone_leaders[0].poses.at(7, 7).x += 0.01f;
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kFailedPrecondition,
-                             HasSubstr("expected the state of this run")));
+                             HasSubstr("other options or data: the model: ")));
 }
 
 TEST_F(RunTest, LeadersMustFitTheOptionsBeforeAnythingIsWritten) {

@@ -105,8 +105,7 @@ absl::StatusOr<std::vector<Fold>> LeaveOut(const dataset::Dataset& dataset,
     folds.push_back({subject, std::move(split)});
   }
   if (!folds.empty()) return folds;
-  return absl::InvalidArgumentError(
-      absl::StrCat(dataset.name, ": expected sequences that name their subjects, got none"));
+  return LeaveSubjectOut(dataset, "").status();  // says that there is nobody
 }
 
 absl::StatusOr<Experiment> OpenExperiment(const ExperimentFlags& flags) {

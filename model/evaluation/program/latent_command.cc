@@ -133,6 +133,7 @@ absl::Status RunLatent(const LatentArguments& arguments) {
   DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
   std::vector<std::string> subjects = arguments.subjects;
   if (subjects.empty()) subjects = dataset.Subjects();
+  if (subjects.empty()) return LeaveSubjectOut(dataset, "").status();  // says that there is nobody
   if (arguments.subjects.empty() && subjects.size() > 1) subjects.resize(1);
   report::ResultSection section = MakeSection(dataset, subjects, arguments);
   for (const std::string& text : arguments.runs) {
