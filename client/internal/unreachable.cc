@@ -27,15 +27,10 @@ constexpr Cause kCauses[] = {
     {"timed out", "does not answer: the connection timed out"},
     {"No route to host", "cannot be reached: there is no route to it"},
     {"Network is unreachable", "cannot be reached: there is no route to it"},
+    // A server that encrypts does so to a client that does not.
+    {"Connection reset", "closed the connection: it has stopped, or it expects TLS"},
+    {"Socket closed", "closed the connection: it has stopped, or it expects TLS"},
 };
-
-// Whether the server closes connections before gRPC's handshake, as one that encrypts does if the
-// client does not.
-bool HangsUp(absl::string_view message) {
-  return absl::StrContains(message, "last error") &&  // of all attempts to connect
-         (absl::StrContains(message, "Connection reset") ||
-          absl::StrContains(message, "Socket closed"));
-}
 
 }  // namespace
 
@@ -43,10 +38,6 @@ std::string DescribeUnreachable(absl::string_view address, absl::string_view mes
   const std::string server = absl::StrCat("the server at ", address, " ");
   for (const Cause& cause : kCauses) {
     if (absl::StrContains(message, cause.sign)) return absl::StrCat(server, cause.text);
-  }
-  if (HangsUp(message)) {
-    return absl::StrCat(server,
-                        "closes every connection: it may expect TLS, or a client certificate");
   }
   return absl::StrCat(server, "cannot be reached: ", message);
 }

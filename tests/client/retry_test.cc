@@ -144,13 +144,11 @@ TEST(DescribeUnreachableTest, NamesTheCauseWithoutSocketsAndSystemCalls) {
   EXPECT_EQ(
       DescribeUnreachable("a:1", several + "UNAVAILABLE: ipv4:10.0.0.1:1: Failed parsing HTTP/2"),
       "the server at a:1 is not a Duet server: it does not speak gRPC");
-  EXPECT_EQ(
-      DescribeUnreachable("a:1", several + "UNAVAILABLE: ipv4:10.0.0.1:1: Socket closed"),
-      "the server at a:1 closes every connection: it may expect TLS, or a client certificate");
+  EXPECT_EQ(DescribeUnreachable("a:1", several + "UNAVAILABLE: ipv4:10.0.0.1:1: Socket closed"),
+            "the server at a:1 closed the connection: it has stopped, or it expects TLS");
   EXPECT_EQ(told("UNAVAILABLE: backend unhealthy"),
             "the server at a:1 is not ready: it loads its models, or it shuts down");
-  EXPECT_EQ(DescribeUnreachable("a:1", "Socket closed"),
-            "the server at a:1 cannot be reached: Socket closed");
+  EXPECT_EQ(DescribeUnreachable("a:1", "odd"), "the server at a:1 cannot be reached: odd");
 }
 
 TEST_F(RetryTest, AnyReplyRestartsTheWait) {

@@ -68,7 +68,7 @@ class StudioAwayTest(unittest.TestCase):
         server.kill()
         page.evaluate("element('react').click()")
         page.wait_until(FAILED)
-        self.assertRegex(page.text("#status"), r"^The server at 127\.0\.0\.1:\d+ (is not running|cannot)")
+        self.assertRegex(page.text("#status"), r"^The server at 127\.0\.0\.1:\d+ (is not running|closed the connection): ")
         self.serve()
         page.wait_until("element('status').textContent === 'The server is back. Try again.'")
         page.evaluate("element('react').click()")

@@ -18,6 +18,9 @@ _CAUSES = (
     ("timed out", "does not answer: the connection timed out"),
     ("No route to host", "cannot be reached: there is no route to it"),
     ("Network is unreachable", "cannot be reached: there is no route to it"),
+    # A server that encrypts does so to a client that does not.
+    ("Connection reset", "closed the connection: it has stopped, or it expects TLS"),
+    ("Socket closed", "closed the connection: it has stopped, or it expects TLS"),
 )
 
 
@@ -27,9 +30,4 @@ def describe_unreachable(address: str, message: str) -> str:
     for sign, text in _CAUSES:
         if sign in message:
             return f"the server at {address} {text}"
-    # A server that encrypts closes the connection of a client that does not.
-    if "last error" in message and ("Connection reset" in message
-                                           or "Socket closed" in message):
-        return (f"the server at {address} closes every connection: it may expect TLS, or a client "
-                "certificate")
     return f"the server at {address} cannot be reached: {message}"
