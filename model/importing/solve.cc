@@ -1,7 +1,6 @@
 #include "model/importing/solve.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <map>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
+#include "model/body/build.h"
 #include "model/body/limbs.h"
 #include "model/dataset/dataset.h"
 #include "model/importing/dataset_folder.h"
@@ -27,7 +27,6 @@ constexpr std::size_t kMostListed = 5;
 // Bones of optical captures vary by less than this, of depth cameras by several times as much.
 // Metres, mean of a data set.
 constexpr double kNoisyBones = 0.002;
-constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 class Mean {
  public:
@@ -42,52 +41,27 @@ class Mean {
   int count_ = 0;
 };
 
-float Median(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double BendDegrees(const body::Limb& limb, absl::Span<const Vec3> pose) {
-  const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
-  const Vec3 thigh = at(limb.middle) - at(limb.upper), shin = at(limb.end) - at(limb.middle);
-  const double lengths = Norm(thigh) * Norm(shin);
-  return lengths > 0 ? std::acos(std::clamp(Dot(thigh, shin) / lengths, -1.0, 1.0)) * kDegrees : 0;
-}
-
 // Adds people to the figures of their bodies.
 class BodyMeter {
  public:
   BodyMeter(const motion::Skeleton& skeleton, double rate)
-      : skeleton_(skeleton), legs_(body::FindBody(skeleton).legs), rate_(rate) {}
+      : skeleton_(skeleton), body_(body::FindBody(skeleton)), rate_(rate) {}
 
   void Add(const Poses& person) {
+    const body::BuildFigures build = body::MeasureBuild(skeleton_, body_, person);
     noise_.Add(solver::BodyModel::BoneNoise(skeleton_, person));
-    const motion::JointPair hips = *skeleton_.hips, feet = *skeleton_.feet;
-    std::vector<float> widths, leg_lengths;
+    narrowest_ = std::min(narrowest_, build.narrowest_hips);
+    widest_ = std::max(widest_, build.widest_hips);
+    const motion::JointPair feet = *skeleton_.feet;
     for (int t = 0; t < person.frame_count(); ++t) {
-      widths.push_back(Distance(person.at(t, hips.left), person.at(t, hips.right)));
-      leg_lengths.push_back(body::LengthOf(legs_[0], person[t]));
-    }
-    const float width = Median(widths), leg = Median(leg_lengths);
-    for (int t = 0; t < person.frame_count(); ++t) {
-      const double share = widths[static_cast<std::size_t>(t)] / width;
-      figures_.narrowest_hips = std::min(figures_.narrowest_hips, share);
-      figures_.widest_hips = std::max(figures_.widest_hips, share);
-      for (const body::Limb& one : legs_) knees_.Add(BendDegrees(one, person[t]));
-      const float lower = std::min(person.at(t, feet.left).y, person.at(t, feet.right).y);
-      height_.Add(((person.at(t, hips.left).y + person.at(t, hips.right).y) / 2 - lower) / leg);
+      knees_.Add(build.knee_degrees);
+      height_.Add(build.hips_over_leg);
       if (t > 0) foot_.Add(rate_ * std::min(Way(person, t, feet.left), Way(person, t, feet.right)));
     }
   }
 
   BodyFigures figures() const {
-    BodyFigures figures = figures_;
-    figures.bone_noise = noise_.value();
-    figures.knee_degrees = knees_.value();
-    figures.slower_foot = foot_.value();
-    figures.hips_over_leg = height_.value();
-    return figures;
+    return {noise_.value(), narrowest_, widest_, knees_.value(), foot_.value(), height_.value()};
   }
 
  private:
@@ -96,9 +70,9 @@ class BodyMeter {
   }
 
   const motion::Skeleton& skeleton_;
-  std::vector<body::Limb> legs_;
+  body::Body body_;
   double rate_;
-  BodyFigures figures_;
+  double narrowest_ = 1, widest_ = 1;
   Mean noise_, knees_, foot_, height_;
 };
 

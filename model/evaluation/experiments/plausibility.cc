@@ -7,6 +7,7 @@
 
 #include "model/base/angle.h"
 #include "model/base/statistics.h"
+#include "model/body/build.h"
 #include "model/body/grade.h"
 #include "model/body/hands.h"
 #include "model/body/liveliness.h"
@@ -174,12 +175,12 @@ Plausibility::Plausibility(const motion::Skeleton& skeleton)
 bool Plausibility::possible() const { return body::PairMeter::CanMeasure(skeleton_, body_); }
 
 std::vector<PairFigure> Plausibility::Figures() {
-  return {{"twisted clips"}, {"twisted"}, {"shoulders"},      {"both feet"},
-          {"leader's"},      {"heads"},   {"trunks"},         {"hands"},
-          {"distance"},      {"speed"},   {"leader's speed"}, {"strikes"},
-          {"through"},       {"planes"},  {"turns"},          {"fastest turn", true},
-          {"lean"},          {"facing"},  {"farthest"},       {"astride"},
-          {"held out"}};
+  return {{"twisted clips"}, {"twisted"},        {"shoulders"},      {"both feet"},
+          {"leader's"},      {"heads"},          {"trunks"},         {"hands"},
+          {"distance"},      {"speed"},          {"leader's speed"}, {"strikes"},
+          {"through"},       {"planes"},         {"turns"},          {"fastest turn", true},
+          {"lean"},          {"facing"},         {"farthest"},       {"astride"},
+          {"held out"},      {"hips off", true}, {"hips"},           {"knees"}};
 }
 
 std::vector<std::string> Plausibility::Notes() {
@@ -205,7 +206,10 @@ std::vector<std::string> Plausibility::Notes() {
       "Astride: the longest time in an answer for which the feet stay farther apart than 0.75 "
       "lengths of the leg. Held out: the longest time for which a hand that neither reaches for "
       "the leader nor is near a hand of the leader stays higher than 0.3 lengths of the arm below "
-      "its shoulder. Means over the answers, seconds."};
+      "its shoulder. Means over the answers, seconds.",
+      "Hips off: by how much the hips are narrower or wider than their median width, as a share of "
+      "it, in the worst frame of all answers. Hips: mean height of the hips above the lower foot, "
+      "in lengths of the leg. Knees: mean bend, degrees."};
 }
 
 PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, double rate,
@@ -242,6 +246,7 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
   }
   const body::Grade grade = sum.Get();
   const double fastest = *std::max_element(turns.begin(), turns.end());
+  const body::BuildFigures build = body::MeasureBuild(skeleton_, body_, follower);
   const double frames = leader.frame_count();
   figures.values = {One(most_twisted > kTwistedClipDegrees),
                     grade.twisted,
@@ -263,7 +268,10 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
                     body::FacingDegrees(leader, follower, skeleton_),
                     FarthestRoots(skeleton_, leader, follower),
                     longest.Get(rate).astride,
-                    longest.Get(rate).held_out};
+                    longest.Get(rate).held_out,
+                    build.HipsOff(),
+                    build.hips_over_leg,
+                    build.knee_degrees};
   return figures;
 }
 

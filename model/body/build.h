@@ -1,0 +1,28 @@
+#ifndef DUET_MODEL_BODY_BUILD_H_
+#define DUET_MODEL_BODY_BUILD_H_
+
+#include "model/body/limbs.h"
+#include "model/motion/poses.h"
+#include "model/motion/skeleton.h"
+
+namespace duet::body {
+
+// Whether somebody looks like a person with a pelvis and two legs.
+struct BuildFigures {
+  // The width of the hips in any frame, as a share of their median width.
+  double narrowest_hips = 1;
+  double widest_hips = 1;
+  double knee_degrees = 0;   // mean bend of both knees
+  double hips_over_leg = 0;  // mean height of the hips above the lower foot, in lengths of the leg
+
+  // How far the hips are from their width at most: 0 for a rigid pelvis.
+  double HipsOff() const;
+};
+
+// Requires hips, feet and two legs of two bones, and at least one frame. World metres, y up.
+BuildFigures MeasureBuild(const motion::Skeleton& skeleton, const Body& body,
+                          const motion::Poses& person);
+
+}  // namespace duet::body
+
+#endif  // DUET_MODEL_BODY_BUILD_H_
