@@ -15,7 +15,8 @@ void CleanUp::Apply(const motion::Poses& leader, const Touch& touch, const Meeti
                     const Timing& timing, motion::Poses* follower) const {
   CorrectTrunk(leader, timing, follower);
   CorrectBody(leader, touch, meetings, timing, follower);
-  PlaceFeetAndHands(leader, meetings, timing, follower);
+  PlaceFeet(leader, timing, follower);
+  PlaceHands(leader, meetings, timing, follower);
 }
 
 std::optional<float> CleanUp::Floor(const motion::Poses& leader) const {
@@ -68,8 +69,8 @@ void CleanUp::CorrectBody(const motion::Poses& leader, const Touch& touch, const
   }
 }
 
-void CleanUp::PlaceFeetAndHands(const motion::Poses& leader, const Meetings& meetings,
-                                const Timing& timing, motion::Poses* follower) const {
+void CleanUp::PlaceFeet(const motion::Poses& leader, const Timing& timing,
+                        motion::Poses* follower) const {
   // Last, so that standing feet stand and hands meet.
   const std::optional<float> floor = Floor(leader);
   if (options_.raised_limbs.enabled) {
@@ -81,6 +82,10 @@ void CleanUp::PlaceFeetAndHands(const motion::Poses& leader, const Meetings& mee
   if (floor && options_.footsteps.enabled) {
     WalkInSteps(skeleton_, body_, *floor, options_.footsteps, timing, follower);
   }
+}
+
+void CleanUp::PlaceHands(const motion::Poses& leader, const Meetings& meetings,
+                         const Timing& timing, motion::Poses* follower) const {
   if (options_.hand_contact.enabled) {
     MeetHand(skeleton_, body_, leader, meetings, options_.hand_contact, timing, follower);
   }

@@ -70,8 +70,9 @@ class CleanUp {
                     motion::Poses* follower) const;
   void CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
                    const Timing& timing, motion::Poses* follower) const;
-  void PlaceFeetAndHands(const motion::Poses& leader, const Meetings& meetings,
-                         const Timing& timing, motion::Poses* follower) const;
+  void PlaceFeet(const motion::Poses& leader, const Timing& timing, motion::Poses* follower) const;
+  void PlaceHands(const motion::Poses& leader, const Meetings& meetings, const Timing& timing,
+                  motion::Poses* follower) const;
 
   // Turns a follower that looks past its leader back to it (facing.h). Not part of Apply: to be
   // called before CorrectBody, or in a live session once the frames that were sent are joined.

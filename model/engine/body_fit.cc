@@ -6,8 +6,8 @@
 
 #include "model/base/median.h"
 #include "model/base/statistics.h"
-#include "model/cleanup/stand_up.h"
 #include "model/motion/limb_lengths.h"
+#include "model/solver/stature.h"
 
 namespace duet::engine {
 namespace {
@@ -35,7 +35,8 @@ void BodyFit::Add(const motion::Poses& leader, const motion::Poses& follower) {
                    std::accumulate(leaders.begin(), leaders.end(), 0.0));
   MeasurePoses(leader, follower);
   if (body_.legs.empty() || follower.frame_count() < kFewestSeconds * frame_rate_hz_) return;
-  const std::vector<float> heights = cleanup::LastingHipHeights(body_, follower, frame_rate_hz_);
+  const std::vector<float> heights =
+      solver::LastingHipHeights(body_.legs, follower, frame_rate_hz_);
   heights_.insert(heights_.end(), heights.begin(), heights.end());
 }
 

@@ -25,7 +25,7 @@ class BodyFit {
   // larger, by at least 2 %: otherwise they are as different as any two people.
   std::vector<double> BoneRatios() const;
 
-  // The hip height (cleanup::LastingHipHeights) that captured followers exceed nine tenths of the
+  // The hip height (solver::LastingHipHeights) that captured followers exceed nine tenths of the
   // time. 0 for less than half a minute, or without legs.
   double HipHeight() const;
 

@@ -43,6 +43,7 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
           model_, request_.labels, request_.frame_rate_hz,
           motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz)),
       body_(body::FindBody(model_.skeleton)),
+      girdles_(model_.skeleton),
       cleans_up_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
       pin_distances_(request_.pins.size()),
       grader_(ClipGrader::Create(model_.skeleton, request_.frame_rate_hz)) {}
@@ -162,6 +163,7 @@ void ClipSynthesis::KeepLengths(double at, motion::Poses* pose) const {
   const std::vector<float> lengths =
       motion::MedianBoneLengths(model_.skeleton, motion::Part(follower, before, 1));
   motion::SetBoneLengths(model_.skeleton, lengths, pose);
+  girdles_.ApplyAboveFeet(girdles_.Measure(motion::Part(follower, before, 1)), (*pose)[0]);
   cleanup::PlaceFeetBetween(model_.skeleton, body_, follower[before], follower[after],
                             interpolated[0], (*pose)[0]);
 }

@@ -19,6 +19,7 @@
 #include "model/motion/pin.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
+#include "model/solver/girdles.h"
 
 namespace duet::engine {
 
@@ -122,6 +123,7 @@ class ClipSynthesis {
   WindowState state_;
   TurnHistory turns_;
   const body::Body body_;
+  const solver::Girdles girdles_;
   const bool cleans_up_;                // see KeepLengths, SlowDown
   std::vector<motion::Vec3> last_;      // the frame before next_frame_
   int next_frame_ = 0;                  // the caller's next frame to hand out

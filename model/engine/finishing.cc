@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,22 @@ void KeepLimbLengths(const ModelDescription& description, const SynthesisWindow&
     }
   }
   SetBoneLengths(skeleton, lengths, follower);
+}
+
+solver::GirdleWidths GirdleWidthsOf(const ModelDescription& description,
+                                    const solver::Girdles& girdles, const SynthesisWindow& window) {
+  const motion::Skeleton& skeleton = description.skeleton;
+  if (window.start && !window.start->pose.empty()) {
+    return girdles.Measure(motion::Poses(skeleton.joint_count(), window.start->pose));
+  }
+  solver::GirdleWidths widths = girdles.Measure(window.leader);
+  if (!description.bone_ratios.empty()) {
+    const double sum =
+        std::accumulate(description.bone_ratios.begin(), description.bone_ratios.end(), 0.0);
+    const float ratio = static_cast<float>(sum / static_cast<double>(skeleton.bones.size()));
+    widths = {widths.hips * ratio, widths.shoulders * ratio};
+  }
+  return widths;
 }
 
 void ShareFloor(const motion::Skeleton& skeleton, const SynthesisWindow& window,

@@ -10,6 +10,7 @@
 #include "model/engine/synthesizer.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
+#include "model/solver/girdles.h"
 
 // Stages between a network's result in world coordinates and the caller. Metres, y up.
 namespace duet::engine {
@@ -21,6 +22,11 @@ absl::Status CheckFinite(const motion::Poses& follower);
 // leader's median lengths times ModelDescription::bone_ratios.
 void KeepLimbLengths(const ModelDescription& description, const SynthesisWindow& window,
                      motion::Poses* follower);
+
+// The widths of the follower's hips and shoulders: those of its start's pose, or else the leader's
+// times ModelDescription::bone_ratios.
+solver::GirdleWidths GirdleWidthsOf(const ModelDescription& description,
+                                    const solver::Girdles& girdles, const SynthesisWindow& window);
 
 // Moves a follower without a start vertically so that its lowest foot is as high as the leader's.
 // Does nothing for a skeleton without feet.

@@ -41,6 +41,7 @@ LiveSynthesis::LiveSynthesis(ModelDescription model, LiveRequest request)
       request_(std::move(request)),
       timing_(model_, request_.frame_rate_hz, request_.delay_frames),
       body_(body::FindBody(model_.skeleton)),
+      girdles_(model_.skeleton),
       cleans_up_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
       replay_end_(request_.first_frame + request_.leader.frame_count()),
       leader_(0, model_.skeleton.joint_count()),
@@ -154,6 +155,7 @@ void LiveSynthesis::SampleJoined(int frame, absl::Span<const Vec3> before, Poses
   // Interpolation and offsets shorten limbs, and later plans continue from these.
   SetBoneLengths(model_.skeleton, bone_lengths_, pose);
   if (!cleans_up_) return;
+  girdles_.ApplyAboveFeet(girdle_widths_, (*pose)[0]);
   CorrectFrame(frame, interpolated[0], (*pose)[0]);
   if (!before.empty()) {
     const float height = cleanup::HeightOf(body_, (*pose)[0]);
@@ -234,8 +236,9 @@ void LiveSynthesis::Accept(const Poses& follower) {
   plan_ = follower;
   join_frame_ = JoinFrame(*evaluation_);
   plan_begin_ = window_begin_;
-  bone_lengths_ = MedianBoneLengths(model_.skeleton,
-                                    Poses(plan_.joint_count(), {plan_[0].begin(), plan_[0].end()}));
+  const Poses first(plan_.joint_count(), {plan_[0].begin(), plan_[0].end()});
+  bone_lengths_ = MedianBoneLengths(model_.skeleton, first);
+  girdle_widths_ = girdles_.Measure(first);
   KeepOffset();
 }
 

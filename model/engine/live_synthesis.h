@@ -12,6 +12,7 @@
 #include "model/engine/synthesizer.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
+#include "model/solver/girdles.h"
 
 namespace duet::engine {
 
@@ -141,6 +142,8 @@ class LiveSynthesis {
   LiveRequest request_;
   LiveTiming timing_;
   body::Body body_;
+  solver::Girdles girdles_;
+  solver::GirdleWidths girdle_widths_;  // of the plan
   bool cleans_up_;  // whether frames are corrected; see SynthesisOptions::clean_up
   // Frames before this one are answered evaluation by evaluation: those of a resumed session.
   int replay_end_;

@@ -62,7 +62,7 @@ struct ModelDescription {
   // leader's lengths. Shapes: [bones].
   std::vector<double> bone_ratios;
   // A follower does not stay in a crouch in which its hips are lower than this
-  // (cleanup::LastingHipHeights). 0: as low as the network has them.
+  // (solver::LastingHipHeights). 0: than solver::StatureOptions has it.
   double hip_height = 0;
   // The longest time for which a follower keeps such a pose. 0: as long as the network does.
   body::PoseSeconds longest_poses;

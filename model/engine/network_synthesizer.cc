@@ -8,7 +8,6 @@
 #include "absl/strings/str_cat.h"
 #include "model/body/limbs.h"
 #include "model/cleanup/live_bounds.h"
-#include "model/cleanup/stand_up.h"
 #include "model/cleanup/steps_in_time.h"
 #include "model/engine/asked_turns.h"
 #include "model/engine/candidates.h"
@@ -16,6 +15,8 @@
 #include "model/engine/standard_window.h"
 #include "model/engine/unfamiliarity.h"
 #include "model/engine/window_standardisation.h"
+#include "model/solver/girdles.h"
+#include "model/solver/stature.h"
 
 namespace duet::engine {
 namespace {
@@ -44,6 +45,7 @@ class NetworkSynthesizer : public Synthesizer {
         options_(options),
         live_bounds_(description_.skeleton),
         body_(body::FindBody(description_.skeleton)),
+        girdles_(description_.skeleton),
         clean_up_(description_.skeleton, CleaningOf(description_, options.cleaning)),
         judge_(description_.skeleton, std::move(critic)) {
     description_.clean_up = options.clean_up;
@@ -206,6 +208,7 @@ class NetworkSynthesizer : public Synthesizer {
     motion::Poses follower = standardisation.Invert(standard);
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
     if (options_.keep_limb_lengths) KeepLimbLengths(description_, window, &follower);
+    if (IsCleanedUp(window)) KeepGirdles(window, SettledFrames(window), false, &follower);
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
     if (IsCleanedUp(window)) {
       clean_up_.CorrectTrunk(window.leader, {description_.frame_rate_hz, SettledFrames(window)},
@@ -214,10 +217,24 @@ class NetworkSynthesizer : public Synthesizer {
     return follower;
   }
 
+  // Makes pelvis and shoulders rigid, from frame `first` on.
+  void KeepGirdles(const SynthesisWindow& window, int first, bool feet_stay,
+                   motion::Poses* follower) const {
+    const solver::GirdleWidths widths = GirdleWidthsOf(description_, girdles_, window);
+    for (int t = first; t < follower->frame_count(); ++t) {
+      if (feet_stay) {
+        girdles_.ApplyAboveFeet(widths, (*follower)[t]);
+      } else {
+        girdles_.Apply(widths, (*follower)[t]);
+      }
+    }
+  }
+
   // The other stages of Finish.
   motion::Poses FinishBody(const SynthesisWindow& window, const motion::Pins& pins,
                            motion::Poses follower) const {
     const bool cleans = IsCleanedUp(window);
+    const solver::Stretches stretches = solver::MeasureStretches(body_.legs, follower);
     const cleanup::Meetings meetings = MeetingsOf(description_, window);
     const cleanup::Timing timing = FeetTiming(description_, window);
     const bool bounded = cleans && window.options.sampling.first_frame.has_value();
@@ -241,11 +258,11 @@ class NetworkSynthesizer : public Synthesizer {
                                             timing, &follower));
     }
     if (cleans) {
-      clean_up_.PlaceFeetAndHands(window.leader, meetings, timing, &follower);
-    }
-    // Live windows would raise the body anew in every plan.
-    if (cleans && description_.hip_height > 0 && !window.options.sampling.first_frame) {
-      cleanup::StandUp(body_, description_.hip_height, timing, &follower);
+      clean_up_.PlaceFeet(window.leader, timing, &follower);
+      solver::StatureOptions stature{description_.frame_rate_hz, timing.settled};
+      if (description_.hip_height > 0) stature.least_height = description_.hip_height;
+      KeepStature(body_.legs, stretches, stature, &follower);
+      clean_up_.PlaceHands(window.leader, meetings, timing, &follower);
     }
     if (IsInTime(window)) {
       // After the feet are placed, because a foot that stands does so at every time.
@@ -253,6 +270,7 @@ class NetworkSynthesizer : public Synthesizer {
       if (options_.keep_limb_lengths) KeepLimbLengths(description_, window, &follower);
     }
     if (bounded) live_bounds_.BoundFeet(KnownLeader(window), timing, &follower);
+    if (cleans) KeepGirdles(window, timing.settled, true, &follower);
     if (pinned) clean_up_.PlacePins(*pinned, window.leader, timing, &follower);
     HoldSettledPins(window, pins, &follower);
     return follower;
@@ -289,6 +307,7 @@ class NetworkSynthesizer : public Synthesizer {
   const PipelineOptions options_;
   const cleanup::LiveBounds live_bounds_;
   const body::Body body_;
+  const solver::Girdles girdles_;
   const cleanup::CleanUp clean_up_;
   const CandidateJudge judge_;
 };

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "absl/status/status.h"
+#include "model/base/median.h"
 #include "model/motion/limb_lengths.h"
 
 namespace duet::solver {
@@ -19,18 +20,12 @@ Vec3 Unit(Vec3 v) {
   return length > 0 ? v / length : Vec3{0, 1, 0};
 }
 
-float Median(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 float MedianDistance(const motion::Poses& person, int a, int b) {
   std::vector<float> lengths;
   for (int t = 0; t < person.frame_count(); ++t) {
     lengths.push_back(Distance(person.at(t, a), person.at(t, b)));
   }
-  return Median(std::move(lengths));
+  return base::Median(std::move(lengths));
 }
 
 std::vector<int> PathToRoot(const std::vector<int>& parents, int joint) {
@@ -131,7 +126,7 @@ BodyModel::Rigid BodyModel::MeasureRigid(const std::vector<int>& joints, int ori
   }
   Rigid rigid{joints, {}};
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    rigid.places.push_back({Median(x[i]), Median(y[i]), Median(z[i])});
+    rigid.places.push_back({base::Median(x[i]), base::Median(y[i]), base::Median(z[i])});
   }
   return rigid;
 }

@@ -35,7 +35,8 @@ motion::Poses Pinned(motion::Poses follower, const Pins& pins, int settled = 0,
   const Timing timing{kRate, settled};
   const std::size_t frames = static_cast<std::size_t>(follower.frame_count());
   const PinnedMotion pinned = clean_up.ApproachPins(leader, Touch(frames), pins, timing, &follower);
-  clean_up.PlaceFeetAndHands(leader, Meetings(frames), timing, &follower);
+  clean_up.PlaceFeet(leader, timing, &follower);
+  clean_up.PlaceHands(leader, Meetings(frames), timing, &follower);
   clean_up.PlacePins(pinned, leader, timing, &follower);
   return follower;
 }

@@ -124,7 +124,7 @@ TEST(CleanUpStage, AChainOfWindowsStaysUprightOnTheFloorAndNear) {
     EXPECT_LT(worst.lean_degrees, 15) << seconds;
     EXPECT_LT(worst.feet_off_floor, 0.05) << seconds;
     EXPECT_LT(worst.distance, 3) << seconds;
-    EXPECT_LT(worst.step, 0.09) << seconds;  // metres a frame: nothing pops
+    EXPECT_LT(worst.step, 0.1) << seconds;  // metres a frame: nothing pops
   }
 }
 
