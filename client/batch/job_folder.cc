@@ -111,19 +111,29 @@ absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
 fs::path IdentityFile(const fs::path& out) { return out / ".duet-batch" / "job.json"; }
 fs::path RecipeFile(const fs::path& out) { return out / ".duet-batch" / "recipe.json"; }
 
+absl::Status Refuse(const fs::path& out, const std::string& begun_with) {
+  return absl::FailedPreconditionError(absl::StrCat(out.string(), ": was begun with ", begun_with,
+                                                    ". Use the same, or another --out"));
+}
+
 absl::Status CheckSame(const fs::path& out, const JobIdentity& begun, const JobIdentity& wanted) {
-  const auto refuse = [&out](const std::string& what) {
-    return absl::FailedPreconditionError(
-        absl::StrCat(out.string(), ": was begun with ", what, ". Use the same, or another --out"));
-  };
   if (begun.recipe_digest != wanted.recipe_digest) {
     const std::string difference = DescribeDifference(begun.recipe_json, wanted.recipe_json);
-    return refuse(difference.empty() ? "another recipe" : "another recipe: " + difference);
+    return Refuse(out, difference.empty() ? "another recipe" : "another recipe: " + difference);
   }
   if (begun.shard.index != wanted.shard.index || begun.shard.count != wanted.shard.count) {
-    return refuse("--shard " + ShardText(begun.shard));
+    return Refuse(out, "--shard " + ShardText(begun.shard));
   }
   return absl::OkStatus();
+}
+
+// For a set whose identity was damaged and then deleted: its recipe is stored a second time.
+absl::Status CheckRecipe(const fs::path& out, const JobIdentity& wanted) {
+  const absl::StatusOr<std::string> recipe =
+      base::ReadFile(RecipeFile(out), kMaxIdentityBytes, "a recipe");
+  if (!recipe.ok()) return absl::OkStatus();
+  const std::string difference = DescribeDifference(*recipe, wanted.recipe_json);
+  return difference.empty() ? absl::OkStatus() : Refuse(out, "another recipe: " + difference);
 }
 
 }  // namespace
@@ -139,7 +149,10 @@ absl::StatusOr<JobIdentity> ReadJobIdentity(const fs::path& out) {
     return identity;
   }
   return absl::FailedPreconditionError(
-      absl::StrCat(file.string(), ": ", identity.status().message()));
+      absl::StrCat(file.string(), ": is damaged: ", identity.status().message(),
+                   ". To go on, restore it, or delete it and run the command that made the set "
+                   "again: items that "
+                   "are done are kept, if recipe, leaders and models are the same"));
 }
 
 absl::Status JobFolder::Take() {
@@ -156,9 +169,13 @@ absl::Status JobFolder::Take() {
 }
 
 absl::Status JobFolder::Open(const JobIdentity& wanted, JobIdentity* begun) {
-  absl::Status status = Take();
+  const absl::Status status = Take();
+  return status.ok() ? Compare(wanted, begun) : status;
+}
+
+absl::Status JobFolder::Compare(const JobIdentity& wanted, JobIdentity* begun) const {
   std::error_code error;
-  if (!status.ok() || !fs::exists(IdentityFile(out_), error)) return status;
+  if (!fs::exists(IdentityFile(out_), error)) return CheckRecipe(out_, wanted);
   absl::StatusOr<JobIdentity> identity = ReadJobIdentity(out_);
   if (!identity.ok()) return identity.status();
   *begun = *std::move(identity);
@@ -166,7 +183,9 @@ absl::Status JobFolder::Open(const JobIdentity& wanted, JobIdentity* begun) {
 }
 
 absl::Status JobFolder::OpenForRun(const JobIdentity& wanted, JobIdentity* begun) {
-  absl::Status status = Open(wanted, begun);
+  absl::Status status = Take();
+  if (!status.ok()) return status;
+  status = Compare(wanted, begun);
   if (!absl::IsFailedPrecondition(status) || HasAnswers()) return status;
   *begun = {};
   return Discard();

@@ -71,6 +71,8 @@ class JobFolder {
 
  private:
   std::filesystem::path state() const { return out_ / ".duet-batch"; }
+  // Reads the identity of the job and compares it with the wanted one; see Open.
+  absl::Status Compare(const JobIdentity& wanted, JobIdentity* begun) const;
   bool HasAnswers() const;
   absl::Status Discard() const;
 

@@ -194,6 +194,30 @@ class BatchRepairTest(tools.ServedTest):
                 self.run_in_folder(*command)
                 self.run_in_folder(tools.PROGRAMS / "duet", "batch", "verify", out)
 
+    def test_a_damaged_identity_says_how_to_go_on(self):
+        for packing in PACKINGS:
+            with self.subTest(packing):
+                out, _ = self.copy_of(packing, f"{packing}-identity")
+                job = out / ".duet-batch" / "job.json"
+                os.truncate(job, job.stat().st_size // 2)
+                command = self.command(out.name, packing)
+                for damaged in (command, [tools.PROGRAMS / "duet", "batch", "verify", out]):
+                    refused = self.run_in_folder(*damaged, code=42)
+                    self.assertIn(f"{job.relative_to(self.folder)}: is damaged: ", refused.stderr)
+                    self.assertIn("delete it and run the command that made the set again",
+                                  refused.stderr)
+                job.unlink()
+                other = list(command)
+                other[other.index(f"{packing}.textproto")] = "other.textproto"
+                (self.folder / "other.textproto").write_text(
+                    (self.folder / f"{packing}.textproto").read_text(encoding="utf-8").replace(
+                        "seed: 7", "seed: 8"), encoding="utf-8")
+                refused = self.run_in_folder(*other, code=42)
+                self.assertIn('was begun with another recipe: seed: expected "7", got "8"',
+                              refused.stderr)
+                self.run_in_folder(*command)
+                self.check_whole(out, packing)
+
     def test_rejected_recipe_does_not_block_another(self):
         out, recipe = self.folder / "refused", self.folder / "refused.textproto"
         command = [tools.PROGRAMS / "duet", "batch", "leaders", "--recipe", recipe, "--out", out,
