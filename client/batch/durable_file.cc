@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/write_error.h"
 
 namespace duet::client::batch {
 namespace {
@@ -51,8 +52,8 @@ absl::Status MakeFolders(const fs::path& folder) {
 absl::Status CannotWrite(const fs::path& path, int error) {
   const std::string message =
       absl::StrCat("cannot write ", path.string(), ": ", std::generic_category().message(error));
-  return error == ENOTDIR || error == EISDIR ? absl::FailedPreconditionError(message)
-                                             : absl::AbortedError(message);
+  return base::IsLasting(error) ? absl::FailedPreconditionError(message)
+                                : absl::AbortedError(message);
 }
 
 absl::Status RenameInto(const std::string& from, const std::string& to) {

@@ -82,8 +82,9 @@ class AppendedFile {
   absl::Status broken_;
 };
 
-// "cannot write <path>: <what errno means>". FAILED_PRECONDITION if a file is where a folder must
-// be or the reverse, which no retry changes; otherwise ABORTED.
+// "cannot write <path>: <what errno means>". FAILED_PRECONDITION if no retry changes it: a file
+// where a folder must be or the reverse, links that lead back to themselves, a disk that
+// is read-only; otherwise ABORTED.
 absl::Status CannotWrite(const std::filesystem::path& path, int error);
 
 // A lock for one process that works in a folder; released when the process ends. ABORTED while

@@ -13,6 +13,7 @@
 #include "client/viewer/page.h"
 #include "model/base/file.h"
 #include "model/base/program_output.h"
+#include "model/base/write_error.h"
 #include "model/formats/motion_file.h"
 #include "model/formats/people.h"
 
@@ -189,9 +190,7 @@ absl::Status CheckCanCreate(const std::filesystem::path& output) {
   const std::filesystem::path probe = output.string() + ".partial";
   errno = 0;
   if (!std::ofstream(probe, std::ios::binary | std::ios::app)) {
-    const std::error_code why(errno, std::generic_category());
-    return NotWritten(absl::PermissionDeniedError(
-        absl::StrCat(output.string(), ": cannot be written: ", why.message())));
+    return NotWritten(base::CannotBeWritten(output, errno));
   }
   std::filesystem::remove(probe, error);
   return absl::OkStatus();
@@ -242,6 +241,7 @@ absl::Status WriteToStream(const std::string& content, std::ostream& out) {
 
 absl::Status NotWritten(const absl::Status& status) {
   if (status.ok()) return status;
+  // Errors that last have other codes (write_error.h).
   const auto code = absl::IsPermissionDenied(status) ? absl::StatusCode::kAborted : status.code();
   return {code, absl::StrCat("cannot write the result: ", status.message())};
 }

@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/descriptor.h"
 #include "model/base/missing_file.h"
+#include "model/base/write_error.h"
 
 namespace duet::base {
 namespace {
@@ -89,17 +90,12 @@ absl::Status WriteFile(const fs::path& path, absl::string_view content) {
   file.write(content.data(), static_cast<std::streamsize>(content.size()));
   file.close();
   if (!file) {
-    const std::error_code why(errno, std::generic_category());
+    const int why = errno;
     if (!special) fs::remove(target, error);
-    return absl::PermissionDeniedError(
-        absl::StrCat(path.string(), ": cannot be written", why ? ": " + why.message() : ""));
+    return CannotBeWritten(path, why);
   }
   if (!special) fs::rename(target, path, error);
-  if (error) {
-    return absl::PermissionDeniedError(
-        absl::StrCat(path.string(), ": cannot be written: ", error.message()));
-  }
-  return absl::OkStatus();
+  return error ? CannotBeWritten(path, error.value()) : absl::OkStatus();
 }
 
 }  // namespace duet::base

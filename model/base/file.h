@@ -21,7 +21,8 @@ absl::StatusOr<std::string> ReadFile(const std::filesystem::path& path, std::siz
                                      absl::string_view expected);
 
 // Replaces a file atomically: a failed write leaves no partial file. A pipe or a device is written
-// to directly. Errors: PERMISSION_DENIED or INVALID_ARGUMENT (a folder), naming the path.
+// to directly. Errors: INVALID_ARGUMENT (a folder), and those of CannotBeWritten (write_error.h),
+// naming the path.
 absl::Status WriteFile(const std::filesystem::path& path, absl::string_view content);
 
 }  // namespace duet::base

@@ -65,6 +65,10 @@ TEST_F(FileTest, ReportsThePathThatCannotBeWritten) {
                                                        HasSubstr("expected a file, got a folder")));
   EXPECT_THAT(WriteFile(Path("no") / "file", "x"),
               StatusIs(absl::StatusCode::kPermissionDenied, HasSubstr("cannot be written")));
+  fs::create_directory_symlink(Path("loop"), Path("loop"));
+  EXPECT_THAT(WriteFile(Path("loop") / "file", "x"),
+              StatusIs(absl::StatusCode::kFailedPrecondition,
+                       HasSubstr("cannot be written: Too many levels of symbolic links")));
   EXPECT_THAT(WriteFile("/dev/full", "x"),
               StatusIs(absl::StatusCode::kPermissionDenied,
                        HasSubstr("/dev/full: cannot be written: No space left on device")));

@@ -218,6 +218,20 @@ class BatchRepairTest(tools.ServedTest):
                 self.run_in_folder(*command)
                 self.check_whole(out, packing)
 
+    def test_places_that_cannot_be_written_are_no_reason_to_try_again(self):
+        loop, closed = self.folder / "loop", self.folder / "closed"
+        loop.symlink_to(loop)
+        closed.mkdir()
+        refused = self.run_in_folder(*self.command(loop, "none"), code=42)
+        self.assertIn("Too many levels of symbolic links", refused.stderr)
+        # In a mount namespace of its own, where the system permits one.
+        read_only = ["unshare", "-rm", "sh", "-c", 'mount --bind "$0" "$0" && '
+                     'mount -o remount,bind,ro "$0" && exec "$@"', closed]
+        if not shutil.which("unshare") or tools.run(*read_only, "true").returncode != 0:
+            self.skipTest("no read-only mount")
+        refused = self.run_in_folder(*read_only, *self.command(closed / "set", "none"), code=42)
+        self.assertIn("Read-only file system", refused.stderr)
+
     def test_rejected_recipe_does_not_block_another(self):
         out, recipe = self.folder / "refused", self.folder / "refused.textproto"
         command = [tools.PROGRAMS / "duet", "batch", "leaders", "--recipe", recipe, "--out", out,
