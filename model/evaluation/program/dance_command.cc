@@ -298,7 +298,6 @@ std::vector<Change> Changes(const checkpoint::Manifest& manifest,
   };
   add("labels do not choose turns").model.turning_classes.clear();
   add("no steps in time").model.steps_in_time = false;
-  add("hips are not raised").model.hip_height = 0;
   add("no clean-up").clean_up = false;
   add("four candidates").asked.candidates = kCandidates;
   const float variety = VarietyOfTraining(manifest);
