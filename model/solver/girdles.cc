@@ -12,6 +12,9 @@ namespace {
 
 using motion::Vec3;
 
+// A girdle is not quite as wide as both of its bones together: then, rounding of their lengths
+// would decide on which side of it the middle joint is.
+constexpr float kWidest = 0.995f;
 // A middle joint nearer to the line between a girdle's ends than this is on no side of it. Metres.
 constexpr float kClearSide = 0.02f;
 
@@ -73,7 +76,7 @@ void Girdles::Spread(const Girdle& girdle, float width, Vec3 trunk, bool ends_st
   const Vec3 from = At(pose, girdle.middle);
   const Vec3 left = At(pose, girdle.limbs[0].upper), right = At(pose, girdle.limbs[1].upper);
   const float a = Distance(from, left), b = Distance(from, right), now = Distance(left, right);
-  const float wide = std::clamp(width, std::abs(a - b), a + b);
+  const float wide = std::clamp(width, std::abs(a - b), kWidest * (a + b));
   if (now <= 0 || wide <= 0) return;
   const Vec3 across = (left - right) / now;
   // The triangle of both bones and the width, in its own plane.

@@ -10,6 +10,7 @@ import tempfile
 import threading
 import unittest
 
+import proxies
 import proxy_test
 import tools
 
@@ -52,8 +53,8 @@ class ScaleTest(unittest.TestCase):
     @unittest.skipUnless(shutil.which("haproxy") and shutil.which("openssl"),
                          "needs haproxy and openssl")
     def test_killed_server_behind_the_proxy_loses_no_item(self):
-        proxy_test.certificate(self.folder)
-        text = (proxy_test.PROXY / "haproxy.cfg").read_text(encoding="utf-8")
+        proxies.certificate(self.folder)
+        text = (proxies.PROXY / "haproxy.cfg").read_text(encoding="utf-8")
         # A line for each server in place of the name that stands for all of them.
         template = next(line for line in text.splitlines() if "server-template" in line)
         lines = [template.replace("server-template duet 1-8", f"server duet{number}")
@@ -63,7 +64,7 @@ class ScaleTest(unittest.TestCase):
         config = self.folder / "haproxy.cfg"
         config.write_text(text.replace(template, "\n".join(lines)), encoding="utf-8")
         port = tools.free_port()
-        proxy = self.stack.enter_context(proxy_test.Proxy(
+        proxy = self.stack.enter_context(proxies.Proxy(
             self.folder, port, "haproxy", "-f", config, DUET_PROXY_BIND=f"127.0.0.1:{port}",
             DUET_PROXY_METRICS_BIND=f"127.0.0.1:{tools.free_port()}",
             DUET_PROXY_CERTIFICATE=str(self.folder / "proxy.pem")))
