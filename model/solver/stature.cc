@@ -132,10 +132,9 @@ std::vector<float> LastingHipHeights(const std::vector<body::Limb>& legs,
     const float length = MeanLength(legs, pose);
     heights.at(t, 0).y = length > 0 ? (hips - lower) / length : 1;
   }
+  heights = motion::GaussianFilter(heights, kLastingSeconds * frame_rate_hz);
   std::vector<float> lasting;
-  for (const Vec3 height : motion::GaussianFilter(heights, kLastingSeconds * frame_rate_hz).all()) {
-    lasting.push_back(height.y);
-  }
+  for (const Vec3 height : heights.all()) lasting.push_back(height.y);
   return lasting;
 }
 
