@@ -114,9 +114,8 @@ TEST(SampleCommandsTest, DanceMeasuresACheckpointWithoutItsParts) {
   ASSERT_THAT(section, IsOk());
   const nlohmann::json& table = section->at("tables").back();
   std::vector<std::string> names;
-  for (const char* name :
-       {"as served", "labels do not choose turns", "no steps in time", "no clean-up",
-        "four candidates", "all the noise of training"}) {
+  for (const char* name : {"as served", "labels do not choose turns", "no steps in time",
+                           "no clean-up", "four candidates", "all the noise of training"}) {
     names.insert(names.end(), {name, std::string(name) + ", deviation"});
   }
   EXPECT_THAT(RowNames(table), testing::ElementsAreArray(names));
