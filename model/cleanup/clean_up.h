@@ -62,10 +62,9 @@ class CleanUp {
   void Apply(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
              const Timing& timing, motion::Poses* follower) const;
 
-  // The three parts of Apply, for a caller who looks at the follower or changes it between them:
-  // the trunk and how far people are apart; then overlaps, arms and joints; then limbs that stay
-  // up or apart, feet that stand and hands that meet. The second and the third hardly turn the
-  // trunk.
+  // The four parts of Apply, for a caller who looks at the follower or changes it between them: the
+  // trunk and how far people are apart; overlaps, arms and joints; limbs that stay up or apart, and
+  // feet that stand; hands that meet. All but the first hardly turn the trunk.
   void CorrectTrunk(const motion::Poses& leader, const Timing& timing,
                     motion::Poses* follower) const;
   void CorrectBody(const motion::Poses& leader, const Touch& touch, const Meetings& meetings,
@@ -80,12 +79,13 @@ class CleanUp {
   void FaceLeader(const motion::Poses& leader, const std::vector<float>& most_away,
                   const Timing& timing, motion::Poses* follower) const;
 
-  // The same for a follower with pins, around PlaceFeetAndHands: the body comes to its pins, but
-  // not into the leader; then the limbs do, within the ranges of their joints. Pins in settled
+  // The same for a follower with pins, around PlaceFeet and PlaceHands: the body comes to its pins,
+  // but not into the leader; then the limbs do, within the ranges of their joints. Pins in settled
   // frames have no effect.
   //
   //   PinnedMotion pinned = clean_up.ApproachPins(leader, touch, pins, timing, &follower);
-  //   clean_up.PlaceFeetAndHands(leader, meetings, timing, &follower);
+  //   clean_up.PlaceFeet(leader, timing, &follower);
+  //   clean_up.PlaceHands(leader, meetings, timing, &follower);
   //   clean_up.PlacePins(pinned, leader, timing, &follower);
   //
   // The result refers to this object.

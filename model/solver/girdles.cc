@@ -89,7 +89,7 @@ void Girdles::Spread(const Girdle& girdle, float width, Vec3 trunk, bool ends_st
   if (length <= 0) return;
   const Vec3 middle = from + hanging * (down / length);
   // Knees bend forwards, elbows backwards.
-  const Vec3 facing = Cross(across, Vec3{0, -1, 0});
+  const Vec3 facing = Cross(across, Vec3{0, 1, 0});
   const Vec3 bend = girdle.bends_forwards ? facing : -facing;
   MoveLimb(girdle.limbs[0], middle + across * along, ends_stay, bend, pose);
   MoveLimb(girdle.limbs[1], middle + across * (along - wide), ends_stay, bend, pose);

@@ -73,6 +73,24 @@ TEST(GirdlesTest, FeetAndHandsStayIfTheyAreTo) {
   }
 }
 
+TEST(GirdlesTest, StraightLegsBendForwards) {
+  const Girdles girdles(Sbu());
+  Poses person = WalkingPerson(0);
+  for (const body::Limb& leg : body::FindBody(Sbu()).legs) {
+    const motion::Vec3 hip = person.at(0, leg.upper);
+    person.at(0, leg.middle) = hip + motion::Vec3{0, -0.42f, 0};
+    person.at(0, leg.end) = hip + motion::Vec3{0, -0.84f, 0};
+  }
+  const motion::Vec3 facing = body::Facing(*Sbu().hips, person[0]);
+  for (motion::Vec3& joint : person.all()) joint.y *= 0.999f;
+  GirdleWidths widths = girdles.Measure(person);
+  // Narrower hips hang lower: the knees have to give way.
+  girdles.ApplyAboveFeet({0.7f * widths.hips, widths.shoulders}, person[0]);
+  for (const body::Limb& leg : body::FindBody(Sbu()).legs) {
+    EXPECT_GT(Dot(body::BendOf(leg, person[0]), facing), 0.01f);
+  }
+}
+
 TEST(GirdlesTest, APersonOfTheseWidthsStaysAsItIs) {
   const Girdles girdles(Sbu());
   const Poses walking = WalkingPerson(4);
