@@ -115,35 +115,29 @@ class LiveCliTest(unittest.TestCase):
         self.assertIn("line 12", result.stderr)
         self.assertEqual(len(frames_of(result.stdout)), 10)
 
-    def test_an_interrupt_ends_the_motion_and_writes_the_files(self):
-        follower = pathlib.Path(self.folder.name) / "interrupted.json"
+    def interrupted(self, name, *signals):
+        """Sends signals to a run after ten frames. Returns its frames and the motion that it wrote."""
+        follower = pathlib.Path(self.folder.name) / name
         with subprocess.Popen(
                 [tools.PROGRAMS / "duet", "live", "--server", self.server.address, "--label",
                  "hug=1", "--from", tools.sample("hug"), "--realtime", "--to", "-", "--to",
                  follower], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             lines = [process.stdout.readline() for _ in range(11)]
-            process.send_signal(signal.SIGINT)
+            for number in signals:
+                process.send_signal(number)
             rest, errors = rest_of(process)
         self.assertEqual(process.returncode, 0, errors)
-        count = len(frames_of("".join(lines) + rest))
-        self.assertTrue(10 <= count < FRAMES, count)
-        motion = json.loads(follower.read_text(encoding="utf-8"))
-        self.assertEqual(len(motion["leader"]), count)
+        return frames_of("".join(lines) + rest), json.loads(follower.read_text(encoding="utf-8"))
+
+    def test_an_interrupt_ends_the_motion_and_writes_the_files(self):
+        frames, motion = self.interrupted("interrupted.json", signal.SIGINT)
+        self.assertTrue(10 <= len(frames) < FRAMES, len(frames))
+        self.assertEqual(len(motion["leader"]), len(frames))
 
     def test_two_signals_at_once_are_one_interrupt(self):
-        follower = pathlib.Path(self.folder.name) / "twice.json"
-        with subprocess.Popen(
-                [tools.PROGRAMS / "duet", "live", "--server", self.server.address, "--label",
-                 "hug=1", "--from", tools.sample("hug"), "--realtime", "--to", "-", "--to",
-                 follower], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-            lines = [process.stdout.readline() for _ in range(11)]
-            # Two numbers: the system would merge two equal ones that nobody has read.
-            process.send_signal(signal.SIGINT)
-            process.send_signal(signal.SIGTERM)
-            rest, errors = rest_of(process)
-        self.assertEqual(process.returncode, 0, errors)
-        motion = json.loads(follower.read_text(encoding="utf-8"))
-        self.assertEqual(len(motion["leader"]), len(frames_of("".join(lines) + rest)))
+        # Two numbers: the system would merge two equal ones that nobody has read.
+        frames, motion = self.interrupted("twice.json", signal.SIGINT, signal.SIGTERM)
+        self.assertEqual(len(motion["leader"]), len(frames))
 
     def test_a_terminal_shows_figures_and_takes_labels(self):
         terminal, end = os.openpty()

@@ -1,11 +1,8 @@
 """Long live sessions through HAProxy and nginx with the configurations of deploy/proxy: more bytes than any other
 request may have, and more patience than the server."""
 
-import contextlib
-import pathlib
 import re
 import shutil
-import tempfile
 import unittest
 
 import live_clients as live
@@ -25,18 +22,7 @@ def seconds(configuration, name):
     return [int(count) * SECONDS[unit] for count, unit in found]
 
 
-class LiveProxyTest(unittest.TestCase):
-    def setUp(self):
-        stack = contextlib.ExitStack()
-        self.addCleanup(stack.close)
-        self.folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        # nginx begins as root and works as somebody else.
-        self.folder.chmod(0o755)
-        proxies.certificate(self.folder)
-        self.server = stack.enter_context(
-            tools.running_server("--client-key", "x-duet-client", metrics="127.0.0.1:0"))
-        self.stack = stack
-
+class LiveProxyTest(proxies.BehindProxyTest):
     def check_session(self, proxy):
         """Most of the bytes are frames that the server has already: it drops them, which costs no evaluation."""
         proxy.wait_until_it_serves()

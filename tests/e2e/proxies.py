@@ -1,7 +1,11 @@
 """HAProxy and nginx with the configurations of deploy/proxy, with ports and certificates of a test."""
 
+import contextlib
 import os
+import pathlib
 import subprocess
+import tempfile
+import unittest
 
 import tools
 
@@ -72,3 +76,18 @@ def nginx(folder, server):
         text = text.replace(old, new)
     (folder / "nginx.conf").write_text(text, encoding="utf-8")
     return Proxy(folder, port, "nginx", "-c", folder / "nginx.conf", "-g", "daemon off;")
+
+
+class BehindProxyTest(unittest.TestCase):
+    """Tests with a server, a folder for a proxy in front of it, and a certificate there."""
+
+    def setUp(self):
+        stack = contextlib.ExitStack()
+        self.addCleanup(stack.close)
+        self.folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        # nginx begins as root and works as somebody else.
+        self.folder.chmod(0o755)
+        certificate(self.folder)
+        self.server = stack.enter_context(
+            tools.running_server("--client-key", "x-duet-client", metrics="127.0.0.1:0"))
+        self.stack = stack

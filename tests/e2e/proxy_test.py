@@ -1,16 +1,14 @@
 """HAProxy and nginx with the configurations of deploy/proxy in front of a real server: TLS, calls, what
 they refuse, and a flood of resets that the server must hear next to nothing of."""
 
-import contextlib
-import pathlib
 import re
 import shutil
-import tempfile
 import unittest
 
+import proxies
 import reset_flood
 import tools
-from proxies import certificate, haproxy, nginx
+from proxies import haproxy, nginx
 
 FLOOD = 60_000
 # Of a flood without a proxy every call reaches the server.
@@ -24,18 +22,7 @@ def calls_of(server, method):
     return sum(int(count) for count in re.findall(pattern, text, re.MULTILINE))
 
 
-class ProxyTest(unittest.TestCase):
-    def setUp(self):
-        stack = contextlib.ExitStack()
-        self.addCleanup(stack.close)
-        self.folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        # nginx begins as root and works as somebody else.
-        self.folder.chmod(0o755)
-        certificate(self.folder)
-        self.server = stack.enter_context(
-            tools.running_server("--client-key", "x-duet-client", metrics="127.0.0.1:0"))
-        self.stack = stack
-
+class ProxyTest(proxies.BehindProxyTest):
     def check_calls(self, proxy):
         out = self.folder / "follower.npy"
         result = proxy.duet("synthesize", "--leader", tools.sample("kick"), "--label", "kick=1",

@@ -10,8 +10,10 @@
 namespace duet::formats::bvh {
 namespace {
 
-// Relative. Files write frame times with 3 to 7 digits.
+// Relative. A rate that is nearer to a whole number than the first is that number, unless it is a
+// rounded common rate; nearer than the second, in any case.
 constexpr double kRateTolerance = 5e-4, kExact = 1e-6;
+// Of a frame time whose decimals cannot be counted (1e-2): it is not taken for a rounded one.
 constexpr int kManyDecimals = 9;
 // With fewer decimals, exporters round: .016 is a step of 16 ms, not 1/60.
 constexpr int kFewestTruncated = 4;
