@@ -16,7 +16,7 @@ import gateways
 import tools
 from gateways import GRPC_WEB, Gateway, answers, framed, message_of, post, read_all
 from gateway_test import AMBIGUOUS, HIDDEN, LARGEST
-from proxy_test import certificate
+from proxies import certificate
 
 PASSWORD = "open sesame"
 ALLOWED = {"Authorization": "Basic " + base64.b64encode(f"duet:{PASSWORD}".encode()).decode()}
