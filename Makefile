@@ -23,6 +23,11 @@ test: ## Build everything, run the quick checks and every test
 	@scripts/install_packages.sh $(BUILD_LISTS) test
 	@JOBS=$(JOBS) scripts/test.sh
 
+.PHONY: contrib
+contrib: ## Build and test the tools next to Duet: contrib/README.md
+	@scripts/install_packages.sh $(BUILD_LISTS) test $(patsubst %/packages.txt,%,$(wildcard contrib/*/packages.txt))
+	@JOBS=$(JOBS) scripts/contrib.sh
+
 .PHONY: build
 build: ## Build every program and library (release)
 	@scripts/install_packages.sh $(BUILD_LISTS)

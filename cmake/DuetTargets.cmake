@@ -22,7 +22,7 @@ function(duet_library)
   if(A_GLUE)
     target_compile_options(duet_${A_NAME} PRIVATE ${DUET_GLUE_OPTIONS})
   endif()
-  if(NOT A_PRECOMPILED AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/tests")
+  if(NOT A_PRECOMPILED AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/(.*/)?tests(/|$)")
     set(A_PRECOMPILED library)
     if(A_GLUE)
       set(A_PRECOMPILED glue)
@@ -80,6 +80,31 @@ function(duet_test)
   endif()
   set_tests_properties(${A_NAME} PROPERTIES TIMEOUT ${A_TIMEOUT} LABELS "${A_LABELS}"
     ENVIRONMENT "DUET_SOURCE_DIR=${PROJECT_SOURCE_DIR};DUET_BIN_DIR=${CMAKE_BINARY_DIR}/bin;OMP_NUM_THREADS=1;${A_ENVIRONMENT}")
+endfunction()
+
+# duet_script_test(NAME viewer_test [ARGUMENTS ...] [LIBTORCH] [WAITS]): runs <NAME>.py. LIBTORCH: the script needs
+# programs that link LibTorch, which scripts/sanitize.sh and builds without training do not build. WAITS: see duet_share_cores.
+# A script that starts a server has the label "server". Scripts import the helpers of tests/e2e.
+function(duet_script_test)
+  cmake_parse_arguments(A "LIBTORCH;WAITS" "NAME" "ARGUMENTS" ${ARGN})
+  if(A_LIBTORCH AND NOT DUET_TRAINING)
+    return()
+  endif()
+  add_test(NAME ${A_NAME}
+    COMMAND ${DUET_PYTHON3} -B ${CMAKE_CURRENT_SOURCE_DIR}/${A_NAME}.py ${A_ARGUMENTS})
+  duet_share_cores(${A_NAME} ${A_WAITS})
+  set(labels e2e)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${A_NAME}.py)
+  file(STRINGS ${A_NAME}.py starts
+       REGEX "tools\\.(Server\\(|running_server\\(|ServedTest)|StudioTest\\)|LoggingServer\\(|(wire|live)_fuzzer|soak\\.py")
+  if(starts)
+    list(APPEND labels server)
+  endif()
+  if(A_LIBTORCH)
+    list(APPEND labels libtorch)
+  endif()
+  set_tests_properties(${A_NAME} PROPERTIES TIMEOUT 900 LABELS "${labels}" SKIP_RETURN_CODE 77
+    ENVIRONMENT "DUET_SOURCE_DIR=${PROJECT_SOURCE_DIR};DUET_BIN_DIR=${CMAKE_BINARY_DIR}/bin;PYTHONPATH=${PROJECT_SOURCE_DIR}/tests/e2e")
 endfunction()
 
 # duet_embed_file(TARGET symbol path): links a file's bytes into TARGET as

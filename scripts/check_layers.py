@@ -4,7 +4,8 @@
 LAYERS has all rules; ARCHITECTURE.md explains them. A file belongs to the first layer whose folder
 contains it. It may include its own layer, the layers in `sees`, and, of the guarded libraries, only those
 in `libraries` (in `source_libraries`: only from .cc files), directly or through any header of the
-project. Its namespace is its folder's path. Tests and benchmarks may include everything.
+project. Its namespace is its folder's path. Tests and benchmarks may include everything of the layers.
+A tool of contrib may include everything but another tool; nothing outside contrib includes a tool.
 
     scripts/check_layers.py [source folder]
 """
@@ -150,6 +151,9 @@ GUARDED_LIBRARIES = {
 }
 
 SOURCE_FOLDERS = ("model", "server", "client")
+# Folders outside of the layers.
+CONTRIB = "contrib"
+FREE_FOLDERS = ("tests", "benchmarks", CONTRIB)
 # Folders whose namespace is not their path.
 NAMESPACES = {"client/mocks": "duet::client"}
 NAMESPACE = re.compile(r"^namespace (duet[\w:]*) \{")
@@ -171,9 +175,9 @@ def library_of(include):
 
 
 def read_includes(root):
-    """Every C++ file of the source folders, with its includes as (line number, path)."""
+    """Every C++ file, with its includes as (line number, path)."""
     includes = {}
-    for folder in SOURCE_FOLDERS:
+    for folder in SOURCE_FOLDERS + FREE_FOLDERS:
         for file in sorted((root / folder).rglob("*")):
             if file.suffix in (".h", ".cc", ".inc"):
                 lines = file.read_text(encoding="utf-8").splitlines()
@@ -194,6 +198,18 @@ def way_to_library(include, library, includes, seen):
         if way:
             return [include] + way
     return None
+
+
+def tool_of(path):
+    """The folder of the tool that a file belongs to, such as contrib/load; None outside of contrib."""
+    folders = path.split("/")
+    return "/".join(folders[:2]) if folders[0] == CONTRIB else None
+
+
+def check_tool(path, include):
+    """The messages about a file that includes a tool of contrib."""
+    if tool_of(include) not in (None, tool_of(path)):
+        yield f"includes {include} of {tool_of(include)}; only this tool itself may"
 
 
 def check_include(layer, path, include, includes):
@@ -219,7 +235,9 @@ def namespace_of(path):
 
 
 def check_namespaces(root, path):
-    """The namespaces in a file other than its folder's, as (line, message)."""
+    """The namespaces in a file other than its folder's, as (line, message). Tests choose theirs."""
+    if "tests" in path.split("/") or path.startswith("benchmarks/"):
+        return
     wanted = NAMESPACES.get(str(pathlib.PurePosixPath(path).parent)) or namespace_of(path)
     for number, line in enumerate((root / path).read_text(encoding="utf-8").splitlines(), start=1):
         opened = NAMESPACE.match(line)
@@ -233,11 +251,13 @@ def check(root):
     includes = read_includes(root)
     for path, lines in includes.items():
         layer = layer_of(path)
-        if layer is None:
+        if layer is None and not path.startswith(tuple(f"{folder}/" for folder in FREE_FOLDERS)):
             yield f"{path}:1: expected a folder of a layer; add it to LAYERS in check_layers.py"
             continue
         for line, include in lines:
-            for message in check_include(layer, path, include, includes):
+            for message in check_tool(path, include):
+                yield f"{path}:{line}: {message}"
+            for message in check_include(layer, path, include, includes) if layer else ():
                 yield f"{path}:{line}: {message}"
         for line, message in check_namespaces(root, path):
             yield f"{path}:{line}: {message}"

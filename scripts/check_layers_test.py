@@ -123,6 +123,23 @@ class CheckLayersTest(unittest.TestCase):
         self.write("model/formats/bvh/bvh_document.h")
         self.assert_violation("model/formats/flat/csv.h:1:", '"flat formats"', '"bvh format"')
 
+    def test_a_tool_of_contrib_may_include_every_layer(self):
+        self.write("contrib/load/tests/load_test.cc", "contrib/load/load.h", "tests/support/poses.h")
+        load = self.root / "contrib/load/load.h"
+        load.write_text("#include <torch/torch.h>\n#include <model/engine/synthesizer.h>\n"
+                        "namespace duet::contrib::load {\n}\n", encoding="utf-8")
+        self.assertEqual(self.violations(), [])
+        load.write_text("namespace duet::load {\n}\n", encoding="utf-8")
+        self.assert_violation("contrib/load/load.h:1:", "expected duet::contrib::load, got duet::load")
+
+    def test_nothing_but_a_tool_includes_the_tool(self):
+        self.write("contrib/load/load.h")
+        for path in ("client/client.cc", "tests/client/client_test.cc", "benchmarks/call_cost.cc",
+                     "contrib/capture/capture.cc"):
+            self.write(path, "cmath", "contrib/load/load.h")
+            self.assert_violation(f"{path}:2:", "includes contrib/load/load.h of contrib/load")
+            (self.root / path).unlink()
+
     def test_include_circle_ends(self):
         self.write("model/motion/a.h", "model/motion/b.h")
         self.write("model/motion/b.h", "model/motion/a.h")

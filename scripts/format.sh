@@ -18,5 +18,5 @@ if ! command -v clang-format-14 >/dev/null; then
   exit
 fi
 
-find model server client tests benchmarks -name '*.h' -o -name '*.cc' |
+find model server client tests benchmarks contrib -name '*.h' -o -name '*.cc' |
   sort | xargs --no-run-if-empty clang-format-14 "${mode[@]}"

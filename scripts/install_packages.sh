@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs the missing packages of one or more lists (packages/<list>.txt), which have the names of Debian 12;
-# packages/releases.tsv has the names in other releases.
-#   scripts/install_packages.sh build test
+# Installs the missing packages of one or more lists (packages/<list>.txt; of contrib/<tool>, its packages.txt), which
+# have the names of Debian 12; packages/releases.tsv has the names in other releases.
+#   scripts/install_packages.sh build test contrib/studio
 #   scripts/install_packages.sh --print runtime     prints the names in this release; installs nothing
 #   scripts/install_packages.sh --lacks training    succeeds if this release lacks a package of the lists
 #   scripts/install_packages.sh --try build test    fails if apt-get could not install the lists; installs nothing
@@ -23,8 +23,10 @@ code_name() {
 
 # Prints the package names of a list in Debian 12, without comments and blank lines.
 read_list() {
-  [[ -f "${package_dir}/$1.txt" ]] || fail "install_packages: no list '$1' in ${package_dir}"
-  sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "${package_dir}/$1.txt"
+  local file="${package_dir}/$1.txt"
+  [[ "$1" != contrib/* ]] || file="${package_dir}/../$1/packages.txt"
+  [[ -f "${file}" ]] || fail "install_packages: no list '$1' in ${package_dir}"
+  sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' "${file}"
 }
 
 # Replaces names of Debian 12 by those of this release; "-" replaces a package that it does not have. Of an

@@ -101,8 +101,11 @@ class InstallPackagesTest(unittest.TestCase):
         path = f"{tools}:{os.environ['PATH']}"
         for release, training in (("bookworm", "ON"), ("noble", "OFF")):
             result = self.run_script(release, "configure.sh", "tsan", "-DA=B C", PATH=path)
-            self.assertEqual(result.stdout.strip(), f"--preset tsan -DDUET_TRAINING={training} -DA=B C")
-        root = SCRIPTS.parent
+            root = SCRIPTS.parent
+            tools_off = [f"-DDUET_CONTRIB_{file.parent.name.upper()}=OFF"
+                         for file in sorted(root.glob("contrib/*/CMakeLists.txt"))]
+            self.assertEqual(result.stdout.split(),
+                             ["--preset", "tsan", f"-DDUET_TRAINING={training}", *tools_off, "-DA=B", "C"])
         for file in (root / "Makefile", *SCRIPTS.glob("*.sh"), *SCRIPTS.glob("*.py")):
             if file.name not in ("configure.sh", "build_tree.py", pathlib.Path(__file__).name):
                 self.assertNotIn("cmake --preset", file.read_text(encoding="utf-8"), file)
@@ -119,7 +122,8 @@ class InstallPackagesTest(unittest.TestCase):
 
     def test_the_table_renames_only_packages_of_the_lists(self):
         rows = table()
-        listed = {line.split("#")[0].strip() for file in PACKAGES.glob("*.txt")
+        listed = {line.split("#")[0].strip() 
+                  for file in (*PACKAGES.glob("*.txt"), *PACKAGES.parent.glob("contrib/*/packages.txt"))
                   for line in file.read_text(encoding="utf-8").splitlines()}
         self.assertEqual(rows[0], ["bookworm", "trixie", "noble"])
         for row in rows[1:]:

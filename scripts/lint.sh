@@ -8,7 +8,7 @@ readonly build_dir=build/lint
 
 changed_files() {
   if [[ "${1:-}" == all ]]; then
-    find model server client tests benchmarks -name '*.cc'
+    find model server client tests benchmarks contrib -name '*.cc'
   else
     { git diff --name-only --diff-filter=d main -- && git ls-files --others --exclude-standard; } |
       grep '\.cc$' || true

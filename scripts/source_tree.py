@@ -4,7 +4,7 @@ import functools
 import pathlib
 import re
 
-SOURCE_FOLDERS = ("model", "server", "client", "tests", "benchmarks")
+SOURCE_FOLDERS = ("model", "server", "client", "tests", "benchmarks", "contrib")
 TORCH = ("torch/", "ATen/", "c10/", "caffe2/")  # how an include of LibTorch starts
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]')
 

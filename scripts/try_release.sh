@@ -110,7 +110,7 @@ readonly image_root='
 readonly lists='
   set -euo pipefail
   apt-get -qq update
-  mapfile -t names < <(basename -s .txt -a packages/*.txt)
+  mapfile -t names < <(basename -s .txt -a packages/*.txt; find contrib -name packages.txt -printf "%h\n")
   scripts/install_packages.sh --try "${names[@]}"'
 
 # What a user does with the Debian packages. Fails if removing them leaves a package or a file.

@@ -23,7 +23,8 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 root_doc = "docs/site/index"
 source_suffix = {".md": "markdown", ".ipynb": "notebook"}
 include_patterns = ["*.md", "client/**.ipynb", "docs/**.md", "client/**.md", "deploy/**.md", "model/**.md",
-                    "benchmarks/**.md", "tests/**.md", "samples/**.md", "recipes/**.md"]
+                    "benchmarks/**.md", "tests/**.md", "samples/**.md", "recipes/**.md",
+                    "contrib/**.md"]
 exclude_patterns = ["**/node_modules/**"]
 
 # Links may point to any heading, as on GitHub.
