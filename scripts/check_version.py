@@ -25,7 +25,7 @@ NUMBER = r"\d+\.\d+\.\d+"
 # Files by pattern, and how each of them states the version; group 1 is the version.
 RULES = (
     ("client/python/duet_motion/__init__.py", rf'^__version__ = "({NUMBER})"$'),
-    ("client/blender/duet_blender/__init__.py", r'^    "version": \((\d+, \d+, \d+)\),$'),
+    ("contrib/blender/duet_blender/__init__.py", r'^    "version": \((\d+, \d+, \d+)\),$'),
     ("deploy/debian/changelog", rf"\Aduet \(({NUMBER})-\d+\) "),
     ("Dockerfile", rf"^ARG VERSION=({NUMBER})$"),
     ("deploy/kubernetes/**/kustomization.yaml", rf"^ *newTag: ({NUMBER})$"),

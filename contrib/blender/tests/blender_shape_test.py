@@ -11,7 +11,7 @@ import unittest
 import tools
 
 BLENDER = shutil.which("blender")
-SHAPE = pathlib.Path(__file__).parent / "blender" / "shape.py"
+SHAPE = pathlib.Path(__file__).parent / "in_blender" / "shape.py"
 REACHED = 0.01  # metres
 
 
@@ -29,7 +29,7 @@ class BlenderShapeTest(unittest.TestCase):
             cls.convert("hug", "leader.glb")
             cls.convert("salsa", "dancer.glb", "--skeleton", cls.folder / "salsa.json")
             done = tools.run(BLENDER, "--background", "--factory-startup", "--python-exit-code",
-                             "1", "--python", SHAPE, "--", tools.SOURCE / "client" / "blender",
+                             "1", "--python", SHAPE, "--", tools.SOURCE / "contrib" / "blender",
                              cls.folder / "leader.glb", cls.folder / "dancer.glb", server.address,
                              tools.PROGRAMS / "duet", cls.folder, timeout=4 * tools.RUN_SECONDS)
         assert done.returncode == 0, done.stdout + done.stderr

@@ -9,7 +9,7 @@ import time
 import tools
 
 BLENDER = shutil.which("blender")
-LIVE = pathlib.Path(__file__).parent / "blender" / "live.py"
+LIVE = pathlib.Path(__file__).parent / "in_blender" / "live.py"
 FRAMES = 70
 REACHED = 0.001  # metres
 
@@ -26,7 +26,7 @@ class BlenderLiveTest(tools.FolderTest):
         starting = threading.Thread(target=cls.start_second, args=(port,))
         starting.start()
         done = tools.run(BLENDER, "--background", "--factory-startup", "--python-exit-code", "1",
-                         "--python", LIVE, "--", tools.SOURCE / "client" / "blender", leader,
+                         "--python", LIVE, "--", tools.SOURCE / "contrib" / "blender", leader,
                          f"{mortal.address},127.0.0.1:{port}", mortal.pid, tools.PROGRAMS / "duet",
                          cls.folder, timeout=2 * tools.RUN_SECONDS)
         (cls.folder / "wanted").touch()  # if Blender failed before

@@ -9,7 +9,8 @@ import shutil
 import tools
 
 BLENDER = shutil.which("blender")
-REACT = pathlib.Path(__file__).parent / "blender" / "react.py"
+ADD_ON = tools.SOURCE / "contrib" / "blender"
+REACT = pathlib.Path(__file__).parent / "in_blender" / "react.py"
 UNITS_PER_METRE = 2  # of the scene
 # What the preferences' button and check box do.
 INSTALL = """
@@ -22,16 +23,15 @@ assert bpy.context.scene.duet.answers is not None
 
 
 def install(folder):
-    """Follows docs/blender.md: zips and installs the add-on. Returns the folder of add-ons."""
-    guide = (tools.SOURCE / "docs" / "blender.md").read_text(encoding="utf-8")
-    shutil.copytree(tools.SOURCE / "client" / "blender", folder / "client" / "blender",
-                    ignore=shutil.ignore_patterns("__pycache__"))
+    """Follows contrib/blender/README.md: zips and installs the add-on. Returns the folder of add-ons."""
+    guide = (ADD_ON / "README.md").read_text(encoding="utf-8")
+    shutil.copytree(ADD_ON, folder / "contrib" / "blender", ignore=shutil.ignore_patterns("__pycache__"))
     commands = re.search(r"## Installing\n.*?```sh\n(.*?)```", guide, re.DOTALL)[1]
     tools.run("bash", "-e", "-c", commands, cwd=folder).check_returncode()
     scripts = folder / "scripts"
     scripts.mkdir()
     done = tools.run(BLENDER, "--background", "--factory-startup", "--python-exit-code", "1",
-                     "--python-expr", INSTALL, cwd=folder / "client" / "blender",
+                     "--python-expr", INSTALL, cwd=folder / "contrib" / "blender",
                      env={**os.environ, "BLENDER_USER_SCRIPTS": str(scripts)})
     assert done.returncode == 0, done.stdout + done.stderr
     return scripts / "addons"

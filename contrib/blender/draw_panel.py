@@ -1,7 +1,7 @@
-"""Draws docs/images/blender.png: the Blender add-on's panel, and an armature that follows an answer.
+"""Draws contrib/blender/panel.png: the Blender add-on's panel, and an armature that follows an answer.
 
     xvfb-run -s "-screen 0 1280x800x24" blender --factory-startup --enable-event-simulate \
-        --window-geometry 0 0 1280 800 --python scripts/blender_picture.py -- SERVER PROGRAMS OUT.png
+        --window-geometry 0 0 1280 800 --python contrib/blender/draw_panel.py -- SERVER PROGRAMS OUT.png
 
 SERVER is a duet-server's address and PROGRAMS the folder of duet. The file in the repository is cropped to the 3D
 view and has 128 colours.
@@ -16,8 +16,9 @@ import bpy
 import numpy
 from mathutils import Euler, Vector
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(ROOT / "client" / "blender"), str(ROOT / "tests" / "e2e" / "blender")]
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+sys.path[:0] = [str(HERE), str(HERE / "tests" / "in_blender")]
 import duet_blender  # noqa: E402
 import duet_blender.partner  # noqa: E402
 import scenes  # noqa: E402
