@@ -1,11 +1,9 @@
 #!/usr/bin/env python3
-"""Measures live sessions: memory, what regular ones notice of hostile ones and of a server that dies, latency
-in a browser.
+"""Measures live sessions: memory, what regular ones notice of hostile ones and of a server that dies.
 
     benchmarks/measure_live.py BUILD hostile [--seconds 600] [--sessions 4]
     benchmarks/measure_live.py BUILD hour [--minutes 60] [--sessions 4]
     benchmarks/measure_live.py BUILD killed [--times 20]
-    benchmarks/measure_live.py BUILD page [--seconds 60]
     benchmarks/measure_live.py BUILD candidates [--seconds 10]
 
 hostile: regular sessions of duet-load at 30 frames a second, first without and then beside callers that
@@ -19,16 +17,12 @@ killed: a session of `duet live` in real time whose server is killed while anoth
 without a frame, and whether all frames are those of an undisturbed session: they are unless the machine is so
 busy that the server skips evaluations.
 
-page: the Spar page in Chromium, through the gateway, with each model that answers live. A move begins every
-second. Prints the time from the page's sending of a leader frame until its script has the follower's
-frame. Software draws the page, on the same processor as the server: a graphics card takes that load off.
-
 candidates: short clips and one live session of a client, alone and beside eight live sessions of another client with
 1, 8 and 16 candidates. Prints the time of a clip, the latency of the live session, and the frames that were
 answered from an older plan.
 
 Exits with 1 if a regular session lost a frame or did not end with OK, if memory grew by more than
-MEMORY_MB, or if the session beside candidates was answered from an older plan. Needs python3-grpcio and protobuf-compiler; page also chromium, python3-aiohttp and python3-numpy.
+MEMORY_MB, or if the session beside candidates was answered from an older plan. Needs python3-grpcio and protobuf-compiler.
 """
 
 import argparse
@@ -230,57 +224,12 @@ def candidates(args):
     return kept
 
 
-COUNT = """{
-  const add = spar.strip.add.bind(spar.strip);
-  spar.strip.add = (latency) => { window.parts.push(latency); add(latency); };
-}
-(function count() { ++window.pictures; requestAnimationFrame(count); })();"""
-
-
-def measure_page(page, model, seconds):
-    """Plays a model on the open Spar page. Returns whether each frame that was sent was answered."""
-    page.evaluate(f"chooseModel(spar.models.find((one) => nameOf(one) === {json.dumps(model)}))")
-    page.wait_until("spar.seen")
-    page.evaluate("window.parts = []; window.pictures = 0")
-    first = page.evaluate("spar.session.leader.end")
-    end = time.monotonic() + seconds
-    move = 0
-    while time.monotonic() < end:
-        page.press(str(1 + move % 4))
-        move += 1
-        time.sleep(1)
-    parts = sorted(page.evaluate("window.parts"))
-    sent = page.evaluate("spar.session.leader.end") - first
-    p50, p99 = parts[len(parts) // 2], parts[len(parts) * 99 // 100]
-    say(f"{model}: from a leader frame to the answer, ms",
-        f"p50 {p50:.1f}, p99 {p99:.1f}, most {parts[-1]:.0f}")
-    say(f"{model}: leader frames, parts of the follower", f"{sent}, {len(parts)}")
-    say(f"{model}: pictures a second", f"{page.evaluate('window.pictures') / seconds:.0f}")
-    return len(parts) > 0 and page.evaluate(
-        "spar.session.leader.end - spar.session.follower.end <= spar.session.settings.delay + 5")
-
-
-def page(args):
-    from browser import Browser  # pylint: disable=import-outside-toplevel
-    from gateways import Gateway  # pylint: disable=import-outside-toplevel
-    with contextlib.ExitStack() as stack:
-        server = stack.enter_context(args.running(args.build / "bin/duet-server"))
-        gateway = Gateway(server.address)
-        stack.callback(gateway.stop)
-        browser = Browser()
-        stack.callback(browser.close)
-        spar = browser.open(f"{gateway.url}/spar", width=420, height=420)
-        spar.evaluate(f"window.parts = []; window.pictures = 0; {COUNT}")
-        models = spar.evaluate("spar.models.map(nameOf)")
-        return all([measure_page(spar, model, args.seconds / len(models)) for model in models])
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("measured", choices=("hostile", "hour", "killed", "page", "candidates"))
+    parser.add_argument("measured", choices=("hostile", "hour", "killed", "candidates"))
     parser.add_argument("--seconds", type=float, default=600,
-                        help="of the hostile sessions, on the page, or beside candidates")
+                        help="of the hostile sessions, or beside candidates")
     parser.add_argument("--minutes", type=float, default=60, help="of frames at 30 a second")
     parser.add_argument("--times", type=int, default=20, help="servers that are killed")
     parser.add_argument("--sessions", type=int, default=4, help="regular sessions side by side")
@@ -290,7 +239,7 @@ def main():
     os.environ.setdefault("DUET_BIN_DIR", str(args.build / "bin"))
     from hostile_tools import running  # pylint: disable=import-outside-toplevel
     args.running = running
-    measure = {"hostile": hostile, "hour": hour, "killed": killed, "page": page, "candidates": candidates}[args.measured]
+    measure = {"hostile": hostile, "hour": hour, "killed": killed, "candidates": candidates}[args.measured]
     return 0 if measure(args) else 1
 
 

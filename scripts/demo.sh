@@ -100,8 +100,9 @@ main() {
   echo
   echo "Open a page in any browser (drag to orbit, space to play):"
   find "$(pwd)/${out_dir}" -name '*.html' | sort | sed 's,^,  file://,'
-  echo "Be the leader yourself, in a browser at http://127.0.0.1:8080/spar (client/web/README.md):"
-  echo "  ${bin_dir}/duet-server & DUET_PROGRAM=${bin_dir}/duet client/web/gateway.py"
+  echo "The studio, and Spar, where you are the leader, are in contrib/studio (README.md). After"
+  echo "scripts/install_packages.sh contrib/studio, open http://127.0.0.1:8080 in a browser:"
+  echo "  ${bin_dir}/duet-server & DUET_PROGRAM=${bin_dir}/duet contrib/studio/gateway.py"
   echo "Blender, three.js and game engines open the .glb (see docs/formats.md)."
 }
 

@@ -1,4 +1,4 @@
-"""The pages of client/web while the server or the gateway is away, in a real browser."""
+"""The pages of contrib/studio while the server or the gateway is away, in a real browser."""
 
 import os
 import sys
@@ -82,7 +82,7 @@ class StudioAwayTest(unittest.TestCase):
         page.evaluate("element('react').click()")
         page.wait_until(FAILED)
         self.assertEqual(page.text("#status"), f"The gateway at 127.0.0.1:{self.gateway.port} does not "
-                                               "answer. Start it with client/web/gateway.py.")
+                                               "answer. Start it with contrib/studio/gateway.py.")
 
 
 if __name__ == "__main__":

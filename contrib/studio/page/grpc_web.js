@@ -22,7 +22,7 @@ async function fetchFrom(path, options) {
   } catch (error) {
     if (error.name === 'AbortError') throw error;
     throw new CallError(`The gateway at ${location.host} does not answer. Start it with ` +
-                        'client/web/gateway.py.', [], true);
+                        'contrib/studio/gateway.py.', [], true);
   }
 }
 

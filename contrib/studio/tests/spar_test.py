@@ -1,4 +1,4 @@
-"""The Spar page of client/web in a real browser, through the gateway, against a real server."""
+"""The Spar page of contrib/studio in a real browser, through the gateway, against a real server."""
 
 import io
 import json

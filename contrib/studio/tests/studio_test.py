@@ -18,7 +18,7 @@ import numpy as np  # noqa: E402
 import studio_minutes  # noqa: E402
 import tools  # noqa: E402
 
-GUIDE = (tools.SOURCE / "docs/guides/studio.md").read_text(encoding="utf-8")
+GUIDE = (tools.SOURCE / "contrib/studio/guide.md").read_text(encoding="utf-8")
 HUG = "#leader=hug.bvh&labels=hug:1"
 FRAMES = 91
 TORSO = 2
@@ -529,7 +529,7 @@ class ToolsTest(StudioTest):
         with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
             (pathlib.Path(folder) / "build").mkdir()  # as in a built clone
             (pathlib.Path(folder) / "build" / "release").symlink_to(tools.PROGRAMS.parent)
-            (pathlib.Path(folder) / "client").symlink_to(tools.SOURCE / "client")
+            (pathlib.Path(folder) / "contrib").symlink_to(tools.SOURCE / "contrib")
             for command, ready in zip(commands, ('"serving"', "http://")):
                 started = stack.enter_context(subprocess.Popen(
                     ["bash", "-c", f"exec env {command}"], cwd=folder, stdout=subprocess.PIPE,

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The gateway between the studio, a browser page, and a Duet server.
 
-    client/web/gateway.py --server localhost:50051 --listen 127.0.0.1:8080
+    contrib/studio/gateway.py --server localhost:50051 --listen 127.0.0.1:8080
 
 Browsers use gRPC-web, which gRPC servers do not support. The gateway translates the calls of
 duet.v1.MotionSynthesis, reads and writes motion files with the program `duet`, and serves the page.
@@ -18,7 +18,8 @@ import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent / "python"), str(HERE.parent / "viewer")]
+CLIENT = HERE.parents[1] / "client"
+sys.path[:0] = [str(CLIENT / "python"), str(CLIENT / "viewer")]
 
 import conversions  # noqa: E402
 import duet_motion as duet  # noqa: E402
@@ -31,7 +32,7 @@ import visitors  # noqa: E402
 from aiohttp import web  # noqa: E402
 
 SAMPLES = HERE.parents[1] / "samples"
-VIEWER = HERE.parent / "viewer" / "page"
+VIEWER = CLIENT / "viewer" / "page"
 SESSIONS_PER_ADDRESS = 8
 TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".bvh": "text/plain"}
 

@@ -1,4 +1,4 @@
-"""The page of client/web in a real browser, through the gateway, against a real server: what one
+"""The page of contrib/studio in a real browser, through the gateway, against a real server: what one
 person does with one file (studio_test.py tests the tools around it)."""
 
 import json

@@ -1,4 +1,4 @@
-"""The gateway of client/web behind HAProxy with the configuration of deploy/proxy, which sends the
+"""The gateway of contrib/studio behind HAProxy with its configuration, haproxy.cfg, which sends the
 requests of all visitors over the same connections: what one sends must never answer another."""
 
 import base64
@@ -171,7 +171,7 @@ def haproxy(folder, port, gateway_port, **environment):
     digest = tools.run("openssl", "passwd", "-5", PASSWORD).stdout.strip()
     with open(folder / "web.log", "w", encoding="utf-8") as log:
         process = subprocess.Popen(
-            ["haproxy", "-f", tools.SOURCE / "deploy/proxy/web.cfg"], stdout=log, stderr=log,
+            ["haproxy", "-f", tools.SOURCE / "contrib/studio/haproxy.cfg"], stdout=log, stderr=log,
             env={**os.environ, "DUET_WEB_BIND": f"127.0.0.1:{port}",
                  "DUET_WEB_CERTIFICATE": str(folder / "proxy.pem"),
                  "DUET_WEB_PASSWORD_HASH": digest,

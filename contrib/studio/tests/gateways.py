@@ -1,4 +1,4 @@
-"""A running gateway of client/web, and raw requests to it."""
+"""A running gateway of contrib/studio, and raw requests to it."""
 
 import contextlib
 import importlib.metadata
@@ -14,7 +14,7 @@ import sys
 
 import tools
 
-WEB = tools.SOURCE / "client" / "web"
+WEB = tools.SOURCE / "contrib" / "studio"
 NEEDED = (("grpc", "python3-grpcio"), ("numpy", "python3-numpy"), ("aiohttp", "python3-aiohttp"))
 GRPC_WEB = "application/grpc-web+proto"
 

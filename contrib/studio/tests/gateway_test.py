@@ -1,4 +1,4 @@
-"""The gateway of client/web under hostile and faulty requests, against a real server."""
+"""The gateway of contrib/studio under hostile and faulty requests, against a real server."""
 
 import contextlib
 import glob

@@ -1,9 +1,9 @@
 """What an animator does in the first ten minutes, in the studio, by real mouse and keys.
 
-    DUET_SOURCE_DIR=$PWD DUET_BIN_DIR=$PWD/build/release/bin python3 -B tests/e2e/studio_minutes.py
+    DUET_SOURCE_DIR=$PWD DUET_BIN_DIR=$PWD/build/release/bin python3 -B contrib/studio/tests/studio_minutes.py
 
 Starts a server, a gateway and a browser, and prints a table. The list is that of
-docs/guides/studio.md. An action is a click, a drag or a key. The seconds are those
+contrib/studio/guide.md. An action is a click, a drag or a key. The seconds are those
 of the machine, from the first action of a step until its result is on the screen; a person adds the time
 for reading and aiming.
 """
