@@ -56,7 +56,7 @@ mutate: ## Measure how often the tests notice broken code: docs/mutation.md
 .PHONY: bench
 bench: ## Time the engine and its kernels beside the committed figures, and the cost of hardening
 	@scripts/install_packages.sh $(BUILD_LISTS) test
-	@scripts/configure.sh release -DDUET_BUILD_BENCHMARKS=ON >/dev/null
+	@scripts/configure.sh release -DDUET_BUILD_BENCHMARKS=ON -DDUET_CONTRIB_LOAD=ON >/dev/null
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD) roofline_benchmark kernel_benchmark clean_up_benchmark \
 	  synthesis_benchmark duet-server duet-load
 	@benchmarks/bench.py $(BUILD)

@@ -37,6 +37,8 @@ import tempfile
 import threading
 import time
 
+from load_tool import load_program
+
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 os.environ.setdefault("DUET_SOURCE_DIR", str(SOURCE))
 sys.path.insert(0, str(SOURCE / "tests/e2e"))
@@ -52,7 +54,7 @@ def say(figure, value):
 def load(args, server, seconds, sessions=None):
     """Regular sessions; duet-load's figures of them."""
     printed = subprocess.run(
-        [args.build / "bin/duet-load", "--server", server.address, "--live", str(sessions or args.sessions),
+        [load_program(args.build), "--server", server.address, "--live", str(sessions or args.sessions),
          "--seconds", str(seconds), "--deadline", str(seconds + 60), "--json", "-", "--quiet"],
         stdout=subprocess.PIPE, text=True, check=False).stdout
     return json.loads(printed)["live"][0]

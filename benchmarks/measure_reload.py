@@ -18,6 +18,8 @@ import subprocess
 import tempfile
 import time
 
+from load_tool import load_program
+
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 CHECKPOINTS = SOURCE / "model/embedded"
 
@@ -85,7 +87,7 @@ def measure(args, folder):
     server, port, admin_port = start(args.server, repository, folder / "log")
     try:
         load = subprocess.Popen(
-            [args.build / "bin/duet-load", "--server", f"127.0.0.1:{port}", "--rate",
+            [load_program(args.build), "--server", f"127.0.0.1:{port}", "--rate",
              str(args.rate), "--seconds", str(args.seconds), "--model", "sbu,k3hi", "--records",
              folder / "calls.csv", "--json", folder / "load.json", "--quiet"],
             stdout=subprocess.DEVNULL)

@@ -35,6 +35,7 @@ import time
 import grpc
 
 import hostile_tools
+from load_tool import load_program
 from soak_callers import LONG_DEADLINE, Callers
 from soak_operator import Operator
 from soak_server import Server, run
@@ -86,7 +87,7 @@ def play(args, server, callers, operator, sampler):
     for number in range(args.rounds):
         callers.gate.set(True)
         operator.begin()
-        load = run(args.build / "bin/duet-load", "--server", server.address, "--tls-ca",
+        load = run(load_program(args.build), "--server", server.address, "--tls-ca",
                    server.authority.certificate, "--token-file", server.folder / "load.token",
                    "--rate", args.rate, "--frames", "46=8,460=1", "--seconds",
                    max(0.5, args.seconds / args.rounds - 1), "--warm-up", "0", "--deadline",

@@ -135,8 +135,6 @@ LAYERS = (
           sees=MOTION_FILES + ("analysis", "viewer", "batch flow", "batch", "capture", "live",
                                 "client")),
     Layer("python extension", "client/python/extension", sees=MOTION_FILES),
-    Layer("load program", "client/load/program", sees=MOTION_FILES + ("load", "client program", "client")),
-    Layer("load", "client/load", sees=("base", "motion", "client"), libraries=("rpc",)),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )
 

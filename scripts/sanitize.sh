@@ -10,7 +10,9 @@ readonly build_dir="build/${preset}"
 # The programs that scripts start. A script that needs others, with LibTorch, has the label "libtorch".
 readonly programs=(duet duet-load duet-server duet-fake-server)
 
-scripts/configure.sh "${preset}" -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=OFF >/dev/null
+# With the tools whose tests put a load or malformed requests on the server.
+scripts/configure.sh "${preset}" -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=OFF -DDUET_CONTRIB_LOAD=ON \
+  -DDUET_CONTRIB_STUDIO=ON >/dev/null
 mapfile -t tests < <(scripts/torch_free_tests.py "${build_dir}" ${label:+"${label}"})
 if [[ ${#tests[@]} -eq 0 ]]; then
   echo "${preset}: expected test programs${label:+ with the label ${label}}, got none" >&2

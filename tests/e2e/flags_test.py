@@ -8,7 +8,6 @@ import unittest
 import tools
 
 PROGRAMS = ("duet", "duet-eval", "duet-import", "duet-keyframe", "duet-train")
-PROGRAMS_OF_SERVING = ("duet-load", "duet-server")
 
 
 def help_of(*command):
@@ -42,13 +41,13 @@ class FlagsTest(unittest.TestCase):
     def test_every_program_prints_its_version(self):
         text = (tools.SOURCE / "CMakeLists.txt").read_text(encoding="utf-8")
         version = re.search(r"project\(duet VERSION ([\d.]+)", text)[1]
-        for program in PROGRAMS + PROGRAMS_OF_SERVING:
+        for program in PROGRAMS + ("duet-server",):
             result = tools.run(tools.PROGRAMS / program, "--version")
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertEqual(result.stdout, f"{program} {version}\n")
 
     def test_output_that_cannot_be_written_is_an_error(self):
-        commands = [(program, "--help") for program in PROGRAMS + PROGRAMS_OF_SERVING]
+        commands = [(program, "--help") for program in PROGRAMS + ("duet-server",)]
         commands += [("duet", "man"), ("duet", "completion", "bash"), ("duet", "help", "joints"),
                      ("duet", "inspect", tools.sample("kick"), "--json"),
                      ("duet", "compare", tools.sample("kick"), tools.sample("hug")),

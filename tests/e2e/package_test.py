@@ -51,8 +51,6 @@ class PackageTest(tools.FolderTest):
             self.assertEqual("libassimp" in needed, name == "duet-fbx", name)
         for path in ("usr/bin/duet", "usr/share/man/man1/duet-batch.1.gz",
                      "usr/share/bash-completion/completions/duet",
-                     "usr/bin/duet-load", "usr/share/man/man1/duet-load.1.gz",
-                     "usr/share/bash-completion/completions/duet-load",
                      "usr/bin/duet-server", "usr/share/man/man8/duet-server.8.gz",
                      "usr/lib/systemd/system/duet-server.service",
                      "usr/lib/sysusers.d/duet-server.conf", "etc/duet/server.textproto",

@@ -9,8 +9,7 @@ import tools
 sys.path.insert(0, str(tools.SOURCE / "scripts"))
 import check_version  # noqa: E402
 
-PROGRAMS = ("duet", "duet-server", "duet-train", "duet-eval", "duet-import", "duet-keyframe",
-            "duet-load")
+PROGRAMS = ("duet", "duet-server", "duet-train", "duet-eval", "duet-import", "duet-keyframe")
 
 
 class VersionTest(unittest.TestCase):

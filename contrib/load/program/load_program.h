@@ -1,0 +1,23 @@
+#ifndef DUET_CONTRIB_LOAD_PROGRAM_LOAD_PROGRAM_H_
+#define DUET_CONTRIB_LOAD_PROGRAM_LOAD_PROGRAM_H_
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace duet::contrib::load::program {
+
+struct LoadEnvironment {
+  std::ostream* out;
+  std::ostream* err;
+  std::function<bool()> stopped;  // whether to end the run early
+};
+
+// The whole `duet-load` program. Returns its exit code (client/cli/exit_code.h). `arguments`
+// excludes the program's name.
+int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironment& environment);
+
+}  // namespace duet::contrib::load::program
+
+#endif  // DUET_CONTRIB_LOAD_PROGRAM_LOAD_PROGRAM_H_
