@@ -7,11 +7,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
-#include "client/cli/motion_input.h"
-#include "client/cli/server_options.h"
 #include "client/model_skeleton.h"
 #include "contrib/load/grpc_live_target.h"
 #include "contrib/load/live_generator.h"
+#include "model/formats/motion_file.h"
 #include "model/motion/resample.h"
 
 namespace duet::contrib::load::program {
@@ -49,13 +48,10 @@ absl::StatusOr<std::vector<motion::Poses>> ReadLeaders(
   }
   const absl::StatusOr<motion::Skeleton> skeleton = client::ToSkeleton(model);
   if (!skeleton.ok()) return skeleton.status();
-  const absl::StatusOr<formats::ReadOptions> options = client::cli::ToReadOptions({}, *skeleton);
-  if (!options.ok()) return options.status();
+  formats::ReadOptions options;
+  options.skeleton = *skeleton;
   for (const std::filesystem::path& file : files) {
-    const absl::StatusOr<client::cli::MotionInput> input =
-        client::cli::MotionInput::Open(file, nullptr);
-    if (!input.ok()) return input.status();
-    const absl::StatusOr<motion::Clip> clip = input->Read(*options);
+    const absl::StatusOr<motion::Clip> clip = formats::ReadLeader(file, options);
     if (!clip.ok()) return clip.status();
     leaders.push_back(motion::Resample(clip->poses, clip->frame_rate_hz, rate));
   }
@@ -80,8 +76,7 @@ LiveOptions OptionsOf(const LoadArguments& arguments, const LoadEnvironment& env
 absl::StatusOr<LiveReport> RunLiveSteps(const LoadArguments& arguments,
                                         const LoadEnvironment& environment) {
   if (absl::Status status = CheckFlags(arguments); !status.ok()) return status;
-  const absl::StatusOr<client::ClientOptions> server =
-      client::cli::ToClientOptions(arguments.server);
+  const absl::StatusOr<client::ClientOptions> server = ToClientOptions(arguments.server);
   if (!server.ok()) return server.status();
   const absl::StatusOr<client::Client> client = client::Client::Create(*server);
   if (!client.ok()) return client.status();

@@ -1,27 +1,23 @@
 #include "contrib/load/program/load_flags.h"
 
-#include <algorithm>
+#include <CLI/CLI.hpp>
+#include <functional>
 #include <map>
-#include <memory>
+#include <utility>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
-#include "client/cli/flags.h"
-#include "client/cli/server_flags.h"
-#include "client/cli/value_syntax.h"
+#include "model/base/file.h"
 #include "model/base/text.h"
 
 namespace duet::contrib::load::program {
 namespace {
 
-using client::cli::AddChoice;
-using client::cli::AddParsed;
-using client::cli::Flag;
-using client::cli::FlagSet;
-
-constexpr char kLoadGroup[] = "Load", kLiveGroup[] = "Live sessions", kCallGroup[] = "Calls",
-               kOutputGroup[] = "Output";
+constexpr char kServerGroup[] = "Server", kLoadGroup[] = "Load", kLiveGroup[] = "Live sessions",
+               kCallGroup[] = "Calls", kOutputGroup[] = "Output";
 
 const std::map<std::string, ArrivalKind> kArrivals = {{"poisson", ArrivalKind::kPoisson},
                                                       {"constant", ArrivalKind::kConstant}};
@@ -48,7 +44,7 @@ Examples:
 
 absl::Status Expected(absl::string_view expected, absl::string_view text) {
   return absl::InvalidArgumentError(
-      absl::StrCat("expected ", expected, ", such as 46=9,460, got ", base::Quoted(text)));
+      absl::StrCat("expected ", expected, ", got ", base::Quoted(text)));
 }
 
 // A list of values with optional weights; `parse` reads a value.
@@ -62,7 +58,7 @@ absl::StatusOr<std::vector<Weighted<T>>> ParseMix(absl::string_view text, const 
     double weight = 1;
     if (equals != absl::string_view::npos &&
         (!base::ParseNumber(part.substr(equals + 1), &weight) || weight <= 0)) {
-      return Expected("a weight above 0 after the =", part);
+      return Expected("a weight above 0 after the =, such as 46=9,460", part);
     }
     mix.push_back({*std::move(value), weight});
   }
@@ -72,204 +68,249 @@ absl::StatusOr<std::vector<Weighted<T>>> ParseMix(absl::string_view text, const 
 absl::StatusOr<int> ParseFrameCount(absl::string_view text) {
   int frames = 0;
   if (base::ParseInteger(text, &frames) && frames >= 1) return frames;
-  return Expected("numbers of frames, 1 or more", text);
+  return Expected("numbers of frames, 1 or more, such as 46=9,460", text);
 }
 
-void AddLoad(FlagSet* app, LoadArguments* arguments) {
-  Flag* callers = app->Add("--callers", &arguments->callers,
-                           "Concurrent callers; each calls again after an answer (default: 1)")
-                      ->SplitAt(',')
-                      ->OneValueEach()
-                      ->InRange(1, 100000)
-                      ->Form("N[,N...]")
-                      ->Group(kLoadGroup);
-  app->Add("--rate", &arguments->rates, "Calls a second, independent of the answers")
-      ->SplitAt(',')
-      ->OneValueEach()
-      ->InRange(0.001, 1e6)
-      ->Excludes(callers)
-      ->Form("HZ[,HZ...]")
-      ->Group(kLoadGroup);
-  AddChoice<ArrivalKind>(
-      app, "--arrivals", kArrivals, [arguments](ArrivalKind kind) { arguments->arrivals = kind; },
-      "Gaps between the calls of a rate: random or constant")
-      ->ShowDefault(client::cli::NameOf(kArrivals, arguments->arrivals))
-      ->Group(kLoadGroup);
-  app->Add("--warm-up", &arguments->warm_up_seconds, "Unmeasured seconds before each step")
-      ->InRange(0.0, 86400.0)
-      ->ShowDefault()
-      ->Form("SECONDS")
-      ->Group(kLoadGroup);
-  Flag* seconds = app->Add("--seconds", &arguments->seconds, "Measured seconds of each step")
-                      ->InRange(0.1, 864000.0)
-                      ->ShowDefault()
-                      ->Form("SECONDS")
-                      ->Group(kLoadGroup);
-  app->Add("--calls", &arguments->calls, "Number of measured calls, in place of --seconds")
-      ->InRange(int64_t{1}, int64_t{1000000000})
-      ->Excludes(seconds)
-      ->Form("N")
-      ->Group(kLoadGroup);
-  app->Add("--connections", &arguments->connections, "Connections, which calls use in turn")
-      ->InRange(1, 1000)
-      ->ShowDefault()
-      ->Form("N")
-      ->Group(kLoadGroup);
-  app->Add("--max-in-flight", &arguments->max_in_flight,
-           "Maximum calls in flight with --rate; further calls are sent late, and reported")
-      ->InRange(1, 1000000)
-      ->ShowDefault()
-      ->Form("N")
-      ->Group(kLoadGroup);
-  AddParsed<uint64_t>(
-      app, "--seed", "SEED", client::cli::ParseSeed,
-      [arguments](uint64_t seed) { arguments->seed = seed; },
-      "Seed of arrivals and requests: the same seed gives the same load")
-      ->LastOnly()
-      ->ShowDefault(absl::StrCat(arguments->seed))
-      ->Group(kLoadGroup);
-}
-
-// A flag in milliseconds.
-Flag* AddMilliseconds(FlagSet* app, const char* name, Duration* time, const char* help) {
-  return app
-      ->AddReader(
-          name,
-          [time](const std::string& text) {
-            double milliseconds = 0;
-            base::ParseNumber(text, &milliseconds);
-            *time = Seconds(milliseconds / 1000);
-          },
-          help)
-      ->InRange(0.0, 60000.0)
-      ->Form("MS")
-      ->Group(kLiveGroup);
-}
-
-void AddLive(FlagSet* app, LoadArguments* arguments) {
-  Flag* live =
-      app->Add("--live", &arguments->live,
-               "Live sessions side by side; --rate is then their frames a second, default 30")
-          ->SplitAt(',')
-          ->OneValueEach()
-          ->InRange(1, 100000)
-          ->Form("N[,N...]")
-          ->Group(kLiveGroup);
-  for (const char* other :
-       {"--callers", "--calls", "--arrivals", "--max-in-flight", "--background-callers", "--frames",
-        "--priority", "--csv", "--records"}) {
-    live->Excludes(app->Find(other));
+absl::StatusOr<client::ModelChoice> ParseModel(absl::string_view text) {
+  const std::size_t mark = text.find_first_of("@:");
+  client::ModelChoice choice;
+  choice.name = std::string(text.substr(0, mark));
+  bool valid = !choice.name.empty();
+  if (mark != absl::string_view::npos && text[mark] == ':') {
+    choice.version_label = std::string(text.substr(mark + 1));
+    valid = valid && !choice.version_label.empty();
+  } else if (mark != absl::string_view::npos) {
+    valid = valid && base::ParseInteger(text.substr(mark + 1), &choice.version.emplace()) &&
+            *choice.version >= 1;
   }
-  app->Add("--leader", &arguments->leaders,
-           "Motion file of a leader, which plays forwards and backwards; repeatable: sessions "
-           "take them in turn (default: a generated one)")
-      ->ExistingFile()
-      ->Needs(live)
-      ->OneValueEach()
-      ->Form("FILE")
-      ->Group(kLiveGroup);
-  app->Add("--delay", &arguments->live_content.delay_frames,
-           "Later leader frames that the server waits for")
-      ->InRange(0, 10)
-      ->ShowDefault()
-      ->Needs(live)
-      ->Form("FRAMES")
-      ->Group(kLiveGroup);
-  app->Add("--plan", &arguments->live_content.plan_frames, "Provisional frames in each message")
-      ->InRange(0, 30)
-      ->ShowDefault()
-      ->Needs(live)
-      ->Form("FRAMES")
-      ->Group(kLiveGroup);
-  LiveConditions* conditions = &arguments->live_conditions;
-  AddMilliseconds(app, "--jitter", &conditions->jitter,
-                  "Send each frame up to this long after it was due")
-      ->Needs(live);
-  app->Add("--loss", &conditions->loss, "Share of the frames that are never sent")
-      ->InRange(0.0, 0.9)
-      ->Needs(live)
-      ->Form("SHARE")
-      ->Group(kLiveGroup);
-  AddMilliseconds(app, "--stall", &conditions->stall,
-                  "Once in each session: send nothing for this long, then everything held back")
-      ->Needs(live);
-  app->AddSwitch("--in-step", &arguments->in_step,
-                 "Send the frames of all sessions at the same time")
-      ->Needs(live)
-      ->Group(kLiveGroup);
+  if (valid) return choice;
+  return Expected("NAME, NAME@VERSION or NAME:LABEL", text);
 }
 
-void AddBackground(FlagSet* app, LoadArguments* arguments) {
-  Flag* callers = app->Add("--background-callers", &arguments->background_callers,
-                           "Callers that call continuously and are not measured")
-                      ->InRange(0, 100000)
-                      ->ShowDefault()
-                      ->Form("N")
-                      ->Group(kLoadGroup);
-  app->Add("--background-frames", &arguments->background_frames, "Frames of their leaders")
-      ->InRange(1, 10000000)
-      ->ShowDefault()
-      ->Needs(callers)
-      ->Form("FRAMES")
-      ->Group(kLoadGroup);
+absl::StatusOr<client::ClassWeight> ParseLabel(absl::string_view text) {
+  const std::size_t equals = text.find('=');
+  client::ClassWeight label{std::string(text.substr(0, equals)), 1};
+  if (!label.interaction_class.empty() &&
+      (equals == absl::string_view::npos ||
+       absl::SimpleAtof(text.substr(equals + 1), &label.weight))) {
+    return label;
+  }
+  return Expected("CLASS or CLASS=WEIGHT such as kick=0.5", text);
+}
+
+// A repeatable flag whose values `parse` reads, one after the other, for `sink`.
+template <typename T>
+CLI::Option* AddParsed(CLI::App* app, const std::string& name,
+                       absl::StatusOr<T> (*parse)(absl::string_view), std::function<void(T)> sink,
+                       const std::string& help) {
+  const auto read = [name, parse, sink = std::move(sink)](const std::vector<std::string>& values) {
+    for (const std::string& value : values) {
+      absl::StatusOr<T> parsed = parse(value);
+      if (!parsed.ok()) throw CLI::ValidationError(name, std::string(parsed.status().message()));
+      sink(*std::move(parsed));
+    }
+  };
+  return app->add_option_function<std::vector<std::string>>(name, read, help)
+      ->allow_extra_args(false);
+}
+
+// A flag with one of a few names. `names` outlives the app.
+template <typename T>
+CLI::Option* AddChoice(CLI::App* app, const std::string& name,
+                       const std::map<std::string, T>& names, T* target, const std::string& help) {
+  const auto read = [&names, target](const std::string& chosen) { *target = names.at(chosen); };
+  return app->add_option_function<std::string>(name, read, help)->check(CLI::IsMember(&names));
+}
+
+void AddServer(CLI::App* app, ServerArguments* server) {
+  app->add_option("--server", server->address,
+                  "Server, or any gRPC target such as unix:/run/duet.sock")
+      ->envname("DUET_SERVER")
+      ->capture_default_str()
+      ->type_name("HOST:PORT");
+  app->add_flag("--tls", server->tls, "Encrypt; trust the certificate authorities of the system");
+  app->add_option("--tls-ca", server->tls_ca_file, "Encrypt; trust the authorities in this file")
+      ->type_name("FILE");
+  CLI::Option* certificate =
+      app->add_option("--tls-cert", server->tls_certificate_file, "Certificate of this client")
+          ->type_name("FILE");
+  CLI::Option* key =
+      app->add_option("--tls-key", server->tls_key_file, "Private key of this client")
+          ->type_name("FILE");
+  certificate->needs(key);
+  key->needs(certificate);
+  app->add_option("--tls-server-name", server->tls_server_name,
+                  "Name in the server's certificate, if it differs from the address")
+      ->type_name("NAME");
+  app->add_option("--token-file", server->token_file,
+                  "Token that identifies the caller; only sent encrypted or to this machine")
+      ->type_name("FILE");
+  app->add_option("--authority", server->authority,
+                  "Name of the server that a proxy routes by, if it differs from the address")
+      ->type_name("NAME");
+}
+
+void AddLoad(CLI::App* app, LoadArguments* arguments) {
+  CLI::Option* callers =
+      app->add_option("--callers", arguments->callers,
+                      "Concurrent callers; each calls again after an answer (default: 1)")
+          ->delimiter(',')
+          ->check(CLI::Range(1, 100000))
+          ->type_name("N,...");
+  app->add_option("--rate", arguments->rates, "Calls a second, independent of the answers")
+      ->delimiter(',')
+      ->check(CLI::Range(0.001, 1e6))
+      ->excludes(callers)
+      ->type_name("HZ,...");
+  AddChoice(app, "--arrivals", kArrivals, &arguments->arrivals,
+            "Gaps between the calls of a rate: random (poisson) or constant")
+      ->default_str("poisson");
+  app->add_option("--warm-up", arguments->warm_up_seconds, "Unmeasured seconds before each step")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str()
+      ->type_name("SECONDS");
+  CLI::Option* seconds =
+      app->add_option("--seconds", arguments->seconds, "Measured seconds of each step")
+          ->check(CLI::Range(0.1, 864000.0))
+          ->capture_default_str()
+          ->type_name("SECONDS");
+  app->add_option("--calls", arguments->calls, "Number of measured calls, in place of --seconds")
+      ->check(CLI::Range(int64_t{1}, int64_t{1000000000}))
+      ->excludes(seconds)
+      ->type_name("N");
+  app->add_option("--connections", arguments->connections, "Connections, which calls use in turn")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->type_name("N");
+  app->add_option("--max-in-flight", arguments->max_in_flight,
+                  "Maximum calls in flight with --rate; further calls are sent late, and reported")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str()
+      ->type_name("N");
+  app->add_option("--seed", arguments->seed,
+                  "Seed of arrivals and requests: the same seed gives the same load")
+      ->capture_default_str()
+      ->type_name("SEED");
+  CLI::Option* background = app->add_option("--background-callers", arguments->background_callers,
+                                            "Callers that call continuously and are not measured")
+                                ->check(CLI::Range(0, 100000))
+                                ->capture_default_str()
+                                ->type_name("N");
+  app->add_option("--background-frames", arguments->background_frames, "Frames of their leaders")
+      ->check(CLI::Range(1, 10000000))
+      ->capture_default_str()
+      ->needs(background)
+      ->type_name("FRAMES");
   AddParsed<client::ModelChoice>(
-      app, "--background-model", "NAME[@VERSION|:LABEL]", client::cli::ParseModelChoice,
+      app, "--background-model", ParseModel,
       [arguments](client::ModelChoice model) { arguments->background_model = std::move(model); },
       "Their model (default: the first measured one)")
-      ->LastOnly()
-      ->Needs(callers)
-      ->Group(kLoadGroup);
+      ->needs(background)
+      ->type_name("MODEL");
 }
 
-void AddCalls(FlagSet* app, LoadArguments* arguments) {
+void AddCalls(CLI::App* app, LoadArguments* arguments) {
   AddParsed<std::vector<Weighted<int>>>(
-      app, "--frames", "FRAMES[=WEIGHT],...", ParseFrames,
+      app, "--frames", ParseFrames,
       [arguments](std::vector<Weighted<int>> frames) { arguments->mix.frames = std::move(frames); },
       "Lengths of the leaders, drawn by weight")
-      ->LastOnly()
-      ->ShowDefault(absl::StrCat(arguments->mix.frames.front().value))
-      ->Group(kCallGroup);
+      ->default_str(absl::StrCat(arguments->mix.frames.front().value))
+      ->type_name("FRAMES[=WEIGHT],...");
   AddParsed<std::vector<Weighted<client::ModelChoice>>>(
-      app, "--model", "MODEL[=WEIGHT],...", ParseModels,
+      app, "--model", ParseModels,
       [arguments](std::vector<Weighted<client::ModelChoice>> models) {
         arguments->mix.models = std::move(models);
       },
       "NAME, NAME@VERSION or NAME:LABEL, drawn by weight (default: the server's)")
-      ->LastOnly()
-      ->Group(kCallGroup);
-  AddParsed<client::ClassWeight>(app, "--label", "CLASS[=WEIGHT]", client::cli::ParseClassWeight,
-                                 client::cli::AppendTo(&arguments->mix.labels),
-                                 "Repeatable (default: 1 for the model's first class)")
-      ->Group(kCallGroup);
-  AddChoice<client::Priority>(
-      app, "--priority", kPriorities,
-      [arguments](client::Priority priority) { arguments->mix.priority = priority; },
-      "Priority of the calls")
-      ->ShowDefault(client::cli::NameOf(kPriorities, arguments->mix.priority))
-      ->Group(kCallGroup);
-  app->Add("--deadline", &arguments->server.timeout_seconds, "Deadline of each call")
-      ->InRange(0.001, 86400.0)
-      ->ShowDefault()
-      ->Form("SECONDS")
-      ->Group(kCallGroup);
+      ->type_name("MODEL[=WEIGHT],...");
+  AddParsed<client::ClassWeight>(
+      app, "--label", ParseLabel,
+      [arguments](client::ClassWeight label) { arguments->mix.labels.push_back(std::move(label)); },
+      "Repeatable (default: 1 for the model's first class)")
+      ->type_name("CLASS[=WEIGHT]");
+  AddChoice(app, "--priority", kPriorities, &arguments->mix.priority, "Priority of the calls")
+      ->default_str("interactive");
+  app->add_option("--deadline", arguments->server.deadline_seconds, "Deadline of each call")
+      ->check(CLI::Range(0.001, 86400.0))
+      ->capture_default_str()
+      ->type_name("SECONDS");
 }
 
-void AddOutputs(FlagSet* app, LoadArguments* arguments) {
-  app->Add("--html", &arguments->html, "Write a page with tables and charts")
-      ->Form("FILE")
-      ->Group(kOutputGroup);
-  app->Add("--csv", &arguments->csv, "Write a row for each step")
-      ->Form("FILE")
-      ->Group(kOutputGroup);
-  app->Add("--json", &arguments->json, "Write everything; - for standard output")
-      ->Form("FILE")
-      ->Group(kOutputGroup);
-  app->Add("--records", &arguments->records, "Write a CSV row for each call")
-      ->Form("FILE")
-      ->Group(kOutputGroup);
-  app->Add("--title", &arguments->title, "Title of the report")->Form("TEXT")->Group(kOutputGroup);
-  app->AddSwitch("--quiet", &arguments->quiet, "Do not print the current step")
-      ->Group(kOutputGroup);
+// A flag in milliseconds.
+CLI::Option* AddMilliseconds(CLI::App* app, const char* name, Duration* time, const char* help) {
+  const auto read = [time](double milliseconds) { *time = Seconds(milliseconds / 1000); };
+  return app->add_option_function<double>(name, read, help)
+      ->check(CLI::Range(0.0, 60000.0))
+      ->type_name("MS");
+}
+
+void AddLive(CLI::App* app, LoadArguments* arguments) {
+  CLI::Option* live =
+      app->add_option(
+             "--live", arguments->live,
+             "Live sessions side by side; --rate is then their frames a second, default 30")
+          ->delimiter(',')
+          ->check(CLI::Range(1, 100000))
+          ->type_name("N,...");
+  for (const char* other :
+       {"--callers", "--calls", "--arrivals", "--max-in-flight", "--background-callers", "--frames",
+        "--priority", "--csv", "--records"}) {
+    live->excludes(app->get_option(other));
+  }
+  app->add_option(
+         "--leader", arguments->leaders,
+         "Motion file of a leader, which plays forwards and backwards; repeatable: sessions "
+         "take them in turn (default: a generated one)")
+      ->check(CLI::ExistingFile)
+      ->needs(live)
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  app->add_option("--delay", arguments->live_content.delay_frames,
+                  "Later leader frames that the server waits for")
+      ->check(CLI::Range(0, 10))
+      ->capture_default_str()
+      ->needs(live)
+      ->type_name("FRAMES");
+  app->add_option("--plan", arguments->live_content.plan_frames,
+                  "Provisional frames in each message")
+      ->check(CLI::Range(0, 30))
+      ->capture_default_str()
+      ->needs(live)
+      ->type_name("FRAMES");
+  LiveConditions* conditions = &arguments->live_conditions;
+  AddMilliseconds(app, "--jitter", &conditions->jitter,
+                  "Send each frame up to this long after it was due")
+      ->needs(live);
+  app->add_option("--loss", conditions->loss, "Share of the frames that are never sent")
+      ->check(CLI::Range(0.0, 0.9))
+      ->needs(live)
+      ->type_name("SHARE");
+  AddMilliseconds(app, "--stall", &conditions->stall,
+                  "Once in each session: send nothing for this long, then everything held back")
+      ->needs(live);
+  app->add_flag("--in-step", arguments->in_step, "Send the frames of all sessions at the same time")
+      ->needs(live);
+}
+
+void AddOutputs(CLI::App* app, LoadArguments* arguments) {
+  app->add_option("--html", arguments->html, "Write a page with tables and charts")
+      ->type_name("FILE");
+  app->add_option("--csv", arguments->csv, "Write a row for each step")->type_name("FILE");
+  app->add_option("--json", arguments->json, "Write everything; - for standard output")
+      ->type_name("FILE");
+  app->add_option("--records", arguments->records, "Write a CSV row for each call")
+      ->type_name("FILE");
+  app->add_option("--title", arguments->title, "Title of the report")->type_name("TEXT");
+  app->add_flag("--quiet", arguments->quiet, "Do not print the current step");
+}
+
+// The content of a file that is not empty; "" if `path` is empty.
+absl::StatusOr<std::string> ReadCredential(const std::string& path, absl::string_view what) {
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+  if (path.empty()) return std::string();
+  absl::StatusOr<std::string> content = base::ReadFile(path, kMaxBytes, what);
+  if (!content.ok() || !content->empty()) return content;
+  return absl::InvalidArgumentError(absl::StrCat(path, ": expected ", what, ", got an empty file"));
 }
 
 }  // namespace
@@ -286,33 +327,49 @@ double LoadArguments::LiveRate() const {
   return rates.empty() ? LiveOptions().frame_rate_hz : rates.front();
 }
 
-void AddLoadFlags(FlagSet* app, LoadArguments* arguments) {
-  app->Footer(kFooter);
-  app->Add("--server", &arguments->server.address,
-           "Server, or any gRPC target such as unix:/run/duet.sock")
-      ->Environment("DUET_SERVER")
-      ->ShowDefault()
-      ->Form("HOST:PORT")
-      ->Group(client::cli::kServerGroup);
-  client::cli::AddCredentialFlags(app, &arguments->server);
+void AddLoadFlags(CLI::App* app, LoadArguments* arguments) {
+  app->footer(kFooter);
+  // A flag belongs to the group that is the default when it is added.
+  app->option_defaults()->group(kServerGroup);
+  AddServer(app, &arguments->server);
+  app->option_defaults()->group(kLoadGroup);
   AddLoad(app, arguments);
-  AddBackground(app, arguments);
+  app->option_defaults()->group(kCallGroup);
   AddCalls(app, arguments);
+  app->option_defaults()->group(kOutputGroup);
   AddOutputs(app, arguments);
+  app->option_defaults()->group(kLiveGroup);
   AddLive(app, arguments);
-  app->AddSwitch("--man", &arguments->manual_page, "Print the manual page");
-  app->Add("--completion", &arguments->completion, "Print the completion script of a shell")
-      ->OneOf({"bash", "zsh", "fish"})
-      ->Form("bash|zsh|fish");
 }
 
-std::vector<std::pair<std::string, std::string>> GivenFlags(const FlagSet& app) {
+std::vector<std::pair<std::string, std::string>> GivenFlags(const CLI::App& app) {
   std::vector<std::pair<std::string, std::string>> given;
-  for (const std::unique_ptr<Flag>& flag : app.flags()) {
-    if (!flag->is_given() || flag->is_argument()) continue;
-    given.emplace_back(flag->name().substr(2), absl::StrJoin(flag->values(), ","));
+  for (const CLI::Option* flag : app.get_options()) {
+    if (flag->count() > 0)
+      given.emplace_back(flag->get_single_name(), absl::StrJoin(flag->results(), ","));
   }
   return given;
+}
+
+absl::StatusOr<client::ClientOptions> ToClientOptions(const ServerArguments& arguments) {
+  client::ClientOptions options;
+  options.server_address = arguments.address;
+  options.deadline = absl::Seconds(arguments.deadline_seconds);
+  options.authority = arguments.authority;
+  const absl::StatusOr<std::string> token = ReadCredential(arguments.token_file, "a token"),
+                                    ca = ReadCredential(arguments.tls_ca_file, "PEM"),
+                                    certificate =
+                                        ReadCredential(arguments.tls_certificate_file, "PEM"),
+                                    key = ReadCredential(arguments.tls_key_file, "PEM");
+  for (const absl::StatusOr<std::string>* read : {&token, &ca, &certificate, &key}) {
+    if (!read->ok()) return read->status();
+  }
+  options.token = std::string(absl::StripAsciiWhitespace(*token));
+  if (arguments.tls || !ca->empty() || !certificate->empty() ||
+      !arguments.tls_server_name.empty()) {
+    options.tls = client::TlsOptions{*ca, *certificate, *key, arguments.tls_server_name};
+  }
+  return options;
 }
 
 absl::StatusOr<std::vector<Weighted<int>>> ParseFrames(absl::string_view text) {
@@ -320,7 +377,7 @@ absl::StatusOr<std::vector<Weighted<int>>> ParseFrames(absl::string_view text) {
 }
 
 absl::StatusOr<std::vector<Weighted<client::ModelChoice>>> ParseModels(absl::string_view text) {
-  return ParseMix<client::ModelChoice>(text, client::cli::ParseModelChoice);
+  return ParseMix<client::ModelChoice>(text, ParseModel);
 }
 
 }  // namespace duet::contrib::load::program

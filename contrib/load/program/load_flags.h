@@ -10,8 +10,8 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "client/cli/flag_set.h"
-#include "client/cli/server_arguments.h"
+#include "absl/time/time.h"
+#include "client/options.h"
 #include "contrib/load/arrivals.h"
 #include "contrib/load/call_kinds.h"
 #include "contrib/load/live_content.h"
@@ -19,11 +19,26 @@
 #include "contrib/load/load_options.h"
 #include "contrib/load/measurement.h"
 
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 has this name.
+class App;
+}  // namespace CLI
+
 namespace duet::contrib::load::program {
+
+// The server, and how to connect to it.
+struct ServerArguments {
+  std::string address = client::ClientOptions().server_address;
+  double deadline_seconds = absl::ToDoubleSeconds(client::ClientOptions().deadline);
+  bool tls = false;  // implied by each of the tls_ fields
+  std::string tls_ca_file, tls_certificate_file, tls_key_file;
+  std::string tls_server_name;
+  std::string token_file;
+  std::string authority;
+};
 
 // The arguments of duet-load.
 struct LoadArguments {
-  client::cli::ServerArguments server;
+  ServerArguments server;
   std::vector<int> callers;   // a step each; and
   std::vector<double> rates;  // a step each; neither: one caller
   ArrivalKind arrivals = ArrivalKind::kPoisson;
@@ -45,19 +60,21 @@ struct LoadArguments {
   std::string title;
   std::filesystem::path csv, json, html, records;
   bool quiet = false;
-  bool manual_page = false;
-  std::string completion;  // a shell
 
   std::vector<Step> Steps() const;
   // Frames a second of live sessions.
   double LiveRate() const;
 };
 
-// duet-load's command line: the source of parsing, help, completion and the manual page.
-void AddLoadFlags(client::cli::FlagSet* app, LoadArguments* arguments);
+// Adds duet-load's flags. `arguments` outlives the app.
+void AddLoadFlags(CLI::App* app, LoadArguments* arguments);
 
 // The flags that were given, with their values.
-std::vector<std::pair<std::string, std::string>> GivenFlags(const client::cli::FlagSet& app);
+std::vector<std::pair<std::string, std::string>> GivenFlags(const CLI::App& app);
+
+// The client options for these flags. Reads the files of certificates and the token. Errors: those
+// of reading a file; INVALID_ARGUMENT for an empty one.
+absl::StatusOr<client::ClientOptions> ToClientOptions(const ServerArguments& arguments);
 
 // "46=9,460": lengths with their weights (default 1). Errors: INVALID_ARGUMENT.
 absl::StatusOr<std::vector<Weighted<int>>> ParseFrames(absl::string_view text);

@@ -1,5 +1,6 @@
 #include "contrib/load/program/load_program.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
 #include <memory>
@@ -10,10 +11,8 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
-#include "client/cli/completion.h"
-#include "client/cli/exit_code.h"
-#include "client/cli/man_page.h"
-#include "client/cli/server_options.h"
+#include "client/client.h"
+#include "client/error_details.h"
 #include "contrib/load/call_kinds.h"
 #include "contrib/load/generator.h"
 #include "contrib/load/grpc_target.h"
@@ -68,8 +67,7 @@ class LoadRun {
 
  private:
   absl::Status Prepare() {
-    const absl::StatusOr<client::ClientOptions> options =
-        client::cli::ToClientOptions(arguments_.server);
+    const absl::StatusOr<client::ClientOptions> options = ToClientOptions(arguments_.server);
     if (!options.ok()) return options.status();
     absl::StatusOr<std::vector<CallKind>> kinds = FindAllKinds(arguments_, *options);
     if (!kinds.ok()) return kinds.status();
@@ -177,24 +175,14 @@ absl::Status RunCallLoad(const LoadArguments& arguments, const LoadEnvironment& 
 }  // namespace
 
 int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironment& environment) {
-  client::cli::FlagSet app("Puts a load on a Duet server and measures its answers.", "duet-load");
-  app.Version("duet-load " DUET_VERSION);
+  CLI::App app("Puts a load on a Duet server and measures its answers.", "duet-load");
+  app.set_version_flag("--version", "duet-load " DUET_VERSION);
   LoadArguments parsed;
   AddLoadFlags(&app, &parsed);
-  const client::cli::ParsedFlags flags = app.Parse(arguments);
-  if (flags.outcome == client::cli::ParsedFlags::Outcome::kAnswer) {
-    *environment.out << flags.text;
-    return client::cli::kExitDone;
-  }
-  if (flags.outcome == client::cli::ParsedFlags::Outcome::kError) {
-    *environment.err << flags.text;
-    return client::cli::kExitUsage;
-  }
-  if (parsed.manual_page || !parsed.completion.empty()) {
-    *environment.out << (parsed.manual_page
-                             ? client::cli::ManualPage(app, "")
-                             : client::cli::CompletionScript(app, parsed.completion));
-    return client::cli::kExitDone;
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::ParseError& error) {  // also --help and --version
+    return app.exit(error, *environment.out, *environment.err) == 0 ? kDone : kBadUsage;
   }
   bool answered = false;
   const absl::Status status = (parsed.live.empty() ? RunCallLoad : RunLiveLoad)(
@@ -202,12 +190,12 @@ int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironm
   if (!status.ok()) {
     *environment.err << "duet-load: " << status.message() << " ("
                      << absl::StatusCodeToString(status.code()) << ")\n";
-    return client::cli::ExitCodeFor(status);
+    return client::IsPermanent(status) ? kRejected : kNotAnswered;
   }
-  if (answered) return client::cli::kExitDone;
+  if (answered) return kDone;
   *environment.err << "duet-load: no " << (parsed.live.empty() ? "call" : "session")
                    << " was answered\n";
-  return client::cli::kExitRetry;
+  return kNotAnswered;
 }
 
 }  // namespace duet::contrib::load::program

@@ -14,8 +14,10 @@ struct LoadEnvironment {
   std::function<bool()> stopped;  // whether to end the run early
 };
 
-// The whole `duet-load` program. Returns its exit code (client/cli/exit_code.h). `arguments`
-// excludes the program's name.
+// The exit codes, which --help explains.
+enum ExitCode : int { kDone = 0, kNotAnswered = 1, kBadUsage = 2, kRejected = 42 };
+
+// The whole `duet-load` program. Returns its exit code. `arguments` excludes the program's name.
 int RunLoadProgram(const std::vector<std::string>& arguments, const LoadEnvironment& environment);
 
 }  // namespace duet::contrib::load::program

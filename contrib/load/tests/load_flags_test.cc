@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
 #include <sstream>
 
-#include "client/cli/exit_code.h"
 #include "contrib/load/program/load_program.h"
 
 namespace duet::contrib::load::program {
@@ -26,10 +26,10 @@ Ran RunWith(const std::vector<std::string>& arguments) {
 }
 
 LoadArguments Parse(const std::vector<std::string>& arguments) {
-  client::cli::FlagSet app;
+  CLI::App app;
   LoadArguments parsed;
   AddLoadFlags(&app, &parsed);
-  EXPECT_EQ(app.Parse(arguments).error, "");
+  app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   return parsed;
 }
 
@@ -67,7 +67,7 @@ TEST(LoadFlagsTest, ReadsTheContentOfCalls) {
   EXPECT_EQ(parsed.mix.models[0].weight, 0.5);
   EXPECT_EQ(parsed.mix.labels[0].interaction_class, "kick");
   EXPECT_EQ(parsed.mix.priority, client::Priority::kBulk);
-  EXPECT_EQ(parsed.server.timeout_seconds, 0.3);
+  EXPECT_EQ(parsed.server.deadline_seconds, 0.3);
   EXPECT_EQ(parsed.arrivals, ArrivalKind::kConstant);
 }
 
@@ -83,7 +83,7 @@ TEST(LoadFlagsTest, InvalidMixesNameTheExpectedForm) {
                                              {"--frames", "none"},
                                              {"--arrivals", "never"},
                                              {"--nonsense"}}) {
-    EXPECT_EQ(RunWith(arguments).code, client::cli::kExitUsage) << arguments[0];
+    EXPECT_EQ(RunWith(arguments).code, kBadUsage) << arguments[0];
   }
 }
 
@@ -111,10 +111,10 @@ TEST(LoadFlagsTest, LiveSessionsHaveTheirOwnFlags) {
                                              {"--live", "1", "--leader", "/nowhere/hug.bvh"},
                                              {"--jitter", "5"},
                                              {"--in-step"}}) {
-    EXPECT_EQ(RunWith(arguments).code, client::cli::kExitUsage) << arguments[0] << arguments.back();
+    EXPECT_EQ(RunWith(arguments).code, kBadUsage) << arguments[0] << arguments.back();
   }
   const Ran rates = RunWith({"--live", "1", "--rate", "25,30"});
-  EXPECT_EQ(rates.code, client::cli::kExitBadInput);
+  EXPECT_EQ(rates.code, kRejected);
   EXPECT_THAT(rates.err, HasSubstr("--rate: expected one rate with --live, got 2"));
   EXPECT_THAT(RunWith({"--live", "1", "--rate", "500"}).err,
               HasSubstr("--rate: expected 1 to 240 with --live, got 500"));
@@ -123,32 +123,30 @@ TEST(LoadFlagsTest, LiveSessionsHaveTheirOwnFlags) {
 }
 
 TEST(LoadFlagsTest, GivenFlagsAreListed) {
-  client::cli::FlagSet app;
+  CLI::App app;
   LoadArguments parsed;
   AddLoadFlags(&app, &parsed);
-  app.Parse({"--rate", "5,6", "--quiet"});
+  app.parse({"--quiet", "5,6", "--rate"});  // in reverse, as CLI11 reads vectors
   EXPECT_THAT(GivenFlags(app), ::testing::ElementsAre(::testing::Pair("rate", "5,6"),
                                                       ::testing::Pair("quiet", "true")));
 }
 
-TEST(LoadProgramTest, HasAManualPageAndCompletion) {
-  const Ran page = RunWith({"--man"});
-  EXPECT_EQ(page.code, client::cli::kExitDone);
-  EXPECT_THAT(page.out, HasSubstr(".TH DUET\\-LOAD 1"));
-  EXPECT_THAT(page.out, HasSubstr("\\fB\\-\\-callers\\fR \\fIN[,N...]\\fR"));
-  EXPECT_THAT(RunWith({"--completion", "bash"}).out, HasSubstr("complete -F _duet_load duet-load"));
-  EXPECT_THAT(RunWith({"--completion", "zsh"}).out, HasSubstr("#compdef duet-load"));
-  EXPECT_THAT(RunWith({"--completion", "fish"}).out, HasSubstr("complete -c duet-load"));
+TEST(LoadProgramTest, HelpListsFlagsAndExitCodes) {
+  const Ran help = RunWith({"--help"});
+  EXPECT_EQ(help.code, kDone);
+  EXPECT_THAT(help.out, HasSubstr("--callers N,..."));
+  EXPECT_THAT(help.out, HasSubstr("42  the server rejects the calls"));
+  EXPECT_EQ(RunWith({"--version"}).out, "duet-load " DUET_VERSION "\n");
 }
 
 TEST(LoadProgramTest, UnreachableServerIsAnError) {
   const Ran ran = RunWith({"--server", "unix:/nowhere/duet.sock", "--deadline", "0.05"});
-  EXPECT_EQ(ran.code, client::cli::kExitRetry);
+  EXPECT_EQ(ran.code, kNotAnswered);
   EXPECT_THAT(ran.err, HasSubstr("duet-load: "));
 }
 
 TEST(LoadProgramTest, MissingTokenFileIsBadInput) {
-  EXPECT_EQ(RunWith({"--token-file", "/nowhere/token"}).code, client::cli::kExitBadInput);
+  EXPECT_EQ(RunWith({"--token-file", "/nowhere/token"}).code, kRejected);
 }
 
 }  // namespace

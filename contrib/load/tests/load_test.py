@@ -5,7 +5,6 @@ import csv
 import json
 import pathlib
 import re
-import shutil
 import signal
 import subprocess
 import tempfile
@@ -166,23 +165,6 @@ class LoadTest(unittest.TestCase):
         self.assertEqual(process.returncode, 0)
         step = json.loads(out)["steps"][0]
         self.assertEqual(step["ended"], {"OK": step["due"]})
-
-    def test_manual_page_and_completion(self):
-        page = self.folder / "duet-load.1"
-        page.write_text(tools.run(LOAD, "--man").stdout, encoding="utf-8")
-        if shutil.which("mandoc"):
-            result = tools.run("mandoc", "-T", "lint", "-W", "warning", page)
-            self.assertEqual([line for line in result.stdout.splitlines()
-                              if "missing date" not in line], [])
-        script = self.folder / "duet-load.bash"
-        script.write_text(tools.run(LOAD, "--completion", "bash").stdout, encoding="utf-8")
-        for words, offers in ((("--arr",), {"--arrivals"}),
-                              (("--arrivals", ""), {"poisson", "constant"})):
-            result = tools.run("bash", "--norc", "-c",
-                               'source "$1"; shift; COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); '
-                               '_duet_load; printf "%s\\n" "${COMPREPLY[@]}"',
-                               "bash", script, "duet-load", *words)
-            self.assertEqual((set(result.stdout.split()), result.stderr), (offers, ""))
 
 
 if __name__ == "__main__":
