@@ -107,21 +107,22 @@ function(duet_script_test)
     ENVIRONMENT "DUET_SOURCE_DIR=${PROJECT_SOURCE_DIR};DUET_BIN_DIR=${CMAKE_BINARY_DIR}/bin;PYTHONPATH=${PROJECT_SOURCE_DIR}/tests/e2e")
 endfunction()
 
-# duet_embed_file(TARGET symbol path): links a file's bytes into TARGET as
+# duet_embed_file(TARGET symbol path...): links the bytes of a file, or of several one after the other, into TARGET as
 #   extern "C" const unsigned char <symbol>[], <symbol>_end[];
-function(duet_embed_file target symbol path)
+function(duet_embed_file target symbol)
+  list(TRANSFORM ARGN REPLACE "(.+)" "    .incbin \"\\1\"\n" OUTPUT_VARIABLE content)
+  list(JOIN content "" content)
   set(stub ${CMAKE_CURRENT_BINARY_DIR}/${symbol}.S)
   file(WRITE ${stub}.in
 "    .section .rodata
     .global ${symbol}, ${symbol}_end
     .balign 64
 ${symbol}:
-    .incbin \"${path}\"
-${symbol}_end:
+${content}${symbol}_end:
     .byte 0
     .section .note.GNU-stack,\"\",@progbits
 ")
   configure_file(${stub}.in ${stub} COPYONLY)
-  set_source_files_properties(${stub} PROPERTIES OBJECT_DEPENDS ${path})
+  set_source_files_properties(${stub} PROPERTIES OBJECT_DEPENDS "${ARGN}")
   target_sources(${target} PRIVATE ${stub})
 endfunction()

@@ -5,12 +5,9 @@
 #include "nlohmann/json.hpp"
 
 extern "C" {
-extern const char duet_page_gallery_index[], duet_page_gallery_index_end[];
-extern const char duet_page_gallery_style[], duet_page_gallery_style_end[];
-extern const char duet_page_cell[], duet_page_cell_end[];
-extern const char duet_page_curves[], duet_page_curves_end[];
-extern const char duet_page_gallery[], duet_page_gallery_end[];
-extern const char duet_page_gallery_main[], duet_page_gallery_main_end[];
+extern const char duet_gallery[], duet_gallery_end[];
+extern const char duet_gallery_style[], duet_gallery_style_end[];
+extern const char duet_gallery_script[], duet_gallery_script_end[];
 }
 
 namespace duet::client::viewer {
@@ -103,17 +100,9 @@ json Data(const GalleryContent& content) {
 absl::StatusOr<std::string> RenderGallery(const GalleryContent& content) {
   absl::Status status = Check(content);
   if (!status.ok()) return status;
-  PageParts parts;
-  parts.body = Embedded(duet_page_gallery_index, duet_page_gallery_index_end);
-  parts.title = content.title;
-  parts.style =
-      absl::StrCat(SharedStyle(), Embedded(duet_page_gallery_style, duet_page_gallery_style_end));
-  parts.data = SafeJson(Data(content));
-  parts.script = absl::StrCat(SharedScript(), Embedded(duet_page_cell, duet_page_cell_end),
-                              Embedded(duet_page_curves, duet_page_curves_end),
-                              Embedded(duet_page_gallery, duet_page_gallery_end),
-                              Embedded(duet_page_gallery_main, duet_page_gallery_main_end));
-  return FillPage(parts);
+  return FillPage({Embedded(duet_gallery, duet_gallery_end), content.title,
+                   Embedded(duet_gallery_style, duet_gallery_style_end), SafeJson(Data(content)),
+                   Embedded(duet_gallery_script, duet_gallery_script_end)});
 }
 
 }  // namespace duet::client::viewer

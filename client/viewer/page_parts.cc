@@ -4,27 +4,18 @@
 #include <cstring>
 
 #include "absl/strings/escaping.h"
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "nlohmann/json.hpp"
 
 // Embedded by duet_embed_file.
 extern "C" {
-extern const char duet_page_frame[], duet_page_frame_end[];
-extern const char duet_page_views[], duet_page_views_end[];
-extern const char duet_page_play[], duet_page_play_end[];
-extern const char duet_page_speeds[], duet_page_speeds_end[];
-extern const char duet_page_style[], duet_page_style_end[];
-extern const char duet_page_three[], duet_page_three_end[];
-extern const char duet_page_controls[], duet_page_controls_end[];
-extern const char duet_page_licence[], duet_page_licence_end[];
-extern const char duet_page_motion[], duet_page_motion_end[];
-extern const char duet_page_scenery[], duet_page_scenery_end[];
-extern const char duet_page_figure[], duet_page_figure_end[];
-extern const char duet_page_player[], duet_page_player_end[];
-extern const char duet_page_opening[], duet_page_opening_end[];
-extern const char duet_page_transport[], duet_page_transport_end[];
-extern const char duet_page_input[], duet_page_input_end[];
+extern const char duet_frame[], duet_frame_end[];
+extern const char duet_frame_views[], duet_frame_views_end[];
+extern const char duet_frame_play[], duet_frame_play_end[];
+extern const char duet_frame_speeds[], duet_frame_speeds_end[];
+extern const char duet_frame_licence[], duet_frame_licence_end[];
+extern const char duet_three[], duet_three_end[];
+extern const char duet_three_controls[], duet_three_controls_end[];
 }
 
 namespace duet::client::viewer {
@@ -44,19 +35,19 @@ void AppendLittleEndian(float value, std::string* bytes) {
 }  // namespace
 
 std::string FillPage(const PageParts& parts) {
-  const std::string page = absl::StrReplaceAll(Embedded(duet_page_frame, duet_page_frame_end),
-                                               {{"{{BODY}}", parts.body}});
+  const std::string page =
+      absl::StrReplaceAll(Embedded(duet_frame, duet_frame_end), {{"{{BODY}}", parts.body}});
   // One pass: inserted text is not searched again, so a title that contains "{{DATA}}" is harmless.
   return absl::StrReplaceAll(
       page, {{"{{TITLE}}", EscapeHtml(parts.title)},
-             {"{{VIEWS}}", Embedded(duet_page_views, duet_page_views_end)},
-             {"{{PLAY}}", Embedded(duet_page_play, duet_page_play_end)},
-             {"{{SPEEDS}}", Embedded(duet_page_speeds, duet_page_speeds_end)},
+             {"{{VIEWS}}", Embedded(duet_frame_views, duet_frame_views_end)},
+             {"{{PLAY}}", Embedded(duet_frame_play, duet_frame_play_end)},
+             {"{{SPEEDS}}", Embedded(duet_frame_speeds, duet_frame_speeds_end)},
              {"{{STYLE}}", parts.style},
              {"{{DATA}}", parts.data},
-             {"{{LICENCE}}", Embedded(duet_page_licence, duet_page_licence_end)},
-             {"{{THREE}}", Embedded(duet_page_three, duet_page_three_end)},
-             {"{{CONTROLS}}", Embedded(duet_page_controls, duet_page_controls_end)},
+             {"{{LICENCE}}", Embedded(duet_frame_licence, duet_frame_licence_end)},
+             {"{{THREE}}", Embedded(duet_three, duet_three_end)},
+             {"{{CONTROLS}}", Embedded(duet_three_controls, duet_three_controls_end)},
              {"{{SCRIPT}}", parts.script}});
 }
 
@@ -77,17 +68,5 @@ std::string EncodePositions(const motion::Clip& clip) {
   }
   return absl::Base64Escape(bytes);
 }
-
-std::string SharedScript() {
-  return absl::StrCat(Embedded(duet_page_motion, duet_page_motion_end),
-                      Embedded(duet_page_scenery, duet_page_scenery_end),
-                      Embedded(duet_page_figure, duet_page_figure_end),
-                      Embedded(duet_page_player, duet_page_player_end),
-                      Embedded(duet_page_opening, duet_page_opening_end),
-                      Embedded(duet_page_transport, duet_page_transport_end),
-                      Embedded(duet_page_input, duet_page_input_end));
-}
-
-absl::string_view SharedStyle() { return Embedded(duet_page_style, duet_page_style_end); }
 
 }  // namespace duet::client::viewer

@@ -16,9 +16,9 @@ namespace duet::client::viewer {
 struct PageParts {
   absl::string_view body;
   std::string title;
-  std::string style;
+  absl::string_view style;
   std::string data;  // JSON of SafeJson
-  std::string script;
+  absl::string_view script;
 };
 std::string FillPage(const PageParts& parts);
 
@@ -32,10 +32,6 @@ std::string SafeJson(const nlohmann::json& data);
 
 // Encodes positions [frames, joints, 3] as base64 of little-endian float32.
 std::string EncodePositions(const motion::Clip& clip);
-
-// Scripts that both pages share: motion, scenery, bodies, playback, input.
-std::string SharedScript();
-absl::string_view SharedStyle();
 
 }  // namespace duet::client::viewer
 

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "absl/strings/escaping.h"
-#include "client/viewer/page_data.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "nlohmann/json.hpp"
