@@ -5,8 +5,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "contrib/load/arrivals.h"
 #include "contrib/load/recorder.h"
-#include "contrib/load/weighted_choice.h"
 #include "model/base/random.h"
 
 namespace duet::contrib::load {

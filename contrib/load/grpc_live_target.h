@@ -8,7 +8,7 @@
 #include "absl/time/time.h"
 #include "client/options.h"
 #include "client/result.h"
-#include "contrib/load/live_content.h"
+#include "contrib/load/live_options.h"
 #include "contrib/load/live_target.h"
 #include "model/motion/poses.h"
 

@@ -3,10 +3,20 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
+#include "client/request.h"
 #include "contrib/load/time.h"
 
 namespace duet::contrib::load {
+
+// What all sessions begin with.
+struct LiveContent {
+  client::ModelChoice model;
+  std::vector<client::ClassWeight> labels;  // empty: 1 for the model's first class
+  int delay_frames = 0;
+  int plan_frames = 0;
+};
 
 // How the leader frames of a session reach the server: what cameras and networks do to them.
 struct LiveConditions {

@@ -4,9 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "contrib/load/figures.h"
 #include "contrib/load/report_json.h"
-#include "contrib/load/report_page.h"
 #include "model/base/counted.h"
 
 namespace duet::contrib::load {

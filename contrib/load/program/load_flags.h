@@ -14,7 +14,6 @@
 #include "client/options.h"
 #include "contrib/load/arrivals.h"
 #include "contrib/load/call_kinds.h"
-#include "contrib/load/live_content.h"
 #include "contrib/load/live_options.h"
 #include "contrib/load/load_options.h"
 #include "contrib/load/measurement.h"

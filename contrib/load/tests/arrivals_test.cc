@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "contrib/load/weighted_choice.h"
-
 namespace duet::contrib::load {
 namespace {
 
