@@ -16,7 +16,9 @@ changed_files() {
 }
 
 # clang-tidy needs the generated protocol headers, reads no precompiled ones, and looks at single files.
-scripts/configure.sh release -B "${build_dir}" -DDUET_BATCHES=OFF -DDUET_PRECOMPILE=OFF -DDUET_BUILD_TESTS=ON -DDUET_BUILD_BENCHMARKS=ON >/dev/null
+mapfile -t tools < <(scripts/contrib_options.sh ON)
+scripts/configure.sh release -B "${build_dir}" -DDUET_BATCHES=OFF -DDUET_PRECOMPILE=OFF -DDUET_BUILD_TESTS=ON \
+  -DDUET_BUILD_BENCHMARKS=ON "${tools[@]}" >/dev/null
 cmake --build "${build_dir}" --parallel "${JOBS:-1}" --target duet_generated
 
 mapfile -t files < <(changed_files "$@" | sort -u)
