@@ -25,7 +25,7 @@ test: ## Build everything, run the quick checks and every test
 
 .PHONY: contrib
 contrib: ## Build and test the tools next to Duet: contrib/README.md
-	@scripts/install_packages.sh $(BUILD_LISTS) test $(patsubst %/packages.txt,%,$(wildcard contrib/*/packages.txt))
+	@scripts/install_packages.sh $(BUILD_LISTS) test $(patsubst %/packages.txt,%,$(wildcard contrib/*/packages.txt contrib/*/tests/packages.txt))
 	@JOBS=$(JOBS) scripts/contrib.sh
 
 .PHONY: build

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the missing packages of one or more lists (packages/<list>.txt; of contrib/<tool>, its packages.txt), which
+# Installs the missing packages of one or more lists (packages/<list>.txt; of a folder of contrib, its packages.txt), which
 # have the names of Debian 12; packages/releases.tsv has the names in other releases.
 #   scripts/install_packages.sh build test contrib/studio
 #   scripts/install_packages.sh --print runtime     prints the names in this release; installs nothing

@@ -123,7 +123,7 @@ class InstallPackagesTest(unittest.TestCase):
     def test_the_table_renames_only_packages_of_the_lists(self):
         rows = table()
         listed = {line.split("#")[0].strip() 
-                  for file in (*PACKAGES.glob("*.txt"), *PACKAGES.parent.glob("contrib/*/packages.txt"))
+                  for file in (*PACKAGES.glob("*.txt"), *PACKAGES.parent.glob("contrib/**/packages.txt"))
                   for line in file.read_text(encoding="utf-8").splitlines()}
         self.assertEqual(rows[0], ["bookworm", "trixie", "noble"])
         for row in rows[1:]:
