@@ -15,8 +15,7 @@ import gateways
 import tools
 from gateways import GRPC_WEB, Gateway, ask_raw, connect, framed, message_of, post
 
-gateways.skip_without_modules()
-sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
+gateways.prepare()
 
 from duet_motion.v1 import synthesis_pb2  # noqa: E402
 
@@ -532,7 +531,6 @@ def sockets_with(pid, peer_port):
 def long_request():
     """Ten minutes of a standing leader, as bytes."""
     import duet_motion as duet
-    os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
     motion = duet.read_motion(tools.sample("hug"))
     request = synthesis_pb2.SynthesizeRequest(chunk_frames=1)
     request.leader.joint_names.extend(motion.joint_names)

@@ -19,10 +19,13 @@ NEEDED = (("grpc", "python3-grpcio"), ("numpy", "python3-numpy"), ("aiohttp", "p
 GRPC_WEB = "application/grpc-web+proto"
 
 
-def skip_without_modules():
+def prepare():
+    """Makes the Python package and the program duet available; without a module, skips the test."""
     for module, package in NEEDED:
         if importlib.util.find_spec(module) is None:
             tools.skip(f"no Python module {module}; install the package {package}")
+    sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
+    os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
 
 
 def has_new_aiohttp():

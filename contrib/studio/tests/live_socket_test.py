@@ -6,19 +6,15 @@ import base64
 import contextlib
 import itertools
 import json
-import os
 import socket
 import struct
-import sys
 import time
 
 import gateways
 import tools
 from gateways import Gateway, ask_raw, connect, message_of
 
-gateways.skip_without_modules()
-sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
-os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
+gateways.prepare()
 
 import aiohttp  # noqa: E402
 import duet_motion as duet  # noqa: E402

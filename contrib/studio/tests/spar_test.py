@@ -2,8 +2,6 @@
 
 import io
 import json
-import os
-import sys
 import unittest
 import zipfile
 
@@ -11,9 +9,7 @@ import gateways
 import tools
 from browser import Browser
 
-gateways.skip_without_modules()
-sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
-os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
+gateways.prepare()
 
 import numpy as np  # noqa: E402
 

@@ -1,16 +1,12 @@
 """The pages of contrib/studio while the server or the gateway is away, in a real browser."""
 
-import os
-import sys
 import unittest
 
 import gateways
 import tools
 from browser import Browser
 
-gateways.skip_without_modules()
-sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
-os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
+gateways.prepare()
 
 AWAY = (r"^The server at 127\.0\.0\.1:\d+ is not running: it refused the connection\. Start it with "
         r"duet-server, or start the gateway with another one \(--server HOST:PORT\)\.")

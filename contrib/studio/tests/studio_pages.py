@@ -1,17 +1,13 @@
 """The studio in a real browser, through a gateway, against a real server: what its tests share."""
 
 import json
-import os
-import sys
 import unittest
 
 import gateways
 import tools
 from browser import Browser
 
-gateways.skip_without_modules()
-sys.path.insert(0, str(tools.SOURCE / "client" / "python"))
-os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
+gateways.prepare()
 
 import duet_motion as duet  # noqa: E402
 import numpy as np  # noqa: E402
