@@ -8,11 +8,16 @@
 #include "absl/types/span.h"
 #include "model/base/angle.h"
 #include "model/base/median.h"
+#include "model/base/statistics.h"
+#include "model/body/liveliness.h"
+#include "model/motion/filter.h"
 
 namespace duet::body {
 namespace {
 
 using motion::Vec3;
+
+constexpr double kWidestShare = 0.9;  // the quantile of the distance of the feet
 
 double BendDegrees(const Limb& limb, absl::Span<const Vec3> pose) {
   const auto at = [&](int joint) { return pose[static_cast<std::size_t>(joint)]; };
@@ -49,6 +54,22 @@ BuildFigures MeasureBuild(const motion::Skeleton& skeleton, const Body& body,
   figures.narrowest_hips = *narrowest / width;
   figures.widest_hips = *widest / width;
   return figures;
+}
+
+StillnessFigures MeasureStillness(const motion::Skeleton& skeleton, const Body& body,
+                                  const motion::Poses& person, double frame_rate_hz) {
+  const motion::JointPair feet = *skeleton.feet;
+  std::vector<double> apart;
+  int raised = 0;
+  for (int t = 0; t < person.frame_count(); ++t) {
+    raised += std::any_of(body.arms.begin(), body.arms.end(), [&](const Limb& arm) {
+      return person.at(t, arm.end).y > person.at(t, arm.upper).y;
+    });
+    const Vec3 between = person.at(t, feet.left) - person.at(t, feet.right);
+    apart.push_back(std::hypot(double{between.x}, double{between.z}));
+  }
+  return {JointSpeed(motion::WithoutNoise(person, frame_rate_hz), frame_rate_hz),
+          static_cast<double>(raised) / person.frame_count(), base::Quantile(apart, kWidestShare)};
 }
 
 }  // namespace duet::body

@@ -23,6 +23,17 @@ struct BuildFigures {
 BuildFigures MeasureBuild(const motion::Skeleton& skeleton, const Body& body,
                           const motion::Poses& person);
 
+// Whether somebody stands like a person who has nothing to do.
+struct StillnessFigures {
+  double joint_speed = 0;         // m/s, mean over joints and frames, after the noise filter
+  double hand_over_shoulder = 0;  // share of frames with a hand above its shoulder
+  double feet_apart = 0;          // metres along the floor, 90 % quantile over the frames
+};
+
+// Requires feet and two arms, and at least one frame. World metres, y up.
+StillnessFigures MeasureStillness(const motion::Skeleton& skeleton, const Body& body,
+                                  const motion::Poses& person, double frame_rate_hz);
+
 }  // namespace duet::body
 
 #endif  // DUET_MODEL_BODY_BUILD_H_

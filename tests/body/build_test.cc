@@ -57,5 +57,45 @@ TEST(BuildTest, ACrouchBendsKneesAndLowersHips) {
   EXPECT_LT(crouching.hips_over_leg, standing.hips_over_leg - 0.2);
 }
 
+StillnessFigures Stillness(const motion::Poses& person) {
+  return MeasureStillness(Sbu(), FindBody(Sbu()), person, /*frame_rate_hz=*/15);
+}
+
+TEST(StillnessTest, APersonWhoStandsStillDoesNotMove) {
+  const StillnessFigures figures = Stillness(Standing(30));
+  EXPECT_EQ(figures.joint_speed, 0);
+  EXPECT_EQ(figures.hand_over_shoulder, 0);
+  EXPECT_GT(figures.feet_apart, 0.05);
+  EXPECT_LT(figures.feet_apart, 0.4);
+}
+
+TEST(StillnessTest, SpeedIsTheMeanOverTheJoints) {
+  motion::Poses person = Standing(30);
+  for (int t = 0; t < 30; ++t) {
+    for (int j = 0; j < 3; ++j) person.at(t, j).x += 0.02f * static_cast<float>(t);
+  }
+  EXPECT_NEAR(Stillness(person).joint_speed, 0.02 * 15 * 3 / 15, 1e-4);  // 3 of 15 joints
+}
+
+TEST(StillnessTest, CountsFramesInWhichEitherHandIsAboveItsShoulder) {
+  motion::Poses person = Standing(10);
+  const Body body = FindBody(Sbu());
+  for (int t = 0; t < 4; ++t) {
+    const Limb& arm = body.arms[static_cast<std::size_t>(t % 2)];
+    person.at(t, arm.end).y = person.at(t, arm.upper).y + 0.01f;
+  }
+  EXPECT_DOUBLE_EQ(Stillness(person).hand_over_shoulder, 0.4);
+}
+
+TEST(StillnessTest, FeetApartIgnoresTheWidestTenthAndHeights) {
+  motion::Poses person = Standing(21);
+  const motion::JointPair feet = *Sbu().feet;
+  for (int t = 0; t < 21; ++t) {
+    person.at(t, feet.left) = person.at(t, feet.right) + motion::Vec3{0.3f, 0.2f, 0.4f};
+  }
+  person.at(7, feet.left).x += 2;
+  EXPECT_NEAR(Stillness(person).feet_apart, 0.5, 1e-5);
+}
+
 }  // namespace
 }  // namespace duet::body

@@ -1,15 +1,19 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "model/authoring/made_leaders.h"
+#include "model/base/statistics.h"
 #include "model/base/status_macros.h"
+#include "model/body/build.h"
 #include "model/dataset/dataset.h"
 #include "model/dataset/lone_leaders.h"
+#include "model/engine/live_synthesis.h"
 #include "model/evaluation/experiments/answers.h"
 #include "model/evaluation/experiments/looped_leaders.h"
 #include "model/evaluation/experiments/plausibility.h"
@@ -29,6 +33,9 @@ using motion::Poses;
 
 // Length of the pictures of the worst answers.
 constexpr double kPictureSeconds = 4;
+// Leaders who do not move, for measurements of stillness: their length, unless --seconds is less;
+// the beginning, in which a follower may still come to rest; and the end.
+constexpr double kStillSeconds = 15, kSettlingSeconds = 3, kLastSeconds = 2;
 
 struct PlausibleArguments {
   std::string leaders;
@@ -163,6 +170,85 @@ void AddPictures(const engine::ModelDescription& model, const std::vector<Answer
   }
 }
 
+// The leaders' first poses, held.
+std::vector<dataset::Sequence> HoldFirstPoses(const std::vector<dataset::Sequence>& leaders,
+                                              double seconds, double frame_rate_hz) {
+  std::vector<dataset::Sequence> held;
+  for (const dataset::Sequence& leader : leaders) {
+    dataset::Sequence& still = held.emplace_back();
+    still.id = leader.id;
+    const motion::Clip& moving = leader.pair.leader;
+    motion::Clip& clip = still.pair.leader;
+    clip.joint_names = moving.joint_names;
+    clip.frame_rate_hz = frame_rate_hz;
+    for (int t = 0; t < seconds * frame_rate_hz; ++t) clip.Append(moving.poses[0]);
+  }
+  return held;
+}
+
+// The means of the figures of stillness of followers of one rate and length.
+std::vector<double> StillnessOf(const motion::Skeleton& skeleton,
+                                const std::vector<Poses>& followers, double rate) {
+  const body::Body body = body::FindBody(skeleton);
+  std::vector<double> speed, raised, apart, hips;
+  for (const Poses& follower : followers) {
+    const auto from = [&](double seconds) {  // a negative number: from the end
+      const int frames = follower.frame_count(), at = static_cast<int>(seconds * rate);
+      const int first = std::clamp(at < 0 ? frames + at : at, 0, frames - 1);
+      return motion::Part(follower, first, frames - first);
+    };
+    const body::StillnessFigures figures =
+        body::MeasureStillness(skeleton, body, from(kSettlingSeconds), rate);
+    speed.push_back(figures.joint_speed);
+    raised.push_back(figures.hand_over_shoulder);
+    apart.push_back(figures.feet_apart);
+    hips.push_back(body::MeasureBuild(skeleton, body, from(-kLastSeconds)).hips_over_leg);
+  }
+  return {base::Mean(speed), base::Mean(raised), base::Mean(apart), base::Mean(hips)};
+}
+
+// Followers of leaders who do not move: without a class and with each, in clips and live.
+absl::StatusOr<report::Table> StillnessTable(const PlausibleArguments& arguments,
+                                             const std::string& name,
+                                             const engine::Synthesizer& synthesizer,
+                                             const std::vector<dataset::Sequence>& leaders) {
+  const engine::ModelDescription& model = synthesizer.description();
+  const double seconds = std::min(arguments.seconds, kStillSeconds);
+  const std::vector<dataset::Sequence> held = HoldFirstPoses(leaders, seconds, model.frame_rate_hz);
+  report::Table table{
+      absl::StrCat(name, ": followers of ", held.size(), " leaders who do not move"),
+      {"speed", "hand up", "feet apart", "hips"}};
+  for (const bool live : {false, true}) {
+    if (live && !engine::AnswersLive(model)) break;
+    experiments::AskedSamples asked = arguments.asked;
+    asked.live_delay = live ? std::optional(arguments.asked.live_delay.value_or(0)) : std::nullopt;
+    for (int c = -1; c < model.class_count(); ++c) {
+      const std::vector<float> weights = c < 0 ? std::vector<float>(model.classes.size())
+                                               : experiments::OneClass(model.class_count(), c);
+      std::vector<experiments::LabelledLeader> labelled;
+      for (const dataset::Sequence& leader : held) {
+        labelled.push_back(
+            Ask(leader, engine::LabelTrack(weights), asked, asked.seed + labelled.size() * 1000));
+      }
+      DUET_TRY(auto followers,
+               SynthesizeSequences(synthesizer, labelled, experiments::StartGiven::kNone));
+      table.rows.push_back(
+          {absl::StrCat(c < 0 ? "weights 0" : model.classes[static_cast<size_t>(c)],
+                        live ? ", live" : ""),
+           StillnessOf(model.skeleton, followers, model.frame_rate_hz)});
+    }
+  }
+  table.decimals = 3;
+  table.notes = {
+      absl::StrCat("Each leader's first pose, held for ", seconds, " s. After the first ",
+                   kSettlingSeconds,
+                   " s: speed of the joints, m/s; share of frames with a hand above its shoulder; "
+                   "distance of the feet along the floor, 90 % quantile, metres."),
+      absl::StrCat("Hips: mean height above the lower foot in the last ", kLastSeconds,
+                   " s, in lengths of the leg.")};
+  return table;
+}
+
 absl::Status AddModel(const PlausibleArguments& arguments, const std::string& name,
                       const engine::Synthesizer& synthesizer, report::ResultSection* section) {
   const engine::ModelDescription& model = synthesizer.description();
@@ -197,6 +283,8 @@ absl::Status AddModel(const PlausibleArguments& arguments, const std::string& na
   }
   section->tables.push_back(FiguresTable(
       absl::StrCat(name, ": followers of ", leaders.size(), " leaders"), model.classes, by_class));
+  DUET_TRY(report::Table stillness, StillnessTable(arguments, name, synthesizer, leaders));
+  section->tables.push_back(std::move(stillness));
   AddPictures(model, answers, arguments.worst, section);
   return absl::OkStatus();
 }
@@ -226,11 +314,12 @@ absl::Status AddCaptured(const std::string& folder, report::ResultSection* secti
 
 absl::Status RunPlausible(const PlausibleArguments& arguments) {
   DUET_TRY(std::vector<FoldModel> models, OpenModels(arguments.models));
-  report::ResultSection section =
-      BeginSection(arguments.section,
-                   "What a viewer would notice in followers of leaders that the model never saw: "
-                   "every motion file below a folder and, for the skeleton of SBU, four that "
-                   "formulas make, answered in every class at weight 1 without a start.");
+  report::ResultSection section = BeginSection(
+      arguments.section,
+      "What a viewer would notice in followers of leaders that the model never saw: "
+      "every motion file below a folder and, for the skeleton of SBU, four that "
+      "formulas make, answered in every class at weight 1 without a start; and their first "
+      "poses, held, answered also without a class.");
   section.settings.emplace_back("seeds", absl::StrCat(arguments.asked.samples));
   AddSamplingSettings(arguments.asked, &section);
   for (const FoldModel& model : models) {
