@@ -74,7 +74,8 @@ LAYERS = (
           source_libraries=("torch",)),
     Layer("torch plugin", "model/torch_plugin", sees=("base", "motion", "engine", "torch engine")),
     Layer("training", "model/training",
-          sees=("base", "motion", "retargeting", "dataset", "engine", "checkpoint", "network"),
+          sees=("base", "motion", "body", "retargeting", "dataset", "engine", "checkpoint",
+                "network"),
           libraries=("torch",)),
     # Evaluation.
     Layer("metrics", "model/evaluation/metrics", sees=("base", "motion", "body", "dataset")),

@@ -10,6 +10,7 @@
 #include "model/training/frame_labels.h"
 #include "model/training/live_leader.h"
 #include "model/training/lone_leader.h"
+#include "model/training/stillness.h"
 
 namespace duet::training {
 namespace {
@@ -53,12 +54,13 @@ void ScalePair(float scale, FlowExample* example) {
 }
 
 FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
-                        const dataset::Sequence& sequence, const TrainingOptions& options,
-                        base::Random* random) {
+                        const dataset::Sequence& sequence, bool needs_pose,
+                        const TrainingOptions& options, base::Random* random) {
   const auto& flow = std::get<FlowTraining>(options.method);
   const bool live = flow.live.share > 0 && random->Chance(flow.live.share);
   const bool goes_on = live && random->Chance(flow.live.several_known);
-  const StartKnowledge start = goes_on ? StartKnowledge::kPose : DrawStart(options.start, random);
+  const StartKnowledge start =
+      goes_on || needs_pose ? StartKnowledge::kPose : DrawStart(options.start, random);
   FlowExample example = MakeFlowExample(
       manifest, dataset, CapturedExample(dataset, sequence, start), flow.target_smoothing);
   example.live = live;
@@ -78,19 +80,38 @@ FlowExample DrawExample(const checkpoint::Manifest& manifest, const dataset::Dat
   return example;
 }
 
-// Every training sequence, augmented, some of them with another leader.
-std::vector<dataset::Sequence> DrawSequences(const checkpoint::Manifest& manifest,
-                                             const dataset::Dataset& dataset,
-                                             const std::vector<int>& train,
-                                             const TrainingOptions& options, base::Random* random) {
-  std::vector<dataset::Sequence> sequences = AugmentAll(dataset, train, options, random);
-  const double share = std::get<FlowTraining>(options.method).leaders.share;
-  if (share == 0) return sequences;
-  for (dataset::Sequence& sequence : sequences) {
-    if (!random->Chance(share)) continue;
-    ReplaceLeader(manifest.model, dataset, options.augmentation, random, &sequence);
+// The clips of a pass, and for each whether it needs a start pose, or has no label.
+struct Clips {
+  std::vector<dataset::Sequence> sequences;
+  std::vector<bool> needs_pose, unlabelled;
+};
+
+// Every training sequence, augmented, some of them with another leader or with pauses.
+Clips DrawClips(const checkpoint::Manifest& manifest, const dataset::Dataset& dataset,
+                const std::vector<int>& train, const TrainingOptions& options,
+                base::Random* random) {
+  const auto& flow = std::get<FlowTraining>(options.method);
+  const bool still = flow.stillness.used();
+  TrainingOptions first = options;
+  if (still) first.augmentation.noise = first.augmentation.body_noise = 0;  // after the pauses
+  Clips clips{AugmentAll(dataset, train, first, random), std::vector<bool>(train.size()),
+              std::vector<bool>(train.size())};
+  for (size_t i = 0; i < train.size(); ++i) {
+    dataset::Sequence& sequence = clips.sequences[i];
+    if (flow.leaders.share > 0 && random->Chance(flow.leaders.share)) {
+      ReplaceLeader(manifest.model, dataset, options.augmentation, random, &sequence);
+    } else if (still) {
+      StillClip clip = AddStillness(dataset.skeleton, flow.stillness, dataset.frame_rate_hz,
+                                    manifest.model.window_frames, random, std::move(sequence));
+      clips.needs_pose[i] = clip.amid;
+      clips.unlabelled[i] = clip.unlabelled;
+      sequence = std::move(clip.sequence);
+      if (!random->Chance(flow.stillness.clean)) {
+        DisturbLeader(options.augmentation, random, &sequence.pair.leader);
+      }
+    }
   }
-  return sequences;
+  return clips;
 }
 
 int64_t BatchesPerPass(const TrainingOptions& options, size_t sequences) {
@@ -154,14 +175,14 @@ FlowEpoch DrawFlowEpoch(const checkpoint::Manifest& manifest, const dataset::Dat
   FlowEpoch batches;
   const int64_t passes = PassesPerEpoch(options, train.size());
   for (int64_t pass = 0; pass < passes; ++pass) {
-    const std::vector<dataset::Sequence> sequences =
-        DrawSequences(manifest, dataset, train, options, &random);
-    for (const std::vector<int>& piece : BatchesByLength(sequences, options.batch, &random)) {
+    const Clips clips = DrawClips(manifest, dataset, train, options, &random);
+    for (const std::vector<int>& piece : BatchesByLength(clips.sequences, options.batch, &random)) {
       std::vector<FlowExample>& examples = batches.emplace_back();
       for (const int index : piece) {
-        examples.push_back(DrawExample(manifest, dataset, sequences[static_cast<size_t>(index)],
+        const auto i = static_cast<size_t>(index);
+        examples.push_back(DrawExample(manifest, dataset, clips.sequences[i], clips.needs_pose[i],
                                        options, &random));
-        examples.back().unlabelled = random.Chance(flow.unlabelled);
+        examples.back().unlabelled = random.Chance(flow.unlabelled) || clips.unlabelled[i];
       }
     }
   }

@@ -52,6 +52,14 @@ void Read(base::ObjectReader* reader, FlowTraining::Leaders* out) {
   out->share = Probability(reader, "share");
 }
 
+void Read(base::ObjectReader* reader, FlowTraining::Stillness* out) {
+  out->pauses = Probability(reader, "pauses");
+  out->ends = Probability(reader, "ends");
+  out->motionless = Probability(reader, "motionless");
+  out->unlabelled = Probability(reader, "unlabelled");
+  out->clean = Probability(reader, "clean");
+}
+
 void Read(base::ObjectReader* reader, FlowTraining::Live* out) {
   out->share = Probability(reader, "share");
   out->several_known = Probability(reader, "several_known");
@@ -99,6 +107,7 @@ void ReadSections(base::ObjectReader* root, FlowTraining* out) {
   section("energy", &out->energy);
   // Optional: configurations of earlier versions do not have them.
   if (root->Has("leaders")) section("leaders", &out->leaders);
+  if (root->Has("stillness")) section("stillness", &out->stillness);
   if (root->Has("critic")) section("critic", &out->critic);
 }
 
@@ -134,6 +143,11 @@ void Describe(const FlowTraining& f, Description* out) {
                {"drift.joints", Text(f.drift.joints)},
                {"drift.frames", Text(f.drift.frames)},
                {"leaders.share", Text(f.leaders.share)},
+               {"stillness.pauses", Text(f.stillness.pauses)},
+               {"stillness.ends", Text(f.stillness.ends)},
+               {"stillness.motionless", Text(f.stillness.motionless)},
+               {"stillness.unlabelled", Text(f.stillness.unlabelled)},
+               {"stillness.clean", Text(f.stillness.clean)},
                {"live.share", Text(f.live.share)},
                {"live.several_known", Text(f.live.several_known)},
                {"live.remade_seconds", Text(f.live.remade_seconds)},

@@ -63,6 +63,18 @@ struct FlowTraining {
     double share = 0;  // of the clips
   } leaders;
 
+  // Clips in which nothing happens for a while, made from captured ones (stillness.h). Fractions of
+  // the clips, which sum up to at most 1, unless said otherwise.
+  struct Stillness {
+    double pauses = 0;      // of the other clips: pauses before and after the reaction
+    double ends = 0;        // the end of a reaction, and a longer rest
+    double motionless = 0;  // the leader does not move
+    double unlabelled = 0;  // the follower rests beside any leader, without a label
+    double clean = 0;       // of all clips: the leader has no noise
+
+    bool used() const { return pauses + ends + motionless + unlabelled > 0; }
+  } stillness;
+
   // A fraction of the clips is trained as a live session answers them (live_leader.h): the leader's
   // future is unknown.
   struct Live {

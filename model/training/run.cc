@@ -25,6 +25,7 @@
 #include "model/training/lone_leader.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
+#include "model/training/stillness.h"
 #include "model/training/take_errors.h"
 #include "model/training/trainers.h"
 
@@ -340,6 +341,7 @@ fs::path CheckpointFolder(const RunPlan& plan) {
 absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, bool terminal,
                          std::ostream* progress) {
   absl::Status status = CheckAgainst(plan.options, whole);
+  if (status.ok()) status = CheckStillness(plan.options, whole);
   if (status.ok()) status = CheckKeptShare(plan);
   if (!status.ok()) return status;
   if (fs::exists(CheckpointFolder(plan))) {

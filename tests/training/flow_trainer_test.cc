@@ -105,6 +105,29 @@ TEST_F(FlowTrainerTest, ResumedRunWithLoneLeadersAndTwistIsTheSame) {
   }
 }
 
+TEST_F(FlowTrainerTest, ResumedRunWithStillnessIsTheSame) {
+  FlowOf(&options_).stillness = {0.5, 0.2, 0.2, 0.2, 0.5};
+  ExpectToResume();
+}
+
+TEST_F(FlowTrainerTest, ClipsOfStillnessHaveTheirStartsAndLabels) {
+  FlowOf(&options_).stillness.motionless = 0.5;
+  FlowOf(&options_).stillness.unlabelled = 0.4;
+  FlowOf(&options_).unlabelled = 0;
+  FlowOf(&options_).passes = 40;
+  options_.start = {0, 0};
+  int unlabelled = 0, told = 0, all = 0;
+  for (const auto& batch : DrawFlowEpoch(manifest_, dataset_, AllOf(dataset_), options_, 0)) {
+    for (const FlowExample& example : batch) {
+      unlabelled += example.unlabelled;
+      told += example.input.start.has_value();
+      ++all;
+    }
+  }
+  EXPECT_NEAR(unlabelled, 0.4 * all, 0.1 * all);
+  EXPECT_NEAR(told, 0.45 * all, 0.1 * all);  // those in the midst, without whom nobody is told
+}
+
 TEST_F(FlowTrainerTest, LoneLeadersAreGivenToTheirShareOfTheClips) {
   options_.augmentation.noise = 0;
   options_.augmentation.mirror = 0;

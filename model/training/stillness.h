@@ -1,0 +1,50 @@
+#ifndef DUET_MODEL_TRAINING_STILLNESS_H_
+#define DUET_MODEL_TRAINING_STILLNESS_H_
+
+#include "absl/status/status.h"
+#include "model/base/random.h"
+#include "model/dataset/dataset.h"
+#include "model/motion/skeleton.h"
+#include "model/training/flow_training.h"
+#include "model/training/options.h"
+
+namespace duet::training {
+
+// Checks that the skeleton has the joints that AddStillness needs, if the options use it.
+// INVALID_ARGUMENT otherwise.
+absl::Status CheckStillness(const TrainingOptions& options, const dataset::Dataset& dataset);
+
+// A clip with what is around a captured reaction.
+struct StillClip {
+  dataset::Sequence sequence;
+  // The follower does not begin at its place: the clip needs a start pose.
+  bool amid = false;
+  // Nothing is asked of the follower, which therefore rests: the clip needs weights of 0.
+  bool unlabelled = false;
+};
+
+// Adds to a captured clip what its cut left out. Captures begin and end with the action, so they
+// never show that a follower rests while nothing happens, and comes back to rest afterwards. Draws
+// one of:
+//
+// - a reaction with pauses before and after it. Before, both people hold their first poses. After,
+//   the leader holds still, or slows down, or goes to rest; the follower slows down, and then goes
+//   to rest;
+// - the end of a reaction and a longer rest;
+// - a leader who does not move. The follower rests, or goes to rest from a pose of the reaction;
+// - the captured leader and a follower that rests, unlabelled: without a class, nothing is asked.
+//
+// A person at rest has the calmest pose of the clip (hands low, feet together) at the place of its
+// first frame, relative to the leader, and shifts its weight. It gets there in one step of each
+// foot; feet stand otherwise.
+//
+// The clip is at most `most_frames` long; a reaction that leaves no room gets no pauses. Requires
+// the joints of CheckStillness, and a clip without a time line of labels. Units: frame_rate_hz of
+// the clip.
+StillClip AddStillness(const motion::Skeleton& skeleton, const FlowTraining::Stillness& options,
+                       double frame_rate_hz, int most_frames, base::Random* random,
+                       dataset::Sequence sequence);
+
+}  // namespace duet::training
+
+#endif  // DUET_MODEL_TRAINING_STILLNESS_H_
