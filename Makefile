@@ -48,11 +48,6 @@ check: ## Run every check, including slow ones (CHECK="links tidy" runs only the
 	@scripts/install_packages.sh $(BUILD_LISTS) test develop
 	@JOBS=$(JOBS) scripts/check.py $(CHECK)
 
-.PHONY: mutate
-mutate: ## Measure how often the tests notice broken code: docs/mutation.md
-	@scripts/install_packages.sh $(BUILD_LISTS) test
-	@JOBS=$(JOBS) scripts/mutate.py
-
 .PHONY: bench
 bench: ## Time the engine and its kernels beside the committed figures, and the cost of hardening
 	@scripts/install_packages.sh $(BUILD_LISTS) test

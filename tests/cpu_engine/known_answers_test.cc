@@ -1,5 +1,5 @@
-// Answers of small networks, recorded when they equalled LibTorch's (parity_test.cc): sanitizers
-// and mutation testing, which run without LibTorch, thus see a change of either network.
+// Answers of small networks, recorded when they equalled LibTorch's (parity_test.cc), so that
+// builds and sanitizers without LibTorch notice a change of either network.
 #include <gtest/gtest.h>
 
 #include <cmath>
