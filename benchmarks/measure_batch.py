@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Measures `duet batch` and prints a table for docs/batch.md: items a second, and the processor time
+"""Measures `duet batch` and prints a table: items a second, and the processor time
 and memory of the client.
 
     benchmarks/measure_batch.py BUILD [--items 20000] [--lines 1000000] [--leaders 50] [--before DUET]
 
-Four runs against a server whose engine answers at once (tests/duet-fake-server), so that the client
+Three runs against a server whose engine answers at once (tests/duet-fake-server), so that the client
 is the bottleneck: --items items, each with its own leader and output file; the same with 20 items per
-leader; the same into packed shards; and a manifest of --lines lines of which one in a thousand is
+leader; and a manifest of --lines lines of which one in a thousand is
 requested, which shows the memory of a long list. Before each, plain gRPC makes as many calls
 (BUILD/benchmarks/call_cost): on a machine with other load, only adjacent figures are comparable.
 Last, a real server: --leaders leaders with recipes/mixes.textproto, 26 items each.
@@ -28,7 +28,7 @@ import time
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 RECIPE = """
 reactions { labels { weights { key: "kick" value: 1 } } }
-output { formats: FORMAT_NPY %s }
+output { formats: FORMAT_NPY }
 """
 COLUMNS = ("run", "items", "items a second", "bare gRPC, calls a second", "ratio",
            "client, us an item", "in the kernel", "server, us an item", "client's memory, MiB")
@@ -120,14 +120,12 @@ def fake_runs(folder, arguments):
     write_leader(folder / "leader0.json")
     for number in range(1, arguments.items):
         os.link(folder / "leader0.json", folder / f"leader{number}.json")
-    (folder / "files").write_text(RECIPE % "", encoding="utf-8")
-    (folder / "packed").write_text(RECIPE % "packing: PACKING_NPZ", encoding="utf-8")
+    (folder / "files").write_text(RECIPE, encoding="utf-8")
     write_manifest(folder / "leaders.tsv", arguments.items, arguments.items)
     write_manifest(folder / "items.tsv", arguments.items, max(1, arguments.items // 20))
     write_manifest(folder / "lines.tsv", arguments.lines)
     yield "a leader an item", "files", ("--manifest", folder / "leaders.tsv")
     yield "20 items a leader", "files", ("--manifest", folder / "items.tsv")
-    yield "the same, npz shards", "packed", ("--manifest", folder / "items.tsv")
     yield (f"1 in 1,000 of {arguments.lines:,} lines", "files",
            ("--manifest", folder / "lines.tsv", "--shard", "0/1000"))
 
@@ -152,9 +150,9 @@ def rows(folder, arguments):
     write_samples(folder / "samples", arguments.leaders)
     with serving(arguments.build / "bin" / "duet-server", folder) as (server, address):
         for which, program in programs.items():
-            yield measure(f"a real server, `recipes/mixes.textproto`, npz shards{which}", program,
+            yield measure(f"a real server, `recipes/mixes.textproto`{which}", program,
                           server, address, folder, SOURCE / "recipes" / "mixes.textproto",
-                          folder / "samples", "--pack", "npz")
+                          folder / "samples")
 
 
 def main():

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <set>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -47,6 +48,14 @@ absl::Status MakeFolders(const fs::path& folder) {
   return absl::OkStatus();
 }
 
+absl::Status WriteUnsynced(const std::string& path, absl::string_view content) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kFileMode);
+  if (file < 0) return CannotWrite(path, errno);
+  absl::Status status = WriteAll(file, content, path);
+  if (close(file) != 0 && status.ok()) status = CannotWrite(path, errno);
+  return status;
+}
+
 }  // namespace
 
 absl::Status CannotWrite(const fs::path& path, int error) {
@@ -64,32 +73,12 @@ absl::Status RenameInto(const std::string& from, const std::string& to) {
   return rename(from.c_str(), to.c_str()) == 0 ? absl::OkStatus() : CannotWrite(to, errno);
 }
 
-absl::Status WriteFileUnsynced(const std::string& path, absl::string_view content) {
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kFileMode);
-  if (file < 0) return CannotWrite(path, errno);
-  absl::Status status = WriteAll(file, content, path);
-  if (close(file) != 0 && status.ok()) status = CannotWrite(path, errno);
-  return status;
-}
-
 absl::Status SyncFileSystem(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return CannotWrite(folder, errno);
   const absl::Status status =
       syncfs(descriptor) == 0 ? absl::OkStatus() : CannotWrite(folder, errno);
   close(descriptor);
-  return status;
-}
-
-absl::Status WriteDurably(const fs::path& temporary, const fs::path& path,
-                          absl::string_view content) {
-  const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kFileMode);
-  if (file < 0) return CannotWrite(temporary, errno);
-  absl::Status status = WriteAll(file, content, path);
-  if (status.ok() && fsync(file) != 0) status = CannotWrite(path, errno);
-  close(file);
-  if (status.ok()) status = RenameInto(temporary, path);
-  if (!status.ok()) unlink(temporary.c_str());
   return status;
 }
 
@@ -102,13 +91,42 @@ absl::Status SyncFolder(const fs::path& folder) {
   return status;
 }
 
-absl::Status ReplaceDurably(const fs::path& path, absl::string_view content) {
-  absl::Status status = WriteDurably(path.string() + ".partial", path, content);
-  return status.ok() ? SyncFolder(path.parent_path()) : status;
+absl::Status WriteDurably(const fs::path& temporary, const fs::path& path,
+                          absl::string_view content) {
+  DurableFile file(temporary);
+  absl::Status status = file.Open();
+  if (status.ok()) status = file.Append(content);
+  return status.ok() ? file.Finish(path) : status;
+}
+
+FileGroup::~FileGroup() {
+  for (const Pending& file : pending_) unlink(file.temporary.c_str());
+}
+
+absl::Status FileGroup::Add(const std::string& path, absl::string_view content) {
+  pending_.push_back({absl::StrCat(temporary_.string(), "/", count_++), out_ + path});
+  return WriteUnsynced(pending_.back().temporary, content);
+}
+
+absl::Status FileGroup::Commit() {
+  if (pending_.empty()) return absl::OkStatus();
+  absl::Status status = SyncFileSystem(temporary_);
+  if (!status.ok()) return status;
+  std::set<std::string> folders;
+  for (const Pending& file : pending_) {
+    status = RenameInto(file.temporary, file.path);
+    if (!status.ok()) return status;
+    folders.insert(file.path.substr(0, file.path.rfind('/')));
+  }
+  pending_.clear();
+  for (const std::string& folder : folders) status.Update(SyncFolder(folder));
+  return status;
 }
 
 DurableFile::~DurableFile() {
-  if (descriptor_ >= 0) close(descriptor_);
+  if (descriptor_ < 0) return;
+  close(descriptor_);
+  if (!finished_) unlink(temporary_.c_str());
 }
 
 absl::Status DurableFile::Open() {
@@ -131,40 +149,9 @@ absl::Status DurableFile::Finish(const fs::path& path) {
   absl::Status status = Flush();
   if (status.ok() && fsync(descriptor_) != 0) status = CannotWrite(temporary_, errno);
   if (status.ok()) status = RenameInto(temporary_, path);
-  return status.ok() ? SyncFolder(path.parent_path()) : status;
-}
-
-AppendedFile::~AppendedFile() {
-  if (descriptor_ >= 0) close(descriptor_);
-}
-
-absl::Status AppendedFile::Open() {
-  if (descriptor_ >= 0 || !broken_.ok()) return broken_;
-  descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, kFileMode);
-  const off_t end = descriptor_ < 0 ? -1 : lseek(descriptor_, 0, SEEK_END);
-  if (end < 0) return broken_ = CannotWrite(path_, errno);
-  size_ = synced_size_ = static_cast<uint64_t>(end);
-  return broken_ = SyncFolder(path_.parent_path());
-}
-
-absl::Status AppendedFile::Flush() {
-  if (broken_.ok()) broken_ = WriteAll(descriptor_, buffer_, path_);
-  buffer_.clear();
-  return broken_;
-}
-
-absl::Status AppendedFile::Append(absl::string_view content) {
-  buffer_.append(content.data(), content.size());
-  size_ += content.size();
-  return buffer_.size() < kBufferBytes ? broken_ : Flush();
-}
-
-absl::Status AppendedFile::Commit() {
-  if (size_ == synced_size_) return broken_;
-  absl::Status status = Flush();
-  if (status.ok() && fdatasync(descriptor_) != 0) broken_ = CannotWrite(path_, errno);
-  synced_size_ = size_;
-  return broken_;
+  if (!status.ok()) return status;
+  finished_ = true;
+  return SyncFolder(path.parent_path());
 }
 
 FolderLock::~FolderLock() {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
@@ -14,26 +15,47 @@ namespace duet::client::batch {
 // Files that are complete or absent, even if the process or the machine stops at any time.
 //
 // Errors: ABORTED with the path and the system's message: the same run may succeed later, for
-// example
-//         when the disk has space again.
+// example when the disk has space again.
 
 // Writes `temporary`, flushes it to disk and renames it to its place; creates folders as needed.
-// Both paths are on the same file system. SyncFolder makes the name durable.
+// Both paths are on the same file system.
 absl::Status WriteDurably(const std::filesystem::path& temporary, const std::filesystem::path& path,
                           absl::string_view content);
-// The steps of it, for many files at once. A file that is written and not yet brought to the disk;
-absl::Status WriteFileUnsynced(const std::string& path, absl::string_view content);
-// everything on the file system that `folder` is on brought there;
-absl::Status SyncFileSystem(const std::filesystem::path& folder);
-// its place, whose folders are made as needed.
+// Renames a file, and creates folders as needed. SyncFileSystem or SyncFolder make it durable.
 absl::Status RenameInto(const std::string& from, const std::string& to);
-// Brings a folder's names to the disk.
+// Flushes everything on the file system of a folder to disk.
+absl::Status SyncFileSystem(const std::filesystem::path& folder);
+// Flushes a folder's names to disk.
 absl::Status SyncFolder(const std::filesystem::path& folder);
-// Both, for a file that nobody else waits for.
-absl::Status ReplaceDurably(const std::filesystem::path& path, absl::string_view content);
 
-// A file that is written piece by piece and then given its place. A file that is not finished
-// leaves `temporary` behind.
+// Many files that reach the disk together, because a flush costs as much as several of them: each is
+// written under a temporary name, all are flushed, then renamed. Files that were not committed when
+// the process ends are discarded.
+class FileGroup {
+ public:
+  // Paths of files are relative to `out`, which is on the file system of `temporary`.
+  FileGroup(std::filesystem::path temporary, const std::filesystem::path& out)
+      : temporary_(std::move(temporary)), out_(out.string() + "/") {}
+  FileGroup(const FileGroup&) = delete;
+  FileGroup& operator=(const FileGroup&) = delete;
+  ~FileGroup();
+
+  absl::Status Add(const std::string& path, absl::string_view content);
+  // When it returns, the added files are on disk under their names.
+  absl::Status Commit();
+
+ private:
+  struct Pending {
+    std::string temporary, path;
+  };
+  const std::filesystem::path temporary_;
+  const std::string out_;
+  std::vector<Pending> pending_;
+  int64_t count_ = 0;
+};
+
+// A file that is written piece by piece and then given its place. Removes `temporary` if it is not
+// finished.
 class DurableFile {
  public:
   explicit DurableFile(std::filesystem::path temporary) : temporary_(std::move(temporary)) {}
@@ -41,10 +63,10 @@ class DurableFile {
   DurableFile& operator=(const DurableFile&) = delete;
   ~DurableFile();
 
-  // Replaces the temporary file. Once, before all else.
+  // Replaces the temporary file. Call once, first.
   absl::Status Open();
   absl::Status Append(absl::string_view content);
-  // On the disk at `path` when it returns.
+  // When it returns, the file is on disk at `path`.
   absl::Status Finish(const std::filesystem::path& path);
 
  private:
@@ -53,33 +75,7 @@ class DurableFile {
   std::filesystem::path temporary_;
   std::string buffer_;
   int descriptor_ = -1;
-};
-
-// A file to append to; its content is kept.
-class AppendedFile {
- public:
-  explicit AppendedFile(std::filesystem::path path) : path_(std::move(path)) {}
-  AppendedFile(const AppendedFile&) = delete;
-  AppendedFile& operator=(const AppendedFile&) = delete;
-  ~AppendedFile();
-
-  // Before all else; once it is open, nothing.
-  absl::Status Open();
-  absl::Status Append(absl::string_view content);
-  // On the disk when it returns.
-  absl::Status Commit();
-  // With all that was appended.
-  uint64_t size() const { return size_; }
-
- private:
-  absl::Status Flush();
-
-  std::filesystem::path path_;
-  std::string buffer_;
-  int descriptor_ = -1;
-  uint64_t size_ = 0;
-  uint64_t synced_size_ = 0;
-  absl::Status broken_;
+  bool finished_ = false;
 };
 
 // "cannot write <path>: <what errno means>". FAILED_PRECONDITION if no retry changes it: a file

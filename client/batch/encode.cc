@@ -11,7 +11,6 @@
 #include "model/formats/flat/npy.h"
 #include "model/formats/flat/sbu_text.h"
 #include "model/formats/gltf/gltf_export.h"
-#include "model/formats/usd/usda_export.h"
 #include "model/motion/recorded_motion.h"
 #include "model/motion/resample.h"
 
@@ -39,14 +38,6 @@ absl::StatusOr<std::vector<EncodedFile>> EncodeGlb(const motion::ClipPair& pair,
   return std::vector<EncodedFile>{{".glb", *std::move(content)}};
 }
 
-absl::StatusOr<std::vector<EncodedFile>> EncodeUsda(const motion::ClipPair& pair,
-                                                    const motion::Skeleton& skeleton) {
-  absl::StatusOr<std::string> content =
-      formats::usd::FormatUsda({pair.leader, pair.follower}, skeleton, nullptr);
-  if (!content.ok()) return content.status();
-  return std::vector<EncodedFile>{{".usda", *std::move(content)}};
-}
-
 absl::StatusOr<std::vector<EncodedFile>> EncodeFormat(Format format, const motion::ClipPair& pair,
                                                       const motion::Skeleton& skeleton) {
   switch (format) {
@@ -58,8 +49,6 @@ absl::StatusOr<std::vector<EncodedFile>> EncodeFormat(Format format, const motio
       return std::vector<EncodedFile>{{".npy", formats::flat::FormatNpy(pair)}};
     case Format::kGlb:
       return EncodeGlb(pair, skeleton);
-    case Format::kUsda:
-      return EncodeUsda(pair, skeleton);
     case Format::kJson:
       break;
   }
@@ -88,6 +77,22 @@ motion::Clip AtRate(motion::Clip clip, double rate_hz) {
 }
 
 }  // namespace
+
+std::vector<std::string> EndingsOf(Format format) {
+  switch (format) {
+    case Format::kBvh:
+      return {".leader.bvh", ".follower.bvh"};
+    case Format::kCsv:
+      return {".csv"};
+    case Format::kNpy:
+      return {".npy"};
+    case Format::kGlb:
+      return {".glb"};
+    case Format::kJson:
+      break;
+  }
+  return {".json"};
+}
 
 std::optional<double> RateOf(const Output& output) {
   const dataset::DatasetLayout* const captures = CapturesOf(output.layout);

@@ -18,6 +18,9 @@ struct EncodedFile {
   std::string content;
 };
 
+// What follows an item's name in the names of its files of a format.
+std::vector<std::string> EndingsOf(Format format);
+
 // The frame rate of every item in Hz, set by the layout or the recipe. Absent: each item has its
 // leader's rate.
 std::optional<double> RateOf(const Output& output);

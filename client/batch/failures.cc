@@ -92,11 +92,9 @@ std::vector<FailureCause> FailureCauses::Largest(size_t count) const {
   return causes;
 }
 
-absl::Status FailureTable::Open(SetFiles* files) {
-  absl::StatusOr<std::unique_ptr<SetFile>> file = files->Begin("failed.tsv");
-  if (!file.ok()) return file.status();
-  file_ = *std::move(file);
-  return file_->Append("leader\titems\tcode\tmessage\tnames\n");
+absl::Status FailureTable::Open() {
+  absl::Status status = file_.Open();
+  return status.ok() ? file_.Append("leader\titems\tcode\tmessage\tnames\n") : status;
 }
 
 absl::Status FailureTable::Add(const ordered_json& record) {
@@ -118,7 +116,7 @@ absl::Status FailureTable::WriteLeader() {
     const auto items = static_cast<int64_t>(names.size());
     causes_.Add(leader_, error.first, error.second, items, 1);
     if (!status.ok()) continue;
-    status = file_->Append(absl::StrCat(Cell(leader_), "\t", items, "\t", error.first, "\t",
+    status = file_.Append(absl::StrCat(Cell(leader_), "\t", items, "\t", error.first, "\t",
                                         Cell(error.second), "\t", absl::StrJoin(names, ","), "\n"));
   }
   names_.clear();
@@ -127,7 +125,7 @@ absl::Status FailureTable::WriteLeader() {
 
 absl::Status FailureTable::Finish() {
   absl::Status status = WriteLeader();
-  return status.ok() ? file_->Finish() : status;
+  return status.ok() ? file_.Finish(path_) : status;
 }
 
 }  // namespace duet::client::batch

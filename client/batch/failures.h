@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,7 +13,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "client/batch/set_file.h"
+#include "client/batch/job_folder.h"
 
 namespace duet::client::batch {
 
@@ -59,7 +58,9 @@ class FailureCauses {
 // come leader by leader.
 class FailureTable {
  public:
-  absl::Status Open(SetFiles* files);
+  explicit FailureTable(const JobFolder& folder)
+      : file_(folder.temporary() / "failed.tsv"), path_(folder.out() / "failed.tsv") {}
+  absl::Status Open();
   // `record`: of an item that failed.
   absl::Status Add(const nlohmann::ordered_json& record);
   absl::Status Finish();
@@ -70,7 +71,8 @@ class FailureTable {
  private:
   absl::Status WriteLeader();
 
-  std::unique_ptr<SetFile> file_;
+  DurableFile file_;
+  const std::filesystem::path path_;
   FailureCauses causes_;
   // For the current leader: code and message to the items' names.
   std::string leader_;

@@ -1,21 +1,16 @@
 #include "client/batch/index.h"
 
-#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "client/batch/capture_layout.h"
-#include "client/batch/dataset_card.h"
 #include "client/batch/dataset_json.h"
-#include "client/batch/failures.h"
-#include "client/batch/item_table.h"
-#include "client/batch/parse_record.h"
+#include "client/batch/durable_file.h"
 #include "client/batch/record.h"
-#include "client/batch/text_values.h"
-#include "model/base/file.h"
 
 namespace duet::client::batch {
 namespace {
@@ -23,17 +18,20 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr size_t kCausesKept = 20;
-constexpr size_t kMaxSummaryBytes = size_t{1} << 20;
 
 constexpr const char* kFields[] = {
     "item",  "id",   "name",    "leader",     "leader_sha256", "side",   "reaction",     "labels",
     "model", "seed", "variety", "candidates", "request_id",    "frames", "frame_rate_hz"};
+
+std::string Plain(std::string text) {
+  return absl::StrReplaceAll(text, {{"\t", " "}, {"\n", " "}, {"\r", " "}});
+}
+
 // A field as a TSV cell, without tabs and line ends; empty if the field is missing.
 std::string Cell(const ordered_json& object, const char* name) {
   const auto found = object.find(name);
   if (found == object.end()) return "";
-  const std::string text = found->is_string() ? found->get<std::string>() : Line(*found);
-  return absl::StrReplaceAll(text, {{"\t", " "}, {"\n", " "}, {"\r", " "}});
+  return Plain(found->is_string() ? found->get<std::string>() : Line(*found));
 }
 
 // "kick=1,hug=0.5", or the keyframes as JSON.
@@ -43,78 +41,99 @@ std::string LabelsCell(const ordered_json& record) {
   for (const auto& [name, weight] : record["labels"].items()) {
     labels.push_back(absl::StrCat(name, "=", weight.dump()));
   }
-  return absl::StrReplaceAll(absl::StrJoin(labels, ","), {{"\t", " "}, {"\n", " "}});
+  return Plain(absl::StrJoin(labels, ","));
 }
 
-std::vector<std::string> CommonCells(const ordered_json& record) {
-  std::vector<std::string> cells;
-  for (const char* field : kFields) {
-    cells.push_back(absl::string_view(field) == "labels" ? LabelsCell(record)
-                                                         : Cell(record, field));
-  }
-  for (const char* figure : kQualityFields) cells.push_back(Cell(record["quality"], figure));
-  cells.push_back(Cell(record, "unfamiliarity"));
-  return cells;
-}
-
-std::vector<std::string> CommonHeader() {
-  std::vector<std::string> header(std::begin(kFields), std::end(kFields));
-  header.insert(header.end(), std::begin(kQualityFields), std::end(kQualityFields));
-  header.emplace_back("unfamiliarity");
-  return header;
-}
-
-std::string Row(const std::vector<std::string>& cells) { return absl::StrJoin(cells, "\t") + "\n"; }
-
-std::vector<std::string> FileCells(const ordered_json& record, const char* field) {
+// A field of every file, separated by commas.
+std::string FilesCell(const ordered_json& record, const char* field) {
   std::vector<std::string> cells;
   for (const ordered_json& file : record["files"]) cells.push_back(Cell(file, field));
-  return cells;
+  return absl::StrJoin(cells, ",");
 }
 
-uint64_t BytesOf(const ordered_json& record) {
-  uint64_t bytes = 0;
-  for (const ordered_json& file : record["files"]) bytes += file["bytes"].get<uint64_t>();
-  return bytes;
+std::string ReasonsCell(const ordered_json& record) {
+  std::vector<std::string> reasons;
+  for (const ordered_json& reason : record["reasons"]) reasons.push_back(reason);
+  return Plain(absl::StrJoin(reasons, "; "));
 }
+
+// A table of items: the columns of every answer, and then its own.
+class Table {
+ public:
+  Table(const JobFolder& folder, const std::string& name, std::vector<std::string> own_columns)
+      : file_(folder.temporary() / name),
+        path_(folder.out() / name),
+        own_columns_(std::move(own_columns)) {}
+
+  absl::Status Open() {
+    std::vector<std::string> header(std::begin(kFields), std::end(kFields));
+    header.insert(header.end(), std::begin(kQualityFields), std::end(kQualityFields));
+    header.emplace_back("unfamiliarity");
+    absl::Status status = file_.Open();
+    return status.ok() ? Append(header, own_columns_) : status;
+  }
+  absl::Status Add(const ordered_json& record, const std::vector<std::string>& own_cells) {
+    std::vector<std::string> cells;
+    for (const char* field : kFields) {
+      cells.push_back(absl::string_view(field) == "labels" ? LabelsCell(record)
+                                                           : Cell(record, field));
+    }
+    for (const char* figure : kQualityFields) cells.push_back(Cell(record["quality"], figure));
+    cells.push_back(Cell(record, "unfamiliarity"));
+    return Append(cells, own_cells);
+  }
+  absl::Status Finish() { return file_.Finish(path_); }
+
+ private:
+  absl::Status Append(const std::vector<std::string>& common, const std::vector<std::string>& own) {
+    return file_.Append(
+        absl::StrCat(absl::StrJoin(common, "\t"), "\t", absl::StrJoin(own, "\t"), "\n"));
+  }
+
+  DurableFile file_;
+  const std::filesystem::path path_;
+  const std::vector<std::string> own_columns_;
+};
 
 // The files with one line for each item.
 class IndexWriter {
  public:
-  IndexWriter(const JobIdentity& identity, const ShardList& shards)
-      : captures_(CapturesOf(identity.layout) != nullptr),
-        identity_(identity),
-        shards_(shards),
-        tables_(identity, shards) {}
+  IndexWriter(const JobFolder& folder, bool captures)
+      : captures_(captures),
+        lines_(folder.temporary() / "index.jsonl"),
+        lines_path_(folder.out() / "index.jsonl"),
+        done_table_(folder, "index.tsv", DoneColumns(captures)),
+        rejected_table_(folder, "rejected.tsv", {"answers", "reasons", "extra"}),
+        failed_table_(folder) {}
 
-  absl::Status Open(SetFiles* files) {
-    absl::Status status = Begin("index.jsonl", files, &json_);
-    if (status.ok()) status = Begin("index.tsv", files, &tsv_);
-    if (status.ok()) status = Begin("rejected.tsv", files, &rejected_);
-    if (status.ok()) status = failed_.Open(files);
-    if (status.ok()) status = tables_.Open(files);
-    return status.ok() ? WriteHeaders() : status;
+  absl::Status Open() {
+    absl::Status status = lines_.Open();
+    status.Update(done_table_.Open());
+    status.Update(rejected_table_.Open());
+    status.Update(failed_table_.Open());
+    return status;
   }
 
   absl::Status Add(const JournalEntry& entry) {
-    absl::StatusOr<ordered_json> parsed = ParseRecord(entry.record);
-    if (!parsed.ok()) return parsed.status();
-    ordered_json& record = *parsed;
-    if (record["state"] == kFailed) {
+    const absl::StatusOr<ordered_json> record = ParseRecord(entry.record);
+    if (!record.ok()) return record.status();
+    if ((*record)["state"] == kDone) return AddDone(*record);
+    if ((*record)["state"] == kFailed) {
       ++counts_.failed;
-      return failed_.Add(record);
+      return failed_table_.Add(*record);
     }
-    return record["state"] == kDone ? AddDone(entry.item, &record) : AddRejected(record);
+    ++counts_.rejected;
+    return rejected_table_.Add(*record, {Cell(*record, "answers"), ReasonsCell(*record),
+                                         Cell(*record, "extra")});
   }
 
   absl::Status Finish() {
-    absl::Status status = rejected_->Finish();
-    status.Update(failed_.Finish());
-    counts_.failures = failed_.causes().Largest(kCausesKept);
-    counts_.failed_leaders = failed_.leaders();
-    status.Update(tables_.Finish());
-    status.Update(tsv_->Finish());
-    status.Update(json_->Finish());
+    absl::Status status = rejected_table_.Finish();
+    status.Update(failed_table_.Finish());
+    counts_.failures = failed_table_.causes().Largest(kCausesKept);
+    counts_.failed_leaders = failed_table_.leaders();
+    status.Update(done_table_.Finish());
+    status.Update(lines_.Finish(lines_path_));
     return status;
   }
 
@@ -122,73 +141,41 @@ class IndexWriter {
   const DoneItems& done() const { return done_; }
 
  private:
-  static absl::Status Begin(const char* name, SetFiles* files, std::unique_ptr<SetFile>* file) {
-    absl::StatusOr<std::unique_ptr<SetFile>> begun = files->Begin(name);
-    if (begun.ok()) *file = *std::move(begun);
-    return begun.status();
+  // The columns that readers of captures need come first.
+  static std::vector<std::string> DoneColumns(bool captures) {
+    std::vector<std::string> columns = {"files", "sha256", "extra"};
+    if (captures) columns.insert(columns.begin(), {"path", "leader_side"});
+    return columns;
   }
 
-  absl::Status WriteHeaders() {
-    std::vector<std::string> header = CommonHeader();
-    std::vector<std::string> rejected = header;
-    rejected.insert(rejected.end(), {"answers", "reasons", "extra"});
-    absl::Status status = rejected_->Append(Row(rejected));
-    if (identity_.packing != Packing::kNone) header.emplace_back("shard");
-    // The columns that readers of captures need.
-    if (captures_) header.insert(header.end(), {"path", "leader_side"});
-    header.insert(header.end(), {"files", "sha256", "extra"});
-    status.Update(tsv_->Append(Row(header)));
-    return status;
-  }
-
-  absl::Status AddDone(int64_t item, ordered_json* record) {
+  absl::Status AddDone(const ordered_json& record) {
     ++counts_.done;
-    counts_.bytes += BytesOf(*record);
-    absl::Status status = tables_.Add(item, *record);
-    const std::string line = IndexLine(item, identity_, shards_, record);
-    std::vector<std::string> cells = CommonCells(*record);
-    if (identity_.packing != Packing::kNone) cells.push_back(Cell(*record, "shard"));
-    done_.Add(*record);
+    for (const ordered_json& file : record["files"]) counts_.bytes += file["bytes"].get<uint64_t>();
+    done_.Add(record);
+    std::vector<std::string> cells = {FilesCell(record, "path"), FilesCell(record, "sha256"),
+                                      Cell(record, "extra")};
     if (captures_) {
-      cells.push_back(FileCells(*record, "path").front());
-      cells.push_back(Cell(*record, "side"));
+      cells.insert(cells.begin(), {Cell(record["files"][0], "path"), Cell(record, "side")});
     }
-    cells.push_back(absl::StrJoin(FileCells(*record, "path"), ","));
-    cells.push_back(absl::StrJoin(FileCells(*record, "sha256"), ","));
-    cells.push_back(Cell(*record, "extra"));
-    status.Update(json_->Append(line + "\n"));
-    status.Update(tsv_->Append(Row(cells)));
+    absl::Status status = lines_.Append(Line(record) + "\n");
+    status.Update(done_table_.Add(record, cells));
     return status;
   }
 
-  absl::Status AddRejected(const ordered_json& record) {
-    ++counts_.rejected;
-    std::vector<std::string> cells = CommonCells(record);
-    cells.push_back(Cell(record, "answers"));
-    std::vector<std::string> reasons;
-    for (const ordered_json& reason : record["reasons"]) reasons.push_back(reason);
-    cells.push_back(absl::StrJoin(reasons, "; "));
-    cells.push_back(Cell(record, "extra"));
-    return rejected_->Append(Row(cells));
-  }
-
-  bool captures_;  // in a layout of captures
-  const JobIdentity& identity_;
-  const ShardList& shards_;
-  std::unique_ptr<SetFile> json_, tsv_, rejected_;
-  ItemTables tables_;
-  FailureTable failed_;
+  const bool captures_;  // in a layout of captures
+  DurableFile lines_;
+  const std::filesystem::path lines_path_;
+  Table done_table_, rejected_table_;
+  FailureTable failed_table_;
   SetCounts counts_;
   DoneItems done_;
 };
 
-std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
+std::string SummaryJson(const SetSource& source, const SetCounts& counts,
                         const PlannedItems& planned) {
   ordered_json models = ordered_json::array();
-  for (const ModelChoice& model : identity.models) {
-    models.push_back(ModelText(model));
-  }
-  ordered_json summary = {
+  for (const ModelInfo& model : source.models) models.push_back(NameOfModel(model));
+  const ordered_json summary = {
       {"planned", planned.count},
       {"whole_plan", planned.whole},
       {"done", counts.done},
@@ -197,60 +184,32 @@ std::string SummaryJson(const JobIdentity& identity, const SetCounts& counts,
       {"missing", planned.count - counts.done - counts.rejected - counts.failed},
       {"bytes", counts.bytes},
       {"models", models},
-      {"recipe_sha256", identity.recipe_digest},
-      {"shard", absl::StrCat(identity.shard.index, "/", identity.shard.count)}};
-  if (!counts.failures.empty()) summary["failures"] = ToJson(counts.failures);
+      {"recipe_sha256", source.recipe.digest},
+      {"shard", absl::StrCat(source.shard.index, "/", source.shard.count)}};
   return summary.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
 
-std::string IndexLine(int64_t item, const JobIdentity& identity, const ShardList& shards,
-                      ordered_json* record) {
-  const std::string split = SplitOfRecord(identity.description.splits, *record);
-  const size_t shard = shards.ShardOf(item);
-  if (shard != ShardList::kNone) (*record)["shard"] = shards.NameOf(shard, identity.packing);
-  if (!split.empty()) (*record)["split"] = split;
-  return Line(*record);
-}
-
-absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
-                                     const ShardList& shards, const PlannedItems& planned,
-                                     SetFiles* files) {
-  IndexWriter writer(identity, shards);
-  absl::Status status = writer.Open(files);
+absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const SetSource& source,
+                                     const PlannedItems& planned, const JobFolder& folder) {
+  IndexWriter writer(folder, CapturesOf(source.recipe.output.layout) != nullptr);
+  absl::Status status = writer.Open();
   if (status.ok()) {
     status = journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry); });
   }
   if (status.ok()) status = writer.Finish();
-  if (status.ok() && !HasForeignCard(files->out())) {
-    status = files->Put(kCardFile, DatasetCard(identity, writer.counts(), writer.done()));
-  }
   if (status.ok()) {
-    status = files->Put("dataset.json", DatasetJson(identity, writer.counts(), planned.count,
-                                                    writer.done(), !shards.empty()));
+    status = WriteDurably(folder.temporary() / "dataset.json", folder.out() / "dataset.json",
+                          DatasetJson(source, writer.counts(), planned.count, writer.done()));
   }
   // Last: its presence means that the others are there.
   if (status.ok()) {
-    status = files->Put("summary.json", SummaryJson(identity, writer.counts(), planned));
+    status = WriteDurably(folder.temporary() / "summary.json", folder.out() / "summary.json",
+                          SummaryJson(source, writer.counts(), planned));
   }
   if (!status.ok()) return status;
   return writer.counts();
-}
-
-absl::StatusOr<PlannedItems> ReadPlanned(const std::filesystem::path& out) {
-  const std::filesystem::path file = out / "summary.json";
-  const absl::StatusOr<std::string> text = base::ReadFile(file, kMaxSummaryBytes, "a summary");
-  if (!text.ok()) return text.status();
-  const auto summary = nlohmann::json::parse(*text, nullptr, false);
-  const auto is_count = [&summary](const char* field) {
-    return summary.contains(field) && summary[field].is_number_integer();
-  };
-  if (!summary.is_object() || !is_count("planned") || !is_count("missing") ||
-      !summary.contains("whole_plan") || !summary["whole_plan"].is_boolean()) {
-    return absl::DataLossError(absl::StrCat(file.string(), ": is not a summary of duet batch"));
-  }
-  return PlannedItems{summary["planned"], summary["whole_plan"], summary["missing"]};
 }
 
 }  // namespace duet::client::batch

@@ -2,41 +2,49 @@
 #define DUET_CLIENT_BATCH_INDEX_H_
 
 #include <cstdint>
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
+#include "client/batch/failures.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
-#include "client/batch/set_counts.h"
-#include "client/batch/set_file.h"
-#include "client/batch/shard_list.h"
+#include "client/batch/recipe.h"
+#include "client/batch/shard.h"
+#include "client/result.h"
+#include "model/motion/skeleton.h"
 
 namespace duet::client::batch {
+
+// The number of items in a data set by result.
+struct SetCounts {
+  int64_t done = 0;
+  int64_t rejected = 0;
+  int64_t failed = 0;
+  int64_t failed_leaders = 0;  // different files of items that failed
+  uint64_t bytes = 0;
+  std::vector<FailureCause> failures;  // the causes of most items
+};
 
 // The planned items.
 struct PlannedItems {
   int64_t count = 0;
-  bool whole = false;   // a run has reached the end of the plan: `count` is final
-  int64_t missing = 0;  // neither done, rejected nor failed; only set by ReadPlanned
+  bool whole = false;  // a run has reached the end of the plan: `count` is final
 };
 
-// Puts into `files` index.jsonl, index.tsv and the tables of item_table.h (done items),
-// rejected.tsv, failed.tsv (failures.h), README.md unless it is the user's (dataset_card.h),
-// dataset.json and summary.json, in the order of the items and without times. The files only depend
-// on the journal records, not on their order. `shards` is empty if the set is not packed.
-absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const JobIdentity& identity,
-                                     const ShardList& shards, const PlannedItems& planned,
-                                     SetFiles* files);
+// What the items of a set were made with. `models` and `skeletons` are those of the plan.
+struct SetSource {
+  const Recipe& recipe;
+  const std::vector<ModelInfo>& models;
+  const std::vector<motion::Skeleton>& skeletons;
+  Shard shard;
+};
 
-// The line of a done item in index.jsonl, without newline. Adds its shard and its split to
-// `record`.
-std::string IndexLine(int64_t item, const JobIdentity& identity, const ShardList& shards,
-                      nlohmann::ordered_json* record);
-
-// Reads the plan from summary.json. NOT_FOUND if it is missing, DATA_LOSS if it cannot be read.
-absl::StatusOr<PlannedItems> ReadPlanned(const std::filesystem::path& out);
+// Writes index.jsonl and index.tsv (done items), rejected.tsv, failed.tsv (failures.h),
+// dataset.json (dataset_json.h) and summary.json, in the order of the items and without times. The
+// files only depend on the journal's records, not on their order. Each replaces the one of an
+// earlier run when it is finished.
+absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const SetSource& source,
+                                     const PlannedItems& planned, const JobFolder& folder);
 
 }  // namespace duet::client::batch
 

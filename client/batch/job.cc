@@ -5,10 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "client/batch/contact_sheet.h"
 #include "client/batch/dataset_json.h"
-#include "client/batch/encode.h"
-#include "client/batch/packing.h"
 #include "client/error_details.h"
 #include "model/base/sha256.h"
 #include "nlohmann/json.hpp"
@@ -48,7 +45,7 @@ Job::Job(Parts parts, Plan plan, const JobOptions& options)
       answers_(kQueuedAnswers),
       settled_(kUnwrittenBytes),
       skeleton_indices_(SkeletonIndices(parts_.skeletons)),
-      leaders_(parts_.models.size(), parts_.leaders) {}
+      leaders_(parts_.models.size()) {}
 
 Client& Job::NextClient(int server) {
   std::vector<Client>& clients = parts_.servers[static_cast<size_t>(server)];
@@ -87,7 +84,7 @@ absl::Status Job::Feed() {
       return absl::AbortedError("the list of leaders was changed during the run");
     }
     const std::string& place = (*item)->place;
-    if (!parts_.identity.shard.Has(place) || !InShare(place, options_.share)) continue;
+    if (!parts_.shard.Has(place) || !InShare(place, options_.share)) continue;
     ++planned_;
     if (parts_.survey->IsSettled((*item)->number)) {
       ++resumed_;
@@ -111,7 +108,7 @@ void Job::Ask(Work work) {
     Fail(work.item, leader.status());
     return queue_.Done();
   }
-  const absl::Status unchanged = parts_.survey->leaders->Check(*work.item.leader, leader->sha256);
+  const absl::Status unchanged = parts_.survey->leaders().Check(*work.item.leader, leader->sha256);
   if (!unchanged.ok()) {
     StopWith(unchanged);
     return queue_.Done();
@@ -138,7 +135,7 @@ void Job::KeepUntilClosed() {
 // All answers of a set are made in the same way, by whatever server.
 absl::Status Job::CheckMaker(const SynthesisResult& result) const {
   const std::string model = absl::StrCat(result.model_name, "@", result.model_version);
-  const absl::Status same = parts_.survey->makers->Check(model, MadeByOf(result));
+  const absl::Status same = parts_.survey->makers().Check(model, MadeByOf(result));
   if (same.ok()) return same;
   return absl::FailedPreconditionError(
       absl::StrCat(same.message(), ". Use servers that are set up alike, or choose another --out"));
@@ -200,13 +197,11 @@ void Job::Keep(const Item& item, const RecordedAnswer& answer, const motion::Cli
       Encode(parts_.recipe.output, item.side, pair, skeleton);
   if (!encoded.ok()) return Fail(item, encoded.status());
   std::vector<RecordedFile> recorded;
-  std::vector<ItemFile> files;
-  for (EncodedFile& file : *encoded) {
-    files.push_back({item.name + file.ending, std::move(file.content)});
-    const ItemFile& kept = files.back();
-    recorded.push_back({kept.path, kept.content.size(), base::Sha256Hex(kept.content)});
+  for (const EncodedFile& file : *encoded) {
+    recorded.push_back(
+        {item.name + file.ending, file.content.size(), base::Sha256Hex(file.content)});
   }
-  Settle({item, kDone, Line(DoneRecord(item, answer, recorded)), std::move(files)});
+  Settle({item, kDone, Line(DoneRecord(item, answer, recorded)), *std::move(encoded)});
 }
 
 void Job::Fail(const Item& item, const absl::Status& error) {
@@ -223,15 +218,15 @@ void Job::FailForNow(const Item& item, const absl::Status& error) {
 
 void Job::Settle(Settled settled) {
   size_t bytes = settled.record.size();
-  for (const ItemFile& file : settled.files) bytes += file.content.size();
+  for (const EncodedFile& file : settled.files) bytes += file.content.size();
   settled_.Put(std::move(settled), bytes);
 }
 
 // Flushes many items at once.
 void Job::WriteUntilClosed(JournalWriter* journal) {
-  const std::unique_ptr<ItemWriter> items = MakeItemWriter(*parts_.folder, parts_.identity.packing);
+  FileGroup files(parts_.folder->temporary(), parts_.folder->out());
   for (std::vector<Settled> all; !(all = settled_.Gather(kGatherTime)).empty();) {
-    const absl::Status status = Write(all, items.get(), journal);
+    const absl::Status status = Write(all, &files, journal);
     if (status.ok()) continue;
     settled_.Stop();
     return StopWith(status);
@@ -239,18 +234,16 @@ void Job::WriteUntilClosed(JournalWriter* journal) {
 }
 
 // Writes files before records, so that a record never names a missing file.
-absl::Status Job::Write(const std::vector<Settled>& all, ItemWriter* items,
+absl::Status Job::Write(const std::vector<Settled>& all, FileGroup* files,
                         JournalWriter* journal) {
   for (const Settled& settled : all) {
-    SpoolPlace place;
-    if (!settled.files.empty()) {
-      const absl::StatusOr<SpoolPlace> added = items->Add(settled.files);
-      if (!added.ok()) return added.status();
-      place = *added;
+    for (const EncodedFile& file : settled.files) {
+      absl::Status added = files->Add(settled.item.name + file.ending, file.content);
+      if (!added.ok()) return added;
     }
-    journal->Add(settled.item.number, settled.record, place);
+    journal->Add(settled.item.number, settled.record);
   }
-  absl::Status status = items->Commit();
+  absl::Status status = files->Commit();
   if (status.ok()) status = journal->Commit();
   if (!status.ok()) return status;
   for (const Settled& settled : all) Count(settled);
@@ -258,8 +251,7 @@ absl::Status Job::Write(const std::vector<Settled>& all, ItemWriter* items,
 }
 
 void Job::Count(const Settled& settled) {
-  damage_.items.erase(settled.item.number);
-  for (const ItemFile& file : settled.files) bytes_ += file.content.size();
+  for (const EncodedFile& file : settled.files) bytes_ += file.content.size();
   if (settled.state == kFailed) {
     ++failed_;
     return;
@@ -286,68 +278,27 @@ absl::Status Job::RunThreads(JournalWriter* writer) {
   return fed;
 }
 
-// Whether all items of the plan are settled, by this run or an earlier one.
-bool Job::IsComplete() const {
-  return fed_ && parts_.whole_plan && resumed_ + done_ + rejected_ + failed_ == parts_.planned;
-}
-
-// Packs a complete set, and updates the record of damage.
-absl::Status Job::PackOrRepaired(const JournalReader& journal) {
-  const JobFolder& folder = *parts_.folder;
-  if (parts_.identity.packing == Packing::kNone) return WriteDamage(damage_, folder.damage());
-  // A set that is made in several shards is packed when they are merged.
-  if (parts_.identity.shard.count > 1) return WriteDamage(damage_, folder.damage());
-  if (!IsComplete() || journal.count() != planned_) return absl::OkStatus();
-  absl::Status status = Pack(journal, parts_.identity, folder);
-  return status.ok() ? WriteDamage({}, folder.damage()) : status;
-}
-
-// Draws the sheet before packing, because items in shards are slow to read. Skips it if the items
-// have not changed since.
-absl::Status Job::DrawContactSheet(const JournalReader& journal) const {
-  const JobFolder& folder = *parts_.folder;
-  const JobIdentity& identity = parts_.identity;
-  const ShardList& shards = parts_.survey->shards;
-  std::error_code error;
-  if (!shards.empty() && parts_.survey->all_packed && done_ + rejected_ + failed_ == 0 &&
-      std::filesystem::exists(folder.out() / "contact_sheet.html", error)) {
-    return absl::OkStatus();
-  }
-  ItemReader items(folder.items(identity.packing), folder.spool());
-  items.LookInShards(folder.out(), identity.packing, &shards);
-  return WriteContactSheet(journal, identity, items, folder.out());
-}
-
 absl::StatusOr<JobReport> Job::Finish() {
-  const JobFolder& folder = *parts_.folder;
-  const JobIdentity& identity = parts_.identity;
-  const absl::StatusOr<JournalReader> journal = JournalReader::Open(folder.journal());
+  const absl::StatusOr<JournalReader> journal = JournalReader::Open(parts_.folder->journal());
   if (!journal.ok()) return journal.status();
   JobReport report;
   // A run that was stopped has not reached all of them. Earlier runs may have settled more.
   report.planned = std::max<int64_t>(parts_.planned, journal->count());
   report.unfinished = unfinished_;
   report.unfinished_causes = unfinished_causes_.Largest(kCausesReported);
-  absl::Status status = DrawContactSheet(*journal);
-  if (status.ok()) status = PackOrRepaired(*journal);
-  if (!status.ok()) return status;
-  const absl::StatusOr<ShardList> shards = OpenShards(*journal, identity, folder);
-  if (!shards.ok()) return shards.status();
-  report.packed = !shards->empty();
-  const PlannedItems planned{report.planned, fed_ && parts_.whole_plan};
-  WrittenSetFiles files(folder.temporary(), folder.out());
-  absl::StatusOr<SetCounts> counts = WriteIndex(*journal, identity, *shards, planned, &files);
+  const SetSource source{parts_.recipe, parts_.models, parts_.skeletons, parts_.shard};
+  absl::StatusOr<SetCounts> counts =
+      WriteIndex(*journal, source, {report.planned, fed_ && parts_.whole_plan}, *parts_.folder);
   if (!counts.ok()) return counts.status();
-  report.set = *counts;
+  report.set = *std::move(counts);
   return report;
 }
 
 absl::StatusOr<JobReport> Job::Run() {
   const JobFolder& folder = *parts_.folder;
   JournalWriter writer;
-  absl::Status status = writer.Open(folder.journal(), parts_.survey->journal.size());
+  absl::Status status = writer.Open(folder.journal(), parts_.survey->journal().size());
   if (!status.ok()) return status;
-  damage_ = ReadDamage(folder.damage());
   status = RunThreads(&writer);
   if (!status.ok()) return status;
   absl::StatusOr<JobReport> report = Finish();

@@ -13,16 +13,16 @@
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 #include "client/batch/answer.h"
-#include "client/batch/damage.h"
+#include "client/batch/encode.h"
+#include "client/batch/durable_file.h"
 #include "client/batch/failures.h"
 #include "client/batch/flow/bounded_queue.h"
 #include "client/batch/flow/call_gate.h"
 #include "client/batch/flow/work_queue.h"
 #include "client/batch/index.h"
-#include "client/batch/item_files.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
-#include "client/batch/leader_sharing.h"
+#include "client/batch/loaded_leader.h"
 #include "client/batch/plan.h"
 #include "client/batch/survey.h"
 #include "client/client.h"
@@ -36,8 +36,6 @@ struct JobOptions {
   // The part of the plan to make: its first items, and a share of these, chosen by hash.
   int64_t limit = std::numeric_limits<int64_t>::max();
   double share = 1;
-  // Retries items that failed permanently.
-  bool retry_failed = false;
 };
 
 // Progress of a run, in items.
@@ -57,7 +55,6 @@ struct JobReport {
   SetCounts set;        // the content of the data set now
   int64_t planned = 0;  // items of the finished data set
   int64_t unfinished = 0;
-  bool packed = false;                          // in shards, which leave out failed items
   std::vector<FailureCause> unfinished_causes;  // the largest; without numbers of leaders
   // Why the run ended early; OK if it did not, or if Stop ended it.
   absl::Status stopped;
@@ -76,21 +73,20 @@ struct JobReport {
 class Job {
  public:
   // `servers`: the clients of each server, which take turns and do not retry. `models` and
-  // `skeletons` are those of the plan. `folder` is open and was begun with `identity`. `survey`
+  // `skeletons` are those of the plan. `folder` is open and was begun with the recipe. `survey`
   // covers the same part of the plan and the same folder; `planned` and `whole_plan` come from the
   // check of that part.
   struct Parts {
     Recipe recipe;
-    JobIdentity identity;
+    Shard shard;
     std::vector<ModelInfo> models;
     std::vector<motion::Skeleton> skeletons;
     RequestLimits limits;  // of the servers, if they are known
     std::vector<std::vector<Client>> servers;
     const JobFolder* folder = nullptr;
-    const Survey* survey = nullptr;
-    int64_t planned = 0;             // items of the part in the job's shard
-    bool whole_plan = false;         // whether these are all items
-    KeptLeaders* leaders = nullptr;  // read before; may be null
+    Survey* survey = nullptr;
+    int64_t planned = 0;      // items of the part in the job's shard
+    bool whole_plan = false;  // whether these are all items
   };
   // The plan begins with its first item.
   Job(Parts parts, Plan plan, const JobOptions& options);
@@ -118,7 +114,7 @@ class Job {
     Item item;
     absl::string_view state;  // as in its record
     std::string record;
-    std::vector<ItemFile> files;
+    std::vector<EncodedFile> files;
   };
 
   absl::Status Feed();
@@ -134,12 +130,9 @@ class Job {
   void FailForNow(const Item& item, const absl::Status& error);
   void Settle(Settled settled);
   void WriteUntilClosed(JournalWriter* journal);
-  absl::Status Write(const std::vector<Settled>& all, ItemWriter* items, JournalWriter* journal);
+  absl::Status Write(const std::vector<Settled>& all, FileGroup* files, JournalWriter* journal);
   void Count(const Settled& settled);
   absl::Status RunThreads(JournalWriter* writer);
-  bool IsComplete() const;
-  absl::Status DrawContactSheet(const JournalReader& journal) const;
-  absl::Status PackOrRepaired(const JournalReader& journal);
   absl::StatusOr<JobReport> Finish();
   void StopWith(const absl::Status& status);
   Client& NextClient(int server);
@@ -161,7 +154,6 @@ class Job {
   std::mutex unfinished_mutex_;
   FailureCauses unfinished_causes_;
   bool fed_ = false;  // Feed has reached the end of the part
-  Damage damage_;     // found before, without the items settled since; used only by the writer
   std::mutex stop_mutex_;
   absl::Status stopped_with_;
 };

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <utility>
@@ -11,7 +10,6 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "client/batch/durable_file.h"
-#include "client/batch/item_limit.h"
 #include "model/base/sha256.h"
 
 namespace duet::client::batch {
@@ -27,7 +25,6 @@ std::string Digest(absl::string_view text) {
 
 struct ParsedLine {
   int64_t item = 0;
-  std::optional<uint64_t> place;
   absl::string_view record;
 };
 
@@ -41,12 +38,6 @@ bool ParseLine(absl::string_view line, ParsedLine* parsed) {
     return false;
   }
   parsed->record = rest.substr(space + 1);
-  if (parsed->record.empty() || parsed->record[0] != '@') return true;
-  const size_t end = std::min(parsed->record.find(' '), parsed->record.size() - 1);
-  uint64_t place = 0;
-  if (!absl::SimpleAtoi(parsed->record.substr(1, end - 1), &place)) return false;
-  parsed->place = place;
-  parsed->record.remove_prefix(end + 1);
   return true;
 }
 
@@ -68,7 +59,6 @@ JournalReader::JournalReader(JournalReader&& other) noexcept
       descriptor_(std::exchange(other.descriptor_, -1)),
       offsets_(std::move(other.offsets_)),
       count_(other.count_),
-      damaged_lines_(other.damaged_lines_),
       size_(other.size_) {}
 
 JournalReader::~JournalReader() {
@@ -77,17 +67,13 @@ JournalReader::~JournalReader() {
 
 absl::Status JournalReader::Load() {
   std::ifstream file(path_, std::ios::binary);
-  int64_t damaged_since = 0;  // after the last complete line
   uint64_t position = 0;
   for (std::string line; std::getline(file, line);) {
     const uint64_t offset = position;
     position += line.size() + 1;
     ParsedLine parsed;
     // A line that reaches the end of the file has no newline.
-    if (file.eof() || !ParseLine(line, &parsed)) {
-      ++damaged_since;
-      continue;
-    }
+    if (file.eof() || !ParseLine(line, &parsed)) continue;
     if (parsed.item >= kMaxItems) {
       return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", offset,
                                               ": item: expected a number below ", kMaxItems,
@@ -98,11 +84,8 @@ absl::Status JournalReader::Load() {
     count_ += known == 0 ? 1 : 0;
     known = offset + 1;
     size_ = position;
-    damaged_lines_ += std::exchange(damaged_since, 0);
   }
   if (file.bad()) return absl::DataLossError(absl::StrCat(path_.string(), ": cannot be read"));
-  // The last line may be truncated because the process was stopped while it wrote.
-  damaged_lines_ += std::max<int64_t>(0, damaged_since - 1);
   return absl::OkStatus();
 }
 
@@ -135,7 +118,7 @@ absl::StatusOr<JournalEntry> JournalReader::Read(int64_t item) const {
   if (!line.ok()) return line.status();
   ParsedLine parsed;
   if (ParseLine(*line, &parsed) && parsed.item == item) {
-    return JournalEntry{item, parsed.place, std::string(parsed.record)};
+    return JournalEntry{item, std::string(parsed.record)};
   }
   return absl::DataLossError(absl::StrCat(path_.string(), ": changed while read"));
 }
@@ -150,21 +133,6 @@ absl::Status JournalReader::ForEach(
     if (!status.ok()) return status;
   }
   return absl::OkStatus();
-}
-
-absl::Status RepairJournal(const std::filesystem::path& path,
-                           const std::filesystem::path& temporary) {
-  const absl::StatusOr<JournalReader> journal = JournalReader::Open(path);
-  if (!journal.ok() || journal->damaged_lines() == 0) return journal.status();
-  std::ifstream file(path, std::ios::binary);
-  DurableFile whole(temporary);
-  absl::Status status = whole.Open();
-  for (std::string line; status.ok() && std::getline(file, line);) {
-    ParsedLine parsed;
-    if (!file.eof() && ParseLine(line, &parsed)) status = whole.Append(line + "\n");
-  }
-  if (file.bad()) return absl::DataLossError(absl::StrCat(path.string(), ": cannot be read"));
-  return status.ok() ? whole.Finish(path) : status;
 }
 
 JournalWriter::~JournalWriter() {
@@ -183,9 +151,8 @@ absl::Status JournalWriter::Open(const std::filesystem::path& path, uint64_t siz
   return SyncFolder(path.parent_path());
 }
 
-void JournalWriter::Add(int64_t item, absl::string_view record, std::optional<uint64_t> place) {
-  const std::string rest =
-      place ? absl::StrCat(item, " @", *place, " ", record) : absl::StrCat(item, " ", record);
+void JournalWriter::Add(int64_t item, absl::string_view record) {
+  const std::string rest = absl::StrCat(item, " ", record);
   absl::StrAppend(&pending_, Digest(rest), " ", rest, "\n");
 }
 

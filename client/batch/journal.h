@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,16 +16,16 @@ namespace duet::client::batch {
 // The final results of items: a file of lines that is only appended to.
 //
 //   <first 8 hex digits of the SHA-256 of the rest> <item number> <record as JSON>
-//   <first 8 hex digits of the SHA-256 of the rest> <item number> @<place> <record as JSON>
-//
-// The place is the offset of the item's files in the spool (item_files.h), if they are there.
 //
 // Truncated lines and lines that do not match their digest are ignored. After a crash, this is the
 // last line; other lines were damaged later.
 
+// Maximum number of items of a plan, and the upper bound of item numbers. A journal of this size
+// takes half a GiB of memory.
+inline constexpr int64_t kMaxItems = int64_t{1} << 26;
+
 struct JournalEntry {
   int64_t item = 0;
-  std::optional<uint64_t> place;
   std::string record;
 };
 
@@ -51,8 +50,6 @@ class JournalReader {
   // The number after the largest item number, and the number of items with a record.
   int64_t end() const { return static_cast<int64_t>(offsets_.size()); }
   int64_t count() const { return count_; }
-  // Damaged lines, without a truncated last line.
-  int64_t damaged_lines() const { return damaged_lines_; }
   // Bytes up to the end of the last complete line.
   uint64_t size() const { return size_; }
 
@@ -65,14 +62,8 @@ class JournalReader {
   int descriptor_ = -1;
   std::vector<uint64_t> offsets_;  // of items' lines, plus 1; 0: none
   int64_t count_ = 0;
-  int64_t damaged_lines_ = 0;
   uint64_t size_ = 0;
 };
-
-// Removes the damaged lines of a journal, if any: writes the others to `temporary` and replaces the
-// journal, which must not be open. ABORTED as in durable_file.h.
-absl::Status RepairJournal(const std::filesystem::path& path,
-                           const std::filesystem::path& temporary);
 
 // Appends to a journal.
 class JournalWriter {
@@ -84,7 +75,7 @@ class JournalWriter {
 
   // Truncates the journal to `size`, which a reader returned. ABORTED.
   absl::Status Open(const std::filesystem::path& path, uint64_t size);
-  void Add(int64_t item, absl::string_view record, std::optional<uint64_t> place = std::nullopt);
+  void Add(int64_t item, absl::string_view record);
   // Flushes the added records to disk. ABORTED; after an error, the journal accepts no more
   // records.
   absl::Status Commit();

@@ -3,9 +3,7 @@
 #include "absl/hash/hash.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "model/base/file.h"
 #include "model/base/sha256.h"
-#include "model/motion/motion_limits.h"
 
 namespace duet::client::batch {
 namespace {
@@ -46,28 +44,13 @@ absl::Status LeaderDigests::Check(const LeaderEntry& leader, const std::string& 
       "--out"));
 }
 
-absl::Status LeaderDigests::CheckRecord(const nlohmann::ordered_json& record) {
-  LeaderEntry leader;
-  leader.given = record.value("leader", "");
-  leader.file = leader.given;
-  const std::string sha256 = record.value("leader_sha256", "");
-  return sha256.empty() ? absl::OkStatus() : Check(leader, sha256);
-}
-
 std::string ReadDigests::Of(const LeaderEntry& leader) {
   const uint64_t key = KeyOfFile(leader);
   const auto known = digests_.find(key);
   if (known != digests_.end()) return Hex(known->second);
-  const absl::StatusOr<std::string> digest = DigestOfLeader(leader);
+  const absl::StatusOr<std::string> digest = base::Sha256HexOfFile(leader.file);
   if (!digest.ok()) return "";
   return Hex(digests_[key] = FirstBits(*digest));
-}
-
-absl::StatusOr<std::string> DigestOfLeader(const LeaderEntry& leader) {
-  const absl::StatusOr<std::string> content =
-      base::ReadFile(leader.file, motion::kMaxMotionFileBytes, "a motion");
-  if (!content.ok()) return content.status();
-  return base::Sha256Hex(*content);
 }
 
 }  // namespace duet::client::batch

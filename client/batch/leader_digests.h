@@ -2,14 +2,11 @@
 #define DUET_CLIENT_BATCH_LEADER_DIGESTS_H_
 
 #include <cstdint>
-#include <filesystem>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/status/status.h"
-#include "absl/status/statusor.h"
 #include "client/batch/leader_entry.h"
 
 namespace duet::client::batch {
@@ -25,8 +22,6 @@ class LeaderDigests {
   // Stores the first digest of the leader's file. FAILED_PRECONDITION, with the leader, if `sha256`
   // differs from it.
   absl::Status Check(const LeaderEntry& leader, const std::string& sha256);
-  // The same for the leader in an item's record.
-  absl::Status CheckRecord(const nlohmann::ordered_json& record);
 
  private:
   mutable std::mutex mutex_;
@@ -43,9 +38,6 @@ class ReadDigests {
  private:
   absl::flat_hash_map<uint64_t, uint64_t> digests_;  // by hash of the path; the first 64 bits
 };
-
-// The current digest of the leader's file. Errors: those of base::ReadFile.
-absl::StatusOr<std::string> DigestOfLeader(const LeaderEntry& leader);
 
 }  // namespace duet::client::batch
 

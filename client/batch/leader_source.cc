@@ -13,7 +13,6 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/missing_file.h"
 #include "model/formats/motion_file.h"
-#include "model/formats/research/smpl_motion.h"
 #include "model/motion/reading_setting.h"
 
 namespace duet::client::batch {
@@ -85,12 +84,6 @@ bool MayLead(const fs::path& file, const std::optional<formats::Format>& format)
   return formats::FormatOf(file).value_or(*format) == *format;
 }
 
-// Whether a file is an .npz that holds no motion, such as a body model.
-bool IsOtherArchive(const fs::path& file) {
-  return formats::FormatOf(file) == formats::Format::kNpz &&
-         !formats::research::MayBeSmplMotion(file);
-}
-
 absl::Status AddFolder(const fs::path& folder, const std::optional<formats::Format>& format,
                        LeaderList* list, std::vector<std::string>* passed_over) {
   std::vector<fs::path> files;
@@ -108,7 +101,7 @@ absl::Status AddFolder(const fs::path& folder, const std::optional<formats::Form
   }
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
-    if (IsOtherArchive(file) || !LooksLikeMotion(file)) {
+    if (!LooksLikeMotion(file)) {
       if (passed_over != nullptr) passed_over->push_back(file.string());
       continue;
     }

@@ -24,7 +24,7 @@ class LeaderSource {
   virtual absl::StatusOr<std::optional<LeaderEntry>> Next() = 0;
 };
 
-// Files, folders (all motion files below, also links to missing ones, by name; .txt, .json and .npz
+// Files, folders (all motion files below, also links to missing ones, by name; .txt and .json
 // files that hold something else are skipped and added to `passed_over`, which may be null) and
 // patterns ("walks/*.bvh"; * and ? within one part of a path). Files of a folder are named by their
 // path in it, other files by their own name. With `format`, a file may have any extension, and

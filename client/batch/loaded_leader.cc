@@ -6,9 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/batch/text_values.h"
-#include "model/base/file.h"
 #include "model/base/sha256.h"
-#include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/stated_unit.h"
 
@@ -20,13 +18,6 @@ absl::StatusOr<FollowerStart> ReadStart(const std::filesystem::path& file,
   absl::StatusOr<std::vector<motion::Vec3>> pose = formats::ReadFollowerStart(file, options);
   if (!pose.ok()) return pose.status();
   return FollowerStart(*std::move(pose));
-}
-
-absl::StatusOr<std::string> DigestOf(const std::filesystem::path& file) {
-  const absl::StatusOr<std::string> content =
-      base::ReadFile(file, motion::kMaxMotionFileBytes, "a motion");
-  if (!content.ok()) return content.status();
-  return base::Sha256Hex(*content);
 }
 
 absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const LeaderInput& input,
@@ -48,7 +39,7 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
   if (!pose.ok()) return pose.status();
   loaded->follower_start = *std::move(pose);
   if (own) return absl::OkStatus();
-  absl::StatusOr<std::string> digest = DigestOf(file);
+  absl::StatusOr<std::string> digest = base::Sha256HexOfFile(file);
   if (!digest.ok()) return digest.status();
   loaded->start_sha256 = *std::move(digest);
   return absl::OkStatus();
@@ -88,7 +79,7 @@ absl::StatusOr<LoadedLeader> Load(const LeaderEntry& entry, formats::Side side,
   if (!clip.ok()) return clip.status();
   absl::Status status = CheckLimits(entry.file, *clip, limits);
   if (!status.ok()) return status;
-  absl::StatusOr<std::string> digest = DigestOf(entry.file);
+  absl::StatusOr<std::string> digest = base::Sha256HexOfFile(entry.file);
   if (!digest.ok()) return digest.status();
   LoadedLeader loaded;
   loaded.clip = *std::move(clip);
@@ -106,6 +97,12 @@ absl::Status WithMendingField(const absl::Status& status) {
       absl::StrCat(status.message(), "; specify it in the recipe: input { ", field, " }"));
 }
 
+// Whether two lines read the same motion.
+bool SameMotion(const LeaderEntry& a, const LeaderEntry& b) {
+  return a.file == b.file && a.follower_start == b.follower_start &&
+         a.follower_start_side == b.follower_start_side;
+}
+
 }  // namespace
 
 formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skeleton& skeleton) {
@@ -115,8 +112,6 @@ formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skele
   options.frame_rate_hz = input.frame_rate_hz;
   options.metres_per_unit = motion::StatedMetresPerUnit(input.metres_per_unit, input.unit);
   options.joint_overrides = input.joint_map;
-  options.layout = input.layout;
-  options.body_model = input.body_model;
   options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
   return options;
 }
@@ -127,6 +122,16 @@ absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side 
   absl::StatusOr<LoadedLeader> loaded = Load(entry, side, input, skeleton, limits);
   if (!loaded.ok()) return WithMendingField(loaded.status());
   return loaded;
+}
+
+std::shared_ptr<SharedLeader> LastLeaders::Get(const std::shared_ptr<const LeaderEntry>& entry,
+                                               formats::Side side, int skeleton) {
+  Last& last = last_[static_cast<size_t>(skeleton)];
+  if (last.leader == nullptr || last.side != side ||
+      (last.entry != entry && !SameMotion(*last.entry, *entry))) {
+    last = {entry, side, std::make_shared<SharedLeader>(entry, side)};
+  }
+  return last.leader;
 }
 
 }  // namespace duet::client::batch

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/batch/leader_entry.h"
@@ -53,6 +54,24 @@ class SharedLeader {
   formats::Side side_;
   std::once_flag once_;
   absl::StatusOr<LoadedLeader> loaded_;
+};
+
+// Shares leaders between the items of a plan, which come leader by leader: the last leader in each
+// skeleton. Manifest lines that name the same file and the same start share it too.
+class LastLeaders {
+ public:
+  explicit LastLeaders(size_t skeletons) : last_(skeletons) {}
+
+  std::shared_ptr<SharedLeader> Get(const std::shared_ptr<const LeaderEntry>& entry,
+                                    formats::Side side, int skeleton);
+
+ private:
+  struct Last {
+    std::shared_ptr<const LeaderEntry> entry;
+    formats::Side side = formats::Side::kLeft;
+    std::shared_ptr<SharedLeader> leader;
+  };
+  std::vector<Last> last_;  // by skeleton
 };
 
 }  // namespace duet::client::batch

@@ -11,7 +11,7 @@
 #include "client/batch/capture_layout.h"
 #include "client/batch/drawn_labels.h"
 #include "client/batch/file_name.h"
-#include "client/batch/item_limit.h"
+#include "client/batch/journal.h"
 #include "client/batch/text_values.h"
 #include "model/base/random.h"
 #include "model/base/sha256.h"
@@ -54,7 +54,6 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
     const motion::Vec3& to = *leader.partner_direction;
     absl::StrAppend(&text, "direction ", to.x, ",", to.y, ",", to.z, "\n");
   }
-  // Added only if they differ from the default, so that items of earlier versions keep their ids.
   for (const JointConstraint& pin : leader.pins) {
     absl::StrAppend(&text, "pin ", PinText(pin), "\n");
   }
@@ -75,8 +74,6 @@ void SetDigests(const Recipe& recipe, const ModelInfo& model, Item* item) {
   std::string who = absl::StrCat(leader.key, "\n", leader.given);
   if (!leader.group.empty()) absl::StrAppend(&who, "\ngroup ", leader.group);
   item->id = Digest(Asked(*item, recipe, model, who, leader.follower_start));
-  item->place = item->id;
-  if (recipe.seed_rule == SeedRule::kPath) return;
   // Without the paths, which the content of the files stands for.
   const bool is_point = ParsePoint(leader.follower_start).has_value();
   item->asked = Digest(Asked(*item, recipe, model, leader.has_id ? leader.key : "",
@@ -145,8 +142,8 @@ uint64_t SeedOf(const Item& item, uint64_t recipe_seed, absl::string_view conten
   if (item.leader->seed.has_value() && retry == 0) {
     return *item.leader->seed + static_cast<uint64_t>(item.sample);
   }
-  const std::string from = item.asked.empty() ? item.id : absl::StrCat(content, " ", item.asked);
-  return DrawnNumber(absl::StrCat("seed ", recipe_seed, " ", from, " ", retry));
+  return DrawnNumber(
+      absl::StrCat("seed ", recipe_seed, " ", content, " ", item.asked, " ", retry));
 }
 
 Plan::Plan(Recipe recipe, std::vector<ModelInfo> models, std::unique_ptr<LeaderSource> leaders)
@@ -272,7 +269,7 @@ absl::Status Plan::CheckClassifier(const ModelInfo& model) const {
 
 // An id decides the labels by itself, so that no file is read for them.
 std::string Plan::DrawnFrom(const LeaderEntry& leader) {
-  if (drawn_.empty() || leader.has_id || recipe_.seed_rule == SeedRule::kPath) return leader.key;
+  if (drawn_.empty() || leader.has_id) return leader.key;
   const std::string digest = digests_.Of(leader);
   return digest.empty() ? leader.key : absl::StrCat("content ", digest);
 }
@@ -325,16 +322,8 @@ void Plan::SetSides(const LeaderEntry& leader, const dataset::IndexEntry* indexe
   if (side == dataset::LeaderSide::kRight) sides_ = {formats::Side::kRight};
 }
 
-// Sets what an index.tsv may state about a leader. Earlier versions read none, and knew no groups:
-// they copied that column like any other.
+// Sets what an index.tsv may state about a leader.
 absl::Status Plan::UseIndex(LeaderEntry* leader) {
-  if (recipe_.seed_rule == SeedRule::kPath) {
-    if (!leader->group.empty()) leader->extra.emplace_back("group", std::move(leader->group));
-    leader->group.clear();
-    std::sort(leader->extra.begin(), leader->extra.end());
-    SetSides(*leader, nullptr);
-    return absl::OkStatus();
-  }
   const absl::StatusOr<const dataset::IndexEntry*> indexed = indexes_.Find(leader->file);
   if (!indexed.ok()) return indexed.status();
   if (*indexed != nullptr && leader->group.empty()) leader->group = (*indexed)->group;

@@ -23,7 +23,7 @@ namespace duet::client::batch {
 struct Item {
   int64_t number = 0;     // from 0, in the order of the leaders
   std::string id;         // 32 hex digits: the digest of the whole request
-  std::string asked;      // the same of what is asked of the leader's file; empty: SeedRule::kPath
+  std::string asked;      // the same of what is asked of the leader's file
   std::string place;      // 32 hex digits that decide the shard and the share that have the item
   std::string name;       // unique path of its files, without extension
   std::string full_name;  // the name before it was shortened; empty if it was not

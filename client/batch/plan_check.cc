@@ -14,7 +14,6 @@
 #include "client/batch/dataset_json.h"
 #include "client/batch/encode.h"
 #include "client/batch/flow/bounded_queue.h"
-#include "client/batch/leader_sharing.h"
 #include "model/base/counted.h"
 #include "model/motion/resample.h"
 
@@ -40,11 +39,10 @@ struct LeaderItems {
 class Checker {
  public:
   Checker(const Recipe& recipe, const std::vector<motion::Skeleton>& skeletons,
-          const RequestLimits& limits, KeptLeaders* kept)
+          const RequestLimits& limits)
       : recipe_(recipe),
         skeletons_(skeletons),
         limits_(limits),
-        kept_(kept),
         // Models with the same skeleton read a leader in the same way.
         skeleton_of_model_(SkeletonIndices(skeletons)),
         sharing_(skeletons.size()),
@@ -138,10 +136,6 @@ class Checker {
       return;
     }
     const motion::Clip& clip = leader->clip;
-    if (kept_ != nullptr) {
-      kept_->Keep(*items.first->leader, items.first->side, skeleton_of_model_[model], clip,
-                  items.leader);
-    }
     check_.frames += items.all * FramesAsWritten(clip, recipe_.output);
     check_.seconds += static_cast<double>(items.all) * clip.frame_count() / clip.frame_rate_hz;
     if (!check_.first_item || items.first->number < check_.first_item->number) {
@@ -161,7 +155,6 @@ class Checker {
   const Recipe& recipe_;
   const std::vector<motion::Skeleton>& skeletons_;
   const RequestLimits& limits_;
-  KeptLeaders* const kept_;
   const std::vector<int> skeleton_of_model_;
   LastLeaders sharing_;
   std::vector<LeaderItems> current_;  // by skeleton
@@ -184,8 +177,8 @@ bool PlanPart::Has(const Item& item) const {
 absl::StatusOr<PlanCheck> CheckPlan(const Recipe& recipe,
                                     const std::vector<motion::Skeleton>& skeletons,
                                     const RequestLimits& limits, const PlanPart& part, Plan* plan,
-                                    KeptLeaders* kept, const std::function<bool()>& stopped) {
-  Checker checker(recipe, skeletons, limits, kept);
+                                    const std::function<bool()>& stopped) {
+  Checker checker(recipe, skeletons, limits);
   absl::Status status = checker.Run(part, plan, stopped);
   if (!status.ok()) return status;
   return checker.Result();

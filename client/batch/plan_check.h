@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/batch/leader_sharing.h"
+#include "client/batch/loaded_leader.h"
 #include "client/batch/plan.h"
 #include "client/batch/shard.h"
 #include "client/result.h"
@@ -58,14 +58,13 @@ struct PlanCheck {
 };
 
 // Reads the plan to its end, every line of its manifest, and the leaders of the part. `skeletons`
-// are the models'. `kept`, which may be null, receives the leaders that the run can use. `stopped`
-// is called between items; once it returns true, the check ends with what it has.
+// are the models'. `stopped` is called between items; once it returns true, the check ends with what it has.
 // Errors: those that end the plan, and those of `part.is_settled`.
 //
 // Threads: reads leaders in threads of its own.
 absl::StatusOr<PlanCheck> CheckPlan(
     const Recipe& recipe, const std::vector<motion::Skeleton>& skeletons,
-    const RequestLimits& limits, const PlanPart& part, Plan* plan, KeptLeaders* kept = nullptr,
+    const RequestLimits& limits, const PlanPart& part, Plan* plan,
     const std::function<bool()>& stopped = [] { return false; });
 
 // INVALID_ARGUMENT with a list of the bad lines, if the plan has any: its run must not begin.

@@ -8,7 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include "client/batch/split.h"
 #include "client/request.h"
 #include "model/classifier/classifier.h"
 #include "model/formats/motion_file.h"
@@ -76,8 +75,6 @@ struct LeaderInput {
   std::optional<motion::UpAxis> up_axis;
   retargeting::JointOverrides joint_map;
   std::optional<formats::Format> format;
-  std::optional<formats::research::Layout> layout;
-  std::filesystem::path body_model;
   Level level;
   // The vertical of every leader, for requests: of `level`, or what an automatic one found.
   std::optional<motion::Vec3> up;
@@ -100,24 +97,13 @@ struct QualityFilter {
   int retries_per_item = 0;
 };
 
-enum class Format { kBvh, kCsv, kNpy, kJson, kGlb, kUsda };
+enum class Format { kBvh, kCsv, kNpy, kJson, kGlb };
 enum class Layout { kMirror, kClassFolders, kSbu, kK3hi };
-enum class Packing { kNone, kTar, kNpz };
 
 struct Output {
   std::vector<Format> formats;  // none where the layout has its own
   Layout layout = Layout::kMirror;
-  Packing packing = Packing::kNone;
-  uint64_t shard_bytes = uint64_t{256} << 20;
   std::optional<double> frame_rate_hz;  // of every item; absent: the rate of its leader
-};
-
-// How seeds, drawn labels and sides follow from a recipe and a list. A set keeps the rule that it
-// was begun with, so that sets of earlier versions can be continued.
-enum class SeedRule {
-  kPath = 1,  // from paths as they are listed; the rule of earlier versions
-  // From the content of the leaders' files and their ids; sides and groups also from an index.tsv.
-  kContent = 2,
 };
 
 struct Recipe {
@@ -130,9 +116,7 @@ struct Recipe {
   LeaderInput input;
   QualityFilter filter;
   Output output;
-  Splits splits;
-  SeedRule seed_rule = SeedRule::kContent;  // not written in recipes
-  // Digest of everything above, except the rule, in hex. Recipes with the same digest are equal.
+  // Digest of everything above in hex. Recipes with the same digest are equal.
   std::string digest;
   // The same as one JSON object with the proto's field names. Files that the recipe names
   // are represented by their content.

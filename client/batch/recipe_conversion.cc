@@ -212,11 +212,6 @@ LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
     check->Expect(input.format.has_value() && formats::IsReadable(*input.format), "input.format",
                   base::Quoted(proto.format()), formats::kReadableFormatNames);
   }
-  if (proto.has_layout()) {
-    input.layout = formats::research::ParseLayout(proto.layout());
-    check->Expect(input.layout.has_value(), "input.layout", base::Quoted(proto.layout()),
-                  formats::research::kLayoutNames);
-  }
   if (proto.has_level()) {
     const absl::StatusOr<Level> level = ParseLevel(proto.level());
     check->Expect(level.ok(), "input.level", base::Quoted(proto.level()),
@@ -295,21 +290,11 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
   for (const int format : proto.formats()) {
     check->Expect(v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED, "output.formats",
                   absl::StrCat(format),
-                  "FORMAT_BVH, FORMAT_CSV, FORMAT_NPY, FORMAT_JSON, FORMAT_GLB or FORMAT_USDA");
+                  "FORMAT_BVH, FORMAT_CSV, FORMAT_NPY, FORMAT_JSON or FORMAT_GLB");
     // The enums have the same order; the proto's begins at 1.
     output.formats.push_back(static_cast<Format>(format - v1::FORMAT_BVH));
   }
   check->Different("output.formats", proto.formats());
-  check->Expect(v1::Packing_IsValid(proto.packing()), "output.packing",
-                absl::StrCat(proto.packing()), "a packing");
-  if (proto.packing() == v1::PACKING_TAR) output.packing = Packing::kTar;
-  if (proto.packing() == v1::PACKING_NPZ) output.packing = Packing::kNpz;
-  if (proto.has_shard_bytes()) output.shard_bytes = proto.shard_bytes();
-  // Zip files have 32-bit sizes.
-  check->Expect(output.shard_bytes >= 1 && output.shard_bytes <= (uint64_t{2} << 30),
-                "output.shard_bytes", absl::StrCat(output.shard_bytes), "1 to 2147483648");
-  check->Expect(!own_format || output.packing == Packing::kNone, "output.packing", "one",
-                "none: the layout is of folders");
   if (proto.has_frame_rate_hz()) output.frame_rate_hz = proto.frame_rate_hz();
   check->Expect(!own_format || !output.frame_rate_hz, "output.frame_rate_hz", "one",
                 "none: the layout has a rate of its own");
@@ -317,22 +302,7 @@ Output ReadOutput(const v1::Output& proto, Checker* check) {
                     output.frame_rate_hz.value_or(1) <= motion::kMaxFrameRateHz,
                 "output.frame_rate_hz", absl::StrCat(proto.frame_rate_hz()),
                 "above 0, at most 1000");
-  const bool npy = std::count(output.formats.begin(), output.formats.end(), Format::kNpy) > 0;
-  check->Expect(output.packing != Packing::kNpz || (npy && output.formats.size() == 1),
-                "output.formats", "others", "only FORMAT_NPY with PACKING_NPZ");
   return output;
-}
-
-Splits ReadSplits(const v1::Splits& proto, Checker* check) {
-  const auto share = [check](const char* name, double value) {
-    check->Expect(value >= 0 && value < 1, absl::StrCat("splits.", name), absl::StrCat(value),
-                  "0 or more, below 1");
-    return value;
-  };
-  const Splits splits = {share("validation", proto.validation()), share("test", proto.test())};
-  check->Expect(splits.validation + splits.test < 1, "splits",
-                absl::StrCat(splits.validation + splits.test), "less than 1 together");
-  return splits;
 }
 
 void ReadModels(const v1::Recipe& proto, Checker* check, Recipe* recipe) {
@@ -370,7 +340,6 @@ absl::StatusOr<Recipe> FromProto(const v1::Recipe& proto) {
   recipe.input = ReadInput(proto.input(), &check);
   recipe.filter = ReadFilter(proto.filter(), &check);
   recipe.output = ReadOutput(proto.output(), &check);
-  recipe.splits = ReadSplits(proto.splits(), &check);
   if (!check.status().ok()) return check.status();
   return recipe;
 }

@@ -5,14 +5,20 @@
 #include <google/protobuf/util/json_util.h>
 
 #include <cstddef>
+#include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/batch/recipe_conversion.h"
 #include "model/base/file.h"
 #include "model/base/sha256.h"
+#include "model/base/strict_json.h"
 #include "model/classifier/classifier_files.h"
 #include "model/messages/message_text.h"
 #include "model/retargeting/joint_table.h"
@@ -44,20 +50,7 @@ std::string ToJson(const v1::Recipe& recipe) {
   return json;
 }
 
-v1::Packing ToProto(Packing packing) {
-  switch (packing) {
-    case Packing::kTar:
-      return v1::PACKING_TAR;
-    case Packing::kNpz:
-      return v1::PACKING_NPZ;
-    case Packing::kNone:
-      break;
-  }
-  return v1::PACKING_NONE;
-}
-
 void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
-  if (overrides.packing) recipe->mutable_output()->set_packing(ToProto(*overrides.packing));
   if (overrides.retries_per_item) {
     recipe->mutable_filter()->set_retries_per_item(
         static_cast<uint32_t>(*overrides.retries_per_item));
@@ -65,13 +58,10 @@ void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
   if (!overrides.input_format.empty()) {
     recipe->mutable_input()->set_format(overrides.input_format);
   }
-  if (!overrides.layout.empty()) recipe->mutable_input()->set_layout(overrides.layout);
   if (!overrides.level.empty()) recipe->mutable_input()->set_level(overrides.level);
   if (overrides.frame_rate_hz) {
     recipe->mutable_output()->set_frame_rate_hz(*overrides.frame_rate_hz);
   }
-  if (overrides.validation) recipe->mutable_splits()->set_validation(*overrides.validation);
-  if (overrides.test) recipe->mutable_splits()->set_test(*overrides.test);
 }
 
 // Merges the joint map file that the recipe names into its joint map.
@@ -89,22 +79,6 @@ absl::Status TakeJointTable(const std::filesystem::path& folder, v1::LeaderInput
   return absl::OkStatus();
 }
 
-// Replaces the path of the body model by its digest. Returns the path; empty if there is none.
-absl::StatusOr<std::filesystem::path> TakeBodyModel(const std::filesystem::path& folder,
-                                                    const RecipeOverrides& overrides,
-                                                    v1::Recipe* recipe) {
-  std::filesystem::path path = overrides.body_model;
-  if (path.empty() && !recipe->input().body_model().empty()) {
-    path = folder / recipe->input().body_model();
-  }
-  if (path.empty()) return path;
-  const absl::StatusOr<std::string> content =
-      base::ReadFile(path, formats::kMaxBodyModelBytes, "a body model");
-  if (!content.ok()) return content.status();
-  recipe->mutable_input()->set_body_model(base::Sha256Hex(*content));
-  return path;
-}
-
 // Reads the classifier that the recipe names, and replaces its path by its digest.
 absl::StatusOr<std::shared_ptr<const classifier::Classifier>> TakeClassifier(
     const std::filesystem::path& folder, v1::ClassifierFilter* filter) {
@@ -114,6 +88,32 @@ absl::StatusOr<std::shared_ptr<const classifier::Classifier>> TakeClassifier(
   if (!stored.ok()) return stored.status();
   filter->set_model(stored->sha256);
   return std::make_shared<const classifier::Classifier>(std::move(stored->classifier));
+}
+
+using nlohmann::json;
+
+constexpr size_t kDescribed = 5;
+
+// All values except objects and arrays, by path: "reactions[0].labels.weights.kick".
+using Fields = std::map<std::string, json>;
+
+void Flatten(const json& value, const std::string& path, Fields* fields) {
+  if (value.is_object() && !value.empty()) {
+    for (const auto& [name, member] : value.items()) {
+      Flatten(member, path.empty() ? name : absl::StrCat(path, ".", name), fields);
+    }
+  } else if (value.is_array() && !value.empty()) {
+    for (size_t i = 0; i < value.size(); ++i) {
+      Flatten(value[i], absl::StrCat(path, "[", i, "]"), fields);
+    }
+  } else if (!path.empty()) {
+    (*fields)[path] = value;
+  }
+}
+
+std::string ShownAt(const Fields& fields, const std::string& path) {
+  const auto found = fields.find(path);
+  return found == fields.end() ? "none" : base::Shown(found->second);
 }
 
 }  // namespace
@@ -131,13 +131,9 @@ absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
     status = classifier.status();
   }
   if (!status.ok()) return status;
-  const absl::StatusOr<std::filesystem::path> body_model =
-      TakeBodyModel(folder, overrides, &parsed);
-  if (!body_model.ok()) return body_model.status();
   Apply(overrides, &parsed);
   absl::StatusOr<Recipe> recipe = FromProto(parsed);
   if (!recipe.ok()) return recipe;
-  recipe->input.body_model = *body_model;
   recipe->digest = Digest(parsed);
   recipe->json = ToJson(parsed);
   recipe->filter.classifier = *std::move(classifier);
@@ -153,6 +149,28 @@ absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path,
   if (recipe.ok()) return recipe;
   return absl::Status(recipe.status().code(),
                       absl::StrCat(path.string(), ": ", recipe.status().message()));
+}
+
+std::string DescribeDifference(const std::string& expected, const std::string& got) {
+  const json before = json::parse(expected, nullptr, false), now = json::parse(got, nullptr, false);
+  if (!before.is_object() || !now.is_object()) return "";
+  Fields old_fields, new_fields;
+  Flatten(before, "", &old_fields);
+  Flatten(now, "", &new_fields);
+  std::set<std::string> paths;
+  for (const auto& [path, value] : old_fields) paths.insert(path);
+  for (const auto& [path, value] : new_fields) paths.insert(path);
+  std::vector<std::string> described;
+  size_t differing = 0;
+  for (const std::string& path : paths) {
+    const std::string was = ShownAt(old_fields, path), is = ShownAt(new_fields, path);
+    if (was == is || ++differing > kDescribed) continue;
+    described.push_back(absl::StrCat(path, ": expected ", was, ", got ", is));
+  }
+  if (differing > kDescribed) {
+    described.push_back(absl::StrCat("and ", differing - kDescribed, " more"));
+  }
+  return absl::StrJoin(described, "; ");
 }
 
 }  // namespace duet::client::batch

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
@@ -12,15 +13,10 @@ namespace duet::client::batch {
 
 // Values of the command line that override the recipe.
 struct RecipeOverrides {
-  std::optional<Packing> packing;
   std::optional<int> retries_per_item;
   std::string input_format;  // empty: the recipe's
   std::optional<double> frame_rate_hz;
-  std::string level;                 // empty: the recipe's
-  std::string layout;                // the same
-  std::string body_model;            // the same; relative to the working directory
-  std::optional<double> validation;  // Splits
-  std::optional<double> test;
+  std::string level;  // empty: the recipe's
 };
 
 // Parses a recipe: JSON or text format. Unknown fields are rejected. Files that it names
@@ -33,6 +29,11 @@ absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
 // also NOT_FOUND.
 absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path,
                                   const RecipeOverrides& overrides = {});
+
+// How two recipes differ, each as Recipe::json: 'seed: expected 7, got 9; output.formats[1]:
+// expected none, got "FORMAT_CSV"', the first five fields and the number of the others. Empty if
+// they are equal, or if one of them is not a JSON object.
+std::string DescribeDifference(const std::string& expected, const std::string& got);
 
 }  // namespace duet::client::batch
 

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "client/batch/made_by.h"
 #include "client/batch/plan.h"
 #include "client/batch/quality.h"
-#include "client/batch/split.h"
 #include "client/request.h"
 
 namespace duet::client::batch {
@@ -63,16 +64,14 @@ nlohmann::ordered_json RejectedRecord(const Item& item, const RecordedAnswer& an
                                       const std::vector<std::string>& reasons);
 nlohmann::ordered_json FailedRecord(const Item& item, const absl::Status& error);
 
-// The class of the largest weight of a record, over all keyframes if there are any; "none" without
-// a weight above 0.
-std::string LargestClass(const nlohmann::ordered_json& record);
-
-// The split of the item; empty if the set is not divided.
-std::string SplitOfRecord(const Splits& splits, const nlohmann::ordered_json& record);
-
 // The record as one line, without newline. Bytes that are not UTF-8 become the replacement
 // character.
 std::string Line(const nlohmann::ordered_json& record);
+
+// Parses a record from an untrusted file. Checks the types of the fields that readers use, and that
+// the fields of the record's state are present. Keeps other fields. Errors: DATA_LOSS
+// "FIELD: expected ..., got ...".
+absl::StatusOr<nlohmann::ordered_json> ParseRecord(absl::string_view text);
 
 }  // namespace duet::client::batch
 

@@ -12,18 +12,14 @@
 #include "client/batch/flow/server_choice.h"
 #include "client/batch/recipe_file.h"
 #include "client/batch/shard.h"
+#include "client/batch/survey.h"
 #include "client/cli/server_arguments.h"
 #include "client/options.h"
 
 namespace duet::client::cli {
 
-// The flags of duet batch, duet batch merge and duet batch verify.
+// The flags of duet batch.
 struct BatchArguments {
-  enum class Action { kRun, kMerge, kVerify };
-  Action action = Action::kRun;
-  std::vector<std::string> words;       // the command line, with the settings that apply
-  bool repair = false;                  // only for kVerify, as is
-  std::vector<std::string> repairers;   // servers instead of those of the last run
   std::vector<std::string> leaders;     // files, folders, patterns
   std::string manifest;                 // a file, "-" or empty
   std::filesystem::path manifest_copy;  // the manifest "-" once it was read
@@ -38,7 +34,7 @@ struct BatchArguments {
   double patience_seconds = 120;
   int64_t limit = std::numeric_limits<int64_t>::max();
   double share = 1;
-  bool retry_failed = false;
+  batch::Repeats repeats;
   batch::AllowedFailures allow_failed;
   bool dry_run = false;
   bool json = false;

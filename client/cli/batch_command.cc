@@ -11,19 +11,15 @@
 
 #include "absl/strings/str_join.h"
 #include "client/batch/estimate.h"
+#include "client/batch/gather.h"
 #include "client/batch/job.h"
-#include "client/batch/leader_sharing.h"
 #include "client/batch/leader_source.h"
 #include "client/batch/level.h"
-#include "client/batch/merge.h"
 #include "client/batch/plan_check.h"
-#include "client/batch/setup.h"
 #include "client/batch/survey.h"
-#include "client/batch/verify.h"
 #include "client/cli/batch_flags.h"
 #include "client/cli/batch_plan.h"
 #include "client/cli/batch_progress.h"
-#include "client/cli/batch_repair.h"
 #include "client/cli/batch_report.h"
 #include "client/cli/batch_servers.h"
 #include "client/cli/stop_signals.h"
@@ -31,9 +27,6 @@
 
 namespace duet::client::cli {
 namespace {
-
-// Memory for leaders that the check has read and that the run uses.
-constexpr size_t kMaxKeptLeaderBytes = size_t{64} << 20;
 
 absl::StatusOr<batch::Shard> ShardOf(const BatchArguments& arguments) {
   if (arguments.shard.has_value()) return *arguments.shard;
@@ -73,7 +66,6 @@ batch::JobOptions ToJobOptions(const BatchArguments& arguments) {
   options.patience = absl::ToChronoNanoseconds(absl::Seconds(arguments.patience_seconds));
   options.limit = arguments.limit;
   options.share = arguments.share;
-  options.retry_failed = arguments.retry_failed;
   return options;
 }
 
@@ -118,8 +110,7 @@ struct Prepared {
 
 absl::Status Prepare(const BatchArguments& arguments, const ProgramEnvironment& environment,
                      const batch::JobIdentity& begun, Prepared* prepared) {
-  if (!begun.models.empty()) prepared->recipe.seed_rule = begun.seed_rule;
-  absl::StatusOr<batch::ResolvedModels> resolved =
+  absl::StatusOr<ResolvedModels> resolved =
       AskModels(arguments, environment, prepared->recipe, begun.models);
   if (!resolved.ok()) return resolved.status();
   for (const ModelInfo& model : resolved->models) {
@@ -135,12 +126,11 @@ absl::Status Prepare(const BatchArguments& arguments, const ProgramEnvironment& 
   return absl::OkStatus();
 }
 
-// Checks every line of the manifest, and every leader of the part that has an item which `surveyor`
-// (may be null) does not find settled.
+// Checks every line of the manifest, and every leader of the part that has an item which `survey` (may
+// be null) does not find settled.
 absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
                                        const ProgramEnvironment& environment,
-                                       const Prepared& prepared, batch::Surveyor* surveyor,
-                                       batch::KeptLeaders* kept,
+                                       const Prepared& prepared, batch::Survey* survey,
                                        const std::function<bool()>& stopped) {
   std::vector<std::string> passed_over;
   absl::StatusOr<batch::Plan> plan =
@@ -148,11 +138,11 @@ absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
   if (!plan.ok()) return plan.status();
   ReportPassedOver(arguments, passed_over, environment);
   batch::PlanPart part{prepared.shard, arguments.limit, arguments.share, nullptr};
-  if (surveyor != nullptr) {
-    part.is_settled = [surveyor](const batch::Item& item) { return surveyor->Add(item); };
+  if (survey != nullptr) {
+    part.is_settled = [survey](const batch::Item& item) { return survey->Add(item); };
   }
   absl::StatusOr<batch::PlanCheck> check =
-      CheckPlan(prepared.recipe, prepared.skeletons, prepared.limits, part, &*plan, kept, stopped);
+      CheckPlan(prepared.recipe, prepared.skeletons, prepared.limits, part, &*plan, stopped);
   if (check.ok()) ReportIndexedSides(arguments, plan->indexed_sides(), environment);
   return check;
 }
@@ -192,7 +182,7 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
   }
   if (!status.ok()) return status;
   const absl::StatusOr<batch::PlanCheck> check =
-      Check(arguments, environment, prepared, nullptr, nullptr, [] { return false; });
+      Check(arguments, environment, prepared, nullptr, [] { return false; });
   if (!check.ok()) return check.status();
   const bool good = check->bad_line_count == 0 &&
                     arguments.allow_failed.Allows(check->bad_leader_count, check->files);
@@ -214,9 +204,14 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
   RunningJob running;
   const StopSignals signals([&running] { running.Stop(); });
   batch::JobFolder folder(ShardFolder(arguments.out, prepared.shard));
-  batch::JobIdentity wanted = IdentityOf(prepared.recipe, prepared.shard);
   batch::JobIdentity begun;
-  absl::Status status = folder.OpenForRun(wanted, &begun);
+  const batch::JobIdentity wanted = IdentityOf(prepared.recipe, prepared.shard);
+  absl::Status status = folder.Open(wanted, &begun);
+  if (status.ok() && prepared.shard.count == 1) {
+    const absl::StatusOr<batch::Gathered> gathered = GatherShards(wanted, folder, &begun);
+    status = gathered.status();
+    if (status.ok()) ReportGathered(arguments, *gathered, environment);
+  }
   if (status.ok()) status = Prepare(arguments, environment, begun, &prepared);
   if (!status.ok()) return status;
   BatchArguments repeatable = arguments;
@@ -226,17 +221,15 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
         repeatable, environment, begun, [&running] { return running.stopped(); }, &prepared);
   }
   if (!status.ok()) return status;
-  wanted.up = prepared.recipe.input.up;
-  wanted.seed_rule = prepared.recipe.seed_rule;
-  const absl::StatusOr<batch::JobIdentity> identity =
-      GoOn(begun, WithModels(wanted, prepared.models, prepared.skeletons));
-  if (!identity.ok()) return identity.status();
-  const absl::StatusOr<std::unique_ptr<batch::Surveyor>> surveyor =
-      batch::Surveyor::Open(folder, *identity, arguments.retry_failed);
-  if (!surveyor.ok()) return surveyor.status();
-  batch::KeptLeaders leaders(kMaxKeptLeaderBytes);
+  const batch::JobIdentity identity =
+      IdentityOf(prepared.recipe, prepared.shard, prepared.models);
+  status = CheckWeights(begun, identity);
+  if (!status.ok()) return status;
+  const absl::StatusOr<std::unique_ptr<batch::Survey>> survey =
+      batch::Survey::Open(folder, identity, arguments.repeats);
+  if (!survey.ok()) return survey.status();
   const absl::StatusOr<batch::PlanCheck> check =
-      Check(repeatable, environment, prepared, surveyor->get(), &leaders,
+      Check(repeatable, environment, prepared, survey->get(),
             [&running] { return running.stopped(); });
   if (!check.ok()) return check.status();
   ReportBadLeaders(arguments, *check, environment);
@@ -247,14 +240,11 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
       MakePlan(repeatable, prepared.recipe, prepared.models, nullptr, nullptr);
   if (!plan.ok()) return plan.status();
   // Until now, another recipe could still use the folder.
-  if (begun.description.models.empty() || begun.recipe_json.empty()) {
-    status = folder.Begin(*identity);
-  }
-  if (status.ok()) status = KeepCommand(arguments, prepared.shard, folder);
+  if (begun.models.empty()) status = folder.Begin(identity);
   if (!status.ok()) return status;
-  batch::Job job({std::move(prepared.recipe), *identity, std::move(prepared.models),
+  batch::Job job({std::move(prepared.recipe), prepared.shard, std::move(prepared.models),
                   std::move(prepared.skeletons), prepared.limits, std::move(prepared.servers),
-                  &folder, &(*surveyor)->survey(), check->items, check->whole_plan, &leaders},
+                  &folder, survey->get(), check->items, check->whole_plan},
                  *std::move(plan), ToJobOptions(arguments));
   running.Set(&job);
   absl::StatusOr<ExitCode> code =
@@ -278,63 +268,6 @@ absl::StatusOr<ExitCode> RunBatch(const BatchArguments& arguments,
                            : RunWhole(arguments, environment, std::move(prepared));
 }
 
-absl::StatusOr<ExitCode> RunMerge(const BatchArguments& arguments,
-                                  const ProgramEnvironment& environment) {
-  const absl::StatusOr<batch::MergeReport> report = batch::Merge(arguments.out);
-  if (!report.ok()) return report.status();
-  Report(arguments, *report, environment);
-  return report->missing.empty() ? kExitDone : kExitRetry;
-}
-
-// Verifies a data set, reports the result, and records the damage for the next run.
-absl::StatusOr<batch::VerifyReport> VerifyAndRecord(const BatchArguments& arguments,
-                                                    const ProgramEnvironment& environment) {
-  absl::StatusOr<batch::VerifyReport> report = batch::Verify(arguments.out);
-  if (!report.ok()) return report;
-  Report(arguments, *report, environment);
-  const absl::Status recorded = batch::RecordDamage(report->damage, arguments.out);
-  if (!recorded.ok() && report->problem_count > 0 && !arguments.json) {
-    *environment.err << "duet: the damage is not recorded for the next run: " << recorded.message()
-                     << "\n";
-  }
-  return report;
-}
-
-absl::StatusOr<ExitCode> RunVerify(const BatchArguments& arguments,
-                                   const ProgramEnvironment& environment) {
-  absl::StatusOr<batch::VerifyReport> report = VerifyAndRecord(arguments, environment);
-  if (!report.ok()) return report.status();
-  ExitCode code = kExitDone;
-  if (arguments.repair && (report->problem_count > 0 || report->missing.value_or(0) > 0)) {
-    absl::StatusOr<BatchArguments> command = CommandOf(arguments);
-    if (!command.ok()) return command.status();
-    BatchArguments there = arguments;
-    there.out = std::filesystem::absolute(arguments.out);
-    absl::Status status = EnterFolderOf(arguments.out);
-    if (!status.ok()) return status;
-    const absl::StatusOr<ExitCode> repaired = RunBatch(*command, environment);
-    if (!repaired.ok()) return repaired.status();
-    code = *repaired;
-    report = VerifyAndRecord(there, environment);
-    if (!report.ok()) return report.status();
-  }
-  if (report->problem_count > 0) return kExitBadInput;
-  return report->missing.value_or(0) > 0 ? kExitRetry : code;
-}
-
-absl::StatusOr<ExitCode> RunAction(const BatchArguments& arguments,
-                                   const ProgramEnvironment& environment) {
-  switch (arguments.action) {
-    case BatchArguments::Action::kMerge:
-      return RunMerge(arguments, environment);
-    case BatchArguments::Action::kVerify:
-      return RunVerify(arguments, environment);
-    case BatchArguments::Action::kRun:
-      break;
-  }
-  return RunBatch(arguments, environment);
-}
-
 }  // namespace
 
 Command AddBatchCommand(FlagSet* program) {
@@ -342,13 +275,9 @@ Command AddBatchCommand(FlagSet* program) {
   Command command;
   command.app = AddBatchFlags(program, arguments.get());
   command.run = [arguments](const CommandContext& context) {
-    arguments->words = context.words;
-    return RunAction(*arguments, context.environment);
+    return RunBatch(*arguments, context.environment);
   };
-  command.servers = [arguments] {
-    const bool repairs = !arguments->repairers.empty();
-    return absl::StrJoin(repairs ? arguments->repairers : arguments->servers, ", ");
-  };
+  command.servers = [arguments] { return absl::StrJoin(arguments->servers, ", "); };
   return command;
 }
 

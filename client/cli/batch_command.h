@@ -6,7 +6,7 @@
 
 namespace duet::client::cli {
 
-// duet batch, duet batch merge and duet batch verify.
+// duet batch: turns many leaders and a recipe into a data set.
 Command AddBatchCommand(FlagSet* program);
 
 }  // namespace duet::client::cli

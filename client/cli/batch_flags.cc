@@ -15,10 +15,9 @@
 namespace duet::client::cli {
 namespace {
 
-using Action = BatchArguments::Action;
-
 constexpr char kBatchFooter[] = R"(
 To continue a run that stopped for any reason, run the same command again. docs/batch.md has a tour.
+`python3 -m duet_motion.sets` verifies, merges, splits and packs data sets.
 
 Exit codes:
   0   every item is settled: done, or rejected by the recipe's filter
@@ -30,19 +29,6 @@ Exit codes:
 Example:
   duet batch walks/ --recipe mixes.textproto --out set
 )";
-
-constexpr char kVerifyFooter[] = R"(
-The next run of the same duet batch command repairs the damage that was found. --repair runs the
-command of the last run again, in the folder where that run was started.
-
-Exit codes:
-  0   every file is as it was written
-  1   run it again: items are missing, or the repair was stopped
-  42  files are missing or were changed, or the repair is rejected
-)";
-
-const std::map<std::string, batch::Packing> kPackings = {
-    {"none", batch::Packing::kNone}, {"npz", batch::Packing::kNpz}, {"tar", batch::Packing::kTar}};
 
 // Checks the text, which becomes part of the recipe.
 absl::StatusOr<std::string> ParseLevelText(absl::string_view text) {
@@ -69,15 +55,6 @@ void AddInputFlags(FlagSet* app, BatchArguments* arguments) {
            "Format of every leader; overrides the extension and the recipe")
       ->OneOf(InputFormatNames())
       ->Form(absl::StrJoin(InputFormatNames(), "|"))
-      ->Group(kGroup);
-  app->Add("--layout", &arguments->overrides.layout,
-           "Layout of .npy leaders of research; overrides the recipe")
-      ->OneOf(LayoutNames())
-      ->Form(absl::StrJoin(LayoutNames(), "|"))
-      ->Group(kGroup);
-  app->Add("--body-model", &arguments->overrides.body_model,
-           "Body model of .npz leaders; overrides the recipe")
-      ->Form("FILE")
       ->Group(kGroup);
   AddParsed<std::string>(
       app, "--level", batch::kLevelForm, ParseLevelText,
@@ -107,31 +84,21 @@ void AddInputFlags(FlagSet* app, BatchArguments* arguments) {
 void AddOutputFlags(FlagSet* app, BatchArguments* arguments) {
   static constexpr char kGroup[] = "Output";
   app->Add("--out", &arguments->out, "Folder of the data set")->Form("FOLDER")->Group(kGroup);
-  AddChoice<batch::Packing>(
-      app, "--pack", kPackings,
-      [arguments](batch::Packing packing) { arguments->overrides.packing = packing; },
-      "Files in folders, npz shards or WebDataset tar shards; overrides the recipe")
-      ->Group(kGroup);
   app->Add("--rate", &arguments->overrides.frame_rate_hz,
            "Resample leader and follower of every item to this rate; overrides the recipe")
       ->AboveZero()
       ->Form("HZ")
       ->Group(kGroup);
-  const auto add_share = [app](const char* flag, const char* what, std::optional<double>* share) {
-    app->Add(flag, share, what)->InRange(0.0, 1.0)->Form("SHARE")->Group(kGroup);
-  };
-  add_share("--validation",
-            "Share of leaders whose items are for validation, 0 to below 1; overrides the recipe",
-            &arguments->overrides.validation);
-  add_share("--test", "Share of leaders whose items are for testing; overrides the recipe",
-            &arguments->overrides.test);
   app->Add("--retries-per-item", &arguments->overrides.retries_per_item,
            "Other seeds to try if the filter rejects an answer; overrides the recipe")
       ->InRange(0, 100)
       ->Form("COUNT")
       ->Group(kGroup);
-  app->AddSwitch("--retry-failed", &arguments->retry_failed,
-                 "Retry items that failed permanently; a packed set gets new shards for them")
+  app->AddSwitch("--retry-failed", &arguments->repeats.failed,
+                 "Retry items that failed permanently")
+      ->Group(kGroup);
+  app->AddSwitch("--verify", &arguments->repeats.changed,
+                 "Read every file of earlier runs, and make those that were changed again")
       ->Group(kGroup);
   AddParsed<batch::AllowedFailures>(
       app, "--allow-failed", batch::kAllowedFailuresForm, batch::ParseAllowedFailures,
@@ -176,29 +143,6 @@ void AddFlowFlags(FlagSet* app, BatchArguments* arguments) {
       ->Group(kServerGroup);
 }
 
-FlagSet* AddFolderCommand(FlagSet* app, const char* name, const char* help, Action action,
-                          BatchArguments* arguments) {
-  FlagSet* command = app->AddCommand(name, help);
-  command->Add("folder", &arguments->out, "Folder of the data set")->Required()->Form("FOLDER");
-  command->AddSwitch("--json", &arguments->json, "Print JSON");
-  command->Check([arguments, action] { arguments->action = action; });
-  return command;
-}
-
-void AddVerifyCommand(FlagSet* app, BatchArguments* arguments) {
-  FlagSet* command =
-      AddFolderCommand(app, "verify", "Compare every file of a data set with its recorded digest",
-                       Action::kVerify, arguments);
-  command->AddSwitch("--repair", &arguments->repair,
-                     "Make files that are missing or were changed again, like the last run");
-  command
-      ->Add("--server", &arguments->repairers,
-            "With --repair: server to use instead of those of the last run; repeatable")
-      ->OneValueEach()
-      ->Form("HOST:PORT");
-  command->Footer(kVerifyFooter);
-}
-
 // Checks flags that depend on each other.
 void CheckTogether(const BatchArguments& arguments) {
   if (arguments.leaders.empty() && arguments.manifest.empty()) {
@@ -216,26 +160,8 @@ FlagSet* AddBatchFlags(FlagSet* program, BatchArguments* arguments) {
   AddOutputFlags(command, arguments);
   AddFlowFlags(command, arguments);
   command->Footer(kBatchFooter);
-  AddFolderCommand(command, "merge", "Join the shards below a folder into one data set",
-                   Action::kMerge, arguments);
-  AddVerifyCommand(command, arguments);
-  command->Check([command, arguments] {
-    if (!command->names_command()) CheckTogether(*arguments);
-  });
+  command->Check([arguments] { CheckTogether(*arguments); });
   return command;
-}
-
-absl::StatusOr<BatchArguments> ParseBatch(const std::vector<std::string>& words) {
-  FlagSet program;
-  BatchArguments arguments;
-  const FlagSet* batch = AddBatchFlags(&program, &arguments);
-  const ParsedFlags parsed = program.Parse(words);
-  if (parsed.outcome != ParsedFlags::Outcome::kDone) {
-    return absl::InvalidArgumentError(parsed.error);
-  }
-  if (!batch->is_given()) return absl::InvalidArgumentError("not a batch command");
-  arguments.words = words;
-  return arguments;
 }
 
 }  // namespace duet::client::cli

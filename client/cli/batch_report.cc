@@ -5,7 +5,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_join.h"
 #include "model/base/counted.h"
 #include "nlohmann/json.hpp"
 
@@ -71,7 +70,6 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
                                           {"failed_leaders", report.set.failed_leaders},
                                           {"missing", report.planned - settled},
                                           {"bytes", report.set.bytes},
-                                          {"packed", report.packed},
                                           {"failures", ToJson(report.set.failures)},
                                           {"unfinished", ToJson(report.unfinished_causes)},
                                           {"stopped", std::string(report.stopped.message())}};
@@ -99,9 +97,6 @@ void Report(const BatchArguments& arguments, const std::filesystem::path& folder
     *environment.err << "failed temporarily; run the command again:\n";
     WriteCauses(report.unfinished_causes, *environment.err);
   }
-  if (!report.packed || report.set.failed == 0) return;
-  *environment.err << "duet: the shards leave out the " << report.set.failed
-                   << " failed items; --retry-failed retries them and adds a shard\n";
 }
 
 void Report(const BatchArguments& arguments, const batch::PlanCheck& check,
@@ -150,43 +145,11 @@ void ReportBadLeaders(const BatchArguments& arguments, const batch::PlanCheck& c
   }
 }
 
-void Report(const BatchArguments& arguments, const batch::MergeReport& report,
-            const ProgramEnvironment& environment) {
-  if (arguments.json) {
-    const nlohmann::ordered_json object = {{"planned", report.planned},
-                                           {"missing", report.missing}};
-    *environment.out << object.dump() << "\n";
-    return;
-  }
-  *environment.out << arguments.out.string() << ": " << report.planned << " items merged\n";
-  if (report.missing.empty()) return;
-  *environment.err << "duet: no shard has items " << absl::StrJoin(report.missing, ", ")
-                   << "; run their shards again\n";
-}
-
-void Report(const BatchArguments& arguments, const batch::VerifyReport& report,
-            const ProgramEnvironment& environment) {
-  if (arguments.json) {
-    nlohmann::ordered_json object = {{"items", report.items},
-                                     {"files", report.files},
-                                     {"missing", nullptr},
-                                     {"problem_count", report.problem_count},
-                                     {"problems", report.problems}};
-    if (report.missing) object["missing"] = *report.missing;
-    *environment.out << object.dump() << "\n";
-    return;
-  }
-  *environment.out << arguments.out.string() << ": " << report.items << " items, " << report.files
-                   << " files, " << report.problem_count << " problems, ";
-  if (report.missing) {
-    *environment.out << *report.missing << " items missing\n";
-  } else {
-    *environment.out << "unknown how many items are missing\n";
-  }
-  for (const std::string& problem : report.problems) *environment.err << problem << "\n";
-  if (report.problem_count == 0 || arguments.repair) return;
-  *environment.err << "duet: to request missing and changed items again, use duet batch verify "
-                      "--repair or the command that made the set\n";
+void ReportGathered(const BatchArguments& arguments, const batch::Gathered& gathered,
+                    const ProgramEnvironment& environment) {
+  if (gathered.shards == 0 || arguments.quiet || arguments.json) return;
+  *environment.err << "gathered " << gathered.shards << " of " << gathered.count << " shards, "
+                   << base::Counted(gathered.items, "item") << "\n";
 }
 
 void ReportIndexedSides(const BatchArguments& arguments, const batch::IndexedSides& sides,

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "client/batch/estimate.h"
+#include "client/batch/gather.h"
 #include "client/batch/job.h"
-#include "client/batch/merge.h"
 #include "client/batch/plan_check.h"
-#include "client/batch/verify.h"
 #include "client/cli/batch_arguments.h"
 #include "client/cli/program_environment.h"
 
@@ -26,15 +25,13 @@ void Report(const BatchArguments& arguments, const batch::PlanCheck& check,
 // Before a run: the leaders that cannot be used, if there are any.
 void ReportBadLeaders(const BatchArguments& arguments, const batch::PlanCheck& check,
                       const ProgramEnvironment& environment);
-void Report(const BatchArguments& arguments, const batch::MergeReport& report,
-            const ProgramEnvironment& environment);
-void Report(const BatchArguments& arguments, const batch::VerifyReport& report,
-            const ProgramEnvironment& environment);
-
-// Reports the first of the files in folders that are not motions.
+// The shards of the job that the run has joined, if there are any.
+void ReportGathered(const BatchArguments& arguments, const batch::Gathered& gathered,
+                    const ProgramEnvironment& environment);
 // What an index.tsv decided.
 void ReportIndexedSides(const BatchArguments& arguments, const batch::IndexedSides& sides,
                         const ProgramEnvironment& environment);
+// The first of the files in folders that are not motions.
 void ReportPassedOver(const BatchArguments& arguments, const std::vector<std::string>& files,
                       const ProgramEnvironment& environment);
 

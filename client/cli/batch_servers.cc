@@ -13,6 +13,17 @@ namespace {
 // Maximum time to wait for a server before a run begins.
 constexpr double kFirstAnswerSeconds = 30;
 
+absl::StatusOr<ResolvedModels> Ask(const Client& client, const std::vector<ModelChoice>& choices) {
+  ResolvedModels resolved;
+  for (const ModelChoice& choice : choices) {
+    absl::StatusOr<ModelDetails> details = client.GetModel(choice);
+    if (!details.ok()) return details.status();
+    resolved.models.push_back(std::move(details->model));
+    resolved.limits = details->limits;  // the same for all models of a server
+  }
+  return resolved;
+}
+
 }  // namespace
 
 absl::StatusOr<std::vector<std::vector<Client>>> Connect(const BatchArguments& arguments,
@@ -35,10 +46,13 @@ absl::StatusOr<std::vector<std::vector<Client>>> Connect(const BatchArguments& a
   return servers;
 }
 
-absl::StatusOr<batch::ResolvedModels> AskModels(const BatchArguments& arguments,
-                                                const ProgramEnvironment& environment,
-                                                const batch::Recipe& recipe,
-                                                const std::vector<ModelChoice>& begun) {
+absl::StatusOr<ResolvedModels> AskModels(const BatchArguments& arguments,
+                                         const ProgramEnvironment& environment,
+                                         const batch::Recipe& recipe,
+                                         const std::vector<batch::JobIdentity::Model>& begun) {
+  std::vector<ModelChoice> choices;
+  for (const batch::JobIdentity::Model& model : begun) choices.push_back(model.choice);
+  if (choices.empty()) choices = recipe.models;
   absl::Status status;
   for (const std::string& address : arguments.servers) {
     ServerArguments server = arguments.connection;
@@ -50,7 +64,7 @@ absl::StatusOr<batch::ResolvedModels> AskModels(const BatchArguments& arguments,
     options->wait = options->deadline;
     const absl::StatusOr<Client> client = environment.connect(*options);
     if (!client.ok()) return client.status();
-    absl::StatusOr<batch::ResolvedModels> models = ResolveModels(*client, recipe, begun);
+    absl::StatusOr<ResolvedModels> models = Ask(*client, choices);
     if (models.ok()) return models;
     status = models.status();
     if (!absl::IsUnavailable(status) && !absl::IsDeadlineExceeded(status)) break;

@@ -5,7 +5,7 @@
 
 #include "absl/status/statusor.h"
 #include "client/batch/recipe.h"
-#include "client/batch/setup.h"
+#include "client/batch/job_folder.h"
 #include "client/cli/batch_arguments.h"
 #include "client/cli/program_environment.h"
 #include "client/client.h"
@@ -18,10 +18,14 @@ absl::StatusOr<std::vector<std::vector<Client>>> Connect(const BatchArguments& a
 
 // The models as the first server that answers describes them: those that the set was begun with, or
 // the recipe's for a new set.
-absl::StatusOr<batch::ResolvedModels> AskModels(const BatchArguments& arguments,
-                                                const ProgramEnvironment& environment,
-                                                const batch::Recipe& recipe,
-                                                const std::vector<ModelChoice>& begun);
+struct ResolvedModels {
+  std::vector<ModelInfo> models;
+  RequestLimits limits;  // of their requests
+};
+absl::StatusOr<ResolvedModels> AskModels(const BatchArguments& arguments,
+                                         const ProgramEnvironment& environment,
+                                         const batch::Recipe& recipe,
+                                         const std::vector<batch::JobIdentity::Model>& begun);
 
 }  // namespace duet::client::cli
 

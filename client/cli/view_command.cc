@@ -1,16 +1,13 @@
 #include "client/cli/view_command.h"
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "client/batch/set_item.h"
 #include "client/cli/flags.h"
 #include "client/cli/input_flags.h"
 #include "client/cli/output.h"
@@ -18,7 +15,6 @@
 #include "client/cli/take.h"
 #include "client/cli/take_flags.h"
 #include "client/viewer/gallery.h"
-#include "client/viewer/page.h"
 #include "model/base/file.h"
 #include "model/motion/skeleton.h"
 
@@ -34,11 +30,6 @@ struct ViewArguments {
 };
 
 constexpr std::size_t kMostNamesInTitle = 3;
-
-constexpr char kSetFooter[] = R"(
-An item of a data set: its folder, and the item's name or number.
-  duet view set hug-kick --out page.html
-)";
 
 std::string TitleOf(const std::vector<Take>& takes) {
   std::vector<std::string> names;
@@ -66,9 +57,6 @@ std::string Describe(const std::vector<Take>& takes) {
   return text;
 }
 
-// "duet view SET ITEM"
-bool IsOfSet(const ViewArguments& arguments) { return batch::IsSet(arguments.takes.takes.front()); }
-
 absl::Status Write(const ViewArguments& arguments, const std::string& page,
                    const std::string& report, const ProgramEnvironment& environment) {
   const bool to_stream = arguments.out == kStandardStream;
@@ -81,35 +69,7 @@ absl::Status Write(const ViewArguments& arguments, const std::string& page,
   return status;
 }
 
-std::string Subtitle(const nlohmann::ordered_json& record) {
-  std::string text =
-      absl::StrFormat("%s \u00b7 %d frames at %g Hz", record["model"].get<std::string>(),
-                      record["frames"].get<int64_t>(), record["frame_rate_hz"].get<double>());
-  if (record.contains("seed")) absl::StrAppend(&text, " \u00b7 seed ", record["seed"].dump());
-  if (record.contains("split")) {
-    absl::StrAppend(&text, " \u00b7 ", record["split"].get<std::string>());
-  }
-  return text;
-}
-
-absl::Status ViewItem(const ViewArguments& arguments, const ProgramEnvironment& environment) {
-  const std::string& set = arguments.takes.takes.front();
-  absl::StatusOr<batch::SetItem> item = batch::ReadSetItem(set, arguments.takes.takes.back());
-  if (!item.ok()) return item.status();
-  const std::string name = item->record["name"];
-  viewer::PageContent content;
-  content.pair = std::move(item->pair);
-  content.bones = item->skeleton.bones;
-  content.title = arguments.title.empty() ? name : arguments.title;
-  content.subtitle = Subtitle(item->record);
-  content.weights = batch::WeightsOf(item->record);
-  const absl::StatusOr<std::string> page = RenderPage(content);
-  if (!page.ok()) return page.status();
-  return Write(arguments, *page, absl::StrCat("shown     ", name, " of ", set, "\n"), environment);
-}
-
 absl::Status RunView(const ViewArguments& arguments, const ProgramEnvironment& environment) {
-  if (IsOfSet(arguments)) return ViewItem(arguments, environment);
   const absl::StatusOr<motion::Skeleton> skeleton = SkeletonOf(arguments.skeleton);
   if (!skeleton.ok()) return skeleton.status();
   const absl::StatusOr<std::vector<Take>> takes =
@@ -131,7 +91,7 @@ absl::Status RunView(const ViewArguments& arguments, const ProgramEnvironment& e
 void AddFlags(FlagSet* command, ViewArguments* arguments) {
   command
       ->Add("files", &arguments->takes.takes,
-            "Motions to show, at most 12; or a data set of duet batch and one of its items")
+            "Motions to show, at most 12")
       ->Required()
       ->Count(1, 12)
       ->Form("[NAME=]FILE");
@@ -145,15 +105,8 @@ void AddFlags(FlagSet* command, ViewArguments* arguments) {
       ->Form("TEXT")
       ->Group(kOutputGroup);
   command->AddSwitch("--quiet", &arguments->quiet, "Print only errors")->Group(kOutputGroup);
-  command->Footer(absl::StrCat(kTakesFooter, kSetFooter));
+  command->Footer(kTakesFooter);
   command->Check([command, arguments] {
-    if (IsOfSet(*arguments) && arguments->takes.takes.size() != 2) {
-      const size_t words = arguments->takes.takes.size();
-      RejectFlag("files", words == 1
-                              ? "expected a data set and one of its items, got only the data set"
-                              : absl::StrCat("expected a data set and one of its items, got ",
-                                             words - 1, " words after the data set"));
-    }
     CheckTakes(*command, arguments->takes);
     CheckPage("--out", arguments->out);
   });

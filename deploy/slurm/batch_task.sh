@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# One shard of a `duet batch`, as a task of a job array: starts a server on the task's own cores, runs the
-# shard's items on it, and drains it. submit_batch.sh submits it with the arguments of `duet batch`.
+# One shard of a `duet batch`, as a task of a job array, or as a job of its own the run that gathers the shards:
+# starts a server on the task's own cores, runs the items on it, and drains it. submit_batch.sh submits it with the
+# arguments of `duet batch`.
 #SBATCH --job-name=duet-batch
 #SBATCH --requeue
 #SBATCH --open-mode=append
@@ -19,7 +20,7 @@ readonly most_restarts=20
 server_pid="" client_pid="" scratch=""
 
 say() {
-  printf '%s %s: %s\n' "$(date --utc +%FT%TZ)" "task ${SLURM_ARRAY_TASK_ID}" "$*" >&2
+  printf '%s %s: %s\n' "$(date --utc +%FT%TZ)" "task ${SLURM_ARRAY_TASK_ID:-gather}" "$*" >&2
 }
 
 # SIGTERM drains the server: it exits after its calls have ended.
@@ -57,7 +58,7 @@ requeue_or_fail() {
   say "ended with ${status}; requeued"
   clean_up
   # Slurm ends this script when it requeues the task.
-  scontrol requeue "${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}"
+  scontrol requeue "${SLURM_ARRAY_JOB_ID:-${SLURM_JOB_ID}}${SLURM_ARRAY_TASK_ID:+_${SLURM_ARRAY_TASK_ID}}"
   sleep 60
   exit "${status}"
 }

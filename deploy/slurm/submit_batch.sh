@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Submits a `duet batch` as a job array with one shard in each task, and the job that merges the shards when
+# Submits a `duet batch` as a job array with one shard in each task, and the job that gathers the shards when
 # all of them are done.
 #   deploy/slurm/submit_batch.sh SHARDS OUT [arguments of sbatch...] -- [arguments of duet batch...]
 #   deploy/slurm/submit_batch.sh 100 set --cpus-per-task=8 --time=4:00:00 -- leaders --recipe mixes.textproto
@@ -28,6 +28,6 @@ mkdir -p "${out}/logs"
 array="$(sbatch --parsable --array="0-$((shards - 1))" --output="${out}/logs/shard-%a.log" \
   "${sbatch_words[@]}" "${folder}/batch_task.sh" "$@" --out "${out}")"
 # Runs when every shard is settled, and not at all if one failed permanently.
-merge="$(sbatch --parsable --dependency="afterok:${array}" --kill-on-invalid-dep=yes \
-  --output="${out}/logs/merge.log" "${folder}/merge_task.sh" "${out}")"
-echo "shards ${array}, merge ${merge}"
+gather="$(sbatch --parsable --dependency="afterok:${array}" --kill-on-invalid-dep=yes \
+  --output="${out}/logs/gather.log" "${sbatch_words[@]}" "${folder}/batch_task.sh" "$@" --out "${out}" --verify)"
+echo "shards ${array}, gather ${gather}"

@@ -21,7 +21,7 @@ except ImportError:
 
 KUBERNETES = tools.SOURCE / "deploy/kubernetes"
 OVERLAYS = ("small", "production", "keda", "canary")
-FOLDERS = (*(f"overlays/{name}" for name in OVERLAYS), "batch", "batch/merge")
+FOLDERS = (*(f"overlays/{name}" for name in OVERLAYS), "batch", "batch/gather")
 
 
 def objects_of(folder):
@@ -186,13 +186,13 @@ class KubernetesTest(unittest.TestCase):
                 self.assertFalse(pathlib.Path(f"/proc/{process}").exists(), "a wait goes on")
             return result, (folder / "asked").read_text().splitlines()
 
-    def test_batch_is_merged_after_its_shards(self):
+    def test_batch_is_gathered_after_its_shards(self):
         result, asked = self.run_batch("complete")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(asked, ["apply -k .", "apply -k merge",
-                                 "--namespace there logs job/duet-batch-merge"])
+        self.assertEqual(asked, ["apply -k .", "apply -k gather",
+                                 "--namespace there logs job/duet-batch-gather"])
 
-    def test_batch_with_failed_shards_is_not_merged(self):
+    def test_batch_with_failed_shards_is_not_gathered(self):
         result, asked = self.run_batch("failed")
         self.assertEqual(result.returncode, 1)
         self.assertIn("job/duet-batch failed", result.stderr)

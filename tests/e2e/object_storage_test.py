@@ -15,7 +15,7 @@ seed: 7
 reactions { each_class {} }
 reactions { mixes { count: 6 } }
 samples: 2
-output { formats: FORMAT_NPY %s }
+output { formats: FORMAT_NPY }
 """
 JOURNAL = ".duet-batch/journal"
 SHARDS = 2
@@ -63,24 +63,21 @@ class ObjectStorageTest(tools.ServedTest):
         for name in ("kick", "hug", "push"):
             shutil.copy(tools.sample(name), self.leaders)
         dice = random.Random()
-        for packing in ("none", "tar"):
-            with self.subTest(packing):
-                recipe = self.folder / f"{packing}.textproto"
-                recipe.write_text(RECIPE % f"packing: PACKING_{packing.upper()}", encoding="utf-8")
-                whole, merged = self.folder / f"{packing}-whole", self.folder / f"{packing}-merged"
-                self.assertEqual(tools.run(*self.command(recipe, whole)).returncode, 0)
-                for shard in range(SHARDS):
-                    self.make_shard(recipe, shard, self.folder / f"{packing}-bucket", dice, packing)
-                    name = f"shard-{shard}-of-{SHARDS}"
-                    copy(self.folder / f"{packing}-bucket" / name, merged / name, None)
-                result = tools.duet("batch", "merge", merged)
-                self.assertEqual(result.returncode, 0, result.stderr)
-                self.assertEqual(digests(merged), digests(whole))
+        recipe, whole, joined = (self.folder / name for name in ("recipe.textproto", "whole", "joined"))
+        recipe.write_text(RECIPE, encoding="utf-8")
+        self.assertEqual(tools.run(*self.command(recipe, whole)).returncode, 0)
+        for shard in range(SHARDS):
+            self.make_shard(recipe, shard, self.folder / "bucket", dice)
+            name = f"shard-{shard}-of-{SHARDS}"
+            copy(self.folder / "bucket" / name, joined / name, None)
+        result = tools.run(*self.command(recipe, joined, "--verify"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(digests(joined), digests(whole))
 
-    def make_shard(self, recipe, shard, bucket, dice, packing):
+    def make_shard(self, recipe, shard, bucket, dice):
         name = f"shard-{shard}-of-{SHARDS}"
         for number in range(100):
-            machine = self.folder / f"{packing}-machine-{shard}-{number}"
+            machine = self.folder / f"machine-{shard}-{number}"
             if (bucket / name).exists():
                 copy(bucket / name, machine / name, None)
             last = number >= MACHINES

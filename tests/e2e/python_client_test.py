@@ -229,13 +229,13 @@ class PythonClientTest(tools.ServedTest):
     def test_every_packing_of_a_data_set_is_read_alike(self):
         with tempfile.TemporaryDirectory() as folder:
             sets = {}
+            out = pathlib.Path(folder) / "none"
+            tools.duet("batch", tools.sample("hug"), "--recipe", tools.SOURCE / "recipes" / "mixes.textproto",
+                       "--out", out, "--server", self.server.address, "--quiet").check_returncode()
+            for packing in ("npz", "tar"):
+                duet.sets.pack(out, out.with_name(packing), kind=packing)
             for packing in ("none", "npz", "tar"):
-                out = pathlib.Path(folder) / packing
-                tools.duet("batch", tools.sample("hug"), "--recipe",
-                           tools.SOURCE / "recipes" / "mixes.textproto",
-                           "--pack", packing, "--out", out, "--server", self.server.address,
-                           "--quiet").check_returncode()
-                sets[packing] = list(duet.read_set(out, frame_rate_hz=15))
+                sets[packing] = list(duet.read_set(out.with_name(packing), frame_rate_hz=15))
         for item, npz, tar in zip(sets["none"], sets["npz"], sets["tar"]):
             self.assertEqual(item.leader.joint_names, self.hug.joint_names)
             self.assertTrue(item.weights.any())
@@ -263,12 +263,14 @@ class PythonClientTest(tools.ServedTest):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "set"
             recipe = pathlib.Path(folder) / "recipe.textproto"
-            recipe.write_text("seed: 7 reactions { each_class {} } samples: 8 splits { test: 0.3 } "
-                              "output { formats: FORMAT_NPY packing: PACKING_TAR }",
+            recipe.write_text("seed: 7 reactions { each_class {} } samples: 8 "
+                              "output { formats: FORMAT_NPY }",
                               encoding="utf-8")
             leaders = [tools.sample(name) for name in ("kick", "hug", "push", "punch")]
             tools.duet("batch", *leaders, "--recipe", recipe, "--out", out, "--server",
                        self.server.address, "--quiet").check_returncode()
+            duet.sets.split(out, test=0.3)
+            duet.sets.table(out)
             picture = pathlib.Path(folder) / "learned.svg"
             command = [sys.executable, "-B", PACKAGE / "examples" / "train_on_set.py", out, "--out",
                        picture]

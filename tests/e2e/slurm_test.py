@@ -1,5 +1,5 @@
 """deploy/slurm on a real Slurm of two nodes on this machine: tasks that are killed, whose server is killed,
-that Slurm requeues and whose node is lost run again; the merged data set is byte for byte the one that a
+that Slurm requeues and whose node is lost run again; the gathered data set is byte for byte the one that a
 single run without faults makes, and so are folds that are trained and their figures. Needs root,
 slurmctld, slurmd and munge."""
 
@@ -211,7 +211,7 @@ class SlurmTest(unittest.TestCase):
         out = self.folder / "set"
         said = self.cluster.run(SLURM / "submit_batch.sh", str(SHARDS), out, "--cpus-per-task=1",
                                 "--", *words, "--max-in-flight", "2")
-        job, merge = re.fullmatch(r"shards (\d+), merge (\d+)", said).groups()
+        job, gather = re.fullmatch(r"shards (\d+), gather (\d+)", said).groups()
 
         # Each fault strikes a shard that has begun and is not done.
         def begun(shard):
@@ -225,7 +225,7 @@ class SlurmTest(unittest.TestCase):
         begun(3)
         self.strike_node(f"{job}_3", pids_of_task(job, 3, "duet")[0])
 
-        self.wait_for_end(merge)
+        self.wait_for_end(gather)
         for shard in range(4):
             self.assertGreaterEqual(self.restarts(job, shard), 1, shard)
         names = contents(whole)

@@ -12,15 +12,11 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "client/batch/archive.h"
 #include "client/batch/index.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/manifest.h"
 #include "client/batch/recipe_file.h"
-#include "client/batch/set_file.h"
-#include "client/batch/set_item.h"
-#include "client/batch/verify.h"
 #include "model/base/sha256.h"
 #include "tests/fuzz/promises.h"
 #include "tests/support/temporary_folder.h"
@@ -94,47 +90,20 @@ Broken BatchJournal(absl::string_view input) {
     return absl::OkStatus();
   });
   if (!each.ok() || visited != journal->count()) return "a journal's records are not all there";
-  client::batch::JobIdentity identity;
-  client::batch::WrittenSetFiles files(Folder().path(), Folder().path() / "set");
+  fs::create_directories(Folder() / "set/.duet-batch/tmp");
+  const client::batch::Recipe recipe;
   const absl::StatusOr<client::batch::SetCounts> counts =
-      WriteIndex(*journal, identity, {}, {}, &files);
+      WriteIndex(*journal, client::batch::SetSource{recipe, {}, {}, {}}, {},
+                 client::batch::JobFolder(Folder() / "set"));
   if (!counts.ok()) return CheckRefusal(counts.status(), {kDataLoss});
   return counts->done + counts->rejected + counts->failed == visited ? "" : "records are lost";
 }
 
-Broken BatchFolder(absl::string_view input) {
-  const std::vector<absl::string_view> files = Parts(input, 3);
+Broken BatchJob(absl::string_view input) {
   fs::create_directory(Folder() / ".duet-batch");
-  test::WriteTestFile(Folder() / ".duet-batch/job.json", Std(files[0]));
-  test::WriteTestFile(Folder() / "summary.json", Std(files[1]));
-  test::WriteTestFile(Folder() / "dataset.json", Std(files[1]));
-  test::WriteTestFile(Folder() / "index.jsonl", Std(files[2]));
-  Broken broken =
-      CheckRefusal(client::batch::ReadJobIdentity(Folder().path()).status(), {kFailedPrecondition});
-  if (broken.empty()) {
-    broken = CheckRefusal(client::batch::ReadPlanned(Folder().path()).status(), {kDataLoss});
-  }
-  if (broken.empty()) {
-    broken = CheckRefusal(client::batch::ReadSetItem(Folder().path(), "0").status(),
-                          {kDataLoss, kNotFound, kInvalidArgument});
-  }
-  if (!broken.empty()) return broken;
-  return CheckRefusal(client::batch::Verify(Folder().path()).status(), {kDataLoss, kNotFound});
-}
-
-Broken BatchShard(absl::string_view input) {
-  if (input.empty()) return "";
-  const fs::path path = Folder() / (input[0] == 't' ? "shard.tar" : "shard.npz");
-  test::WriteTestFile(path, Std(input.substr(1)));
-  client::batch::ArchiveReader reader(path);
-  std::size_t bytes = 0;
-  while (true) {
-    const absl::StatusOr<std::optional<client::batch::ArchiveMember>> member = reader.Next();
-    if (!member.ok()) return CheckRefusal(member.status(), {kDataLoss});
-    if (!member->has_value()) return "";
-    bytes += (*member)->content.size();
-    if (bytes > input.size()) return "a shard's members are larger than the shard";
-  }
+  test::WriteTestFile(Folder() / ".duet-batch/job.json", Std(input));
+  return CheckRefusal(client::batch::ReadJobIdentity(Folder().path()).status(),
+                      {kFailedPrecondition});
 }
 
 }  // namespace duet::fuzz

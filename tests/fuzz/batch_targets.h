@@ -11,8 +11,7 @@ Broken RecipeText(absl::string_view input);
 Broken RecipeJson(absl::string_view input);
 Broken BatchManifest(absl::string_view input);
 Broken BatchJournal(absl::string_view input);  // lines without their digests
-Broken BatchFolder(absl::string_view input);   // job.json, NUL, summary.json, NUL, index.jsonl
-Broken BatchShard(absl::string_view input);    // 't' or 'z', then the archive
+Broken BatchJob(absl::string_view input);      // job.json
 
 }  // namespace duet::fuzz
 

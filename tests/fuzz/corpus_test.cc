@@ -46,10 +46,9 @@ struct Target {
 constexpr Target kTargets[] = {
     {"access_file", AccessFile},
     {"asf_amc", AsfAmc},
-    {"batch_folder", BatchFolder},
+    {"batch_job", BatchJob},
     {"batch_journal", BatchJournal},
     {"batch_manifest", BatchManifest},
-    {"batch_shard", BatchShard},
     {"bvh", Bvh},
     {"call_metadata", CallMetadata},
     {"checkpoint", Checkpoint},

@@ -12,8 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "client/batch/archive.h"
-#include "client/batch/durable_file.h"
 #include "client/capture/rokoko_reader.h"
 #include "client/capture/vmc_writer.h"
 #include "client/capture/xsens_reader.h"
@@ -144,22 +142,6 @@ class Corpus {
     Write("synthesis_request/options", request.SerializeAsString());
   }
 
-  void WriteShards() const {
-    for (const auto packing : {client::batch::Packing::kTar, client::batch::Packing::kNpz}) {
-      const bool tar = packing == client::batch::Packing::kTar;
-      const fs::path path = folder_ / "batch_shard" / (tar ? "tar" : "npz");
-      client::batch::DurableFile file(path.string() + ".part");
-      file.Open().IgnoreError();
-      // What tells the target which of the two it is.
-      file.Append(tar ? "t" : "z").IgnoreError();
-      const auto archive = MakeArchive(packing, &file);
-      archive->Add("kick/" + std::string(120, 'a') + ".npy", "motion").IgnoreError();
-      archive->AddRecord("kick/a", "{}\n").IgnoreError();
-      archive->Finish().IgnoreError();
-      file.Finish(path).IgnoreError();
-    }
-  }
-
   void WriteCaptures() const {
     const motion::Clip person = Person();
     client::capture::VmcWriter writer(person.joint_names, person.frame_rate_hz);
@@ -218,7 +200,6 @@ int main(int argc, char** argv) {
   corpus.WriteCheckpoints();
   corpus.WriteJudge();
   corpus.WriteRequest();
-  corpus.WriteShards();
   corpus.WriteCaptures();
   return 0;
 }

@@ -9,7 +9,6 @@
 """
 
 from duet_motion import aio
-from duet_motion._shards import DataSetError
 from duet_motion.batch import Outcome
 from duet_motion.client import Client, SynthesisStream
 from duet_motion.errors import (CancelledError, DeadlineError, DuetError, FieldViolation,
@@ -26,7 +25,7 @@ from duet_motion.request import Constraint, SynthesisRequest
 from duet_motion.result import (FollowerChunk, FrameRun, JointRotations, ModelDetails, ModelInfo,
                                 MotionGrade, RequestLimits, RigJoint, SynthesisResult, Timings)
 from duet_motion.retry import RetryOptions
-from duet_motion.sets import MotionSet, PaddedBatch, SetItem, pad, read_set
+from duet_motion.sets import DataSetError, MotionSet, PaddedBatch, SetItem, pad, read_set
 from duet_motion.vertical import VerticalEstimate
 
 __version__ = "1.0.0"

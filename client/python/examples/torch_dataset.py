@@ -1,6 +1,6 @@
 """Trains on a data set of `duet batch` with PyTorch: torch_dataset.py SET
 
-    duet batch samples --recipe recipes/mixes.textproto --pack npz --out set
+    duet batch samples --recipe recipes/mixes.textproto --out set
     python3 examples/torch_dataset.py set --steps 200
 
 Trains a small network to predict the follower's pose from the leader's pose and the label vector of

@@ -1,6 +1,8 @@
 """Learns from a data set of `duet batch` with NumPy only: train_on_set.py SET --out PICTURE.svg
 
-    duet batch samples --recipe recipes/mixes.textproto --pack tar --test 0.3 --out set
+    duet batch samples --recipe recipes/mixes.textproto --out set
+    python3 -m duet_motion.sets split set --test 0.3
+    python3 -m duet_motion.sets table set
     python3 examples/train_on_set.py set --out learned.svg
 
 Trains a linear classifier to recognise, from the follower's motion, which class was requested, and
@@ -82,14 +84,14 @@ def picture(counts, classes, title):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("set", type=pathlib.Path, help="a folder that duet batch wrote")
+    parser.add_argument("set", type=pathlib.Path, help="a data set with tables")
     parser.add_argument("--out", type=pathlib.Path, required=True, help="the picture, .svg")
     options = parser.parse_args()
 
     train, test = read_items(options.set, "train"), read_items(options.set, "test")
     if not train or not test:
         parser.error(f"set: expected items in the splits train and test, got {len(train)} and "
-                     f"{len(test)}; use duet batch --test SHARE, with more leaders")
+                     f"{len(test)}; use duet_motion.sets split --test SHARE, with more leaders")
     classes = sorted({item["interaction_class"] for item in train})
     classify = fit(features(options.set, train), targets(train, classes))
     counts = numpy.zeros((len(classes), len(classes)), dtype=int)

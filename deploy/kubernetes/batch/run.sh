@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs a batch in the cluster: the shards and then, when all of them are done, the merge.
+# Runs a batch in the cluster: the shards and then, when all of them are done, the run that gathers them.
 #   deploy/kubernetes/batch/run.sh [NAMESPACE]
 # After an interruption, the same command continues: it keeps applied objects and finished jobs.
 set -euo pipefail
@@ -27,6 +27,6 @@ wait_for() {
 
 kubectl apply -k .
 wait_for duet-batch
-kubectl apply -k merge
-wait_for duet-batch-merge
-kubectl --namespace "${namespace}" logs job/duet-batch-merge
+kubectl apply -k gather
+wait_for duet-batch-gather
+kubectl --namespace "${namespace}" logs job/duet-batch-gather

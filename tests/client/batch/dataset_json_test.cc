@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "client/batch/setup.h"
 #include "duet/batch/v1/dataset.pb.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -44,13 +43,16 @@ Recipe WithFormats(std::vector<Format> formats) {
   return recipe;
 }
 
-nlohmann::ordered_json Done(int frames, double rate_hz, const std::string& shard = "") {
-  nlohmann::ordered_json record = {{"frames", frames}, {"frame_rate_hz", rate_hz}};
-  if (!shard.empty()) record["shard"] = shard;
-  return record;
+nlohmann::ordered_json Done(int frames, double rate_hz) {
+  return {{"frames", frames}, {"frame_rate_hz", rate_hz}};
 }
 
-v1::Dataset Parsed(const std::string& json) {
+// The set of `models` with these skeletons.
+v1::Dataset Described(const Recipe& recipe, const std::vector<ModelInfo>& models,
+                      const std::vector<motion::Skeleton>& skeletons, const DoneItems& done,
+                      const SetCounts& counts = {}, int64_t planned = 0) {
+  const std::string json =
+      DatasetJson(SetSource{recipe, models, skeletons, {}}, counts, planned, done);
   v1::Dataset dataset;
   const auto status = google::protobuf::util::JsonStringToMessage(json, &dataset);
   EXPECT_TRUE(status.ok()) << status.ToString() << "\n" << json;
@@ -58,10 +60,6 @@ v1::Dataset Parsed(const std::string& json) {
 }
 
 TEST(DatasetJson, ParsesAsTheProtoMessage) {
-  const JobIdentity identity =
-      WithModels(IdentityOf(WithFormats({Format::kNpy, Format::kBvh}), {}),
-                 {Model("one", {"kick", "hug"}), Model("two", {"hug", "wave"})},
-                 {Stick(), motion::SbuSkeleton()});
   DoneItems done;
   done.Add(Done(30, 15));
   done.Add(Done(7, 30));
@@ -70,7 +68,10 @@ TEST(DatasetJson, ParsesAsTheProtoMessage) {
   counts.done = 3;
   counts.rejected = 2;
   counts.failed = 1;
-  const v1::Dataset dataset = Parsed(DatasetJson(identity, counts, 10, done, false));
+  const v1::Dataset dataset =
+      Described(WithFormats({Format::kNpy, Format::kBvh}),
+                {Model("one", {"kick", "hug"}), Model("two", {"hug", "wave"})},
+                {Stick(), motion::SbuSkeleton()}, done, counts, 10);
   EXPECT_EQ(dataset.format(), "duet-batch");
   EXPECT_EQ(dataset.format_version(), 1u);
   EXPECT_EQ(dataset.recipe_sha256(), "cafe");
@@ -100,66 +101,28 @@ TEST(DatasetJson, ParsesAsTheProtoMessage) {
   EXPECT_THAT(dataset.files(0).shape(), ElementsAre("people", "frames", "joints", "coordinates"));
   EXPECT_THAT(dataset.files(1).endings(), ElementsAre(".leader.bvh", ".follower.bvh"));
   EXPECT_EQ(dataset.files(1).unit(), "centimetres");
-  EXPECT_EQ(dataset.packing(), v1::PACKING_NONE);
-  EXPECT_THAT(dataset.shards(), IsEmpty());
 }
 
 TEST(DatasetJson, StatesTheCommonFrameRate) {
-  const JobIdentity identity =
-      WithModels(IdentityOf(WithFormats({Format::kNpy}), {}), {Model("one", {"kick"})}, {Stick()});
   DoneItems done;
   done.Add(Done(30, 60));
   done.Add(Done(30, 60));
-  EXPECT_EQ(Parsed(DatasetJson(identity, {}, 0, done, false)).frame_rate_hz(), 60);
+  EXPECT_EQ(Described(WithFormats({Format::kNpy}), {Model("one", {"kick"})}, {Stick()}, done)
+                .frame_rate_hz(),
+            60);
 }
 
 TEST(DatasetJson, RecipesFrameRateIsStatedBeforeAnyItemIsDone) {
   Recipe recipe = WithFormats({Format::kNpy});
   recipe.output.frame_rate_hz = 25;
-  const JobIdentity identity =
-      WithModels(IdentityOf(recipe, {}), {Model("one", {"kick"})}, {Stick()});
-  EXPECT_EQ(Parsed(DatasetJson(identity, {}, 0, {}, false)).frame_rate_hz(), 25);
-}
-
-TEST(DatasetJson, NamesTheShardsOfAPackedSet) {
-  Recipe recipe = WithFormats({Format::kNpy});
-  recipe.output.packing = Packing::kTar;
-  const JobIdentity identity =
-      WithModels(IdentityOf(recipe, {}), {Model("one", {"kick"})}, {Stick()});
-  DoneItems done;
-  for (const char* shard : {"a.tar", "a.tar", "b.tar"}) done.Add(Done(30, 60, shard));
-  const v1::Dataset packed = Parsed(DatasetJson(identity, {}, 0, done, true));
-  EXPECT_EQ(packed.packing(), v1::PACKING_TAR);
-  EXPECT_THAT(packed.shards(), ElementsAre("a.tar", "b.tar"));
-  EXPECT_THAT(Parsed(DatasetJson(identity, {}, 0, done, false)).shards(), IsEmpty());
-}
-
-TEST(DatasetJson, SplitsHaveTheirItemsTablesAndShards) {
-  Recipe recipe = WithFormats({Format::kNpy});
-  recipe.splits = {0, 0.5};
-  const JobIdentity identity =
-      WithModels(IdentityOf(recipe, {}), {Model("one", {"kick"})}, {Stick()});
-  DoneItems done;
-  for (const char* split : {"train", "test", "train"}) {
-    nlohmann::ordered_json record = Done(30, 60, std::string("set-") + split + ".tar");
-    record["split"] = split;
-    done.Add(record);
-  }
-  const v1::Dataset dataset = Parsed(DatasetJson(identity, {}, 0, done, true));
-  ASSERT_EQ(dataset.splits_size(), 2);
-  EXPECT_EQ(dataset.splits(0).name(), "train");
-  EXPECT_EQ(dataset.splits(0).items(), 2u);
-  EXPECT_EQ(dataset.splits(0).table(), "items/train.csv");
-  EXPECT_THAT(dataset.splits(1).shards(), ElementsAre("set-test.tar"));
-  EXPECT_THAT(dataset.shards(), ElementsAre("set-train.tar", "set-test.tar"));
+  EXPECT_EQ(Described(recipe, {Model("one", {"kick"})}, {Stick()}, {}).frame_rate_hz(), 25);
 }
 
 TEST(DatasetJson, CapturesHaveTheirUnitAndRate) {
   Recipe recipe = WithFormats({});
   recipe.output.layout = Layout::kK3hi;
-  const JobIdentity identity =
-      WithModels(IdentityOf(recipe, {}), {Model("one", {"kick"})}, {motion::SbuSkeleton()});
-  const v1::Dataset dataset = Parsed(DatasetJson(identity, {}, 0, {}, false));
+  const v1::Dataset dataset =
+      Described(recipe, {Model("one", {"kick"})}, {motion::SbuSkeleton()}, {});
   EXPECT_EQ(dataset.layout(), v1::LAYOUT_K3HI);
   EXPECT_EQ(dataset.frame_rate_hz(), 30);
   ASSERT_EQ(dataset.files_size(), 1);
@@ -173,53 +136,19 @@ TEST(SkeletonIndices, ModelsOfOneSkeletonShareIt) {
               ElementsAre(0, 1, 0, 1));
 }
 
-TEST(SetDescriptionJson, IsReadBackAsItWas) {
-  SetDescription description;
-  description.models = {Describe(Model("one", {"kick"}))};
-  description.formats = {Format::kCsv, Format::kUsda};
-  description.frame_rate_hz = 12.5;
-  description.splits = {0.25, 0.5};
-  const nlohmann::json json = ToJson(description);
-  const absl::StatusOr<SetDescription> read = SetDescriptionFromJson(json);
-  ASSERT_THAT(read, IsOk());
-  EXPECT_EQ(nlohmann::json(ToJson(*read)), json);
-  EXPECT_EQ(read->models[0].weights_sha256, "abone");
-  EXPECT_EQ(read->models[0].free_for_all_uses, true);
-  EXPECT_EQ(read->splits.test, 0.5);
-  nlohmann::json bad = json;
-  bad["formats"] = {"FORMAT_FBX"};
-  EXPECT_THAT(SetDescriptionFromJson(bad),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected a format, got")));
-}
-
-class GoOnTest : public ::testing::Test {
- protected:
-  static JobIdentity Identity(const std::string& sha256, const std::string& description) {
+TEST(CheckWeights, DifferentWeightsAreRejected) {
+  const auto identity = [](const std::string& sha256) {
     ModelInfo model = Model("one", {"kick"});
     model.weights_sha256 = sha256;
-    model.description = description;
-    return WithModels(IdentityOf(WithFormats({Format::kNpy}), {}), {model}, {Stick()});
-  }
-};
-
-TEST_F(GoOnTest, DifferentWeightsAreRejected) {
-  EXPECT_THAT(GoOn(Identity("aa", ""), Identity("bb", "")),
+    return IdentityOf(WithFormats({Format::kNpy}), {}, {model});
+  };
+  EXPECT_THAT(CheckWeights(identity("aa"), identity("bb")),
               StatusIs(absl::StatusCode::kFailedPrecondition,
                        HasSubstr("model one@2: expected the weights that the set was begun with "
                                  "(SHA-256 aa), got bb")));
-}
-
-TEST_F(GoOnTest, OriginalDescriptionIsKept) {
-  const auto identity = GoOn(Identity("aa", "before"), Identity("aa", "after"));
-  ASSERT_THAT(identity, IsOk());
-  EXPECT_EQ(identity->description.models[0].description, "before");
-}
-
-TEST_F(GoOnTest, ServerWithoutDigestsAndNewSetAreAccepted) {
-  EXPECT_THAT(GoOn(Identity("aa", ""), Identity("", "")), IsOk());
-  const auto fresh = GoOn({}, Identity("aa", "new"));
-  ASSERT_THAT(fresh, IsOk());
-  EXPECT_EQ(fresh->description.models[0].description, "new");
+  EXPECT_THAT(CheckWeights(identity("aa"), identity("aa")), IsOk());
+  EXPECT_THAT(CheckWeights(identity("aa"), identity("")), IsOk()) << "a server without digests";
+  EXPECT_THAT(CheckWeights({}, identity("aa")), IsOk()) << "a new set";
 }
 
 }  // namespace

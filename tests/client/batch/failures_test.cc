@@ -24,9 +24,11 @@ auto Cause(const std::string& message, int64_t items, int64_t leaders) {
 
 TEST(FailureTable, HasARowForEachLeaderAndCause) {
   const test::TemporaryFolder folder;
-  WrittenSetFiles files(folder.path(), folder.path());
-  FailureTable table;
-  ASSERT_THAT(table.Open(&files), IsOk());
+  JobFolder set(folder.path());
+  JobIdentity begun;
+  ASSERT_THAT(set.Open({}, &begun), IsOk());
+  FailureTable table(set);
+  ASSERT_THAT(table.Open(), IsOk());
   for (const char* name : {"a-kick", "a-hug"}) {
     ASSERT_THAT(table.Add(Failed("a.bvh", name, "walks/a.bvh: no such file")), IsOk());
   }

@@ -62,8 +62,7 @@ class PlanCheckTest : public ::testing::Test {
         IsOk());
   }
 
-  absl::StatusOr<PlanCheck> Check(const std::string& manifest, const PlanPart& part = {},
-                                  KeptLeaders* kept = nullptr) {
+  absl::StatusOr<PlanCheck> Check(const std::string& manifest, const PlanPart& part = {}) {
     std::string text = kRecipe;
     text.replace(text.find("%s"), 2, output_);
     const absl::StatusOr<Recipe> recipe = ParseRecipe(text, false);
@@ -72,7 +71,7 @@ class PlanCheckTest : public ::testing::Test {
     absl::StatusOr<Plan> plan =
         Plan::Create(*recipe, {Model()}, ReadManifest(in, folder_.path(), "m"));
     EXPECT_THAT(plan, IsOk());
-    return CheckPlan(*recipe, {motion::SbuSkeleton()}, Limits(), part, &*plan, kept, stopped_);
+    return CheckPlan(*recipe, {motion::SbuSkeleton()}, Limits(), part, &*plan, stopped_);
   }
 
   test::TemporaryFolder folder_;
@@ -211,23 +210,6 @@ TEST_F(PlanCheckTest, ReportsWhetherThePartHasAllItems) {
   part.limit = 100;
   part.share = 0.5;
   EXPECT_FALSE(Check("leader\na.csv\n", part)->whole_plan);
-}
-
-TEST_F(PlanCheckTest, LeadersThatWereReadAreKeptForTheRun) {
-  KeptLeaders kept(size_t{1} << 20);
-  ASSERT_THAT(Check("leader\na.csv\nstill.csv\n", {}, &kept), IsOk());
-  LeaderEntry entry;
-  entry.file = folder_ / "a.csv";
-  const std::shared_ptr<SharedLeader> leader = kept.Take(entry, formats::Side::kLeft, 0);
-  ASSERT_NE(leader, nullptr);
-  // It has its motion: the file is not read again.
-  std::filesystem::remove(entry.file);
-  const auto& loaded = leader->Get({}, motion::SbuSkeleton(), Limits());
-  ASSERT_THAT(loaded, IsOk());
-  EXPECT_EQ(loaded->clip.frame_count(), 5);
-  EXPECT_EQ(kept.Take(entry, formats::Side::kLeft, 0), nullptr);
-  entry.file = folder_ / "still.csv";
-  EXPECT_EQ(kept.Take(entry, formats::Side::kLeft, 0), nullptr);
 }
 
 TEST_F(PlanCheckTest, StoppedCheckReadsNoMoreLeaders) {

@@ -265,23 +265,6 @@ TEST_F(ListedLeaders, GroupComesFromTheManifestOrTheIndexAndChangesNoSeed) {
   EXPECT_EQ(SeedOf(listed, 7, "content", 0), SeedOf(indexed, 7, "content", 0));
 }
 
-TEST(Plan, SetsOfEarlierVersionsKeepTheirSeeds) {
-  absl::StatusOr<Recipe> recipe =
-      ParseRecipe(absl::StrCat(kKick, " output { formats: FORMAT_NPY }"), false);
-  ASSERT_THAT(recipe, IsOk());
-  recipe->seed_rule = SeedRule::kPath;
-  std::istringstream in("leader\tgroup\na.bvh\tann\n");
-  absl::StatusOr<Plan> plan = Plan::Create(*recipe, {Model("sbu")}, ReadManifest(in, "", "m"));
-  ASSERT_THAT(plan, IsOk());
-  const Item item = **plan->Next();
-  // They had no groups, so the column was one like any other.
-  EXPECT_EQ(item.leader->group, "");
-  EXPECT_THAT(item.leader->extra, ElementsAre(std::pair<std::string, std::string>("group", "ann")));
-  EXPECT_EQ(item.place, "54e9b2a470fe12910b8bf016da00fb89");
-  // The first 13 hex digits of the SHA-256 of "seed 0 54e9b2a470fe12910b8bf016da00fb89 0".
-  EXPECT_EQ(SeedOf(item, 0, "any content", 0), 0xada9b806bd8e5u);
-}
-
 TEST(Plan, BothSidesLeadAndClassFoldersGoByTheLargestWeight) {
   const auto items = PlanOf(
       "input { side: SIDE_BOTH } reactions { labels { "

@@ -28,8 +28,6 @@ TEST(Recipe, AbsentFieldsHaveTheirDefaults) {
   EXPECT_EQ(recipe->candidates, 1);
   ASSERT_EQ(recipe->models.size(), 1u);
   EXPECT_EQ(recipe->models[0].name, "");
-  EXPECT_EQ(recipe->output.packing, Packing::kNone);
-  EXPECT_EQ(recipe->output.shard_bytes, uint64_t{256} << 20);
 }
 
 TEST(Recipe, SideSelectsTheLeader) {
@@ -82,12 +80,8 @@ TEST(Recipe, TextFormatAndJsonAreEquivalent) {
 
 TEST(Recipe, ChangesOfTheOutputChangeTheDigest) {
   EXPECT_NE(Parse("seed: 1")->digest, Parse("seed: 2")->digest);
-  RecipeOverrides overrides;
-  overrides.packing = Packing::kTar;
-  const auto packed = ParseRecipe(kOutput, false, "", overrides);
-  EXPECT_EQ(packed->output.packing, Packing::kTar);
-  EXPECT_EQ(packed->digest,
-            ParseRecipe("output { formats: FORMAT_NPY packing: PACKING_TAR }", false)->digest);
+  EXPECT_NE(ParseRecipe("output { formats: FORMAT_CSV }", false)->digest,
+            ParseRecipe(kOutput, false)->digest);
 }
 
 TEST(Recipe, RateFlagChangesTheDigest) {
@@ -99,17 +93,6 @@ TEST(Recipe, RateFlagChangesTheDigest) {
   EXPECT_NE(at_30_hz->digest, ParseRecipe(kOutput, false)->digest);
   EXPECT_EQ(at_30_hz->digest,
             ParseRecipe("output { formats: FORMAT_NPY frame_rate_hz: 30 }", false)->digest);
-}
-
-TEST(Recipe, FlagsOverrideTheSplits) {
-  RecipeOverrides overrides;
-  overrides.test = 0.25;
-  const std::string recipe = std::string(kOutput) + " splits { validation: 0.1 test: 0.5 }";
-  const auto split = ParseRecipe(recipe, false, "", overrides);
-  ASSERT_THAT(split, IsOk());
-  EXPECT_EQ(split->splits.validation, 0.1);
-  EXPECT_EQ(split->splits.test, 0.25);
-  EXPECT_NE(split->digest, ParseRecipe(recipe, false)->digest);
 }
 
 TEST(ReadRecipe, ReadsAJointMapFile) {
@@ -205,19 +188,10 @@ INSTANTIATE_TEST_SUITE_P(
                   "output.frame_rate_hz: expected", ", got 1001"},
         BadRecipe{"output { formats: FORMAT_NPY frame_rate_hz: nan }",
                   "output.frame_rate_hz: expected", ", got nan"},
-        BadRecipe{"output { formats: FORMAT_NPY shard_bytes: 0 }", "shard_bytes: expected",
-                  ", got 0"},
-        BadRecipe{"output { formats: FORMAT_CSV packing: PACKING_NPZ }", "only FORMAT_NPY", ""},
+        BadRecipe{"output { formats: FORMAT_NPY packing: PACKING_TAR }", "packing", ""},
         BadRecipe{"output { formats: FORMAT_NPY layout: LAYOUT_SBU }",
                   "output.formats: expected none", ", got some"},
-        BadRecipe{"output { layout: LAYOUT_K3HI packing: PACKING_TAR }",
-                  "output.packing: expected none", ", got one"},
-        BadRecipe{"output { formats: FORMAT_NPY } splits { test: 1 }", "splits.test: expected",
-                  "got 1"},
-        BadRecipe{"output { formats: FORMAT_NPY } splits { validation: -0.5 }",
-                  "splits.validation: expected 0 or more, below 1", "got -0.5"},
-        BadRecipe{"output { formats: FORMAT_NPY } splits { validation: 0.5 test: 0.5 }",
-                  "splits: expected less than 1 together", "got 1"},
+        BadRecipe{"output { formats: FORMAT_NPY } splits { test: 0.1 }", "splits", ""},
         BadRecipe{"output { layout: LAYOUT_K3HI frame_rate_hz: 30 }",
                   "output.frame_rate_hz: expected none", ", got one"},
         BadRecipe{"output { formats: FORMAT_NPY formats: FORMAT_NPY }", "formats: expected",
@@ -287,6 +261,36 @@ TEST(ReadRecipe, ErrorsNameTheFileAndExtensionSelectsTheFormat) {
   test::WriteTestFile(folder / "r.textproto", "{}");
   EXPECT_THAT(ReadRecipe(folder / "r.textproto"),
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("r.textproto: line 1")));
+}
+
+std::string Json(const std::string& recipe) {
+  const absl::StatusOr<Recipe> parsed = ParseRecipe(recipe, false);
+  EXPECT_THAT(parsed, IsOk());
+  return parsed.ok() ? parsed->json : "";
+}
+
+constexpr char kBefore[] = R"(
+  seed: 7 reactions { labels { weights { key: "kick" value: 1 } } } output { formats: FORMAT_NPY })";
+
+TEST(DescribeDifference, NamesTheFieldAndBothValues) {
+  EXPECT_EQ(DescribeDifference(Json(kBefore), Json(kBefore)), "");
+  EXPECT_EQ(DescribeDifference(Json(kBefore), Json(R"(
+    seed: 8 reactions { labels { weights { key: "kick" value: 0.5 } } }
+    output { formats: FORMAT_NPY formats: FORMAT_CSV })")),
+            "output.formats[1]: expected none, got \"FORMAT_CSV\"; "
+            "reactions[0].labels.weights.kick: expected 1, got 0.5; "
+            "seed: expected \"7\", got \"8\"");
+}
+
+TEST(DescribeDifference, CountsUnlistedDifferences) {
+  EXPECT_EQ(DescribeDifference("{}", R"({"a":1,"b":2,"c":3,"d":4,"e":5,"f":6,"g":[1,2]})"),
+            "a: expected none, got 1; b: expected none, got 2; c: expected none, got 3; "
+            "d: expected none, got 4; e: expected none, got 5; and 3 more");
+}
+
+TEST(DescribeDifference, IsEmptyForInvalidRecipes) {
+  EXPECT_EQ(DescribeDifference("", Json(kBefore)), "");
+  EXPECT_EQ(DescribeDifference("[1]", Json(kBefore)), "");
 }
 
 }  // namespace

@@ -121,8 +121,7 @@ TEST(CommandTable, ListsEveryCommandAndFlag) {
   const std::vector<CommandEntry> commands = ListCommands(line.app());
   std::vector<std::string> names;
   for (const CommandEntry& command : commands) names.push_back(command.name);
-  EXPECT_THAT(names, ElementsAre("", "models", "synthesize", "live", "batch", "batch merge",
-                                 "batch verify", "inspect", "convert", "view", "compare", "admin",
+  EXPECT_THAT(names, ElementsAre("", "models", "synthesize", "live", "batch", "inspect", "convert", "view", "compare", "admin",
                                  "admin models", "admin reload", "admin load", "admin unload",
                                  "admin label", "stdio", "help", "completion", "man"));
   EXPECT_THAT(FlagOf(commands[2], "--leader-side").choices, ElementsAre("left", "right"));

@@ -173,10 +173,6 @@ class SetsTest(unittest.TestCase):
         self.assertEqual(reactions[0].leader.joint_names, ("joint_0", "joint_1", "joint_2"))
         with self.assertRaisesRegex(duet.DataSetError, "expected one skeleton, got 0"):
             reactions.joint_names
-        job = self.folder / ".duet-batch" / "job.json"
-        job.parent.mkdir()
-        job.write_text(json.dumps({"skeletons": [{"joint_names": JOINTS}]}), encoding="utf-8")
-        self.assertEqual(duet.read_set(self.folder)[0].leader.joint_names, tuple(JOINTS))
 
     def test_an_item_has_the_skeleton_of_its_model(self):
         other = {"joint_names": ["a", "b", "c"], "parents": [-1, 0, 1]}
