@@ -64,12 +64,9 @@ docs: ## Build the API reference from headers and proto files: build/docs/html/i
 	doxygen docs/Doxyfile
 
 .PHONY: python
-python: ## Build the Python package, wheel and sdist in build/python, and try the wheel
-	@scripts/install_packages.sh $(BUILD_LISTS) test
-	@scripts/configure.sh release -DDUET_PYTHON_EXTENSION=ON >/dev/null
-	@JOBS=$(JOBS) scripts/build.sh $(BUILD) duet_python_module
+python: ## Build the Python package, wheel and sdist in build/python
+	@scripts/install_packages.sh test
 	@scripts/build_python.sh
-	@scripts/try_wheel.sh
 
 .PHONY: site
 site: ## Build the site of all documents with the API references: build/site/index.html

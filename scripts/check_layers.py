@@ -135,7 +135,6 @@ LAYERS = (
     Layer("client program", "client/cli",
           sees=MOTION_FILES + ("analysis", "viewer", "batch flow", "batch", "capture", "live",
                                 "client")),
-    Layer("python extension", "client/python/extension", sees=MOTION_FILES),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )
 

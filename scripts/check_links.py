@@ -41,7 +41,6 @@ LIBRARIES = (
     ("openssl/", "OpenSSL::Crypto", "OpenSSL::SSL"),
     ("zlib.h", "ZLIB::ZLIB"),
     ("cblas.h", "openblas"),
-    ("pybind11/", "pybind11::headers"),
     ("gmock/", "GTest::gmock"),
     ("gtest/", "GTest::gtest", "GTest::gmock"),
     ("benchmark/", "benchmark::benchmark_main", "benchmark::benchmark"),
@@ -62,7 +61,6 @@ ALLOWED = {
     ("*", "GTest::gtest_main"): "the main() of every test",
     ("*", "GTest::gmock"): "linked to every test by duet_test",
     ("*", "benchmark::benchmark_main"): "the main() of every benchmark",
-    ("duet_python_module", "Python3::Module"): "pybind11 includes Python's headers",
     ("duet_client", "GTest::gmock"): "mocks/ is for callers' tests, which link it",
 }
 

@@ -51,14 +51,11 @@ class DocumentsTest(guides.GuideTest):
         for module, package in (("build", "python3-build"), ("ensurepip", "python3-venv")):
             if importlib.util.find_spec(module) is None:
                 self.skipTest(f"no Python module {module}; install the package {package}")
-        build = tools.PROGRAMS.parent
-        if not list((build / "python" / "duet_motion").glob("_motion_files.*.so")):
-            self.skipTest("no extension module; build duet_python_module")
         with tempfile.TemporaryDirectory() as folder:
-            tools.run(tools.SOURCE / "scripts" / "build_python.sh", folder, build).check_returncode()
+            tools.run(tools.SOURCE / "scripts" / "build_python.sh", folder).check_returncode()
             wheel, = pathlib.Path(folder).glob("*.whl")
             self.assertEqual(self.run_blocks("docs/guides/python_reading.md", source_package=False,
-                                             files={f"build/python/{wheel.name}": wheel}), 4)
+                                             files={f"build/python/{wheel.name}": wheel}), 3)
 
     def test_from_a_data_set_to_training(self):
         if importlib.util.find_spec("pandas") is None:

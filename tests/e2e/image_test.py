@@ -54,7 +54,7 @@ class ContextTest(tools.FolderTest):
             shutil.copy(tools.SOURCE / name, self.folder / name)
         training = tools.run(tools.SOURCE / "scripts/with_training.sh").stdout.strip()
         done = tools.run("cmake", "--preset", "release", "-DDUET_BUILD_TESTS=OFF", "-DDUET_BUILD_BENCHMARKS=OFF",
-                         f"-DDUET_TRAINING={training}", "-DDUET_PYTHON_EXTENSION=OFF", cwd=self.folder,
+                         f"-DDUET_TRAINING={training}", cwd=self.folder,
                          timeout=600)  # a busy machine needs minutes
         self.assertEqual(done.returncode, 0, done.stderr)
         for script in (self.folder / "build").rglob("cmake_install.cmake"):

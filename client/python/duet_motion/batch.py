@@ -6,7 +6,7 @@ import collections
 import concurrent.futures
 import dataclasses
 import itertools
-from typing import Callable, Deque, Iterable, Iterator, Mapping, Optional, Tuple
+from typing import Callable, Deque, Iterable, Iterator, Mapping, Optional
 
 from duet_motion._channel import check_concurrency
 from duet_motion.errors import DuetError

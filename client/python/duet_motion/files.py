@@ -1,21 +1,19 @@
 """Motion files, read and written without a server.
 
-The file's unit, up axis and joints are detected (docs/formats.md). The extension module of the
-wheel does that in this process. Where it is missing, the program `duet` does, as for pages;
-``DUET_PROGRAM`` names it if it is not on the PATH.
+The program `duet` reads and writes them, and detects their unit, up axis and joints
+(docs/formats.md). ``DUET_PROGRAM`` names it if it is not on the PATH.
 """
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import pathlib
 import tempfile
-from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple, Union
+from typing import Any, Dict, Mapping, Optional, Tuple, Union
 
-from duet_motion import _file_extension, _file_program
-from duet_motion._file_options import MotionFileError, Path, ReadOptions, checked_options
+from duet_motion import _file_program
+from duet_motion._file_options import MotionFileError, Path, checked_options
 from duet_motion.motion import Motion
 from duet_motion.result import SynthesisResult
 
@@ -48,11 +46,11 @@ def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float
     Raises:
         MotionFileError: the file cannot be read.
         ValueError: an argument is invalid.
-        FileNotFoundError: the package has no extension module and the program `duet` is missing; the
-            message explains how to install it.
+        FileNotFoundError: the program `duet` is missing; the message explains how to install it.
     """
-    return _read(path, checked_options(side, frame_rate_hz, unit, up_axis, metres_per_unit,
-                                       joint_map, resample_hz, layout, body_model))[0]
+    return _file_program.read(path, checked_options(
+        side, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz, layout,
+        body_model))[0]
 
 
 def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = "",
@@ -76,8 +74,8 @@ def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = 
         ValueError: an argument is invalid.
         FileNotFoundError: see :func:`read_motion`.
     """
-    motions = _read(path, checked_options(None, frame_rate_hz, unit, up_axis, metres_per_unit,
-                                          joint_map, resample_hz, layout, None))
+    motions = _file_program.read(path, checked_options(
+        None, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz, layout, None))
     if len(motions) != 2:
         raise MotionFileError(f"{os.fspath(path)}: expected two people, got one")
     return motions[0], motions[1]
@@ -101,11 +99,7 @@ def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None, 
         MotionFileError: the file cannot be written.
         FileNotFoundError: see :func:`read_motion`.
     """
-    document = to_document(leader if follower is None else (leader, follower))
-    if not _file_extension.missing and not layout:
-        return _file_extension.write(document, path)
-    with in_place_of_the_extension():
-        _file_program.write(document, path, layout)
+    _file_program.write(to_document(leader if follower is None else (leader, follower)), path, layout)
 
 
 def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> None:
@@ -129,24 +123,6 @@ def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> Non
         if title:
             arguments += ["--title", title]
         _file_program.run("view", *arguments, "--out", os.fspath(path), "--quiet")
-
-
-def _read(path: Path, options: ReadOptions) -> List[Motion]:
-    if not _file_extension.missing:
-        return _file_extension.read(path, options)
-    with in_place_of_the_extension():
-        return _file_program.read(path, options)
-
-
-@contextlib.contextmanager
-def in_place_of_the_extension() -> Iterator[None]:
-    """Adds to the error of a missing program why it is needed."""
-    try:
-        yield
-    except FileNotFoundError as error:
-        raise FileNotFoundError(
-            f"{error}. A wheel for this system and Python needs no program for motions; this one has "
-            f"no extension module: {_file_extension.missing}") from None
 
 
 def to_document(shown: Shown) -> str:

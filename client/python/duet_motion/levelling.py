@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import reprlib
 
-from duet_motion import _file_extension, _file_program
-from duet_motion.files import in_place_of_the_extension, to_document
+from duet_motion import _file_program
+from duet_motion.files import to_document
 from duet_motion.motion import Motion, axes_from_y_up
 from duet_motion.vertical import VerticalEstimate
 
@@ -26,17 +26,13 @@ def estimate_vertical(leader: Motion, *others: Motion) -> VerticalEstimate:
 
     Raises:
         ValueError: a motion has no joints that are recognised, or is ``"sbu-normalised"``.
-        FileNotFoundError: the package has no extension module and the program `duet` is missing.
+        FileNotFoundError: the program `duet` is missing.
     """
     documents = []
     for person in (leader, *others):
         if not isinstance(person, Motion):
             raise ValueError(f"leader: expected a duet_motion.Motion, got {reprlib.repr(person)}")
         documents.append(to_document(person.converted("metres", "y-up")))
-    if not _file_extension.missing:
-        values = _file_extension.estimate_vertical(documents)
-    else:
-        with in_place_of_the_extension():
-            values = _file_program.estimate_vertical(documents)
+    values = _file_program.estimate_vertical(documents)
     values["up"] = axes_from_y_up(values["up"], leader.up_axis)
     return VerticalEstimate(**values)

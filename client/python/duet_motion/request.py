@@ -110,8 +110,7 @@ class SynthesisRequest:
     Raises:
         ValueError: an argument is invalid for every server. The message has the form
             ``field: expected ..., got ...``.
-        FileNotFoundError: ``level`` is ``"auto"``, the package has no extension module, and the program
-            `duet` is missing.
+        FileNotFoundError: ``level`` is ``"auto"`` and the program `duet` is missing.
     """
 
     leader: Motion

@@ -1,4 +1,4 @@
-"""Reading and writing motion files, through the program `duet` and in the extension module."""
+"""Reading and writing motion files through the program `duet`."""
 
 import contextlib
 import os
@@ -10,7 +10,6 @@ from unittest import mock
 import support
 import duet_motion as duet
 import numpy as np
-from duet_motion import _file_extension, _file_program
 
 PROGRAM = support.PROGRAMS / "duet"
 HUG = support.SOURCE / "samples" / "hug.bvh"
@@ -18,12 +17,7 @@ HUG = support.SOURCE / "samples" / "hug.bvh"
 
 @unittest.skipUnless(PROGRAM.exists(), f"no program at {PROGRAM}; build it, or set DUET_BIN_DIR")
 class FilesTest(unittest.TestCase):
-    """Without the extension module."""
-
-    MISSING = "no module named _motion_files"
-
     def setUp(self):
-        self.enterContext(mock.patch.object(_file_extension, "missing", self.MISSING))
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
@@ -141,31 +135,8 @@ class FilesTest(unittest.TestCase):
             for use in (lambda: duet.read_motion(HUG),
                         lambda: duet.write_motion(self.folder / "x.csv", self.hug)):
                 with self.assertRaisesRegex(FileNotFoundError,
-                                            "program 'no-such-duet'.*DUET_PROG.*: no module named"):
+                                            "program 'no-such-duet'.*DUET_PROG"):
                     use()
-
-
-@unittest.skipIf(_file_extension.missing, f"{_file_extension.missing}; build duet_python_module")
-class ExtensionFilesTest(FilesTest):
-    """With the extension module, which needs no program but for pages."""
-
-    MISSING = ""
-
-    def setUp(self):
-        super().setUp()
-        self.enterContext(mock.patch.object(_file_program, "read", side_effect=AssertionError))
-        write = _file_program.write
-
-        def write_layout(document, path, layout):  # only the program has the layouts of research
-            self.assertTrue(layout)
-            write(document, path, layout)
-        self.enterContext(mock.patch.object(_file_program, "write", side_effect=write_layout))
-
-    def test_missing_program_explains_what_to_install(self):
-        with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):
-            self.assertEqual(duet.read_motion(HUG).frame_count, 91)
-            with self.assertRaisesRegex(FileNotFoundError, "program 'no-such-duet'.*DUET_PROG"):
-                duet.write_page(self.folder / "x.html", {"hug": self.hug})
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ from unittest import mock
 import support
 import duet_motion as duet
 import numpy as np
-from duet_motion import _file_extension, _file_program
 from duet_motion.files import to_document
 from duet_motion.request import to_proto
 
@@ -31,12 +30,7 @@ def tilted(motion, degrees):
 
 @unittest.skipUnless(PROGRAM.exists(), f"no program at {PROGRAM}; build it, or set DUET_BIN_DIR")
 class LevellingTest(unittest.TestCase):
-    """Without the extension module."""
-
-    MISSING = "no module named _motion_files"
-
     def setUp(self):
-        self.enterContext(mock.patch.object(_file_extension, "missing", self.MISSING))
         self.enterContext(mock.patch.dict(os.environ, {"DUET_PROGRAM": str(PROGRAM)}))
         self.dance = duet.read_motion(SAMPLES / "salsa.bvh")  # turns, so its vertical is certain
         self.hug = duet.read_motion(SAMPLES / "hug.bvh")      # faces one way
@@ -123,23 +117,6 @@ class LevellingTest(unittest.TestCase):
             duet.SynthesisRequest(support.leader(), LABELS, level="auto")
         with self.assertRaisesRegex(ValueError, "^leader: expected a duet_motion.Motion, got 'hug'"):
             duet.estimate_vertical("hug")
-
-
-@unittest.skipIf(_file_extension.missing, f"{_file_extension.missing}")
-class ExtensionLevellingTest(LevellingTest):
-    """In the extension module."""
-
-    MISSING = ""
-
-    def test_both_ways_are_equal(self):
-        for document in (to_document(tilted(self.dance, 8)), to_document(support.leader())):
-            outcomes = []
-            for backend in (_file_extension, _file_program):
-                try:
-                    outcomes.append(backend.estimate_vertical([document]))
-                except duet.MotionFileError as error:
-                    outcomes.append(str(error))
-            self.assertEqual(*outcomes)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 import concurrent.futures
 import contextlib
-import importlib
 import itertools
 import os
 import pathlib
@@ -26,15 +25,11 @@ except ImportError as error:
     sys.exit(77)  # CTest: the test was skipped
 
 import duet_motion as duet  # noqa: E402
-from duet_motion import _file_extension  # noqa: E402
 from duet_motion.rpc.v1 import status_pb2  # noqa: E402
 from duet_motion.v1 import live_pb2, motion_pb2, synthesis_pb2, synthesis_pb2_grpc  # noqa: E402
 
-# The programs of the build, and its extension module, which the package loads as if it were installed.
+# The programs of the build.
 PROGRAMS = pathlib.Path(os.environ.get("DUET_BIN_DIR", SOURCE / "build/release/bin"))
-EXTENSION = PROGRAMS.parent / "python" / "duet_motion"
-duet.__path__.append(str(EXTENSION))
-importlib.reload(_file_extension)
 
 JOINTS = ("root", "left", "right")
 # Backoff too short to matter, and an upper bound for calls that should finish immediately.

@@ -144,7 +144,10 @@ class MotionSet(Sequence[SetItem]):
         return tuple(skeleton["parents"])
 
     def skeleton_of(self, record: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The joints of an item: a DatasetSkeleton of ``dataset.json``; empty if the set states none.
+        """The joints of an item, a DatasetSkeleton of ``dataset.json``; empty if the set states none.
+
+        Args:
+            record: the item's line of ``index.jsonl``.
         """
         of_model = next((model.get("skeleton", 0) for model in self.description.get("models", ())
                          if model["name"] == record.get("model")), 0)
