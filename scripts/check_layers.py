@@ -130,10 +130,9 @@ LAYERS = (
           sees=MOTION_FILES + ("messages", "body", "dataset", "cleanup", "classifier", "batch flow",
                                 "client"),
           libraries=("rpc",)),
-    Layer("capture", "client/capture", sees=("base", "motion", "retargeting")),
-    Layer("live", "client/live", sees=MOTION_FILES + ("capture", "client")),
+    Layer("live", "client/live", sees=MOTION_FILES + ("client",)),
     Layer("client program", "client/cli",
-          sees=MOTION_FILES + ("analysis", "viewer", "batch flow", "batch", "capture", "live",
+          sees=MOTION_FILES + ("analysis", "viewer", "batch flow", "batch", "live",
                                 "client")),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )

@@ -113,16 +113,13 @@ frames or change the labels:
   {"labels": {"hug": 1}, "ease": 0.3}
 --to - writes {"joints": ...} and then {"frame": 0, "positions": ...} for each final frame.
 
-While a file or a capture plays, labels can be typed: hug=1 kick=0 ease=0.3, then Enter. Ctrl-C ends
+While a file plays, labels can be typed: hug=1 kick=0 ease=0.3, then Enter. Ctrl-C ends
 the leader's motion: the frames that are due arrive, and files are written. Another Ctrl-C, more than
 a second later, ends the program at once.
 
-Motion capture (--from vmc://, xsens:// or rokoko://, with [HOST][:PORT]) is received over UDP: VMC,
-Xsens MVN and Rokoko Studio. --frame-rate states the rate; otherwise the first second measures it.
---to vmc://HOST[:PORT] sends the follower to Unity, Unreal, Godot or Blender.
+Motion capture (VMC, Xsens MVN, Rokoko) has a bridge of its own: contrib/capture.
 
-Examples:
-  duet live --from vmc://:39539 --label hug=1 --to vmc://127.0.0.1:39540
+Example:
   duet live --from walk.bvh --realtime --label hug=1 --to follower.bvh --to pair.html
 )";
 

@@ -4,18 +4,15 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "client/capture/capture_address.h"
 #include "client/cli/leader_watch.h"
 #include "client/cli/live_file_sink.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
 #include "client/cli/request_building.h"
-#include "client/live/capture_source.h"
 #include "client/live/clip_source.h"
 #include "client/live/json_lines_sink.h"
 #include "client/live/json_lines_source.h"
 #include "client/live/line_reader.h"
-#include "client/live/vmc_sink.h"
 #include "model/formats/motion_file.h"
 
 namespace duet::client::cli {
@@ -65,55 +62,23 @@ absl::StatusOr<LiveInput> OpenStandardInput(const LiveArguments& arguments,
   return input;
 }
 
-absl::StatusOr<LiveInput> OpenCapture(const LiveArguments& arguments,
-                                      const motion::Skeleton& skeleton,
-                                      std::function<void(const std::string&)> on_note) {
-  absl::StatusOr<SynthesisRequest> request = BuildReaction(arguments, skeleton);
-  if (!request.ok()) return request.status();
-  absl::StatusOr<retargeting::JointOverrides> joints =
-      ReadJoints(arguments.input.joints, arguments.input.joint_table);
-  if (!joints.ok()) return joints.status();
-  absl::StatusOr<capture::CaptureAddress> address = capture::ParseCaptureAddress(arguments.from);
-  if (!address.ok()) return address.status();
-  absl::StatusOr<std::unique_ptr<live::CaptureSource>> source =
-      live::CaptureSource::Create({*std::move(address), arguments.input.frame_rate_hz.value_or(0),
-                                   skeleton, *std::move(joints), std::move(on_note)});
-  if (!source.ok()) return source.status();
-  LiveInput input;
-  input.source = *std::move(source);
-  input.request = ToLiveRequest(*std::move(request), arguments);
-  return input;
-}
-
 }  // namespace
 
-bool IsFile(const std::string& value) {
-  return value != kStandardStream && !capture::IsCaptureAddress(value);
-}
-
-absl::Status CheckSource(const std::string& from) {
-  if (!capture::IsCaptureAddress(from)) return absl::OkStatus();
-  return capture::ParseCaptureAddress(from).status();
-}
+bool IsFile(const std::string& value) { return value != kStandardStream; }
 
 absl::StatusOr<LiveInput> OpenSource(const LiveArguments& arguments,
                                      const motion::Skeleton& skeleton,
                                      const ProgramEnvironment& environment,
                                      const std::function<void(const std::string&)>& on_note) {
-  absl::StatusOr<LiveInput> input =
-      capture::IsCaptureAddress(arguments.from) ? OpenCapture(arguments, skeleton, on_note)
-      : IsFile(arguments.from)                  ? OpenFile(arguments, skeleton)
-                               : OpenStandardInput(arguments, skeleton, environment);
+  absl::StatusOr<LiveInput> input = IsFile(arguments.from)
+                                        ? OpenFile(arguments, skeleton)
+                                        : OpenStandardInput(arguments, skeleton, environment);
   if (!input.ok()) return input;
   input->source = std::make_unique<LeaderWatch>(std::move(input->source), skeleton, on_note);
   return input;
 }
 
 absl::Status CheckSink(const std::string& to, const LiveArguments& arguments) {
-  if (capture::IsCaptureAddress(to)) {
-    const absl::StatusOr<capture::CaptureAddress> address = capture::ParseCaptureAddress(to);
-    return address.ok() ? live::VmcSink::Check(*address) : address.status();
-  }
   if (!IsFile(to)) return absl::OkStatus();
   if (formats::FormatOf(to) == formats::Format::kSbuText) {
     return absl::InvalidArgumentError(
@@ -125,11 +90,6 @@ absl::Status CheckSink(const std::string& to, const LiveArguments& arguments) {
 absl::StatusOr<std::unique_ptr<live::FollowerSink>> OpenSink(
     const std::string& to, const LiveArguments& arguments, const motion::Skeleton& skeleton,
     const ProgramEnvironment& environment) {
-  if (capture::IsCaptureAddress(to)) {
-    const absl::StatusOr<capture::CaptureAddress> address = capture::ParseCaptureAddress(to);
-    if (!address.ok()) return address.status();
-    return live::VmcSink::Create(*address);
-  }
   if (!IsFile(to)) return std::make_unique<live::JsonLinesSink>(*environment.out);
   return std::make_unique<LiveFileSink>(to, arguments, skeleton);
 }

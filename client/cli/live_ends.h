@@ -21,15 +21,12 @@ namespace duet::client::cli {
 // Whether a value names a file.
 bool IsFile(const std::string& value);
 
-// Checks a value of --from before any work is done.
-absl::Status CheckSource(const std::string& from);
-
 // A source, and the reaction that the flags request, which depends on the leader's file.
 struct LiveInput {
   std::unique_ptr<live::LeaderSource> source;
   LiveRequest request;  // without joints and frame rate
 };
-// `on_note` receives what a source does while it waits and reads.
+// `on_note` receives warnings about the leader while it is read.
 absl::StatusOr<LiveInput> OpenSource(const LiveArguments& arguments,
                                      const motion::Skeleton& skeleton,
                                      const ProgramEnvironment& environment,

@@ -15,11 +15,9 @@ namespace {
 
 void AddSourceFlags(FlagSet* app, LiveArguments* arguments) {
   app->Add("--from", &arguments->from,
-           "Leader: a motion file that synthesize reads, - for lines of JSON on standard "
-           "input, or motion capture over UDP: vmc://, xsens:// or rokoko://, with "
-           "[HOST][:PORT]")
+           "Leader: a motion file that synthesize reads, or - for lines of JSON on standard input")
       ->Required()
-      ->Form("FILE|-|ADDRESS")
+      ->Form("FILE|-")
       ->Group(kInputGroup);
   app->AddSwitch("--realtime", &arguments->realtime,
                  "Play the file at its frame rate, and take standard input as it comes; otherwise "
@@ -60,12 +58,11 @@ void AddReactionFlags(FlagSet* app, LiveArguments* arguments) {
 void AddSinkFlags(FlagSet* app, LiveArguments* arguments) {
   app->Add("--to", &arguments->to,
            "Where the follower goes: a motion file (.bvh, .glb, .gltf, .usda, .csv, .npy or "
-           ".json), a page with both people (.html), - for lines of JSON on standard "
-           "output, or vmc://HOST[:PORT] for game engines and Blender; repeatable. A file other "
-           "than a page holds the follower alone, as the first person")
+           ".json), a page with both people (.html), or - for lines of JSON on standard output; "
+           "repeatable. A file other than a page holds the follower alone, as the first person")
       ->Required()
       ->OneValueEach()
-      ->Form("FILE|-|ADDRESS")
+      ->Form("FILE|-")
       ->Group(kOutputGroup);
   AddBvhFlags(app, &arguments->bvh);
   app->AddSwitch("--json", &arguments->json, "Print the summary as JSON")->Group(kOutputGroup);
@@ -81,9 +78,6 @@ void CheckTogether(const FlagSet& command, const LiveArguments& arguments) {
     if (!keyframe.beats) continue;
     RejectFlag("--keyframe",
                absl::StrCat("expected a frame, got the position ", *keyframe.beats, "b in beats"));
-  }
-  if (const absl::Status status = CheckSource(arguments.from); !status.ok()) {
-    RejectFlag("--from", std::string(status.message()));
   }
   if (!arguments.leader.empty()) CheckInputFlags(command, arguments.input, {arguments.leader});
   CheckBvhFlags(command, {arguments.to.begin(), arguments.to.end()}, std::nullopt);

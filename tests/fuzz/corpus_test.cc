@@ -15,7 +15,6 @@
 #include "absl/strings/numbers.h"
 #include "model/base/random.h"
 #include "tests/fuzz/batch_targets.h"
-#include "tests/fuzz/capture_targets.h"
 #include "tests/fuzz/checkpoint_targets.h"
 #include "tests/fuzz/motion_targets.h"
 #include "tests/fuzz/mutation.h"
@@ -67,7 +66,6 @@ constexpr Target kTargets[] = {
     {"recipe_json", RecipeJson},
     {"recipe_text", RecipeText},
     {"research_npy", ResearchNpy},
-    {"rokoko", Rokoko},
     {"safetensors", Safetensors},
     {"sbu_text", SbuText},
     {"server_config_json", ServerConfigJson},
@@ -75,8 +73,6 @@ constexpr Target kTargets[] = {
     {"smpl_npz", SmplNpz},
     {"synthesis_fields", SynthesisFields},
     {"synthesis_request", SynthesisRequest},
-    {"vmc", Vmc},
-    {"xsens", Xsens},
 };
 
 fs::path FuzzFolder() {

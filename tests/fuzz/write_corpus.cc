@@ -12,9 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "client/capture/rokoko_reader.h"
-#include "client/capture/vmc_writer.h"
-#include "client/capture/xsens_reader.h"
 #include "model/checkpoint/checkpoint.h"
 #include "model/checkpoint/safetensors.h"
 #include "model/classifier/classifier_files.h"
@@ -22,7 +19,6 @@
 #include "model/formats/motion_file.h"
 #include "model/motion/skeleton.h"
 #include "tests/classifier/random_classifier.h"
-#include "tests/client/capture/datagrams.h"
 #include "tests/formats/asf/asf_fixture.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/formats/research/npz_fixture.h"
@@ -142,43 +138,7 @@ class Corpus {
     Write("synthesis_request/options", request.SerializeAsString());
   }
 
-  void WriteCaptures() const {
-    const motion::Clip person = Person();
-    client::capture::VmcWriter writer(person.joint_names, person.frame_rate_hz);
-    std::string vmc, xsens, rokoko;
-    for (int i = 0; i < 12; ++i) {
-      const auto datagrams = writer.Write(person.poses[i % 2], i / 30.0);
-      for (const std::string& datagram : *datagrams) vmc += Record(datagram);
-    }
-    test::XsensFrame frame;
-    for (uint32_t i = 0; i < 4; ++i) {
-      frame.sample = i;
-      frame.time_code_ms = 33 * i;
-      frame.positions.assign(client::capture::XsensReader::kSegments, {0, 0, 1});
-      xsens += Record(test::XsensDatagram(frame));
-    }
-    const std::vector<std::string> joints = client::capture::RokokoReader().joint_names();
-    const std::vector<motion::Vec3> positions(joints.size(), {0, 1, 0});
-    for (int i = 0; i < 3; ++i) {
-      rokoko += Record(test::RokokoJson(i / 30.0, "Ann", joints, positions));
-    }
-    Write("vmc/person", vmc);
-    Write("vmc/rotations_only", Record(test::VmcDatagram({0.5f, {{"Hips"}, {"Head"}}})) +
-                                    Record(test::VmcDatagram({std::nullopt, {{"Hips"}}})));
-    Write("xsens/person", xsens);
-    Write("rokoko/plain", rokoko);
-    Write("rokoko/stored",
-          Record(test::StoredLz4Frame(test::RokokoJson(1, "Ann", joints, positions))));
-  }
-
  private:
-  // A datagram 33 ms after the one before, as the targets of capture protocols read it.
-  static std::string Record(const std::string& datagram) {
-    return std::string{33, 'a', static_cast<char>(datagram.size() >> 8 & 0xff),
-                       static_cast<char>(datagram.size() & 0xff)} +
-           datagram;
-  }
-
   void Write(const char* name, std::string_view content) const {
     std::ofstream(folder_ / name, std::ios::binary) << content;
   }
@@ -200,6 +160,5 @@ int main(int argc, char** argv) {
   corpus.WriteCheckpoints();
   corpus.WriteJudge();
   corpus.WriteRequest();
-  corpus.WriteCaptures();
   return 0;
 }

@@ -98,31 +98,3 @@ def rokoko(frame, seconds):
     scene = {"timestamp": seconds, "actors": [actor], "characters": [], "props": []}
     return [json.dumps({"version": "3,0", "fps": 30, "scene": scene}).encode()]
 
-
-def read_osc(datagram):
-    """The (address, arguments) of a bundle, also of one without a bundle."""
-    if not datagram.startswith(b"#bundle\0"):
-        return [read_message(datagram)]
-    messages, at = [], 16
-    while at < len(datagram):
-        [size] = struct.unpack_from(">I", datagram, at)
-        messages.append(read_message(datagram[at + 4:at + 4 + size]))
-        at += 4 + size
-    return messages
-
-
-def read_message(data):
-    def text(at):
-        end = data.index(b"\0", at)
-        return data[at:end].decode(), (end // 4 + 1) * 4
-    address, at = text(0)
-    types, at = text(at)
-    arguments = []
-    for kind in types[1:]:
-        if kind == "s":
-            value, at = text(at)
-        else:
-            [value] = struct.unpack_from({"f": ">f", "i": ">i"}[kind], data, at)
-            at += 4
-        arguments.append(value)
-    return address, arguments
