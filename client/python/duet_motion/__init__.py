@@ -8,7 +8,7 @@
 (91, 15, 3)
 """
 
-from duet_motion import aio
+from duet_motion import aio, research
 from duet_motion.batch import Outcome
 from duet_motion.client import Client, SynthesisStream
 from duet_motion.errors import (CancelledError, DeadlineError, DuetError, FieldViolation,
@@ -39,6 +39,6 @@ __all__ = [
     "RequestMismatchError", "RetryOptions", "RigJoint", "ServerBusyError", "SetItem",
     "SynthesisRequest", "SynthesisResult",
     "SynthesisStream", "Timings", "TlsOptions", "UnavailableError", "VerticalEstimate",
-    "__version__", "aio", "estimate_vertical", "pad",
+    "__version__", "aio", "estimate_vertical", "pad", "research",
     "read_motion", "read_pair", "read_set", "write_motion", "write_page",
 ]

@@ -1,0 +1,151 @@
+"""The layouts of research. The numbers of the features agree with an independent implementation in C++ that the
+package replaced; what the definitions promise is checked beside them."""
+
+import pathlib
+import tempfile
+import unittest
+
+import support
+import duet_motion as duet
+import numpy as np
+from duet_motion import research
+
+HUG = support.SOURCE / "samples" / "hug.bvh"
+REST = np.array([
+    [0, .1, 0], [.1, 0, 0], [-.1, 0, 0], [0, .2, 0], [.1, -.4, 0], [-.1, -.4, 0], [0, .3, 0], [.1, -.8, 0],
+    [-.1, -.8, 0], [0, .4, 0], [.1, -.85, .1], [-.1, -.85, .1], [0, .6, 0], [.08, .5, 0], [-.08, .5, 0],
+    [0, .7, 0], [.2, .5, 0], [-.2, .5, 0], [.5, .5, 0], [-.5, .5, 0], [.75, .5, 0], [-.75, .5, 0]])
+
+
+def walker(frames=240, phase=0.0):
+    """``[frames, 22, 3]``: a person who wobbles and walks along a curve of more than a full turn."""
+    angle = 0.035 * np.arange(frames) + phase
+    wobble = 0.04 * np.sin(0.1 * np.arange(frames)[:, None, None] + np.arange(22)[None, :, None]
+                           + 2 * np.arange(3) + phase)
+    c, s, zero = np.cos(angle), np.sin(angle), np.zeros(frames)
+    turn = np.stack([c, zero, s, zero, 1 + zero, zero, -s, zero, c], axis=-1).reshape(-1, 3, 3)
+    place = np.stack([0.01 * np.arange(frames), 1 + zero, np.sin(angle / 2) + phase], axis=-1)
+    return ((REST + wobble) @ turn.transpose(0, 2, 1) + place[:, None]).astype(np.float32)
+
+
+def digest(rows):
+    """One number for a row."""
+    return rows.astype(float) @ np.cos(np.arange(rows.shape[-1]))
+
+
+class ResearchTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.pair = np.stack([walker(), walker(phase=2.0)])
+
+    def test_humanml3d_features_have_the_known_numbers(self):
+        features = research.to_array(research.read(self.pair[0], "humanml3d"), "humanml3d-263")
+        self.assertEqual((features.shape, features.dtype), ((239, 263), np.float32))
+        np.testing.assert_allclose(digest(features[[0, 100, 238]]), [-4.4680624, -2.2043037, -2.2995610],
+                                   atol=1e-4)
+
+    def test_humanml3d_features_give_the_motion_back(self):
+        [person] = research.read(research.to_array(research.read(self.pair[0], "humanml3d"), "humanml3d-263"))
+        self.assertEqual((person.frame_rate_hz, person.joint_names), (20, research.JOINTS))
+        one = self.pair[0, :-1].astype(float)
+        for distances in (lambda at: np.linalg.norm(at[:, 5] - at[:, 21], axis=-1),  # within a pose
+                          lambda at: np.linalg.norm(at[7:, 0] - at[:-7, 3], axis=-1)):  # along the way
+            np.testing.assert_allclose(distances(person.positions), distances(one), atol=1e-4)
+        self.assertAlmostEqual(person.positions[..., 1].min(), 0, places=4)
+        np.testing.assert_allclose(person.positions[0, 0, [0, 2]], 0, atol=1e-6)
+
+    def test_intergen_features_have_the_known_numbers(self):
+        features = research.to_array(research.read(self.pair, "intergen"), "intergen-262")
+        self.assertEqual(features.shape, (2, 239, 262))
+        np.testing.assert_allclose(digest(features[:, [0, 118]]),
+                                   [[-1.8644859, 1.0586296], [0.4096503, -0.1520504]], atol=1e-4)
+        columns = features[..., 132:258].reshape(-1, 3, 2)  # unit vectors at a right angle
+        np.testing.assert_allclose(np.einsum("nij,nik->njk", columns, columns),
+                                   np.broadcast_to(np.eye(2), (len(columns), 2, 2)), atol=1e-4)
+        # InterGen's own array has both people in a row.
+        first, second = research.read(np.concatenate(list(features), axis=1))
+        np.testing.assert_array_equal(second.positions, features[1, :, :66].reshape(-1, 22, 3))
+        between = np.linalg.norm(self.pair[0, 9, 4] - self.pair[1, 9, 4])
+        got = np.linalg.norm(first.positions[9, 4] - second.positions[9, 4])
+        self.assertAlmostEqual(got, between, delta=0.15)  # each has a floor of its own
+
+    def test_positions_are_read_from_every_shape(self):
+        one = self.pair[0]
+        wide = np.concatenate([one, np.zeros((240, 33, 3), np.float32)], axis=1)
+        for array, layout, people in ((one, "inter-x", 1), (one.reshape(240, 66), "humanml3d", 1),
+                                      (wide, "humanml3d", 1), (self.pair, "intergen", 2)):
+            motions = research.read(array, layout)
+            self.assertEqual(len(motions), people)
+            np.testing.assert_array_equal(motions[0].positions, one)
+            self.assertEqual(motions[0].frame_rate_hz, research.LAYOUTS[layout])
+        interhuman, = research.read(np.concatenate([one.reshape(240, 66), np.zeros((240, 426))], axis=1))
+        self.assertEqual((interhuman.up_axis, interhuman.frame_rate_hz), ("z-up", 30))
+        self.assertEqual(research.read(one, "inter-x", 120)[0].frame_rate_hz, 120)
+
+    def test_files_round_trip_at_the_rate_of_the_layout(self):
+        person = duet.Motion(self.pair[0], research.JOINTS, 60)
+        research.write(self.folder / "one.npy", [person], "humanml3d")
+        [again] = research.read(self.folder / "one.npy", "humanml3d")
+        self.assertEqual((again.frame_count, again.frame_rate_hz), (81, 20))
+        np.testing.assert_allclose(again.positions[1], self.pair[0][3], atol=1e-6)
+
+    def test_the_joints_of_duet_become_body_joints_and_back(self):
+        try:
+            hug = duet.read_motion(HUG)
+        except FileNotFoundError as missing:
+            self.skipTest(str(missing))
+        array = research.to_array([hug], "intergen")
+        np.testing.assert_allclose(digest(array[[0, 90]].reshape(2, 66)), [-0.6406185, -0.6504625], atol=1e-4)
+        [body] = research.read(array, "intergen")
+        duet.write_motion(self.folder / "body.json", body)
+        again = duet.read_motion(self.folder / "body.json")
+        for joint in ("left_hand", "right_knee", "left_hip", "neck"):
+            np.testing.assert_allclose(again.joint(joint), hug.joint(joint), atol=1e-5)
+
+    def test_body_models_pose_their_joints(self):
+        random = np.random.default_rng(5)
+        shapes = random.normal(0, .01, (22, 3, 10))
+        np.savez(self.folder / "body.npz", v_template=REST, J_regressor=np.eye(22), shapedirs=shapes,
+                 kintree_table=np.array([(2 ** 32 - 1,) + research.PARENTS[1:], range(22)]))
+        poses = np.zeros((40, 156))
+        poses[:, 0] = np.pi / 2  # AMASS: z up
+        poses[:, 50] = np.linspace(0, np.pi / 2, 40)  # the left shoulder, about z
+        trans, betas = np.linspace([0, 0, .9], [1, 2, 1], 40), random.normal(0, 1, 16)
+        np.savez(self.folder / "amass.npz", poses=poses, trans=trans, betas=betas, mocap_framerate=20.0)
+        person = research.read_smpl(self.folder / "amass.npz", self.folder / "body.npz")
+        self.assertEqual((person.frame_rate_hz, person.up_axis), (20, "z-up"))
+        rest = REST + shapes @ betas[:10]
+        at = person.converted().positions
+        np.testing.assert_allclose(at[:, 0], (rest[0] + trans)[:, [0, 2, 1]] * [1, 1, -1], atol=1e-4)
+        np.testing.assert_allclose(at[0] - at[0, 0], rest - rest[0], atol=1e-4)
+        arm = rest[18] - rest[16]
+        np.testing.assert_allclose(at[-1, 18] - at[-1, 16], [-arm[1], arm[0], arm[2]], atol=1e-4)
+        np.savez(self.folder / "interx.npz", root_orient=poses[:, :3], pose_body=poses[:, 3:66].reshape(40, 21, 3),
+                 trans=trans, betas=betas[None])
+        again = research.read_smpl(self.folder / "interx.npz", self.folder / "body.npz", frame_rate_hz=20)
+        np.testing.assert_allclose(again.positions, person.positions, atol=1e-6)
+        with self.assertRaisesRegex(ValueError, "frame_rate_hz: expected a rate"):
+            research.read_smpl(self.folder / "interx.npz", self.folder / "body.npz")
+        with self.assertRaisesRegex(ValueError, "expected J_regressor, kintree_table, v_template"):
+            research.read_smpl(self.folder / "interx.npz", self.folder / "amass.npz", 20)
+
+    def test_errors_name_what_is_wrong(self):
+        one = duet.Motion(self.pair[0], research.JOINTS, 20)
+        hands = duet.Motion(np.zeros((5, 1, 3)), ["left_hand"], 20)
+        for call, error in (
+                (lambda: research.read(self.pair[0]), "layout: expected one of humanml3d"),
+                (lambda: research.read(self.pair[0], "humanml3d-263"), "a shape of layout humanml3d-263"),
+                (lambda: research.read(self.pair[0], "bones"), "layout: expected one of"),
+                (lambda: research.read(np.full((4, 22, 3), np.nan), "inter-x"), "finite positions"),
+                (lambda: research.read(np.zeros((3, 4, 22, 3)), "inter-x"), "one person or two"),
+                (lambda: research.to_array([one, one], "humanml3d-263"), "people: expected one for layout"),
+                (lambda: research.to_array([one.frames(0, 1)], "intergen-262"), "frames: expected at least 2"),
+                (lambda: research.to_array([hands], "humanml3d"), "joints: expected neck, left_shoulder")):
+            with self.assertRaisesRegex(ValueError, error):
+                call()
+
+
+if __name__ == "__main__":
+    unittest.main()
