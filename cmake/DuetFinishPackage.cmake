@@ -2,7 +2,6 @@
 # changelog, copyright, lintian's exceptions, and the server's README and configuration, and compresses as Debian requires.
 set(names_client duet)
 set(names_development libduet-dev)
-set(names_fbx duet-fbx)
 set(names_server duet-server)
 set(names_training duet-training)
 

@@ -5,7 +5,6 @@
 #   client-development  libduet-dev      headers and libraries of the client
 #   server              duet-server      the server, its unit, its configuration
 #   training, torch     duet-training    training and evaluation; LibTorch for `--engine torch`
-#   fbx                 duet-fbx         the reader of FBX, where it is built; only it depends on assimp
 
 # Relative to the prefix, which is /usr in packages. Debian's locations for systemd's files.
 set(DUET_SYSTEMD_UNIT_DIR lib/systemd/system CACHE STRING "Folder of the service's unit")
@@ -23,9 +22,6 @@ foreach(program IN LISTS training_programs)
   install(FILES ${deploy}/debian/${program}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
     COMPONENT training)
 endforeach()
-if(TARGET duet-fbx)
-  install(FILES ${deploy}/debian/duet-fbx.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT fbx)
-endif()
 install(FILES ${deploy}/systemd/duet-server.service DESTINATION ${DUET_SYSTEMD_UNIT_DIR}
   COMPONENT server)
 install(FILES ${deploy}/systemd/duet-server.sysusers RENAME duet-server.conf
@@ -48,15 +44,11 @@ set(CPACK_COMPONENTS_ALL client client-development server training)
 if(DUET_TRAINING)
   list(APPEND CPACK_COMPONENTS_ALL torch)
 endif()
-if(TARGET duet-fbx)
-  list(APPEND CPACK_COMPONENTS_ALL fbx)
-endif()
 set(CPACK_COMPONENT_TRAINING_GROUP training)
 set(CPACK_COMPONENT_TORCH_GROUP training)
 set(CPACK_COMPONENT_CLIENT_GROUP client)
 set(CPACK_COMPONENT_CLIENT-DEVELOPMENT_GROUP development)
 set(CPACK_COMPONENT_SERVER_GROUP server)
-set(CPACK_COMPONENT_FBX_GROUP fbx)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
@@ -67,11 +59,10 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(CPACK_DEBIAN_CLIENT_PACKAGE_NAME duet)
 set(CPACK_DEBIAN_CLIENT_PACKAGE_SECTION graphics)
-set(CPACK_DEBIAN_CLIENT_PACKAGE_SUGGESTS "duet-fbx")
 set(CPACK_DEBIAN_CLIENT_DESCRIPTION "client of the Duet motion synthesis server
 Requests the motion that reacts to another from a duet-server: one clip, or a
-whole data set. Reads BVH, glTF, ASF/AMC, CSV, JSON and NPY, and writes several
-of these and HTML pages with a viewer.")
+whole data set. Reads BVH, glTF, CSV, JSON and NPY, and writes these
+and HTML pages with a viewer.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libduet-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
@@ -100,13 +91,6 @@ set(CPACK_DEBIAN_TRAINING_PACKAGE_RECOMMENDS "python3, python3-matplotlib, pytho
 set(CPACK_DEBIAN_TRAINING_DESCRIPTION "training and evaluation of Duet's networks
 Imports pairs of motions, trains the networks that duet-server serves, and
 evaluates them. Includes the LibTorch engine of the server.")
-
-set(CPACK_DEBIAN_FBX_PACKAGE_NAME duet-fbx)
-set(CPACK_DEBIAN_FBX_PACKAGE_SECTION graphics)
-set(CPACK_DEBIAN_FBX_PACKAGE_ENHANCES "duet, duet-training")
-set(CPACK_DEBIAN_FBX_DESCRIPTION "reader of FBX for the Duet motion synthesis client
-Lets duet and duet-import read Autodesk's FBX. They start it for each file, so
-that a malformed file ends only this program.")
 
 # Finishes each package's folder: Debian's documents, compressed pages.
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/DuetFinishPackage.cmake)

@@ -25,8 +25,7 @@ class Layer:
     source_libraries: tuple = ()  # the same, but not from its headers
 
 
-MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format",
-                "gltf format", "fbx format", "asf format", "usd format", "research format",
+MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format",
                 "formats")
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
 MEASURING = ("metrics", "protocol", "baselines", "judge", "report", "experiments")
@@ -42,18 +41,8 @@ LAYERS = (
     Layer("flat formats", "model/formats/flat", sees=("base", "motion")),
     Layer("bvh format", "model/formats/bvh", sees=("base", "motion", "retargeting")),
     Layer("gltf format", "model/formats/gltf", sees=("base", "motion", "retargeting")),
-    Layer("fbx program", "model/formats/fbx/program",
-          sees=("base", "motion", "retargeting", "gltf format", "fbx format"),
-          libraries=("assimp",)),
-    Layer("fbx format", "model/formats/fbx",
-          sees=("base", "motion", "retargeting", "gltf format")),
-    Layer("asf format", "model/formats/asf", sees=("base", "motion", "retargeting")),
-    Layer("usd format", "model/formats/usd", sees=("base", "motion", "retargeting")),
-    Layer("research format", "model/formats/research",
-          sees=("base", "motion", "retargeting", "flat formats")),
     Layer("formats", "model/formats",
-          sees=("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format",
-                "fbx format", "asf format", "usd format", "research format")),
+          sees=("base", "motion", "retargeting", "flat formats", "bvh format", "gltf format")),
     Layer("authoring", "model/authoring", sees=("base", "motion", "retargeting", "bvh format")),
     Layer("dataset", "model/dataset", sees=MOTION_FILES),
     Layer("body", "model/body", sees=("base", "motion")),
@@ -141,7 +130,6 @@ LAYERS = (
 GUARDED_LIBRARIES = {
     "torch": ("torch/", "ATen/", "c10/", "caffe2/"),
     "highway": ("hwy/",),
-    "assimp": ("assimp/",),
     "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/", "duet/otlp/",
             "duet/admin/"),
     "prometheus": ("prometheus/",),

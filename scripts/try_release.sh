@@ -123,7 +123,6 @@ readonly packages='
   apt-get -qq install -y --no-install-recommends /packages/*.deb >/dev/null
   dpkg-query -W -f "\${Package} \${Version}\n" "duet*" libduet-dev
   scripts/demo.sh /usr/bin
-  duet inspect tests/formats/fbx/files/metres_z_up_24.fbx
   duet-train --version
   mapfile -t installed < <(for file in /packages/*.deb; do dpkg-deb -f "${file}" Package; done)
   apt-get -qq purge -y --autoremove "${installed[@]}" >/dev/null

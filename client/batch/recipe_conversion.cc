@@ -209,8 +209,8 @@ LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
   }
   if (proto.has_format()) {
     input.format = formats::ParseFormat(proto.format());
-    check->Expect(input.format.has_value() && formats::IsReadable(*input.format), "input.format",
-                  base::Quoted(proto.format()), formats::kReadableFormatNames);
+    check->Expect(input.format.has_value(), "input.format", base::Quoted(proto.format()),
+                  formats::kReadableFormatNames);
   }
   if (proto.has_level()) {
     const absl::StatusOr<Level> level = ParseLevel(proto.level());

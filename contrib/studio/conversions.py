@@ -26,7 +26,7 @@ JOINT = re.compile(r"([^\0-\x1f\x7f:,]{1,64}):([0-9]{0,3})")
 MODEL_FILE = "skeleton of the model"  # no visitor's file has a name with a blank
 FILE_NAME = re.compile(r"[A-Za-z0-9_][\w@.+-]*", re.ASCII)
 VALUE = re.compile(r"[^\0-\x1f\x7f]{1,200}")
-FORMATS = {"glb": "model/gltf-binary", "gltf": "model/gltf+json", "usda": "text/plain",
+FORMATS = {"glb": "model/gltf-binary", "gltf": "model/gltf+json",
            "bvh": "text/plain", "html": "text/html", "csv": "text/csv",
            "json": "application/json"}
 # The page's settings for reading a file, as flags of `duet`.

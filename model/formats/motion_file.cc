@@ -10,24 +10,17 @@
 #include "absl/types/span.h"
 #include "model/base/file.h"
 #include "model/base/text.h"
-#include "model/formats/asf/amc_import.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_export.h"
 #include "model/formats/bvh/bvh_import.h"
-#include "model/formats/fbx/fbx_import.h"
-#include "model/formats/file_beside.h"
 #include "model/formats/flat/csv.h"
 #include "model/formats/flat/json_motion.h"
 #include "model/formats/flat/npy.h"
 #include "model/formats/flat/sbu_text.h"
-#include "model/formats/format_options.h"
 #include "model/formats/gltf/gltf_document.h"
 #include "model/formats/gltf/gltf_export.h"
 #include "model/formats/gltf/gltf_import.h"
-#include "model/formats/research/layout.h"
-#include "model/formats/research/npz_archive.h"
-#include "model/formats/research/smpl_motion.h"
-#include "model/formats/usd/usda_export.h"
+#include "model/formats/reading.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
@@ -82,13 +75,13 @@ void WarnOfUpAxis(const motion::Clip& clip, const ReadOptions& options) {
          options);
 }
 
-// Names the layouts of research where an array is not one of positions of the skeleton's joints.
-absl::Status WithLayoutHint(const absl::Status& status) {
+// Names the reader of other arrays where one does not hold positions of the skeleton's joints.
+absl::Status WithResearchHint(const absl::Status& status) {
   if (!absl::StrContains(status.message(), ": shape: ")) return status;
   return absl::Status(
       status.code(),
-      absl::StrCat(status.message(), "; for an array of research, specify its layout (",
-                   research::kLayoutNames, ")"));
+      absl::StrCat(status.message(),
+                   "; read an array of research (HumanML3D, InterGen) with duet_motion.research"));
 }
 
 void ReportCoordinates(const motion::Coordinates& coordinates, Origin unit, Origin up_axis,
@@ -228,82 +221,12 @@ absl::StatusOr<motion::Clip> ReadGltfPerson(const std::string& content, const So
   return FromGltf(*document, source.name, read_beside, gltf);
 }
 
-absl::StatusOr<motion::Clip> ReadFbxPerson(const std::string& content, const std::string& source,
-                                           const ReadOptions& options) {
-  const fbx::FbxImportOptions fbx{CharacterOptionsOf(options), PersonOf(options),
-                                  options.frame_rate_hz, options.animation};
-  absl::StatusOr<motion::Clip> clip = fbx::FromFbx(content, source, fbx);
-  // Programs that do not convert the axes state their own nevertheless.
-  if (clip.ok() && !options.coordinates.has_value()) WarnOfUpAxis(*clip, options);
-  return clip;
-}
-
-absl::StatusOr<asf::AsfSkeleton> ReadAsfBeside(const Source& source) {
-  if (source.folder.has_value()) return asf::ReadSkeletonBeside(source.name);
-  return absl::InvalidArgumentError(absl::StrCat(source.name,
-                                                 ": expected the .asf skeleton in the same folder, "
-                                                 "got AMC without a folder; pass both as files"));
-}
-
-absl::StatusOr<motion::Clip> ReadAmcPerson(const std::string& text, const Source& source,
-                                           const ReadOptions& options) {
-  const absl::StatusOr<asf::AsfSkeleton> skeleton = ReadAsfBeside(source);
-  if (!skeleton.ok()) return skeleton.status();
-  const absl::StatusOr<asf::AmcMotion> motion = asf::ParseAmc(text, source.name, *skeleton);
-  if (!motion.ok()) return motion.status();
-  const asf::AmcImportOptions amc{CharacterOptionsOf(options), options.frame_rate_hz};
-  return FromAmc(*skeleton, *motion, source.name, amc);
-}
-
 absl::StatusOr<motion::Clip> ReadNpyPerson(const std::string& content, const std::string& source,
                                            const ReadOptions& options) {
-  std::string why;
-  const std::optional<research::Layout> layout =
-      options.layout.has_value() ? options.layout : research::GuessLayout(content, &why);
-  if (!layout.has_value()) {
-    const absl::StatusOr<motion::RecordedMotion> motion =
-        flat::ParseNpy(content, source, options.skeleton.joint_names);
-    if (!motion.ok()) return WithLayoutHint(motion.status());
-    return ToSkeleton(*motion, source, options);
-  }
-  const std::string rate = absl::StrCat(research::FrameRateOf(*layout), " Hz");
-  if (options.report != nullptr) {
-    options.report->layout = Setting{std::string(research::LayoutName(*layout)),
-                                     why.empty() ? Origin::kGiven : Origin::kGuessed, why};
-  }
-  if (options.notes != nullptr && !why.empty()) {
-    options.notes->push_back(
-        absl::StrCat("layout: ", research::LayoutName(*layout), " (", why, ")"));
-  }
   const absl::StatusOr<motion::RecordedMotion> motion =
-      research::ParseNpyOf(*layout, content, source);
-  if (!motion.ok()) return motion.status();
-  absl::StatusOr<motion::Clip> clip = ToSkeleton(*motion, source, options);
-  if (!clip.ok()) return clip;
-  clip->frame_rate_hz = research::FrameRateOf(*layout);
-  if (options.report != nullptr) {
-    options.report->frame_rate = Setting{rate, Origin::kDefault, "the rate of the layout"};
-  }
-  return clip;
-}
-
-absl::StatusOr<motion::Clip> ReadNpzPerson(const std::string& content, const std::string& source,
-                                           const ReadOptions& options) {
-  const absl::StatusOr<research::NpzArchive> motion = research::NpzArchive::Parse(content, source);
-  if (!motion.ok()) return motion.status();
-  if (options.body_model.empty()) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        source,
-        ": body model: expected the .npz of the motion's body model, got none; specify it "
-        "(--body-model FILE)"));
-  }
-  const absl::StatusOr<std::string> bytes =
-      base::ReadFile(options.body_model, kMaxBodyModelBytes, "a body model");
-  if (!bytes.ok()) return bytes.status();
-  const absl::StatusOr<research::NpzArchive> model =
-      research::NpzArchive::Parse(*bytes, options.body_model.string());
-  if (!model.ok()) return model.status();
-  return research::FromSmpl(*motion, *model, CharacterOptionsOf(options));
+      flat::ParseNpy(content, source, options.skeleton.joint_names);
+  if (!motion.ok()) return WithResearchHint(motion.status());
+  return ToSkeleton(*motion, source, options);
 }
 
 const char* FormatTitle(Format format) {
@@ -315,20 +238,12 @@ const char* FormatTitle(Format format) {
     case Format::kGltf:
     case Format::kGlb:
       return "glTF";
-    case Format::kFbx:
-      return "FBX";
-    case Format::kAmc:
-      return "ASF/AMC";
     case Format::kCsv:
       return "CSV";
     case Format::kJson:
       return "JSON";
     case Format::kNpy:
       return "NPY";
-    case Format::kNpz:
-      return "NPZ of a body model";
-    case Format::kUsda:
-      return "USD";
   }
   return "";
 }
@@ -336,17 +251,14 @@ const char* FormatTitle(Format format) {
 absl::StatusOr<motion::Clip> ReadPerson(Format format, const std::string& content,
                                         const Source& source, const ReadOptions& options) {
   if (options.report != nullptr) options.report->format = FormatTitle(format);
-  if (options.animation.has_value() && !IsGltf(format) && format != Format::kFbx) {
+  if (options.animation.has_value() && !IsGltf(format)) {
     return absl::InvalidArgumentError(
         absl::StrCat(source.name, ": animation: expected none, because ", FormatTitle(format),
                      " holds one motion, got ", base::Quoted(*options.animation)));
   }
   if (IsGltf(format)) return ReadGltfPerson(content, source, options);
-  if (format == Format::kFbx) return ReadFbxPerson(content, source.name, options);
-  if (format == Format::kAmc) return ReadAmcPerson(content, source, options);
   if (format == Format::kSbuText) return ReadSbuPerson(content, source.name, options);
   if (format == Format::kBvh) return ReadBvhPerson(content, source.name, options);
-  if (format == Format::kNpz) return ReadNpzPerson(content, source.name, options);
   if (format == Format::kNpy) return ReadNpyPerson(content, source.name, options);
   absl::StatusOr<motion::RecordedMotion> motion = format == Format::kCsv
                                                       ? flat::ParseCsv(content, source.name)
@@ -405,13 +317,6 @@ absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motio
         people, skeleton, options.provenance,
         format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText);
   }
-  if (format == Format::kUsda) return usd::FormatUsda(people, skeleton, options.provenance);
-  if (format == Format::kNpy && options.layout.has_value()) {
-    const absl::StatusOr<std::vector<motion::Clip>> bodies =
-        research::ToLayout(*options.layout, people, options.notes);
-    if (!bodies.ok()) return bodies.status();
-    return FormatNpyOf(*options.layout, *bodies);
-  }
   if (people.size() == 1) {
     return format == Format::kBvh   ? FormatBvhPerson(people[0], skeleton, options)
            : format == Format::kCsv ? flat::FormatCsv(people[0])
@@ -426,7 +331,7 @@ absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motio
   const motion::ClipPair pair{people[0], people[1]};
   if (format == Format::kCsv) return flat::FormatCsv(pair);
   if (format == Format::kNpy) return flat::FormatNpy(pair);
-  return flat::FormatJsonMotion(pair, skeleton, options.follower_rotations, options.rotation_form);
+  return flat::FormatJsonMotion(pair, skeleton, options.follower_rotations);
 }
 
 absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,
@@ -465,41 +370,36 @@ std::optional<Format> FormatOf(const fs::path& path) {
 
 std::optional<Format> ParseFormat(absl::string_view name) {
   static const auto& formats = *new std::map<absl::string_view, Format>{
-      {"sbu", Format::kSbuText}, {"bvh", Format::kBvh},  {"gltf", Format::kGltf},
-      {"glb", Format::kGlb},     {"amc", Format::kAmc},  {"csv", Format::kCsv},
-      {"json", Format::kJson},   {"npy", Format::kNpy},  {"npz", Format::kNpz},
-      {"fbx", Format::kFbx},     {"usda", Format::kUsda}};
+      {"sbu", Format::kSbuText}, {"bvh", Format::kBvh}, {"gltf", Format::kGltf},
+      {"glb", Format::kGlb},     {"csv", Format::kCsv}, {"json", Format::kJson},
+      {"npy", Format::kNpy}};
   const auto found = formats.find(name);
   return found == formats.end() ? std::nullopt : std::optional<Format>(found->second);
 }
 
-bool IsReadable(Format format) { return format != Format::kUsda; }
+bool IsReadable(const fs::path& path) { return FormatOf(path).has_value(); }
 
-bool IsReadable(const fs::path& path) {
-  const std::optional<Format> format = FormatOf(path);
-  return format.has_value() && IsReadable(*format);
-}
-
-bool IsWritable(Format format) {
-  return format != Format::kAmc && format != Format::kFbx && format != Format::kNpz;
-}
-
-bool IsWritable(const fs::path& path) {
-  const std::optional<Format> format = FormatOf(path);
-  return format.has_value() && IsWritable(*format);
+std::string HowToConvert(const fs::path& path) {
+  static const auto& converters = *new std::map<std::string, const char*>{
+      {".fbx", "convert it with duet-fbx (contrib/formats)"},
+      {".amc", "convert it with duet_asf.py (contrib/formats)"},
+      {".asf", "convert its .amc with duet_asf.py (contrib/formats)"},
+      {".usda", "duet-usd (contrib/formats) writes it from .json"},
+      {".npz", "read a motion of AMASS or SMPL with duet_motion.research"}};
+  const auto found = converters.find(absl::AsciiStrToLower(path.extension().string()));
+  return found == converters.end() ? "" : found->second;
 }
 
 absl::Status UnknownExtension(const fs::path& path, absl::string_view known) {
+  const std::string how = HowToConvert(path);
   return absl::InvalidArgumentError(absl::StrCat(path.string(), ": extension: expected ", known,
-                                                 ", got ",
-                                                 base::Quoted(path.extension().string())));
+                                                 ", got ", base::Quoted(path.extension().string()),
+                                                 how.empty() ? "" : "; ", how));
 }
 
 absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions& options) {
   const std::optional<Format> format = options.format.has_value() ? options.format : FormatOf(path);
-  if (!format.has_value() || !IsReadable(*format)) {
-    return UnknownExtension(path, kReadableExtensions);
-  }
+  if (!format.has_value()) return UnknownExtension(path, kReadableExtensions);
   absl::Status status = CheckOptions(options);
   if (!status.ok()) return status;
   absl::StatusOr<std::string> content =
@@ -510,10 +410,9 @@ absl::StatusOr<motion::Clip> ReadLeader(const fs::path& path, const ReadOptions&
 
 absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::string& name,
                                          const ReadOptions& options) {
-  if (!options.format.has_value() || !IsReadable(*options.format)) {
+  if (!options.format.has_value()) {
     return absl::InvalidArgumentError(
-        absl::StrCat(name, ": format: expected one of ", kReadableExtensions, ", got ",
-                     options.format.has_value() ? "one that is only written" : "none"));
+        absl::StrCat(name, ": format: expected one of ", kReadableExtensions, ", got none"));
   }
   absl::Status status = CheckOptions(options);
   if (!status.ok()) return status;
@@ -534,8 +433,9 @@ absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const fs::path& path
 absl::StatusOr<std::vector<fs::path>> WritePair(const fs::path& path, const motion::ClipPair& pair,
                                                 const motion::Skeleton& skeleton,
                                                 const WriteOptions& options) {
-  if (!IsWritable(path)) return UnknownExtension(path, kWritableExtensions);
-  return WritePeople(path, *FormatOf(path), {pair.leader, pair.follower}, skeleton, options);
+  const std::optional<Format> format = FormatOf(path);
+  if (!format.has_value()) return UnknownExtension(path, kWritableExtensions);
+  return WritePeople(path, *format, {pair.leader, pair.follower}, skeleton, options);
 }
 
 absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion::Clip>& people,
@@ -543,10 +443,6 @@ absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion
                                          const WriteOptions& options) {
   absl::Status status = CheckPeople(people, skeleton);
   if (!status.ok()) return status;
-  if (!IsWritable(format)) {
-    return absl::InvalidArgumentError(absl::StrCat("format: expected one of ", kWritableExtensions,
-                                                   ", got ", FormatTitle(format)));
-  }
   if (format == Format::kBvh && people.size() > 1) {
     return absl::InvalidArgumentError("people: expected 1, got 2; BVH has a file for each person");
   }

@@ -10,8 +10,6 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "model/formats/flat/rotation_form.h"
-#include "model/formats/research/layout.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/joint_rotations.h"
@@ -25,14 +23,12 @@
 //   .txt    SBU text, two people
 //   .bvh    joint angles, one person per ROOT
 //   .gltf, .glb  an animated skeleton per person
-//   .fbx    an animated skeleton per person, read by the program duet-fbx
-//   .amc    joint angles, with the skeleton in an .asf file in the same folder
 //   .csv    positions by column, one or two people
 //   .json   positions, one or two people
-//   .npy    positions as an array, [frames, joints, 3] or [2, frames, joints, 3]; or an array of
-//           research (ReadOptions::layout)
-//   .npz    poses of a body model (SMPL, AMASS), with the model in a file of its own; read only
-//   .usda   an animated skeleton per person; written, not read
+//   .npy    positions as an array, [frames, joints, 3] or [2, frames, joints, 3]
+//
+// Programs of contrib/formats convert FBX, ASF/AMC and USD; duet_motion.research reads and writes
+// the arrays of research.
 
 namespace duet::formats {
 
@@ -41,10 +37,7 @@ namespace duet::formats {
 enum class Side { kLeft, kRight };
 
 // kGlb is binary glTF. A reader distinguishes the two by their first bytes.
-enum class Format { kSbuText, kBvh, kGltf, kGlb, kFbx, kAmc, kCsv, kJson, kNpy, kNpz, kUsda };
-
-// SMPL-X with all its shapes, uncompressed.
-inline constexpr std::size_t kMaxBodyModelBytes = std::size_t{1} << 30;
+enum class Format { kSbuText, kBvh, kGltf, kGlb, kCsv, kJson, kNpy };
 
 struct ReadOptions {
   // Overrides the file's extension.
@@ -52,25 +45,18 @@ struct ReadOptions {
   Side side = Side::kLeft;
   // The joints to return, in their order.
   motion::Skeleton skeleton = motion::SbuSkeleton();
-  // Overrides the file's frame rate. Required for .npy without a layout; the default for SBU text
-  // is 15 Hz, and that of a layout is its data set's.
+  // Overrides the file's frame rate. Required for .npy; the default for SBU text is 15 Hz.
   std::optional<double> frame_rate_hz;
   // Overrides the file's coordinates. Defaults: SBU text has the data set's normalised unit; CSV
   // and JSON have what they state, or metres, y up; NPY has metres, y up.
   std::optional<motion::Coordinates> coordinates;
   // Metres in one unit of the file (0.01 for centimetres); overrides the unit of `coordinates`. If
-  // absent, BVH, glTF, FBX and ASF have the unit that the file states, or else an inferred one
-  // (model/motion/inferred_coordinates.h).
+  // absent, BVH and glTF have an inferred one (model/motion/inferred_coordinates.h).
   std::optional<double> metres_per_unit;
-  // glTF, FBX: the name of the animation (of FBX: a take). If absent, the first in which the
-  // person moves. Other formats hold one motion and reject a name.
+  // glTF: the name of the animation. If absent, the first in which the person moves. Other formats
+  // hold one motion and reject a name.
   std::optional<std::string> animation;
   retargeting::JointOverrides joint_overrides;
-  // The meaning of a .npy array. If absent, research::GuessLayout; if that has none, positions of
-  // the skeleton's joints.
-  std::optional<research::Layout> layout;
-  // The body model of .npz motions (research/smpl_body.h).
-  std::filesystem::path body_model;
   // Receives the decisions (unit, up axis, torso joint) as text. May be null.
   std::vector<std::string>* notes = nullptr;
   // Receives the decisions with all details, also if reading fails. May be null.
@@ -81,7 +67,7 @@ struct ReadOptions {
 //
 // Shapes: [frames >= 1, options.skeleton]. Units: world metres, y up.
 // Errors: NOT_FOUND, PERMISSION_DENIED; INVALID_ARGUMENT naming the file, the place in it, the
-//         expected value and the actual one; FAILED_PRECONDITION for .fbx without duet-fbx.
+//         expected value and the actual one.
 absl::StatusOr<motion::Clip> ReadLeader(const std::filesystem::path& path,
                                         const ReadOptions& options = {});
 
@@ -98,7 +84,7 @@ absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const std::filesyste
 inline constexpr double kCentimetre = 0.01;
 
 struct WriteOptions {
-  // The origin of the follower, which .glb, .gltf and .usda store. May be null.
+  // The origin of the follower, which .glb and .gltf store. May be null.
   const motion::Provenance* provenance = nullptr;
   // BVH does not state its unit. Animation tools assume centimetres, Blender its own unit, a metre.
   double bvh_metres_per_unit = kCentimetre;
@@ -107,17 +93,13 @@ struct WriteOptions {
   int bvh_keys_per_frame = 1;
   // Joint rotations of the follower, which .json stores beside a pair. May be null.
   const motion::JointRotations* follower_rotations = nullptr;
-  // How .json stores them.
-  flat::RotationForm rotation_form = flat::RotationForm::kQuaternions;
-  // The layout of .npy: the joints of a body model at the layout's rate (research/layout.h).
-  std::optional<research::Layout> layout;
   // Receives remarks on the written file. May be null.
   std::vector<std::string>* notes = nullptr;
 };
 inline constexpr int kMostBvhKeysPerFrame = 16;
 
-// Writes a pair: .glb, .gltf, .usda, .csv, .npy, .json and .txt (in SBU's own unit) as one file;
-// .bvh as <stem>.leader.bvh and <stem>.follower.bvh in one shared world. Returns the written files.
+// Writes a pair: .glb, .gltf, .csv, .npy, .json and .txt (in SBU's own unit) as one file; .bvh as
+// <stem>.leader.bvh and <stem>.follower.bvh in one shared world. Returns the written files.
 //
 // Errors: INVALID_ARGUMENT for an unknown extension, joints other than the skeleton's, people with
 //         different numbers of frames, positions that are not finite; PERMISSION_DENIED.
@@ -138,23 +120,22 @@ absl::StatusOr<std::string> FormatPeople(Format format, const std::vector<motion
 
 // The format of an extension; absent if the extension is unknown.
 std::optional<Format> FormatOf(const std::filesystem::path& path);
-// Parses a name: "bvh", "gltf", "glb", "usda", "fbx", "amc", "csv", "json", "npy", "npz" or "sbu".
+// Parses a name: "bvh", "gltf", "glb", "csv", "json", "npy" or "sbu".
 std::optional<Format> ParseFormat(absl::string_view name);
-// The names of the formats that can be read.
-inline constexpr char kReadableFormatNames[] =
-    "amc, bvh, csv, fbx, glb, gltf, json, npy, npz or sbu";
-bool IsWritable(Format format);
-bool IsReadable(Format format);
+// The names of the formats.
+inline constexpr char kReadableFormatNames[] = "bvh, csv, glb, gltf, json, npy or sbu";
 
-// Whether WritePair or ReadLeader supports the extension; the file need not exist.
-bool IsWritable(const std::filesystem::path& path);
+// Whether the extension is one of a format; the file need not exist.
 bool IsReadable(const std::filesystem::path& path);
-// The supported extensions, for UnknownExtension and for callers with further formats.
+// The extensions, for UnknownExtension and for callers with further formats.
 inline constexpr char kWritableExtensions[] =
-    ".glb, .gltf, .usda, .bvh, .csv, .npy, .json or .txt (SBU text)";
+    ".glb, .gltf, .bvh, .csv, .npy, .json or .txt (SBU text)";
 inline constexpr char kReadableExtensions[] =
-    ".txt (SBU text), .bvh, .gltf, .glb, .fbx, .amc (beside its .asf), .csv, .npy, .npz or .json";
-// INVALID_ARGUMENT "path: extension: expected <known>, got ...".
+    ".txt (SBU text), .bvh, .gltf, .glb, .csv, .npy or .json";
+// What converts a file of another format: "convert it with duet-fbx (contrib/formats)". Empty if
+// nothing does.
+std::string HowToConvert(const std::filesystem::path& path);
+// INVALID_ARGUMENT "path: extension: expected <known>, got ...", with HowToConvert.
 absl::Status UnknownExtension(const std::filesystem::path& path, absl::string_view known);
 
 }  // namespace duet::formats

@@ -40,6 +40,7 @@ absl::Status CheckReadable(const std::filesystem::path& path, const std::optiona
         absl::StrCat(path.string(), ": expected a motion file, got a folder"));
   }
   if (format.has_value() || IsReadable(path)) return absl::OkStatus();
+  if (!HowToConvert(path).empty()) return UnknownExtension(path, kReadableExtensions);
   return MendedBy(UnknownExtension(path, kReadableExtensions), motion::ReadingSetting::kFormat);
 }
 

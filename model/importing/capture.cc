@@ -26,8 +26,7 @@ constexpr double kLegTolerance = 1.5;
 
 bool HasHierarchy(formats::Format format) {
   return format == formats::Format::kBvh || format == formats::Format::kGltf ||
-         format == formats::Format::kGlb || format == formats::Format::kAmc ||
-         format == formats::Format::kNpz;
+         format == formats::Format::kGlb;
 }
 
 absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side,
@@ -37,18 +36,11 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
   read.skeleton = options.skeleton;
   read.joint_overrides = options.joint_overrides;
   read.frame_rate_hz = options.frame_rate_hz;
-  read.layout = options.layout;
-  read.body_model = options.body_model;
   read.notes = options.notes;
   const std::optional<formats::Format> format = formats::FormatOf(path);
   if (format.has_value() && HasHierarchy(*format)) {
-    // Only ASF may state its unit.
-    if (options.unit_is_given || format != formats::Format::kAmc) read.metres_per_unit = 1;
+    read.metres_per_unit = 1;
     read.coordinates = motion::Coordinates{};
-  }
-  if (format == formats::Format::kFbx) {
-    if (options.unit_is_given) read.metres_per_unit = 1;
-    if (options.up_axis_is_given) read.coordinates = motion::Coordinates{};
   }
   absl::StatusOr<motion::Clip> person = formats::ReadLeader(path, read);
   if (person.ok() || format != formats::Format::kNpy) return person;
@@ -56,7 +48,7 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
       person.status().code(),
       absl::StrCat(person.status().message(),
                    "; NPY states neither frame rate nor joints: specify --frame-rate, and "
-                   "--skeleton unless they are the 15 joints of SBU, or --layout"));
+                   "--skeleton unless they are the 15 joints of SBU"));
 }
 
 // Resamples the whole duration, as the engine does with leaders.

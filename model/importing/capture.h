@@ -8,7 +8,6 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "model/formats/research/layout.h"
 #include "model/importing/pairing.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
@@ -26,19 +25,13 @@ struct Capture {
 struct CaptureOptions {
   motion::Skeleton skeleton;
   retargeting::JointOverrides joint_overrides;
-  std::optional<double> frame_rate_hz;              // overrides the files' own
-  std::optional<formats::research::Layout> layout;  // of .npy
-  std::filesystem::path body_model;                 // of .npz
-  bool unit_is_given = false;                       // ignore the unit that a file states
-  bool up_axis_is_given = false;                    // ignore the up axis that a file states
+  std::optional<double> frame_rate_hz;  // overrides the files' own
   // Receives one note for each choice between several joints. May be null.
   std::vector<std::string>* notes = nullptr;
 };
 
-// Reads both people. Formats with a hierarchy (BVH, glTF, ASF) keep the file's unit and axes,
-// except that a unit which an ASF file states is converted to metres. FBX is read in metres, y up,
-// as the file states its unit and axes. Every other format is read in the coordinates that the file
-// states; the default is metres, y up.
+// Reads both people. Formats with a hierarchy (BVH, glTF) keep the file's unit and axes. Every
+// other format is read in the coordinates that the file states; the default is metres, y up.
 //
 // Errors: INVALID_ARGUMENT naming the file, also if a file that must hold two people holds one.
 absl::StatusOr<Capture> ReadCapture(const std::filesystem::path& folder, const PairFiles& files,

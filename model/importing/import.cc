@@ -15,7 +15,6 @@
 #include "model/base/file.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
-#include "model/formats/research/smpl_motion.h"
 #include "model/importing/capture.h"
 #include "model/importing/dataset_folder.h"
 #include "model/motion/inferred_coordinates.h"
@@ -51,12 +50,6 @@ bool IsHidden(const fs::path& path) {
   return false;
 }
 
-// Body models may be in the folder of the motions.
-bool IsMotion(const fs::path& path) {
-  return formats::IsReadable(path) && (formats::FormatOf(path) != formats::Format::kNpz ||
-                                       formats::research::MayBeSmplMotion(path));
-}
-
 // The motion files below a folder, and the number of other files by extension.
 struct Listing {
   std::vector<std::string> motions;
@@ -70,7 +63,7 @@ absl::StatusOr<Listing> ListMotions(const fs::path& folder) {
   for (; !error && it != end; it.increment(error)) {
     const fs::path path = it->path().lexically_relative(folder);
     if (IsHidden(path) || !it->is_regular_file(error)) continue;
-    if (IsMotion(it->path())) {
+    if (formats::IsReadable(path)) {
       listing.motions.push_back(path.generic_string());
     } else if (path != kTableName) {
       ++listing.others[path.extension().string()];
@@ -130,10 +123,12 @@ class Importer {
     const absl::StatusOr<Listing> listing = ListMotions(options_.from);
     if (!listing.ok()) return listing.status();
     for (const auto& [extension, count] : listing->others) {
+      const std::string how = formats::HowToConvert("file" + extension);
       Assume("ignored",
              absl::StrCat(count, " ", extension.empty() ? "" : absl::StrCat(extension, " "),
                           count == 1 ? "file" : "files",
-                          extension.empty() ? " without an extension" : "", ": not a motion"),
+                          extension.empty() ? " without an extension" : "", ": ",
+                          how.empty() ? "not a motion" : how),
              "");
     }
     fs::path table = options_.table;
@@ -183,11 +178,8 @@ class Importer {
 
   absl::Status ReadPairs() {
     std::vector<std::string> notes;
-    const CaptureOptions options = {
-        skeleton_.skeleton,           options_.joint_overrides,
-        options_.frame_rate_hz,       options_.layout,
-        options_.body_model,          options_.metres_per_unit.has_value(),
-        options_.up_axis.has_value(), &notes};
+    const CaptureOptions options = {skeleton_.skeleton, options_.joint_overrides,
+                                    options_.frame_rate_hz, &notes};
     for (const PairFiles& files : pairs_) {
       absl::StatusOr<Capture> capture = ReadCapture(options_.from, files, options);
       if (capture.ok()) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "model/formats/research/layout.h"
 #include "model/importing/capture_skeleton.h"
 #include "model/importing/pairing.h"
 #include "model/motion/coordinates.h"
@@ -26,8 +25,6 @@ struct ImportOptions {
   retargeting::JointOverrides joint_overrides;
   std::optional<double> frame_rate_hz;  // overrides the files' own
   std::optional<double> to_rate_hz;     // of the data set; if absent, the files', at most 30
-  std::optional<formats::research::Layout> layout;  // of .npy
-  std::filesystem::path body_model;                 // of .npz
   std::optional<double> metres_per_unit;
   std::optional<motion::UpAxis> up_axis;
   double longest_seconds = 10;  // longer pairs are cut into equal pieces

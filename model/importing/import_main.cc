@@ -30,7 +30,6 @@ struct Words {
   std::string solve;  // a data set
   std::string up_axis;
   std::string level;
-  std::string layout;
   std::vector<std::string> effectors;  // CLASS=JOINT,JOINT
   std::vector<std::string> joints;     // JOINT=FILE_JOINT
 };
@@ -66,11 +65,6 @@ void Declare(ImportOptions* options, Words* words, CLI::App* app) {
                   "Frame rate of the files (default: the rate that they state)")
       ->check(base::InRange(1.0, 1000.0))
       ->type_name("HZ");
-  app->add_option("--layout", words->layout,
-                  "Layout of .npy files of research (default: positions of the skeleton's joints)")
-      ->type_name("LAYOUT");
-  app->add_option("--body-model", options->body_model, "Body model of .npz files (AMASS, SMPL)")
-      ->type_name("FILE");
   app->add_option("--to-rate", options->to_rate_hz,
                   "Frame rate of the data set (default: that of the files, at most "
                   "30)")
@@ -118,12 +112,6 @@ absl::Status Parse(const Words& words, ImportOptions* options) {
   if (!words.up_axis.empty()) {
     options->up_axis = motion::ParseUpAxis(words.up_axis);
     if (!options->up_axis) return Wrong("--up-axis", words.up_axis, motion::kUpAxisNames);
-  }
-  if (!words.layout.empty()) {
-    options->layout = formats::research::ParseLayout(words.layout);
-    if (!options->layout) {
-      return Wrong("--layout", words.layout, formats::research::kLayoutNames);
-    }
   }
   for (const std::string& word : words.effectors) {
     const std::pair<std::string, std::string> parts = absl::StrSplit(word, absl::MaxSplits('=', 1));

@@ -1,12 +1,13 @@
 """The takes of the salsa couple from the files of the CMU motion capture database.
 
 Subject 60 leads, subject 61 follows: 60.asf, 60_01.amc and so on, 61.asf, 61_01.amc and so on, in
-one folder. `duet convert` reads the files.
+one folder. `contrib/formats/asf/duet_asf.py` converts the files to BVH, which `duet convert` reads.
 """
 
 import json
 import re
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -15,6 +16,7 @@ import numpy
 from salsa.dataset_folder import joint_name
 from salsa.takes import FOLLOW, LEAD, Take, TakesError
 
+CONVERTER = Path(__file__).resolve().parents[2] / "contrib" / "formats" / "asf" / "duet_asf.py"
 SUBJECTS = {LEAD: "60", FOLLOW: "61"}
 FRAME_RATE_HZ = 60  # of these two subjects; the files do not state it
 UNEQUAL_SECONDS = 0.1  # two recordings of one take may differ by this much; the longer one is cut
@@ -60,18 +62,21 @@ def _write_reading(folder):
 
 def _read_motion(duet, file, folder, reading):
     """[frames, joints, 3] in metres, y up, in the world of the capture."""
-    out = folder / "motion.npy"
-    command = [duet, "convert", str(file), "--skeleton", str(reading[0]),
-               "--joint-map-file", str(reading[1]), "--frame-rate", str(FRAME_RATE_HZ),
-               "--up-axis", "y-up", "--out", str(out), "--quiet"]
+    bvh, out = folder / f"{file.stem}.bvh", folder / "motion.npy"
+    _run([sys.executable, str(CONVERTER), str(file), str(bvh), "--frame-rate", str(FRAME_RATE_HZ)], file)
+    _run([duet, "convert", str(bvh), "--skeleton", str(reading[0]), "--joint-map-file", str(reading[1]),
+          "--up-axis", "y-up", "--out", str(out), "--quiet"], file)
+    return numpy.load(out).astype(float)
+
+
+def _run(command, file):
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     except OSError as error:
-        raise TakesError(f"--duet: expected the program duet, got {duet}: "
+        raise TakesError(f"--duet: expected the program duet, got {command[0]}: "
                          f"{error.strerror}") from None
     if done.returncode != 0:
-        raise TakesError(done.stderr.strip().removeprefix("duet: ") or f"{file}: cannot be read")
-    return numpy.load(out).astype(float)
+        raise TakesError(re.sub(r"^duet\w*: ", "", done.stderr.strip()) or f"{file}: cannot be read")
 
 
 def _pairs(folder):

@@ -1,5 +1,5 @@
 """The calls of the first page and of the release notes, the tour, the cookbook, the guides to batches, to
-training, to FBX, to the layouts of research and to reading in Python, and the page on rotations do what
+training, to the layouts of research and to reading in Python, and the page on rotations do what
 they say: their commands and their Python run as they are printed, against a real server that they find by
 DUET_SERVER, as they say."""
 
@@ -39,13 +39,6 @@ class DocumentsTest(guides.GuideTest):
 
     def test_the_layouts_of_research(self):
         self.assertEqual(self.run_blocks("docs/guides/research_layouts.md"), 5)
-
-    @unittest.skipUnless(shutil.which("blender") and (tools.PROGRAMS / "duet-fbx").exists(),
-                         "no blender, or duet was built without libassimp-dev")
-    def test_fbx(self):
-        files = tools.SOURCE / "tests/formats/fbx/files"
-        self.assertEqual(self.run_blocks("docs/guides/fbx.md", files={
-            "kick.fbx": files / "two_takes_30.fbx", "character.fbx": files / "still_skin.fbx"}), 3)
 
     def test_reading_in_python(self):
         for module, package in (("build", "python3-build"), ("ensurepip", "python3-venv")):

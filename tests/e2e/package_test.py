@@ -18,8 +18,7 @@ import check_version  # noqa: E402
 
 BUILD, CPACK = sys.argv[1:]
 del sys.argv[1:]
-HAS_FBX = pathlib.Path(BUILD, "bin/duet-fbx").exists()  # built with libassimp-dev
-COMPONENTS = "client;server;training;torch" + (";fbx" if HAS_FBX else "")
+COMPONENTS = "client;server;training;torch"
 
 
 def run(*command, **options):
@@ -40,15 +39,13 @@ class PackageTest(tools.FolderTest):
             run("dpkg-deb", "-x", package, cls.root)
 
     def test_each_package_has_its_files_and_only_their_dependencies(self):
-        fbx = ["duet-fbx"] if HAS_FBX else []
-        self.assertEqual(sorted(self.packages), ["duet", *fbx, "duet-server", "duet-training"])
+        self.assertEqual(sorted(self.packages), ["duet", "duet-server", "duet-training"])
         version = check_version.project_version(tools.SOURCE)
         for name, package in self.packages.items():
             self.assertEqual(run("dpkg-deb", "-f", package, "Version").strip(), f"{version}-1")
             needed = run("dpkg-deb", "-f", package, "Depends")
             self.assertEqual("libgrpc++1.51" in needed, name in ("duet", "duet-server"), name)
             self.assertEqual("libtorch" in needed, name == "duet-training", name)
-            self.assertEqual("libassimp" in needed, name == "duet-fbx", name)
         for path in ("usr/bin/duet", "usr/share/man/man1/duet-batch.1.gz",
                      "usr/share/bash-completion/completions/duet",
                      "usr/bin/duet-server", "usr/share/man/man8/duet-server.8.gz",
@@ -56,8 +53,7 @@ class PackageTest(tools.FolderTest):
                      "usr/lib/sysusers.d/duet-server.conf", "etc/duet/server.textproto",
                      "usr/bin/duet-train", "usr/share/man/man1/duet-train.1.gz",
                      "usr/bin/duet-eval", "usr/bin/duet-import", "usr/bin/duet-keyframe",
-                     "usr/lib/duet/libduet_torch_engine.so",
-                     *(["usr/bin/duet-fbx", "usr/share/man/man1/duet-fbx.1.gz"] if HAS_FBX else [])):
+                     "usr/lib/duet/libduet_torch_engine.so"):
             self.assertTrue((self.root / path).is_file(), path)
         for name in self.packages:
             self.assertIn("mocap.cs.cmu.edu",
@@ -81,20 +77,6 @@ class PackageTest(tools.FolderTest):
         result = tools.run(client, "models", "--server", server.address)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(server.stop(), 0)
-
-    @unittest.skipUnless(HAS_FBX, "needs libassimp-dev")
-    def test_the_packaged_client_reads_fbx_with_the_packaged_reader(self):
-        kick = tools.SOURCE / "tests/formats/fbx/files/centimetres_y_up_30.fbx"
-        result = tools.run(self.root / "usr/bin/duet", "inspect", kick)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        (self.root / "usr/bin/duet-fbx").rename(self.root / "duet-fbx")
-        try:
-            without = tools.run(self.root / "usr/bin/duet", "inspect", kick,
-                                env={"PATH": str(self.folder)})
-        finally:
-            (self.root / "duet-fbx").rename(self.root / "usr/bin/duet-fbx")
-        self.assertNotEqual(without.returncode, 0)
-        self.assertIn("expected the program", without.stdout)
 
     @unittest.skipUnless(shutil.which("lintian"), "needs lintian")
     def test_lintian_finds_nothing(self):

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <locale>
+#include <map>
 #include <random>
 #include <string>
 
@@ -14,7 +15,6 @@
 #include "model/base/file.h"
 #include "model/formats/flat/sbu_text.h"
 #include "model/formats/follower_rig.h"
-#include "tests/formats/asf/asf_fixture.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -76,7 +76,6 @@ TEST_F(MotionFile, RejectsPeopleThatAFormatCannotHold) {
   };
   EXPECT_THAT(refused(Format::kBvh, {pair_.leader, pair_.follower}),
               HasSubstr("people: expected 1, got 2"));
-  EXPECT_THAT(refused(Format::kAmc, {pair_.leader}), HasSubstr("(SBU text), got ASF/AMC"));
   EXPECT_THAT(refused(Format::kCsv, {}), HasSubstr("people: expected one or two, got 0"));
   EXPECT_THAT(refused(Format::kCsv, {pair_.leader, pair_.follower, pair_.leader}),
               HasSubstr("people: expected one or two, got 3"));
@@ -231,7 +230,7 @@ TEST_F(MotionFile, ReadsEitherPersonOfAGltfFileAndItsBufferBesideIt) {
       for (motion::Vec3& p : larger.poses.all()) p = p * 2;
       EXPECT_LT(LargestDistance(*clip, larger), 0.002f) << name;
     }
-    EXPECT_TRUE(IsWritable(name));
+    EXPECT_TRUE(IsReadable(name));
   }
 }
 
@@ -260,27 +259,6 @@ TEST_F(MotionFile, ABufferIsNoLinkToAnotherFolder) {
   fs::create_symlink(folder_ / "store/1", folder_ / "here/a.gltf");
   fs::create_symlink(folder_ / "store/2", folder_ / "here/a.bin");
   EXPECT_THAT(ReadLeader(folder_ / "here/a.gltf").status(), IsOk());
-}
-
-TEST_F(MotionFile, ReadsAnAmcFileWithTheSkeletonBesideIt) {
-  const test::AsfFiles files = test::MakeAsfFiles(pair_.leader);
-  ASSERT_TRUE(base::WriteFile(folder_ / "01_02.amc", files.amc).ok());
-  const absl::Status missing = ReadLeader(folder_ / "01_02.amc").status();
-  EXPECT_EQ(missing.code(), absl::StatusCode::kNotFound);
-  EXPECT_THAT(std::string(missing.message()),
-              HasSubstr("01_02.amc: skeleton: expected 01_02.asf or 01.asf in the same folder"));
-  ASSERT_TRUE(base::WriteFile(folder_ / "01.asf", files.asf).ok());
-  const absl::StatusOr<motion::Clip> clip = ReadLeader(folder_ / "01_02.amc");
-  ASSERT_TRUE(clip.ok()) << clip.status();
-  EXPECT_EQ(clip->frame_rate_hz, 120);
-  EXPECT_LT(LargestDistance(*clip, pair_.leader), 0.001f);
-  ReadOptions options;
-  options.frame_rate_hz = 60;
-  EXPECT_EQ(ReadLeader(folder_ / "01_02.amc", options)->frame_rate_hz, 60);
-  ASSERT_TRUE(base::WriteFile(folder_ / "01_02.asf", "nothing").ok());
-  EXPECT_THAT(std::string(ReadLeader(folder_ / "01_02.amc").status().message()),
-              HasSubstr("01_02.asf:1: :bonedata: expected at least 1 bone"));
-  EXPECT_FALSE(IsWritable("a.amc"));
 }
 
 TEST_F(MotionFile, ReadsEitherPersonOfSbuText) {
@@ -381,13 +359,24 @@ TEST_F(MotionFile, ReadsTheFirstFrameAsAFollowersStart) {
 TEST_F(MotionFile, ReportsTheKnownExtensions) {
   EXPECT_THAT(std::string(ReadLeader("a.obj").status().message()),
               HasSubstr("extension: expected .txt (SBU text), .bvh"));
-  EXPECT_THAT(std::string(WritePair("a.amc", pair_, motion::SbuSkeleton()).status().message()),
-              HasSubstr("extension: expected .glb, .gltf, .usda, .bvh, .csv"));
-  EXPECT_TRUE(IsWritable("a.json"));
-  EXPECT_TRUE(IsWritable("a.txt"));
-  EXPECT_FALSE(IsWritable("a"));
-  EXPECT_FALSE(IsReadable("a.obj"));
-  EXPECT_TRUE(IsReadable("a.BVH"));
+  EXPECT_THAT(std::string(WritePair("a.obj", pair_, motion::SbuSkeleton()).status().message()),
+              HasSubstr("extension: expected .glb, .gltf, .bvh, .csv"));
+  for (const char* known : {"a.json", "a.txt", "a.BVH"}) EXPECT_TRUE(IsReadable(known)) << known;
+  for (const char* other : {"a", "a.obj", "a.sbu"}) EXPECT_FALSE(IsReadable(other)) << other;
+}
+
+TEST_F(MotionFile, NamesTheProgramThatConvertsAnotherFormat) {
+  const std::map<std::string, std::string> converters = {{"a.fbx", "convert it with duet-fbx"},
+                                                         {"a.FBX", "convert it with duet-fbx"},
+                                                         {"01_02.amc", "duet_asf.py"},
+                                                         {"01.asf", "duet_asf.py"},
+                                                         {"a.usda", "duet-usd"},
+                                                         {"a.npz", "duet_motion.research"}};
+  for (const auto& [file, converter] : converters) {
+    EXPECT_THAT(std::string(ReadLeader(file).status().message()), HasSubstr(converter)) << file;
+    EXPECT_THAT(std::string(WritePair(file, pair_, motion::SbuSkeleton()).status().message()),
+                HasSubstr(converter));
+  }
 }
 
 TEST_F(MotionFile, RejectsAnInconsistentPair) {

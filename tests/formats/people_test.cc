@@ -65,10 +65,10 @@ TEST_F(PeopleTest, FilesAreCheckedBeforeTheyAreRead) {
               StatusIs(absl::StatusCode::kNotFound, EndsWith("absent.bvh: no such file")));
   EXPECT_THAT(CheckReadable(folder_.path(), std::nullopt),
               StatusIs(kInvalid, EndsWith(": expected a motion file, got a folder")));
-  test::WriteTestFile(folder_ / "a.usda", "");
-  EXPECT_THAT(CheckReadable(folder_ / "a.usda", std::nullopt),
-              StatusIs(kInvalid, AllOf(HasSubstr("extension: expected"), EndsWith("\".usda\""))));
-  EXPECT_THAT(CheckReadable(folder_ / "a.usda", Format::kCsv), IsOk());
+  test::WriteTestFile(folder_ / "a.obj", "");
+  EXPECT_THAT(CheckReadable(folder_ / "a.obj", std::nullopt),
+              StatusIs(kInvalid, AllOf(HasSubstr("extension: expected"), EndsWith("\".obj\""))));
+  EXPECT_THAT(CheckReadable(folder_ / "a.obj", Format::kCsv), IsOk());
   EXPECT_THAT(CheckReadable(Write("a.npy", {leader_}), std::nullopt), IsOk());
 }
 

@@ -44,7 +44,6 @@ struct Target {
 
 constexpr Target kTargets[] = {
     {"access_file", AccessFile},
-    {"asf_amc", AsfAmc},
     {"batch_job", BatchJob},
     {"batch_journal", BatchJournal},
     {"batch_manifest", BatchManifest},
@@ -54,7 +53,6 @@ constexpr Target kTargets[] = {
     {"csv", Csv},
     {"dataset_index", DatasetIndex},
     {"dataset_layout", DatasetLayout},
-    {"fbx", Fbx},
     {"gltf", Gltf},
     {"http_request", HttpRequest},
     {"joint_map", JointMap},
@@ -65,12 +63,10 @@ constexpr Target kTargets[] = {
     {"npy", Npy},
     {"recipe_json", RecipeJson},
     {"recipe_text", RecipeText},
-    {"research_npy", ResearchNpy},
     {"safetensors", Safetensors},
     {"sbu_text", SbuText},
     {"server_config_json", ServerConfigJson},
     {"server_config_text", ServerConfigText},
-    {"smpl_npz", SmplNpz},
     {"synthesis_fields", SynthesisFields},
     {"synthesis_request", SynthesisRequest},
 };

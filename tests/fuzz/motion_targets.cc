@@ -1,32 +1,19 @@
 #include "tests/fuzz/motion_targets.h"
 
-#include <zlib.h>
-
-#include <cstdint>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "model/authoring/keyframes.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
-#include "model/formats/asf/amc_import.h"
 #include "model/formats/bvh/bvh_rig.h"
-#include "model/formats/fbx/fbx_program.h"
 #include "model/formats/gltf/gltf_import.h"
 #include "model/formats/gltf/gltf_rig.h"
 #include "model/formats/motion_file.h"
-#include "model/formats/research/body_joints.h"
-#include "model/formats/research/npz_archive.h"
-#include "model/formats/research/smpl_motion.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/recorded_motion.h"
 #include "model/retargeting/joint_table.h"
@@ -101,28 +88,6 @@ Broken ReadMotion(Format format, absl::string_view input, std::optional<double> 
   return "";
 }
 
-// An archive with the checksums of its stored members, so that changed members are read.
-std::string WithRightSums(absl::string_view input) {
-  std::string bytes(input);
-  const auto number = [&bytes](std::size_t at, int count) {
-    std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + at, static_cast<std::size_t>(count));
-    return std::size_t{value};
-  };
-  constexpr char kEntry[] = "PK\x01\x02";
-  for (std::size_t at = 0; (at = bytes.find(kEntry, at)) != std::string::npos; ++at) {
-    if (bytes.size() - at < 46) break;
-    const std::size_t local = number(at + 42, 4), size = number(at + 20, 4);
-    if (number(at + 10, 2) != 0 || local > bytes.size() || bytes.size() - local < 30) continue;
-    const std::size_t data = local + 30 + number(local + 26, 2) + number(local + 28, 2);
-    if (data > bytes.size() || bytes.size() - data < size) continue;
-    const auto sum = static_cast<std::uint32_t>(
-        crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data() + data), size));
-    std::memcpy(bytes.data() + at + 16, &sum, sizeof(sum));
-  }
-  return bytes;
-}
-
 const motion::Clip& ShortPerson() {
   static const auto* const kPerson = [] {
     test::PersonOptions options;
@@ -157,42 +122,6 @@ Broken JsonMotion(absl::string_view input) {
 
 Broken Npy(absl::string_view input) { return ReadMotion(Format::kNpy, input, kFrameRateHz); }
 
-Broken ResearchNpy(absl::string_view input) {
-  using formats::research::Layout;
-  constexpr Layout kLayouts[] = {Layout::kHumanMl3d, Layout::kHumanMl3dFeatures, Layout::kInterGen,
-                                 Layout::kInterGenFeatures, Layout::kInterX};
-  if (input.empty()) return "";
-  const Layout layout = kLayouts[static_cast<unsigned char>(input[0]) % std::size(kLayouts)];
-  formats::ReadOptions options;
-  options.format = Format::kNpy;
-  options.layout = layout;
-  options.skeleton = formats::research::BodySkeleton();
-  const absl::StatusOr<motion::Clip> clip =
-      formats::ParseLeader(std::string(input.substr(1)), kSource, options);
-  if (!clip.ok()) return CheckRefusal(clip.status());
-  Broken broken = CheckRead(*clip, options.skeleton);
-  if (!broken.empty() || clip->frame_count() > kMostFramesWritten) return broken;
-  formats::WriteOptions writing;
-  writing.layout = layout;
-  const absl::StatusOr<std::string> again =
-      formats::FormatPeople(Format::kNpy, {*clip}, options.skeleton, writing);
-  return CheckRefusal(again.status());
-}
-
-Broken SmplNpz(absl::string_view input) {
-  const std::string bytes = WithRightSums(input);
-  const absl::StatusOr<formats::research::NpzArchive> archive =
-      formats::research::NpzArchive::Parse(bytes, kSource);
-  if (!archive.ok()) return CheckRefusal(archive.status());
-  const retargeting::CharacterOptions options;
-  absl::StatusOr<motion::Clip> clip = formats::research::FromSmpl(*archive, *archive, options);
-  if (!clip.ok()) return CheckRefusal(clip.status());
-  if (clip->frame_rate_hz <= 0) clip->frame_rate_hz = kFrameRateHz;
-  // What the front door rejects.
-  if (!motion::CheckClip("clip", *clip).ok()) return "";
-  return CheckRead(*clip, options.skeleton);
-}
-
 Broken SbuText(absl::string_view input) {
   return ReadMotion(Format::kSbuText, input, std::nullopt);
 }
@@ -208,38 +137,6 @@ Broken Gltf(absl::string_view input) {
       ShortPerson(), input, kSource, read_beside, {}, formats::gltf::GltfContainer::kBinary);
   if (!onto.ok()) return CheckRefusal(onto.status());
   return CheckRefusal(formats::gltf::ParseGltf(*onto, kSource).status(), {});
-}
-
-// Whatever assimp does with the bytes happens in a process of its own. A build without it has
-// nothing to run.
-Broken Fbx(absl::string_view input) {
-#ifdef DUET_FBX_TO_FUZZ
-  static const int set = setenv("DUET_FBX_PROGRAM", DUET_FBX_TO_FUZZ, 0);
-  if (set != 0 || !std::filesystem::exists(formats::fbx::FbxProgram())) return "no duet-fbx";
-  // assimp may fail by a signal. Statuses other than duet-fbx's own are those of sanitizers.
-  const absl::Status converted = formats::fbx::ConvertFbx(input, kSource).status();
-  if (absl::StrContains(converted.message(), "duet-fbx fails")) return converted.ToString();
-  if (!converted.ok()) return CheckRefusal(converted);
-  return ReadMotion(Format::kFbx, input, std::nullopt);
-#else
-  static_cast<void>(input);
-  return "";
-#endif
-}
-
-Broken AsfAmc(absl::string_view input) {
-  const std::vector<absl::string_view> parts = Parts(input, 2);
-  const absl::StatusOr<formats::asf::AsfSkeleton> skeleton =
-      formats::asf::ParseAsf(parts[0], kSource);
-  if (!skeleton.ok()) return CheckRefusal(skeleton.status());
-  const absl::StatusOr<formats::asf::AmcMotion> motion =
-      formats::asf::ParseAmc(parts[1], kSource, *skeleton);
-  if (!motion.ok()) return CheckRefusal(motion.status());
-  const formats::asf::AmcImportOptions options;
-  const absl::StatusOr<motion::Clip> clip =
-      formats::asf::FromAmc(*skeleton, *motion, kSource, options);
-  if (!clip.ok()) return CheckRefusal(clip.status());
-  return CheckRead(*clip, options.skeleton);
 }
 
 Broken Keyframes(absl::string_view input) {

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,9 +18,7 @@
 #include "model/formats/motion_file.h"
 #include "model/motion/skeleton.h"
 #include "tests/classifier/random_classifier.h"
-#include "tests/formats/asf/asf_fixture.h"
 #include "tests/formats/gltf/gltf_fixture.h"
-#include "tests/formats/research/npz_fixture.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/architectures.h"
 #include "tests/support/temporary_folder.h"
@@ -52,33 +49,7 @@ class Corpus {
     Write("json_motion/pair.json", *FormatPeople(Format::kJson, {person, person}, skeleton));
     Write("npy/pair.npy", *FormatPeople(Format::kNpy, {person, person}, skeleton));
     Write("npy/person.npy", *FormatPeople(Format::kNpy, {person}, skeleton));
-    WriteResearch(person);
     Write("sbu_text/pair.txt", *formats::flat::FormatSbu({person, person}));
-    const test::AsfFiles asf = test::MakeAsfFiles(person);
-    Write("asf_amc/person", asf.asf + '\0' + asf.amc);
-  }
-
-  void WriteResearch(const motion::Clip& person) const {
-    using formats::research::Layout;
-    const motion::Skeleton skeleton = motion::SbuSkeleton();
-    const std::pair<const char*, Layout> layouts[] = {
-        {"research_npy/humanml3d", Layout::kHumanMl3d},
-        {"research_npy/humanml3d_features", Layout::kHumanMl3dFeatures},
-        {"research_npy/intergen", Layout::kInterGen},
-        {"research_npy/intergen_features", Layout::kInterGenFeatures}};
-    char choice = 0;
-    for (const auto& [name, layout] : layouts) {
-      formats::WriteOptions writing;
-      writing.layout = layout;
-      Write(name, choice++ + *FormatPeople(Format::kNpy, {person}, skeleton, writing));
-    }
-    std::map<std::string, std::string> arrays = test::TinyBodyModel();
-    arrays["poses"] = test::Array({2, 66}, std::vector<float>(132, 0.1f));
-    arrays["trans"] = test::Array({2, 3}, {0, 0, 0, 0, 0, 1});
-    arrays["betas"] = test::Array({2}, {1, 0.1f});
-    arrays["fps"] = test::Array({1}, {30});
-    Write("smpl_npz/stored.npz", test::MakeNpz(arrays, test::Packed::kStored));
-    Write("smpl_npz/deflated.npz", test::MakeNpz(arrays));
   }
 
   void WriteGltf() const {

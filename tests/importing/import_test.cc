@@ -14,7 +14,6 @@
 #include "model/formats/motion_file.h"
 #include "model/motion/coordinates.h"
 #include "model/retargeting/reading_report.h"
-#include "tests/formats/asf/asf_fixture.h"
 #include "tests/importing/bvh_people.h"
 #include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
@@ -303,25 +302,6 @@ TEST_F(ImportTest, RejectsPeopleWhoStandAlongX) {
   }
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
                              HasSubstr("up axis: expected people who stand along y, z or -y")));
-}
-
-// The unit of an ASF file is read from it; a unit that is specified replaces that one.
-TEST_F(ImportTest, TheSpecifiedUnitReplacesTheOneThatAFileStates) {
-  fs::create_directories(options_.from);
-  options_.skeleton.skeleton = "sbu";
-  for (const double z : {0.0, 1.2}) {
-    const test::AsfFiles files =
-        test::MakeAsfFiles(test::MakePerson({60, z, 0, {0, 1.1f, static_cast<float>(z)}, 30}));
-    const std::string stem = z == 0 ? "hug_a" : "hug_b";
-    WriteTestFile(options_.from / (stem + ".asf"), files.asf);
-    WriteTestFile(options_.from / (stem + ".amc"), files.amc);
-  }
-  ASSERT_THAT(Go(), IsOk());
-  const float height = Read().sequences[0].pair.leader.at(0, 0).y;
-  options_.overwrite = true;
-  options_.metres_per_unit = 0.9 * 0.0254 / 0.45;
-  ASSERT_THAT(Go(), IsOk());
-  EXPECT_NEAR(Read().sequences[0].pair.leader.at(0, 0).y, 0.9f * height, 1e-3);
 }
 
 // Two files of one person as one file of two ROOTs.

@@ -12,7 +12,6 @@ from duet_motion.motion import checked_choice, checked_number
 
 Path = Union[str, "os.PathLike[str]"]
 SIDES = ("left", "right")
-LAYOUTS = ("humanml3d", "humanml3d-263", "inter-x", "intergen", "intergen-262")
 
 
 class MotionFileError(ValueError):
@@ -31,23 +30,18 @@ class ReadOptions:
     metres_per_unit: Optional[float] = None
     joint_map: Mapping[str, str] = dataclasses.field(default_factory=dict)
     resample_hz: Optional[float] = None
-    layout: str = ""
-    body_model: str = ""
 
 
 def checked_options(side: Optional[str], frame_rate_hz: Optional[float], unit: str, up_axis: str,
                     metres_per_unit: Optional[float], joint_map: Optional[Mapping[str, str]],
-                    resample_hz: Optional[float], layout: str,
-                    body_model: Optional[Path]) -> ReadOptions:
+                    resample_hz: Optional[float]) -> ReadOptions:
     """Raises ValueError for an invalid argument. ``side``: None: all people."""
     return ReadOptions(
         side="" if side is None else checked_choice("side", side, SIDES),
         frame_rate_hz=_number("frame_rate_hz", frame_rate_hz),
         unit=_choice("unit", unit, UNITS), up_axis=_choice("up_axis", up_axis, UP_AXES),
         metres_per_unit=_number("metres_per_unit", metres_per_unit),
-        joint_map=_joint_map(joint_map), resample_hz=_number("resample_hz", resample_hz),
-        layout=_choice("layout", layout, LAYOUTS),
-        body_model="" if body_model is None else os.fspath(body_model))
+        joint_map=_joint_map(joint_map), resample_hz=_number("resample_hz", resample_hz))
 
 
 def _number(field: str, value: Optional[float]) -> Optional[float]:

@@ -16,7 +16,7 @@ from duet_motion.motion import Motion
 # The flags of options with one value, and all flags.
 _VALUES = {"side": "--side", "frame_rate_hz": "--frame-rate", "unit": "--unit",
            "up_axis": "--up-axis", "metres_per_unit": "--metres-per-unit",
-           "resample_hz": "--resample", "layout": "--layout", "body_model": "--body-model"}
+           "resample_hz": "--resample"}
 _FLAGS = {**_VALUES, "joint_map": "--joint-map"}
 # A message, its status code, and the advice that follows.
 _FAILURE = re.compile(r"(?P<message>.*?)(?: \([A-Z_]+\))?"
@@ -38,14 +38,13 @@ def read(path: Path, options: ReadOptions) -> List[Motion]:
     return [_from_json(answer, role) for role in ("leader", "follower") if role in answer]
 
 
-def write(document: str, path: Path, layout: str = "") -> None:
-    """Writes the people of a "duet-motion" document (docs/formats.md). ``layout``: of a .npy array."""
-    arguments = ["--output-layout", layout] if layout else []
+def write(document: str, path: Path) -> None:
+    """Writes the people of a "duet-motion" document (docs/formats.md)."""
     with tempfile.TemporaryDirectory() as folder:
         source = pathlib.Path(folder) / "motion.json"
         source.write_text(document, encoding="utf-8")
         try:
-            run("convert", str(source), "--out", _word(path), "--quiet", *arguments)
+            run("convert", str(source), "--out", _word(path), "--quiet")
         except MotionFileError as error:
             raise MotionFileError(str(error).replace(str(source), "motion")) from None
 

@@ -25,8 +25,7 @@ Shown = Union[Motion, Tuple[Motion, Motion], SynthesisResult]
 def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float] = None,
                 unit: str = "", up_axis: str = "", metres_per_unit: Optional[float] = None,
                 joint_map: Optional[Mapping[str, str]] = None,
-                resample_hz: Optional[float] = None, layout: str = "",
-                body_model: Optional[Path] = None) -> Motion:
+                resample_hz: Optional[float] = None) -> Motion:
     """Reads the motion of one person from a file, in metres, y up, in the joints of Duet's
     skeleton.
 
@@ -39,9 +38,6 @@ def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float
         metres_per_unit: metres in one unit of the file; overrides `unit`.
         joint_map: from joints of Duet to joints of the file, for names that are not recognised.
         resample_hz: frames per second of the result; the motion keeps its speed.
-        layout: the meaning of a .npy array of research: ``"humanml3d"``, ``"humanml3d-263"``,
-            ``"intergen"``, ``"intergen-262"`` or ``"inter-x"`` (docs/guides/research_layouts.md).
-        body_model: the .npz of the body model of a .npz motion (AMASS, SMPL).
 
     Raises:
         MotionFileError: the file cannot be read.
@@ -49,14 +45,13 @@ def read_motion(path: Path, *, side: str = "left", frame_rate_hz: Optional[float
         FileNotFoundError: the program `duet` is missing; the message explains how to install it.
     """
     return _file_program.read(path, checked_options(
-        side, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz, layout,
-        body_model))[0]
+        side, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz))[0]
 
 
 def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = "",
               up_axis: str = "", metres_per_unit: Optional[float] = None,
               joint_map: Optional[Mapping[str, str]] = None,
-              resample_hz: Optional[float] = None, layout: str = "") -> Tuple[Motion, Motion]:
+              resample_hz: Optional[float] = None) -> Tuple[Motion, Motion]:
     """Reads both people from a file, leader first, like :func:`read_motion`.
 
     Args:
@@ -67,7 +62,6 @@ def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = 
         metres_per_unit: metres in one unit of the file; overrides `unit`.
         joint_map: from joints of Duet to joints of the file.
         resample_hz: frames per second of the result; the motion keeps its speed.
-        layout: the meaning of a .npy array of research, as for :func:`read_motion`.
 
     Raises:
         MotionFileError: the file cannot be read, or has one person.
@@ -75,14 +69,13 @@ def read_pair(path: Path, *, frame_rate_hz: Optional[float] = None, unit: str = 
         FileNotFoundError: see :func:`read_motion`.
     """
     motions = _file_program.read(path, checked_options(
-        None, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz, layout, None))
+        None, frame_rate_hz, unit, up_axis, metres_per_unit, joint_map, resample_hz))
     if len(motions) != 2:
         raise MotionFileError(f"{os.fspath(path)}: expected two people, got one")
     return motions[0], motions[1]
 
 
-def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None, *,
-                 layout: str = "") -> None:
+def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None) -> None:
     """Writes one person or two. Two people as .bvh are written to ``NAME.leader.bvh`` and
     ``NAME.follower.bvh``.
 
@@ -91,15 +84,13 @@ def write_motion(path: Path, leader: Motion, follower: Optional[Motion] = None, 
         leader: the first person, or the only one.
         follower: the second person, with the leader's joints, rate, number of frames, unit and
             axis.
-        layout: of a .npy array of research: 22 joints at the rate of the data set, or its features
-            (docs/guides/research_layouts.md).
 
     Raises:
         ValueError: the two differ in joints, rate or number of frames, unit or axis.
         MotionFileError: the file cannot be written.
         FileNotFoundError: see :func:`read_motion`.
     """
-    _file_program.write(to_document(leader if follower is None else (leader, follower)), path, layout)
+    _file_program.write(to_document(leader if follower is None else (leader, follower)), path)
 
 
 def write_page(path: Path, motions: Mapping[str, Shown], title: str = "") -> None:

@@ -112,7 +112,7 @@ function showButtons() {
       : 'Press React first, then drag a joint of the follower in the scene.';
   for (const button of element('downloads').children) button.disabled = !answered;
   const rigName = (state.rig ?? state.leader)?.name ?? '';
-  element('rig-download').disabled = !answered || !/\.(bvh|fbx|glb|gltf)$/i.test(rigName);
+  element('rig-download').disabled = !answered || !/\.(bvh|glb|gltf)$/i.test(rigName);
   element('rig-choice').value = state.rig ? 'file' : element('rig-choice').value;
   element('rig-name').textContent = state.rig?.name ?? '';
   const isKept = settings.keep > 0 && state.takes[state.chosen]?.kept !== settings.keep;

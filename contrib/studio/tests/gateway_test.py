@@ -360,7 +360,7 @@ class GatewayTest(tools.ServedTest):
     def test_files_are_converted_like_the_programs(self):
         motion = self.read()
         pair = json.dumps({**motion, "follower": motion["leader"]}).encode()
-        for kind in ("glb", "csv", "json", "usda", "html"):
+        for kind in ("glb", "csv", "json", "html"):
             name = "hug_sbu@2_hug1_seed3"
             status, headers, body = self.ask(f"/write?format={kind}&name={name}", pair)
             self.assertEqual(status, 200, body)

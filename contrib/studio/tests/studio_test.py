@@ -487,27 +487,6 @@ class ToolsTest(StudioTest):
             on_rig = duet.read_motion(path, joint_map={"left_hand": "Flipper"}).positions
         self.assertLess(np.linalg.norm(on_rig - self.shown(page), axis=2).mean(), 0.05)
 
-    @unittest.skipUnless((tools.PROGRAMS / "duet-fbx").exists(), "duet was built without libassimp-dev")
-    def test_fbx_is_read_as_a_leader_and_as_a_rig(self):
-        files = tools.SOURCE / "tests/formats/fbx/files"
-        page = self.open_still(width=1200, height=900)
-        self.choose_file(page, "#file", files / "centimetres_y_up_30.fbx")
-        page.wait_until("state.leader || document.documentElement.dataset.failed === 'true'")
-        self.assertEqual(page.state()["failed"], "false", page.text("#status"))
-        self.label(page, "kick", 1)
-        self.react(page)
-        self.choose_file(page, "#rig-file", files / "still_skin.fbx")
-        page.wait_until("state.rig !== null && !element('rig-download').disabled")
-        page.evaluate("""window.saved = []; saveBlob = async (blob, name) => {
-            window.saved.push([name, new TextDecoder().decode(await blob.slice(0, 4).arrayBuffer())]); };
-            undefined""")
-        page.evaluate("attempt(downloadOnRig)()")
-        page.wait_until("saved.length > 0 || document.documentElement.dataset.failed === 'true'")
-        self.assertEqual(page.state()["failed"], "false", page.text("#status"))
-        name, magic = page.evaluate("window.saved.pop()")
-        self.assertRegex(name, r"\.follower\.glb$")
-        self.assertEqual(magic, "glTF")
-
     # The guide.
 
     def test_first_ten_minutes_of_an_animator(self):

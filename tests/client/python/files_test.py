@@ -69,17 +69,6 @@ class FilesTest(unittest.TestCase):
         read = duet.read_motion(self.folder / "one.json")
         np.testing.assert_allclose(read.positions, self.hug.positions, atol=1e-6)
 
-    def test_a_layout_of_research_round_trips(self):
-        path = self.folder / "hug.npy"
-        duet.write_motion(path, self.hug.with_positions(self.hug.positions), layout="humanml3d")
-        self.assertEqual(np.load(path).shape, (61, 22, 3))
-        read = duet.read_motion(path, layout="humanml3d")
-        self.assertEqual(read.frame_rate_hz, 20)
-        np.testing.assert_allclose(read.joint("left_hand")[2], self.hug.joint("left_hand")[3],
-                                   atol=1e-6)
-        with self.assertRaisesRegex(duet.MotionFileError, "specify its layout"):
-            duet.read_motion(path, frame_rate_hz=20)
-
     def test_two_people_as_bvh_are_two_files(self):
         duet.write_motion(self.folder / "pair.bvh", self.hug, self.other)
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
