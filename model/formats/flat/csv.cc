@@ -1,8 +1,11 @@
 #include "model/formats/flat/csv.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,11 +15,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "model/base/printable.h"
 #include "model/base/text.h"
-#include "model/formats/flat/csv_header.h"
-#include "model/formats/flat/csv_joint_rows.h"
-#include "model/formats/flat/csv_times.h"
-#include "model/formats/flat/utf16.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {
@@ -24,14 +24,220 @@ namespace {
 
 constexpr absl::string_view kPrefixes[] = {"leader.", "follower."};
 constexpr const char* kSuffixes[] = {"_x", "_y", "_z"};
+constexpr char kNameSeparators[] = "_.:-| ";
 constexpr std::size_t kMaxColumns = std::size_t{motion::kMaxFileJoints} * 6 + 2;
-constexpr std::size_t kMostHeaderRows = 3;
 // Far beyond kMaxColumns names or numbers.
 constexpr std::size_t kLongestLine = std::size_t{4} << 20;
+
+using CsvRow = std::vector<absl::string_view>;
+
+struct CsvColumn {
+  enum class Kind { kPassedOver, kFrame, kTime, kPosition };
+  Kind kind = Kind::kPassedOver;
+  int person = 0, joint = 0, axis = 0;  // of a position
+};
 
 float* AxisOf(motion::Vec3* position, int axis) {
   return axis == 0 ? &position->x : axis == 1 ? &position->y : &position->z;
 }
+
+bool IsOneOf(absl::string_view text, std::initializer_list<absl::string_view> words) {
+  return std::any_of(words.begin(), words.end(),
+                     [text](absl::string_view word) { return absl::EqualsIgnoreCase(text, word); });
+}
+
+CsvRow SplitRow(absl::string_view line, char delimiter) {
+  CsvRow fields;
+  bool quoted = false;
+  std::size_t start = 0;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && line[i] == '"') quoted = !quoted;
+    // An unclosed quote ends with the row.
+    if (i < line.size() && (quoted || line[i] != delimiter)) continue;
+    absl::string_view field = absl::StripAsciiWhitespace(line.substr(start, i - start));
+    if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
+      field = field.substr(1, field.size() - 2);
+    }
+    fields.push_back(field);
+    start = i + 1;
+  }
+  return fields;
+}
+
+// The first of comma, semicolon and tab in a header line; a comma if it has none.
+char FindDelimiter(absl::string_view line) {
+  for (char delimiter : {',', ';', '\t'}) {
+    if (absl::StrContains(line, delimiter)) return delimiter;
+  }
+  return ',';
+}
+
+// Removes the axis from a name: "head_x" -> head and x. Returns -1 if the name does not end in an
+// axis. Separators are _ . : - | and space, or none before a capital: "headX".
+int TakeAxis(absl::string_view* name) {
+  if (name->size() < 2) return -1;
+  const unsigned char last = name->back(), before = (*name)[name->size() - 2];
+  const int axis = absl::ascii_tolower(last) - 'x';
+  if (axis < 0 || axis > 2) return -1;
+  const bool separated = absl::StrContains(kNameSeparators, static_cast<char>(before));
+  if (!separated && (!absl::ascii_isupper(last) || absl::ascii_isupper(before))) return -1;
+  name->remove_suffix(separated ? 2 : 1);
+  return axis;
+}
+
+// Removes a word for "position": "head_location" -> head.
+void DropPositionWord(absl::string_view* name) {
+  for (absl::string_view word : {"location", "loc", "position", "pos"}) {
+    if (name->size() <= word.size() || !absl::EndsWithIgnoreCase(*name, word)) continue;
+    const char before = (*name)[name->size() - word.size() - 1];
+    if (!absl::StrContains(kNameSeparators, before)) continue;
+    name->remove_suffix(word.size() + 1);
+    return;
+  }
+}
+
+// The columns of a header line, and the joints of each person in it.
+class CsvHeader {
+ public:
+  absl::Status Read(const CsvRow& names) {
+    std::set<absl::string_view> seen;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (!seen.insert(names[i]).second) {
+        return absl::InvalidArgumentError(absl::StrCat(
+            "column ", i + 1, ": expected a new name, got ", base::Quoted(names[i]), " again"));
+      }
+      absl::Status status = AddColumn(i + 1, names[i]);
+      if (!status.ok()) return status;
+    }
+    if (joint_names_.empty()) {
+      return absl::InvalidArgumentError(
+          "columns: expected JOINT_x, JOINT_y, JOINT_z, got no joint");
+    }
+    if (has_prefixed_ && has_plain_) {
+      return absl::InvalidArgumentError(
+          "columns: expected all with \"leader.\" or \"follower.\", or none, got both kinds");
+    }
+    absl::Status status;
+    for (std::size_t person = 0; person < joint_names_.size() && status.ok(); ++person) {
+      status = CheckAxes(person);
+    }
+    return status;
+  }
+
+  const std::vector<CsvColumn>& columns() const { return columns_; }
+  const std::vector<std::vector<std::string>>& joint_names() const { return joint_names_; }
+
+ private:
+  absl::Status AddColumn(std::size_t number, absl::string_view name) {
+    CsvColumn column;
+    if (IsOneOf(name, {"time", "time_s", "t", "seconds", "timestamp"})) {
+      column.kind = CsvColumn::Kind::kTime;
+    } else if (IsOneOf(name, {"frame", "frame_number"})) {
+      column.kind = CsvColumn::Kind::kFrame;
+    } else if (!IsOneOf(name, {"", "index", "unnamed: 0"})) {  // as pandas names an index
+      column.kind = CsvColumn::Kind::kPosition;
+      absl::string_view joint = name;
+      column.person = absl::ConsumePrefix(&joint, kPrefixes[1]) ? 1 : 0;
+      (column.person == 1 || absl::ConsumePrefix(&joint, kPrefixes[0]) ? has_prefixed_
+                                                                       : has_plain_) = true;
+      column.axis = TakeAxis(&joint);
+      DropPositionWord(&joint);
+      if (column.axis < 0 || joint.empty()) {
+        return absl::InvalidArgumentError(absl::StrCat(
+            "column ", number, ": expected frame, time or JOINT_x, JOINT_y, JOINT_z, got ",
+            base::Quoted(name)));
+      }
+      column.joint = JointIndex(static_cast<size_t>(column.person), joint);
+    }
+    columns_.push_back(column);
+    return absl::OkStatus();
+  }
+
+  int JointIndex(std::size_t person, absl::string_view name) {
+    if (joint_names_.size() <= person) joint_names_.resize(person + 1);
+    std::vector<std::string>& names = joint_names_[person];
+    const auto it = std::find(names.begin(), names.end(), name);
+    if (it != names.end()) return static_cast<int>(it - names.begin());
+    names.emplace_back(name);
+    return static_cast<int>(names.size()) - 1;
+  }
+
+  absl::Status CheckAxes(std::size_t person) const {
+    const std::vector<std::string>& names = joint_names_[person];
+    if (names.empty()) {
+      return absl::InvalidArgumentError(
+          "columns: expected the leader's and the follower's, got only the follower's");
+    }
+    std::vector<std::vector<int>> counts(names.size(), std::vector<int>(3));
+    for (const CsvColumn& column : columns_) {
+      if (column.kind != CsvColumn::Kind::kPosition) continue;
+      if (column.person != static_cast<int>(person)) continue;
+      ++counts[static_cast<size_t>(column.joint)][static_cast<size_t>(column.axis)];
+    }
+    for (std::size_t joint = 0; joint < names.size(); ++joint) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (counts[joint][axis] == 1) continue;
+        return absl::InvalidArgumentError(
+            absl::StrCat(has_prefixed_ ? kPrefixes[person] : "",
+                         base::Printable(names[joint], base::kLongestQuote), kSuffixes[axis],
+                         ": expected one column, got ", counts[joint][axis]));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  std::vector<CsvColumn> columns_;
+  std::vector<std::vector<std::string>> joint_names_;  // of each person
+  bool has_prefixed_ = false, has_plain_ = false;
+};
+
+// Infers the frame rate from a column of times in seconds.
+class CsvTimes {
+ public:
+  // Adds the time of the next frame.
+  void Add(absl::string_view text) {
+    double seconds = 0;
+    readable_ = readable_ && base::ParseNumber(text, &seconds);
+    if (!readable_) return;
+    const std::size_t point = text.find('.');
+    const std::size_t decimals = point == absl::string_view::npos ? 0 : text.size() - point - 1;
+    decimals_ = std::max(decimals_, absl::StrContains(text, 'e') ? kMostDecimals : decimals);
+    seconds_.push_back(seconds);
+  }
+
+  // The rate in Hz; 0 if the times are not even steps. Within the rounding of the times, the rate
+  // snaps to the nearest usual one, or else to an integer.
+  double FrameRate() const {
+    if (!readable_ || seconds_.size() < 2) return 0;
+    const double steps = static_cast<double>(seconds_.size() - 1);
+    const double rate = steps / (seconds_.back() - seconds_.front());
+    // A column with a lower rate than 1 does not hold seconds.
+    if (!(rate >= 1 && rate <= motion::kMaxFrameRateHz)) return 0;
+    for (std::size_t i = 0; i < seconds_.size(); ++i) {
+      const double step = (seconds_[i] - seconds_.front()) * rate;
+      if (std::abs(step - static_cast<double>(i)) > 0.5) return 0;
+    }
+    const double rounding = std::pow(10, -static_cast<double>(std::min(decimals_, kMostDecimals)));
+    const auto fits = [&](double candidate) {
+      return std::abs(steps / candidate - steps / rate) <= rounding;
+    };
+    double best = fits(std::round(rate)) ? std::round(rate) : rate;
+    double nearest = motion::kMaxFrameRateHz;
+    for (double usual : {15., 24., 25., 30., 50., 60., 90., 100., 120., 240.}) {
+      if (!fits(usual) || std::abs(usual - rate) >= nearest) continue;
+      best = usual;
+      nearest = std::abs(usual - rate);
+    }
+    return best;
+  }
+
+ private:
+  static constexpr std::size_t kMostDecimals = 9;  // further digits are floating-point noise
+
+  std::vector<double> seconds_;
+  std::size_t decimals_ = 0;
+  bool readable_ = true;
+};
 
 class CsvParser {
  public:
@@ -40,11 +246,10 @@ class CsvParser {
 
   absl::StatusOr<motion::RecordedMotion> Parse() {
     absl::Status status = ParseHeader();
-    CsvRow row;
-    while (status.ok() && NextRow(&row, &status)) {
-      status = header_.row_for_each_joint ? ParseJointRow(row) : ParseFrameRow(row);
+    absl::string_view line;
+    while (status.ok() && NextLine(&line, &status)) {
+      status = ParseRow(SplitRow(line, delimiter_));
     }
-    if (status.ok() && header_.row_for_each_joint) status = CollectFrames();
     if (!status.ok()) return status;
     if (motion_.people[0].poses.empty())
       return Error("expected at least 1 frame after the header line, got none");
@@ -96,18 +301,6 @@ class CsvParser {
     return true;
   }
 
-  // Returns first the rows that ParseLevels read beyond the header.
-  bool NextRow(CsvRow* row, absl::Status* status) {
-    if (next_waiting_ < waiting_.size()) {
-      *row = std::move(waiting_[next_waiting_++]);
-      return true;
-    }
-    absl::string_view line;
-    if (!NextLine(&line, status)) return false;
-    *row = SplitRow(line, delimiter_);
-    return true;
-  }
-
   absl::Status ParseComment(absl::string_view comment) {
     for (absl::string_view word : absl::StrSplit(comment, absl::ByAnyChar(" \t,;"))) {
       const std::pair<absl::string_view, absl::string_view> setting =
@@ -147,53 +340,17 @@ class CsvParser {
                          : status;
     }
     delimiter_ = separator_.value_or(FindDelimiter(line));
-    std::vector<CsvRow> rows = {SplitRow(line, delimiter_)};
-    if (rows[0].size() > kMaxColumns) {
-      return Error(
-          absl::StrCat("expected at most ", kMaxColumns, " columns, got ", rows[0].size()));
+    const CsvRow names = SplitRow(line, delimiter_);
+    if (names.size() > kMaxColumns) {
+      return Error(absl::StrCat("expected at most ", kMaxColumns, " columns, got ", names.size()));
     }
-    return NeedsFurtherRows(rows[0]) ? ParseLevels(std::move(rows)) : TakeHeader(rows);
-  }
-
-  // Whether the first row names no axis, which means that the columns have several levels.
-  static bool NeedsFurtherRows(const CsvRow& row) { return !ReadHeader({row}).ok(); }
-
-  absl::Status ParseLevels(std::vector<CsvRow> rows) {
-    const absl::Status as_one_row = TakeHeader({rows[0]});
-    absl::Status status;
-    CsvRow row;
-    while (rows.size() < kMostHeaderRows && NextRow(&row, &status)) rows.push_back(row);
-    if (!status.ok()) return status;
-    const std::size_t count = CountHeaderRows(rows);
-    if (count == 1) return as_one_row;
-    waiting_.assign(rows.begin() + static_cast<std::ptrdiff_t>(count), rows.end());
-    rows.resize(count);
-    status = TakeHeader(rows);
-    if (!status.ok()) return status;
-    if (waiting_.empty() && NextRow(&row, &status)) waiting_.push_back(row);
-    if (waiting_.empty()) return status;
-    const std::optional<CsvColumn::Kind> index = ReadIndexName(waiting_[0]);
-    if (!index.has_value()) return status;
-    header_.columns[0].kind = *index;
-    waiting_.erase(waiting_.begin());
-    return status;
-  }
-
-  absl::Status TakeHeader(const std::vector<CsvRow>& rows) {
-    absl::StatusOr<CsvHeader> header = ReadHeader(rows);
-    if (!header.ok()) return Error(header.status().message());
-    header_ = *std::move(header);
-    motion_.people.resize(std::max<std::size_t>(header_.joint_names.size(), 1));
-    for (std::size_t person = 0; person < header_.joint_names.size(); ++person) {
-      motion_.people[person].joint_names = header_.joint_names[person];
+    status = header_.Read(names);
+    if (!status.ok()) return Error(status.message());
+    motion_.people.resize(header_.joint_names().size());
+    for (std::size_t person = 0; person < motion_.people.size(); ++person) {
+      motion_.people[person].joint_names = header_.joint_names()[person];
     }
     return absl::OkStatus();
-  }
-
-  absl::Status CheckRow(const CsvRow& row) const {
-    if (row.size() == header_.columns.size()) return absl::OkStatus();
-    return Error(absl::StrCat("expected ", header_.columns.size(),
-                              " values as in the header line, got ", row.size()));
   }
 
   absl::Status ParsePosition(const CsvRow& row, std::size_t column, float* value) const {
@@ -211,7 +368,6 @@ class CsvParser {
     }
     return text;
   }
-  void AddTime(absl::string_view time) { times_.Add(WithPoint(time)); }
 
   // Programs write a number that they do not have as "nan".
   absl::Status CheckFrameNumber(const CsvRow& row, std::size_t column) const {
@@ -225,9 +381,11 @@ class CsvParser {
     return absl::OkStatus();
   }
 
-  absl::Status ParseFrameRow(const CsvRow& row) {
-    absl::Status status = CheckRow(row);
-    if (!status.ok()) return status;
+  absl::Status ParseRow(const CsvRow& row) {
+    if (row.size() != header_.columns().size()) {
+      return Error(absl::StrCat("expected ", header_.columns().size(),
+                                " values as in the header line, got ", row.size()));
+    }
     const int frame = motion_.people[0].frame_count();
     if (frame >= motion::kMaxMotionFrames) {
       return Error(
@@ -236,9 +394,10 @@ class CsvParser {
     for (motion::Clip& person : motion_.people) {
       person.Append(std::vector<motion::Vec3>(person.joint_names.size()));
     }
+    absl::Status status;
     for (std::size_t i = 0; i < row.size() && status.ok(); ++i) {
-      const CsvColumn& column = header_.columns[i];
-      if (column.kind == CsvColumn::Kind::kTime) AddTime(row[i]);
+      const CsvColumn& column = header_.columns()[i];
+      if (column.kind == CsvColumn::Kind::kTime) times_.Add(WithPoint(row[i]));
       if (column.kind == CsvColumn::Kind::kFrame) status = CheckFrameNumber(row, i);
       if (column.kind != CsvColumn::Kind::kPosition) continue;
       motion::Vec3& at = motion_.people[static_cast<size_t>(column.person)].at(frame, column.joint);
@@ -246,51 +405,14 @@ class CsvParser {
     }
     return status;
   }
-
-  absl::Status ParseJointRow(const CsvRow& row) {
-    absl::Status status = CheckRow(row);
-    CsvJointRows::Row parsed;
-    absl::string_view time;
-    for (std::size_t i = 0; i < row.size() && status.ok(); ++i) {
-      const CsvColumn& column = header_.columns[i];
-      if (column.kind == CsvColumn::Kind::kPosition) {
-        status = ParsePosition(row, i, AxisOf(&parsed.position, column.axis));
-      }
-      if (column.kind == CsvColumn::Kind::kFrame) {
-        parsed.frame = row[i];
-        status = CheckFrameNumber(row, i);
-      }
-      if (column.kind == CsvColumn::Kind::kTime) time = row[i];
-      if (column.kind == CsvColumn::Kind::kJoint) parsed.joint = row[i];
-      if (column.kind == CsvColumn::Kind::kPerson) parsed.person = row[i];
-    }
-    if (!status.ok()) return status;
-    // Prefer the frame number: two frames may have the same rounded time.
-    if (parsed.frame.empty()) parsed.frame = time;
-    const absl::StatusOr<bool> new_frame = joint_rows_.Add(parsed);
-    if (!new_frame.ok()) return Error(new_frame.status().message());
-    if (*new_frame && !time.empty()) AddTime(time);
-    return absl::OkStatus();
-  }
-
-  absl::Status CollectFrames() {
-    absl::StatusOr<std::vector<motion::Clip>> people = joint_rows_.Collect();
-    if (!people.ok()) return Error(people.status().message());
-    motion_.people = *std::move(people);
-    return absl::OkStatus();
-  }
-
   base::LineReader lines_;
   absl::string_view source_;
   std::optional<char> separator_;  // that the first line states
   char delimiter_ = ',';
   CsvHeader header_;
-  std::vector<CsvRow> waiting_;
-  std::size_t next_waiting_ = 0;
   motion::RecordedMotion motion_;
   double frame_rate_hz_ = 0;  // from a comment
   CsvTimes times_;
-  CsvJointRows joint_rows_;
 };
 
 void AppendHeader(absl::string_view prefix, const motion::Clip& clip, std::string* out) {
@@ -330,8 +452,7 @@ std::string Format(const std::vector<const motion::Clip*>& people) {
 }  // namespace
 
 absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source) {
-  const std::optional<std::string> converted = FromUtf16(text);
-  return CsvParser(converted.has_value() ? *converted : text, source).Parse();
+  return CsvParser(text, source).Parse();
 }
 
 std::string FormatCsv(const motion::ClipPair& pair) {

@@ -1,8 +1,8 @@
 #include "model/formats/flat/json_motion.h"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -248,20 +248,25 @@ int CountPeople(base::ObjectReader* reader) {
   return people;
 }
 
+// [1, 2, 3]
+void AppendNumbers(std::initializer_list<float> values, std::string* out) {
+  char before = '[';
+  for (float value : values) {
+    *out += before;
+    base::AppendNumber(out, value);
+    before = ',';
+  }
+  *out += ']';
+}
+
 void AppendPerson(const char* field, const motion::Clip& clip, std::string* out) {
   absl::StrAppend(out, ",\n\"", field, "\": [");
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     *out += frame == 0 ? "\n[" : ",\n[";
     for (int joint = 0; joint < clip.joint_count(); ++joint) {
       const motion::Vec3 position = clip.at(frame, joint);
-      char before = '[';
       if (joint > 0) *out += ", ";
-      for (float value : {position.x, position.y, position.z}) {
-        *out += before;
-        base::AppendNumber(out, value);
-        before = ',';
-      }
-      *out += ']';
+      AppendNumbers({position.x, position.y, position.z}, out);
     }
     *out += ']';
   }
@@ -279,32 +284,14 @@ Json RigJson(const std::vector<motion::RestJoint>& rig) {
   return joints;
 }
 
-// [1, 2, 3]
-template <std::size_t size>
-void AppendNumbers(const std::array<float, size>& values, std::string* out) {
-  char before = '[';
-  for (float value : values) {
-    *out += before;
-    base::AppendNumber(out, value);
-    before = ',';
-  }
-  *out += ']';
-}
-
-void AppendRotations(const motion::JointRotations& rotations, RotationForm form, std::string* out) {
-  const bool six = form == RotationForm::kSixNumbers;
-  absl::StrAppend(out, ",\n\"rig\": ", RigJson(rotations.rig).dump(), ",\n\"",
-                  six ? "rotations_6d" : "rotations", "\": [");
+void AppendRotations(const motion::JointRotations& rotations, std::string* out) {
+  absl::StrAppend(out, ",\n\"rig\": ", RigJson(rotations.rig).dump(), ",\n\"rotations\": [");
   const std::size_t joints = rotations.rig.size();
   for (std::size_t i = 0; i < rotations.rotations.size(); ++i) {
     if (i % joints == 0) *out += i == 0 ? "\n[" : "],\n[";
     const motion::UnitQuaternion& q = rotations.rotations[i];
     if (i % joints > 0) *out += ", ";
-    if (six) {
-      AppendNumbers(SixNumbers(q), out);
-    } else {
-      AppendNumbers(std::array<float, 4>{q.x, q.y, q.z, q.w}, out);
-    }
+    AppendNumbers({q.x, q.y, q.z, q.w}, out);
   }
   *out += rotations.rotations.empty() ? "]" : "]]";
 }
@@ -364,11 +351,11 @@ absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
 }
 
 std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
-                             const motion::JointRotations* rotations, RotationForm form) {
+                             const motion::JointRotations* rotations) {
   std::string text = FormatSettings(pair.leader, skeleton);
   AppendPerson(kPeople[0], pair.leader, &text);
   AppendPerson(kPeople[1], pair.follower, &text);
-  if (rotations != nullptr) AppendRotations(*rotations, form, &text);
+  if (rotations != nullptr) AppendRotations(*rotations, &text);
   return text + "}\n";
 }
 

@@ -5,7 +5,6 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "model/formats/flat/rotation_form.h"
 #include "model/motion/clip.h"
 #include "model/motion/joint_rotations.h"
 #include "model/motion/recorded_motion.h"
@@ -33,12 +32,10 @@ absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
 //
 // `rotations` of the follower may be null; they add the fields
 //   "rig": [{"name": "torso", "parent": -1, "offset": [x, y, z], "joint": 2}, ...],
-//   "rotations": [[[x, y, z, w], ... rig joints], ... frames], or
-//   "rotations_6d": [[[R00, R10, R20, R01, R11, R21], ... rig joints], ... frames]
+//   "rotations": [[[x, y, z, w], ... rig joints], ... frames]
 // with the meaning of docs/rotations.md. ParseJsonMotion ignores them.
 std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
-                             const motion::JointRotations* rotations = nullptr,
-                             RotationForm form = RotationForm::kQuaternions);
+                             const motion::JointRotations* rotations = nullptr);
 std::string FormatJsonMotion(const motion::Clip& person, const motion::Skeleton& skeleton);
 
 }  // namespace duet::formats::flat

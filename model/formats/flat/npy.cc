@@ -1,18 +1,97 @@
 #include "model/formats/flat/npy.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "absl/types/span.h"
 #include "model/base/text.h"
-#include "model/formats/flat/npy_array.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {
 namespace {
+
+constexpr absl::string_view kMagic("\x93NUMPY", 6);
+// Magic, version and header length end on a multiple of this.
+constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kMaxHeaderBytes = 4096;
+
+static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "values are copied as they are");
+
+absl::Status Error(absl::string_view source, absl::string_view message) {
+  return absl::InvalidArgumentError(absl::StrCat(source, ": ", message));
+}
+
+// The value of `key` in the header's dictionary: the text up to its comma or closing bracket.
+absl::string_view DictValue(absl::string_view dict, absl::string_view key) {
+  const std::size_t at = dict.find(absl::StrCat("'", key, "':"));
+  if (at == absl::string_view::npos) return {};
+  absl::string_view value = absl::StripLeadingAsciiWhitespace(dict.substr(at + key.size() + 3));
+  const bool tuple = !value.empty() && value[0] == '(';
+  value = value.substr(0, value.find_first_of(tuple ? ")" : ",}"));
+  return absl::StripAsciiWhitespace(tuple ? value.substr(1) : value);
+}
+
+absl::Status ParseShape(absl::string_view tuple, absl::string_view source,
+                        std::vector<int>* shape) {
+  for (absl::string_view field : absl::StrSplit(tuple, ',')) {
+    if (absl::StripAsciiWhitespace(field).empty()) continue;
+    int size = 0;
+    if (!base::ParseInteger(field, &size)) {
+      return Error(source,
+                   absl::StrCat("shape: expected whole numbers, got ", base::Quoted(tuple)));
+    }
+    shape->push_back(size);
+  }
+  return absl::OkStatus();
+}
+
+// The header as it is written, and the bytes after it.
+struct NpyHeader {
+  std::string descr;          // with its quotes: "'<f4'"
+  std::string fortran_order;  // "False"
+  std::vector<int> shape;
+  absl::string_view values;  // refers to the parsed bytes
+};
+
+// Checks the form of the header, not its values.
+absl::StatusOr<NpyHeader> ParseNpyHeader(absl::string_view bytes, absl::string_view source) {
+  if (!absl::ConsumePrefix(&bytes, kMagic) || bytes.size() < 4) {
+    return Error(source, "expected a NumPy array, got a file that does not start with \\x93NUMPY");
+  }
+  const int version = static_cast<unsigned char>(bytes[0]);
+  if (version < 1 || version > 3) {
+    return Error(source, absl::StrCat("format version: expected 1 to 3, got ", version));
+  }
+  const std::size_t length_bytes = version == 1 ? 2 : 4;
+  if (bytes.size() < 2 + length_bytes) {
+    return Error(source, "header: expected its length, got the end of the file");
+  }
+  uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + 2, length_bytes);
+  bytes.remove_prefix(2 + length_bytes);
+  if (length > kMaxHeaderBytes || length > bytes.size()) {
+    return Error(source,
+                 absl::StrCat("header: expected at most ", std::min(kMaxHeaderBytes, bytes.size()),
+                              " bytes, got ", length));
+  }
+  const absl::string_view dict = bytes.substr(0, length);
+  NpyHeader header;
+  header.descr = std::string(DictValue(dict, "descr"));
+  header.fortran_order = std::string(DictValue(dict, "fortran_order"));
+  header.values = bytes.substr(length);
+  absl::Status status = ParseShape(DictValue(dict, "shape"), source, &header.shape);
+  if (!status.ok()) return status;
+  return header;
+}
 
 class NpyParser {
  public:
@@ -99,6 +178,21 @@ class NpyParser {
   absl::string_view source_;
   NpyHeader header_;
 };
+
+// float32 in C order. Requires as many values as the shape says.
+std::string FormatNpyArray(const std::vector<int>& shape, absl::Span<const float> values) {
+  std::string dict = absl::StrCat("{'descr': '<f4', 'fortran_order': False, 'shape': (",
+                                  absl::StrJoin(shape, ", "), "), }");
+  const std::size_t before = kMagic.size() + 4;
+  dict.append(kAlignment - (before + dict.size() + 1) % kAlignment, ' ');
+  dict.push_back('\n');
+  std::string bytes(kMagic);
+  bytes.append(
+      {'\x01', '\x00', static_cast<char>(dict.size() & 0xff), static_cast<char>(dict.size() >> 8)});
+  bytes += dict;
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+  return bytes;
+}
 
 // The positions of all frames and joints, one after the other.
 absl::Span<const float> Values(absl::Span<const motion::Vec3> positions) {

@@ -80,19 +80,6 @@ TEST(JsonMotion, WritesTheFollowersRotationsBesideThePair) {
   EXPECT_EQ(motion->people[1].poses, pair.follower.poses);
 }
 
-TEST(JsonMotion, WritesRotationsAsTheFirstTwoColumnsOfTheirMatrices) {
-  const motion::ClipPair pair{test::MakePerson(), test::MakePerson()};
-  motion::JointRotations rotations;
-  rotations.rig = {{"torso", -1, {}, 2}, {"neck", 0, {0, 0.25f, 0}, 1}};
-  // Half turns about x and y, none, and x to -z, y to x.
-  rotations.rotations = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}, {0.5f, 0.5f, -0.5f, 0.5f}};
-  const Json document = Json::parse(
-      FormatJsonMotion(pair, motion::SbuSkeleton(), &rotations, RotationForm::kSixNumbers));
-  EXPECT_FALSE(document.contains("rotations"));
-  EXPECT_EQ(document["rotations_6d"], Json::parse("[[[1,0,0,0,-1,0], [-1,0,0,0,1,0]],"
-                                                  " [[1,0,0,0,1,0], [0,0,-1,1,0,0]]]"));
-}
-
 TEST(JsonMotion, HonoursUnitAndAxis) {
   Json document = OnePerson();
   document["unit"] = "millimetres";
