@@ -112,17 +112,6 @@ class ClipMaker {
         LegLength(options_.skeleton, motion::Poses(options_.skeleton.joint_count(), straight));
     const std::string& root =
         options_.skeleton.joint_names[static_cast<size_t>(options_.skeleton.root)];
-    if (character_.stated_metres_per_unit.has_value()) {
-      const double unit = *character_.stated_metres_per_unit;
-      if (motion::IsLegLength(length * unit)) {
-        Note(absl::StrCat("unit: ", unit, " m (", character_.stated_by, ")"));
-        ReportUnit({absl::StrCat(unit, " m"), Origin::kFile, character_.stated_by});
-        return unit;
-      }
-      Warn(absl::StrCat("unit: ignored ", character_.stated_by,
-                        ", with which the distance from foot to ", root, " would be ",
-                        Rounded(length * unit, 0.01), " m"));
-    }
     if (const std::optional<motion::InferredUnit> unit = motion::InferUnit({length})) {
       const std::string why =
           absl::StrCat("foot to ", root, " is ", Rounded(length * unit->metres, 0.01), " m");

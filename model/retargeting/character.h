@@ -24,9 +24,6 @@ struct Character {
   double frame_rate_hz = 0;
   // The positions of the joints in one frame. [tree.names]
   std::function<std::vector<motion::Vec3>(int frame)> pose;
-  // Metres in one unit as the file states it; absent for most files. stated_by names the statement.
-  std::optional<double> stated_metres_per_unit;
-  std::string stated_by;
 };
 
 // The unit, axis and joints that were used to read a character.
@@ -41,9 +38,8 @@ struct CharacterOptions {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   JointOverrides joint_overrides;
   MissingToes missing_toes = MissingToes::kRejected;
-  // If absent, the unit that the file states, provided that it gives legs of a person's length;
-  // otherwise the one that motion::InferUnit returns. If there is none, legs are taken as 1 m long,
-  // with a warning. A further warning reports a person who is smaller or taller than adults.
+  // If absent, the unit that motion::InferUnit returns. If there is none, legs are taken as 1 m
+  // long, with a warning. A further warning reports a person who is smaller or taller than adults.
   std::optional<double> metres_per_unit;
   // If absent, the axis that motion::InferUpAxis returns; if there is none, y, with a warning.
   std::optional<motion::UpAxis> up_axis;

@@ -1,11 +1,20 @@
 #ifndef DUET_MODEL_RETARGETING_CHARACTER_RIG_H_
 #define DUET_MODEL_RETARGETING_CHARACTER_RIG_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "absl/types/span.h"
+#include "model/motion/clip.h"
+#include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"
+#include "model/motion/vec3.h"
+#include "model/retargeting/character.h"
 #include "model/retargeting/joint_mapping.h"
+#include "model/retargeting/joint_tree.h"
 #include "model/retargeting/rotation.h"
 
 namespace duet::retargeting {
@@ -29,6 +38,32 @@ struct CharacterPose {
   std::vector<Quaternion> turns;  // [names]
   std::vector<Vec3d> positions;   // [names]
 };
+
+// Returns the frame of a rig's motion that replaces its rest pose, because the rest pose is no
+// standing person: the frame in which the person stands most upright. Absent if the rest pose is a
+// standing person, or the motion's joints are not a person's.
+//
+// `rig` is at rest; `read` is its motion, with the joints that rig.joints gives.
+// Errors: INVALID_ARGUMENT naming `source` if there is no such frame either.
+absl::StatusOr<std::optional<int>> FindRestFrame(const CharacterRig& rig, const motion::Clip& read,
+                                                 absl::string_view source);
+
+// The rotation from a file's axes to the world's.
+Quaternion ToWorldAxes(motion::UpAxis up_axis);
+
+// The rig of a file whose joints have no rotation at rest (BVH): the tree's offsets define the
+// rest positions, with roots at the origin. Only roots are translated.
+//
+// `fit` is the result of ToClip for the same tree.
+CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit);
+
+// The same rig with another pose as its rest pose. `positions` are those of the tree's joints in
+// the file's unit and axes.
+CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit,
+                     const std::vector<Vec3d>& positions);
+
+// Reports that a frame of a rig's motion replaces its rest pose (FindRestFrame).
+void NoteRestFrame(int frame, const CharacterOptions& options);
 
 }  // namespace duet::retargeting
 

@@ -1,15 +1,70 @@
 #ifndef DUET_MODEL_RETARGETING_MANNEQUIN_H_
 #define DUET_MODEL_RETARGETING_MANNEQUIN_H_
 
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "model/motion/skeleton.h"
-#include "model/retargeting/character_rig.h"
 #include "model/retargeting/foot_pose.h"
-#include "model/retargeting/mesh_builder.h"
 #include "model/retargeting/rig.h"
+#include "model/retargeting/rotation.h"
 
 namespace duet::retargeting {
+
+// An sRGB colour, 0 to 255.
+struct Colour {
+  int red = 0, green = 0, blue = 0;
+};
+
+// The look of the mannequins in every file and on the page (client/viewer).
+struct Look {
+  Colour colour;
+  double roughness = 0;
+};
+inline constexpr Look kLeaderLook = {{0xf0, 0xa0, 0x4b}, 0.62},
+                      kFollowerLook = {{0x4f, 0xb3, 0xbf}, 0.62},
+                      kVisorLook = {{0x1b, 0x1d, 0x22}, 0.25};
+
+// Converts a channel of an sRGB colour to linear light, 0 to 1, as renderers need it.
+inline double Linear(int channel) {
+  const double share = channel / 255.0;
+  return share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+}
+
+// A surface of triangles; every vertex follows one joint of a rig.
+struct SkinnedMesh {
+  std::vector<Vec3d> positions;   // [vertices], metres, of the rest pose
+  std::vector<Vec3d> normals;     // [vertices], of length 1, outwards
+  std::vector<int> joints;        // [vertices], rig joints
+  std::vector<uint32_t> indices;  // three per triangle, counterclockwise from outside
+};
+
+// The number of divisions of an ellipsoid: around, and from pole to pole.
+struct Fineness {
+  int around = 10, stacks = 6;
+};
+
+// Adds surfaces of revolution to a mesh. Units: metres.
+class MeshBuilder {
+ public:
+  // `mesh` must outlive the builder.
+  explicit MeshBuilder(SkinnedMesh* mesh) : mesh_(*mesh) {}
+
+  // Adds an ellipsoid with half axes along x, y and z.
+  void AddEllipsoid(Vec3d centre, Vec3d half, int joint, Fineness fineness);
+  // Adds an open, tapered tube.
+  void AddLimb(Vec3d from, Vec3d to, double radius_from, double radius_to, int joint);
+
+ private:
+  uint32_t Count() const { return static_cast<uint32_t>(mesh_.positions.size()); }
+  void AddVertex(Vec3d position, Vec3d normal, int joint);
+  void AddTriangle(uint32_t a, uint32_t b, uint32_t c);
+  // Adds the triangles between the ring that begins at vertex `ring` and the next one.
+  void AddBand(uint32_t ring, uint32_t around);
+
+  SkinnedMesh& mesh_;
+};
 
 // A body around a rig in its rest pose: a tapered limb on every bone and a ball on every joint.
 // Joints with the names of motion::SbuSkeleton also get a chest, pelvis, head, hands and feet.
@@ -23,9 +78,6 @@ struct Mannequin {
 Mannequin MakeMannequin(const motion::Skeleton& skeleton, const Rig& rig,
                         const std::vector<Vec3d>& rest_positions,
                         double sole_depth = kUsualAnkleHeight);
-
-// A slender body around the bones of a user's rig, independent of its joint names.
-SkinnedMesh MakeStickFigure(const CharacterRig& rig);
 
 }  // namespace duet::retargeting
 

@@ -42,7 +42,6 @@ struct ReadingReport {
   std::string format;  // "BVH"
   int people = 0;      // in the file
   std::vector<std::string> file_joints;
-  std::optional<Setting> layout;  // of the numbers of an array; absent in every other format
   std::optional<Setting> frame_rate, unit, up_axis;  // absent: unknown
   std::vector<JointReading> joints;                  // [skeleton joints]
   std::vector<std::string> remarks;                  // other decisions, and warnings

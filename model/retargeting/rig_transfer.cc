@@ -14,7 +14,6 @@
 #include "model/retargeting/body_roles.h"
 #include "model/retargeting/foot_pose.h"
 #include "model/retargeting/limb_ends.h"
-#include "model/retargeting/limb_reach.h"
 
 namespace duet::retargeting {
 namespace {

@@ -1,8 +1,7 @@
-#include "model/retargeting/limb_reach.h"
-
 #include <cmath>
 
 #include "gtest/gtest.h"
+#include "model/retargeting/limb_ends.h"
 
 namespace duet::retargeting {
 namespace {

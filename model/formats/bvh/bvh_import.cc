@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/formats/bvh/frame_time.h"
+#include "model/formats/bvh/bvh_document.h"
 
 namespace duet::formats::bvh {
 namespace {

@@ -11,8 +11,7 @@
 #include "model/base/index.h"
 #include "model/base/text.h"
 #include "model/motion/coordinates.h"
-#include "model/retargeting/rest_pose.h"
-#include "model/retargeting/rest_rig.h"
+#include "model/retargeting/character_rig.h"
 #include "model/retargeting/rig_transfer.h"
 
 namespace duet::formats::bvh {
@@ -174,12 +173,9 @@ absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocume
   return RigWriter(*std::move(read), source, FindPositionChannels(rig)).Write(clip, keys);
 }
 
-absl::StatusOr<retargeting::CharacterRig> BvhRig(const BvhDocument& document,
-                                                 absl::string_view source,
-                                                 const BvhImportOptions& options) {
-  absl::StatusOr<Rig> read = ReadRig(document, source, options);
-  if (!read.ok()) return read.status();
-  return std::move(read->rig);
+absl::Status CheckBvhRig(const BvhDocument& document, absl::string_view source,
+                         const BvhImportOptions& options) {
+  return ReadRig(document, source, options).status();
 }
 
 }  // namespace duet::formats::bvh

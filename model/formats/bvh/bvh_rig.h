@@ -23,10 +23,9 @@ absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocume
                                        absl::string_view source, const BvhImportOptions& options,
                                        const BvhKeys& keys = {});
 
-// Returns the rig of a person of a BVH, to write in another format. Errors: those of FromBvh.
-absl::StatusOr<retargeting::CharacterRig> BvhRig(const BvhDocument& document,
-                                                 absl::string_view source,
-                                                 const BvhImportOptions& options);
+// Checks that a BVH has a rig of a person. Errors: those of FromBvh, or of a rest pose.
+absl::Status CheckBvhRig(const BvhDocument& document, absl::string_view source,
+                         const BvhImportOptions& options);
 
 }  // namespace duet::formats::bvh
 

@@ -8,7 +8,6 @@
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/recorded_motion.h"
 #include "model/retargeting/mannequin.h"
-#include "model/retargeting/mannequin_look.h"
 #include "model/retargeting/rig_animation.h"
 
 namespace duet::formats::gltf {

@@ -245,8 +245,6 @@ class Importer {
     character.tree = puppet->Tree();
     character.frame_count = static_cast<int>(frames);
     character.frame_rate_hz = timing.rate_hz;
-    character.stated_metres_per_unit = options_.stated_metres_per_unit;
-    character.stated_by = options_.stated_by;
     character.pose = [&](int frame) {
       return puppet->PoseAt(timing.start + frame / timing.rate_hz);
     };
@@ -270,9 +268,8 @@ class Importer {
     if (up_axis && !options_.up_axis.has_value()) up_axis->origin = Origin::kFile;
   }
 
-  // The rate that the caller or a file written by Duet states, if it is valid.
+  // The rate that a file written by Duet states, if it is valid.
   std::optional<double> StatedRate() const {
-    if (options_.stated_frame_rate_hz.has_value()) return options_.stated_frame_rate_hz;
     if (document_.writer != kDuetsWriter || !document_.frame_rate_hz.has_value() ||
         !motion::CheckFrameRate("frame rate", *document_.frame_rate_hz).ok()) {
       return std::nullopt;

@@ -29,10 +29,6 @@ struct GltfImportOptions : retargeting::CharacterOptions {
   // Receives the document with the character in the pose of `posed_frame` of the clip; may be null.
   GltfDocument* posed = nullptr;
   int posed_frame = 0;
-  // What the file that was converted to this one states; absent for glTF itself.
-  std::optional<double> stated_frame_rate_hz = std::nullopt;
-  std::optional<double> stated_metres_per_unit = std::nullopt;
-  std::string stated_by = "";  // names the statement of the unit
 };
 
 // Converts an animated skeleton to the skeleton's joint positions by forward kinematics. Samples

@@ -7,8 +7,7 @@
 
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/provenance.h"
-#include "model/retargeting/mannequin_look.h"
-#include "model/retargeting/mesh_builder.h"
+#include "model/retargeting/mannequin.h"
 #include "model/retargeting/rotation.h"
 #include "nlohmann/json.hpp"
 

@@ -10,13 +10,11 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/index.h"
-#include "model/formats/gltf/gltf_compaction.h"
 #include "model/formats/gltf/gltf_document.h"
 #include "model/formats/gltf/gltf_parts.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/coordinates.h"
-#include "model/retargeting/rest_pose.h"
-#include "model/retargeting/rest_rig.h"
+#include "model/retargeting/character_rig.h"
 #include "model/retargeting/rig_transfer.h"
 
 namespace duet::formats::gltf {
@@ -183,7 +181,7 @@ absl::StatusOr<GltfWriter> Gather(absl::string_view content, const GltfDocument&
     view["byteOffset"] = document.views[i].offset + begins[Index(document.views[i].buffer)];
     view["buffer"] = 0;
   }
-  DropAnimations(&json, &all);
+  json.erase("animations");
   return GltfWriter(std::move(json), std::move(all));
 }
 

@@ -15,8 +15,8 @@ namespace duet::formats::gltf {
 
 // Writes a clip of the joints of `options.skeleton` onto a character of a glTF file. The nodes,
 // rest pose, skins, meshes and materials of the file are kept. One new animation of the character
-// (retargeting::TransferToRig) replaces its animations and their data. Buffers in other files are
-// embedded; images in other files are not.
+// (retargeting::TransferToRig) replaces its animations; their data stay unused. Buffers in other
+// files are embedded; images in other files are not.
 //
 // `content` is the file, .gltf or .glb; `options` select the character and how to read it.
 // Errors: INVALID_ARGUMENT naming `source` for a file that FromGltf rejects or a rig that

@@ -1,5 +1,3 @@
-#include "model/formats/gltf/gltf_animation.h"
-
 #include <cmath>
 #include <string>
 #include <vector>
@@ -7,6 +5,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
+#include "model/formats/gltf/gltf_puppet.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/expect_near.h"
 #include "tests/support/matchers.h"

@@ -1,15 +1,19 @@
-#include "model/retargeting/rest_pose.h"
+#include "model/retargeting/character_rig.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/index.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/body_roles.h"
 #include "model/retargeting/rotation.h"
 
 namespace duet::retargeting {
 namespace {
+
+using base::Index;
 
 // Cosines to the direction up the trunk: at most so much for the way from a hip to its foot, and to
 // its knee. A person who sits has 0 for the thighs.
@@ -50,8 +54,12 @@ double Uprightness(const BodyPose& pose) {
   return sum;
 }
 
-}  // namespace
-
+// Whether a pose is that of a person whose legs hang below the trunk, in any direction of the
+// world: the shoulders are on the sides of their hips, and no arm points across the body. In some
+// files (LAFAN1, Kimodo) the offsets of all bones point along one axis; only their motion makes a
+// person.
+//
+// Shape: [joints of motion::SbuSkeleton].
 bool IsStanding(absl::Span<const motion::Vec3> body) {
   const BodyPose pose(body);
   const Vec3d up = pose.Up(), left = pose.Way("right_hip", "left_hip");
@@ -64,6 +72,8 @@ bool IsStanding(absl::Span<const motion::Vec3> body) {
   }
   return true;
 }
+
+}  // namespace
 
 absl::StatusOr<std::optional<int>> FindRestFrame(const CharacterRig& rig, const motion::Clip& read,
                                                  absl::string_view source) {
@@ -86,6 +96,46 @@ absl::StatusOr<std::optional<int>> FindRestFrame(const CharacterRig& rig, const 
       absl::StrCat(source,
                    ": rig: rest pose: expected a standing person, at rest or in a frame of its "
                    "motion, got neither; export the rig in its T pose"));
+}
+
+Quaternion ToWorldAxes(motion::UpAxis up_axis) {
+  const motion::Coordinates file{motion::LengthUnit::kMetres, up_axis};
+  const auto in_world = [&file](motion::Vec3 axis) { return ToDouble(ToWorld(file, axis)); };
+  return FromAxes(in_world({1, 0, 0}), in_world({0, 1, 0}), in_world({0, 0, 1}));
+}
+
+CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit) {
+  const Quaternion to_world = ToWorldAxes(fit.up_axis);
+  CharacterRig rig;
+  rig.names = tree.names;
+  rig.parents = tree.parents;
+  rig.joints = fit.joints;
+  for (std::size_t j = 0; j < tree.names.size(); ++j) {
+    const int parent = tree.parents[j];
+    const Vec3d offset = Rotate(to_world, tree.offsets[j]) * fit.metres_per_unit;
+    rig.positions.push_back(parent < 0 ? Vec3d{} : rig.positions[Index(parent)] + offset);
+    rig.moves.push_back(parent < 0);
+  }
+  return rig;
+}
+
+CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit,
+                     const std::vector<Vec3d>& positions) {
+  const Quaternion to_world = ToWorldAxes(fit.up_axis);
+  CharacterRig rig = RestRig(tree, fit);
+  for (std::size_t j = 0; j < positions.size(); ++j) {
+    const Vec3d from_root = positions[j] - positions[0];
+    rig.positions[j] = Rotate(to_world, from_root) * fit.metres_per_unit;
+  }
+  return rig;
+}
+
+void NoteRestFrame(int frame, const CharacterOptions& options) {
+  const std::string note =
+      absl::StrCat("rest pose: that of frame ", frame,
+                   ", because the bones of the rig at rest make no standing person");
+  if (options.notes != nullptr) options.notes->push_back(note);
+  if (options.report != nullptr) options.report->remarks.push_back(note);
 }
 
 }  // namespace duet::retargeting
