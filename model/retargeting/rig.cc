@@ -195,4 +195,15 @@ Rig MakeRig(const motion::Skeleton& skeleton, const motion::Clip& clip) {
   return RigBuilder(skeleton, clip).Build();
 }
 
+void SetBoneLengths(absl::Span<const motion::Vec3> pose, Rig* rig) {
+  for (RigJoint& joint : rig->joints) {
+    if (joint.parent < 0) continue;
+    const RigJoint& parent = rig->joints[static_cast<size_t>(joint.parent)];
+    if (parent.joint == joint.joint) continue;  // a helper, at its parent's position
+    const double length = Norm(ToDouble(pose[static_cast<size_t>(joint.joint)]) -
+                               ToDouble(pose[static_cast<size_t>(parent.joint)]));
+    joint.offset = Unit(joint.offset, parent.rest_direction) * length;
+  }
+}
+
 }  // namespace duet::retargeting

@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
+#include "model/motion/vec3.h"
 #include "model/retargeting/rotation.h"
 
 namespace duet::retargeting {
@@ -50,6 +52,10 @@ struct Rig {
 
 // Requires a clip with the skeleton's joints, at least one frame and finite positions.
 Rig MakeRig(const motion::Skeleton& skeleton, const motion::Clip& clip);
+
+// Gives the rig's bones the lengths that they have in one pose, in the same directions.
+// Shapes: pose [skeleton joints]. Units: metres.
+void SetBoneLengths(absl::Span<const motion::Vec3> pose, Rig* rig);
 
 }  // namespace duet::retargeting
 

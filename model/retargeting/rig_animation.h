@@ -3,41 +3,13 @@
 
 #include <vector>
 
-#include "absl/types/span.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
-#include "model/motion/vec3.h"
 #include "model/retargeting/foot_pose.h"
 #include "model/retargeting/pose_fitting.h"
 #include "model/retargeting/rig.h"
 
 namespace duet::retargeting {
-
-// Poses of a rig for files and engines, frame by frame: those of PoseFitter, with feet that stand
-// level and turn no faster than kMaxFootSpeed, and with quaternions on the same side as in the
-// frame before (q, not -q). A frame depends only on itself and earlier frames.
-class RigFitter {
- public:
-  // Degrees per second, of a foot without toes against its shin.
-  static constexpr double kMaxFootSpeed = 700;
-
-  // `rig` must outlive the fitter. `ankle_height_on_floor`: see AnkleHeightOnFloor.
-  RigFitter(const motion::Skeleton& skeleton, const Rig& rig, double frame_rate_hz,
-            double ankle_height_on_floor, BoneLengths lengths);
-  // positions: [skeleton joints], metres, y up. The result is valid until the next call.
-  const RigPose& Fit(absl::Span<const motion::Vec3> positions);
-
- private:
-  void TurnFeet(const std::vector<Quaternion>& previous);
-
-  const Rig& rig_;
-  const double ankle_height_;
-  const double max_foot_turn_;  // in a frame, radians
-  std::vector<bool> feet_;      // whether a rig joint is a foot without toes
-  PoseFitter fitter_;
-  bool first_ = true;
-  RigPose pose_;
-};
 
 // A person for formats with an animated hierarchy: a rig at rest, and rotations and translations of
 // its joints. Every joint of the skeleton is exactly at its position in the clip.

@@ -8,7 +8,7 @@
 #include "duet/v1/motion.pb.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
-#include "model/retargeting/endless_rig_fitting.h"
+#include "model/retargeting/rig_fitting.h"
 #include "model/retargeting/rig.h"
 #include "server/service/reply_mapping.h"
 #include "server/service/rig_format.h"

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "model/retargeting/rest_rig.h"
+#include "model/retargeting/character_rig.h"
 
 namespace duet::server::service {
 namespace {

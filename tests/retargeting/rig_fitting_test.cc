@@ -1,3 +1,5 @@
+#include "model/retargeting/rig_fitting.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -6,7 +8,6 @@
 
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
-#include "model/base/index.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/foot_pose.h"
 #include "model/retargeting/rig_animation.h"
@@ -62,22 +63,6 @@ double MostTwist(const Rig& rig, const std::vector<RigPose>& poses, const std::s
     most = std::max(most, Angle(carried, after) * kDegreesPerRadian);
   }
   return most;
-}
-
-// The positions of the rig's joints in a pose of its own bone lengths: forward kinematics. Ignores
-// translations. [rig joints]
-std::vector<Vec3d> JointPositions(const Rig& rig, const RigPose& pose) {
-  std::vector<Vec3d> at(rig.joints.size());
-  std::vector<Quaternion> world(rig.joints.size());
-  for (std::size_t j = 0; j < rig.joints.size(); ++j) {
-    const RigJoint& joint = rig.joints[j];
-    const bool root = joint.parent < 0;
-    at[j] = root ? pose.root_position
-                 : at[base::Index(joint.parent)] +
-                       Rotate(world[base::Index(joint.parent)], joint.offset);
-    world[j] = root ? pose.rotations[j] : world[base::Index(joint.parent)] * pose.rotations[j];
-  }
-  return at;
 }
 
 double WorstDistance(const Rig& rig, const motion::Clip& clip, const std::vector<RigPose>& poses) {
