@@ -81,7 +81,7 @@ void AddFlags(FlagSet* command, CompareArguments* arguments) {
       ->Group(kOutputGroup);
   command->Footer(kTakesFooter);
   command->Check([command, arguments] {
-    CheckTakes(*command, arguments->takes);
+    CheckTakes(arguments->takes);
     if (arguments->out == kStandardStream) {
       RejectFlag("--out", "expected a file, got standard output");
     }

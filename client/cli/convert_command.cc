@@ -22,8 +22,6 @@
 #include "client/cli/skeleton_file.h"
 #include "model/base/file.h"
 #include "model/formats/motion_file.h"
-#include "model/formats/research/body_joints.h"
-#include "model/formats/research/layout.h"
 #include "model/motion/resample.h"
 #include "model/motion/sbu.h"
 #include "nlohmann/json.hpp"
@@ -32,7 +30,6 @@ namespace duet::client::cli {
 namespace {
 
 using formats::Format;
-using formats::research::Layout;
 
 // Which people of a file with two people to convert.
 enum class People { kLeft, kRight, kBoth };
@@ -45,7 +42,6 @@ struct ConvertArguments {
   std::optional<double> resample_hz;
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // for standard output
-  std::optional<Layout> output_layout;        // of .npy
   BvhArguments bvh;
   RigArguments rig;
   bool json = false;
@@ -74,7 +70,7 @@ struct Conversion {
 
 struct Written {
   Paths files;
-  // Largest error of a position that is read back; nullopt for formats that Duet does not read.
+  // Largest error of a position that is read back; nullopt on a rig.
   std::optional<double> largest_error_metres = 0;
   std::vector<std::string> missing;  // data that the format cannot store
   std::vector<std::string> notes;
@@ -93,22 +89,6 @@ absl::Status ChoosePeople(const std::optional<People>& wanted, Clips* people) {
   return absl::OkStatus();
 }
 
-// The skeleton in which a motion is read. A layout is written from the body joints that the file
-// has, from joints with toes, or from those of the default skeleton.
-motion::Skeleton SkeletonFor(const std::optional<Layout>& layout, const MotionInput& input,
-                             formats::ReadOptions options) {
-  motion::Skeleton skeleton = options.skeleton;
-  if (!layout) return skeleton;
-  retargeting::ReadingReport report;
-  options.report = &report;
-  options.skeleton = formats::research::DetailedSkeleton();
-  const absl::Status detailed = input.Read(options).status();
-  if (formats::research::HasBodyJoints(report.file_joints)) {
-    return formats::research::BodySkeleton();
-  }
-  return detailed.ok() ? options.skeleton : skeleton;
-}
-
 absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std::istream* in) {
   absl::Status status = CheckInput(arguments.file, arguments.input.format);
   if (!status.ok()) return status;
@@ -118,14 +98,11 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   conversion.skeleton = *std::move(skeleton);
   conversion.writing.bvh_metres_per_unit = arguments.bvh.metres_per_unit;
   conversion.writing.bvh_keys_per_frame = arguments.bvh.keys_per_frame;
-  conversion.writing.layout = arguments.output_layout;
   absl::StatusOr<formats::ReadOptions> options =
       ToReadOptions(arguments.input, conversion.skeleton);
   if (!options.ok()) return options.status();
   const absl::StatusOr<MotionInput> input = MotionInput::Open(arguments.file, in);
   if (!input.ok()) return input.status();
-  conversion.skeleton = SkeletonFor(arguments.output_layout, *input, *options);
-  options->skeleton = conversion.skeleton;
   absl::StatusOr<formats::ReadPeople> read = ReadAllPeople(*input, *options);
   if (!read.ok()) return read.status();
   conversion.source = input->name();
@@ -151,17 +128,11 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
 }
 
 // The largest error of a motion that was written as `content`, in a format that Duet reads.
-absl::StatusOr<double> ErrorOf(const std::string& content, Format format, Clips people,
+absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const Clips& people,
                                const Conversion& conversion) {
   formats::ReadOptions options;
   options.format = format;
-  if (const std::optional<Layout>& layout = conversion.writing.layout) {
-    absl::StatusOr<Clips> bodies = formats::research::ToLayout(*layout, people, nullptr);
-    if (!bodies.ok()) return bodies.status();
-    people = formats::research::KeptBy(*layout, *bodies);
-    options.layout = layout;
-  }
-  options.skeleton = options.layout ? formats::research::BodySkeleton() : conversion.skeleton;
+  options.skeleton = conversion.skeleton;
   options.frame_rate_hz = people[0].frame_rate_hz;
   // SBU text always has the coordinates of the format.
   if (format != Format::kSbuText) options.coordinates = motion::Coordinates{};
@@ -180,16 +151,6 @@ absl::StatusOr<double> ErrorOf(const std::string& content, Format format, Clips 
     }
   }
   return largest;
-}
-
-std::vector<std::string> MissingIn(Layout layout) {
-  if (layout == Layout::kHumanMl3dFeatures) {
-    return {"the last frame", "the person's place and heading at the start"};
-  }
-  if (layout == Layout::kInterGenFeatures) {
-    return {"the last frame", "the first person's place and heading at the start"};
-  }
-  return {"joint names", "the frame rate"};
 }
 
 std::vector<std::string> MissingIn(Format format, double rate_hz) {
@@ -211,10 +172,6 @@ absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversio
         formats::FormatPeople(format, people, conversion.skeleton, conversion.writing);
     if (!content.ok()) return content.status();
     contents.push_back(*std::move(content));
-    if (!formats::IsReadable(format)) {
-      largest_error->reset();
-      continue;
-    }
     const absl::StatusOr<double> error = ErrorOf(contents.back(), format, people, conversion);
     if (!error.ok()) return error.status();
     *largest_error = std::max(largest_error->value_or(0), *error);
@@ -246,9 +203,7 @@ absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesyste
   const absl::StatusOr<std::vector<std::string>> contents =
       FormatFiles(conversion, format, &written.largest_error_metres);
   if (!contents.ok()) return contents.status();
-  const std::optional<Layout>& layout = conversion.writing.layout;
-  written.missing =
-      layout ? MissingIn(*layout) : MissingIn(format, conversion.people[0].frame_rate_hz);
+  written.missing = MissingIn(format, conversion.people[0].frame_rate_hz);
   if (output == kStandardStream) {
     if (contents->size() > 1) {
       return absl::InvalidArgumentError(
@@ -269,7 +224,6 @@ absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesyste
 }
 
 std::string DescribeExactness(const Written& written) {
-  if (!written.largest_error_metres) return "not read back: Duet only writes this format";
   std::string text =
       *written.largest_error_metres < kExactMetres
           ? "every position kept"
@@ -344,18 +298,12 @@ absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironm
 }
 
 void CheckTogether(const FlagSet& command, const ConvertArguments& arguments) {
-  CheckInputFlags(command, arguments.input, {arguments.file});
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
   CheckBvhFlags(command, arguments.outputs, arguments.output_format);
   if (arguments.output_format && !arguments.output_format->motion) {
     RejectFlag("--output-format", "html is not a motion format. Use duet view to make a page");
   }
   for (const std::filesystem::path& output : arguments.outputs) {
-    const bool is_npy = output == kStandardStream ? arguments.output_format->motion == Format::kNpy
-                                                  : formats::FormatOf(output) == Format::kNpy;
-    if (arguments.output_layout && !is_npy) {
-      RejectFlag("--output-layout", absl::StrCat("expected --out FILE.npy, got ", output.string()));
-    }
     const absl::Status status =
         CheckOutput(output, {arguments.file, arguments.rig.file}, PageAllowed::kNo);
     if (!status.ok()) RejectFlag("--out", std::string(status.message()));
@@ -377,7 +325,7 @@ void AddFlags(FlagSet* command, ConvertArguments* arguments) {
   AddSkeletonFlag(command, &arguments->skeleton);
   command
       ->Add("--out", &arguments->outputs,
-            "File to write: .glb, .gltf, .usda, .bvh (a file for each person), .csv, .npy, "
+            "File to write: .glb, .gltf, .bvh (a file for each person), .csv, .npy, "
             ".json or .txt (SBU text); repeatable; - for standard output")
       ->Required()
       ->OneValueEach()
@@ -391,7 +339,6 @@ void AddFlags(FlagSet* command, ConvertArguments* arguments) {
       ->Form("HZ")
       ->Group(kOutputGroup);
   AddOutputFormatFlag(command, &arguments->output_format);
-  AddOutputLayoutFlag(command, &arguments->output_layout);
   AddBvhFlags(command, &arguments->bvh);
   AddRigFlags(command, &arguments->rig);
   command->AddSwitch("--json", &arguments->json, "Print the summary as JSON")->Group(kOutputGroup);

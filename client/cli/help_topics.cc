@@ -20,15 +20,10 @@ const std::map<std::string, std::string>& Topics() {
 
   extension    read                  written              holds
   .gltf .glb   yes                   yes                  animated skeletons
-  .usda        no                    yes                  animated skeletons
-  .fbx         with duet-fbx         no                   animated skeletons
   .bvh         yes                   one per person       joint angles, one length per bone
-  .amc         with its .asf beside  no                   joint angles
   .csv         yes                   yes                  positions of one or two people
   .json        yes                   yes                  positions of one or two people
-  .npy         with --frame-rate     yes                  positions of one or two people, or an
-                                                          array of research (--layout)
-  .npz         with --body-model     no                   poses of a body model (AMASS, SMPL)
+  .npy         with --frame-rate     yes                  positions of one or two people
   .txt         yes                   of two people        SBU text: positions of two people
 
 The extension decides the format. --input-format sets it for standard input (-) and overrides the

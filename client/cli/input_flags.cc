@@ -13,23 +13,16 @@ namespace duet::client::cli {
 namespace {
 
 using formats::Format;
-using formats::research::Layout;
 
 const std::map<std::string, Format> kInputFormats = {
-    {"amc", Format::kAmc}, {"bvh", Format::kBvh},    {"csv", Format::kCsv},   {"fbx", Format::kFbx},
-    {"glb", Format::kGlb}, {"gltf", Format::kGltf},  {"json", Format::kJson}, {"npy", Format::kNpy},
-    {"npz", Format::kNpz}, {"sbu", Format::kSbuText}};
+    {"bvh", Format::kBvh},    {"csv", Format::kCsv},   {"glb", Format::kGlb},
+    {"gltf", Format::kGltf},  {"json", Format::kJson}, {"npy", Format::kNpy},
+    {"sbu", Format::kSbuText}};
 
 const std::map<std::string, OutputFormat> kOutputFormats = {
-    {"bvh", {Format::kBvh}},   {"csv", {Format::kCsv}},     {"glb", {Format::kGlb}},
-    {"gltf", {Format::kGltf}}, {"html", {std::nullopt}},    {"json", {Format::kJson}},
-    {"npy", {Format::kNpy}},   {"sbu", {Format::kSbuText}}, {"usda", {Format::kUsda}}};
-
-const std::map<std::string, Layout> kLayouts = {{"humanml3d", Layout::kHumanMl3d},
-                                                {"humanml3d-263", Layout::kHumanMl3dFeatures},
-                                                {"inter-x", Layout::kInterX},
-                                                {"intergen", Layout::kInterGen},
-                                                {"intergen-262", Layout::kInterGenFeatures}};
+    {"bvh", {Format::kBvh}},   {"csv", {Format::kCsv}},    {"glb", {Format::kGlb}},
+    {"gltf", {Format::kGltf}}, {"html", {std::nullopt}},   {"json", {Format::kJson}},
+    {"npy", {Format::kNpy}},   {"sbu", {Format::kSbuText}}};
 
 template <typename Value>
 std::vector<std::string> NamesOf(const std::map<std::string, Value>& choices) {
@@ -40,17 +33,6 @@ std::vector<std::string> NamesOf(const std::map<std::string, Value>& choices) {
 
 const std::map<std::string, double> kBvhUnits = {{"centimetres", formats::kCentimetre},
                                                  {"metres", 1}};
-
-// Rejects a flag that only `format` needs, with the article and extension `what`.
-void CheckOnlyFor(Format format, const char* what, const Flag& flag, const InputArguments& input,
-                  const std::vector<std::filesystem::path>& files) {
-  if (!flag.is_typed()) return;
-  const auto has_format = [&input, format](const std::filesystem::path& file) {
-    return (input.format ? input.format : formats::FormatOf(file)) == format;
-  };
-  if (std::any_of(files.begin(), files.end(), has_format)) return;
-  RejectFlag(flag.name(), absl::StrCat("expected ", what, " motion, got ", files.front().string()));
-}
 
 }  // namespace
 
@@ -84,17 +66,8 @@ void AddInputFlags(FlagSet* app, InputArguments* input) {
       ->Form("METRES")
       ->Group(kInputGroup);
   app->Add("--animation", &input->animation,
-           "glTF, FBX: the animation (of FBX, a take) of a file with several (default: the first "
-           "that moves the person)")
+           "glTF: the animation of a file with several (default: the first that moves the person)")
       ->Form("NAME")
-      ->Group(kInputGroup);
-  AddChoice<Layout>(
-      app, "--layout", kLayouts, [input](Layout layout) { input->layout = layout; },
-      "Meaning of a .npy array of research: positions of 22 joints, or features")
-      ->Group(kInputGroup);
-  app->Add("--body-model", &input->body_model,
-           "Body model of .npz motions (AMASS, SMPL): an .npz with its joint regressor")
-      ->Form("FILE")
       ->Group(kInputGroup);
   AddParsed<std::pair<std::string, std::string>>(
       app, "--joint-map", "MODEL_JOINT=FILE_JOINT", ParseJointPair,
@@ -109,26 +82,12 @@ void AddInputFlags(FlagSet* app, InputArguments* input) {
       ->Group(kInputGroup);
 }
 
-void CheckInputFlags(const FlagSet& command, const InputArguments& input,
-                     const std::vector<std::filesystem::path>& files) {
-  CheckOnlyFor(Format::kNpy, "a .npy", *command.Find("--layout"), input, files);
-  CheckOnlyFor(Format::kNpz, "a .npz", *command.Find("--body-model"), input, files);
-}
-
 std::vector<std::string> InputFormatNames() { return NamesOf(kInputFormats); }
-std::vector<std::string> LayoutNames() { return NamesOf(kLayouts); }
 
 void AddOutputFormatFlag(FlagSet* app, std::optional<OutputFormat>* format) {
   AddChoice<OutputFormat>(
       app, "--output-format", kOutputFormats, [format](OutputFormat chosen) { *format = chosen; },
       "Format of standard output (--out -)")
-      ->Group(kOutputGroup);
-}
-
-void AddOutputLayoutFlag(FlagSet* app, std::optional<Layout>* layout) {
-  AddChoice<Layout>(
-      app, "--output-layout", kLayouts, [layout](Layout chosen) { *layout = chosen; },
-      "Layout of --out FILE.npy: 22 joints of a body model at the rate of the data set")
       ->Group(kOutputGroup);
 }
 

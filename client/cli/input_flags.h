@@ -15,19 +15,11 @@ namespace duet::client::cli {
 // How motion files are to be read: --frame-rate, --unit, --joint-map and so on.
 void AddInputFlags(FlagSet* app, InputArguments* input);
 
-// Rejects --layout and --body-model if none of `files` has the format that they describe.
-void CheckInputFlags(const FlagSet& command, const InputArguments& input,
-                     const std::vector<std::filesystem::path>& files);
-
-// The values of --input-format and of --layout.
+// The values of --input-format.
 std::vector<std::string> InputFormatNames();
-std::vector<std::string> LayoutNames();
 
 // --output-format, of what goes to standard output.
 void AddOutputFormatFlag(FlagSet* app, std::optional<OutputFormat>* format);
-
-// --output-layout, of .npy.
-void AddOutputLayoutFlag(FlagSet* app, std::optional<formats::research::Layout>* layout);
 
 // --bvh-unit and --bvh-keys-per-frame, of what is written.
 void AddBvhFlags(FlagSet* app, BvhArguments* bvh);

@@ -121,8 +121,6 @@ void AddFlags(FlagSet* command, InspectArguments* arguments) {
       ->Required()
       ->Form("FILE");
   AddInputFlags(command, &arguments->input);
-  command->Check(
-      [command, arguments] { CheckInputFlags(*command, arguments->input, arguments->files); });
   command->AddSwitch("--json", &arguments->json, "Print JSON")->Group(kOutputGroup);
 }
 

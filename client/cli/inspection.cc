@@ -82,8 +82,7 @@ std::string DescribeUnused(const retargeting::ReadingReport& report) {
 }
 
 std::string DescribeReading(const retargeting::ReadingReport& report, const Style& style) {
-  std::string text = absl::StrCat(DescribeSetting("layout", report.layout, style),
-                                  DescribeSetting("frame rate", report.frame_rate, style),
+  std::string text = absl::StrCat(DescribeSetting("frame rate", report.frame_rate, style),
                                   DescribeSetting("unit", report.unit, style),
                                   DescribeSetting("up axis", report.up_axis, style));
   for (const std::string& remark : report.remarks) {
@@ -160,8 +159,7 @@ json PersonJson(const InspectedPerson& person) {
                       {"text", check.text},
                       {"figures", check.figures}});
   }
-  return {{"layout", SettingJson(person.report.layout)},
-          {"frame_rate", SettingJson(person.report.frame_rate)},
+  return {{"frame_rate", SettingJson(person.report.frame_rate)},
           {"unit", SettingJson(person.report.unit)},
           {"up_axis", SettingJson(person.report.up_axis)},
           {"remarks", person.report.remarks},

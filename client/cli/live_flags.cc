@@ -57,7 +57,7 @@ void AddReactionFlags(FlagSet* app, LiveArguments* arguments) {
 
 void AddSinkFlags(FlagSet* app, LiveArguments* arguments) {
   app->Add("--to", &arguments->to,
-           "Where the follower goes: a motion file (.bvh, .glb, .gltf, .usda, .csv, .npy or "
+           "Where the follower goes: a motion file (.bvh, .glb, .gltf, .csv, .npy or "
            ".json), a page with both people (.html), or - for lines of JSON on standard output; "
            "repeatable. A file other than a page holds the follower alone, as the first person")
       ->Required()
@@ -79,7 +79,6 @@ void CheckTogether(const FlagSet& command, const LiveArguments& arguments) {
     RejectFlag("--keyframe",
                absl::StrCat("expected a frame, got the position ", *keyframe.beats, "b in beats"));
   }
-  if (!arguments.leader.empty()) CheckInputFlags(command, arguments.input, {arguments.leader});
   CheckBvhFlags(command, {arguments.to.begin(), arguments.to.end()}, std::nullopt);
   const auto outs = std::count(arguments.to.begin(), arguments.to.end(), kStandardStream);
   if (outs > 1) RejectFlag("--to", "expected - once, got it twice");

@@ -25,8 +25,6 @@ struct InputArguments {
   std::optional<std::string> animation;
   retargeting::JointOverrides joints;
   std::filesystem::path joint_table;  // a file of joints, which `joints` override
-  std::optional<formats::research::Layout> layout;
-  std::filesystem::path body_model;
 };
 
 // The rig that a person is written onto, and how to read its file.

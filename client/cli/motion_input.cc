@@ -109,8 +109,6 @@ absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
   if (!joints.ok()) return joints.status();
   options.joint_overrides = *std::move(joints);
   options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
-  options.layout = input.layout;
-  options.body_model = input.body_model;
   return options;
 }
 

@@ -62,8 +62,6 @@ formats::WriteOptions WritingOf(const Synthesis& synthesis, const motion::Proven
   writing.bvh_metres_per_unit = synthesis.bvh.metres_per_unit;
   writing.bvh_keys_per_frame = synthesis.bvh.keys_per_frame;
   writing.follower_rotations = rotations ? &*rotations : nullptr;
-  writing.rotation_form = synthesis.rotation_form;
-  writing.layout = synthesis.layout;
   writing.notes = notes;
   return writing;
 }
@@ -123,12 +121,15 @@ absl::StatusOr<WrittenFiles> WriteWithRig(const std::filesystem::path& output,
   if (!follower.ok()) return follower.status();
   // The follower on Duet's skeleton is replaced, so it is not reported.
   formats::WriteOptions writing = WritingOf(synthesis, provenance, nullptr);
-  const absl::StatusOr<double> unit = formats::BvhUnitOnRig(*synthesis.follower_rig, writing);
-  if (!unit.ok()) return unit.status();
-  if (format == formats::Format::kBvh && *unit != writing.bvh_metres_per_unit) {
-    written.notes.push_back(absl::StrCat("both BVH files have the unit of the rig, ", *unit, " m"));
+  if (format == formats::Format::kBvh) {
+    const absl::StatusOr<double> unit = formats::BvhUnitOnRig(*synthesis.follower_rig);
+    if (!unit.ok()) return unit.status();
+    if (*unit != writing.bvh_metres_per_unit) {
+      written.notes.push_back(
+          absl::StrCat("both BVH files have the unit of the rig, ", *unit, " m"));
+    }
+    writing.bvh_metres_per_unit = *unit;
   }
-  writing.bvh_metres_per_unit = *unit;
   absl::StatusOr<std::vector<std::filesystem::path>> files =
       formats::WritePair(output, pair, synthesis.skeleton, writing);
   if (!files.ok()) return files.status();
@@ -170,7 +171,7 @@ absl::Status CheckOutput(const std::filesystem::path& output,
                          const std::vector<std::filesystem::path>& inputs, PageAllowed page) {
   if (output == kStandardStream) return absl::OkStatus();
   const bool page_allowed = page == PageAllowed::kYes;
-  if (!formats::IsWritable(output) && !(page_allowed && IsPage(output))) {
+  if (!formats::FormatOf(output) && !(page_allowed && IsPage(output))) {
     return formats::UnknownExtension(
         output, absl::StrCat(page_allowed ? ".html, " : "", formats::kWritableExtensions));
   }

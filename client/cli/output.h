@@ -27,8 +27,6 @@ struct Synthesis {
   std::filesystem::path leader_file;
   bool sampled = false;  // the model samples: the follower is one of several
   BvhArguments bvh;
-  formats::flat::RotationForm rotation_form = formats::flat::RotationForm::kQuaternions;
-  std::optional<formats::research::Layout> layout;  // of .npy
   std::optional<formats::FollowerRig> follower_rig;
   std::optional<motion::Beat> beat;
 };

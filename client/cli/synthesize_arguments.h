@@ -38,9 +38,7 @@ struct SynthesizeArguments : SynthesisOptions {
   int samples = 1;  // answers, with the seeds `seed`, `seed` + 1, ...
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;               // for standard output
-  std::optional<formats::research::Layout> output_layout;  // of .npy
   BvhArguments bvh;
-  formats::flat::RotationForm rotation_form = formats::flat::RotationForm::kQuaternions;
   std::string follower_rig;  // empty, kLeadersRig or a file
   RigArguments rig;          // how to read that file; its `file` is not set
   bool json = false;

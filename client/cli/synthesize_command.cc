@@ -99,8 +99,6 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
     synthesis.leader_file = arguments.leader;
     synthesis.sampled = job.sampled;
     synthesis.bvh = arguments.bvh;
-    synthesis.rotation_form = arguments.rotation_form;
-    synthesis.layout = arguments.output_layout;
     synthesis.follower_rig = job.follower_rig;
     synthesis.beat = arguments.beat;
     const absl::StatusOr<WrittenFiles> written =

@@ -27,11 +27,6 @@ namespace {
 const std::map<std::string, Priority> kPriorities = {{"interactive", Priority::kInteractive},
                                                      {"bulk", Priority::kBulk}};
 
-using formats::flat::RotationForm;
-
-const std::map<std::string, RotationForm> kRotationForms = {
-    {"6d", RotationForm::kSixNumbers}, {"quaternion", RotationForm::kQuaternions}};
-
 void AddLeaderFlags(FlagSet* app, SynthesizeArguments* arguments) {
   app->Add("--leader", &arguments->leader,
            absl::StrCat("Motion of the leader: ", formats::kReadableExtensions,
@@ -78,12 +73,6 @@ void AddReactionFlags(FlagSet* app, SynthesizeArguments* arguments) {
   app->AddSwitch("--rotations", &arguments->rotations,
                  "Write the follower's joint rotations beside its positions to .json, for engines")
       ->Group(kReactionGroup);
-  AddChoice<RotationForm>(
-      app, "--rotation-form", kRotationForms,
-      [arguments](RotationForm form) { arguments->rotation_form = form; },
-      "Quaternions, or the first two columns of each rotation's matrix (6D)")
-      ->ShowDefault("quaternion")
-      ->Group(kReactionGroup);
   AddChoice<Priority>(
       app, "--priority", kPriorities,
       [arguments](Priority priority) { arguments->priority = priority; },
@@ -108,7 +97,7 @@ std::string OutputsText(const std::vector<std::filesystem::path>& outputs) {
 std::vector<Flag*> AddOutputFlags(FlagSet* app, SynthesizeArguments* arguments) {
   app->Add(
          "--out", &arguments->outputs,
-         "File to write: .html (a page to watch), .glb, .gltf or .usda (both people, for Blender "
+         "File to write: .html (a page to watch), .glb or .gltf (both people, for Blender "
          "and engines), .bvh (two files), .csv, .npy, .json or .txt (SBU text); repeatable; - for "
          "standard output")
       ->Required()
@@ -116,12 +105,11 @@ std::vector<Flag*> AddOutputFlags(FlagSet* app, SynthesizeArguments* arguments) 
       ->Form("FILE")
       ->Group(kOutputGroup);
   AddOutputFormatFlag(app, &arguments->output_format);
-  AddOutputLayoutFlag(app, &arguments->output_layout);
   AddBvhFlags(app, &arguments->bvh);
   app->Add(
          "--follower-rig", &arguments->follower_rig,
          "Rig of the follower in --out FILE.bvh, FILE.glb and FILE.gltf: the leader's rig, or the "
-         "rig of another .bvh, .amc, .glb or .gltf (default: Duet's rig)")
+         "rig of another .bvh, .glb or .gltf (default: Duet's rig)")
       ->Form("leader|FILE")
       ->Group(kOutputGroup);
   std::vector<Flag*> rig_flags =
@@ -154,32 +142,16 @@ void CheckFollowerRig(const SynthesizeArguments& arguments, const std::vector<Fl
                                          return written && formats::FitsRig(*written, *rig);
                                        });
   if (fits) return;
-  RejectFlag("--follower-rig",
-             absl::StrCat("expected ", formats::kRigExtensions, " and --out FILE with ",
-                          formats::kRigOutputExtensions, ", got ", file.string(), " and --out ",
-                          OutputsText(arguments.outputs)));
+  RejectFlag("--follower-rig", absl::StrCat("expected ", formats::kRigExtensions,
+                                            " and --out FILE in its format, got ", file.string(),
+                                            " and --out ", OutputsText(arguments.outputs)));
 }
 
 bool Writes(formats::Format format, const SynthesizeArguments& arguments) {
   return WritesFormat(format, arguments.outputs, arguments.output_format);
 }
 
-void CheckLayout(const SynthesizeArguments& arguments) {
-  if (!arguments.output_layout || Writes(formats::Format::kNpy, arguments)) return;
-  RejectFlag("--output-layout",
-             absl::StrCat("expected --out FILE.npy, got --out ", OutputsText(arguments.outputs)));
-}
-
-void CheckInputs(const FlagSet& command, const SynthesizeArguments& arguments) {
-  std::vector<std::filesystem::path> files = {arguments.leader};
-  if (!arguments.follower_start.empty()) files.emplace_back(arguments.follower_start);
-  CheckInputFlags(command, arguments.input, files);
-}
-
 void CheckRotations(const SynthesizeArguments& arguments) {
-  if (arguments.rotation_form != RotationForm::kQuaternions && !arguments.rotations) {
-    RejectFlag("--rotation-form", "is only valid with --rotations");
-  }
   if (!arguments.rotations || Writes(formats::Format::kJson, arguments)) return;
   RejectFlag("--rotations", absl::StrCat("expected --out FILE.json, which holds them, got --out ",
                                          OutputsText(arguments.outputs)));
@@ -217,10 +189,8 @@ void CheckTogether(const FlagSet& command, const SynthesizeArguments& arguments,
   }
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
   CheckFollowerRig(arguments, rig_flags);
-  CheckInputs(command, arguments);
   CheckBvhFlags(command, arguments.outputs, arguments.output_format);
   CheckRotations(arguments);
-  CheckLayout(arguments);
   CheckKeyframes(arguments);
   if (arguments.samples > 1 && WritesToStandardOutput(arguments.outputs)) {
     RejectFlag("--samples", "cannot be used with --out -: each answer needs a file");

@@ -29,7 +29,7 @@ void AddTakeFlags(FlagSet* app, TakeArguments* takes) {
   AddInputFlags(app, &takes->input);
 }
 
-void CheckTakes(const FlagSet& command, const TakeArguments& takes) {
+void CheckTakes(const TakeArguments& takes) {
   const std::size_t sides = takes.leader_sides.size();
   if (sides != 1 && sides != takes.takes.size()) {
     RejectFlag("--leader-side", absl::StrCat("expected once or ", takes.takes.size(),
@@ -38,11 +38,6 @@ void CheckTakes(const FlagSet& command, const TakeArguments& takes) {
   int pipes = 0;
   for (const std::string& take : takes.takes) pipes += take == kStandardStream ? 1 : 0;
   if (pipes > 1) RejectFlag("FILE", "expected - once, got it twice");
-  std::vector<std::filesystem::path> files;
-  for (const std::string& take : takes.takes) {
-    for (std::filesystem::path& file : ParseTake(take).files) files.push_back(std::move(file));
-  }
-  CheckInputFlags(command, takes.input, files);
 }
 
 void CheckPage(const char* flag, const std::filesystem::path& page) {

@@ -20,7 +20,7 @@ Each FILE is a motion of one or two people: FILE, NAME=FILE, or LEADER.bvh,FOLLO
 void AddTakeFlags(FlagSet* app, TakeArguments* takes);
 
 // Call RejectFlag if the flags contradict each other, or if the page cannot be written.
-void CheckTakes(const FlagSet& command, const TakeArguments& takes);
+void CheckTakes(const TakeArguments& takes);
 void CheckPage(const char* flag, const std::filesystem::path& page);
 
 }  // namespace duet::client::cli

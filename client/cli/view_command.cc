@@ -107,7 +107,7 @@ void AddFlags(FlagSet* command, ViewArguments* arguments) {
   command->AddSwitch("--quiet", &arguments->quiet, "Print only errors")->Group(kOutputGroup);
   command->Footer(kTakesFooter);
   command->Check([command, arguments] {
-    CheckTakes(*command, arguments->takes);
+    CheckTakes(arguments->takes);
     CheckPage("--out", arguments->out);
   });
 }

@@ -35,7 +35,7 @@ class DocumentsTest(guides.GuideTest):
         self.assertGreaterEqual(self.run_blocks("docs/guides/cookbook.md"), 17)
 
     def test_rotations(self):
-        self.assertEqual(self.run_blocks("docs/rotations.md"), 4)
+        self.assertEqual(self.run_blocks("docs/rotations.md"), 2)
 
     def test_the_layouts_of_research(self):
         self.assertEqual(self.run_blocks("docs/guides/research_layouts.md"), 5)

@@ -120,9 +120,9 @@ class RigTest(tools.ServedTest):
             self.read("converted.bvh", "--skeleton", self.folder / "pair.json")[1], on_rig, atol=1e-4)
 
     def test_follower_of_salsa_stands_on_a_rig_without_toes_and_hands(self):
-        names, follower = self.dance("robot.glb", "--follower-rig", self.leader)
-        self.assertTrue((self.folder / "robot.glb").exists())
-        joints, on_rig = self.read("robot.follower.glb")
+        names, follower = self.dance("robot.bvh", "--follower-rig", self.leader)
+        self.assertTrue((self.folder / "robot.leader.bvh").exists())
+        joints, on_rig = self.read("robot.follower.bvh")
         self.assertEqual(len(joints), 15)
         for side in ("left", "right"):
             at, wanted = joints.index(f"{side}_foot"), names.index(f"{side}_ankle")

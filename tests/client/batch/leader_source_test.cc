@@ -141,7 +141,7 @@ class ListLeadersTest : public ::testing::Test {
  protected:
   ListLeadersTest() {
     for (const char* name :
-         {"walks/b.bvh", "walks/a.csv", "walks/a.bvh", "walks/d.usda", "walks/notes.md", "c.npy"}) {
+         {"walks/b.bvh", "walks/a.csv", "walks/a.bvh", "walks/notes.md", "c.npy"}) {
       std::filesystem::create_directories((folder_ / name).parent_path());
       test::WriteTestFile(folder_ / name, "");
     }
@@ -161,7 +161,7 @@ class ListLeadersTest : public ::testing::Test {
 TEST_F(ListLeadersTest, FoldersAreMirroredByName) {
   const auto keys = List({"."});
   ASSERT_THAT(keys, IsOk());
-  // Two formats of one name: the second has its ending as well. d.usda is written, never read.
+  // Two formats of one name: the second has its ending as well.
   EXPECT_THAT(*keys, ElementsAre("c", "walks/a", "walks/a_csv", "walks/b"));
 }
 
@@ -195,7 +195,7 @@ TEST_F(ListLeadersTest, FormatFlagAllowsAnyExtension) {
   std::vector<std::string> keys;
   auto source = ListLeaders({folder_.path().string()}, formats::Format::kBvh);
   ASSERT_THAT(source, IsOk());
-  // notes.md might be one; a.csv, c.npy and d.usda say that they are none.
+  // notes.md might be one; a.csv and c.npy say that they are none.
   EXPECT_THAT(Keys(*ReadAll(**source)),
               ElementsAre("walks/a", "walks/b", "walks/notes", "walks/take1", "walks/take2"));
   EXPECT_THAT(List({"walks/take2.mocap"}), StatusIs(absl::StatusCode::kInvalidArgument, _));
