@@ -1,14 +1,11 @@
 #include "model/importing/capture_skeleton.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/file.h"
@@ -18,6 +15,7 @@
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/flat/csv.h"
 #include "model/formats/flat/json_motion.h"
+#include "model/formats/motion_file.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/recorded_motion.h"
 #include "model/motion/skeleton_json.h"
@@ -33,8 +31,6 @@ using retargeting::ParsedJointName;
 
 constexpr std::size_t kMaxSkeletonBytes = std::size_t{1} << 20;
 constexpr int kMaxSkeletonDepth = 5;
-constexpr int kMostFrames = 200;      // frames that bones are inferred from
-constexpr double kChangeWeight = 10;  // weight of a bone's deviation relative to its length
 
 motion::Skeleton ParentsToSkeleton(std::vector<std::string> names,
                                    const std::vector<int>& parents) {
@@ -99,59 +95,41 @@ absl::StatusOr<motion::Skeleton> BvhSkeleton(const std::string& text, const std:
   return Keep(ParentsToSkeleton(std::move(names), parents), kept);
 }
 
-// Finds the root among the joints that are on neither side.
-absl::StatusOr<int> FindRoot(const std::vector<std::string>& names, const std::string& source) {
-  for (const char* word : {"hips", "pelvis", "hip", "root", "torso", "spine", "waist", "chest"}) {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (retargeting::ParseJointName(names[i]) == ParsedJointName{BodySide::kMiddle, word}) {
-        return static_cast<int>(i);
-      }
-    }
-  }
-  return absl::InvalidArgumentError(
-      absl::StrCat(source, ": joints: expected hips, pelvis, torso or spine, got ",
-                   absl::StrJoin(names, ", "), "; specify the root with --root NAME"));
-}
-
-absl::StatusOr<motion::Skeleton> NamedSkeleton(const motion::RecordedMotion& motion,
-                                               const std::string& source, const std::string& root) {
-  const motion::Clip& person = motion.people.front();
-  const std::vector<std::string>& names = person.joint_names;
+// A file of positions has a hierarchy only by the names of SBU's joints.
+absl::Status CheckSbuNames(const motion::RecordedMotion& motion, const std::string& source) {
+  const std::vector<std::string>& names = motion.people.front().joint_names;
   const motion::Skeleton sbu = motion::SbuSkeleton();
   if (std::set<std::string>(names.begin(), names.end()) ==
       std::set<std::string>(sbu.joint_names.begin(), sbu.joint_names.end())) {
-    return sbu;
+    return absl::OkStatus();
   }
-  motion::Skeleton skeleton;
-  skeleton.joint_names = names;
-  skeleton.root = skeleton.Find(root);
-  if (skeleton.root < 0) {
-    const absl::StatusOr<int> found = FindRoot(names, source);
-    if (!found.ok()) return found.status();
-    skeleton.root = *found;
-  }
-  skeleton.bones = FindBones(names, person.poses, skeleton.root);
-  return skeleton;
+  return absl::InvalidArgumentError(
+      absl::StrCat(source,
+                   ": skeleton: expected the 15 joints of SBU, because positions have no "
+                   "hierarchy, got ",
+                   absl::StrJoin(names, ", "), "; specify --skeleton FILE"));
 }
 
-absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file, const std::string& root) {
-  const std::string extension = absl::AsciiStrToLower(file.extension().string());
-  if (extension == ".txt" || extension == ".npy" || extension == ".npz")
+absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file) {
+  const std::optional<formats::Format> format = formats::FormatOf(file);
+  if (format == formats::Format::kSbuText || format == formats::Format::kNpy) {
     return motion::SbuSkeleton();
+  }
   const absl::StatusOr<std::string> text =
       base::ReadFile(file, motion::kMaxMotionFileBytes, "a motion");
   if (!text.ok()) return text.status();
-  if (extension == ".bvh") return BvhSkeleton(*text, file.string());
-  if (extension != ".csv" && extension != ".json") {
+  if (format == formats::Format::kBvh) return BvhSkeleton(*text, file.string());
+  if (format != formats::Format::kCsv && format != formats::Format::kJson) {
     return absl::InvalidArgumentError(absl::StrCat(
         file.string(),
         ": skeleton: expected a format that has one, got another; specify --skeleton"));
   }
   const absl::StatusOr<motion::RecordedMotion> motion =
-      extension == ".csv" ? formats::flat::ParseCsv(*text, file.string())
-                          : formats::flat::ParseJsonMotion(*text, file.string());
+      format == formats::Format::kCsv ? formats::flat::ParseCsv(*text, file.string())
+                                      : formats::flat::ParseJsonMotion(*text, file.string());
   if (!motion.ok()) return motion.status();
-  return NamedSkeleton(*motion, file.string(), root);
+  if (absl::Status status = CheckSbuNames(*motion, file.string()); !status.ok()) return status;
+  return motion::SbuSkeleton();
 }
 
 // Makes another joint the root of the tree.
@@ -284,109 +262,11 @@ absl::StatusOr<CaptureSkeleton> ReadSpecified(const std::string& specified) {
   return found;
 }
 
-// The properties of a joint that follow from its name.
-struct KnownJoint {
-  BodySide side = BodySide::kMiddle;
-  bool in_limb = false;
-  int parent = -1;  // within the limb
-};
-
-int FindLimbJoint(const std::vector<ParsedJointName>& parsed, BodySide side, const char* word,
-                  const std::vector<KnownJoint>& known) {
-  for (const std::string& alias : retargeting::JointAliases(word)) {
-    for (std::size_t i = 0; i < parsed.size(); ++i) {
-      if (!known[i].in_limb && parsed[i] == ParsedJointName{side, alias}) {
-        return static_cast<int>(i);
-      }
-    }
-  }
-  return -1;
-}
-
-std::vector<KnownJoint> KnowByName(const std::vector<std::string>& joint_names) {
-  std::vector<ParsedJointName> parsed;
-  std::vector<KnownJoint> known;
-  for (const std::string& name : joint_names) {
-    parsed.push_back(retargeting::ParseJointName(name));
-    known.push_back({parsed.back().side, false, -1});
-  }
-  constexpr const char* kLimbs[][3] = {{"shoulder", "elbow", "hand"}, {"hip", "knee", "foot"}};
-  for (const BodySide side : {BodySide::kLeft, BodySide::kRight}) {
-    for (const auto& limb : kLimbs) {
-      int parent = -1;
-      for (const char* word : limb) {
-        const int joint = FindLimbJoint(parsed, side, word, known);
-        if (joint < 0) continue;
-        known[static_cast<std::size_t>(joint)].in_limb = true;
-        known[static_cast<std::size_t>(joint)].parent = parent;
-        parent = joint;
-      }
-    }
-  }
-  return known;
-}
-
-bool AreAcross(const KnownJoint& a, const KnownJoint& b) {
-  return a.side != b.side && a.side != BodySide::kMiddle && b.side != BodySide::kMiddle;
-}
-
-// The mean length plus the weighted deviation, over some of the frames.
-double BoneCost(const motion::Poses& poses, std::size_t a, std::size_t b) {
-  const int step = std::max(1, poses.frame_count() / kMostFrames);
-  double sum = 0, squares = 0, count = 0;
-  for (int t = 0; t < poses.frame_count(); t += step) {
-    const double length = Distance(poses[t][a], poses[t][b]);
-    sum += length;
-    squares += length * length;
-    ++count;
-  }
-  const double mean = sum / count;
-  return mean + kChangeWeight * std::sqrt(std::max(0.0, squares / count - mean * mean));
-}
-
 }  // namespace
-
-std::vector<motion::Bone> FindBones(const std::vector<std::string>& joint_names,
-                                    const motion::Poses& poses, int root) {
-  const std::size_t joints = joint_names.size();
-  const std::vector<KnownJoint> known = KnowByName(joint_names);
-  const auto cost = [&](std::size_t joined, std::size_t next) {
-    const int parent = known[next].parent;
-    if (parent == static_cast<int>(joined) || known[joined].parent == static_cast<int>(next)) {
-      return 0.0;
-    }
-    // A limb joint with a known parent has no other: a hanging hand is near the hips.
-    if (parent >= 0 || AreAcross(known[joined], known[next])) {
-      return std::numeric_limits<double>::max();
-    }
-    return BoneCost(poses, joined, next);
-  };
-  // Prim's algorithm: repeatedly adds the cheapest bone from a joined joint to another.
-  std::vector<motion::Bone> bones;
-  std::vector<double> best(joints, std::numeric_limits<double>::infinity());
-  std::vector<int> parent(joints, root);
-  std::vector<bool> joined(joints);
-  best[static_cast<std::size_t>(root)] = 0;
-  for (std::size_t round = 0; round < joints; ++round) {
-    std::size_t next = joints;
-    for (std::size_t j = 0; j < joints; ++j) {
-      if (!joined[j] && (next == joints || best[j] < best[next])) next = j;
-    }
-    joined[next] = true;
-    if (round > 0) bones.push_back({parent[next], static_cast<int>(next)});
-    for (std::size_t j = 0; j < joints; ++j) {
-      const double through = joined[j] ? 0 : cost(next, j);
-      if (joined[j] || through >= best[j]) continue;
-      best[j] = through;
-      parent[j] = static_cast<int>(next);
-    }
-  }
-  return bones;
-}
 
 absl::StatusOr<CaptureSkeleton> FindSkeleton(const fs::path& file, const SkeletonOptions& options) {
   if (!options.skeleton.empty()) return ReadSpecified(options.skeleton);
-  absl::StatusOr<motion::Skeleton> skeleton = ReadCaptured(file, options.root);
+  absl::StatusOr<motion::Skeleton> skeleton = ReadCaptured(file);
   if (!skeleton.ok()) return skeleton.status();
   if (!options.root.empty()) {
     if (absl::Status status = MoveRoot(options.root, &*skeleton); !status.ok()) return status;

@@ -7,7 +7,6 @@
 
 #include "absl/status/statusor.h"
 #include "model/motion/body_part.h"
-#include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::importing {
@@ -30,19 +29,12 @@ struct SkeletonOptions {
 };
 
 // Finds the skeleton of a capture. BVH: its hierarchy, without End Sites and without joints at the
-// position of their parent. CSV and JSON: the named joints, with the tree whose bones are short and
-// keep their lengths. SBU text and NPY: the 15 joints of SBU. Joints below hands and head are
-// omitted. Known joints get Duet's names (left_hip, left_foot, left_hand, neck), on which other
-// code relies; others are named by side and word (left_toe_base). Errors: INVALID_ARGUMENT naming
-// the file, the missing item, and the flag that specifies it.
+// position of their parent. SBU text, NPY, and CSV and JSON with their names: the 15 joints of SBU.
+// Joints below hands and head are omitted. Known joints get Duet's names (left_hip, left_foot,
+// left_hand, neck), on which other code relies; others are named by side and word (left_toe_base).
+// Errors: INVALID_ARGUMENT naming the file, the missing item, and the flag that specifies it.
 absl::StatusOr<CaptureSkeleton> FindSkeleton(const std::filesystem::path& file,
                                              const SkeletonOptions& options);
-
-// Infers bones between joints: the spanning tree from `root` whose bones are shortest and keep
-// their lengths best. Names determine the bones of limbs (shoulder, elbow, hand; hip, knee, foot).
-// No bone connects left to right.
-std::vector<motion::Bone> FindBones(const std::vector<std::string>& joint_names,
-                                    const motion::Poses& poses, int root);
 
 }  // namespace duet::importing
 

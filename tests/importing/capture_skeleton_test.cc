@@ -2,9 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <iterator>
-
 #include "absl/strings/str_replace.h"
 #include "model/formats/motion_file.h"
 #include "tests/importing/bvh_people.h"
@@ -85,6 +82,14 @@ TEST_F(FindSkeletonTest, NamesWhatIsMissing) {
                              HasSubstr("--skeleton"))));
 }
 
+// Positions have no hierarchy.
+TEST_F(FindSkeletonTest, OtherNamesOfPositionsNeedASkeleton) {
+  EXPECT_THAT(Find("kick.csv", "hips_x,hips_y,hips_z\n0,1,0\n0,1,0\n"),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       AllOf(HasSubstr("expected the 15 joints of SBU"), HasSubstr("got hips"),
+                             HasSubstr("--skeleton FILE"))));
+}
+
 TEST_F(FindSkeletonTest, SpecifiedSkeletonsOverrideTheFile) {
   options_.skeleton = "sbu";
   EXPECT_EQ(Find("kick.bvh", BvhText({}))->skeleton.joint_names, motion::SbuSkeleton().joint_names);
@@ -112,32 +117,6 @@ TEST_F(FindSkeletonTest, AnotherRootReversesBones) {
   EXPECT_THAT(Find("kick.bvh", BvhText({})),
               StatusIs(absl::StatusCode::kInvalidArgument,
                        AllOf(HasSubstr("--root: expected one of "), HasSubstr("got \"Tail\""))));
-}
-
-// From positions alone: whoever moves, bones keep their lengths.
-TEST(FindBonesTest, FindsTheBonesOfAMovingPerson) {
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
-  const motion::Clip person = test::MakePerson({});
-  const std::vector<motion::Bone> bones =
-      FindBones(skeleton.joint_names, person.poses, skeleton.root);
-  ASSERT_EQ(bones.size(), skeleton.bones.size());
-  for (const motion::Bone& bone : skeleton.bones) {
-    EXPECT_THAT(bones, Contains(bone)) << skeleton.joint_names[static_cast<size_t>(bone.child)];
-  }
-}
-
-TEST(FindBonesTest, AHangingHandStaysOnItsArm) {
-  const std::vector<std::string> names = {"hips",      "neck",     "left_shoulder", "left_elbow",
-                                          "left_hand", "left_hip", "left_foot"};
-  motion::Poses still(1, 7);
-  const motion::Vec3 pose[] = {{0, 1, 0},        {0, 1.4f, 0},      {0.2f, 1.45f, 0},
-                               {0.25f, 1.2f, 0}, {0.12f, 0.95f, 0}, {0.1f, 0.95f, 0},
-                               {0.1f, 0.1f, 0}};
-  std::copy(std::begin(pose), std::end(pose), still.all().begin());
-  const std::vector<motion::Bone> bones = FindBones(names, still, 0);
-  EXPECT_THAT(bones, ::testing::UnorderedElementsAre(motion::Bone{0, 5}, motion::Bone{5, 6},
-                                                     motion::Bone{0, 1}, motion::Bone{1, 2},
-                                                     motion::Bone{2, 3}, motion::Bone{3, 4}));
 }
 
 }  // namespace
