@@ -41,7 +41,9 @@ using retargeting::Vec3d;
 
 constexpr unsigned kMostTakes = 1000;
 constexpr double kUnstatedRateHz = 30;
-constexpr double kCentimetre = 0.01, kSmallestPerson = 0.7, kLargestPerson = 4;  // metres
+constexpr double kCentimetre = 0.01;  // metres
+// Metres, of the joints. Centimetres that are stated as inches make an adult larger than 2.8 m.
+constexpr double kSmallestPerson = 0.7, kLargestPerson = 2.8;
 constexpr std::size_t kLongestMessage = 200;
 // Binary FBX begins with "Kaydara FBX Binary", FBX as text with a comment or FBXHeaderExtension.
 constexpr std::size_t kHeaderBytes = 4096;

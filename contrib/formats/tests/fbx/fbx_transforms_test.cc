@@ -68,6 +68,7 @@ void ExpectPlacesOfTheSdk(const std::vector<FbxBone>& bones, const std::vector<F
                           const FbxTake& expected) {
   ReadOptions options;
   options.metres_per_unit = 1;
+  options.coordinates = motion::Coordinates{};
   options.animation = expected.name;
   const absl::StatusOr<motion::Clip> read = FromFbx(test::TextFbx(bones, takes), options);
   ASSERT_THAT(read, IsOk());
