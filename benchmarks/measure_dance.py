@@ -24,7 +24,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[1]
 def demo_labels():
     """The keyframes of the demo's dance, as flags."""
     script = (SOURCE / "scripts/demo.sh").read_text(encoding="utf-8")
-    return ["--beat", "180"] + re.findall(r"--keyframe|\d+b:\w+=1", script)
+    return re.findall(r"--keyframe|\d+:\w+=1", script)
 
 
 def answer(build, address, labels, candidates, seed):

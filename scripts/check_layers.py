@@ -121,8 +121,9 @@ LAYERS = (
           libraries=("rpc",)),
     Layer("live", "client/live", sees=MOTION_FILES + ("client",)),
     Layer("client program", "client/cli",
-          sees=MOTION_FILES + ("analysis", "viewer", "batch flow", "batch", "live",
-                                "client")),
+          sees=MOTION_FILES + ("messages", "analysis", "viewer", "batch flow", "batch", "live",
+                                "client"),
+          source_libraries=("rpc",)),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )
 

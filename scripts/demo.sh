@@ -67,13 +67,14 @@ synthesize() {
   echo
 }
 
-# A dance of 30 s: the lead of the sample comes, asks for two turns, and leaves. Ten frames a beat.
+# A dance of 30 s: the lead of the sample comes, asks for two turns, and leaves. At 180 beats a minute, a beat has ten
+# frames.
 dance() {
-  duet synthesize --server "${address}" --model salsa --leader samples/salsa.bvh --candidates 4 --seed 1 --beat 180 \
-    --keyframe 0b:apart=1 --keyframe 5b:apart=1 --keyframe 6b:approach=1 --keyframe 11b:approach=1 \
-    --keyframe 12b:basic=1 --keyframe 27b:basic=1 --keyframe 28b:follower_turn=1 --keyframe 39b:follower_turn=1 \
-    --keyframe 40b:basic=1 --keyframe 51b:basic=1 --keyframe 52b:cross_body=1 --keyframe 67b:cross_body=1 \
-    --keyframe 68b:follower_turn=1 --keyframe 79b:follower_turn=1 --keyframe 80b:apart=1 \
+  duet synthesize --server "${address}" --model salsa --leader samples/salsa.bvh --candidates 4 --seed 1 \
+    --keyframe 0:apart=1 --keyframe 50:apart=1 --keyframe 60:approach=1 --keyframe 110:approach=1 \
+    --keyframe 120:basic=1 --keyframe 270:basic=1 --keyframe 280:follower_turn=1 --keyframe 390:follower_turn=1 \
+    --keyframe 400:basic=1 --keyframe 510:basic=1 --keyframe 520:cross_body=1 --keyframe 670:cross_body=1 \
+    --keyframe 680:follower_turn=1 --keyframe 790:follower_turn=1 --keyframe 800:apart=1 \
     --out "${out_dir}/dance.html" --out "${out_dir}/dance.glb"
   echo
 }

@@ -29,7 +29,7 @@ STILL = {"width": 467, "height": 396}
 STILLS = (("kick", {"kick": 1}, 34), ("hug", {"hug": 1}, 50), ("push", {"hug": 0.5, "push": 0.5}, 34))
 # The dance of scripts/demo.sh: its sample and its flags.
 DANCE = ("salsa", ["--model=salsa", *(f"{flag}={value}" for flag, value in
-                                      re.findall(r"(--candidates|--seed|--beat|--keyframe) (\d\S*)", DEMO.read_text(encoding="utf-8")))])
+                                      re.findall(r"(--candidates|--seed|--keyframe) (\d\S*)", DEMO.read_text(encoding="utf-8")))])
 KEEP_BLOBS = ("(() => { const make = URL.createObjectURL; URL.createObjectURL = (blob) => {"
               " window.saved = blob; return make(blob); }; })()")
 SAVED = ("new Promise((resolve) => { const reader = new FileReader();"

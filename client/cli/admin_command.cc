@@ -1,5 +1,3 @@
-#include "client/cli/admin_command.h"
-
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -10,9 +8,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/admin_client.h"
+#include "client/cli/command.h"
+#include "client/cli/flags.h"
 #include "client/cli/report.h"
-#include "client/cli/server_flags.h"
-#include "client/cli/server_options.h"
+#include "client/cli/server.h"
 #include "client/error_details.h"
 #include "nlohmann/json.hpp"
 
@@ -184,62 +183,62 @@ Examples:
 )";
 
 // The flags of duet admin may also follow the action.
-FlagSet* AddAction(FlagSet* app, const char* name, const char* help, Action action,
-                   AdminArguments* arguments) {
-  FlagSet* command = app->AddCommand(name, help);
-  command->InheritFlags();
-  command->Check([arguments, action] { arguments->action = action; });
+CLI::App* AddAction(CLI::App* app, const char* name, const char* help, Action action,
+                    AdminArguments* arguments) {
+  CLI::App* command = app->add_subcommand(name, help);
+  command->fallthrough();
+  command->callback([arguments, action] { arguments->action = action; });
   return command;
 }
 
-void AddModel(FlagSet* command, AdminArguments* arguments) {
-  command->Add("name", &arguments->name, "Name of the model")->Required()->Form("NAME");
+void AddModel(CLI::App* command, AdminArguments* arguments) {
+  command->add_option("name", arguments->name, "Name of the model")->required()->type_name("NAME");
 }
 
-Flag* AddVersion(FlagSet* command, AdminArguments* arguments) {
-  return command->Add("version", &arguments->version, "Version of the model")
-      ->InRange(std::int64_t{1}, std::int64_t{std::numeric_limits<uint32_t>::max()})
-      ->Form("VERSION");
+CLI::Option* AddVersion(CLI::App* command, AdminArguments* arguments) {
+  return command->add_option("version", arguments->version, "Version of the model")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{std::numeric_limits<uint32_t>::max()}))
+      ->type_name("VERSION");
 }
 
-void AddFlags(FlagSet* command, AdminArguments* arguments) {
-  command->RequireCommand();
-  command->Footer(kFooter);
-  command->Add("--admin-server", &arguments->server.address, "Address of the admin service")
-      ->ShowDefault()
-      ->Form("HOST:PORT")
-      ->Group(kServerGroup);
+void AddFlags(CLI::App* command, AdminArguments* arguments) {
+  command->require_subcommand(1);
+  command->footer(kFooter);
+  command->add_option("--admin-server", arguments->server.address, "Address of the admin service")
+      ->capture_default_str()
+      ->type_name("HOST:PORT")
+      ->group(kServerGroup);
   AddConnectionFlags(command, &arguments->server);
-  command->AddSwitch("--json", &arguments->json, "Print JSON");
+  command->add_flag("--json", arguments->json, "Print JSON");
   AddAction(command, "models", "List every version and its state", Action::kModels, arguments);
   AddAction(command, "reload", "Reload the configuration and the model repository", Action::kReload,
             arguments);
-  FlagSet* load = AddAction(command, "load", "Load a version; reload it if it is already served",
-                            Action::kLoad, arguments);
+  CLI::App* load = AddAction(command, "load", "Load a version; reload it if it is already served",
+                             Action::kLoad, arguments);
   AddModel(load, arguments);
-  AddVersion(load, arguments)->Required();
-  FlagSet* unload =
+  AddVersion(load, arguments)->required();
+  CLI::App* unload =
       AddAction(command, "unload", "Stop serving a version", Action::kUnload, arguments);
   AddModel(unload, arguments);
-  AddVersion(unload, arguments)->Required();
-  FlagSet* label =
+  AddVersion(unload, arguments)->required();
+  CLI::App* label =
       AddAction(command, "label", "Point a version label at a version", Action::kLabel, arguments);
   AddModel(label, arguments);
-  label->Add("label", &arguments->label, "Version label")->Required()->Form("LABEL");
-  Flag* version = AddVersion(label, arguments);
-  Flag* remove = label->AddSwitch("--delete", &arguments->delete_label, "Delete the label");
-  remove->Excludes(version);
-  label->Check([arguments, version, remove] {
+  label->add_option("label", arguments->label, "Version label")->required()->type_name("LABEL");
+  CLI::Option* version = AddVersion(label, arguments);
+  CLI::Option* remove = label->add_flag("--delete", arguments->delete_label, "Delete the label");
+  remove->excludes(version);
+  label->callback([arguments, version, remove] {
     arguments->action = Action::kLabel;
-    if (!version->is_given() && !remove->is_given()) RejectMissing("version or --delete");
+    if (version->count() == 0 && remove->count() == 0) RejectMissing("version or --delete");
   });
 }
 
 }  // namespace
 
-Command AddAdminCommand(FlagSet* program) {
+Command AddAdminCommand(CLI::App* program) {
   const auto arguments = std::make_shared<AdminArguments>();
-  FlagSet* app = program->AddCommand("admin", "Change which models a running server serves");
+  CLI::App* app = program->add_subcommand("admin", "Change which models a running server serves");
   AddFlags(app, arguments.get());
   return MakeServerCommand(app, arguments, RunAdmin);
 }

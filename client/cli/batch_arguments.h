@@ -13,7 +13,7 @@
 #include "client/batch/recipe_file.h"
 #include "client/batch/shard.h"
 #include "client/batch/survey.h"
-#include "client/cli/server_arguments.h"
+#include "client/cli/server.h"
 #include "client/options.h"
 
 namespace duet::client::cli {

@@ -1,5 +1,3 @@
-#include "client/cli/batch_command.h"
-
 #include <atomic>
 #include <cstdlib>
 #include <functional>
@@ -22,6 +20,7 @@
 #include "client/cli/batch_progress.h"
 #include "client/cli/batch_report.h"
 #include "client/cli/batch_servers.h"
+#include "client/cli/command.h"
 #include "client/cli/stop_signals.h"
 #include "client/model_skeleton.h"
 
@@ -126,8 +125,8 @@ absl::Status Prepare(const BatchArguments& arguments, const ProgramEnvironment& 
   return absl::OkStatus();
 }
 
-// Checks every line of the manifest, and every leader of the part that has an item which `survey` (may
-// be null) does not find settled.
+// Checks every line of the manifest, and every leader of the part that has an item which `survey`
+// (may be null) does not find settled.
 absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
                                        const ProgramEnvironment& environment,
                                        const Prepared& prepared, batch::Survey* survey,
@@ -221,16 +220,14 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
         repeatable, environment, begun, [&running] { return running.stopped(); }, &prepared);
   }
   if (!status.ok()) return status;
-  const batch::JobIdentity identity =
-      IdentityOf(prepared.recipe, prepared.shard, prepared.models);
+  const batch::JobIdentity identity = IdentityOf(prepared.recipe, prepared.shard, prepared.models);
   status = CheckWeights(begun, identity);
   if (!status.ok()) return status;
   const absl::StatusOr<std::unique_ptr<batch::Survey>> survey =
       batch::Survey::Open(folder, identity, arguments.repeats);
   if (!survey.ok()) return survey.status();
-  const absl::StatusOr<batch::PlanCheck> check =
-      Check(repeatable, environment, prepared, survey->get(),
-            [&running] { return running.stopped(); });
+  const absl::StatusOr<batch::PlanCheck> check = Check(
+      repeatable, environment, prepared, survey->get(), [&running] { return running.stopped(); });
   if (!check.ok()) return check.status();
   ReportBadLeaders(arguments, *check, environment);
   status = BadLinesError(*check);
@@ -270,12 +267,12 @@ absl::StatusOr<ExitCode> RunBatch(const BatchArguments& arguments,
 
 }  // namespace
 
-Command AddBatchCommand(FlagSet* program) {
+Command AddBatchCommand(CLI::App* program) {
   const auto arguments = std::make_shared<BatchArguments>();
   Command command;
   command.app = AddBatchFlags(program, arguments.get());
-  command.run = [arguments](const CommandContext& context) {
-    return RunBatch(*arguments, context.environment);
+  command.run = [arguments](const ProgramEnvironment& environment) {
+    return RunBatch(*arguments, environment);
   };
   command.servers = [arguments] { return absl::StrJoin(arguments->servers, ", "); };
   return command;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "absl/time/time.h"
-#include "client/cli/server_options.h"
+#include "client/cli/server.h"
 
 namespace duet::client::cli {
 namespace {

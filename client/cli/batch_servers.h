@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/batch/recipe.h"
 #include "client/batch/job_folder.h"
+#include "client/batch/recipe.h"
 #include "client/cli/batch_arguments.h"
 #include "client/cli/program_environment.h"
 #include "client/client.h"

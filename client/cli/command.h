@@ -1,38 +1,25 @@
 #ifndef DUET_CLIENT_CLI_COMMAND_H_
 #define DUET_CLIENT_CLI_COMMAND_H_
 
+#include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/cli/exit_code.h"
-#include "client/cli/flag_set.h"
 #include "client/cli/program_environment.h"
 
 namespace duet::client::cli {
 
-// What a command runs with.
-struct CommandContext {
-  const FlagSet& program;                 // all commands with their flags
-  const std::vector<std::string>& words;  // the command line, with the settings that apply
-  const ProgramEnvironment& environment;
-  // Runs another command line and returns its exit code.
-  int (*run_program)(const std::vector<std::string>& words, const ProgramEnvironment& environment);
-};
-
-// A command of the program. Its file defines a function that adds it to the program's FlagSet and
-// returns it; client/cli/commands.cc lists these functions.
+// A command of the program.
 struct Command {
-  FlagSet* app = nullptr;  // its name, help and flags
+  CLI::App* app = nullptr;  // its name, help and flags
   // Runs after its flags were parsed. The program reports the error, if any.
-  std::function<absl::StatusOr<ExitCode>(const CommandContext&)> run;
+  std::function<absl::StatusOr<ExitCode>(const ProgramEnvironment&)> run;
   // The servers that it calls, for error messages.
   std::function<std::string()> servers = [] { return std::string(); };
-  // Whether settings apply. Commands that explain the program work with broken settings too.
-  bool uses_settings = true;
 };
 
 // The exit code of a command that either succeeds or fails with `status`.
@@ -45,24 +32,34 @@ inline absl::StatusOr<ExitCode> Done(absl::StatusOr<ExitCode> code) { return cod
 // A command that runs `run` with the arguments that `app` fills in. `run` returns a status, or a
 // status or an exit code.
 template <typename Arguments, typename Result>
-Command MakeCommand(FlagSet* app, std::shared_ptr<Arguments> arguments,
+Command MakeCommand(CLI::App* app, std::shared_ptr<Arguments> arguments,
                     Result (*run)(const Arguments&, const ProgramEnvironment&)) {
   Command command;
   command.app = app;
-  command.run = [arguments = std::move(arguments), run](const CommandContext& context) {
-    return Done(run(*arguments, context.environment));
+  command.run = [arguments = std::move(arguments), run](const ProgramEnvironment& environment) {
+    return Done(run(*arguments, environment));
   };
   return command;
 }
 
 // The same for a command that calls the server `arguments->server`.
 template <typename Arguments, typename Result>
-Command MakeServerCommand(FlagSet* app, const std::shared_ptr<Arguments>& arguments,
+Command MakeServerCommand(CLI::App* app, const std::shared_ptr<Arguments>& arguments,
                           Result (*run)(const Arguments&, const ProgramEnvironment&)) {
   Command command = MakeCommand(app, arguments, run);
   command.servers = [arguments] { return arguments->server.address; };
   return command;
 }
+
+// Each adds a command to the program; its file, such as view_command.cc, has all of it.
+Command AddModelsCommand(CLI::App* program);
+Command AddSynthesizeCommand(CLI::App* program);
+Command AddLiveCommand(CLI::App* program);
+Command AddBatchCommand(CLI::App* program);
+Command AddInspectCommand(CLI::App* program);
+Command AddConvertCommand(CLI::App* program);
+Command AddViewCommand(CLI::App* program);
+Command AddAdminCommand(CLI::App* program);
 
 }  // namespace duet::client::cli
 

@@ -1,7 +1,3 @@
-#include "client/cli/convert_command.h"
-
-#include <algorithm>
-#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,18 +8,18 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_join.h"
+#include "client/cli/command.h"
 #include "client/cli/flags.h"
-#include "client/cli/input_flags.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
 #include "client/cli/report.h"
-#include "client/cli/rig_flags.h"
 #include "client/cli/skeleton_file.h"
 #include "model/base/file.h"
+#include "model/base/program_flags.h"
+#include "model/formats/follower_rig.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/reading_setting.h"
 #include "model/motion/resample.h"
-#include "model/motion/sbu.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
@@ -34,6 +30,15 @@ using formats::Format;
 // Which people of a file with two people to convert.
 enum class People { kLeft, kRight, kBoth };
 
+// The rig that a person is written onto, and how to read its file.
+struct RigArguments {
+  std::filesystem::path file;  // empty: Duet's own rig
+  formats::Side side = kDefaultSide;
+  std::optional<motion::UpAxis> up_axis;
+  std::optional<double> metres_per_unit;
+  std::vector<std::string> joint_map;  // as InputArguments::joint_map
+};
+
 struct ConvertArguments {
   std::filesystem::path file;
   InputArguments input;
@@ -42,7 +47,8 @@ struct ConvertArguments {
   std::optional<double> resample_hz;
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // for standard output
-  BvhArguments bvh;
+  double bvh_metres_per_unit = formats::kCentimetre;
+  int bvh_keys_per_frame = 1;
   RigArguments rig;
   bool json = false;
   bool quiet = false;
@@ -51,11 +57,11 @@ struct ConvertArguments {
 const std::map<std::string, People> kPeople = {
     {"both", People::kBoth}, {"left", People::kLeft}, {"right", People::kRight}};
 
+const std::map<std::string, double> kBvhUnits = {{"centimetres", formats::kCentimetre},
+                                                 {"metres", 1}};
+
 using Clips = std::vector<motion::Clip>;
 using Paths = std::vector<std::filesystem::path>;
-
-// Smaller errors come from rounding.
-constexpr double kExactMetres = 2e-5;
 
 // A motion to write.
 struct Conversion {
@@ -66,14 +72,6 @@ struct Conversion {
   double source_rate_hz = 0;
   formats::WriteOptions writing;
   std::optional<formats::FollowerRig> rig;
-};
-
-struct Written {
-  Paths files;
-  // Largest error of a position that is read back; nullopt on a rig.
-  std::optional<double> largest_error_metres = 0;
-  std::vector<std::string> missing;  // data that the format cannot store
-  std::vector<std::string> notes;
 };
 
 absl::Status ChoosePeople(const std::optional<People>& wanted, Clips* people) {
@@ -89,6 +87,22 @@ absl::Status ChoosePeople(const std::optional<People>& wanted, Clips* people) {
   return absl::OkStatus();
 }
 
+absl::StatusOr<formats::FollowerRig> ReadRig(const RigArguments& arguments,
+                                             const motion::Skeleton& skeleton) {
+  formats::FollowerRig rig;
+  rig.file = arguments.file;
+  rig.reading.skeleton = skeleton;
+  rig.reading.side = arguments.side;
+  rig.reading.metres_per_unit = arguments.metres_per_unit;
+  if (arguments.up_axis) {
+    rig.reading.coordinates = motion::Coordinates{motion::LengthUnit::kMetres, *arguments.up_axis};
+  }
+  absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(arguments.joint_map);
+  if (!joints.ok()) return joints.status();
+  rig.reading.joint_overrides = *std::move(joints);
+  return rig;
+}
+
 absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std::istream* in) {
   absl::Status status = CheckInput(arguments.file, arguments.input.format);
   if (!status.ok()) return status;
@@ -96,8 +110,8 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   absl::StatusOr<motion::Skeleton> skeleton = SkeletonOf(arguments.skeleton);
   if (!skeleton.ok()) return skeleton.status();
   conversion.skeleton = *std::move(skeleton);
-  conversion.writing.bvh_metres_per_unit = arguments.bvh.metres_per_unit;
-  conversion.writing.bvh_keys_per_frame = arguments.bvh.keys_per_frame;
+  conversion.writing.bvh_metres_per_unit = arguments.bvh_metres_per_unit;
+  conversion.writing.bvh_keys_per_frame = arguments.bvh_keys_per_frame;
   absl::StatusOr<formats::ReadOptions> options =
       ToReadOptions(arguments.input, conversion.skeleton);
   if (!options.ok()) return options.status();
@@ -121,99 +135,50 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
         "--side: expected left or right with --rig for a file with two people, got both");
   }
   if (arguments.rig.file.empty()) return conversion;
-  absl::StatusOr<formats::FollowerRig> rig = ReadRigArguments(arguments.rig, conversion.skeleton);
+  absl::StatusOr<formats::FollowerRig> rig = ReadRig(arguments.rig, conversion.skeleton);
   if (!rig.ok()) return rig.status();
   conversion.rig = *std::move(rig);
   return conversion;
 }
 
-// The largest error of a motion that was written as `content`, in a format that Duet reads.
-absl::StatusOr<double> ErrorOf(const std::string& content, Format format, const Clips& people,
-                               const Conversion& conversion) {
-  formats::ReadOptions options;
-  options.format = format;
-  options.skeleton = conversion.skeleton;
-  options.frame_rate_hz = people[0].frame_rate_hz;
-  // SBU text always has the coordinates of the format.
-  if (format != Format::kSbuText) options.coordinates = motion::Coordinates{};
-  if (format == Format::kBvh) options.metres_per_unit = conversion.writing.bvh_metres_per_unit;
-  const int keys = format == Format::kBvh ? conversion.writing.bvh_keys_per_frame : 1;
-  double largest = 0;
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    options.side = i == 0 ? formats::Side::kLeft : formats::Side::kRight;
-    const absl::StatusOr<motion::Clip> clip = formats::ParseLeader(content, "the result", options);
-    if (!clip.ok()) return clip.status();
-    for (int frame = 0; frame < people[i].frame_count(); ++frame) {
-      for (int j = 0; j < clip->joint_count(); ++j) {
-        const float off = Distance(clip->at(frame * keys, j), people[i].at(frame, j));
-        largest = std::max(largest, static_cast<double>(off));
-      }
-    }
-  }
-  return largest;
-}
-
-std::vector<std::string> MissingIn(Format format, double rate_hz) {
-  if (format == Format::kSbuText && rate_hz == motion::kSbuFrameRateHz) return {"joint names"};
-  if (format != Format::kNpy && format != Format::kSbuText) return {};
-  return {"joint names", absl::StrFormat("the frame rate: read it with --frame-rate %g", rate_hz)};
-}
-
-// The content of each file. BVH has one file for each person.
-absl::StatusOr<std::vector<std::string>> FormatFiles(const Conversion& conversion, Format format,
-                                                     std::optional<double>* largest_error) {
-  std::vector<Clips> files = {conversion.people};
-  if (format == Format::kBvh && conversion.people.size() == 2) {
-    files = {{conversion.people[0]}, {conversion.people[1]}};
-  }
-  std::vector<std::string> contents;
-  for (const Clips& people : files) {
-    absl::StatusOr<std::string> content =
-        formats::FormatPeople(format, people, conversion.skeleton, conversion.writing);
-    if (!content.ok()) return content.status();
-    contents.push_back(*std::move(content));
-    const absl::StatusOr<double> error = ErrorOf(contents.back(), format, people, conversion);
-    if (!error.ok()) return error.status();
-    *largest_error = std::max(largest_error->value_or(0), *error);
-  }
-  return contents;
-}
-
-absl::StatusOr<Written> WriteOntoRig(const Conversion& conversion,
-                                     const std::filesystem::path& output, Format format) {
-  Written written;
+absl::StatusOr<WrittenFiles> WriteOntoRig(const Conversion& conversion,
+                                          const std::filesystem::path& output, Format format) {
+  WrittenFiles written{{output}, {}};
   formats::WriteOptions writing = conversion.writing;
   writing.notes = &written.notes;
   formats::FollowerRig rig = *conversion.rig;
   rig.reading.notes = &written.notes;
   const absl::StatusOr<std::string> content =
       formats::FormatOntoRig(conversion.people[0], rig, format, writing);
-  if (!content.ok()) return OfRig(content.status());
-  absl::Status status = base::WriteFile(output, *content);
+  if (motion::MendingSetting(content.status()) == motion::ReadingSetting::kJointMap) {
+    return MendedBy(content.status(), motion::ReadingSetting::kRigJointMap);
+  }
+  if (!content.ok()) return content.status();
+  const absl::Status status = base::WriteFile(output, *content);
   if (!status.ok()) return NotWritten(status);
-  written.files = {output};
-  written.largest_error_metres.reset();
   return written;
 }
 
-absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesystem::path& output,
-                              Format format, std::ostream& out) {
-  if (conversion.rig) return WriteOntoRig(conversion, output, format);
-  Written written;
-  const absl::StatusOr<std::vector<std::string>> contents =
-      FormatFiles(conversion, format, &written.largest_error_metres);
-  if (!contents.ok()) return contents.status();
-  written.missing = MissingIn(format, conversion.people[0].frame_rate_hz);
-  if (output == kStandardStream) {
-    if (contents->size() > 1) {
-      return absl::InvalidArgumentError(
-          "--out -: BVH has one file for each person. Choose a person with --side");
-    }
-    absl::Status status = WriteToStream((*contents)[0], out);
-    if (!status.ok()) return status;
-    written.files = {output};
-    return written;
+absl::StatusOr<WrittenFiles> WriteToStandardOutput(const Conversion& conversion, Format format,
+                                                   std::ostream& out) {
+  if (format == Format::kBvh && conversion.people.size() > 1) {
+    return absl::InvalidArgumentError(
+        "--out -: BVH has one file for each person. Choose a person with --side");
   }
+  const absl::StatusOr<std::string> content =
+      formats::FormatPeople(format, conversion.people, conversion.skeleton, conversion.writing);
+  if (!content.ok()) return content.status();
+  const absl::Status status = WriteToStream(*content, out);
+  if (!status.ok()) return status;
+  return WrittenFiles{{kStandardStream}, {}};
+}
+
+absl::StatusOr<WrittenFiles> Write(const Conversion& conversion,
+                                   const std::filesystem::path& output, Format format,
+                                   std::ostream& out) {
+  if (conversion.rig) return WriteOntoRig(conversion, output, format);
+  if (output == kStandardStream) return WriteToStandardOutput(conversion, format, out);
+  WrittenFiles written;
   formats::WriteOptions writing = conversion.writing;
   writing.notes = &written.notes;
   absl::StatusOr<Paths> files =
@@ -223,19 +188,7 @@ absl::StatusOr<Written> Write(const Conversion& conversion, const std::filesyste
   return written;
 }
 
-std::string DescribeExactness(const Written& written) {
-  std::string text =
-      *written.largest_error_metres < kExactMetres
-          ? "every position kept"
-          : absl::StrFormat("positions up to %.1f mm off: a bone has one length there",
-                            1000 * *written.largest_error_metres);
-  if (!written.missing.empty()) {
-    absl::StrAppend(&text, "; no place for ", absl::StrJoin(written.missing, " and "));
-  }
-  return text;
-}
-
-std::string Describe(const Conversion& conversion, const std::vector<Written>& written) {
+std::string Describe(const Conversion& conversion, const std::vector<WrittenFiles>& written) {
   const motion::Clip& first = conversion.people[0];
   std::string text =
       absl::StrFormat("read      %s: %d %s, %d frames at %g Hz\n", conversion.source,
@@ -245,14 +198,12 @@ std::string Describe(const Conversion& conversion, const std::vector<Written>& w
     absl::StrAppendFormat(&text, "          resampled from %g Hz\n", conversion.source_rate_hz);
   }
   for (const std::string& note : conversion.notes) absl::StrAppend(&text, "          ", note, "\n");
-  for (const Written& output : written) {
-    for (std::size_t i = 0; i < output.files.size(); ++i) {
+  for (const WrittenFiles& output : written) {
+    for (const std::filesystem::path& file : output.files) {
       absl::StrAppend(
-          &text, "wrote     ",
-          output.files[i] == kStandardStream ? "standard output" : output.files[i].string(),
-          i > 0            ? ""
-          : conversion.rig ? absl::StrCat(" (on the rig of ", conversion.rig->file.string(), ")")
-                           : absl::StrCat(" (", DescribeExactness(output), ")"),
+          &text, "wrote     ", file == kStandardStream ? "standard output" : file.string(),
+          conversion.rig ? absl::StrCat(" (on the rig of ", conversion.rig->file.string(), ")")
+                         : "",
           "\n");
     }
     for (const std::string& note : output.notes) absl::StrAppend(&text, "          ", note, "\n");
@@ -260,15 +211,12 @@ std::string Describe(const Conversion& conversion, const std::vector<Written>& w
   return text;
 }
 
-nlohmann::json ToJson(const Conversion& conversion, const std::vector<Written>& written) {
+nlohmann::json ToJson(const Conversion& conversion, const std::vector<WrittenFiles>& written) {
   nlohmann::json outputs = nlohmann::json::array();
-  for (const Written& output : written) {
+  for (const WrittenFiles& output : written) {
     nlohmann::json files = nlohmann::json::array();
     for (const std::filesystem::path& file : output.files) files.push_back(file.string());
-    nlohmann::json object = {
-        {"files", files}, {"no_place_for", output.missing}, {"notes", output.notes}};
-    if (output.largest_error_metres) object["largest_error_metres"] = *output.largest_error_metres;
-    outputs.push_back(std::move(object));
+    outputs.push_back({{"files", files}, {"notes", output.notes}});
   }
   return {{"file", conversion.source},
           {"people_count", conversion.people.size()},
@@ -282,11 +230,11 @@ nlohmann::json ToJson(const Conversion& conversion, const std::vector<Written>& 
 absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironment& environment) {
   const absl::StatusOr<Conversion> conversion = ReadConversion(arguments, environment.in);
   if (!conversion.ok()) return conversion.status();
-  std::vector<Written> all;
+  std::vector<WrittenFiles> all;
   for (const std::filesystem::path& output : arguments.outputs) {
     const Format format =
         output == kStandardStream ? *arguments.output_format->motion : *formats::FormatOf(output);
-    absl::StatusOr<Written> written = Write(*conversion, output, format, *environment.out);
+    absl::StatusOr<WrittenFiles> written = Write(*conversion, output, format, *environment.out);
     if (!written.ok()) return written.status();
     all.push_back(*std::move(written));
   }
@@ -297,9 +245,24 @@ absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironm
   return absl::OkStatus();
 }
 
-void CheckTogether(const FlagSet& command, const ConvertArguments& arguments) {
+// Checks that the rig can be written in the format of every output.
+void CheckRig(const ConvertArguments& arguments) {
+  if (arguments.rig.file.empty()) return;
+  const std::optional<Format> format = formats::FormatOf(arguments.rig.file);
+  if (!format || !formats::FitsRig(Format::kBvh, *format)) {
+    RejectFlag("--rig", absl::StrCat("expected ", formats::kRigExtensions, ", got ",
+                                     arguments.rig.file.string()));
+  }
+  for (const std::filesystem::path& output : arguments.outputs) {
+    const std::optional<Format> written = formats::FormatOf(output);
+    if (written && formats::FitsRig(*written, *format)) continue;
+    RejectFlag("--out", absl::StrCat("expected ", formats::kRigOutputExtensions,
+                                     " with --rig, got ", output.string()));
+  }
+}
+
+void CheckTogether(const ConvertArguments& arguments) {
   CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
-  CheckBvhFlags(command, arguments.outputs, arguments.output_format);
   if (arguments.output_format && !arguments.output_format->motion) {
     RejectFlag("--output-format", "html is not a motion format. Use duet view to make a page");
   }
@@ -308,56 +271,92 @@ void CheckTogether(const FlagSet& command, const ConvertArguments& arguments) {
         CheckOutput(output, {arguments.file, arguments.rig.file}, PageAllowed::kNo);
     if (!status.ok()) RejectFlag("--out", std::string(status.message()));
   }
-  CheckRigFlags(arguments.rig, arguments.outputs);
+  CheckRig(arguments);
 }
 
-void AddFlags(FlagSet* command, ConvertArguments* arguments) {
+void AddRigFlags(CLI::App* app, RigArguments* rig) {
+  CLI::Option* file =
+      app->add_option(
+             "--rig", rig->file,
+             absl::StrCat("Rig of the person in --out FILE with ", formats::kRigOutputExtensions,
+                          ": the rig of ", formats::kRigExtensions, " (default: Duet's rig)"))
+          ->type_name("FILE");
+  CLI::Option* const reading[] = {
+      AddChoice(app, "--rig-side", kSides, &rig->side, "The person in a --rig file with two people")
+          ->default_str(NameOf(kSides, rig->side)),
+      AddParsed(app, "--rig-up-axis", "y-up|z-up|y-down", ParseAxis, &rig->up_axis,
+                "Up axis of the rig; overrides the file"),
+      app->add_option("--rig-metres-per-unit", rig->metres_per_unit,
+                      "Metres in one unit of the rig (0.01 for centimetres)")
+          ->check(AboveZero())
+          ->type_name("METRES"),
+      app->add_option("--rig-joint-map", rig->joint_map,
+                      "Joint of the rig for a joint of the model, if its name is not recognised, "
+                      "or a file with one such pair on each line; repeatable")
+          ->allow_extra_args(false)
+          ->type_name("MODEL_JOINT=RIG_JOINT|FILE")};
+  file->group(kOutputGroup);
+  for (CLI::Option* flag : reading) flag->needs(file)->group(kOutputGroup);
+}
+
+void AddFlags(CLI::App* command, ConvertArguments* arguments) {
   command
-      ->Add("file", &arguments->file,
-            absl::StrCat("Motion: ", formats::kReadableExtensions, "; - for standard input"))
-      ->Required()
-      ->Form("FILE");
-  AddChoice<People>(
-      command, "--side", kPeople, [arguments](People people) { arguments->people = people; },
-      "The people to write (default: all)")
-      ->Group(kInputGroup);
+      ->add_option("file", arguments->file,
+                   absl::StrCat("Motion: ", formats::kReadableExtensions, "; - for standard input"))
+      ->required()
+      ->type_name("FILE");
+  AddChoice(command, "--side", kPeople, &arguments->people, "The people to write (default: all)")
+      ->group(kInputGroup);
   AddInputFlags(command, &arguments->input);
   AddSkeletonFlag(command, &arguments->skeleton);
   command
-      ->Add("--out", &arguments->outputs,
-            "File to write: .glb, .gltf, .bvh (a file for each person), .csv, .npy, "
-            ".json or .txt (SBU text); repeatable; - for standard output")
-      ->Required()
-      ->OneValueEach()
-      ->Form("FILE")
-      ->Group(kOutputGroup);
+      ->add_option(
+          "--out", arguments->outputs,
+          absl::StrCat("File to write: ", formats::kWritableExtensions,
+                       ", of which .bvh makes a file for each person; repeatable; - for standard "
+                       "output"))
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("FILE")
+      ->group(kOutputGroup);
   command
-      ->Add("--resample", &arguments->resample_hz,
-            "Frame rate of the output; the motion keeps its speed (--frame-rate sets the rate "
-            "of the input)")
-      ->AboveZero()
-      ->Form("HZ")
-      ->Group(kOutputGroup);
+      ->add_option(
+          "--resample", arguments->resample_hz,
+          "Frame rate of the output; the motion keeps its speed (--frame-rate sets the rate "
+          "of the input)")
+      ->check(AboveZero())
+      ->type_name("HZ")
+      ->group(kOutputGroup);
   AddOutputFormatFlag(command, &arguments->output_format);
-  AddBvhFlags(command, &arguments->bvh);
+  AddChoice(command, "--bvh-unit", kBvhUnits, &arguments->bvh_metres_per_unit,
+            "Unit of .bvh output, which the format does not state: Maya, MotionBuilder and Unreal "
+            "expect centimetres, Blender metres")
+      ->default_str("centimetres")
+      ->group(kOutputGroup);
+  command
+      ->add_option("--bvh-keys-per-frame", arguments->bvh_keys_per_frame,
+                   "Keys in .bvh for each frame of the motion; more keep programs that interpolate "
+                   "angles linearly close to the motion near gimbal lock")
+      ->check(base::InRange(1, formats::kMostBvhKeysPerFrame))
+      ->capture_default_str()
+      ->type_name("COUNT")
+      ->group(kOutputGroup);
   AddRigFlags(command, &arguments->rig);
-  command->AddSwitch("--json", &arguments->json, "Print the summary as JSON")->Group(kOutputGroup);
-  command->AddSwitch("--quiet", &arguments->quiet, "Print only errors")->Group(kOutputGroup);
-  command->Check([command, arguments] { CheckTogether(*command, *arguments); });
+  command->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
+  command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
+  command->callback([arguments] { CheckTogether(*arguments); });
 }
 
 }  // namespace
 
-Command AddConvertCommand(FlagSet* program) {
+Command AddConvertCommand(CLI::App* program) {
   const auto arguments = std::make_shared<ConvertArguments>();
-  FlagSet* app =
-      program->AddCommand("convert", "Write a motion in another format, with the same positions");
-  app->Footer(R"(
+  CLI::App* app = program->add_subcommand(
+      "convert", "Write a motion in another format, with the same positions");
+  app->footer(R"(
 Examples:
   duet convert walk.bvh --out walk.glb
   duet convert pair.json --side left --resample 30 --out leader.csv
-
-duet help exit-codes explains the exit codes.
 )");
   AddFlags(app, arguments.get());
   return MakeCommand(app, arguments, RunConvert);

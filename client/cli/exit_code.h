@@ -2,6 +2,7 @@
 #define DUET_CLIENT_CLI_EXIT_CODE_H_
 
 #include "absl/status/status.h"
+#include "client/error_details.h"
 
 namespace duet::client::cli {
 
@@ -20,14 +21,17 @@ enum ExitCode : int {
 //       PERMISSION_DENIED, UNAUTHENTICATED, UNIMPLEMENTED; RESOURCE_EXHAUSTED if the server does
 //       not say when to retry (the message is too large)
 //   1   everything else
-ExitCode ExitCodeFor(const absl::Status& status);
+inline ExitCode ExitCodeFor(const absl::Status& status) {
+  if (status.ok()) return kExitDone;
+  return IsPermanent(status) ? kExitBadInput : kExitRetry;
+}
 
 // The end of --help of the program and of duet synthesize.
 inline constexpr char kExitCodesFooter[] = R"(
 Exit codes:
   0   done
-  1   failed, but the same call may succeed later (server away, busy or draining)
-  2   the command line is invalid
+  1   failed, but the same call may succeed later (server away, busy or draining; a full disk)
+  2   the command line or a setting is invalid
   42  failed, and will fail again: the input, the model or the credentials are rejected
 
 Example:

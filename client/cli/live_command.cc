@@ -1,28 +1,132 @@
-#include "client/cli/live_command.h"
-
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <ostream>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include "client/cli/input_flags.h"
-#include "client/cli/live_arguments.h"
-#include "client/cli/live_ends.h"
-#include "client/cli/live_flags.h"
+#include "absl/strings/str_cat.h"
+#include "client/cli/command.h"
+#include "client/cli/flags.h"
 #include "client/cli/live_report.h"
-#include "client/cli/request_building.h"
-#include "client/cli/server_options.h"
+#include "client/cli/output.h"
+#include "client/cli/reaction.h"
+#include "client/cli/server.h"
 #include "client/cli/stop_signals.h"
-#include "client/cli/typed_labels.h"
+#include "client/live/clip_source.h"
+#include "client/live/follower_sink.h"
+#include "client/live/json_lines_sink.h"
+#include "client/live/json_lines_source.h"
+#include "client/live/line_reader.h"
 #include "client/live/live_run.h"
 #include "client/model_skeleton.h"
+#include "model/base/program_flags.h"
+#include "model/formats/motion_file.h"
+#include "model/motion/clip.h"
+#include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
 namespace {
+
+// `leader` is the file of --from, if it is one.
+struct LiveArguments : ReactionArguments {
+  ServerArguments server;
+  std::string from;
+  std::vector<std::string> to;
+  bool realtime = false;
+  int delay_frames = 0;
+  int plan_frames = 0;
+  bool json = false;
+  bool quiet = false;
+};
+
+// Keeps a whole session, and writes it at its end: the follower alone to a motion file, both people
+// to a page. Files name the labels of the beginning, not later changes. A file that cannot be
+// created is reported at the start, before any motion would be lost.
+class LiveFileSink final : public live::FollowerSink {
+ public:
+  // `leader` names the leader in the file.
+  LiveFileSink(std::filesystem::path path, std::filesystem::path leader, SynthesisRequest request,
+               motion::Skeleton skeleton)
+      : path_(std::move(path)),
+        leader_file_(std::move(leader)),
+        request_(std::move(request)),
+        skeleton_(std::move(skeleton)) {}
+
+  absl::Status Start(const live::LeaderFormat& format) override;
+  absl::Status Accept(const LiveFrames& frames) override;
+  void AcceptLeader(const live::LeaderFrame& frame) override;
+  absl::StatusOr<std::vector<std::string>> Finish(const LiveInfo& info) override;
+
+ private:
+  const std::filesystem::path path_;
+  const std::filesystem::path leader_file_;
+  const SynthesisRequest request_;
+  const motion::Skeleton skeleton_;
+  motion::Clip leader_, follower_;
+};
+
+absl::Status LiveFileSink::Start(const live::LeaderFormat& format) {
+  leader_.joint_names = format.joint_names;
+  leader_.frame_rate_hz = format.frame_rate_hz;
+  leader_.poses = motion::Poses(0, leader_.joint_count());
+  follower_ = leader_;
+  return CheckCanCreate(path_);
+}
+
+absl::Status LiveFileSink::Accept(const LiveFrames& frames) {
+  follower_.Append(frames.poses.all());
+  return absl::OkStatus();
+}
+
+void LiveFileSink::AcceptLeader(const live::LeaderFrame& frame) {
+  const int end = leader_.frame_count();
+  if (frame.index < end) return;
+  // Lost frames, which the server interpolates too.
+  for (int lost = end; lost < frame.index && end > 0; ++lost) {
+    const float share =
+        static_cast<float>(lost - end + 1) / static_cast<float>(frame.index - end + 1);
+    std::vector<motion::Vec3> pose(frame.positions.size());
+    for (std::size_t joint = 0; joint < pose.size(); ++joint) {
+      pose[joint] = Lerp(leader_.poses[end - 1][joint], frame.positions[joint], share);
+    }
+    leader_.Append(pose);
+  }
+  leader_.Append(frame.positions);
+}
+
+absl::StatusOr<std::vector<std::string>> LiveFileSink::Finish(const LiveInfo& info) {
+  const int frames = std::min(leader_.frame_count(), follower_.frame_count());
+  if (frames == 0) {
+    return std::vector<std::string>{absl::StrCat(path_.string(), ": not written, no frames")};
+  }
+  leader_.poses.Resize(frames);
+  follower_.poses.Resize(frames);
+  Synthesis synthesis;
+  synthesis.request = request_;
+  synthesis.result.pair = {std::move(leader_), std::move(follower_)};
+  synthesis.result.model_name = info.model_name;
+  synthesis.result.model_version = info.model_version;
+  synthesis.result.seed = info.seed;
+  synthesis.result.variety = info.variety;
+  synthesis.result.candidates = info.candidates;
+  synthesis.result.cleaned_up = info.cleaned_up;
+  synthesis.skeleton = skeleton_;
+  synthesis.leader_file = leader_file_;
+  synthesis.sampled = true;
+  const absl::StatusOr<WrittenFiles> written = WriteFollower(path_, synthesis);
+  if (!written.ok()) return NotWritten(written.status());
+  std::vector<std::string> lines;
+  for (const std::filesystem::path& file : written->files) lines.push_back(file.string());
+  for (const std::string& note : written->notes) {
+    lines.push_back(absl::StrCat(path_.filename().string(), ": ", note));
+  }
+  return lines;
+}
 
 // Stops a source that may not exist yet.
 class Stopper {
@@ -44,58 +148,124 @@ class Stopper {
   bool stopped_ = false;
 };
 
-LiveStrip::Kind StripKind(const LiveArguments& arguments, const ProgramEnvironment& environment) {
-  if (arguments.quiet) return LiveStrip::Kind::kNone;
-  return environment.err_is_terminal ? LiveStrip::Kind::kTerminal : LiveStrip::Kind::kLinesOnly;
+// Prints what happened to the connection.
+void ShowNotice(const LiveNotice& notice, std::ostream& err) {
+  switch (notice.kind) {
+    case LiveNotice::Kind::kDraining:
+      err << "duet: the server shuts down; moving to another one\n" << std::flush;
+      return;
+    case LiveNotice::Kind::kInterrupted:
+      err << "duet: " << notice.message << "; resuming\n" << std::flush;
+      return;
+    case LiveNotice::Kind::kResumed:
+      err << "duet: resumed\n" << std::flush;
+      return;
+    default:  // counted
+      return;
+  }
 }
 
-absl::StatusOr<live::LiveReport> RunSession(const LiveArguments& arguments, const Client& client,
+// Rejects the fields of a request that only a whole clip has.
+absl::Status CheckLiveFields(const SynthesisRequest& request) {
+  const char* field = !request.constraints.empty()          ? "constraints"
+                      : request.rotations                   ? "reply_rotations"
+                      : request.chunk_frames                ? "chunk_frames"
+                      : request.priority == Priority::kBulk ? "priority"
+                                                            : nullptr;
+  if (field == nullptr) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(field, ": expected none in the request of duet live, got one"));
+}
+
+LiveRequest ToLiveRequest(const SynthesisRequest& request, const LiveArguments& arguments) {
+  LiveRequest live;
+  static_cast<ReactionOptions&>(live) = static_cast<const ReactionOptions&>(request);
+  live.model = request.model;
+  live.weights = request.weights;
+  live.keyframes = request.keyframes;
+  live.follower_start = request.follower_start;
+  live.delay_frames = arguments.delay_frames;
+  live.plan_frames = arguments.plan_frames;
+  return live;
+}
+
+// Reads the motions that `request` needs, and opens the source of --from.
+absl::StatusOr<std::unique_ptr<live::LeaderSource>> OpenSource(
+    const LiveArguments& arguments, const motion::Skeleton& skeleton,
+    const ProgramEnvironment& environment, SynthesisRequest* request) {
+  std::vector<std::string> notes;
+  const absl::Status status = ReadMotions(arguments, skeleton, nullptr, request, &notes);
+  if (!status.ok()) return status;
+  if (!arguments.leader.empty()) {
+    return std::make_unique<live::ClipSource>(std::move(request->leader), arguments.realtime,
+                                              std::move(notes));
+  }
+  if (environment.in == nullptr) {
+    return absl::InvalidArgumentError("--from -: expected a standard input, got none");
+  }
+  absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(arguments.input.joint_map);
+  if (!joints.ok()) return joints.status();
+  return std::make_unique<live::JsonLinesSource>(
+      environment.in_descriptor.has_value() ? live::ReadLinesOf(*environment.in_descriptor)
+                                            : live::ReadLinesOf(*environment.in),
+      live::JsonLinesOptions{skeleton, *std::move(joints), arguments.realtime});
+}
+
+std::unique_ptr<live::FollowerSink> OpenSink(const std::string& to, const LiveArguments& arguments,
+                                             const SynthesisRequest& request,
+                                             const motion::Skeleton& skeleton,
+                                             const ProgramEnvironment& environment) {
+  if (to == kStandardStream) return std::make_unique<live::JsonLinesSink>(*environment.out);
+  const bool plays_file = !arguments.leader.empty();
+  return std::make_unique<LiveFileSink>(to, plays_file ? arguments.leader : "live", request,
+                                        skeleton);
+}
+
+absl::StatusOr<live::LiveReport> RunSession(const LiveArguments& arguments,
+                                            SynthesisRequest request, const Client& client,
                                             const motion::Skeleton& skeleton, Stopper* stopper,
                                             const ProgramEnvironment& environment) {
-  LiveStrip strip(StripKind(arguments, environment), *environment.err);
-  absl::StatusOr<LiveInput> input = OpenSource(
-      arguments, skeleton, environment, [&strip](const std::string& note) { strip.Show(note); });
-  if (!input.ok()) return input.status();
+  const absl::StatusOr<std::unique_ptr<live::LeaderSource>> source =
+      OpenSource(arguments, skeleton, environment, &request);
+  if (!source.ok()) return source.status();
   std::vector<std::unique_ptr<live::FollowerSink>> sinks;
   std::vector<live::FollowerSink*> ends;
   for (const std::string& to : arguments.to) {
-    absl::StatusOr<std::unique_ptr<live::FollowerSink>> sink =
-        OpenSink(to, arguments, skeleton, environment);
-    if (!sink.ok()) return sink.status();
-    sinks.push_back(*std::move(sink));
+    sinks.push_back(OpenSink(to, arguments, request, skeleton, environment));
     ends.push_back(sinks.back().get());
   }
-  live::LiveRun run(input->source.get(), std::move(ends),
-                    {[&strip](const live::LiveProgress& progress) { strip.Show(progress); },
-                     [&strip](const LiveNotice& notice) { strip.Show(notice); }});
-  stopper->SetSource(input->source.get());
-  absl::StatusOr<live::LiveReport> report;
-  {
-    const TypedLabels typed(arguments, environment, &run);
-    report = run.Run(client, input->request);
+  live::LiveObserver observer;
+  if (!arguments.quiet) {
+    observer.on_notice = [&environment](const LiveNotice& notice) {
+      ShowNotice(notice, *environment.err);
+    };
   }
+  live::LiveRun run(source->get(), std::move(ends), std::move(observer));
+  stopper->SetSource(source->get());
+  absl::StatusOr<live::LiveReport> report = run.Run(client, ToLiveRequest(request, arguments));
   stopper->SetSource(nullptr);
-  strip.End();
   return report;
 }
 
 absl::Status RunLive(const LiveArguments& arguments, const ProgramEnvironment& environment) {
   Stopper stopper;
   const StopSignals signals([&stopper] { stopper.Stop(); });
-  if (!arguments.leader.empty()) {
-    absl::Status inputs = CheckInputs(arguments);
-    if (!inputs.ok()) return inputs;
-  }
+  const absl::Status inputs = CheckInputs(arguments);
+  if (!inputs.ok()) return inputs;
+  absl::StatusOr<SynthesisRequest> request = StartRequest(arguments);
+  if (!request.ok()) return request.status();
+  const absl::Status fields = CheckLiveFields(*request);
+  if (!fields.ok()) return fields;
   const absl::StatusOr<Client> client = Connect(arguments.server, environment);
   if (!client.ok()) return client.status();
-  const absl::StatusOr<ModelDetails> details = client->GetModel(arguments.model);
+  const absl::StatusOr<ModelDetails> details = client->GetModel(request->model);
   if (!details.ok()) return details.status();
-  const absl::Status labels = CheckLabels(arguments, details->model);
+  const absl::Status labels = CheckLabels(*request, details->model);
   if (!labels.ok()) return labels;
   const absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(details->model);
   if (!skeleton.ok()) return skeleton.status();
   const absl::StatusOr<live::LiveReport> report =
-      RunSession(arguments, *client, *skeleton, &stopper, environment);
+      RunSession(arguments, *std::move(request), *client, *skeleton, &stopper, environment);
   if (!report.ok()) return report.status();
   if (arguments.quiet) return absl::OkStatus();
   // With frames on standard output, the summary goes to standard error.
@@ -103,6 +273,31 @@ absl::Status RunLive(const LiveArguments& arguments, const ProgramEnvironment& e
   (out_has_frames ? *environment.err : *environment.out)
       << (arguments.json ? LiveJson(*report) : DescribeLive(*report));
   return absl::OkStatus();
+}
+
+// Checks a value of --to before any work is done: it may not replace a file that is read.
+absl::Status CheckSink(const std::string& to, const LiveArguments& arguments) {
+  if (formats::FormatOf(to) == formats::Format::kSbuText) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(to, ": expected a format that can hold one person, got SBU text"));
+  }
+  return CheckOutput(to, {arguments.leader, arguments.follower_start, arguments.request});
+}
+
+// Checks flags that depend on each other.
+void CheckTogether(const LiveArguments& arguments) {
+  if (arguments.weights.empty() && arguments.keyframes.empty() && arguments.request.empty()) {
+    RejectMissing("--label, --keyframe or --request");
+  }
+  const auto outs = std::count(arguments.to.begin(), arguments.to.end(), kStandardStream);
+  if (outs > 1) RejectFlag("--to", "expected - once, got it twice");
+  if (outs > 0 && arguments.json) {
+    RejectFlag("--json", "cannot be used with --to -: both print to standard output");
+  }
+  for (const std::string& to : arguments.to) {
+    const absl::Status status = CheckSink(to, arguments);
+    if (!status.ok()) RejectFlag("--to", std::string(status.message()));
+  }
 }
 
 constexpr char kFooter[] = R"(
@@ -113,9 +308,8 @@ frames or change the labels:
   {"labels": {"hug": 1}, "ease": 0.3}
 --to - writes {"joints": ...} and then {"frame": 0, "positions": ...} for each final frame.
 
-While a file plays, labels can be typed: hug=1 kick=0 ease=0.3, then Enter. Ctrl-C ends
-the leader's motion: the frames that are due arrive, and files are written. Another Ctrl-C, more than
-a second later, ends the program at once.
+Ctrl-C ends the leader's motion: the frames that are due arrive, and files are written. Another
+Ctrl-C, more than a second later, ends the program at once.
 
 Motion capture (VMC, Xsens MVN, Rokoko) has a bridge of its own: contrib/capture.
 
@@ -123,13 +317,57 @@ Example:
   duet live --from walk.bvh --realtime --label hug=1 --to follower.bvh --to pair.html
 )";
 
+void AddFlags(CLI::App* app, LiveArguments* arguments) {
+  app->add_option("--from", arguments->from,
+                  "Leader: a motion file that synthesize reads, or - for lines of JSON on standard "
+                  "input")
+      ->required()
+      ->type_name("FILE|-")
+      ->group(kInputGroup);
+  app->add_flag("--realtime", arguments->realtime,
+                "Play the file at its frame rate, and take standard input as it comes; otherwise "
+                "each frame waits for the answer to the one before")
+      ->group(kInputGroup);
+  AddLeaderFlags(app, arguments);
+  AddReactionFlags(app, arguments);
+  app->add_option("--delay", arguments->delay_frames,
+                  "Leader frames that the server waits for before it answers a frame, from 0 to "
+                  "10; a few give a better reaction")
+      ->check(base::InRange(0, 10))
+      ->capture_default_str()
+      ->type_name("FRAMES")
+      ->group(kReactionGroup);
+  app->add_option("--plan", arguments->plan_frames,
+                  "Provisional frames, from 0 to 30, beyond each final one, for outputs that can "
+                  "show them")
+      ->check(base::InRange(0, 30))
+      ->capture_default_str()
+      ->type_name("FRAMES")
+      ->group(kReactionGroup);
+  app->add_option("--to", arguments->to,
+                  "Where the follower goes: a motion file with the follower as its only person, a "
+                  "page with both people (.html), or - for lines of JSON on standard output; "
+                  "repeatable")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("FILE|-")
+      ->group(kOutputGroup);
+  app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
+  app->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
+  AddServerFlags(app, &arguments->server);
+  app->footer(kFooter);
+  app->callback([arguments] {
+    if (arguments->from != kStandardStream) arguments->leader = arguments->from;
+    CheckTogether(*arguments);
+  });
+}
+
 }  // namespace
 
-Command AddLiveCommand(FlagSet* program) {
+Command AddLiveCommand(CLI::App* program) {
   const auto arguments = std::make_shared<LiveArguments>();
-  FlagSet* app = program->AddCommand("live", "Answer a leader while it still moves");
-  AddLiveFlags(app, arguments.get());
-  app->Footer(kFooter);
+  CLI::App* app = program->add_subcommand("live", "Answer a leader while it still moves");
+  AddFlags(app, arguments.get());
   return MakeServerCommand(app, arguments, RunLive);
 }
 

@@ -1,17 +1,17 @@
 #include "client/cli/live_report.h"
 
+#include <vector>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "client/cli/report.h"
 #include "model/base/counted.h"
 #include "nlohmann/json.hpp"
 
 namespace duet::client::cli {
 namespace {
-
-constexpr absl::Duration kRedrawPeriod = absl::Milliseconds(250);
 
 std::string Describe(const live::Latencies& latency) {
   return absl::StrFormat("p50 %.1f ms, p99 %.1f ms", absl::ToDoubleMilliseconds(latency.p50),
@@ -37,15 +37,6 @@ std::string DescribeLosses(const live::LiveProgress& totals) {
 }
 
 }  // namespace
-
-std::string ProgressLine(const live::LiveProgress& progress) {
-  std::string line = absl::StrFormat("%.1f s, %d frames, latency %s, gaps %d, late %d, skipped %d",
-                                     absl::ToDoubleSeconds(progress.time), progress.frames,
-                                     Describe(progress.latency), progress.gap_frames,
-                                     progress.late_frames, progress.skipped_frames);
-  if (progress.resumed > 0) absl::StrAppend(&line, ", resumed ", progress.resumed);
-  return line;
-}
 
 std::string DescribeLive(const live::LiveReport& report) {
   const live::LiveProgress& totals = report.totals;
@@ -90,45 +81,6 @@ std::string LiveJson(const live::LiveReport& report) {
                   {"p99", absl::ToDoubleMilliseconds(totals.latency.p99)}}},
                 {"notes", report.notes},
                 {"written", report.written}});
-}
-
-void LiveStrip::Show(const live::LiveProgress& progress) {
-  if (kind_ != Kind::kTerminal) return;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  const absl::Time now = absl::Now();
-  if (now - shown_ < kRedrawPeriod) return;
-  shown_ = now;
-  line_ = ProgressLine(progress);
-  // Returns to the start of the line, and clears the rest of the previous text.
-  err_ << "\r" << line_ << "\x1b[K" << std::flush;
-}
-
-void LiveStrip::Show(const LiveNotice& notice) {
-  switch (notice.kind) {
-    case LiveNotice::Kind::kDraining:
-      return Print("duet: the server shuts down; moving to another one");
-    case LiveNotice::Kind::kInterrupted:
-      return Print(absl::StrCat("duet: ", notice.message, "; resuming"));
-    case LiveNotice::Kind::kResumed:
-      return Print("duet: resumed");
-    default:  // counted
-      return;
-  }
-}
-
-void LiveStrip::Show(const std::string& note) { Print(absl::StrCat("duet: ", note)); }
-
-void LiveStrip::Print(const std::string& line) {
-  if (kind_ == Kind::kNone) return;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!line_.empty()) err_ << "\r\x1b[K";
-  err_ << line << "\n" << line_ << std::flush;
-}
-
-void LiveStrip::End() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!line_.empty()) err_ << "\n" << std::flush;
-  line_.clear();
 }
 
 }  // namespace duet::client::cli

@@ -3,8 +3,11 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
 
-#include "client/cli/program.h"
+#include "client/cli/program_environment.h"
 #include "model/base/program_output.h"
 
 namespace {
@@ -22,8 +25,7 @@ int main(int argc, char** argv) {
   setenv("GRPC_VERBOSITY", "NONE", 0);
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const int code = duet::client::cli::RunProgram(
-      arguments,
-      {duet::client::Client::Create, &std::cout, &std::cerr, &std::cin, isatty(STDERR_FILENO) == 1,
-       isatty(STDOUT_FILENO) == 1, isatty(STDIN_FILENO) == 1, STDIN_FILENO, Variable});
+      arguments, {duet::client::Client::Create, &std::cout, &std::cerr, &std::cin,
+                  isatty(STDERR_FILENO) == 1, STDIN_FILENO, Variable});
   return duet::base::FinishOutput("duet", code);
 }

@@ -1,14 +1,14 @@
 #include "client/cli/motion_input.h"
 
 #include <cstddef>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "client/cli/flags.h"
 #include "model/base/file.h"
-#include "model/base/missing_file.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
@@ -22,6 +22,18 @@ constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
 // The legs of a small child and of a giant, metres.
 constexpr double kShortestLikelyLeg = 0.2, kLongestLikelyLeg = 4;
 constexpr char kStandardInput[] = "standard input";
+
+// The value that a parser of names found.
+template <typename T>
+absl::StatusOr<T> Known(const std::optional<T>& value, absl::string_view names,
+                        absl::string_view text) {
+  if (value.has_value()) return *value;
+  return absl::InvalidArgumentError(absl::StrCat("expected ", names, ", got ", base::Quoted(text)));
+}
+
+absl::StatusOr<formats::Format> ParseInputFormat(absl::string_view text) {
+  return Known(formats::ParseFormat(text), formats::kReadableFormatNames, text);
+}
 
 absl::StatusOr<std::string> ReadWhole(std::istream* in) {
   std::string content;
@@ -55,6 +67,54 @@ void WarnOfSize(const motion::Clip& clip, const formats::ReadOptions& options) {
 
 }  // namespace
 
+const std::map<std::string, formats::Side> kSides = {{"left", formats::Side::kLeft},
+                                                     {"right", formats::Side::kRight}};
+
+absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text) {
+  return Known(motion::ParseLengthUnit(text), motion::kLengthUnitNames, text);
+}
+
+absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text) {
+  return Known(motion::ParseUpAxis(text), motion::kUpAxisNames, text);
+}
+
+void AddReadingFlags(CLI::App* app, InputArguments* input) {
+  AddParsed(app, "--input-format", "FORMAT", ParseInputFormat, &input->format,
+            absl::StrCat("Format of the input: ", formats::kReadableFormatNames,
+                         "; required for standard input (-), overrides the extension"))
+      ->group(kInputGroup);
+  app->add_option("--frame-rate", input->frame_rate_hz,
+                  "Frame rate of the input; overrides the file")
+      ->check(AboveZero())
+      ->type_name("HZ")
+      ->group(kInputGroup);
+  app->add_option("--metres-per-unit", input->metres_per_unit,
+                  "Metres in one unit of the file (0.01 for centimetres); overrides the file")
+      ->check(AboveZero())
+      ->type_name("METRES")
+      ->group(kInputGroup);
+  app->add_option("--joint-map", input->joint_map,
+                  "Joint of the file for a joint of the model, if its name is not recognised, or a "
+                  "file with one such pair on each line; repeatable")
+      ->allow_extra_args(false)
+      ->type_name("MODEL_JOINT=FILE_JOINT|FILE")
+      ->group(kInputGroup);
+}
+
+void AddInputFlags(CLI::App* app, InputArguments* input) {
+  AddReadingFlags(app, input);
+  AddParsed(app, "--unit", "metres|millimetres|sbu-normalised", ParseUnit, &input->unit,
+            "Unit of positions; overrides the file")
+      ->group(kInputGroup);
+  AddParsed(app, "--up-axis", "y-up|z-up|y-down", ParseAxis, &input->up_axis,
+            "Up axis of positions; overrides the file")
+      ->group(kInputGroup);
+  app->add_option("--animation", input->animation,
+                  "The animation of a file with several (default: the first that moves the person)")
+      ->type_name("NAME")
+      ->group(kInputGroup);
+}
+
 absl::StatusOr<MotionInput> MotionInput::Open(const std::filesystem::path& path, std::istream* in) {
   MotionInput input;
   input.name_ = path.string();
@@ -84,16 +144,28 @@ absl::StatusOr<formats::ReadPeople> ReadAllPeople(const MotionInput& input,
       [&input](const formats::ReadOptions& person) { return input.Read(person); }, options);
 }
 
-absl::StatusOr<retargeting::JointOverrides> ReadJoints(retargeting::JointOverrides joints,
-                                                       const std::filesystem::path& table_file) {
-  if (table_file.empty()) return joints;
-  const absl::StatusOr<std::string> text =
-      base::ReadFile(table_file, kMaxTableBytes, "a table of joints");
-  if (!text.ok()) return text.status();
-  absl::StatusOr<retargeting::JointOverrides> table =
-      retargeting::ParseJointTable(*text, table_file.string());
-  if (!table.ok()) return table.status();
-  joints.merge(*std::move(table));  // keeps the joints of --joint-map
+absl::StatusOr<retargeting::JointOverrides> ReadJoints(const std::vector<std::string>& joint_map) {
+  retargeting::JointOverrides joints, from_files;
+  for (const std::string& word : joint_map) {
+    if (absl::StrContains(word, '=')) {
+      std::pair<std::string, std::string> pair = absl::StrSplit(word, absl::MaxSplits('=', 1));
+      if (pair.first.empty() || pair.second.empty()) {
+        return absl::InvalidArgumentError(
+            absl::StrCat("--joint-map: expected MODEL_JOINT=FILE_JOINT such as "
+                         "left_hand=LeftWrist, got ",
+                         base::Quoted(word)));
+      }
+      joints.insert(std::move(pair));
+      continue;
+    }
+    const absl::StatusOr<std::string> text =
+        base::ReadFile(word, kMaxTableBytes, "a table of joints");
+    if (!text.ok()) return text.status();
+    absl::StatusOr<retargeting::JointOverrides> table = retargeting::ParseJointTable(*text, word);
+    if (!table.ok()) return table.status();
+    from_files.merge(*std::move(table));
+  }
+  joints.merge(std::move(from_files));  // keeps the pairs
   return joints;
 }
 
@@ -105,28 +177,20 @@ absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
   options.frame_rate_hz = input.frame_rate_hz;
   options.metres_per_unit = motion::StatedMetresPerUnit(input.metres_per_unit, input.unit);
   options.animation = input.animation;
-  absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(input.joints, input.joint_table);
+  absl::StatusOr<retargeting::JointOverrides> joints = ReadJoints(input.joint_map);
   if (!joints.ok()) return joints.status();
   options.joint_overrides = *std::move(joints);
   options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
   return options;
 }
 
-absl::Status CheckExists(const std::filesystem::path& path) {
-  std::error_code error;
-  if (std::filesystem::exists(path, error)) return absl::OkStatus();
-  return base::MissingFile(path);
-}
-
 absl::Status CheckInput(const std::filesystem::path& path,
                         const std::optional<formats::Format>& format) {
-  if (path == kStandardStream) {
-    if (format.has_value()) return absl::OkStatus();
-    return MendedBy(absl::InvalidArgumentError(absl::StrCat(
-                        kStandardInput, ": format: expected --input-format, got none")),
-                    motion::ReadingSetting::kFormat);
-  }
-  return formats::CheckReadable(path, format);
+  if (path != kStandardStream) return formats::CheckReadable(path, format);
+  if (format.has_value()) return absl::OkStatus();
+  return MendedBy(absl::InvalidArgumentError(
+                      absl::StrCat(kStandardInput, ": format: expected --input-format, got none")),
+                  motion::ReadingSetting::kFormat);
 }
 
 }  // namespace duet::client::cli

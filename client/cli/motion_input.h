@@ -1,20 +1,56 @@
 #ifndef DUET_CLIENT_CLI_MOTION_INPUT_H_
 #define DUET_CLIENT_CLI_MOTION_INPUT_H_
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <istream>
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "client/cli/motion_arguments.h"
+#include "absl/strings/string_view.h"
 #include "model/formats/motion_file.h"
 #include "model/formats/people.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
+// Motion files as a command reads them: the flags that override what a file states, and the
+// reading.
+
 namespace duet::client::cli {
+
+// The person who is read by default from a file with two people.
+inline constexpr formats::Side kDefaultSide = formats::Side::kLeft;
+extern const std::map<std::string, formats::Side> kSides;
+
+// Standard input or output in place of a file.
+inline constexpr char kStandardStream[] = "-";
+
+inline constexpr char kInputGroup[] = "Input";
+inline constexpr char kOutputGroup[] = "Output";
+
+// How to read a motion file. Overrides what the file states.
+struct InputArguments {
+  std::optional<formats::Format> format;
+  std::optional<double> frame_rate_hz;
+  std::optional<double> metres_per_unit;
+  std::vector<std::string> joint_map;  // "left_hand=LeftWrist", or files with such lines
+  std::optional<motion::LengthUnit> unit;
+  std::optional<motion::UpAxis> up_axis;
+  std::optional<std::string> animation;
+};
+
+// --input-format, --frame-rate, --metres-per-unit and --joint-map.
+void AddReadingFlags(CLI::App* app, InputArguments* input);
+// The same with --unit, --up-axis and --animation, for commands that only read and write files.
+void AddInputFlags(CLI::App* app, InputArguments* input);
+
+// The syntax of units and axes. Errors: INVALID_ARGUMENT "expected ..., got ...".
+absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text);
+absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text);
 
 // A motion file, or standard input, which is read completely and only once.
 class MotionInput {
@@ -36,18 +72,16 @@ class MotionInput {
 absl::StatusOr<formats::ReadPeople> ReadAllPeople(const MotionInput& input,
                                                   const formats::ReadOptions& options);
 
-// `joints` and those of a table file, which `joints` override. `table_file` may be empty.
-absl::StatusOr<retargeting::JointOverrides> ReadJoints(retargeting::JointOverrides joints,
-                                                       const std::filesystem::path& table_file);
+// The values of --joint-map. A pair overrides a line of a file.
+absl::StatusOr<retargeting::JointOverrides> ReadJoints(const std::vector<std::string>& joint_map);
 
-// Reads the table of joints that the flags name, if any.
+// Reads the tables of joints that the flags name, if any.
 absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
                                                    const motion::Skeleton& skeleton);
 
 // Checks that the file exists and has a known format. `-` needs `format`.
 absl::Status CheckInput(const std::filesystem::path& path,
                         const std::optional<formats::Format>& format);
-absl::Status CheckExists(const std::filesystem::path& path);
 
 }  // namespace duet::client::cli
 

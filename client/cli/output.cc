@@ -1,5 +1,6 @@
 #include "client/cli/output.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <string>
@@ -10,6 +11,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/flags.h"
 #include "client/viewer/page.h"
 #include "model/base/file.h"
 #include "model/base/program_output.h"
@@ -59,8 +61,6 @@ formats::WriteOptions WritingOf(const Synthesis& synthesis, const motion::Proven
   const std::optional<motion::JointRotations>& rotations = synthesis.result.rotations;
   formats::WriteOptions writing;
   writing.provenance = &provenance;
-  writing.bvh_metres_per_unit = synthesis.bvh.metres_per_unit;
-  writing.bvh_keys_per_frame = synthesis.bvh.keys_per_frame;
   writing.follower_rotations = rotations ? &*rotations : nullptr;
   writing.notes = notes;
   return writing;
@@ -84,7 +84,6 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
                       result.pair.leader.frame_count(), result.pair.leader.frame_rate_hz);
   if (synthesis.sampled) absl::StrAppend(&content.subtitle, " · seed ", result.seed);
   content.weights = KeyframesOf(synthesis.request);
-  content.beat = synthesis.beat;
   content.grade = result.grade;
   if (content.pair.leader.frame_count() <= kMostFramesToHandOut) {
     absl::StatusOr<std::string> glb = FormatPair(formats::Format::kGlb, synthesis);
@@ -94,64 +93,43 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
   return RenderPage(content);
 }
 
-// Whether the format of the follower's rig is the format of the output.
-bool HasRig(const std::filesystem::path& output, const Synthesis& synthesis) {
-  if (!synthesis.follower_rig) return false;
-  const std::optional<formats::Format> written = formats::FormatOf(output);
-  const std::optional<formats::Format> rig = formats::FormatOf(synthesis.follower_rig->file);
-  return written && rig && formats::FitsRig(*written, *rig);
-}
-
-// "pair.follower.glb" of "pair.glb".
-std::filesystem::path FollowerBeside(std::filesystem::path output) {
-  return output.replace_extension(absl::StrCat(".follower", output.extension().string()));
-}
-
-// Writes the follower on another rig: BVH replaces the file on Duet's skeleton, glTF is one more
-// file.
-absl::StatusOr<WrittenFiles> WriteWithRig(const std::filesystem::path& output,
-                                          const Synthesis& synthesis) {
-  const motion::ClipPair& pair = synthesis.result.pair;
-  const formats::Format format = *formats::FormatOf(output);
-  const motion::Provenance provenance = ProvenanceOf(synthesis);
-  WrittenFiles written;
-  const absl::StatusOr<std::string> follower =
-      formats::FormatOntoRig(pair.follower, *synthesis.follower_rig, format,
-                             WritingOf(synthesis, provenance, &written.notes));
-  if (!follower.ok()) return follower.status();
-  // The follower on Duet's skeleton is replaced, so it is not reported.
-  formats::WriteOptions writing = WritingOf(synthesis, provenance, nullptr);
-  if (format == formats::Format::kBvh) {
-    const absl::StatusOr<double> unit = formats::BvhUnitOnRig(*synthesis.follower_rig);
-    if (!unit.ok()) return unit.status();
-    if (*unit != writing.bvh_metres_per_unit) {
-      written.notes.push_back(
-          absl::StrCat("both BVH files have the unit of the rig, ", *unit, " m"));
-    }
-    writing.bvh_metres_per_unit = *unit;
-  }
-  absl::StatusOr<std::vector<std::filesystem::path>> files =
-      formats::WritePair(output, pair, synthesis.skeleton, writing);
-  if (!files.ok()) return files.status();
-  written.files = *std::move(files);
-  if (format != formats::Format::kBvh) written.files.push_back(FollowerBeside(output));
-  absl::Status status = base::WriteFile(written.files.back(), *follower);
-  if (!status.ok()) return status;
-  return written;
+absl::StatusOr<OutputFormat> ParseOutputFormat(absl::string_view text) {
+  if (text == "html") return OutputFormat{};
+  const std::optional<formats::Format> format = formats::ParseFormat(text);
+  if (format) return OutputFormat{format};
+  return absl::InvalidArgumentError(
+      absl::StrCat("expected html, ", formats::kReadableFormatNames, ", got ", base::Quoted(text)));
 }
 
 }  // namespace
 
-std::vector<std::filesystem::path> PairFiles(const std::filesystem::path& output,
-                                             bool has_follower_rig) {
-  const std::optional<formats::Format> format = formats::FormatOf(output);
+void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format) {
+  AddParsed(app, "--output-format", "FORMAT", ParseOutputFormat, format,
+            "Format of standard output (--out -): html, or a format of --out FILE such as csv")
+      ->group(kOutputGroup);
+}
+
+bool WritesToStandardOutput(const std::vector<std::filesystem::path>& outputs) {
+  return std::find(outputs.begin(), outputs.end(), kStandardStream) != outputs.end();
+}
+
+void CheckStandardOutput(const std::vector<std::filesystem::path>& outputs,
+                         const std::optional<OutputFormat>& format, bool json) {
+  const auto count = std::count(outputs.begin(), outputs.end(), kStandardStream);
+  if (count == 0) {
+    if (!format.has_value()) return;
+    RejectFlag("--output-format", "is only valid with --out -");
+  }
+  if (count > 1) RejectFlag("--out", "expected - once, got it twice");
+  if (!format.has_value()) RejectMissing("--output-format, which --out - needs,");
+  if (json) RejectFlag("--json", "cannot be used with --out -: both print to standard output");
+}
+
+std::vector<std::filesystem::path> PairFiles(const std::filesystem::path& output) {
   std::vector<std::filesystem::path> files = {output};
-  if (format == formats::Format::kBvh) {
+  if (formats::FormatOf(output) == formats::Format::kBvh) {
     files.push_back(std::filesystem::path(output).replace_extension(".leader.bvh"));
     files.push_back(std::filesystem::path(output).replace_extension(".follower.bvh"));
-  } else if (has_follower_rig &&
-             (format == formats::Format::kGlb || format == formats::Format::kGltf)) {
-    files.push_back(FollowerBeside(output));
   }
   return files;
 }
@@ -199,7 +177,6 @@ absl::Status CheckCanCreate(const std::filesystem::path& output) {
 
 absl::StatusOr<WrittenFiles> WriteOutput(const std::filesystem::path& output,
                                          const Synthesis& synthesis) {
-  if (HasRig(output, synthesis)) return WriteWithRig(output, synthesis);
   if (!IsPage(output)) {
     const motion::Provenance provenance = ProvenanceOf(synthesis);
     WrittenFiles written;

@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_CLI_OUTPUT_H_
 #define DUET_CLIENT_CLI_OUTPUT_H_
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <ostream>
@@ -9,15 +10,29 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "client/cli/motion_arguments.h"
+#include "client/cli/motion_input.h"
 #include "client/request.h"
 #include "client/result.h"
-#include "model/formats/follower_rig.h"
 #include "model/formats/motion_file.h"
-#include "model/motion/beat.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
+
+// The kind of output: a motion, or an HTML page.
+struct OutputFormat {
+  std::optional<formats::Format> motion;  // absent: a page
+};
+
+// --output-format, of what goes to standard output.
+void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format);
+
+// Whether one of the outputs is standard output.
+bool WritesToStandardOutput(const std::vector<std::filesystem::path>& outputs);
+
+// What standard output cannot take: several results, a summary besides, a result without
+// --output-format. Calls RejectFlag, for use during parsing.
+void CheckStandardOutput(const std::vector<std::filesystem::path>& outputs,
+                         const std::optional<OutputFormat>& format, bool json);
 
 // A finished synthesis, with everything that any kind of output shows of it.
 struct Synthesis {
@@ -26,15 +41,12 @@ struct Synthesis {
   motion::Skeleton skeleton;
   std::filesystem::path leader_file;
   bool sampled = false;  // the model samples: the follower is one of several
-  BvhArguments bvh;
-  std::optional<formats::FollowerRig> follower_rig;
-  std::optional<motion::Beat> beat;
 };
 
 enum class PageAllowed { kNo, kYes };
-// Whether an output can be written at all, before any work is done for it: a known extension, a
-// folder that exists, and neither a folder nor one of the files that are read. Standard output
-// always is. INVALID_ARGUMENT.
+// Checks that an output can be written, before any work is done for it: a known extension, a folder
+// that exists, and neither a folder nor one of the files that are read. Standard output always can.
+// Errors: INVALID_ARGUMENT.
 absl::Status CheckOutput(const std::filesystem::path& output,
                          const std::vector<std::filesystem::path>& inputs,
                          PageAllowed page = PageAllowed::kYes);
@@ -45,13 +57,12 @@ absl::Status CheckReplacesNone(const std::filesystem::path& written,
 // ABORTED if the file cannot be created now, as on a read-only disk. For outputs that are written
 // long after the work began: creates a file beside it, and removes it.
 absl::Status CheckCanCreate(const std::filesystem::path& output);
-// The output, and the files that WriteOutput may write beside or in place of it.
-std::vector<std::filesystem::path> PairFiles(const std::filesystem::path& output,
-                                             bool has_follower_rig);
+// The output, and the files that WriteOutput may write in place of it.
+std::vector<std::filesystem::path> PairFiles(const std::filesystem::path& output);
 
 struct WrittenFiles {
   std::vector<std::filesystem::path> files;
-  std::vector<std::string> notes;  // what is worth telling of them
+  std::vector<std::string> notes;  // remarks on them
 };
 // Writes the pair as the extension says, whole files or none, and returns them (.bvh makes two).
 absl::StatusOr<WrittenFiles> WriteOutput(const std::filesystem::path& output,
@@ -62,7 +73,7 @@ absl::StatusOr<WrittenFiles> WriteFollower(const std::filesystem::path& output,
 // The pair as bytes, for a pipe.
 absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis);
 
-// Writes all of it. ABORTED where it does not arrive: a full disk, a reader that went.
+// Writes all of it. ABORTED if that fails: a full disk, a reader that is gone.
 absl::Status WriteToStream(const std::string& content, std::ostream& out);
 
 // ABORTED instead of PERMISSION_DENIED: a disk may be full or a folder closed for a while, so the

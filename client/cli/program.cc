@@ -1,36 +1,193 @@
-#include "client/cli/program.h"
-
+#include <map>
 #include <ostream>
-#include <utility>
+#include <string>
+#include <vector>
 
-#include "client/cli/command_line.h"
-#include "client/cli/exit_code.h"
+#include "absl/status/status.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
+#include "client/cli/command.h"
+#include "client/cli/program_environment.h"
 #include "client/cli/report.h"
+#include "client/cli/settings.h"
+#include "model/base/nearest.h"
+#include "model/base/text.h"
+#include "model/base/usage_text.h"
 
 namespace duet::client::cli {
+namespace {
 
-int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironment& environment) {
-  CommandLine line;
-  std::vector<Setting> settings;
-  if (line.UsesSettings(arguments)) {
-    absl::StatusOr<std::vector<Setting>> read = ReadSettings(environment.variables);
-    if (!read.ok()) {
-      *environment.err << DescribeFailure(read.status(), "", environment.ErrStyle());
-      return kExitUsage;
+using Strings = std::vector<std::string>;
+
+int PrintUsageError(const std::string& message, const ProgramEnvironment& environment) {
+  *environment.err << message << "\nRun with --help for more information.\n";
+  return kExitUsage;
+}
+
+// "--server" of "--server" and "--server=lab:50051".
+std::string FlagOf(const std::string& argument) { return argument.substr(0, argument.find('=')); }
+
+bool IsGiven(const std::string& flag, const Strings& arguments) {
+  for (const std::string& argument : arguments) {
+    if (argument == "--") return false;
+    if (FlagOf(argument) == flag) return true;
+  }
+  return false;
+}
+
+Strings FlagsOf(const CLI::App& command) {
+  Strings names;
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_positional()) names.push_back(option->get_name());
+  }
+  return names;
+}
+
+const CLI::App* FindCommand(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == name) return command;
+  }
+  return nullptr;
+}
+
+// The error about the first setting that no command has a flag for; empty if there is none.
+std::string FindUnknownSetting(const CLI::App& app, const std::vector<Setting>& settings) {
+  Strings known;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    for (const std::string& flag : FlagsOf(*command)) known.push_back(flag.substr(2));
+  }
+  for (const Setting& setting : settings) {
+    if (std::find(known.begin(), known.end(), setting.name) != known.end()) continue;
+    return absl::StrCat(setting.source, ": no command has a flag --", setting.name,
+                        base::DidYouMean(setting.name, known));
+  }
+  return "";
+}
+
+// Whether a flag on the command line overrides or excludes this one.
+bool IsOverridden(const CLI::Option& flag, const Strings& arguments) {
+  if (IsGiven(flag.get_name(), arguments)) return true;
+  for (const CLI::Option* other : flag.get_excludes()) {
+    if (IsGiven(other->get_name(), arguments)) return true;
+  }
+  return false;
+}
+
+// Sets the flags of `command` to their settings, as if these were their defaults: rules between
+// flags ignore them.
+absl::Status ApplySettings(const std::vector<Setting>& settings, const Strings& arguments,
+                           CLI::App* command) {
+  std::map<std::string, std::vector<Setting>> lines;  // a repeatable flag may have several
+  for (const Setting& setting : settings) lines[setting.name].push_back(setting);
+  for (const auto& [name, values] : lines) {
+    CLI::Option* flag = command->get_option_no_throw(absl::StrCat("--", name));
+    if (flag == nullptr || IsOverridden(*flag, arguments)) continue;
+    for (const Setting& setting : values) flag->add_result(setting.value);
+    try {
+      flag->run_callback();
+    } catch (const CLI::ParseError& error) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(values.back().source, ": ", base::UsageText(error.what())));
     }
-    settings = *std::move(read);
+    flag->clear();
+    flag->default_str(values.back().value)->required(false);
   }
-  const ParsedCommandLine parsed = line.Parse(arguments, settings);
-  if (parsed.command == nullptr) {
-    (parsed.exit_code == kExitDone ? *environment.out : *environment.err) << parsed.text;
-    return parsed.exit_code;
+  return absl::OkStatus();
+}
+
+// The error about a first word that is not a command; empty if it is one.
+std::string FindUnknownCommand(const CLI::App& app, const Strings& arguments) {
+  if (arguments.empty() || absl::StartsWith(arguments[0], "-")) return "";
+  if (FindCommand(app, arguments[0]) != nullptr || IsGiven("--help", arguments)) return "";
+  Strings known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  return absl::StrCat("There is no command ", base::Quoted(arguments[0]),
+                      base::DidYouMean(arguments[0], known));
+}
+
+// "; did you mean --admin-server?" for --server, of which the known flag is a longer form, or for a
+// flag with another spelling.
+std::string SuggestedFlag(const std::string& flag, const Strings& known) {
+  for (const std::string& name : known) {
+    if (absl::EndsWith(name, flag.substr(1))) return absl::StrCat("; did you mean ", name, "?");
   }
-  const absl::StatusOr<ExitCode> code =
-      parsed.command->run({line.app(), parsed.words, environment, RunProgram});
-  if (code.ok()) return *code;
-  *environment.err << DescribeFailure(code.status(), parsed.command->servers(),
-                                      environment.ErrStyle());
-  return ExitCodeFor(code.status());
+  return base::DidYouMean(flag, known);
+}
+
+// The error about the first flag that the command does not have; empty if there is none.
+std::string FindUnknownFlag(const CLI::App& app, const Strings& arguments) {
+  const CLI::App* command = arguments.empty() ? nullptr : FindCommand(app, arguments[0]);
+  if (command == nullptr) return "";
+  Strings known = FlagsOf(*command);
+  for (const CLI::App* subcommand : command->get_subcommands({})) {
+    const Strings further = FlagsOf(*subcommand);
+    known.insert(known.end(), further.begin(), further.end());
+  }
+  for (const std::string& argument : arguments) {
+    if (argument == "--") break;
+    if (!absl::StartsWith(argument, "--")) continue;
+    const std::string flag = FlagOf(argument);
+    if (std::find(known.begin(), known.end(), flag) != known.end()) continue;
+    return absl::StrCat(arguments[0], " has no flag ", flag, SuggestedFlag(flag, known));
+  }
+  return "";
+}
+
+// Reads the settings and sets the flags of the command that `arguments` name. Help works without.
+absl::Status UseSettings(const CLI::App& app, const std::vector<Command>& commands,
+                         const Strings& arguments, const Variables& variables) {
+  if (arguments.empty() || absl::StartsWith(arguments[0], "-") || IsGiven("--help", arguments)) {
+    return absl::OkStatus();
+  }
+  const absl::StatusOr<std::vector<Setting>> settings = ReadSettings(variables);
+  if (!settings.ok()) return settings.status();
+  const std::string unknown = FindUnknownSetting(app, *settings);
+  if (!unknown.empty()) return absl::InvalidArgumentError(unknown);
+  for (const Command& command : commands) {
+    if (command.app->get_name() == arguments[0]) {
+      return ApplySettings(*settings, arguments, command.app);
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+int RunProgram(const Strings& arguments, const ProgramEnvironment& environment) {
+  CLI::App app("Asks a Duet server to answer one character's motion with another's.", "duet");
+  app.get_formatter()->column_width(34);
+  app.set_version_flag("--version", "duet " DUET_VERSION);
+  app.require_subcommand(1);
+  app.footer(kExitCodesFooter);
+  std::vector<Command> commands;
+  for (const auto add : {AddModelsCommand, AddSynthesizeCommand, AddLiveCommand, AddBatchCommand,
+                         AddInspectCommand, AddConvertCommand, AddViewCommand, AddAdminCommand}) {
+    commands.push_back(add(&app));
+  }
+  app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
+  const absl::Status settings = UseSettings(app, commands, arguments, environment.variables);
+  if (!settings.ok()) return PrintUsageError(std::string(settings.message()), environment);
+  const std::string unknown = FindUnknownCommand(app, arguments);
+  if (!unknown.empty()) return PrintUsageError(unknown, environment);
+  try {
+    // CLI11 takes the arguments in reverse.
+    app.parse(Strings(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::Success& answer) {  // --help or --version
+    return app.exit(answer, *environment.out, *environment.err);
+  } catch (const CLI::ParseError& error) {
+    // An unknown flag may cause other errors: its value counts as one argument more.
+    const std::string flag = FindUnknownFlag(app, arguments);
+    return PrintUsageError(flag.empty() ? base::UsageText(error.what()) : flag, environment);
+  }
+  for (const Command& command : commands) {
+    if (!command.app->parsed()) continue;
+    const absl::StatusOr<ExitCode> code = command.run(environment);
+    if (code.ok()) return *code;
+    *environment.err << DescribeFailure(code.status(), command.servers());
+    return ExitCodeFor(code.status());
+  }
+  return kExitUsage;  // not reached: a command is required
 }
 
 }  // namespace duet::client::cli

@@ -6,11 +6,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/admin_client.h"
 #include "client/cli/settings.h"
-#include "client/cli/style.h"
 #include "client/client.h"
 
 namespace duet::client::cli {
@@ -21,22 +21,17 @@ struct ProgramEnvironment {
   std::ostream* out;
   std::ostream* err;
   std::istream* in = nullptr;    // what `-` reads; null: no standard input
-  bool err_is_terminal = false;  // then progress is updated in place and coloured
-  bool out_is_terminal = false;  // then output is coloured
-  bool in_is_terminal = false;
+  bool err_is_terminal = false;  // then progress is updated in place
   // The file descriptor of `in`, for reading that a signal can interrupt. Absent in tests.
   std::optional<int> in_descriptor = std::nullopt;
   Variables variables = [](const std::string&) { return std::nullopt; };
   std::function<absl::StatusOr<std::unique_ptr<AdminClient>>(const ClientOptions&)> connect_admin =
       AdminClient::Create;
-
-  // Coloured on a terminal, unless NO_COLOR has a value.
-  Style OutStyle() const { return Style(out_is_terminal && WantsColour()); }
-  Style ErrStyle() const { return Style(err_is_terminal && WantsColour()); }
-
- private:
-  bool WantsColour() const { return variables("NO_COLOR").value_or("").empty(); }
 };
+
+// Runs the whole `duet` program: parses, calls, writes and prints. Returns its exit code
+// (exit_code.h). `arguments` come without the program's name.
+int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironment& environment);
 
 }  // namespace duet::client::cli
 

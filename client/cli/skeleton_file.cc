@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "client/cli/input_flags.h"
+#include "client/cli/motion_input.h"
 #include "client/model_skeleton.h"
 #include "model/base/file.h"
 #include "model/base/strict_json.h"
@@ -92,12 +92,12 @@ absl::StatusOr<motion::Skeleton> SkeletonOf(const std::filesystem::path& file) {
   return ReadSkeletonFile(file);
 }
 
-void AddSkeletonFlag(FlagSet* app, std::filesystem::path* file) {
-  app->Add("--skeleton", file,
-           "Joints to read: a motion in .json, or a model that duet models --json prints "
-           "(default: the 15 joints of sbu)")
-      ->Form("FILE")
-      ->Group(kInputGroup);
+void AddSkeletonFlag(CLI::App* app, std::filesystem::path* file) {
+  app->add_option("--skeleton", *file,
+                  "Joints to read: a motion in .json, or a model that duet models --json prints "
+                  "(default: the 15 joints of sbu)")
+      ->type_name("FILE")
+      ->group(kInputGroup);
 }
 
 }  // namespace duet::client::cli

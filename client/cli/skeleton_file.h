@@ -1,10 +1,10 @@
 #ifndef DUET_CLIENT_CLI_SKELETON_FILE_H_
 #define DUET_CLIENT_CLI_SKELETON_FILE_H_
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "absl/status/statusor.h"
-#include "client/cli/flag_set.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
@@ -20,7 +20,7 @@ absl::StatusOr<motion::Skeleton> ReadSkeletonFile(const std::filesystem::path& f
 absl::StatusOr<motion::Skeleton> SkeletonOf(const std::filesystem::path& file);
 
 // --skeleton, for commands that read motions without a server.
-void AddSkeletonFlag(FlagSet* app, std::filesystem::path* file);
+void AddSkeletonFlag(CLI::App* app, std::filesystem::path* file);
 
 }  // namespace duet::client::cli
 

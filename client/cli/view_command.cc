@@ -1,40 +1,149 @@
-#include "client/cli/view_command.h"
-
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <ostream>
+#include <set>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/strip.h"
+#include "client/cli/command.h"
 #include "client/cli/flags.h"
-#include "client/cli/input_flags.h"
+#include "client/cli/motion_input.h"
 #include "client/cli/output.h"
 #include "client/cli/skeleton_file.h"
-#include "client/cli/take.h"
-#include "client/cli/take_flags.h"
 #include "client/viewer/gallery.h"
 #include "model/base/file.h"
+#include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct ViewArguments {
-  TakeArguments takes;
-  std::filesystem::path skeleton;  // empty: the 15 joints of sbu
-  std::filesystem::path out;
+  std::vector<std::string> takes;            // "[NAME=]FILE"
+  formats::Side leader_side = kDefaultSide;  // who leads in a file with two people
+  InputArguments input;
+  fs::path skeleton;  // empty: the 15 joints of sbu
+  fs::path out;
   std::string title;  // empty: the takes' names
   bool quiet = false;
 };
 
-constexpr std::size_t kMostNamesInTitle = 3;
+// A motion to show: one person, or a leader and a follower.
+struct Take {
+  std::string name;
+  std::vector<fs::path> files;  // one, or the leader's and the follower's
+  motion::Clip leader;
+  std::optional<motion::Clip> follower;
+  std::vector<std::string> notes;  // on how it was read
+};
+
+constexpr char kLeaderEnding[] = ".leader.bvh", kFollowerEnding[] = ".follower.bvh";
+
+bool Exists(const fs::path& path) {
+  std::error_code error;
+  return path == kStandardStream || fs::exists(path, error);
+}
+
+// The name and the files of "[NAME=]FILE"; a text that is the name of a file denotes that file. The
+// default name is the file's. pair.leader.bvh includes pair.follower.bvh beside it.
+Take ParseTake(const std::string& text) {
+  Take take;
+  std::string file = text;
+  const std::size_t equals = text.find('=');
+  if (equals != std::string::npos && equals > 0 && !Exists(text)) {
+    take.name = text.substr(0, equals);
+    file = text.substr(equals + 1);
+  }
+  take.files = {file};
+  std::string name = file == kStandardStream ? "standard input" : fs::path(file).stem().string();
+  if (absl::EndsWith(file, kLeaderEnding)) {
+    name = fs::path(name).stem().string();
+    const fs::path follower = absl::StrCat(absl::StripSuffix(file, kLeaderEnding), kFollowerEnding);
+    if (Exists(follower)) take.files.push_back(follower);
+  }
+  if (take.name.empty()) take.name = name;
+  return take;
+}
+
+absl::StatusOr<formats::ReadPeople> ReadFile(const fs::path& file,
+                                             const formats::ReadOptions& options,
+                                             std::istream* in) {
+  const absl::Status status = CheckInput(file, options.format);
+  if (!status.ok()) return status;
+  const absl::StatusOr<MotionInput> input = MotionInput::Open(file, in);
+  if (!input.ok()) return input.status();
+  return ReadAllPeople(*input, options);
+}
+
+// Reads the motions of a take's files.
+absl::Status Read(const formats::ReadOptions& options, formats::Side leader_side, std::istream* in,
+                  Take* take) {
+  absl::StatusOr<formats::ReadPeople> read = ReadFile(take->files[0], options, in);
+  if (!read.ok()) return read.status();
+  std::vector<motion::Clip>& people = read->people;
+  if (take->files.size() > 1) {
+    absl::StatusOr<formats::ReadPeople> other = ReadFile(take->files[1], options, in);
+    if (!other.ok()) return other.status();
+    people = {std::move(people[0]), std::move(other->people[0])};
+  } else if (people.size() > 1 && leader_side == formats::Side::kRight) {
+    std::swap(people[0], people[1]);
+  }
+  take->notes = std::move(read->notes);
+  take->leader = std::move(people[0]);
+  if (people.size() < 2) return absl::OkStatus();
+  if (people[1].frame_count() != take->leader.frame_count()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(take->files.back().string(), ": expected the leader's ",
+                     take->leader.frame_count(), " frames, got ", people[1].frame_count()));
+  }
+  take->follower = std::move(people[1]);
+  return absl::OkStatus();
+}
+
+// Reads the takes, except files that are the follower of another take.
+absl::StatusOr<std::vector<Take>> ReadTakes(const ViewArguments& arguments,
+                                            const motion::Skeleton& skeleton, std::istream* in) {
+  const absl::StatusOr<formats::ReadOptions> options = ToReadOptions(arguments.input, skeleton);
+  if (!options.ok()) return options.status();
+  std::vector<Take> takes;
+  std::set<fs::path> followers;
+  for (const std::string& text : arguments.takes) {
+    takes.push_back(ParseTake(text));
+    if (takes.back().files.size() > 1) followers.insert(takes.back().files[1]);
+  }
+  takes.erase(
+      std::remove_if(takes.begin(), takes.end(),
+                     [&followers](const Take& take) { return followers.count(take.files[0]) > 0; }),
+      takes.end());
+  for (Take& take : takes) {
+    const absl::Status status = Read(*options, arguments.leader_side, in, &take);
+    if (!status.ok()) return status;
+  }
+  return takes;
+}
+
+constexpr std::size_t kMaxNamesInTitle = 3;
+
+constexpr char kFooter[] = R"(
+Each FILE is a motion of one or two people. walk.leader.bvh includes walk.follower.bvh if that exists.
+)";
 
 std::string TitleOf(const std::vector<Take>& takes) {
   std::vector<std::string> names;
   for (const Take& take : takes) {
-    if (names.size() < kMostNamesInTitle) names.push_back(take.name);
+    if (names.size() < kMaxNamesInTitle) names.push_back(take.name);
   }
   std::string title = absl::StrJoin(names, ", ");
   if (takes.size() > names.size()) {
@@ -72,8 +181,7 @@ absl::Status Write(const ViewArguments& arguments, const std::string& page,
 absl::Status RunView(const ViewArguments& arguments, const ProgramEnvironment& environment) {
   const absl::StatusOr<motion::Skeleton> skeleton = SkeletonOf(arguments.skeleton);
   if (!skeleton.ok()) return skeleton.status();
-  const absl::StatusOr<std::vector<Take>> takes =
-      ReadTakes(arguments.takes, *skeleton, environment.in);
+  const absl::StatusOr<std::vector<Take>> takes = ReadTakes(arguments, *skeleton, environment.in);
   if (!takes.ok()) return takes.status();
   viewer::GalleryContent content;
   for (const Take& take : *takes) {
@@ -88,35 +196,51 @@ absl::Status RunView(const ViewArguments& arguments, const ProgramEnvironment& e
   return Write(arguments, *page, Describe(*takes), environment);
 }
 
-void AddFlags(FlagSet* command, ViewArguments* arguments) {
-  command
-      ->Add("files", &arguments->takes.takes,
-            "Motions to show, at most 12")
-      ->Required()
-      ->Count(1, 12)
-      ->Form("[NAME=]FILE");
-  AddTakeFlags(command, &arguments->takes);
+void CheckPage(const fs::path& page) {
+  if (page == kStandardStream) return;
+  const std::string extension = absl::AsciiStrToLower(page.extension().string());
+  if (extension != ".html" && extension != ".htm") {
+    RejectFlag("--out",
+               absl::StrCat(page.string(), ": extension: expected .html, got \"", extension, "\""));
+  }
+  const absl::Status status = CheckOutput(page, {});
+  if (!status.ok()) RejectFlag("--out", std::string(status.message()));
+}
+
+void AddFlags(CLI::App* command, ViewArguments* arguments) {
+  command->add_option("files", arguments->takes, "Motions to show, at most 12")
+      ->required()
+      ->expected(1, 12)
+      ->type_name("[NAME=]FILE");
+  AddChoice(command, "--leader-side", kSides, &arguments->leader_side,
+            "The person who leads in a file with two people")
+      ->default_str(NameOf(kSides, arguments->leader_side))
+      ->group(kInputGroup);
+  AddInputFlags(command, &arguments->input);
   AddSkeletonFlag(command, &arguments->skeleton);
-  command->Add("--out", &arguments->out, "Page to write, .html; - for standard output")
-      ->Required()
-      ->Form("FILE")
-      ->Group(kOutputGroup);
-  command->Add("--title", &arguments->title, "Title of the page")
-      ->Form("TEXT")
-      ->Group(kOutputGroup);
-  command->AddSwitch("--quiet", &arguments->quiet, "Print only errors")->Group(kOutputGroup);
-  command->Footer(kTakesFooter);
-  command->Check([command, arguments] {
-    CheckTakes(arguments->takes);
-    CheckPage("--out", arguments->out);
+  command->add_option("--out", arguments->out, "Page to write, .html; - for standard output")
+      ->required()
+      ->type_name("FILE")
+      ->group(kOutputGroup);
+  command->add_option("--title", arguments->title, "Title of the page")
+      ->type_name("TEXT")
+      ->group(kOutputGroup);
+  command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
+  command->footer(kFooter);
+  command->callback([arguments] {
+    const std::vector<std::string>& takes = arguments->takes;
+    if (std::count(takes.begin(), takes.end(), kStandardStream) > 1) {
+      RejectFlag("files", "expected - once, got it twice");
+    }
+    CheckPage(arguments->out);
   });
 }
 
 }  // namespace
 
-Command AddViewCommand(FlagSet* program) {
+Command AddViewCommand(CLI::App* program) {
   const auto arguments = std::make_shared<ViewArguments>();
-  FlagSet* app = program->AddCommand("view", "Make a page that plays motions side by side");
+  CLI::App* app = program->add_subcommand("view", "Make a page that plays motions side by side");
   AddFlags(app, arguments.get());
   return MakeCommand(app, arguments, RunView);
 }

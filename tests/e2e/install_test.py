@@ -47,10 +47,9 @@ class InstallTest(unittest.TestCase):
         linked = run("ldd", prefix / "bin/duet")
         self.assertIn("libgrpc++", linked)
         self.assertNotIn("torch", linked)
-        for document in ("man/man1/duet.1", "man/man1/duet-inspect.1",
-                         "bash-completion/completions/duet", "zsh/site-functions/_duet",
-                         "fish/vendor_completions.d/duet.fish"):
-            self.assertGreater((prefix / "share" / document).stat().st_size, 100, document)
+        if shutil.which("help2man"):
+            self.assertIn("--candidates", (prefix / "share/man/man1/duet.1").read_text(
+                encoding="utf-8").replace("\\-", "-"))
         # Nothing points back into the build or the sources.
         for file in prefix.glob("lib/**/*.cmake"):
             text = file.read_text(encoding="utf-8")

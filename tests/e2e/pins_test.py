@@ -201,10 +201,11 @@ class PinsTest(tools.ServedTest):
         place = there(free.follower, "right_hand", 40, (0, 0.25, 0.05)).position
         flag = "right_hand@40=" + ",".join(f"{value:.5f}" for value in place)
         with tempfile.TemporaryDirectory() as folder:
-            out = pathlib.Path(folder) / "pair.json"
+            out, request = pathlib.Path(folder) / "pair.json", pathlib.Path(folder) / "request"
+            request.write_text("up { y: 1 }", encoding="utf-8")
             told = tools.duet("synthesize", "--server", self.server.address, "--leader",
                               tools.sample("hug"), "--label", "hug=1", "--pin", flag, "--pin",
-                              "head@10=0,9,0", "--level", "off", "--json", "--out", out)
+                              "head@10=0,9,0", "--request", request, "--json", "--out", out)
             told.check_returncode()
             leader, follower = duet.read_pair(out)
             self.assertLess(np.linalg.norm(follower.joint("right_hand")[40] - place), 2 * REACHED)

@@ -1,4 +1,4 @@
-"""`duet synthesize --follower-rig`: rigs with unknown joint names, and joint maps for them."""
+"""`duet convert --rig` with the followers of answers: unknown joint names, joint maps, rigs of other shapes."""
 
 import json
 import re
@@ -6,7 +6,7 @@ import re
 import numpy as np
 import tools
 
-ADVICE = "--follower-rig-joint-map-file FILE"
+ADVICE = "--rig-joint-map FILE"
 MIXAMO = {"hips": "Hips", "spine": "Spine", "chest": "Spine2", "neck": "Neck", "head": "Head",
           "head_top": "HeadTop_End"}
 for side in ("left", "right"):
@@ -32,56 +32,52 @@ class RigTest(tools.ServedTest):
             f"{name} = {part}\n" for name, part in cls.strange.items() if "_to_" not in name),
             encoding="utf-8")
 
-    def synthesize(self, out, *flags, leader=None):
-        return tools.run(tools.PROGRAMS / "duet", "synthesize", "--server", self.server.address,
-                         "--leader", leader or self.leader, "--label", "kick=1", "--out",
-                         self.folder / out, *flags)
+        cls.kick = cls.answer("kick.json", cls.leader, "--label", "kick=1")
+        cls.dance = cls.answer("dance.json", tools.sample("salsa"), "--model", "salsa", "--label", "basic=1")
+
+    @classmethod
+    def answer(cls, out, leader, *flags):
+        tools.duet("synthesize", "--server", cls.server.address, "--leader", leader, "--out",
+                   cls.folder / out, "--quiet", *flags).check_returncode()
+        return cls.folder / out
+
+    def convert(self, out, *flags, pair=None):
+        """Writes the follower of a pair."""
+        return tools.duet("convert", pair or self.kick, "--side", "right", "--out", self.folder / out,
+                          *flags)
 
     def motion_of(self, file):
         """The channel values, which are the same whatever joints are called."""
         return (self.folder / file).read_text(encoding="utf-8").partition("MOTION")[2]
 
     def test_unknown_joint_names_are_rejected_with_the_flag_to_use(self):
-        done = self.synthesize("refused.bvh", "--follower-rig", self.rig)
+        done = self.convert("refused.bvh", "--rig", self.rig)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("strange.bvh", done.stderr)
         self.assertIn(ADVICE, done.stderr)
-        self.assertFalse((self.folder / "refused.follower.bvh").exists())
+        self.assertFalse((self.folder / "refused.bvh").exists())
 
     def test_joint_map_file_maps_the_joints(self):
-        self.synthesize("known.bvh", "--follower-rig", self.leader).check_returncode()
-        done = self.synthesize("told.bvh", "--follower-rig", self.rig,
-                               "--follower-rig-joint-map-file", self.table)
+        self.convert("known.bvh", "--rig", self.leader).check_returncode()
+        done = self.convert("told.bvh", "--rig", self.rig, "--rig-joint-map", self.table)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(self.motion_of("told.follower.bvh"), self.motion_of("known.follower.bvh"))
-        self.assertIn("JOINT Part1", (self.folder / "told.follower.bvh").read_text(encoding="utf-8"))
+        self.assertEqual(self.motion_of("told.bvh"), self.motion_of("known.bvh"))
+        self.assertIn("JOINT Part1", (self.folder / "told.bvh").read_text(encoding="utf-8"))
 
-    def test_joint_map_flags_override_the_file(self):
+    def test_pairs_override_the_file(self):
         spoilt = self.folder / "spoilt.txt"
         spoilt.write_text(self.table.read_text(encoding="utf-8").replace(
             f"left_hand = {self.strange['left_hand']}", "left_hand = Nowhere"), encoding="utf-8")
-        flags = ("--follower-rig", self.rig, "--follower-rig-joint-map-file", spoilt)
-        done = self.synthesize("spoilt.bvh", *flags)
+        flags = ("--rig", self.rig, "--rig-joint-map", spoilt)
+        done = self.convert("spoilt.bvh", *flags)
         self.assertIn("left_hand=Nowhere", done.stderr)
-        done = self.synthesize("mended.bvh", *flags, "--follower-rig-joint-map",
-                               f"left_hand={self.strange['left_hand']}")
+        done = self.convert("mended.bvh", *flags, "--rig-joint-map",
+                            f"left_hand={self.strange['left_hand']}")
         self.assertEqual(done.returncode, 0, done.stderr)
 
-    def test_leaders_rig_uses_the_leaders_joint_map(self):
-        done = self.synthesize("own.bvh", "--follower-rig", "leader", leader=self.rig)
-        self.assertIn("--joint-map-file FILE", done.stderr)
-        done = self.synthesize("own.bvh", "--follower-rig", "leader", "--joint-map-file", self.table,
-                               leader=self.rig)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("ROOT Part0", (self.folder / "own.follower.bvh").read_text(encoding="utf-8"))
-
-    def dance(self, out, *flags):
-        """A salsa, as `out` and pair.json. Returns the joints' names and the follower of pair.json."""
-        done = tools.duet("synthesize", "--server", self.server.address, "--model", "salsa", "--leader",
-                          tools.sample("salsa"), "--label", "basic=1", "--out", self.folder / "pair.json",
-                          "--out", self.folder / out, "--quiet", *flags)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        pair = json.loads((self.folder / "pair.json").read_text(encoding="utf-8"))
+    def dancer(self):
+        """The joints' names and the follower of the salsa."""
+        pair = json.loads(self.dance.read_text(encoding="utf-8"))
         return pair["joint_names"], np.array(pair["follower"])
 
     def read(self, file, *flags):
@@ -97,10 +93,13 @@ class RigTest(tools.ServedTest):
         (self.folder / "mixamo.bvh").write_text(re.sub(
             r"(ROOT|JOINT) (\S+)", lambda line: f"{line[1]} mixamorig:{MIXAMO.get(line[2], line[2])}",
             text), encoding="utf-8")
-        names, follower = self.dance("dance.bvh", "--follower-rig", self.folder / "mixamo.bvh")
+        done = self.convert("dance.bvh", "--rig", self.folder / "mixamo.bvh", "--skeleton", self.dance,
+                            pair=self.dance)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        names, follower = self.dancer()
         self.assertIn("JOINT mixamorig:LeftToeBase",
-                      (self.folder / "dance.follower.bvh").read_text(encoding="utf-8"))
-        joints, on_rig = self.read("dance.follower.bvh", "--skeleton", self.folder / "pair.json")
+                      (self.folder / "dance.bvh").read_text(encoding="utf-8"))
+        joints, on_rig = self.read("dance.bvh", "--skeleton", self.dance)
         self.assertEqual(joints, names)
         for side in ("left", "right"):
             start, end = (names.index(f"{side}_{joint}") for joint in ("ankle", "toe"))
@@ -112,41 +111,36 @@ class RigTest(tools.ServedTest):
             wrist, hand = (names.index(f"{side}_{joint}") for joint in ("wrist", "hand"))
             hands = [(motion[:, hand] - motion[:, wrist]) for motion in (on_rig, follower)]
             self.assertLess(np.abs(hands[0] - hands[1]).max(), 0.03, side)
-        done = tools.duet("convert", self.folder / "pair.json", "--skeleton", self.folder / "pair.json",
-                          "--side", "right", "--rig", self.folder / "mixamo.bvh", "--out",
-                          self.folder / "converted.bvh", "--quiet")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        np.testing.assert_allclose(
-            self.read("converted.bvh", "--skeleton", self.folder / "pair.json")[1], on_rig, atol=1e-4)
 
     def test_follower_of_salsa_stands_on_a_rig_without_toes_and_hands(self):
-        names, follower = self.dance("robot.bvh", "--follower-rig", self.leader)
-        self.assertTrue((self.folder / "robot.leader.bvh").exists())
-        joints, on_rig = self.read("robot.follower.bvh")
+        self.convert("robot.bvh", "--rig", self.leader, "--skeleton", self.dance,
+                     pair=self.dance).check_returncode()
+        names, follower = self.dancer()
+        joints, on_rig = self.read("robot.bvh")
         self.assertEqual(len(joints), 15)
         for side in ("left", "right"):
             at, wanted = joints.index(f"{side}_foot"), names.index(f"{side}_ankle")
             self.assertLess(np.abs(on_rig[:, at] - follower[:, wanted]).max(), 0.002, side)
 
-    def test_joint_map_without_a_rig_is_rejected(self):
-        for flags in ((), ("--follower-rig", "leader")):
-            done = self.synthesize("mistake.bvh", "--follower-rig-joint-map-file", self.table, *flags)
-            self.assertIn("--follower-rig-joint-map-file: is only valid with --follower-rig FILE", done.stderr)
-        done = self.synthesize("mistake.bvh", "--follower-rig", self.rig,
-                               "--follower-rig-joint-map-file", self.folder / "nowhere.txt")
+    def test_joint_map_without_a_rig_or_a_file_is_rejected(self):
+        done = self.convert("mistake.bvh", "--rig-joint-map", self.table)
+        self.assertIn("--rig", done.stderr)
+        self.assertEqual(done.returncode, 2)
+        done = self.convert("mistake.bvh", "--rig", self.rig, "--rig-joint-map",
+                            self.folder / "nowhere.txt")
         self.assertIn("nowhere.txt: no such file", done.stderr)
 
     def test_keys_between_frames_raise_rate_and_frame_count(self):
-        self.synthesize("plain.bvh").check_returncode()
-        self.synthesize("fine.bvh", "--bvh-keys-per-frame", "4").check_returncode()
+        self.convert("plain.bvh").check_returncode()
+        self.convert("fine.bvh", "--bvh-keys-per-frame", "4").check_returncode()
         counts = [[int(re.search(r"Frames: (\d+)", text)[1]),
                    float(re.search(r"Frame Time: (\S+)", text)[1])]
-                  for text in map(self.motion_of, ("plain.follower.bvh", "fine.follower.bvh"))]
+                  for text in map(self.motion_of, ("plain.bvh", "fine.bvh"))]
         (frames, step), (keys, finer) = counts
         self.assertEqual(keys, 4 * (frames - 1) + 1)
         self.assertAlmostEqual(finer, step / 4, places=7)
         plain, fine = ([line.split() for line in self.motion_of(file).splitlines()[3:]]
-                       for file in ("plain.follower.bvh", "fine.follower.bvh"))
+                       for file in ("plain.bvh", "fine.bvh"))
         # Every fourth key is a frame, up to whole turns.
         for frame, key in zip(plain, fine[::4]):
             for a, b in zip(frame[:3], key[:3]):

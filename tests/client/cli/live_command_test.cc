@@ -1,6 +1,4 @@
 // duet live in one process: real files and streams, a server that mirrors the leader.
-#include "client/cli/live_command.h"
-
 #include <filesystem>
 #include <memory>
 #include <sstream>
@@ -10,9 +8,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "client/cli/exit_code.h"
 #include "client/cli/live_report.h"
-#include "client/cli/program.h"
-#include "client/cli/typed_labels.h"
+#include "client/cli/program_environment.h"
 #include "client/internal/connect.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -24,7 +22,6 @@
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/test_motion.h"
 
 namespace duet::client::cli {
 namespace {
@@ -37,6 +34,7 @@ using test::ReadTestFile;
 using test::SwayingMotion;
 using test::SwayingPose;
 using test::TemporaryFolder;
+using test::WriteTestFile;
 
 constexpr int kFrames = 20;
 
@@ -98,7 +96,6 @@ class LiveCommandTest : public ::testing::Test {
           return Client(std::make_shared<ModelConnection>(*std::move(live)));
         },
         &out_, &err_, &in_};
-    environment.err_is_terminal = terminal_;
     return RunProgram(arguments, environment);
   }
 
@@ -128,7 +125,7 @@ class LiveCommandTest : public ::testing::Test {
   motion::Clip leader_;
   LiveMirror mirror_;  // outlives the server
   FakeServer server_;
-  bool terminal_ = false, labelled_ = false;
+  bool labelled_ = false;
   std::istringstream in_;
   std::ostringstream out_, err_;
 };
@@ -156,54 +153,21 @@ TEST_F(LiveCommandTest, AFileIsAnsweredIntoFiles) {
   EXPECT_EQ(start.leader().frame_rate_hz(), 15);
 }
 
-TEST_F(LiveCommandTest, LeaderWithSwappedSidesIsReportedOnce) {
-  leader_ = test::MakePerson();
-  in_.str(Lines(leader_.frame_count()));
-  ASSERT_EQ(Run({"--from", "-", "--to", Path("follower.csv")}), 0) << err_.str();
-  EXPECT_EQ(err_.str(), "");
-  EXPECT_THAT(out_.str(), Not(HasSubstr("swapped")));
-  for (motion::Vec3& at : leader_.poses.all()) at.x = -at.x;  // axes of the other hand
-  in_.clear();
-  in_.str(Lines(leader_.frame_count()));
-  ASSERT_EQ(Run({"--from", "-", "--to", Path("follower.csv")}), 0) << err_.str();
-  const std::string note =
-      "leader: knees and elbows bend the wrong way (100 % of their bending): "
-      "left and right may be swapped; if the sender is left-handed";
-  EXPECT_THAT(err_.str(), ::testing::StartsWith("duet: " + note));
-  EXPECT_THAT(out_.str(), HasSubstr("note      " + note));
-}
-
-TEST_F(LiveCommandTest, FlagsReachTheServer) {
+TEST_F(LiveCommandTest, FlagsAndTheRequestReachTheServer) {
   labelled_ = true;
-  ASSERT_EQ(Run({"--from",
-                 Leader(),
-                 "--to",
-                 Path("follower.json"),
-                 "--keyframe",
-                 "0:hug=1",
-                 "--keyframe",
-                 "10:hug=0,kick=1",
-                 "--plan",
-                 "5",
-                 "--variety",
-                 "0.5",
-                 "--candidates",
-                 "3",
-                 "--clean-up",
-                 "off",
-                 "--follower-start",
-                 "0,1,2",
-                 "--partner-direction",
-                 "0,0,1",
-                 "--model",
-                 "dancer@3",
-                 "--json"}),
+  WriteTestFile(folder_ / "request",
+                "clean_up: CLEAN_UP_OFF partner_direction { z: 1 } seed: 9 "
+                "model { name: 'dancer' version: 3 }");
+  ASSERT_EQ(Run({"--from", Leader(), "--to", Path("follower.json"), "--request", Path("request"),
+                 "--keyframe", "0:hug=1", "--keyframe", "10:hug=0,kick=1", "--plan", "5",
+                 "--variety", "0.5", "--candidates", "3", "--follower-start", "0,1,2", "--json"}),
             0)
       << err_.str();
   const v1::LiveStart start = mirror_.starts().at(0);
   ASSERT_EQ(start.label_keyframes_size(), 2);
   EXPECT_EQ(start.label_keyframes(1).frame(), 10u);
   EXPECT_EQ(start.plan_frames(), 5u);
+  EXPECT_EQ(start.seed(), 9u);
   EXPECT_EQ(start.variety(), 0.5);
   EXPECT_EQ(start.candidates(), 3u);
   EXPECT_EQ(start.clean_up(), v1::CLEAN_UP_OFF);
@@ -214,6 +178,20 @@ TEST_F(LiveCommandTest, FlagsReachTheServer) {
   EXPECT_EQ(report["follower_frames"], kFrames);
   EXPECT_EQ(report["skipped_frames"], 0);
   EXPECT_EQ(report["written"][0], Path("follower.json"));
+}
+
+TEST_F(LiveCommandTest, FieldsOfWholeClipsAreRejected) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"constraints { joint_name: 'head' }", "constraints: expected none"},
+      {"reply_rotations: true", "reply_rotations: expected none"},
+      {"chunk_frames: 3", "chunk_frames: expected none"},
+      {"priority: PRIORITY_BULK", "priority: expected none"}};
+  for (const auto& [text, message] : cases) {
+    WriteTestFile(folder_ / "request", text);
+    EXPECT_EQ(Run({"--from", Leader(), "--to", "-", "--request", Path("request")}), kExitBadInput);
+    EXPECT_THAT(err_.str(), HasSubstr(message));
+  }
+  EXPECT_THAT(mirror_.starts(), IsEmpty());
 }
 
 TEST_F(LiveCommandTest, LinesInLinesOut) {
@@ -262,15 +240,6 @@ TEST_F(LiveCommandTest, InterruptionsAreReported) {
   EXPECT_EQ(out_.str() + err_.str(), "");
 }
 
-TEST_F(LiveCommandTest, ATerminalShowsFiguresInPlace) {
-  terminal_ = true;
-  ASSERT_EQ(Run({"--from", Leader(), "--to", Path("follower.csv")}), 0) << err_.str();
-  EXPECT_THAT(err_.str(), AllOf(StartsWith("\r"), HasSubstr(" s, 1 frames, latency p50 "),
-                                HasSubstr("gaps 0, late 0, skipped 0"), HasSubstr("\x1b[K")));
-  ASSERT_EQ(Run({"--from", Leader(), "--to", Path("follower.csv"), "--quiet"}), 0);
-  EXPECT_EQ(err_.str(), "");
-}
-
 TEST_F(LiveCommandTest, UsageErrorsAreFoundBeforeTheServerIsCalled) {
   const auto refuses = [this](std::vector<std::string> arguments, const std::string& error) {
     EXPECT_EQ(Run(arguments), kExitUsage);
@@ -289,9 +258,7 @@ TEST_F(LiveCommandTest, UsageErrorsAreFoundBeforeTheServerIsCalled) {
   refuses({"--from", "-", "--to", "-", "--delay", "11"}, "--delay");
   refuses({"--from", "-", "--to", "-", "--plan", "31"}, "--plan");
   labelled_ = true;
-  refuses({"--from", "-", "--to", "-"}, "--label or --keyframe is required");
-  refuses({"--from", "-", "--to", "-", "--keyframe", "8b:hug"},
-          "--keyframe: expected a frame, got the position 8b in beats");
+  refuses({"--from", "-", "--to", "-"}, "--label, --keyframe or --request is required");
   EXPECT_THAT(mirror_.starts(), IsEmpty());
 }
 
@@ -313,20 +280,6 @@ TEST_F(LiveCommandTest, InvalidInputsAreNamed) {
   EXPECT_THAT(mirror_.starts(), IsEmpty());
 }
 
-TEST(TypedLabelsTest, ParsesWeightsAndEase) {
-  const auto labels = ParseTypedLabels(" hug=1  kick=-0.5 ease=0.3 ");
-  ASSERT_THAT(labels, IsOk());
-  ASSERT_EQ(labels->weights.size(), 2u);
-  EXPECT_EQ(labels->weights[1].weight, -0.5F);
-  EXPECT_NEAR(absl::ToDoubleSeconds(labels->ease), 0.3, 1e-6);
-  EXPECT_EQ(ParseTypedLabels("hug")->weights[0].weight, 1);
-  for (const char* line : {"", "ease=1", "hug=much", "hug=1 ease=11", "hug=1 ease=-1"}) {
-    EXPECT_THAT(ParseTypedLabels(line),
-                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected")))
-        << line;
-  }
-}
-
 TEST(LiveReportTest, LossesAreInWords) {
   live::LiveReport report;
   report.info.model_name = "sbu";
@@ -346,9 +299,6 @@ TEST(LiveReportTest, LossesAreInWords) {
             "losses    3 missing leader frames interpolated; 1 late leader frame dropped; 2 "
             "follower frames from an older plan, because the server could not keep up\n"
             "resumed   2 times, without losing a frame\n");
-  EXPECT_EQ(ProgressLine(report.totals),
-            "12.3 s, 362 frames, latency p50 2.0 ms, p99 8.0 ms, gaps 3, late 1, skipped 2, "
-            "resumed 2");
 }
 
 }  // namespace

@@ -1,16 +1,14 @@
-// inspect, convert, view and compare: the whole program, which never reaches for a server.
-#include <sstream>
+// inspect, convert and view: the whole program, which never reaches for a server.
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_replace.h"
-#include "client/cli/program.h"
-#include "client/cli/take.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/skeleton.h"
 #include "nlohmann/json.hpp"
+#include "tests/client/cli/program_runner.h"
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 #include "tests/support/temporary_folder.h"
@@ -24,12 +22,9 @@ using nlohmann::json;
 using test::LargestDistance;
 using test::MakePerson;
 using test::ReadTestFile;
-using test::TemporaryFolder;
 using test::WriteTestFile;
 
-using Strings = std::vector<std::string>;
-
-class MotionCommandsTest : public ::testing::Test {
+class MotionCommandsTest : public ProgramRunner {
  protected:
   MotionCommandsTest() {
     Write("pair.csv", Format::kCsv, {leader_, follower_});
@@ -43,25 +38,9 @@ class MotionCommandsTest : public ::testing::Test {
                 IsOk());
   }
 
-  int Run(const Strings& arguments, const std::string& input = "") {
-    out_.str("");
-    err_.str("");
-    std::istringstream in(input);
-    ProgramEnvironment environment{[](const ClientOptions&) -> absl::StatusOr<Client> {
-                                     ADD_FAILURE() << "no server was to be asked";
-                                     return absl::UnavailableError("");
-                                   },
-                                   &out_, &err_, &in};
-    environment.out_is_terminal = terminal_;
-    environment.variables = [this](const std::string& name) {
-      return name == "NO_COLOR" ? no_color_ : std::nullopt;
-    };
-    return RunProgram(arguments, environment);
-  }
-
   json RunJson(const Strings& arguments, const std::string& input = "") {
-    EXPECT_EQ(Run(arguments, input), 0) << err_.str() << out_.str();
-    return json::parse(out_.str(), nullptr, false);
+    EXPECT_EQ(Run(arguments, input), 0) << err() << out();
+    return json::parse(out(), nullptr, false);
   }
 
   motion::Clip Read(const std::string& name, formats::ReadOptions options = {}) {
@@ -70,33 +49,26 @@ class MotionCommandsTest : public ::testing::Test {
     return clip.value_or(motion::Clip{});
   }
 
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
-  bool Exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
-
-  TemporaryFolder folder_;
   const motion::Clip leader_ = MakePerson();
   const motion::Clip follower_ = MakePerson({60, 3, 0, {0, 1.1f, 1.2f}, 30});
-  bool terminal_ = false;
-  std::optional<std::string> no_color_;
-  std::ostringstream out_, err_;
 };
 
 TEST_F(MotionCommandsTest, InspectPrintsEachSettingAndItsOrigin) {
   ASSERT_EQ(Run({"inspect", Path("one.bvh")}), 0);
-  EXPECT_THAT(out_.str(),
+  EXPECT_THAT(out(),
               StartsWith(Path("one.bvh") + ": BVH, 1 person, 60 frames, 2.00 s at 30 Hz\n"
                                            "  frame rate  30 Hz  (file: Frame Time 0.0333333)\n"
                                            "  unit        centimetres  (guessed: foot to torso"));
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("  up axis     y-up  (guessed"),
-                                HasSubstr("    left_hand       left_hand\n"),
-                                HasSubstr("    not used: torso_to_neck"),
-                                HasSubstr("    ok   limb lengths"), Not(HasSubstr("\x1b"))));
+  EXPECT_THAT(out(), AllOf(HasSubstr("  up axis     y-up  (guessed"),
+                           HasSubstr("    left_hand       left_hand\n"),
+                           HasSubstr("    not used: torso_to_neck"),
+                           HasSubstr("    ok   limb lengths"), Not(HasSubstr("\x1b"))));
   ASSERT_EQ(Run({"inspect", Path("one.bvh"), "--metres-per-unit", "0.01", "--up-axis", "y-up",
                  "--frame-rate", "60"}),
             0);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("frame rate  60 Hz  (given)"),
-                                HasSubstr("unit        0.01 m  (given)"),
-                                HasSubstr("up axis     y-up  (given)")));
+  EXPECT_THAT(out(), AllOf(HasSubstr("frame rate  60 Hz  (given)"),
+                           HasSubstr("unit        0.01 m  (given)"),
+                           HasSubstr("up axis     y-up  (given)")));
 }
 
 TEST_F(MotionCommandsTest, ConvertReadsTheJointsOfAnotherSkeleton) {
@@ -106,7 +78,7 @@ TEST_F(MotionCommandsTest, ConvertReadsTheJointsOfAnotherSkeleton) {
   ASSERT_EQ(Run({"convert", Path("pair.csv"), "--skeleton", Path("arm.json"), "--out",
                  Path("arms.json")}),
             0)
-      << err_.str();
+      << err();
   const json arms = json::parse(ReadTestFile(folder_ / "arms.json"));
   EXPECT_EQ(arms["joint_names"], json({"left_hand", "left_elbow", "left_shoulder"}));
   EXPECT_EQ(arms["bones"], json::parse("[[1, 0], [2, 1]]"));
@@ -115,13 +87,13 @@ TEST_F(MotionCommandsTest, ConvertReadsTheJointsOfAnotherSkeleton) {
   ASSERT_EQ(Run({"convert", Path("arms.json"), "--skeleton", Path("arms.json"), "--side", "right",
                  "--out", Path("arm.glb")}),
             0)
-      << err_.str();
+      << err();
   EXPECT_EQ(Run({"convert", Path("arms.json"), "--out", Path("body.json")}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("expected joints for head, neck, torso"));
+  EXPECT_THAT(err(), HasSubstr("expected joints for head, neck, torso"));
   ASSERT_EQ(
       Run({"view", Path("arms.json"), "--skeleton", Path("arms.json"), "--out", Path("arms.html")}),
       0)
-      << err_.str();
+      << err();
 }
 
 TEST_F(MotionCommandsTest, ConvertNamesWhatIsWrongInASkeleton) {
@@ -143,7 +115,7 @@ TEST_F(MotionCommandsTest, ConvertNamesWhatIsWrongInASkeleton) {
                    Path("out.json")}),
               42)
         << text;
-    EXPECT_THAT(err_.str(), HasSubstr(message)) << text;
+    EXPECT_THAT(err(), HasSubstr(message)) << text;
   }
   EXPECT_EQ(
       Run({"convert", Path("one.csv"), "--skeleton", Path("no.json"), "--out", Path("out.json")}),
@@ -152,9 +124,9 @@ TEST_F(MotionCommandsTest, ConvertNamesWhatIsWrongInASkeleton) {
 
 TEST_F(MotionCommandsTest, InspectPrintsEachOfTwoPeople) {
   ASSERT_EQ(Run({"inspect", Path("pair.csv")}), 0);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr(": CSV, 2 people, 60 frames"),
-                                HasSubstr("  left person\n  frame rate  30 Hz  (file)\n"),
-                                HasSubstr("  right person\n  read as the other\n  skeleton\n")));
+  EXPECT_THAT(out(), AllOf(HasSubstr(": CSV, 2 people, 60 frames"),
+                           HasSubstr("  left person\n  frame rate  30 Hz  (file)\n"),
+                           HasSubstr("  right person\n  read as the other\n  skeleton\n")));
 }
 
 TEST_F(MotionCommandsTest, InspectPrintsJson) {
@@ -181,9 +153,9 @@ TEST_F(MotionCommandsTest, InspectPrintsTheTiltOfEachFileAndOfAllTogether) {
   ASSERT_THAT(formats::WritePair(folder_ / "tilted.csv", {tilted, tilted}, motion::SbuSkeleton()),
               IsOk());
   ASSERT_EQ(Run({"inspect", Path("tilted.csv"), Path("one.bvh")}), 0);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("  tilt        tilted by 11."), HasSubstr("; --level "),
-                                HasSubstr("; feet rest in "),
-                                HasSubstr("all files, if one camera captured them\n  tilt ")));
+  EXPECT_THAT(out(), AllOf(HasSubstr("  tilt        tilted by 11."), HasSubstr("; vertical "),
+                           HasSubstr("; feet rest in "),
+                           HasSubstr("all files, if one camera captured them\n  tilt ")));
   const json report = RunJson({"inspect", "--json", Path("tilted.csv"), Path("one.bvh")});
   EXPECT_EQ(report["files"][0]["tilt"]["verdict"], "tilted");
   EXPECT_NEAR(report["files"][0]["tilt"]["up"][2], 0.196, 0.02);
@@ -195,16 +167,16 @@ TEST_F(MotionCommandsTest, InspectNamesWhatIsMissing) {
   WriteTestFile(folder_ / "odd.bvh",
                 absl::StrReplaceAll(ReadTestFile(folder_ / "one.bvh"), {{"left_hand", "paw"}}));
   EXPECT_EQ(Run({"inspect", Path("odd.bvh")}), 42);
-  EXPECT_THAT(out_.str(),
+  EXPECT_THAT(out(),
               AllOf(HasSubstr("    left_hand       missing\n"),
                     HasSubstr("    right_hand      right_hand\n"), HasSubstr("cannot be read: "),
                     HasSubstr("--joint-map"), Not(HasSubstr("skeleton\n"))));
   EXPECT_EQ(Run({"inspect", "--json", Path("odd.bvh")}), 42);
-  const json file = json::parse(out_.str())["files"][0];
+  const json file = json::parse(out())["files"][0];
   EXPECT_EQ(file["readable"], false);
   EXPECT_EQ(file["people"][0]["missing_joints"], json({"left_hand"}));
   ASSERT_EQ(Run({"inspect", Path("odd.bvh"), "--joint-map", "left_hand=paw"}), 0);
-  EXPECT_THAT(out_.str(), HasSubstr("    left_hand       paw  (given)\n"));
+  EXPECT_THAT(out(), HasSubstr("    left_hand       paw  (given)\n"));
 }
 
 // A name with an escape sequence must not reach the terminal, whether or not its joint is used.
@@ -213,31 +185,30 @@ TEST_F(MotionCommandsTest, InspectEscapesControlCharactersInNames) {
                                                          {{"torso_to_neck", "\x1b[31mspare"},
                                                           {"left_hand", "\x07paw"}}));
   ASSERT_EQ(Run({"inspect", Path("odd.bvh"), "--joint-map", "left_hand=\x07paw"}), 0);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("    left_hand       \\x07paw  (given)\n"),
-                                HasSubstr("    not used: \\x1b[31mspare"), Not(HasSubstr("\x1b")),
-                                Not(HasSubstr("\x07"))));
+  EXPECT_THAT(out(), AllOf(HasSubstr("    left_hand       \\x07paw  (given)\n"),
+                           HasSubstr("    not used: \\x1b[31mspare"), Not(HasSubstr("\x1b")),
+                           Not(HasSubstr("\x07"))));
 }
 
 TEST_F(MotionCommandsTest, InspectRecognisesLinksInACircle) {
   std::filesystem::create_symlink("loop.bvh", folder_ / "loop.bvh");
   EXPECT_EQ(Run({"inspect", Path("loop.bvh")}), 42);
-  EXPECT_THAT(out_.str(),
-              HasSubstr("loop.bvh: no such file; it is a symbolic link that leads back"));
+  EXPECT_THAT(out(), HasSubstr("loop.bvh: no such file; it is a symbolic link that leads back"));
 }
 
 TEST_F(MotionCommandsTest, InspectSuggestsTheNearestJoint) {
   EXPECT_EQ(Run({"inspect", Path("one.bvh"), "--joint-map", "left_hnd=left_hand"}), 42);
-  EXPECT_THAT(out_.str(), HasSubstr("did you mean left_hand?"));
+  EXPECT_THAT(out(), HasSubstr("did you mean left_hand?"));
   EXPECT_EQ(Run({"inspect", Path("one.bvh"), "--joint-map", "left_hand=left_elbw"}), 42);
-  EXPECT_THAT(out_.str(), HasSubstr("did you mean left_elbow?"));
+  EXPECT_THAT(out(), HasSubstr("did you mean left_elbow?"));
 }
 
 TEST_F(MotionCommandsTest, InspectReadsAFileWithoutAFrameRate) {
   ASSERT_EQ(Run({"inspect", Path("one.npy")}), 0);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("NPY, 1 person, 60 frames\n"),
-                                HasSubstr("frame rate  unknown; say it with --frame-rate HZ\n"),
-                                HasSubstr("unit        metres  (default)\n"),
-                                HasSubstr("ok   symmetry"), Not(HasSubstr("jumps"))));
+  EXPECT_THAT(out(), AllOf(HasSubstr("NPY, 1 person, 60 frames\n"),
+                           HasSubstr("frame rate  unknown; specify it with --frame-rate HZ\n"),
+                           HasSubstr("unit        metres  (default)\n"), HasSubstr("ok   symmetry"),
+                           Not(HasSubstr("jumps"))));
   EXPECT_EQ(RunJson({"inspect", "--json", Path("one.npy")})["files"][0]["people"][0]["frame_rate"],
             nullptr);
 }
@@ -245,13 +216,13 @@ TEST_F(MotionCommandsTest, InspectReadsAFileWithoutAFrameRate) {
 TEST_F(MotionCommandsTest, InspectContinuesAfterAnUnreadableFile) {
   WriteTestFile(folder_ / "empty.bvh", "");
   EXPECT_EQ(Run({"inspect", Path("empty.bvh"), Path("no.csv"), Path("one.csv")}), 42);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("empty.bvh:1: expected HIERARCHY"),
-                                HasSubstr("no.csv: no such file"), HasSubstr("CSV, 1 person")));
+  EXPECT_THAT(out(), AllOf(HasSubstr("empty.bvh:1: expected HIERARCHY"),
+                           HasSubstr("no.csv: no such file"), HasSubstr("CSV, 1 person")));
 }
 
 TEST_F(MotionCommandsTest, InspectRejectsAFolder) {
   EXPECT_EQ(Run({"inspect", folder_.path().string()}), 42);
-  EXPECT_THAT(out_.str(), HasSubstr(": expected a motion file, got a folder"));
+  EXPECT_THAT(out(), HasSubstr(": expected a motion file, got a folder"));
 }
 
 TEST_F(MotionCommandsTest, InspectReportsPeopleOfDifferentLengths) {
@@ -260,10 +231,9 @@ TEST_F(MotionCommandsTest, InspectReportsPeopleOfDifferentLengths) {
   pair["follower"].erase(pair["follower"].begin() + 5, pair["follower"].end());
   WriteTestFile(folder_ / "uneven.json", pair.dump());
   ASSERT_EQ(Run({"inspect", Path("uneven.json")}), 0);
-  EXPECT_THAT(out_.str(),
-              AllOf(HasSubstr("2 people, 60 frames"), HasSubstr("  length      5 frames")));
+  EXPECT_THAT(out(), AllOf(HasSubstr("2 people, 60 frames"), HasSubstr("  length      5 frames")));
   ASSERT_EQ(Run({"inspect", Path("pair.json")}), 0);
-  EXPECT_THAT(out_.str(), Not(HasSubstr("  length  ")));
+  EXPECT_THAT(out(), Not(HasSubstr("  length  ")));
 }
 
 TEST_F(MotionCommandsTest, InspectReportsImplausibleMotion) {
@@ -271,26 +241,14 @@ TEST_F(MotionCommandsTest, InspectReportsImplausibleMotion) {
   for (motion::Vec3& at : odd.poses.all()) at = at * 3;
   Write("odd.csv", Format::kCsv, {odd});
   ASSERT_EQ(Run({"inspect", Path("odd.csv")}), 0);
-  EXPECT_THAT(out_.str(), HasSubstr("look size"));
-}
-
-TEST_F(MotionCommandsTest, ColourIsUsedOnlyOnTerminalsThatAllowIt) {
-  terminal_ = true;
-  ASSERT_EQ(Run({"inspect", Path("one.csv")}), 0);
-  EXPECT_THAT(out_.str(), StartsWith("\x1b[1m"));
-  no_color_ = "1";
-  ASSERT_EQ(Run({"inspect", Path("one.csv")}), 0);
-  EXPECT_THAT(out_.str(), Not(HasSubstr("\x1b")));
-  no_color_ = "";
-  ASSERT_EQ(Run({"inspect", Path("one.csv")}), 0);
-  EXPECT_THAT(out_.str(), HasSubstr("\x1b"));
+  EXPECT_THAT(out(), HasSubstr("look size"));
 }
 
 TEST_F(MotionCommandsTest, ConvertKeepsEveryPosition) {
   ASSERT_EQ(Run({"convert", Path("pair.csv"), "--out", Path("b.json"), "--out", Path("b.npy"),
                  "--out", Path("b.csv"), "--out", Path("b.bvh")}),
             0)
-      << err_.str();
+      << err();
   formats::ReadOptions second;
   second.side = formats::Side::kRight;
   for (const char* name : {"b.json", "b.csv"}) {
@@ -302,48 +260,26 @@ TEST_F(MotionCommandsTest, ConvertKeepsEveryPosition) {
   EXPECT_EQ(LargestDistance(Read("b.npy", second), follower_), 0);
   EXPECT_LT(LargestDistance(Read("b.leader.bvh"), leader_), 1e-4f);
   EXPECT_LT(LargestDistance(Read("b.follower.bvh"), follower_), 1e-4f);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("2 people, 60 frames at 30 Hz"),
-                                HasSubstr("b.json (every position kept)\n"),
-                                HasSubstr("no place for joint names and the frame rate: read it "
-                                          "with --frame-rate 30")));
+  EXPECT_THAT(out(), AllOf(HasSubstr("2 people, 60 frames at 30 Hz"),
+                           HasSubstr("wrote     " + Path("b.json") + "\n")));
 }
 
-TEST_F(MotionCommandsTest, ConvertReportsTheErrorOfTheFormat) {
-  motion::Clip growing = leader_;
-  const int elbow = motion::SbuSkeleton().Find("left_elbow");
-  const int hand = motion::SbuSkeleton().Find("left_hand");
-  for (int frame = 0; frame < 60; ++frame) {
-    growing.at(frame, hand) =
-        Lerp(growing.at(frame, elbow), growing.at(frame, hand), frame < 50 ? 1.0f : 1.2f);
-  }
-  Write("growing.csv", Format::kCsv, {growing});
-  const json output =
-      RunJson({"convert", "--json", Path("growing.csv"), "--out", Path("g.bvh")})["outputs"][0];
-  const double off = output["largest_error_metres"];
-  EXPECT_NEAR(off, static_cast<double>(LargestDistance(Read("g.bvh"), growing)), 1e-4);
-  EXPECT_GT(off, 0.02);
-  ASSERT_EQ(Run({"convert", Path("growing.csv"), "--out", Path("g.bvh")}), 0);
-  EXPECT_THAT(out_.str(), HasSubstr(" mm off: a bone has one length there"));
-}
-
-// What docs/formats.md's table says.
 TEST_F(MotionCommandsTest, EveryReadableFormatConvertsToEveryWritableFormat) {
-  const Strings read = {"csv", "json", "npy", "bvh", "glb", "gltf", "txt"};
-  const Strings written = {"csv", "json", "npy", "bvh", "glb", "gltf", "txt"};
+  const Strings formats = {"csv", "json", "npy", "bvh", "glb", "gltf", "txt"};
   const auto people = [](const std::string& from) { return from == "bvh" ? 1 : 2; };
-  for (const std::string& from : read) {
+  for (const std::string& from : formats) {
     const std::string source = people(from) == 1 ? "one.csv" : "pair.csv";
-    ASSERT_EQ(Run({"convert", Path(source), "--out", Path("from." + from)}), 0) << err_.str();
-    for (const std::string& to : written) {
+    ASSERT_EQ(Run({"convert", Path(source), "--out", Path("from." + from)}), 0) << err();
+    for (const std::string& to : formats) {
       const std::string name = from + "_to." + to;
       const Strings command = {"convert", Path("from." + from), "--frame-rate", "30", "--out",
                                Path(name)};
       if (to == "txt" && people(from) == 1) {
         EXPECT_EQ(Run(command), 42);
-        EXPECT_THAT(err_.str(), HasSubstr("SBU text always has two"));
+        EXPECT_THAT(err(), HasSubstr("SBU text always has two"));
         continue;
       }
-      ASSERT_EQ(Run(command), 0) << name << err_.str();
+      ASSERT_EQ(Run(command), 0) << name << err();
       const bool apart = to == "bvh" && people(from) == 2;
       formats::ReadOptions options;
       options.frame_rate_hz = 30;
@@ -366,7 +302,7 @@ TEST_F(MotionCommandsTest, ConvertTakesOnePersonOrBoth) {
   ASSERT_EQ(Run({"convert", Path("one.csv"), "--side", "right", "--out", Path("r.csv")}), 0);
   EXPECT_EQ(ReadTestFile(folder_ / "r.csv"), ReadTestFile(folder_ / "one.csv"));
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--side", "both", "--out", Path("r.csv")}), 42);
-  EXPECT_THAT(err_.str(),
+  EXPECT_THAT(err(),
               HasSubstr("--side: expected left or right for a file with one person, got both"));
 }
 
@@ -376,8 +312,8 @@ TEST_F(MotionCommandsTest, ConvertWritesAPersonOntoARig) {
   ASSERT_EQ(Run({"convert", Path("pair.csv"), "--side", "right", "--rig", Path("rig.bvh"),
                  "--rig-joint-map", "left_hand=Flipper", "--out", Path("on_rig.bvh")}),
             0)
-      << err_.str();
-  EXPECT_THAT(out_.str(), HasSubstr("on the rig of " + Path("rig.bvh")));
+      << err();
+  EXPECT_THAT(out(), HasSubstr("on the rig of " + Path("rig.bvh")));
   const std::string written = ReadTestFile(folder_ / "on_rig.bvh");
   EXPECT_THAT(written, AllOf(HasSubstr("JOINT Flipper"), Not(HasSubstr("JOINT left_hand"))));
   formats::ReadOptions options;
@@ -385,27 +321,25 @@ TEST_F(MotionCommandsTest, ConvertWritesAPersonOntoARig) {
   EXPECT_LT(LargestDistance(Read("on_rig.bvh", options), follower_), 0.05);
   // Half the size of a unit halves the rig.
   ASSERT_EQ(Run({"convert", Path("pair.csv"), "--side", "right", "--rig", Path("one.bvh"),
-                 "--rig-metres-per-unit", "0.005", "--out", Path("half.bvh")}),
+                 "--rig-metres-per-unit", "0.005", "--out", Path("half.glb")}),
             0)
-      << err_.str();
-  options = {};
-  options.metres_per_unit = 0.005;
-  EXPECT_GT(LargestDistance(Read("half.bvh", options), follower_), 0.3);
+      << err();
+  EXPECT_GT(LargestDistance(Read("half.glb"), follower_), 0.3);
 }
 
 TEST_F(MotionCommandsTest, InvalidUseOfARigIsReported) {
   const auto fails = [this](const Strings& more, int code, const std::string& message) {
     Strings arguments = {"convert", Path("pair.csv")};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    EXPECT_EQ(Run(arguments), code) << out_.str();
-    EXPECT_THAT(err_.str(), HasSubstr(message));
+    EXPECT_EQ(Run(arguments), code) << out();
+    EXPECT_THAT(err(), HasSubstr(message));
   };
   const std::string rig = Path("one.bvh");
   fails({"--rig", rig, "--out", Path("a.bvh")}, 42, "--side: expected left or right with --rig");
   fails({"--rig", rig, "--side", "left", "--out", Path("a.csv")}, 2,
-        "--out: expected the format of --rig");
+        "--out: expected .bvh, .glb or .gltf with --rig");
   fails({"--rig", Path("one.csv"), "--side", "left", "--out", Path("a.bvh")}, 2,
-        "--rig: expected a .bvh, .glb or .gltf");
+        "--rig: expected a .bvh, ");
   fails({"--rig-joint-map", "head=Top", "--side", "left", "--out", Path("a.bvh")}, 2, "--rig");
   fails({"--rig", Path("absent.bvh"), "--side", "left", "--out", Path("a.bvh")}, 42, "absent.bvh");
   fails({"--rig", rig, "--rig-joint-map", "head=Nobody", "--side", "left", "--out", Path("a.bvh")},
@@ -415,24 +349,23 @@ TEST_F(MotionCommandsTest, InvalidUseOfARigIsReported) {
     crab.replace(at, 5, "_claw");
   WriteTestFile(Path("crab.bvh"), crab);
   fails({"--rig", Path("crab.bvh"), "--side", "left", "--out", Path("a.bvh")}, 42,
-        "\nSpecify it with --follower-rig-joint-map MODEL_JOINT=RIG_JOINT (in duet convert, "
-        "--rig-joint-map)");
+        "\nSpecify it with --rig-joint-map MODEL_JOINT=RIG_JOINT, or a table of them with");
 }
 
 TEST_F(MotionCommandsTest, AFileOfDuetStatesItsUnitAndUpAxis) {
   ASSERT_EQ(Run({"convert", Path("one.bvh"), "--out", Path("own.glb")}), 0);
   ASSERT_EQ(Run({"inspect", Path("own.glb")}), 0);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("  unit        1 m  (file)\n"),
-                                HasSubstr("  up axis     y-up  (file)\n")));
+  EXPECT_THAT(out(), AllOf(HasSubstr("  unit        1 m  (file)\n"),
+                           HasSubstr("  up axis     y-up  (file)\n")));
   ASSERT_EQ(Run({"inspect", Path("own.glb"), "--metres-per-unit", "1"}), 0);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("  unit        1 m  (given)\n"),
-                                HasSubstr("  up axis     y-up  (file)\n")));
+  EXPECT_THAT(out(), AllOf(HasSubstr("  unit        1 m  (given)\n"),
+                           HasSubstr("  up axis     y-up  (file)\n")));
 }
 
 TEST_F(MotionCommandsTest, TheUnitOfAHierarchyCanBeNamed) {
   ASSERT_EQ(Run({"convert", Path("one.bvh"), "--unit", "millimetres", "--out", Path("small.csv")}),
             0)
-      << err_.str();
+      << err();
   const motion::Clip small = Read("small.csv");
   EXPECT_LT(Distance(small.at(9, 4) * 10, leader_.at(9, 4)), 0.01F) << "the file has centimetres";
   ASSERT_EQ(Run({"convert", Path("one.bvh"), "--unit", "millimetres", "--metres-per-unit", "0.01",
@@ -445,12 +378,12 @@ TEST_F(MotionCommandsTest, AGiantIsWarnedOf) {
   for (const char* file : {"one.bvh", "one.csv"}) {
     ASSERT_EQ(Run({"convert", Path(file), "--metres-per-unit", "100", "--out", Path("big.json")}),
               0)
-        << err_.str();
-    EXPECT_THAT(out_.str(), HasSubstr("warning: size: as the file was read, the distance from foot"
-                                      " to "));
+        << err();
+    EXPECT_THAT(out(), HasSubstr("warning: size: as the file was read, the distance from foot"
+                                 " to "));
   }
   ASSERT_EQ(Run({"convert", Path("one.csv"), "--out", Path("same.json")}), 0);
-  EXPECT_THAT(out_.str(), Not(HasSubstr("warning")));
+  EXPECT_THAT(out(), Not(HasSubstr("warning")));
 }
 
 TEST_F(MotionCommandsTest, ResampleKeepsTheDurationAndFrameRateChangesIt) {
@@ -459,13 +392,13 @@ TEST_F(MotionCommandsTest, ResampleKeepsTheDurationAndFrameRateChangesIt) {
   EXPECT_EQ(resampled.frame_rate_hz, 15);
   ASSERT_EQ(resampled.frame_count(), 30);
   EXPECT_EQ(resampled.at(7, 4), leader_.at(14, 4));
-  EXPECT_THAT(out_.str(), HasSubstr("resampled from 30 Hz"));
+  EXPECT_THAT(out(), HasSubstr("resampled from 30 Hz"));
 
   ASSERT_EQ(Run({"convert", Path("one.csv"), "--frame-rate", "15", "--out", Path("said.csv")}), 0);
   EXPECT_EQ(Read("said.csv").frame_rate_hz, 15);
   EXPECT_EQ(Read("said.csv").frame_count(), 60);
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--resample", "1e5", "--out", Path("x.csv")}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("--resample"));
+  EXPECT_THAT(err(), HasSubstr("--resample"));
 }
 
 TEST_F(MotionCommandsTest, ConvertBetweenPipes) {
@@ -473,26 +406,26 @@ TEST_F(MotionCommandsTest, ConvertBetweenPipes) {
   ASSERT_EQ(
       Run({"convert", "-", "--input-format", "csv", "--out", "-", "--output-format", "json"}, csv),
       0)
-      << err_.str();
-  EXPECT_THAT(err_.str(), HasSubstr("wrote     standard output (every position kept)"));
-  WriteTestFile(folder_ / "piped.json", out_.str());
+      << err();
+  EXPECT_THAT(err(), HasSubstr("wrote     standard output\n"));
+  WriteTestFile(folder_ / "piped.json", out());
   EXPECT_EQ(LargestDistance(Read("piped.json"), leader_), 0);
 }
 
 TEST_F(MotionCommandsTest, FormatFlagOverridesTheExtension) {
   WriteTestFile(folder_ / "walk.data", ReadTestFile(folder_ / "one.bvh"));
   EXPECT_EQ(Run({"inspect", Path("walk.data")}), 42);
-  EXPECT_THAT(out_.str(), HasSubstr("Specify it with --input-format FORMAT.\n"));
+  EXPECT_THAT(out(), HasSubstr("Specify it with --input-format FORMAT.\n"));
   ASSERT_EQ(Run({"inspect", Path("walk.data"), "--input-format", "bvh"}), 0);
-  EXPECT_THAT(out_.str(), HasSubstr(": BVH, 1 person"));
+  EXPECT_THAT(out(), HasSubstr(": BVH, 1 person"));
 }
 
 TEST_F(MotionCommandsTest, InvalidUseOfPipesIsReported) {
   const std::string csv = ReadTestFile(folder_ / "pair.csv");
   const auto refused = [&](int code, const Strings& arguments, const std::string& message) {
     EXPECT_EQ(Run(arguments, csv), code) << message;
-    EXPECT_THAT(err_.str(), HasSubstr(message));
-    EXPECT_EQ(out_.str(), "");
+    EXPECT_THAT(err(), HasSubstr(message));
+    EXPECT_EQ(out(), "");
   };
   const std::string one = Path("one.csv"), pair = Path("pair.csv");
   refused(42, {"convert", "-", "--out", Path("x.csv")},
@@ -505,120 +438,70 @@ TEST_F(MotionCommandsTest, InvalidUseOfPipesIsReported) {
           "html is not a motion format");
   refused(42, {"convert", pair, "--out", "-", "--output-format", "bvh"},
           "Choose a person with --side");
-  refused(42, {"convert", "-", "--input-format", "amc", "--out", Path("x.csv")},
-          "expected the .asf skeleton in the same folder");
-  refused(2, {"compare", "-", "-", "--input-format", "csv"}, "expected - once, got it twice");
+  refused(2, {"view", "-", "-", "--input-format", "csv", "--out", Path("v.html")},
+          "expected - once, got it twice");
 }
 
 TEST_F(MotionCommandsTest, EmptyPipeIsRejected) {
   EXPECT_EQ(Run({"convert", "-", "--input-format", "csv", "--out", Path("x.csv")}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("standard input: expected a motion, got no data"));
+  EXPECT_THAT(err(), HasSubstr("standard input: expected a motion, got no data"));
 }
 
 TEST_F(MotionCommandsTest, ConvertNeverOverwritesItsInput) {
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.csv")}), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("would replace the file that is read"));
+  EXPECT_THAT(err(), HasSubstr("would replace the file that is read"));
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--rig", Path("one.bvh"), "--out", Path("one.bvh")}),
             2);
-  EXPECT_THAT(err_.str(), HasSubstr("would replace the file that is read, " + Path("one.bvh")));
+  EXPECT_THAT(err(), HasSubstr("would replace the file that is read, " + Path("one.bvh")));
   EXPECT_EQ(Run({"convert", Path("one.csv"), "--out", Path("one.html")}), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("expected .glb, .gltf, .bvh, .csv, .npy, .json or .txt"));
+  EXPECT_THAT(err(), HasSubstr("expected .glb, .gltf, "));
 }
 
 TEST_F(MotionCommandsTest, ViewShowsMotionsSideBySide) {
   ASSERT_EQ(
       Run({"view", Path("one.bvh"), "captured=" + Path("pair.csv"), "--out", Path("view.html")}), 0)
-      << err_.str();
+      << err();
   EXPECT_THAT(ReadTestFile(folder_ / "view.html"),
               AllOf(HasSubstr("<title>one, captured</title>"), HasSubstr("\"name\":\"captured\"")));
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("shown     one: " + Path("one.bvh") + " (one person)\n"),
-                                HasSubstr("shown     captured: " + Path("pair.csv") + "\n"),
-                                HasSubstr("wrote     " + Path("view.html") + "\n")));
+  EXPECT_THAT(out(), AllOf(HasSubstr("shown     one: " + Path("one.bvh") + " (one person)\n"),
+                           HasSubstr("shown     captured: " + Path("pair.csv") + "\n"),
+                           HasSubstr("wrote     " + Path("view.html") + "\n")));
   ASSERT_EQ(Run({"view", Path("one.bvh"), "--title", "Tuesday", "--quiet", "--out", "-"}), 0);
-  EXPECT_THAT(out_.str(), AllOf(StartsWith("<!doctype html>"), HasSubstr("<title>Tuesday<")));
+  EXPECT_THAT(out(), AllOf(StartsWith("<!doctype html>"), HasSubstr("<title>Tuesday<")));
   EXPECT_EQ(Run({"view", Path("one.bvh"), "--out", Path("view.csv")}), 2);
 }
 
-TEST_F(MotionCommandsTest, CompareReportsTheDifferenceOfFollowers) {
-  motion::Clip moved = follower_;
-  for (motion::Vec3& at : moved.poses.all()) at.x += 0.25f;
-  Write("moved.csv", Format::kCsv, {leader_, moved});
-  ASSERT_EQ(Run({"compare", Path("pair.csv"), Path("moved.csv"), "--out", Path("c.html")}), 0)
-      << err_.str();
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("A         pair: 60 frames at 30 Hz, its follower\n"),
-                                HasSubstr("joints, on average                           0.250 m"),
-                                HasSubstr("the same with roots put together             0.000 m"),
-                                HasSubstr("their partners, on average                   0.000 m"),
-                                HasSubstr("touches the partner"), HasSubstr("c.html")));
-  EXPECT_THAT(ReadTestFile(folder_ / "c.html"), HasSubstr("\"title\":\"joints, on average\""));
-  const json compared = RunJson({"compare", "--json", Path("pair.csv"), "b=" + Path("moved.csv")});
-  EXPECT_NEAR(compared["displacement"]["mean_metres"], 0.25, 1e-5);
-  EXPECT_NEAR(compared["displacement"]["joints"]["left_foot"], 0.25, 1e-5);
-  EXPECT_EQ(compared["partner_metres"], 0);
-  EXPECT_EQ(compared["b"]["name"], "b");
-  EXPECT_TRUE(compared["figures"]["mean_lean_degrees"]["a"].is_number());
-}
-
-TEST_F(MotionCommandsTest, LeaderSideCanDifferForEachFile) {
-  Write("turned.csv", Format::kCsv, {follower_, leader_});
-  const Strings files = {Path("pair.csv"), Path("turned.csv")};
-  const auto mean = [&](const Strings& sides) {
-    Strings arguments = {"compare", "--json", files[0], files[1]};
-    for (const std::string& side : sides)
-      arguments.insert(arguments.end(), {"--leader-side", side});
-    return RunJson(arguments)["displacement"]["mean_metres"].get<double>();
+TEST_F(MotionCommandsTest, LeaderSideChoosesWhoLeads) {
+  const auto page = [this](const std::string& side) {
+    EXPECT_EQ(Run({"view", Path("pair.csv"), "--leader-side", side, "--out", "-"}), 0) << err();
+    return out();
   };
-  EXPECT_GT(mean({}), 0.5);
-  EXPECT_GT(mean({"right"}), 0.5);
-  EXPECT_EQ(mean({"left", "right"}), 0);
-  EXPECT_EQ(Run({"view", files[0], "--leader-side", "left", "--leader-side", "right", "--out",
-                 Path("v.html")}),
-            2);
-  EXPECT_THAT(err_.str(), HasSubstr("--leader-side: expected once or 1 times, got 2 times"));
+  EXPECT_EQ(page("left"), page("left"));
+  EXPECT_NE(page("left"), page("right"));
 }
 
-TEST_F(MotionCommandsTest, CompareRejectsASingleMotion) {
-  EXPECT_EQ(Run({"compare", Path("one.csv")}), 2);
-  EXPECT_EQ(Run({"compare", Path("one.csv"), Path("no.csv")}), 42);
-  EXPECT_THAT(err_.str(), HasSubstr("no.csv: no such file"));
-}
-
-TEST_F(MotionCommandsTest, ATakeIsOneFileOrTwo) {
+TEST_F(MotionCommandsTest, ViewFindsTheFollowerBesideALeader) {
   Write("walk.bvh", Format::kBvh, {leader_, follower_});
   const std::string first = Path("walk.leader.bvh"), second = Path("walk.follower.bvh");
-  EXPECT_EQ(ParseTake(first).name, "walk");
-  EXPECT_THAT(ParseTake(first).files, ElementsAre(first, second));
-  EXPECT_THAT(ParseTake(second).files, ElementsAre(second));
-  EXPECT_EQ(ParseTake("best=" + second).name, "best");
-  EXPECT_THAT(ParseTake("x=" + Path("one.csv") + "," + second).files,
-              ElementsAre(Path("one.csv"), second));
-  EXPECT_EQ(ParseTake(Path("no.csv")).name, "no");
-  WriteTestFile(folder_ / "a=b,c.csv", "");
-  EXPECT_EQ(ParseTake(Path("a=b,c.csv")).name, "a=b,c");
-
-  TakeArguments arguments;
-  arguments.takes = {first, second};
-  const auto takes = ReadTakes(arguments, motion::SbuSkeleton(), nullptr);
-  ASSERT_THAT(takes, IsOk());
-  ASSERT_EQ(takes->size(), 1u);
-  ASSERT_TRUE((*takes)[0].follower.has_value());
-  EXPECT_LT(LargestDistance(*(*takes)[0].follower, follower_), 1e-4f);
+  ASSERT_EQ(Run({"view", first, second, "--out", Path("v.html")}), 0) << err();
+  EXPECT_THAT(out(), AllOf(StartsWith("shown     walk: " + first + " and " + second + "\n"),
+                           Not(HasSubstr("shown     walk.follower"))));
+  ASSERT_EQ(Run({"view", "best=" + second, "--out", Path("v.html")}), 0) << err();
+  EXPECT_THAT(out(), HasSubstr("shown     best: " + second + " (one person)\n"));
+  WriteTestFile(folder_ / "a=b.csv", ReadTestFile(folder_ / "one.csv"));
+  ASSERT_EQ(Run({"view", Path("a=b.csv"), "--out", Path("v.html")}), 0) << err();
+  EXPECT_THAT(out(), HasSubstr("shown     a=b: "));
+  EXPECT_EQ(Run({"view", Path("no.csv"), "--out", Path("v.html")}), 42);
+  EXPECT_THAT(err(), HasSubstr("no.csv: no such file"));
 }
 
-TEST_F(MotionCommandsTest, TwoFilesOfATakeAreMatched) {
-  test::PersonOptions slow;
-  slow.frames = 20;
-  slow.frame_rate_hz = 15;
-  Write("slow.csv", Format::kCsv, {MakePerson(slow)});
-  TakeArguments arguments;
-  arguments.takes = {Path("one.csv") + "," + Path("slow.csv")};
-  const auto takes = ReadTakes(arguments, motion::SbuSkeleton(), nullptr);
-  ASSERT_THAT(takes, IsOk());
-  const Take& take = (*takes)[0];
-  EXPECT_EQ(take.leader.frame_count(), 39);
-  EXPECT_EQ(take.follower->frame_count(), 39);
-  EXPECT_EQ(take.follower->frame_rate_hz, 30);
-  EXPECT_EQ(take.follower->at(8, 3), MakePerson(slow).at(4, 3));
+TEST_F(MotionCommandsTest, ViewRejectsAFollowerOfAnotherLength) {
+  Write("walk.bvh", Format::kBvh, {leader_, follower_});
+  test::PersonOptions shorter;
+  shorter.frames = 20;
+  Write("walk.follower.bvh", Format::kBvh, {MakePerson(shorter)});
+  EXPECT_EQ(Run({"view", Path("walk.leader.bvh"), "--out", Path("v.html")}), 42);
+  EXPECT_THAT(err(), HasSubstr("walk.follower.bvh: expected the leader's 60 frames, got 20"));
 }
 
 }  // namespace

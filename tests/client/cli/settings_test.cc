@@ -3,7 +3,6 @@
 #include <map>
 #include <string>
 
-#include "client/cli/command_line.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/matchers.h"
@@ -93,61 +92,6 @@ TEST_F(ReadSettingsTest, EnvironmentOverridesTheFile) {
   EXPECT_THAT(Read({{"DUET_CONFIG", Path("c")}, {"DUET_SERVER", "variable:1"}}),
               ElementsAre("timeout=3", "server=variable:1"));
   EXPECT_THAT(Read({{"DUET_CONFIG", Path("c")}, {"DUET_SERVER", ""}}), ::testing::SizeIs(3));
-}
-
-// The words of a valid command line with the settings that apply to it.
-std::vector<std::string> Words(const std::vector<std::string>& arguments,
-                               const std::vector<Setting>& settings) {
-  CommandLine line;
-  const ParsedCommandLine parsed = line.Parse(arguments, settings);
-  EXPECT_NE(parsed.command, nullptr) << parsed.text;
-  return parsed.words;
-}
-
-TEST(Settings, FlagsOverrideThem) {
-  const std::vector<Setting> settings = {{"server", "lab:1", "config:1"}};
-  EXPECT_THAT(Words({"models"}, {}), ElementsAre("models"));
-  EXPECT_THAT(Words({"models"}, settings), ElementsAre("models", "--server=lab:1"));
-  EXPECT_THAT(Words({"models", "--server", "mine:1"}, settings),
-              ElementsAre("models", "--server", "mine:1"));
-  EXPECT_THAT(Words({"models", "--server=mine:1"}, settings),
-              ElementsAre("models", "--server=mine:1"));
-}
-
-TEST(Settings, ApplyOnlyToCommandsThatHaveTheFlag) {
-  EXPECT_THAT(
-      Words({"models"},
-            {{"json", "true", "c:1"}, {"leader-side", "right", "c:2"}, {"tls", "false", "c:3"}}),
-      ElementsAre("models", "--json=true", "--tls=false"));
-}
-
-class SynthesizeSettingsTest : public ::testing::Test {
- protected:
-  const test::TemporaryFolder folder_;
-  const std::vector<std::string> words_ = {"synthesize", "--leader", "a.bvh", "--out",
-                                           (folder_ / "a.csv").string()};
-};
-
-TEST_F(SynthesizeSettingsTest, AreIgnoredIfAFlagExcludesThem) {
-  std::vector<std::string> words = words_;
-  words.insert(words.end(), {"--keyframe", "0:kick=1"});
-  EXPECT_EQ(Words(words, {{"label", "hug=1", "c:1"}}), words);
-}
-
-TEST_F(SynthesizeSettingsTest, CanRepeatARepeatableFlag) {
-  EXPECT_THAT(Words(words_, {{"label", "hug=1", "c:1"}, {"label", "kick=0.5", "c:2"}}),
-              ::testing::IsSupersetOf({"--label=hug=1", "--label=kick=0.5"}));
-}
-
-TEST(Settings, ErrorsNameTheirSource) {
-  CommandLine first, second;
-  const ParsedCommandLine wrong = first.Parse({"models"}, {{"timeout", "soon", "config:7"}});
-  EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.text, ::testing::StartsWith("config:7: --timeout"));
-  const ParsedCommandLine unknown = second.Parse({"models"}, {{"servr", "lab:1", "config:2"}});
-  EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.text,
-              HasSubstr("config:2: no command has a flag --servr; did you mean server?"));
 }
 
 }  // namespace

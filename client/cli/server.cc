@@ -1,4 +1,4 @@
-#include "client/cli/server_options.h"
+#include "client/cli/server.h"
 
 #include <atomic>
 #include <cstddef>
@@ -12,6 +12,7 @@
 #include "client/error_details.h"
 #include "client/internal/check_tls.h"
 #include "model/base/file.h"
+#include "model/base/program_flags.h"
 
 namespace duet::client::cli {
 namespace {
@@ -67,6 +68,51 @@ void ReportWaiting(const ServerArguments& arguments, std::ostream& err, ClientOp
 }
 
 }  // namespace
+
+void AddServerFlags(CLI::App* app, ServerArguments* server) {
+  app->add_option("--server", server->address,
+                  "Server, or any gRPC target such as unix:/run/duet.sock")
+      ->capture_default_str()
+      ->type_name("HOST:PORT")
+      ->group(kServerGroup);
+  app->add_option("--wait", server->wait_seconds,
+                  "Seconds to retry a server that cannot be reached; at most --timeout")
+      ->check(base::InRange(0.0, 86400.0))
+      ->capture_default_str()
+      ->type_name("SECONDS")
+      ->group(kServerGroup);
+  AddConnectionFlags(app, server);
+}
+
+void AddConnectionFlags(CLI::App* app, ServerArguments* server) {
+  app->add_option("--timeout", server->timeout_seconds, "Deadline of the whole call, with retries")
+      ->check(base::InRange(0.001, 86400.0))
+      ->capture_default_str()
+      ->type_name("SECONDS")
+      ->group(kServerGroup);
+  AddCredentialFlags(app, server);
+}
+
+void AddCredentialFlags(CLI::App* app, ServerArguments* server) {
+  const auto add = [app](const char* flag, const char* form, std::string* value, const char* help) {
+    return app->add_option(flag, *value, help)->type_name(form)->group(kServerGroup);
+  };
+  app->add_flag("--tls", server->tls, "Encrypt; trust the certificate authorities of the system")
+      ->group(kServerGroup);
+  add("--tls-ca", "FILE", &server->tls_ca_file,
+      "Encrypt; trust the certificate authorities in this file");
+  CLI::Option* certificate =
+      add("--tls-cert", "FILE", &server->tls_certificate_file, "Certificate of this client");
+  CLI::Option* key = add("--tls-key", "FILE", &server->tls_key_file, "Private key of this client");
+  certificate->needs(key);
+  key->needs(certificate);
+  add("--tls-server-name", "NAME", &server->tls_server_name,
+      "Name in the server's certificate, if it differs from the address");
+  add("--token-file", "FILE", &server->token_file,
+      "Token that identifies the caller; only sent encrypted or to this machine");
+  add("--authority", "NAME", &server->authority,
+      "Name of the server that a proxy routes by, if it differs from the address");
+}
 
 absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) {
   ClientOptions options;

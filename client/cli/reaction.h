@@ -1,0 +1,76 @@
+#ifndef DUET_CLIENT_CLI_REACTION_H_
+#define DUET_CLIENT_CLI_REACTION_H_
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <istream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "client/batch/text_values.h"
+#include "client/cli/motion_input.h"
+#include "client/request.h"
+#include "client/result.h"
+#include "model/motion/skeleton.h"
+
+// The request that duet synthesize and duet live send: a file, and flags that override it.
+
+namespace duet::client::cli {
+
+struct ReactionArguments {
+  std::filesystem::path request;  // empty: no file
+  std::filesystem::path leader;   // empty: the leader of the request, or one that is no file
+  formats::Side leader_side = kDefaultSide;
+  InputArguments input;
+  // The fields that flags set in the request.
+  std::optional<ModelChoice> model;
+  std::vector<ClassWeight> weights;
+  std::vector<WeightKeyframe> keyframes;
+  std::string follower_start;  // "X,Y,Z" or a motion file
+  std::optional<uint64_t> seed;
+  std::optional<float> variety;
+  std::optional<int> candidates;
+  std::vector<JointConstraint> pins;
+};
+
+// --request, --label, --keyframe, --model, --follower-start, --seed, --variety and --candidates.
+void AddReactionFlags(CLI::App* app, ReactionArguments* arguments);
+inline constexpr char kReactionGroup[] = "Reaction";
+
+// --leader-side and the flags of reading the leader's file.
+void AddLeaderFlags(CLI::App* app, ReactionArguments* arguments);
+
+// The syntax of values, as in recipes. Errors: INVALID_ARGUMENT "expected ..., got ...".
+using batch::ParseModelChoice;
+using batch::ParseSeed;
+// "kick=0.5", or "kick" for a weight of 1. The server checks the class and the range.
+absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);
+// "30:kick=1,hug=0": weights at a frame.
+absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text);
+
+// Checks that the files of the flags exist and have a known format. Needs no skeleton, so that a
+// wrong name is rejected before the first call to the server.
+absl::Status CheckInputs(const ReactionArguments& arguments);
+
+// The request of the file with the fields of the flags, except those that are read in a model's
+// joints: the leader and the follower's start.
+absl::StatusOr<SynthesisRequest> StartRequest(const ReactionArguments& arguments);
+
+// Rejects a class that the model does not know and suggests the nearest name.
+absl::Status CheckLabels(const SynthesisRequest& request, const ModelInfo& model);
+
+// Reads the follower's start and, if the flags name one, the leader, in the skeleton's joints.
+// Levels a leader from a tilted camera. `notes`, which may be null, receives the choices that were
+// made. A leader `-` is read from `in`.
+absl::Status ReadMotions(const ReactionArguments& arguments, const motion::Skeleton& skeleton,
+                         std::istream* in, SynthesisRequest* request,
+                         std::vector<std::string>* notes);
+
+}  // namespace duet::client::cli
+
+#endif  // DUET_CLIENT_CLI_REACTION_H_

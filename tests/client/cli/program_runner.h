@@ -1,0 +1,62 @@
+#ifndef DUET_TESTS_CLIENT_CLI_PROGRAM_RUNNER_H_
+#define DUET_TESTS_CLIENT_CLI_PROGRAM_RUNNER_H_
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "client/cli/program_environment.h"
+#include "client/connection.h"
+#include "gtest/gtest.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client::cli {
+
+using Strings = std::vector<std::string>;
+
+inline Strings operator+(Strings a, const Strings& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+// A test that runs the whole program in a folder of its own, against a connection that a test scripts.
+class ProgramRunner : public ::testing::Test {
+ public:
+  int Run(const Strings& arguments, const std::string& input = "") {
+    out_.str("");
+    err_.str("");
+    std::istringstream in(input);
+    ProgramEnvironment environment{[this](const ClientOptions& options) -> absl::StatusOr<Client> {
+                                     options_ = options;
+                                     if (connection_ != nullptr) return Client(connection_);
+                                     return absl::UnavailableError("no server was expected");
+                                   },
+                                   &out_, &err_, &in};
+    environment.variables = [this](const std::string& name) {
+      const auto found = variables_.find(name);
+      return found == variables_.end() ? std::nullopt : std::optional<std::string>(found->second);
+    };
+    return RunProgram(arguments, environment);
+  }
+
+  std::string out() const { return out_.str(); }
+  std::string err() const { return err_.str(); }
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  bool Exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+
+ protected:
+  const test::TemporaryFolder folder_;
+  std::shared_ptr<Connection> connection_;  // null: the program must not connect
+  ClientOptions options_;                   // of the last connection
+  std::map<std::string, std::string> variables_;
+
+ private:
+  std::ostringstream out_, err_;
+};
+
+}  // namespace duet::client::cli
+
+#endif  // DUET_TESTS_CLIENT_CLI_PROGRAM_RUNNER_H_

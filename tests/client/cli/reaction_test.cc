@@ -1,0 +1,265 @@
+#include "client/cli/reaction.h"
+
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "client/batch/pins.h"
+#include "client/cli/request_file.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "model/motion/coordinates.h"
+#include "tests/support/matchers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace duet::client::cli {
+namespace {
+
+using ::testing::_;
+
+constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+
+TEST(ParseClassWeightTest, ReadsANameAndAWeight) {
+  const absl::StatusOr<ClassWeight> weight = ParseClassWeight("shake_hands=-0.5");
+  ASSERT_THAT(weight, IsOk());
+  EXPECT_EQ(weight->interaction_class, "shake_hands");
+  EXPECT_EQ(weight->weight, -0.5f);
+  EXPECT_EQ(ParseClassWeight("kick")->weight, 1);
+  for (const char* text : {"", "kick=", "=1", "kick=hard", "kick=1x", "kick=1=2"}) {
+    EXPECT_THAT(
+        ParseClassWeight(text),
+        StatusIs(kInvalid, AllOf(HasSubstr(text), HasSubstr("expected CLASS or CLASS=WEIGHT"))));
+  }
+}
+
+TEST(ParseKeyframeTest, ReadsAFrameAndWeights) {
+  const absl::StatusOr<WeightKeyframe> keyframe = ParseKeyframe("30:kick=1,hug=0");
+  ASSERT_THAT(keyframe, IsOk());
+  EXPECT_EQ(keyframe->frame, 30);
+  ASSERT_THAT(keyframe->weights, SizeIs(2));
+  EXPECT_EQ(keyframe->weights[1].interaction_class, "hug");
+  EXPECT_EQ(keyframe->weights[1].weight, 0);
+  for (const char* text : {"", "30", "30:", "kick=1", "-1:kick=1", "x:kick=1",
+                           "30:kick=", "30:kick=1,", "30:,kick=1", "8.5:kick", "8b:kick"}) {
+    EXPECT_THAT(ParseKeyframe(text), StatusIs(kInvalid, HasSubstr("expected FRAME:CLASS=WEIGHT")))
+        << text;
+  }
+}
+
+TEST(ParsePinTest, ReadsJointFramePositionAndSoftness) {
+  const absl::StatusOr<JointConstraint> pin = batch::ParsePin("right_hand@40=-0.2,1.3,5e-1");
+  ASSERT_THAT(pin, IsOk());
+  EXPECT_EQ(pin->joint, "right_hand");
+  EXPECT_EQ(pin->frame, 40);
+  EXPECT_EQ(pin->position, (motion::Vec3{-0.2f, 1.3f, 0.5f}));
+  EXPECT_EQ(pin->softness, 0);
+  EXPECT_EQ(batch::ParsePin("head@0=0,1,2,0.25")->softness, 0.25f);
+  for (const char* text :
+       {"", "head", "head@3", "head@3=", "head@3=0,1", "head@3=0,1,2,3", "head@3=0,1,2,-0.1",
+        "head@3=0,1,2,", "head@3=0,1,2,0,0", "head@3=0,1,nan", "head@3=0,inf,2", "head@3=0,1,2,nan",
+        "@3=0,1,2", "head@=0,1,2", "head@-1=0,1,2", "head@1.5=0,1,2", "head=0,1,2", "3@head=0,1,2",
+        "head@3=a,b,c"}) {
+    EXPECT_THAT(batch::ParsePin(text), StatusIs(kInvalid, HasSubstr("expected JOINT@FRAME=X,Y,Z")))
+        << text;
+  }
+}
+
+TEST(ParseModelChoiceTest, ReadsNameVersionAndLabel) {
+  EXPECT_EQ(ParseModelChoice("sbu")->name, "sbu");
+  EXPECT_EQ(ParseModelChoice("sbu")->version, std::nullopt);
+  EXPECT_EQ(ParseModelChoice("sbu@12")->version, 12);
+  EXPECT_EQ(ParseModelChoice("sbu:canary")->version_label, "canary");
+  for (const char* text : {"", "@1", ":stable", "sbu@", "sbu@0", "sbu@-1", "sbu@one", "sbu:"}) {
+    EXPECT_THAT(ParseModelChoice(text), StatusIs(kInvalid, HasSubstr("expected NAME")));
+  }
+}
+
+TEST(ParseSeedTest, ReadsEverySeedAndRejectsOtherForms) {
+  EXPECT_EQ(*ParseSeed("0"), 0u);
+  EXPECT_EQ(*ParseSeed("18446744073709551615"), 18446744073709551615u);
+  for (const char* text : {"", "-1", "1.5", "18446744073709551616", "random"}) {
+    EXPECT_THAT(ParseSeed(text),
+                StatusIs(kInvalid, HasSubstr("expected a whole number from 0 to")));
+  }
+}
+
+// A text in a file.
+class RequestFileTest : public ::testing::Test {
+ protected:
+  absl::StatusOr<SynthesisRequest> Read(const std::string& text) {
+    test::WriteTestFile(file_, text);
+    return ReadRequestFile(file_);
+  }
+
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_ / "request.textproto";
+};
+
+TEST_F(RequestFileTest, HasEveryFieldOfARequest) {
+  const absl::StatusOr<SynthesisRequest> request = Read(R"(
+      model { name: "sbu" version: 2 }
+      leader {
+        joint_names: ["torso", "head"] frame_rate_hz: 30 unit: LENGTH_UNIT_METRES
+        up_axis: UP_AXIS_Y_UP frame_count: 2 positions: [0, 1, 0, 0, 2, 0, 1, 1, 0, 1, 2, 0]
+      }
+      label_keyframes { frame: 0 label_vector { weights { interaction_class: "hug" weight: 1 } } }
+      label_keyframes { frame: 9 label_vector { weights { interaction_class: "kick" weight: -1 } } }
+      follower_start { root_position { x: 1 y: 1.1 z: -2 } }
+      chunk_frames: 8  priority: PRIORITY_BULK  partner_direction { x: 1 z: -1 }
+      seed: 7  variety: 0.25  clean_up: CLEAN_UP_OFF  candidates: 4  reply_rotations: true
+      up { x: 0.1 y: 1 }
+      constraints { joint_name: "head" frame: 3 position { y: 1.5 } softness: 0.5 })");
+  ASSERT_THAT(request, IsOk());
+  EXPECT_EQ(request->model.name, "sbu");
+  EXPECT_EQ(request->model.version, 2);
+  EXPECT_THAT(request->leader.joint_names, ElementsAre("torso", "head"));
+  ASSERT_EQ(request->leader.frame_count(), 2);
+  EXPECT_EQ(request->leader.at(1, 1), (motion::Vec3{1, 2, 0}));
+  EXPECT_TRUE(request->weights.empty());
+  ASSERT_THAT(request->keyframes, SizeIs(2));
+  EXPECT_EQ(request->keyframes[1].frame, 9);
+  EXPECT_EQ(request->keyframes[1].weights[0].weight, -1);
+  EXPECT_EQ(std::get<motion::Vec3>(*request->follower_start), (motion::Vec3{1, 1.1f, -2}));
+  EXPECT_EQ(request->chunk_frames, 8);
+  EXPECT_EQ(request->priority, Priority::kBulk);
+  EXPECT_EQ(request->partner_direction, (motion::Vec3{1, 0, -1}));
+  EXPECT_EQ(request->seed, 7u);
+  EXPECT_EQ(request->variety, 0.25f);
+  EXPECT_EQ(request->clean_up, false);
+  EXPECT_EQ(request->candidates, 4);
+  EXPECT_TRUE(request->rotations);
+  EXPECT_EQ(request->up, (motion::Vec3{0.1f, 1, 0}));
+  ASSERT_THAT(request->constraints, SizeIs(1));
+  EXPECT_EQ(request->constraints[0].position, (motion::Vec3{0, 1.5f, 0}));
+  EXPECT_EQ(request->constraints[0].softness, 0.5f);
+}
+
+TEST_F(RequestFileTest, AbsentFieldsHaveTheirDefaults) {
+  const absl::StatusOr<SynthesisRequest> request = Read(
+      "label_vector { weights { interaction_class: 'hug' weight: 1 } }\n"
+      "follower_start { pose { positions: [1, 2, 3, 4, 5, 6] } }");
+  ASSERT_THAT(request, IsOk());
+  EXPECT_EQ(request->weights[0].interaction_class, "hug");
+  EXPECT_THAT(std::get<1>(*request->follower_start),
+              ElementsAre(motion::Vec3{1, 2, 3}, motion::Vec3{4, 5, 6}));
+  EXPECT_TRUE(request->leader.poses.empty());
+  EXPECT_EQ(request->variety, 1);
+  EXPECT_EQ(request->candidates, 1);
+  EXPECT_EQ(request->clean_up, std::nullopt);
+  EXPECT_EQ(request->up, std::nullopt);
+}
+
+TEST_F(RequestFileTest, ErrorsNameTheFileAndThePlaceOrTheField) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"seed: 1\nvarity: 0.5\n", "request.textproto: line 2:7: "},
+      {"seed: 'x'", "request.textproto: line 1:7: "},
+      {"reply_joint_names: 'head'", "reply_joint_names: expected none"},
+      {"priority: PRIORITY_UNSPECIFIED", "priority: expected PRIORITY_INTERACTIVE or"},
+      {"leader { unit: LENGTH_UNIT_MILLIMETRES }", "leader.unit: expected LENGTH_UNIT_METRES"},
+      {"leader { unit: LENGTH_UNIT_METRES up_axis: UP_AXIS_Z_UP }",
+       "leader.up_axis: expected UP_AXIS_Y_UP, got UP_AXIS_Z_UP"},
+      {"leader { unit: LENGTH_UNIT_METRES up_axis: UP_AXIS_Y_UP joint_names: 'a' frame_count: 1 }",
+       "leader.positions: expected 3 values (3 for each joint and frame), got 0"}};
+  for (const auto& [text, message] : cases) {
+    EXPECT_THAT(Read(text), StatusIs(kInvalid, HasSubstr(message))) << text;
+  }
+  EXPECT_THAT(ReadRequestFile(folder_ / "no"), StatusIs(absl::StatusCode::kNotFound, _));
+}
+
+TEST_F(RequestFileTest, FlagsOverrideIt) {
+  test::WriteTestFile(file_,
+                      "seed: 1 variety: 0.5 candidates: 2 model { name: 'sbu' } "
+                      "label_vector { weights { interaction_class: 'hug' weight: 1 } }");
+  ReactionArguments arguments;
+  arguments.request = file_;
+  EXPECT_EQ(StartRequest(arguments)->seed, 1u);
+  EXPECT_EQ(StartRequest(arguments)->weights[0].interaction_class, "hug");
+  arguments.seed = 2;
+  arguments.variety = 0;
+  arguments.candidates = 3;
+  arguments.model = ModelChoice{"k3hi", 1, ""};
+  arguments.keyframes = {{0, {{"kick", 1}}}};
+  const absl::StatusOr<SynthesisRequest> request = StartRequest(arguments);
+  ASSERT_THAT(request, IsOk());
+  EXPECT_EQ(request->seed, 2u);
+  EXPECT_EQ(request->variety, 0);
+  EXPECT_EQ(request->candidates, 3);
+  EXPECT_EQ(request->model.name, "k3hi");
+  EXPECT_TRUE(request->weights.empty()) << "keyframes replace the labels of the file";
+  EXPECT_THAT(request->keyframes, SizeIs(1));
+}
+
+// The leader that is read from a file with the point (1, 2, 3), which states no coordinates.
+motion::Vec3 ReadPoint(const InputArguments& input) {
+  const test::TemporaryFolder folder;
+  ReactionArguments arguments;
+  arguments.leader = folder / "leader.csv";
+  arguments.input = input;
+  arguments.input.frame_rate_hz = 30;
+  test::WriteTestFile(arguments.leader, "frame,pelvis_x,pelvis_y,pelvis_z\n0,1,2,3\n");
+  motion::Skeleton skeleton;
+  skeleton.joint_names = {"pelvis"};
+  SynthesisRequest request;
+  EXPECT_THAT(ReadMotions(arguments, skeleton, nullptr, &request, nullptr), IsOk());
+  return request.leader.poses.empty() ? motion::Vec3{} : request.leader.at(0, 0);
+}
+
+TEST(ReadMotionsTest, UnitAndAxisOverrideTheFile) {
+  using motion::LengthUnit;
+  using motion::UpAxis;
+  const struct {
+    std::optional<LengthUnit> unit;
+    std::optional<UpAxis> up_axis;
+    motion::Coordinates coordinates;
+  } cases[] = {
+      {std::nullopt, UpAxis::kZUp, {LengthUnit::kMetres, UpAxis::kZUp}},
+      {LengthUnit::kMillimetres, UpAxis::kZUp, {LengthUnit::kMillimetres, UpAxis::kZUp}},
+      {LengthUnit::kMillimetres, std::nullopt, {LengthUnit::kMillimetres, UpAxis::kYUp}},
+      {LengthUnit::kSbuNormalised, std::nullopt, {LengthUnit::kSbuNormalised, UpAxis::kYDown}}};
+  for (const auto& [unit, up_axis, coordinates] : cases) {
+    InputArguments input;
+    input.unit = unit;
+    input.up_axis = up_axis;
+    EXPECT_LT(Distance(ReadPoint(input), ToWorld(coordinates, {1, 2, 3})), 1e-5f);
+    input.metres_per_unit = 0.01;  // overrides the unit
+    if (unit == LengthUnit::kSbuNormalised) continue;
+    EXPECT_LT(Distance(ReadPoint(input), motion::ToWorld({LengthUnit::kMetres, coordinates.up_axis},
+                                                         {.01f, .02f, .03f})),
+              1e-6F);
+  }
+}
+
+// The notes on a follower's start for a leader who stands: 0.9 m from foot to pelvis.
+std::vector<std::string> NotesOnStart(const std::string& start) {
+  const test::TemporaryFolder folder;
+  ReactionArguments arguments;
+  arguments.leader = folder / "leader.csv";
+  arguments.input.frame_rate_hz = 30;
+  arguments.follower_start = start;
+  test::WriteTestFile(arguments.leader,
+                      "frame,pelvis_x,pelvis_y,pelvis_z,left_foot_x,left_foot_y,left_foot_z,"
+                      "right_foot_x,right_foot_y,right_foot_z\n0,0,1,0,0,0.1,0,0,0.1,0\n");
+  motion::Skeleton skeleton;
+  skeleton.joint_names = {"pelvis", "left_foot", "right_foot"};
+  skeleton.bones = {{0, 1}, {0, 2}};
+  skeleton.feet = motion::JointPair{1, 2};
+  SynthesisRequest request;
+  std::vector<std::string> notes;
+  EXPECT_THAT(ReadMotions(arguments, skeleton, nullptr, &request, &notes), IsOk());
+  EXPECT_THAT(notes.front(), HasSubstr("not levelled"));
+  notes.erase(notes.begin());
+  return notes;
+}
+
+TEST(ReadMotionsTest, AStartOnTheFloorOrInTheAirGetsAWarning) {
+  EXPECT_THAT(NotesOnStart("0,0,1.2"),
+              ElementsAre(HasSubstr("warning: --follower-start: expected Y near 1.00 m, where the "
+                                    "pelvis of a standing person is, got 0")));
+  EXPECT_THAT(NotesOnStart("0,5,1.2"), ElementsAre(HasSubstr("got 5")));
+  EXPECT_THAT(NotesOnStart("0,0.5,1.2"), ElementsAre());
+  EXPECT_THAT(NotesOnStart("0,1.1,1.2"), ElementsAre());
+}
+
+}  // namespace
+}  // namespace duet::client::cli

@@ -1,0 +1,178 @@
+// Command lines that run nothing: help, versions, usage errors, settings and exit codes.
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/exit_code.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/client/cli/program_runner.h"
+#include "tests/client/support/fake_stub.h"
+#include "tests/support/matchers.h"
+
+namespace duet::client::cli {
+namespace {
+
+using test::WriteTestFile;
+
+class UsageTest : public ProgramRunner {
+ protected:
+  void ExpectUsageError(const Strings& arguments, const std::string& message) {
+    EXPECT_EQ(Run(arguments), kExitUsage) << message;
+    EXPECT_THAT(err(), HasSubstr(message));
+    EXPECT_EQ(out(), "");
+  }
+
+  // The required flags of `duet synthesize` except its labels.
+  const Strings unlabelled_ = {"synthesize", "--leader", "kick.bvh", "--out", Path("pair.html")};
+  const Strings synthesize_ = unlabelled_ + Strings{"--label", "kick"};
+};
+
+TEST_F(UsageTest, VersionAndHelpSucceed) {
+  EXPECT_EQ(Run({"--version"}), 0);
+  EXPECT_EQ(out(), "duet " DUET_VERSION "\n");
+  for (const Strings& arguments : {Strings{"--help"}, Strings{"synthesize", "--help"},
+                                   Strings{"models", "--help"}, Strings{"admin", "--help"}}) {
+    EXPECT_EQ(Run(arguments), 0);
+    EXPECT_THAT(out(), HasSubstr("Usage: duet"));
+  }
+  EXPECT_EQ(Run({"--help-all"}), 0);
+  for (const char* text : {"--candidates COUNT", "--rig FILE", "--admin-server HOST:PORT"}) {
+    EXPECT_THAT(out(), HasSubstr(text));
+  }
+}
+
+TEST_F(UsageTest, HelpShowsDefaultsAndExitCodes) {
+  EXPECT_EQ(Run({"synthesize", "--help"}), 0);
+  const std::pair<const char*, const char*> defaults[] = {{"--server HOST:PORT", "localhost:50051"},
+                                                          {"--timeout SECONDS", "120"},
+                                                          {"--wait SECONDS", "5"},
+                                                          {"--leader-side left.right", "left"},
+                                                          {"--samples COUNT", "1"}};
+  for (const auto& [flag, value] : defaults) {
+    // CLI11 2.1 and 2.4 write them differently: "=5" and " [5]".
+    EXPECT_THAT(out(), ContainsRegex(absl::StrCat(flag, "[^\n]*[=[]", value)));
+  }
+  EXPECT_THAT(out(), HasSubstr("  42  failed"));
+}
+
+TEST_F(UsageTest, SynthesizeHasAtMostThirtyFlags) {
+  EXPECT_EQ(Run({"synthesize", "--help"}), 0);
+  int flags = -1;  // without --help
+  for (std::size_t at = 0; (at = out().find("\n  --", at)) != std::string::npos; ++at) ++flags;
+  EXPECT_GT(flags, 20);
+  EXPECT_LE(flags, 30);
+}
+
+TEST_F(UsageTest, ErrorsNameTheFlagWhatIsExpectedAndWhatIsGiven) {
+  const struct {
+    Strings more;
+    const char* message;
+  } cases[] = {
+      {{"--samples", "0"}, "--samples: expected 1 to 1000, got \"0\""},
+      {{"--candidates", "17"}, "--candidates: expected 1 to 16, got \"17\""},
+      {{"--wait", "x"}, "--wait: expected 0 to 86400, got \"x\""},
+      {{"--wait", "nan"}, "--wait: expected 0 to 86400, got \"nan\""},
+      {{"--timeout", "nan"}, "--timeout: expected 0.001 to 86400, got \"nan\""},
+      {{"--timeout", "0"}, "--timeout: expected 0.001 to 86400, got \"0\""},
+      {{"--timeout"}, "--timeout: expected a value, got none"},
+      {{"--server", "a", "--server", "b"}, "--server: expected one value, got 2"},
+      {{"--json=maybe"}, "--json: expected true or false, got \"maybe\""},
+      {{"--label", "kick="}, "--label: expected CLASS or CLASS=WEIGHT"},
+      {{"hug=1"}, "Unexpected argument \"hug=1\""},
+      {{"--keyframe", "0:kick=1"}, "excludes"},
+      {{"--leader-side", "up"}, "--leader-side: expected left or right, got \"up\""},
+      {{"--input-format", "mov"}, "--input-format: expected "},
+      {{"--frame-rate", "-15"}, "--frame-rate: expected a number above 0, got \"-15\""},
+      {{"--metres-per-unit", "inf"}, "--metres-per-unit: expected a number above 0, got \"inf\""},
+      {{"--tls-key", "key.pem"}, "--tls-key"},
+      {{"--tls-cert", "a.pem"}, "--tls-key"},
+      {{"--model", "sbu@x"}, "--model: expected NAME"},
+      {{"--seed", "-1"}, "--seed: expected a whole number"},
+      {{"--variety", "3"}, "--variety: expected a number from 0 to 2, got \"3\""},
+      {{"--pin", "head@3"}, "--pin: expected JOINT@FRAME=X,Y,Z[,SOFTNESS]"},
+      {{"--out", Path("pair.fbx")}, "got \".fbx\""},
+      {{"--out", Path("no/pair.csv")}, "there is no folder"},
+      {{"--out", Path("pair")}, "pair: extension: expected .html"},
+      {{"--output-format", "csv"}, "--output-format: is only valid with --out -"}};
+  for (const auto& [more, message] : cases) ExpectUsageError(synthesize_ + more, message);
+  ExpectUsageError(unlabelled_ + Strings{"--keyframe", "kick=1"},
+                   "--keyframe: expected FRAME:CLASS=WEIGHT");
+}
+
+TEST_F(UsageTest, WhatIsMissingOrUnknownIsNamed) {
+  ExpectUsageError({}, "A command is required");
+  ExpectUsageError({"dance"}, "There is no command \"dance\"");
+  ExpectUsageError({"convrt"}, "did you mean convert?");
+  ExpectUsageError({"models", "extra"}, "Unexpected argument \"extra\"");
+  ExpectUsageError({"models", "--frobnicate"}, "models has no flag --frobnicate");
+  ExpectUsageError({"models", "--sever", "a"}, "did you mean --server?");
+  ExpectUsageError({"admin", "models", "--server", "a"},
+                   "admin has no flag --server; did you mean --admin-server?");
+  ExpectUsageError(unlabelled_, "--label, --keyframe or --request is required");
+  ExpectUsageError({"synthesize", "--label", "kick", "--out", Path("pair.html")},
+                   "--leader or --request is required");
+  ExpectUsageError({"synthesize", "--leader", "kick.bvh", "--label", "kick"}, "--out");
+}
+
+// Writes a configuration file and makes the program read it.
+class SettingsTest : public UsageTest {
+ protected:
+  void Configure(const std::string& text) {
+    WriteTestFile(folder_ / "config", text);
+    variables_["DUET_CONFIG"] = Path("config");
+  }
+};
+
+TEST_F(SettingsTest, AreDefaultsOfTheFlagsThatACommandHas) {
+  Configure("server = lab:1\nleader-side = right\ntls = false\ntimeout = 3\n");
+  Run({"models"});
+  EXPECT_EQ(options_.server_address, "lab:1");
+  EXPECT_EQ(options_.deadline, absl::Seconds(3));
+  Run({"models", "--server", "mine:1"});
+  EXPECT_EQ(options_.server_address, "mine:1");
+  Run({"models", "--server=mine:2"});
+  EXPECT_EQ(options_.server_address, "mine:2");
+  variables_["DUET_SERVER"] = "variable:1";
+  Run({"models"});
+  EXPECT_EQ(options_.server_address, "variable:1");
+}
+
+TEST_F(SettingsTest, ErrorsNameTheirSource) {
+  Configure("\ntimeout = soon\n");
+  ExpectUsageError({"models"}, Path("config") + ":2: --timeout: expected ");
+  Configure("servr = lab:1\n");
+  ExpectUsageError({"models"},
+                   Path("config") + ":1: no command has a flag --servr; did you mean server?");
+  EXPECT_EQ(Run({"models", "--help"}), 0) << "help works nevertheless";
+  EXPECT_EQ(Run({"--version"}), 0);
+  variables_["DUET_CONFIG"] = Path("no");
+  ExpectUsageError({"models"}, "DUET_CONFIG: " + Path("no"));
+}
+
+ExitCode CodeFor(absl::StatusCode code) { return ExitCodeFor(absl::Status(code, "")); }
+
+TEST(ExitCodeTest, FollowsTheStatus) {
+  EXPECT_EQ(ExitCodeFor(absl::OkStatus()), 0);
+  for (const absl::StatusCode code :
+       {absl::StatusCode::kUnavailable, absl::StatusCode::kDeadlineExceeded,
+        absl::StatusCode::kCancelled, absl::StatusCode::kAborted, absl::StatusCode::kInternal,
+        absl::StatusCode::kUnknown, absl::StatusCode::kDataLoss}) {
+    EXPECT_EQ(CodeFor(code), 1) << code;
+  }
+  for (const absl::StatusCode code :
+       {absl::StatusCode::kInvalidArgument, absl::StatusCode::kFailedPrecondition,
+        absl::StatusCode::kOutOfRange, absl::StatusCode::kNotFound,
+        absl::StatusCode::kAlreadyExists, absl::StatusCode::kPermissionDenied,
+        absl::StatusCode::kUnauthenticated, absl::StatusCode::kUnimplemented}) {
+    EXPECT_EQ(CodeFor(code), 42) << code;
+  }
+  // A full server says when to retry; for a message that is too large, no retry helps.
+  EXPECT_EQ(ExitCodeFor(
+                test::ServiceError(absl::StatusCode::kResourceExhausted, "full", absl::Seconds(1))),
+            1);
+  EXPECT_EQ(CodeFor(absl::StatusCode::kResourceExhausted), 42);
+}
+
+}  // namespace
+}  // namespace duet::client::cli
