@@ -76,23 +76,16 @@ json MotionJson(const GalleryMotion& motion) {
   return object;
 }
 
-// {title, subtitle, joints, bones, motions [{name, frameRate, frames, leader, follower?}],
-//  valueTitles, figures [{group, title, values}]}
+// {title, subtitle, joints, bones, motions [{name, frameRate, frames, leader, follower?}]}
 json Data(const GalleryContent& content) {
-  json motions = json::array(), bones = json::array(), figures = json::array();
+  json motions = json::array(), bones = json::array();
   for (const GalleryMotion& motion : content.motions) motions.push_back(MotionJson(motion));
   for (const motion::Bone& bone : content.bones) bones.push_back({bone.parent, bone.child});
-  for (const GalleryFigure& figure : content.figures) {
-    figures.push_back(
-        {{"group", figure.group}, {"title", figure.title}, {"values", figure.values}});
-  }
   return {{"title", content.title},
           {"subtitle", content.subtitle},
           {"joints", content.motions[0].leader.joint_names},
           {"bones", bones},
-          {"motions", motions},
-          {"valueTitles", content.value_titles},
-          {"figures", figures}};
+          {"motions", motions}};
 }
 
 }  // namespace

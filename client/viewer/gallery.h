@@ -18,20 +18,11 @@ struct GalleryMotion {
   std::optional<motion::Clip> follower;  // the leader's joints, frames and rate
 };
 
-// A row of values beside the motions, as display text.
-struct GalleryFigure {
-  std::string group;
-  std::string title;
-  std::vector<std::string> values;  // one for each of the value_titles, or one for all
-};
-
 struct GalleryContent {
   std::vector<GalleryMotion> motions;  // the same joints; rates and lengths may differ
   std::vector<motion::Bone> bones;
   std::string title;
   std::string subtitle;
-  std::vector<std::string> value_titles;  // column titles of the figures; may be empty
-  std::vector<GalleryFigure> figures;     // may be empty
 };
 
 // Returns a self-contained HTML page that plays motions side by side, synchronised and from the

@@ -47,10 +47,6 @@ absl::Status Check(const PageContent& content) {
       }
     }
   }
-  if (content.beat && !(content.beat->per_minute > 0)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("beat: expected a rate above 0, got ", content.beat->per_minute));
-  }
   return absl::OkStatus();
 }
 
@@ -110,9 +106,6 @@ std::string PageDataJson(const PageContent& content) {
                          {"leader", EncodePositions(leader)},
                          {"follower", EncodePositions(content.pair.follower)}};
   if (!content.glb.empty()) data["glb"] = absl::Base64Escape(content.glb);
-  if (content.beat) {
-    data["beat"] = {{"bpm", content.beat->per_minute}, {"offset", content.beat->first_seconds}};
-  }
   if (content.grade) data["grade"] = GradeJson(*content.grade);
   return SafeJson(data);
 }

@@ -8,7 +8,6 @@
 #include "absl/status/statusor.h"
 #include "client/request.h"
 #include "client/result.h"
-#include "model/motion/beat.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
@@ -24,8 +23,6 @@ struct PageContent {
   std::vector<WeightKeyframe> weights;
   // The pair as a binary glTF file that the page offers for download; empty for none.
   std::string glb;
-  // The beat that the page shows and, when the reader turns it on, plays as a metronome.
-  std::optional<motion::Beat> beat;
   // The grade that the page shows and whose bad frames it marks on the time line.
   std::optional<MotionGrade> grade;
 };
@@ -34,8 +31,7 @@ struct PageContent {
 // from a file. Its size is about 0.9 MB, mostly three.js, plus `glb` as base64.
 //
 // Errors: INVALID_ARGUMENT if leader and follower differ in joints, frames or rate, a bone names an
-//         unknown joint, there is no frame, a position is not finite, or the beat's rate is not
-//         above 0.
+//         unknown joint, there is no frame, or a position is not finite.
 absl::StatusOr<std::string> RenderPage(const PageContent& content);
 
 // Returns the page's data as JSON that is safe inside <script> for any names:

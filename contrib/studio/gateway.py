@@ -32,7 +32,6 @@ import visitors  # noqa: E402
 from aiohttp import web  # noqa: E402
 
 SAMPLES = HERE.parents[1] / "samples"
-VIEWER = CLIENT / "viewer" / "page"
 SESSIONS_PER_ADDRESS = 8
 TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".bvh": "text/plain"}
 
@@ -57,7 +56,6 @@ class Gateway:
                 if file.suffix in TYPES:
                     files[prefix + file.name] = (TYPES[file.suffix],
                                                  file.read_text(encoding="utf-8"))
-        files["/metronome.js"] = (TYPES[".js"], (VIEWER / "metronome.js").read_text("utf-8"))
         files["/"] = files["/index.html"]
         files["/spar"] = files["/spar.html"]
         routes = {path: {"GET": functools.partial(send_text, kind, text)}

@@ -1,7 +1,5 @@
 // Writes a viewer page of two made-up characters, for the browser tests.
-//   write_test_page <file> [<beats per minute> <seconds of the first beat>]
-// With a beat there is no grade.
-#include <cstdlib>
+//   write_test_page <file>
 #include <fstream>
 #include <iostream>
 
@@ -10,8 +8,8 @@
 #include "tests/support/sample_motion.h"
 
 int main(int argc, char** argv) {
-  if (argc != 2 && argc != 4) {
-    std::cerr << "usage: write_test_page <file> [<BPM> <first beat>]\n";
+  if (argc != 2) {
+    std::cerr << "usage: write_test_page <file>\n";
     return 2;
   }
   duet::client::viewer::PageContent content;
@@ -28,8 +26,7 @@ int main(int argc, char** argv) {
   content.subtitle = "90 frames";
   content.glb = "glTF, in all";  // 12 bytes
   content.weights = {{0, {{"kick", 1}, {"hug", -1}}}, {60, {{"kick", -2}, {"hug", 0.5f}}}};
-  if (argc == 2) content.grade = {0.0512, 0.4, 0.1, 0.004, {{12, 4}, {50, 1}, {85, 5}}};
-  if (argc == 4) content.beat = duet::motion::Beat{std::atof(argv[2]), std::atof(argv[3])};
+  content.grade = {0.0512, 0.4, 0.1, 0.004, {{12, 4}, {50, 1}, {85, 5}}};
   const absl::StatusOr<std::string> page = duet::client::viewer::RenderPage(content);
   if (!page.ok()) {
     std::cerr << page.status() << "\n";

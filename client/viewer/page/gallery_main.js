@@ -1,27 +1,4 @@
 // Connects the parts of a gallery.
-function showFigures(data) {
-  if (data.figures.length === 0) return;
-  const table = document.getElementById('figures');
-  const addRow = (className, texts) => {
-    const row = table.insertRow();
-    row.className = className;
-    for (const text of texts) row.insertCell().textContent = text;
-    return row;
-  };
-  addRow('heads', ['', ...data.valueTitles]);
-  let group = '';
-  for (const figure of data.figures) {
-    if (figure.group !== group) {
-      group = figure.group;
-      addRow('group', [group]).cells[0].colSpan = data.valueTitles.length + 1;
-    }
-    const row = addRow('', [figure.title, ...figure.values]);
-    // One value for all motions.
-    if (figure.values.length === 1) row.cells[1].colSpan = data.valueTitles.length;
-  }
-  document.body.classList.add('with-figures');
-}
-
 function start() {
   const data = JSON.parse(document.getElementById('data').textContent);
   if (!drawsWebGl()) {
@@ -31,7 +8,6 @@ function start() {
   const element = (id) => document.getElementById(id);
   element('title').textContent = data.title;
   element('subtitle').textContent = data.subtitle;
-  showFigures(data);
   const gallery = new Gallery(element('stage'), data);
   const {duration} = gallery;
 

@@ -13,7 +13,6 @@ function start() {
   const measures = new Measures(stage, motion, element('measures'));
   const film = new Film(scene, data.title);
   const gif = new Gif(scene, data.title);
-  const metronome = data.beat ? new Metronome(data.beat, player) : null;
   const grade = data.grade ? new Grade(data.grade, player) : null;
   const showChosen = (name) => {
     for (const button of document.querySelectorAll('[data-view]')) {
@@ -31,7 +30,6 @@ function start() {
   scene.addEventListener('frame', () => {
     measures.update(player.frame);
     panel.update();
-    if (metronome) metronome.update();
     if (grade) grade.update();
   });
   scene.addEventListener('drawn', () => {
@@ -60,8 +58,6 @@ function start() {
       {id: 'save-gif', key: 'g', action: () => gif.start()},
       {id: 'save-motion', action: () => saveMotion(data.glb, data.title)},
       ...(grade ? [{id: 'next-fault', key: 'n', action: () => grade.next()}] : []),
-      ...(metronome && metronome.possible
-              ? [{id: 'metronome', key: 'b', action: () => metronome.toggle()}] : []),
     ],
   });
 

@@ -30,8 +30,6 @@ GalleryContent SmallContent() {
                      {"alone", SmallClip(30, 5), std::nullopt}};
   content.bones = {{0, 1}};
   content.title = "<two>";
-  content.value_titles = {"a", "b"};
-  content.figures = {{"speed", "joint speed", {"1 m/s", "2 m/s"}}};
   return content;
 }
 
@@ -55,7 +53,7 @@ TEST(RenderGalleryTest, IsOneSelfContainedFile) {
   }
 }
 
-TEST(RenderGalleryTest, ContainsMotionsAndFigures) {
+TEST(RenderGalleryTest, ContainsMotions) {
   const nlohmann::json data = Data(SmallContent());
   EXPECT_EQ(data["title"], "<two>");
   ASSERT_EQ(data["motions"].size(), 2u);
@@ -64,7 +62,6 @@ TEST(RenderGalleryTest, ContainsMotionsAndFigures) {
   EXPECT_TRUE(data["motions"][0].contains("follower"));
   EXPECT_FALSE(data["motions"][1].contains("follower"));
   EXPECT_EQ(data["motions"][1]["frameRate"], 30);
-  EXPECT_EQ(data["figures"][0]["values"], nlohmann::json({"1 m/s", "2 m/s"}));
 }
 
 TEST(RenderGalleryTest, InvalidContentIsRejected) {

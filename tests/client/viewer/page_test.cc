@@ -85,13 +85,6 @@ TEST(PageDataTest, ContainsTheGlbIfThereIsOne) {
   EXPECT_EQ(bytes, content.glb);
 }
 
-TEST(PageDataTest, ContainsTheBeatIfThereIsOne) {
-  PageContent content = SmallContent();
-  EXPECT_FALSE(Data(content).contains("beat"));
-  content.beat = motion::Beat{180, -0.25};
-  EXPECT_EQ(Data(content)["beat"], nlohmann::json::parse(R"({"bpm": 180.0, "offset": -0.25})"));
-}
-
 TEST(PageDataTest, EveryKeyframeHasAWeightForEveryClass) {
   const nlohmann::json data = Data(SmallContent());
   EXPECT_EQ(data["classes"], nlohmann::json({"kick", "hug", "push"}));
@@ -156,10 +149,6 @@ TEST(RenderPageTest, InvalidContentIsRejected) {
                 c->bones = {{0, 2}};
               }),
               StatusIs(kInvalid, HasSubstr("expected joints 0 to 1, got 2")));
-  EXPECT_THAT(refused([](PageContent* c) {
-                c->beat = motion::Beat{0, 1};
-              }),
-              StatusIs(kInvalid, HasSubstr("beat: expected a rate above 0, got 0")));
 }
 
 }  // namespace
