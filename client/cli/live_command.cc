@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,9 +19,8 @@
 #include "client/cli/server.h"
 #include "client/cli/stop_signals.h"
 #include "client/live/clip_source.h"
-#include "client/live/follower_sink.h"
-#include "client/live/json_lines_sink.h"
-#include "client/live/json_lines_source.h"
+#include "client/live/ends.h"
+#include "client/live/json_lines.h"
 #include "client/live/line_reader.h"
 #include "client/live/live_run.h"
 #include "client/model_skeleton.h"
@@ -234,13 +234,11 @@ absl::StatusOr<live::LiveReport> RunSession(const LiveArguments& arguments,
     sinks.push_back(OpenSink(to, arguments, request, skeleton, environment));
     ends.push_back(sinks.back().get());
   }
-  live::LiveObserver observer;
+  std::function<void(const LiveNotice&)> on_notice;
   if (!arguments.quiet) {
-    observer.on_notice = [&environment](const LiveNotice& notice) {
-      ShowNotice(notice, *environment.err);
-    };
+    on_notice = [&environment](const LiveNotice& notice) { ShowNotice(notice, *environment.err); };
   }
-  live::LiveRun run(source->get(), std::move(ends), std::move(observer));
+  live::LiveRun run(source->get(), std::move(ends), std::move(on_notice));
   stopper->SetSource(source->get());
   absl::StatusOr<live::LiveReport> report = run.Run(client, ToLiveRequest(request, arguments));
   stopper->SetSource(nullptr);

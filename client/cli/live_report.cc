@@ -19,7 +19,7 @@ std::string Describe(const live::Latencies& latency) {
 }
 
 // What went wrong, in words; empty if nothing did.
-std::string DescribeLosses(const live::LiveProgress& totals) {
+std::string DescribeLosses(const live::LiveTotals& totals) {
   std::vector<std::string> parts;
   if (totals.gap_frames > 0) {
     parts.push_back(
@@ -39,7 +39,7 @@ std::string DescribeLosses(const live::LiveProgress& totals) {
 }  // namespace
 
 std::string DescribeLive(const live::LiveReport& report) {
-  const live::LiveProgress& totals = report.totals;
+  const live::LiveTotals& totals = report.totals;
   std::string text;
   for (const std::string& note : report.notes) absl::StrAppend(&text, "note      ", note, "\n");
   absl::StrAppend(&text, "model     ", report.info.model_name, "@", report.info.model_version,
@@ -59,7 +59,7 @@ std::string DescribeLive(const live::LiveReport& report) {
 }
 
 std::string LiveJson(const live::LiveReport& report) {
-  const live::LiveProgress& totals = report.totals;
+  const live::LiveTotals& totals = report.totals;
   return Print({{"model", report.info.model_name},
                 {"model_version", report.info.model_version},
                 {"seed", report.info.seed},

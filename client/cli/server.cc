@@ -10,7 +10,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "client/error_details.h"
-#include "client/internal/check_tls.h"
+#include "client/internal/connect.h"
 #include "model/base/file.h"
 #include "model/base/program_flags.h"
 

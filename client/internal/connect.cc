@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
@@ -10,12 +11,12 @@
 #include "absl/strings/strip.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
-#include "client/internal/check_tls.h"
 #include "client/internal/connection_impl.h"
-#include "client/internal/grpc_stub.h"
+#include "client/internal/stub.h"
 #include "grpcpp/create_channel.h"
 #include "grpcpp/security/credentials.h"
 #include "grpcpp/support/channel_arguments.h"
+#include "model/base/pem.h"
 
 namespace duet::client::internal {
 namespace {
@@ -145,6 +146,25 @@ RetryEnvironment ReconnectingEnvironment(std::shared_ptr<grpc::Channel> channel)
   return environment;
 }
 
+absl::Status Wrong(const std::string& name, absl::string_view expected, absl::string_view got) {
+  return absl::InvalidArgumentError(absl::StrCat(name, ": expected ", expected, ", got ", got));
+}
+
+absl::Status CheckOwnCertificate(const TlsOptions& tls, const TlsNames& names) {
+  const std::vector<base::Certificate> chain = base::ReadCertificates(tls.certificate_chain);
+  if (chain.empty()) {
+    return Wrong(names.certificate_chain, "PEM certificates, this client's own first", "none");
+  }
+  const base::PrivateKey key = base::ReadPrivateKey(tls.private_key);
+  if (key == nullptr) {
+    return Wrong(names.private_key, "a private key in PEM without a password", "none");
+  }
+  if (base::IsKeyOf(chain.front(), key)) return absl::OkStatus();
+  return Wrong(names.private_key,
+               absl::StrCat("the key of the first certificate in ", names.certificate_chain),
+               "another certificate's key");
+}
+
 }  // namespace
 
 std::string GrpcTarget(std::string_view server_address) {
@@ -168,6 +188,17 @@ absl::StatusOr<std::shared_ptr<Connection>> Connect(const ClientOptions& options
   RetryEnvironment environment = ReconnectingEnvironment(*channel);
   return std::make_shared<ConnectionImpl>(MakeGrpcStub(*std::move(channel), options.token), options,
                                           std::move(environment));
+}
+
+absl::Status CheckTls(const TlsOptions& tls, const TlsNames& names) {
+  if (tls.certificate_chain.empty() != tls.private_key.empty()) {
+    return absl::InvalidArgumentError(
+        "tls: expected certificate_chain and private_key or neither, got one of the two");
+  }
+  if (!tls.root_certificates.empty() && base::ReadCertificates(tls.root_certificates).empty()) {
+    return Wrong(names.root_certificates, "PEM certificates", "none");
+  }
+  return tls.certificate_chain.empty() ? absl::OkStatus() : CheckOwnCertificate(tls, names);
 }
 
 }  // namespace duet::client::internal

@@ -9,7 +9,6 @@
 #include "client/internal/grpc_status.h"
 #include "client/internal/live_session_impl.h"
 #include "client/internal/proto_conversion.h"
-#include "client/internal/reaction_conversion.h"
 
 namespace duet::client::internal {
 namespace {

@@ -1,5 +1,3 @@
-#include "client/internal/grpc_stub.h"
-
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "client/internal/grpc_status.h"
+#include "client/internal/stub.h"
 #include "duet/v1/synthesis.grpc.pb.h"
 #include "grpcpp/client_context.h"
 #include "grpcpp/completion_queue.h"

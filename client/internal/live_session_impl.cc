@@ -7,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/error_details.h"
 #include "client/internal/grpc_status.h"
-#include "client/internal/reaction_conversion.h"
+#include "client/internal/proto_conversion.h"
 
 namespace duet::client::internal {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/internal/proto_conversion.h"
-#include "client/internal/reaction_conversion.h"
 
 namespace duet::client::internal {
 namespace {

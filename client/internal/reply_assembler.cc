@@ -10,7 +10,7 @@
 #include "client/error_details.h"
 #include "client/internal/grpc_status.h"
 #include "client/internal/proto_conversion.h"
-#include "client/internal/rotation_conversion.h"
+#include "client/internal/rotations.h"
 
 namespace duet::client::internal {
 namespace {

@@ -9,6 +9,7 @@
 #include "absl/time/time.h"
 #include "duet/v1/live.pb.h"
 #include "duet/v1/synthesis.pb.h"
+#include "grpcpp/channel.h"
 
 namespace duet::client::internal {
 
@@ -73,6 +74,10 @@ class Stub {
                      std::unique_ptr<StreamListener> listener) = 0;
   virtual std::unique_ptr<LiveStream> SynthesizeLive(const CallContext& context) = 0;
 };
+
+// Creates a stub that calls over gRPC with `token` as credentials; empty: without credentials.
+std::shared_ptr<Stub> MakeGrpcStub(std::shared_ptr<grpc::Channel> channel,
+                                   const std::string& token = "");
 
 }  // namespace duet::client::internal
 

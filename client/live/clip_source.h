@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/live/leader_source.h"
+#include "client/live/ends.h"
 #include "model/motion/clip.h"
 
 namespace duet::client::live {

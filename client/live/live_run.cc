@@ -13,7 +13,30 @@ namespace {
 
 double SecondsOf(absl::Time time) { return absl::ToDoubleSeconds(time - absl::UnixEpoch()); }
 
+// The nearest-rank percentile. Reorders `values`, which are not empty.
+absl::Duration Percentile(std::vector<absl::Duration>* values, std::size_t percent) {
+  const std::size_t rank = (values->size() * percent + 99) / 100;
+  const auto nth = values->begin() + static_cast<std::ptrdiff_t>(rank - 1);
+  std::nth_element(values->begin(), nth, values->end());
+  return *nth;
+}
+
 }  // namespace
+
+void LatencyLog::Add(absl::Duration latency) {
+  if (kept_.size() < kKept) {
+    kept_.push_back(latency);
+    return;
+  }
+  kept_[next_] = latency;
+  next_ = (next_ + 1) % kKept;
+}
+
+Latencies LatencyLog::Percentiles() const {
+  std::vector<absl::Duration> values = kept_;
+  if (values.empty()) return {};
+  return {Percentile(&values, 50), Percentile(&values, 99)};
+}
 
 absl::StatusOr<LiveReport> LiveRun::Run(const Client& client, LiveRequest request) {
   absl::StatusOr<LeaderFormat> format = source_->Open();
@@ -45,27 +68,16 @@ absl::Status LiveRun::RunSession(const Client& client, const LiveRequest& reques
       client.StartLive(request, std::move(callbacks));
   if (!session.ok()) return session.status();
   report_.info = (*session)->info();
-  SetSession(session->get());
-  absl::Status followed = Follow(session->get());
-  SetSession(nullptr);
+  const absl::Status followed = Follow(session->get());
   // The frames that are due arrive even if the source failed.
   const absl::StatusOr<LiveSummary> summary = (*session)->Finish();
   if (!summary.ok()) return summary.status();
   const std::lock_guard<std::mutex> lock(mutex_);
-  report_.totals = Progress(absl::InfinitePast());
+  report_.totals.time = absl::Now() - begin_;
+  report_.totals.frames = answered_end_;
+  report_.totals.latency = latencies_.Percentiles();
   report_.leader_frames = summary->leader_frames;
   return followed;
-}
-
-void LiveRun::SetSession(LiveSession* session) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  session_ = session;
-}
-
-absl::Status LiveRun::ChangeLabels(const LabelCommand& labels) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (session_ != nullptr) return session_->ChangeLabels(labels.weights, labels.ease);
-  return absl::FailedPreconditionError("labels: expected a session, got none yet or none any more");
 }
 
 absl::Status LiveRun::Follow(LiveSession* session) {
@@ -121,35 +133,25 @@ absl::Status LiveRun::Accept(const LiveFrames& frames) {
       captured_.pop_front();
       ++first_captured_;
     }
-    if (!captured_.empty()) latencies_.Add(now, now - captured_.front());
+    if (!captured_.empty()) latencies_.Add(now - captured_.front());
   }
   answered_end_ = frames.first_frame + frames.poses.frame_count();
   absl::Status status;
   for (FollowerSink* sink : sinks_) status.Update(sink->Accept(frames));
   answered_.notify_all();
-  if (observer_.on_progress) observer_.on_progress(Progress(now - kLatencySpan));
   return status;
 }
 
 void LiveRun::Count(const LiveNotice& notice) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  LiveProgress& totals = report_.totals;
+  LiveTotals& totals = report_.totals;
   if (notice.kind == LiveNotice::Kind::kGapFilled) totals.gap_frames += notice.frames.frame_count;
   if (notice.kind == LiveNotice::Kind::kLate) totals.late_frames += notice.frames.frame_count;
   if (notice.kind == LiveNotice::Kind::kSkipped) {
     totals.skipped_frames += notice.frames.frame_count;
   }
   if (notice.kind == LiveNotice::Kind::kResumed) ++totals.resumed;
-  if (observer_.on_notice) observer_.on_notice(notice);
-}
-
-// Requires the lock.
-LiveProgress LiveRun::Progress(absl::Time since) const {
-  LiveProgress progress = report_.totals;
-  progress.time = absl::Now() - begin_;
-  progress.frames = answered_end_;
-  progress.latency = latencies_.Since(since);
-  return progress;
+  if (on_notice_) on_notice_(notice);
 }
 
 absl::Status LiveRun::FinishSinks() {

@@ -36,10 +36,9 @@ absl::StatusOr<std::string> RenderPage(const PageContent& content);
 
 // Returns the page's data as JSON that is safe inside <script> for any names:
 //   {title, subtitle, joints [J], bones [[parent, child]], frameRate, frames, classes [C],
-//    keyframes [{frame, weights [C]}], leader, follower, glb?, beat? {bpm, offset},
+//    keyframes [{frame, weights [C]}], leader, follower, glb?,
 //    grade? {twisted, skating, leaderSkating, overlapping, badRuns [[first frame, frames]]}}
-// with positions [frames, J, 3] as base64 of little-endian float32, and the time `offset` of the
-// first beat in seconds.
+// with positions [frames, J, 3] as base64 of little-endian float32.
 std::string PageDataJson(const PageContent& content);
 
 }  // namespace duet::client::viewer

@@ -1,4 +1,4 @@
-#include "client/internal/live_rotations.h"
+#include "client/internal/rotations.h"
 
 #include <optional>
 #include <vector>

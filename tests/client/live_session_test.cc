@@ -15,7 +15,7 @@
 #include "absl/time/clock.h"
 #include "client/client.h"
 #include "client/internal/connect.h"
-#include "client/internal/grpc_stub.h"
+#include "client/internal/stub.h"
 #include "client/internal/live_session_impl.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"

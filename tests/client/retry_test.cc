@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "client/internal/unreachable.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"

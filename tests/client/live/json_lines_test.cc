@@ -1,4 +1,6 @@
 // JSON lines as a source and as a sink.
+#include "client/live/json_lines.h"
+
 #include <cmath>
 #include <memory>
 #include <sstream>
@@ -9,8 +11,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
-#include "client/live/json_lines_sink.h"
-#include "client/live/json_lines_source.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "nlohmann/json.hpp"

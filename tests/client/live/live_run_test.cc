@@ -214,21 +214,14 @@ TEST_F(LiveRunTest, AResumedSessionLosesNothing) {
   EXPECT_EQ(report->totals.resumed, 1);
 }
 
-TEST_F(LiveRunTest, LabelsCanBeChangedFromOutsideOnlyDuringTheRun) {
-  source_.waits = true;
-  AddFrames(0, 5);
-  LiveRun run(&source_, {&sink_}, {});
-  const LabelCommand hug{{{"hug", 1}}, absl::ZeroDuration()};
-  EXPECT_THAT(run.ChangeLabels(hug),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("")));
-  std::thread typist([&] {
-    while (!run.ChangeLabels(hug).ok()) std::this_thread::yield();
-    source_.Stop();
-  });
-  EXPECT_THAT(run.Run(*client_, request_), IsOk());
-  typist.join();
-  EXPECT_THAT(run.ChangeLabels(hug),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("")));
+TEST(LatencyLogTest, PercentilesAreOfTheLastFrames) {
+  LatencyLog log;
+  EXPECT_EQ(log.Percentiles().p50, absl::ZeroDuration());
+  for (int i = 1; i <= 100; ++i) log.Add(absl::Milliseconds(i));
+  EXPECT_EQ(log.Percentiles().p50, absl::Milliseconds(50));
+  EXPECT_EQ(log.Percentiles().p99, absl::Milliseconds(99));
+  for (std::size_t i = 0; i < LatencyLog::kKept; ++i) log.Add(absl::Seconds(1));
+  EXPECT_EQ(log.Percentiles().p50, absl::Seconds(1));
 }
 
 TEST(ClipSourceTest, PlaysAtTheFrameRate) {

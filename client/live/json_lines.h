@@ -1,12 +1,13 @@
-#ifndef DUET_CLIENT_LIVE_JSON_LINES_SOURCE_H_
-#define DUET_CLIENT_LIVE_JSON_LINES_SOURCE_H_
+#ifndef DUET_CLIENT_LIVE_JSON_LINES_H_
+#define DUET_CLIENT_LIVE_JSON_LINES_H_
 
 #include <memory>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
-#include "client/live/leader_source.h"
+#include "client/live/ends.h"
 #include "client/live/line_reader.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/skeleton.h"
@@ -70,6 +71,28 @@ class JsonLinesSource final : public LeaderSource {
   std::optional<double> first_time_;    // and time
 };
 
+// Writes the follower as lines of JSON, each complete when it is written:
+//
+//   {"joints": ["head", ...], "rate": 30, "unit": "m", "up": "y"}
+//   {"frame": 0, "positions": [[x, y, z], ...]}
+//
+// Positions have five decimals (0.01 mm). Errors: ABORTED if the reader is gone.
+class JsonLinesSink final : public FollowerSink {
+ public:
+  // `out` outlives the sink.
+  explicit JsonLinesSink(std::ostream& out) : out_(out) {}
+
+  absl::Status Start(const LeaderFormat& format) override;
+  absl::Status Accept(const LiveFrames& frames) override;
+  absl::StatusOr<std::vector<std::string>> Finish(const LiveInfo& info) override;
+
+ private:
+  absl::Status Flush();
+
+  std::ostream& out_;
+  int frames_ = 0;
+};
+
 }  // namespace duet::client::live
 
-#endif  // DUET_CLIENT_LIVE_JSON_LINES_SOURCE_H_
+#endif  // DUET_CLIENT_LIVE_JSON_LINES_H_

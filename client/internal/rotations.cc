@@ -1,10 +1,14 @@
-#include "client/internal/rotation_conversion.h"
+#include "client/internal/rotations.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <set>
 #include <string>
+#include <utility>
 
+#include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
 
@@ -35,6 +39,14 @@ absl::Status CheckJoint(const std::string& field, const v1::RigJoint& joint, int
     return Invalid(field, ".offset: expected finite values, got others");
   }
   return absl::OkStatus();
+}
+
+constexpr char kRig[] = "frames.rig";
+
+void KeepSign(const motion::UnitQuaternion& before, motion::UnitQuaternion* q) {
+  if (before.x * q->x + before.y * q->y + before.z * q->z + before.w * q->w < 0) {
+    *q = {-q->x, -q->y, -q->z, -q->w};
+  }
 }
 
 }  // namespace
@@ -87,6 +99,41 @@ void AppendRotations(const google::protobuf::RepeatedField<float>& values,
   for (int i = 0; i < values.size(); i += 4, value += 4) {
     rotations->push_back({value[0], value[1], value[2], value[3]});
   }
+}
+
+absl::StatusOr<std::optional<motion::JointRotations>> LiveRotations::Read(
+    const v1::FollowerFrames& frames, int known) {
+  const bool expects_rig = wanted_ && !has_rig_;
+  if (frames.rig().empty() == expects_rig) {
+    return absl::InvalidArgumentError(
+        expects_rig
+            ? "frames.rig: expected joints in the first frames of a stream, got none; does the "
+              "server know reply_rotations?"
+            : "frames.rig: expected joints only for rotations, in the first frames, got some");
+  }
+  if (expects_rig) {
+    absl::StatusOr<std::vector<motion::RestJoint>> rig = ReadRig(kRig, frames.rig(), joint_count_);
+    if (!rig.ok()) return rig.status();
+    rig_ = *std::move(rig);
+    has_rig_ = true;
+  }
+  absl::Status status =
+      CheckRotations("frames.rotations", frames.rotations(), frames.frame_count(), rig_.size());
+  if (!status.ok()) return status;
+  if (!wanted_) return std::nullopt;
+  motion::JointRotations read{rig_, {}};
+  AppendRotations(frames.rotations(), &read.rotations);
+  const auto width = static_cast<std::ptrdiff_t>(rig_.size());
+  read.rotations.erase(read.rotations.begin(), read.rotations.begin() + known * width);
+  if (read.rotations.empty()) return std::nullopt;
+  if (last_.size() != rig_.size())
+    last_.assign(read.rotations.begin(), read.rotations.begin() + width);
+  for (std::size_t i = 0; i < read.rotations.size(); ++i) {
+    const std::size_t joint = i % rig_.size();
+    KeepSign(last_[joint], &read.rotations[i]);
+    last_[joint] = read.rotations[i];
+  }
+  return read;
 }
 
 }  // namespace duet::client::internal
