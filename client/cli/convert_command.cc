@@ -245,19 +245,18 @@ absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironm
   return absl::OkStatus();
 }
 
-// Checks that the rig can be written in the format of every output.
+// Checks that every output has the rig's format.
 void CheckRig(const ConvertArguments& arguments) {
   if (arguments.rig.file.empty()) return;
   const std::optional<Format> format = formats::FormatOf(arguments.rig.file);
-  if (!format || !formats::FitsRig(Format::kBvh, *format)) {
+  if (!format || !formats::HasRig(*format)) {
     RejectFlag("--rig", absl::StrCat("expected ", formats::kRigExtensions, ", got ",
                                      arguments.rig.file.string()));
   }
   for (const std::filesystem::path& output : arguments.outputs) {
     const std::optional<Format> written = formats::FormatOf(output);
     if (written && formats::FitsRig(*written, *format)) continue;
-    RejectFlag("--out", absl::StrCat("expected ", formats::kRigOutputExtensions,
-                                     " with --rig, got ", output.string()));
+    RejectFlag("--out", absl::StrCat("expected the format of --rig, got ", output.string()));
   }
 }
 
@@ -275,12 +274,11 @@ void CheckTogether(const ConvertArguments& arguments) {
 }
 
 void AddRigFlags(CLI::App* app, RigArguments* rig) {
-  CLI::Option* file =
-      app->add_option(
-             "--rig", rig->file,
-             absl::StrCat("Rig of the person in --out FILE with ", formats::kRigOutputExtensions,
-                          ": the rig of ", formats::kRigExtensions, " (default: Duet's rig)"))
-          ->type_name("FILE");
+  CLI::Option* file = app->add_option("--rig", rig->file,
+                                      absl::StrCat("File whose rig the person is written onto, ",
+                                                   formats::kRigExtensions,
+                                                   "; --out has its format (default: Duet's rig)"))
+                          ->type_name("FILE");
   CLI::Option* const reading[] = {
       AddChoice(app, "--rig-side", kSides, &rig->side, "The person in a --rig file with two people")
           ->default_str(NameOf(kSides, rig->side)),

@@ -64,7 +64,7 @@ def _read_motion(duet, file, folder, reading):
     """[frames, joints, 3] in metres, y up, in the world of the capture."""
     bvh, out = folder / f"{file.stem}.bvh", folder / "motion.npy"
     _run([sys.executable, str(CONVERTER), str(file), str(bvh), "--frame-rate", str(FRAME_RATE_HZ)], file)
-    _run([duet, "convert", str(bvh), "--skeleton", str(reading[0]), "--joint-map-file", str(reading[1]),
+    _run([duet, "convert", str(bvh), "--skeleton", str(reading[0]), "--joint-map", str(reading[1]),
           "--up-axis", "y-up", "--out", str(out), "--quiet"], file)
     return numpy.load(out).astype(float)
 

@@ -1,6 +1,6 @@
 """The pages of duet view in a real browser."""
 
-import shutil
+import json
 
 import browser
 import tools
@@ -12,9 +12,11 @@ class GalleryTest(tools.FolderTest):
         super().setUpClass()
         cls.file = cls.folder / "view.html"
         cls.compared = cls.folder / "compare.html"
-        pair = cls.folder / "kick.leader.bvh"
-        for name in (pair.name, "kick.follower.bvh"):
-            shutil.copy(tools.sample("kick"), cls.folder / name)
+        pair = cls.folder / "kick.json"
+        tools.duet("convert", tools.sample("kick"), "--out", pair).check_returncode()
+        motion = json.loads(pair.read_text(encoding="utf-8"))
+        motion["follower"] = [[(x, y, z + 1.2) for x, y, z in pose] for pose in motion["leader"]]
+        pair.write_text(json.dumps(motion), encoding="utf-8")
         for command in (("view", f"pair={pair}", tools.sample("hug"), "--out", cls.file),
                         ("view", f"first={pair}", f"second={pair}", "--out", cls.compared)):
             result = tools.duet(*command)
