@@ -1,7 +1,7 @@
 # Installs the files that no source folder installs, and defines the Debian packages: `cpack -G DEB` in a
 # build folder. A component is a package.
 #
-#   client              duet             the client and its manual page
+#   client              duet             the client and its manual pages
 #   client-development  libduet-dev      headers and libraries of the client
 #   server              duet-server      the server, its unit, its configuration
 #   training, torch     duet-training    training and evaluation; LibTorch for `--engine torch`

@@ -48,7 +48,7 @@ class InstallTest(unittest.TestCase):
         self.assertIn("libgrpc++", linked)
         self.assertNotIn("torch", linked)
         if shutil.which("help2man"):
-            self.assertIn("--candidates", (prefix / "share/man/man1/duet.1").read_text(
+            self.assertIn("--candidates", (prefix / "share/man/man1/duet-synthesize.1").read_text(
                 encoding="utf-8").replace("\\-", "-"))
         # Nothing points back into the build or the sources.
         for file in prefix.glob("lib/**/*.cmake"):

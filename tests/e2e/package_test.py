@@ -47,7 +47,7 @@ class PackageTest(tools.FolderTest):
             self.assertEqual("libgrpc++1.51" in needed, name in ("duet", "duet-server"), name)
             self.assertEqual("libtorch" in needed, name == "duet-training", name)
         for path in ("usr/bin/duet",
-                     *(["usr/share/man/man1/duet.1.gz"] if shutil.which("help2man") else []),
+                     *(["usr/share/man/man1/duet-synthesize.1.gz"] if shutil.which("help2man") else []),
                      "usr/bin/duet-server", "usr/share/man/man8/duet-server.8.gz",
                      "usr/lib/systemd/system/duet-server.service",
                      "usr/lib/sysusers.d/duet-server.conf", "etc/duet/server.textproto",
