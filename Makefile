@@ -52,7 +52,7 @@ check: ## Run every check, including slow ones (CHECK="links tidy" runs only the
 bench: ## Time the engine and its kernels beside the committed figures, and the cost of hardening
 	@scripts/install_packages.sh $(BUILD_LISTS) test
 	@scripts/configure.sh release -DDUET_BUILD_BENCHMARKS=ON -DDUET_CONTRIB_LOAD=ON >/dev/null
-	@JOBS=$(JOBS) scripts/build.sh $(BUILD) roofline_benchmark kernel_benchmark clean_up_benchmark \
+	@JOBS=$(JOBS) scripts/build.sh $(BUILD) roofline_benchmark kernel_benchmark solver_benchmark \
 	  synthesis_benchmark duet-server duet-load
 	@benchmarks/bench.py $(BUILD)
 	@JOBS=$(JOBS) benchmarks/measure_hardening.py $(BUILD)

@@ -23,7 +23,7 @@ from load_tool import run_load
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 UNHARDENED = SOURCE / "build/unhardened"
-BENCHMARKS = ("kernel_benchmark", "clean_up_benchmark")
+BENCHMARKS = ("kernel_benchmark", "solver_benchmark")
 TICKS = os.sysconf("SC_CLK_TCK")
 
 

@@ -13,7 +13,6 @@
 #include "model/base/index.h"
 #include "model/base/median.h"
 #include "model/body/limbs.h"
-#include "model/cleanup/floor.h"
 #include "model/motion/feet.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/posture.h"
@@ -183,7 +182,7 @@ class Checker {
 
   void CheckFloor() {
     if (!skeleton_.feet) return;
-    const float floor = cleanup::FloorHeight(*skeleton_.feet, clip_.poses);
+    const float floor = motion::FloorHeight(*skeleton_.feet, clip_.poses);
     const std::vector<float> feet = LowerFoot(*skeleton_.feet, clip_.poses);
     const double below = static_cast<double>(floor - *std::min_element(feet.begin(), feet.end()));
     const auto is_high = [floor](float foot) {

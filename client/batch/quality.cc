@@ -8,7 +8,7 @@
 #include "model/body/liveliness.h"
 #include "model/body/penetration.h"
 #include "model/body/posture.h"
-#include "model/cleanup/floor.h"
+#include "model/motion/feet.h"
 
 namespace duet::client::batch {
 namespace {
@@ -46,7 +46,7 @@ Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton) 
           .max_degrees);
   if (skeleton.feet.has_value()) {
     const body::FloorGap gap =
-        body::MeasureFloorGap(follower, skeleton, cleanup::FloorHeight(*skeleton.feet, leader));
+        body::MeasureFloorGap(follower, skeleton, motion::FloorHeight(*skeleton.feet, leader));
     quality.foot_above_floor_metres = gap.above;
     quality.foot_below_floor_metres = gap.below;
   }

@@ -77,6 +77,8 @@ class ObjectReader {
   const nlohmann::json& Object(const std::string& key);
 
   bool Has(const std::string& key) const { return object_.contains(key); }
+  // Accepts a field of any value, which nothing reads.
+  void Ignore(const std::string& key) { asked_.insert(key); }
   // "generator.attention", for messages.
   std::string PathOf(const std::string& key) const;
   // Records an error found by the caller, unless there is one already.

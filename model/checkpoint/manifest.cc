@@ -34,18 +34,14 @@ constexpr int kMaxDepth = 6;
 constexpr std::size_t kSha256HexBytes = 64;
 constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kHandContacts[] = "hand_contacts";
-constexpr char kTurningClasses[] = "turning_classes";
 constexpr char kFacingClasses[] = "facing_classes";
-constexpr char kStepsInTime[] = "steps_in_time";
 constexpr char kBoneRatios[] = "bone_ratios";
-constexpr char kHipHeight[] = "hip_height";
-constexpr char kAstrideSeconds[] = "astride_seconds";
-constexpr char kHeldOutSeconds[] = "held_out_seconds";
-constexpr char kStrikes[] = "strikes";
-constexpr char kFist[] = "fist", kFoot[] = "foot";
 constexpr char kTerms[] = "terms";
 constexpr char kLookaheadFrames[] = "lookahead_frames";
 constexpr char kFreeForAllUses[] = "free_for_all_uses";
+// Fields of former stages of the engine. Checkpoints that have them are read; nothing uses them.
+constexpr const char* kFormerFields[] = {"turning_classes", "steps_in_time",    "hip_height",
+                                         "astride_seconds", "held_out_seconds", "strikes"};
 
 // Characters that are safe in names of files, folders, tensors and metrics.
 bool IsPlain(char c) {
@@ -163,53 +159,18 @@ void ReadClassNumbers(base::ObjectReader* reader, const char* name,
   reader->Update(fields.Finish());
 }
 
-// Classes with the limb that strikes in them. Older checkpoints have none.
-void ReadStrikes(base::ObjectReader* reader, engine::ModelDescription* model) {
-  if (!reader->Has(kStrikes)) return;
-  const json& object = reader->Object(kStrikes);
-  base::ObjectReader fields(object, kStrikes);
-  for (const auto& field : object.items()) {
-    if (std::find(model->classes.begin(), model->classes.end(), field.key()) ==
-        model->classes.end()) {
-      reader->Fail(kStrikes,
-                   absl::StrCat("expected one of classes, got ", json(field.key()).dump()));
-    }
-    const std::string limb = fields.String(field.key(), kMaxNameBytes);
-    if (fields.ok() && limb != kFist && limb != kFoot) {
-      fields.Fail(field.key(),
-                  absl::StrCat("expected \"fist\" or \"foot\", got ", json(limb).dump()));
-    }
-    model->strikes.push_back(
-        {field.key(), limb == kFoot ? engine::StrikingLimb::kFoot : engine::StrikingLimb::kFist});
-  }
-  reader->Update(fields.Finish());
-}
-
 // What people do in some of the classes. Older checkpoints have no such fields.
 void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
-  constexpr double kFarthestHands = 1, kFastestTurn = 1440, kTurnedRound = 180, kLongestPose = 60;
+  constexpr double kFarthestHands = 1, kTurnedRound = 180;
   ReadClassNumbers(reader, kHandContacts, model->classes, kFarthestHands,
                    [model](const std::string& name, double metres) {
                      model->hand_contacts.push_back({name, metres});
-                   });
-  ReadClassNumbers(reader, kTurningClasses, model->classes, kFastestTurn,
-                   [model](const std::string& name, double speed) {
-                     model->turning_classes.push_back({name, speed});
                    });
   ReadClassNumbers(reader, kFacingClasses, model->classes, kTurnedRound,
                    [model](const std::string& name, double degrees) {
                      model->facing_classes.push_back({name, degrees});
                    });
-  if (reader->Has(kStepsInTime)) model->steps_in_time = reader->Bool(kStepsInTime);
-  if (reader->Has(kHipHeight)) model->hip_height = reader->Number(kHipHeight, 0, 1);
-  body::PoseSeconds& longest = model->longest_poses;
-  if (reader->Has(kAstrideSeconds)) {
-    longest.astride = reader->Number(kAstrideSeconds, 0, kLongestPose);
-  }
-  if (reader->Has(kHeldOutSeconds)) {
-    longest.held_out = reader->Number(kHeldOutSeconds, 0, kLongestPose);
-  }
-  ReadStrikes(reader, model);
+  for (const char* field : kFormerFields) reader->Ignore(field);
 }
 
 // One for each bone of the skeleton. Older checkpoints have none.
@@ -363,22 +324,10 @@ std::string SerializeManifest(const Manifest& manifest) {
   for (const engine::HandContact& contact : model.hand_contacts) {
     root[kHandContacts][contact.interaction_class] = contact.metres;
   }
-  for (const engine::TurningClass& turning : model.turning_classes) {
-    root[kTurningClasses][turning.interaction_class] = turning.degrees_per_second;
-  }
   for (const engine::FacingClass& facing : model.facing_classes) {
     root[kFacingClasses][facing.interaction_class] = facing.degrees;
   }
-  if (model.steps_in_time) root[kStepsInTime] = true;
   if (!model.bone_ratios.empty()) root[kBoneRatios] = model.bone_ratios;
-  if (model.hip_height > 0) root[kHipHeight] = model.hip_height;
-  const body::PoseSeconds& longest = model.longest_poses;
-  if (longest.astride > 0) root[kAstrideSeconds] = longest.astride;
-  if (longest.held_out > 0) root[kHeldOutSeconds] = longest.held_out;
-  for (const engine::Strike& strike : model.strikes) {
-    root[kStrikes][strike.interaction_class] =
-        strike.limb == engine::StrikingLimb::kFoot ? kFoot : kFist;
-  }
   if (!model.terms.empty()) root[kTerms] = model.terms;
   if (model.lookahead_frames > 0) root[kLookaheadFrames] = model.lookahead_frames;
   if (model.free_for_all_uses) root[kFreeForAllUses] = true;

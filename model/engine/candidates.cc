@@ -7,8 +7,8 @@
 
 #include "model/body/grade.h"
 #include "model/body/hands.h"
-#include "model/cleanup/pins.h"
 #include "model/engine/window_seed.h"
+#include "model/solver/pins.h"
 
 namespace duet::engine {
 namespace {
@@ -88,33 +88,33 @@ double CandidateJudge::Faults(const Poses& leader, const Poses& follower, int se
 }
 
 double CandidateJudge::HandsApart(const Poses& leader, const Poses& follower, int settled,
-                                  const cleanup::Meetings& meetings) const {
+                                  const solver::ContactRules& rules) const {
   if (!body_.shoulders) return 0;
   double sum = 0;
   for (int t = settled; t < follower.frame_count(); ++t) {
-    const cleanup::Meeting& meeting = meetings[static_cast<std::size_t>(t)];
-    if (meeting.weight == 0) continue;
+    const solver::ContactRule& rule = rules[static_cast<std::size_t>(t)];
+    if (rule.hands == 0) continue;
     const std::optional<double> apart =
         body::OfferedHandDistance(body_, skeleton_.root, leader[t], follower[t]);
-    sum += double{meeting.weight} * std::max(0.0, apart.value_or(0) - double{meeting.metres});
+    sum += double{rule.hands} * std::max(0.0, apart.value_or(0) - double{rule.hands_metres});
   }
   return sum / std::max(1, follower.frame_count() - settled);
 }
 
 int CandidateJudge::Best(const Poses& leader, const std::vector<Poses>& followers, int settled,
                          double frame_rate_hz, float variety, const motion::Pins& pins,
-                         const cleanup::Meetings& meetings, absl::Span<const float> labels) const {
+                         const solver::ContactRules& rules, absl::Span<const float> labels) const {
   if (followers.size() == 1) return 0;
   const double typical = std::max(0.0, 1 - double{variety});
   std::vector<double> costs(followers.size());
   if (typical > 0) costs = FromTheOthers(followers, settled);
   for (std::size_t i = 0; i < followers.size(); ++i) {
     costs[i] = typical * costs[i] + Faults(leader, followers[i], settled, frame_rate_hz);
-    if (!meetings.empty()) {
-      costs[i] += kHandCost * HandsApart(leader, followers[i], settled, meetings);
+    if (!rules.empty()) {
+      costs[i] += kHandCost * HandsApart(leader, followers[i], settled, rules);
     }
     if (critic_) costs[i] -= kCriticCost * double{critic_->Score(leader, followers[i], labels)};
-    if (!pins.empty()) costs[i] += kPinCost * cleanup::MeanPinDistance(pins, followers[i], settled);
+    if (!pins.empty()) costs[i] += kPinCost * solver::MeanPinDistance(pins, followers[i], settled);
   }
   return static_cast<int>(std::min_element(costs.begin(), costs.end()) - costs.begin());
 }

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "model/body/limbs.h"
-#include "model/cleanup/hand_contact.h"
 #include "model/engine/critic.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesis_options.h"
 #include "model/motion/pin.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
+#include "model/solver/partner.h"
 
 // Several samples of one window, of which the best is returned. World metres, y up.
 namespace duet::engine {
@@ -44,17 +44,17 @@ class CandidateJudge {
 
   // The index of the best follower; the first of several. `settled`: first frames that all have in
   // common. `variety`: of the request. `pins`: of the window, which the followers do not honour
-  // yet. `meetings`: where hands are to meet; may be empty. `labels`: what the critic sees of the
-  // labels. Shapes: every follower is like the leader; meetings [frames]; labels [frames, classes].
+  // yet. `rules`: where hands are to meet; may be empty. `labels`: what the critic sees of the
+  // labels. Shapes: every follower is like the leader; rules [frames]; labels [frames, classes].
   // Requires at least one.
   int Best(const motion::Poses& leader, const std::vector<motion::Poses>& followers, int settled,
            double frame_rate_hz, float variety, const motion::Pins& pins = {},
-           const cleanup::Meetings& meetings = {}, absl::Span<const float> labels = {}) const;
+           const solver::ContactRules& rules = {}, absl::Span<const float> labels = {}) const;
 
  private:
   // How far hands that are to meet are apart, mean over the frames after the settled ones, metres.
   double HandsApart(const motion::Poses& leader, const motion::Poses& follower, int settled,
-                    const cleanup::Meetings& meetings) const;
+                    const solver::ContactRules& rules) const;
   double Faults(const motion::Poses& leader, const motion::Poses& follower, int settled,
                 double frame_rate_hz) const;
 

@@ -7,12 +7,10 @@
 #include <limits>
 #include <utility>
 
-#include "model/cleanup/frame_turns.h"
-#include "model/cleanup/live_frame.h"
-#include "model/engine/finishing.h"
 #include "model/engine/window_seed.h"
 #include "model/motion/limb_lengths.h"
 #include "model/motion/resample.h"
+#include "model/solver/follower.h"
 
 namespace duet::engine {
 namespace {
@@ -39,11 +37,7 @@ ClipSynthesis::ClipSynthesis(ModelDescription model, ClipRequest request)
           motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz),
           model_.window_frames, WindowOverlap(model_))),
       state_(model_.skeleton.joint_count()),
-      turns_(
-          model_, request_.labels, request_.frame_rate_hz,
-          motion::ResampledFrameCount(frame_count_, request_.frame_rate_hz, model_.frame_rate_hz)),
       body_(body::FindBody(model_.skeleton)),
-      girdles_(model_.skeleton),
       cleans_up_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
       pin_distances_(request_.pins.size()),
       grader_(ClipGrader::Create(model_.skeleton, request_.frame_rate_hz)) {}
@@ -59,7 +53,6 @@ SynthesisWindow ClipSynthesis::NextWindow() const {
     request_.labels.At(ToCallerFrame(first + t),
                        window.labels.data() + static_cast<std::size_t>(t) * classes);
   }
-  window.turns_around = turns_.Around(first, first + plan_.length);
   if (index == 0) {
     window.start = request_.start;
   } else {
@@ -86,11 +79,6 @@ motion::Poses ClipSynthesis::Accept(const motion::Poses& follower) {
   state_.Add(NextWindowStart(), follower, cross_fade_);
   if (HasNextWindow() && ContinuesFromSettledFrames(model_)) {
     state_.DropFrom(SettledEnd());
-  }
-  if (HasNextWindow() && turns_.is_used()) {
-    const int begin = turns_.end() - 1, end = NextWindowStart() + 1;
-    turns_.Add(model_.skeleton, LeaderAt(begin, end),
-               motion::Part(state_.follower(), begin - state_.begin(), end - begin));
   }
   motion::Poses frames = TakeFinalFrames();
   DropFrames();
@@ -147,40 +135,34 @@ motion::Poses ClipSynthesis::TakeFinalFrames() {
     const double at = ToModelFrame(next_frame_);
     if (static_cast<int>(at) >= final_end - kFramesAfter) break;
     SampleCubic(state_.follower(), at - state_.begin(), pose[0]);
-    KeepLengths(at - state_.begin(), &pose);
-    SlowDown(pose[0]);
+    KeepBody(at - state_.begin(), &pose);
     frames.Append(pose.all());
   }
   return frames;
 }
 
-void ClipSynthesis::KeepLengths(double at, motion::Poses* pose) const {
+void ClipSynthesis::KeepBody(double at, motion::Poses* pose) {
   const motion::Poses& follower = state_.follower();
+  if (!cleans_up_) return;
   const int before = static_cast<int>(at);
-  if (!cleans_up_ || at - before < kEpsilon || IsNearPin(next_frame_)) return;
+  if (bone_lengths_.empty()) {
+    const motion::Poses first = motion::Part(follower, before, 1);
+    bone_lengths_ = motion::MedianBoneLengths(model_.skeleton, first);
+    if (auto person = solver::BodyModel::Measure(model_.skeleton, first); person.ok()) {
+      person_ = *std::move(person);
+    }
+  }
+  if (at - before < kEpsilon || IsNearPin(next_frame_)) return;
   const int after = std::min(before + 1, follower.frame_count() - 1);
-  const motion::Poses interpolated = *pose;
-  const std::vector<float> lengths =
-      motion::MedianBoneLengths(model_.skeleton, motion::Part(follower, before, 1));
-  motion::SetBoneLengths(model_.skeleton, lengths, pose);
-  girdles_.ApplyAboveFeet(girdles_.Measure(motion::Part(follower, before, 1)), (*pose)[0]);
-  cleanup::PlaceFeetBetween(model_.skeleton, body_, follower[before], follower[after],
-                            interpolated[0], (*pose)[0]);
+  if (!person_) return motion::SetBoneLengths(model_.skeleton, bone_lengths_, pose);
+  solver::KeepFeetBetween(body_, follower[before], follower[after], (*pose)[0]);
+  person_->FitAboveFeet((*pose)[0]);
 }
 
 bool ClipSynthesis::IsNearPin(int frame) const {
   const double near = kNearPinSeconds * request_.frame_rate_hz;
   return std::any_of(request_.pins.begin(), request_.pins.end(),
                      [&](const motion::Pin& pin) { return std::abs(pin.frame - frame) < near; });
-}
-
-void ClipSynthesis::SlowDown(absl::Span<motion::Vec3> pose) {
-  if (!cleans_up_) return;
-  if (!last_.empty() && !IsNearPin(next_frame_)) {
-    cleanup::SlowFrame(model_.skeleton, body_, FrameTurnsOf(model_), request_.frame_rate_hz, last_,
-                       pose);
-  }
-  last_.assign(pose.begin(), pose.end());
 }
 
 void ClipSynthesis::DropFrames() {

@@ -13,13 +13,12 @@
 #include "model/engine/label_track.h"
 #include "model/engine/model_description.h"
 #include "model/engine/synthesizer.h"
-#include "model/engine/turn_history.h"
 #include "model/engine/window_plan.h"
 #include "model/engine/window_state.h"
 #include "model/motion/pin.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
-#include "model/solver/girdles.h"
+#include "model/solver/body_model.h"
 
 namespace duet::engine {
 
@@ -102,13 +101,10 @@ class ClipSynthesis {
   motion::Pins PinsOfWindow(int first) const;
   void MeasurePins(const motion::Poses& frames);
   motion::Poses TakeFinalFrames();
-  // Gives the bones of next_frame_, a pose between two frames of the model, their lengths again,
-  // which splines change, and puts its feet between those of both frames; not near a pin. `at`: in
-  // the frames of state_.follower().
-  void KeepLengths(double at, motion::Poses* pose) const;
-  // Slows down limbs of next_frame_ that turn too fast after the frame before it, unless a pin is
-  // near: pins have speeds of their own.
-  void SlowDown(absl::Span<motion::Vec3> pose);
+  // Makes next_frame_, a pose between two frames of the model, the same body again, which splines
+  // change, with its feet between those of both frames; not near a pin, where the pin decides.
+  // `at`: in the frames of state_.follower().
+  void KeepBody(double at, motion::Poses* pose);
   bool IsNearPin(int frame) const;
   void DropFrames();
   // The leader in model frames [begin, end).
@@ -121,14 +117,13 @@ class ClipSynthesis {
   double model_frames_per_frame_;  // model rate / caller's rate
   WindowPlan plan_;                // in model frames
   WindowState state_;
-  TurnHistory turns_;
   const body::Body body_;
-  const solver::Girdles girdles_;
-  const bool cleans_up_;                // see KeepLengths, SlowDown
-  std::vector<motion::Vec3> last_;      // the frame before next_frame_
-  int next_frame_ = 0;                  // the caller's next frame to hand out
-  std::vector<float> pin_distances_;    // [pins]
-  std::unique_ptr<ClipGrader> grader_;  // null if the skeleton lacks joints
+  const bool cleans_up_;                     // see KeepBody
+  std::vector<float> bone_lengths_;          // of the first frame that was returned
+  std::optional<solver::BodyModel> person_;  // likewise; absent if the skeleton is none of a person
+  int next_frame_ = 0;                       // the caller's next frame to hand out
+  std::vector<float> pin_distances_;         // [pins]
+  std::unique_ptr<ClipGrader> grader_;       // null if the skeleton lacks joints
 };
 
 }  // namespace duet::engine

@@ -4,8 +4,8 @@
 #include <cstddef>
 
 #include "model/base/statistics.h"
-#include "model/cleanup/facing.h"
 #include "model/motion/resample.h"
+#include "model/solver/partner.h"
 
 namespace duet::engine {
 namespace {
@@ -23,11 +23,13 @@ FacingFit::FacingFit(const motion::Skeleton& skeleton, double frame_rate_hz)
 
 void FacingFit::Add(const motion::Poses& leader, const motion::Poses& follower, int begin,
                     int end) {
-  const double sigma = cleanup::FacingOptions().sigma_seconds * frame_rate_hz_;
-  const std::vector<float> away =
-      cleanup::DegreesAway(skeleton_, body_, motion::Part(leader, begin, end - begin),
-                           motion::Part(follower, begin, end - begin), sigma);
-  for (const float degrees : away) away_.push_back(std::abs(double{degrees}));
+  if (!skeleton_.hips || !body_.shoulders) return;
+  for (const double degrees :
+       solver::DegreesAway(skeleton_, body_, motion::Part(leader, begin, end - begin),
+                           motion::Part(follower, begin, end - begin), frame_rate_hz_)) {
+    // A follower who turns on is turned away by any angle.
+    away_.push_back(std::abs(std::remainder(degrees, 360)));
+  }
 }
 
 std::optional<double> FacingFit::Degrees() const {

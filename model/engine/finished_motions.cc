@@ -30,19 +30,17 @@ class GivenFollowers : public Network {
 std::vector<WindowResult> FinishMotions(const ModelDescription& description,
                                         const std::vector<SynthesisWindow>& windows,
                                         const std::vector<motion::Poses>& followers) {
-  // Samples are drawn again if they do not turn as asked; these cannot be.
-  ModelDescription given = description;
-  given.turning_classes.clear();
   std::vector<motion::Poses> standard;
   std::vector<SynthesisWindow> copies = windows;
   std::vector<const SynthesisWindow*> pointers;
   for (std::size_t i = 0; i < windows.size(); ++i) {
     standard.push_back(
-        WindowStandardisation(given.skeleton, windows[i], kOrigin).Apply(followers[i]));
+        WindowStandardisation(description.skeleton, windows[i], kOrigin).Apply(followers[i]));
     copies[i].options.sampling.candidates = 1;
     pointers.push_back(&copies[i]);
   }
-  return MakeSynthesizer(given, kOrigin, std::make_unique<GivenFollowers>(std::move(standard)))
+  return MakeSynthesizer(description, kOrigin,
+                         std::make_unique<GivenFollowers>(std::move(standard)))
       ->Synthesize(pointers);
 }
 

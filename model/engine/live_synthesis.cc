@@ -6,14 +6,12 @@
 #include <cstdlib>
 #include <utility>
 
-#include "model/cleanup/frame_turns.h"
-#include "model/cleanup/live_frame.h"
 #include "model/engine/direction_estimate.h"
-#include "model/engine/finishing.h"
 #include "model/engine/resting_leader.h"
 #include "model/engine/window_state.h"
 #include "model/motion/limb_lengths.h"
 #include "model/motion/resample.h"
+#include "model/solver/follower.h"
 
 namespace duet::engine {
 namespace {
@@ -41,7 +39,6 @@ LiveSynthesis::LiveSynthesis(ModelDescription model, LiveRequest request)
       request_(std::move(request)),
       timing_(model_, request_.frame_rate_hz, request_.delay_frames),
       body_(body::FindBody(model_.skeleton)),
-      girdles_(model_.skeleton),
       cleans_up_(request_.options.clean_up.value_or(model_.cleaned_up_by_default())),
       replay_end_(request_.first_frame + request_.leader.frame_count()),
       leader_(0, model_.skeleton.joint_count()),
@@ -129,21 +126,22 @@ LiveFrames LiveSynthesis::Plan(int count) const {
 LiveFrames LiveSynthesis::Sample(int count) const {
   LiveFrames frames{next_follower_frame(), Poses(0, leader_.joint_count())};
   Poses pose(1, leader_.joint_count());
-  const auto last = [](const Poses& poses) {
-    return poses.empty() ? absl::Span<const Vec3>() : poses[poses.frame_count() - 1];
-  };
   for (int i = 0; i < count; ++i) {
-    SampleJoined(frames.first + i, last(i == 0 ? follower_ : frames.poses), &pose);
+    SampleJoined(frames.first + i, &pose);
     frames.poses.Append(pose.all());
   }
   return frames;
 }
 
 void LiveSynthesis::SamplePlan(int frame, absl::Span<Vec3> pose) const {
-  SampleCubic(plan_, timing_.ToModelFrame(frame) - plan_begin_, pose);
+  const double at = timing_.ToModelFrame(frame) - plan_begin_;
+  SampleCubic(plan_, at, pose);
+  const int before = static_cast<int>(std::floor(at + kEpsilon));
+  if (!cleans_up_ || at - before <= kEpsilon) return;
+  solver::KeepFeetBetween(body_, plan_[before], plan_[before + 1], pose);
 }
 
-void LiveSynthesis::SampleJoined(int frame, absl::Span<const Vec3> before, Poses* pose) const {
+void LiveSynthesis::SampleJoined(int frame, Poses* pose) const {
   SamplePlan(frame, (*pose)[0]);
   if (!offset_.empty()) {
     const double frames = kJoinSeconds * request_.frame_rate_hz, since = frame - join_frame_ + 1;
@@ -151,31 +149,15 @@ void LiveSynthesis::SampleJoined(int frame, absl::Span<const Vec3> before, Poses
     const float place = static_cast<float>((1 + since / frames) * fall);
     for (std::size_t j = 0; j < offset_.size(); ++j) (*pose)[0][j] += offset_[j] * place;
   }
-  const Poses interpolated = *pose;
   // Interpolation and offsets shorten limbs, and later plans continue from these.
-  SetBoneLengths(model_.skeleton, bone_lengths_, pose);
-  if (!cleans_up_) return;
-  girdles_.ApplyAboveFeet(girdle_widths_, (*pose)[0]);
-  CorrectFrame(frame, interpolated[0], (*pose)[0]);
-  if (!before.empty()) {
-    const float height = cleanup::HeightOf(body_, (*pose)[0]);
-    cleanup::SlowFrame(model_.skeleton, body_, FrameTurnsOf(model_), request_.frame_rate_hz, before,
-                       (*pose)[0]);
-    cleanup::KeepHeight(body_, height, (*pose)[0]);
-  }
-}
-
-void LiveSynthesis::CorrectFrame(int frame, absl::Span<const Vec3> interpolated,
-                                 absl::Span<Vec3> pose) const {
-  const double at = timing_.ToModelFrame(frame) - plan_begin_;
-  const int before = static_cast<int>(std::floor(at + kEpsilon));
-  if (at - before > kEpsilon) {
-    cleanup::PlaceFeetBetween(model_.skeleton, body_, plan_[before], plan_[before + 1],
-                              interpolated, pose);
-  }
-  // A provisional frame may be one of which the leader is not known.
-  if (frame < next_leader_frame()) {
-    cleanup::KeepApart(model_.skeleton.root, leader_[frame - leader_begin_], pose);
+  if (cleans_up_ && person_) {
+    person_->FitAboveFeet((*pose)[0]);
+    // A provisional frame may be one of which the leader is not known.
+    if (frame < next_leader_frame()) {
+      solver::KeepApart(model_.skeleton.root, leader_[frame - leader_begin_], (*pose)[0]);
+    }
+  } else {
+    SetBoneLengths(model_.skeleton, bone_lengths_, pose);
   }
 }
 
@@ -238,7 +220,10 @@ void LiveSynthesis::Accept(const Poses& follower) {
   plan_begin_ = window_begin_;
   const Poses first(plan_.joint_count(), {plan_[0].begin(), plan_[0].end()});
   bone_lengths_ = MedianBoneLengths(model_.skeleton, first);
-  girdle_widths_ = girdles_.Measure(first);
+  person_.reset();
+  if (auto person = solver::BodyModel::Measure(model_.skeleton, first); person.ok()) {
+    person_ = *std::move(person);
+  }
   KeepOffset();
 }
 

@@ -12,7 +12,7 @@
 #include "model/engine/synthesizer.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
-#include "model/solver/girdles.h"
+#include "model/solver/body_model.h"
 
 namespace duet::engine {
 
@@ -124,12 +124,7 @@ class LiveSynthesis {
   int PlannedEnd() const;
   // A frame of the plan held, without and with what remains of the plan before it.
   void SamplePlan(int frame, absl::Span<motion::Vec3> pose) const;
-  // `before`: the frame before it; empty for the first.
-  void SampleJoined(int frame, absl::Span<const motion::Vec3> before, motion::Poses* pose) const;
-  // Corrects what only the frame itself shows (cleanup/live_frame.h). `interpolated`: the pose
-  // before its bones had their lengths.
-  void CorrectFrame(int frame, absl::Span<const motion::Vec3> interpolated,
-                    absl::Span<motion::Vec3> pose) const;
+  void SampleJoined(int frame, motion::Poses* pose) const;
   LiveFrames Sample(int count) const;
 
   std::vector<float> WindowLabels(int begin, int frames, int join) const;
@@ -142,9 +137,7 @@ class LiveSynthesis {
   LiveRequest request_;
   LiveTiming timing_;
   body::Body body_;
-  solver::Girdles girdles_;
-  solver::GirdleWidths girdle_widths_;  // of the plan
-  bool cleans_up_;  // whether frames are corrected; see SynthesisOptions::clean_up
+  bool cleans_up_;  // whether frames are bodies; see SynthesisOptions::clean_up
   // Frames before this one are answered evaluation by evaluation: those of a resumed session.
   int replay_end_;
 
@@ -158,8 +151,10 @@ class LiveSynthesis {
   std::optional<int> evaluation_;  // of the plan held
   motion::Poses plan_;             // at the model's rate
   int plan_begin_ = 0;
-  int join_frame_ = 0;               // the first frame that the plan may change
-  std::vector<float> bone_lengths_;  // of the plan
+  int join_frame_ = 0;  // the first frame that the plan may change
+  // Of the plan; the person is absent if the skeleton is none of a person.
+  std::vector<float> bone_lengths_;
+  std::optional<solver::BodyModel> person_;
   // From the plan to the frame before join_frame_, as it was sent: [joints], empty without such a
   // frame. It is added to the plan with a weight that falls to 0.
   std::vector<motion::Vec3> offset_;

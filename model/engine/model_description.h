@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "model/body/passing_poses.h"
 #include "model/engine/direction_estimate.h"
 #include "model/engine/leader_statistics.h"
 #include "model/motion/skeleton.h"
@@ -18,23 +17,10 @@ struct HandContact {
   double metres = 0;
 };
 
-// A class in which the follower turns about itself, and how fast.
-struct TurningClass {
-  std::string interaction_class;
-  double degrees_per_second = 0;
-};
-
 // A class in which the follower faces its leader, and how far it is turned away at most.
 struct FacingClass {
   std::string interaction_class;
   double degrees = 0;
-};
-
-// A class in which the leader strikes at the follower's body, and the limb that does.
-enum class StrikingLimb { kFist, kFoot };
-struct Strike {
-  std::string interaction_class;
-  StrikingLimb limb = StrikingLimb::kFist;
 };
 
 // Everything that callers need to know about a model, without its weights.
@@ -52,22 +38,11 @@ struct ModelDescription {
   std::vector<std::string> touching_classes;
   // The classes in which a hand that the leader offers is met.
   std::vector<HandContact> hand_contacts;
-  // The classes whose weight decides whether the follower turns (asked_turns.h).
-  std::vector<TurningClass> turning_classes;
-  // The classes in which clean-up turns a follower back to its leader.
+  // The classes in which a follower that is turned away is turned back to its leader.
   std::vector<FacingClass> facing_classes;
-  // The follower's steps fall on those of its leader, as in a dance.
-  bool steps_in_time = false;
   // The follower's limb lengths as multiples of the leader's, unless its pose is known. Empty: the
   // leader's lengths. Shapes: [bones].
   std::vector<double> bone_ratios;
-  // A follower does not stay in a crouch in which its hips are lower than this
-  // (solver::LastingHipHeights). 0: than solver::StatureOptions has it.
-  double hip_height = 0;
-  // The longest time for which a follower keeps such a pose. 0: as long as the network does.
-  body::PoseSeconds longest_poses;
-  // The classes in which the leader strikes at the body.
-  std::vector<Strike> strikes;
   double frame_rate_hz = 0;  // the network's own
   int window_frames = 0;     // maximum window length that the network was trained on
   // The last frames of a window that the next window replaces, because their leader's future was

@@ -6,17 +6,12 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/body/limbs.h"
-#include "model/cleanup/live_bounds.h"
-#include "model/cleanup/steps_in_time.h"
-#include "model/engine/asked_turns.h"
 #include "model/engine/candidates.h"
 #include "model/engine/finishing.h"
 #include "model/engine/standard_window.h"
 #include "model/engine/unfamiliarity.h"
 #include "model/engine/window_standardisation.h"
-#include "model/solver/girdles.h"
-#include "model/solver/stature.h"
+#include "model/solver/follower.h"
 
 namespace duet::engine {
 namespace {
@@ -27,13 +22,6 @@ using Windows = absl::Span<const SynthesisWindow* const>;
 // memory of a batch.
 constexpr std::size_t kMostTogether = 32;
 
-// The leader without the frames that are a guess: one who lands goes on through the floor.
-motion::Poses KnownLeader(const SynthesisWindow& window) {
-  motion::Poses known = window.leader;
-  known.Resize(known.frame_count() - window.hidden_frames);
-  return known;
-}
-
 class NetworkSynthesizer : public Synthesizer {
  public:
   NetworkSynthesizer(ModelDescription description, motion::StandardOrigin origin,
@@ -43,10 +31,7 @@ class NetworkSynthesizer : public Synthesizer {
         origin_(origin),
         network_(std::move(network)),
         options_(options),
-        live_bounds_(description_.skeleton),
-        body_(body::FindBody(description_.skeleton)),
-        girdles_(description_.skeleton),
-        clean_up_(description_.skeleton, CleaningOf(description_, options.cleaning)),
+        solver_(description_.skeleton, description_.frame_rate_hz),
         judge_(description_.skeleton, std::move(critic)) {
     description_.clean_up = options.clean_up;
   }
@@ -69,7 +54,7 @@ class NetworkSynthesizer : public Synthesizer {
       const std::size_t count = static_cast<std::size_t>(Candidates(*windows[i]));
       results.push_back(IsCancelled(inputs[first])
                             ? absl::CancelledError("cancelled while it was being answered")
-                            : Answer(*windows[i], standardisations[i], inputs[first],
+                            : Answer(*windows[i], standardisations[i],
                                      absl::MakeConstSpan(*followers).subspan(first, count)));
       first += count;
     }
@@ -131,47 +116,11 @@ class NetworkSynthesizer : public Synthesizer {
     return followers;
   }
 
-  // The answer to a window, of the network's candidates. `input`: of the first one.
+  // The answer to a window, of the network's candidates.
   WindowResult Answer(const SynthesisWindow& window, const motion::Standardisation& standardisation,
-                      const NetworkInput& input, absl::Span<const motion::Poses> candidates) const {
-    // Only candidates that are compared with each other need all stages at once.
-    const bool is_finished = candidates.size() > 1;
-    WindowResult first = is_finished ? Choose(window, standardisation, candidates)
-                                     : FinishTrunk(window, standardisation, candidates[0]);
-    if (!first.ok()) return first;
-    std::vector<motion::Poses> followers = {*std::move(first)};
-    const absl::StatusOr<std::size_t> best =
-        TurnAsAsked(window, standardisation, input, &followers);
-    if (!best.ok()) return best.status();
-    if (is_finished && *best == 0) return std::move(followers[0]);
-    return FinishBody(window, window.pins, std::move(followers[*best]));
-  }
-
-  // Adds samples to the first one until one turns as the labels ask. Returns the index of the one
-  // that does so best. Windows of an endless motion keep their noise.
-  absl::StatusOr<std::size_t> TurnAsAsked(const SynthesisWindow& window,
-                                          const motion::Standardisation& standardisation,
-                                          const NetworkInput& input,
-                                          std::vector<motion::Poses>* followers) const {
-    if (!description_.samples || window.options.sampling.first_frame) return 0;
-    const AskedTurns turns(description_, window);
-    if (turns.demand() == 0) return 0;
-    std::vector<std::vector<double>> samples = {turns.TurnsOf(window.leader, (*followers)[0])};
-    if (IsDecided(turns, samples)) return 0;
-    for (const std::vector<NetworkInput>& inputs : DrawnAgain(description_, turns, window, input)) {
-      const absl::StatusOr<std::vector<motion::Poses>> answers = RunNetwork(inputs, 1);
-      if (!answers.ok()) return answers.status();
-      for (const motion::Poses& answer : *answers) {
-        // Turns are measured once the trunk is finished, because the network's own hips can be
-        // turned over or shrunk to a point.
-        WindowResult follower = FinishTrunk(window, standardisation, answer);
-        if (!follower.ok()) return follower.status();
-        samples.push_back(turns.TurnsOf(window.leader, *follower));
-        followers->push_back(*std::move(follower));
-      }
-      if (IsDecided(turns, samples)) break;
-    }
-    return MostAsAsked(turns, samples);
+                      absl::Span<const motion::Poses> candidates) const {
+    if (candidates.size() > 1) return Choose(window, standardisation, candidates);
+    return Finish(window, standardisation, candidates[0], window.pins);
   }
 
   // The best of a window's candidates, finished. Fails if one of them is not finite.
@@ -183,9 +132,10 @@ class NetworkSynthesizer : public Synthesizer {
       if (!finished.ok()) return finished;
       followers.push_back(*std::move(finished));
     }
-    const int best = judge_.Best(window.leader, followers, SettledFrames(window),
-                                 description_.frame_rate_hz, window.options.sampling.variety,
-                                 window.pins, MeetingsOf(description_, window), window.labels);
+    const int given = GivenFrames(description_, window).frame_count();
+    const int best = judge_.Best(window.leader, followers, given, description_.frame_rate_hz,
+                                 window.options.sampling.variety, window.pins,
+                                 ContactRulesOf(description_, window), window.labels);
     // Only the chosen one is moved to the pins: a sample that is near already is the better one.
     if (!window.pins.empty()) {
       return Finish(window, standardisation, candidates[static_cast<std::size_t>(best)],
@@ -196,105 +146,23 @@ class NetworkSynthesizer : public Synthesizer {
 
   WindowResult Finish(const SynthesisWindow& window, const motion::Standardisation& standardisation,
                       const motion::Poses& standard, const motion::Pins& pins) const {
-    WindowResult trunk = FinishTrunk(window, standardisation, standard);
-    if (!trunk.ok()) return trunk;
-    return FinishBody(window, pins, *std::move(trunk));
-  }
-
-  // The first stages of Finish. The others hardly turn the follower.
-  WindowResult FinishTrunk(const SynthesisWindow& window,
-                           const motion::Standardisation& standardisation,
-                           const motion::Poses& standard) const {
     motion::Poses follower = standardisation.Invert(standard);
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
     if (options_.keep_limb_lengths) KeepLimbLengths(description_, window, &follower);
-    if (IsCleanedUp(window)) KeepGirdles(window, SettledFrames(window), false, &follower);
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
-    if (IsCleanedUp(window)) {
-      clean_up_.CorrectTrunk(window.leader, {description_.frame_rate_hz, SettledFrames(window)},
-                             &follower);
+    const bool solves = IsCleanedUp(window) && solver_.CanSolve();
+    solver::Situation situation{window.leader, window.hidden_frames,
+                                GivenFrames(description_, window),
+                                ContactRulesOf(description_, window), pins};
+    if (solves || !window.settled.empty()) solver_.Join(situation.given, &follower);
+    if (!solves) {
+      if (!pins.empty()) solver_.MoveToPins(pins, situation.given.frame_count(), &follower);
+      return follower;
     }
+    absl::StatusOr<solver::BodyModel> person = PersonOf(description_, window);
+    if (!person.ok()) return person.status();
+    solver_.Solve(situation, *person, &follower);
     return follower;
-  }
-
-  // Makes pelvis and shoulders rigid, from frame `first` on.
-  void KeepGirdles(const SynthesisWindow& window, int first, bool feet_stay,
-                   motion::Poses* follower) const {
-    const solver::GirdleWidths widths = GirdleWidthsOf(description_, girdles_, window);
-    for (int t = first; t < follower->frame_count(); ++t) {
-      if (feet_stay) {
-        girdles_.ApplyAboveFeet(widths, (*follower)[t]);
-      } else {
-        girdles_.Apply(widths, (*follower)[t]);
-      }
-    }
-  }
-
-  // The other stages of Finish.
-  motion::Poses FinishBody(const SynthesisWindow& window, const motion::Pins& pins,
-                           motion::Poses follower) const {
-    const bool cleans = IsCleanedUp(window);
-    const solver::Stretches stretches = solver::MeasureStretches(body_.legs, follower);
-    const cleanup::Meetings meetings = MeetingsOf(description_, window);
-    const cleanup::Timing timing = FeetTiming(description_, window);
-    const bool bounded = cleans && window.options.sampling.first_frame.has_value();
-    const auto face_leader = [&] {
-      clean_up_.FaceLeader(window.leader, MostAwayOf(description_, window), timing, &follower);
-    };
-    if (cleans) {
-      // A live body goes on from what was sent, which is joined below.
-      if (!bounded) face_leader();
-      clean_up_.CorrectBody(window.leader, TouchOf(description_, window), meetings,
-                            {description_.frame_rate_hz, SettledFrames(window)}, &follower);
-    }
-    JoinSent(description_, window, &follower);
-    if (bounded) {
-      face_leader();
-      live_bounds_.BoundBody(window.leader, timing, &follower);
-    }
-    std::optional<cleanup::PinnedMotion> pinned;
-    if (!pins.empty()) {
-      pinned.emplace(clean_up_.ApproachPins(window.leader, TouchOf(description_, window), pins,
-                                            timing, &follower));
-    }
-    if (cleans) {
-      clean_up_.PlaceFeet(window.leader, timing, &follower);
-      solver::StatureOptions stature{description_.frame_rate_hz, timing.settled};
-      if (description_.hip_height > 0) stature.least_height = description_.hip_height;
-      KeepStature(body_.legs, stretches, stature, &follower);
-      clean_up_.PlaceHands(window.leader, meetings, timing, &follower);
-    }
-    if (IsInTime(window)) {
-      // After the feet are placed, because a foot that stands does so at every time.
-      cleanup::StepInTime(*description_.skeleton.feet, window.leader, timing, &follower);
-      if (options_.keep_limb_lengths) KeepLimbLengths(description_, window, &follower);
-    }
-    if (bounded) live_bounds_.BoundFeet(KnownLeader(window), timing, &follower);
-    if (cleans) KeepGirdles(window, timing.settled, true, &follower);
-    if (pinned) clean_up_.PlacePins(*pinned, window.leader, timing, &follower);
-    HoldSettledPins(window, pins, &follower);
-    return follower;
-  }
-
-  // Moves the network's version of the settled frames to their pins, and eases what follows: it is
-  // blended with the frames that the window before it moved there.
-  void HoldSettledPins(const SynthesisWindow& window, const motion::Pins& pins,
-                       motion::Poses* follower) const {
-    motion::Pins settled;
-    for (const motion::Pin& pin : pins) {
-      if (pin.frame <= window.settled.frame_count() - 1) settled.push_back(pin);
-    }
-    if (settled.empty()) return;
-    const cleanup::Timing timing{description_.frame_rate_hz, 0};
-    const cleanup::PinnedMotion pinned = clean_up_.ApproachPins(
-        window.leader, TouchOf(description_, window), settled, timing, follower);
-    clean_up_.PlacePins(pinned, window.leader, timing, follower);
-  }
-
-  // A window of an endless motion does not know the steps that come.
-  bool IsInTime(const SynthesisWindow& window) const {
-    return description_.steps_in_time && description_.skeleton.feet && IsCleanedUp(window) &&
-           !window.options.sampling.first_frame;
   }
 
   bool IsCleanedUp(const SynthesisWindow& window) const {
@@ -305,10 +173,7 @@ class NetworkSynthesizer : public Synthesizer {
   const motion::StandardOrigin origin_;
   const std::unique_ptr<const Network> network_;
   const PipelineOptions options_;
-  const cleanup::LiveBounds live_bounds_;
-  const body::Body body_;
-  const solver::Girdles girdles_;
-  const cleanup::CleanUp clean_up_;
+  const solver::FollowerSolver solver_;
   const CandidateJudge judge_;
 };
 

@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 
-#include "model/cleanup/clean_up.h"
 #include "model/engine/critic.h"
 #include "model/engine/model_description.h"
 #include "model/engine/network.h"
@@ -21,15 +20,14 @@ struct PipelineOptions {
   bool keep_limb_lengths = true;
   // Moves a follower without a start vertically so that its lowest foot is as high as the leader's.
   bool share_floor = true;
-  // Cleans up the follower (model/cleanup), if its model is cleaned up by default.
+  // Makes a body of the follower (model/solver), if its model is cleaned up by default.
   // SynthesisOptions::clean_up overrides both.
   bool clean_up = true;
-  cleanup::Options cleaning = {};
 };
 
 // A synthesizer around a network:
 //   WindowStandardisation, Standardise, Network::Run, Standardisation::Invert, CheckFinite,
-//   KeepLimbLengths, ShareFloor, CleanUp.
+//   KeepLimbLengths, ShareFloor, FollowerSolver.
 // `origin`: origin of the standard coordinates in which the network was trained. `critic`: judges
 // several samples of a window, if there is one.
 std::unique_ptr<Synthesizer> MakeSynthesizer(ModelDescription description,

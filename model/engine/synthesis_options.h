@@ -27,8 +27,8 @@ struct Sampling {
 // copies it into every window. docs/guides/add_a_request_field.md describes how to add a field.
 struct SynthesisOptions {
   Sampling sampling;
-  // Whether to clean up the follower (model/cleanup). Absent: the default of the server or of the
-  // engine's pipeline.
+  // Whether to make a body of the follower (model/solver). Absent: the default of the server or of
+  // the engine's pipeline.
   std::optional<bool> clean_up;
 };
 

@@ -27,17 +27,6 @@ struct FollowerStart {
 
 // One network evaluation: at most window_frames frames at the model's frame rate and in its joint
 // order. World metres, y up.
-// The frames around a window that share the label of a turn with it, because a turn can take longer
-// than a window.
-struct TurnsAround {
-  // How far the follower turned, seen from the leader, in each frame from the first one with the
-  // label up to the window's first frame. Degrees. Empty if the window's first frame has no such
-  // label.
-  std::vector<double> before;
-  // The number of frames after the window's last one that have the label as well.
-  int after = 0;
-};
-
 struct SynthesisWindow {
   motion::Poses leader;  // [frames, joints], 2 frames or more
   // The number of frames at the window's end in which the leader is a guess, because the true
@@ -58,7 +47,6 @@ struct SynthesisWindow {
   // Where joints of the follower must be, in the window's frames. Those in settled frames have no
   // effect; those soon after the last frame are prepared for.
   motion::Pins pins = {};
-  TurnsAround turns_around = {};
   SynthesisOptions options;
   // Set, at any time and from any thread, when the result is not needed any more. The result may
   // then be CANCELLED. Null: never cancelled.

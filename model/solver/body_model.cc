@@ -175,6 +175,23 @@ void BodyModel::Fit(absl::Span<Vec3> pose) const {
   }
 }
 
+void BodyModel::FitAboveFeet(absl::Span<Vec3> pose) const {
+  std::vector<Vec3> feet;
+  for (const body::Limb& leg : legs_) feet.push_back(At(pose, leg.end));
+  Fit(pose);
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    const Vec3 facing = body::Facing(hips_, pose);
+    body::Reach(legs_[i], feet[i], facing, pose);
+  }
+}
+
+void BodyModel::Scale(float factor) {
+  for (Rigid* rigid : {&pelvis_, &girdle_}) {
+    for (Vec3& place : rigid->places) place = place * factor;
+  }
+  for (Segment& segment : segments_) segment.length *= factor;
+}
+
 float BodyModel::LegLength(int leg) const {
   const body::Limb& limb = legs_[static_cast<std::size_t>(leg)];
   float length = 0;

@@ -26,6 +26,11 @@ class BodyModel {
   // Replaces a pose by the nearest one of this body: the directions of its bones and the bends of
   // its limbs are kept. Shapes: pose [joints].
   void Fit(absl::Span<motion::Vec3> pose) const;
+  // The same, with the feet where they are, as far as the legs reach.
+  void FitAboveFeet(absl::Span<motion::Vec3> pose) const;
+
+  // The same body in another size.
+  void Scale(float factor);
 
   // Left and right.
   const std::vector<body::Limb>& legs() const { return legs_; }

@@ -72,7 +72,6 @@ std::vector<bool> StandsByHysteresis(const std::vector<FootState>& states) {
   return standing;
 }
 
-// One foot carries the body unless both are high or fast: people jump and run, but do not glide.
 void StandOnOne(const std::array<std::vector<FootState>, 2>& states,
                 std::array<std::vector<bool>, 2>* standing) {
   for (std::size_t t = 0; t < states[0].size(); ++t) {
@@ -187,12 +186,18 @@ std::vector<Stand> FindStands(const FootPath& foot, const std::vector<bool>& sta
 
 }  // namespace
 
-Footing PlanFooting(const std::array<FootPath, 2>& feet, double frame_rate_hz, double floor) {
+std::array<std::vector<bool>, 2> FindStanding(const std::array<FootPath, 2>& feet,
+                                              double frame_rate_hz, double floor) {
   const std::array<std::vector<FootState>, 2> states = {StatesOf(feet[0], frame_rate_hz, floor),
                                                         StatesOf(feet[1], frame_rate_hz, floor)};
   std::array<std::vector<bool>, 2> standing = {StandsByHysteresis(states[0]),
                                                StandsByHysteresis(states[1])};
   StandOnOne(states, &standing);
+  return standing;
+}
+
+Footing PlanFooting(const std::array<FootPath, 2>& feet, double frame_rate_hz, double floor) {
+  const std::array<std::vector<bool>, 2> standing = FindStanding(feet, frame_rate_hz, floor);
   const int half = std::max(1, static_cast<int>(std::lround(kStepSeconds * frame_rate_hz / 2)));
   Footing footing;
   for (const std::size_t foot : {std::size_t{0}, std::size_t{1}}) {

@@ -7,6 +7,9 @@
 namespace duet::solver {
 namespace {
 
+// The weight of not correcting a given frame.
+constexpr double kGiven = 1e9;
+
 // A symmetric matrix of five diagonals: rows hold the diagonal and the two entries right of it.
 using Bands = std::vector<std::array<double, 3>>;
 
@@ -18,8 +21,8 @@ void AddSquare(double weight, std::size_t t, const std::array<double, 3>& terms,
   }
 }
 
-// Solves by Cholesky's factorisation (L D L^T), in place.
-void Solve(Bands* bands, std::vector<double>* values) {
+// Factorises in place (L D L^T): the entries right of the diagonal become those of L.
+void Factorise(Bands* bands) {
   const std::size_t n = bands->size();
   for (std::size_t t = 0; t < n; ++t) {
     const std::array<double, 3> row = (*bands)[t];
@@ -28,32 +31,72 @@ void Solve(Bands* bands, std::vector<double>* values) {
       for (std::size_t j = i; j < 3 && t + j < n; ++j) {
         (*bands)[t + i][j - i] -= factor * row[j];
       }
-      (*values)[t + i] -= factor * (*values)[t];
+      (*bands)[t][i] = factor;
+    }
+  }
+}
+
+// Solves for the right side `values`, in place.
+void Solve(const Bands& factors, std::vector<double>* values) {
+  const std::size_t n = factors.size();
+  for (std::size_t t = 0; t < n; ++t) {
+    for (std::size_t i = 1; i < 3 && t + i < n; ++i) {
+      (*values)[t + i] -= factors[t][i] * (*values)[t];
     }
   }
   for (std::size_t t = n; t-- > 0;) {
-    double rest = (*values)[t];
-    for (std::size_t i = 1; i < 3 && t + i < n; ++i) rest -= (*bands)[t][i] * (*values)[t + i];
-    (*values)[t] = rest / (*bands)[t][0];
+    double rest = (*values)[t] / factors[t][0];
+    for (std::size_t i = 1; i < 3 && t + i < n; ++i) rest -= factors[t][i] * (*values)[t + i];
+    (*values)[t] = rest;
   }
+}
+
+bool IsGiven(const CorrectionCost& cost, std::size_t frame) {
+  return static_cast<int>(frame) < cost.given;
+}
+
+Bands FactorsOf(const CorrectionCost& cost, const std::vector<double>& weights) {
+  const std::size_t n = weights.size();
+  const double s = cost.seconds * cost.frame_rate_hz;
+  Bands bands(n, {0, 0, 0});
+  for (std::size_t t = 0; t < n; ++t) {
+    bands[t][0] += IsGiven(cost, t) ? kGiven : weights[t] + cost.near;
+    if (t + 1 < n) AddSquare(s * s, t, {-1, 1, 0}, 2, &bands);
+    if (t + 2 < n) AddSquare(s * s * s * s / 4, t, {1, -2, 1}, 3, &bands);
+  }
+  Factorise(&bands);
+  return bands;
 }
 
 }  // namespace
 
 std::vector<double> SmoothCorrection(const CorrectionCost& cost, const std::vector<double>& weights,
                                      const std::vector<double>& wishes) {
-  const std::size_t n = wishes.size();
-  const double s = cost.seconds * cost.frame_rate_hz;
-  Bands bands(n, {0, 0, 0});
-  std::vector<double> values(n);
-  for (std::size_t t = 0; t < n; ++t) {
-    bands[t][0] += weights[t] + cost.near;
-    values[t] = weights[t] * wishes[t];
-    if (t + 1 < n) AddSquare(s * s, t, {-1, 1, 0}, 2, &bands);
-    if (t + 2 < n) AddSquare(s * s * s * s / 4, t, {1, -2, 1}, 3, &bands);
+  std::vector<double> values(wishes.size());
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    values[t] = IsGiven(cost, t) ? 0 : weights[t] * wishes[t];
   }
-  Solve(&bands, &values);
+  Solve(FactorsOf(cost, weights), &values);
   return values;
+}
+
+std::vector<motion::Vec3> SmoothShift(const CorrectionCost& cost,
+                                      const std::vector<double>& weights,
+                                      const std::vector<motion::Vec3>& wishes) {
+  const Bands factors = FactorsOf(cost, weights);
+  std::vector<motion::Vec3> result(wishes.size());
+  std::vector<double> values(wishes.size());
+  for (float motion::Vec3::*const coordinate :
+       {&motion::Vec3::x, &motion::Vec3::y, &motion::Vec3::z}) {
+    for (std::size_t t = 0; t < values.size(); ++t) {
+      values[t] = IsGiven(cost, t) ? 0 : weights[t] * double{wishes[t].*coordinate};
+    }
+    Solve(factors, &values);
+    for (std::size_t t = 0; t < values.size(); ++t) {
+      result[t].*coordinate = static_cast<float>(values[t]);
+    }
+  }
+  return result;
 }
 
 }  // namespace duet::solver

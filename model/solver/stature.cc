@@ -15,12 +15,13 @@ using motion::Vec3;
 // The time over which corrections of the height come and go. Seconds.
 constexpr double kRiseSeconds = 0.1;
 constexpr double kNear = 0.02;
-// A correction of settled frames costs this much more than one that is not wished for.
-constexpr double kSettled = 1e6;
-// A foot that moves less stands. m/s.
-constexpr double kStanding = 0.15;
+// The weight of frames in which no foot stands.
+constexpr double kIdle = 0.1;
 // The part of a leg's length that it may reach.
 constexpr float kReach = 0.998f;
+// Lasting hip heights are at least this, in lengths of the leg. Captured people stand at .96 on
+// average, dancers at .92.
+constexpr double kLeastHeight = 0.9;
 // What is longer than a dip: the deviation of a Gaussian. Seconds.
 constexpr double kLastingSeconds = 0.35;
 
@@ -37,9 +38,14 @@ float MeanLength(const std::vector<body::Limb>& legs, absl::Span<const Vec3> pos
 
 class Stature {
  public:
-  Stature(const std::vector<body::Limb>& legs, const Stretches& wanted,
-          const StatureOptions& options, motion::Poses* poses)
-      : legs_(legs), wanted_(wanted), options_(options), poses_(*poses) {}
+  Stature(const std::vector<body::Limb>& legs, const Footing& footing, const Stretches& wanted,
+          double frame_rate_hz, int given, motion::Poses* poses)
+      : legs_(legs),
+        footing_(footing),
+        wanted_(wanted),
+        frame_rate_hz_(frame_rate_hz),
+        given_(given),
+        poses_(*poses) {}
 
   void Run() {
     const std::vector<double> lacks = LastingLacks();
@@ -47,65 +53,63 @@ class Stature {
     for (int t = 0; t < poses_.frame_count(); ++t) {
       double weight = 0, sum = 0;
       for (std::size_t leg = 0; leg < 2; ++leg) {
-        if (!Stands(leg, t)) continue;
+        if (!footing_.standing[leg][static_cast<std::size_t>(t)]) continue;
         weight += 1;
         sum += RiseFor(leg, t, std::min(kReach, wanted_[leg][static_cast<std::size_t>(t)]));
       }
-      const double lack = lacks[static_cast<std::size_t>(t)];
-      double wish = weight > 0 ? sum / weight : 0;
-      if (lack > 0) wish = std::max(wish, lack);
-      weights.push_back(t < options_.settled ? kSettled : std::max(weight, 0.1));
-      wishes.push_back(t < options_.settled ? 0 : wish);
+      const double wish = weight > 0 ? sum / weight : 0;
+      weights.push_back(std::max(weight, kIdle));
+      wishes.push_back(std::max(wish, lacks[static_cast<std::size_t>(t)]));
     }
     const std::vector<double> rises =
-        SmoothCorrection({options_.frame_rate_hz, kRiseSeconds, kNear}, weights, wishes);
-    for (int t = options_.settled; t < poses_.frame_count(); ++t) {
-      Raise(std::min(static_cast<float>(rises[static_cast<std::size_t>(t)]), Room(t)), t);
+        SmoothCorrection({frame_rate_hz_, kRiseSeconds, kNear, given_}, weights, wishes);
+    for (int t = given_; t < poses_.frame_count(); ++t) {
+      const float rise = std::min(static_cast<float>(rises[static_cast<std::size_t>(t)]), Room(t));
+      for (Vec3& joint : poses_[t]) joint.y += rise;
     }
   }
 
  private:
-  bool Stands(std::size_t leg, int t) const {
-    const int foot = legs_[leg].end;
-    const int before = std::max(0, t - 1), after = std::min(poses_.frame_count() - 1, t + 1);
-    const double way = Distance(poses_.at(before, foot), poses_.at(after, foot));
-    return way * options_.frame_rate_hz <= kStanding * std::max(1, after - before);
-  }
-
-  // The rise at which a leg is stretched to a share of its length.
+  // The rise at which a leg is stretched to a share of its length above its planned foot.
   float RiseFor(std::size_t leg, int t, float stretch) const {
-    const Vec3 way = At(poses_[t], legs_[leg].upper) - At(poses_[t], legs_[leg].end);
+    const Vec3 way =
+        At(poses_[t], legs_[leg].upper) - footing_.paths[leg][static_cast<std::size_t>(t)];
     const float length = stretch * body::LengthOf(legs_[leg], poses_[t]);
     return std::sqrt(std::max(0.0f, length * length - way.x * way.x - way.z * way.z)) - way.y;
   }
-  // How far the body can rise until a leg is as long as it gets; at least 0.
+  // How far the body can rise until a leg is as long as it gets; below 0 if it must come down.
+  // A foot that swings need not be reached while the other one stands.
   float Room(int t) const {
-    return std::max(0.0f, std::min(RiseFor(0, t, kReach), RiseFor(1, t, kReach)));
+    const std::size_t at = static_cast<std::size_t>(t);
+    const float left = RiseFor(0, t, kReach), right = RiseFor(1, t, kReach);
+    if (footing_.standing[0][at] == footing_.standing[1][at]) return std::min(left, right);
+    return footing_.standing[0][at] ? left : right;
   }
 
-  // What lasting hip heights lack, metres.
+  // How far the hips are below the least lasting height, metres.
   std::vector<double> LastingLacks() const {
-    std::vector<double> lacks;
-    const std::vector<float> heights = LastingHipHeights(legs_, poses_, options_.frame_rate_hz);
+    motion::Poses heights(poses_.frame_count(), 1);  // in lengths of the leg
     for (int t = 0; t < poses_.frame_count(); ++t) {
-      const double lack = options_.least_height - heights[static_cast<std::size_t>(t)];
+      const std::size_t at = static_cast<std::size_t>(t);
+      const float hips = (At(poses_[t], legs_[0].upper).y + At(poses_[t], legs_[1].upper).y) / 2;
+      const float lower = std::min(footing_.paths[0][at].y, footing_.paths[1][at].y);
+      const float length = MeanLength(legs_, poses_[t]);
+      heights.at(t, 0).y = length > 0 ? (hips - lower) / length : 1;
+    }
+    heights = motion::GaussianFilter(heights, kLastingSeconds * frame_rate_hz_);
+    std::vector<double> lacks;
+    for (int t = 0; t < poses_.frame_count(); ++t) {
+      const double lack = kLeastHeight - double{heights.at(t, 0).y};
       lacks.push_back(std::max(0.0, lack) * MeanLength(legs_, poses_[t]));
     }
     return lacks;
   }
 
-  // Raises the body above its feet.
-  void Raise(float by, int t) {
-    const absl::Span<Vec3> pose = poses_[t];
-    const Vec3 feet[] = {At(pose, legs_[0].end), At(pose, legs_[1].end)};
-    const Vec3 facing = body::Facing({legs_[0].upper, legs_[1].upper}, pose);
-    for (Vec3& joint : pose) joint.y += by;
-    for (std::size_t leg = 0; leg < 2; ++leg) body::Reach(legs_[leg], feet[leg], facing, pose);
-  }
-
   const std::vector<body::Limb>& legs_;
+  const Footing& footing_;
   const Stretches& wanted_;
-  const StatureOptions& options_;
+  double frame_rate_hz_;
+  int given_;
   motion::Poses& poses_;
 };
 
@@ -122,26 +126,9 @@ Stretches MeasureStretches(const std::vector<body::Limb>& legs, const motion::Po
   return stretches;
 }
 
-std::vector<float> LastingHipHeights(const std::vector<body::Limb>& legs,
-                                     const motion::Poses& poses, double frame_rate_hz) {
-  motion::Poses heights(poses.frame_count(), 1);
-  for (int t = 0; t < poses.frame_count(); ++t) {
-    const absl::Span<const Vec3> pose = poses[t];
-    const float hips = (At(pose, legs[0].upper).y + At(pose, legs[1].upper).y) / 2;
-    const float lower = std::min(At(pose, legs[0].end).y, At(pose, legs[1].end).y);
-    const float length = MeanLength(legs, pose);
-    heights.at(t, 0).y = length > 0 ? (hips - lower) / length : 1;
-  }
-  heights = motion::GaussianFilter(heights, kLastingSeconds * frame_rate_hz);
-  std::vector<float> lasting;
-  for (const Vec3 height : heights.all()) lasting.push_back(height.y);
-  return lasting;
-}
-
-void KeepStature(const std::vector<body::Limb>& legs, const Stretches& wanted,
-                 const StatureOptions& options, motion::Poses* poses) {
-  if (legs.size() != 2 || poses->frame_count() == 0) return;
-  Stature(legs, wanted, options, poses).Run();
+void KeepStature(const std::vector<body::Limb>& legs, const Footing& footing,
+                 const Stretches& wanted, double frame_rate_hz, int given, motion::Poses* poses) {
+  Stature(legs, footing, wanted, frame_rate_hz, given, poses).Run();
 }
 
 }  // namespace duet::solver

@@ -6,15 +6,13 @@
 #include <optional>
 #include <string>
 
-#include "model/engine/asked_turns.h"
 #include "model/engine/facing_fit.h"
 #include "model/engine/hand_contact_fit.h"
-#include "model/engine/strike_fit.h"
 
 namespace duet::training {
 namespace {
 
-// Adds every stretch of a class to a fit (HandContactFit, StrikeFit, TurningFit).
+// Adds every stretch of a class to a fit (HandContactFit, FacingFit).
 template <typename Fit>
 void AddStretches(const dataset::Dataset& dataset, const std::vector<int>& sequences,
                   int interaction_class, Fit* fit) {
@@ -40,24 +38,8 @@ void FindContacts(const dataset::Dataset& dataset, const std::vector<int>& seque
     AddStretches(dataset, sequences, c, &hands);
     if (const std::optional<double> metres = hands.Metres(dataset.frame_rate_hz)) {
       model->hand_contacts.push_back({name, *metres});
-      continue;
     }
-    engine::StrikeFit strikes(dataset.skeleton);
-    AddStretches(dataset, sequences, c, &strikes);
-    if (const auto limb = strikes.Limb()) model->strikes.push_back({name, *limb});
   }
-}
-
-std::vector<engine::TurningClass> FindTurningClasses(const dataset::Dataset& dataset,
-                                                     const std::vector<int>& sequences) {
-  std::vector<engine::TurningClass> classes;
-  for (int c = 0; c < dataset.class_count(); ++c) {
-    engine::TurningFit fit(dataset.skeleton);
-    AddStretches(dataset, sequences, c, &fit);
-    const std::optional<double> speed = fit.DegreesPerSecond(dataset.frame_rate_hz);
-    if (speed) classes.push_back({dataset.classes[static_cast<size_t>(c)], *speed});
-  }
-  return classes;
 }
 
 std::vector<engine::FacingClass> FindFacingClasses(const dataset::Dataset& dataset,

@@ -10,13 +10,9 @@
 
 namespace duet::training {
 
-// Adds the classes in which people meet an offered hand, and those in which they strike.
+// Adds the classes in which people meet an offered hand.
 void FindContacts(const dataset::Dataset& dataset, const std::vector<int>& sequences,
                   engine::ModelDescription* model);
-
-// The classes in which the follower turns about itself.
-std::vector<engine::TurningClass> FindTurningClasses(const dataset::Dataset& dataset,
-                                                     const std::vector<int>& sequences);
 
 // The classes in which the follower faces its leader.
 std::vector<engine::FacingClass> FindFacingClasses(const dataset::Dataset& dataset,

@@ -17,7 +17,6 @@
 #include "model/dataset/time_line.h"
 #include "model/engine/body_fit.h"
 #include "model/engine/leader_statistics.h"
-#include "model/engine/step_fit.h"
 #include "model/network/threads.h"
 #include "model/training/class_fits.h"
 #include "model/training/critic_trainer.h"
@@ -75,25 +74,14 @@ checkpoint::Manifest MakeManifest(const RunPlan& plan, const dataset::Dataset& d
   return manifest;
 }
 
-bool StepInTime(const dataset::Dataset& dataset, const std::vector<int>& sequences) {
-  engine::StepFit fit(dataset.skeleton, dataset.frame_rate_hz);
-  for (const int index : sequences) {
-    const motion::ClipPair& pair = dataset.sequences[static_cast<size_t>(index)].pair;
-    fit.Add(pair.leader.poses, pair.follower.poses);
-  }
-  return fit.InTime();
-}
-
 void MeasureBodies(const dataset::Dataset& dataset, const std::vector<int>& sequences,
                    engine::ModelDescription* model) {
-  engine::BodyFit fit(dataset.skeleton, dataset.frame_rate_hz);
+  engine::BodyFit fit(dataset.skeleton);
   for (const int index : sequences) {
     const motion::ClipPair& pair = dataset.sequences[static_cast<size_t>(index)].pair;
     fit.Add(pair.leader.poses, pair.follower.poses);
   }
   model->bone_ratios = fit.BoneRatios();
-  model->hip_height = fit.HipHeight();
-  model->longest_poses = fit.LongestPoses();
 }
 
 engine::LeaderStatistics MeasureLeaders(const dataset::Dataset& dataset,
@@ -368,15 +356,7 @@ absl::Status RunTraining(const RunPlan& plan, const dataset::Dataset& whole, boo
   }
   manifest.model.leader_statistics = MeasureLeaders(dataset, train);
   FindContacts(dataset, train, &manifest.model);
-  manifest.model.turning_classes = FindTurningClasses(whole, takes);
-  if (manifest.model.turning_classes.empty()) {
-    manifest.model.facing_classes = FindFacingClasses(whole, takes);
-  } else {
-    // In a dance, followers turn when they are told to, so clean-up must not turn them back. The
-    // hands that lead them are not fists.
-    manifest.model.strikes.clear();
-  }
-  manifest.model.steps_in_time = StepInTime(whole, takes);
+  manifest.model.facing_classes = FindFacingClasses(whole, takes);
   MeasureBodies(whole, takes, &manifest.model);
   const bool fits_direction = std::visit(
       [](const auto& method) { return method.kFitsPartnerDirection; }, plan.options.method);

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
-#include "model/engine/asked_turns.h"
 #include "model/engine/candidates.h"
 
 namespace duet::server::batching {
@@ -19,15 +17,11 @@ TimePoint After(TimePoint start, double seconds) {
          std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(seconds));
 }
 
-int FramesOf(const WindowJob& job) {
-  return static_cast<int>(
-      std::lround(job.window.leader.frame_count() *
-                  engine::ExpectedSamples(job.model->description(), job.window)));
-}
-
 int CandidatesOf(const WindowJob& job) {
   return engine::CandidateCount(job.model->description(), job.window.options.sampling);
 }
+
+int FramesOf(const WindowJob& job) { return job.window.leader.frame_count() * CandidatesOf(job); }
 
 Lane LaneOf(const WindowJob& job) {
   return LaneOf(job.priority, job.call_windows * CandidatesOf(job), job.continues_call);

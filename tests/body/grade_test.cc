@@ -3,16 +3,16 @@
 #include "gmock/gmock.h"
 #include "model/authoring/puppet.h"
 #include "model/body/hands.h"
-#include "tests/cleanup/bodies.h"
+#include "tests/support/bodies.h"
 
 namespace duet::body {
 namespace {
 
-using cleanup::Changed;
-using cleanup::kFrames;
-using cleanup::kRate;
-using cleanup::Puppet;
 using motion::Vec3;
+using test::Changed;
+using test::kFrames;
+using test::kRate;
+using test::Puppet;
 
 const motion::Skeleton& Sbu() {
   static const auto& skeleton = *new motion::Skeleton(motion::SbuSkeleton());

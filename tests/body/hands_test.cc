@@ -1,7 +1,7 @@
 #include "model/body/hands.h"
 
 #include "gtest/gtest.h"
-#include "tests/cleanup/bodies.h"
+#include "tests/support/bodies.h"
 
 namespace duet::body {
 namespace {
@@ -12,13 +12,13 @@ constexpr int kTorso = 2, kLeftHand = 5, kRightHand = 8;
 
 // A person who stretches the right hand out to +z, and one who stands opposite.
 motion::Poses Offering() {
-  return cleanup::Puppet([](double, authoring::PuppetPose* pose) {
+  return test::Puppet([](double, authoring::PuppetPose* pose) {
     pose->right_hand.target = {-0.15, 0, 0.7};
   });
 }
 
 motion::Poses Opposite() {
-  return cleanup::Changed(cleanup::Puppet(), [](int, Vec3 joint) {
+  return test::Changed(test::Puppet(), [](int, Vec3 joint) {
     return Vec3{-joint.x, joint.y, 1.2f - joint.z};
   });
 }
@@ -28,7 +28,7 @@ std::optional<double> Apart(const motion::Poses& leader, const motion::Poses& fo
 }
 
 TEST(OfferedHandDistance, IsAbsentWhileHandsHang) {
-  EXPECT_FALSE(Apart(cleanup::Puppet(), Opposite()).has_value());
+  EXPECT_FALSE(Apart(test::Puppet(), Opposite()).has_value());
 }
 
 TEST(OfferedHandDistance, IsThatOfTheNearestHands) {

@@ -4,16 +4,16 @@
 
 #include "gmock/gmock.h"
 #include "model/motion/capsules.h"
-#include "tests/cleanup/bodies.h"
+#include "tests/support/bodies.h"
 
 namespace duet::body {
 namespace {
 
-using cleanup::LargestDistance;
-using cleanup::LargestLengthChange;
-using cleanup::WithoutFeet;
-using cleanup::WithoutHips;
 using motion::Vec3;
+using test::LargestDistance;
+using test::LargestLengthChange;
+using test::WithoutFeet;
+using test::WithoutHips;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -117,7 +117,7 @@ class ReachTest : public ::testing::Test {
  protected:
   void ReachFor(Vec3 target) { Reach(leg_, target, {0, 0, 1}, poses_[0]); }
   const Limb leg_ = FindBody(motion::SbuSkeleton()).legs[0];
-  motion::Poses poses_ = cleanup::Puppet({}, 1);
+  motion::Poses poses_ = test::Puppet({}, 1);
   const motion::Poses before_ = poses_;
 };
 
@@ -153,7 +153,7 @@ TEST_F(ReachTest, AStraightLegBendsForwards) {
 }
 
 TEST(Facing, IsTheDirectionOfTheHips) {
-  const Vec3 facing = Facing(*motion::SbuSkeleton().hips, cleanup::Puppet({}, 1)[0]);
+  const Vec3 facing = Facing(*motion::SbuSkeleton().hips, test::Puppet({}, 1)[0]);
   EXPECT_NEAR(facing.z, 1, 1e-5f);
 }
 

@@ -1,20 +1,20 @@
 #include "model/body/passing_poses.h"
 
 #include "gtest/gtest.h"
-#include "tests/cleanup/bodies.h"
+#include "tests/support/bodies.h"
 
 namespace duet::body {
 namespace {
 
-using cleanup::kAnkle;
-using cleanup::Puppet;
 using motion::Vec3;
+using test::kAnkle;
+using test::Puppet;
 
 const motion::Skeleton kSkeleton = motion::SbuSkeleton();
 const Body kBody = FindBody(kSkeleton);
 constexpr int kShoulder = 6, kElbow = 7, kHand = 8;
 
-motion::Poses Partner() { return cleanup::Moved(Puppet(), {0, 0, 3}); }
+motion::Poses Partner() { return test::Moved(Puppet(), {0, 0, 3}); }
 
 // A standing person whose right arm is stretched out in a direction.
 motion::Poses ArmOut(Vec3 direction) {
@@ -49,7 +49,7 @@ TEST(IsHeldOut, IsAHandThatNeitherHangsNorReaches) {
   EXPECT_TRUE(HeldOut(ArmOut({0, 1, 0})));
   EXPECT_FALSE(HeldOut(ArmOut({0, -1, 0}))) << "hangs";
   EXPECT_FALSE(HeldOut(ArmOut({0, 0, 1}))) << "reaches for the partner";
-  EXPECT_TRUE(HeldOut(ArmOut({0, 0, 1}), cleanup::Moved(Puppet(), {0, 0, -3})));
+  EXPECT_TRUE(HeldOut(ArmOut({0, 0, 1}), test::Moved(Puppet(), {0, 0, -3})));
 }
 
 TEST(IsHeldOut, IsNotAHandThatThePartnerHolds) {

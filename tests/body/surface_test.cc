@@ -1,7 +1,7 @@
 #include "model/body/surface.h"
 
 #include "gtest/gtest.h"
-#include "tests/cleanup/bodies.h"
+#include "tests/support/bodies.h"
 
 namespace duet::body {
 namespace {
@@ -16,7 +16,7 @@ double FromSurface(Vec3 point, const motion::Poses& poses) {
 }
 
 TEST(Surface, IsNegativeInsideAndGrowsWithTheWay) {
-  const motion::Poses person = cleanup::Puppet();
+  const motion::Poses person = test::Puppet();
   const Vec3 trunk = Lerp(person.at(0, kTorso), person.at(0, kNeck), 0.5f);
   EXPECT_LT(FromSurface(trunk, person), -0.1);
   EXPECT_NEAR(FromSurface(trunk + Vec3{0, 0, 0.5f}, person), 0.39, 0.02);
@@ -24,7 +24,7 @@ TEST(Surface, IsNegativeInsideAndGrowsWithTheWay) {
 }
 
 TEST(Surface, HasNoArms) {
-  motion::Poses person = cleanup::Puppet();
+  motion::Poses person = test::Puppet();
   const Vec3 ahead = person.at(0, kTorso) + Vec3{0, 0, 0.7f};
   const double before = FromSurface(ahead, person);
   person.at(0, kRightElbow) = person.at(0, kRightHand) = ahead;

@@ -5,16 +5,16 @@
 #include "gmock/gmock.h"
 #include "model/authoring/puppet.h"
 #include "model/engine/hand_contact_fit.h"
-#include "tests/cleanup/bodies.h"
+#include "tests/support/bodies.h"
 
 namespace duet::engine {
 namespace {
 
-using cleanup::Changed;
-using cleanup::kFrames;
-using cleanup::kRate;
-using cleanup::Puppet;
 using motion::Vec3;
+using test::Changed;
+using test::kFrames;
+using test::kRate;
+using test::Puppet;
 
 motion::Poses Away(float x, float z) {
   return Changed(Puppet(), [x, z](int, Vec3 joint) { return joint + Vec3{x, 0, z}; });
@@ -49,9 +49,9 @@ TEST(CandidateJudge, HandsThatAreToMeetDo) {
   for (int t = 0; t < kFrames; ++t) followers[1].at(t, 8) = leader.at(t, 8);
   const CandidateJudge judge(motion::SbuSkeleton());
   EXPECT_EQ(judge.Best(leader, followers, 0, kRate, 1), 0);
-  const cleanup::Meetings meetings(kFrames, {1, 0.1f});
-  EXPECT_EQ(judge.Best(leader, followers, 0, kRate, 1, {}, meetings), 1);
-  EXPECT_EQ(judge.Best(leader, followers, kFrames, kRate, 1, {}, meetings), 0);
+  const solver::ContactRules rules(kFrames, {0, 1, 0.1f});
+  EXPECT_EQ(judge.Best(leader, followers, 0, kRate, 1, {}, rules), 1);
+  EXPECT_EQ(judge.Best(leader, followers, kFrames, kRate, 1, {}, rules), 0);
 }
 
 // A critic that finds followers the more captured the higher their joints are.

@@ -501,59 +501,6 @@ TEST(ClipSynthesis, AModelThatDoesNotSampleHasNothingSettled) {
   }
 }
 
-// The leader, with a forearm that points the other way in every fifth frame.
-motion::Poses Snapping(motion::Poses poses) {
-  constexpr int kElbow = 7, kHand = 8;
-  for (int t = 0; t < poses.frame_count(); t += 5) {
-    poses.at(t, kHand) = poses.at(t, kElbow) * 2 - poses.at(t, kHand);
-  }
-  return poses;
-}
-
-// The fastest turn of that forearm, degrees per second.
-double FastestForearm(const motion::Poses& poses, double frame_rate_hz) {
-  double fastest = 0;
-  motion::Vec3 before;
-  for (int t = 0; t < poses.frame_count(); ++t) {
-    const motion::Vec3 now = poses.at(t, 8) - poses.at(t, 7);
-    if (t > 0) {
-      fastest = std::max(fastest, double{std::atan2(Norm(Cross(before, now)), Dot(before, now))});
-    }
-    before = now;
-  }
-  return fastest * frame_rate_hz * 57.29578;
-}
-
-template <typename AnyClip>
-motion::Poses AnswerSnapping(AnyClip clip) {
-  motion::Poses follower(0, kJoints);
-  while (clip.HasNextWindow()) {
-    const SynthesisWindow window = clip.NextWindow();
-    follower.Append(clip.Accept(Snapping(window.leader)).all());
-  }
-  return follower;
-}
-
-TEST(ClipSynthesis, LimbsOfTheFramesHandedOutTurnNoFasterThanTheyCan) {
-  for (const double rate : {15.0, 29.97, 60.0}) {
-    ClipRequest request = Request(200, rate);
-    EXPECT_LT(FastestForearm(AnswerSnapping(ClipSynthesis(SamplingDescription(), request)), rate),
-              1300)
-        << "two joints of 720 and 550 degrees per second";
-    request.options.clean_up = false;
-    EXPECT_GT(FastestForearm(AnswerSnapping(ClipSynthesis(SamplingDescription(), request)), rate),
-              1800);
-  }
-}
-
-TEST(ClipSynthesis, LiveLimbsTurnNoFasterThanTheyCan) {
-  for (const double rate : {15.0, 30.0, 60.0}) {
-    ClipRequest request = Request(200, rate);
-    EXPECT_LT(FastestForearm(AnswerSnapping(LiveClip(SamplingDescription(), request, 0)), rate),
-              1300);
-  }
-}
-
 TEST(ClipSynthesisDeathTest, StopsAtAResultOfTheWrongSize) {
   const FakeSynthesizer fake;
   ClipSynthesis clip(fake.description(), Request(100, 15));

@@ -5,17 +5,17 @@
 #include <cstddef>
 
 #include "gmock/gmock.h"
-#include "tests/cleanup/bodies.h"
+#include "tests/support/bodies.h"
 
 namespace duet::engine {
 namespace {
 
-using cleanup::Changed;
-using cleanup::kFrames;
-using cleanup::kRate;
-using cleanup::Puppet;
 using motion::Poses;
 using motion::Vec3;
+using test::Changed;
+using test::kFrames;
+using test::kRate;
+using test::Puppet;
 
 constexpr int kClasses = 2;
 

@@ -51,6 +51,24 @@ TEST(SmoothCorrectionTest, FramesWithoutAWishLieBetweenTheirNeighbours) {
   for (std::size_t t = 11; t < 20; ++t) EXPECT_GT(best[t], best[t - 1]) << t;
 }
 
+TEST(SmoothCorrectionTest, GivenFramesAreNotCorrectedAndTheRestLeavesThemSmoothly) {
+  CorrectionCost cost = kCost;
+  cost.given = 10;
+  const std::vector<double> best =
+      SmoothCorrection(cost, std::vector<double>(40, 1), std::vector<double>(40, 1));
+  for (std::size_t t = 0; t < 10; ++t) EXPECT_NEAR(best[t], 0, 1e-6) << t;
+  for (std::size_t t = 10; t < 20; ++t) EXPECT_LT(best[t] - best[t - 1], 0.3) << t;
+  EXPECT_NEAR(best.back(), 1, 0.05);
+}
+
+TEST(SmoothCorrectionTest, ThreeCoordinatesAreSolvedAsOne) {
+  const std::vector<double> weights = {1, 0, 2, 1};
+  const std::vector<motion::Vec3> wishes = {{1, 0, -1}, {}, {2, 1, 0}, {0, 3, 1}};
+  const std::vector<motion::Vec3> all = SmoothShift(kCost, weights, wishes);
+  const std::vector<double> y = SmoothCorrection(kCost, weights, {0, 0, 1, 3});
+  for (std::size_t t = 0; t < 4; ++t) EXPECT_NEAR(all[t].y, y[t], 1e-6) << t;
+}
+
 TEST(SmoothCorrectionTest, OneFrameAndNoFrames) {
   EXPECT_TRUE(SmoothCorrection(kCost, {}, {}).empty());
   const std::vector<double> one = SmoothCorrection(kCost, {1}, {0.3});

@@ -40,69 +40,28 @@ Vec3 At(Pose pose, int joint) { return pose[static_cast<std::size_t>(joint)]; }
 
 double Mean(double sum, int count) { return count > 0 ? sum / count : NAN; }
 
-// How near the leader's fists and feet come to the follower's body while they reach out.
-class Strikes {
+// Whether a fist or a foot of the leader passes through the follower's body.
+class Through {
  public:
-  // `strikes`: the limbs whose reach counts as a strike.
-  Strikes(const motion::Skeleton& skeleton, const body::Body& body, const body::Surface& surface,
-          std::optional<engine::StrikingLimb> strikes)
-      : skeleton_(skeleton), surface_(surface) {
-    using Limb = engine::StrikingLimb;
-    const auto least_reach = [&](Limb limb, double reach) {
-      return strikes == limb ? reach : HUGE_VAL;
-    };
-    for (const body::Limb& arm : body.arms) {
-      limbs_.push_back({&arm, least_reach(Limb::kFist, body::kOffersReach), {}});
-    }
-    for (const body::Limb& leg : body.legs) {
-      limbs_.push_back({&leg, least_reach(Limb::kFoot, body::kKicksReach), {}});
-    }
-  }
+  Through(const body::Body& body, const body::Surface& surface) : body_(body), surface_(surface) {}
 
-  // Whether a fist or a foot passes through the body in this frame.
   bool Add(Pose leader, Pose follower) {
     bool through = false;
-    for (Striking& limb : limbs_) {
-      const double depth = -surface_.Distance(At(leader, limb.limb->end), follower);
-      through |= depth > kThroughMetres;
-      const double reach =
-          body::ReachTowards(*limb.limb, skeleton_.root, leader, At(follower, skeleton_.root));
-      if (reach < limb.least_reach) {
-        End(&limb);
-      } else {
-        limb.nearest = std::min(limb.nearest.value_or(HUGE_VAL), std::max(0.0, -depth));
+    for (const std::vector<body::Limb>* limbs : {&body_.arms, &body_.legs}) {
+      for (const body::Limb& limb : *limbs) {
+        through |= surface_.Distance(At(leader, limb.end), follower) < -kThroughMetres;
       }
     }
     through_ += through;
     ++frames_;
     return through;
   }
-  // The mean over all strikes of how far they stay from the body.
-  double short_by() {
-    for (Striking& limb : limbs_) End(&limb);
-    return Mean(sum_, count_);
-  }
-  double through() const { return Mean(through_, frames_); }
+  double share() const { return Mean(through_, frames_); }
 
  private:
-  struct Striking {
-    const body::Limb* limb;
-    double least_reach;
-    std::optional<double> nearest;  // of the strike in progress
-  };
-
-  void End(Striking* limb) {
-    if (!limb->nearest) return;
-    sum_ += *limb->nearest;
-    ++count_;
-    limb->nearest.reset();
-  }
-
-  const motion::Skeleton& skeleton_;
+  const body::Body& body_;
   const body::Surface& surface_;
-  std::vector<Striking> limbs_;
-  double sum_ = 0;
-  int count_ = 0, through_ = 0, frames_ = 0;
+  int through_ = 0, frames_ = 0;
 };
 
 double DegreesBetween(Vec3 a, Vec3 b) {
@@ -175,12 +134,11 @@ Plausibility::Plausibility(const motion::Skeleton& skeleton)
 bool Plausibility::possible() const { return body::PairMeter::CanMeasure(skeleton_, body_); }
 
 std::vector<PairFigure> Plausibility::Figures() {
-  return {{"twisted clips"}, {"twisted"},        {"shoulders"},      {"both feet"},
-          {"leader's"},      {"heads"},          {"trunks"},         {"hands"},
-          {"distance"},      {"speed"},          {"leader's speed"}, {"strikes"},
-          {"through"},       {"planes"},         {"turns"},          {"fastest turn", true},
-          {"lean"},          {"facing"},         {"farthest"},       {"astride"},
-          {"held out"},      {"hips off", true}, {"hips"},           {"knees"}};
+  return {{"twisted clips"},  {"twisted"}, {"shoulders"}, {"both feet"}, {"leader's"},
+          {"heads"},          {"trunks"},  {"hands"},     {"distance"},  {"speed"},
+          {"leader's speed"}, {"through"}, {"planes"},    {"turns"},     {"fastest turn", true},
+          {"lean"},           {"facing"},  {"farthest"},  {"astride"},   {"held out"},
+          {"hips off", true}, {"hips"},    {"knees"}};
 }
 
 std::vector<std::string> Plausibility::Notes() {
@@ -193,9 +151,8 @@ std::vector<std::string> Plausibility::Notes() {
       "Heads, trunks: share of frames in which the heads are nearer than 18 cm, the axes of the "
       "trunks nearer than 16 cm. Hands: mean distance of the nearest hands while the leader "
       "reaches one out, metres. Distance: of the roots, metres. Speed: of the joints, m/s.",
-      "Strikes: how far the limb that strikes in the class (a fist or a foot) stays from the "
-      "surface of the follower's trunk, head and legs at its nearest while the leader reaches it "
-      "out, metres. Through: share of frames in which a fist or foot is more than 5 cm inside.",
+      "Through: share of frames in which a fist or foot of the leader is more than 5 cm inside the "
+      "follower's trunk, head or legs.",
       "Planes: share of answers in which the plane of a bent arm or leg turns by more than 45 "
       "degrees in a frame. Turns: share of answers in which a joint of the rig turns faster than "
       "900 degrees a second; fastest turn: the fastest of all, degrees a second. Lean: largest of "
@@ -216,7 +173,7 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
                                   const ClassContacts& contacts) const {
   body::PairMeter meter(skeleton_, body_, rate);
   body::GradeSum sum;
-  Strikes strikes(skeleton_, body_, surface_, contacts.strikes);
+  Through limbs(body_, surface_);
   body::LongestPoses longest(skeleton_, body_);
   const std::vector<double> turns = RigTurns(skeleton_, follower, rate);
   double most_twisted = 0, shoulders = 0, heads = 0, trunks = 0, plane = 0;
@@ -234,7 +191,7 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
         body::OfferedHandDistance(body_, skeleton_.root, leader[t], follower[t]);
     if (apart) hands.push_back(*apart);
     longest.Add(leader[t], follower[t]);
-    const bool through = strikes.Add(leader[t], follower[t]);
+    const bool through = limbs.Add(leader[t], follower[t]);
     const double turned = LargestPlaneTurn(body_, follower, t);
     plane = std::max(plane, turned);
     const bool fast = turns[static_cast<std::size_t>(t)] > kTurnDegreesPerSecond;
@@ -259,8 +216,7 @@ PairFigures Plausibility::Measure(const Poses& leader, const Poses& follower, do
                     body::RootDistance(leader, follower, skeleton_),
                     body::JointSpeed(motion::WithoutNoise(follower, rate), rate),
                     body::JointSpeed(motion::WithoutNoise(leader, rate), rate),
-                    strikes.short_by(),
-                    strikes.through(),
+                    limbs.share(),
                     One(plane > kPlaneDegrees),
                     One(fastest > kTurnDegreesPerSecond),
                     fastest,

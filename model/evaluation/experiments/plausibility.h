@@ -1,13 +1,11 @@
 #ifndef DUET_MODEL_EVALUATION_EXPERIMENTS_PLAUSIBILITY_H_
 #define DUET_MODEL_EVALUATION_EXPERIMENTS_PLAUSIBILITY_H_
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "model/body/limbs.h"
 #include "model/body/surface.h"
-#include "model/engine/model_description.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
@@ -28,7 +26,6 @@ struct PairFigures {
 // How the two people of a class meet.
 struct ClassContacts {
   bool hands_meet = false;  // hands that stay apart although one is offered are a fault
-  std::optional<engine::StrikingLimb> strikes;
 };
 
 // Measures pairs of people with one skeleton. Metres, y up.

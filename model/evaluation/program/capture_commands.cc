@@ -33,7 +33,7 @@ absl::Status RunData(const DataArguments& arguments) {
       "when it is read; figures in SBU's raw unit are measured before levelling.");
   section.tables = {report::LeanTable(dataset), report::FloorTable(dataset),
                     report::NoiseTable(dataset), report::LeaderTable(dataset),
-                    report::CleanUpTable(dataset)};
+                    report::SolverTable(dataset)};
   section.settings = {{"data", DescribeData(dataset)}};
   return FinishSection(arguments.section, section);
 }

@@ -284,9 +284,9 @@ float VarietyOfTraining(const checkpoint::Manifest& manifest) {
   return stored > 0 ? 1 / stored : 1;
 }
 
-// The model of a checkpoint as it is served, then with one change each: without labels that choose
-// turns, without steps in time, without raised hips, without clean-up, with four candidates, and
-// with all the noise of its training (if its manifest has flow.noise_share). Nothing is trained.
+// The model of a checkpoint as it is served, then with one change each: without clean-up, with four
+// candidates, and with all the noise of its training (if its manifest has flow.noise_share).
+// Nothing is trained.
 std::vector<Change> Changes(const checkpoint::Manifest& manifest,
                             const experiments::AskedSamples& asked) {
   const Change served = {"as served", manifest.model, true, asked};
@@ -296,8 +296,6 @@ std::vector<Change> Changes(const checkpoint::Manifest& manifest,
     changes.back().name = name;
     return changes.back();
   };
-  add("labels do not choose turns").model.turning_classes.clear();
-  add("no steps in time").model.steps_in_time = false;
   add("no clean-up").clean_up = false;
   add("four candidates").asked.candidates = kCandidates;
   const float variety = VarietyOfTraining(manifest);

@@ -23,7 +23,6 @@
 #include "model/evaluation/report/result_section.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/resample.h"
-#include "model/training/class_fits.h"
 
 namespace duet::evaluation::program {
 namespace {
@@ -87,9 +86,6 @@ experiments::ClassContacts ContactsOf(const engine::ModelDescription& model, int
   experiments::ClassContacts contacts;
   for (const engine::HandContact& contact : model.hand_contacts) {
     contacts.hands_meet |= contact.interaction_class == name;
-  }
-  for (const engine::Strike& strike : model.strikes) {
-    if (strike.interaction_class == name) contacts.strikes = strike.limb;
   }
   return contacts;
 }
@@ -297,15 +293,11 @@ absl::Status AddCaptured(const std::string& folder, report::ResultSection* secti
     return absl::InvalidArgumentError(
         "--data: expected a skeleton with hips, feet, a chest and two named arms");
   }
-  engine::ModelDescription people;
-  people.classes = data.classes;
-  training::FindContacts(data, dataset::AllSequences(data), &people);
   std::vector<std::vector<experiments::PairFigures>> by_class(data.classes.size());
   for (const dataset::Sequence& sequence : data.sequences) {
     const motion::ClipPair& pair = sequence.pair;
-    by_class[static_cast<size_t>(sequence.interaction_class)].push_back(
-        plausibility.Measure(pair.leader.poses, pair.follower.poses, pair.leader.frame_rate_hz,
-                             {false, ContactsOf(people, sequence.interaction_class).strikes}));
+    by_class[static_cast<size_t>(sequence.interaction_class)].push_back(plausibility.Measure(
+        pair.leader.poses, pair.follower.poses, pair.leader.frame_rate_hz, {}));
   }
   section->tables.push_back(
       FiguresTable(absl::StrCat("captured people: ", DescribeData(data)), data.classes, by_class));

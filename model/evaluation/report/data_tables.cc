@@ -11,9 +11,9 @@
 #include "model/base/statistics.h"
 #include "model/body/motion_quality.h"
 #include "model/body/penetration.h"
-#include "model/cleanup/clean_up.h"
 #include "model/motion/filter.h"
 #include "model/motion/posture.h"
+#include "model/solver/follower.h"
 
 namespace duet::evaluation::report {
 namespace {
@@ -112,37 +112,6 @@ void AddNoise(const motion::Clip& clip, Noise* noise) {
 constexpr float kMovedMetres = 0.01f;
 constexpr double kHigh = 0.99;
 
-cleanup::Options NoStage() {
-  cleanup::Options none;
-  none.upright.enabled = none.spacing.enabled = none.capsules.enabled = false;
-  none.waist.enabled = none.hand_contact.enabled = none.floor.enabled = none.footsteps.enabled =
-      none.raised_limbs.enabled = none.joint_ranges.enabled = false;
-  none.shoulders.enabled = none.limb_swings.enabled = false;
-  return none;
-}
-
-template <typename Stage>
-cleanup::Options Only(Stage cleanup::Options::*stage) {
-  cleanup::Options only = NoStage();
-  (only.*stage).enabled = true;
-  return only;
-}
-
-std::vector<std::pair<std::string, cleanup::Options>> Variants() {
-  return {{"captured", NoStage()},
-          {"shoulders", Only(&cleanup::Options::shoulders)},
-          {"waist", Only(&cleanup::Options::waist)},
-          {"upright", Only(&cleanup::Options::upright)},
-          {"spacing", Only(&cleanup::Options::spacing)},
-          {"capsules", Only(&cleanup::Options::capsules)},
-          {"floor", Only(&cleanup::Options::floor)},
-          {"raised limbs", Only(&cleanup::Options::raised_limbs)},
-          {"footsteps", Only(&cleanup::Options::footsteps)},
-          {"joint ranges", Only(&cleanup::Options::joint_ranges)},
-          {"limb swings", Only(&cleanup::Options::limb_swings)},
-          {"all", {}}};
-}
-
 // A row's sums over sequences.
 struct Effect {
   std::vector<double> ways;  // of every joint in every frame, metres
@@ -150,15 +119,25 @@ struct Effect {
   double slide = 0, depth = 0;
 };
 
+// The captured follower, solved as an answer of a network would be.
+motion::Poses Solved(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
+                     const solver::FollowerSolver& solver) {
+  const motion::Poses& captured = sequence.pair.follower.poses;
+  motion::Poses solved = captured;
+  const absl::StatusOr<solver::BodyModel> person =
+      solver::BodyModel::Measure(dataset.skeleton, captured);
+  if (!person.ok() || !solver.CanSolve()) return solved;
+  solver::Situation situation{sequence.pair.leader.poses};
+  const bool touches = dataset.touches[static_cast<std::size_t>(sequence.interaction_class)];
+  situation.rules.assign(static_cast<std::size_t>(captured.frame_count()), {touches ? 1.0f : 0.0f});
+  solver.Solve(situation, *person, &solved);
+  return solved;
+}
+
 void Add(const dataset::Dataset& dataset, const dataset::Sequence& sequence,
-         const cleanup::CleanUp& clean_up, Effect* effect) {
+         const motion::Poses& cleaned, Effect* effect) {
   const motion::Poses& leader = sequence.pair.leader.poses;
   const motion::Poses& captured = sequence.pair.follower.poses;
-  const bool touches = dataset.touches[static_cast<std::size_t>(sequence.interaction_class)];
-  const cleanup::Touch touch(static_cast<std::size_t>(leader.frame_count()), touches ? 1.0f : 0.0f);
-  motion::Poses cleaned = captured;
-  clean_up.Apply(leader, touch, cleanup::Meetings(touch.size()), {dataset.frame_rate_hz, 0},
-                 &cleaned);
   for (int t = 0; t < captured.frame_count(); ++t) {
     float farthest = 0;
     for (int j = 0; j < captured.joint_count(); ++j) {
@@ -269,23 +248,23 @@ Table LeaderTable(const dataset::Dataset& dataset) {
   return table;
 }
 
-Table CleanUpTable(const dataset::Dataset& dataset) {
-  Table table{
-      "What clean-up does to captured followers",
-      {"frames moved %", "way cm", "way cm 99 %", "slide cm a frame", "depth cm"},
-      {},
-      {"Each stage alone, then all. Frames moved: some joint moves more than a centimetre. Way: of "
-       "a joint in a frame, mean and 99th percentile. Depth: the deepest overlap with the "
-       "leader."}};
+Table SolverTable(const dataset::Dataset& dataset) {
+  Table table{"What the solver does to captured followers",
+              {"frames moved %", "way cm", "way cm 99 %", "slide cm a frame", "depth cm"},
+              {},
+              {"Frames moved: some joint moves more than a centimetre. Way: of a joint in a frame, "
+               "mean and "
+               "99th percentile. Depth: the deepest overlap with the leader."}};
   if (dataset.sequences.empty()) return table;
   const double sequences = static_cast<double>(dataset.sequences.size());
-  for (const auto& [name, options] : Variants()) {
-    const cleanup::CleanUp clean_up(dataset.skeleton, options);
+  const solver::FollowerSolver solver(dataset.skeleton, dataset.frame_rate_hz);
+  for (const bool solves : {false, true}) {
     Effect effect;
     for (const dataset::Sequence& sequence : dataset.sequences) {
-      Add(dataset, sequence, clean_up, &effect);
+      Add(dataset, sequence,
+          solves ? Solved(dataset, sequence, solver) : sequence.pair.follower.poses, &effect);
     }
-    table.rows.push_back({name,
+    table.rows.push_back({solves ? "solved" : "captured",
                           {100.0 * effect.moved_frames / effect.frames,
                            kCentimetres * base::Mean(effect.ways), 100.0f * High(effect.ways),
                            effect.slide / sequences, kCentimetres * effect.depth / sequences}});

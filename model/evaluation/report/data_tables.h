@@ -25,13 +25,12 @@ Table NoiseTable(const dataset::Dataset& dataset);
 // row for each class and one for all. In a symmetric class either may lead.
 Table LeaderTable(const dataset::Dataset& dataset);
 
-// The effect of clean-up (model/cleanup) on captured followers, which need none: rows for them as
-// captured, for each single stage, and for all stages. Columns: the share of frames in which a
-// joint moves by more than a centimetre (percent), the movement of joints (mean and 99th
-// percentile, centimetres), foot slide (centimetres per frame) and the deepest overlap with the
-// leader (centimetres, mean over sequences). Each sequence is one window; contact is allowed in
-// classes that touch.
-Table CleanUpTable(const dataset::Dataset& dataset);
+// What the solver (model/solver) does to captured followers, which hardly need it: a row for them
+// as captured, and one for them as solved. Columns: the share of frames in which a joint moves by
+// more than a centimetre (percent), the movement of joints (mean and 99th percentile, centimetres),
+// foot slide (centimetres per frame) and the deepest overlap with the leader (centimetres, mean
+// over sequences). Each sequence is one window; contact is allowed in classes that touch.
+Table SolverTable(const dataset::Dataset& dataset);
 
 }  // namespace duet::evaluation::report
 

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "model/engine/asked_turns.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/matchers.h"
 
@@ -585,36 +584,6 @@ TEST_F(ComesInTimeTest, CountsEveryCandidate) {
   EXPECT_FALSE(queue_.ComesInTime(due(sampling, milliseconds(79)), now));
   // A model that does not sample ignores them: 40 ms and its own 10.
   EXPECT_TRUE(queue_.ComesInTime(due(model_, milliseconds(51)), now));
-}
-
-TEST_F(ComesInTimeTest, CountsSamplesThatLabelsOfTurnsAreExpectedToCost) {
-  engine::ModelDescription description = test::SamplingDescription();
-  description.turning_classes = {{description.classes[0], 240}};
-  const Model turning = std::make_shared<FakeSynthesizer>(description);
-  const auto asking = [&](float weight) {
-    WindowJob job = Job(turning, Priority::kInteractive, 45);
-    job.window.labels.resize(45 * description.classes.size());
-    for (std::size_t i = 0; i < job.window.labels.size(); i += description.classes.size()) {
-      job.window.labels[i] = weight;
-    }
-    return job;
-  };
-  queue_.Push(asking(0), now_);
-  Serve(queue_, now_, milliseconds(10));
-  const common::TimePoint now = now_ + milliseconds(10);
-  const double expected = engine::ExpectedSamples(description, asking(1).window) / 100;
-  ASSERT_GT(expected, 0.02);
-  queue_.Push(asking(1), now);
-  const auto comes = [&](double after) {
-    WindowJob job = asking(0);
-    job.deadline = now + std::chrono::duration_cast<common::TimePoint::duration>(
-                             std::chrono::duration<double>(after));
-    return queue_.ComesInTime(job, now);
-  };
-  // The window that asks for a turn, and its own 10 ms.
-  EXPECT_TRUE(comes(expected + 0.011));
-  EXPECT_FALSE(comes(expected + 0.009));
-  EXPECT_EQ(queue_.Next(now).batch.Frames(), std::lround(45 * 100 * expected));
 }
 
 TEST_F(ComesInTimeTest, IgnoresWindowsThatNeverRunOrRunLater) {

@@ -1,0 +1,267 @@
+#include "model/solver/partner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "absl/types/span.h"
+#include "model/base/angle.h"
+#include "model/body/hands.h"
+#include "model/motion/capsules.h"
+#include "model/motion/filter.h"
+#include "model/solver/geometry.h"
+#include "model/solver/smoother.h"
+
+namespace duet::solver {
+namespace {
+
+using motion::Vec3;
+
+constexpr Vec3 kUp{0, 1, 0};
+// Distances and directions are judged by their mean over this time. Seconds, deviation.
+constexpr double kLastingSeconds = 0.45;
+// The distance of the roots along the floor: nearest in an embrace, farthest within reach of a few
+// steps. Metres.
+constexpr float kNearest = 0.17f, kFarthest = 2.6f;
+// Radii of trunk, head and shoulders, and how far they may overlap, because clothes yield and
+// capsules are approximate; the least distance of the axes of trunks, and of heads. Metres.
+constexpr float kTrunk = 0.11f, kHead = 0.09f, kShoulders = 0.1f, kSoft = 0.03f;
+constexpr float kLeastTrunks = 0.2f, kLeastHeads = 0.21f;
+// What a body is moved for one overlap at most; how far it comes for a hand. Metres.
+constexpr float kMostPush = 0.3f, kMostCome = 0.3f;
+// A hand is farther than this from the leader's surface; its radius is within. Metres.
+constexpr float kHandRadius = 0.045f;
+// The reach (body::ReachTowards) at which a hand begins to be met, and at which it is.
+constexpr double kAnswers = 0.55, kMeets = 0.8;
+// How far an arm reaches without effort, and at all, in its lengths.
+constexpr float kComfortable = 0.9f, kReach = 0.995f;
+// Corrections come and go over these times. Seconds.
+constexpr double kBodySeconds = 0.25, kTurnSeconds = 0.4, kHandSeconds = 0.1;
+constexpr double kNear = 0.02, kIdle = 0.1;
+constexpr int kRounds = 2;
+
+struct Capsule {
+  Vec3 from, to;
+  float radius;
+};
+using Core = std::array<Capsule, 3>;  // trunk, head, shoulders
+
+Core CoreOf(const motion::Skeleton& skeleton, const body::Body& body, absl::Span<const Vec3> pose) {
+  const Vec3 chest = JointAt(pose, *body.chest);
+  const Vec3 hips =
+      Lerp(JointAt(pose, skeleton.hips->left), JointAt(pose, skeleton.hips->right), 0.5f);
+  const Vec3 head = body.neck ? JointAt(pose, body.neck->head) : chest;
+  return {
+      {{chest, hips, kTrunk},
+       {head, Lerp(head, chest, 0.5f), kHead},
+       {JointAt(pose, body.shoulders->left), JointAt(pose, body.shoulders->right), kShoulders}}};
+}
+
+// Where the trunk faces along the floor, of length 1.
+Vec3 FacingOf(const motion::Skeleton& skeleton, const body::Body& body,
+              absl::Span<const Vec3> pose) {
+  const auto across = [&](const motion::JointPair& pair) {
+    return Unit(Level(JointAt(pose, pair.left) - JointAt(pose, pair.right)));
+  };
+  return Unit(Cross(across(*skeleton.hips) + across(*body.shoulders), kUp));
+}
+
+// Weights of wishes: frames without one hardly count.
+std::vector<double> WeightsOf(const std::vector<Vec3>& wishes) {
+  std::vector<double> weights;
+  for (const Vec3 wish : wishes) weights.push_back(wish == Vec3{} ? kIdle : 1);
+  return weights;
+}
+
+float SmoothStep(double t) {
+  const float u = static_cast<float>(std::clamp(t, 0.0, 1.0));
+  return u * u * (3 - 2 * u);
+}
+
+}  // namespace
+
+std::vector<double> DegreesAway(const motion::Skeleton& skeleton, const body::Body& body,
+                                const motion::Poses& leader, const motion::Poses& follower,
+                                double frame_rate_hz) {
+  const int frames = follower.frame_count();
+  motion::Poses views(frames, 2);  // where the follower faces, and where its leader is
+  for (int t = 0; t < frames; ++t) {
+    views.at(t, 0) = FacingOf(skeleton, body, follower[t]);
+    views.at(t, 1) = Level(leader.at(t, skeleton.root) - follower.at(t, skeleton.root));
+  }
+  views = motion::GaussianFilter(views, kLastingSeconds * frame_rate_hz);
+  std::vector<double> degrees;
+  double last = 0;
+  for (int t = 0; t < frames; ++t) {
+    const double away = AngleAbout(kUp, views.at(t, 0), views.at(t, 1)) * base::kDegreesPerRadian;
+    last += std::remainder(away - last, 360);
+    degrees.push_back(last);
+  }
+  return degrees;
+}
+
+void Partner::FaceLeader(const motion::Poses& leader, const ContactRules& rules,
+                         double frame_rate_hz, int given, motion::Poses* follower) const {
+  std::vector<double> wishes, weights;
+  bool turned_away = false;
+  for (const double away : DegreesAway(skeleton_, body_, leader, *follower, frame_rate_hz)) {
+    const double most = double{rules[wishes.size()].away_degrees};
+    const double excess = (away - std::clamp(away, -most, most)) * base::kRadiansPerDegree;
+    turned_away = turned_away || excess != 0;
+    wishes.push_back(excess);
+    weights.push_back(excess != 0 ? 1 : kIdle);
+  }
+  if (!turned_away) return;
+  const std::vector<double> turns =
+      SmoothCorrection({frame_rate_hz, kTurnSeconds, kNear, given}, weights, wishes);
+  for (int t = given; t < follower->frame_count(); ++t) {
+    const Vec3 root = follower->at(t, skeleton_.root);
+    for (Vec3& joint : (*follower)[t]) {
+      joint = root + RotateY(joint - root, turns[static_cast<std::size_t>(t)]);
+    }
+  }
+}
+
+float Partner::Overlap(absl::Span<const Vec3> leader, absl::Span<const Vec3> follower,
+                       float allowed) const {
+  const Core a = CoreOf(skeleton_, body_, leader), b = CoreOf(skeleton_, body_, follower);
+  float deepest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      float need = (a[i].radius + b[j].radius - kSoft) * (1 - allowed);
+      if (i == 0 && j == 0) need = std::max(need, kLeastTrunks);
+      if (i == 1 && j == 1) need = std::max(need, kLeastHeads);
+      const motion::ClosestPoints closest =
+          motion::FindClosestPoints(a[i].from, a[i].to, b[j].from, b[j].to);
+      deepest = std::max(deepest, need - static_cast<float>(closest.distance));
+    }
+  }
+  return std::min(deepest, kMostPush);
+}
+
+Vec3 Partner::WayForHand(const Meeting& meeting, const motion::Poses& leader,
+                         const ContactRules& rules, int t, const motion::Poses& follower) const {
+  const std::size_t at = static_cast<std::size_t>(t);
+  const Vec3 hand = leader.at(t, meeting.leader->end);
+  const Vec3 way = Level(hand - follower.at(t, meeting.follower->upper));
+  const float reach = kComfortable * body::LengthOf(*meeting.follower, follower[t]);
+  const float lacks = Norm(way) - reach - rules[at].hands_metres;
+  return Unit(way) * (meeting.weights[at] * std::clamp(lacks, 0.0f, kMostCome));
+}
+
+void Partner::PlaceBody(const motion::Poses& leader, const ContactRules& rules,
+                        double frame_rate_hz, int given, motion::Poses* follower) const {
+  FaceLeader(leader, rules, frame_rate_hz, given, follower);
+  const int frames = follower->frame_count();
+  const std::optional<Meeting> meeting = FindMeeting(leader, rules, frame_rate_hz, *follower);
+  for (int round = 0; round < kRounds; ++round) {
+    motion::Poses offsets(frames, 1);
+    for (int t = 0; t < frames; ++t) {
+      offsets.at(t, 0) = Level(follower->at(t, skeleton_.root) - leader.at(t, skeleton_.root));
+    }
+    const motion::Poses lasting = motion::GaussianFilter(offsets, kLastingSeconds * frame_rate_hz);
+    std::vector<Vec3> wishes;
+    for (int t = 0; t < frames; ++t) {
+      const Vec3 offset = lasting.at(t, 0);
+      const float distance = Norm(offset);
+      Vec3 wish = Unit(offset) * (std::clamp(distance, kNearest, kFarthest) - distance);
+      if (meeting && round == 0) wish += WayForHand(*meeting, leader, rules, t, *follower);
+      const float deep =
+          Overlap(leader[t], (*follower)[t], rules[static_cast<std::size_t>(t)].overlap);
+      const Vec3 out = Unit(offsets.at(t, 0));
+      if (deep > 0) wish += (out == Vec3{} ? Vec3{0, 0, 1} : out) * deep;
+      wishes.push_back(wish);
+    }
+    const std::vector<Vec3> shifts =
+        SmoothShift({frame_rate_hz, kBodySeconds, kNear, given}, WeightsOf(wishes), wishes);
+    for (int t = given; t < frames; ++t) {
+      for (Vec3& joint : (*follower)[t]) joint += shifts[static_cast<std::size_t>(t)];
+    }
+  }
+}
+
+std::optional<Partner::Meeting> Partner::FindMeeting(const motion::Poses& leader,
+                                                     const ContactRules& rules,
+                                                     double frame_rate_hz,
+                                                     const motion::Poses& follower) const {
+  const int frames = follower.frame_count();
+  Meeting best;
+  float most = 0;
+  for (const body::Limb& arm : body_.arms) {
+    motion::Poses weights(frames, 1);
+    float sum = 0;
+    for (int t = 0; t < frames; ++t) {
+      const double reach =
+          body::ReachTowards(arm, skeleton_.root, leader[t], follower.at(t, skeleton_.root));
+      weights.at(t, 0).x = rules[static_cast<std::size_t>(t)].hands *
+                           SmoothStep((reach - kAnswers) / (kMeets - kAnswers));
+      sum += weights.at(t, 0).x;
+    }
+    if (sum <= most) continue;
+    most = sum;
+    best = {&arm, nullptr, {}};
+    weights = motion::GaussianFilter(weights, kHandSeconds * frame_rate_hz);
+    for (const Vec3 weight : weights.all()) {
+      best.weights.push_back(std::max(0.0f, weight.x));
+    }
+  }
+  if (best.leader == nullptr) return std::nullopt;
+  float nearest = HUGE_VALF;
+  for (const body::Limb& arm : body_.arms) {
+    float sum = 0;
+    for (int t = 0; t < frames; ++t) {
+      sum += best.weights[static_cast<std::size_t>(t)] *
+             Distance(leader.at(t, best.leader->end), follower.at(t, arm.end));
+    }
+    if (sum >= nearest) continue;
+    nearest = sum;
+    best.follower = &arm;
+  }
+  return best;
+}
+
+Vec3 Partner::WayToMeet(const Meeting& meeting, const motion::Poses& leader, float metres, int t,
+                        const motion::Poses& follower) const {
+  const Vec3 way = leader.at(t, meeting.leader->end) - follower.at(t, meeting.follower->end);
+  return Unit(way) * std::max(0.0f, Norm(way) - metres);
+}
+
+void Partner::PlaceHands(const motion::Poses& leader, const ContactRules& rules,
+                         double frame_rate_hz, int given, motion::Poses* follower) const {
+  const std::optional<Meeting> meeting = FindMeeting(leader, rules, frame_rate_hz, *follower);
+  for (const body::Limb& arm : body_.arms) {
+    const bool meets = meeting && meeting->follower == &arm;
+    std::vector<Vec3> wishes;
+    bool moves = false;
+    for (int t = 0; t < follower->frame_count(); ++t) {
+      const std::size_t at = static_cast<std::size_t>(t);
+      Vec3 wish;
+      const Vec3 hand = follower->at(t, arm.end);
+      for (const Capsule& part : CoreOf(skeleton_, body_, leader[t])) {
+        const motion::ClosestPoints closest = motion::FindClosestPoints(
+            part.from, part.to, hand, Lerp(hand, follower->at(t, arm.middle), 0.5f));
+        const float depth =
+            part.radius + kHandRadius - kSoft - static_cast<float>(closest.distance);
+        if (depth > 0)
+          wish += Unit(closest.on_b - closest.on_a) * (depth * (1 - rules[at].overlap));
+      }
+      if (meets) {
+        wish += WayToMeet(*meeting, leader, rules[at].hands_metres, t, *follower) *
+                meeting->weights[at];
+      }
+      moves = moves || wish != Vec3{};
+      wishes.push_back(wish);
+    }
+    if (!moves) continue;
+    const std::vector<Vec3> ways =
+        SmoothShift({frame_rate_hz, kHandSeconds, kNear, given}, WeightsOf(wishes), wishes);
+    for (int t = given; t < follower->frame_count(); ++t) {
+      const absl::Span<Vec3> pose = (*follower)[t];
+      const Vec3 bend =
+          body::BendOf(arm, pose) - FacingOf(skeleton_, body_, pose) * 0.02f - kUp * 0.02f;
+      body::ReachBent(arm, JointAt(pose, arm.end) + ways[static_cast<std::size_t>(t)], bend, pose);
+    }
+  }
+}
+
+}  // namespace duet::solver
