@@ -44,7 +44,7 @@ lint: ## Run clang-tidy on files that differ from main (LINT=all: on all files)
 	@JOBS=$(JOBS) scripts/lint.sh $(LINT)
 
 .PHONY: check
-check: ## Run every check, including slow ones (CHECK="links tidy" runs only these)
+check: ## Run every check, including slow ones (CHECK="docs tidy" runs only these)
 	@scripts/install_packages.sh $(BUILD_LISTS) test develop
 	@JOBS=$(JOBS) scripts/check.py $(CHECK)
 

@@ -1,8 +1,7 @@
 # Precompiled headers: most of the time that a file takes to compile goes into headers of libraries
 # (LibTorch's take ten seconds). Every file pays for reading its whole set, so a set has only what most
 # files include; JSON would more than double the time of a file that does not use it. Only the presets
-# release and tsan use them. The other builds and scripts/check_headers.py show that every file includes what it
-# uses.
+# release and tsan use them. The other builds show that every file includes what it uses.
 option(DUET_PRECOMPILE "Precompile the headers of libraries that most files include" OFF)
 
 # Makes duet_precompiled_<NAME>: HEADERS, compiled as a target with the same OPTIONS and LINKS sees them.

@@ -1,8 +1,7 @@
-# After configuration, writes <build>/targets.json: each target of the project with its sources, its links
-# and the programs of the project that it runs. The scripts in scripts/ read it and keep no lists of
-# their own.
+# After configuration, writes <build>/targets.json: each target of the project with its sources and its links.
+# The scripts in scripts/ read it and keep no lists of their own.
 #   [{"name": "duet_motion", "type": "STATIC_LIBRARY", "sources": ["model/motion/resample.cc", ...],
-#     "public": ["absl::status", ...], "private": [], "runs": []}, ...]
+#     "public": ["absl::status", ...], "private": []}, ...]
 # Sources are relative to the top folder; duet:: aliases are resolved.
 
 # Sets OUT to every target made in FOLDER and below.
@@ -56,21 +55,6 @@ function(duet_links_of target property out)
   set(${out} ${links} PARENT_SCOPE)
 endfunction()
 
-# Sets OUT to the programs of the project that TARGET depends on and runs.
-function(duet_runs_of target out)
-  get_target_property(items ${target} MANUALLY_ADDED_DEPENDENCIES)
-  set(runs "")
-  foreach(item IN LISTS items)
-    if(TARGET ${item})
-      get_target_property(type ${item} TYPE)
-      if(type STREQUAL EXECUTABLE)
-        list(APPEND runs ${item})
-      endif()
-    endif()
-  endforeach()
-  set(${out} ${runs} PARENT_SCOPE)
-endfunction()
-
 function(duet_write_target_table)
   duet_targets_below(${PROJECT_SOURCE_DIR} targets)
   set(rows "")
@@ -80,11 +64,10 @@ function(duet_write_target_table)
     duet_links_of(${target} INTERFACE_LINK_LIBRARIES public)
     duet_links_of(${target} LINK_LIBRARIES private)
     list(REMOVE_ITEM private ${public})
-    duet_runs_of(${target} runs)
-    foreach(list sources public private runs)
+    foreach(list sources public private)
       duet_json_array(${list} ${${list}})
     endforeach()
-    list(APPEND rows "{\"name\": \"${target}\", \"type\": \"${type}\", \"sources\": ${sources}, \"public\": ${public}, \"private\": ${private}, \"runs\": ${runs}}")
+    list(APPEND rows "{\"name\": \"${target}\", \"type\": \"${type}\", \"sources\": ${sources}, \"public\": ${public}, \"private\": ${private}}")
   endforeach()
   list(JOIN rows ",\n " rows)
   file(WRITE ${PROJECT_BINARY_DIR}/targets.json "[${rows}]\n")

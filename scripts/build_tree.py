@@ -24,22 +24,17 @@ class Target:
     sources: tuple  # relative to the top folder
     public: tuple  # links that its users inherit
     private: tuple
-    runs: tuple = ()  # programs of the project that it starts
 
     @property
     def links(self):
         return self.public + self.private
-
-    @property
-    def is_library(self):
-        return self.type != "EXECUTABLE"
 
 
 def read_targets(build_dir):
     """The targets of cmake/DuetTargetTable.cmake by name."""
     rows = json.loads((pathlib.Path(build_dir) / "targets.json").read_text(encoding="utf-8"))
     return {row["name"]: Target(row["name"], row["type"], tuple(row["sources"]),
-                                tuple(row["public"]), tuple(row["private"]), tuple(row["runs"]))
+                                tuple(row["public"]), tuple(row["private"]))
             for row in rows}
 
 

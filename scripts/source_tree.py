@@ -5,7 +5,6 @@ import pathlib
 import re
 
 SOURCE_FOLDERS = ("model", "server", "client", "tests", "benchmarks", "contrib")
-TORCH = ("torch/", "ATen/", "c10/", "caffe2/")  # how an include of LibTorch starts
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]')
 
 
@@ -45,6 +44,3 @@ class SourceTree:
                     found.add(include)
                     waiting.append(include)
         return frozenset(found)
-
-    def reaches_torch(self, path):
-        return any(include.startswith(TORCH) for include in self.reach(path))
