@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs the scripts' own tests (scripts/*_test.py).
+# Runs the tests of the scripts (tests/scripts).
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")"
-exec python3 -B -m unittest discover --quiet --pattern '*_test.py'
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+PYTHONPATH=scripts exec python3 -B -m unittest discover --quiet --start-directory tests/scripts --pattern '*_test.py'

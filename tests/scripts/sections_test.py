@@ -3,7 +3,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from report import example
+import report_example as example
 from report.sections import SectionError, read_sections
 
 

@@ -9,7 +9,7 @@ import unittest
 
 import check_layers
 
-CHECKER = pathlib.Path(__file__).with_name("check_layers.py")
+CHECKER = pathlib.Path(__file__).resolve().parents[2] / "scripts/check_layers.py"
 
 
 class CheckLayersTest(unittest.TestCase):

@@ -8,7 +8,8 @@ from unittest import mock
 
 import make_report
 import training_results
-from report import example, plots
+import report_example as example
+from report import plots
 
 
 class MakeReportTest(unittest.TestCase):

@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import unittest
 
-SCRIPTS = pathlib.Path(__file__).resolve().parent
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
 PACKAGES = SCRIPTS.parent / "packages"
 
 

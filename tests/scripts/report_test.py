@@ -2,7 +2,8 @@ import copy
 import unittest
 from pathlib import Path
 
-from report import example, tables
+import report_example as example
+from report import tables
 from report.markdown import escape, to_markdown
 from report.page import to_page
 

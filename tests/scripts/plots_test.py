@@ -4,7 +4,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from report import example, latent, lines, palette, plots, poses
+import report_example as example
+from report import latent, lines, palette, plots, poses
 
 HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None
 HAS_SKLEARN = importlib.util.find_spec("sklearn") is not None

@@ -6,7 +6,7 @@ import subprocess
 import tempfile
 import unittest
 
-SCRIPT = pathlib.Path(__file__).resolve().parent / "check_hardening.sh"
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/check_hardening.sh"
 SOURCE = """
 #include <cstdio>
 #include <cstring>
