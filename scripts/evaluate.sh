@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Reproduces docs/results: trains the models that are missing, measures them and makes the report.
+# Repeats the evaluation of the method: trains the models that are missing, measures them and makes the report.
 # Continues after an interruption. Takes hours on two cores.
 #   scripts/evaluate.sh BIN DATA RUNS RESULTS REPORT
 #     BIN: build/release/bin   DATA: the SBU folder   RUNS, RESULTS, REPORT: folders to write
@@ -63,7 +63,6 @@ train() {
   done
   for config in default "${ablations[@]}"; do ablate "${config}" "${folds[@]}"; done
   "${bin}/duet-train" --data "${data}" --out "${runs}/half" --protocol half --seeds 1,2,3,4,5
-  scripts/measure_augmentations.sh "${bin}" "${data}" "${runs}/augmentations"
   for half in {1..5}; do
     make_set "${half}"
   done
@@ -95,7 +94,7 @@ sampled() {
 }
 
 measure() {
-  local config half named=("full=${runs}/ablation/default") compared=() sets=()
+  local config half named=("full=${runs}/ablation/default") sets=()
   "${bin}/duet-eval" data --data "${data}" --out "${results}"
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 10_methods \
     --title "Methods: leave one subject out" --baselines "${methods}" --printed afd,fid \
@@ -110,11 +109,6 @@ measure() {
     --title "Ablation (Tables 4 and 5)" --starts none,pose --baselines class_mean \
     ${FOLDS:+--subjects "${FOLDS// /,}"} "${named[@]/#/--runs=}" \
     --metrics "afd,afd_squared,root_aligned_afd,${quality},accuracy,fid"
-  for config in "${runs}"/augmentations/*; do
-    compared+=("$(basename "${config}")=${config}")
-  done
-  scripts/training_results.py validation --runs "${compared[@]}" --out "${results}" \
-    --id 22_augmentations --title "Augmentations one by one, on validation subjects"
   "${bin}/duet-eval" sweep --data "${data}" --runs "ours=${runs}/default" --out "${results}"
   for half in {1..5}; do sets+=(--synthetic "${runs}/set-${half}"); done
   "${bin}/duet-eval" augmentation --data "${data}" --runs "${runs}/half" \

@@ -3,33 +3,26 @@
 
     scripts/make_report.py --results RESULTS --out REPORT
 
-REPORT receives report.md, index.html (one page that needs no other file) and every figure as SVG
-and PNG; animations are GIFs. Figures need python3-matplotlib and python3-sklearn: without them the
+REPORT receives report.md and every figure as SVG and PNG; animations are GIFs. Figures need python3-matplotlib and python3-sklearn: without them the
 report has its tables and no figures.
 """
 
 import argparse
-import shutil
 import sys
 from pathlib import Path
 
 from report import plots
 from report.markdown import to_markdown
-from report.page import to_page
 from report.sections import SectionError, read_sections
 
 
-def draw_figures(sections, results, out):
+def draw_figures(sections, out):
     """Writes every figure to `out`. Returns a map from a figure's name to the files that show it."""
     pictures = {}
     for figure in (figure for section in sections for figure in section["figures"]):
         name = figure["name"]
-        if "plot" in figure:
-            pictures[name], remark = plots.draw_plot(figure["plot"], out, name)
-            figure["caption"] = f"{figure['caption']} {remark}".strip()
-        else:  # drawn when the section was written
-            shutil.copyfile(results / f"{name}.svg", out / f"{name}.svg")
-            pictures[name] = [f"{name}.svg"]
+        pictures[name], remark = plots.draw_plot(figure["plot"], out, name)
+        figure["caption"] = f"{figure['caption']} {remark}".strip()
     return pictures
 
 
@@ -39,12 +32,11 @@ def write_report(title, results, out):
     pictures = {}
     try:
         plots.use_matplotlib()
-        pictures = draw_figures(sections, results, out)
+        pictures = draw_figures(sections, out)
     except ImportError as error:
         print(f"make_report.py: {error} (Debian: python3-matplotlib, python3-sklearn): "
               "the report has no figures", file=sys.stderr)
     (out / "report.md").write_text(to_markdown(title, sections, pictures), encoding="utf-8")
-    (out / "index.html").write_text(to_page(title, sections, pictures, out), encoding="utf-8")
     return len(sections)
 
 
@@ -60,7 +52,7 @@ def main(arguments=None):
     except (SectionError, OSError) as error:
         print(f"make_report.py: {error}", file=sys.stderr)
         return 1
-    print(f"{count} sections: {args.out / 'index.html'} and report.md")
+    print(f"{count} sections: {args.out / 'report.md'}")
     return 0
 
 

@@ -13,7 +13,7 @@ SECTION = {"format_version": int, "id": str, "title": str, "text": list, "tables
            "figures": list, "settings": list, "command": str, "date": str}
 TABLE = {"title": str, "columns": list, "rows": list, "notes": list, "decimals": int, "best": str}
 ROW = {"name": str, "printed": bool, "values": list}
-FIGURE = {"name": str, "caption": str}
+FIGURE = {"name": str, "caption": str, "plot": dict}
 SETTING = {"name": str, "value": str}
 
 
@@ -65,7 +65,7 @@ def check_section(section):
         _check_fields(setting, SETTING, f"settings[{index}]")
 
 
-def _check_fields(value, fields, path, optional=()):
+def _check_fields(value, fields, path):
     if not isinstance(value, dict):
         raise ValueError(f"{path or 'the file'}: expected an object, got {value!r:.40}")
     prefix = path + "." if path else ""
@@ -75,7 +75,7 @@ def _check_fields(value, fields, path, optional=()):
         if not isinstance(value[key], kind) or (kind is int and isinstance(value[key], bool)):
             raise ValueError(f"{prefix}{key}: expected {kind.__name__}, got {value[key]!r:.40}")
     for key in value:
-        if key not in fields and key not in optional:
+        if key not in fields:
             raise ValueError(f"{prefix}{key}: unknown field")
 
 
@@ -112,10 +112,8 @@ def _check_table(table, path):
 
 
 def _check_figure(figure, path):
-    # Without "plot", <name>.svg beside the section is the figure: earlier versions wrote these.
-    _check_fields(figure, FIGURE, path, optional=("plot",))
+    _check_fields(figure, FIGURE, path)
     _check_name(figure["name"], f"{path}.name")
-    if "plot" in figure:
-        plot = figure["plot"]
-        if not isinstance(plot, dict) or plot.get("kind") not in PLOT_KINDS:
-            raise ValueError(f"{path}.plot.kind: expected one of {', '.join(PLOT_KINDS)}")
+    plot = figure["plot"]
+    if plot.get("kind") not in PLOT_KINDS:
+        raise ValueError(f"{path}.plot.kind: expected one of {', '.join(PLOT_KINDS)}")

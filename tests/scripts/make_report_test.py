@@ -32,17 +32,6 @@ class MakeReportTest(unittest.TestCase):
     def make(self):
         return self.run_program(make_report, "--results", self.results, "--out", self.out)
 
-    def test_a_figure_drawn_by_an_earlier_version_is_kept(self):
-        section = example.section()
-        del section["figures"][0]["plot"]
-        self.write(section)
-        (self.results / "10_folds_curve.svg").write_text("<svg></svg>", encoding="utf-8")
-        with mock.patch.object(plots, "use_matplotlib"):
-            self.assertEqual(self.make(), (0, ""))
-        self.assertEqual((self.out / "10_folds_curve.svg").read_text(), "<svg></svg>")
-        self.assertIn("(10_folds_curve.svg)", (self.out / "report.md").read_text())
-        self.assertIn("data:image/svg+xml;base64,", (self.out / "index.html").read_text())
-
     def test_without_matplotlib_the_report_has_its_tables(self):
         self.write(example.section())
         with mock.patch.object(plots, "use_matplotlib", side_effect=ImportError("no matplotlib")):

@@ -1,11 +1,9 @@
 import copy
 import unittest
-from pathlib import Path
 
 import report_example as example
 from report import tables
 from report.markdown import escape, to_markdown
-from report.page import to_page
 
 
 def two_sections():
@@ -53,39 +51,6 @@ class MarkdownTest(unittest.TestCase):
 
     def test_markup_is_escaped(self):
         self.assertEqual(escape("a|b *c* _d_ shake_hands\n"), "a\\|b \\*c\\* \\_d\\_ shake_hands ")
-
-
-class PageTest(unittest.TestCase):
-    def page(self, change=lambda sections: None):
-        sections, _ = two_sections()
-        change(sections)
-        return to_page("Figures & tables", sections, {}, Path())
-
-    def test_text_is_escaped_and_numbers_run_through_all_sections(self):
-        page = self.page()
-        self.assertIn("<title>Figures &amp; tables</title>", page)
-        self.assertIn("<section id=\"20_more\">\n<h2>More</h2>\n<p>First &lt;paragraph&gt;.</p>",
-                      page)
-        self.assertIn("<p class=\"date\">2024-03-01</p>", page)
-        self.assertLess(page.index("<section id=\"20_more\">"), page.index("<b>Table 2.</b>"))
-        self.assertIn("<b>Figure 2.</b> A curve of &quot;errors&quot;.", page)
-
-    def test_best_and_printed_rows_are_set_apart(self):
-        page = self.page()
-        self.assertIn("<tr><th scope=\"row\">ours</th><td class=\"best\"><b>0.504</b></td>", page)
-        self.assertIn("<tbody class=\"printed\">", page)
-        self.assertIn("<td>&ndash;</td>", page)
-
-        def only_measured(sections):
-            for section in sections:
-                section["tables"][0]["rows"].pop(1)
-        self.assertNotIn("<tbody class=\"printed\">", self.page(only_measured))
-
-    def test_the_page_needs_no_other_file(self):
-        page = self.page()
-        self.assertIn("prefers-color-scheme: dark", page)
-        for reference in ("<link", "url(", "@import", "src=\"http"):
-            self.assertNotIn(reference, page)
 
 
 if __name__ == "__main__":
