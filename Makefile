@@ -57,21 +57,10 @@ bench: ## Time the engine and its kernels beside the committed figures, and the 
 	@benchmarks/bench.py $(BUILD)
 	@JOBS=$(JOBS) benchmarks/measure_hardening.py $(BUILD)
 
-.PHONY: docs
-docs: ## Build the API reference from headers and proto files: build/docs/html/index.html
-	@scripts/install_packages.sh develop
-	@mkdir -p build/docs
-	doxygen docs/Doxyfile
-
 .PHONY: python
 python: ## Build the Python package, wheel and sdist in build/python
 	@scripts/install_packages.sh test
 	@scripts/build_python.sh
-
-.PHONY: site
-site: ## Build the site of all documents with the API references: build/site/index.html
-	@scripts/install_packages.sh test develop
-	@scripts/build_site.sh
 
 .PHONY: clean
 clean: ## Remove build/ and out/

@@ -36,7 +36,7 @@ class NotebookTest(unittest.TestCase):
             notebook = root / EXAMPLES / NAME
             shutil.copy(tools.SOURCE / EXAMPLES / NAME, notebook)
             ran = tools.run(
-                sys.executable, "-B", tools.SOURCE / "scripts" / "run_notebook.py", notebook,
+                sys.executable, "-B", tools.SOURCE / "tests/e2e/run_notebook.py", notebook,
                 "--write", timeout=600, env={
                     **os.environ, "DUET_SERVER": server.address, "MPLCONFIGDIR": folder,
                     "DUET_PROGRAM": str(tools.PROGRAMS / "duet"),

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs a notebook's cells from top to bottom in one process without Jupyter; names the cell that fails.
 
-    scripts/run_notebook.py NOTEBOOK.ipynb            runs it
-    scripts/run_notebook.py NOTEBOOK.ipynb --write    also stores its output and pictures in the notebook
+    tests/e2e/run_notebook.py NOTEBOOK.ipynb            runs it
+    tests/e2e/run_notebook.py NOTEBOOK.ipynb --write    also stores its output and pictures in the notebook
 
 A cell's outputs are its printed text, its last expression (unless it ends with a semicolon) and its matplotlib
 figures, as in Jupyter.
