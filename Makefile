@@ -49,13 +49,12 @@ check: ## Run every check, including slow ones (CHECK="docs tidy" runs only thes
 	@JOBS=$(JOBS) scripts/check.py $(CHECK)
 
 .PHONY: bench
-bench: ## Time the engine and its kernels beside the committed figures, and the cost of hardening
+bench: ## Time the engine and its kernels beside the committed figures
 	@scripts/install_packages.sh $(BUILD_LISTS) test
-	@scripts/configure.sh release -DDUET_BUILD_BENCHMARKS=ON -DDUET_CONTRIB_LOAD=ON >/dev/null
+	@scripts/configure.sh release -DDUET_BUILD_BENCHMARKS=ON >/dev/null
 	@JOBS=$(JOBS) scripts/build.sh $(BUILD) roofline_benchmark kernel_benchmark solver_benchmark \
-	  synthesis_benchmark duet-server duet-load
+	  synthesis_benchmark
 	@benchmarks/bench.py $(BUILD)
-	@JOBS=$(JOBS) benchmarks/measure_hardening.py $(BUILD)
 
 .PHONY: python
 python: ## Build the Python package, wheel and sdist in build/python

@@ -1,6 +1,6 @@
 # Protections that stay on in release builds: an out-of-range index or an erased end() aborts the process
-# instead of corrupting it, and an orchestrator restarts it. benchmarks/measure_hardening.py measures
-# their cost, and scripts/check_hardening.sh checks that the programs have them (docs/security.md).
+# instead of corrupting it, and an orchestrator restarts it.
+# scripts/check_hardening.sh checks that the programs have them (docs/security.md).
 #
 # These options are global, so that no target and no generated file is left out.
 option(DUET_HARDENING "Keep the library's assertions and the compiler's and linker's protections" ON)

@@ -1,5 +1,5 @@
 """Clients that keep to the protocol and mean no good, against the real server: it stays small, and
-answers others. benchmarks/measure_hostile.py measures the same."""
+answers others."""
 
 import pathlib
 import re

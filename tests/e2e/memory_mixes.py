@@ -1,5 +1,5 @@
 """Mixes of legal calls that use as much of a server's memory as they can, and control groups to hold
-the server to a limit. tests/e2e/memory_limit_test.py and benchmarks/measure_memory.py use both."""
+the server to a limit. tests/e2e/memory_limit_test.py uses both."""
 
 import array
 import contextlib

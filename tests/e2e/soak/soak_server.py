@@ -1,4 +1,4 @@
-"""The server of benchmarks/soak.py: with TLS, an access file and a repository of its own."""
+"""The server of soak.py: with TLS, an access file and a repository of its own."""
 
 import hashlib
 import json
@@ -12,9 +12,9 @@ import urllib.request
 
 import grpc
 
-import hostile_tools
+import soak_requests
 
-CHECKPOINT = hostile_tools.SOURCE / "model/embedded/sbu/1"
+CHECKPOINT = soak_requests.SOURCE / "model/embedded/sbu/1"
 
 
 def run(*command, **options):
@@ -74,7 +74,6 @@ class Server:
         self.tokens = {name: secrets.token_hex(32) for name in ("farm", "load", "ops")}
         self.write_access()
         (folder / "ops.token").write_text(self.tokens["ops"])
-        (folder / "load.token").write_text(self.tokens["load"])
         for version in (1, 2):
             write_checkpoint(self.models / "sbu" / str(version), version)
         self.log_path = folder / "log"

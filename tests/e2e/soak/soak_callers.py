@@ -1,4 +1,4 @@
-"""The callers of benchmarks/soak.py."""
+"""The callers of soak.py."""
 
 import collections
 import contextlib
@@ -10,7 +10,7 @@ import traceback
 
 import grpc
 
-import hostile_tools
+import soak_requests
 
 LONG_DEADLINE = 600.0  # seconds; a call that waits this long was lost, however busy the machine is
 
@@ -94,7 +94,7 @@ class Callers:
     def _make_requests(self):
         def request(frames=46, change=None):
             message = self.protos[1].SynthesizeRequest.FromString(
-                hostile_tools.sample_request(self.protos, frames))
+                soak_requests.sample_request(self.protos, frames))
             if change:
                 change(message)
             return message.SerializeToString()
@@ -111,7 +111,7 @@ class Callers:
             "labelled": request(46, select(name="sbu", version_label="stable")),
             "version": request(46, select(name="sbu", version=2)),
             "model": request(46, select(name="nobody")),
-            "large": hostile_tools.sample_request(self.protos, 36000, rate=240.0),
+            "large": soak_requests.sample_request(self.protos, 36000, rate=240.0),
             "class": request(46, lambda message: setattr(
                 message.label_vector.weights[0], "interaction_class", "levitate")),
             "nan": request(46, spoil),
@@ -156,11 +156,11 @@ class Callers:
             request = chance.randbytes(chance.randrange(1, 2000))
             request = b"\x0a\xff\xff" + request  # a field longer than the message
         if kind == "list of models":
-            return self._end_of(kind, channel.unary_stream(hostile_tools.LIST_MODELS)(
+            return self._end_of(kind, channel.unary_stream(soak_requests.LIST_MODELS)(
                 b"", timeout=LONG_DEADLINE, metadata=self._metadata()), whole=False)
         if kind in ("new connection", "connection closed in the middle"):
             with self.server.channel() as own:
-                stream = own.unary_stream(hostile_tools.SYNTHESIZE)(
+                stream = own.unary_stream(soak_requests.SYNTHESIZE)(
                     request if kind == "new connection" else self._requests["long"],
                     timeout=LONG_DEADLINE, metadata=self._metadata())
                 if kind == "new connection":
@@ -173,7 +173,7 @@ class Callers:
         timeout = {"deadline of 5 ms": 0.005, "deadline of 50 ms": 0.05}.get(kind, LONG_DEADLINE)
         if kind == "cancelled in the middle":
             request = self._requests["long"]
-        stream = channel.unary_stream(hostile_tools.SYNTHESIZE)(request, timeout=timeout,
+        stream = channel.unary_stream(soak_requests.SYNTHESIZE)(request, timeout=timeout,
                                                           metadata=metadata)
         if kind == "cancelled at once":
             stream.cancel()

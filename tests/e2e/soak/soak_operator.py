@@ -1,4 +1,4 @@
-"""The operator of benchmarks/soak.py."""
+"""The operator of soak.py."""
 
 import collections
 import random
