@@ -2,8 +2,7 @@
 """Checks that relative links, and paths in `backquotes` that begin with a folder of the repository, exist.
 
 A path may contain wildcards (`without_*`), name a header and its source (`clip.{h,cc}`), or omit its
-extension (`model/motion/clip`). CHANGELOG.md and docs/decisions describe the past, so only their links are
-checked. Files that a build or a run makes (build/, out/, results/) are not checked.
+extension (`model/motion/clip`). CHANGELOG.md describes the past, so only its links are checked. Files that a build or a run makes (build/, out/, results/) are not checked.
 
     scripts/check_docs.py [source folder]
 """
@@ -14,7 +13,7 @@ import sys
 
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)\s]*)?\)")
 PATH = re.compile(r"`([\w.*{},/-]+/[\w.*{},/-]*)`")
-OF_THE_PAST = ("CHANGELOG.md", "docs/decisions/")
+OF_THE_PAST = ("CHANGELOG.md",)
 MADE = ("build", "out", "results")  # top folders
 
 

@@ -31,7 +31,7 @@ class CheckDocsTest(test_project.ProjectTestCase):
                          [(1, "names model/motion/clip.cc, which does not exist")])
 
     def test_the_past_may_name_what_is_gone_but_not_link_to_it(self):
-        self.assertEqual(self.problems("docs/decisions/0001.md", "`model/gone.h` [g](gone.md)\n"),
+        self.assertEqual(self.problems("CHANGELOG.md", "`model/gone.h` [g](gone.md)\n"),
                          [(1, "links to gone.md, which does not exist")])
 
     def test_what_is_made_is_no_document(self):
