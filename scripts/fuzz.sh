@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
 # Builds the fuzzers (Clang 14, libFuzzer, AddressSanitizer, UndefinedBehaviorSanitizer) and runs them. Fails on
 # a finding; docs/fuzzing.md describes the next steps.
-#   scripts/fuzz.sh [--seconds N] [--jobs N] [--report] [TARGET...]
+#   scripts/fuzz.sh [--seconds N] [--jobs N] [TARGET...]
 #       --seconds N   CPU time for each target (60)
 #       --jobs N      targets in parallel (1)
-#       --report      writes the results to the table of docs/fuzzing.md
 #       TARGET        folders of tests/fuzz/corpus (all)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -13,8 +12,7 @@ options=() targets=()
 while [[ $# -gt 0 ]]; do
   case "$1" in
     --seconds | --jobs) options+=("$1" "${2:?$1: expected a number, got nothing}") && shift 2 ;;
-    --report) options+=(--report docs/fuzzing.md) && shift ;;
-    -*) sed -n '2,8s/^# \{0,1\}//p' scripts/fuzz.sh >&2 && exit 2 ;;
+    -*) sed -n '2,7s/^# \{0,1\}//p' scripts/fuzz.sh >&2 && exit 2 ;;
     *) targets+=("$1") && shift ;;
   esac
 done

@@ -1,13 +1,11 @@
 #!/usr/bin/env python3
 """Runs built fuzzers and reports their results; scripts/fuzz.sh calls it.
 
-    scripts/run_fuzzers.py [--seconds N] [--jobs N] [--report FILE] BUILD_FOLDER TARGET...
+    scripts/run_fuzzers.py [--seconds N] [--jobs N] BUILD_FOLDER TARGET...
 
 Each target gets N seconds of CPU time, even on a busy machine. Findings are written to
 BUILD_FOLDER/findings/TARGET/, and inputs that reach new code to BUILD_FOLDER/corpus/TARGET/ for the next run. An
-input that takes more than a second of CPU time is a finding too. With --report, the table between the two marks
-in FILE gets a row for each target. A row of the same revision adds up the runs, so a long run may be split; a
-row of another revision is replaced.
+input that takes more than a second of CPU time is a finding too.
 """
 
 import argparse
@@ -35,11 +33,6 @@ MEMORY_MIB = 2048
 PIECE_MIB = 64
 PIECES_MIB = {"batch_journal": 600}  # an offset for each item up to the last one
 
-HEADER = ("| target | inputs run | a second | edges covered | processor seconds | findings "
-          "| revision |",
-          "|---|--:|--:|--:|--:|--:|---|")
-BEGIN, END = "<!-- fuzzing: begin -->", "<!-- fuzzing: end -->"
-
 
 @dataclasses.dataclass
 class Outcome:
@@ -49,19 +42,6 @@ class Outcome:
     seconds: float = 0
     findings: int = 0
 
-    def row(self, revision):
-        rate = self.runs / self.seconds if self.seconds else 0
-        return (f"| `{self.target}` | {self.runs:,} | {rate:,.0f} | {self.edges:,} "
-                f"| {self.seconds:.0f} | {self.findings} | {revision} |")
-
-    def added_to(self, row, revision):
-        """This run added to a row of the table, if both are of one revision."""
-        cells = [cell.strip() for cell in row.split("|")]
-        if cells[7] != revision or revision.endswith("+"):
-            return self
-        runs, _, edges, seconds, findings = (int(cell.replace(",", "")) for cell in cells[2:7])
-        return Outcome(self.target, self.runs + runs, max(self.edges, edges),
-                       self.seconds + seconds, self.findings + findings)
 
 
 def read_output(text):
@@ -70,18 +50,6 @@ def read_output(text):
     counts = re.findall(r"^#(\d+)\s.* cov: (\d+) ", text, re.MULTILINE)
     last = int(counts[-1][0]) if counts else 0
     return int(runs[1]) if runs else last, int(counts[-1][1]) if counts else 0
-
-
-def merge_outcome(document, outcome, revision):
-    """The document with this outcome in its table, sorted by target."""
-    before, rest = document.split(BEGIN)
-    table, after = rest.split(END)
-    kept = {row.split("`")[1]: row for row in table.splitlines() if row.startswith("| `")}
-    if outcome.target in kept:
-        outcome = outcome.added_to(kept[outcome.target], revision)
-    kept[outcome.target] = outcome.row(revision)
-    lines = [BEGIN, *HEADER, *(kept[target] for target in sorted(kept)), END]
-    return before + "\n".join(lines) + after
 
 
 def processor_seconds(pid):
@@ -164,21 +132,13 @@ class Fuzzer:
         return False
 
 
-def revision():
-    """The commit of the tree, with a plus sign if the tree differs from it."""
-    describe = ["git", "describe", "--always", "--exclude=*", "--dirty=+"]
-    return subprocess.run(describe, capture_output=True, text=True, check=False).stdout.strip()
-
-
 def main():
     parser = argparse.ArgumentParser(description="Runs built fuzzers.")
     parser.add_argument("--seconds", type=float, default=60)
     parser.add_argument("--jobs", type=int, default=1, help="targets in parallel")
-    parser.add_argument("--report", type=pathlib.Path)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("targets", nargs="+")
     options = parser.parse_args()
-    built = revision()
     one_tells = threading.Lock()
 
     def fuzz(target):
@@ -188,10 +148,6 @@ def main():
             print(f"{target}: {outcome.runs} inputs, {outcome.edges} edges, "
                   f"{outcome.seconds:.0f} s of CPU time in {time.monotonic() - begin:.0f} s, "
                   f"{outcome.findings} findings", flush=True)
-            if options.report:
-                document = options.report.read_text(encoding="utf-8")
-                options.report.write_text(merge_outcome(document, outcome, built),
-                                          encoding="utf-8")
         return outcome.findings
 
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as jobs:

@@ -1,4 +1,4 @@
-"""Tests run_fuzzers.py: libFuzzer's words, the table of the report, and a run of a made-up fuzzer."""
+"""Tests run_fuzzers.py: libFuzzer's words, and a run of a made-up fuzzer."""
 
 import pathlib
 import tempfile
@@ -11,13 +11,6 @@ OUTPUT = """INFO: Seed: 1
 #4\tINITED cov: 2173 ft: 2921 corp: 2/5104b exec/s: 4 rss: 44Mb
 #23\tNEW    cov: 2208 ft: 3266 corp: 5/7490b lim: 4486 exec/s: 4 rss: 44Mb L: 761/4486 MS: 1 X-
 """
-DOCUMENT = f"""Before.
-{run_fuzzers.BEGIN}
-{run_fuzzers.END}
-After.
-"""
-
-
 class ReadOutputTest(unittest.TestCase):
     def test_the_statistics_count(self):
         self.assertEqual(
@@ -26,34 +19,6 @@ class ReadOutputTest(unittest.TestCase):
     def test_without_them_the_last_line_does(self):
         self.assertEqual(run_fuzzers.read_output(OUTPUT), (23, 2208))
         self.assertEqual(run_fuzzers.read_output("no such program"), (0, 0))
-
-
-class MergeOutcomeTest(unittest.TestCase):
-    def setUp(self):
-        self.document = DOCUMENT
-        for name in "ba":
-            self.merge(run_fuzzers.Outcome(name, 1234, 56, 7.6, 0), "abc")
-
-    def merge(self, outcome, revision):
-        self.document = run_fuzzers.merge_outcome(self.document, outcome, revision)
-
-    def test_rows_are_sorted(self):
-        self.assertIn("| `a` | 1,234 | 162 | 56 | 8 | 0 | abc |\n| `b` |", self.document)
-        self.assertTrue(self.document.startswith("Before.\n"))
-        self.assertTrue(self.document.endswith("\nAfter.\n"))
-
-    def test_another_revision_takes_a_rows_place(self):
-        self.merge(run_fuzzers.Outcome("a", 1, 2, 4, 4), "def")
-        self.assertIn("| `a` | 1 | 0 | 2 | 4 | 4 | def |\n| `b` | 1,234 |", self.document)
-
-    def test_the_same_revision_adds_up(self):
-        self.merge(run_fuzzers.Outcome("a", 66, 50, 2, 1), "abc")
-        self.assertIn("| `a` | 1,300 | 130 | 56 | 10 | 1 | abc |\n", self.document)
-
-    def test_changes_that_nobody_committed_may_be_others(self):
-        for runs in (1, 2):
-            self.merge(run_fuzzers.Outcome("a", runs, 2, 2, 0), "abc+")
-        self.assertIn("| `a` | 2 | 1 | 2 | 2 | 0 | abc+ |\n", self.document)
 
 
 class FuzzerTest(unittest.TestCase):
