@@ -2,9 +2,12 @@ import contextlib
 import importlib.util
 import io
 import json
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 HAS_NUMPY = importlib.util.find_spec("numpy") is not None
 HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None

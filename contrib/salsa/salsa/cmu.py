@@ -16,7 +16,7 @@ import numpy
 from salsa.dataset_folder import joint_name
 from salsa.takes import FOLLOW, LEAD, Take, TakesError
 
-CONVERTER = Path(__file__).resolve().parents[2] / "contrib" / "formats" / "asf" / "duet_asf.py"
+CONVERTER = Path(__file__).resolve().parents[2] / "formats" / "asf" / "duet_asf.py"
 SUBJECTS = {LEAD: "60", FOLLOW: "61"}
 FRAME_RATE_HZ = 60  # of these two subjects; the files do not state it
 UNEQUAL_SECONDS = 0.1  # two recordings of one take may differ by this much; the longer one is cut

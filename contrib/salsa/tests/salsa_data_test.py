@@ -1,4 +1,4 @@
-"""scripts/make_salsa.py makes a data set from files like those of the CMU motion capture database."""
+"""contrib/salsa/make_salsa.py makes a data set from files like those of the CMU motion capture database."""
 
 import importlib.util
 import json
@@ -13,7 +13,7 @@ import tools
 if importlib.util.find_spec("numpy") is None:
     tools.skip("no Python module numpy; install the package python3-numpy")
 
-SCRIPT = tools.SOURCE / "scripts/make_salsa.py"
+SCRIPT = tools.SOURCE / "contrib/salsa/make_salsa.py"
 UNIT = 0.0254 / 0.45  # metres
 FRAMES, RATE = 180, 60
 DISTANCE = 0.8  # of the two people, metres

@@ -2,7 +2,6 @@
 
 import numpy
 
-from report import palette
 from salsa.moves import spans
 
 MOMENTS = 8
@@ -10,7 +9,7 @@ ROWS = 12             # of a sheet; the stretches are spread evenly over all tak
 REACH_METRES = 1.0    # from the middle of the couple to the edge of a picture
 DEPTH_UP = 0.35       # the share of the depth that shows
 INCHES = 1.25
-COLOURS = {"leader": palette.LEADER["middle"], "follower": palette.FOLLOWER["middle"]}
+COLOURS = {"leader": "#0072B2", "follower": "#D55E00"}
 
 
 def _project(points, middle):

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes the salsa data set (docs/guides/dance.md) from the takes of one couple.
+"""Makes the salsa data set (README.md) from the takes of one couple.
 
-    scripts/make_salsa.py --takes takes.npz --out salsa
-    scripts/make_salsa.py --takes takes.npz --glitches glitches.tsv --out salsa --sheets sheets
-    scripts/make_salsa.py --cmu folder --duet build/release/bin/duet --out salsa
+    contrib/salsa/make_salsa.py --takes takes.npz --out salsa
+    contrib/salsa/make_salsa.py --takes takes.npz --glitches glitches.tsv --out salsa --sheets sheets
+    contrib/salsa/make_salsa.py --cmu folder --duet build/release/bin/duet --out salsa
 
 CMU is a folder with files of the CMU motion capture database: 60.asf, 60_01.amc, ... (the lead) and
 61.asf, 61_01.amc, ... (the follower). The program duet reads them. TAKES holds `lead_NN` and `follow_NN` ([frames, joints, 3], metres, y up, one world), `joints`,
