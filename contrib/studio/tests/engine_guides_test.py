@@ -1,7 +1,6 @@
-"""The pages for Unity and Unreal: their conversions are compiled as they stand there and compared
-with the tables of numbers beside them. Their live partners are compiled against stubs of the engines
-(folder engines): Unity's holds a session with a real server; Unreal's writes messages for one, and
-reads its answers."""
+"""The code for Unity and Unreal (contrib/studio/engines): its conversions are compared with the tables of
+numbers in the guides. The live partners are compiled against stubs of the engines (folder engines):
+Unity's holds a session with a real server; Unreal's writes messages for one, and reads its answers."""
 
 import asyncio
 import importlib.util
@@ -16,9 +15,10 @@ import unittest
 import gateways
 import tools
 
-ENGINES = pathlib.Path(__file__).parent / "engines"
+STUBS = pathlib.Path(__file__).parent / "engines"
+UNITY, UNREAL = (pathlib.Path(__file__).parents[1] / "engines" / name for name in ("unity", "unreal"))
 FRAMES = 40  # of a live session
-# The joints of the model in the order of the pages' live partners, and bones that lie between two of them.
+# The joints of the model in the order of the live partners, and bones that lie between two of them.
 JOINTS = ("torso neck head left_shoulder left_elbow left_hand right_shoulder right_elbow right_hand "
           "left_hip left_knee left_foot right_hip right_knee right_foot").split()
 UNREAL_LIMBS = {f"{bone}_{end}": (f"{side}_{joint}", f"{next_bone}_{end}", f"{side}_{to}")
@@ -97,14 +97,6 @@ def guide(name):
     return (tools.SOURCE / "docs" / "guides" / name).read_text(encoding="utf-8")
 
 
-def blocks(text, language):
-    return re.findall(rf"^```{language}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
-
-
-def block(text, language):
-    return blocks(text, language)[0]
-
-
 def rows(text):
     """The numbers of each row of a table that has them in two columns."""
     found = []
@@ -158,21 +150,16 @@ class EngineGuidesTest(unittest.TestCase):
         if shutil.which("mcs") is None:
             self.skipTest("no mcs; install the packages mono-mcs and mono-runtime")
         source, program = self.folder / "axes.cs", self.folder / "axes.exe"
-        source.write_text(block(guide("unity.md"), "csharp") + UNITY_STUB, encoding="utf-8")
+        source.write_text((UNITY / "DuetAxes.cs").read_text(encoding="utf-8") + UNITY_STUB, encoding="utf-8")
         tools.run("mcs", f"-out:{program}", source).check_returncode()
         self.check(guide("unity.md"), "mono", program)
 
     def compile_unity(self):
-        """The program of the live partner of the page for Unity."""
+        """The program of the live partner for Unity."""
         if shutil.which("mcs") is None:
             self.skipTest("no mcs; install the packages mono-mcs and mono-runtime")
         program = self.folder / "live.exe"
-        sources = []
-        for number, text in enumerate(blocks(guide("unity.md"), "csharp")):
-            sources.append(self.folder / f"page{number}.cs")
-            sources[-1].write_text(text, encoding="utf-8")
-        self.assertEqual(len(sources), 3)
-        made = tools.run("mcs", "-warnaserror", f"-out:{program}", *sources, *ENGINES.glob("unity_*.cs"))
+        made = tools.run("mcs", "-warnaserror", f"-out:{program}", *UNITY.glob("*.cs"), *STUBS.glob("unity_*.cs"))
         self.assertEqual(made.returncode, 0, made.stdout + made.stderr)
         return program
 
@@ -230,16 +217,13 @@ class EngineGuidesTest(unittest.TestCase):
         return bones
 
     def compile_unreal(self):
-        """The program of the live partner of the page for Unreal."""
+        """The program of the live partner for Unreal."""
         for header in UNREAL_HEADERS:
             path = self.folder / header
             path.parent.mkdir(exist_ok=True)
             path.write_text('#include "unreal_stub.h"\n', encoding="ascii")
-        texts = blocks(guide("unreal.md"), "cpp")
-        for name, text in zip(("DuetAxes.h", "DuetLive.h", "DuetPartner.h"), texts, strict=True):
-            (self.folder / name).write_text(text, encoding="utf-8")
-        made = tools.run("g++", "-std=c++17", "-Wall", "-Wextra", "-Werror", f"-I{self.folder}", f"-I{ENGINES}",
-                         ENGINES / "unreal_live.cc", "-o", self.folder / "live")
+        made = tools.run("g++", "-std=c++17", "-Wall", "-Wextra", "-Werror", f"-I{self.folder}", f"-I{UNREAL}", f"-I{STUBS}",
+                         STUBS / "unreal_live.cc", "-o", self.folder / "live")
         self.assertEqual(made.returncode, 0, made.stderr)
         return self.folder / "live"
 
@@ -296,10 +280,8 @@ class EngineGuidesTest(unittest.TestCase):
 
     def test_unreal(self):
         source, program = self.folder / "axes.cc", self.folder / "axes"
-        source.write_text(UNREAL_BEFORE + block(guide("unreal.md"), "cpp") + UNREAL_AFTER,
-                          encoding="utf-8")
-        tools.run("g++", "-std=c++17", "-Wall", "-Werror", "-o", program,
-                  source).check_returncode()
+        source.write_text(f'{UNREAL_BEFORE}#include "DuetAxes.h"\n{UNREAL_AFTER}', encoding="utf-8")
+        tools.run("g++", "-std=c++17", "-Wall", "-Werror", f"-I{UNREAL}", "-o", program, source).check_returncode()
         self.check(guide("unreal.md"), program)
 
 
