@@ -31,22 +31,11 @@ class SectionsTest(unittest.TestCase):
         self.assertEqual([s["id"] for s in read_sections(self.folder)], ["10_folds", "20_more"])
 
     def test_errors_name_the_file_and_the_field(self):
-        table = "10_folds.json: tables[0]"
         for change, message in (
                 (lambda s: s.pop("command"), "10_folds.json: command: missing"),
-                (lambda s: s.update(more=1), "more: unknown field"),
                 (lambda s: s.update(format_version=2), "format_version: expected 1, got 2"),
-                (lambda s: s.update(date="2023-02-29"), "10_folds.json: "),
-                (lambda s: s.update(id="../up"), "id: expected 1 to 64 of a-z, 0-9 and _"),
-                (lambda s: s["tables"][0].update(best="least"), table + ".best: expected none"),
-                (lambda s: s["tables"][0].update(decimals=99), table + ".decimals: expected 0"),
-                (lambda s: s["tables"][0]["rows"].append("row"), ".rows[3]: expected an object"),
                 (lambda s: s["tables"][0]["rows"][1]["values"].pop(),
-                 ".rows[1].values: expected one for each of the 2 columns, got 1"),
-                (lambda s: s["tables"][0]["rows"][0].update(values=["x", 1]),
-                 ".rows[0].values[0]: expected a number or null, got 'x'"),
-                (lambda s: s["settings"][1].update(value=3), "settings[1].value: expected str"),
-                (lambda s: s["figures"][0]["plot"].update(kind="pie"), "figures[0].plot.kind")):
+                 "tables[0].rows[1].values: expected one for each of the 2 columns, got 1")):
             self.assertIn(message, self.problem_with(change))
 
     def test_a_file_is_named_by_its_id(self):
