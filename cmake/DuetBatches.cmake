@@ -1,5 +1,5 @@
 # Batches: several files of a target compile as one (CMake's unity build), because most of the time of a file goes into headers and
-# templates that it shares with its neighbours. The presets release and tsan do this; docs/decisions/0095 has the reasons.
+# templates that it shares with its neighbours. The presets release and tsan do this; docs/decisions/building.md has the reasons.
 # scripts/batch_sources.py chooses files that keep their meaning in one batch.
 option(DUET_BATCHES "Compile the files of a target in batches" OFF)
 

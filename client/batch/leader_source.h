@@ -31,8 +31,7 @@ class LeaderSource {
 // files of a folder or a pattern any extension that is not that of another format.
 //
 // Errors: NOT_FOUND for missing inputs; INVALID_ARGUMENT for a file of unknown format, for two
-// leaders
-//         with the same key, and if there is no motion file.
+//         leaders with the same key, and if there is no motion file.
 absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
     const std::vector<std::string>& inputs,
     const std::optional<formats::Format>& format = std::nullopt,

@@ -16,8 +16,7 @@ namespace duet::classifier {
 //   weights.safetensors  the tensors
 //
 // Errors: NOT_FOUND; INVALID_ARGUMENT and DATA_LOSS naming the file, the field, its value and what
-// was
-//         expected. The files may be untrusted.
+//         was expected. The files may be untrusted.
 
 struct StoredClassifier {
   Classifier classifier;

@@ -11,7 +11,7 @@ namespace duet::dataset {
 // The vertical is the robust mean (posture.h) of the standing directions of both people in all
 // frames of the set. It is shrunk towards that of the whole data set, with the weight of 3
 // sequences. The floor is the lower quartile of the heights of the lower feet. The floor's slope is
-// not used (docs/decisions/0020-level-captures.md).
+// not used (docs/decisions/captures.md).
 //
 // Unchanged: data with fewer than 60 standing poses, with a skeleton without feet, or with people
 // who lie rather than lean (a set's vertical is more than 30 degrees from +y).

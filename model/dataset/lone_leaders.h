@@ -20,8 +20,7 @@ absl::StatusOr<std::vector<std::filesystem::path>> MotionFilesBelow(
 // person, resampled to `frame_rate_hz`. They are not levelled.
 //
 // Errors: those of MotionFilesBelow; NOT_FOUND if there is no motion file; INVALID_ARGUMENT naming
-// the
-//         file for a motion of fewer than 2 frames; otherwise those of formats::ReadLeader.
+//         the file for a motion of fewer than 2 frames; otherwise those of formats::ReadLeader.
 absl::StatusOr<std::vector<LoneLeader>> ReadLoneLeaders(const std::filesystem::path& folder,
                                                         const motion::Skeleton& skeleton,
                                                         double frame_rate_hz);

@@ -34,7 +34,7 @@ struct DirectionCorrection : AngleRegression {
 // the estimate, by features relative to it.
 //
 // Source: ridge regression over training leaders, model/training/direction_fit.h;
-//         docs/decisions/0022-direction-from-the-leader.md.
+//         docs/decisions/method.md.
 struct DirectionRegression : AngleRegression {
   // Absent: the first estimate is the result, as in checkpoints before version 1.1 of Duet.
   std::optional<DirectionCorrection> correction;

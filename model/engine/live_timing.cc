@@ -19,7 +19,7 @@ constexpr double kMostEvaluationsHz = 15;
 constexpr double kRemadeSeconds = 0.4;
 // How far a plan reaches beyond the last frame that was sent, at least: for frames that the server
 // may have to skip, and provisional frames. The more frames of a leader who comes to rest a plan
-// has, the less its follower moves (docs/decisions/0065-live-by-planning-again.md). A model with a
+// has, the less its follower moves (docs/decisions/live.md). A model with a
 // lookahead plans at least as far: its windows end with an unknown future in clips, too.
 constexpr double kFutureSeconds = 0.4;
 // The neighbours of a spline at the end of a plan.

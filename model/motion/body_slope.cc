@@ -11,8 +11,8 @@
 namespace duet::motion {
 namespace {
 
-// All spreads are standard deviations of tangents, chosen on the captures that
-// docs/decisions/0062-vertical-of-a-capture.md lists.
+// All spreads are standard deviations of tangents, chosen on the captures of SBU and
+// K3HI; CMU's salsa is the test (docs/decisions/captures.md).
 struct Spread {
   double forward, sideways;
 };

@@ -21,8 +21,8 @@ constexpr double kPlaceMetres = 0.25;
 constexpr double kExpectedScatter = 0.06;
 constexpr double kExpectedWeight = 4;
 // The error of the slope however many places there are: this at the scatter of a professional
-// capture, and four times as much at twice the scatter.
-// docs/decisions/0062-vertical-of-a-capture.md
+// capture, and four times as much at twice the scatter
+// (docs/decisions/captures.md).
 constexpr double kLeastError = 1 * base::kRadiansPerDegree;
 constexpr double kCleanScatter = 0.02;
 constexpr int kFitSteps = 10;

@@ -10,7 +10,7 @@
 
 // Infers the length unit and the up axis of captured people from their bodies. This is the only
 // rule: every reader, `duet-import` and the skeleton check use it
-// (docs/decisions/0056-one-rule-for-units-and-axes.md).
+// (docs/decisions/captures.md).
 
 namespace duet::motion {
 

@@ -13,8 +13,7 @@
 
 // Estimates the true vertical of a capture, which a tilted camera rotates, from the people in it.
 //
-// Two kinds of evidence, each with its standard error
-// (docs/decisions/0062-vertical-of-a-capture.md):
+// Two kinds of evidence, each with its standard error (docs/decisions/captures.md):
 //
 //   floor   A plane through the places where feet rest (floor_slope.h). Feet that rest in one place
 //           or on one line do not define it.

@@ -17,8 +17,7 @@ namespace duet::retargeting {
 // - Kabsch's fit over hips, shoulders and trunk rotates pelvis and chest. The spine's joints share
 //   the rotation between the two; neck and head share that of the head.
 // - Two-bone inverse kinematics places feet and hands at the clip's ankles and wrists, as far as
-// the
-//   limbs reach, with elbows and knees on the clip's side. The pelvis height follows from the
+//   the limbs reach, with elbows and knees on the clip's side. The pelvis height follows from the
 //   length of the rig's legs; the pelvis is lowered if a leg would not reach.
 // - The plane of the elbow or knee twists both bones of a limb. Standing feet are level.
 // - If the clip has toes, feet point at them, and the rig's toes stay level on the floor while a

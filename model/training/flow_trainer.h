@@ -20,7 +20,7 @@ namespace duet::training {
 // for a random t, it learns to predict the motion. Then by the energy score of whole answers, after
 // which few sampling steps are enough.
 //
-// Source:  Lipman et al. 2023; docs/decisions/0018-flow-matching.md.
+// Source:  Lipman et al. 2023; docs/decisions/method.md.
 class FlowTrainer : public EpochTrainer {
  public:
   // `manifest` describes the model to train. Its architecture must be that of options.method, a

@@ -27,8 +27,7 @@ struct Reloadable {
 // calls. Models are loaded on a separate thread with low priority.
 //
 // Threads: safe to call concurrently. No method blocks, except the destructor, which waits for a
-// load in
-//          progress.
+//          load in progress.
 class ModelControl {
  public:
   using ReloadDone = std::function<void(const absl::StatusOr<ReloadReport>&)>;

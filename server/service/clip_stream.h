@@ -63,8 +63,7 @@ struct ClipPart {
 //   ... on_progress: while ((part = stream->Take(30)).kind == kFrames) send(part.poses) ...
 //
 // Threads: safe to call concurrently. on_progress runs on the scheduler's threads, under no lock,
-// and
-//          may still run after the end was taken.
+//          and may still run after the end was taken.
 class ClipStream : public std::enable_shared_from_this<ClipStream> {
  public:
   // `scheduler` outlives every job given to it. The model lives until the last job is done.

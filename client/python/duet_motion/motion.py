@@ -19,7 +19,7 @@ _AXES = "xyz"
 # Metres in one unit of length.
 _METRES = {"metres": 1.0, "millimetres": 0.001}
 # Rotate a row vector of each axis convention to y up, about x, which preserves handedness. The API
-# defines these rotations (docs/decisions/0006).
+# defines these rotations (docs/decisions/contract.md).
 _TO_Y_UP = {
     "y-up": np.diag([1.0, 1.0, 1.0]),
     "z-up": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
