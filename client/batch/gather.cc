@@ -101,9 +101,12 @@ absl::StatusOr<Gathered> GatherShards(const JobIdentity& wanted, const JobFolder
     }
     if (status.ok()) status = Take(shard, folder, &gathered.items);
     if (!status.ok()) return status;
+    // At once, so that no part of the folder is left if the run is stopped.
+    const fs::path unneeded = folder.temporary() / path.filename();
     std::error_code error;
-    fs::remove_all(path, error);
+    fs::rename(path, unneeded, error);
     if (error) return CannotWrite(path, error.value());
+    fs::remove_all(unneeded, error);
     ++gathered.shards;
     gathered.count = identity->shard.count;
   }

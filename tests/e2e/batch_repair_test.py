@@ -96,7 +96,7 @@ class BatchRepairTest(tools.ServedTest):
         os.truncate(out / "dataset.json", 100)
         found = self.verified(out, 42).stderr
         for problem in (f"{files[0]}: no such file", f"{files[1]}: was changed", f"{files[2]}: was changed",
-                        "1 damaged lines", "repeat the duet batch command with --verify"):
+                        "is not what the journal says", "dataset.json: expected a JSON object", "repeat the duet batch command with --verify"):
             self.assertIn(problem, found)
         self.run_in_folder(*self.command(out.name, "--verify"))
         self.check_whole(out)

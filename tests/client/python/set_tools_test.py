@@ -125,14 +125,16 @@ class SetToolsTest(unittest.TestCase):
         self.assertEqual(code, 42)
         self.assertIn("repeat the duet batch command with --verify", err)
 
-    def test_verify_counts_damaged_lines_of_the_journal_but_not_a_cut_last_line(self):
+    def test_verify_ignores_a_cut_last_line_of_the_journal_but_no_lost_item(self):
         folder = self.write("set", [record_of(number) for number in range(2)])
         journal = folder / ".duet-batch/journal"
         whole = journal.read_text()
         journal.write_text(whole + "0123abcd 2 {", encoding="utf-8")
         self.assertEqual(sets.verify(folder).problems, [])
+        journal.write_text(whole.replace("walks/0-hug", "walks/9-hug", 1), encoding="utf-8")
+        self.assertIn("index.jsonl:1: is not what the journal says", sets.verify(folder).problems)
         journal.write_text(whole.replace("walks/1-hug", "walks/9-hug", 1), encoding="utf-8")
-        self.assertIn("1 damaged lines", sets.verify(folder).problems[0])
+        self.assertIn("index.jsonl: has more lines than the journal", sets.verify(folder).problems)
 
     def test_missing_items_are_an_exit_code_of_their_own(self):
         folder = self.write("set", [record_of(0)], missing=2)

@@ -64,10 +64,11 @@ def verify(path: Path) -> VerifyReport:
 
 
 def _changed_shards(folder: pathlib.Path) -> List[str]:
-    """Shards that differ, even where no item does."""
-    if not (folder / "dataset.json").is_file():
-        return []
-    description = read_json(folder / "dataset.json")
+    """Shards that differ, even where no item does, and a description that cannot be read."""
+    try:
+        description = read_json(folder / "dataset.json")
+    except DataSetError as error:
+        return [str(error)]
     digests = zip(description.get("shards", ()), description.get("shard_sha256", ()))
     return [f"{folder / shard}: was changed" for shard, digest in digests
             if (folder / shard).is_file() and sha256_of(folder / shard) != digest]
@@ -76,8 +77,6 @@ def _changed_shards(folder: pathlib.Path) -> List[str]:
 def _compare_with_journal(folder: pathlib.Path) -> List[str]:
     journal = _Journal(folder)
     problems = []
-    if journal.damaged:
-        problems.append(f"{journal.path}: {journal.damaged} damaged lines")
     with (folder / "index.jsonl").open(encoding="utf-8", newline="\n") as lines:
         done = (text for text in journal.texts() if json.loads(text)["state"] == "done")
         for number, text in enumerate(done, 1):
@@ -99,8 +98,6 @@ class _Journal:
 
     def __init__(self, folder: pathlib.Path) -> None:
         self.path = folder / ".duet-batch" / "journal"
-        self.damaged = 0
-        """Lines that were changed, without a last line that was cut off."""
         self._places: Dict[int, Tuple[int, int]] = {}  # of lines without their digests, by item
         if not self.path.is_file():
             return
@@ -109,11 +106,8 @@ class _Journal:
             for line in file:
                 digest, _, rest = line.rstrip(b"\n").partition(b" ")
                 number = rest.partition(b" ")[0]
-                whole = line.endswith(b"\n")
-                if whole and number.isdigit() and hashlib.sha256(rest).hexdigest()[:8].encode() == digest:
+                if number.isdigit() and hashlib.sha256(rest).hexdigest()[:8].encode() == digest:
                     self._places[int(number)] = (at + len(digest) + 1, len(rest))
-                elif whole:
-                    self.damaged += 1
                 at += len(line)
 
     def text(self, item: int) -> str:
