@@ -12,10 +12,10 @@ namespace {
 
 // Keyframes with times as fractions of the clip, converted to frames. In a short clip, several can
 // fall on one frame; the last one counts.
-std::vector<WeightKeyframe> ToFrames(const std::vector<Schedule::Keyframe>& keyframes,
+std::vector<WeightKeyframe> ToFrames(const std::vector<TimedLabels>& keyframes,
                                      int frame_count) {
   std::vector<WeightKeyframe> frames;
-  for (const Schedule::Keyframe& keyframe : keyframes) {
+  for (const TimedLabels& keyframe : keyframes) {
     const int frame = static_cast<int>(std::lround(keyframe.at * (frame_count - 1)));
     if (!frames.empty() && frames.back().frame == frame) frames.pop_back();
     frames.push_back({frame, keyframe.labels});
@@ -85,7 +85,6 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
 
 RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const SynthesisResult& result,
                           const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry) {
-  const QualityFilter& filter = recipe.filter;
   const motion::ClipPair level = Upright(result.pair, recipe.input.up);
   RecordedAnswer answer;
   answer.leader_sha256 = leader.sha256;
@@ -97,12 +96,10 @@ RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const Synthesi
   answer.keyframes = ToFrames(item.keyframes, result.pair.leader.frame_count());
   answer.frames = result.pair.follower.frame_count();
   answer.frame_rate_hz = result.pair.follower.frame_rate_hz;
-  answer.quality = Measure(level, skeleton);
-  answer.quality.grade = result.grade;
-  if (filter.classifier != nullptr) {
-    Recognise(*filter.classifier, LargestClass(item), level, &answer.quality);
+  answer.quality = Measure(level, skeleton, result);
+  if (recipe.classifier != nullptr) {
+    Recognise(*recipe.classifier, LargestClass(item), level, &answer.quality);
   }
-  answer.unfamiliarity = result.unfamiliarity;
   answer.pin_metres = result.constraint_metres;
   answer.answers = retry + 1;
   answer.made_by = MadeByOf(result);

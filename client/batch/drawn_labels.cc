@@ -20,68 +20,81 @@ float DrawWeight(const WeightRange& range, base::Random* random) {
   return static_cast<float>(std::round(weight * kWeightsInOne) / kWeightsInOne);
 }
 
-std::vector<DrawnLabels> DrawMixes(const std::string& name, const Mixes& mixes,
+std::vector<DrawnLabels> DrawMixes(const std::string& name, const v1::Mixes& mixes,
                                    const std::vector<std::string>& all, base::Random* random) {
   std::vector<DrawnLabels> drawn;
-  for (int i = 0; i < mixes.count; ++i) {
+  for (uint32_t i = 0; i < mixes.count(); ++i) {
     std::vector<std::string> classes = all;
     random->Shuffle(&classes);
     drawn.push_back({absl::StrCat(name.empty() ? "mix" : name, i), {}});
-    for (int c = 0; c < mixes.classes_in_mix; ++c) {
-      drawn.back().labels.push_back(
-          {classes[static_cast<size_t>(c)], DrawWeight(mixes.weight, random)});
+    for (uint32_t c = 0; c < ClassesInMix(mixes); ++c) {
+      drawn.back().labels.push_back({classes[c], DrawWeight(RangeOf(mixes), random)});
     }
   }
   return drawn;
 }
 
-std::vector<DrawnLabels> DrawEachClass(const std::string& name, const EachClass& each,
+std::vector<DrawnLabels> DrawEachClass(const std::string& name, const v1::EachClass& each,
                                        const std::vector<std::string>& classes,
                                        base::Random* random) {
   std::vector<DrawnLabels> drawn;
   for (size_t c = 0; c < classes.size(); ++c) {
     drawn.push_back({absl::StrCat(name.empty() ? "each" : name, "_", PlainName(classes[c])),
-                     {{classes[c], DrawWeight(each.weight, random)}}});
-    if (!each.beside.has_value()) continue;
+                     {{classes[c], DrawWeight(RangeOf(each), random)}}});
+    if (!each.has_beside()) continue;
     // Any other class.
     auto other = static_cast<size_t>(random->Below(static_cast<int64_t>(classes.size()) - 1));
     if (other >= c) ++other;
-    drawn.back().labels.push_back({classes[other], DrawWeight(*each.beside, random)});
+    const WeightRange beside{each.beside().min_weight(), each.beside().max_weight()};
+    drawn.back().labels.push_back({classes[other], DrawWeight(beside, random)});
   }
   return drawn;
 }
 
 }  // namespace
 
-bool IsDrawn(const Reaction& reaction) {
-  if (std::holds_alternative<Mixes>(reaction.kind)) return true;
-  const auto* each = std::get_if<EachClass>(&reaction.kind);
-  return each != nullptr && (each->beside.has_value() || each->weight.min != each->weight.max);
+WeightRange RangeOf(const v1::Mixes& mixes) {
+  return {mixes.has_min_weight() ? mixes.min_weight() : 0.25f,
+          mixes.has_max_weight() ? mixes.max_weight() : 1};
 }
 
-const std::vector<std::string>& ClassesOf(const Reaction& reaction) {
-  const auto* mixes = std::get_if<Mixes>(&reaction.kind);
-  return mixes != nullptr ? mixes->classes : std::get<EachClass>(reaction.kind).classes;
+WeightRange RangeOf(const v1::EachClass& each) {
+  return {each.has_min_weight() ? each.min_weight() : 1,
+          each.has_max_weight() ? each.max_weight() : 1};
 }
 
-absl::Status CheckDrawn(const Reaction& reaction, const std::vector<std::string>& classes) {
-  const auto* mixes = std::get_if<Mixes>(&reaction.kind);
-  const size_t wanted = mixes != nullptr ? static_cast<size_t>(mixes->classes_in_mix)
-                        : std::get<EachClass>(reaction.kind).beside ? 2
-                                                                    : 1;
+uint32_t ClassesInMix(const v1::Mixes& mixes) {
+  return mixes.has_classes_in_mix() ? mixes.classes_in_mix() : 2;
+}
+
+bool IsDrawn(const v1::Reaction& reaction) {
+  const WeightRange range = RangeOf(reaction.each_class());
+  return reaction.has_mixes() ||
+         (reaction.has_each_class() &&
+          (reaction.each_class().has_beside() || range.min != range.max));
+}
+
+std::vector<std::string> ClassesOf(const v1::Reaction& reaction) {
+  const auto& classes =
+      reaction.has_mixes() ? reaction.mixes().classes() : reaction.each_class().classes();
+  return {classes.begin(), classes.end()};
+}
+
+absl::Status CheckDrawn(const v1::Reaction& reaction, const std::vector<std::string>& classes) {
+  const size_t wanted = reaction.has_mixes()                 ? ClassesInMix(reaction.mixes())
+                        : reaction.each_class().has_beside() ? 2
+                                                             : 1;
   if (wanted <= classes.size()) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat("reactions: classes in a label vector: expected at most the ", classes.size(),
                    " classes, got ", wanted));
 }
 
-std::vector<DrawnLabels> Draw(const Reaction& reaction, const std::vector<std::string>& classes,
+std::vector<DrawnLabels> Draw(const v1::Reaction& reaction, const std::vector<std::string>& classes,
                               base::Random* random) {
-  const auto* mixes = std::get_if<Mixes>(&reaction.kind);
   std::vector<DrawnLabels> drawn =
-      mixes != nullptr
-          ? DrawMixes(reaction.name, *mixes, classes, random)
-          : DrawEachClass(reaction.name, std::get<EachClass>(reaction.kind), classes, random);
+      reaction.has_mixes() ? DrawMixes(reaction.name(), reaction.mixes(), classes, random)
+                           : DrawEachClass(reaction.name(), reaction.each_class(), classes, random);
   for (DrawnLabels& one : drawn) SortByClass(&one.labels);
   return drawn;
 }

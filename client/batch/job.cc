@@ -172,17 +172,16 @@ void Job::Receive(Answered answered) {
 void Job::Judge(Work work, const SynthesisResult& result) {
   const auto model = static_cast<size_t>(work.item.model);
   const motion::Skeleton& skeleton = parts_.skeletons[model];
-  const QualityFilter& filter = parts_.recipe.filter;
+  const v1::QualityFilter& filter = parts_.recipe.filter;
   const absl::StatusOr<LoadedLeader>& leader =
       work.leader->Get(parts_.recipe.input, skeleton, parts_.limits);
   RecordedAnswer answer =
       ToRecorded(work.item, parts_.recipe, result, *leader, skeleton, work.retry);
   answer.skeleton = skeleton_indices_[model];
-  const std::vector<std::string> reasons =
-      WhyRejected(filter, answer.quality, answer.unfamiliarity);
+  const std::vector<std::string> reasons = WhyRejected(filter, answer.quality);
   if (reasons.empty()) {
     Keep(work.item, answer, result.pair);
-  } else if (parts_.models[model].samples && work.retry < filter.retries_per_item) {
+  } else if (parts_.models[model].samples && work.retry < static_cast<int>(filter.retries_per_item())) {
     ++work.retry;
     return queue_.PutBack(std::move(work));
   } else {

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/batch/journal.h"
-#include "client/batch/recipe_file.h"
+#include "client/batch/recipe.h"
 #include "client/batch/record.h"
 #include "client/batch/text_values.h"
 #include "model/base/file.h"

@@ -5,7 +5,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/batch/loaded_leader.h"
 #include "client/batch/text_values.h"
 #include "model/base/angle.h"
 #include "model/base/text.h"
@@ -61,7 +60,8 @@ motion::VerticalEstimate EstimateVertical(const LeaderInput& input,
                                           const motion::Skeleton& skeleton, LeaderSource* leaders,
                                           const std::function<bool()>& stopped) {
   motion::VerticalEvidence evidence(skeleton);
-  const formats::ReadOptions options = ToReadOptions(input, skeleton);
+  formats::ReadOptions options = input.reading;
+  options.skeleton = skeleton;
   std::set<std::filesystem::path> seen;
   while (seen.size() < kMostFiles && !stopped()) {
     const absl::StatusOr<std::optional<LeaderEntry>> entry = leaders->Next();

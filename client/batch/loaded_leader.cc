@@ -73,7 +73,8 @@ absl::Status CheckLimits(const std::filesystem::path& file, const motion::Clip& 
 absl::StatusOr<LoadedLeader> Load(const LeaderEntry& entry, formats::Side side,
                                   const LeaderInput& input, const motion::Skeleton& skeleton,
                                   const RequestLimits& limits) {
-  formats::ReadOptions options = ToReadOptions(input, skeleton);
+  formats::ReadOptions options = input.reading;
+  options.skeleton = skeleton;
   options.side = side;
   absl::StatusOr<motion::Clip> clip = formats::ReadLeader(entry.file, options);
   if (!clip.ok()) return clip.status();
@@ -104,17 +105,6 @@ bool SameMotion(const LeaderEntry& a, const LeaderEntry& b) {
 }
 
 }  // namespace
-
-formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skeleton& skeleton) {
-  formats::ReadOptions options;
-  options.format = input.format;
-  options.skeleton = skeleton;
-  options.frame_rate_hz = input.frame_rate_hz;
-  options.metres_per_unit = motion::StatedMetresPerUnit(input.metres_per_unit, input.unit);
-  options.joint_overrides = input.joint_map;
-  options.coordinates = motion::StatedCoordinates(input.unit, input.up_axis);
-  return options;
-}
 
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
                                         const LeaderInput& input, const motion::Skeleton& skeleton,

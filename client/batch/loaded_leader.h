@@ -25,9 +25,6 @@ struct LoadedLeader {
   std::optional<FollowerStart> follower_start;
 };
 
-// How to read leaders for models of a skeleton; without a side.
-formats::ReadOptions ToReadOptions(const LeaderInput& input, const motion::Skeleton& skeleton);
-
 // Reads the leader's file and the file of the follower's start, and checks the length and the rate
 // against the server's limits; a limit of 0 is unknown. Errors name the file.
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,

@@ -44,7 +44,7 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
   std::string text = absl::StrCat(who, "\n", SideName(item.side), "\n", item.reaction, "\n",
                                   Text(item.labels), "\n", model.name, "@", model.version, "\n",
                                   item.sample, "\n", recipe.variety, "\n", start, "\n");
-  for (const Schedule::Keyframe& keyframe : item.keyframes) {
+  for (const TimedLabels& keyframe : item.keyframes) {
     absl::StrAppend(&text, keyframe.at, ":", Text(keyframe.labels), "\n");
   }
   if (leader.follower_start_side) {
@@ -85,14 +85,14 @@ void SetDigests(const Recipe& recipe, const ModelInfo& model, Item* item) {
 }
 
 // All combinations of a grid's weights; the last axis changes fastest.
-std::vector<Labels> Combinations(const Grid& grid) {
+std::vector<Labels> Combinations(const v1::Grid& grid) {
   std::vector<Labels> all = {{}};
-  for (const Grid::Axis& axis : grid.axes) {
+  for (const v1::Grid::Axis& axis : grid.axes()) {
     std::vector<Labels> longer;
     for (const Labels& labels : all) {
-      for (const float weight : axis.weights) {
+      for (const float weight : axis.weights()) {
         longer.push_back(labels);
-        longer.back().push_back({axis.interaction_class, weight});
+        longer.back().push_back({axis.interaction_class(), weight});
       }
     }
     all = std::move(longer);
@@ -123,7 +123,7 @@ std::string LargestClass(const Item& item) {
     }
   };
   look(item.labels);
-  for (const Schedule::Keyframe& keyframe : item.keyframes) look(keyframe.labels);
+  for (const TimedLabels& keyframe : item.keyframes) look(keyframe.labels);
   return largest.interaction_class;
 }
 
@@ -152,7 +152,7 @@ Plan::Plan(Recipe recipe, std::vector<ModelInfo> models, std::unique_ptr<LeaderS
 absl::StatusOr<Plan> Plan::Create(Recipe recipe, std::vector<ModelInfo> models,
                                   std::unique_ptr<LeaderSource> leaders) {
   Plan plan(std::move(recipe), std::move(models), std::move(leaders));
-  for (const Reaction& reaction : plan.recipe_.reactions) {
+  for (const v1::Reaction& reaction : plan.recipe_.reactions) {
     absl::Status status = plan.AddReaction(reaction);
     if (!status.ok()) return status;
   }
@@ -176,14 +176,13 @@ std::vector<std::string> Plan::ClassesOr(const std::vector<std::string>& classes
   return classes.empty() ? models_.front().interaction_classes : classes;
 }
 
-absl::Status Plan::AddNamed(const Reaction& reaction, LabelledReaction labelled) {
+absl::Status Plan::AddNamed(const v1::Reaction& reaction, LabelledReaction labelled) {
   // A single reaction has the name of its entry; several append their labels.
   const std::string own = NameOfLabels(labelled.labels);
-  const bool single = std::holds_alternative<Labels>(reaction.kind) ||
-                      std::holds_alternative<Schedule>(reaction.kind);
-  labelled.name = reaction.name;
+  const bool single = reaction.has_labels() || reaction.has_schedule();
+  labelled.name = reaction.name();
   if (labelled.name.empty()) labelled.name = own.empty() ? "schedule" : own;
-  if (!reaction.name.empty() && !single) labelled.name = absl::StrCat(reaction.name, "_", own);
+  if (!reaction.name().empty() && !single) labelled.name = absl::StrCat(reaction.name(), "_", own);
   const auto same_name = [&labelled](const LabelledReaction& other) {
     return other.name == labelled.name;
   };
@@ -195,11 +194,13 @@ absl::Status Plan::AddNamed(const Reaction& reaction, LabelledReaction labelled)
   return absl::OkStatus();
 }
 
-absl::Status Plan::AddDrawn(const Reaction& reaction) {
+absl::Status Plan::AddDrawn(const v1::Reaction& reaction) {
   const std::vector<std::string> classes = ClassesOr(ClassesOf(reaction));
   absl::Status status = CheckDrawn(reaction, classes);
   if (!status.ok()) return status;
-  const auto same_name = [&reaction](const Reaction& other) { return other.name == reaction.name; };
+  const auto same_name = [&reaction](const v1::Reaction& other) {
+    return other.name() == reaction.name();
+  };
   if (std::any_of(drawn_.begin(), drawn_.end(), same_name)) {
     return absl::InvalidArgumentError(
         "reactions: expected a name for each of several drawn reactions, got the same name twice");
@@ -208,19 +209,24 @@ absl::Status Plan::AddDrawn(const Reaction& reaction) {
   return absl::OkStatus();
 }
 
-absl::Status Plan::AddReaction(const Reaction& reaction) {
+absl::Status Plan::AddReaction(const v1::Reaction& reaction) {
   if (IsDrawn(reaction)) return AddDrawn(reaction);
   std::vector<LabelledReaction> added;
-  if (const auto* labels = std::get_if<Labels>(&reaction.kind)) added.push_back({"", *labels, {}});
-  if (const auto* schedule = std::get_if<Schedule>(&reaction.kind)) {
-    added.push_back({"", {}, schedule->keyframes});
+  if (reaction.has_labels()) added.push_back({"", ToLabels(reaction.labels()), {}});
+  if (reaction.has_schedule()) {
+    added.emplace_back();
+    for (const v1::Schedule::Keyframe& keyframe : reaction.schedule().keyframes()) {
+      added.back().keyframes.push_back({keyframe.at(), ToLabels(keyframe.labels())});
+    }
   }
-  if (const auto* grid = std::get_if<Grid>(&reaction.kind)) {
-    for (Labels& labels : Combinations(*grid)) added.push_back({"", std::move(labels), {}});
+  if (reaction.has_grid()) {
+    for (Labels& labels : Combinations(reaction.grid())) {
+      added.push_back({"", std::move(labels), {}});
+    }
   }
-  if (const auto* each = std::get_if<EachClass>(&reaction.kind)) {
-    for (const std::string& name : ClassesOr(each->classes)) {
-      added.push_back({"", {{name, each->weight.min}}, {}});
+  if (reaction.has_each_class()) {
+    for (const std::string& name : ClassesOr(ClassesOf(reaction))) {
+      added.push_back({"", {{name, RangeOf(reaction.each_class()).min}}, {}});
     }
   }
   for (LabelledReaction& labelled : added) {
@@ -237,9 +243,9 @@ absl::Status Plan::CheckClasses() const {
   };
   for (const LabelledReaction& reaction : fixed_) {
     want(reaction.labels);
-    for (const Schedule::Keyframe& keyframe : reaction.keyframes) want(keyframe.labels);
+    for (const TimedLabels& keyframe : reaction.keyframes) want(keyframe.labels);
   }
-  for (const Reaction& reaction : drawn_) {
+  for (const v1::Reaction& reaction : drawn_) {
     const std::vector<std::string> classes = ClassesOr(ClassesOf(reaction));
     wanted.insert(classes.begin(), classes.end());
   }
@@ -256,8 +262,8 @@ absl::Status Plan::CheckClasses() const {
 }
 
 absl::Status Plan::CheckClassifier(const ModelInfo& model) const {
-  if (recipe_.filter.classifier == nullptr) return absl::OkStatus();
-  for (const std::string& joint : recipe_.filter.classifier->parts().skeleton.joint_names) {
+  if (recipe_.classifier == nullptr) return absl::OkStatus();
+  for (const std::string& joint : recipe_.classifier->parts().skeleton.joint_names) {
     const auto& known = model.joint_names;
     if (std::find(known.begin(), known.end(), joint) != known.end()) continue;
     return absl::InvalidArgumentError(

@@ -31,7 +31,7 @@ struct Item {
   formats::Side side = formats::Side::kLeft;
   std::string reaction;
   Labels labels;                              // or keyframes
-  std::vector<Schedule::Keyframe> keyframes;  // times as fractions of the leader's length
+  std::vector<TimedLabels> keyframes;
   bool drawn = false;                         // the labels are drawn for the leader
   int model = 0;                              // index into the plan's models
   int sample = 0;
@@ -72,14 +72,14 @@ class Plan {
   struct LabelledReaction {
     std::string name;
     Labels labels;
-    std::vector<Schedule::Keyframe> keyframes;
+    std::vector<TimedLabels> keyframes;
     bool drawn = false;
   };
 
   Plan(Recipe recipe, std::vector<ModelInfo> models, std::unique_ptr<LeaderSource> leaders);
-  absl::Status AddReaction(const Reaction& reaction);
-  absl::Status AddDrawn(const Reaction& reaction);
-  absl::Status AddNamed(const Reaction& reaction, LabelledReaction labelled);
+  absl::Status AddReaction(const v1::Reaction& reaction);
+  absl::Status AddDrawn(const v1::Reaction& reaction);
+  absl::Status AddNamed(const v1::Reaction& reaction, LabelledReaction labelled);
   absl::Status CheckClasses() const;
   absl::Status CheckClassifier(const ModelInfo& model) const;
   std::string ModelNames() const;
@@ -98,7 +98,7 @@ class Plan {
   std::vector<ModelInfo> models_;
   std::unique_ptr<LeaderSource> leaders_;
   std::vector<LabelledReaction> fixed_;  // the same for each leader
-  std::vector<Reaction> drawn_;          // different for each leader
+  std::vector<v1::Reaction> drawn_;      // different for each leader
   LeaderIndexes indexes_;
   IndexedSides indexed_sides_;
   ReadDigests digests_;

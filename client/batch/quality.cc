@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/string_view.h"
 #include "model/body/limbs.h"
 #include "model/body/liveliness.h"
 #include "model/body/penetration.h"
@@ -12,10 +14,6 @@
 
 namespace duet::client::batch {
 namespace {
-
-std::optional<double> Known(double figure) {
-  return std::isnan(figure) ? std::nullopt : std::optional<double>(figure);
-}
 
 // The clip reduced to these joints, in this order.
 motion::Clip InJoints(const motion::Clip& clip, const std::vector<std::string>& joints) {
@@ -37,24 +35,35 @@ motion::Clip InJoints(const motion::Clip& clip, const std::vector<std::string>& 
 
 }  // namespace
 
-Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton) {
+Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
+                const SynthesisResult& result) {
   const motion::Poses& leader = pair.leader.poses;
   const motion::Poses& follower = pair.follower.poses;
   Quality quality;
-  quality.lean_degrees = Known(
+  std::map<std::string, double>& figures = quality.figures;
+  const double lean =
       body::MeasureLean(follower, skeleton, pair.follower.frame_rate_hz, body::LeanFrom::kHips)
-          .max_degrees);
+          .max_degrees;
+  if (!std::isnan(lean)) figures["lean_degrees"] = lean;
   if (skeleton.feet.has_value()) {
     const body::FloorGap gap =
         body::MeasureFloorGap(follower, skeleton, motion::FloorHeight(*skeleton.feet, leader));
-    quality.foot_above_floor_metres = gap.above;
-    quality.foot_below_floor_metres = gap.below;
+    figures["foot_above_floor_metres"] = gap.above;
+    figures["foot_below_floor_metres"] = gap.below;
   }
-  quality.distance_metres = body::RootDistance(leader, follower, skeleton);
-  quality.penetration_metres = body::MeasurePenetration(leader, follower, skeleton,
-                                                        body::LimbParts(body::FindBody(skeleton)))
-                                   .max_depth_metres;
-  quality.range_of_motion_metres = body::RangeOfMotion(follower);
+  figures["distance_metres"] = body::RootDistance(leader, follower, skeleton);
+  figures["penetration_metres"] = body::MeasurePenetration(
+                                      leader, follower, skeleton,
+                                      body::LimbParts(body::FindBody(skeleton)))
+                                      .max_depth_metres;
+  figures["range_of_motion_metres"] = body::RangeOfMotion(follower);
+  if (result.grade.has_value()) {
+    figures["twisted"] = result.grade->twisted;
+    figures["skating"] = result.grade->skating;
+    figures["leader_skating"] = result.grade->leader_skating;
+    figures["overlapping"] = result.grade->overlapping;
+  }
+  quality.unfamiliarity = result.unfamiliarity;
   return quality;
 }
 
@@ -68,42 +77,35 @@ void Recognise(const classifier::Classifier& classifier, const std::string& want
       classifier.Probabilities({InJoints(pair.leader, joints), InJoints(pair.follower, joints)});
   const auto best = std::max_element(probabilities.begin(), probabilities.end());
   quality->recognised_class = parts.classes[static_cast<size_t>(best - probabilities.begin())];
-  quality->class_probability = probabilities[static_cast<size_t>(known - parts.classes.begin())];
+  quality->figures["class_probability"] =
+      probabilities[static_cast<size_t>(known - parts.classes.begin())];
 }
 
-std::vector<std::string> WhyRejected(const QualityFilter& filter, const Quality& quality,
-                                     const std::optional<double>& unfamiliarity) {
+std::vector<std::string> WhyRejected(const v1::QualityFilter& filter, const Quality& quality) {
+  std::map<std::string, double> figures = quality.figures;
+  if (quality.unfamiliarity) figures["unfamiliarity"] = *quality.unfamiliarity;
+  if (figures.count("skating") > 0) {
+    figures["skating_over_leader"] = figures["skating"] - figures["leader_skating"];
+  }
   std::vector<std::string> reasons;
-  const auto at_most = [&reasons](const char* name, const std::optional<double>& figure,
-                                  const std::optional<double>& limit) {
-    if (!figure || !limit || *figure <= *limit) return;
-    reasons.push_back(absl::StrFormat("%s: expected at most %g, got %.4g", name, *limit, *figure));
+  const auto check = [&](absl::string_view limit_name, double limit) {
+    const std::string name(limit_name.substr(4));  // without max_ or min_
+    const auto found = figures.find(name);
+    if (found == figures.end()) return;
+    const bool at_most = absl::StartsWith(limit_name, "max_");
+    if (at_most ? found->second <= limit : found->second >= limit) return;
+    reasons.push_back(absl::StrFormat("%s: expected at %s %g, got %.4g", name,
+                                      at_most ? "most" : "least", limit, found->second));
   };
-  const auto at_least = [&reasons](const char* name, double figure,
-                                   const std::optional<double>& limit) {
-    if (!limit || figure >= *limit) return;
-    reasons.push_back(absl::StrFormat("%s: expected at least %g, got %.4g", name, *limit, figure));
-  };
-  at_most("lean_degrees", quality.lean_degrees, filter.max_lean_degrees);
-  at_most("foot_above_floor_metres", quality.foot_above_floor_metres,
-          filter.max_foot_above_floor_metres);
-  at_most("foot_below_floor_metres", quality.foot_below_floor_metres,
-          filter.max_foot_below_floor_metres);
-  at_least("distance_metres", quality.distance_metres, filter.min_distance_metres);
-  at_most("distance_metres", quality.distance_metres, filter.max_distance_metres);
-  at_most("penetration_metres", quality.penetration_metres, filter.max_penetration_metres);
-  at_least("range_of_motion_metres", quality.range_of_motion_metres,
-           filter.min_range_of_motion_metres);
-  if (quality.class_probability) {
-    at_least("class_probability", *quality.class_probability, filter.min_class_probability);
+  std::vector<const google::protobuf::FieldDescriptor*> limits;
+  filter.GetReflection()->ListFields(filter, &limits);
+  for (const google::protobuf::FieldDescriptor* limit : limits) {
+    if (limit->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) continue;
+    check(limit->name(), filter.GetReflection()->GetDouble(filter, limit));
   }
-  if (quality.grade) {
-    at_most("twisted", quality.grade->twisted, filter.max_twisted);
-    at_most("overlapping", quality.grade->overlapping, filter.max_overlapping);
-    at_most("skating_over_leader", quality.grade->skating - quality.grade->leader_skating,
-            filter.max_skating_over_leader);
+  if (filter.has_classifier()) {
+    check("min_class_probability", filter.classifier().min_probability());
   }
-  at_most("unfamiliarity", unfamiliarity, filter.max_unfamiliarity);
   return reasons;
 }
 

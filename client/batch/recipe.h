@@ -2,60 +2,30 @@
 #define DUET_CLIENT_BATCH_RECIPE_H_
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "client/request.h"
+#include "duet/batch/v1/batch.pb.h"
 #include "model/classifier/classifier.h"
 #include "model/formats/motion_file.h"
-#include "model/motion/coordinates.h"
+#include "model/motion/vec3.h"
 
 namespace duet::client::batch {
 
-// A recipe. proto/duet/batch/v1/batch.proto documents the fields.
+namespace v1 = ::duet::batch::v1;
 
 using Labels = std::vector<ClassWeight>;  // by class name
 
-struct Grid {
-  struct Axis {
-    std::string interaction_class;
-    std::vector<float> weights;
-  };
-  std::vector<Axis> axes;
-};
-
-struct WeightRange {
-  float min = 1;
-  float max = 1;
-};
-
-struct Mixes {
-  int count = 0;
-  std::vector<std::string> classes;  // empty: every class of the first model
-  int classes_in_mix = 2;
-  WeightRange weight = {0.25f, 1};
-};
-
-struct EachClass {
-  std::vector<std::string> classes;  // as of Mixes
-  WeightRange weight;
-  std::optional<WeightRange> beside;  // of another class
-};
-
-struct Schedule {
-  struct Keyframe {
-    double at = 0;  // 0 the leader's first frame, 1 its last
-    Labels labels;
-  };
-  std::vector<Keyframe> keyframes;
-};
-
-struct Reaction {
-  std::string name;  // may be empty
-  std::variant<Labels, Grid, Mixes, EachClass, Schedule> kind;
+// Label vectors at times: 0 is the leader's first frame, 1 its last.
+struct TimedLabels {
+  double at = 0;
+  Labels labels;
 };
 
 enum class Sides { kLeft, kRight, kBoth };
@@ -69,32 +39,10 @@ struct Level {
 struct LeaderInput {
   std::optional<Sides> side;  // absent: as index.tsv states, or left
   bool starts_as_other_person = false;
-  std::optional<double> frame_rate_hz;
-  std::optional<double> metres_per_unit;
-  std::optional<motion::LengthUnit> unit;
-  std::optional<motion::UpAxis> up_axis;
-  retargeting::JointOverrides joint_map;
-  std::optional<formats::Format> format;
+  formats::ReadOptions reading;  // without side and skeleton
   Level level;
   // The vertical of every leader, for requests: of `level`, or what an automatic one found.
   std::optional<motion::Vec3> up;
-};
-
-struct QualityFilter {
-  std::optional<double> max_lean_degrees;
-  std::optional<double> max_foot_above_floor_metres;
-  std::optional<double> max_foot_below_floor_metres;
-  std::optional<double> min_distance_metres;
-  std::optional<double> max_distance_metres;
-  std::optional<double> max_penetration_metres;
-  std::optional<double> min_range_of_motion_metres;
-  std::optional<double> max_unfamiliarity;
-  std::optional<double> max_twisted;
-  std::optional<double> max_overlapping;
-  std::optional<double> max_skating_over_leader;
-  std::shared_ptr<const classifier::Classifier> classifier;  // null: no classifier
-  std::optional<double> min_class_probability;
-  int retries_per_item = 0;
 };
 
 enum class Format { kBvh, kCsv, kNpy, kJson, kGlb };
@@ -106,15 +54,17 @@ struct Output {
   std::optional<double> frame_rate_hz;  // of every item; absent: the rate of its leader
 };
 
+// A recipe that was checked. proto/duet/batch/v1/batch.proto documents the fields.
 struct Recipe {
   uint64_t seed = 0;
   std::vector<ModelChoice> models;  // at least one
-  std::vector<Reaction> reactions;
+  std::vector<v1::Reaction> reactions;
   int samples = 1;
   float variety = 1;
   int candidates = 1;
   LeaderInput input;
-  QualityFilter filter;
+  v1::QualityFilter filter;
+  std::shared_ptr<const classifier::Classifier> classifier;  // of the filter; null: none
   Output output;
   // Digest of everything above in hex. Recipes with the same digest are equal.
   std::string digest;
@@ -122,6 +72,33 @@ struct Recipe {
   // are represented by their content.
   std::string json;
 };
+
+// Values of the command line that override the recipe.
+struct RecipeOverrides {
+  std::optional<int> retries_per_item;
+  std::string input_format;  // empty: the recipe's
+  std::optional<double> frame_rate_hz;
+  std::string level;  // empty: the recipe's
+};
+
+// Parses a recipe: JSON or text format. Unknown fields are rejected. Files that it names
+// are relative to `folder`. INVALID_ARGUMENT "FIELD: expected ..., got ...".
+absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
+                                   const std::filesystem::path& folder = {},
+                                   const RecipeOverrides& overrides = {});
+
+// Reads a recipe file: JSON if it ends in ".json", otherwise text format. Errors name the file;
+// also NOT_FOUND.
+absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path,
+                                  const RecipeOverrides& overrides = {});
+
+// How two recipes differ, each as Recipe::json: 'seed: expected 7, got 9; output.formats[1]:
+// expected none, got "FORMAT_CSV"', the first five fields and the number of the others. Empty if
+// they are equal, or if one of them is not a JSON object.
+std::string DescribeDifference(const std::string& expected, const std::string& got);
+
+// A label vector of a recipe, by class name.
+Labels ToLabels(const v1::Labels& proto);
 
 }  // namespace duet::client::batch
 

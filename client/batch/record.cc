@@ -32,25 +32,14 @@ ordered_json KeyframesJson(const std::vector<WeightKeyframe>& keyframes) {
   return array;
 }
 
-void AddIf(const char* name, const std::optional<double>& value, ordered_json* object) {
-  if (value.has_value()) (*object)[name] = Rounded(*value);
-}
-
 ordered_json QualityJson(const Quality& quality) {
   ordered_json object = ordered_json::object();
-  AddIf("lean_degrees", quality.lean_degrees, &object);
-  AddIf("foot_above_floor_metres", quality.foot_above_floor_metres, &object);
-  AddIf("foot_below_floor_metres", quality.foot_below_floor_metres, &object);
-  object["distance_metres"] = Rounded(quality.distance_metres);
-  object["penetration_metres"] = Rounded(quality.penetration_metres);
-  object["range_of_motion_metres"] = Rounded(quality.range_of_motion_metres);
-  if (!quality.recognised_class.empty()) object["recognised_class"] = quality.recognised_class;
-  AddIf("class_probability", quality.class_probability, &object);
-  if (quality.grade.has_value()) {
-    object["twisted"] = Rounded(quality.grade->twisted);
-    object["skating"] = Rounded(quality.grade->skating);
-    object["leader_skating"] = Rounded(quality.grade->leader_skating);
-    object["overlapping"] = Rounded(quality.grade->overlapping);
+  for (const char* name : kQualityFields) {
+    const auto figure = quality.figures.find(name);
+    if (figure != quality.figures.end()) object[name] = Rounded(figure->second);
+    if (name == kRecognisedClass && !quality.recognised_class.empty()) {
+      object[name] = quality.recognised_class;
+    }
   }
   return object;
 }
@@ -98,7 +87,9 @@ ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswe
   record["frame_rate_hz"] = answer.frame_rate_hz;
   record["skeleton"] = answer.skeleton;
   record["quality"] = QualityJson(answer.quality);
-  AddIf("unfamiliarity", answer.unfamiliarity, &record);
+  if (answer.quality.unfamiliarity) {
+    record["unfamiliarity"] = Rounded(*answer.quality.unfamiliarity);
+  }
   record["answers"] = answer.answers;
   AddMadeBy(answer.made_by, &record);
   return record;

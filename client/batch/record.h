@@ -23,14 +23,6 @@ inline constexpr char kDone[] = "done";
 inline constexpr char kRejected[] = "rejected";
 inline constexpr char kFailed[] = "failed";
 
-// The figures of Quality, in the order of the columns of tables.
-inline constexpr char kRecognisedClass[] = "recognised_class";
-inline constexpr const char* kQualityFields[] = {
-    "lean_degrees",    "foot_above_floor_metres", "foot_below_floor_metres",
-    "distance_metres", "penetration_metres",      "range_of_motion_metres",
-    kRecognisedClass,  "class_probability",       "twisted",
-    "skating",         "leader_skating",          "overlapping"};
-
 struct RecordedFile {
   std::string path;
   uint64_t bytes = 0;
@@ -50,7 +42,6 @@ struct RecordedAnswer {
   double frame_rate_hz = 0;
   int skeleton = 0;  // index into dataset.json's
   Quality quality;
-  std::optional<double> unfamiliarity;
   std::vector<float> pin_metres;  // of the leader's pins
   int answers = 1;
   MadeBy made_by;

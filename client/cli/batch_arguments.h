@@ -10,7 +10,7 @@
 
 #include "client/batch/failures.h"
 #include "client/batch/flow/server_choice.h"
-#include "client/batch/recipe_file.h"
+#include "client/batch/recipe.h"
 #include "client/batch/shard.h"
 #include "client/batch/survey.h"
 #include "client/cli/server.h"

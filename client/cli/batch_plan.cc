@@ -36,7 +36,7 @@ absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(
     const BatchArguments& arguments, const batch::Recipe& recipe, std::istream* in,
     std::vector<std::string>* passed_over) {
   if (arguments.manifest.empty()) {
-    return batch::ListLeaders(arguments.leaders, recipe.input.format, passed_over);
+    return batch::ListLeaders(arguments.leaders, recipe.input.reading.format, passed_over);
   }
   const bool copied = !arguments.manifest_copy.empty();
   if (arguments.manifest == "-" && !copied) {

@@ -16,7 +16,7 @@
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
 #include "client/batch/manifest.h"
-#include "client/batch/recipe_file.h"
+#include "client/batch/recipe.h"
 #include "model/base/sha256.h"
 #include "tests/fuzz/promises.h"
 #include "tests/support/temporary_folder.h"

@@ -18,7 +18,7 @@
 #include "client/batch/job_folder.h"
 #include "client/batch/manifest.h"
 #include "client/batch/plan_check.h"
-#include "client/batch/recipe_file.h"
+#include "client/batch/recipe.h"
 #include "client/batch/survey.h"
 #include "duet/batch/v1/batch.pb.h"
 #include "gmock/gmock.h"

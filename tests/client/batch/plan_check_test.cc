@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "client/batch/manifest.h"
-#include "client/batch/recipe_file.h"
+#include "client/batch/recipe.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/formats/motion_file.h"

@@ -12,7 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/batch/answer.h"
 #include "client/batch/manifest.h"
-#include "client/batch/recipe_file.h"
+#include "client/batch/recipe.h"
 #include "client/batch/shard.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"

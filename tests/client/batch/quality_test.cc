@@ -1,6 +1,10 @@
 #include "client/batch/quality.h"
 
+#include <google/protobuf/text_format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -31,18 +35,25 @@ motion::Skeleton WithLandmarks() {
   return skeleton;
 }
 
-TEST(Measure, MeasuresThePlaceOfTheFollower) {
-  const Quality standing = Measure(Pair({3, 0, 4}), WithLandmarks());
-  EXPECT_NEAR(standing.distance_metres, 5, 1e-4);
-  EXPECT_EQ(standing.penetration_metres, 0);
-  EXPECT_GT(standing.range_of_motion_metres, 0);
-  EXPECT_LT(*standing.lean_degrees, 45);
+double FigureOf(const Quality& quality, const std::string& name) {
+  const auto found = quality.figures.find(name);
+  return found == quality.figures.end() ? std::nan("") : found->second;
+}
 
-  const Quality floating = Measure(Pair({0, 0.5f, 0}), WithLandmarks());
-  EXPECT_NEAR(*floating.foot_above_floor_metres - *standing.foot_above_floor_metres, 0.5, 1e-4);
-  EXPECT_GT(floating.penetration_metres, 0);
-  const Quality sunk = Measure(Pair({3, -0.5f, 0}), WithLandmarks());
-  EXPECT_GT(*sunk.foot_below_floor_metres, 0.4);
+TEST(Measure, MeasuresThePlaceOfTheFollower) {
+  const Quality standing = Measure(Pair({3, 0, 4}), WithLandmarks(), {});
+  EXPECT_NEAR(FigureOf(standing, "distance_metres"), 5, 1e-4);
+  EXPECT_EQ(FigureOf(standing, "penetration_metres"), 0);
+  EXPECT_GT(FigureOf(standing, "range_of_motion_metres"), 0);
+  EXPECT_LT(FigureOf(standing, "lean_degrees"), 45);
+
+  const Quality floating = Measure(Pair({0, 0.5f, 0}), WithLandmarks(), {});
+  EXPECT_NEAR(FigureOf(floating, "foot_above_floor_metres") -
+                  FigureOf(standing, "foot_above_floor_metres"),
+              0.5, 1e-4);
+  EXPECT_GT(FigureOf(floating, "penetration_metres"), 0);
+  const Quality sunk = Measure(Pair({3, -0.5f, 0}), WithLandmarks(), {});
+  EXPECT_GT(FigureOf(sunk, "foot_below_floor_metres"), 0.4);
 }
 
 TEST(Recognise, UsesTheRequestedClassInAnyOrderOfJoints) {
@@ -53,11 +64,12 @@ TEST(Recognise, UsesTheRequestedClassInAnyOrderOfJoints) {
   Recognise(*classifier, "kick", pair, &kick);
   Recognise(*classifier, "hug", pair, &hug);
   Recognise(*classifier, "none", pair, &none);
-  EXPECT_NEAR(*kick.class_probability + *hug.class_probability, 1, 1e-5);
-  EXPECT_EQ(kick.recognised_class, *kick.class_probability > 0.5 ? "kick" : "hug");
+  const double of_kick = FigureOf(kick, "class_probability");
+  EXPECT_NEAR(of_kick + FigureOf(hug, "class_probability"), 1, 1e-5);
+  EXPECT_EQ(kick.recognised_class, of_kick > 0.5 ? "kick" : "hug");
   EXPECT_EQ(kick.recognised_class, hug.recognised_class);
   EXPECT_EQ(none.recognised_class, "");
-  EXPECT_FALSE(none.class_probability);
+  EXPECT_THAT(none.figures, IsEmpty());
   motion::ClipPair reversed = pair;
   for (motion::Clip* clip : {&reversed.leader, &reversed.follower}) {
     std::reverse(clip->joint_names.begin(), clip->joint_names.end());
@@ -66,86 +78,82 @@ TEST(Recognise, UsesTheRequestedClassInAnyOrderOfJoints) {
     }
   }
   Recognise(*classifier, "kick", reversed, &turned);
-  EXPECT_NEAR(*turned.class_probability, *kick.class_probability, 1e-6);
-}
-
-TEST(WhyRejected, UsesTheProbabilityOfTheClass) {
-  QualityFilter filter;
-  filter.min_class_probability = 0.5;
-  Quality quality;
-  EXPECT_THAT(WhyRejected(filter, quality, std::nullopt), IsEmpty());  // not looked at
-  quality.class_probability = 0.5;
-  EXPECT_THAT(WhyRejected(filter, quality, std::nullopt), IsEmpty());
-  quality.class_probability = 0.25;
-  EXPECT_THAT(WhyRejected(filter, quality, std::nullopt),
-              ElementsAre("class_probability: expected at least 0.5, got 0.25"));
+  EXPECT_NEAR(FigureOf(turned, "class_probability"), of_kick, 1e-6);
 }
 
 TEST(Measure, OmitsFiguresWithoutTheirJoints) {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   skeleton.hips.reset();
   skeleton.feet.reset();
-  const Quality quality = Measure(Pair({1, 0, 0}), skeleton);
-  EXPECT_FALSE(quality.lean_degrees.has_value());
-  EXPECT_FALSE(quality.foot_above_floor_metres.has_value());
+  const Quality quality = Measure(Pair({1, 0, 0}), skeleton, {});
+  EXPECT_EQ(quality.figures.count("lean_degrees"), 0u);
+  EXPECT_EQ(quality.figures.count("foot_above_floor_metres"), 0u);
+  EXPECT_EQ(quality.figures.count("twisted"), 0u);
+}
+
+v1::QualityFilter Filter(const std::string& text) {
+  v1::QualityFilter filter;
+  EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(text, &filter)) << text;
+  return filter;
 }
 
 Quality Good() {
   Quality quality;
-  quality.lean_degrees = 10;
-  quality.foot_above_floor_metres = 0.1;
-  quality.foot_below_floor_metres = 0.1;
-  quality.distance_metres = 1;
-  quality.penetration_metres = 0.1;
-  quality.range_of_motion_metres = 0.1;
-  quality.grade = MotionGrade{0.2, 0.5, 0.25, 0.1, {}};
+  quality.figures = {{"lean_degrees", 10},
+                     {"foot_above_floor_metres", 0.1},
+                     {"foot_below_floor_metres", 0.1},
+                     {"distance_metres", 1},
+                     {"penetration_metres", 0.1},
+                     {"range_of_motion_metres", 0.1},
+                     {"class_probability", 0.25},
+                     {"twisted", 0.2},
+                     {"skating", 0.5},
+                     {"leader_skating", 0.25},
+                     {"overlapping", 0.1}};
+  quality.unfamiliarity = 5;
   return quality;
 }
 
 TEST(WhyRejected, EachLimitIsCheckedSeparately) {
-  EXPECT_THAT(WhyRejected({}, Good(), 5.0), IsEmpty());
-  const auto only = [](auto set) {
-    QualityFilter filter;
-    set(&filter);
-    return WhyRejected(filter, Good(), 5.0);
+  const struct {
+    const char* limit;
+    const char* reason;  // empty: none
+  } kCases[] = {
+      {"", ""},
+      {"max_lean_degrees: 9", "lean_degrees: expected at most 9, got 10"},
+      {"max_lean_degrees: 10", ""},
+      {"max_foot_above_floor_metres: 0.05",
+       "foot_above_floor_metres: expected at most 0.05, got 0.1"},
+      {"max_foot_below_floor_metres: 0.05",
+       "foot_below_floor_metres: expected at most 0.05, got 0.1"},
+      {"min_distance_metres: 1.5", "distance_metres: expected at least 1.5, got 1"},
+      {"max_distance_metres: 0.5", "distance_metres: expected at most 0.5, got 1"},
+      {"max_penetration_metres: 0", "penetration_metres: expected at most 0, got 0.1"},
+      {"min_range_of_motion_metres: 0.2",
+       "range_of_motion_metres: expected at least 0.2, got 0.1"},
+      {"max_unfamiliarity: 1.5", "unfamiliarity: expected at most 1.5, got 5"},
+      {"max_twisted: 0.1", "twisted: expected at most 0.1, got 0.2"},
+      {"max_overlapping: 0", "overlapping: expected at most 0, got 0.1"},
+      {"max_skating_over_leader: 0.2", "skating_over_leader: expected at most 0.2, got 0.25"},
+      {"max_skating_over_leader: 0.25", ""},
+      {"classifier { min_probability: 0.5 }", "class_probability: expected at least 0.5, got 0.25"},
+      {"classifier { min_probability: 0.25 }", ""},
   };
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_lean_degrees = 9; }),
-              ElementsAre("lean_degrees: expected at most 9, got 10"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_lean_degrees = 10; }), IsEmpty());
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_foot_above_floor_metres = 0.05; }),
-              ElementsAre("foot_above_floor_metres: expected at most 0.05, got 0.1"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_foot_below_floor_metres = 0.05; }),
-              ElementsAre("foot_below_floor_metres: expected at most 0.05, got 0.1"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->min_distance_metres = 1.5; }),
-              ElementsAre("distance_metres: expected at least 1.5, got 1"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_distance_metres = 0.5; }),
-              ElementsAre("distance_metres: expected at most 0.5, got 1"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_penetration_metres = 0; }),
-              ElementsAre("penetration_metres: expected at most 0, got 0.1"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->min_range_of_motion_metres = 0.2; }),
-              ElementsAre("range_of_motion_metres: expected at least 0.2, got 0.1"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_unfamiliarity = 1.5; }),
-              ElementsAre("unfamiliarity: expected at most 1.5, got 5"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_twisted = 0.1; }),
-              ElementsAre("twisted: expected at most 0.1, got 0.2"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_overlapping = 0; }),
-              ElementsAre("overlapping: expected at most 0, got 0.1"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_skating_over_leader = 0.2; }),
-              ElementsAre("skating_over_leader: expected at most 0.2, got 0.25"));
-  EXPECT_THAT(only([](QualityFilter* f) { f->max_skating_over_leader = 0.25; }), IsEmpty());
+  for (const auto& one : kCases) {
+    const std::vector<std::string> reasons = WhyRejected(Filter(one.limit), Good());
+    if (*one.reason == '\0') {
+      EXPECT_THAT(reasons, IsEmpty()) << one.limit;
+    } else {
+      EXPECT_THAT(reasons, ElementsAre(one.reason)) << one.limit;
+    }
+  }
 }
 
 TEST(WhyRejected, UnknownFiguresPass) {
-  QualityFilter filter;
-  filter.max_lean_degrees = 1;
-  filter.max_unfamiliarity = 1;
-  filter.max_twisted = 0;
-  filter.max_overlapping = 0;
-  filter.max_skating_over_leader = 0;
-  Quality quality = Good();
-  quality.lean_degrees.reset();
-  quality.grade.reset();
-  EXPECT_THAT(WhyRejected(filter, quality, std::nullopt), IsEmpty());
+  EXPECT_THAT(WhyRejected(Filter("max_lean_degrees: 1 max_unfamiliarity: 1 max_twisted: 0 "
+                                 "max_skating_over_leader: 0 classifier { min_probability: 1 }"),
+                          Quality()),
+              IsEmpty());
 }
 
 }  // namespace

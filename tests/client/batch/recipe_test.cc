@@ -1,7 +1,7 @@
 #include <map>
 #include <string>
 
-#include "client/batch/recipe_file.h"
+#include "client/batch/recipe.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/classifier/classifier_files.h"
@@ -65,17 +65,17 @@ TEST(Recipe, TextFormatAndJsonAreEquivalent) {
   ASSERT_THAT(text, IsOk());
   ASSERT_THAT(json, IsOk());
   EXPECT_EQ(text->digest, json->digest);
-  const auto& labels = std::get<Labels>(text->reactions[0].kind);
+  const Labels labels = ToLabels(text->reactions[0].labels());
   ASSERT_EQ(labels.size(), 2u);
   EXPECT_EQ(labels[0].interaction_class, "hug");
   EXPECT_EQ(labels[0].weight, -0.5f);
   EXPECT_EQ(text->models[0].version, 2);
   EXPECT_EQ(text->candidates, 4);
-  EXPECT_EQ(text->filter.max_lean_degrees, 30);
-  EXPECT_EQ(text->filter.max_twisted, 0.1);
-  EXPECT_EQ(text->filter.max_overlapping, 0.2);
-  EXPECT_EQ(text->filter.max_skating_over_leader, 0.3);
-  EXPECT_EQ(text->filter.retries_per_item, 2);
+  EXPECT_EQ(text->filter.max_lean_degrees(), 30);
+  EXPECT_EQ(text->filter.max_twisted(), 0.1);
+  EXPECT_EQ(text->filter.max_overlapping(), 0.2);
+  EXPECT_EQ(text->filter.max_skating_over_leader(), 0.3);
+  EXPECT_EQ(text->filter.retries_per_item(), 2);
 }
 
 TEST(Recipe, ChangesOfTheOutputChangeTheDigest) {
@@ -104,7 +104,7 @@ TEST(ReadRecipe, ReadsAJointMapFile) {
                                                   "joint_map { key: 'head' value: 'Hat' } }");
   const absl::StatusOr<Recipe> recipe = ReadRecipe(folder / "r.textproto");
   ASSERT_THAT(recipe, IsOk());
-  EXPECT_EQ(recipe->input.joint_map,
+  EXPECT_EQ(recipe->input.reading.joint_overrides,
             (retargeting::JointOverrides{{"head", "Hat"}, {"torso", "Chest 3"}}));
   // What the table says counts, not where it is said.
   test::WriteTestFile(folder / "same.textproto",
@@ -220,8 +220,8 @@ TEST(ReadRecipe, ClassifierIsIdentifiedByContent) {
   }
   EXPECT_EQ(recipes["a"]->digest, recipes["b"]->digest);
   EXPECT_NE(recipes["a"]->digest, recipes["c"]->digest);
-  EXPECT_EQ(recipes["c"]->filter.classifier->parts().classes[0], "push");
-  EXPECT_EQ(recipes["c"]->filter.min_class_probability, 0.5);
+  EXPECT_EQ(recipes["c"]->classifier->parts().classes[0], "push");
+  EXPECT_EQ(recipes["c"]->filter.classifier().min_probability(), 0.5);
 }
 
 TEST(ReadRecipe, MissingClassifierAndProbabilityAboveOneAreRejected) {
@@ -251,7 +251,7 @@ TEST(ReadRecipe, FormatFlagOverridesTheRecipe) {
   const auto recipe =
       ParseRecipe("input { format: 'bvh' } output { formats: FORMAT_NPY }", false, {}, overrides);
   ASSERT_THAT(recipe, IsOk());
-  EXPECT_EQ(recipe->input.format, formats::Format::kSbuText);
+  EXPECT_EQ(recipe->input.reading.format, formats::Format::kSbuText);
 }
 
 TEST(ReadRecipe, ErrorsNameTheFileAndExtensionSelectsTheFormat) {
