@@ -25,11 +25,11 @@ std::string SetOf(const std::string& leader) {
 
 }  // namespace
 
-const dataset::DatasetLayout* CapturesOf(Layout layout) {
+const dataset::DatasetLayout* CapturesOf(v1::Layout layout) {
   static const auto* const sbu = new dataset::DatasetLayout(dataset::SbuLayout());
   static const auto* const k3hi = new dataset::DatasetLayout(dataset::K3hiLayout());
-  if (layout == Layout::kSbu) return sbu;
-  return layout == Layout::kK3hi ? k3hi : nullptr;
+  if (layout == v1::LAYOUT_SBU) return sbu;
+  return layout == v1::LAYOUT_K3HI ? k3hi : nullptr;
 }
 
 absl::Status CheckJoints(const dataset::DatasetLayout& captures, const ModelInfo& model) {
@@ -40,14 +40,14 @@ absl::Status CheckJoints(const dataset::DatasetLayout& captures, const ModelInfo
       model.name, "@", model.version, " with ", absl::StrJoin(model.joint_names, ", ")));
 }
 
-absl::StatusOr<std::string> CaptureFolder(Layout layout, const std::string& interaction_class,
+absl::StatusOr<std::string> CaptureFolder(v1::Layout layout, const std::string& interaction_class,
                                           const std::string& leader) {
   const std::vector<dataset::ClassLayout>& classes = CapturesOf(layout)->classes;
   const auto found =
       std::find_if(classes.begin(), classes.end(),
                    [&](const dataset::ClassLayout& one) { return one.name == interaction_class; });
   if (found != classes.end()) {
-    return layout == Layout::kSbu ? absl::StrCat(SetOf(leader), "/", found->folder) : found->folder;
+    return layout == v1::LAYOUT_SBU ? absl::StrCat(SetOf(leader), "/", found->folder) : found->folder;
   }
   std::vector<std::string> names;
   for (const dataset::ClassLayout& one : classes) names.push_back(one.name);
@@ -56,9 +56,9 @@ absl::StatusOr<std::string> CaptureFolder(Layout layout, const std::string& inte
                    absl::StrJoin(names, ", "), "), got ", base::Quoted(interaction_class)));
 }
 
-std::string CaptureName(Layout layout, const std::string& folder, int number) {
+std::string CaptureName(v1::Layout layout, const std::string& folder, int number) {
   const std::string sequence = absl::StrFormat("%s/%03d", folder, number);
-  return layout == Layout::kSbu ? sequence + "/skeleton_pos" : sequence;
+  return layout == v1::LAYOUT_SBU ? sequence + "/skeleton_pos" : sequence;
 }
 
 }  // namespace duet::client::batch

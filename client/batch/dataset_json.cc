@@ -6,14 +6,12 @@
 #include "absl/strings/str_cat.h"
 #include "client/batch/capture_layout.h"
 #include "client/batch/encode.h"
-#include "duet/batch/v1/batch.pb.h"
 #include "model/motion/coordinates.h"
 
 namespace duet::client::batch {
 namespace {
 
 using nlohmann::ordered_json;
-namespace v1 = ::duet::batch::v1;
 
 constexpr char kFormat[] = "duet-batch";
 constexpr int kFormatVersion = 1;
@@ -72,28 +70,28 @@ std::vector<std::string> AllClasses(const std::vector<ModelInfo>& models) {
   return all;
 }
 
-ordered_json FilesJson(Format format) {
-  // The enums have the same order; the proto's begins at 1.
-  const auto proto = static_cast<v1::Format>(static_cast<int>(format) + v1::FORMAT_BVH);
-  ordered_json files = {{"format", v1::Format_Name(proto)},
+ordered_json FilesJson(v1::Format format) {
+  ordered_json files = {{"format", v1::Format_Name(format)},
                         {"endings", EndingsOf(format)},
-                        {"unit", format == Format::kBvh ? "centimetres" : "metres"},
+                        {"unit", format == v1::FORMAT_BVH ? "centimetres" : "metres"},
                         {"up_axis", motion::UpAxisName(motion::UpAxis::kYUp)}};
-  if (format == Format::kNpy) {
+  if (format == v1::FORMAT_NPY) {
     files["dtype"] = "float32";
     files["shape"] = {"people", "frames", "joints", "coordinates"};
   }
   return files;
 }
 
-ordered_json AllFilesJson(const Output& output) {
+ordered_json AllFilesJson(const v1::Output& output) {
   ordered_json array = ordered_json::array();
-  if (const dataset::DatasetLayout* const captures = CapturesOf(output.layout)) {
+  if (const dataset::DatasetLayout* const captures = CapturesOf(output.layout())) {
     array.push_back({{"endings", {".txt"}},
                      {"unit", motion::LengthUnitName(captures->coordinates.unit)},
                      {"up_axis", motion::UpAxisName(captures->coordinates.up_axis)}});
   }
-  for (const Format format : output.formats) array.push_back(FilesJson(format));
+  for (const int format : output.formats()) {
+    array.push_back(FilesJson(static_cast<v1::Format>(format)));
+  }
   return array;
 }
 
@@ -105,7 +103,7 @@ ordered_json RatesJson(const std::map<double, int64_t>& items_by_rate) {
   return array;
 }
 
-std::optional<double> CommonRate(const Output& output, const DoneItems& done) {
+std::optional<double> CommonRate(const v1::Output& output, const DoneItems& done) {
   const std::optional<double> rate_hz = RateOf(output);
   if (rate_hz || done.items_by_rate.size() != 1) return rate_hz;
   return done.items_by_rate.begin()->first;
@@ -138,7 +136,7 @@ std::string NameOfModel(const ModelInfo& model) {
 
 std::string DatasetJson(const SetSource& source, const SetCounts& counts, int64_t planned,
                         const DoneItems& done) {
-  const Output& output = source.recipe.output;
+  const v1::Output& output = source.recipe.output;
   ordered_json dataset = {{"format", kFormat},
                           {"format_version", kFormatVersion},
                           {"recipe_sha256", source.recipe.digest},
@@ -156,9 +154,7 @@ std::string DatasetJson(const SetSource& source, const SetCounts& counts, int64_
   dataset["models"] = ModelsJson(source, done);
   dataset["interaction_classes"] = AllClasses(source.models);
   dataset["files"] = AllFilesJson(output);
-  // The enums have the same order; the proto's begins at 1.
-  dataset["layout"] = v1::Layout_Name(
-      static_cast<v1::Layout>(static_cast<int>(output.layout) + v1::LAYOUT_MIRROR));
+  dataset["layout"] = v1::Layout_Name(output.layout());
   return dataset.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -1,58 +1,47 @@
 #include "client/batch/encode.h"
 
-#include <iterator>
 #include <utility>
 
 #include "client/batch/capture_layout.h"
-#include "model/formats/bvh/bvh_document.h"
-#include "model/formats/bvh/bvh_export.h"
-#include "model/formats/flat/csv.h"
-#include "model/formats/flat/json_motion.h"
-#include "model/formats/flat/npy.h"
 #include "model/formats/flat/sbu_text.h"
-#include "model/formats/gltf/gltf_export.h"
+#include "model/formats/motion_file.h"
 #include "model/motion/recorded_motion.h"
 #include "model/motion/resample.h"
 
 namespace duet::client::batch {
 namespace {
 
-absl::StatusOr<std::vector<EncodedFile>> EncodeBvh(const motion::ClipPair& pair,
-                                                   const motion::Skeleton& skeleton) {
-  const absl::StatusOr<formats::bvh::BvhDocument> leader =
-      formats::bvh::ToBvh(pair.leader, skeleton);
-  if (!leader.ok()) return leader.status();
-  const absl::StatusOr<formats::bvh::BvhDocument> follower =
-      formats::bvh::ToBvh(pair.follower, skeleton);
-  if (!follower.ok()) return follower.status();
-  return std::vector<EncodedFile>{{".leader.bvh", FormatBvh(*leader)},
-                                  {".follower.bvh", FormatBvh(*follower)}};
-}
-
-// The file omits labels and model, which are in the index.
-absl::StatusOr<std::vector<EncodedFile>> EncodeGlb(const motion::ClipPair& pair,
-                                                   const motion::Skeleton& skeleton) {
-  absl::StatusOr<std::string> content = formats::gltf::FormatGltf(
-      {pair.leader, pair.follower}, skeleton, nullptr, formats::gltf::GltfContainer::kBinary);
-  if (!content.ok()) return content.status();
-  return std::vector<EncodedFile>{{".glb", *std::move(content)}};
-}
-
-absl::StatusOr<std::vector<EncodedFile>> EncodeFormat(Format format, const motion::ClipPair& pair,
-                                                      const motion::Skeleton& skeleton) {
+formats::Format FileFormat(v1::Format format) {
   switch (format) {
-    case Format::kBvh:
-      return EncodeBvh(pair, skeleton);
-    case Format::kCsv:
-      return std::vector<EncodedFile>{{".csv", formats::flat::FormatCsv(pair)}};
-    case Format::kNpy:
-      return std::vector<EncodedFile>{{".npy", formats::flat::FormatNpy(pair)}};
-    case Format::kGlb:
-      return EncodeGlb(pair, skeleton);
-    case Format::kJson:
-      break;
+    case v1::FORMAT_BVH:
+      return formats::Format::kBvh;
+    case v1::FORMAT_CSV:
+      return formats::Format::kCsv;
+    case v1::FORMAT_NPY:
+      return formats::Format::kNpy;
+    case v1::FORMAT_GLB:
+      return formats::Format::kGlb;
+    default:
+      return formats::Format::kJson;
   }
-  return std::vector<EncodedFile>{{".json", formats::flat::FormatJsonMotion(pair, skeleton)}};
+}
+
+// The files omit labels and model, which are in the index.
+absl::Status AddFiles(v1::Format format, const motion::ClipPair& pair, const motion::Skeleton& skeleton,
+                      std::vector<EncodedFile>* all) {
+  const std::vector<std::string> endings = EndingsOf(format);
+  const bool together = endings.size() == 1;
+  for (size_t i = 0; i < endings.size(); ++i) {
+    const motion::Clip& person = i == 0 ? pair.leader : pair.follower;
+    absl::StatusOr<std::string> content = formats::FormatPeople(
+        FileFormat(format),
+        together ? std::vector<motion::Clip>{pair.leader, pair.follower}
+                 : std::vector<motion::Clip>{person},
+        skeleton);
+    if (!content.ok()) return content.status();
+    all->push_back({endings[i], *std::move(content)});
+  }
+  return absl::OkStatus();
 }
 
 absl::StatusOr<std::vector<EncodedFile>> EncodeCapture(const dataset::DatasetLayout& captures,
@@ -78,45 +67,45 @@ motion::Clip AtRate(motion::Clip clip, double rate_hz) {
 
 }  // namespace
 
-std::vector<std::string> EndingsOf(Format format) {
+std::vector<std::string> EndingsOf(v1::Format format) {
   switch (format) {
-    case Format::kBvh:
+    case v1::FORMAT_BVH:
       return {".leader.bvh", ".follower.bvh"};
-    case Format::kCsv:
+    case v1::FORMAT_CSV:
       return {".csv"};
-    case Format::kNpy:
+    case v1::FORMAT_NPY:
       return {".npy"};
-    case Format::kGlb:
+    case v1::FORMAT_GLB:
       return {".glb"};
-    case Format::kJson:
-      break;
+    default:
+      return {".json"};
   }
-  return {".json"};
 }
 
-std::optional<double> RateOf(const Output& output) {
-  const dataset::DatasetLayout* const captures = CapturesOf(output.layout);
-  return captures == nullptr ? output.frame_rate_hz : captures->frame_rate_hz;
+std::optional<double> RateOf(const v1::Output& output) {
+  const dataset::DatasetLayout* const captures = CapturesOf(output.layout());
+  if (captures != nullptr) return captures->frame_rate_hz;
+  if (output.has_frame_rate_hz()) return output.frame_rate_hz();
+  return std::nullopt;
 }
 
-motion::ClipPair AtOutputRate(motion::ClipPair pair, const Output& output) {
+motion::ClipPair AtOutputRate(motion::ClipPair pair, const v1::Output& output) {
   const std::optional<double> rate_hz = RateOf(output);
   if (!rate_hz.has_value()) return pair;
   return {AtRate(std::move(pair.leader), *rate_hz), AtRate(std::move(pair.follower), *rate_hz)};
 }
 
-absl::StatusOr<std::vector<EncodedFile>> Encode(const Output& output, formats::Side leader_side,
+absl::StatusOr<std::vector<EncodedFile>> Encode(const v1::Output& output, formats::Side leader_side,
                                                 const motion::ClipPair& pair,
                                                 const motion::Skeleton& skeleton) {
   absl::Status status = CheckPair(pair);
   if (!status.ok()) return status;
-  const dataset::DatasetLayout* const captures = CapturesOf(output.layout);
+  const dataset::DatasetLayout* const captures = CapturesOf(output.layout());
   if (captures != nullptr) return EncodeCapture(*captures, leader_side, pair);
   std::vector<EncodedFile> all;
-  for (const Format format : output.formats) {
-    absl::StatusOr<std::vector<EncodedFile>> files = EncodeFormat(format, pair, skeleton);
-    if (!files.ok()) return files.status();
-    std::move(files->begin(), files->end(), std::back_inserter(all));
+  for (const int format : output.formats()) {
+    status = AddFiles(static_cast<v1::Format>(format), pair, skeleton, &all);
+    if (!status.ok()) return status;
   }
   return all;
 }

@@ -19,18 +19,18 @@ struct EncodedFile {
 };
 
 // What follows an item's name in the names of its files of a format.
-std::vector<std::string> EndingsOf(Format format);
+std::vector<std::string> EndingsOf(v1::Format format);
 
 // The frame rate of every item in Hz, set by the layout or the recipe. Absent: each item has its
 // leader's rate.
-std::optional<double> RateOf(const Output& output);
+std::optional<double> RateOf(const v1::Output& output);
 
 // The pair at that rate. Both people have the same number of frames before and after.
-motion::ClipPair AtOutputRate(motion::ClipPair pair, const Output& output);
+motion::ClipPair AtOutputRate(motion::ClipPair pair, const v1::Output& output);
 
 // The files of a pair: two for BVH, one for any other format. A layout of captures has one file
 // with the leader on its side. INVALID_ARGUMENT for a pair that the format cannot hold.
-absl::StatusOr<std::vector<EncodedFile>> Encode(const Output& output, formats::Side leader_side,
+absl::StatusOr<std::vector<EncodedFile>> Encode(const v1::Output& output, formats::Side leader_side,
                                                 const motion::ClipPair& pair,
                                                 const motion::Skeleton& skeleton);
 

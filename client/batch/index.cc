@@ -193,7 +193,7 @@ std::string SummaryJson(const SetSource& source, const SetCounts& counts,
 
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const SetSource& source,
                                      const PlannedItems& planned, const JobFolder& folder) {
-  IndexWriter writer(folder, CapturesOf(source.recipe.output.layout) != nullptr);
+  IndexWriter writer(folder, CapturesOf(source.recipe.output.layout()) != nullptr);
   absl::Status status = writer.Open();
   if (status.ok()) {
     status = journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry); });

@@ -159,7 +159,7 @@ absl::StatusOr<Plan> Plan::Create(Recipe recipe, std::vector<ModelInfo> models,
   absl::Status status = plan.CheckClasses();
   if (!status.ok()) return status;
   for (const ModelInfo& model : plan.models_) {
-    const dataset::DatasetLayout* const captures = CapturesOf(plan.recipe_.output.layout);
+    const dataset::DatasetLayout* const captures = CapturesOf(plan.recipe_.output.layout());
     if (captures != nullptr) status.Update(CheckJoints(*captures, model));
     status.Update(plan.CheckClassifier(model));
     if (!status.ok()) return status;
@@ -371,7 +371,7 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
 }
 
 absl::StatusOr<std::string> Plan::NameOf(const Item& item) {
-  const Layout layout = recipe_.output.layout;
+  const v1::Layout layout = recipe_.output.layout();
   if (CapturesOf(layout) != nullptr) {
     const absl::StatusOr<std::string> folder =
         CaptureFolder(layout, LargestClass(item), item.leader->given);
@@ -387,7 +387,7 @@ absl::StatusOr<std::string> Plan::NameOf(const Item& item) {
     absl::StrAppend(&name, "-", PlainName(model.name), "_", model.version);
   }
   if (recipe_.samples > 1) absl::StrAppend(&name, "-s", item.sample);
-  if (layout == Layout::kMirror) return name;
+  if (layout == v1::LAYOUT_MIRROR) return name;
   return absl::StrCat(PlainName(LargestClass(item)), "/", name);
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr size_t kQueuedLeaders = 64;
 
-int FramesAsWritten(const motion::Clip& clip, const Output& output) {
+int FramesAsWritten(const motion::Clip& clip, const v1::Output& output) {
   const std::optional<double> rate_hz = RateOf(output);
   if (!rate_hz || clip.frame_count() < 2) return clip.frame_count();
   return motion::ResampledFrameCount(clip.frame_count(), clip.frame_rate_hz, *rate_hz);

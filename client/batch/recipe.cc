@@ -225,43 +225,28 @@ void CheckFilter(const v1::QualityFilter& filter, Checker* check) {
   check->Count("filter.retries_per_item", filter.retries_per_item(), 0, kMaxRetries);
 }
 
-Layout ToLayout(v1::Layout layout) {
-  switch (layout) {
-    case v1::LAYOUT_CLASS_FOLDERS:
-      return Layout::kClassFolders;
-    case v1::LAYOUT_SBU:
-      return Layout::kSbu;
-    case v1::LAYOUT_K3HI:
-      return Layout::kK3hi;
-    default:
-      return Layout::kMirror;
-  }
-}
+// The formats of the enum that a set can have.
+bool IsFormat(int format) { return v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED; }
 
-Output ReadOutput(const v1::Output& proto, Checker* check) {
-  Output output;
+v1::Output ReadOutput(const v1::Output& proto, Checker* check) {
+  v1::Output output = proto;
   check->Expect(v1::Layout_IsValid(proto.layout()), "output.layout", absl::StrCat(proto.layout()),
                 "a layout");
-  output.layout = ToLayout(proto.layout());
-  const bool own_format = CapturesOf(output.layout) != nullptr;
+  if (proto.layout() == v1::LAYOUT_UNSPECIFIED) output.set_layout(v1::LAYOUT_MIRROR);
+  const bool own_format = CapturesOf(output.layout()) != nullptr;
   check->Expect(own_format || proto.formats_size() > 0, "output.formats", "none", "one or more");
   check->Expect(!own_format || proto.formats_size() == 0, "output.formats", "some",
                 "none: the layout has its own");
   for (const int format : proto.formats()) {
-    check->Expect(v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED, "output.formats",
-                  absl::StrCat(format),
+    check->Expect(IsFormat(format), "output.formats", absl::StrCat(format),
                   "FORMAT_BVH, FORMAT_CSV, FORMAT_NPY, FORMAT_JSON or FORMAT_GLB");
-    // The enums have the same order; the proto's begins at 1.
-    output.formats.push_back(static_cast<Format>(format - v1::FORMAT_BVH));
   }
   check->Different("output.formats", proto.formats());
-  if (proto.has_frame_rate_hz()) output.frame_rate_hz = proto.frame_rate_hz();
-  check->Expect(!own_format || !output.frame_rate_hz, "output.frame_rate_hz", "one",
+  check->Expect(!own_format || !proto.has_frame_rate_hz(), "output.frame_rate_hz", "one",
                 "none: the layout has a rate of its own");
-  check->Expect(output.frame_rate_hz.value_or(1) > 0 &&
-                    output.frame_rate_hz.value_or(1) <= motion::kMaxFrameRateHz,
-                "output.frame_rate_hz", absl::StrCat(proto.frame_rate_hz()),
-                "above 0, at most 1000");
+  const double rate_hz = proto.has_frame_rate_hz() ? proto.frame_rate_hz() : 1;
+  check->Expect(rate_hz > 0 && rate_hz <= motion::kMaxFrameRateHz, "output.frame_rate_hz",
+                absl::StrCat(rate_hz), "above 0, at most 1000");
   return output;
 }
 
@@ -283,8 +268,8 @@ absl::StatusOr<Recipe> FromProto(const v1::Recipe& proto) {
   ReadModels(proto, &check, &recipe);
   for (int i = 0; i < proto.reactions_size(); ++i) {
     CheckReaction(proto.reactions(i), absl::StrCat("reactions[", i, "]"), &check);
-    recipe.reactions.push_back(proto.reactions(i));
   }
+  recipe.reactions = proto.reactions();
   if (proto.has_samples()) {
     check.Count("samples", proto.samples(), 1, kMaxSamples);
     recipe.samples = static_cast<int>(proto.samples());

@@ -45,27 +45,18 @@ struct LeaderInput {
   std::optional<motion::Vec3> up;
 };
 
-enum class Format { kBvh, kCsv, kNpy, kJson, kGlb };
-enum class Layout { kMirror, kClassFolders, kSbu, kK3hi };
-
-struct Output {
-  std::vector<Format> formats;  // none where the layout has its own
-  Layout layout = Layout::kMirror;
-  std::optional<double> frame_rate_hz;  // of every item; absent: the rate of its leader
-};
-
 // A recipe that was checked. proto/duet/batch/v1/batch.proto documents the fields.
 struct Recipe {
   uint64_t seed = 0;
   std::vector<ModelChoice> models;  // at least one
-  std::vector<v1::Reaction> reactions;
+  google::protobuf::RepeatedPtrField<v1::Reaction> reactions;
   int samples = 1;
   float variety = 1;
   int candidates = 1;
   LeaderInput input;
   v1::QualityFilter filter;
   std::shared_ptr<const classifier::Classifier> classifier;  // of the filter; null: none
-  Output output;
+  v1::Output output;  // with a layout
   // Digest of everything above in hex. Recipes with the same digest are equal.
   std::string digest;
   // The same as one JSON object with the proto's field names. Files that the recipe names

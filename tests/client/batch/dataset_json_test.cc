@@ -13,8 +13,6 @@
 namespace duet::client::batch {
 namespace {
 
-namespace v1 = ::duet::batch::v1;
-
 motion::Skeleton Stick() {
   motion::Skeleton skeleton;
   skeleton.joint_names = {"top", "hips", "bottom"};
@@ -36,10 +34,11 @@ ModelInfo Model(const std::string& name, std::vector<std::string> classes) {
   return model;
 }
 
-Recipe WithFormats(std::vector<Format> formats) {
+Recipe WithFormats(const std::vector<v1::Format>& formats) {
   Recipe recipe;
   recipe.digest = "cafe";
-  recipe.output.formats = std::move(formats);
+  for (const v1::Format format : formats) recipe.output.add_formats(format);
+  recipe.output.set_layout(v1::LAYOUT_MIRROR);
   return recipe;
 }
 
@@ -69,7 +68,7 @@ TEST(DatasetJson, ParsesAsTheProtoMessage) {
   counts.rejected = 2;
   counts.failed = 1;
   const v1::Dataset dataset =
-      Described(WithFormats({Format::kNpy, Format::kBvh}),
+      Described(WithFormats({v1::FORMAT_NPY, v1::FORMAT_BVH}),
                 {Model("one", {"kick", "hug"}), Model("two", {"hug", "wave"})},
                 {Stick(), motion::SbuSkeleton()}, done, counts, 10);
   EXPECT_EQ(dataset.format(), "duet-batch");
@@ -107,20 +106,20 @@ TEST(DatasetJson, StatesTheCommonFrameRate) {
   DoneItems done;
   done.Add(Done(30, 60));
   done.Add(Done(30, 60));
-  EXPECT_EQ(Described(WithFormats({Format::kNpy}), {Model("one", {"kick"})}, {Stick()}, done)
+  EXPECT_EQ(Described(WithFormats({v1::FORMAT_NPY}), {Model("one", {"kick"})}, {Stick()}, done)
                 .frame_rate_hz(),
             60);
 }
 
 TEST(DatasetJson, RecipesFrameRateIsStatedBeforeAnyItemIsDone) {
-  Recipe recipe = WithFormats({Format::kNpy});
-  recipe.output.frame_rate_hz = 25;
+  Recipe recipe = WithFormats({v1::FORMAT_NPY});
+  recipe.output.set_frame_rate_hz(25);
   EXPECT_EQ(Described(recipe, {Model("one", {"kick"})}, {Stick()}, {}).frame_rate_hz(), 25);
 }
 
 TEST(DatasetJson, CapturesHaveTheirUnitAndRate) {
   Recipe recipe = WithFormats({});
-  recipe.output.layout = Layout::kK3hi;
+  recipe.output.set_layout(v1::LAYOUT_K3HI);
   const v1::Dataset dataset =
       Described(recipe, {Model("one", {"kick"})}, {motion::SbuSkeleton()}, {});
   EXPECT_EQ(dataset.layout(), v1::LAYOUT_K3HI);
@@ -140,7 +139,7 @@ TEST(CheckWeights, DifferentWeightsAreRejected) {
   const auto identity = [](const std::string& sha256) {
     ModelInfo model = Model("one", {"kick"});
     model.weights_sha256 = sha256;
-    return IdentityOf(WithFormats({Format::kNpy}), {}, {model});
+    return IdentityOf(WithFormats({v1::FORMAT_NPY}), {}, {model});
   };
   EXPECT_THAT(CheckWeights(identity("aa"), identity("bb")),
               StatusIs(absl::StatusCode::kFailedPrecondition,

@@ -89,7 +89,7 @@ TEST(Recipe, RateFlagChangesTheDigest) {
   overrides.frame_rate_hz = 30;
   const auto at_30_hz = ParseRecipe(kOutput, false, "", overrides);
   ASSERT_THAT(at_30_hz, IsOk());
-  EXPECT_EQ(at_30_hz->output.frame_rate_hz, 30);
+  EXPECT_EQ(at_30_hz->output.frame_rate_hz(), 30);
   EXPECT_NE(at_30_hz->digest, ParseRecipe(kOutput, false)->digest);
   EXPECT_EQ(at_30_hz->digest,
             ParseRecipe("output { formats: FORMAT_NPY frame_rate_hz: 30 }", false)->digest);
