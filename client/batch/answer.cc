@@ -12,8 +12,7 @@ namespace {
 
 // Keyframes with times as fractions of the clip, converted to frames. In a short clip, several can
 // fall on one frame; the last one counts.
-std::vector<WeightKeyframe> ToFrames(const std::vector<TimedLabels>& keyframes,
-                                     int frame_count) {
+std::vector<WeightKeyframe> ToFrames(const std::vector<TimedLabels>& keyframes, int frame_count) {
   std::vector<WeightKeyframe> frames;
   for (const TimedLabels& keyframe : keyframes) {
     const int frame = static_cast<int>(std::lround(keyframe.at * (frame_count - 1)));

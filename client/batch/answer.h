@@ -4,7 +4,7 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "client/batch/flow/server_choice.h"
+#include "client/batch/flow/call_gate.h"
 #include "client/batch/loaded_leader.h"
 #include "client/batch/plan.h"
 #include "client/batch/record.h"

@@ -47,7 +47,8 @@ absl::StatusOr<std::string> CaptureFolder(v1::Layout layout, const std::string& 
       std::find_if(classes.begin(), classes.end(),
                    [&](const dataset::ClassLayout& one) { return one.name == interaction_class; });
   if (found != classes.end()) {
-    return layout == v1::LAYOUT_SBU ? absl::StrCat(SetOf(leader), "/", found->folder) : found->folder;
+    return layout == v1::LAYOUT_SBU ? absl::StrCat(SetOf(leader), "/", found->folder)
+                                    : found->folder;
   }
   std::vector<std::string> names;
   for (const dataset::ClassLayout& one : classes) names.push_back(one.name);

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
-#include "client/batch/leader_entry.h"
+#include "client/batch/leader_source.h"
 #include "client/batch/text_values.h"
 
 namespace duet::client::batch {
@@ -69,9 +69,8 @@ uint32_t ClassesInMix(const v1::Mixes& mixes) {
 
 bool IsDrawn(const v1::Reaction& reaction) {
   const WeightRange range = RangeOf(reaction.each_class());
-  return reaction.has_mixes() ||
-         (reaction.has_each_class() &&
-          (reaction.each_class().has_beside() || range.min != range.max));
+  return reaction.has_mixes() || (reaction.has_each_class() &&
+                                  (reaction.each_class().has_beside() || range.min != range.max));
 }
 
 std::vector<std::string> ClassesOf(const v1::Reaction& reaction) {

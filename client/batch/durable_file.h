@@ -28,9 +28,9 @@ absl::Status SyncFileSystem(const std::filesystem::path& folder);
 // Flushes a folder's names to disk.
 absl::Status SyncFolder(const std::filesystem::path& folder);
 
-// Many files that reach the disk together, because a flush costs as much as several of them: each is
-// written under a temporary name, all are flushed, then renamed. Files that were not committed when
-// the process ends are discarded.
+// Many files that reach the disk together, because a flush costs as much as several of them: each
+// is written under a temporary name, all are flushed, then renamed. Files that were not committed
+// when the process ends are discarded.
 class FileGroup {
  public:
   // Paths of files are relative to `out`, which is on the file system of `temporary`.

@@ -27,17 +27,17 @@ formats::Format FileFormat(v1::Format format) {
 }
 
 // The files omit labels and model, which are in the index.
-absl::Status AddFiles(v1::Format format, const motion::ClipPair& pair, const motion::Skeleton& skeleton,
-                      std::vector<EncodedFile>* all) {
+absl::Status AddFiles(v1::Format format, const motion::ClipPair& pair,
+                      const motion::Skeleton& skeleton, std::vector<EncodedFile>* all) {
   const std::vector<std::string> endings = EndingsOf(format);
   const bool together = endings.size() == 1;
   for (size_t i = 0; i < endings.size(); ++i) {
     const motion::Clip& person = i == 0 ? pair.leader : pair.follower;
-    absl::StatusOr<std::string> content = formats::FormatPeople(
-        FileFormat(format),
-        together ? std::vector<motion::Clip>{pair.leader, pair.follower}
-                 : std::vector<motion::Clip>{person},
-        skeleton);
+    absl::StatusOr<std::string> content =
+        formats::FormatPeople(FileFormat(format),
+                              together ? std::vector<motion::Clip>{pair.leader, pair.follower}
+                                       : std::vector<motion::Clip>{person},
+                              skeleton);
     if (!content.ok()) return content.status();
     all->push_back({endings[i], *std::move(content)});
   }

@@ -117,7 +117,7 @@ absl::Status FailureTable::WriteLeader() {
     causes_.Add(leader_, error.first, error.second, items, 1);
     if (!status.ok()) continue;
     status = file_.Append(absl::StrCat(Cell(leader_), "\t", items, "\t", error.first, "\t",
-                                        Cell(error.second), "\t", absl::StrJoin(names, ","), "\n"));
+                                       Cell(error.second), "\t", absl::StrJoin(names, ","), "\n"));
   }
   names_.clear();
   return status;

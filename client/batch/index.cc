@@ -123,8 +123,8 @@ class IndexWriter {
       return failed_table_.Add(*record);
     }
     ++counts_.rejected;
-    return rejected_table_.Add(*record, {Cell(*record, "answers"), ReasonsCell(*record),
-                                         Cell(*record, "extra")});
+    return rejected_table_.Add(
+        *record, {Cell(*record, "answers"), ReasonsCell(*record), Cell(*record, "extra")});
   }
 
   absl::Status Finish() {

@@ -181,7 +181,8 @@ void Job::Judge(Work work, const SynthesisResult& result) {
   const std::vector<std::string> reasons = WhyRejected(filter, answer.quality);
   if (reasons.empty()) {
     Keep(work.item, answer, result.pair);
-  } else if (parts_.models[model].samples && work.retry < static_cast<int>(filter.retries_per_item())) {
+  } else if (parts_.models[model].samples &&
+             work.retry < static_cast<int>(filter.retries_per_item())) {
     ++work.retry;
     return queue_.PutBack(std::move(work));
   } else {
@@ -233,8 +234,7 @@ void Job::WriteUntilClosed(JournalWriter* journal) {
 }
 
 // Writes files before records, so that a record never names a missing file.
-absl::Status Job::Write(const std::vector<Settled>& all, FileGroup* files,
-                        JournalWriter* journal) {
+absl::Status Job::Write(const std::vector<Settled>& all, FileGroup* files, JournalWriter* journal) {
   for (const Settled& settled : all) {
     for (const EncodedFile& file : settled.files) {
       absl::Status added = files->Add(settled.item.name + file.ending, file.content);

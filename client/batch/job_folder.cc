@@ -105,10 +105,10 @@ absl::Status CheckWeights(const JobIdentity& begun, const JobIdentity& now) {
     const std::string& after = now.models[i].weights_sha256;
     // Without digests, the weights cannot be compared.
     if (before == after || before.empty() || after.empty()) continue;
-    return absl::FailedPreconditionError(absl::StrCat(
-        "model ", ModelText(now.models[i].choice), ": expected the weights that the set was begun ",
-        "with (SHA-256 ", before, "), got ", after,
-        ". Serve those weights again, or choose another --out."));
+    return absl::FailedPreconditionError(
+        absl::StrCat("model ", ModelText(now.models[i].choice),
+                     ": expected the weights that the set was begun ", "with (SHA-256 ", before,
+                     "), got ", after, ". Serve those weights again, or choose another --out."));
   }
   return absl::OkStatus();
 }

@@ -7,7 +7,7 @@
 
 #include "absl/container/flat_hash_map.h"
 #include "absl/status/status.h"
-#include "client/batch/leader_entry.h"
+#include "client/batch/leader_source.h"
 
 namespace duet::client::batch {
 

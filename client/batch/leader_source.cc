@@ -1,7 +1,5 @@
 #include "client/batch/leader_source.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <fstream>
 #include <set>
@@ -11,6 +9,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "client/batch/file_name.h"
 #include "model/base/missing_file.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"
@@ -77,7 +76,7 @@ bool LooksLikeMotion(const fs::path& file) {
          row.find_first_not_of("0123456789+-.eE, \t\r") == absl::string_view::npos;
 }
 
-// Whether a file of a folder or a pattern may be a leader. Without a format, its extension must be
+// Whether a file of a folder may be a leader. Without a format, its extension must be
 // that of a motion; with one, its extension must not be that of another format.
 bool MayLead(const fs::path& file, const std::optional<formats::Format>& format) {
   if (!format.has_value()) return formats::IsReadable(file);
@@ -111,59 +110,6 @@ absl::Status AddFolder(const fs::path& folder, const std::optional<formats::Form
   return absl::OkStatus();
 }
 
-bool IsPattern(const fs::path& path) {
-  return path.string().find_first_of("*?") != std::string::npos;
-}
-
-// Every file that matches a pattern of several parts, sorted by name.
-std::vector<fs::path> Expand(const fs::path& pattern) {
-  std::vector<fs::path> found = {pattern.is_absolute() ? pattern.root_path() : fs::path()};
-  for (const fs::path& part : pattern.relative_path()) {
-    std::vector<fs::path> next;
-    for (const fs::path& folder : found) {
-      if (!IsPattern(part)) {
-        next.push_back(folder / part);
-        continue;
-      }
-      std::error_code error;
-      for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end;
-           !error && it != end; it.increment(error)) {
-        const fs::path name = it->path().filename();
-        if (fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0) next.push_back(folder / name);
-      }
-    }
-    std::sort(next.begin(), next.end());
-    found = std::move(next);
-  }
-  return found;
-}
-
-// The folder that names are relative to: the parts of a pattern before its first wildcard.
-fs::path FixedPart(const fs::path& pattern) {
-  fs::path fixed;
-  for (const fs::path& part : pattern.parent_path()) {
-    if (IsPattern(part)) break;
-    fixed /= part;
-  }
-  return fixed;
-}
-
-absl::Status AddPattern(const fs::path& pattern, const std::optional<formats::Format>& format,
-                        LeaderList* list) {
-  bool any = false;
-  const fs::path fixed = FixedPart(pattern);
-  for (const fs::path& file : Expand(pattern)) {
-    std::error_code error;
-    if (!fs::is_regular_file(file, error) || !MayLead(file, format)) continue;
-    any = true;
-    absl::Status status = list->Add(file, fixed.empty() ? file : file.lexically_relative(fixed));
-    if (!status.ok()) return status;
-  }
-  if (any) return absl::OkStatus();
-  return absl::NotFoundError(
-      absl::StrCat(pattern.string(), ": no motion file matches this pattern"));
-}
-
 absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>& format,
                       LeaderList* list, std::vector<std::string>* passed_over) {
   std::error_code error;
@@ -173,7 +119,6 @@ absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>
     return MendedBy(formats::UnknownExtension(path, formats::kReadableExtensions),
                     motion::ReadingSetting::kFormat);
   }
-  if (IsPattern(path)) return AddPattern(path, format, list);
   return base::MissingFile(path, "file or folder");
 }
 
@@ -185,6 +130,22 @@ bool IsWithin(const fs::path& path, const fs::path& folder) {
 }
 
 }  // namespace
+
+std::string KeyOf(const std::filesystem::path& path) {
+  std::string key;
+  for (const std::filesystem::path& part : path.relative_path().lexically_normal()) {
+    std::string name = AsUtf8(part.string());
+    if (name.empty() || name == "." || name == "..") continue;
+    for (char& c : name) {
+      const auto byte = static_cast<unsigned char>(c);
+      // Bytes from 0x80 on are letters of other scripts in UTF-8.
+      if (!absl::ascii_isalnum(byte) && byte < 0x80 && c != '_' && c != '-' && c != '+') c = '_';
+    }
+    if (!key.empty()) key += '/';
+    key += name;
+  }
+  return key;
+}
 
 absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
     const std::vector<std::string>& inputs, const std::optional<formats::Format>& format,
@@ -207,8 +168,7 @@ absl::Status CheckInputs(const std::vector<std::string>& inputs, const fs::path&
   std::error_code error;
   const fs::path set = fs::weakly_canonical(fs::absolute(out), error);
   for (const std::string& input : inputs) {
-    if (!fs::exists(input, error) && !IsPattern(input))
-      return base::MissingFile(input, "file or folder");
+    if (!fs::exists(input, error)) return base::MissingFile(input, "file or folder");
     if (!fs::is_directory(input, error) || !IsWithin(set, fs::canonical(input, error))) continue;
     return absl::InvalidArgumentError(absl::StrCat("--out: expected a folder outside ", input,
                                                    ", whose files are leaders, got ", out.string(),

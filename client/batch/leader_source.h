@@ -1,18 +1,46 @@
 #ifndef DUET_CLIENT_BATCH_LEADER_SOURCE_H_
 #define DUET_CLIENT_BATCH_LEADER_SOURCE_H_
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "client/batch/leader_entry.h"
+#include "client/batch/recipe.h"
+#include "client/batch/text_values.h"
 #include "model/formats/motion_file.h"
+#include "model/motion/vec3.h"
 
 namespace duet::client::batch {
+
+// A leader of the list, with its settings.
+struct LeaderEntry {
+  // Unique name of its outputs: a path relative to the data set, without extension.
+  std::string key;
+  bool has_id = false;  // the key is the `id` of a manifest
+  std::string given;    // as listed
+  std::string line;     // "MANIFEST:NUMBER" if it comes from a manifest
+  std::filesystem::path file;
+  std::optional<formats::Side> side;
+  Labels labels;               // if not empty, override the recipe's reactions
+  std::string model;           // one of the recipe's; empty: all of them
+  std::string follower_start;  // a point or a file; empty: set by the recipe
+  std::optional<formats::Side> follower_start_side;
+  std::optional<motion::Vec3> partner_direction;
+  std::string group;  // whose leaders are all in one split; empty: none
+  Pins pins;
+  std::optional<uint64_t> seed;
+  std::vector<std::pair<std::string, std::string>> extra;  // other columns, by name
+};
+
+// A path as a key: every part in UTF-8, without dots and without characters that file systems and
+// archives reject, "walks/Kick 1.v2" as "walks/Kick_1_v2". Drops parent folders ("..").
+std::string KeyOf(const std::filesystem::path& path);
 
 // A sequence of leaders. Its memory does not depend on the length of the list.
 class LeaderSource {
@@ -24,11 +52,10 @@ class LeaderSource {
   virtual absl::StatusOr<std::optional<LeaderEntry>> Next() = 0;
 };
 
-// Files, folders (all motion files below, also links to missing ones, by name; .txt and .json
-// files that hold something else are skipped and added to `passed_over`, which may be null) and
-// patterns ("walks/*.bvh"; * and ? within one part of a path). Files of a folder are named by their
-// path in it, other files by their own name. With `format`, a file may have any extension, and
-// files of a folder or a pattern any extension that is not that of another format.
+// Files, and folders (all motion files below, also links to missing ones, by name; .txt and .json
+// files that hold something else are skipped and added to `passed_over`, which may be null). Files
+// of a folder are named by their path in it, other files by their own name. With `format`, a file
+// may have any extension, and files of a folder any extension that is not that of another format.
 //
 // Errors: NOT_FOUND for missing inputs; INVALID_ARGUMENT for a file of unknown format, for two
 //         leaders with the same key, and if there is no motion file.
@@ -39,7 +66,7 @@ absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
 
 // Checks inputs before anything else is done: NOT_FOUND for missing ones, and INVALID_ARGUMENT if
 // the data set `out` is in a folder of leaders, where the next run would take its files for
-// leaders. Accepts patterns unchecked.
+// leaders.
 absl::Status CheckInputs(const std::vector<std::string>& inputs, const std::filesystem::path& out);
 
 }  // namespace duet::client::batch

@@ -142,8 +142,7 @@ uint64_t SeedOf(const Item& item, uint64_t recipe_seed, absl::string_view conten
   if (item.leader->seed.has_value() && retry == 0) {
     return *item.leader->seed + static_cast<uint64_t>(item.sample);
   }
-  return DrawnNumber(
-      absl::StrCat("seed ", recipe_seed, " ", content, " ", item.asked, " ", retry));
+  return DrawnNumber(absl::StrCat("seed ", recipe_seed, " ", content, " ", item.asked, " ", retry));
 }
 
 Plan::Plan(Recipe recipe, std::vector<ModelInfo> models, std::unique_ptr<LeaderSource> leaders)

@@ -11,7 +11,6 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "client/batch/leader_digests.h"
-#include "client/batch/leader_entry.h"
 #include "client/batch/leader_indexes.h"
 #include "client/batch/leader_source.h"
 #include "client/batch/recipe.h"
@@ -30,10 +29,10 @@ struct Item {
   std::shared_ptr<const LeaderEntry> leader;
   formats::Side side = formats::Side::kLeft;
   std::string reaction;
-  Labels labels;                              // or keyframes
+  Labels labels;  // or keyframes
   std::vector<TimedLabels> keyframes;
-  bool drawn = false;                         // the labels are drawn for the leader
-  int model = 0;                              // index into the plan's models
+  bool drawn = false;  // the labels are drawn for the leader
+  int model = 0;       // index into the plan's models
   int sample = 0;
 };
 

@@ -12,6 +12,7 @@
 #include "client/batch/loaded_leader.h"
 #include "client/batch/plan.h"
 #include "client/batch/shard.h"
+#include "client/client.h"
 #include "client/result.h"
 #include "model/motion/skeleton.h"
 
@@ -58,8 +59,8 @@ struct PlanCheck {
 };
 
 // Reads the plan to its end, every line of its manifest, and the leaders of the part. `skeletons`
-// are the models'. `stopped` is called between items; once it returns true, the check ends with what it has.
-// Errors: those that end the plan, and those of `part.is_settled`.
+// are the models'. `stopped` is called between items; once it returns true, the check ends with
+// what it has. Errors: those that end the plan, and those of `part.is_settled`.
 //
 // Threads: reads leaders in threads of its own.
 absl::StatusOr<PlanCheck> CheckPlan(
@@ -69,6 +70,18 @@ absl::StatusOr<PlanCheck> CheckPlan(
 
 // INVALID_ARGUMENT with a list of the bad lines, if the plan has any: its run must not begin.
 absl::Status BadLinesError(const PlanCheck& check);
+
+// The cost of a job, estimated from one answer. 0 if no leader can be used.
+struct Estimate {
+  double seconds = 0;  // for all items, one after the other
+  double bytes = 0;    // of all files
+};
+
+// Requests the first item of a checked plan. Writes nothing. Errors: those of the call.
+absl::StatusOr<Estimate> EstimateJob(const Recipe& recipe, const std::vector<ModelInfo>& models,
+                                     const std::vector<motion::Skeleton>& skeletons,
+                                     const RequestLimits& limits, const PlanCheck& check,
+                                     const Client& client);
 
 }  // namespace duet::client::batch
 

@@ -52,10 +52,10 @@ Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
     figures["foot_below_floor_metres"] = gap.below;
   }
   figures["distance_metres"] = body::RootDistance(leader, follower, skeleton);
-  figures["penetration_metres"] = body::MeasurePenetration(
-                                      leader, follower, skeleton,
-                                      body::LimbParts(body::FindBody(skeleton)))
-                                      .max_depth_metres;
+  figures["penetration_metres"] =
+      body::MeasurePenetration(leader, follower, skeleton,
+                               body::LimbParts(body::FindBody(skeleton)))
+          .max_depth_metres;
   figures["range_of_motion_metres"] = body::RangeOfMotion(follower);
   if (result.grade.has_value()) {
     figures["twisted"] = result.grade->twisted;

@@ -289,7 +289,6 @@ absl::StatusOr<Recipe> FromProto(const v1::Recipe& proto) {
   return recipe;
 }
 
-
 constexpr std::size_t kMaxRecipeBytes = std::size_t{4} << 20;
 constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
 

@@ -56,7 +56,7 @@ struct Recipe {
   LeaderInput input;
   v1::QualityFilter filter;
   std::shared_ptr<const classifier::Classifier> classifier;  // of the filter; null: none
-  v1::Output output;  // with a layout
+  v1::Output output;                                         // with a layout
   // Digest of everything above in hex. Recipes with the same digest are equal.
   std::string digest;
   // The same as one JSON object with the proto's field names. Files that the recipe names

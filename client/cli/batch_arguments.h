@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "client/batch/failures.h"
-#include "client/batch/flow/server_choice.h"
+#include "client/batch/flow/call_gate.h"
 #include "client/batch/recipe.h"
 #include "client/batch/shard.h"
 #include "client/batch/survey.h"
@@ -20,7 +20,7 @@ namespace duet::client::cli {
 
 // The flags of duet batch.
 struct BatchArguments {
-  std::vector<std::string> leaders;     // files, folders, patterns
+  std::vector<std::string> leaders;     // files, folders
   std::string manifest;                 // a file, "-" or empty
   std::filesystem::path manifest_copy;  // the manifest "-" once it was read
   std::filesystem::path recipe;

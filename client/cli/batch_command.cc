@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "absl/strings/str_join.h"
-#include "client/batch/estimate.h"
 #include "client/batch/gather.h"
 #include "client/batch/job.h"
 #include "client/batch/leader_source.h"

@@ -35,9 +35,9 @@ absl::StatusOr<std::string> ParseLevelText(absl::string_view text) {
 
 void AddInputFlags(CLI::App* app, BatchArguments* arguments) {
   constexpr char kGroup[] = "Input";
-  CLI::Option* leaders = app->add_option("leaders", arguments->leaders,
-                                         "Motion files, folders of them, or patterns (walks/*.bvh)")
-                             ->type_name("LEADER");
+  CLI::Option* leaders =
+      app->add_option("leaders", arguments->leaders, "Motion files, and folders of them")
+          ->type_name("LEADER");
   app->add_option("--manifest", arguments->manifest,
                   "List of leaders, one on each line, as JSON objects or TSV; - for standard input")
       ->excludes(leaders)

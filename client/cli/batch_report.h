@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "client/batch/estimate.h"
 #include "client/batch/gather.h"
 #include "client/batch/job.h"
 #include "client/batch/plan_check.h"

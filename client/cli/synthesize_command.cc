@@ -10,7 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "client/batch/pins.h"
+#include "client/batch/text_values.h"
 #include "client/cli/command.h"
 #include "client/cli/flags.h"
 #include "client/cli/output.h"

@@ -1,15 +1,97 @@
 #ifndef DUET_CLIENT_BATCH_FLOW_CALL_GATE_H_
 #define DUET_CLIENT_BATCH_FLOW_CALL_GATE_H_
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <mutex>
 #include <optional>
-
-#include "client/batch/flow/server_choice.h"
+#include <vector>
 
 namespace duet::client::batch::flow {
+
+// How many concurrent calls each server gets, and when. Time is a parameter, so that tests can
+// simulate any sequence of events. Threads: the caller locks.
+
+using Time = std::chrono::steady_clock::time_point;
+using Duration = std::chrono::nanoseconds;
+
+// The result of a call that matters to the flow.
+enum class CallEnd {
+  kAnswered,  // also if the request was rejected permanently
+  kRefused,   // the server is full
+  kAway,      // no answer, or the server is loading or draining
+};
+
+struct Options {
+  int max_in_flight = 64;  // for each server
+  Duration first_backoff = std::chrono::milliseconds(50);
+  Duration longest_backoff = std::chrono::seconds(5);
+};
+
+// The window of calls in flight at one server.
+//
+// Grows by one for each answer until the first refusal, then by one for each full window of
+// answers. It is halved when the server is full, once for all calls in flight at that time, and set
+// to one when the server is away. After a refusal, no call starts before the delay that the server
+// states. While the server is away, single calls probe it at increasing intervals. Source: TCP
+// Reno's slow start and congestion avoidance (Jacobson 1988).
+class CallWindow {
+ public:
+  explicit CallWindow(const Options& options) : options_(options) {}
+
+  // Whether a call may start. If only the time prevents it, `opens` returns when.
+  bool MayStart(Time now) const { return in_flight_ < limit() && now >= opens_; }
+  Time opens() const { return opens_; }
+  int limit() const { return static_cast<int>(window_); }
+  int in_flight() const { return in_flight_; }
+  bool away() const { return failures_ > 0; }
+
+  // A call starts. Pass the result to Finish.
+  int64_t Start();
+  // `delay`: the retry delay that the server states.
+  void Finish(int64_t call, CallEnd end, std::optional<Duration> delay, Time now);
+
+ private:
+  void Close(Duration wait, Time now);
+
+  Options options_;
+  double window_ = 2;
+  bool slow_start_ = true;
+  int in_flight_ = 0;
+  int64_t started_ = 0;
+  int64_t counted_from_ = 0;  // calls from this number on count against the window
+  int failures_ = 0;          // calls in a row to a server that was away
+  Time opens_{};
+};
+
+// Several servers: each call goes to the one with the most free capacity.
+class ServerChoice {
+ public:
+  ServerChoice(int servers, const Options& options)
+      : windows_(static_cast<size_t>(servers), CallWindow(options)) {}
+
+  struct Call {
+    int server = 0;
+    int64_t number = 0;
+  };
+  // nullopt while no server may get another call.
+  std::optional<Call> Start(Time now);
+  void Finish(const Call& call, CallEnd end, std::optional<Duration> delay, Time now);
+
+  // When Start may succeed although no call ends; nullopt if a call must end first.
+  std::optional<Time> NextOpening(Time now) const;
+  int in_flight() const;
+  int limit() const;
+  // Whether a window is not full, regardless of the time.
+  bool HasRoom() const;
+  bool all_away() const;
+
+ private:
+  std::vector<CallWindow> windows_;
+  size_t last_ = 0;  // equal servers take turns
+};
 
 // Makes threads wait until a ServerChoice allows a call.
 //

@@ -121,8 +121,7 @@ class JobTest : public ::testing::Test {
     absl::StatusOr<Plan> plan =
         Plan::Create(*recipe, {model}, ReadManifest(surveyed, folder_.path(), "m"));
     EXPECT_THAT(plan, IsOk());
-    const absl::StatusOr<std::unique_ptr<Survey>> survey =
-        Survey::Open(folder, identity, repeats_);
+    const absl::StatusOr<std::unique_ptr<Survey>> survey = Survey::Open(folder, identity, repeats_);
     if (!survey.ok()) return survey.status();
     const PlanPart part{{}, options.limit, options.share, [&survey](const Item& item) {
                           return (*survey)->Add(item);

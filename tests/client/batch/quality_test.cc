@@ -48,9 +48,9 @@ TEST(Measure, MeasuresThePlaceOfTheFollower) {
   EXPECT_LT(FigureOf(standing, "lean_degrees"), 45);
 
   const Quality floating = Measure(Pair({0, 0.5f, 0}), WithLandmarks(), {});
-  EXPECT_NEAR(FigureOf(floating, "foot_above_floor_metres") -
-                  FigureOf(standing, "foot_above_floor_metres"),
-              0.5, 1e-4);
+  EXPECT_NEAR(
+      FigureOf(floating, "foot_above_floor_metres") - FigureOf(standing, "foot_above_floor_metres"),
+      0.5, 1e-4);
   EXPECT_GT(FigureOf(floating, "penetration_metres"), 0);
   const Quality sunk = Measure(Pair({3, -0.5f, 0}), WithLandmarks(), {});
   EXPECT_GT(FigureOf(sunk, "foot_below_floor_metres"), 0.4);
@@ -129,8 +129,7 @@ TEST(WhyRejected, EachLimitIsCheckedSeparately) {
       {"min_distance_metres: 1.5", "distance_metres: expected at least 1.5, got 1"},
       {"max_distance_metres: 0.5", "distance_metres: expected at most 0.5, got 1"},
       {"max_penetration_metres: 0", "penetration_metres: expected at most 0, got 0.1"},
-      {"min_range_of_motion_metres: 0.2",
-       "range_of_motion_metres: expected at least 0.2, got 0.1"},
+      {"min_range_of_motion_metres: 0.2", "range_of_motion_metres: expected at least 0.2, got 0.1"},
       {"max_unfamiliarity: 1.5", "unfamiliarity: expected at most 1.5, got 5"},
       {"max_twisted: 0.1", "twisted: expected at most 0.1, got 0.2"},
       {"max_overlapping: 0", "overlapping: expected at most 0, got 0.1"},

@@ -1,7 +1,8 @@
+#include "client/batch/recipe.h"
+
 #include <map>
 #include <string>
 
-#include "client/batch/recipe.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/classifier/classifier_files.h"

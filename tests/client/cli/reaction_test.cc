@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "client/batch/pins.h"
+#include "client/batch/text_values.h"
 #include "client/cli/request_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"

@@ -4,7 +4,7 @@
 #include <thread>
 #include <vector>
 
-#include "client/batch/flow/bounded_queue.h"
+#include "client/batch/flow/queues.h"
 #include "gtest/gtest.h"
 
 namespace duet::client::batch::flow {

@@ -1,7 +1,6 @@
-#include "client/batch/flow/server_choice.h"
-
 #include <vector>
 
+#include "client/batch/flow/call_gate.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 

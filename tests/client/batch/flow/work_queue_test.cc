@@ -1,9 +1,8 @@
-#include "client/batch/flow/work_queue.h"
-
 #include <atomic>
 #include <thread>
 #include <vector>
 
+#include "client/batch/flow/queues.h"
 #include "gtest/gtest.h"
 
 namespace duet::client::batch::flow {

@@ -1,5 +1,5 @@
-#ifndef DUET_CLIENT_BATCH_FLOW_BOUNDED_QUEUE_H_
-#define DUET_CLIENT_BATCH_FLOW_BOUNDED_QUEUE_H_
+#ifndef DUET_CLIENT_BATCH_FLOW_QUEUES_H_
+#define DUET_CLIENT_BATCH_FLOW_QUEUES_H_
 
 #include <chrono>
 #include <condition_variable>
@@ -97,6 +97,88 @@ class BoundedQueue {
   bool stopped_ = false;
 };
 
+// A queue of work. A value that was taken is either done or put back. The queue ends when all
+// values are done, not when it is empty, because values may be put back.
+//
+// Threads: safe to call concurrently.
+template <typename Value>
+class WorkQueue {
+ public:
+  explicit WorkQueue(std::size_t capacity) : capacity_(capacity) {}
+
+  // Blocks while the queue is full. Returns false, and drops the value, after Stop.
+  bool Put(Value value) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    has_room_.wait(lock, [this] { return stopped_ || values_.size() < capacity_; });
+    if (stopped_) return false;
+    values_.push_back(std::move(value));
+    has_values_.notify_one();
+    return true;
+  }
+
+  // Puts a taken value back, before all others. Never blocks.
+  void PutBack(Value value) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!stopped_) values_.push_front(std::move(value));
+    EndOne();
+    has_values_.notify_one();
+  }
+  // A taken value is done.
+  void Done() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    EndOne();
+  }
+
+  // nullopt after Stop, and after Close when all values are done.
+  std::optional<Value> Take() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    has_values_.wait(lock, [this] { return stopped_ || !values_.empty() || AllDone(); });
+    if (stopped_ || values_.empty()) return std::nullopt;
+    std::optional<Value> value(std::move(values_.front()));
+    values_.pop_front();
+    ++taken_;
+    has_room_.notify_one();
+    return value;
+  }
+
+  // No more new values will be put.
+  void Close() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    closed_ = true;
+    has_values_.notify_all();
+  }
+  // Drops all values.
+  void Stop() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopped_ = true;
+    values_.clear();
+    has_values_.notify_all();
+    has_room_.notify_all();
+  }
+  // Waits until no value is taken.
+  void WaitUntilNoneIsTaken() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    none_taken_.wait(lock, [this] { return taken_ == 0; });
+  }
+
+ private:
+  bool AllDone() const { return closed_ && values_.empty() && taken_ == 0; }
+  void EndOne() {
+    --taken_;
+    if (taken_ > 0) return;
+    none_taken_.notify_all();
+    if (AllDone()) has_values_.notify_all();
+  }
+
+  const std::size_t capacity_;
+  std::mutex mutex_;
+  std::condition_variable has_values_, has_room_, none_taken_;
+  std::deque<Value> values_;
+  std::size_t taken_ = 0;
+  bool closed_ = false;
+  bool stopped_ = false;
+};
+
 }  // namespace duet::client::batch::flow
 
-#endif  // DUET_CLIENT_BATCH_FLOW_BOUNDED_QUEUE_H_
+#endif  // DUET_CLIENT_BATCH_FLOW_QUEUES_H_
