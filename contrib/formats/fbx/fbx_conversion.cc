@@ -1,9 +1,9 @@
 #include "contrib/formats/fbx/fbx_conversion.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -42,8 +42,9 @@ using retargeting::Vec3d;
 constexpr unsigned kMostTakes = 1000;
 constexpr double kUnstatedRateHz = 30;
 constexpr double kCentimetre = 0.01;  // metres
-// Metres, of the joints. Centimetres that are stated as inches make an adult larger than 2.8 m.
-constexpr double kSmallestPerson = 0.7, kLargestPerson = 2.8;
+// Metres from a hand to a foot: a small child's and a giant's. An adult in centimetres that are
+// stated as inches has 6 m.
+constexpr double kSmallestPerson = 1, kLargestPerson = 4;
 constexpr std::size_t kLongestMessage = 200;
 // Binary FBX begins with "Kaydara FBX Binary", FBX as text with a comment or FBXHeaderExtension.
 constexpr std::size_t kHeaderBytes = 4096;
@@ -87,7 +88,8 @@ retargeting::Affine ToWorld(const aiScene& scene, double metres) {
       {{}, retargeting::ToWorldAxes(UpAxisOf(scene)), {metres, metres, metres}});
 }
 
-// The largest extent of the joints at rest; 0 without joints.
+// The longest way along the bones from one joint to another, such as from a hand to a foot, which
+// no pose changes; 0 without bones.
 double SizeOf(const aiScene& scene, const NodeTree& tree) {
   std::set<int> joints;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
@@ -104,15 +106,18 @@ double SizeOf(const aiScene& scene, const NodeTree& tree) {
   }
   joints.erase(-1);
   const std::vector<retargeting::Affine> world = WorldOf(tree);
+  const auto at = [&world](int joint) { return world[static_cast<std::size_t>(joint)].origin; };
+  std::map<int, double> reach;  // the longest way down from a joint
   double size = 0;
-  for (double Vec3d::*axis : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
-    double low = INFINITY, high = -INFINITY;
-    for (const int joint : joints) {
-      const double place = world[static_cast<std::size_t>(joint)].origin.*axis;
-      low = std::min(low, place);
-      high = std::max(high, place);
-    }
-    size = std::max(size, high - low);
+  for (auto joint = joints.rbegin(); joint != joints.rend(); ++joint) {  // parents last
+    int above = *joint;
+    do {
+      above = tree.nodes[static_cast<std::size_t>(above)].parent;
+    } while (above >= 0 && joints.count(above) == 0);
+    if (above < 0) continue;
+    const double way = reach[*joint] + Norm(at(*joint) - at(above));
+    size = std::max(size, reach[above] + way);
+    reach[above] = std::max(reach[above], way);
   }
   return size;
 }
