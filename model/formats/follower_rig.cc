@@ -75,21 +75,6 @@ absl::Status CheckRig(const FollowerRig& rig) {
   return CheckBvhRig(*document, source, BvhOptionsOf(rig));
 }
 
-absl::StatusOr<double> BvhUnitOnRig(const FollowerRig& rig) {
-  const absl::StatusOr<std::string> content = ReadRigFile(rig);
-  if (!content.ok()) return content.status();
-  const absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(*content, rig.file.string());
-  if (!document.ok()) return document.status();
-  retargeting::CharacterFit fit;
-  bvh::BvhImportOptions reading = BvhOptionsOf(rig);
-  reading.fit = &fit;
-  reading.notes = nullptr;
-  reading.report = nullptr;
-  const absl::StatusOr<motion::Clip> read = FromBvh(*document, rig.file.string(), reading);
-  if (!read.ok()) return read.status();
-  return fit.metres_per_unit;
-}
-
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
                                           Format format, const WriteOptions& options) {
   const std::string source = rig.file.string();

@@ -37,9 +37,6 @@ absl::Status CheckRig(const FollowerRig& rig);
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
                                           Format format, const WriteOptions& options = {});
 
-// The metres per unit of a rig that is a BVH. Errors: those of reading the rig.
-absl::StatusOr<double> BvhUnitOnRig(const FollowerRig& rig);
-
 }  // namespace duet::formats
 
 #endif  // DUET_MODEL_FORMATS_FOLLOWER_RIG_H_

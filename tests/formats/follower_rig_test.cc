@@ -90,19 +90,6 @@ TEST_F(FollowerRigTest, ARigNeedNotBeAnimated) {
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("rig.csv")));
 }
 
-TEST_F(FollowerRigTest, ABvhOnABvhHasTheUnitOfTheRig) {
-  EXPECT_EQ(BvhUnitOnRig({folder_ / "leader.bvh", {}}).value_or(0), kCentimetre);
-  WriteOptions metres;
-  metres.bvh_metres_per_unit = 1;
-  EXPECT_THAT(WritePeople(folder_ / "metres.bvh", Format::kBvh, {test::MakePerson()},
-                          motion::SbuSkeleton(), metres)
-                  .status(),
-              IsOk());
-  EXPECT_EQ(BvhUnitOnRig({folder_ / "metres.bvh", {}}).value_or(0), 1);
-  EXPECT_THAT(BvhUnitOnRig({folder_ / "none.bvh", {}}).status(),
-              StatusIs(absl::StatusCode::kNotFound, HasSubstr("none.bvh")));
-}
-
 TEST_F(FollowerRigTest, ReportsTheExtensionsOfRigs) {
   EXPECT_THAT(FormatOntoRig(Follower(), {"rig.csv", {}}, Format::kGlb).status(),
               StatusIs(absl::StatusCode::kInvalidArgument,
