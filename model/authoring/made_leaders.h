@@ -27,7 +27,7 @@ motion::Poses StandingPerson();
 
 // The leader as a live session gets it from a source that loses frames: missing frames are
 // interpolated in a gap of up to a quarter of a second; in a longer one, the last pose is held
-// (client/capture). The gaps are three seconds apart.
+// (contrib/capture). The gaps are three seconds apart.
 motion::Poses WithGaps(const motion::Poses& leader, double frame_rate_hz);
 
 }  // namespace duet::authoring
