@@ -15,38 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-absl::Status CheckPerson(const std::string& name, const motion::Clip& clip,
-                         const motion::Clip& first) {
-  if (clip.frame_count() < 1 || !(clip.frame_rate_hz > 0)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": expected at least one frame and a rate above 0, got ",
-                     clip.frame_count(), " frames at ", clip.frame_rate_hz, " Hz"));
-  }
-  if (clip.joint_names != first.joint_names || clip.poses.joint_count() != clip.joint_count()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": expected the joints of the first motion, got others"));
-  }
-  for (const motion::Vec3& position : clip.poses.all()) {
-    if (IsFinite(position)) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": expected finite positions, got one that is not"));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status CheckMotion(const GalleryMotion& motion, const motion::Clip& first) {
-  absl::Status status = CheckPerson(motion.name, motion.leader, first);
-  if (!status.ok() || !motion.follower) return status;
-  status = CheckPerson(motion.name, *motion.follower, first);
-  if (!status.ok()) return status;
-  if (motion.follower->frame_count() == motion.leader.frame_count() &&
-      motion.follower->frame_rate_hz == motion.leader.frame_rate_hz) {
-    return status;
-  }
-  return absl::InvalidArgumentError(
-      absl::StrCat(motion.name, ": expected equal frames and rates of leader and follower"));
-}
-
 absl::Status Check(const GalleryContent& content) {
   if (content.motions.empty() || content.motions.size() > kMostMotions) {
     return absl::InvalidArgumentError(
@@ -54,17 +22,11 @@ absl::Status Check(const GalleryContent& content) {
   }
   const motion::Clip& first = content.motions[0].leader;
   for (const GalleryMotion& motion : content.motions) {
-    absl::Status status = CheckMotion(motion, first);
+    absl::Status status = CheckMotion(motion.name, first.joint_names, motion.leader,
+                                      motion.follower ? &*motion.follower : nullptr);
     if (!status.ok()) return status;
   }
-  for (const motion::Bone& bone : content.bones) {
-    for (int joint : {bone.parent, bone.child}) {
-      if (joint >= 0 && joint < first.joint_count()) continue;
-      return absl::InvalidArgumentError(
-          absl::StrCat("bones: expected joints 0 to ", first.joint_count() - 1, ", got ", joint));
-    }
-  }
-  return absl::OkStatus();
+  return CheckBones(content.bones, first.joint_count());
 }
 
 json MotionJson(const GalleryMotion& motion) {

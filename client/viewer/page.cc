@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "absl/strings/escaping.h"
-#include "absl/strings/str_cat.h"
 #include "client/viewer/page_parts.h"
 #include "nlohmann/json.hpp"
 
@@ -16,39 +15,6 @@ extern const char duet_page_script[], duet_page_script_end[];
 
 namespace duet::client::viewer {
 namespace {
-
-absl::Status Check(const PageContent& content) {
-  const motion::Clip& leader = content.pair.leader;
-  const motion::Clip& follower = content.pair.follower;
-  if (leader.frame_count() < 1 || leader.frame_rate_hz <= 0) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("pair.leader: expected at least one frame and a rate above 0, got ",
-                     leader.frame_count(), " frames at ", leader.frame_rate_hz, " Hz"));
-  }
-  if (leader.joint_names != follower.joint_names ||
-      leader.poses.joint_count() != leader.joint_count() ||
-      follower.poses.joint_count() != follower.joint_count() ||
-      leader.poses.all().size() != follower.poses.all().size() ||
-      leader.frame_rate_hz != follower.frame_rate_hz) {
-    return absl::InvalidArgumentError(
-        "pair: expected equal joints, frames and rates of leader and follower");
-  }
-  for (const motion::Clip* clip : {&leader, &follower}) {
-    for (const motion::Vec3& position : clip->poses.all()) {
-      if (IsFinite(position)) continue;
-      return absl::InvalidArgumentError("pair: expected finite positions, got one that is not");
-    }
-  }
-  for (const motion::Bone& bone : content.bones) {
-    for (int joint : {bone.parent, bone.child}) {
-      if (joint < 0 || joint >= leader.joint_count()) {
-        return absl::InvalidArgumentError(absl::StrCat("bones: expected joints 0 to ",
-                                                       leader.joint_count() - 1, ", got ", joint));
-      }
-    }
-  }
-  return absl::OkStatus();
-}
 
 // All classes in the keyframes, in the order of their first occurrence.
 std::vector<std::string> Classes(const std::vector<WeightKeyframe>& keyframes) {
@@ -111,7 +77,9 @@ std::string PageDataJson(const PageContent& content) {
 }
 
 absl::StatusOr<std::string> RenderPage(const PageContent& content) {
-  absl::Status status = Check(content);
+  const motion::Clip& leader = content.pair.leader;
+  absl::Status status = CheckMotion("pair", leader.joint_names, leader, &content.pair.follower);
+  if (status.ok()) status = CheckBones(content.bones, leader.joint_count());
   if (!status.ok()) return status;
   return FillPage({Embedded(duet_page, duet_page_end), content.title,
                    Embedded(duet_page_style, duet_page_style_end), PageDataJson(content),

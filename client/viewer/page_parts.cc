@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "nlohmann/json.hpp"
 
@@ -30,6 +31,25 @@ void AppendLittleEndian(float value, std::string* bytes) {
   uint32_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
   for (int shift = 0; shift < 32; shift += 8) bytes->push_back(static_cast<char>(bits >> shift));
+}
+
+absl::Status CheckPerson(const std::string& name, const motion::Clip& clip,
+                         const std::vector<std::string>& joint_names) {
+  if (clip.frame_count() < 1 || !(clip.frame_rate_hz > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": expected at least one frame and a rate above 0, got ",
+                     clip.frame_count(), " frames at ", clip.frame_rate_hz, " Hz"));
+  }
+  if (clip.joint_names != joint_names || clip.poses.joint_count() != clip.joint_count()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": expected the joints of the first motion, got others"));
+  }
+  for (const motion::Vec3& position : clip.poses.all()) {
+    if (IsFinite(position)) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": expected finite positions, got one that is not"));
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -67,6 +87,31 @@ std::string EncodePositions(const motion::Clip& clip) {
     AppendLittleEndian(position.z, &bytes);
   }
   return absl::Base64Escape(bytes);
+}
+
+absl::Status CheckMotion(const std::string& name, const std::vector<std::string>& joint_names,
+                         const motion::Clip& leader, const motion::Clip* follower) {
+  absl::Status status = CheckPerson(name, leader, joint_names);
+  if (!status.ok() || follower == nullptr) return status;
+  status = CheckPerson(name, *follower, joint_names);
+  if (!status.ok()) return status;
+  if (follower->frame_count() == leader.frame_count() &&
+      follower->frame_rate_hz == leader.frame_rate_hz) {
+    return status;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(name, ": expected equal frames and rates of leader and follower"));
+}
+
+absl::Status CheckBones(const std::vector<motion::Bone>& bones, int joint_count) {
+  for (const motion::Bone& bone : bones) {
+    for (const int joint : {bone.parent, bone.child}) {
+      if (joint >= 0 && joint < joint_count) continue;
+      return absl::InvalidArgumentError(
+          absl::StrCat("bones: expected joints 0 to ", joint_count - 1, ", got ", joint));
+    }
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace duet::client::viewer

@@ -138,9 +138,9 @@ TEST(RenderPageTest, InvalidContentIsRejected) {
               }),
               StatusIs(kInvalid, HasSubstr("at 0 Hz")));
   EXPECT_THAT(refused([](PageContent* c) { c->pair.follower.poses.Resize(1); }),
-              StatusIs(kInvalid, HasSubstr("expected equal joints")));
+              StatusIs(kInvalid, HasSubstr("expected equal frames")));
   EXPECT_THAT(refused([](PageContent* c) { c->pair.follower.joint_names[0] = "other"; }),
-              StatusIs(kInvalid, HasSubstr("expected equal joints")));
+              StatusIs(kInvalid, HasSubstr("expected the joints")));
   EXPECT_THAT(refused([](PageContent* c) {
                 c->pair.follower.poses.all()[1].y = std::numeric_limits<float>::quiet_NaN();
               }),
