@@ -1,6 +1,6 @@
 """Reads the joint rotations of a live session over all its streams.
 
-The counterpart of the C++ client's client/internal/live_rotations.h. Raises ValueError with the
+The counterpart of the C++ client's client/internal/rotations.h. Raises ValueError with the
 field, what was expected and what was received.
 """
 

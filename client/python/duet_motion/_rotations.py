@@ -1,6 +1,6 @@
 """Reads the rig and the rotations of a reply.
 
-The counterpart of the C++ client's client/internal/rotation_conversion.h. Raises ValueError with the
+The counterpart of the C++ client's client/internal/rotations.h. Raises ValueError with the
 field, what was expected and what was received.
 """
 

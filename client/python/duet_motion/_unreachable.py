@@ -1,4 +1,4 @@
-"""Says in words why gRPC had no server for a call, like the C++ client (client/internal/unreachable.cc)."""
+"""Says in words why gRPC had no server for a call, like the C++ client (client/internal/retry.cc)."""
 
 from __future__ import annotations
 

@@ -2,8 +2,8 @@ const CURVE_COLOURS = ['#e9eaed', '#e8795f', '#7fb069', '#b58bd6', '#e6c229', '#
                        '#8fd3c8', '#c49a6c', '#a3a9b5', '#d4e157', '#ff8a50'];
 const NOISE_FILTER_SECONDS = 0.1;
 
-// The mean speed of the follower's joints in each frame, m/s, after the Gaussian filter of
-// duet compare. Without it, noise of a capture would count as movement.
+// The mean speed of the follower's joints in each frame, m/s, after a Gaussian filter.
+// Without it, noise of a capture would count as movement.
 function speedCurve(motion) {
   const positions = motion.people.follower || motion.people.leader;
   const stride = motion.joints.length * 3;

@@ -36,7 +36,7 @@ class RetryTest(unittest.TestCase):
         self.assertFalse(is_unreachable(make_error(FULL, "")))
 
     def test_causes_of_gone_servers_are_named_as_by_the_other_client(self):
-        source = (pathlib.Path(__file__).parents[3] / "client/internal/unreachable.cc").read_text(
+        source = (pathlib.Path(__file__).parents[3] / "client/internal/retry.cc").read_text(
             encoding="utf-8")
         causes = re.findall(r'^    {"(.+)", "(.+)"},$', source, re.MULTILINE)
         self.assertGreater(len(causes), 9)
