@@ -13,7 +13,6 @@
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
 #include "client/cli/report.h"
-#include "client/cli/skeleton_file.h"
 #include "model/base/file.h"
 #include "model/base/program_flags.h"
 #include "model/formats/follower_rig.h"

@@ -79,6 +79,15 @@ absl::StatusOr<retargeting::JointOverrides> ReadJoints(const std::vector<std::st
 absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
                                                    const motion::Skeleton& skeleton);
 
+// The skeleton of `file`, or the 15 joints of sbu if it is empty. The file has a JSON object with
+// the fields `joint_names`, `bones` (pairs of indices, parent and child) and `root_joint`: one of
+// the models that `duet models --json` prints, or a motion in duet-motion JSON. Without
+// `root_joint`, the root is the joint that is no bone's child. Other fields are ignored. Errors:
+// INVALID_ARGUMENT naming the file and the field; those of reading a file.
+absl::StatusOr<motion::Skeleton> SkeletonOf(const std::filesystem::path& file);
+// --skeleton, for commands that read motions without a server.
+void AddSkeletonFlag(CLI::App* app, std::filesystem::path* file);
+
 // Checks that the file exists and has a known format. `-` needs `format`.
 absl::Status CheckInput(const std::filesystem::path& path,
                         const std::optional<formats::Format>& format);

@@ -17,7 +17,7 @@
 #include "client/cli/reaction.h"
 #include "client/cli/report.h"
 #include "client/cli/server.h"
-#include "client/cli/synthesis_report.h"
+#include "client/cli/summary.h"
 #include "client/model_skeleton.h"
 #include "model/base/program_flags.h"
 #include "model/formats/motion_file.h"

@@ -19,7 +19,6 @@
 #include "client/cli/flags.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
-#include "client/cli/skeleton_file.h"
 #include "client/viewer/gallery.h"
 #include "model/base/file.h"
 #include "model/motion/clip.h"

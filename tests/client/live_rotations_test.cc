@@ -1,8 +1,7 @@
-#include "client/internal/rotations.h"
-
 #include <optional>
 #include <vector>
 
+#include "client/internal/rotations.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/matchers.h"

@@ -22,7 +22,8 @@ inline Strings operator+(Strings a, const Strings& b) {
   return a;
 }
 
-// A test that runs the whole program in a folder of its own, against a connection that a test scripts.
+// A test that runs the whole program in a folder of its own, against a connection that a test
+// scripts.
 class ProgramRunner : public ::testing::Test {
  public:
   int Run(const Strings& arguments, const std::string& input = "") {
