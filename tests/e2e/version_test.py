@@ -22,10 +22,6 @@ class VersionTest(unittest.TestCase):
                 self.assertEqual((printed.returncode, printed.stdout.strip()),
                                  (0, f"{program} {self.version}"))
 
-    def test_manual_pages_name_it(self):
-        page = tools.run(tools.PROGRAMS / "duet", "man").stdout
-        self.assertIn(f'"duet {self.version}"', page)
-
     def test_the_server_reports_it_as_a_metric(self):
         with tools.running_server(metrics="127.0.0.1:0") as server:
             page = server.page("/metrics")[1]
