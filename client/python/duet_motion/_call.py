@@ -11,12 +11,12 @@ import grpc
 
 from duet_motion._fields import with_joint_names
 from duet_motion._reply import ReplyAssembler
-from duet_motion._unreachable import describe_unreachable
 from duet_motion.errors import DuetError, make_error
 from duet_motion.motion import checked_number
 from duet_motion.request import SynthesisRequest, check_kind, to_proto
 from duet_motion.result import FollowerChunk, SynthesisResult
-from duet_motion.retry import RetryOptions, has_no_server, is_retryable, is_unreachable, retry_wait
+from duet_motion.retry import (RetryOptions, describe_unreachable, has_no_server, is_retryable,
+                               is_unreachable, retry_wait)
 from duet_motion.v1 import synthesis_pb2
 
 Metadata = Tuple[Tuple[str, str], ...]

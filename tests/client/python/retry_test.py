@@ -8,10 +8,9 @@ import unittest
 import support
 import duet_motion as duet
 import grpc
-from duet_motion._unreachable import describe_unreachable
 from duet_motion._call import Attempts, CallSettings, Environment
 from duet_motion.errors import make_error
-from duet_motion.retry import is_retryable, is_unreachable, retry_wait
+from duet_motion.retry import describe_unreachable, is_retryable, is_unreachable, retry_wait
 
 UNAVAILABLE, FULL = grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.RESOURCE_EXHAUSTED
 
