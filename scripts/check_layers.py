@@ -111,8 +111,6 @@ LAYERS = (
           libraries=("rpc", "prometheus")),
     # The client.
     Layer("viewer", "client/viewer", sees=("base", "motion", "client")),
-    Layer("analysis", "client/analysis",
-          sees=("base", "motion", "body", "dataset")),
     Layer("batch flow", "client/batch/flow", sees=()),
     Layer("batch", "client/batch",
           sees=MOTION_FILES + ("messages", "body", "dataset", "classifier", "batch flow",
@@ -120,8 +118,8 @@ LAYERS = (
           libraries=("rpc",)),
     Layer("live", "client/live", sees=MOTION_FILES + ("client",)),
     Layer("client program", "client/cli",
-          sees=MOTION_FILES + ("messages", "analysis", "viewer", "batch flow", "batch", "live",
-                                "client"),
+          sees=MOTION_FILES + ("messages", "body", "viewer", "batch flow", "batch",
+                                "live", "client"),
           source_libraries=("rpc",)),
     Layer("client", "client", sees=("base", "motion"), libraries=("rpc",)),
 )

@@ -10,10 +10,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "client/analysis/skeleton_check.h"
 #include "client/cli/command.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/report.h"
+#include "client/cli/skeleton_check.h"
 #include "model/base/counted.h"
 #include "model/base/printable.h"
 #include "model/formats/motion_file.h"
@@ -35,7 +35,7 @@ constexpr std::size_t kMaxNames = 12;
 struct InspectedPerson {
   retargeting::ReadingReport report;
   motion::Clip clip;  // at 0 Hz where no rate is known
-  std::vector<analysis::Check> checks;
+  std::vector<SkeletonCheck> checks;
 };
 
 // What is known of a file. If it cannot be read, `status` says why, and the one person has what was
@@ -111,9 +111,9 @@ std::string DescribeReading(const retargeting::ReadingReport& report) {
   return text + DescribeUnused(report);
 }
 
-std::string DescribeChecks(const std::vector<analysis::Check>& checks) {
+std::string DescribeChecks(const std::vector<SkeletonCheck>& checks) {
   std::string text = "  skeleton\n";
-  for (const analysis::Check& check : checks) {
+  for (const SkeletonCheck& check : checks) {
     absl::StrAppendFormat(&text, "    %s %-13s %s\n", check.good ? "ok  " : "look", check.name,
                           check.text);
   }
@@ -170,7 +170,7 @@ json PersonJson(const InspectedPerson& person) {
     joints.push_back(JointJson(joint));
     if (joint.parts.empty()) missing.push_back(joint.joint);
   }
-  for (const analysis::Check& check : person.checks) {
+  for (const SkeletonCheck& check : person.checks) {
     checks.push_back({{"name", check.name},
                       {"good", check.good},
                       {"text", check.text},
@@ -287,7 +287,7 @@ absl::Status InspectPerson(const MotionInput& input, formats::ReadOptions option
   absl::StatusOr<motion::Clip> clip = ReadAtAnyRate(input, options);
   if (!clip.ok()) return clip.status();
   person->clip = *std::move(clip);
-  person->checks = analysis::CheckSkeleton(person->clip, options.skeleton);
+  person->checks = CheckSkeleton(person->clip, options.skeleton);
   return absl::OkStatus();
 }
 

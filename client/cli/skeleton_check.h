@@ -1,5 +1,5 @@
-#ifndef DUET_CLIENT_ANALYSIS_SKELETON_CHECK_H_
-#define DUET_CLIENT_ANALYSIS_SKELETON_CHECK_H_
+#ifndef DUET_CLIENT_CLI_SKELETON_CHECK_H_
+#define DUET_CLIENT_CLI_SKELETON_CHECK_H_
 
 #include <map>
 #include <string>
@@ -8,10 +8,10 @@
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
-namespace duet::client::analysis {
+namespace duet::client::cli {
 
 // The result of one check.
-struct Check {
+struct SkeletonCheck {
   std::string name;  // "limb lengths"
   bool good = true;
   std::string text;                       // the finding, for people
@@ -31,8 +31,9 @@ struct Check {
 //
 // Requires at least one frame, the skeleton's joints, and a skeleton that Validate accepts. If the
 // rate is 0 (unknown), jumps are not checked.
-std::vector<Check> CheckSkeleton(const motion::Clip& clip, const motion::Skeleton& skeleton);
+std::vector<SkeletonCheck> CheckSkeleton(const motion::Clip& clip,
+                                         const motion::Skeleton& skeleton);
 
-}  // namespace duet::client::analysis
+}  // namespace duet::client::cli
 
-#endif  // DUET_CLIENT_ANALYSIS_SKELETON_CHECK_H_
+#endif  // DUET_CLIENT_CLI_SKELETON_CHECK_H_

@@ -1,4 +1,4 @@
-#include "client/analysis/skeleton_check.h"
+#include "client/cli/skeleton_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/posture.h"
 
-namespace duet::client::analysis {
+namespace duet::client::cli {
 namespace {
 
 using motion::Vec3;
@@ -58,7 +58,7 @@ class Checker {
   Checker(const motion::Clip& clip, const motion::Skeleton& skeleton)
       : clip_(clip), skeleton_(skeleton), body_(body::FindBody(skeleton)) {}
 
-  std::vector<Check> Run() {
+  std::vector<SkeletonCheck> Run() {
     CheckFinite();
     if (!checks_.back().good) return std::move(checks_);
     CheckSize();
@@ -412,13 +412,14 @@ class Checker {
   const motion::Clip& clip_;
   const motion::Skeleton& skeleton_;
   body::Body body_;
-  std::vector<Check> checks_;
+  std::vector<SkeletonCheck> checks_;
 };
 
 }  // namespace
 
-std::vector<Check> CheckSkeleton(const motion::Clip& clip, const motion::Skeleton& skeleton) {
+std::vector<SkeletonCheck> CheckSkeleton(const motion::Clip& clip,
+                                         const motion::Skeleton& skeleton) {
   return Checker(clip, skeleton).Run();
 }
 
-}  // namespace duet::client::analysis
+}  // namespace duet::client::cli

@@ -1,4 +1,4 @@
-#include "client/analysis/skeleton_check.h"
+#include "client/cli/skeleton_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
-namespace duet::client::analysis {
+namespace duet::client::cli {
 namespace {
 
 using test::MakePerson;
@@ -22,8 +22,8 @@ const motion::Skeleton& Sbu() {
   return skeleton;
 }
 
-Check Find(const std::vector<Check>& checks, const std::string& name) {
-  for (const Check& check : checks) {
+SkeletonCheck Find(const std::vector<SkeletonCheck>& checks, const std::string& name) {
+  for (const SkeletonCheck& check : checks) {
     if (check.name == name) return check;
   }
   ADD_FAILURE() << "no check of " << name;
@@ -31,10 +31,10 @@ Check Find(const std::vector<Check>& checks, const std::string& name) {
 }
 
 // What is wrong with a person after `spoil`; every other check stays good.
-Check Spoilt(const std::string& name, void (*spoil)(motion::Clip*)) {
+SkeletonCheck Spoilt(const std::string& name, void (*spoil)(motion::Clip*)) {
   motion::Clip clip = MakePerson();
   spoil(&clip);
-  const Check check = Find(CheckSkeleton(clip, Sbu()), name);
+  const SkeletonCheck check = Find(CheckSkeleton(clip, Sbu()), name);
   EXPECT_FALSE(check.good) << check.text;
   return check;
 }
@@ -51,9 +51,9 @@ void SwapSides(motion::Clip* clip, int first_frame, int last_frame) {
 }
 
 TEST(CheckSkeleton, PlausiblePersonPassesEveryCheck) {
-  const std::vector<Check> checks = CheckSkeleton(MakePerson(), Sbu());
+  const std::vector<SkeletonCheck> checks = CheckSkeleton(MakePerson(), Sbu());
   std::vector<std::string> names;
-  for (const Check& check : checks) {
+  for (const SkeletonCheck& check : checks) {
     names.push_back(check.name);
     EXPECT_TRUE(check.good) << check.name << ": " << check.text;
   }
@@ -65,7 +65,7 @@ TEST(CheckSkeleton, PositionThatIsNotFiniteEndsTheChecks) {
   motion::Clip clip = MakePerson();
   clip.at(7, 3).y = std::numeric_limits<float>::infinity();
   clip.at(9, 3).y = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<Check> checks = CheckSkeleton(clip, Sbu());
+  const std::vector<SkeletonCheck> checks = CheckSkeleton(clip, Sbu());
   ASSERT_EQ(checks.size(), 1u);
   EXPECT_FALSE(checks[0].good);
   EXPECT_EQ(checks[0].figures.at("bad_frames"), 2);
@@ -73,7 +73,7 @@ TEST(CheckSkeleton, PositionThatIsNotFiniteEndsTheChecks) {
 }
 
 TEST(CheckSkeleton, GiantFailsTheSizeCheck) {
-  const Check check = Spoilt("size", [](motion::Clip* clip) {
+  const SkeletonCheck check = Spoilt("size", [](motion::Clip* clip) {
     for (motion::Vec3& at : clip->poses.all()) at = at * 100;
   });
   EXPECT_GT(check.figures.at("foot_to_root_metres"), 70);
@@ -86,14 +86,14 @@ TEST(CheckSkeleton, SizeAcceptsLegsOfSevenTenthsToOnePointFourMetres) {
   for (const auto& [metres, good] : lengths) {
     motion::Clip clip = MakePerson();
     for (motion::Vec3& at : clip.poses.all()) at = at * static_cast<float>(metres / leg);
-    const Check check = Find(CheckSkeleton(clip, Sbu()), "size");
+    const SkeletonCheck check = Find(CheckSkeleton(clip, Sbu()), "size");
     EXPECT_EQ(check.good, good) << check.text;
     EXPECT_NEAR(check.figures.at("foot_to_root_metres"), metres, 1e-4);
   }
 }
 
 TEST(CheckSkeleton, ALimbThatGrowsIsNamed) {
-  const Check check = Spoilt("limb lengths", [](motion::Clip* clip) {
+  const SkeletonCheck check = Spoilt("limb lengths", [](motion::Clip* clip) {
     const int elbow = Sbu().Find("left_elbow"), hand = Sbu().Find("left_hand");
     for (int frame = 0; frame < clip->frame_count(); ++frame) {
       const motion::Vec3 along = clip->at(frame, hand) - clip->at(frame, elbow);
@@ -104,7 +104,7 @@ TEST(CheckSkeleton, ALimbThatGrowsIsNamed) {
 }
 
 TEST(CheckSkeleton, ABoneWithoutLengthIsNamed) {
-  const Check check = Spoilt("limb lengths", [](motion::Clip* clip) {
+  const SkeletonCheck check = Spoilt("limb lengths", [](motion::Clip* clip) {
     const int shoulder = Sbu().Find("left_shoulder"), elbow = Sbu().Find("left_elbow");
     for (int frame = 0; frame < clip->frame_count(); ++frame) {
       clip->at(frame, elbow) = clip->at(frame, shoulder);
@@ -114,7 +114,7 @@ TEST(CheckSkeleton, ABoneWithoutLengthIsNamed) {
 }
 
 TEST(CheckSkeleton, AShortArmIsNamed) {
-  const Check check = Spoilt("symmetry", [](motion::Clip* clip) {
+  const SkeletonCheck check = Spoilt("symmetry", [](motion::Clip* clip) {
     const int elbow = Sbu().Find("left_elbow"), hand = Sbu().Find("left_hand");
     for (int frame = 0; frame < clip->frame_count(); ++frame) {
       clip->at(frame, hand) = Lerp(clip->at(frame, elbow), clip->at(frame, hand), 0.5f);
@@ -125,7 +125,7 @@ TEST(CheckSkeleton, AShortArmIsNamed) {
 }
 
 TEST(CheckSkeleton, FlyingPersonFailsTheFloorCheck) {
-  const Check check = Spoilt("floor", [](motion::Clip* clip) {
+  const SkeletonCheck check = Spoilt("floor", [](motion::Clip* clip) {
     for (int frame = 20; frame < clip->frame_count(); ++frame) {
       for (motion::Vec3& at : clip->poses[frame]) at.y += 1;
     }
@@ -134,7 +134,7 @@ TEST(CheckSkeleton, FlyingPersonFailsTheFloorCheck) {
 }
 
 TEST(CheckSkeleton, FootBelowTheFloorIsDetected) {
-  const Check check =
+  const SkeletonCheck check =
       Spoilt("floor", [](motion::Clip* clip) { clip->at(30, Sbu().feet->left).y -= 0.5f; });
   EXPECT_THAT(check.text, HasSubstr("a foot gets"));
 }
@@ -154,7 +154,7 @@ TEST(CheckSkeleton, TiltedCameraIsDetected) {
   const double own =
       Find(CheckSkeleton(MakePerson(), Sbu()), "upright").figures.at("lean_z_degrees");
   for (double degrees : {-15.0, 12.0}) {
-    const Check check = Find(CheckSkeleton(Tilted(degrees), Sbu()), "upright");
+    const SkeletonCheck check = Find(CheckSkeleton(Tilted(degrees), Sbu()), "upright");
     EXPECT_FALSE(check.good) << check.text;
     EXPECT_NEAR(check.figures.at("lean_z_degrees"), own + degrees, 1);
     EXPECT_THAT(check.text, HasSubstr("a tilted camera"));
@@ -163,14 +163,14 @@ TEST(CheckSkeleton, TiltedCameraIsDetected) {
 
 TEST(CheckSkeleton, WhoLiesLeansByARightAngleWhicheverWay) {
   for (double degrees : {-95.0, -90.0, 92.0}) {
-    const Check check = Find(CheckSkeleton(Tilted(degrees), Sbu()), "upright");
+    const SkeletonCheck check = Find(CheckSkeleton(Tilted(degrees), Sbu()), "upright");
     EXPECT_NEAR(check.figures.at("lean_degrees"), 90, 10) << degrees;
     EXPECT_LT(std::abs(check.figures.at("lean_x_degrees")), 10) << degrees;
   }
 }
 
 TEST(CheckSkeleton, TwistedWaistIsDetected) {
-  const Check check = Spoilt("waist", [](motion::Clip* clip) {
+  const SkeletonCheck check = Spoilt("waist", [](motion::Clip* clip) {
     const int left = Sbu().Find("left_shoulder"), right = Sbu().Find("right_shoulder");
     for (int frame = 0; frame < 6; ++frame)
       std::swap(clip->at(frame, left), clip->at(frame, right));
@@ -180,7 +180,7 @@ TEST(CheckSkeleton, TwistedWaistIsDetected) {
 }
 
 TEST(CheckSkeleton, AJumpIsCountedAndPlaced) {
-  const Check check = Spoilt("jumps", [](motion::Clip* clip) {
+  const SkeletonCheck check = Spoilt("jumps", [](motion::Clip* clip) {
     for (int frame = 12; frame < clip->frame_count(); ++frame) {
       for (motion::Vec3& at : clip->poses[frame]) at.x += 2;
     }
@@ -192,23 +192,23 @@ TEST(CheckSkeleton, AJumpIsCountedAndPlaced) {
 TEST(CheckSkeleton, JumpsAreNotCheckedWithoutAFrameRate) {
   motion::Clip clip = MakePerson();
   clip.frame_rate_hz = 0;
-  for (const Check& check : CheckSkeleton(clip, Sbu())) EXPECT_NE(check.name, "jumps");
+  for (const SkeletonCheck& check : CheckSkeleton(clip, Sbu())) EXPECT_NE(check.name, "jumps");
 }
 
 TEST(CheckSkeleton, SidesThatAreSwappedThroughoutBendTheLimbsTheWrongWay) {
-  const Check check =
+  const SkeletonCheck check =
       Spoilt("sides", [](motion::Clip* clip) { SwapSides(clip, 0, clip->frame_count() - 1); });
   EXPECT_EQ(check.figures.at("bent_wrongly"), 1);
   EXPECT_EQ(check.figures.at("swaps"), 0);
 }
 
 TEST(CheckSkeleton, SidesThatChangePlacesForAMomentAreCounted) {
-  const Check check = Spoilt("sides", [](motion::Clip* clip) { SwapSides(clip, 10, 14); });
+  const SkeletonCheck check = Spoilt("sides", [](motion::Clip* clip) { SwapSides(clip, 10, 14); });
   EXPECT_EQ(check.figures.at("swaps"), 2);
 }
 
 TEST(CheckSkeleton, ShouldersThatAreSwappedOpposeTheHips) {
-  const Check check = Spoilt("sides", [](motion::Clip* clip) {
+  const SkeletonCheck check = Spoilt("sides", [](motion::Clip* clip) {
     for (const char* joint : {"shoulder", "elbow", "hand"}) {
       const int left = Sbu().Find(std::string("left_") + joint);
       const int right = Sbu().Find(std::string("right_") + joint);
@@ -228,10 +228,10 @@ TEST(CheckSkeleton, ChecksWithoutTheirJointsAreOmitted) {
   clip.joint_names = rod.joint_names;
   clip.frame_rate_hz = 30;
   clip.Append(std::vector<motion::Vec3>{{0, 0, 0}, {0, 1, 0}});
-  for (const Check& check : CheckSkeleton(clip, rod)) {
+  for (const SkeletonCheck& check : CheckSkeleton(clip, rod)) {
     EXPECT_TRUE(check.name == "finite" || check.name == "limb lengths") << check.name;
   }
 }
 
 }  // namespace
-}  // namespace duet::client::analysis
+}  // namespace duet::client::cli
