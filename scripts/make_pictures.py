@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Makes the pictures of a server's answers: docs/images/reactions.png, and an animation of each class and of a
-dance in docs/images/reactions/. The leaders are samples/; needs chromium.
+dance in docs/images/reactions/. The leaders are samples/; needs chromium, python3-numpy and python3-pil.
 
     scripts/make_pictures.py build/release
 """
 
 import base64
+import io
+import math
 import os
 import pathlib
 import re
@@ -20,21 +22,23 @@ os.environ["DUET_BIN_DIR"] = str(pathlib.Path(sys.argv[1]).resolve() / "bin")
 sys.path.insert(0, str(SOURCE / "tests" / "e2e"))
 
 import browser  # noqa: E402
+import numpy as np  # noqa: E402
 import tools  # noqa: E402
+from PIL import Image  # noqa: E402
 
-browser.WAIT_SECONDS = 900  # a film of half a minute takes minutes where a processor draws it
 FILM = {"width": 360, "height": 240}
+FILM_STEP = 6  # hundredths of a second between two pictures of a film: browsers slow down faster ones
+MOST_PICTURES = 300  # of a film
+UNCHANGED = 255  # the index of a pixel of a film that is as in the picture before
 STILL = {"width": 467, "height": 396}
 # (leader, labels, frame of the leader)
 STILLS = (("kick", {"kick": 1}, 34), ("hug", {"hug": 1}, 50), ("push", {"hug": 0.5, "push": 0.5}, 34))
 # The dance of scripts/demo.sh: its sample and its flags.
 DANCE = ("salsa", ["--model=salsa", *(f"{flag}={value}" for flag, value in
                                       re.findall(r"(--candidates|--seed|--keyframe) (\d\S*)", DEMO.read_text(encoding="utf-8")))])
-KEEP_BLOBS = ("(() => { const make = URL.createObjectURL; URL.createObjectURL = (blob) => {"
-              " window.saved = blob; return make(blob); }; })()")
-SAVED = ("new Promise((resolve) => { const reader = new FileReader();"
-         " reader.onload = () => resolve(reader.result.split(',')[1]);"
-         " reader.readAsDataURL(window.saved); })")
+# A frame of the page without its controls, as a data URL.
+PICTURE = ("(() => {{ const stage = document.getElementById('stage'); stage.player.seek({frame}); stage.draw();"
+           " return stage.canvas.toDataURL(); }})()")
 
 
 def label_flags(labels):
@@ -49,20 +53,43 @@ def page_of(server, leader, flags, folder):
     return file.as_uri()
 
 
+def decoded(url):
+    """The bytes of a data URL."""
+    return base64.b64decode(url.partition(",")[2])
+
+
+def film_pictures(page):
+    """The pictures of one run, and the hundredths of a second that each is shown."""
+    last, rate = page.evaluate("(({player, motion}) => [player.last, motion.frameRate])"
+                               "(document.getElementById('stage'))")
+    hundredths = max(FILM_STEP, math.ceil(100 * last / rate / MOST_PICTURES))
+    step = rate * hundredths / 100
+    frames = [step * index for index in range(int(last / step) + 1)]
+    return [Image.open(io.BytesIO(decoded(page.evaluate(PICTURE.format(frame=frame))))).convert("RGB")
+            .resize(tuple(FILM.values()), Image.LANCZOS) for frame in frames], hundredths
+
+
 def save_film(chromium, url, file):
+    """Saves one run as a GIF that repeats, with one palette and in each picture only what has changed."""
     page = chromium.open(f"{url}#paused", sharp=True, **FILM)
-    page.evaluate(KEEP_BLOBS)
-    page.press("g")
-    page.wait_until("(document.documentElement.dataset.saved || '').includes('.gif')")
-    file.write_bytes(base64.b64decode(page.evaluate(SAVED)))
+    pictures, hundredths = film_pictures(page)
     page.close()
+    some = np.concatenate([np.asarray(picture) for picture in pictures[::max(1, len(pictures) // 5)]])
+    palette = Image.fromarray(some).quantize(UNCHANGED)
+    shown = [np.asarray(picture.quantize(palette=palette, dither=Image.Dither.NONE)) for picture in pictures]
+    changes = [shown[0], *(np.where(now == before, UNCHANGED, now).astype(np.uint8)
+                           for before, now in zip(shown, shown[1:]))]
+    first, *others = (Image.fromarray(indices, "P") for indices in changes)
+    for picture in (first, *others):
+        picture.putpalette(palette.getpalette())
+    first.save(file, save_all=True, append_images=others, duration=10 * hundredths, loop=0, disposal=1,
+               transparency=UNCHANGED, optimize=False)
 
 
 def take_still(chromium, url, frame):
     """A frame as a data URL without the page's controls."""
-    page = chromium.open(f"{url}#frame={frame}&paused", sharp=True, **STILL)
-    picture = page.evaluate("(() => { const stage = document.getElementById('stage'); stage.draw();"
-                            " return stage.canvas.toDataURL(); })()")
+    page = chromium.open(f"{url}#paused", sharp=True, **STILL)
+    picture = page.evaluate(PICTURE.format(frame=frame))
     page.close()
     return picture
 

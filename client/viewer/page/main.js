@@ -12,7 +12,6 @@ function start() {
   const panel = new Panel(data, motion, player);
   const measures = new Measures(stage, motion, element('measures'));
   const film = new Film(scene, data.title);
-  const gif = new Gif(scene, data.title);
   const grade = data.grade ? new Grade(data.grade, player) : null;
   const showChosen = (name) => {
     for (const button of document.querySelectorAll('[data-view]')) {
@@ -55,7 +54,6 @@ function start() {
       {id: 'measure', key: 'm', action: measure},
       {id: 'save-picture', key: 'p', action: () => savePicture(scene, data.title)},
       {id: 'save-film', key: film.possible ? 'r' : '', action: () => film.start()},
-      {id: 'save-gif', key: 'g', action: () => gif.start()},
       {id: 'save-motion', action: () => saveMotion(data.glb, data.title)},
       ...(grade ? [{id: 'next-fault', key: 'n', action: () => grade.next()}] : []),
     ],
