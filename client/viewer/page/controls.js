@@ -1,3 +1,46 @@
+// Start and failure of a page. `document.documentElement.dataset` reports its state to programs:
+// state (loading, ready, failed), frames, frame, draws, triangles, error.
+const root = document.documentElement;
+
+function fail(message) {
+  root.dataset.state = 'failed';
+  root.dataset.error = message;
+  const box = document.getElementById('failure');
+  box.hidden = false;
+  box.textContent = message;
+}
+
+window.addEventListener('error', (event) => fail(event.message));
+window.addEventListener('unhandledrejection', (event) => fail(String(event.reason)));
+
+// "#frame=12&view=side&paused", or the same after "?".
+function openingState() {
+  const text = `${location.search.slice(1)}&${location.hash.slice(1)}`;
+  const state = {};
+  for (const part of text.split('&')) {
+    const [key, value] = part.split('=');
+    if (key) state[key] = value === undefined ? '' : decodeURIComponent(value);
+  }
+  return state;
+}
+
+// Displays the player's position.
+function showTime({player, frameRate}) {
+  const element = (id) => document.getElementById(id);
+  const shown = Math.round(player.frame);
+  element('scrub').value = shown;
+  element('scrub').style.setProperty('--done', `${100 * player.frame / Math.max(1, player.last)}%`);
+  element('frame').textContent = shown;
+  element('of').textContent = ` / ${player.last}`;
+  const seconds = (frames) => (frames / frameRate).toFixed(2);
+  element('time').textContent = `${seconds(player.frame)} / ${seconds(player.last)} s`;
+  element('play').classList.toggle('playing', player.playing);
+  element('loop').setAttribute('aria-pressed', player.looping);
+  for (const button of document.querySelectorAll('[data-speed]')) {
+    button.classList.toggle('chosen', Number(button.dataset.speed) === player.speed);
+  }
+}
+
 // Handles mouse, touch and keys, except for the camera, which has its own controls.
 // `showPerson(name, visible)` shows or hides the leader or the follower.
 // `more`: actions by the id of their button, with their key.
