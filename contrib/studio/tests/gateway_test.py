@@ -420,7 +420,7 @@ class GatewayTest(tools.ServedTest):
         for settings, status, words in (({"follower_start": "/etc/passwd"}, 400, "settings: expected "),
                                         ({"joint_map": ["a\nb"]}, 400, "joint_map: expected "),
                                         ({"side": "up"}, 422, "--rig-side"),
-                                        ({"format": "csv"}, 422, "--out: expected .bvh")):
+                                        ({"format": "csv"}, 422, "--out: expected the format of --rig")):
             with self.subTest(settings=settings):
                 found, _, body = self.write_on_rig(pair, leader, **settings)
                 self.assertEqual(found, status, body)
