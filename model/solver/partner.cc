@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "absl/types/span.h"
 #include "model/base/angle.h"
@@ -153,7 +154,7 @@ void Partner::PlaceBody(const motion::Poses& leader, const ContactRules& rules,
                         double frame_rate_hz, int given, motion::Poses* follower) const {
   FaceLeader(leader, rules, frame_rate_hz, given, follower);
   const int frames = follower->frame_count();
-  const std::optional<Meeting> meeting = FindMeeting(leader, rules, frame_rate_hz, *follower);
+  const std::vector<Meeting> meetings = FindMeetings(leader, rules, frame_rate_hz, *follower);
   for (int round = 0; round < kRounds; ++round) {
     motion::Poses offsets(frames, 1);
     for (int t = 0; t < frames; ++t) {
@@ -165,7 +166,9 @@ void Partner::PlaceBody(const motion::Poses& leader, const ContactRules& rules,
       const Vec3 offset = lasting.at(t, 0);
       const float distance = Norm(offset);
       Vec3 wish = Unit(offset) * (std::clamp(distance, kNearest, kFarthest) - distance);
-      if (meeting && round == 0) wish += WayForHand(*meeting, leader, rules, t, *follower);
+      for (const Meeting& meeting : meetings) {
+        wish += WayForHand(meeting, leader, rules, t, *follower);
+      }
       const float deep =
           Overlap(leader[t], (*follower)[t], rules[static_cast<std::size_t>(t)].overlap);
       const Vec3 out = Unit(offsets.at(t, 0));
@@ -180,44 +183,54 @@ void Partner::PlaceBody(const motion::Poses& leader, const ContactRules& rules,
   }
 }
 
-std::optional<Partner::Meeting> Partner::FindMeeting(const motion::Poses& leader,
-                                                     const ContactRules& rules,
-                                                     double frame_rate_hz,
-                                                     const motion::Poses& follower) const {
+const body::Limb* Partner::NearestArm(const Meeting& meeting, const motion::Poses& leader,
+                                      const motion::Poses& follower) const {
+  const body::Limb* nearest = nullptr;
+  float least = HUGE_VALF;
+  for (const body::Limb& arm : body_.arms) {
+    float sum = 0;
+    for (int t = 0; t < follower.frame_count(); ++t) {
+      sum += meeting.weights[static_cast<std::size_t>(t)] *
+             Distance(leader.at(t, meeting.leader->end), follower.at(t, arm.end));
+    }
+    if (sum >= least) continue;
+    least = sum;
+    nearest = &arm;
+  }
+  return nearest;
+}
+
+std::vector<Partner::Meeting> Partner::FindMeetings(const motion::Poses& leader,
+                                                    const ContactRules& rules,
+                                                    double frame_rate_hz,
+                                                    const motion::Poses& follower) const {
   const int frames = follower.frame_count();
-  Meeting best;
-  float most = 0;
-  for (const body::Limb& arm : body_.arms) {
-    motion::Poses weights(frames, 1);
-    float sum = 0;
-    for (int t = 0; t < frames; ++t) {
+  motion::Poses offers(frames, 2);  // x: how much each hand of the leader is offered
+  for (int t = 0; t < frames; ++t) {
+    for (int arm = 0; arm < 2; ++arm) {
       const double reach =
-          body::ReachTowards(arm, skeleton_.root, leader[t], follower.at(t, skeleton_.root));
-      weights.at(t, 0).x = rules[static_cast<std::size_t>(t)].hands *
-                           SmoothStep((reach - kAnswers) / (kMeets - kAnswers));
-      sum += weights.at(t, 0).x;
-    }
-    if (sum <= most) continue;
-    most = sum;
-    best = {&arm, nullptr, {}};
-    weights = motion::GaussianFilter(weights, kHandSeconds * frame_rate_hz);
-    for (const Vec3 weight : weights.all()) {
-      best.weights.push_back(std::max(0.0f, weight.x));
+          body::ReachTowards(body_.arms[static_cast<std::size_t>(arm)], skeleton_.root, leader[t],
+                             follower.at(t, skeleton_.root));
+      offers.at(t, arm).x = rules[static_cast<std::size_t>(t)].hands *
+                            SmoothStep((reach - kAnswers) / (kMeets - kAnswers));
     }
   }
-  if (best.leader == nullptr) return std::nullopt;
-  float nearest = HUGE_VALF;
-  for (const body::Limb& arm : body_.arms) {
-    float sum = 0;
+  offers = motion::GaussianFilter(offers, kHandSeconds * frame_rate_hz);
+  std::vector<Meeting> meetings;
+  for (int arm = 0; arm < 2; ++arm) {
+    Meeting meeting{&body_.arms[static_cast<std::size_t>(arm)], nullptr, {}};
+    bool meets = false;
     for (int t = 0; t < frames; ++t) {
-      sum += best.weights[static_cast<std::size_t>(t)] *
-             Distance(leader.at(t, best.leader->end), follower.at(t, arm.end));
+      const float own = offers.at(t, arm).x, other = offers.at(t, 1 - arm).x;
+      const bool more = own > other || (own == other && arm == 0);
+      meeting.weights.push_back(more ? std::max(0.0f, own) : 0);
+      meets = meets || meeting.weights.back() > 0;
     }
-    if (sum >= nearest) continue;
-    nearest = sum;
-    best.follower = &arm;
+    if (!meets) continue;
+    meeting.follower = NearestArm(meeting, leader, follower);
+    meetings.push_back(std::move(meeting));
   }
-  return best;
+  return meetings;
 }
 
 Vec3 Partner::WayToMeet(const Meeting& meeting, const motion::Poses& leader, float metres, int t,
@@ -228,9 +241,16 @@ Vec3 Partner::WayToMeet(const Meeting& meeting, const motion::Poses& leader, flo
 
 void Partner::PlaceHands(const motion::Poses& leader, const ContactRules& rules,
                          double frame_rate_hz, int given, motion::Poses* follower) const {
-  const std::optional<Meeting> meeting = FindMeeting(leader, rules, frame_rate_hz, *follower);
+  const std::vector<Meeting> meetings = FindMeetings(leader, rules, frame_rate_hz, *follower);
+  for (int round = 0; round < kRounds; ++round) {
+    MoveHands(meetings, leader, rules, frame_rate_hz, given, follower);
+  }
+}
+
+void Partner::MoveHands(const std::vector<Meeting>& meetings, const motion::Poses& leader,
+                        const ContactRules& rules, double frame_rate_hz, int given,
+                        motion::Poses* follower) const {
   for (const body::Limb& arm : body_.arms) {
-    const bool meets = meeting && meeting->follower == &arm;
     std::vector<Vec3> wishes;
     bool moves = false;
     for (int t = 0; t < follower->frame_count(); ++t) {
@@ -242,19 +262,21 @@ void Partner::PlaceHands(const motion::Poses& leader, const ContactRules& rules,
             part.from, part.to, hand, Lerp(hand, follower->at(t, arm.middle), 0.5f));
         const float depth =
             part.radius + kHandRadius - kSoft - static_cast<float>(closest.distance);
-        if (depth > 0)
+        if (depth > 0) {
           wish += Unit(closest.on_b - closest.on_a) * (depth * (1 - rules[at].overlap));
+        }
       }
-      if (meets) {
-        wish += WayToMeet(*meeting, leader, rules[at].hands_metres, t, *follower) *
-                meeting->weights[at];
+      for (const Meeting& meeting : meetings) {
+        if (meeting.follower != &arm) continue;
+        wish += WayToMeet(meeting, leader, rules[at].hands_metres, t, *follower) *
+                meeting.weights[at];
       }
       moves = moves || wish != Vec3{};
       wishes.push_back(wish);
     }
     if (!moves) continue;
-    const std::vector<Vec3> ways =
-        SmoothShift({frame_rate_hz, kHandSeconds, kNear, given}, WeightsOf(wishes), wishes);
+    const std::vector<Vec3> ways = SmoothShift({frame_rate_hz, kHandSeconds, kNear, given},
+                                               WeightsOf(wishes), wishes);
     for (int t = given; t < follower->frame_count(); ++t) {
       const absl::Span<Vec3> pose = (*follower)[t];
       const Vec3 bend =

@@ -2,7 +2,6 @@
 #define DUET_MODEL_SOLVER_PARTNER_H_
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "model/body/limbs.h"
@@ -43,8 +42,15 @@ class Partner {
     const body::Limb* follower = nullptr;
     std::vector<float> weights;
   };
-  std::optional<Meeting> FindMeeting(const motion::Poses& leader, const ContactRules& rules,
-                                     double frame_rate_hz, const motion::Poses& follower) const;
+  // One for each hand of the leader that is offered at any time, and more than the other one.
+  std::vector<Meeting> FindMeetings(const motion::Poses& leader, const ContactRules& rules,
+                                    double frame_rate_hz, const motion::Poses& follower) const;
+  // The hand that is nearest to the leader's while that is met.
+  const body::Limb* NearestArm(const Meeting& meeting, const motion::Poses& leader,
+                               const motion::Poses& follower) const;
+  void MoveHands(const std::vector<Meeting>& meetings, const motion::Poses& leader,
+                 const ContactRules& rules, double frame_rate_hz, int given,
+                 motion::Poses* follower) const;
   // The way of the hand in a frame until it meets the leader's.
   motion::Vec3 WayToMeet(const Meeting& meeting, const motion::Poses& leader, float metres, int t,
                          const motion::Poses& follower) const;
