@@ -70,7 +70,7 @@ train() {
 
 # Measures the model that samples beside the deterministic one.
 sampled() {
-  local start models=(--runs "flow=${runs}/flow" --runs "ours=${runs}/default")
+  local models=(--runs "flow=${runs}/flow" --runs "ours=${runs}/default")
   "${bin}/duet-eval" direction --data "${data}" --out "${results}" --runs "flow=${runs}/flow"
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" \
     --runs "flow=${runs}/flow-1" --runs "flow=${runs}/flow-2" --id 14_samples
@@ -79,16 +79,7 @@ sampled() {
     --title "Many answers to one leader, where the partner's direction is not told"
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --as-served \
     --id 15_samples_as_served --title "Many answers to one leader, as a server answers"
-  "${bin}/duet-eval" long --data "${data}" --out "${results}" "${models[@]}" --as-served \
-    --seconds 60 --title "Clips of a minute"
-  "${bin}/duet-eval" long --data "${data}" --out "${results}" "${models[@]}" --as-served \
-    --seconds 600 --subjects s01 --id 16_long_600 --title "Clips of ten minutes"
   "${bin}/duet-eval" told-apart --data "${data}" --out "${results}" "${models[@]}" --as-served
-  for start in none pose; do
-    "${bin}/duet-eval" strips --data "${data}" --out "${results}" "${models[@]}" --as-served \
-      --start "${start}" --id "18_strips_${start}" \
-      --title "Captured and synthesised side by side, told ${start/none/nothing}"
-  done
   "${bin}/duet-eval" sweep --data "${data}" --runs "flow=${runs}/flow" --out "${results}" \
     --id 31_sweep_flow --title "Mix, match and avoid by the model that samples"
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <utility>
 
 #include "model/authoring/made_leaders.h"
@@ -14,7 +13,6 @@
 namespace duet::evaluation::experiments {
 namespace {
 
-constexpr float kFollowerDistance = 1;
 constexpr double kFadeSeconds = 0.5;
 
 int FadeFrames(double frame_rate_hz) {
@@ -31,30 +29,6 @@ motion::Poses StartLike(const motion::Skeleton& skeleton, const motion::Poses& f
   to.y = from.y;
   for (motion::Vec3& p : clip.all()) p = RotateY(p - from, turn) + to;
   return clip;
-}
-
-// A leader of a class in the data set's joints; the follower has only the first pose.
-dataset::Sequence MakeSequence(const dataset::Dataset& dataset, int interaction_class,
-                               std::string name, motion::Poses leader,
-                               const motion::Poses& follower,
-                               std::optional<motion::Vec3> partner_direction) {
-  dataset::Sequence sequence;
-  sequence.id = std::move(name);
-  sequence.interaction_class = interaction_class;
-  sequence.partner_direction = partner_direction;
-  sequence.pair.leader = {dataset.skeleton.joint_names, dataset.frame_rate_hz, std::move(leader)};
-  sequence.pair.follower = {dataset.skeleton.joint_names, dataset.frame_rate_hz,
-                            motion::Part(follower, 0, 1)};
-  return sequence;
-}
-
-// Standing a metre in front of a leader who faces -z at the origin.
-motion::Poses StandingFollower() {
-  motion::Poses follower = authoring::StandingPerson();
-  for (motion::Vec3& p : follower.all()) {
-    p = RotateY(p, M_PI) + motion::Vec3{0, 0, -kFollowerDistance};
-  }
-  return follower;
 }
 
 }  // namespace
@@ -109,32 +83,6 @@ dataset::Sequence LoopTake(const dataset::Dataset& dataset, const dataset::Seque
     }
   }
   return looped;
-}
-
-std::vector<dataset::Sequence> MakeLongLeaders(const dataset::Dataset& dataset,
-                                               const std::vector<int>& sequences,
-                                               int interaction_class, double seconds) {
-  std::vector<dataset::Sequence> leaders;
-  if (dataset.skeleton.joint_names == motion::SbuSkeleton().joint_names) {
-    for (const char* const name : authoring::kMadeLeaders) {
-      leaders.push_back(MakeSequence(dataset, interaction_class, name,
-                                     authoring::MakeLeader(name, seconds, dataset.frame_rate_hz),
-                                     StandingFollower(), motion::Vec3{0, 0, -1}));
-    }
-  }
-  const dataset::Sequence* first = nullptr;  // determines the follower's place
-  std::vector<motion::Poses> clips;
-  for (const int index : sequences) {
-    const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
-    if (sequence.interaction_class != interaction_class || !IsLoopable(sequence)) continue;
-    if (first == nullptr) first = &sequence;
-    clips.push_back(sequence.pair.leader.poses);
-  }
-  if (first == nullptr) return leaders;
-  leaders.push_back(MakeSequence(dataset, interaction_class, "captured",
-                                 LoopClips(dataset.skeleton, clips, seconds, dataset.frame_rate_hz),
-                                 first->pair.follower.poses, first->partner_direction));
-  return leaders;
 }
 
 }  // namespace duet::evaluation::experiments

@@ -8,8 +8,7 @@
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 
-// Long leaders, to test whether followers keep their posture: captured clips one after the other,
-// and leaders that formulas make.
+// Leaders that formulas make, and captured ones repeated.
 
 namespace duet::evaluation::experiments {
 
@@ -31,14 +30,6 @@ int LoopFrames(const dataset::Dataset& dataset, const dataset::Sequence& take);
 // first pose. Requires IsLoopable.
 dataset::Sequence LoopTake(const dataset::Dataset& dataset, const dataset::Sequence& take,
                            double seconds);
-
-// Leaders by name (their id), each with only a first pose of a follower: the generated ones, with a
-// standing follower one metre in front; and, as "captured", the looped clips of the class among
-// `sequences`. Requires at least one that is long enough for LoopClips. Omits the generated leaders
-// if the data's skeleton does not have SbuSkeleton's joints.
-std::vector<dataset::Sequence> MakeLongLeaders(const dataset::Dataset& dataset,
-                                               const std::vector<int>& sequences,
-                                               int interaction_class, double seconds);
 
 }  // namespace duet::evaluation::experiments
 

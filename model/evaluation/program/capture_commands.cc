@@ -3,19 +3,16 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "model/base/statistics.h"
 #include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
-#include "model/evaluation/experiments/tilted_answers.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
 #include "model/evaluation/program/flags.h"
 #include "model/evaluation/report/data_tables.h"
 #include "model/training/direction_fit.h"
 
-// The commands that measure captures: their properties, and what a model makes of their directions
-// and tilts.
+// The commands that measure captures: their properties, and what a model makes of their directions.
 
 namespace duet::evaluation::program {
 namespace {
@@ -99,99 +96,6 @@ absl::Status RunDirection(const ExperimentFlags& flags) {
   return FinishSection(flags.section, section);
 }
 
-using experiments::TiltedFigures;
-
-struct TiltArguments : ExperimentFlags {
-  std::vector<double> degrees = {10};
-  bool as_captured = false;
-};
-
-// Adds figures of so many sequences to those before.
-void AddFigures(const std::vector<TiltedFigures>& more, double weight,
-                std::vector<TiltedFigures>* sum) {
-  if (sum->empty()) {
-    for (const TiltedFigures& one : more) sum->push_back({one.name});
-  }
-  for (size_t i = 0; i < more.size(); ++i) {
-    (*sum)[i].error_metres += weight * more[i].error_metres;
-    (*sum)[i].levelled_share += weight * more[i].levelled_share;
-    (*sum)[i].residual_degrees += weight * more[i].residual_degrees;
-  }
-}
-
-report::Table ToTable(const std::string& title, const std::vector<TiltedFigures>& rows) {
-  report::Table table{title, {"error cm", "worse %", "levelled %", "tilt left"}, {}, {}, 1};
-  for (const TiltedFigures& row : rows) {
-    table.rows.push_back(
-        {row.name,
-         {100 * row.error_metres, 100 * (row.error_metres / rows[0].error_metres - 1),
-          100 * row.levelled_share, row.residual_degrees}});
-  }
-  return table;
-}
-
-absl::StatusOr<report::Table> MeasureTilt(const TiltArguments& arguments,
-                                          const Experiment& experiment, const FoldModel& model,
-                                          const std::string& start, const std::string& title,
-                                          const std::vector<experiments::Camera>& cameras) {
-  double sequences = 0;
-  for (const Fold& fold : experiment.folds) {
-    sequences += static_cast<double>(fold.split.test.size());
-  }
-  std::vector<TiltedFigures> sum;
-  for (const Fold& fold : experiment.folds) {
-    DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
-    for (const experiments::Camera& camera : cameras) {
-      DUET_TRY(const std::vector<TiltedFigures> figures,
-               AnswerTilted(*synthesizer, experiment.dataset, fold.split.test, ParseStart(start),
-                            arguments.asked, camera));
-      const double weight = static_cast<double>(fold.split.test.size()) /
-                            (sequences * static_cast<double>(cameras.size()));
-      AddFigures(figures, weight, &sum);
-    }
-  }
-  return ToTable(absl::StrCat(model.name, StartSuffix(ParseStart(start)), ", ", title), sum);
-}
-
-absl::Status RunTilt(const TiltArguments& arguments) {
-  DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
-  // One model for everything answers all sequences; otherwise, each fold's model answers its own.
-  std::vector<Fold> folds = {{"", {{}, dataset::AllSequences(dataset)}}};
-  if (!arguments.models.one_for_all()) {
-    DUET_TRY(folds, LeaveOut(dataset, arguments.subjects));
-  }
-  DUET_TRY(std::vector<FoldModel> models, OpenModels(arguments.models));
-  const Experiment experiment{std::move(dataset), std::move(folds), std::move(models)};
-  report::ResultSection section = BeginAnswers(
-      arguments, experiment,
-      "Answers to leaders of a tilted camera, in the level world: the mean distance of the joints "
-      "from the captured follower as one vector (afd), and by how much that exceeds leaders that "
-      "were never tilted. Auto levels only where the evidence is strong: that of one file with two "
-      "people, or of all files of a set.");
-  section.settings.emplace_back("samples", absl::StrCat(arguments.asked.samples));
-  section.settings.emplace_back("partner direction",
-                                arguments.asked.tell_direction ? "stated" : "estimated");
-  for (const FoldModel& model : experiment.models) {
-    for (const std::string& start : arguments.starts) {
-      const auto measure = [&](const std::string& title,
-                               const std::vector<experiments::Camera>& cameras) {
-        return MeasureTilt(arguments, experiment, model, start, title, cameras);
-      };
-      if (arguments.as_captured) {
-        DUET_TRY(section.tables.emplace_back(), measure("tilted as captured", {{0, std::nullopt}}));
-      }
-      for (const double degrees : arguments.degrees) {
-        std::vector<experiments::Camera> cameras;
-        for (const double azimuth : {0, 90, 180, 270}) cameras.push_back({degrees, azimuth});
-        DUET_TRY(section.tables.emplace_back(),
-                 measure(absl::StrFormat("tilted by %g degrees to each of four sides", degrees),
-                         cameras));
-      }
-    }
-  }
-  return FinishSection(arguments.section, section);
-}
-
 }  // namespace
 
 void AddDataCommand(CLI::App* app, ChosenCommand* chosen) {
@@ -211,21 +115,6 @@ void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen) {
   command
       ->add_option("--runs", flags->models.runs, "output of duet-train --protocol loso; repeatable")
       ->type_name(kNamedRuns);
-}
-
-void AddTiltCommand(CLI::App* app, ChosenCommand* chosen) {
-  const auto [arguments, command] = AddCommand(
-      "tilt", "What a camera's tilt costs, and what levelling saves", RunTilt, app, chosen);
-  arguments->starts = {"none"};
-  arguments->asked.samples = 4;
-  AddAnswersFlags("07_tilt", "Leaders of a tilted camera", arguments, command);
-  AddNumber("--degrees", &arguments->degrees, 0.0, 44.0,
-            "tilts of the camera, to each of four sides", command)
-      ->delimiter(',');
-  command->add_flag("--as-captured", arguments->as_captured,
-                    "add a table of the tilt that the data set was captured with");
-  command->add_flag("!--estimate-direction", arguments->asked.tell_direction,
-                    "leave the partner's direction to the model's estimate");
 }
 
 }  // namespace duet::evaluation::program

@@ -19,11 +19,10 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   program::ChosenCommand chosen;
   for (const auto add :
-       {program::AddFoldsCommand, program::AddSamplesCommand, program::AddLongCommand,
-        program::AddDanceCommand, program::AddPlausibleCommand, program::AddStripsCommand,
-        program::AddToldApartCommand, program::AddSweepCommand, program::AddAugmentationCommand,
-        program::AddLatentCommand, program::AddDataCommand, program::AddJudgeCommand,
-        program::AddDirectionCommand, program::AddTiltCommand, program::AddLiveCommand,
+       {program::AddFoldsCommand, program::AddSamplesCommand, program::AddDanceCommand,
+        program::AddPlausibleCommand, program::AddToldApartCommand, program::AddSweepCommand,
+        program::AddAugmentationCommand, program::AddLatentCommand, program::AddDataCommand,
+        program::AddJudgeCommand, program::AddDirectionCommand, program::AddLiveCommand,
         program::AddHourCommand}) {
     add(&app, &chosen);
   }

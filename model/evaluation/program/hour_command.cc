@@ -8,7 +8,7 @@
 #include "model/base/status_macros.h"
 #include "model/dataset/dataset.h"
 #include "model/evaluation/experiments/answers.h"
-#include "model/evaluation/experiments/long_clips.h"
+#include "model/evaluation/experiments/live_hour.h"
 #include "model/evaluation/experiments/looped_leaders.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"

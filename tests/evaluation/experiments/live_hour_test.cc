@@ -1,7 +1,8 @@
+#include "model/evaluation/experiments/live_hour.h"
+
 #include <gtest/gtest.h>
 
 #include "model/authoring/made_leaders.h"
-#include "model/evaluation/experiments/long_clips.h"
 #include "model/motion/vec3.h"
 
 namespace duet::evaluation::experiments {

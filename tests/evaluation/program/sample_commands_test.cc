@@ -43,17 +43,6 @@ TEST(SampleCommandsTest, SamplesHasARowAStart) {
             "--samples 2 --embedded");
 }
 
-TEST(SampleCommandsTest, LongHasARowALeader) {
-  const auto section = RunCommand(AddLongCommand, {"long", "--seconds", "5", "--starts", "pose"});
-  ASSERT_THAT(section, IsOk());
-  const nlohmann::json& tables = section->at("tables");
-  ASSERT_THAT(tables, SizeIs(3));
-  EXPECT_THAT(RowNames(tables[0]),
-              ElementsAre("people: clips as captured", "duet: idle", "duet: walk_eight",
-                          "duet: dance", "duet: sit", "duet: captured"));
-  EXPECT_THAT(tables[2].at("rows"), SizeIs(2 * 6));
-}
-
 TEST(SampleCommandsTest, DanceComparesWithBaselinesAndAnotherLead) {
   const auto section = RunCommand(AddDanceCommand, {"dance", "--samples", "1"});
   ASSERT_THAT(section, IsOk());
@@ -157,19 +146,6 @@ TEST(SampleCommandsTest, ToldApartFinishesCapturedFollowersIfAsked) {
       {"told-apart", "--seeds", "1", "--starts", "none", "--as-served", "--finish-captured"});
   ASSERT_THAT(section, IsOk());
   EXPECT_THAT(section->at("settings").dump(), HasSubstr("finished as answers"));
-}
-
-TEST(SampleCommandsTest, StripsHasTheMotionsOfEveryClass) {
-  const auto section = RunCommand(AddStripsCommand, {"strips", "--start", "pose"});
-  ASSERT_THAT(section, IsOk());
-  ASSERT_THAT(section->at("figures"), SizeIs(6));
-  const nlohmann::json& figure = section->at("figures").at(0);
-  EXPECT_EQ(figure.at("name"), "18_strips_kick");
-  EXPECT_THAT(figure.at("caption"), HasSubstr("s01s02/03/001"));
-  EXPECT_EQ(figure.at("plot").at("kind"), "poses");
-  const nlohmann::json& pairs = figure.at("plot").at("pairs");
-  EXPECT_EQ(pairs.at(0).at("name"), "captured");
-  EXPECT_EQ(pairs.at(1).at("name"), "duet");
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include "model/evaluation/experiments/looped_leaders.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,7 +10,6 @@
 #include "model/body/liveliness.h"
 #include "model/body/motion_quality.h"
 #include "model/body/posture.h"
-#include "model/evaluation/experiments/looped_leaders.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/sample_motion.h"
 
@@ -124,28 +125,6 @@ TEST(LoopClipsTest, JoinsClipsWithoutAJump) {
   }
   EXPECT_LT(farthest, 0.6f);
   EXPECT_NEAR(Distance(looped.at(next + 20, skeleton.root), clip.at(20, skeleton.root)), 0, 1e-3);
-}
-
-TEST(MakeLongLeadersTest, HasGeneratedLeadersAndTheClassesClips) {
-  dataset::Dataset dataset = test::MadeUpPairs(2);
-  std::vector<dataset::Sequence> leaders = MakeLongLeaders(dataset, {0, 1, 2, 3}, 1, 8);
-  ASSERT_EQ(leaders.size(), std::size(authoring::kMadeLeaders) + 1);
-  EXPECT_EQ(leaders.back().id, "captured");
-  for (const dataset::Sequence& leader : leaders) {
-    EXPECT_EQ(leader.interaction_class, 1);
-    EXPECT_EQ(leader.pair.leader.frame_count(), 121);
-    EXPECT_EQ(leader.pair.follower.frame_count(), 1);
-  }
-  EXPECT_EQ(leaders.back().pair.follower.at(0, 3), dataset.sequences[2].pair.follower.at(0, 3));
-  // In front of those made.
-  const motion::Poses& follower = leaders.front().pair.follower.poses;
-  motion::Poses leader = leaders.front().pair.leader.poses;
-  leader.Resize(1);
-  EXPECT_LT(body::FacingDegrees(leader, follower, dataset.skeleton), 5);
-  EXPECT_LT(body::FacingDegrees(follower, leader, dataset.skeleton), 5);
-  EXPECT_EQ(MakeLongLeaders(dataset, {0, 1}, 1, 8).size(), std::size(authoring::kMadeLeaders));
-  dataset.skeleton.joint_names[0] = "hat";
-  EXPECT_EQ(MakeLongLeaders(dataset, {2, 3}, 1, 8).size(), 1u);
 }
 
 }  // namespace
