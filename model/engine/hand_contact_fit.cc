@@ -14,7 +14,7 @@ namespace {
 constexpr double kMeets = 0.25;
 // The least share of an offered hand's time that is met. Clean-up meets every offered hand of the
 // class, so that a smaller share would close more hands than it should.
-constexpr double kLeastShare = 0.4;
+constexpr double kLeastShare = 0.3;
 constexpr double kLeastSeconds = 3;
 
 }  // namespace
