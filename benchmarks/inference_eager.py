@@ -3,9 +3,9 @@ eager PyTorch. Prints a line of JSON for each generator and batch: the median pr
 milliseconds of a few runs.
 
     inference_eager.py THREADS BATCH...
-    inference_eager.py --export FOLDER      writes sbu@1.onnx and sbu@2.onnx for any batch size instead
+    inference_eager.py --export FOLDER      writes sbu@1.onnx and sbu@3.onnx for any batch size instead
 
-Sizes: the embedded checkpoints' (sbu@1: the paper's sections 3.1 and 3.2; sbu@2: width 160, 4
+Sizes: the embedded checkpoints' (sbu@1: the paper's sections 3.1 and 3.2; sbu@3: width 160, 4
 blocks, 4 heads, feed-forward 480, one step), 45 frames. Weights are random: speed does not depend
 on them.
 """
@@ -134,7 +134,7 @@ def milliseconds(network, batch):
 def export(folder):
     arguments = {"leader": torch.randn(2, FRAMES, 3 * JOINTS),
                  "labels": torch.zeros(2, FRAMES, CLASSES), "start": torch.zeros(2, START)}
-    for name, network in (("sbu@1", Paper()), ("sbu@2", Sampling())):
+    for name, network in (("sbu@1", Paper()), ("sbu@3", Sampling())):
         torch.onnx.export(network.eval(), tuple(arguments.values()), f"{folder}/{name}.onnx",
                           input_names=list(arguments), output_names=["follower"],
                           dynamic_axes={name: {0: "batch"} for name in (*arguments, "follower")},
@@ -147,7 +147,7 @@ def main():
     threads, batches = int(sys.argv[1]), [int(batch) for batch in sys.argv[2:]]
     torch.set_num_threads(threads)
     torch.manual_seed(0)
-    for name, network in (("sbu@1", Paper()), ("sbu@2", Sampling())):
+    for name, network in (("sbu@1", Paper()), ("sbu@3", Sampling())):
         for batch in batches:
             print(json.dumps({"model": name, "batch": batch,
                               "milliseconds": milliseconds(network.eval(), batch)}), flush=True)

@@ -36,7 +36,7 @@ async function milliseconds(session, batch) {
   return times[Math.floor(times.length / 2)];
 }
 
-for (const model of ["sbu@1", "sbu@2"]) {
+for (const model of ["sbu@1", "sbu@3"]) {
   const session = await ort.InferenceSession.create(`${graphs}/${model}.onnx`, {
     intraOpNumThreads: 1,
     interOpNumThreads: 1,

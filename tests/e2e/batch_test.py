@@ -251,7 +251,7 @@ class BatchTest(tools.ServedTest):
             refused = self.batch(out, recipe, server=other.address, code=42)
         finally:
             other.stop()
-        self.assertIn("model sbu@2: an answer was made in another way than the set's first one: "
+        self.assertIn("model sbu@3: an answer was made in another way than the set's first one: "
                       "clean_up: expected on, got off", refused.stderr)
         self.batch(out, recipe)
         self.assertEqual(digests(out), digests(self.whole))
@@ -430,7 +430,7 @@ class BatchTest(tools.ServedTest):
             result = tools.run(*command, *flags)
             self.assertEqual(result.returncode, 42, result.stderr)
             self.assertIn("3 bad lines", result.stderr)
-            self.assertIn(f'{manifest}:3: labels: expected classes of sbu@2', result.stderr)
+            self.assertIn(f'{manifest}:3: labels: expected classes of sbu@3', result.stderr)
             self.assertIn(f'{manifest}:4: side: expected left or right, got "lft"', result.stderr)
             self.assertIn(f"{manifest}:5: columns: expected 3", result.stderr)
         self.assertFalse((out / "index.jsonl").exists())
@@ -511,7 +511,7 @@ class BatchTest(tools.ServedTest):
             self.assertEqual({entry["model"] for entry in index}, {model["name"]})
             self.assertEqual({entry["skeleton"] for entry in index}, {model["skeleton"]})
             self.assertIn("research", model["terms"])
-            weights = tools.SOURCE / "model" / "embedded" / "sbu" / "2" / "weights.safetensors"
+            weights = tools.SOURCE / "model" / "embedded" / "sbu" / "3" / "weights.safetensors"
             self.assertEqual(model["weights_sha256"],
                              hashlib.sha256(weights.read_bytes()).hexdigest())
             self.assertEqual(dataset["files"][0]["unit"], "metres")

@@ -18,7 +18,7 @@ namespace {
 using test::SwayingMotion;
 using test::TinyCheckpoint;
 
-constexpr int kPaper = 1, kSampling = 2;  // versions of sbu
+constexpr int kPaper = 1, kSampling = 3;  // versions of sbu
 
 std::shared_ptr<const engine::Synthesizer> EmbeddedModel(const std::string& name, int version) {
   EXPECT_THAT(SetTorchThreads(1), IsOk());

@@ -84,7 +84,7 @@ class Client(_channel.Connected):
         """Returns one model version and its request limits.
 
         Args:
-            model: ``"sbu"``, ``"sbu@2"`` for a version, ``"sbu:stable"`` for a version label;
+            model: ``"sbu"``, ``"sbu@3"`` for a version, ``"sbu:stable"`` for a version label;
                 empty: the server's default.
             timeout: seconds for the whole call. None: the client's.
 

@@ -114,7 +114,7 @@ class LiveRequest:
         plan: number of provisional frames to send with each answer, 0 to 30.
         seed: selects an answer of a model that samples, 0 to 2^64 - 1.
         variety: how much answers differ between seeds, 0 to 2.
-        model: ``"sbu"``, ``"sbu@2"`` for a version, ``"sbu:stable"`` for a version label; empty:
+        model: ``"sbu"``, ``"sbu@3"`` for a version, ``"sbu:stable"`` for a version label; empty:
             the server's default.
         clean_up: whether the server corrects the follower. None: the server's default.
         follower_start: the follower's position in the first frame, in the leader's world and unit:

@@ -79,7 +79,7 @@ class SynthesisRequest:
             same seed gets the same answer from the same server.
         variety: how much answers differ between seeds, 0 to 2: 0 gives the typical answer, 1 as
             much variety as people have.
-        model: ``"sbu"``, ``"sbu@2"`` for a version, ``"sbu:stable"`` for a version label; empty:
+        model: ``"sbu"``, ``"sbu@3"`` for a version, ``"sbu:stable"`` for a version label; empty:
             the server's default.
         clean_up: whether the server corrects the follower: upright, without foot sliding, without
             overlap with the leader. None: the server's default.

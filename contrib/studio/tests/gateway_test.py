@@ -361,7 +361,7 @@ class GatewayTest(tools.ServedTest):
         motion = self.read()
         pair = json.dumps({**motion, "follower": motion["leader"]}).encode()
         for kind in ("glb", "csv", "json", "html"):
-            name = "hug_sbu@2_hug1_seed3"
+            name = "hug_sbu@3_hug1_seed3"
             status, headers, body = self.ask(f"/write?format={kind}&name={name}", pair)
             self.assertEqual(status, 200, body)
             self.assertEqual(headers["content-disposition"],

@@ -274,7 +274,7 @@ class SparTest(unittest.TestCase):
             window.bodies.push(Array.from(new Uint8Array(await response.clone().arrayBuffer())));
             return response;
           }; undefined""")
-        for kind, name in (("glb", "spar_sbu@2.glb"), ("bvh", "spar_sbu@2.zip")):
+        for kind, name in (("glb", "spar_sbu@3.glb"), ("bvh", "spar_sbu@3.zip")):
             page.evaluate(f"record({json.dumps(kind)})")
             self.assertEqual(page.state()["downloaded"], name)
             data = bytes(page.evaluate("window.bodies.pop()"))
@@ -307,7 +307,7 @@ class SparTest(unittest.TestCase):
     def test_models_that_answer_live_can_be_chosen(self):
         page = self.open()
         names = page.evaluate("[...element('model').options].map((option) => option.value)")
-        self.assertEqual(names, ["salsa@1", "sbu@2"])
+        self.assertEqual(names, ["salsa@1", "sbu@3"])
         page.evaluate("chooseModel(spar.models[0])")
         page.wait_until("spar.seen")
         self.assertEqual(page.evaluate("spar.session.settings.model"), "salsa@1")

@@ -242,7 +242,7 @@ class WebTest(StudioTest):
         self.assertEqual(page.text("#play"), "Play")
 
     def test_downloads_match_the_view_and_are_named_after_the_settings(self):
-        page = self.open_still("#leader=hug.bvh&labels=hug:1,push:0.5&seed=3&model=sbu@2")
+        page = self.open_still("#leader=hug.bvh&labels=hug:1,push:0.5&seed=3&model=sbu@3")
         self.react(page)
         page.evaluate("""window.bodies = [];
           const fetched = window.fetch;
@@ -252,7 +252,7 @@ class WebTest(StudioTest):
             return response;
           }; undefined""")
         page.evaluate("download('json')")
-        name = "hug_sbu@2_hug1_push0.5_seed3"
+        name = "hug_sbu@3_hug1_push0.5_seed3"
         self.assertEqual(page.state()["downloaded"], f"{name}.json")
         pair = json.loads(page.evaluate("window.bodies.pop()"))
         np.testing.assert_allclose(np.ravel(pair["follower"]), page.evaluate(FOLLOWER), atol=1e-6)

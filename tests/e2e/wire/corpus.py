@@ -29,7 +29,7 @@ def requests_of_methods(source):
         SYNTHESIZE: synthesize,
         LIVE: live_messages(synthesize[0]),
         f"{SYNTHESIS}/ListModels": [b""],
-        f"{SYNTHESIS}/GetModel": [message(f1=message(f1="sbu", f2=2)),
+        f"{SYNTHESIS}/GetModel": [message(f1=message(f1="sbu", f2=3)),
                                   message(f1=message(f1=SPARE, f3="blue")), b""],
         f"{ADMIN}/ListModels": [b""],
         f"{ADMIN}/LoadModel": [version],

@@ -30,7 +30,7 @@ class Target:
             on_failure.callback(self._resources.close)
             if flags is None:
                 folder = self._resources.enter_context(tempfile.TemporaryDirectory())
-                copy_model("sbu/2", pathlib.Path(folder, "sbu/2"), "sbu")
+                copy_model("sbu/3", pathlib.Path(folder, "sbu/3"), "sbu")
                 copy_model("sbu/1", pathlib.Path(folder, corpus.SPARE, "1"), corpus.SPARE)
                 flags = (*IMPATIENT, "--model-repository", folder)
             options = {} if program is None else {"program": program}
