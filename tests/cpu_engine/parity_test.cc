@@ -201,10 +201,11 @@ TEST(ParityTest, WideGeneratorEqualsLibTorch) {
   EXPECT_LT(FromTorch(checkpoint, Precision::kBfloat16, inputs), 2e-3f);
 }
 
-// The maximum shift of a joint by rounded weights, metres. A swaying person is unlike every leader
-// that salsa was trained on; with the lead in samples, joints move by 1 to 3 mm.
+// The maximum shift of a joint by rounded weights, metres. Of models that sample, it is larger: a
+// swaying person is unlike every leader that salsa was trained on, for example.
 float MaximumShift(const Manifest& manifest) {
-  return manifest.model.name == "salsa" ? 10e-3f : 2e-3f;
+  if (!manifest.model.samples) return 2e-3f;
+  return manifest.model.name == "salsa" ? 10e-3f : 5e-3f;
 }
 
 TEST(ParityTest, RoundedWeightsMoveJointsByMillimetresAtMost) {
