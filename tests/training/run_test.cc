@@ -104,57 +104,22 @@ TEST_F(RunTest, ReportsTheErrorByPositionInTakesThatAreHeldBack) {
   EXPECT_THAT(ReadTestFile(plan_.folder / "log.csv"), HasSubstr(",whole_answers\n1,"));
 }
 
-// The leader's right hand reaches for the follower in every frame.
-void ReachForTheFollower(dataset::Dataset* dataset) {
-  const motion::Skeleton& skeleton = dataset->skeleton;
-  const int shoulder = skeleton.Find("right_shoulder"), elbow = skeleton.Find("right_elbow"),
-            hand = skeleton.Find("right_hand");
-  for (dataset::Sequence& take : dataset->sequences) {
-    motion::Poses& leader = take.pair.leader.poses;
-    for (int t = 0; t < leader.frame_count(); ++t) {
-      const motion::Vec3 partner = take.pair.follower.poses.at(t, skeleton.root);
-      const motion::Vec3 arm = partner - leader.at(t, shoulder);
-      leader.at(t, elbow) = leader.at(t, shoulder) + arm * 0.4f;
-      leader.at(t, hand) = leader.at(t, shoulder) + arm * 0.8f;
-    }
-  }
-}
-
-TEST_F(RunTest, NotesWhatPeopleDoInTheClassesOfADance) {
+TEST_F(RunTest, NotesFollowersOfAnotherSize) {
   plan_.options = SmallFlowOptions();
   plan_.options.epochs = 1;
-  ReachForTheFollower(&dataset_);
-  ASSERT_THAT(Go(), IsOk());
-  const auto fight = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-  ASSERT_THAT(fight, IsOk());
-  EXPECT_FALSE(fight->manifest.model.strikes.empty());
-  plan_.folder = folder_.path() / "dance";
   for (dataset::Sequence& take : dataset_.sequences) {
     motion::Poses& follower = take.pair.follower.poses;
-    take.labels = {{0, 0, 12}};
-    take.interaction_class = 0;
     for (int t = 0; t < follower.frame_count(); ++t) {
       const motion::Vec3 root = follower.at(t, dataset_.skeleton.root);
-      for (motion::Vec3& joint : follower[t]) {
-        // A smaller person who turns by 430 degrees a second.
-        joint = RotateY(joint - root, 0.5 * t) * 0.9f + root;
-      }
+      for (motion::Vec3& joint : follower[t]) joint = root + (joint - root) * 0.9f;
     }
   }
   ASSERT_THAT(Go(), IsOk());
   const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
   ASSERT_THAT(checkpoint, IsOk());
-  const engine::ModelDescription& model = checkpoint->manifest.model;
-  ASSERT_EQ(model.turning_classes.size(), 1u);
-  EXPECT_EQ(model.turning_classes[0].interaction_class, "kick");
-  // Against the line to the leader, who sways.
-  EXPECT_NEAR(model.turning_classes[0].degrees_per_second, 430, 120);
-  EXPECT_TRUE(model.facing_classes.empty());  // turns are not undone
-  EXPECT_TRUE(model.strikes.empty());
-  EXPECT_FALSE(model.steps_in_time);
-  ASSERT_EQ(model.bone_ratios.size(), dataset_.skeleton.bones.size());
-  EXPECT_NEAR(model.bone_ratios[0], 0.9, 0.02);
-  EXPECT_EQ(model.hip_height, 0);  // of takes of ten seconds
+  const std::vector<double>& ratios = checkpoint->manifest.model.bone_ratios;
+  ASSERT_EQ(ratios.size(), dataset_.skeleton.bones.size());
+  EXPECT_NEAR(ratios[0], 0.9, 0.02);
 }
 
 TEST_F(RunTest, NotesTheClassesInWhichPeopleFaceEachOther) {
