@@ -35,7 +35,7 @@ motion::Poses ReachingOut(int joint, float ahead, float height) {
 }
 
 PairFigures Measured(const motion::Poses& leader, const motion::Poses& follower,
-                     const ClassContacts& contacts = {false, engine::StrikingLimb::kFoot}) {
+                     const ClassContacts& contacts = {}) {
   return Plausibility(motion::SbuSkeleton()).Measure(leader, follower, kRate, contacts);
 }
 
@@ -60,7 +60,6 @@ TEST(PlausibilityTest, AStandingPairHasNoFaults) {
   }
   EXPECT_NEAR(Figure(figures, "distance"), 1.2, 0.1);
   EXPECT_TRUE(std::isnan(Figure(figures, "hands")));
-  EXPECT_TRUE(std::isnan(Figure(figures, "strikes")));
   for (const double fault : figures.faults) EXPECT_EQ(fault, 0);
 }
 
@@ -86,33 +85,15 @@ TEST(PlausibilityTest, HandsAreMeasuredWhileOneIsReachedOut) {
   const double far = Figure(leader, Partner(1.4f), "hands");
   EXPECT_GT(near, 0.2);
   EXPECT_GT(far, near + 0.2);
-  EXPECT_GT(Measured(leader, Partner(1.4f), {true, std::nullopt}).faults[9], 0.9);
-  EXPECT_EQ(Measured(leader, Partner(1.4f), {false, std::nullopt}).faults[9], 0);
-}
-
-TEST(PlausibilityTest, AFootThatStaysShortOfTheBody) {
-  const motion::Poses leader = ReachingOut(kRightFoot, 0.6f, 0.9f);
-  EXPECT_NEAR(Figure(leader, Partner(1.2f), "strikes"), 0.5, 0.12);
-  EXPECT_LT(Figure(leader, Partner(0.8f), "strikes"), 0.15);
-  EXPECT_EQ(Figure(leader, Partner(1.2f), "through"), 0);
-}
-
-TEST(PlausibilityTest, OnlyTheLimbThatStrikesInTheClassCounts) {
-  const motion::Poses kick = ReachingOut(kRightFoot, 0.6f, 0.9f);
-  const motion::Poses punch = ReachingOut(kRightHand, 0.7f, 1.1f);
-  const auto short_by = [](const motion::Poses& leader, const ClassContacts& contacts) {
-    return Figure(Measured(leader, Partner(1.2f), contacts), "strikes");
-  };
-  const ClassContacts fists{false, engine::StrikingLimb::kFist};
-  EXPECT_TRUE(std::isnan(short_by(kick, fists)));
-  EXPECT_TRUE(std::isnan(short_by(kick, {})));
-  EXPECT_TRUE(std::isnan(short_by(punch, {false, engine::StrikingLimb::kFoot})));
-  EXPECT_GT(short_by(punch, fists), 0.2);
+  EXPECT_GT(Measured(leader, Partner(1.4f), {true}).faults[9], 0.9);
+  EXPECT_EQ(Measured(leader, Partner(1.4f), {false}).faults[9], 0);
 }
 
 TEST(PlausibilityTest, AFootInsideTheBody) {
   const motion::Poses leader = ReachingOut(kRightFoot, 0.8f, 0.95f);
   EXPECT_GT(Figure(leader, Partner(0.8f), "through"), 0.9);
+  const motion::Poses shorter = ReachingOut(kRightFoot, 0.6f, 0.9f);
+  EXPECT_EQ(Figure(shorter, Partner(1.2f), "through"), 0);
 }
 
 TEST(PlausibilityTest, AJointThatSnapsIsFoundInItsFrame) {
