@@ -26,13 +26,15 @@ constexpr double kFastestBody = 1.5, kFastestLimb = 2.5;
 // The weights of a pin and of not correcting; corrections that are smaller than the last are none.
 // Metres.
 constexpr double kPinned = 1e5, kNear = 1;
-constexpr float kNoWay = 1e-4f;
+constexpr float kNoWay = 5e-4f;
 // How far an arm reaches for a pin before the body moves, and any limb, in its lengths.
 constexpr float kComfortable = 0.95f, kReach = 0.998f;
 // How far the body rises or sinks for a pin at most: people can crouch or stand on their toes.
 constexpr float kMostLift = 0.3f;
 // Passes over a limb: a limb turns on a circle, so that one straight correction falls short.
 constexpr int kRounds = 5;
+// Steps of the search for the share of a way.
+constexpr int kBisections = 8;
 
 Vec3 PinnedJoint(const motion::Poses& poses, const Pin& pin) {
   const int before = std::clamp(static_cast<int>(pin.frame), 0, poses.frame_count() - 1);
@@ -49,6 +51,25 @@ Vec3 FacingOf(const motion::Skeleton& skeleton, absl::Span<const Vec3> pose) {
 Vec3 InTime(Vec3 way, const Pin& pin, int given, double fastest, double rate) {
   const double most = fastest * (pin.frame - given + 1) / rate, length = double{Norm(way)};
   return given > 0 && length > most ? way * static_cast<float>(most / length) : way;
+}
+
+// The part of a way of the body on which its legs still reach their feet, or get no farther from
+// reaching them.
+float ShareWithinReach(const std::vector<body::Limb>& legs, Vec3 way, absl::Span<const Vec3> pose) {
+  const auto reaches = [&](float share) {
+    return std::all_of(legs.begin(), legs.end(), [&](const body::Limb& leg) {
+      const Vec3 hip = JointAt(pose, leg.upper), foot = JointAt(pose, leg.end);
+      const float most = std::max(Distance(hip, foot), kReach * body::LengthOf(leg, pose));
+      return Distance(hip + way * share, foot) <= most;
+    });
+  };
+  float low = 0, high = 1;
+  if (reaches(1)) return 1;
+  for (int i = 0; i < kBisections; ++i) {
+    const float middle = (low + high) / 2;
+    (reaches(middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 bool Contains(const std::vector<int>& joints, int joint) {
@@ -181,8 +202,9 @@ void PinnedBody::Place(motion::Poses* follower) const {
     const std::vector<Vec3> track = Track(in_time, kBodySeconds, *follower);
     for (int t = given_; t < follower->frame_count(); ++t) {
       const absl::Span<Vec3> pose = (*follower)[t];
-      const Vec3 way = track[static_cast<std::size_t>(t)];
+      Vec3 way = track[static_cast<std::size_t>(t)];
       if (Norm(way) < kNoWay) continue;
+      way = way * ShareWithinReach(body_.legs, way, pose);
       std::vector<Vec3> feet;
       for (const body::Limb& leg : body_.legs) feet.push_back(JointAt(pose, leg.end));
       for (Vec3& joint : pose) joint += way;

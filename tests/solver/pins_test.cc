@@ -56,6 +56,11 @@ TEST(PinsTest, SoftnessLeavesItsShareOfTheDistance) {
       whole / 2, 0.03);
 }
 
+TEST(PinsTest, APinFarAboveDoesNotLiftTheBodyOffItsFeet) {
+  const motion::Poses follower = Pinned({{kTorso, 20, {0, 9, 0}}});
+  EXPECT_LT(follower.at(20, kTorso).y, Puppet().at(20, kTorso).y + 0.35f);
+}
+
 TEST(PinsTest, GivenFramesStay) {
   const Vec3 place = Puppet().at(5, kRightHand) + Vec3{0, 0.3f, 0};
   EXPECT_EQ(Pinned({{kRightHand, 5, place}}, 10), Puppet());
