@@ -201,8 +201,7 @@ const body::Limb* Partner::NearestArm(const Meeting& meeting, const motion::Pose
 }
 
 std::vector<Partner::Meeting> Partner::FindMeetings(const motion::Poses& leader,
-                                                    const ContactRules& rules,
-                                                    double frame_rate_hz,
+                                                    const ContactRules& rules, double frame_rate_hz,
                                                     const motion::Poses& follower) const {
   const int frames = follower.frame_count();
   motion::Poses offers(frames, 2);  // x: how much each hand of the leader is offered
@@ -268,15 +267,15 @@ void Partner::MoveHands(const std::vector<Meeting>& meetings, const motion::Pose
       }
       for (const Meeting& meeting : meetings) {
         if (meeting.follower != &arm) continue;
-        wish += WayToMeet(meeting, leader, rules[at].hands_metres, t, *follower) *
-                meeting.weights[at];
+        wish +=
+            WayToMeet(meeting, leader, rules[at].hands_metres, t, *follower) * meeting.weights[at];
       }
       moves = moves || wish != Vec3{};
       wishes.push_back(wish);
     }
     if (!moves) continue;
-    const std::vector<Vec3> ways = SmoothShift({frame_rate_hz, kHandSeconds, kNear, given},
-                                               WeightsOf(wishes), wishes);
+    const std::vector<Vec3> ways =
+        SmoothShift({frame_rate_hz, kHandSeconds, kNear, given}, WeightsOf(wishes), wishes);
     for (int t = given; t < follower->frame_count(); ++t) {
       const absl::Span<Vec3> pose = (*follower)[t];
       const Vec3 bend =

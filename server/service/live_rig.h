@@ -8,8 +8,8 @@
 #include "duet/v1/motion.pb.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
-#include "model/retargeting/rig_fitting.h"
 #include "model/retargeting/rig.h"
+#include "model/retargeting/rig_fitting.h"
 #include "server/service/reply_mapping.h"
 #include "server/service/rig_format.h"
 

@@ -126,9 +126,12 @@ TEST(BodiesInManifest, HaveARatioForEachBone) {
 // Checkpoints of earlier versions have fields of stages that are gone.
 TEST(FormerFieldsInManifest, AreReadAndNotWrittenAgain) {
   json root = json::parse(SerializeManifest(CompleteManifest()));
-  const json former = {{"turning_classes", {{"hug", 240}}}, {"steps_in_time", true},
-                       {"hip_height", 0.88},                {"astride_seconds", 0.6},
-                       {"held_out_seconds", 1.2},           {"strikes", {{"hug", "fist"}}}};
+  const json former = {{"turning_classes", {{"hug", 240}}},
+                       {"steps_in_time", true},
+                       {"hip_height", 0.88},
+                       {"astride_seconds", 0.6},
+                       {"held_out_seconds", 1.2},
+                       {"strikes", {{"hug", "fist"}}}};
   root.update(former);
   const absl::StatusOr<Manifest> read = ParseManifest(root.dump());
   ASSERT_THAT(read, IsOk());

@@ -1,5 +1,3 @@
-#include "model/retargeting/rig_fitting.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -8,6 +6,7 @@
 #include "model/base/angle.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/foot_pose.h"
+#include "model/retargeting/rig_fitting.h"
 #include "tests/support/test_motion.h"
 
 namespace duet::retargeting {
