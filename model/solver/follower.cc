@@ -28,6 +28,10 @@ constexpr double kFloorShare = 0.1;
 // A told pose brings its own floor, so far from the leader's, metres; and its own lean, up to so
 // many degrees, and so many more.
 constexpr double kMostFloor = 0.1, kMostOwnLean = 20, kMoreLean = 4;
+// A lower foot that is farther above the floor on average over about a second is no jump. Metres;
+// seconds, deviation. The time over which the body comes down, and the weight of staying.
+constexpr float kMostAboveFloor = 0.035f;
+constexpr double kFloorSeconds = 0.45, kLiftSeconds = 0.15, kLiftNear = 0.02;
 // The least distance of the two roots along the floor in any frame. Metres.
 constexpr float kNearestRoots = 0.17f;
 // A limb that bends less has no plane of its own: knees bend forwards, elbows down and back.
@@ -154,9 +158,32 @@ void FollowerSolver::BendLimbs(const std::vector<motion::Poses>& bends, int give
   }
 }
 
+void FollowerSolver::StandOnFloor(double floor, int given, motion::Poses* follower) const {
+  motion::Poses heights(follower->frame_count(), 1);  // of the lower foot above the floor
+  for (int t = 0; t < follower->frame_count(); ++t) {
+    heights.at(t, 0).y =
+        std::min(follower->at(t, body_.legs[0].end).y, follower->at(t, body_.legs[1].end).y) -
+        static_cast<float>(floor);
+  }
+  heights = motion::GaussianFilter(heights, kFloorSeconds * frame_rate_hz_);
+  std::vector<double> wishes;
+  for (const Vec3 height : heights.all()) {
+    wishes.push_back(std::clamp(height.y, 0.0f, kMostAboveFloor) - height.y);
+  }
+  const std::vector<double> lifts =
+      SmoothCorrection({frame_rate_hz_, kLiftSeconds, kLiftNear, given},
+                       std::vector<double>(wishes.size(), 1), wishes);
+  for (int t = given; t < follower->frame_count(); ++t) {
+    for (Vec3& joint : (*follower)[t])
+      joint.y += static_cast<float>(lifts[static_cast<std::size_t>(t)]);
+  }
+}
+
 void FollowerSolver::PlaceFeet(const Situation& situation, const Stretches& stretches,
                                motion::Poses* follower) const {
   const int given = situation.given.frame_count(), frames = follower->frame_count();
+  const double floor = FloorOf(situation);
+  StandOnFloor(floor, given, follower);
   std::array<FootPath, 2> feet, hips;
   for (std::size_t leg = 0; leg < 2; ++leg) {
     for (int t = 0; t < frames; ++t) {
@@ -164,7 +191,7 @@ void FollowerSolver::PlaceFeet(const Situation& situation, const Stretches& stre
       hips[leg].push_back(follower->at(t, body_.legs[leg].upper));
     }
   }
-  const Footing footing = PlanSteps(feet, hips, given, frame_rate_hz_, FloorOf(situation));
+  const Footing footing = PlanSteps(feet, hips, given, frame_rate_hz_, floor);
   KeepStature(body_.legs, footing, stretches, frame_rate_hz_, given, follower);
   for (std::size_t leg = 0; leg < 2; ++leg) {
     const body::Limb& limb = body_.legs[leg];

@@ -73,6 +73,19 @@ TEST(FollowerSolverTest, EndsACrouchAndKeepsAShortDip) {
   EXPECT_LT(HipHeight(Solved(dip), 22), standing - 0.12);
 }
 
+TEST(FollowerSolverTest, AFloatingFollowerComesDownAndAJumpStays) {
+  const motion::Poses floating = test::Moved(Puppet(), {0, 0.2f, 0});
+  const auto low = [](const motion::Poses& poses, int t) {
+    return std::min(poses.at(t, kLeftFoot).y, poses.at(t, kRightFoot).y);
+  };
+  EXPECT_NEAR(low(Solved(floating), 20), low(Puppet(), 20), 0.05f);
+  const motion::Poses jump = test::Changed(Puppet(), [](int t, Vec3 joint) {
+    const float up = 0.3f - 0.05f * static_cast<float>((t - 22) * (t - 22));
+    return joint + Vec3{0, std::max(0.0f, up), 0};
+  });
+  EXPECT_GT(low(Solved(jump), 22), low(Puppet(), 22) + 0.12f);
+}
+
 TEST(FollowerSolverTest, GoesOnFromTheGivenFrames) {
   const motion::Poses given = motion::Part(test::Moved(Puppet(), {0.1f, 0, 0.05f}), 0, 12);
   const motion::Poses solved = Solved(Puppet(), given);
