@@ -17,7 +17,7 @@ FIGURES = pathlib.Path(__file__).resolve().parent / "figures.json"
 PROGRAMS = {
     "roofline": ("roofline_benchmark", ""),
     "kernel": ("kernel_benchmark", ""),
-    "clean_up": ("solver_benchmark", ""),
+    "solver": ("solver_benchmark", ""),
     # Clips only with the default engine: the others take minutes.
     "synthesis": ("synthesis_benchmark", "^windows/|^cleaned_windows/.*/(bf16|f32)|^clip/.*/bf16"),
 }

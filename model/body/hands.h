@@ -19,9 +19,6 @@ double ReachTowards(const Limb& arm, int root, absl::Span<const motion::Vec3> po
 // and less than one in ten that reaches half as far.
 inline constexpr double kOffersReach = 0.8;
 
-// From this reach on, a foot kicks, in lengths of the leg.
-inline constexpr double kKicksReach = 0.5;
-
 // The distance between the hands of two people where the leader offers one: of all offered hands
 // and all hands of the follower, the nearest two. Absent if no hand is offered. Shapes: poses
 // [joints].

@@ -99,7 +99,6 @@ double FollowerSolver::OwnLean(const Situation& situation) const {
 
 void FollowerSolver::MoveToPins(const motion::Pins& pins, int given,
                                 motion::Poses* follower) const {
-  const std::vector<motion::Poses> bends = SmoothBends(*follower);
   const PinnedBody pinned(skeleton_, body_, pins, frame_rate_hz_, given, *follower);
   pinned.Approach(follower);
   pinned.Place(follower);
@@ -174,8 +173,8 @@ void FollowerSolver::StandOnFloor(double floor, int given, motion::Poses* follow
       SmoothCorrection({frame_rate_hz_, kLiftSeconds, kLiftNear, given},
                        std::vector<double>(wishes.size(), 1), wishes);
   for (int t = given; t < follower->frame_count(); ++t) {
-    for (Vec3& joint : (*follower)[t])
-      joint.y += static_cast<float>(lifts[static_cast<std::size_t>(t)]);
+    const float lift = static_cast<float>(lifts[static_cast<std::size_t>(t)]);
+    for (Vec3& joint : (*follower)[t]) joint.y += lift;
   }
 }
 
