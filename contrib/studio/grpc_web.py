@@ -10,7 +10,7 @@ import urllib.parse
 
 import duet_motion as duet
 import duet_motion._channel
-import duet_motion._unreachable
+import duet_motion.retry
 import grpc
 import grpc.aio
 from aiohttp import web
@@ -100,7 +100,7 @@ async def end_of(call, backend):
     code, message = await call.code(), await call.details() or ""
     metadata = await call.trailing_metadata() or ()
     if code is grpc.StatusCode.UNAVAILABLE and all(key != DETAILS for key, _ in metadata):
-        away = duet._unreachable.describe_unreachable(backend.address, message)
+        away = duet.retry.describe_unreachable(backend.address, message)
         message = (f"{away[0].upper()}{away[1:]}. Start it with duet-server, or start the gateway "
                    "with another one (--server HOST:PORT).")
     return code, message, metadata
