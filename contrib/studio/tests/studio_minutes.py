@@ -128,7 +128,7 @@ def pin_a_hand(me):
     me.drag(hand, (hand[0] + 15, hand[1] - 40))
     me.key("r")
     me.answered(5)
-    assert me.page.evaluate("state.takes[0].pins.length === 1 && state.takes[0].pins[0].metres < 0.2")
+    assert me.page.evaluate("state.takes[0].pins.length === 1 && state.takes[0].pins[0].metres < 0.4")
     me.key("j")
 
 

@@ -14,7 +14,7 @@ import sys
 import bpy
 from mathutils import Matrix, Vector
 
-SOURCE = pathlib.Path(__file__).resolve().parents[3]
+SOURCE = pathlib.Path(__file__).resolve().parents[4]
 FIRST, FRAMES = 20, 12  # of the samples: the kick itself
 CENTIMETRE = 0.01
 # From y up to Blender's z up.
