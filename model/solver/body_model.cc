@@ -7,15 +7,15 @@
 #include "absl/status/status.h"
 #include "model/base/median.h"
 #include "model/motion/limb_lengths.h"
+#include "model/solver/geometry.h"
 
 namespace duet::solver {
 namespace {
 
 using motion::Vec3;
 
-Vec3 At(absl::Span<const Vec3> pose, int joint) { return pose[static_cast<std::size_t>(joint)]; }
-
-Vec3 Unit(Vec3 v) {
+// Of length 1; upwards for a vector of no length, so that a body has axes in any pose.
+Vec3 AxisOf(Vec3 v) {
   const float length = Norm(v);
   return length > 0 ? v / length : Vec3{0, 1, 0};
 }
@@ -32,10 +32,6 @@ std::vector<int> PathToRoot(const std::vector<int>& parents, int joint) {
   std::vector<int> path;
   for (; joint >= 0; joint = parents[static_cast<std::size_t>(joint)]) path.push_back(joint);
   return path;
-}
-
-bool Contains(const std::vector<int>& joints, int joint) {
-  return std::find(joints.begin(), joints.end(), joint) != joints.end();
 }
 
 // The first joint on the path from `a` to the root that is also on that of `b`.
@@ -98,11 +94,11 @@ absl::StatusOr<BodyModel> BodyModel::Measure(const motion::Skeleton& skeleton,
 }
 
 BodyModel::Axes BodyModel::AxesOf(int left, int right, absl::Span<const Vec3> pose) const {
-  const Vec3 hips = (At(pose, hips_.left) + At(pose, hips_.right)) / 2;
-  const Vec3 trunk = Unit(At(pose, chest_) - hips);
+  const Vec3 hips = (JointAt(pose, hips_.left) + JointAt(pose, hips_.right)) / 2;
+  const Vec3 trunk = AxisOf(JointAt(pose, chest_) - hips);
   Axes axes;
-  axes.across = Unit(At(pose, left) - At(pose, right));
-  axes.up = Unit(trunk - axes.across * Dot(trunk, axes.across));
+  axes.across = AxisOf(JointAt(pose, left) - JointAt(pose, right));
+  axes.up = AxisOf(trunk - axes.across * Dot(trunk, axes.across));
   axes.forward = Cross(axes.across, axes.up);
   return axes;
 }
@@ -136,11 +132,11 @@ void BodyModel::FitLimb(const body::Limb& limb, absl::Span<const Vec3> old,
   const float length = body::LengthOf(limb, old);
   if (length <= 0) return;
   // A share of the length, not metres: a knee keeps its angle if the bones get another length.
-  const float stretch = Distance(At(old, limb.end), At(old, limb.upper)) / length;
-  const Vec3 upper = At(pose, limb.upper);
-  body::ReachBent(limb,
-                  upper + Unit(At(old, limb.end) - upper) * (stretch * body::LengthOf(limb, pose)),
-                  body::BendOf(limb, old), pose);
+  const float stretch = Distance(JointAt(old, limb.end), JointAt(old, limb.upper)) / length;
+  const Vec3 upper = JointAt(pose, limb.upper);
+  body::ReachBent(
+      limb, upper + AxisOf(JointAt(old, limb.end) - upper) * (stretch * body::LengthOf(limb, pose)),
+      body::BendOf(limb, old), pose);
 }
 
 void BodyModel::Fit(absl::Span<Vec3> pose) const {
@@ -154,20 +150,20 @@ void BodyModel::Fit(absl::Span<Vec3> pose) const {
   };
   Vec3 middle;
   for (const int joint : pelvis_.joints) {
-    middle += At(old, joint) / static_cast<float>(pelvis_.joints.size());
+    middle += JointAt(old, joint) / static_cast<float>(pelvis_.joints.size());
   }
   place(pelvis_, AxesOf(hips_.left, hips_.right, old), middle);
   bool shoulders = false;
   const auto place_shoulders = [&] {
-    place(girdle_, AxesOf(shoulders_.left, shoulders_.right, old), At(pose, chest_));
+    place(girdle_, AxesOf(shoulders_.left, shoulders_.right, old), JointAt(pose, chest_));
     shoulders = true;
   };
   if (Contains(pelvis_.joints, chest_)) place_shoulders();
   for (const Segment& segment : segments_) {
     // Towards the captured joint, not parallel to the captured bone: errors do not add up.
-    const Vec3 direction = Unit(At(old, segment.to) - At(pose, segment.from));
+    const Vec3 direction = AxisOf(JointAt(old, segment.to) - JointAt(pose, segment.from));
     pose[static_cast<std::size_t>(segment.to)] =
-        At(pose, segment.from) + direction * segment.length;
+        JointAt(pose, segment.from) + direction * segment.length;
     if (!shoulders && segment.to == chest_) place_shoulders();
   }
   for (const std::vector<body::Limb>* limbs : {&legs_, &arms_}) {
@@ -177,7 +173,7 @@ void BodyModel::Fit(absl::Span<Vec3> pose) const {
 
 void BodyModel::FitAboveFeet(absl::Span<Vec3> pose) const {
   std::vector<Vec3> feet;
-  for (const body::Limb& leg : legs_) feet.push_back(At(pose, leg.end));
+  for (const body::Limb& leg : legs_) feet.push_back(JointAt(pose, leg.end));
   Fit(pose);
   for (std::size_t i = 0; i < feet.size(); ++i) {
     const Vec3 facing = body::Facing(hips_, pose);

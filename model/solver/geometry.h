@@ -1,13 +1,15 @@
 #ifndef DUET_MODEL_SOLVER_GEOMETRY_H_
 #define DUET_MODEL_SOLVER_GEOMETRY_H_
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "absl/types/span.h"
 #include "model/motion/vec3.h"
 
-// Directions and angles that the parts of the solver share.
+// Joints, directions and angles that the parts of the solver share.
 namespace duet::solver {
 
 // Shorter vectors have no direction.
@@ -15,6 +17,9 @@ inline constexpr float kNoDirection = 1e-5f;
 
 inline motion::Vec3 JointAt(absl::Span<const motion::Vec3> pose, int joint) {
   return pose[static_cast<std::size_t>(joint)];
+}
+inline bool Contains(const std::vector<int>& joints, int joint) {
+  return std::find(joints.begin(), joints.end(), joint) != joints.end();
 }
 // The part along the floor.
 inline motion::Vec3 Level(motion::Vec3 v) { return {v.x, 0, v.z}; }

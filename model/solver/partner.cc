@@ -34,8 +34,8 @@ constexpr float kMostPush = 0.3f, kMostCome = 0.3f;
 constexpr float kHandRadius = 0.045f;
 // The reach (body::ReachTowards) at which a hand begins to be met, and at which it is.
 constexpr double kAnswers = 0.55, kMeets = 0.8;
-// How far an arm reaches without effort, and at all, in its lengths.
-constexpr float kComfortable = 0.9f, kReach = 0.995f;
+// How far an arm reaches without effort, in its lengths.
+constexpr float kComfortable = 0.9f;
 // Corrections come and go over these times. Seconds.
 constexpr double kBodySeconds = 0.25, kTurnSeconds = 0.4, kHandSeconds = 0.1;
 constexpr double kNear = 0.02, kIdle = 0.1;

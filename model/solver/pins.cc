@@ -72,10 +72,6 @@ float ShareWithinReach(const std::vector<body::Limb>& legs, Vec3 way, absl::Span
   return low;
 }
 
-bool Contains(const std::vector<int>& joints, int joint) {
-  return std::find(joints.begin(), joints.end(), joint) != joints.end();
-}
-
 }  // namespace
 
 PinnedBody::PinnedBody(const motion::Skeleton& skeleton, const body::Body& body, const Pins& pins,

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "model/motion/filter.h"
+#include "model/solver/geometry.h"
 #include "model/solver/smoother.h"
 
 namespace duet::solver {
@@ -25,11 +26,9 @@ constexpr double kLeastHeight = 0.9;
 // What is longer than a dip: the deviation of a Gaussian. Seconds.
 constexpr double kLastingSeconds = 0.35;
 
-Vec3 At(absl::Span<const Vec3> pose, int joint) { return pose[static_cast<std::size_t>(joint)]; }
-
 float Stretch(const body::Limb& leg, absl::Span<const Vec3> pose) {
   const float length = body::LengthOf(leg, pose);
-  return length > 0 ? Distance(At(pose, leg.upper), At(pose, leg.end)) / length : 1;
+  return length > 0 ? Distance(JointAt(pose, leg.upper), JointAt(pose, leg.end)) / length : 1;
 }
 
 float MeanLength(const std::vector<body::Limb>& legs, absl::Span<const Vec3> pose) {
@@ -73,7 +72,7 @@ class Stature {
   // The rise at which a leg is stretched to a share of its length above its planned foot.
   float RiseFor(std::size_t leg, int t, float stretch) const {
     const Vec3 way =
-        At(poses_[t], legs_[leg].upper) - footing_.paths[leg][static_cast<std::size_t>(t)];
+        JointAt(poses_[t], legs_[leg].upper) - footing_.paths[leg][static_cast<std::size_t>(t)];
     const float length = stretch * body::LengthOf(legs_[leg], poses_[t]);
     return std::sqrt(std::max(0.0f, length * length - way.x * way.x - way.z * way.z)) - way.y;
   }
@@ -91,7 +90,8 @@ class Stature {
     motion::Poses heights(poses_.frame_count(), 1);  // in lengths of the leg
     for (int t = 0; t < poses_.frame_count(); ++t) {
       const std::size_t at = static_cast<std::size_t>(t);
-      const float hips = (At(poses_[t], legs_[0].upper).y + At(poses_[t], legs_[1].upper).y) / 2;
+      const float hips =
+          (JointAt(poses_[t], legs_[0].upper).y + JointAt(poses_[t], legs_[1].upper).y) / 2;
       const float lower = std::min(footing_.paths[0][at].y, footing_.paths[1][at].y);
       const float length = MeanLength(legs_, poses_[t]);
       heights.at(t, 0).y = length > 0 ? (hips - lower) / length : 1;

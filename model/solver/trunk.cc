@@ -63,10 +63,6 @@ Vec3 LeanExcess(Vec3 v, double most) {
   return across > allowed ? Level(v) * (1 - allowed / across) : Vec3{};
 }
 
-bool Contains(const std::vector<int>& joints, int joint) {
-  return std::find(joints.begin(), joints.end(), joint) != joints.end();
-}
-
 }  // namespace
 
 Trunk::Trunk(const motion::Skeleton& skeleton, const body::Body& body)
