@@ -50,6 +50,7 @@ void SetArchitecture(const Architecture& architecture, Manifest* manifest) {
       [manifest](const auto& one) {
         manifest->model.samples = one.kSamples;
         manifest->model.accepts_follower_start = one.AcceptsFollowerStart();
+        manifest->model.labels_guide = one.LabelsGuide();
       },
       architecture);
 }

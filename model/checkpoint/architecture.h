@@ -14,6 +14,7 @@ namespace duet::checkpoint {
 //   T::kSummary    one line for model cards
 //   T::kSamples    whether answers depend on a seed
 //   AcceptsFollowerStart()
+//   LabelsGuide()           // ModelDescription::labels_guide
 //   Tensors(manifest, T), declared beside T
 //   ReadFields and ToJson, declared in architecture_json.h
 // All that dispatches on the variant in this layer is architecture.cc. The layers above register

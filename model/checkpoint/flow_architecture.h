@@ -17,6 +17,7 @@ struct FlowArchitecture {
   static constexpr std::string_view kSummary = "sampling (flow matching): answers depend on a seed";
   static constexpr bool kSamples = true;
   static bool AcceptsFollowerStart() { return true; }
+  bool LabelsGuide() const { return !frame_labels; }
 
   int width = 0;
   int blocks = 0;

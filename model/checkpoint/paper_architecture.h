@@ -25,6 +25,7 @@ struct PaperArchitecture {
   static constexpr std::string_view kSummary = "one answer for each request (the paper's)";
   static constexpr bool kSamples = false;
   bool AcceptsFollowerStart() const { return follower_start; }
+  static bool LabelsGuide() { return false; }
 
   GeneratorVariant variant = GeneratorVariant::kPaper;
   // The whole-body slice also gets the follower's start (see StartFeatureCount).

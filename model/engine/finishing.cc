@@ -96,18 +96,18 @@ motion::Poses GivenFrames(const ModelDescription& description, const SynthesisWi
 }
 
 solver::ContactRules ContactRulesOf(const ModelDescription& description,
-                                    const SynthesisWindow& window) {
+                                    absl::Span<const float> labels) {
   const std::vector<solver::ContactRule> classes = RulesOfClasses(description);
   float farthest_away = classes.empty() ? kTurnedRound : 0;
   for (const solver::ContactRule& rule : classes) {
     farthest_away = std::max(farthest_away, rule.away_degrees);
   }
-  solver::ContactRules rules(static_cast<std::size_t>(window.leader.frame_count()));
+  solver::ContactRules rules(classes.empty() ? 0 : labels.size() / classes.size());
   for (std::size_t t = 0; t < rules.size(); ++t) {
     solver::ContactRule& rule = rules[t];
     float weights = 0, away = 0;
     for (std::size_t c = 0; c < classes.size(); ++c) {
-      const float weight = std::max(0.0f, window.labels[t * classes.size() + c]);
+      const float weight = std::max(0.0f, labels[t * classes.size() + c]);
       rule.overlap += weight * classes[c].overlap;
       rule.hands += weight * classes[c].hands;
       rule.hands_metres += weight * classes[c].hands * classes[c].hands_metres;

@@ -50,6 +50,9 @@ struct ModelDescription {
   int lookahead_frames = 0;
   bool accepts_follower_start = false;
   bool samples = false;  // results depend on Sampling
+  // Labels are guidance: the network answers each class by itself, and answers are combined
+  // (mixture.h). Otherwise the network reads the label vector.
+  bool labels_guide = false;
   // Statistics of the training leaders. Absent if unknown.
   std::optional<LeaderStatistics> leader_statistics;
   // Estimates the partner's direction if the caller specifies none. Absent: the direction in which

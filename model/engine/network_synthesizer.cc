@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/engine/candidates.h"
 #include "model/engine/finishing.h"
+#include "model/engine/mixture.h"
 #include "model/engine/standard_window.h"
 #include "model/engine/unfamiliarity.h"
 #include "model/engine/window_standardisation.h"
@@ -31,6 +32,7 @@ class NetworkSynthesizer : public Synthesizer {
         origin_(origin),
         network_(std::move(network)),
         options_(options),
+        body_(body::FindBody(description_.skeleton)),
         solver_(description_.skeleton, description_.frame_rate_hz),
         judge_(description_.skeleton, std::move(critic)) {
     description_.clean_up = options.clean_up;
@@ -40,23 +42,18 @@ class NetworkSynthesizer : public Synthesizer {
 
   std::vector<WindowResult> Synthesize(Windows windows) const override {
     if (windows.empty()) return {};
-    std::vector<motion::Standardisation> standardisations;
+    std::vector<Task> tasks;
     std::vector<NetworkInput> inputs;
     for (const SynthesisWindow* window : windows) {
-      standardisations.push_back(WindowStandardisation(description_.skeleton, *window, origin_));
-      AddCandidates(Standardise(standardisations.back(), *window), Candidates(*window), &inputs);
+      tasks.push_back(Prepare(*window, &inputs));
     }
     const absl::StatusOr<std::vector<motion::Poses>> followers = RunNetwork(inputs, windows.size());
     if (!followers.ok()) return {windows.size(), followers.status()};
     std::vector<WindowResult> results;
-    std::size_t first = 0;
-    for (std::size_t i = 0; i < windows.size(); ++i) {
-      const std::size_t count = static_cast<std::size_t>(Candidates(*windows[i]));
-      results.push_back(IsCancelled(inputs[first])
+    for (const Task& task : tasks) {
+      results.push_back(IsCancelled(inputs[task.first])
                             ? absl::CancelledError("cancelled while it was being answered")
-                            : Answer(*windows[i], standardisations[i],
-                                     absl::MakeConstSpan(*followers).subspan(first, count)));
-      first += count;
+                            : Answer(task, *followers));
     }
     return results;
   }
@@ -66,20 +63,31 @@ class NetworkSynthesizer : public Synthesizer {
   }
 
  private:
-  int Candidates(const SynthesisWindow& window) const {
-    return CandidateCount(description_, window.options.sampling);
-  }
+  // A window on its way through the network.
+  struct Task {
+    const SynthesisWindow* window;
+    motion::Standardisation standardisation;
+    Mixture mixture;
+    int candidates;
+    std::size_t first;  // of its inputs: the evaluations of the first candidate, of the second, ...
+  };
 
-  static void AddCandidates(NetworkInput input, int count, std::vector<NetworkInput>* inputs) {
+  Task Prepare(const SynthesisWindow& window, std::vector<NetworkInput>* inputs) const {
+    const motion::Standardisation standardisation =
+        WindowStandardisation(description_.skeleton, window, origin_);
+    NetworkInput input = Standardise(standardisation, window);
+    const int count = CandidateCount(description_, window.options.sampling);
+    Task task{&window, standardisation, Mixture(description_, body_, input), count, inputs->size()};
     const uint64_t seed = input.sampling.seed;
     input.sampling.variety = CandidateVariety(input.sampling.variety, count);
     for (int n = 0; n < count; ++n) {
       input.sampling.seed = CandidateSeed(seed, n);
-      inputs->push_back(n + 1 < count ? input : std::move(input));
+      task.mixture.AddInputs(input, inputs);
     }
+    return task;
   }
 
-  // Evaluates the candidates of `windows` windows.
+  // Evaluates the inputs of `windows` windows.
   absl::StatusOr<std::vector<motion::Poses>> RunNetwork(const std::vector<NetworkInput>& inputs,
                                                         std::size_t windows) const {
     const std::size_t most = std::max(windows, kMostTogether);
@@ -116,44 +124,48 @@ class NetworkSynthesizer : public Synthesizer {
     return followers;
   }
 
-  // The answer to a window, of the network's candidates.
-  WindowResult Answer(const SynthesisWindow& window, const motion::Standardisation& standardisation,
-                      absl::Span<const motion::Poses> candidates) const {
-    if (candidates.size() > 1) return Choose(window, standardisation, candidates);
-    return Finish(window, standardisation, candidates[0], window.pins);
+  // The answer to a window, of the network's answers to all windows.
+  WindowResult Answer(const Task& task, absl::Span<const motion::Poses> answers) const {
+    std::vector<motion::Poses> candidates;
+    for (int n = 0; n < task.candidates; ++n) {
+      const std::size_t count = task.mixture.evaluations();
+      candidates.push_back(task.mixture.Combine(
+          answers.subspan(task.first + static_cast<std::size_t>(n) * count, count)));
+    }
+    if (candidates.size() > 1) return Choose(task, candidates);
+    return Finish(task, candidates[0], task.window->pins);
   }
 
   // The best of a window's candidates, finished. Fails if one of them is not finite.
-  WindowResult Choose(const SynthesisWindow& window, const motion::Standardisation& standardisation,
-                      absl::Span<const motion::Poses> candidates) const {
+  WindowResult Choose(const Task& task, absl::Span<const motion::Poses> candidates) const {
+    const SynthesisWindow& window = *task.window;
     std::vector<motion::Poses> followers;
     for (const motion::Poses& candidate : candidates) {
-      WindowResult finished = Finish(window, standardisation, candidate, /*pins=*/{});
+      WindowResult finished = Finish(task, candidate, /*pins=*/{});
       if (!finished.ok()) return finished;
       followers.push_back(*std::move(finished));
     }
     const int given = GivenFrames(description_, window).frame_count();
-    const int best = judge_.Best(window.leader, followers, given, description_.frame_rate_hz,
-                                 window.options.sampling.variety, window.pins,
-                                 ContactRulesOf(description_, window), window.labels);
+    const int best =
+        judge_.Best(window.leader, followers, given, description_.frame_rate_hz,
+                    window.options.sampling.variety, window.pins, RulesOf(task), window.labels);
     // Only the chosen one is moved to the pins: a sample that is near already is the better one.
     if (!window.pins.empty()) {
-      return Finish(window, standardisation, candidates[static_cast<std::size_t>(best)],
-                    window.pins);
+      return Finish(task, candidates[static_cast<std::size_t>(best)], window.pins);
     }
     return std::move(followers[static_cast<std::size_t>(best)]);
   }
 
-  WindowResult Finish(const SynthesisWindow& window, const motion::Standardisation& standardisation,
-                      const motion::Poses& standard, const motion::Pins& pins) const {
-    motion::Poses follower = standardisation.Invert(standard);
+  WindowResult Finish(const Task& task, const motion::Poses& standard,
+                      const motion::Pins& pins) const {
+    const SynthesisWindow& window = *task.window;
+    motion::Poses follower = task.standardisation.Invert(standard);
     if (absl::Status status = CheckFinite(follower); !status.ok()) return status;
     if (options_.keep_limb_lengths) KeepLimbLengths(description_, window, &follower);
     if (options_.share_floor) ShareFloor(description_.skeleton, window, &follower);
     const bool solves = IsCleanedUp(window) && solver_.CanSolve();
     solver::Situation situation{window.leader, window.hidden_frames,
-                                GivenFrames(description_, window),
-                                ContactRulesOf(description_, window), pins};
+                                GivenFrames(description_, window), RulesOf(task), pins};
     if (solves || !window.settled.empty()) solver_.Join(situation.given, &follower);
     if (!solves) {
       if (!pins.empty()) solver_.MoveToPins(pins, situation.given.frame_count(), &follower);
@@ -165,6 +177,10 @@ class NetworkSynthesizer : public Synthesizer {
     return follower;
   }
 
+  solver::ContactRules RulesOf(const Task& task) const {
+    return ContactRulesOf(description_, task.mixture.labels());
+  }
+
   bool IsCleanedUp(const SynthesisWindow& window) const {
     return window.options.clean_up.value_or(description_.cleaned_up_by_default());
   }
@@ -173,6 +189,7 @@ class NetworkSynthesizer : public Synthesizer {
   const motion::StandardOrigin origin_;
   const std::unique_ptr<const Network> network_;
   const PipelineOptions options_;
+  const body::Body body_;
   const solver::FollowerSolver solver_;
   const CandidateJudge judge_;
 };

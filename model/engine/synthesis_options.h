@@ -7,6 +7,7 @@
 namespace duet::engine {
 
 inline constexpr int kMostCandidates = 16, kDefaultCandidates = 1;
+inline constexpr float kMostReaction = 2;
 
 // Selects the sample that a sampling model draws. Models that do not sample
 // (ModelDescription::samples) ignore it.
@@ -18,6 +19,10 @@ struct Sampling {
   // Number of samples that are drawn for each window, in [1, kMostCandidates]; the best one is
   // returned (candidates.h).
   int candidates = kDefaultCandidates;
+  // How much the leader's motion moves the follower, in [0, kMostReaction]: a factor of the
+  // difference from the answer to a leader who stands still (mixture.h). Other values than 1 take
+  // twice the evaluations.
+  float reaction = 1;
   // Set for a window of an endless motion: the index of the window's first frame in it. The noise
   // of a frame is then the same in every window that contains the frame (frame_noise.h).
   std::optional<int64_t> first_frame = std::nullopt;

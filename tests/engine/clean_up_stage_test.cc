@@ -217,11 +217,9 @@ TEST(ContactRules, BodiesTouchAsFarAsATouchingClasssLabelGoes) {
   ModelDescription description = FakeDescription();
   description.classes = {"kick", "hug"};
   description.touching_classes = {"hug"};
-  SynthesisWindow window;
-  window.leader = SwayingMotion(3, 15);
-  window.labels = {0.9f, -0.75f, 0.9f, 0.25f, 0.9f, 1.25f};
+  const std::vector<float> labels = {0.9f, -0.75f, 0.9f, 0.25f, 0.9f, 1.25f};
   const auto overlap = [&](std::size_t t) {
-    return ContactRulesOf(description, window)[t].overlap;
+    return ContactRulesOf(description, labels)[t].overlap;
   };
   EXPECT_EQ(overlap(0), 0);
   EXPECT_EQ(overlap(1), 0.25f);
@@ -235,10 +233,8 @@ TEST(ContactRules, AreMeansByTheWeightsOfTheClasses) {
   description.classes = {"shake", "dance", "walk"};
   description.hand_contacts = {{"shake", 0.2}, {"dance", 0.4}};
   description.facing_classes = {{"shake", 30}, {"walk", 90}};
-  SynthesisWindow window;
-  window.leader = SwayingMotion(3, 15);
-  window.labels = {1, 0, 0, 0.25f, 0.75f, 0, 0, 0, -1};
-  const solver::ContactRules rules = ContactRulesOf(description, window);
+  const solver::ContactRules rules =
+      ContactRulesOf(description, std::vector<float>{1, 0, 0, 0.25f, 0.75f, 0, 0, 0, -1});
   EXPECT_FLOAT_EQ(rules[0].hands_metres, 0.2f);
   EXPECT_FLOAT_EQ(rules[0].away_degrees, 30);
   EXPECT_FLOAT_EQ(rules[1].hands, 1);

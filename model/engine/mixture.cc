@@ -1,0 +1,256 @@
+#include "model/engine/mixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace duet::engine {
+namespace {
+
+using motion::Poses;
+using motion::Vec3;
+using Labels = std::vector<float>;
+
+// The change from contact to the other answer takes about four times as long, seconds. Faster, the
+// body jerks; slower, the two answers average where they differ most.
+constexpr double kChangeSeconds = 0.08;
+// A leader who reaches less far than the first, metres, gives no moment to cross over at, and the
+// answers are averaged; one who reaches further than the second does.
+constexpr float kNoReach = 0.15f, kFullReach = 0.35f;
+// What a sum of weights above 1 adds to the strength of answers that cross over. With the whole sum
+// they would be exaggerated beyond what people do.
+constexpr float kStrengthOfMore = 0.25f;
+// The largest part of an avoided class that is subtracted, relative to what the request changes. A
+// larger one changes the request itself.
+constexpr double kMostAvoided = 0.5;
+
+bool IsContact(const ModelDescription& model, std::size_t label) {
+  const std::string& name = model.classes[label];
+  const auto& touching = model.touching_classes;
+  return std::find(touching.begin(), touching.end(), name) != touching.end() ||
+         std::any_of(model.hand_contacts.begin(), model.hand_contacts.end(),
+                     [&](const HandContact& hands) { return hands.interaction_class == name; });
+}
+
+bool Any(const Labels& labels) {
+  return std::any_of(labels.begin(), labels.end(), [](float weight) { return weight > 0; });
+}
+
+float Smoothstep(float low, float high, float value) {
+  const float x = std::clamp((value - low) / (high - low), 0.0f, 1.0f);
+  return x * x * (3 - 2 * x);
+}
+
+// How far the leader's hands and feet are from its root towards the partner, the furthest of them.
+std::vector<float> Reaches(const body::Body& body, int root, const Poses& leader) {
+  std::vector<float> reaches(static_cast<std::size_t>(leader.frame_count()), 0.0f);
+  for (int t = 0; t < leader.frame_count(); ++t) {
+    float& reach = reaches[static_cast<std::size_t>(t)];
+    for (const std::vector<body::Limb>* limbs : {&body.arms, &body.legs}) {
+      for (const body::Limb& limb : *limbs) {
+        reach = std::max(reach, leader.at(t, root).z - leader.at(t, limb.end).z);
+      }
+    }
+  }
+  return reaches;
+}
+
+// How far the leader's action has got in each frame, 0 to 1: it is half done when a hand or a foot
+// has reached furthest. `clear` becomes how clearly there is such a moment, 0 to 1.
+std::vector<float> PhaseOf(const body::Body& body, int root, const Poses& leader,
+                           double frame_rate_hz, float* clear) {
+  std::vector<float> phase = Reaches(body, root, leader);
+  const auto [least, most] = std::minmax_element(phase.begin(), phase.end());
+  *clear = Smoothstep(kNoReach, kFullReach, *most - *least);
+  const double moment = static_cast<double>(most - phase.begin());
+  for (std::size_t t = 0; t < phase.size(); ++t) {
+    const double since = (static_cast<double>(t) - moment) / frame_rate_hz;
+    phase[t] = static_cast<float>(1 / (1 + std::exp(-since / kChangeSeconds)));
+  }
+  return phase;
+}
+
+// The leader, held still from the last frame that the window continues from.
+Poses HeldStill(Poses leader, int known_frames) {
+  const int still = std::max(0, known_frames - 1);
+  for (int t = still + 1; t < leader.frame_count(); ++t) {
+    std::copy(leader[still].begin(), leader[still].end(), leader[t].begin());
+  }
+  return leader;
+}
+
+double Dot(const Poses& a, const Poses& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.all().size(); ++i)
+    sum += double{motion::Dot(a.all()[i], b.all()[i])};
+  return sum;
+}
+
+Poses Minus(Poses a, const Poses& b) {
+  for (std::size_t i = 0; i < a.all().size(); ++i) a.all()[i] = a.all()[i] - b.all()[i];
+  return a;
+}
+
+}  // namespace
+
+Mixture::Mixture(const ModelDescription& model, const body::Body& body, const NetworkInput& window)
+    : frames_(window.leader.frame_count()),
+      classes_(model.class_count()),
+      root_(model.skeleton.root),
+      known_frames_(window.settled.frame_count()),
+      reaction_(model.labels_guide ? window.sampling.reaction : 1),
+      weights_(window.labels),
+      labels_(window.labels) {
+  if (model.labels_guide) {
+    FindParts(model, body, window);
+  } else {
+    parts_.push_back(window.labels);
+  }
+}
+
+void Mixture::FindParts(const ModelDescription& model, const body::Body& body,
+                        const NetworkInput& window) {
+  Labels contact(weights_.size()), other(weights_.size());
+  std::vector<char> avoided(static_cast<std::size_t>(classes_));
+  requested_.resize(static_cast<std::size_t>(frames_));
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    const std::size_t label = i % static_cast<std::size_t>(classes_);
+    if (weights_[i] < 0) avoided[label] = 1;
+    const float wanted = std::max(0.0f, weights_[i]);
+    (IsContact(model, label) ? contact : other)[i] = wanted;
+    requested_[i / static_cast<std::size_t>(classes_)] += wanted;
+  }
+  for (float& sum : requested_) sum = std::min(1.0f, sum);
+  if (!Any(contact) && !Any(other)) {  // nothing is asked for: the network avoids as it has learnt
+    parts_.push_back(weights_);
+    return;
+  }
+  if (Any(contact) && Any(other)) {
+    float clear = 0;
+    std::vector<float> phase = PhaseOf(body, root_, window.leader, model.frame_rate_hz, &clear);
+    CrossOver(contact, other, phase, clear);
+  } else {
+    parts_.push_back(Any(contact) ? std::move(contact) : std::move(other));
+  }
+  for (int label = 0; label < classes_; ++label) {
+    if (avoided[static_cast<std::size_t>(label)] != 0) avoided_.push_back(label);
+  }
+  if (avoided_.empty()) return;
+  parts_.emplace_back(weights_.size());
+  for (const int label : avoided_) {
+    Labels alone(weights_.size());
+    for (std::size_t i = static_cast<std::size_t>(label); i < alone.size();
+         i += static_cast<std::size_t>(classes_)) {
+      alone[i] = 1;
+    }
+    parts_.push_back(std::move(alone));
+  }
+}
+
+void Mixture::CrossOver(const Labels& contact, const Labels& other, const std::vector<float>& phase,
+                        float clear) {
+  const std::size_t classes = static_cast<std::size_t>(classes_);
+  parts_.assign(2, Labels(weights_.size()));
+  other_share_.resize(phase.size());
+  for (std::size_t t = 0; t < phase.size(); ++t) {
+    const auto sum_of = [&](const Labels& labels) {
+      const auto first = labels.begin() + static_cast<std::ptrdiff_t>(t * classes);
+      return std::accumulate(first, first + classes_, 0.0f);
+    };
+    const float contacts = sum_of(contact), others = sum_of(other), sum = contacts + others;
+    // A share of one half changes over completely. The more the shares differ, the less does.
+    const float share = sum > 0 ? others / sum : 0.5f;
+    const float before = std::max(0.0f, 2 * share - 1), after = std::min(1.0f, 2 * share);
+    other_share_[t] = share + (before + (after - before) * phase[t] - share) * clear;
+    const float strength =
+        sum <= 1 ? sum : std::max({contacts, others, 1 + kStrengthOfMore * (sum - 1)});
+    for (std::size_t i = t * classes; i < (t + 1) * classes; ++i) {
+      if (contacts > 0) parts_[0][i] = contact[i] * strength / contacts;
+      if (others > 0) parts_[1][i] = other[i] * strength / others;
+      const float asked = parts_[0][i] * (1 - other_share_[t]) + parts_[1][i] * other_share_[t];
+      labels_[i] = weights_[i] < 0 ? weights_[i] : asked;
+    }
+  }
+}
+
+void Mixture::AddInputs(const NetworkInput& window, std::vector<NetworkInput>* inputs) const {
+  const std::size_t first = inputs->size();
+  for (const Labels& labels : parts_) {
+    inputs->push_back(window);
+    inputs->back().labels = labels;
+  }
+  if (reaction_ == 1) return;
+  const Poses still = HeldStill(window.leader, known_frames_);
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    inputs->push_back((*inputs)[first + i]);
+    inputs->back().leader = still;
+  }
+}
+
+Poses Mixture::Combine(absl::Span<const Poses> answers) const {
+  Poses answer = Mix(answers.first(parts_.size()));
+  if (reaction_ == 1) return answer;
+  const Poses still = Mix(answers.subspan(parts_.size()));
+  for (std::size_t i = 0; i < answer.all().size(); ++i) {
+    answer.all()[i] = Lerp(still.all()[i], answer.all()[i], reaction_);
+  }
+  return answer;
+}
+
+Poses Mixture::Mix(absl::Span<const Poses> answers) const {
+  Poses answer = other_share_.empty() ? answers[0] : FromContact(answers[0], answers[1]);
+  if (avoided_.empty()) return answer;
+  answers.remove_prefix(other_share_.empty() ? 1 : 2);
+  Subtract(answers[0], answers.subspan(1), &answer);
+  return answer;
+}
+
+// The body's way is that of the answer that leads at the time, from where the body is; the pose
+// about the root is between the two.
+Poses Mixture::FromContact(const Poses& contact, const Poses& other) const {
+  Poses mixed = contact;
+  Vec3 place;
+  for (int t = 0; t < frames_; ++t) {
+    const float share = other_share_[static_cast<std::size_t>(t)];
+    const Vec3 from = contact.at(t, root_), to = other.at(t, root_);
+    const Vec3 between = Lerp(from, to, share);
+    if (t < std::max(1, known_frames_)) {
+      place = between;
+    } else {
+      place += Lerp(from - contact.at(t - 1, root_), to - other.at(t - 1, root_), share);
+      place.y = between.y;
+    }
+    for (int j = 0; j < mixed.joint_count(); ++j) {
+      mixed.at(t, j) = place + Lerp(contact.at(t, j) - from, other.at(t, j) - to, share);
+    }
+  }
+  return mixed;
+}
+
+void Mixture::Subtract(const Poses& neutral, absl::Span<const Poses> avoided, Poses* answer) const {
+  const Poses request = Minus(*answer, neutral);
+  const double squared = Dot(request, request);
+  for (std::size_t k = 0; k < avoided.size(); ++k) {
+    const Poses whole = Minus(avoided[k], neutral);
+    const double along = squared > 0 ? Dot(whole, request) / squared : 0;
+    const double across = std::max(0.0, Dot(whole, whole) - along * along * squared);
+    const double kept =
+        across > 0 ? std::min(1.0, kMostAvoided * std::sqrt(squared / across)) : 1.0;
+    for (int t = 0; t < frames_; ++t) {
+      const std::size_t at = static_cast<std::size_t>(t);
+      const float weight = std::min(0.0f, weights_[at * static_cast<std::size_t>(classes_) +
+                                                   static_cast<std::size_t>(avoided_[k])]);
+      const float asked = requested_[at];
+      const float of_whole = 1 - asked + asked * static_cast<float>(kept);
+      const float of_request = asked * static_cast<float>(kept * along);
+      for (int j = 0; j < answer->joint_count(); ++j) {
+        answer->at(t, j) += (whole.at(t, j) * of_whole - request.at(t, j) * of_request) * weight;
+      }
+    }
+  }
+}
+
+}  // namespace duet::engine
