@@ -49,11 +49,15 @@ struct ReactionOptions {
   // like the leader. Absent: +y. motion/vertical.h estimates it from the motion.
   std::optional<motion::Vec3> up;
   // Seed of the random sample that a sampling model draws (ModelInfo::samples). On the same server,
-  // the same request with the same seed returns the same motion.
-  uint64_t seed = 0;
+  // the same request with the same seed returns the same motion. Absent: derived from the leader in
+  // clips (SynthesisResult::seed), 0 in live sessions.
+  std::optional<uint64_t> seed;
   // How much the results of a sampling model vary between seeds: 0 returns the typical motion, 1
   // varies as much as the captured motion does. At most RequestLimits::max_variety.
   float variety = 1;
+  // How much the leader's motion moves the follower: 0 not at all, 1 as the model has learnt, at
+  // most 2. Other values than 1 take longer.
+  float reaction = 1;
   // Number of samples that a sampling model draws for each window; the server returns the best one
   // (SynthesisResult::grade). More samples take longer. At most RequestLimits::max_candidates.
   int candidates = 1;

@@ -73,6 +73,7 @@ absl::Status FillOptions(const v1::SynthesizeRequest& in, SynthesisOptions* out)
   if (in.has_up()) out->up = FromProto(in.up());
   if (in.has_seed()) out->seed = in.seed();
   if (in.has_variety()) out->variety = in.variety();
+  if (in.has_reaction()) out->reaction = in.reaction();
   if (in.has_candidates()) out->candidates = static_cast<int>(in.candidates());
   if (in.clean_up() != v1::CLEAN_UP_UNSPECIFIED) out->clean_up = in.clean_up() == v1::CLEAN_UP_ON;
   out->rotations = in.reply_rotations();

@@ -88,10 +88,11 @@ Paths OutputsOf(const SynthesizeArguments& arguments, uint64_t seed) {
 
 // Checks what the flags and the request's file decide together, before the first call.
 absl::Status CheckRequest(const SynthesizeArguments& arguments, const SynthesisRequest& request) {
-  const uint64_t left = std::numeric_limits<uint64_t>::max() - request.seed;
+  const uint64_t first = request.seed.value_or(0);
+  const uint64_t left = std::numeric_limits<uint64_t>::max() - first;
   if (static_cast<uint64_t>(arguments.samples) - 1 > left) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--samples: expected at most ", left + 1, " with seed ", request.seed,
+        absl::StrCat("--samples: expected at most ", left + 1, " with seed ", first,
                      ", so that no seed exceeds the largest, got ", arguments.samples));
   }
   if (request.rotations && !HoldsRotations(arguments)) {
@@ -101,7 +102,7 @@ absl::Status CheckRequest(const SynthesizeArguments& arguments, const SynthesisR
   }
   const Paths inputs = {arguments.leader, arguments.follower_start, arguments.request};
   for (int sample = 0; sample < arguments.samples; ++sample) {
-    const uint64_t seed = request.seed + static_cast<uint64_t>(sample);
+    const uint64_t seed = first + static_cast<uint64_t>(sample);
     for (const std::filesystem::path& output : OutputsOf(arguments, seed)) {
       for (const std::filesystem::path& file : PairFiles(output)) {
         absl::Status status = CheckReplacesNone(file, inputs);
@@ -164,7 +165,9 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
   for (int sample = 0; sample < arguments.samples; ++sample) {
     Synthesis synthesis;
     synthesis.request = job.request;
-    synthesis.request.seed += static_cast<uint64_t>(sample);
+    if (arguments.samples > 1) {
+      synthesis.request.seed = job.request.seed.value_or(0) + static_cast<uint64_t>(sample);
+    }
     absl::StatusOr<SynthesisResult> result = client.Synthesize(synthesis.request);
     if (!result.ok()) return result.status();
     synthesis.result = *std::move(result);
@@ -172,7 +175,8 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
     synthesis.leader_file = arguments.leader.empty() ? arguments.request : arguments.leader;
     synthesis.sampled = job.sampled;
     const absl::StatusOr<WrittenFiles> written = WriteAll(
-        arguments, OutputsOf(arguments, synthesis.request.seed), synthesis, *environment.out);
+        arguments, OutputsOf(arguments, synthesis.request.seed.value_or(0)), synthesis,
+        *environment.out);
     if (!written.ok()) return written.status();
     if (arguments.quiet) continue;
     if (arguments.json) {
@@ -217,7 +221,7 @@ void AddFlags(CLI::App* app, SynthesizeArguments* arguments) {
                 "remain; repeatable")
       ->group(kReactionGroup);
   app->add_option("--samples", arguments->samples,
-                  "Number of answers, with the seeds SEED, SEED+1, ...; with several, each --out "
+                  "Number of answers, with the seeds SEED, SEED+1, ... (default of SEED: 0); with several, each --out "
                   "pair.html becomes pair.seed0.html and so on")
       ->check(base::InRange(1, 1000))
       ->capture_default_str()

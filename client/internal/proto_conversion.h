@@ -62,7 +62,8 @@ absl::Status FillReaction(const ReactionOptions& options, Message* out) {
     Fill(*options.partner_direction, out->mutable_partner_direction());
   }
   if (options.up.has_value()) Fill(*options.up, out->mutable_up());
-  out->set_seed(options.seed);
+  if (options.seed.has_value()) out->set_seed(*options.seed);
+  out->set_reaction(options.reaction);
   out->set_variety(options.variety);
   if (options.candidates < 1) {
     return absl::InvalidArgumentError(

@@ -63,6 +63,11 @@ int CandidateCount(const ModelDescription& model, const Sampling& sampling) {
   return model.samples ? sampling.candidates : 1;
 }
 
+int EvaluationCount(const ModelDescription& model, const Sampling& sampling) {
+  return CandidateCount(model, sampling) *
+         (model.labels_guide && sampling.reaction != 1 ? 2 : 1);
+}
+
 uint64_t CandidateSeed(uint64_t seed, int n) {
   // Windows count upwards, so candidates count downwards from the same stream.
   return WindowSeed(seed, -n);

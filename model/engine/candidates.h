@@ -20,6 +20,10 @@ namespace duet::engine {
 // Number of samples that a model draws for each window: 1 if it does not sample.
 int CandidateCount(const ModelDescription& model, const Sampling& sampling);
 
+// What a window costs, in evaluations of its leader: one for each candidate, twice as many with
+// guidance by the leader (Sampling::reaction).
+int EvaluationCount(const ModelDescription& model, const Sampling& sampling);
+
 // The seed of a window's n-th candidate; that of the first is `seed`, so that one candidate is the
 // answer without candidates.
 uint64_t CandidateSeed(uint64_t seed, int n);

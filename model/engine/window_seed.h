@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "model/motion/poses.h"
+
 namespace duet::engine {
 
 // Returns the seed of a window (0 is the first) of a clip that was requested with `seed`. The first
@@ -12,6 +14,12 @@ namespace duet::engine {
 // Source: Steele, Lea, Flood 2014 (SplitMix64): the window-th number of the stream that starts with
 // `seed`. The same on every machine. Changing it changes the results of all long clips.
 uint64_t WindowSeed(uint64_t seed, int window);
+
+// Returns the seed of a clip whose caller names none, below 2^32: one that differs between leaders,
+// so that their followers are different people. It depends on the clip's length and on how far its
+// joints move, both rounded, so that another unit or place in the world hardly ever changes it.
+// Units: metres.
+uint64_t LeaderSeed(const motion::Poses& leader, double frame_rate_hz);
 
 }  // namespace duet::engine
 

@@ -18,7 +18,7 @@ TimePoint After(TimePoint start, double seconds) {
 }
 
 int CandidatesOf(const WindowJob& job) {
-  return engine::CandidateCount(job.model->description(), job.window.options.sampling);
+  return engine::EvaluationCount(job.model->description(), job.window.options.sampling);
 }
 
 int FramesOf(const WindowJob& job) { return job.window.leader.frame_count() * CandidatesOf(job); }

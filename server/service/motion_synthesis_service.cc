@@ -49,7 +49,7 @@ constexpr double kStalledSeconds = 5;
 // What a call's leader frames count in its caller's quota: once for each candidate.
 std::int64_t FramesOf(const engine::ModelDescription& model,
                       const engine::SynthesisOptions& options, int leader_frames) {
-  return std::int64_t{leader_frames} * engine::CandidateCount(model, options.sampling);
+  return std::int64_t{leader_frames} * engine::EvaluationCount(model, options.sampling);
 }
 
 // Returns a call's deadline on the scheduler's clock: the earlier one of the caller's and the

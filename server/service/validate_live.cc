@@ -33,9 +33,10 @@ v1::SynthesizeRequest ToRequest(v1::LiveStart* start) {
   if (start->has_partner_direction()) {
     *request.mutable_partner_direction() = start->partner_direction();
   }
-  if (start->has_seed()) request.set_seed(start->seed());
+  request.set_seed(start->seed());  // the leader is not known yet, which clips derive one from
   if (start->has_variety()) request.set_variety(start->variety());
   request.set_clean_up(start->clean_up());
+  if (start->has_reaction()) request.set_reaction(start->reaction());
   if (start->has_candidates()) request.set_candidates(start->candidates());
   if (start->has_up()) *request.mutable_up() = start->up();
   request.set_reply_rotations(start->reply_rotations());

@@ -33,6 +33,12 @@ engine::Sampling ValidateSampling(const v1::SynthesizeRequest& request, const Re
     violations.Malformed("variety", absl::StrCat("a finite value in [0, ", limits.max_variety, "]"),
                          base::NumberText(request.variety()));
   }
+  if (request.has_reaction()) sampling.reaction = request.reaction();
+  if (!(sampling.reaction >= 0 && sampling.reaction <= engine::kMostReaction)) {
+    violations.Malformed("reaction",
+                         absl::StrCat("a finite value in [0, ", engine::kMostReaction, "]"),
+                         base::NumberText(request.reaction()));
+  }
   sampling.candidates = ValidateCandidates(request, limits, violations);
   return sampling;
 }

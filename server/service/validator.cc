@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
+#include "model/engine/window_seed.h"
 #include "server/service/priority_message.h"
 #include "server/service/validate_constraints.h"
 #include "server/service/validate_labels.h"
@@ -271,7 +272,7 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
       ValidateLabels(request_, label_frames_, model_, limits_, violations_);
   std::optional<engine::FollowerStart> start = Start();
   const std::optional<motion::Vec3> partner_direction = PartnerDirection();
-  const engine::SynthesisOptions options = ValidateOptions(request_, limits_, violations_);
+  engine::SynthesisOptions options = ValidateOptions(request_, limits_, violations_);
   motion::Pins pins = ValidateConstraints(request_, {coordinates_, levelling_, leader_}, model_,
                                           limits_, violations_);
   FillReplyMapping();
@@ -279,6 +280,9 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
   const int chunk_frames = ChunkFrames();
   const batching::Priority priority = CallPriority();
   if (!violations_.empty()) return violations_.ToStatus();
+  if (!request_.has_seed()) {
+    options.sampling.seed = engine::LeaderSeed(leader_, request_.leader().frame_rate_hz());
+  }
   return ValidatedRequest{
       {std::move(leader_), request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),
        std::move(start), partner_direction, options, std::move(pins)},

@@ -44,7 +44,8 @@ TEST(SynthesizeRequestTest, WeightsKeepTheirOrder) {
   EXPECT_FALSE(wire->has_follower_start());
   EXPECT_FALSE(wire->has_chunk_frames());
   EXPECT_EQ(wire->priority(), v1::PRIORITY_INTERACTIVE);
-  EXPECT_EQ(wire->seed(), 0u);
+  EXPECT_FALSE(wire->has_seed());
+  EXPECT_EQ(wire->reaction(), 1);
   EXPECT_EQ(wire->variety(), 1);
   EXPECT_EQ(wire->candidates(), 1u);
   EXPECT_EQ(wire->clean_up(), v1::CLEAN_UP_UNSPECIFIED);
@@ -91,6 +92,7 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   request.up = motion::Vec3{0.1f, 1, -0.2f};
   request.seed = 18446744073709551615u;
   request.variety = 0.25f;
+  request.reaction = 1.5f;
   request.candidates = 4;
   request.clean_up = false;
   request.rotations = true;
@@ -108,6 +110,7 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   EXPECT_EQ(wire->up().z(), -0.2f);
   EXPECT_EQ(wire->seed(), 18446744073709551615u);
   EXPECT_EQ(wire->variety(), 0.25f);
+  EXPECT_EQ(wire->reaction(), 1.5f);
   EXPECT_EQ(wire->candidates(), 4u);
   EXPECT_EQ(wire->clean_up(), v1::CLEAN_UP_OFF);
   EXPECT_TRUE(wire->reply_rotations());

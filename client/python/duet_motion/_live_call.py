@@ -211,6 +211,7 @@ class LiveCall:
                 joint_names=self.motion.joint_names, frame_rate_hz=self.motion.frame_rate_hz,
                 unit=UNITS[self.motion.unit], up_axis=UP_AXES[self.motion.up_axis]),
             seed=int(request.seed), variety=float(request.variety),
+            reaction=float(request.reaction),
             candidates=int(request.candidates),
             clean_up=CLEAN_UP[None if request.clean_up is None else bool(request.clean_up)],
             delay_frames=int(request.delay), plan_frames=int(request.plan),

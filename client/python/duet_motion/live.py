@@ -114,6 +114,7 @@ class LiveRequest:
         plan: number of provisional frames to send with each answer, 0 to 30.
         seed: selects an answer of a model that samples, 0 to 2^64 - 1.
         variety: how much answers differ between seeds, 0 to 2.
+        reaction: how much the leader's motion moves the follower, 0 to 2.
         model: ``"sbu"``, ``"sbu@3"`` for a version, ``"sbu:stable"`` for a version label; empty:
             the server's default.
         clean_up: whether the server corrects the follower. None: the server's default.
@@ -143,6 +144,7 @@ class LiveRequest:
     plan: int = 0
     seed: int = 0
     variety: float = 1.0
+    reaction: float = 1.0
     model: str = ""
     clean_up: Optional[bool] = None
     follower_start: Optional[npt.ArrayLike] = None

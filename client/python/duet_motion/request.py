@@ -76,9 +76,12 @@ class SynthesisRequest:
         keyframes: instead of ``labels``, weights by frame number: interpolated linearly, constant
             before the first and after the last.
         seed: selects an answer of a model that samples, 0 to 2^64 - 1. The same request with the
-            same seed gets the same answer from the same server.
+            same seed gets the same answer from the same server. None: derived from the leader;
+            ``SynthesisResult.seed`` has it.
         variety: how much answers differ between seeds, 0 to 2: 0 gives the typical answer, 1 as
             much variety as people have.
+        reaction: how much the leader's motion moves the follower, 0 to 2: 0 not at all, 1 as the
+            model has learnt. Other values than 1 take longer.
         model: ``"sbu"``, ``"sbu@3"`` for a version, ``"sbu:stable"`` for a version label; empty:
             the server's default.
         clean_up: whether the server corrects the follower: upright, without foot sliding, without
@@ -116,8 +119,9 @@ class SynthesisRequest:
     leader: Motion
     labels: Optional[Labels] = None
     keyframes: Optional[Mapping[int, Labels]] = None
-    seed: int = 0
+    seed: Optional[int] = None
     variety: float = 1.0
+    reaction: float = 1.0
     model: str = ""
     clean_up: Optional[bool] = None
     follower_start: Optional[npt.ArrayLike] = None
@@ -220,7 +224,8 @@ def to_proto(request: SynthesisRequest) -> synthesis_pb2.SynthesizeRequest:
     """Converts a request to its wire format."""
     out = synthesis_pb2.SynthesizeRequest(
         model=to_selector(request.model), leader=_leader(request.leader),
-        seed=int(request.seed), variety=float(request.variety),
+        seed=None if request.seed is None else int(request.seed), variety=float(request.variety),
+        reaction=float(request.reaction),
         candidates=int(request.candidates),
         clean_up=CLEAN_UP[None if request.clean_up is None else bool(request.clean_up)],
         reply_rotations=bool(request.rotations), priority=PRIORITIES[request.priority],
@@ -291,9 +296,11 @@ def check_labels(name: str, labels: Labels) -> None:
 
 def check_answering(request: Union[SynthesisRequest, LiveRequest]) -> None:
     """Checks the fields that say which model answers, and how."""
-    check_integer("seed", request.seed, 0, 2**64 - 1)
-    if finite_number(request.variety) is None:
-        raise ValueError(f"variety: expected a number, got {short(request.variety)}")
+    if request.seed is not None:
+        check_integer("seed", request.seed, 0, 2**64 - 1)
+    for name, value in (("variety", request.variety), ("reaction", request.reaction)):
+        if finite_number(value) is None:
+            raise ValueError(f"{name}: expected a number, got {short(value)}")
     check_integer("candidates", request.candidates, 1, 16)
     to_selector(request.model)
     if request.clean_up is not None and not isinstance(request.clean_up, (bool, np.bool_)):

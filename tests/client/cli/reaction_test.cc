@@ -107,7 +107,7 @@ TEST_F(RequestFileTest, HasEveryFieldOfARequest) {
       label_keyframes { frame: 9 label_vector { weights { interaction_class: "kick" weight: -1 } } }
       follower_start { root_position { x: 1 y: 1.1 z: -2 } }
       chunk_frames: 8  priority: PRIORITY_BULK  partner_direction { x: 1 z: -1 }
-      seed: 7  variety: 0.25  clean_up: CLEAN_UP_OFF  candidates: 4  reply_rotations: true
+      seed: 7  variety: 0.25  reaction: 1.5  clean_up: CLEAN_UP_OFF  candidates: 4  reply_rotations: true
       up { x: 0.1 y: 1 }
       constraints { joint_name: "head" frame: 3 position { y: 1.5 } softness: 0.5 })");
   ASSERT_THAT(request, IsOk());
@@ -126,6 +126,7 @@ TEST_F(RequestFileTest, HasEveryFieldOfARequest) {
   EXPECT_EQ(request->partner_direction, (motion::Vec3{1, 0, -1}));
   EXPECT_EQ(request->seed, 7u);
   EXPECT_EQ(request->variety, 0.25f);
+  EXPECT_EQ(request->reaction, 1.5f);
   EXPECT_EQ(request->clean_up, false);
   EXPECT_EQ(request->candidates, 4);
   EXPECT_TRUE(request->rotations);

@@ -24,12 +24,13 @@ class RequestTest(unittest.TestCase):
 
     def test_every_field_is_sent(self):
         wire = to_proto(self.request(
-            seed=2**64 - 1, variety=0.5, model="sbu@2", clean_up=False, priority="bulk",
+            seed=2**64 - 1, variety=0.5, reaction=1.5, model="sbu@2", clean_up=False, priority="bulk",
             chunk_frames=8, partner_direction=(0, 0, 1), candidates=4, rotations=True,
             up=(0.25, 0, 1)))
         self.assertEqual([(w.interaction_class, w.weight) for w in wire.label_vector.weights],
                          [("hug", 1), ("push", 0.5)])
-        self.assertEqual((wire.seed, wire.variety, wire.chunk_frames), (2**64 - 1, 0.5, 8))
+        self.assertEqual((wire.seed, wire.variety, wire.reaction, wire.chunk_frames),
+                         (2**64 - 1, 0.5, 1.5, 8))
         self.assertEqual(wire.candidates, 4)
         self.assertEqual((wire.model.name, wire.model.version), ("sbu", 2))
         self.assertEqual(wire.clean_up, reaction_pb2.CLEAN_UP_OFF)
@@ -100,6 +101,7 @@ class RequestTest(unittest.TestCase):
                 ({"seed": 1.5}, "seed: expected an integer from 0 to .*, got 1.5"),
                 ({"seed": True}, "seed: .* got True"),
                 ({"variety": float("nan")}, "variety: expected a number, got nan"),
+                ({"reaction": "much"}, "reaction: expected a number, got 'much'"),
                 ({"candidates": 0}, "candidates: expected an integer from 1 to 16, got 0"),
                 ({"candidates": 17}, "candidates: expected an integer from 1 to 16, got 17"),
                 ({"candidates": 2.5}, "candidates: expected an integer from 1 to 16, got 2.5"),

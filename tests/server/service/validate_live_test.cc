@@ -246,6 +246,7 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled<Start>{"positions", [](Start& s) { s.mutable_leader()->add_positions(0); },
                        "start.leader.positions", "got 451"},
         Spoiled<Start>{"variety", [](Start& s) { s.set_variety(2.5F); }, "start.variety", "2.5"},
+        Spoiled<Start>{"reaction", [](Start& s) { s.set_reaction(3); }, "start.reaction", "3"},
         Spoiled<Start>{"candidates", [](Start& s) { s.set_candidates(17); }, "start.candidates",
                        "17"},
         Spoiled<Start>{"delay", [](Start& s) { s.set_delay_frames(11); }, "start.delay_frames",

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/engine/window_seed.h"
 #include "model/motion/levelling.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/sample_request.h"
@@ -381,6 +382,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "expected a finite value in [0, 2], got nan"},
         Spoiled{"infinite_variety", [](Request& r) { r.set_variety(kInfinity); }, "variety",
                 "expected a finite value in [0, 2], got inf"},
+        Spoiled{"negative_reaction", [](Request& r) { r.set_reaction(-0.5F); }, "reaction",
+                "expected a finite value in [0, 2], got -0.5"},
+        Spoiled{"nan_reaction", [](Request& r) { r.set_reaction(kNan); }, "reaction",
+                "expected a finite value in [0, 2], got nan"},
         Spoiled{"no_candidates", [](Request& r) { r.set_candidates(0); }, "candidates",
                 "expected 1 to 16, got 0"},
         Spoiled{"many_candidates", [](Request& r) { r.set_candidates(17); }, "candidates",
@@ -506,8 +511,10 @@ TEST(ValidateRequestTest, FillsInDefaults) {
   EXPECT_EQ(request->priority, batching::Priority::kInteractive);
   EXPECT_FALSE(request->clip.start.has_value());
   EXPECT_FALSE(request->clip.partner_direction.has_value());
-  EXPECT_EQ(request->clip.options.sampling.seed, 0u);
+  EXPECT_EQ(request->clip.options.sampling.seed,
+            engine::LeaderSeed(request->clip.leader, request->clip.frame_rate_hz));
   EXPECT_EQ(request->clip.options.sampling.variety, 1);
+  EXPECT_EQ(request->clip.options.sampling.reaction, 1);
   EXPECT_EQ(request->clip.options.sampling.candidates, 1);
   EXPECT_EQ(request->clip.options.clean_up, std::nullopt);
   EXPECT_EQ(request->reply.joint_names, FakeDescription().skeleton.joint_names);
@@ -520,6 +527,7 @@ TEST(ValidateRequestTest, TakesOverWhatIsGiven) {
   request.set_priority(v1::PRIORITY_BULK);
   request.set_seed(std::numeric_limits<uint64_t>::max());
   request.set_variety(0);
+  request.set_reaction(1.5F);
   request.set_candidates(16);
   const absl::StatusOr<ValidatedRequest> validated = Validate(request);
   ASSERT_THAT(validated, IsOk());
@@ -528,6 +536,7 @@ TEST(ValidateRequestTest, TakesOverWhatIsGiven) {
   EXPECT_EQ(validated->clip.frame_rate_hz, 15);
   EXPECT_EQ(validated->clip.options.sampling.seed, std::numeric_limits<uint64_t>::max());
   EXPECT_EQ(validated->clip.options.sampling.variety, 0);
+  EXPECT_EQ(validated->clip.options.sampling.reaction, 1.5F);
   EXPECT_EQ(validated->clip.options.sampling.candidates, 16);
 }
 

@@ -115,7 +115,7 @@ class LiveNotice(_message.Message):
     def __init__(self, kind: _Optional[_Union[LiveNoticeKind, str]] = ..., frames: _Optional[_Union[_reaction_pb2.FrameRun, _Mapping]] = ...) -> None: ...
 
 class LiveStart(_message.Message):
-    __slots__ = ["candidates", "clean_up", "delay_frames", "follower_start", "history", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "plan_frames", "reply_rotations", "seed", "up", "variety"]
+    __slots__ = ["candidates", "clean_up", "delay_frames", "follower_start", "history", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "plan_frames", "reaction", "reply_rotations", "seed", "up", "variety"]
     CANDIDATES_FIELD_NUMBER: _ClassVar[int]
     CLEAN_UP_FIELD_NUMBER: _ClassVar[int]
     DELAY_FRAMES_FIELD_NUMBER: _ClassVar[int]
@@ -127,6 +127,7 @@ class LiveStart(_message.Message):
     MODEL_FIELD_NUMBER: _ClassVar[int]
     PARTNER_DIRECTION_FIELD_NUMBER: _ClassVar[int]
     PLAN_FRAMES_FIELD_NUMBER: _ClassVar[int]
+    REACTION_FIELD_NUMBER: _ClassVar[int]
     REPLY_ROTATIONS_FIELD_NUMBER: _ClassVar[int]
     SEED_FIELD_NUMBER: _ClassVar[int]
     UP_FIELD_NUMBER: _ClassVar[int]
@@ -142,11 +143,12 @@ class LiveStart(_message.Message):
     model: _model_pb2.ModelSelector
     partner_direction: _motion_pb2.Direction
     plan_frames: int
+    reaction: float
     reply_rotations: bool
     seed: int
     up: _motion_pb2.Direction
     variety: float
-    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[_reaction_pb2.LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[_reaction_pb2.LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., delay_frames: _Optional[int] = ..., plan_frames: _Optional[int] = ..., history: _Optional[_Union[LiveHistory, _Mapping]] = ..., reply_rotations: bool = ...) -> None: ...
+    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[_reaction_pb2.LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[_reaction_pb2.LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., delay_frames: _Optional[int] = ..., plan_frames: _Optional[int] = ..., history: _Optional[_Union[LiveHistory, _Mapping]] = ..., reply_rotations: bool = ..., reaction: _Optional[float] = ...) -> None: ...
 
 class LiveSummary(_message.Message):
     __slots__ = ["compute_seconds", "frame_count", "gap_frames", "late_frames", "queue_seconds", "skipped_frames", "window_count"]

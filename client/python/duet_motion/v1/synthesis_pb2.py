@@ -17,7 +17,7 @@ from duet_motion.v1 import motion_pb2 as duet_dot_v1_dot_motion__pb2
 from duet_motion.v1 import reaction_pb2 as duet_dot_v1_dot_reaction__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x17\x64uet/v1/synthesis.proto\x12\x07\x64uet.v1\x1a\x12\x64uet/v1/live.proto\x1a\x13\x64uet/v1/model.proto\x1a\x14\x64uet/v1/motion.proto\x1a\x16\x64uet/v1/reaction.proto\"\xae\x05\n\x11SynthesizeRequest\x12%\n\x05model\x18\x01 \x01(\x0b\x32\x16.duet.v1.ModelSelector\x12\x1f\n\x06leader\x18\x02 \x01(\x0b\x32\x0f.duet.v1.Motion\x12*\n\x0clabel_vector\x18\x03 \x01(\x0b\x32\x14.duet.v1.LabelVector\x12/\n\x0flabel_keyframes\x18\x04 \x03(\x0b\x32\x16.duet.v1.LabelKeyframe\x12.\n\x0e\x66ollower_start\x18\x05 \x01(\x0b\x32\x16.duet.v1.FollowerStart\x12\x19\n\x0c\x63hunk_frames\x18\x06 \x01(\rH\x00\x88\x01\x01\x12(\n\x08priority\x18\x07 \x01(\x0e\x32\x11.duet.v1.PriorityH\x01\x88\x01\x01\x12\x19\n\x11reply_joint_names\x18\x08 \x03(\t\x12\x32\n\x11partner_direction\x18\t \x01(\x0b\x32\x12.duet.v1.DirectionH\x02\x88\x01\x01\x12\x11\n\x04seed\x18\n \x01(\x04H\x03\x88\x01\x01\x12\x14\n\x07variety\x18\x0b \x01(\x02H\x04\x88\x01\x01\x12\"\n\x08\x63lean_up\x18\x0c \x01(\x0e\x32\x10.duet.v1.CleanUp\x12\x17\n\ncandidates\x18\r \x01(\rH\x05\x88\x01\x01\x12\x17\n\x0freply_rotations\x18\x0e \x01(\x08\x12#\n\x02up\x18\x0f \x01(\x0b\x32\x12.duet.v1.DirectionH\x06\x88\x01\x01\x12-\n\x0b\x63onstraints\x18\x10 \x03(\x0b\x32\x18.duet.v1.JointConstraintB\x0f\n\r_chunk_framesB\x0b\n\t_priorityB\x14\n\x12_partner_directionB\x07\n\x05_seedB\n\n\x08_varietyB\r\n\x0b_candidatesB\x05\n\x03_up\"h\n\x0fJointConstraint\x12\x12\n\njoint_name\x18\x01 \x01(\t\x12\r\n\x05\x66rame\x18\x02 \x01(\r\x12 \n\x08position\x18\x03 \x01(\x0b\x32\x0e.duet.v1.Point\x12\x10\n\x08softness\x18\x04 \x01(\x02\"\xa0\x01\n\x12SynthesizeResponse\x12*\n\x06header\x18\x01 \x01(\x0b\x32\x18.duet.v1.SynthesisHeaderH\x00\x12%\n\x05\x63hunk\x18\x02 \x01(\x0b\x32\x14.duet.v1.MotionChunkH\x00\x12,\n\x07summary\x18\x03 \x01(\x0b\x32\x19.duet.v1.SynthesisSummaryH\x00\x42\t\n\x07payload\"\x92\x03\n\x0fSynthesisHeader\x12\x12\n\nmodel_name\x18\x01 \x01(\t\x12\x15\n\rmodel_version\x18\x02 \x01(\r\x12\x13\n\x0bjoint_names\x18\x03 \x03(\t\x12\x15\n\rframe_rate_hz\x18\x04 \x01(\x01\x12!\n\x04unit\x18\x05 \x01(\x0e\x32\x13.duet.v1.LengthUnit\x12 \n\x07up_axis\x18\x06 \x01(\x0e\x32\x0f.duet.v1.UpAxis\x12\x13\n\x0b\x66rame_count\x18\x07 \x01(\r\x12\x1b\n\x13interaction_classes\x18\x08 \x03(\t\x12\x12\n\nrequest_id\x18\t \x01(\t\x12\x0c\n\x04seed\x18\n \x01(\x04\x12\x0f\n\x07variety\x18\x0b \x01(\x02\x12\"\n\x08\x63lean_up\x18\x0c \x01(\x0e\x32\x10.duet.v1.CleanUp\x12\x12\n\ncandidates\x18\r \x01(\r\x12\x1e\n\x03rig\x18\x0e \x03(\x0b\x32\x11.duet.v1.RigJoint\x12\x0e\n\x06\x65ngine\x18\x0f \x01(\t\x12\x16\n\x0eserver_version\x18\x10 \x01(\t\"]\n\x0bMotionChunk\x12\x13\n\x0b\x66irst_frame\x18\x01 \x01(\r\x12\x13\n\x0b\x66rame_count\x18\x02 \x01(\r\x12\x11\n\tpositions\x18\x03 \x03(\x02\x12\x11\n\trotations\x18\x04 \x03(\x02\"\xf0\x01\n\x10SynthesisSummary\x12\x13\n\x0b\x66rame_count\x18\x01 \x01(\r\x12\x13\n\x0b\x63hunk_count\x18\x02 \x01(\r\x12\x14\n\x0cwindow_count\x18\x03 \x01(\r\x12\x15\n\rqueue_seconds\x18\x04 \x01(\x01\x12\x17\n\x0f\x63ompute_seconds\x18\x05 \x01(\x01\x12\x1a\n\runfamiliarity\x18\x06 \x01(\x01H\x00\x88\x01\x01\x12#\n\x05grade\x18\x07 \x01(\x0b\x32\x14.duet.v1.MotionGrade\x12\x19\n\x11\x63onstraint_metres\x18\x08 \x03(\x02\x42\x10\n\x0e_unfamiliarity\"\x13\n\x11ListModelsRequest\"4\n\x12ListModelsResponse\x12\x1e\n\x06models\x18\x01 \x03(\x0b\x32\x0e.duet.v1.Model\"8\n\x0fGetModelRequest\x12%\n\x05model\x18\x01 \x01(\x0b\x32\x16.duet.v1.ModelSelector\"\xda\x02\n\rRequestLimits\x12\x19\n\x11min_frame_rate_hz\x18\x01 \x01(\x01\x12\x19\n\x11max_frame_rate_hz\x18\x02 \x01(\x01\x12\x12\n\nmin_frames\x18\x03 \x01(\r\x12\x1c\n\x14max_duration_seconds\x18\x04 \x01(\x01\x12\x18\n\x10max_chunk_frames\x18\x05 \x01(\r\x12\x1b\n\x13max_label_keyframes\x18\x06 \x01(\r\x12\x16\n\x0emax_abs_weight\x18\x07 \x01(\x02\x12\x19\n\x11max_request_bytes\x18\x08 \x01(\x04\x12\x13\n\x0bmax_variety\x18\t \x01(\x02\x12\x16\n\x0emax_candidates\x18\n \x01(\r\x12\x18\n\x10max_delay_frames\x18\x0b \x01(\r\x12\x17\n\x0fmax_plan_frames\x18\x0c \x01(\r\x12\x17\n\x0fmax_constraints\x18\r \x01(\r\"Y\n\x10GetModelResponse\x12\x1d\n\x05model\x18\x01 \x01(\x0b\x32\x0e.duet.v1.Model\x12&\n\x06limits\x18\x02 \x01(\x0b\x32\x16.duet.v1.RequestLimits*Q\n\x08Priority\x12\x18\n\x14PRIORITY_UNSPECIFIED\x10\x00\x12\x18\n\x14PRIORITY_INTERACTIVE\x10\x01\x12\x11\n\rPRIORITY_BULK\x10\x02\x32\xb9\x02\n\x0fMotionSynthesis\x12G\n\nSynthesize\x12\x1a.duet.v1.SynthesizeRequest\x1a\x1b.duet.v1.SynthesizeResponse0\x01\x12U\n\x0eSynthesizeLive\x12\x1e.duet.v1.SynthesizeLiveRequest\x1a\x1f.duet.v1.SynthesizeLiveResponse(\x01\x30\x01\x12\x45\n\nListModels\x12\x1a.duet.v1.ListModelsRequest\x1a\x1b.duet.v1.ListModelsResponse\x12?\n\x08GetModel\x12\x18.duet.v1.GetModelRequest\x1a\x19.duet.v1.GetModelResponseB\x03\xf8\x01\x01\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x17\x64uet/v1/synthesis.proto\x12\x07\x64uet.v1\x1a\x12\x64uet/v1/live.proto\x1a\x13\x64uet/v1/model.proto\x1a\x14\x64uet/v1/motion.proto\x1a\x16\x64uet/v1/reaction.proto\"\xd2\x05\n\x11SynthesizeRequest\x12%\n\x05model\x18\x01 \x01(\x0b\x32\x16.duet.v1.ModelSelector\x12\x1f\n\x06leader\x18\x02 \x01(\x0b\x32\x0f.duet.v1.Motion\x12*\n\x0clabel_vector\x18\x03 \x01(\x0b\x32\x14.duet.v1.LabelVector\x12/\n\x0flabel_keyframes\x18\x04 \x03(\x0b\x32\x16.duet.v1.LabelKeyframe\x12.\n\x0e\x66ollower_start\x18\x05 \x01(\x0b\x32\x16.duet.v1.FollowerStart\x12\x19\n\x0c\x63hunk_frames\x18\x06 \x01(\rH\x00\x88\x01\x01\x12(\n\x08priority\x18\x07 \x01(\x0e\x32\x11.duet.v1.PriorityH\x01\x88\x01\x01\x12\x19\n\x11reply_joint_names\x18\x08 \x03(\t\x12\x32\n\x11partner_direction\x18\t \x01(\x0b\x32\x12.duet.v1.DirectionH\x02\x88\x01\x01\x12\x11\n\x04seed\x18\n \x01(\x04H\x03\x88\x01\x01\x12\x14\n\x07variety\x18\x0b \x01(\x02H\x04\x88\x01\x01\x12\"\n\x08\x63lean_up\x18\x0c \x01(\x0e\x32\x10.duet.v1.CleanUp\x12\x17\n\ncandidates\x18\r \x01(\rH\x05\x88\x01\x01\x12\x17\n\x0freply_rotations\x18\x0e \x01(\x08\x12#\n\x02up\x18\x0f \x01(\x0b\x32\x12.duet.v1.DirectionH\x06\x88\x01\x01\x12-\n\x0b\x63onstraints\x18\x10 \x03(\x0b\x32\x18.duet.v1.JointConstraint\x12\x15\n\x08reaction\x18\x11 \x01(\x02H\x07\x88\x01\x01\x42\x0f\n\r_chunk_framesB\x0b\n\t_priorityB\x14\n\x12_partner_directionB\x07\n\x05_seedB\n\n\x08_varietyB\r\n\x0b_candidatesB\x05\n\x03_upB\x0b\n\t_reaction\"h\n\x0fJointConstraint\x12\x12\n\njoint_name\x18\x01 \x01(\t\x12\r\n\x05\x66rame\x18\x02 \x01(\r\x12 \n\x08position\x18\x03 \x01(\x0b\x32\x0e.duet.v1.Point\x12\x10\n\x08softness\x18\x04 \x01(\x02\"\xa0\x01\n\x12SynthesizeResponse\x12*\n\x06header\x18\x01 \x01(\x0b\x32\x18.duet.v1.SynthesisHeaderH\x00\x12%\n\x05\x63hunk\x18\x02 \x01(\x0b\x32\x14.duet.v1.MotionChunkH\x00\x12,\n\x07summary\x18\x03 \x01(\x0b\x32\x19.duet.v1.SynthesisSummaryH\x00\x42\t\n\x07payload\"\x92\x03\n\x0fSynthesisHeader\x12\x12\n\nmodel_name\x18\x01 \x01(\t\x12\x15\n\rmodel_version\x18\x02 \x01(\r\x12\x13\n\x0bjoint_names\x18\x03 \x03(\t\x12\x15\n\rframe_rate_hz\x18\x04 \x01(\x01\x12!\n\x04unit\x18\x05 \x01(\x0e\x32\x13.duet.v1.LengthUnit\x12 \n\x07up_axis\x18\x06 \x01(\x0e\x32\x0f.duet.v1.UpAxis\x12\x13\n\x0b\x66rame_count\x18\x07 \x01(\r\x12\x1b\n\x13interaction_classes\x18\x08 \x03(\t\x12\x12\n\nrequest_id\x18\t \x01(\t\x12\x0c\n\x04seed\x18\n \x01(\x04\x12\x0f\n\x07variety\x18\x0b \x01(\x02\x12\"\n\x08\x63lean_up\x18\x0c \x01(\x0e\x32\x10.duet.v1.CleanUp\x12\x12\n\ncandidates\x18\r \x01(\r\x12\x1e\n\x03rig\x18\x0e \x03(\x0b\x32\x11.duet.v1.RigJoint\x12\x0e\n\x06\x65ngine\x18\x0f \x01(\t\x12\x16\n\x0eserver_version\x18\x10 \x01(\t\"]\n\x0bMotionChunk\x12\x13\n\x0b\x66irst_frame\x18\x01 \x01(\r\x12\x13\n\x0b\x66rame_count\x18\x02 \x01(\r\x12\x11\n\tpositions\x18\x03 \x03(\x02\x12\x11\n\trotations\x18\x04 \x03(\x02\"\xf0\x01\n\x10SynthesisSummary\x12\x13\n\x0b\x66rame_count\x18\x01 \x01(\r\x12\x13\n\x0b\x63hunk_count\x18\x02 \x01(\r\x12\x14\n\x0cwindow_count\x18\x03 \x01(\r\x12\x15\n\rqueue_seconds\x18\x04 \x01(\x01\x12\x17\n\x0f\x63ompute_seconds\x18\x05 \x01(\x01\x12\x1a\n\runfamiliarity\x18\x06 \x01(\x01H\x00\x88\x01\x01\x12#\n\x05grade\x18\x07 \x01(\x0b\x32\x14.duet.v1.MotionGrade\x12\x19\n\x11\x63onstraint_metres\x18\x08 \x03(\x02\x42\x10\n\x0e_unfamiliarity\"\x13\n\x11ListModelsRequest\"4\n\x12ListModelsResponse\x12\x1e\n\x06models\x18\x01 \x03(\x0b\x32\x0e.duet.v1.Model\"8\n\x0fGetModelRequest\x12%\n\x05model\x18\x01 \x01(\x0b\x32\x16.duet.v1.ModelSelector\"\xda\x02\n\rRequestLimits\x12\x19\n\x11min_frame_rate_hz\x18\x01 \x01(\x01\x12\x19\n\x11max_frame_rate_hz\x18\x02 \x01(\x01\x12\x12\n\nmin_frames\x18\x03 \x01(\r\x12\x1c\n\x14max_duration_seconds\x18\x04 \x01(\x01\x12\x18\n\x10max_chunk_frames\x18\x05 \x01(\r\x12\x1b\n\x13max_label_keyframes\x18\x06 \x01(\r\x12\x16\n\x0emax_abs_weight\x18\x07 \x01(\x02\x12\x19\n\x11max_request_bytes\x18\x08 \x01(\x04\x12\x13\n\x0bmax_variety\x18\t \x01(\x02\x12\x16\n\x0emax_candidates\x18\n \x01(\r\x12\x18\n\x10max_delay_frames\x18\x0b \x01(\r\x12\x17\n\x0fmax_plan_frames\x18\x0c \x01(\r\x12\x17\n\x0fmax_constraints\x18\r \x01(\r\"Y\n\x10GetModelResponse\x12\x1d\n\x05model\x18\x01 \x01(\x0b\x32\x0e.duet.v1.Model\x12&\n\x06limits\x18\x02 \x01(\x0b\x32\x16.duet.v1.RequestLimits*Q\n\x08Priority\x12\x18\n\x14PRIORITY_UNSPECIFIED\x10\x00\x12\x18\n\x14PRIORITY_INTERACTIVE\x10\x01\x12\x11\n\rPRIORITY_BULK\x10\x02\x32\xb9\x02\n\x0fMotionSynthesis\x12G\n\nSynthesize\x12\x1a.duet.v1.SynthesizeRequest\x1a\x1b.duet.v1.SynthesizeResponse0\x01\x12U\n\x0eSynthesizeLive\x12\x1e.duet.v1.SynthesizeLiveRequest\x1a\x1f.duet.v1.SynthesizeLiveResponse(\x01\x30\x01\x12\x45\n\nListModels\x12\x1a.duet.v1.ListModelsRequest\x1a\x1b.duet.v1.ListModelsResponse\x12?\n\x08GetModel\x12\x18.duet.v1.GetModelRequest\x1a\x19.duet.v1.GetModelResponseB\x03\xf8\x01\x01\x62\x06proto3')
 
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, globals())
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'duet.v1.synthesis_pb2', globals())
@@ -25,30 +25,30 @@ if _descriptor._USE_C_DESCRIPTORS == False:
 
   DESCRIPTOR._options = None
   DESCRIPTOR._serialized_options = b'\370\001\001'
-  _PRIORITY._serialized_start=2397
-  _PRIORITY._serialized_end=2478
+  _PRIORITY._serialized_start=2433
+  _PRIORITY._serialized_end=2514
   _SYNTHESIZEREQUEST._serialized_start=124
-  _SYNTHESIZEREQUEST._serialized_end=810
-  _JOINTCONSTRAINT._serialized_start=812
-  _JOINTCONSTRAINT._serialized_end=916
-  _SYNTHESIZERESPONSE._serialized_start=919
-  _SYNTHESIZERESPONSE._serialized_end=1079
-  _SYNTHESISHEADER._serialized_start=1082
-  _SYNTHESISHEADER._serialized_end=1484
-  _MOTIONCHUNK._serialized_start=1486
-  _MOTIONCHUNK._serialized_end=1579
-  _SYNTHESISSUMMARY._serialized_start=1582
-  _SYNTHESISSUMMARY._serialized_end=1822
-  _LISTMODELSREQUEST._serialized_start=1824
-  _LISTMODELSREQUEST._serialized_end=1843
-  _LISTMODELSRESPONSE._serialized_start=1845
-  _LISTMODELSRESPONSE._serialized_end=1897
-  _GETMODELREQUEST._serialized_start=1899
-  _GETMODELREQUEST._serialized_end=1955
-  _REQUESTLIMITS._serialized_start=1958
-  _REQUESTLIMITS._serialized_end=2304
-  _GETMODELRESPONSE._serialized_start=2306
-  _GETMODELRESPONSE._serialized_end=2395
-  _MOTIONSYNTHESIS._serialized_start=2481
-  _MOTIONSYNTHESIS._serialized_end=2794
+  _SYNTHESIZEREQUEST._serialized_end=846
+  _JOINTCONSTRAINT._serialized_start=848
+  _JOINTCONSTRAINT._serialized_end=952
+  _SYNTHESIZERESPONSE._serialized_start=955
+  _SYNTHESIZERESPONSE._serialized_end=1115
+  _SYNTHESISHEADER._serialized_start=1118
+  _SYNTHESISHEADER._serialized_end=1520
+  _MOTIONCHUNK._serialized_start=1522
+  _MOTIONCHUNK._serialized_end=1615
+  _SYNTHESISSUMMARY._serialized_start=1618
+  _SYNTHESISSUMMARY._serialized_end=1858
+  _LISTMODELSREQUEST._serialized_start=1860
+  _LISTMODELSREQUEST._serialized_end=1879
+  _LISTMODELSRESPONSE._serialized_start=1881
+  _LISTMODELSRESPONSE._serialized_end=1933
+  _GETMODELREQUEST._serialized_start=1935
+  _GETMODELREQUEST._serialized_end=1991
+  _REQUESTLIMITS._serialized_start=1994
+  _REQUESTLIMITS._serialized_end=2340
+  _GETMODELRESPONSE._serialized_start=2342
+  _GETMODELRESPONSE._serialized_end=2431
+  _MOTIONSYNTHESIS._serialized_start=2517
+  _MOTIONSYNTHESIS._serialized_end=2830
 # @@protoc_insertion_point(module_scope)

@@ -148,7 +148,7 @@ class SynthesisSummary(_message.Message):
     def __init__(self, frame_count: _Optional[int] = ..., chunk_count: _Optional[int] = ..., window_count: _Optional[int] = ..., queue_seconds: _Optional[float] = ..., compute_seconds: _Optional[float] = ..., unfamiliarity: _Optional[float] = ..., grade: _Optional[_Union[_reaction_pb2.MotionGrade, _Mapping]] = ..., constraint_metres: _Optional[_Iterable[float]] = ...) -> None: ...
 
 class SynthesizeRequest(_message.Message):
-    __slots__ = ["candidates", "chunk_frames", "clean_up", "constraints", "follower_start", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "priority", "reply_joint_names", "reply_rotations", "seed", "up", "variety"]
+    __slots__ = ["candidates", "chunk_frames", "clean_up", "constraints", "follower_start", "label_keyframes", "label_vector", "leader", "model", "partner_direction", "priority", "reaction", "reply_joint_names", "reply_rotations", "seed", "up", "variety"]
     CANDIDATES_FIELD_NUMBER: _ClassVar[int]
     CHUNK_FRAMES_FIELD_NUMBER: _ClassVar[int]
     CLEAN_UP_FIELD_NUMBER: _ClassVar[int]
@@ -160,6 +160,7 @@ class SynthesizeRequest(_message.Message):
     MODEL_FIELD_NUMBER: _ClassVar[int]
     PARTNER_DIRECTION_FIELD_NUMBER: _ClassVar[int]
     PRIORITY_FIELD_NUMBER: _ClassVar[int]
+    REACTION_FIELD_NUMBER: _ClassVar[int]
     REPLY_JOINT_NAMES_FIELD_NUMBER: _ClassVar[int]
     REPLY_ROTATIONS_FIELD_NUMBER: _ClassVar[int]
     SEED_FIELD_NUMBER: _ClassVar[int]
@@ -176,12 +177,13 @@ class SynthesizeRequest(_message.Message):
     model: _model_pb2.ModelSelector
     partner_direction: _motion_pb2.Direction
     priority: Priority
+    reaction: float
     reply_joint_names: _containers.RepeatedScalarFieldContainer[str]
     reply_rotations: bool
     seed: int
     up: _motion_pb2.Direction
     variety: float
-    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[_reaction_pb2.LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[_reaction_pb2.LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., chunk_frames: _Optional[int] = ..., priority: _Optional[_Union[Priority, str]] = ..., reply_joint_names: _Optional[_Iterable[str]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., reply_rotations: bool = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., constraints: _Optional[_Iterable[_Union[JointConstraint, _Mapping]]] = ...) -> None: ...
+    def __init__(self, model: _Optional[_Union[_model_pb2.ModelSelector, _Mapping]] = ..., leader: _Optional[_Union[_motion_pb2.Motion, _Mapping]] = ..., label_vector: _Optional[_Union[_reaction_pb2.LabelVector, _Mapping]] = ..., label_keyframes: _Optional[_Iterable[_Union[_reaction_pb2.LabelKeyframe, _Mapping]]] = ..., follower_start: _Optional[_Union[_motion_pb2.FollowerStart, _Mapping]] = ..., chunk_frames: _Optional[int] = ..., priority: _Optional[_Union[Priority, str]] = ..., reply_joint_names: _Optional[_Iterable[str]] = ..., partner_direction: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., seed: _Optional[int] = ..., variety: _Optional[float] = ..., clean_up: _Optional[_Union[_reaction_pb2.CleanUp, str]] = ..., candidates: _Optional[int] = ..., reply_rotations: bool = ..., up: _Optional[_Union[_motion_pb2.Direction, _Mapping]] = ..., constraints: _Optional[_Iterable[_Union[JointConstraint, _Mapping]]] = ..., reaction: _Optional[float] = ...) -> None: ...
 
 class SynthesizeResponse(_message.Message):
     __slots__ = ["chunk", "header", "summary"]
