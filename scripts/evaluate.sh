@@ -82,6 +82,8 @@ sampled() {
   "${bin}/duet-eval" told-apart --data "${data}" --out "${results}" "${models[@]}" --as-served
   "${bin}/duet-eval" sweep --data "${data}" --runs "flow=${runs}/flow" --out "${results}" \
     --id 31_sweep_flow --title "Mix, match and avoid by the model that samples"
+  "${bin}/duet-eval" mixes --data "${data}" --runs "flow=${runs}/flow" --as-served \
+    --out "${results}"
 }
 
 measure() {

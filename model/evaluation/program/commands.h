@@ -18,6 +18,7 @@ void AddDanceCommand(CLI::App* app, ChosenCommand* chosen);         // whole tak
 void AddPlausibleCommand(CLI::App* app, ChosenCommand* chosen);     // what a viewer notices
 void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen);     // from captured ones
 void AddSweepCommand(CLI::App* app, ChosenCommand* chosen);         // label weights
+void AddMixesCommand(CLI::App* app, ChosenCommand* chosen);         // mixes, negatives, reaction
 void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen);  // the paper's Table 6
 void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6 and 7
 void AddDataCommand(CLI::App* app, ChosenCommand* chosen);          // tilt, noise and leaders

@@ -21,9 +21,9 @@ int Run(int argc, char** argv) {
   for (const auto add :
        {program::AddFoldsCommand, program::AddSamplesCommand, program::AddDanceCommand,
         program::AddPlausibleCommand, program::AddToldApartCommand, program::AddSweepCommand,
-        program::AddAugmentationCommand, program::AddLatentCommand, program::AddDataCommand,
-        program::AddJudgeCommand, program::AddDirectionCommand, program::AddLiveCommand,
-        program::AddHourCommand}) {
+        program::AddMixesCommand, program::AddAugmentationCommand, program::AddLatentCommand,
+        program::AddDataCommand, program::AddJudgeCommand, program::AddDirectionCommand,
+        program::AddLiveCommand, program::AddHourCommand}) {
     add(&app, &chosen);
   }
   if (const std::optional<int> code = duet::base::ParseFlags(argc, argv, &app)) return *code;
