@@ -17,9 +17,10 @@ namespace duet::engine {
 // Only for models whose labels guide (ModelDescription::labels_guide); for others, the window is
 // evaluated once, as it is. One label above 0 and a reaction of 1 give the network's own answer.
 //
-// - Classes of contact (an embrace, hands that meet) and others cross over in time: contact until
-//   the leader has reached out furthest, then the other answer's displacement from where the body
-//   is. Classes of the same kind are averaged by the network.
+// - Classes of contact (an embrace, hands that meet) and others share the time: contact until the
+//   leader has reached out furthest, then the other answer's displacement from where the body is. A
+//   weight of one half has half of the time, at full strength; 1 has all of it. Classes of the same
+//   kind are averaged by the network.
 // - Of an avoided class, only what does not concern the request is subtracted, and never more than
 //   half as much as the request moves the follower. Without a request, all of it is.
 // - Reaction is a factor of the difference that the leader's motion makes.
@@ -41,18 +42,19 @@ class Mixture {
   // The answer to the window. `answers`: to the inputs of AddInputs, in order.
   motion::Poses Combine(absl::Span<const motion::Poses> answers) const;
 
-  // The weights that the answer has in each frame, [T, C]: those of the window, except that classes
-  // which cross over have theirs one after the other.
+  // The weights that the answer has in each frame, [T, C]: those of the window, except for classes
+  // that share the time.
   const std::vector<float>& labels() const { return labels_; }
 
  private:
   using Labels = std::vector<float>;  // [T, C]
 
   void FindParts(const ModelDescription& model, const body::Body& body, const NetworkInput& window);
-  void CrossOver(const Labels& contact, const Labels& other, const std::vector<float>& phase,
+  void ShareTime(const Labels& contact, const Labels& other, const std::vector<float>& phase,
                  float clear);
   motion::Poses Mix(absl::Span<const motion::Poses> answers) const;
-  motion::Poses FromContact(const motion::Poses& contact, const motion::Poses& other) const;
+  motion::Poses InTime(const motion::Poses& contact, const motion::Poses& other,
+                       const motion::Poses& neutral) const;
   void Subtract(const motion::Poses& neutral, absl::Span<const motion::Poses> avoided,
                 motion::Poses* answer) const;
 
@@ -60,10 +62,12 @@ class Mixture {
   float reaction_;
   Labels weights_;  // of the window
   Labels labels_;
-  std::vector<Labels> parts_;       // what is asked for, one or two; nothing; each avoided class
-  std::vector<int> avoided_;        // empty: the last two kinds of parts are missing
-  std::vector<float> other_share_;  // [T] of the second part; empty: there is one
-  std::vector<float> requested_;    // [T] how much is asked for, 0 to 1
+  // What is asked for, in one or two parts; then, if there are two or any is avoided, nothing; then
+  // each avoided class.
+  std::vector<Labels> parts_;
+  std::vector<int> avoided_;
+  std::vector<float> contact_, other_;  // [T] of the two parts; empty: there is one
+  std::vector<float> requested_;        // [T] how much is asked for, 0 to 1
 };
 
 }  // namespace duet::engine
