@@ -140,7 +140,7 @@ LabelledLeader Ask(const dataset::Sequence& sequence, engine::LabelTrack labels,
                    const AskedSamples& asked, uint64_t seed) {
   return {&sequence,
           std::move(labels),
-          {seed, asked.variety, asked.candidates},
+          {seed, asked.variety, asked.candidates, asked.reaction},
           asked.tell_direction,
           asked.live_delay};
 }

@@ -88,6 +88,7 @@ struct AskedSamples {
   float variety = 1;
   uint64_t seed = 0;  // of the whole set
   int candidates = engine::kDefaultCandidates;
+  float reaction = 1;  // engine::Sampling::reaction
   bool tell_direction = true;
   std::optional<int> live_delay = std::nullopt;  // see LabelledLeader
 };

@@ -148,6 +148,8 @@ void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command) {
   AddVarietyFlag(&asked->variety, command);
   AddNumber("--candidates", &asked->candidates, 1, engine::kMostCandidates,
             "samples of each window, of which the best is taken", command);
+  AddNumber("--reaction", &asked->reaction, 0.0, double{engine::kMostReaction},
+            "factor of what the leader's motion changes in an answer", command);
   AddSeedFlag(&asked->seed, command);
   command
       ->add_option(
@@ -165,6 +167,7 @@ std::string LiveText(const experiments::AskedSamples& asked) {
 void AddSamplingSettings(const experiments::AskedSamples& asked, report::ResultSection* section) {
   section->settings.insert(section->settings.end(), {{"variety", absl::StrCat(asked.variety)},
                                                      {"candidates", absl::StrCat(asked.candidates)},
+                                                     {"reaction", absl::StrCat(asked.reaction)},
                                                      {"seed", absl::StrCat(asked.seed)},
                                                      {"live", LiveText(asked)}});
 }

@@ -109,7 +109,7 @@ void AddStartsFlag(std::vector<std::string>* starts, CLI::App* command);
 void AddVarietyFlag(float* variety, CLI::App* command);
 // --seed
 void AddSeedFlag(uint64_t* seed, CLI::App* command);
-// --variety, --candidates, --seed, --live
+// --variety, --candidates, --reaction, --seed, --live
 void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command);
 
 // Whether the answers are live, for a section's settings: "no", or the delay of the session.
