@@ -50,7 +50,7 @@ struct ReactionOptions {
   std::optional<motion::Vec3> up;
   // Seed of the random sample that a sampling model draws (ModelInfo::samples). On the same server,
   // the same request with the same seed returns the same motion. Absent: derived from the leader in
-  // clips (SynthesisResult::seed), 0 in live sessions.
+  // clips (SynthesisResult::seed), a typical one in live sessions.
   std::optional<uint64_t> seed;
   // How much the results of a sampling model vary between seeds: 0 returns the typical motion, 1
   // varies as much as the captured motion does. At most RequestLimits::max_variety.

@@ -139,7 +139,8 @@ void AddReactionFlags(CLI::App* app, ReactionArguments* arguments) {
       ->type_name("FILE|X,Y,Z")
       ->group(kReactionGroup);
   AddParsed(app, "--seed", "SEED", ParseSeed, &arguments->seed,
-            "Seed of a model that samples; the same seed gives the same answer (default: derived from the leader; 0 in live sessions)")
+            "Seed of a model that samples; the same seed gives the same answer (default: derived "
+            "from the leader; a typical one in live sessions)")
       ->group(kReactionGroup);
   AddParsed(app, "--variety", "VARIETY", ParseVariety, &arguments->variety,
             "Variety of the answers of such a model: 0 typical, 1 as varied as people, at most 2 "

@@ -174,9 +174,9 @@ absl::Status RunSamples(const SynthesizeArguments& arguments, const Job& job, co
     synthesis.skeleton = job.skeleton;
     synthesis.leader_file = arguments.leader.empty() ? arguments.request : arguments.leader;
     synthesis.sampled = job.sampled;
-    const absl::StatusOr<WrittenFiles> written = WriteAll(
-        arguments, OutputsOf(arguments, synthesis.request.seed.value_or(0)), synthesis,
-        *environment.out);
+    const absl::StatusOr<WrittenFiles> written =
+        WriteAll(arguments, OutputsOf(arguments, synthesis.request.seed.value_or(0)), synthesis,
+                 *environment.out);
     if (!written.ok()) return written.status();
     if (arguments.quiet) continue;
     if (arguments.json) {
@@ -221,7 +221,8 @@ void AddFlags(CLI::App* app, SynthesizeArguments* arguments) {
                 "remain; repeatable")
       ->group(kReactionGroup);
   app->add_option("--samples", arguments->samples,
-                  "Number of answers, with the seeds SEED, SEED+1, ... (default of SEED: 0); with several, each --out "
+                  "Number of answers, with the seeds SEED, SEED+1, ... (default of SEED: 0); with "
+                  "several, each --out "
                   "pair.html becomes pair.seed0.html and so on")
       ->check(base::InRange(1, 1000))
       ->capture_default_str()

@@ -36,6 +36,7 @@ constexpr char kTouchingClasses[] = "touching_classes";
 constexpr char kHandContacts[] = "hand_contacts";
 constexpr char kFacingClasses[] = "facing_classes";
 constexpr char kBoneRatios[] = "bone_ratios";
+constexpr char kDefaultSeeds[] = "default_seeds";
 constexpr char kTerms[] = "terms";
 constexpr char kLookaheadFrames[] = "lookahead_frames";
 constexpr char kFreeForAllUses[] = "free_for_all_uses";
@@ -174,6 +175,18 @@ void ReadHabits(base::ObjectReader* reader, engine::ModelDescription* model) {
 }
 
 // One for each bone of the skeleton. Older checkpoints have none.
+void ReadDefaultSeeds(base::ObjectReader* reader, engine::ModelDescription* model) {
+  if (!reader->Has(kDefaultSeeds)) return;
+  for (const json& value : reader->Array(kDefaultSeeds, engine::kMostDefaultSeeds)) {
+    if (!value.is_number_unsigned()) {
+      reader->Fail(absl::StrCat(kDefaultSeeds, "[", model->default_seeds.size(), "]"),
+                   absl::StrCat("expected a whole number from 0, got ", value.dump()));
+      return;
+    }
+    model->default_seeds.push_back(value.get<uint64_t>());
+  }
+}
+
 void ReadBoneRatios(base::ObjectReader* reader, engine::ModelDescription* model) {
   constexpr double kSmallest = 0.1, kLargest = 10;
   if (!reader->Has(kBoneRatios)) return;
@@ -238,6 +251,7 @@ absl::StatusOr<Manifest> ReadManifest(const json& root) {
   if (reader.ok()) Take(motion::ReadSkeleton(skeleton_object, "skeleton"), &reader, &skeleton);
   manifest.model.skeleton = std::move(skeleton.skeleton);
   ReadBoneRatios(&reader, &manifest.model);
+  ReadDefaultSeeds(&reader, &manifest.model);
   ReadLeaders(&reader, &manifest);
   manifest.model.partner_direction = ReadDirectionRegression(
       manifest.model.skeleton, static_cast<int>(manifest.model.classes.size()), &reader);
@@ -328,6 +342,7 @@ std::string SerializeManifest(const Manifest& manifest) {
     root[kFacingClasses][facing.interaction_class] = facing.degrees;
   }
   if (!model.bone_ratios.empty()) root[kBoneRatios] = model.bone_ratios;
+  if (!model.default_seeds.empty()) root[kDefaultSeeds] = model.default_seeds;
   if (!model.terms.empty()) root[kTerms] = model.terms;
   if (model.lookahead_frames > 0) root[kLookaheadFrames] = model.lookahead_frames;
   if (model.free_for_all_uses) root[kFreeForAllUses] = true;

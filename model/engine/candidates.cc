@@ -64,8 +64,7 @@ int CandidateCount(const ModelDescription& model, const Sampling& sampling) {
 }
 
 int EvaluationCount(const ModelDescription& model, const Sampling& sampling) {
-  return CandidateCount(model, sampling) *
-         (model.labels_guide && sampling.reaction != 1 ? 2 : 1);
+  return CandidateCount(model, sampling) * (model.labels_guide && sampling.reaction != 1 ? 2 : 1);
 }
 
 uint64_t CandidateSeed(uint64_t seed, int n) {

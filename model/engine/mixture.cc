@@ -161,8 +161,8 @@ void Mixture::FindParts(const ModelDescription& model, const body::Body& body,
   }
 }
 
-void Mixture::ShareTime(const Labels& contact, const Labels& other,
-                        const std::vector<float>& phase, float clear) {
+void Mixture::ShareTime(const Labels& contact, const Labels& other, const std::vector<float>& phase,
+                        float clear) {
   const std::size_t classes = static_cast<std::size_t>(classes_);
   parts_.assign(2, Labels(weights_.size()));
   for (std::size_t t = 0; t < phase.size(); ++t) {
@@ -210,8 +210,7 @@ Poses Mixture::Combine(absl::Span<const Poses> answers) const {
 Poses Mixture::Mix(absl::Span<const Poses> answers) const {
   if (contact_.empty() && avoided_.empty()) return answers[0];
   const std::size_t neutral = contact_.empty() ? 1 : 2;
-  Poses answer =
-      contact_.empty() ? answers[0] : InTime(answers[0], answers[1], answers[neutral]);
+  Poses answer = contact_.empty() ? answers[0] : InTime(answers[0], answers[1], answers[neutral]);
   Subtract(answers[neutral], answers.subspan(neutral + 1), &answer);
   return answer;
 }

@@ -1,6 +1,7 @@
 #ifndef DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_
 #define DUET_MODEL_ENGINE_MODEL_DESCRIPTION_H_
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,8 @@ struct FacingClass {
   std::string interaction_class;
   double degrees = 0;
 };
+
+inline constexpr int kMostDefaultSeeds = 1024;
 
 // Everything that callers need to know about a model, without its weights.
 struct ModelDescription {
@@ -53,6 +56,9 @@ struct ModelDescription {
   // Labels are guidance: the network answers each class by itself, and answers are combined
   // (mixture.h). Otherwise the network reads the label vector.
   bool labels_guide = false;
+  // The seeds that a server draws from for callers who name none, at most kMostDefaultSeeds. Empty:
+  // any.
+  std::vector<uint64_t> default_seeds;
   // Statistics of the training leaders. Absent if unknown.
   std::optional<LeaderStatistics> leader_statistics;
   // Estimates the partner's direction if the caller specifies none. Absent: the direction in which

@@ -14,12 +14,12 @@ constexpr uint64_t kSeeds = uint64_t{1} << 32;  // every number of JSON can hold
 
 }  // namespace
 
-
 uint64_t WindowSeed(uint64_t seed, int window) {
   return window == 0 ? seed : base::SplitMix(seed, static_cast<uint64_t>(window));
 }
 
-uint64_t LeaderSeed(const motion::Poses& leader, double frame_rate_hz) {
+uint64_t LeaderSeed(const motion::Poses& leader, double frame_rate_hz,
+                    const std::vector<uint64_t>& seeds) {
   double way = 0;
   for (int t = 1; t < leader.frame_count(); ++t) {
     for (int j = 0; j < leader.joint_count(); ++j) {
@@ -27,9 +27,9 @@ uint64_t LeaderSeed(const motion::Poses& leader, double frame_rate_hz) {
     }
   }
   const double seconds = leader.frame_count() / frame_rate_hz;
-  return base::SplitMix(static_cast<uint64_t>(std::llround(way / kMetres)),
-                        static_cast<uint64_t>(std::llround(seconds / kSeconds))) %
-         kSeeds;
+  const uint64_t drawn = base::SplitMix(static_cast<uint64_t>(std::llround(way / kMetres)),
+                                        static_cast<uint64_t>(std::llround(seconds / kSeconds)));
+  return seeds.empty() ? drawn % kSeeds : seeds[drawn % seeds.size()];
 }
 
 }  // namespace duet::engine

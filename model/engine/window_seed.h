@@ -2,6 +2,7 @@
 #define DUET_MODEL_ENGINE_WINDOW_SEED_H_
 
 #include <cstdint>
+#include <vector>
 
 #include "model/motion/poses.h"
 
@@ -15,11 +16,12 @@ namespace duet::engine {
 // `seed`. The same on every machine. Changing it changes the results of all long clips.
 uint64_t WindowSeed(uint64_t seed, int window);
 
-// Returns the seed of a clip whose caller names none, below 2^32: one that differs between leaders,
-// so that their followers are different people. It depends on the clip's length and on how far its
-// joints move, both rounded, so that another unit or place in the world hardly ever changes it.
-// Units: metres.
-uint64_t LeaderSeed(const motion::Poses& leader, double frame_rate_hz);
+// Returns the seed of a clip whose caller names none: one that differs between leaders, so that
+// their followers are different people. It depends on the clip's length and on how far its joints
+// move, both rounded, so that another unit or place in the world hardly ever changes it. One of
+// `seeds`, or a number below 2^32 if that is empty. Units: metres.
+uint64_t LeaderSeed(const motion::Poses& leader, double frame_rate_hz,
+                    const std::vector<uint64_t>& seeds);
 
 }  // namespace duet::engine
 

@@ -11,15 +11,11 @@
 #include "model/checkpoint/critic_tensors.h"
 #include "model/engine/critic.h"
 #include "model/engine/finished_motions.h"
-#include "model/engine/network_synthesizer.h"
 #include "model/motion/filter.h"
-#include "model/network/batch.h"
-#include "model/network/flow_generator.h"
-#include "model/network/flow_sampler.h"
-#include "model/network/parameters.h"
 #include "model/training/frame_labels.h"
 #include "model/training/optimiser.h"
 #include "model/training/sampler.h"
+#include "model/training/trained_synthesizer.h"
 
 namespace duet::training {
 namespace {
@@ -27,7 +23,6 @@ namespace {
 namespace F = torch::nn::functional;
 
 constexpr int64_t kHalfBatch = 16;  // examples of each kind in a step
-constexpr size_t kWindowsTogether = 64;
 constexpr double kDropout = 0.3;
 // The critic must not depend on a person's proportions or on a clip's ends: a constant error of
 // each input, in deviations, and the least share of a clip that is seen.
@@ -47,28 +42,6 @@ TrainingOptions::Optimiser OptimiserSettings() {
   return settings;
 }
 
-// The generator of a checkpoint as the engine sees it.
-class GeneratorNetwork : public engine::Network {
- public:
-  explicit GeneratorNetwork(const checkpoint::Checkpoint& checkpoint)
-      : manifest_(checkpoint.manifest), generator_(checkpoint.manifest) {
-    loaded_ = network::LoadParameters(checkpoint, generator_);
-    generator_->eval();
-  }
-  const absl::Status& loaded() const { return loaded_; }
-
-  absl::StatusOr<std::vector<motion::Poses>> Run(
-      absl::Span<const engine::NetworkInput> inputs) const override {
-    const torch::NoGradGuard no_grad;
-    return network::TakeAll(network::AnswerWindows(generator_, manifest_, inputs), inputs);
-  }
-
- private:
-  const checkpoint::Manifest& manifest_;
-  network::FlowGenerator generator_;
-  absl::Status loaded_;
-};
-
 // Windows of the training sequences, and their captured followers.
 struct Windows {
   std::vector<engine::SynthesisWindow> windows;
@@ -87,21 +60,6 @@ Windows MakeWindows(const dataset::Dataset& dataset, const std::vector<int>& seq
     made.captured.push_back(motion::GaussianFilter(sequence.pair.follower.poses, smoothing));
   }
   return made;
-}
-
-std::vector<engine::WindowResult> Answer(const engine::Synthesizer& synthesizer,
-                                         const std::vector<engine::SynthesisWindow>& windows) {
-  std::vector<engine::WindowResult> answers;
-  for (size_t first = 0; first < windows.size(); first += kWindowsTogether) {
-    std::vector<const engine::SynthesisWindow*> some;
-    for (size_t i = first; i < std::min(first + kWindowsTogether, windows.size()); ++i) {
-      some.push_back(&windows[i]);
-    }
-    for (engine::WindowResult& answer : synthesizer.Synthesize(some)) {
-      answers.push_back(std::move(answer));
-    }
-  }
-  return answers;
 }
 
 using Inputs = std::vector<torch::Tensor>;  // [critic frames, I] each
@@ -128,10 +86,9 @@ absl::StatusOr<Material> Gather(const FlowTraining& flow, const checkpoint::Chec
                                 const dataset::Dataset& dataset, std::vector<int> train,
                                 base::Random* random) {
   const engine::ModelDescription& model = checkpoint.manifest.model;
-  auto network = std::make_unique<GeneratorNetwork>(checkpoint);
-  if (!network->loaded().ok()) return network->loaded();
-  const std::unique_ptr<engine::Synthesizer> synthesizer =
-      MakeSynthesizer(model, checkpoint.manifest.standardisation, std::move(network));
+  const absl::StatusOr<std::unique_ptr<engine::Synthesizer>> synthesizer =
+      SynthesizerOf(checkpoint);
+  if (!synthesizer.ok()) return synthesizer.status();
   // No more than the steps will draw.
   const auto most = static_cast<size_t>(
       std::max<int64_t>(1, flow.critic.steps * kHalfBatch / flow.critic.answers));
@@ -144,7 +101,7 @@ absl::StatusOr<Material> Gather(const FlowTraining& flow, const checkpoint::Chec
         MakeWindows(dataset, some, n % 2 == 0 ? StartKnowledge::kNone : StartKnowledge::kPose,
                     flow.target_smoothing, random);
     absl::Status status =
-        AddInputs(model, made, Answer(*synthesizer, made.windows), &material.sampled);
+        AddInputs(model, made, AnswerAll(**synthesizer, made.windows), &material.sampled);
     // A captured follower is the same every time, but for the parts that `some` has.
     if (status.ok() && (n < 2 || some.size() < train.size())) {
       status = AddInputs(model, made, FinishMotions(model, made.windows, made.captured),

@@ -20,12 +20,14 @@
 #include "model/network/threads.h"
 #include "model/training/class_fits.h"
 #include "model/training/critic_trainer.h"
+#include "model/training/default_seeds.h"
 #include "model/training/direction_fit.h"
 #include "model/training/lone_leader.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
 #include "model/training/stillness.h"
 #include "model/training/take_errors.h"
+#include "model/training/trained_synthesizer.h"
 #include "model/training/trainers.h"
 
 namespace duet::training {
@@ -202,7 +204,8 @@ absl::Status StartFrom(const RunPlan& plan, const checkpoint::Checkpoint& from,
                    ": expected the architecture of the options, got another: ", started.message()));
 }
 
-// Trains the critic of a finished generator, if the settings ask for one.
+// Adds what is learnt from the answers of a finished generator, if the settings ask for it: a
+// critic, and the seeds whose followers move as captured ones do.
 absl::Status AddCritic(const RunPlan& plan, const dataset::Dataset& dataset,
                        const std::vector<int>& train, std::ostream* progress,
                        checkpoint::Checkpoint* checkpoint) {
@@ -211,6 +214,12 @@ absl::Status AddCritic(const RunPlan& plan, const dataset::Dataset& dataset,
   absl::StatusOr<TrainedCritic> critic =
       TrainCritic(*flow, plan.options.seed, *checkpoint, dataset, train);
   if (!critic.ok()) return critic.status();
+  const absl::StatusOr<std::unique_ptr<engine::Synthesizer>> synthesizer =
+      SynthesizerOf(*checkpoint);
+  if (!synthesizer.ok()) return synthesizer.status();
+  absl::StatusOr<std::vector<uint64_t>> seeds = ChooseDefaultSeeds(**synthesizer, dataset, train);
+  if (!seeds.ok()) return seeds.status();
+  checkpoint->manifest.model.default_seeds = *std::move(seeds);
   checkpoint->critic = std::move(critic->tensors);
   checkpoint->manifest.metrics["training.critic"] = critic->loss;
   *progress << plan.title << ": critic: "

@@ -20,7 +20,7 @@ constexpr char kPrefix[] = "start.";
 constexpr double kMaxDelaySeconds = 0.5;
 
 // The fields that a session and a clip have in common, as a clip's request.
-v1::SynthesizeRequest ToRequest(v1::LiveStart* start) {
+v1::SynthesizeRequest ToRequest(v1::LiveStart* start, const engine::ModelDescription& model) {
   v1::SynthesizeRequest request;
   if (start->has_leader()) request.mutable_leader()->Swap(start->mutable_leader());
   if (start->has_label_vector()) {
@@ -33,7 +33,9 @@ v1::SynthesizeRequest ToRequest(v1::LiveStart* start) {
   if (start->has_partner_direction()) {
     *request.mutable_partner_direction() = start->partner_direction();
   }
-  request.set_seed(start->seed());  // the leader is not known yet, which clips derive one from
+  // The leader, which clips derive a seed from, is not known yet.
+  const uint64_t first = model.default_seeds.empty() ? 0 : model.default_seeds.front();
+  request.set_seed(start->has_seed() ? start->seed() : first);
   if (start->has_variety()) request.set_variety(start->variety());
   request.set_clean_up(start->clean_up());
   if (start->has_reaction()) request.set_reaction(start->reaction());
@@ -166,7 +168,7 @@ absl::StatusOr<ValidatedLiveStart> ValidateLiveStart(v1::LiveStart start,
                         absl::StrCat(model.name, " version ", model.version));
     return violations.ToStatus();
   }
-  const v1::SynthesizeRequest request = ToRequest(&start);
+  const v1::SynthesizeRequest request = ToRequest(&start, model);
   absl::StatusOr<ValidatedRequest> common = ValidateRequest(
       request, model, HistoryLimits(limits), {kPrefix, static_cast<uint32_t>(kMaxLiveFrames)});
   if (!common.ok()) return common.status();

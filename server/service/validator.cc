@@ -281,7 +281,8 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
   const batching::Priority priority = CallPriority();
   if (!violations_.empty()) return violations_.ToStatus();
   if (!request_.has_seed()) {
-    options.sampling.seed = engine::LeaderSeed(leader_, request_.leader().frame_rate_hz());
+    options.sampling.seed =
+        engine::LeaderSeed(leader_, request_.leader().frame_rate_hz(), model_.default_seeds);
   }
   return ValidatedRequest{
       {std::move(leader_), request_.leader().frame_rate_hz(), engine::LabelTrack(std::move(labels)),

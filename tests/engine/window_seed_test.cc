@@ -3,7 +3,7 @@
 #include <limits>
 #include <set>
 
-#include "gtest/gtest.h"
+#include "gmock/gmock.h"
 
 namespace duet::engine {
 namespace {
@@ -32,15 +32,17 @@ TEST(WindowSeed, NoTwoWindowsOfNeighbouringSeedsShareOne) {
 TEST(LeaderSeed, DiffersBetweenLeadersAndNotBetweenPlaces) {
   motion::Poses leader(30, 2);
   for (int t = 0; t < 30; ++t) leader.at(t, 1) = {0.1f * static_cast<float>(t), 1.03f, 0};
-  const uint64_t seed = LeaderSeed(leader, 15);
+  const uint64_t seed = LeaderSeed(leader, 15, {});
   EXPECT_LT(seed, uint64_t{1} << 32);
   motion::Poses turned = leader;
   for (motion::Vec3& joint : turned.all()) joint = RotateY(joint, 1) + motion::Vec3{3, 0, -2};
-  EXPECT_EQ(LeaderSeed(turned, 15), seed);
+  EXPECT_EQ(LeaderSeed(turned, 15, {}), seed);
   motion::Poses faster = leader;
   for (motion::Vec3& joint : faster.all()) joint.x *= 1.1f;
-  EXPECT_NE(LeaderSeed(faster, 15), seed);
-  EXPECT_NE(LeaderSeed(leader, 12), seed) << "the clip is longer";
+  EXPECT_NE(LeaderSeed(faster, 15, {}), seed);
+  EXPECT_NE(LeaderSeed(leader, 12, {}), seed) << "the clip is longer";
+  EXPECT_THAT((std::vector<uint64_t>{5, 7}), testing::Contains(LeaderSeed(leader, 15, {5, 7})));
+  EXPECT_EQ(LeaderSeed(leader, 15, {7}), 7u);
 }
 
 }  // namespace

@@ -512,7 +512,7 @@ TEST(ValidateRequestTest, FillsInDefaults) {
   EXPECT_FALSE(request->clip.start.has_value());
   EXPECT_FALSE(request->clip.partner_direction.has_value());
   EXPECT_EQ(request->clip.options.sampling.seed,
-            engine::LeaderSeed(request->clip.leader, request->clip.frame_rate_hz));
+            engine::LeaderSeed(request->clip.leader, request->clip.frame_rate_hz, {}));
   EXPECT_EQ(request->clip.options.sampling.variety, 1);
   EXPECT_EQ(request->clip.options.sampling.reaction, 1);
   EXPECT_EQ(request->clip.options.sampling.candidates, 1);
