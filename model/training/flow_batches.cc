@@ -6,9 +6,8 @@
 #include "model/engine/window_standardisation.h"
 #include "model/motion/filter.h"
 #include "model/network/batch.h"
-#include "model/training/drift.h"
+#include "model/training/flow_augment.h"
 #include "model/training/frame_labels.h"
-#include "model/training/live_leader.h"
 #include "model/training/lone_leader.h"
 #include "model/training/stillness.h"
 

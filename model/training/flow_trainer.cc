@@ -10,8 +10,8 @@
 #include "model/network/flow_sampler.h"
 #include "model/network/losses.h"
 #include "model/network/parameters.h"
+#include "model/training/flow_augment.h"
 #include "model/training/flow_statistics.h"
-#include "model/training/own_history.h"
 #include "model/training/take_errors.h"
 
 namespace duet::training {

@@ -7,6 +7,8 @@
 
 namespace duet::training {
 
+class SettingFields;
+
 // The settings of a run that trains the sampling generator (flow_trainer.h).
 struct FlowTraining {
   using Architecture = checkpoint::FlowArchitecture;
@@ -75,8 +77,8 @@ struct FlowTraining {
     bool used() const { return pauses + ends + motionless + unlabelled > 0; }
   } stillness;
 
-  // A fraction of the clips is trained as a live session answers them (live_leader.h): the leader's
-  // future is unknown.
+  // A fraction of the clips is trained as a live session answers them (flow_augment.h): the
+  // leader's future is unknown.
   struct Live {
     double share = 0;             // of the clips
     double several_known = 0.8;   // of these: fraction with several known frames of the follower
@@ -85,7 +87,7 @@ struct FlowTraining {
     double future_seconds = 1;    // of the window after the present
   } live;
 
-  // Clips with several known frames may continue the network's own motion (own_history.h). Applies
+  // Clips with several known frames may continue the network's own motion (flow_augment.h). Applies
   // to the last part of a run, described below.
   struct Own {
     double share = 0;            // of the clips with several known frames
@@ -117,6 +119,9 @@ struct FlowTraining {
     int64_t answers = 8;  // drawn for each clip
   } critic;
 };
+
+// Declares every setting except the architecture.
+void Declare(SettingFields* fields, FlowTraining* flow);
 
 }  // namespace duet::training
 

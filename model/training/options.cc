@@ -19,92 +19,93 @@ using nlohmann::json;
 
 constexpr int kMaxDepth = 4;
 
-void Read(base::ObjectReader* reader, TrainingOptions::Optimiser* out) {
-  out->name = OneOf(reader, "name", {"adam", "rmsprop"});
-  out->learning_rate = reader->Number("learning_rate", 1e-9, 10);
-  out->schedule = OneOf(reader, "schedule", {"one_cycle", "constant", "cosine"});
-  if (out->schedule == "cosine") {
-    out->warm_up_steps = reader->Int("warm_up_steps", 0, kMaxEpochs);
-    out->last_share = Probability(reader, "last_share");
-    out->second_moment = reader->Number("second_moment", 0, 0.999999);
+void DeclareOptimiser(SettingFields* fields, TrainingOptions::Optimiser* optimiser) {
+  fields->Word("name", {"adam", "rmsprop"}, &optimiser->name);
+  fields->Number("learning_rate", 1e-9, 10, &optimiser->learning_rate);
+  fields->Word("schedule", {"one_cycle", "constant", "cosine"}, &optimiser->schedule);
+  if (optimiser->schedule == "cosine") {
+    fields->Int("warm_up_steps", 0, kMaxEpochs, &optimiser->warm_up_steps);
+    fields->Share("last_share", &optimiser->last_share);
+    fields->Number("second_moment", 0, 0.999999, &optimiser->second_moment);
   }
-  out->weight_decay = reader->Number("weight_decay", 0, 10);
-  out->gradient_clip = reader->Number("gradient_clip", 0, 1e9);
-  out->average_decay = reader->Number("average_decay", 0, 0.999999);
+  fields->Number("weight_decay", 0, 10, &optimiser->weight_decay);
+  fields->Number("gradient_clip", 0, 1e9, &optimiser->gradient_clip);
+  fields->Number("average_decay", 0, 0.999999, &optimiser->average_decay);
 }
 
-void Read(base::ObjectReader* reader, TrainingOptions::Augmentation* out) {
-  out->mirror = Probability(reader, "mirror");
-  out->mirror_handed = Probability(reader, "mirror_handed");
-  out->swap_roles = Probability(reader, "swap_roles");
-  out->body_scale = reader->Number("body_scale", 0, 0.9);
-  out->time_warp = reader->Number("time_warp", 0, 2);
-  out->root_distance = reader->Number("root_distance", 0, 10);
-  out->yaw = reader->Number("yaw", 0, 4);
-  out->leader_yaw = reader->Number("leader_yaw", 0, 4);
-  out->noise = reader->Number("noise", 0, 10);
-  out->body_noise = reader->Number("body_noise", 0, 10);
-  out->crop = Probability(reader, "crop");
+void DeclareAugmentation(SettingFields* fields, TrainingOptions::Augmentation* augmentation) {
+  fields->Share("mirror", &augmentation->mirror);
+  fields->Share("mirror_handed", &augmentation->mirror_handed);
+  fields->Share("swap_roles", &augmentation->swap_roles);
+  fields->Number("body_scale", 0, 0.9, &augmentation->body_scale);
+  fields->Number("time_warp", 0, 2, &augmentation->time_warp);
+  fields->Number("root_distance", 0, 10, &augmentation->root_distance);
+  fields->Number("yaw", 0, 4, &augmentation->yaw);
+  fields->Number("leader_yaw", 0, 4, &augmentation->leader_yaw);
+  fields->Number("noise", 0, 10, &augmentation->noise);
+  fields->Number("body_noise", 0, 10, &augmentation->body_noise);
+  fields->Share("crop", &augmentation->crop);
 }
 
-void Read(base::ObjectReader* reader, TrainingOptions::Start* out) {
-  out->root = Probability(reader, "root");
-  out->pose = Probability(reader, "pose");
-  if (reader->ok() && out->root + out->pose > 1) {
-    reader->Fail("pose", absl::StrCat("expected at most ", 1 - out->root, ", got ", out->pose,
-                                      ": root and pose are shares of all clips"));
-  }
-}
-
-void Read(base::ObjectReader* reader, TrainingOptions::Validation* out) {
-  out->subjects = reader->Strings("subjects", 256);
-  out->fraction = reader->Number("fraction", 0, 0.9);
-  out->patience = reader->Int("patience", 0, kMaxEpochs);
+// Declares every setting that does not depend on the method.
+void Declare(SettingFields* fields, TrainingOptions* options) {
+  fields->Section("optimiser", [&] { DeclareOptimiser(fields, &options->optimiser); });
+  fields->Int("epochs", 1, kMaxEpochs, &options->epochs);
+  fields->Int("batch", 1, 65536, &options->batch);
+  int64_t seed = static_cast<int64_t>(options->seed);
+  fields->Int("seed", 0, INT64_MAX, &seed);
+  options->seed = static_cast<uint64_t>(seed);
+  fields->Section("augmentation", [&] { DeclareAugmentation(fields, &options->augmentation); });
+  fields->Section("start", [&, &start = options->start] {
+    fields->Share("root", &start.root);
+    fields->Share("pose", &start.pose);
+  });
+  fields->Section("validation", [&, &validation = options->validation] {
+    fields->Words("subjects", &validation.subjects);
+    fields->Number("fraction", 0, 0.9, &validation.fraction);
+    fields->Int("patience", 0, kMaxEpochs, &validation.patience);
+  });
 }
 
 // The settings that train each architecture.
-PaperTraining MethodFor(const checkpoint::PaperArchitecture& architecture) {
+Method MethodFor(const checkpoint::PaperArchitecture& architecture) {
   PaperTraining method;
   method.architecture = architecture;
   return method;
 }
-FlowTraining MethodFor(const checkpoint::FlowArchitecture& architecture) {
+Method MethodFor(const checkpoint::FlowArchitecture& architecture) {
   FlowTraining method;
   method.architecture = architecture;
   return method;
 }
 
-Method ReadMethod(base::ObjectReader* root) {
+Method ReadMethod(base::ObjectReader* root, SettingFields* fields) {
   checkpoint::Architecture architecture;
-  ReadSection(root, "generator", &architecture,
-              [](base::ObjectReader* reader, checkpoint::Architecture* out) {
-                *out = checkpoint::ReadArchitecture(reader->Has(checkpoint::kArchitectureKind),
-                                                    reader);
-              });
-  Method method =
-      std::visit([](const auto& one) -> Method { return MethodFor(one); }, architecture);
-  if (root->ok()) std::visit([root](auto& one) { ReadSections(root, &one); }, method);
+  const json& object = root->Object("generator");
+  if (root->ok()) {
+    base::ObjectReader generator(object, "generator");
+    architecture =
+        checkpoint::ReadArchitecture(generator.Has(checkpoint::kArchitectureKind), &generator);
+    root->Update(generator.Finish());
+  }
+  Method method = std::visit([](const auto& one) { return MethodFor(one); }, architecture);
+  if (root->ok()) std::visit([fields](auto& one) { Declare(fields, &one); }, method);
   return method;
 }
 
 absl::StatusOr<TrainingOptions> ReadOptions(const json& value) {
   base::ObjectReader root(value, "");
+  SettingFields fields(&root);
   TrainingOptions options;
-  const auto section = [&root](const char* name, auto* settings) {
-    ReadSection(&root, name, settings,
-                [](base::ObjectReader* reader, auto* fields) { Read(reader, fields); });
-  };
-  options.method = ReadMethod(&root);
+  options.method = ReadMethod(&root, &fields);
   options.standardisation = ReadNamed(&root, "standardisation", checkpoint::kStandardisationNames);
-  section("optimiser", &options.optimiser);
-  options.epochs = root.Int("epochs", 1, kMaxEpochs);
-  options.batch = root.Int("batch", 1, 65536);
-  options.seed = static_cast<uint64_t>(root.Int("seed", 0, INT64_MAX));
-  section("augmentation", &options.augmentation);
-  section("start", &options.start);
-  section("validation", &options.validation);
+  Declare(&fields, &options);
   if (absl::Status status = root.Finish(); !status.ok()) return status;
-  return options;
+  const TrainingOptions::Start& start = options.start;
+  if (start.root + start.pose <= 1) return options;
+  return absl::InvalidArgumentError(absl::StrCat("start.pose: expected at most ", 1 - start.root,
+                                                 ", got ", start.pose,
+                                                 ": root and pose are shares of all clips"));
 }
 
 // A replacement's value: parsed as JSON if possible, else the text itself.
@@ -147,47 +148,14 @@ checkpoint::Architecture ArchitectureOf(const TrainingOptions& options) {
                     options.method);
 }
 
-namespace {
-
-void DescribeCosine(const TrainingOptions::Optimiser& o, Description* out) {
-  out->insert({{"optimiser.warm_up_steps", Text(o.warm_up_steps)},
-               {"optimiser.last_share", Text(o.last_share)},
-               {"optimiser.second_moment", Text(o.second_moment)}});
-}
-
-}  // namespace
-
-std::map<std::string, std::string> Describe(const TrainingOptions& o) {
-  Description description = {
-      {"standardisation",
-       std::string(NameOf(checkpoint::kStandardisationNames, o.standardisation))},
-      {"optimiser.name", o.optimiser.name},
-      {"optimiser.learning_rate", Text(o.optimiser.learning_rate)},
-      {"optimiser.schedule", o.optimiser.schedule},
-      {"optimiser.weight_decay", Text(o.optimiser.weight_decay)},
-      {"optimiser.gradient_clip", Text(o.optimiser.gradient_clip)},
-      {"optimiser.average_decay", Text(o.optimiser.average_decay)},
-      {"epochs", absl::StrCat(o.epochs)},
-      {"batch", absl::StrCat(o.batch)},
-      {"seed", absl::StrCat(o.seed)},
-      {"augmentation.mirror", Text(o.augmentation.mirror)},
-      {"augmentation.mirror_handed", Text(o.augmentation.mirror_handed)},
-      {"augmentation.swap_roles", Text(o.augmentation.swap_roles)},
-      {"augmentation.body_scale", Text(o.augmentation.body_scale)},
-      {"augmentation.time_warp", Text(o.augmentation.time_warp)},
-      {"augmentation.root_distance", Text(o.augmentation.root_distance)},
-      {"augmentation.yaw", Text(o.augmentation.yaw)},
-      {"augmentation.leader_yaw", Text(o.augmentation.leader_yaw)},
-      {"augmentation.noise", Text(o.augmentation.noise)},
-      {"augmentation.body_noise", Text(o.augmentation.body_noise)},
-      {"augmentation.crop", Text(o.augmentation.crop)},
-      {"start.root", Text(o.start.root)},
-      {"start.pose", Text(o.start.pose)},
-      {"validation.subjects", absl::StrJoin(o.validation.subjects, " ")},
-      {"validation.fraction", Text(o.validation.fraction)},
-      {"validation.patience", absl::StrCat(o.validation.patience)}};
-  if (o.optimiser.schedule == "cosine") DescribeCosine(o.optimiser, &description);
-  std::visit([&description](const auto& one) { Describe(one, &description); }, o.method);
+std::map<std::string, std::string> Describe(const TrainingOptions& options) {
+  TrainingOptions declared = options;
+  Description description;
+  SettingFields fields(&description);
+  Declare(&fields, &declared);
+  std::visit([&fields](auto& one) { Declare(&fields, &one); }, declared.method);
+  description["standardisation"] =
+      std::string(NameOf(checkpoint::kStandardisationNames, options.standardisation));
   return description;
 }
 

@@ -8,6 +8,8 @@
 
 namespace duet::training {
 
+class SettingFields;
+
 // The settings of a run that trains the paper's generator (paper_trainer.h).
 struct PaperTraining {
   using Architecture = checkpoint::PaperArchitecture;
@@ -42,6 +44,9 @@ struct PaperTraining {
   // Fraction of clips trained on a graded, negative or mixed label vector (graded_labels.h).
   double graded_labels = 0;
 };
+
+// Declares every setting except the architecture.
+void Declare(SettingFields* fields, PaperTraining* paper);
 
 }  // namespace duet::training
 

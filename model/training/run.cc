@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -22,13 +23,14 @@
 #include "model/training/critic_trainer.h"
 #include "model/training/default_seeds.h"
 #include "model/training/direction_fit.h"
+#include "model/training/flow_trainer.h"
 #include "model/training/lone_leader.h"
+#include "model/training/paper_trainer.h"
 #include "model/training/revision.h"
 #include "model/training/run_log.h"
 #include "model/training/stillness.h"
 #include "model/training/take_errors.h"
 #include "model/training/trained_synthesizer.h"
-#include "model/training/trainers.h"
 
 namespace duet::training {
 namespace {
@@ -36,6 +38,33 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMostPeopleBytes = 4096;  // of a manifest's text
+
+// The trainer of each method: its registration. Without a line here, a method does not compile.
+template <typename Method>
+struct TrainerOf;
+template <>
+struct TrainerOf<PaperTraining> {
+  using Type = PaperTrainer;
+};
+template <>
+struct TrainerOf<FlowTraining> {
+  using Type = FlowTrainer;
+};
+
+// Requires a manifest of the same architecture. `validation` may be empty. Options, manifest and
+// data set must outlive the trainer.
+std::unique_ptr<EpochTrainer> MakeTrainer(const TrainingOptions& options,
+                                          const checkpoint::Manifest& manifest,
+                                          const dataset::Dataset& dataset, std::vector<int> train,
+                                          std::vector<int> validation) {
+  return std::visit(
+      [&](const auto& method) -> std::unique_ptr<EpochTrainer> {
+        using Trainer = typename TrainerOf<std::decay_t<decltype(method)>>::Type;
+        return std::make_unique<Trainer>(options, manifest, dataset, std::move(train),
+                                         std::move(validation));
+      },
+      options.method);
+}
 
 // Records properties of the training sequences for the model card.
 void NoteData(const dataset::Dataset& dataset, const std::vector<int>& train,

@@ -1,6 +1,7 @@
 #include "model/training/setting_fields.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -8,27 +9,56 @@
 #include "model/base/text.h"
 
 namespace duet::training {
+namespace {
 
-std::string OneOf(base::ObjectReader* reader, const std::string& key,
-                  const std::vector<std::string>& choices) {
-  constexpr std::size_t kMaxWord = 64;
-  std::string value = reader->String(key, kMaxWord);
-  if (reader->ok() && std::find(choices.begin(), choices.end(), value) == choices.end()) {
-    reader->Fail(key, absl::StrCat("expected one of ", absl::StrJoin(choices, ", "), ", got ",
-                                   base::Quoted(value)));
+constexpr std::size_t kMaxWords = 256, kMaxWordBytes = 64;
+
+}  // namespace
+
+void SettingFields::Number(const std::string& name, double min, double max, double* value) {
+  if (reader_ != nullptr) {
+    *value = reader_->Number(name, min, max);
+  } else {
+    const std::string text = nlohmann::json(*value).dump();
+    (*description_)[path_ + name] = std::string(absl::StripSuffix(text, ".0"));
   }
-  return value;
 }
 
-double Probability(base::ObjectReader* reader, const std::string& key) {
-  return reader->Number(key, 0, 1);
+void SettingFields::Int(const std::string& name, int64_t min, int64_t max, int64_t* value) {
+  if (reader_ != nullptr) {
+    *value = reader_->Int(name, min, max);
+  } else {
+    (*description_)[path_ + name] = absl::StrCat(*value);
+  }
 }
 
-std::string Text(double value) {
-  const std::string text = nlohmann::json(value).dump();
-  return std::string(absl::StripSuffix(text, ".0"));
+void SettingFields::Bool(const std::string& name, bool* value) {
+  if (reader_ != nullptr) {
+    *value = reader_->Bool(name);
+  } else {
+    (*description_)[path_ + name] = *value ? "true" : "false";
+  }
 }
 
-std::string Text(bool value) { return value ? "true" : "false"; }
+void SettingFields::Word(const std::string& name, const std::vector<std::string>& choices,
+                         std::string* value) {
+  if (reader_ == nullptr) {
+    (*description_)[path_ + name] = *value;
+    return;
+  }
+  *value = reader_->String(name, kMaxWordBytes);
+  if (reader_->ok() && std::find(choices.begin(), choices.end(), *value) == choices.end()) {
+    reader_->Fail(name, absl::StrCat("expected one of ", absl::StrJoin(choices, ", "), ", got ",
+                                     base::Quoted(*value)));
+  }
+}
+
+void SettingFields::Words(const std::string& name, std::vector<std::string>* values) {
+  if (reader_ != nullptr) {
+    *values = reader_->Strings(name, kMaxWords);
+  } else {
+    (*description_)[path_ + name] = absl::StrJoin(*values, " ");
+  }
+}
 
 }  // namespace duet::training

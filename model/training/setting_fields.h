@@ -1,56 +1,71 @@
 #ifndef DUET_MODEL_TRAINING_SETTING_FIELDS_H_
 #define DUET_MODEL_TRAINING_SETTING_FIELDS_H_
 
-#include <cstddef>
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "absl/status/status.h"
 #include "model/base/strict_json.h"
-#include "model/training/flow_training.h"
-#include "model/training/paper_training.h"
 
-// Reading and writing the fields of a training configuration. Only the files that define settings
-// need it.
 namespace duet::training {
 
 inline constexpr int64_t kMaxUnits = 4096;
 inline constexpr int64_t kMaxEpochs = 1000000;
+inline constexpr double kMaxWeight = 1e6;
 
 // Settings by dotted path, with their values as text.
 using Description = std::map<std::string, std::string>;
 
-// Reads one of several words.
-std::string OneOf(base::ObjectReader* reader, const std::string& key,
-                  const std::vector<std::string>& choices);
+// The fields of a training configuration. Settings declare themselves once, for reading a
+// configuration and for describing it:
+//
+//   fields->Section("drift", [&] {
+//     fields->Share("share", &drift->share);
+//     fields->Number("tilt", 0, 4, &drift->tilt);
+//   });
+class SettingFields {
+ public:
+  // Reads the values from a JSON object. Errors are recorded in `reader`.
+  explicit SettingFields(base::ObjectReader* reader) : reader_(reader) {}
+  // Adds the values to `description`, as the shortest texts that read back as the same values.
+  explicit SettingFields(Description* description) : description_(description) {}
 
-double Probability(base::ObjectReader* reader, const std::string& key);
+  // Whether there is a field of this name. Fields that configurations of earlier versions lack are
+  // declared only if there is one.
+  bool Has(const std::string& name) const { return reader_ == nullptr || reader_->Has(name); }
+  void Number(const std::string& name, double min, double max, double* value);
+  // A probability, or a part of a whole.
+  void Share(const std::string& name, double* value) { Number(name, 0, 1, value); }
+  void Int(const std::string& name, int64_t min, int64_t max, int64_t* value);
+  void Bool(const std::string& name, bool* value);
+  // One of several words.
+  void Word(const std::string& name, const std::vector<std::string>& choices, std::string* value);
+  void Words(const std::string& name, std::vector<std::string>* values);
 
-// Reads the sections of a configuration that only one method has. Errors are recorded in `root`.
-void ReadSections(base::ObjectReader* root, PaperTraining* out);
-void ReadSections(base::ObjectReader* root, FlowTraining* out);
+  // Declares the fields of the object `name` with `declare()`.
+  template <typename Declare>
+  void Section(const std::string& name, Declare declare) {
+    const std::string outer = path_;
+    path_ += name + ".";
+    if (reader_ == nullptr) {
+      declare();
+    } else if (const nlohmann::json& object = reader_->Object(name); reader_->ok()) {
+      base::ObjectReader section(object, reader_->PathOf(name));
+      base::ObjectReader* const reader = std::exchange(reader_, &section);
+      declare();
+      reader_ = reader;
+      reader_->Update(section.Finish());
+    }
+    path_ = outer;
+  }
 
-// Adds every setting of a method except its architecture.
-void Describe(const PaperTraining& paper, Description* out);
-void Describe(const FlowTraining& flow, Description* out);
-
-// The shortest text that reads back as the same value.
-std::string Text(double value);
-std::string Text(bool value);
-inline std::string Text(int64_t value) { return std::to_string(value); }
-
-// Reads the object `name` of `root` with `Read(reader, out)`. Errors are recorded in `root`.
-template <typename Section, typename Read>
-void ReadSection(base::ObjectReader* root, const std::string& name, Section* out, Read read) {
-  const nlohmann::json& object = root->Object(name);
-  if (!root->ok()) return;
-  base::ObjectReader reader(object, name);
-  read(&reader, out);
-  root->Update(reader.Finish());
-}
+ private:
+  base::ObjectReader* reader_ = nullptr;  // of the current section
+  Description* description_ = nullptr;
+  std::string path_;  // of the current section, with a dot at its end
+};
 
 }  // namespace duet::training
 
