@@ -56,45 +56,8 @@ motion::RecordedMotion ReadSettings(base::ObjectReader* reader, motion::Clip* em
   return motion;
 }
 
-bool ReadPosition(const Json& value, motion::Vec3* position) {
-  if (!value.is_array() || value.size() != 3) return false;
-  float* const axes[] = {&position->x, &position->y, &position->z};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!value[axis].is_number()) return false;
-    const double number = value[axis].get<double>();
-    if (!(std::abs(number) <= motion::kMaxCoordinate)) return false;
-    *axes[axis] = static_cast<float>(number);
-  }
-  return true;
-}
-
-// Appends one frame. Records an error and returns false if it is invalid.
-bool ReadFrame(const Json& frame, const std::string& field, base::ObjectReader* reader,
-               motion::Clip* clip) {
-  const std::size_t joints = clip->joint_names.size();
-  if (!frame.is_array() || frame.size() != joints) {
-    reader->Fail(
-        field, absl::StrCat("expected a list of ", joints, " positions, got ", base::Shown(frame)));
-    return false;
-  }
-  std::vector<motion::Vec3> pose(joints);
-  for (std::size_t joint = 0; joint < joints; ++joint) {
-    if (!ReadPosition(frame[joint], &pose[joint])) {
-      reader->Fail(
-          absl::StrCat(field, "[", joint, "]"),
-          absl::StrCat("expected finite numbers [x, y, z], got ", base::Shown(frame[joint])));
-      return false;
-    }
-  }
-  clip->Append(pose);
-  return true;
-}
-
-// Places in a document, as depths of nlohmann::json's parser callback.
+// Depths within a document: a person's list of frames, a frame, a position.
 constexpr int kFieldDepth = 1, kFrameDepth = 2, kPositionDepth = 3, kNumberDepth = 4;
-// One more than a valid frame or position may have. The element that makes it invalid is kept; all
-// further elements are dropped.
-constexpr std::size_t kMostInPosition = 4, kMostInFrame = motion::kMaxFileJoints + 1;
 
 // The index of a field in kPeople; -1 for any other field.
 int PersonIndex(const std::string& key) {
@@ -104,28 +67,30 @@ int PersonIndex(const std::string& key) {
   return -1;
 }
 
-// Reads the positions of a document with valid frames, without building JSON values. Stops at the
-// first invalid frame.
+// Reads the positions of a document without building JSON values, so that memory does not grow with
+// the text: "[]," is 3 bytes of text and 50 in memory. Stops at the first invalid frame.
 class PositionReader : public nlohmann::json_sax<Json> {
  public:
-  // `people` has the joint names and must outlive the reader.
-  explicit PositionReader(std::vector<motion::Clip>* people) : people_(*people) {
+  // `people` has the joint names. Errors are recorded in `reader`. Both must outlive this object.
+  PositionReader(base::ObjectReader* reader, std::vector<motion::Clip>* people)
+      : reader_(*reader), people_(*people) {
     pose_.reserve(people_[0].joint_names.size());
   }
 
-  bool null() override { return Outside(); }
-  bool boolean(bool) override { return Outside(); }
-  bool string(string_t&) override { return Outside(); }
-  bool binary(binary_t&) override { return Outside(); }
+  bool null() override { return Other("null"); }
+  bool boolean(bool) override { return Other("a boolean"); }
+  bool string(string_t&) override { return Other("a string"); }
+  bool binary(binary_t&) override { return Other("bytes"); }
   bool number_integer(number_integer_t value) override { return Add(static_cast<double>(value)); }
   bool number_unsigned(number_unsigned_t value) override { return Add(static_cast<double>(value)); }
   bool number_float(number_float_t value, const string_t&) override { return Add(value); }
-  bool start_object(std::size_t) override { return Open(Outside()); }
-  bool end_object() override { return Close(); }
+  bool start_object(std::size_t) override { return Other("an object") && ++depth_ > 0; }
+  bool end_object() override { return --depth_ >= 0; }
 
   bool key(string_t& name) override {
     if (depth_ != kFieldDepth) return true;
     const int person = PersonIndex(name);
+    field_ = name;
     clip_ = person >= 0 && person < static_cast<int>(people_.size())
                 ? &people_[static_cast<std::size_t>(person)]
                 : nullptr;
@@ -133,22 +98,31 @@ class PositionReader : public nlohmann::json_sax<Json> {
   }
 
   bool start_array(std::size_t) override {
-    if (clip_ == nullptr) return Open(true);
-    if (depth_ == kFrameDepth) pose_.clear();
+    const int outer = depth_++;
+    if (clip_ == nullptr) return true;
+    if (outer == kFrameDepth && clip_->frame_count() == motion::kMaxMotionFrames) {
+      return Fail(field_, absl::StrCat("expected at most ", clip_->frame_count(),
+                                       " frames, got "
+                                       "more"));
+    }
+    if (outer == kFrameDepth) pose_.clear();
+    if (outer == kPositionDepth && pose_.size() == clip_->joint_names.size())
+      return BadFrame("more");
     numbers_ = 0;
-    return Open(depth_ < kNumberDepth);
+    return outer < kNumberDepth || BadPosition("a list");
   }
 
   bool end_array() override {
-    Close();
+    --depth_;
     if (clip_ == nullptr || depth_ == kFieldDepth) return true;
     if (depth_ == kPositionDepth) {
+      if (numbers_ != 3) return BadPosition(absl::StrCat(numbers_));
       pose_.push_back({numbers_at_[0], numbers_at_[1], numbers_at_[2]});
-      return numbers_ == 3 && pose_.size() <= clip_->joint_names.size();
+      return true;
     }
-    if (pose_.size() != clip_->joint_names.size()) return false;
+    if (pose_.size() != clip_->joint_names.size()) return BadFrame(absl::StrCat(pose_.size()));
     clip_->Append(pose_);
-    return clip_->frame_count() <= motion::kMaxMotionFrames;
+    return true;
   }
 
   bool parse_error(std::size_t, const std::string&, const Json::exception&) override {
@@ -156,85 +130,43 @@ class PositionReader : public nlohmann::json_sax<Json> {
   }
 
  private:
-  bool Open(bool good) {
-    ++depth_;
-    return good;
+  // Returns false.
+  bool Fail(const std::string& field, const std::string& problem) {
+    reader_.Fail(field, problem);
+    return false;
   }
-  bool Close() {
-    --depth_;
-    return true;
+  std::string FrameField() const { return absl::StrCat(field_, "[", clip_->frame_count(), "]"); }
+  bool BadFrame(absl::string_view got) {
+    return Fail(FrameField(), absl::StrCat("expected a list of ", clip_->joint_names.size(),
+                                           " positions, got ", got));
   }
-  // Whether a value that is neither a number nor an array may occur here.
-  bool Outside() const { return clip_ == nullptr || depth_ == 0; }
+  bool BadPosition(absl::string_view got) {
+    return Fail(absl::StrCat(FrameField(), "[", pose_.size(), "]"),
+                absl::StrCat("expected finite numbers [x, y, z], got ", got));
+  }
+
+  // A value that is neither an array nor, within a position, a number.
+  bool Other(absl::string_view what) {
+    if (clip_ == nullptr || depth_ <= kFieldDepth) return true;
+    return depth_ == kFrameDepth ? BadFrame(what) : BadPosition(what);
+  }
 
   bool Add(double value) {
-    if (clip_ == nullptr) return true;
-    if (depth_ != kNumberDepth || numbers_ == 3 || !(std::abs(value) <= motion::kMaxCoordinate)) {
-      return false;
-    }
+    if (depth_ != kNumberDepth || clip_ == nullptr) return Other("a number");
+    if (numbers_ == 3) return BadPosition("more");
+    if (!(std::abs(value) <= motion::kMaxCoordinate)) return BadPosition(absl::StrCat(value));
     numbers_at_[numbers_++] = static_cast<float>(value);
     return true;
   }
 
+  base::ObjectReader& reader_;
   std::vector<motion::Clip>& people_;
   motion::Clip* clip_ = nullptr;  // of the current field; null for fields other than people
+  std::string field_;
   int depth_ = 0;
   std::vector<motion::Vec3> pose_;
   float numbers_at_[3] = {};
   std::size_t numbers_ = 0;
-};
-
-// Reports the error in a document that PositionReader stopped at. Removes each frame from the
-// document as soon as it is parsed, so that memory does not grow with the text: "[]," is 3 bytes of
-// text and 50 in memory.
-class FrameReader {
- public:
-  // `people` has the joint names. Both arguments must outlive this object.
-  FrameReader(base::ObjectReader* reader, std::vector<motion::Clip>* people)
-      : reader_(*reader), people_(*people) {}
-
-  bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
-    using Event = Json::parse_event_t;
-    if (depth == kFieldDepth && event == Event::key) {
-      person_ = PersonIndex(parsed.get_ref<const std::string&>());
-      frame_ = 0;
-    }
-    if (depth < kFrameDepth) return true;
-    if (person_ < 0 || person_ >= static_cast<int>(people_.size()) || !reader_.ok()) return false;
-    const bool begins = event == Event::array_start || event == Event::object_start;
-    const bool ends = event == Event::array_end || event == Event::object_end;
-    if (depth > kNumberDepth) return false;
-    if (event == Event::key) return true;
-    if (depth == kNumberDepth) return ends || ++in_position_ <= kMostInPosition;
-    if (depth == kPositionDepth) {
-      if (begins) in_position_ = 0;
-      return ends || ++in_frame_ <= kMostInFrame;
-    }
-    if (begins) {
-      in_frame_ = 0;
-      return true;
-    }
-    Take(parsed);
-    return false;
-  }
-
- private:
-  void Take(const Json& frame) {
-    const char* field = kPeople[person_];
-    if (frame_ == motion::kMaxMotionFrames) {
-      reader_.Fail(field, absl::StrCat("expected at most ", frame_, " frames, got more"));
-      return;
-    }
-    ReadFrame(frame, absl::StrCat(field, "[", frame_, "]"), &reader_,
-              &people_[static_cast<std::size_t>(person_)]);
-    ++frame_;
-  }
-
-  base::ObjectReader& reader_;
-  std::vector<motion::Clip>& people_;
-  int person_ = -1;
-  int frame_ = 0;
-  std::size_t in_frame_ = 0, in_position_ = 0;
 };
 
 // Counts the fields that are lists of frames.
@@ -313,14 +245,11 @@ std::string FormatSettings(const motion::Clip& clip, const motion::Skeleton& ske
 // Requires a text that ParseHandwrittenJson accepts.
 void ReadPeople(absl::string_view text, base::ObjectReader* reader,
                 std::vector<motion::Clip>* people) {
-  const std::vector<motion::Clip> empty = *people;
   if (!reader->ok()) return;
-  PositionReader positions(people);
+  PositionReader positions(reader, people);
   const absl::string_view document = base::SkipByteOrderMark(text);
   if (base::ReadJsonEvents({document.data(), document.size()}, &positions)) return;
-  *people = empty;
-  const Json rest = Json::parse(text.begin(), text.end(), FrameReader(reader, people), false);
-  if (rest.is_discarded()) reader->Fail("frames", "expected JSON");
+  reader->Fail("frames", "expected JSON");
 }
 
 }  // namespace
