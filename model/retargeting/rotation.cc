@@ -1,7 +1,7 @@
 #include "model/retargeting/rotation.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 
 #include "model/base/angle.h"
 
@@ -11,77 +11,28 @@ namespace {
 using base::kPi;
 constexpr double kTiny = 1e-12;
 constexpr double kNearlyEqual = 1e-4;  // radians
-constexpr int kMaxSweeps = 32;
 
-using Matrix4 = std::array<std::array<double, 4>, 4>;
+// Over quaternions as (x, y, z, w): of equal eigenvalues, that of no rotation is then the last.
+using Matrix4 = Eigen::Matrix4d;
 
-// One Jacobi rotation: makes m[p][q] zero, and keeps the eigenvectors in the columns of v.
-void RotateOut(int p, int q, Matrix4* m, Matrix4* v) {
-  Matrix4& a = *m;
-  const auto at = [&a](int row, int column) -> double& {
-    return a[static_cast<size_t>(row)][static_cast<size_t>(column)];
-  };
-  if (std::abs(at(p, q)) < 1e-300) return;
-  const double theta = (at(q, q) - at(p, p)) / (2 * at(p, q));
-  const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(theta * theta + 1));
-  const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-  for (int k = 0; k < 4; ++k) {
-    const double kp = at(k, p), kq = at(k, q);
-    at(k, p) = c * kp - s * kq;
-    at(k, q) = s * kp + c * kq;
-  }
-  for (int k = 0; k < 4; ++k) {
-    const double pk = at(p, k), qk = at(q, k);
-    at(p, k) = c * pk - s * qk;
-    at(q, k) = s * pk + c * qk;
-  }
-  for (auto& row : *v) {
-    const double kp = row[static_cast<size_t>(p)], kq = row[static_cast<size_t>(q)];
-    row[static_cast<size_t>(p)] = c * kp - s * kq;
-    row[static_cast<size_t>(q)] = s * kp + c * kq;
-  }
-}
-
-// The eigenvector of the largest eigenvalue of a symmetric matrix.
-Quaternion LargestEigenvector(Matrix4 m) {
-  Matrix4 v = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    double off_diagonal = 0, diagonal = 0;
-    for (size_t i = 0; i < 4; ++i) {
-      diagonal += m[i][i] * m[i][i];
-      for (size_t j = i + 1; j < 4; ++j) off_diagonal += m[i][j] * m[i][j];
-    }
-    if (off_diagonal <= 1e-30 * diagonal) break;
-    for (int p = 0; p < 3; ++p) {
-      for (int q = p + 1; q < 4; ++q) RotateOut(p, q, &m, &v);
-    }
-  }
-  size_t best = 0;
-  for (size_t i = 1; i < 4; ++i) best = m[i][i] > m[best][best] ? i : best;
-  return Normalised({v[0][best], v[1][best], v[2][best], v[3][best]});
-}
-
-void Add(const Correspondence& c, Matrix4* m) {
-  const Vec3d f = c.from * c.weight, t = c.to;
-  Matrix4& a = *m;
-  a[0][0] += f.x * t.x + f.y * t.y + f.z * t.z;
-  a[1][1] += f.x * t.x - f.y * t.y - f.z * t.z;
-  a[2][2] += -f.x * t.x + f.y * t.y - f.z * t.z;
-  a[3][3] += -f.x * t.x - f.y * t.y + f.z * t.z;
-  a[0][1] += f.y * t.z - f.z * t.y;
-  a[0][2] += f.z * t.x - f.x * t.z;
-  a[0][3] += f.x * t.y - f.y * t.x;
-  a[1][2] += f.x * t.y + f.y * t.x;
-  a[1][3] += f.z * t.x + f.x * t.z;
-  a[2][3] += f.y * t.z + f.z * t.y;
+// The symmetric matrix of a correspondence (Horn 1987).
+Matrix4 MatrixOf(const Correspondence& c) {
+  const Vec3d f = c.from * c.weight, t = c.to, axis = Cross(f, t);
+  const double xx = f.x * t.x, yy = f.y * t.y, zz = f.z * t.z;
+  const double xy = f.x * t.y + f.y * t.x, xz = f.x * t.z + f.z * t.x, yz = f.y * t.z + f.z * t.y;
+  Matrix4 m;
+  m << xx - yy - zz, xy, xz, axis.x,  //
+      xy, yy - xx - zz, yz, axis.y,   //
+      xz, yz, zz - xx - yy, axis.z,   //
+      axis.x, axis.y, axis.z, xx + yy + zz;
+  return m;
 }
 
 // trace(R^T P) = 4 dot(q, p)^2 - 1.
-void Add(const RotationPrior& prior, Matrix4* m) {
-  const double p[] = {prior.rotation.w, prior.rotation.x, prior.rotation.y, prior.rotation.z};
-  for (size_t i = 0; i < 4; ++i) {
-    for (size_t j = i; j < 4; ++j) (*m)[i][j] += 4 * prior.weight * p[i] * p[j];
-  }
+Matrix4 MatrixOf(const RotationPrior& prior) {
+  const Quaternion q = prior.rotation;
+  const Eigen::Vector4d p(q.x, q.y, q.z, q.w);
+  return 4 * prior.weight * p * p.transpose();
 }
 
 }  // namespace
@@ -148,13 +99,13 @@ Quaternion ShortestArc(Vec3d from, Vec3d to, Vec3d axis_if_opposite) {
 
 Quaternion FitRotation(const std::vector<Correspondence>& correspondences,
                        const std::vector<RotationPrior>& priors) {
-  Matrix4 m = {};
-  for (const Correspondence& correspondence : correspondences) Add(correspondence, &m);
-  for (const RotationPrior& prior : priors) Add(prior, &m);
-  for (size_t i = 0; i < 4; ++i) {
-    for (size_t j = 0; j < i; ++j) m[i][j] = m[j][i];
-  }
-  return LargestEigenvector(m);
+  Matrix4 m = Matrix4::Zero();
+  for (const Correspondence& correspondence : correspondences) m += MatrixOf(correspondence);
+  for (const RotationPrior& prior : priors) m += MatrixOf(prior);
+  // In increasing order of the eigenvalues.
+  const Eigen::Vector4d q = Eigen::SelfAdjointEigenSolver<Matrix4>(m).eigenvectors().col(3);
+  const double side = q[3] < 0 ? -1 : 1;
+  return Normalised({side * q[3], side * q[0], side * q[1], side * q[2]});
 }
 
 }  // namespace duet::retargeting
