@@ -21,7 +21,7 @@ namespace {
 // Limits the values of all accessors: they may share bytes, so a small file could yield many.
 constexpr std::size_t kMaxValues = std::size_t{64} << 20;
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
-              kUnsignedInt = 5125, kFloat = 5126;
+              kFloat = 5126;
 
 std::size_t ComponentBytes(const GltfAccessor& accessor) {
   switch (accessor.component_type) {
@@ -36,13 +36,6 @@ std::size_t ComponentBytes(const GltfAccessor& accessor) {
     default:
       return 0;
   }
-}
-
-// 0 for a type that indices must not have.
-std::size_t IndexBytes(int component_type) {
-  if (component_type == kUnsignedByte) return 1;
-  if (component_type == kUnsignedShort) return 2;
-  return component_type == kUnsignedInt ? 4 : 0;
 }
 
 float Value(const char* bytes, int component_type) {
@@ -139,67 +132,27 @@ absl::StatusOr<const std::string*> GltfBuffers::Whole(int buffer) {
   return &found->second;
 }
 
-absl::Status GltfBuffers::CheckItems(const Items& items) {
-  const GltfView& view = document_.views[static_cast<size_t>(items.view)];
-  const std::size_t stride = view.stride == 0 ? items.width : view.stride;
+absl::StatusOr<std::string> GltfBuffers::ReadItems(const GltfAccessor& accessor,
+                                                   const std::string& name, std::size_t width) {
+  const GltfView& view = document_.views[static_cast<size_t>(accessor.view)];
+  const std::size_t stride = view.stride == 0 ? width : view.stride;
   const absl::StatusOr<const std::string*> buffer = Whole(view.buffer);
   if (!buffer.ok()) return buffer.status();
   // Every number is below 2^32, so 64 bits hold each product.
-  const uint64_t end =
-      items.count == 0 ? 0
-                       : uint64_t{items.offset} + uint64_t{items.count - 1} * stride + items.width;
-  if (stride >= items.width && end <= view.length &&
-      uint64_t{view.offset} + view.length <= (*buffer)->size()) {
-    return absl::OkStatus();
+  const uint64_t end = accessor.count == 0 ? 0
+                                           : uint64_t{accessor.offset} +
+                                                 uint64_t{accessor.count - 1} * stride + width;
+  if (stride < width || end > view.length ||
+      uint64_t{view.offset} + view.length > (*buffer)->size()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        name, ": expected values within the buffer, got ", accessor.count, " beyond it"));
   }
-  return absl::InvalidArgumentError(absl::StrCat(
-      items.name, ": expected values within the buffer, got ", items.count, " beyond it"));
-}
-
-absl::StatusOr<std::string> GltfBuffers::ReadItems(const Items& items) {
-  const absl::Status status = CheckItems(items);
-  if (!status.ok()) return status;
-  const GltfView& view = document_.views[static_cast<size_t>(items.view)];
-  const std::size_t stride = view.stride == 0 ? items.width : view.stride;
-  const std::string& buffer = **Whole(view.buffer);
   std::string bytes;
-  bytes.reserve(items.count * items.width);
-  for (std::size_t i = 0; i < items.count; ++i) {
-    bytes.append(buffer, view.offset + items.offset + i * stride, items.width);
+  bytes.reserve(accessor.count * width);
+  for (std::size_t i = 0; i < accessor.count; ++i) {
+    bytes.append(**buffer, view.offset + accessor.offset + i * stride, width);
   }
   return bytes;
-}
-
-absl::Status GltfBuffers::ReplaceSparse(const GltfAccessor& accessor, const std::string& name,
-                                        std::size_t width, std::string* bytes) {
-  const GltfSparse& sparse = *accessor.sparse;
-  const std::size_t index_width = IndexBytes(sparse.index_type);
-  if (index_width == 0 || sparse.count > accessor.count) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(name, ": sparse: expected at most ", accessor.count,
-                     " items with unsigned whole numbers as indices, got ", sparse.count,
-                     " of type ", sparse.index_type));
-  }
-  const absl::StatusOr<std::string> indices =
-      ReadItems({absl::StrCat(name, ": sparse.indices"), sparse.index_view, sparse.index_offset,
-                 sparse.count, index_width});
-  if (!indices.ok()) return indices.status();
-  const absl::StatusOr<std::string> values =
-      ReadItems({absl::StrCat(name, ": sparse.values"), sparse.value_view, sparse.value_offset,
-                 sparse.count, width});
-  if (!values.ok()) return values.status();
-  for (std::size_t i = 0; i < sparse.count; ++i) {
-    std::size_t index = 0;
-    for (std::size_t byte = index_width; byte-- > 0;) {
-      index = index << 8 | static_cast<uint8_t>((*indices)[i * index_width + byte]);
-    }
-    if (index >= accessor.count) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          name, ": sparse: index ", i, ": expected one below ", accessor.count, ", got ", index));
-    }
-    bytes->replace(index * width, width, *values, i * width, width);
-  }
-  return absl::OkStatus();
 }
 
 absl::StatusOr<std::vector<float>> GltfBuffers::Read(int index, int components) {
@@ -213,18 +166,15 @@ absl::StatusOr<std::vector<float>> GltfBuffers::Read(int index, int components) 
     return error(absl::StrCat("expected ", components, " floats or normalized whole numbers, got ",
                               accessor.components, " of type ", accessor.component_type));
   }
+  if (accessor.sparse) return error("expected plain values, got sparse ones");
   const std::size_t width = component_bytes * static_cast<std::size_t>(components);
-  const Items items{name, std::max(accessor.view, 0), accessor.offset, accessor.count, width};
-  absl::Status status = accessor.view < 0 ? absl::OkStatus() : CheckItems(items);
-  if (!status.ok()) return status;
   const std::size_t count = accessor.count * static_cast<std::size_t>(components);
+  absl::StatusOr<std::string> bytes = std::string();
+  if (accessor.view >= 0) bytes = ReadItems(accessor, name, width);
+  if (!bytes.ok()) return bytes.status();
   if (count > kMaxValues - values_read_)
     return error(absl::StrCat("expected at most ", kMaxValues, " values in all, got more"));
-  absl::StatusOr<std::string> bytes =
-      accessor.view < 0 ? std::string(accessor.count * width, '\0') : ReadItems(items);
-  if (!bytes.ok()) return bytes.status();
-  if (accessor.sparse.has_value()) status = ReplaceSparse(accessor, name, width, &*bytes);
-  if (!status.ok()) return status;
+  bytes->resize(accessor.count * width);  // zeros if there is no view
   values_read_ += count;
   std::vector<float> values(count);
   for (std::size_t i = 0; i < count; ++i) {

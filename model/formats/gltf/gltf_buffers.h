@@ -25,32 +25,23 @@ class GltfBuffers {
   GltfBuffers(const GltfDocument& document, const GltfFileReader& read_file)
       : document_(document), read_file_(read_file) {}
 
-  // Returns all values of an accessor, also of a sparse one. Integers are scaled to [-1, 1] as the
-  // format specifies.
+  // Returns all values of an accessor. Integers are scaled to [-1, 1] as the format specifies.
   //
   // Shape: [count, components].
-  // Errors: INVALID_ARGUMENT "accessors[3]: ..." for another kind of value, a range outside the
-  //         buffer, a value that is not finite, or too many values in all; those of `read_file`.
+  // Errors: INVALID_ARGUMENT "accessors[3]: ..." for another kind of value, sparse ones, a range
+  //         outside the buffer, a value that is not finite, or too many values in all; those of
+  //         `read_file`.
   absl::StatusOr<std::vector<float>> Read(int accessor, int components);
 
   // Returns all bytes of a buffer; valid while this object lives. Errors: those of Read.
   absl::StatusOr<const std::string*> Whole(int buffer);
 
  private:
-  // Where the items of an accessor, or of a part of a sparse one, are.
-  struct Items {
-    std::string name;  // for errors
-    int view = 0;
-    std::size_t offset = 0, count = 0, width = 0;  // bytes; items; bytes of an item
-  };
-
   absl::StatusOr<std::string> Load(const GltfBuffer& buffer) const;
-  absl::Status CheckItems(const Items& items);
-  // The bytes of the items, without those between them.
-  absl::StatusOr<std::string> ReadItems(const Items& items);
-  // Replaces the sparse items in `bytes`, which has those of the accessor's view.
-  absl::Status ReplaceSparse(const GltfAccessor& accessor, const std::string& name,
-                             std::size_t width, std::string* bytes);
+  // The bytes of an accessor with a view: its items of `width` bytes, without those between them.
+  // `name` is for errors.
+  absl::StatusOr<std::string> ReadItems(const GltfAccessor& accessor, const std::string& name,
+                                        std::size_t width);
 
   const GltfDocument& document_;
   const GltfFileReader& read_file_;

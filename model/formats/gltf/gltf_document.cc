@@ -236,29 +236,8 @@ class DocumentReader {
       reader->Fail("type",
                    absl::StrCat("expected SCALAR, VEC3, VEC4, ..., got ", base::Quoted(type)));
     }
-    if (reader->Has("sparse")) accessor.sparse = ReadSparse(reader);
+    accessor.sparse = reader->Has("sparse");
     document_.accessors.push_back(accessor);
-  }
-
-  GltfSparse ReadSparse(base::ObjectReader* accessor) {
-    GltfSparse sparse;
-    const Json& json = accessor->Object("sparse");
-    if (!accessor->ok()) return sparse;
-    base::ObjectReader reader(json, accessor->PathOf("sparse"));
-    sparse.count = Size(&reader, "count");
-    const auto read_part = [&](const char* name, int* view, std::size_t* offset, int* type) {
-      const Json& part_json = reader.Object(name);
-      if (!reader.ok()) return;
-      base::ObjectReader part(part_json, reader.PathOf(name));
-      *view = Index(&part, "bufferView", document_.views.size());
-      *offset = Size(&part, "byteOffset");
-      if (type != nullptr) *type = static_cast<int>(part.Int("componentType", 0, 65535));
-      reader.Update(part.status());
-    };
-    read_part("indices", &sparse.index_view, &sparse.index_offset, &sparse.index_type);
-    read_part("values", &sparse.value_view, &sparse.value_offset, nullptr);
-    accessor->Update(reader.status());
-    return sparse;
   }
 
   void ReadNode(base::ObjectReader* reader) {

@@ -46,13 +46,6 @@ struct GltfAnimation {
   std::vector<GltfChannel> channels;  // without morph targets
 };
 
-// Items of an accessor that have other values than its view.
-struct GltfSparse {
-  std::size_t count = 0;
-  int index_view = 0, value_view = 0;
-  std::size_t index_offset = 0, value_offset = 0;
-  int index_type = 0;  // a glTF constant
-};
 // The place of values in a buffer.
 struct GltfAccessor {
   int view = -1;  // -1: none, all values are zero
@@ -61,7 +54,7 @@ struct GltfAccessor {
   bool normalized = false;
   std::size_t count = 0;
   int components = 1;
-  std::optional<GltfSparse> sparse;
+  bool sparse = false;  // some items are elsewhere; such values are not read
 };
 struct GltfView {
   int buffer = 0;
