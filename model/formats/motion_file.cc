@@ -121,8 +121,7 @@ void Report(const motion::RecordedMotion& motion, const motion::Clip& person,
   report->people = static_cast<int>(motion.people.size());
   report->file_joints = person.joint_names;
   if (person.frame_rate_hz > 0) {
-    report->frame_rate = Setting{absl::StrCat(person.frame_rate_hz, " Hz"), Origin::kFile,
-                                 motion.rate_from_times ? "its column of times" : ""};
+    report->frame_rate = Setting{absl::StrCat(person.frame_rate_hz, " Hz"), Origin::kFile, ""};
   }
   if (options.coordinates.has_value()) {
     ReportCoordinates(*options.coordinates, Origin::kGiven, Origin::kGiven, report);

@@ -16,7 +16,6 @@ struct RecordedMotion {
   std::vector<Clip> people;  // one or two, with the same joints and frames; frame rate 0 if unknown
   Coordinates coordinates;
   bool says_unit = false, says_up_axis = false;  // false: the value in `coordinates` is a default
-  bool rate_from_times = false;                  // the frame rate comes from a column of times
 };
 
 // INVALID_ARGUMENT for clips that no writer can express: no frames, a frame rate out of range, or a

@@ -1,7 +1,6 @@
 #include "model/formats/flat/csv.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <initializer_list>
 #include <optional>
@@ -32,7 +31,7 @@ constexpr std::size_t kLongestLine = std::size_t{4} << 20;
 using CsvRow = std::vector<absl::string_view>;
 
 struct CsvColumn {
-  enum class Kind { kPassedOver, kFrame, kTime, kPosition };
+  enum class Kind { kPassedOver, kFrame, kPosition };
   Kind kind = Kind::kPassedOver;
   int person = 0, joint = 0, axis = 0;  // of a position
 };
@@ -130,11 +129,10 @@ class CsvHeader {
  private:
   absl::Status AddColumn(std::size_t number, absl::string_view name) {
     CsvColumn column;
-    if (IsOneOf(name, {"time", "time_s", "t", "seconds", "timestamp"})) {
-      column.kind = CsvColumn::Kind::kTime;
-    } else if (IsOneOf(name, {"frame", "frame_number"})) {
+    if (IsOneOf(name, {"frame", "frame_number"})) {
       column.kind = CsvColumn::Kind::kFrame;
-    } else if (!IsOneOf(name, {"", "index", "unnamed: 0"})) {  // as pandas names an index
+    } else if (!IsOneOf(name, {"", "index", "unnamed: 0",  // as pandas names an index
+                               "time", "time_s", "t", "seconds", "timestamp"})) {
       column.kind = CsvColumn::Kind::kPosition;
       absl::string_view joint = name;
       column.person = absl::ConsumePrefix(&joint, kPrefixes[1]) ? 1 : 0;
@@ -191,54 +189,6 @@ class CsvHeader {
   bool has_prefixed_ = false, has_plain_ = false;
 };
 
-// Infers the frame rate from a column of times in seconds.
-class CsvTimes {
- public:
-  // Adds the time of the next frame.
-  void Add(absl::string_view text) {
-    double seconds = 0;
-    readable_ = readable_ && base::ParseNumber(text, &seconds);
-    if (!readable_) return;
-    const std::size_t point = text.find('.');
-    const std::size_t decimals = point == absl::string_view::npos ? 0 : text.size() - point - 1;
-    decimals_ = std::max(decimals_, absl::StrContains(text, 'e') ? kMostDecimals : decimals);
-    seconds_.push_back(seconds);
-  }
-
-  // The rate in Hz; 0 if the times are not even steps. Within the rounding of the times, the rate
-  // snaps to the nearest usual one, or else to an integer.
-  double FrameRate() const {
-    if (!readable_ || seconds_.size() < 2) return 0;
-    const double steps = static_cast<double>(seconds_.size() - 1);
-    const double rate = steps / (seconds_.back() - seconds_.front());
-    // A column with a lower rate than 1 does not hold seconds.
-    if (!(rate >= 1 && rate <= motion::kMaxFrameRateHz)) return 0;
-    for (std::size_t i = 0; i < seconds_.size(); ++i) {
-      const double step = (seconds_[i] - seconds_.front()) * rate;
-      if (std::abs(step - static_cast<double>(i)) > 0.5) return 0;
-    }
-    const double rounding = std::pow(10, -static_cast<double>(std::min(decimals_, kMostDecimals)));
-    const auto fits = [&](double candidate) {
-      return std::abs(steps / candidate - steps / rate) <= rounding;
-    };
-    double best = fits(std::round(rate)) ? std::round(rate) : rate;
-    double nearest = motion::kMaxFrameRateHz;
-    for (double usual : {15., 24., 25., 30., 50., 60., 90., 100., 120., 240.}) {
-      if (!fits(usual) || std::abs(usual - rate) >= nearest) continue;
-      best = usual;
-      nearest = std::abs(usual - rate);
-    }
-    return best;
-  }
-
- private:
-  static constexpr std::size_t kMostDecimals = 9;  // further digits are floating-point noise
-
-  std::vector<double> seconds_;
-  std::size_t decimals_ = 0;
-  bool readable_ = true;
-};
-
 class CsvParser {
  public:
   CsvParser(absl::string_view text, absl::string_view source)
@@ -253,9 +203,7 @@ class CsvParser {
     if (!status.ok()) return status;
     if (motion_.people[0].poses.empty())
       return Error("expected at least 1 frame after the header line, got none");
-    motion_.rate_from_times = frame_rate_hz_ <= 0;
-    const double rate = motion_.rate_from_times ? times_.FrameRate() : frame_rate_hz_;
-    for (motion::Clip& person : motion_.people) person.frame_rate_hz = rate;
+    for (motion::Clip& person : motion_.people) person.frame_rate_hz = frame_rate_hz_;
     return std::move(motion_);
   }
 
@@ -397,7 +345,6 @@ class CsvParser {
     absl::Status status;
     for (std::size_t i = 0; i < row.size() && status.ok(); ++i) {
       const CsvColumn& column = header_.columns()[i];
-      if (column.kind == CsvColumn::Kind::kTime) times_.Add(WithPoint(row[i]));
       if (column.kind == CsvColumn::Kind::kFrame) status = CheckFrameNumber(row, i);
       if (column.kind != CsvColumn::Kind::kPosition) continue;
       motion::Vec3& at = motion_.people[static_cast<size_t>(column.person)].at(frame, column.joint);
@@ -411,8 +358,7 @@ class CsvParser {
   char delimiter_ = ',';
   CsvHeader header_;
   motion::RecordedMotion motion_;
-  double frame_rate_hz_ = 0;  // from a comment
-  CsvTimes times_;
+  double frame_rate_hz_ = 0;  // from a comment; 0: none
 };
 
 void AppendHeader(absl::string_view prefix, const motion::Clip& clip, std::string* out) {

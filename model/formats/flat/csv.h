@@ -18,9 +18,9 @@ namespace duet::formats::flat {
 //
 // A file of one person has columns without `leader.` and `follower.`. Comment lines start with '#';
 // of their words, only frame_rate_hz (or fps), unit and up_axis (motion/coordinates.h) are read.
-// Columns may be in any order; an index column is ignored. The reader also accepts other separators
-// of joint and axis (head.x, headX, head_loc_x), and what spreadsheets write: semicolons or tabs,
-// "sep=;", decimal commas. A column of even times in seconds gives the rate if no comment does.
+// Columns may be in any order; columns of an index or of times are ignored. The reader also accepts
+// other separators of joint and axis (head.x, headX, head_loc_x), and what spreadsheets write:
+// semicolons or tabs, "sep=;", decimal commas.
 //
 // Errors: INVALID_ARGUMENT "source:line: column 4: expected ..., got ...".
 absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source);
