@@ -14,7 +14,6 @@
 #include "client/cli/output.h"
 #include "client/cli/report.h"
 #include "model/base/file.h"
-#include "model/base/program_flags.h"
 #include "model/formats/follower_rig.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"
@@ -47,7 +46,6 @@ struct ConvertArguments {
   std::vector<std::filesystem::path> outputs;
   std::optional<OutputFormat> output_format;  // for standard output
   double bvh_metres_per_unit = formats::kCentimetre;
-  int bvh_keys_per_frame = 1;
   RigArguments rig;
   bool json = false;
   bool quiet = false;
@@ -110,7 +108,6 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   if (!skeleton.ok()) return skeleton.status();
   conversion.skeleton = *std::move(skeleton);
   conversion.writing.bvh_metres_per_unit = arguments.bvh_metres_per_unit;
-  conversion.writing.bvh_keys_per_frame = arguments.bvh_keys_per_frame;
   absl::StatusOr<formats::ReadOptions> options =
       ToReadOptions(arguments.input, conversion.skeleton);
   if (!options.ok()) return options.status();
@@ -143,12 +140,10 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
 absl::StatusOr<WrittenFiles> WriteOntoRig(const Conversion& conversion,
                                           const std::filesystem::path& output, Format format) {
   WrittenFiles written{{output}, {}};
-  formats::WriteOptions writing = conversion.writing;
-  writing.notes = &written.notes;
   formats::FollowerRig rig = *conversion.rig;
   rig.reading.notes = &written.notes;
   const absl::StatusOr<std::string> content =
-      formats::FormatOntoRig(conversion.people[0], rig, format, writing);
+      formats::FormatOntoRig(conversion.people[0], rig, format);
   if (motion::MendingSetting(content.status()) == motion::ReadingSetting::kJointMap) {
     return MendedBy(content.status(), motion::ReadingSetting::kRigJointMap);
   }
@@ -178,10 +173,8 @@ absl::StatusOr<WrittenFiles> Write(const Conversion& conversion,
   if (conversion.rig) return WriteOntoRig(conversion, output, format);
   if (output == kStandardStream) return WriteToStandardOutput(conversion, format, out);
   WrittenFiles written;
-  formats::WriteOptions writing = conversion.writing;
-  writing.notes = &written.notes;
-  absl::StatusOr<Paths> files =
-      formats::WritePeople(output, format, conversion.people, conversion.skeleton, writing);
+  absl::StatusOr<Paths> files = formats::WritePeople(output, format, conversion.people,
+                                                     conversion.skeleton, conversion.writing);
   if (!files.ok()) return NotWritten(files.status());
   written.files = *std::move(files);
   return written;
@@ -329,14 +322,6 @@ void AddFlags(CLI::App* command, ConvertArguments* arguments) {
             "Unit of .bvh output, which the format does not state: Maya, MotionBuilder and Unreal "
             "expect centimetres, Blender metres")
       ->default_str("centimetres")
-      ->group(kOutputGroup);
-  command
-      ->add_option("--bvh-keys-per-frame", arguments->bvh_keys_per_frame,
-                   "Keys in .bvh for each frame of the motion; more keep programs that interpolate "
-                   "angles linearly close to the motion near gimbal lock")
-      ->check(base::InRange(1, formats::kMostBvhKeysPerFrame))
-      ->capture_default_str()
-      ->type_name("COUNT")
       ->group(kOutputGroup);
   AddRigFlags(command, &arguments->rig);
   command->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);

@@ -56,13 +56,11 @@ motion::Provenance ProvenanceOf(const Synthesis& synthesis) {
   return provenance;
 }
 
-formats::WriteOptions WritingOf(const Synthesis& synthesis, const motion::Provenance& provenance,
-                                std::vector<std::string>* notes) {
+formats::WriteOptions WritingOf(const Synthesis& synthesis, const motion::Provenance& provenance) {
   const std::optional<motion::JointRotations>& rotations = synthesis.result.rotations;
   formats::WriteOptions writing;
   writing.provenance = &provenance;
   writing.follower_rotations = rotations ? &*rotations : nullptr;
-  writing.notes = notes;
   return writing;
 }
 
@@ -70,7 +68,7 @@ absl::StatusOr<std::string> FormatPair(formats::Format format, const Synthesis& 
   const motion::Provenance provenance = ProvenanceOf(synthesis);
   const motion::ClipPair& pair = synthesis.result.pair;
   return formats::FormatPeople(format, {pair.leader, pair.follower}, synthesis.skeleton,
-                               WritingOf(synthesis, provenance, nullptr));
+                               WritingOf(synthesis, provenance));
 }
 
 absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
@@ -180,9 +178,8 @@ absl::StatusOr<WrittenFiles> WriteOutput(const std::filesystem::path& output,
   if (!IsPage(output)) {
     const motion::Provenance provenance = ProvenanceOf(synthesis);
     WrittenFiles written;
-    absl::StatusOr<std::vector<std::filesystem::path>> files =
-        formats::WritePair(output, synthesis.result.pair, synthesis.skeleton,
-                           WritingOf(synthesis, provenance, &written.notes));
+    absl::StatusOr<std::vector<std::filesystem::path>> files = formats::WritePair(
+        output, synthesis.result.pair, synthesis.skeleton, WritingOf(synthesis, provenance));
     if (!files.ok()) return files.status();
     written.files = *std::move(files);
     return written;
@@ -201,7 +198,7 @@ absl::StatusOr<WrittenFiles> WriteFollower(const std::filesystem::path& output,
   WrittenFiles written;
   absl::StatusOr<std::vector<std::filesystem::path>> files =
       formats::WritePeople(output, *formats::FormatOf(output), {synthesis.result.pair.follower},
-                           synthesis.skeleton, WritingOf(synthesis, provenance, &written.notes));
+                           synthesis.skeleton, WritingOf(synthesis, provenance));
   if (!files.ok()) return files.status();
   written.files = *std::move(files);
   return written;

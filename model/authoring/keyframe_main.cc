@@ -13,7 +13,7 @@
 #include "model/base/file.h"
 #include "model/base/program_flags.h"
 #include "model/base/program_output.h"
-#include "model/formats/bvh/bvh_export.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::authoring {

@@ -5,7 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/file.h"
 #include "model/formats/bvh/bvh_document.h"
-#include "model/formats/bvh/bvh_rig.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "model/formats/gltf/gltf_rig.h"
 #include "model/formats/reading.h"
 #include "model/motion/motion_limits.h"
@@ -35,12 +35,11 @@ gltf::GltfFileReader FilesBeside(const FollowerRig& rig) {
 }
 
 absl::StatusOr<std::string> OntoBvh(const motion::Clip& follower, const std::string& text,
-                                    const FollowerRig& rig, const WriteOptions& writing) {
+                                    const FollowerRig& rig) {
   const absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(text, rig.file.string());
   if (!document.ok()) return document.status();
   const absl::StatusOr<bvh::BvhDocument> written =
-      OntoBvhRig(follower, *document, rig.file.string(), BvhOptionsOf(rig),
-                 {writing.bvh_keys_per_frame, writing.notes});
+      OntoBvhRig(follower, *document, rig.file.string(), BvhOptionsOf(rig));
   if (!written.ok()) return written.status();
   return FormatBvh(*written);
 }
@@ -57,35 +56,19 @@ bool FitsRig(Format written, Format rig) {
   return HasRig(rig) && (written == rig || (IsGltf(written) && IsGltf(rig)));
 }
 
-absl::Status CheckRig(const FollowerRig& rig) {
-  const std::string source = rig.file.string();
-  const std::optional<Format> format = FormatOf(rig.file);
-  if (!format.has_value() || !HasRig(*format)) {
-    const std::string how = HowToConvert(rig.file);
-    return absl::InvalidArgumentError(
-        absl::StrCat(source, ": rig: expected ", kRigExtensions, how.empty() ? "" : "; ", how));
-  }
-  const absl::StatusOr<std::string> content = ReadRigFile(rig);
-  if (!content.ok()) return content.status();
-  if (IsGltf(*format)) {
-    return gltf::ReadGltfRig(*content, source, FilesBeside(rig), GltfOptionsOf(rig)).status();
-  }
-  const absl::StatusOr<bvh::BvhDocument> document = bvh::ParseBvh(*content, source);
-  if (!document.ok()) return document.status();
-  return CheckBvhRig(*document, source, BvhOptionsOf(rig));
-}
-
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
-                                          Format format, const WriteOptions& options) {
+                                          Format format) {
   const std::string source = rig.file.string();
   const std::optional<Format> format_of_rig = FormatOf(rig.file);
   if (!format_of_rig.has_value() || !FitsRig(format, *format_of_rig)) {
-    return absl::InvalidArgumentError(absl::StrCat(source, ": rig: expected ", kRigExtensions,
-                                                   "; it is written in its own format"));
+    const std::string how = HowToConvert(rig.file);
+    return absl::InvalidArgumentError(
+        absl::StrCat(source, ": rig: expected ", kRigExtensions, "; ",
+                     how.empty() ? "it is written in its own format" : how));
   }
   const absl::StatusOr<std::string> content = ReadRigFile(rig);
   if (!content.ok()) return content.status();
-  if (format == Format::kBvh) return OntoBvh(follower, *content, rig, options);
+  if (format == Format::kBvh) return OntoBvh(follower, *content, rig);
   return gltf::OntoGltfRig(
       follower, *content, source, FilesBeside(rig), GltfOptionsOf(rig),
       format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText);

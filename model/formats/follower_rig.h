@@ -25,17 +25,13 @@ bool HasRig(Format format);
 // a BVH, a .glb or .gltf as either of the two.
 bool FitsRig(Format written, Format rig);
 
-// Checks that the rig can be read; it need not be animated. Adds to rig.reading.notes, like every
-// reader. Errors: those of reading it.
-absl::Status CheckRig(const FollowerRig& rig);
-
 // Formats the follower on the rig: everything in the rig's file except the motion is kept
 // (bvh::OntoBvhRig, gltf::OntoGltfRig). Adds to rig.reading.notes, like every reader.
 //
 // Errors: those of reading the rig; INVALID_ARGUMENT for an unsuitable rig, or a format that
 //         FitsRig does not accept.
 absl::StatusOr<std::string> FormatOntoRig(const motion::Clip& follower, const FollowerRig& rig,
-                                          Format format, const WriteOptions& options = {});
+                                          Format format);
 
 }  // namespace duet::formats
 

@@ -11,8 +11,7 @@
 #include "model/base/file.h"
 #include "model/base/text.h"
 #include "model/formats/bvh/bvh_document.h"
-#include "model/formats/bvh/bvh_export.h"
-#include "model/formats/bvh/bvh_import.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "model/formats/flat/csv.h"
 #include "model/formats/flat/json_motion.h"
 #include "model/formats/flat/npy.h"
@@ -34,8 +33,6 @@ namespace duet::formats {
 namespace {
 
 namespace fs = std::filesystem;
-
-static_assert(kMostBvhKeysPerFrame == bvh::kMostKeysPerFrame);
 
 using retargeting::Origin;
 using retargeting::Setting;
@@ -301,8 +298,8 @@ absl::Status CheckOptions(const ReadOptions& options) {
 absl::StatusOr<std::string> FormatBvhPerson(const motion::Clip& clip,
                                             const motion::Skeleton& skeleton,
                                             const WriteOptions& options) {
-  absl::StatusOr<bvh::BvhDocument> document = bvh::ToBvh(
-      clip, skeleton, options.bvh_metres_per_unit, {options.bvh_keys_per_frame, options.notes});
+  absl::StatusOr<bvh::BvhDocument> document =
+      bvh::ToBvh(clip, skeleton, options.bvh_metres_per_unit);
   if (!document.ok()) return document.status();
   return FormatBvh(*document);
 }
@@ -339,16 +336,8 @@ absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,
                                                    const WriteOptions& options) {
   std::vector<fs::path> files;
   for (std::size_t i = 0; i < people.size(); ++i) {
-    std::vector<std::string> notes;
-    WriteOptions writing = options;
-    writing.notes = &notes;
-    const absl::StatusOr<std::string> text = FormatBvhPerson(people[i], skeleton, writing);
+    const absl::StatusOr<std::string> text = FormatBvhPerson(people[i], skeleton, options);
     if (!text.ok()) return text.status();
-    if (options.notes != nullptr) {
-      for (const std::string& note : notes) {
-        options.notes->push_back(absl::StrCat(i == 0 ? "leader: " : "follower: ", note));
-      }
-    }
     fs::path file = path;
     file.replace_extension(i == 0 ? ".leader.bvh" : ".follower.bvh");
     absl::Status status = base::WriteFile(file, *text);

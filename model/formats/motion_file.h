@@ -88,15 +88,9 @@ struct WriteOptions {
   const motion::Provenance* provenance = nullptr;
   // BVH does not state its unit. Animation tools assume centimetres, Blender its own unit, a metre.
   double bvh_metres_per_unit = kCentimetre;
-  // Keys per frame of a BVH, 1 to kMostBvhKeysPerFrame. Near gimbal lock, interpolated angles
-  // differ from the rotation between frames; more keys reduce the difference (bvh::BvhKeys).
-  int bvh_keys_per_frame = 1;
   // Joint rotations of the follower, which .json stores beside a pair. May be null.
   const motion::JointRotations* follower_rotations = nullptr;
-  // Receives remarks on the written file. May be null.
-  std::vector<std::string>* notes = nullptr;
 };
-inline constexpr int kMostBvhKeysPerFrame = 16;
 
 // Writes a pair: .glb, .gltf, .csv, .npy, .json and .txt (in SBU's own unit) as one file; .bvh as
 // <stem>.leader.bvh and <stem>.follower.bvh in one shared world. Returns the written files.

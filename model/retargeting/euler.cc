@@ -64,10 +64,6 @@ void FillLock(const std::vector<Quaternion>& turns, EulerOrder order, std::size_
   }
 }
 
-EulerAngles Middle(const EulerAngles& a, const EulerAngles& b) {
-  return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
-}
-
 }  // namespace
 
 Quaternion FromEuler(EulerAngles angles, EulerOrder order) {
@@ -108,28 +104,6 @@ std::vector<EulerAngles> ToEulerTrack(const std::vector<Quaternion>& turns, Eule
     }
   }
   return track;
-}
-
-std::vector<Quaternion> WithKeysBetween(const std::vector<Quaternion>& turns, int keys) {
-  std::vector<Quaternion> all;
-  for (std::size_t frame = 0; frame + 1 < turns.size(); ++frame) {
-    for (int key = 0; key < keys; ++key) {
-      all.push_back(Slerp(turns[frame], turns[frame + 1], static_cast<double>(key) / keys));
-    }
-  }
-  if (!turns.empty()) all.push_back(turns.back());
-  return all;
-}
-
-InBetween LargestInBetween(const std::vector<Quaternion>& turns,
-                           const std::vector<EulerAngles>& track, EulerOrder order) {
-  InBetween largest;
-  for (std::size_t frame = 0; frame + 1 < turns.size(); ++frame) {
-    const double off = Angle(FromEuler(Middle(track[frame], track[frame + 1]), order),
-                             Slerp(turns[frame], turns[frame + 1], 0.5));
-    if (off > largest.radians) largest = {off, frame};
-  }
-  return largest;
 }
 
 }  // namespace duet::retargeting

@@ -2,7 +2,6 @@
 #define DUET_MODEL_RETARGETING_EULER_H_
 
 #include <array>
-#include <cstddef>
 #include <vector>
 
 #include "model/retargeting/rotation.h"
@@ -24,19 +23,6 @@ EulerAngles ToEuler(Quaternion q, EulerOrder order, EulerAngles previous);
 // The angles of every frame, each nearest to the previous frame's. The free angle in gimbal lock is
 // interpolated from its value before to its value after. Shapes: [frames] to [frames].
 std::vector<EulerAngles> ToEulerTrack(const std::vector<Quaternion>& turns, EulerOrder order);
-
-// Interpolates to `keys` steps from each frame to the next. [frames] to [keys (frames - 1) + 1]
-std::vector<Quaternion> WithKeysBetween(const std::vector<Quaternion>& turns, int keys);
-
-// The error of linear interpolation of angles half way from `frame` to the next, relative to the
-// rotation half way between both.
-struct InBetween {
-  double radians = 0;
-  std::size_t frame = 0;
-};
-// The frame with the largest such error. `track` is ToEulerTrack(turns, order).
-InBetween LargestInBetween(const std::vector<Quaternion>& turns,
-                           const std::vector<EulerAngles>& track, EulerOrder order);
 
 }  // namespace duet::retargeting
 

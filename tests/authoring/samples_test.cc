@@ -12,7 +12,7 @@
 #include "model/authoring/keyframes.h"
 #include "model/base/file.h"
 #include "model/formats/bvh/bvh_document.h"
-#include "model/formats/bvh/bvh_export.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "model/formats/motion_file.h"
 
 namespace duet::authoring {

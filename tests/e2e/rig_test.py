@@ -130,22 +130,6 @@ class RigTest(tools.ServedTest):
                             self.folder / "nowhere.txt")
         self.assertIn("nowhere.txt: no such file", done.stderr)
 
-    def test_keys_between_frames_raise_rate_and_frame_count(self):
-        self.convert("plain.bvh").check_returncode()
-        self.convert("fine.bvh", "--bvh-keys-per-frame", "4").check_returncode()
-        counts = [[int(re.search(r"Frames: (\d+)", text)[1]),
-                   float(re.search(r"Frame Time: (\S+)", text)[1])]
-                  for text in map(self.motion_of, ("plain.bvh", "fine.bvh"))]
-        (frames, step), (keys, finer) = counts
-        self.assertEqual(keys, 4 * (frames - 1) + 1)
-        self.assertAlmostEqual(finer, step / 4, places=7)
-        plain, fine = ([line.split() for line in self.motion_of(file).splitlines()[3:]]
-                       for file in ("plain.bvh", "fine.bvh"))
-        # Every fourth key is a frame, up to whole turns.
-        for frame, key in zip(plain, fine[::4]):
-            for a, b in zip(frame[:3], key[:3]):
-                self.assertAlmostEqual(float(a), float(b), places=3)
-
 
 if __name__ == "__main__":
     tools.main()

@@ -10,7 +10,7 @@
 #include "model/authoring/keyframes.h"
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
-#include "model/formats/bvh/bvh_rig.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "model/formats/gltf/gltf_import.h"
 #include "model/formats/gltf/gltf_rig.h"
 #include "model/formats/motion_file.h"

@@ -2,23 +2,33 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "model/base/angle.h"
+#include "model/base/index.h"
 #include "model/base/text.h"
+#include "model/motion/coordinates.h"
+#include "model/motion/recorded_motion.h"
+#include "model/retargeting/character_rig.h"
+#include "model/retargeting/euler.h"
+#include "model/retargeting/pose_fitting.h"
+#include "model/retargeting/rig.h"
+#include "model/retargeting/rig_transfer.h"
 
 namespace duet::formats::bvh {
 namespace {
 
+using base::Index;
+using retargeting::CharacterPose;
 using retargeting::EulerAngles;
 using retargeting::EulerOrder;
-using retargeting::InBetween;
 using retargeting::Quaternion;
 using retargeting::Vec3d;
 
-// The smallest reported deviation: one centimetre at the end of an arm.
-constexpr double kReportedRadians = 1 / base::kDegreesPerRadian;
+constexpr double kNoTurn = 1e-4;  // radians
 
 bool IsRotation(BvhChannel channel) { return channel >= BvhChannel::kXRotation; }
 
@@ -30,68 +40,7 @@ int AxisOf(BvhChannel channel) {
 
 double Component(Vec3d a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
 
-std::vector<Vec3d> WithPlacesBetween(const std::vector<Vec3d>& places, int keys) {
-  std::vector<Vec3d> all;
-  for (std::size_t frame = 0; frame + 1 < places.size(); ++frame) {
-    const Vec3d step = (places[frame + 1] - places[frame]) * (1.0 / keys);
-    for (int key = 0; key < keys; ++key) all.push_back(places[frame] + step * key);
-  }
-  if (!places.empty()) all.push_back(places.back());
-  return all;
-}
-
-// The channel values of a joint at every key.
-struct Values {
-  std::vector<EulerAngles> angles;
-  std::vector<Vec3d> places;
-};
-
-// Measures how far linear interpolation of angles between keys deviates from the rotation.
-class BetweenFrames {
- public:
-  // `keys_per_frame` of the written file.
-  explicit BetweenFrames(int keys_per_frame) : keys_per_frame_(keys_per_frame) {}
-
-  void Add(const std::string& joint, const std::vector<Quaternion>& turns,
-           const std::vector<EulerAngles>& angles, EulerOrder order) {
-    const InBetween here = LargestInBetween(turns, angles, order);
-    if (here.radians <= kReportedRadians) return;
-    enough_ = std::max(enough_, EnoughKeys(turns, order));
-    if (here.radians <= largest_.radians) return;
-    largest_ = here;
-    joint_ = joint;
-  }
-
-  void Report(std::vector<std::string>* notes) const {
-    if (joint_.empty()) return;
-    notes->push_back(absl::StrFormat(
-        "%s comes near gimbal lock: between frames, interpolated angles are up to %.1f degrees off "
-        "(frame %d); %d keys per frame reduce this below %.0f",
-        base::Quoted(joint_), largest_.radians * base::kDegreesPerRadian,
-        static_cast<int>(largest_.frame) / keys_per_frame_, enough_,
-        kReportedRadians * base::kDegreesPerRadian));
-  }
-
- private:
-  // Returns the sufficient number of keys per frame of the motion. `turns`: of the written keys.
-  int EnoughKeys(const std::vector<Quaternion>& turns, EulerOrder order) const {
-    for (int times = 2; times * keys_per_frame_ < kMostKeysPerFrame; times *= 2) {
-      const std::vector<Quaternion> finer = WithKeysBetween(turns, times);
-      if (LargestInBetween(finer, ToEulerTrack(finer, order), order).radians <= kReportedRadians) {
-        return times * keys_per_frame_;
-      }
-    }
-    return kMostKeysPerFrame;
-  }
-
-  int keys_per_frame_;
-  int enough_ = 1;
-  InBetween largest_;
-  std::string joint_;
-};
-
-}  // namespace
-
+// The order of a joint's rotation channels; absent unless it has one about each of three axes.
 std::optional<EulerOrder> RotationOrder(const BvhJoint& joint) {
   std::vector<int> axes;
   for (BvhChannel channel : joint.channels) {
@@ -103,39 +52,312 @@ std::optional<EulerOrder> RotationOrder(const BvhJoint& joint) {
   return EulerOrder{axes[0], axes[1], axes[2]};
 }
 
-void WriteMotion(const std::vector<BvhTrack>& tracks, double frame_rate_hz, const BvhKeys& keys,
-                 BvhDocument* document) {
-  BetweenFrames between(keys.per_frame);
-  std::vector<Values> joints(tracks.size());
-  std::size_t key_count = 0;
+}  // namespace
+
+void WriteMotion(const std::vector<BvhTrack>& tracks, double frame_rate_hz, BvhDocument* document) {
+  std::vector<std::vector<EulerAngles>> angles(tracks.size());
+  std::size_t frames = 0;
   for (std::size_t j = 0; j < tracks.size(); ++j) {
-    joints[j].places = WithPlacesBetween(tracks[j].places, keys.per_frame);
-    key_count = std::max(key_count, joints[j].places.size());
+    frames = std::max(frames, tracks[j].places.size());
     const std::optional<EulerOrder> order = RotationOrder(document->joints[j]);
-    if (!order.has_value()) continue;
-    const std::vector<Quaternion> turns = WithKeysBetween(tracks[j].turns, keys.per_frame);
-    joints[j].angles = ToEulerTrack(turns, *order);
-    if (keys.notes != nullptr) {
-      between.Add(document->joints[j].name, turns, joints[j].angles, *order);
-    }
+    if (order.has_value()) angles[j] = ToEulerTrack(tracks[j].turns, *order);
   }
-  document->frame_time_s = 1 / (frame_rate_hz * keys.per_frame);
-  document->frame_count = static_cast<int>(key_count);
+  document->frame_time_s = 1 / frame_rate_hz;
+  document->frame_count = static_cast<int>(frames);
   document->values.clear();
-  for (std::size_t key = 0; key < key_count; ++key) {
-    for (std::size_t j = 0; j < joints.size(); ++j) {
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    for (std::size_t j = 0; j < tracks.size(); ++j) {
       std::size_t turn = 0;
       for (BvhChannel channel : document->joints[j].channels) {
-        const bool turns = IsRotation(channel) && !joints[j].angles.empty();
-        const double value = turns ? joints[j].angles[key][turn++] * base::kDegreesPerRadian
+        const bool turns = IsRotation(channel) && !angles[j].empty();
+        const double value = turns ? angles[j][frame][turn++] * base::kDegreesPerRadian
                              : IsRotation(channel)
                                  ? 0
-                                 : Component(joints[j].places[key], AxisOf(channel));
+                                 : Component(tracks[j].places[frame], AxisOf(channel));
         document->values.push_back(static_cast<float>(value));
       }
     }
   }
-  if (keys.notes != nullptr) between.Report(keys.notes);
+}
+
+namespace {
+
+// The joints of a person, which are contiguous.
+struct Range {
+  std::size_t begin = 0, end = 0;
+};
+
+// The joints of the first person if there are fewer.
+Range JointsOfPerson(const BvhDocument& document, int person) {
+  std::vector<std::size_t> roots;
+  for (std::size_t j = 0; j < document.joints.size(); ++j) {
+    if (document.joints[j].parent < 0) roots.push_back(j);
+  }
+  roots.push_back(document.joints.size());
+  const std::size_t p = Index(person) + 1 < roots.size() ? Index(person) : 0;
+  return {roots[p], roots[p + 1]};
+}
+
+// One person's joints, without the motion.
+BvhDocument PersonOf(const BvhDocument& document, Range range) {
+  BvhDocument person;
+  for (std::size_t j = range.begin; j < range.end; ++j) {
+    person.joints.push_back(document.joints[j]);
+    int& parent = person.joints.back().parent;
+    if (parent >= 0) parent -= static_cast<int>(range.begin);
+  }
+  return person;
+}
+
+retargeting::JointTree TreeOf(const BvhDocument& person) {
+  retargeting::JointTree tree;
+  for (const BvhJoint& joint : person.joints) {
+    tree.names.push_back(joint.name);
+    tree.parents.push_back(joint.parent);
+    tree.offsets.push_back(joint.offset);
+  }
+  return tree;
+}
+
+double FrameRate(const BvhDocument& document) {
+  return RateOfFrameTime(document.frame_time_s, document.frame_time_decimals);
+}
+
+// Adds a note and a remark, which `duet inspect` prints.
+void Remark(const std::string& what, const BvhImportOptions& options) {
+  if (options.notes != nullptr) options.notes->push_back(what);
+  if (options.report != nullptr) options.report->remarks.push_back(what);
+}
+
+void NoteFrameCount(const BvhDocument& document, const BvhImportOptions& options) {
+  if (!document.stated_frame_count.has_value()) return;
+  Remark(absl::StrCat("frames: the file has ", document.frame_count, ", and states ",
+                      *document.stated_frame_count),
+         options);
+}
+
+void NotePositionChannels(const BvhDocument& document, const BvhImportOptions& options) {
+  const std::optional<PositionChannels> found = FindPositionChannels(document);
+  if (!found.has_value()) return;
+  const bool replace = *found == PositionChannels::kReplaceOffset;
+  Remark(absl::StrCat("position channels below the root: ", replace ? "in place of" : "added to",
+                      " OFFSET (as most joints have it)"),
+         options);
+}
+
+void Report(const BvhDocument& document, double frame_rate_hz, retargeting::ReadingReport* report) {
+  if (report == nullptr) return;
+  report->people =
+      static_cast<int>(std::count_if(document.joints.begin(), document.joints.end(),
+                                     [](const BvhJoint& joint) { return joint.parent < 0; }));
+  report->frame_rate =
+      retargeting::Setting{absl::StrCat(frame_rate_hz, " Hz"), retargeting::Origin::kFile,
+                           absl::StrCat("Frame Time ", document.frame_time_s)};
+}
+
+}  // namespace
+
+absl::StatusOr<motion::Clip> FromBvh(const BvhDocument& document, absl::string_view source,
+                                     const BvhImportOptions& options) {
+  const Range joints = JointsOfPerson(document, options.person);
+  const BvhKinematics kinematics(document);
+  NoteFrameCount(document, options);
+  NotePositionChannels(document, options);
+  Report(document, FrameRate(document), options.report);
+  retargeting::Character character;
+  character.tree = TreeOf(PersonOf(document, joints));
+  character.frame_count = document.frame_count;
+  character.frame_rate_hz = FrameRate(document);
+  character.pose = [&](int frame) {
+    const std::vector<Vec3d> all = kinematics.Positions(frame);
+    std::vector<motion::Vec3> pose;
+    pose.reserve(joints.end - joints.begin);
+    for (std::size_t j = joints.begin; j < joints.end; ++j) pose.push_back(ToFloat(all[j]));
+    return pose;
+  };
+  return ToClip(character, source, options);
+}
+
+namespace {
+
+absl::Status CheckJoints(const motion::Clip& clip, const motion::Skeleton& skeleton) {
+  if (clip.joint_names == skeleton.joint_names) return CheckClip("clip", clip);
+  return absl::InvalidArgumentError(absl::StrCat("clip: joints: expected the skeleton's ",
+                                                 skeleton.joint_count(), " in its order, got ",
+                                                 clip.joint_count()));
+}
+
+BvhDocument MakeHierarchy(const retargeting::Rig& rig, double units_per_metre,
+                          std::vector<int>* document_joints) {
+  const std::vector<BvhChannel> turns = {BvhChannel::kZRotation, BvhChannel::kXRotation,
+                                         BvhChannel::kYRotation};
+  BvhDocument document;
+  for (const retargeting::RigJoint& joint : rig.joints) {
+    BvhJoint written;
+    written.name = joint.name;
+    if (joint.parent < 0) {
+      written.channels = {BvhChannel::kXPosition, BvhChannel::kYPosition, BvhChannel::kZPosition};
+    } else {
+      written.parent = (*document_joints)[static_cast<size_t>(joint.parent)];
+    }
+    written.offset = joint.offset * units_per_metre;
+    written.channels.insert(written.channels.end(), turns.begin(), turns.end());
+    document_joints->push_back(static_cast<int>(document.joints.size()));
+    document.joints.push_back(std::move(written));
+    if (joint.kind != retargeting::RigJoint::Kind::kLeaf) continue;
+    BvhJoint end;
+    end.name = joint.name + ".end";
+    end.parent = document_joints->back();
+    end.offset = joint.end_offset * units_per_metre;
+    end.end_site = true;
+    document.joints.push_back(std::move(end));
+  }
+  return document;
+}
+
+std::vector<BvhTrack> TracksOf(const retargeting::Rig& rig, const motion::Clip& clip,
+                               const std::vector<int>& document_joints, std::size_t joint_count,
+                               double units_per_metre) {
+  std::vector<BvhTrack> tracks(joint_count);
+  retargeting::PoseFitter fitter(rig, clip.frame_rate_hz);
+  for (int frame = 0; frame < clip.frame_count(); ++frame) {
+    const retargeting::RigPose& pose = fitter.Fit(clip.poses[frame]);
+    tracks[0].places.push_back(pose.root_position * units_per_metre);
+    for (std::size_t j = 0; j < pose.rotations.size(); ++j) {
+      tracks[static_cast<std::size_t>(document_joints[j])].turns.push_back(pose.rotations[j]);
+    }
+  }
+  return tracks;
+}
+
+}  // namespace
+
+absl::StatusOr<BvhDocument> ToBvh(const motion::Clip& clip, const motion::Skeleton& skeleton,
+                                  double metres_per_unit) {
+  if (absl::Status status = CheckJoints(clip, skeleton); !status.ok()) return status;
+  const retargeting::Rig rig = retargeting::MakeRig(skeleton, clip);
+  std::vector<int> document_joints;
+  BvhDocument document = MakeHierarchy(rig, 1 / metres_per_unit, &document_joints);
+  WriteMotion(TracksOf(rig, clip, document_joints, document.joints.size(), 1 / metres_per_unit),
+              clip.frame_rate_hz, &document);
+  return document;
+}
+
+namespace {
+
+// A person's rig, and what its file needs to be written again.
+struct Rig {
+  BvhDocument person;
+  retargeting::CharacterFit fit;
+  retargeting::CharacterRig rig;
+  std::vector<Quaternion> axes;  // [joints], of the joints at rest, in the file's axes
+};
+
+// The rest pose is that of the offsets, or of a frame if the offsets make no standing person.
+absl::StatusOr<Rig> ReadRig(const BvhDocument& document, absl::string_view source,
+                            const BvhImportOptions& options) {
+  Rig rig;
+  BvhImportOptions reading = options;
+  reading.fit = &rig.fit;
+  const absl::StatusOr<motion::Clip> read = FromBvh(document, source, reading);
+  if (!read.ok()) return read.status();
+  const Range joints = JointsOfPerson(document, options.person);
+  rig.person = PersonOf(document, joints);
+  const retargeting::JointTree tree = TreeOf(rig.person);
+  rig.rig = RestRig(tree, rig.fit);
+  rig.axes.resize(rig.person.joints.size());
+  const absl::StatusOr<std::optional<int>> frame =
+      retargeting::FindRestFrame(rig.rig, *read, source);
+  if (!frame.ok()) return frame.status();
+  if (!frame->has_value()) return rig;
+  NoteRestFrame(**frame, options);
+  BvhKinematics::Pose pose = BvhKinematics(document).PoseAt(**frame);
+  const auto first = static_cast<std::ptrdiff_t>(joints.begin);
+  const auto last = static_cast<std::ptrdiff_t>(joints.end);
+  rig.rig = RestRig(tree, rig.fit, {pose.positions.begin() + first, pose.positions.begin() + last});
+  rig.axes.assign(pose.rotations.begin() + first, pose.rotations.begin() + last);
+  return rig;
+}
+
+class RigWriter {
+ public:
+  RigWriter(Rig rig, absl::string_view source, std::optional<PositionChannels> positions)
+      : document_(std::move(rig.person)),
+        source_(source),
+        fit_(std::move(rig.fit)),
+        rig_(std::move(rig.rig)),
+        axes_(std::move(rig.axes)),
+        adds_to_offset_(positions == PositionChannels::kAddToOffset),
+        to_world_(retargeting::ToWorldAxes(fit_.up_axis)) {
+    // Joints below the root may also have position channels.
+    for (std::size_t j = 0; j < document_.joints.size(); ++j) {
+      rig_.moves[j] = document_.joints[j].channels.size() == 6;
+    }
+  }
+
+  absl::StatusOr<BvhDocument> Write(const motion::Clip& clip) {
+    const absl::StatusOr<std::vector<CharacterPose>> poses = TransferToRig(clip, rig_, source_);
+    if (!poses.ok()) return poses.status();
+    std::vector<BvhTrack> tracks(document_.joints.size());
+    for (const CharacterPose& pose : *poses) AppendFrame(pose, &tracks);
+    for (std::size_t j = 0; j < tracks.size(); ++j) {
+      absl::Status status = CheckTurns(document_.joints[j], tracks[j]);
+      if (!status.ok()) return status;
+    }
+    WriteMotion(tracks, clip.frame_rate_hz, &document_);
+    return std::move(document_);
+  }
+
+ private:
+  Vec3d ToFile(Vec3d in_world) const {
+    return Rotate(Inverse(to_world_), in_world) * (1 / fit_.metres_per_unit);
+  }
+
+  void AppendFrame(const CharacterPose& pose, std::vector<BvhTrack>* tracks) const {
+    for (std::size_t j = 0; j < document_.joints.size(); ++j) {
+      const BvhJoint& joint = document_.joints[j];
+      const Quaternion above = joint.parent < 0 ? Quaternion{} : AxesIn(pose, Index(joint.parent));
+      const Vec3d parent_at = joint.parent < 0 ? Vec3d{} : pose.positions[Index(joint.parent)];
+      Vec3d place = Rotate(Inverse(above), ToFile(pose.positions[j] - parent_at));
+      if (joint.parent >= 0 && adds_to_offset_) place = place - joint.offset;
+      (*tracks)[j].turns.push_back(Inverse(above) * AxesIn(pose, j));
+      (*tracks)[j].places.push_back(place);
+    }
+  }
+
+  // A joint's axes in the file's.
+  Quaternion AxesIn(const CharacterPose& pose, std::size_t joint) const {
+    return Inverse(to_world_) * pose.turns[joint] * to_world_ * axes_[joint];
+  }
+
+  absl::Status CheckTurns(const BvhJoint& joint, const BvhTrack& track) const {
+    const auto turns = [](Quaternion turn) { return Angle(turn, {}) > kNoTurn; };
+    if (joint.end_site || RotationOrder(joint).has_value() ||
+        std::none_of(track.turns.begin(), track.turns.end(), turns)) {
+      return absl::OkStatus();
+    }
+    return absl::InvalidArgumentError(
+        absl::StrCat(source_, ": rig: ", base::Quoted(joint.name),
+                     ": expected rotation channels about three axes, got fewer; the motion turns "
+                     "this joint"));
+  }
+
+  BvhDocument document_;
+  std::string source_;
+  retargeting::CharacterFit fit_;
+  retargeting::CharacterRig rig_;
+  std::vector<Quaternion> axes_;  // [joints], at rest
+  bool adds_to_offset_;
+  Quaternion to_world_;
+};
+
+}  // namespace
+
+absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocument& rig,
+                                       absl::string_view source, const BvhImportOptions& options) {
+  absl::StatusOr<Rig> read = ReadRig(rig, source, options);
+  if (!read.ok()) return read.status();
+  return RigWriter(*std::move(read), source, FindPositionChannels(rig)).Write(clip);
 }
 
 }  // namespace duet::formats::bvh

@@ -1,5 +1,3 @@
-#include "model/formats/bvh/bvh_export.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +9,7 @@
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
 #include "model/formats/bvh/bvh_document.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 

@@ -1,5 +1,3 @@
-#include "model/formats/bvh/bvh_import.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,7 +8,7 @@
 #include "absl/strings/str_replace.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "model/formats/bvh/bvh_export.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 

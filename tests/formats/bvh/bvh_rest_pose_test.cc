@@ -6,10 +6,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "model/formats/bvh/bvh_export.h"
-#include "model/formats/bvh/bvh_import.h"
 #include "model/formats/bvh/bvh_motion.h"
-#include "model/formats/bvh/bvh_rig.h"
 #include "model/formats/gltf/gltf_rig.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/matchers.h"
@@ -53,7 +50,7 @@ Flat Flatten(const BvhDocument& standing) {
                                                  : flat.document.joints[j].offset);
     }
   }
-  WriteMotion(flat.tracks, 1 / standing.frame_time_s, {}, &flat.document);
+  WriteMotion(flat.tracks, 1 / standing.frame_time_s, &flat.document);
   return flat;
 }
 
@@ -85,14 +82,13 @@ TEST_F(RestPoseTest, TheMotionOfAFlatRigIsRead) {
 }
 
 TEST_F(RestPoseTest, AFollowerOnAFlatRigIsTheOneOnAStandingRig) {
-  const absl::StatusOr<BvhDocument> plain =
-      OntoBvhRig(Follower(), standing_, "standing.bvh", {}, {});
+  const absl::StatusOr<BvhDocument> plain = OntoBvhRig(Follower(), standing_, "standing.bvh", {});
   ASSERT_THAT(plain, IsOk());
   std::vector<std::string> notes;
   BvhImportOptions options;
   options.notes = &notes;
   const absl::StatusOr<BvhDocument> written =
-      OntoBvhRig(Follower(), flat_.document, "flat.bvh", options, {});
+      OntoBvhRig(Follower(), flat_.document, "flat.bvh", options);
   ASSERT_THAT(written, IsOk());
   EXPECT_THAT(notes, Contains(HasSubstr("rest pose: that of frame")));
   for (std::size_t j = 0; j < flat_.document.joints.size(); ++j) {
@@ -108,7 +104,7 @@ TEST_F(RestPoseTest, AFlatRigWithoutAStandingFrameIsRejected) {
   for (std::size_t i = 0; i < still.values.size(); ++i) {
     still.values[i] = static_cast<float>(i % channels * 37 % 100) - 50;
   }
-  EXPECT_THAT(OntoBvhRig(Follower(), still, "flat.bvh", {}, {}).status(),
+  EXPECT_THAT(OntoBvhRig(Follower(), still, "flat.bvh", {}).status(),
               StatusIs(absl::StatusCode::kInvalidArgument,
                        HasSubstr("flat.bvh: rig: rest pose: expected a standing person")));
 }
@@ -117,7 +113,7 @@ TEST_F(RestPoseTest, ARestPoseThatStandsIsKept) {
   std::vector<std::string> notes;
   BvhImportOptions options;
   options.notes = &notes;
-  ASSERT_THAT(OntoBvhRig(Follower(), standing_, "standing.bvh", options, {}), IsOk());
+  ASSERT_THAT(OntoBvhRig(Follower(), standing_, "standing.bvh", options), IsOk());
   EXPECT_THAT(notes, Not(Contains(HasSubstr("rest pose"))));
 }
 
@@ -160,8 +156,7 @@ std::string FlatGltf(const Flat& flat) {
 absl::StatusOr<std::string> NoFiles(const std::string& name) { return absl::NotFoundError(name); }
 
 TEST_F(RestPoseTest, AFollowerOnAFlatGltfRigIsTheOneOnAStandingRig) {
-  const absl::StatusOr<BvhDocument> plain =
-      OntoBvhRig(Follower(), standing_, "standing.bvh", {}, {});
+  const absl::StatusOr<BvhDocument> plain = OntoBvhRig(Follower(), standing_, "standing.bvh", {});
   ASSERT_THAT(plain, IsOk());
   const absl::StatusOr<std::string> written = gltf::OntoGltfRig(
       Follower(), FlatGltf(flat_), "flat.glb", NoFiles, {}, gltf::GltfContainer::kBinary);

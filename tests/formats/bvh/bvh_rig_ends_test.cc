@@ -9,7 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
-#include "model/formats/bvh/bvh_rig.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "tests/formats/bvh/rig_families.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/test_motion.h"

@@ -1,5 +1,3 @@
-#include "model/formats/bvh/bvh_rig.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +6,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
+#include "model/formats/bvh/bvh_motion.h"
 #include "model/retargeting/euler.h"
 #include "tests/formats/bvh/rig_families.h"
 #include "tests/support/matchers.h"
@@ -29,8 +28,8 @@ motion::Clip Follower() {
   return test::MakePerson(options);
 }
 
-BvhDocument OntoRig(const motion::Clip& clip, const BvhDocument& rig, const BvhKeys& keys = {}) {
-  absl::StatusOr<BvhDocument> written = OntoBvhRig(clip, rig, "rig.bvh", {}, keys);
+BvhDocument OntoRig(const motion::Clip& clip, const BvhDocument& rig) {
+  absl::StatusOr<BvhDocument> written = OntoBvhRig(clip, rig, "rig.bvh", {});
   EXPECT_THAT(written.status(), IsOk());
   return written.value_or(BvhDocument());
 }
@@ -42,7 +41,6 @@ struct Figures {
   double hands_in_reach_metres = 0;          // what is left of the hands'
   double trunk_degrees = 0;                  // of the line between the shoulders
   double true_step = 0, euler_step = 0;      // degrees a frame
-  double between = 0;  // degrees that lines from angle to angle are off, half way between frames
 };
 
 double Angle(motion::Vec3 a, motion::Vec3 b) {
@@ -80,9 +78,6 @@ void MeasureSteps(const BvhDocument& document, Figures* figures) {
         figures->euler_step = std::max(figures->euler_step, step * base::kDegreesPerRadian);
       }
     }
-    figures->between =
-        std::max(figures->between,
-                 LargestInBetween(rotations, angles, order).radians * base::kDegreesPerRadian);
   }
 }
 
@@ -129,13 +124,10 @@ TEST_P(BvhRig, TheFollowerStandsAndReachesOnTheRig) {
   EXPECT_LT(figures.feet_metres, 0.002);
   EXPECT_LT(figures.hands_in_reach_metres, 0.002);
   EXPECT_LT(figures.trunk_degrees, 8);
-  Figures finer;
-  MeasureSteps(OntoRig(clip, GetParam().document, {4, nullptr}), &finer);
-  std::printf("| %s | %.1f | %.1f | %.0f | %.1f | %.0f | %.0f | %.1f | %.1f |\n",
-              GetParam().name.c_str(), figures.feet_metres * 1000,
-              figures.hands_in_reach_metres * 1000, figures.beyond_reach_metres * 1000,
-              figures.trunk_degrees, figures.true_step * 30, figures.euler_step * 30,
-              figures.between, finer.between);
+  std::printf("| %s | %.1f | %.1f | %.0f | %.1f | %.0f | %.0f |\n", GetParam().name.c_str(),
+              figures.feet_metres * 1000, figures.hands_in_reach_metres * 1000,
+              figures.beyond_reach_metres * 1000, figures.trunk_degrees, figures.true_step * 30,
+              figures.euler_step * 30);
 }
 
 // Far from gimbal lock each angle changes about as fast as the joint turns.
@@ -144,27 +136,6 @@ TEST_P(BvhRig, NoAngleJumps) {
   const Figures figures = Measure(clip, OntoRig(clip, GetParam().document));
   EXPECT_LT(figures.true_step, 15);
   EXPECT_LT(figures.euler_step, 60);
-  EXPECT_LT(figures.between, 0.5);
-}
-
-// Keys between frames are on the way of the joints: every fourth is a frame, as it was.
-TEST_P(BvhRig, KeysBetweenFramesKeepFramesAndReduceTheError) {
-  const motion::Clip clip = Follower();
-  const BvhDocument coarse = OntoRig(clip, GetParam().document);
-  const BvhDocument fine = OntoRig(clip, GetParam().document, {4, nullptr});
-  ASSERT_EQ(fine.frame_count, 4 * (coarse.frame_count - 1) + 1);
-  EXPECT_NEAR(fine.frame_time_s, coarse.frame_time_s / 4, 1e-12);
-  const BvhKinematics coarse_joints(coarse), fine_joints(fine);
-  for (int frame = 0; frame < coarse.frame_count; frame += 7) {
-    const auto before = coarse_joints.Positions(frame), after = fine_joints.Positions(4 * frame);
-    for (std::size_t j = 0; j < before.size(); ++j) {
-      EXPECT_LT(Norm(before[j] - after[j]), 1e-3 * (1 + Norm(before[j])));
-    }
-  }
-  Figures of_coarse, of_fine;
-  MeasureSteps(coarse, &of_coarse);
-  MeasureSteps(fine, &of_fine);
-  EXPECT_LT(of_fine.between, std::max(0.3 * of_coarse.between, 0.05));
 }
 
 TEST_P(BvhRig, KeepsHierarchyNamesOffsetsAndChannels) {
@@ -248,8 +219,7 @@ TEST(OntoBvhRig, WritesOnlyTheChosenPersonOfAFileWithTwo) {
   both.values.insert(both.values.end(), second.values.begin(), second.values.end());
   BvhImportOptions options;
   for (const BvhDocument& person : {first, second}) {
-    const absl::StatusOr<BvhDocument> written =
-        OntoBvhRig(Follower(), both, "rig.bvh", options, {});
+    const absl::StatusOr<BvhDocument> written = OntoBvhRig(Follower(), both, "rig.bvh", options);
     ASSERT_THAT(written, IsOk()) << options.person;
     ASSERT_EQ(written->joints.size(), person.joints.size()) << options.person;
     for (std::size_t j = 0; j < person.joints.size(); ++j) {
