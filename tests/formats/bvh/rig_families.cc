@@ -1,9 +1,10 @@
 #include "tests/formats/bvh/rig_families.h"
 
 #include <cmath>
-#include <map>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
 #include "model/retargeting/rotation.h"
 
 namespace duet::test {
@@ -22,7 +23,7 @@ struct Names {
   std::string hip_bone;                  // between pelvis and thigh; empty for none
   std::string clavicle, upper_arm, twist, forearm, hand, finger;  // twist, finger may be empty
   std::string thigh, shin, foot, toe;
-  std::string left = "Left", right = "Right";
+  std::string left, right;
 };
 
 struct Style {
@@ -155,212 +156,91 @@ class RigMaker {
   std::vector<Vec3d> at_;  // [joints], metres, y up
 };
 
+// family | root | pelvis | spine | neck | hip bone | arm | leg | left, right
+struct Row {
+  const char* names;
+  Style style;
+};
+const Row kRows[] = {
+    {"CMU |  | Hips | LowerBack, Spine, Spine1 | Neck, Neck1, Head | %HipJoint"
+     " | %Shoulder, %Arm, , %ForeArm, %Hand, %HandIndex1 | %UpLeg, %Leg, %Foot, %ToeBase | Left, "
+     "Right",
+     {"ZYX", false, 0.0254 / 0.45}},
+    {"Mixamo |  | mixamorig:Hips | mixamorig:Spine, mixamorig:Spine1, mixamorig:Spine2 | "
+     "mixamorig:Neck, mixamorig:Head | "
+     " | mixamorig:%Shoulder, mixamorig:%Arm, , mixamorig:%ForeArm, mixamorig:%Hand, "
+     "mixamorig:%HandMiddle1 | mixamorig:%UpLeg, mixamorig:%Leg, mixamorig:%Foot, "
+     "mixamorig:%ToeBase | Left, Right",
+     {"XYZ"}},
+    {"3ds Max Biped | Bip01 | Bip01 Pelvis | Bip01 Spine, Bip01 Spine1 | Bip01 Neck, Bip01 Head | "
+     " | Bip01 % Clavicle, Bip01 % UpperArm, , Bip01 % Forearm, Bip01 % Hand, Bip01 % Finger0 | "
+     "Bip01 % Thigh, Bip01 % Calf, Bip01 % Foot, Bip01 % Toe0 | L, R",
+     {"YXZ", false, 0.0254, true, 60}},
+    {"Rokoko |  | Hips | Spine1, Spine2, Spine3, Spine4 | Neck, Head | "
+     " | %Shoulder, %Arm, , %ForeArm, %Hand, %Finger3Metacarpal | %Thigh, %Shin, %Foot, %Toe | "
+     "Left, Right",
+     {"YXZ", true}},
+    {"Xsens |  | Hips | Chest, Chest2, Chest3, Chest4 | Neck, Head | "
+     " | %Collar, %Shoulder, , %Elbow, %Wrist,  | %Hip, %Knee, %Ankle, %Toe | Left, Right",
+     {"YXZ", false, 0.01, false, 0, 1.05}},
+    {"OptiTrack |  | Hip | Ab, Chest | Neck, Head | "
+     " | %Shoulder, %UArm, , %FArm, %Hand,  | %Thigh, %Shin, %Foot, %Toe | L, R",
+     {"XYZ", true, 0.001}},
+    {"Unreal mannequin | root | pelvis | spine_01, spine_02, spine_03 | neck_01, head | "
+     " | clavicle_%, upperarm_%, , lowerarm_%, hand_%, middle_01_% | thigh_%, calf_%, foot_%, "
+     "ball_% | l, r",
+     {"ZXY", true, 0.01, true, 45}},
+    {"Rigify |  | spine | spine.001, spine.002, spine.003 | neck, head | "
+     " | shoulder.%, upper_arm.%, upper_arm.%.001, forearm.%, hand.%, f_middle.01.% | thigh.%, "
+     "shin.%, foot.%, toe.% | L, R",
+     {"XYZ", false, 1, true, 40, 0.95}},
+    {"VRM |  | J_Bip_C_Hips | J_Bip_C_Spine, J_Bip_C_Chest, J_Bip_C_UpperChest | J_Bip_C_Neck, "
+     "J_Bip_C_Head | "
+     " | J_Bip_%_Shoulder, J_Bip_%_UpperArm, , J_Bip_%_LowerArm, J_Bip_%_Hand, J_Bip_%_Middle1 | "
+     "J_Bip_%_UpperLeg, J_Bip_%_LowerLeg, J_Bip_%_Foot, J_Bip_%_ToeBase | L, R",
+     {"YXZ", false, 1, false, 0, 0.9}},
+    {"SMPL |  | Pelvis | Spine1, Spine2, Spine3 | Neck, Head | "
+     " | %_Collar, %_Shoulder, , %_Elbow, %_Wrist, %_Hand | %_Hip, %_Knee, %_Ankle, %_Foot | L, R",
+     {"XYZ", false, 1}},
+    {"Kinect |  | SpineBase | SpineMid, SpineShoulder | Neck, Head | "
+     " | Clavicle%, Shoulder%, , Elbow%, Wrist%, Hand% | Hip%, Knee%, Ankle%, Foot% | Left, Right",
+     {"ZXY", false, 0.01, false, 85}}};
+
+std::vector<std::string> Split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (absl::string_view part : absl::StrSplit(text, separator)) {
+    parts.emplace_back(absl::StripAsciiWhitespace(part));
+  }
+  return parts;
+}
+
 }  // namespace
 
 std::vector<RigFamily> RigFamilies() {
   std::vector<RigFamily> families;
-  const auto add = [&families](const std::string& name, const Names& names, const Style& style) {
-    families.push_back({name, RigMaker(names, style).Make()});
-  };
-  add("CMU",
-      {"",
-       "Hips",
-       {"LowerBack", "Spine", "Spine1"},
-       {"Neck", "Neck1", "Head"},
-       "%HipJoint",
-       "%Shoulder",
-       "%Arm",
-       "",
-       "%ForeArm",
-       "%Hand",
-       "%HandIndex1",
-       "%UpLeg",
-       "%Leg",
-       "%Foot",
-       "%ToeBase"},
-      {"ZYX", false, 0.0254 / 0.45});
-  add("Mixamo",
-      {"",
-       "mixamorig:Hips",
-       {"mixamorig:Spine", "mixamorig:Spine1", "mixamorig:Spine2"},
-       {"mixamorig:Neck", "mixamorig:Head"},
-       "",
-       "mixamorig:%Shoulder",
-       "mixamorig:%Arm",
-       "",
-       "mixamorig:%ForeArm",
-       "mixamorig:%Hand",
-       "mixamorig:%HandMiddle1",
-       "mixamorig:%UpLeg",
-       "mixamorig:%Leg",
-       "mixamorig:%Foot",
-       "mixamorig:%ToeBase"},
-      {"XYZ"});
-  add("3ds Max Biped",
-      {"Bip01",
-       "Bip01 Pelvis",
-       {"Bip01 Spine", "Bip01 Spine1"},
-       {"Bip01 Neck", "Bip01 Head"},
-       "",
-       "Bip01 % Clavicle",
-       "Bip01 % UpperArm",
-       "",
-       "Bip01 % Forearm",
-       "Bip01 % Hand",
-       "Bip01 % Finger0",
-       "Bip01 % Thigh",
-       "Bip01 % Calf",
-       "Bip01 % Foot",
-       "Bip01 % Toe0",
-       "L",
-       "R"},
-      {"YXZ", false, 0.0254, true, 60});
-  add("Rokoko",
-      {"",
-       "Hips",
-       {"Spine1", "Spine2", "Spine3", "Spine4"},
-       {"Neck", "Head"},
-       "",
-       "%Shoulder",
-       "%Arm",
-       "",
-       "%ForeArm",
-       "%Hand",
-       "%Finger3Metacarpal",
-       "%Thigh",
-       "%Shin",
-       "%Foot",
-       "%Toe"},
-      {"YXZ", true});
-  add("Xsens",
-      {"",
-       "Hips",
-       {"Chest", "Chest2", "Chest3", "Chest4"},
-       {"Neck", "Head"},
-       "",
-       "%Collar",
-       "%Shoulder",
-       "",
-       "%Elbow",
-       "%Wrist",
-       "",
-       "%Hip",
-       "%Knee",
-       "%Ankle",
-       "%Toe"},
-      {"YXZ", false, 0.01, false, 0, 1.05});
-  add("OptiTrack",
-      {"",
-       "Hip",
-       {"Ab", "Chest"},
-       {"Neck", "Head"},
-       "",
-       "%Shoulder",
-       "%UArm",
-       "",
-       "%FArm",
-       "%Hand",
-       "",
-       "%Thigh",
-       "%Shin",
-       "%Foot",
-       "%Toe",
-       "L",
-       "R"},
-      {"XYZ", true, 0.001});
-  add("Unreal mannequin",
-      {"root",
-       "pelvis",
-       {"spine_01", "spine_02", "spine_03"},
-       {"neck_01", "head"},
-       "",
-       "clavicle_%",
-       "upperarm_%",
-       "",
-       "lowerarm_%",
-       "hand_%",
-       "middle_01_%",
-       "thigh_%",
-       "calf_%",
-       "foot_%",
-       "ball_%",
-       "l",
-       "r"},
-      {"ZXY", true, 0.01, true, 45});
-  add("Rigify",
-      {"",
-       "spine",
-       {"spine.001", "spine.002", "spine.003"},
-       {"neck", "head"},
-       "",
-       "shoulder.%",
-       "upper_arm.%",
-       "upper_arm.%.001",
-       "forearm.%",
-       "hand.%",
-       "f_middle.01.%",
-       "thigh.%",
-       "shin.%",
-       "foot.%",
-       "toe.%",
-       "L",
-       "R"},
-      {"XYZ", false, 1, true, 40, 0.95});
-  add("VRM",
-      {"",
-       "J_Bip_C_Hips",
-       {"J_Bip_C_Spine", "J_Bip_C_Chest", "J_Bip_C_UpperChest"},
-       {"J_Bip_C_Neck", "J_Bip_C_Head"},
-       "",
-       "J_Bip_%_Shoulder",
-       "J_Bip_%_UpperArm",
-       "",
-       "J_Bip_%_LowerArm",
-       "J_Bip_%_Hand",
-       "J_Bip_%_Middle1",
-       "J_Bip_%_UpperLeg",
-       "J_Bip_%_LowerLeg",
-       "J_Bip_%_Foot",
-       "J_Bip_%_ToeBase",
-       "L",
-       "R"},
-      {"YXZ", false, 1, false, 0, 0.9});
-  add("SMPL",
-      {"",
-       "Pelvis",
-       {"Spine1", "Spine2", "Spine3"},
-       {"Neck", "Head"},
-       "",
-       "%_Collar",
-       "%_Shoulder",
-       "",
-       "%_Elbow",
-       "%_Wrist",
-       "%_Hand",
-       "%_Hip",
-       "%_Knee",
-       "%_Ankle",
-       "%_Foot",
-       "L",
-       "R"},
-      {"XYZ", false, 1});
-  add("Kinect",
-      {"",
-       "SpineBase",
-       {"SpineMid", "SpineShoulder"},
-       {"Neck", "Head"},
-       "",
-       "Clavicle%",
-       "Shoulder%",
-       "",
-       "Elbow%",
-       "Wrist%",
-       "Hand%",
-       "Hip%",
-       "Knee%",
-       "Ankle%",
-       "Foot%"},
-      {"ZXY", false, 0.01, false, 85});
+  for (const Row& row : kRows) {
+    const std::vector<std::string> cells = Split(row.names, '|');
+    const std::vector<std::string> arm = Split(cells[6], ','), leg = Split(cells[7], ','),
+                                   sides = Split(cells[8], ',');
+    const Names names = {cells[1],
+                         cells[2],
+                         Split(cells[3], ','),
+                         Split(cells[4], ','),
+                         cells[5],
+                         arm[0],
+                         arm[1],
+                         arm[2],
+                         arm[3],
+                         arm[4],
+                         arm[5],
+                         leg[0],
+                         leg[1],
+                         leg[2],
+                         leg[3],
+                         sides[0],
+                         sides[1]};
+    families.push_back({cells[0], RigMaker(names, row.style).Make()});
+  }
   return families;
 }
 
