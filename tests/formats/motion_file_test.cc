@@ -1,12 +1,10 @@
 #include "model/formats/motion_file.h"
 
-#include <algorithm>
 #include <clocale>
 #include <cmath>
 #include <filesystem>
 #include <locale>
 #include <map>
-#include <random>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -28,6 +26,8 @@ using test::MakePerson;
 
 namespace fs = std::filesystem;
 
+const motion::Skeleton kSkeleton = motion::SbuSkeleton();
+
 class MotionFile : public ::testing::Test {
  protected:
   const motion::ClipPair pair_{MakePerson(), MakePerson({60, 3, 0, {0, 1.1f, 1.2f}, 30})};
@@ -35,11 +35,16 @@ class MotionFile : public ::testing::Test {
   const fs::path folder_ = temporary_.path();
 };
 
-TEST_F(MotionFile, OnePersonIsWrittenInEveryFormat) {
+// The error of a writer.
+std::string Refusal(const absl::StatusOr<std::vector<fs::path>>& written) {
+  return std::string(written.status().message());
+}
+
+TEST_F(MotionFile, ReadsBackTheOnePersonThatItWrites) {
   for (const char* name : {"one.csv", "one.json", "one.npy", "one.bvh"}) {
     const fs::path file = folder_ / name;
-    const auto written = WritePeople(file, *FormatOf(file), {pair_.leader}, motion::SbuSkeleton());
-    ASSERT_TRUE(written.ok()) << written.status();
+    const auto written = WritePeople(file, *FormatOf(file), {pair_.leader}, kSkeleton);
+    ASSERT_THAT(written, IsOk());
     EXPECT_THAT(*written, ElementsAre(file));
     retargeting::ReadingReport report;
     ReadOptions options;
@@ -47,22 +52,21 @@ TEST_F(MotionFile, OnePersonIsWrittenInEveryFormat) {
     options.side = Side::kRight;  // one person serves either side
     options.report = &report;
     const auto read = ReadLeader(file, options);
-    ASSERT_TRUE(read.ok()) << read.status();
+    ASSERT_THAT(read, IsOk());
     EXPECT_LT(LargestDistance(*read, pair_.leader), 1e-4f) << name;
     EXPECT_EQ(report.people, 1) << name;
   }
 }
 
 TEST_F(MotionFile, ParsesAMotionThatIsNotAFile) {
-  const auto csv =
-      FormatPeople(Format::kCsv, {pair_.leader, pair_.follower}, motion::SbuSkeleton());
+  const auto csv = FormatPeople(Format::kCsv, {pair_.leader, pair_.follower}, kSkeleton);
   ASSERT_TRUE(csv.ok());
   ReadOptions options;
   options.side = Side::kRight;
   EXPECT_FALSE(ParseLeader(*csv, "a pipe", options).ok());
   options.format = Format::kCsv;
   const auto follower = ParseLeader(*csv, "a pipe", options);
-  ASSERT_TRUE(follower.ok()) << follower.status();
+  ASSERT_THAT(follower, IsOk());
   EXPECT_EQ(LargestDistance(*follower, pair_.follower), 0);
   options.format = Format::kBvh;
   EXPECT_THAT(std::string(ParseLeader(*csv, "a pipe", options).status().message()),
@@ -70,9 +74,8 @@ TEST_F(MotionFile, ParsesAMotionThatIsNotAFile) {
 }
 
 TEST_F(MotionFile, RejectsPeopleThatAFormatCannotHold) {
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
   const auto refused = [&](Format format, const std::vector<motion::Clip>& people) {
-    return std::string(FormatPeople(format, people, skeleton).status().message());
+    return std::string(FormatPeople(format, people, kSkeleton).status().message());
   };
   EXPECT_THAT(refused(Format::kBvh, {pair_.leader, pair_.follower}),
               HasSubstr("people: expected 1, got 2"));
@@ -84,7 +87,7 @@ TEST_F(MotionFile, RejectsPeopleThatAFormatCannotHold) {
 TEST_F(MotionFile, ReportNamesTheOriginOfEachDecision) {
   using retargeting::Origin;
   const fs::path file = folder_ / "half.csv";
-  auto text = FormatPeople(Format::kCsv, {pair_.leader}, motion::SbuSkeleton());
+  auto text = FormatPeople(Format::kCsv, {pair_.leader}, kSkeleton);
   ASSERT_TRUE(text.ok());
   const std::string comment = text->substr(0, text->find('\n'));
   text->replace(0, comment.size(), "# unit=metres");
@@ -107,75 +110,43 @@ TEST_F(MotionFile, ReportNamesTheOriginOfEachDecision) {
   EXPECT_EQ(report.up_axis->origin, Origin::kGiven);
 }
 
-std::string Damaged(std::string bytes, std::mt19937* random) {
-  const char interesting[] = "0-9.e{}[](),:#\n \"\\\xff";
-  for (int change = 0; change < 3; ++change) {
-    const std::size_t at = (*random)() % bytes.size();
-    const std::size_t length = std::min<std::size_t>((*random)() % 40, bytes.size() - at - 1);
-    switch ((*random)() % 4) {
-      case 0:
-        bytes[at] = interesting[(*random)() % (sizeof(interesting) - 1)];
-        break;
-      case 1:
-        bytes[at] = static_cast<char>((*random)());
-        break;
-      case 2:
-        bytes.erase(at, length);
-        break;
-      default:
-        bytes.insert(at, bytes.substr(at, length));
-    }
-  }
-  return bytes;
-}
-
-TEST_F(MotionFile, ReadsBackWhatItWrites) {
-  for (const char* name : {"a.csv", "a.json", "a.npy", "a.CSV"}) {
+TEST_F(MotionFile, ReadsBackThePairThatItWrites) {
+  const std::map<const char*, float> errors = {{"a.csv", 0},     {"a.json", 0},    {"a.npy", 0},
+                                               {"a.CSV", 0},     {"a.txt", 1e-5f}, {"a.glb", 2e-5f},
+                                               {"a.gltf", 2e-5f}};
+  for (const auto& [name, most] : errors) {
     const fs::path path = folder_ / name;
-    const absl::StatusOr<std::vector<fs::path>> written =
-        WritePair(path, pair_, motion::SbuSkeleton());
-    ASSERT_TRUE(written.ok()) << written.status();
+    const auto written = WritePair(path, pair_, kSkeleton);
+    ASSERT_THAT(written, IsOk());
     EXPECT_THAT(*written, ElementsAre(path));
     ReadOptions options;
-    if (path.extension() == ".npy") options.frame_rate_hz = 30;
+    if (path.extension() == ".npy" || path.extension() == ".txt") options.frame_rate_hz = 30;
     for (Side side : {Side::kLeft, Side::kRight}) {
       options.side = side;
       const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
-      ASSERT_TRUE(clip.ok()) << clip.status();
+      ASSERT_THAT(clip, IsOk());
       EXPECT_EQ(clip->frame_rate_hz, 30);
-      EXPECT_EQ(clip->poses, (side == Side::kLeft ? pair_.leader : pair_.follower).poses);
+      EXPECT_LE(LargestDistance(*clip, side == Side::kLeft ? pair_.leader : pair_.follower), most);
     }
   }
-}
-
-TEST_F(MotionFile, WritesBothPeopleAsGltfOrGlbByExtension) {
-  for (const char* name : {"a.glb", "a.gltf"}) {
-    const fs::path path = folder_ / name;
-    ASSERT_TRUE(WritePair(path, pair_, motion::SbuSkeleton()).ok());
-    const bool binary = base::ReadFile(path, 1 << 24, "a motion")->substr(0, 4) == "glTF";
-    EXPECT_EQ(binary, path.extension() == ".glb");
-    ReadOptions options;
-    for (Side side : {Side::kLeft, Side::kRight}) {
-      options.side = side;
-      const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
-      ASSERT_TRUE(clip.ok()) << clip.status();
-      EXPECT_LT(LargestDistance(*clip, side == Side::kLeft ? pair_.leader : pair_.follower), 2e-5f);
-    }
-  }
+  const bool binary[] = {
+      base::ReadFile(folder_ / "a.glb", 1 << 24, "a motion")->substr(0, 4) == "glTF",
+      base::ReadFile(folder_ / "a.gltf", 1 << 24, "a motion")->at(0) != '{'};
+  EXPECT_THAT(binary, ElementsAre(true, false));
 }
 
 TEST_F(MotionFile, MetresPerUnitScaleEveryFormatOfPositions) {
   for (const char* name : {"a.csv", "a.json", "a.npy", "a.txt"}) {
-    ASSERT_TRUE(WritePair(folder_ / name, pair_, motion::SbuSkeleton()).ok());
+    ASSERT_TRUE(WritePair(folder_ / name, pair_, kSkeleton).ok());
     ReadOptions options;
     options.frame_rate_hz = 30;
     options.coordinates = motion::Coordinates{};
     const absl::StatusOr<motion::Clip> metres = ReadLeader(folder_ / name, options);
-    ASSERT_TRUE(metres.ok()) << metres.status();
+    ASSERT_THAT(metres, IsOk());
     options.coordinates.reset();
     options.metres_per_unit = 0.5;
     const absl::StatusOr<motion::Clip> half = ReadLeader(folder_ / name, options);
-    ASSERT_TRUE(half.ok()) << half.status();
+    ASSERT_THAT(half, IsOk());
     motion::Clip expected = *metres;
     for (motion::Vec3& p : expected.poses.all()) p = p * 0.5F;
     EXPECT_LT(LargestDistance(*half, expected), 1e-5F) << name;
@@ -188,25 +159,25 @@ TEST_F(MotionFile, MetresPerUnitScaleEveryFormatOfPositions) {
 TEST_F(MotionFile, WritesBvhInTheRequestedUnit) {
   WriteOptions metres;
   metres.bvh_metres_per_unit = 1;
-  const auto text = FormatPeople(Format::kBvh, {pair_.leader}, motion::SbuSkeleton(), metres);
-  ASSERT_TRUE(text.ok()) << text.status();
+  const auto text = FormatPeople(Format::kBvh, {pair_.leader}, kSkeleton, metres);
+  ASSERT_THAT(text, IsOk());
   ReadOptions options;
   options.format = Format::kBvh;
   options.metres_per_unit = 1;
   const absl::StatusOr<motion::Clip> clip = ParseLeader(*text, "written", options);
-  ASSERT_TRUE(clip.ok()) << clip.status();
+  ASSERT_THAT(clip, IsOk());
   EXPECT_LT(LargestDistance(*clip, pair_.leader), 1e-3f);
 }
 
 TEST_F(MotionFile, WritesABvhForEachPersonInOneWorld) {
   const absl::StatusOr<std::vector<fs::path>> written =
-      WritePair(folder_ / "a.b.bvh", pair_, motion::SbuSkeleton());
-  ASSERT_TRUE(written.ok()) << written.status();
+      WritePair(folder_ / "a.b.bvh", pair_, kSkeleton);
+  ASSERT_THAT(written, IsOk());
   EXPECT_THAT(*written, ElementsAre(folder_ / "a.b.leader.bvh", folder_ / "a.b.follower.bvh"));
   const absl::StatusOr<motion::Clip> leader = ReadLeader((*written)[0]);
   const absl::StatusOr<motion::Clip> follower = ReadLeader((*written)[1]);
-  ASSERT_TRUE(leader.ok()) << leader.status();
-  ASSERT_TRUE(follower.ok()) << follower.status();
+  ASSERT_THAT(leader, IsOk());
+  ASSERT_THAT(follower, IsOk());
   EXPECT_LT(LargestDistance(*leader, pair_.leader), 0.001f);
   EXPECT_LT(LargestDistance(*follower, pair_.follower), 0.001f);
 }
@@ -225,7 +196,7 @@ TEST_F(MotionFile, ReadsEitherPersonOfAGltfFileAndItsBufferBesideIt) {
     for (Side side : {Side::kLeft, Side::kRight}) {
       options.side = side;
       const absl::StatusOr<motion::Clip> clip = ReadLeader(folder_ / name, options);
-      ASSERT_TRUE(clip.ok()) << clip.status();
+      ASSERT_THAT(clip, IsOk());
       motion::Clip larger = side == Side::kLeft ? pair_.leader : pair_.follower;
       for (motion::Vec3& p : larger.poses.all()) p = p * 2;
       EXPECT_LT(LargestDistance(*clip, larger), 0.002f) << name;
@@ -260,23 +231,16 @@ TEST_F(MotionFile, ABufferIsNoLinkToAnotherFolder) {
   EXPECT_THAT(ReadLeader(folder_ / "here/a.gltf").status(), IsOk());
 }
 
-TEST_F(MotionFile, ReadsEitherPersonOfSbuText) {
+TEST_F(MotionFile, SbuTextHasTheRateOfSbuUnlessTheCallerStatesOne) {
   const fs::path path = folder_ / "skeleton_pos.txt";
   ASSERT_TRUE(base::WriteFile(path, *flat::FormatSbu({pair_.leader, pair_.follower})).ok());
-  ReadOptions options;
-  options.side = Side::kRight;
-  const absl::StatusOr<motion::Clip> right = ReadLeader(path, options);
-  ASSERT_TRUE(right.ok()) << right.status();
-  EXPECT_EQ(right->frame_rate_hz, 15);
-  EXPECT_LT(LargestDistance(*right, pair_.follower), 1e-5f);
-  options.frame_rate_hz = 30;
-  EXPECT_EQ(ReadLeader(path, options)->frame_rate_hz, 30);
+  EXPECT_EQ(ReadLeader(path)->frame_rate_hz, 15);
 }
 
 TEST_F(MotionFile, UsesTheCallersCoordinates) {
   const fs::path path = folder_ / "a.csv";
   std::string header = "frame", row = "0";
-  for (const std::string& joint : motion::SbuSkeleton().joint_names) {
+  for (const std::string& joint : kSkeleton.joint_names) {
     absl::StrAppend(&header, ",", joint, "_x,", joint, "_y,", joint, "_z");
     absl::StrAppend(&row, ",1000,2000,3000");
   }
@@ -287,7 +251,7 @@ TEST_F(MotionFile, UsesTheCallersCoordinates) {
   options.frame_rate_hz = 24;
   options.coordinates = {motion::LengthUnit::kMillimetres, motion::UpAxis::kZUp};
   const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
-  ASSERT_TRUE(clip.ok()) << clip.status();
+  ASSERT_THAT(clip, IsOk());
   EXPECT_LT(Distance(clip->at(0, 7), {1, 3, -2}), 1e-6f);
 }
 
@@ -297,7 +261,7 @@ TEST_F(MotionFile, WarnsIfTheUpAxisIsProbablyAnother) {
     for (motion::Vec3& p : clip->poses.all()) p = {p.x, -p.z, p.y};
   }
   const fs::path path = folder_ / "a.csv";
-  ASSERT_TRUE(WritePair(path, z_up, motion::SbuSkeleton()).ok());
+  ASSERT_TRUE(WritePair(path, z_up, kSkeleton).ok());
   std::vector<std::string> notes;
   ReadOptions options;
   options.notes = &notes;
@@ -306,11 +270,11 @@ TEST_F(MotionFile, WarnsIfTheUpAxisIsProbablyAnother) {
   notes.clear();
   options.coordinates = {motion::LengthUnit::kMetres, motion::UpAxis::kZUp};
   const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
-  ASSERT_TRUE(clip.ok()) << clip.status();
+  ASSERT_THAT(clip, IsOk());
   EXPECT_LT(LargestDistance(*clip, pair_.leader), 1e-5f);
   EXPECT_THAT(notes, ::testing::IsEmpty());
   options.coordinates.reset();
-  ASSERT_TRUE(WritePair(path, pair_, motion::SbuSkeleton()).ok());
+  ASSERT_TRUE(WritePair(path, pair_, kSkeleton).ok());
   ASSERT_TRUE(ReadLeader(path, options).ok());
   EXPECT_THAT(notes, ::testing::IsEmpty());
 }
@@ -339,18 +303,18 @@ TEST_F(MotionFile, MapsJointsFromTheWholeMotion) {
   std::vector<std::string> notes;
   options.notes = &notes;
   const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
-  ASSERT_TRUE(clip.ok()) << clip.status();
+  ASSERT_THAT(clip, IsOk());
   EXPECT_THAT(notes, Contains(HasSubstr("neck: LowerNeck (")));
 }
 
 TEST_F(MotionFile, ReadsTheFirstFrameAsAFollowersStart) {
   const absl::StatusOr<std::vector<fs::path>> written =
-      WritePair(folder_ / "a.npy", pair_, motion::SbuSkeleton());
+      WritePair(folder_ / "a.npy", pair_, kSkeleton);
   ASSERT_TRUE(written.ok());
   ReadOptions options;
   options.side = Side::kRight;
   const absl::StatusOr<std::vector<motion::Vec3>> start = ReadFollowerStart((*written)[0], options);
-  ASSERT_TRUE(start.ok()) << start.status();
+  ASSERT_THAT(start, IsOk());
   ASSERT_EQ(start->size(), 15u);
   EXPECT_EQ((*start)[14], pair_.follower.at(0, 14));
 }
@@ -358,7 +322,7 @@ TEST_F(MotionFile, ReadsTheFirstFrameAsAFollowersStart) {
 TEST_F(MotionFile, ReportsTheKnownExtensions) {
   EXPECT_THAT(std::string(ReadLeader("a.obj").status().message()),
               HasSubstr("extension: expected .txt (SBU text), .bvh"));
-  EXPECT_THAT(std::string(WritePair("a.obj", pair_, motion::SbuSkeleton()).status().message()),
+  EXPECT_THAT(Refusal(WritePair("a.obj", pair_, kSkeleton)),
               HasSubstr("extension: expected .glb, .gltf, .bvh, .csv"));
   for (const char* known : {"a.json", "a.txt", "a.BVH"}) EXPECT_TRUE(IsReadable(known)) << known;
   for (const char* other : {"a", "a.obj", "a.sbu"}) EXPECT_FALSE(IsReadable(other)) << other;
@@ -373,30 +337,23 @@ TEST_F(MotionFile, NamesTheProgramThatConvertsAnotherFormat) {
                                                          {"a.npz", "duet_motion.research"}};
   for (const auto& [file, converter] : converters) {
     EXPECT_THAT(std::string(ReadLeader(file).status().message()), HasSubstr(converter)) << file;
-    EXPECT_THAT(std::string(WritePair(file, pair_, motion::SbuSkeleton()).status().message()),
-                HasSubstr(converter));
+    EXPECT_THAT(Refusal(WritePair(file, pair_, kSkeleton)), HasSubstr(converter));
   }
 }
 
 TEST_F(MotionFile, RejectsAnInconsistentPair) {
-  motion::ClipPair shorter = pair_;
+  motion::ClipPair shorter = pair_, broken = pair_, far_away = pair_, renamed = pair_;
   shorter.follower.poses.Resize(1);
-  EXPECT_THAT(
-      std::string(WritePair(folder_ / "a.csv", shorter, motion::SbuSkeleton()).status().message()),
-      HasSubstr("expected the same joints, frames and rate"));
-  motion::ClipPair broken = pair_;
   broken.follower.at(3, 1).x = std::nanf("");
-  EXPECT_THAT(
-      std::string(WritePair(folder_ / "a.csv", broken, motion::SbuSkeleton()).status().message()),
-      HasSubstr("follower: frame 3 neck"));
-  motion::ClipPair far_away = pair_;
   far_away.leader.at(0, 0).x = 3e38f;
-  EXPECT_THAT(
-      std::string(WritePair(folder_ / "a.bvh", far_away, motion::SbuSkeleton()).status().message()),
-      HasSubstr("leader: frame 0 head: expected a finite position within +-1e+07 m"));
-  motion::ClipPair renamed = pair_;
   renamed.leader.joint_names.pop_back();
-  EXPECT_FALSE(WritePair(folder_ / "a.csv", renamed, motion::SbuSkeleton()).ok());
+  EXPECT_THAT(Refusal(WritePair(folder_ / "a.csv", shorter, kSkeleton)),
+              HasSubstr("expected the same joints, frames and rate"));
+  EXPECT_THAT(Refusal(WritePair(folder_ / "a.csv", broken, kSkeleton)),
+              HasSubstr("follower: frame 3 neck"));
+  EXPECT_THAT(Refusal(WritePair(folder_ / "a.bvh", far_away, kSkeleton)),
+              HasSubstr("leader: frame 0 head: expected a finite position within +-1e+07 m"));
+  EXPECT_THAT(WritePair(folder_ / "a.csv", renamed, kSkeleton), Not(IsOk()));
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
@@ -405,43 +362,10 @@ TEST_F(MotionFile, NamesAFileThatCannotBeReadOrWritten) {
   fs::create_directories(folder_ / "folder.csv");
   EXPECT_THAT(std::string(ReadLeader(folder_ / "folder.csv").status().message()),
               HasSubstr("got a folder"));
-  EXPECT_THAT(
-      std::string(
-          WritePair(folder_ / "folder.csv", pair_, motion::SbuSkeleton()).status().message()),
-      HasSubstr("expected a file, got a folder"));
-  EXPECT_THAT(
-      std::string(
-          WritePair(folder_ / "no" / "a.csv", pair_, motion::SbuSkeleton()).status().message()),
-      HasSubstr("cannot be written"));
-}
-
-// Bytes changed, dropped and doubled at random: an error or a motion, never a crash.
-TEST_F(MotionFile, SurvivesDamagedFiles) {
-  const motion::ClipPair small{MakePerson({2}), MakePerson({2})};
-  ASSERT_TRUE(WritePair(folder_ / "a.csv", small, motion::SbuSkeleton()).ok());
-  ASSERT_TRUE(WritePair(folder_ / "a.json", small, motion::SbuSkeleton()).ok());
-  ASSERT_TRUE(WritePair(folder_ / "a.npy", small, motion::SbuSkeleton()).ok());
-  ASSERT_TRUE(WritePair(folder_ / "a.bvh", small, motion::SbuSkeleton()).ok());
-  ASSERT_TRUE(
-      base::WriteFile(folder_ / "a.txt", *flat::FormatSbu({small.leader, small.follower})).ok());
-  ReadOptions options;
-  options.frame_rate_hz = 30;
-  std::mt19937 random(7);
-  int refused = 0;
-  for (const char* name : {"a.csv", "a.json", "a.npy", "a.leader.bvh", "a.txt"}) {
-    const absl::StatusOr<std::string> whole = base::ReadFile(folder_ / name, 1 << 20, "a motion");
-    ASSERT_TRUE(whole.ok()) << whole.status();
-    for (int round = 0; round < 200; ++round) {
-      const fs::path path = folder_ / (std::string("damaged_") + name);
-      ASSERT_TRUE(base::WriteFile(path, Damaged(*whole, &random)).ok());
-      const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
-      refused += clip.ok() ? 0 : 1;
-      if (!clip.ok()) continue;
-      for (const motion::Vec3& position : clip->poses.all())
-        EXPECT_TRUE(IsFinite(position)) << name;
-    }
-  }
-  EXPECT_GT(refused, 300);
+  EXPECT_THAT(Refusal(WritePair(folder_ / "folder.csv", pair_, kSkeleton)),
+              HasSubstr("expected a file, got a folder"));
+  EXPECT_THAT(Refusal(WritePair(folder_ / "no" / "a.csv", pair_, kSkeleton)),
+              HasSubstr("cannot be written"));
 }
 
 struct DecimalComma : std::numpunct<char> {
@@ -457,7 +381,7 @@ TEST_F(MotionFile, DoesNotDependOnTheLocale) {
   }
   for (const char* name : {"a.csv", "a.json", "a.bvh"}) {
     const absl::StatusOr<std::vector<fs::path>> written =
-        WritePair(folder_ / name, pair_, motion::SbuSkeleton());
+        WritePair(folder_ / name, pair_, kSkeleton);
     EXPECT_TRUE(written.ok()) << written.status();
     const absl::StatusOr<motion::Clip> clip = ReadLeader(written->front());
     EXPECT_TRUE(clip.ok()) << clip.status();

@@ -1,7 +1,6 @@
 #include "model/formats/gltf/gltf_import.h"
 
 #include <cmath>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -40,6 +39,15 @@ std::string ReadError(const std::string& content, const GltfImportOptions& optio
   return std::string(clip.status().message());
 }
 
+// Expects that the file has the motion of `clip`.
+void ExpectReads(const std::string& content, const motion::Clip& clip,
+                 const GltfImportOptions& options = {}) {
+  const absl::StatusOr<motion::Clip> read = Read(content, options);
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(read->frame_rate_hz, clip.frame_rate_hz);
+  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+}
+
 std::string OnePerson(const motion::Clip& clip, const GltfPersonOptions& options = {}) {
   GltfBuilder builder;
   AddPerson(clip, options, &builder);
@@ -47,24 +55,18 @@ std::string OnePerson(const motion::Clip& clip, const GltfPersonOptions& options
 }
 
 TEST(GltfImport, ReadsAPersonWithEveryInterpolation) {
-  const motion::Clip clip = MakePerson();
   for (const char* interpolation : {"LINEAR", "STEP", "CUBICSPLINE"}) {
+    SCOPED_TRACE(interpolation);
     GltfPersonOptions options;
     options.interpolation = interpolation;
-    const absl::StatusOr<motion::Clip> read = Read(OnePerson(clip, options));
-    ASSERT_TRUE(read.ok()) << read.status();
-    EXPECT_EQ(read->frame_rate_hz, 30);
-    EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre) << interpolation;
+    ExpectReads(OnePerson(MakePerson(), options), MakePerson());
   }
 }
 
 TEST(GltfImport, ReadsABufferWithinTheDocument) {
   GltfBuilder builder;
-  const motion::Clip clip = MakePerson();
-  AddPerson(clip, {}, &builder);
-  const absl::StatusOr<motion::Clip> read = Read(builder.WithDataUri());
-  ASSERT_TRUE(read.ok()) << read.status();
-  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  AddPerson(MakePerson(), {}, &builder);
+  ExpectReads(builder.WithDataUri(), MakePerson());
 }
 
 TEST(GltfImport, ReadsABufferBesideTheDocument) {
@@ -73,13 +75,13 @@ TEST(GltfImport, ReadsABufferBesideTheDocument) {
   AddPerson(clip, {}, &builder);
   const absl::StatusOr<GltfDocument> document =
       ParseGltf(builder.WithFile("my%20walk.bin"), "a.gltf");
-  ASSERT_TRUE(document.ok()) << document.status();
+  ASSERT_THAT(document, IsOk());
   const absl::StatusOr<motion::Clip> read =
       FromGltf(*document, "a.gltf", [&](const std::string& name) {
         EXPECT_EQ(name, "my walk.bin");
         return absl::StatusOr<std::string>(builder.buffer());
       });
-  ASSERT_TRUE(read.ok()) << read.status();
+  ASSERT_THAT(read, IsOk());
   EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
   const absl::Status missing = FromGltf(*document, "a.gltf", NoFiles).status();
   EXPECT_EQ(missing.code(), absl::StatusCode::kNotFound);
@@ -90,65 +92,57 @@ TEST(GltfImport, ReadsABufferBesideTheDocument) {
 TEST(GltfImport, AppliesTheAncestorsOfTheSkeleton) {
   GltfPersonOptions options;
   options.centimetres_below_an_armature = true;
-  const motion::Clip clip = MakePerson();
   std::vector<std::string> notes;
   GltfImportOptions read_options;
   read_options.notes = &notes;
-  const absl::StatusOr<motion::Clip> read = Read(OnePerson(clip, options), read_options);
-  ASSERT_TRUE(read.ok()) << read.status();
-  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  ExpectReads(OnePerson(MakePerson(), options), MakePerson(), read_options);
   EXPECT_THAT(notes, Contains(HasSubstr("unit: metres")));
 }
 
 TEST(GltfImport, ReadsASkeletonWithoutASkin) {
   GltfPersonOptions options;
   options.with_skin = false;
-  const motion::Clip clip = MakePerson();
-  const absl::StatusOr<motion::Clip> read = Read(OnePerson(clip, options));
-  ASSERT_TRUE(read.ok()) << read.status();
-  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  ExpectReads(OnePerson(MakePerson(), options), MakePerson());
 }
 
 TEST(GltfImport, ReadsEitherCharacterOfAFileWithTwo) {
-  const motion::Clip first = MakePerson({30}), second = MakePerson({45, 3, 0, {0, 1, 1.5f}, 30});
+  const motion::Clip people[] = {MakePerson({30}), MakePerson({45, 3, 0, {0, 1, 1.5f}, 30})};
   for (const bool with_skin : {true, false}) {
     GltfBuilder builder;
     GltfPersonOptions options;
     options.with_skin = with_skin;
-    AddPerson(first, options, &builder);
+    AddPerson(people[0], options, &builder);
     options.animation = "dance";
-    AddPerson(second, options, &builder);
+    AddPerson(people[1], options, &builder);
     GltfImportOptions read_options;
-    const absl::StatusOr<motion::Clip> left = Read(builder.Binary(), read_options);
-    ASSERT_TRUE(left.ok()) << left.status();
-    EXPECT_LT(LargestDistance(*left, first), kOneMillimetre) << with_skin;
-    read_options.person = 1;
-    const absl::StatusOr<motion::Clip> right = Read(builder.Binary(), read_options);
-    ASSERT_TRUE(right.ok()) << right.status();
-    EXPECT_LT(LargestDistance(*right, second), kOneMillimetre) << with_skin;
+    for (; read_options.person < 2; ++read_options.person) {
+      ExpectReads(builder.Binary(), people[read_options.person], read_options);
+    }
   }
 }
 
 TEST(GltfImport, SeveralSkinsOfOneSkeletonAreOneCharacter) {
   GltfBuilder builder;
-  const motion::Clip clip = MakePerson();
-  AddPerson(clip, {}, &builder);
+  AddPerson(MakePerson(), {}, &builder);
   const nlohmann::json joints = builder.json()["skins"][0]["joints"];
   builder.json()["skins"].push_back({{"joints", {joints[3], joints[4]}}});
   GltfImportOptions second;
   second.person = 1;  // there is none: the first
-  const absl::StatusOr<motion::Clip> read = Read(builder.Binary(), second);
-  ASSERT_TRUE(read.ok()) << read.status();
-  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  ExpectReads(builder.Binary(), MakePerson(), second);
+}
+
+// A person with the animation "walk", and a copy of it.
+GltfBuilder WithTwoAnimations(const std::string& second) {
+  GltfBuilder builder;
+  AddPerson(MakePerson(), {}, &builder);
+  nlohmann::json other = builder.json()["animations"][0];
+  other["name"] = second;
+  builder.json()["animations"].push_back(other);
+  return builder;
 }
 
 TEST(GltfImport, UsesTheFirstOfSeveralAnimationsWithANote) {
-  GltfBuilder builder;
-  const motion::Clip clip = MakePerson();
-  AddPerson(clip, {}, &builder);
-  nlohmann::json other = builder.json()["animations"][0];
-  other["name"] = "run";
-  builder.json()["animations"].push_back(other);
+  const GltfBuilder builder = WithTwoAnimations("run");
   std::vector<std::string> notes;
   GltfImportOptions options;
   options.notes = &notes;
@@ -175,19 +169,12 @@ void AddPose(const std::string& name, float tremble, GltfBuilder* builder) {
 TEST(GltfImport, UsesTheFirstAnimationInWhichTheBodyMoves) {
   const motion::Clip clip = MakePerson();
   for (const float tremble : {0.0f, 0.002f}) {
-    GltfBuilder builder;
-    AddPerson(clip, {}, &builder);
-    nlohmann::json other = builder.json()["animations"][0];
-    other["name"] = "run";
-    builder.json()["animations"].push_back(other);
+    GltfBuilder builder = WithTwoAnimations("run");
     AddPose("T pose", tremble, &builder);
     std::vector<std::string> notes;
     GltfImportOptions options;
     options.notes = &notes;
-    const absl::StatusOr<motion::Clip> read = Read(builder.Binary(), options);
-    ASSERT_THAT(read, IsOk());
-    ASSERT_EQ(read->frame_count(), clip.frame_count());
-    EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+    ExpectReads(builder.Binary(), clip, options);
     EXPECT_THAT(notes, Contains(HasSubstr("animation: \"walk\", the first in which the body moves "
                                           "of 3 that move the skeleton: \"T pose\", \"walk\"")));
     options.animation = "T pose";
@@ -208,11 +195,7 @@ TEST(GltfImport, WarnsOfAnAnimationInWhichNothingMoves) {
 }
 
 TEST(GltfImport, AnAnimationIsChosenByItsName) {
-  GltfBuilder builder;
-  AddPerson(MakePerson(), {}, &builder);
-  nlohmann::json other = builder.json()["animations"][0];
-  other["name"] = "Rig|run";
-  builder.json()["animations"].push_back(other);
+  const GltfBuilder builder = WithTwoAnimations("Rig|run");
   std::vector<std::string> notes;
   GltfImportOptions options;
   options.notes = &notes;
@@ -233,13 +216,13 @@ TEST(GltfImport, SamplesAtTheKeysRateOrTheSpecifiedOne) {
   GltfImportOptions options;
   options.notes = &notes;
   const absl::StatusOr<motion::Clip> as_keyed = Read(OnePerson(clip), options);
-  ASSERT_TRUE(as_keyed.ok()) << as_keyed.status();
+  ASSERT_THAT(as_keyed, IsOk());
   EXPECT_EQ(as_keyed->frame_rate_hz, 24);
   EXPECT_EQ(as_keyed->frame_count(), 25);
   EXPECT_THAT(notes, Contains(HasSubstr("frame rate: 24 Hz")));
   options.frame_rate_hz = 48;
   const absl::StatusOr<motion::Clip> given = Read(OnePerson(clip), options);
-  ASSERT_TRUE(given.ok()) << given.status();
+  ASSERT_THAT(given, IsOk());
   EXPECT_EQ(given->frame_rate_hz, 48);
   ASSERT_EQ(given->frame_count(), 49);
   for (int frame = 0; frame < 25; ++frame) {
@@ -254,7 +237,7 @@ TEST(GltfImport, SamplesAtTheKeysRateOrTheSpecifiedOne) {
 TEST(GltfImport, KeepsTheLastFrame) {
   for (int frames = 2; frames < 40; ++frames) {
     const absl::StatusOr<motion::Clip> read = Read(OnePerson(MakePerson({frames})));
-    ASSERT_TRUE(read.ok()) << read.status();
+    ASSERT_THAT(read, IsOk());
     EXPECT_EQ(read->frame_count(), frames);
   }
 }
@@ -303,28 +286,6 @@ TEST(GltfImport, RejectsEveryTruncation) {
   }
   const std::string text = builder.WithFile("a.bin");
   for (std::size_t size = 0; size < text.size(); size += 7) ReadError(text.substr(0, size));
-}
-
-// Bytes changed at random in structure and values: an error or a motion, never a crash.
-TEST(GltfImport, SurvivesDamage) {
-  GltfBuilder builder;
-  AddPerson(MakePerson({3}), {}, &builder);
-  const std::string json = builder.json().dump(), binary = builder.buffer();
-  std::mt19937 random(5);
-  int refused = 0;
-  for (int round = 0; round < 600; ++round) {
-    std::string damaged_json = json, damaged_binary = binary;
-    for (int change = 0; change < 2; ++change) {
-      const char interesting[] = "0123456789-e.,[]{}\"";
-      damaged_json[random() % json.size()] = interesting[random() % (sizeof(interesting) - 1)];
-      damaged_binary[random() % binary.size()] = static_cast<char>(random());
-    }
-    const absl::StatusOr<motion::Clip> clip = Read(test::BinaryGltf(damaged_json, damaged_binary));
-    refused += clip.ok() ? 0 : 1;
-    if (!clip.ok()) continue;
-    for (const motion::Vec3& position : clip->poses.all()) EXPECT_TRUE(IsFinite(position));
-  }
-  EXPECT_GT(refused, 100);
 }
 
 }  // namespace
