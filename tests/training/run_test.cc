@@ -38,6 +38,22 @@ class RunTest : public ::testing::Test {
 
   absl::Status Go() { return RunTraining(plan_, dataset_, false, &progress_); }
 
+  // Trains, and returns the result.
+  checkpoint::Checkpoint Train() {
+    EXPECT_THAT(Go(), IsOk());
+    absl::StatusOr<checkpoint::Checkpoint> read =
+        checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
+    EXPECT_THAT(read, IsOk());
+    return read.ok() ? *std::move(read) : checkpoint::Checkpoint();
+  }
+
+  // Trains the sampling generator for one epoch.
+  FlowTraining& UseFlow() {
+    plan_.options = SmallFlowOptions();
+    plan_.options.epochs = 1;
+    return FlowOf(&plan_.options);
+  }
+
   dataset::Dataset dataset_ = MadeUpDataset();
   TemporaryFolder folder_;
   RunPlan plan_;
@@ -61,19 +77,15 @@ TEST_F(RunTest, WritesACheckpointThatAnswers) {
 }
 
 TEST_F(RunTest, LongTakesAreTrainedOnInWindows) {
-  plan_.options = SmallFlowOptions();
-  plan_.options.epochs = 1;
-  FlowOf(&plan_.options).window_seconds = 0.4;  // 6 frames
+  UseFlow().window_seconds = 0.4;  // 6 frames
   FlowOf(&plan_.options).stride_seconds = 0.2;
   for (dataset::Sequence& take : dataset_.sequences) {
     take.labels = {{take.interaction_class, 0, 6}, {2, 4, take.pair.leader.frame_count()}};
   }
-  ASSERT_THAT(Go(), IsOk());
-  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-  ASSERT_THAT(checkpoint, IsOk());
-  EXPECT_EQ(checkpoint->manifest.model.window_frames, 6);
-  EXPECT_EQ(checkpoint->manifest.training.at("sequences"), "7");
-  EXPECT_EQ(checkpoint->manifest.training.at("flow.window_seconds"), "0.4");
+  const checkpoint::Checkpoint checkpoint = Train();
+  EXPECT_EQ(checkpoint.manifest.model.window_frames, 6);
+  EXPECT_EQ(checkpoint.manifest.training.at("sequences"), "7");
+  EXPECT_EQ(checkpoint.manifest.training.at("flow.window_seconds"), "0.4");
 }
 
 TEST_F(RunTest, ReportsTheErrorByPositionInTakesThatAreHeldBack) {
@@ -105,8 +117,7 @@ TEST_F(RunTest, ReportsTheErrorByPositionInTakesThatAreHeldBack) {
 }
 
 TEST_F(RunTest, NotesFollowersOfAnotherSize) {
-  plan_.options = SmallFlowOptions();
-  plan_.options.epochs = 1;
+  UseFlow();
   for (dataset::Sequence& take : dataset_.sequences) {
     motion::Poses& follower = take.pair.follower.poses;
     for (int t = 0; t < follower.frame_count(); ++t) {
@@ -114,17 +125,14 @@ TEST_F(RunTest, NotesFollowersOfAnotherSize) {
       for (motion::Vec3& joint : follower[t]) joint = root + (joint - root) * 0.9f;
     }
   }
-  ASSERT_THAT(Go(), IsOk());
-  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-  ASSERT_THAT(checkpoint, IsOk());
-  const std::vector<double>& ratios = checkpoint->manifest.model.bone_ratios;
+  const checkpoint::Checkpoint checkpoint = Train();
+  const std::vector<double>& ratios = checkpoint.manifest.model.bone_ratios;
   ASSERT_EQ(ratios.size(), dataset_.skeleton.bones.size());
   EXPECT_NEAR(ratios[0], 0.9, 0.02);
 }
 
 TEST_F(RunTest, NotesTheClassesInWhichPeopleFaceEachOther) {
-  plan_.options = SmallFlowOptions();
-  plan_.options.epochs = 1;
+  UseFlow();
   for (dataset::Sequence& take : dataset_.sequences) {
     const motion::Poses& leader = take.pair.leader.poses;
     take.labels = {{0, 0, 12}};
@@ -138,39 +146,30 @@ TEST_F(RunTest, NotesTheClassesInWhichPeopleFaceEachOther) {
       }
     }
   }
-  ASSERT_THAT(Go(), IsOk());
-  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-  ASSERT_THAT(checkpoint, IsOk());
-  const auto& facing = checkpoint->manifest.model.facing_classes;
+  const checkpoint::Checkpoint checkpoint = Train();
+  const auto& facing = checkpoint.manifest.model.facing_classes;
   ASSERT_EQ(facing.size(), 1u);
   EXPECT_EQ(facing[0].interaction_class, "kick");
   EXPECT_NEAR(facing[0].degrees, 15, 8);
 }
 
 TEST_F(RunTest, NotesTheLookaheadOfItsWindows) {
-  plan_.options = SmallFlowOptions();
-  plan_.options.epochs = 1;
-  FlowOf(&plan_.options).lookahead_seconds = 0.2;
-  ASSERT_THAT(Go(), IsOk());
-  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-  ASSERT_THAT(checkpoint, IsOk());
-  EXPECT_EQ(checkpoint->manifest.model.lookahead_frames, 3);  // at 15 Hz
+  UseFlow().lookahead_seconds = 0.2;
+  const checkpoint::Checkpoint checkpoint = Train();
+  EXPECT_EQ(checkpoint.manifest.model.lookahead_frames, 3);  // at 15 Hz
 }
 
 TEST_F(RunTest, TrainsACriticAfterTheGenerator) {
-  plan_.options = SmallFlowOptions();
-  plan_.options.epochs = 1;
-  ASSERT_THAT(Go(), IsOk());
-  const auto plain = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-  ASSERT_THAT(plain, IsOk());
-  EXPECT_TRUE(plain->critic.empty());
+  UseFlow();
+  const checkpoint::Checkpoint plain = Train();
+  EXPECT_TRUE(plain.critic.empty());
   FlowOf(&plan_.options).critic = {60, 2};
   plan_.folder = folder_.path() / "with";
   ASSERT_THAT(Go(), IsOk());
   EXPECT_THAT(progress_.str(), HasSubstr("all: critic: loss "));
   const auto with = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
   ASSERT_THAT(with, IsOk());
-  EXPECT_EQ(with->tensors[0].values, plain->tensors[0].values);
+  EXPECT_EQ(with->tensors[0].values, plain.tensors[0].values);
   EXPECT_TRUE(checkpoint::CriticOf(*with).has_value());
   EXPECT_EQ(with->manifest.training.at("critic.steps"), "60");
   // A generator of one epoch is easily told from people.
@@ -178,8 +177,7 @@ TEST_F(RunTest, TrainsACriticAfterTheGenerator) {
 }
 
 TEST_F(RunTest, AddsACriticToACheckpoint) {
-  plan_.options = SmallFlowOptions();
-  plan_.options.epochs = 1;
+  UseFlow();
   ASSERT_THAT(Go(), IsOk());
   plan_.critic_only = true;
   plan_.folder = folder_.path() / "with";
@@ -232,8 +230,7 @@ TEST_F(RunTest, BeginsWithTheWeightsOfACheckpoint) {
 }
 
 TEST_F(RunTest, KeepsAShareOfTheWeightsThatItBeganWith) {
-  plan_.options = SmallFlowOptions();
-  plan_.options.epochs = 1;
+  UseFlow();
   plan_.options.optimiser.warm_up_steps = 1;
   FlowOf(&plan_.options).kept_share = 0.4;
   EXPECT_THAT(Go(), StatusIs(absl::StatusCode::kInvalidArgument,
@@ -263,15 +260,11 @@ TEST_F(RunTest, KeepsAShareOfTheWeightsThatItBeganWith) {
 }
 
 TEST_F(RunTest, NotesLeadersWithoutFollowers) {
-  plan_.options = SmallFlowOptions();
-  plan_.options.epochs = 1;
-  FlowOf(&plan_.options).leaders.share = 0.5;
+  UseFlow().leaders.share = 0.5;
   dataset_.lone_leaders = {{"walks", SwayingMotion(60, dataset_.frame_rate_hz)}};
-  ASSERT_THAT(Go(), IsOk());
-  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-  ASSERT_THAT(checkpoint, IsOk());
-  EXPECT_EQ(checkpoint->manifest.training.at("leaders.share"), "0.5");
-  EXPECT_EQ(checkpoint->manifest.training.at("leaders"),
+  const checkpoint::Checkpoint checkpoint = Train();
+  EXPECT_EQ(checkpoint.manifest.training.at("leaders.share"), "0.5");
+  EXPECT_EQ(checkpoint.manifest.training.at("leaders"),
             "1 " + dataset::DigestOf(dataset_.lone_leaders));
 }
 
@@ -323,11 +316,9 @@ TEST_F(RunTest, CheckpointHasTheStatisticsOfItsTrainingLeaders) {
     plan_.options.validation.subjects = {"s02"};
     plan_.folder =
         folder_.path() / (std::holds_alternative<FlowTraining>(options.method) ? "flow" : "paper");
-    ASSERT_THAT(Go(), IsOk());
-    const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-    ASSERT_THAT(checkpoint, IsOk());
-    ASSERT_TRUE(checkpoint->manifest.model.leader_statistics.has_value());
-    const engine::LeaderStatistics& got = *checkpoint->manifest.model.leader_statistics;
+    const checkpoint::Checkpoint checkpoint = Train();
+    ASSERT_TRUE(checkpoint.manifest.model.leader_statistics.has_value());
+    const engine::LeaderStatistics& got = *checkpoint.manifest.model.leader_statistics;
     EXPECT_EQ(got.scale, wanted.scale);
     ASSERT_EQ(got.features.size(), wanted.features.size());
     for (std::size_t i = 0; i < wanted.features.size(); ++i) {
@@ -375,10 +366,8 @@ TEST_F(RunTest, DivergenceIsReportedNotSaved) {
 
 TEST_F(RunTest, ValidatesOnHeldOutSubjects) {
   plan_.options.validation.subjects = {"s02"};
-  ASSERT_THAT(Go(), IsOk());
-  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-  ASSERT_THAT(checkpoint, IsOk());
-  const auto& metrics = checkpoint->manifest.metrics;
+  const checkpoint::Checkpoint checkpoint = Train();
+  const auto& metrics = checkpoint.manifest.metrics;
   EXPECT_GT(metrics.at("validation.afd"), 0);
   EXPECT_GE(metrics.at("validation.epoch"), 1);
   EXPECT_THAT(progress_.str(), HasSubstr(absl::StrFormat(
@@ -425,10 +414,8 @@ TEST_F(RunTest, TrainsOnClassesOfTheDataSet) {
   dataset_.classes = {"bow", "lift", "spin"};
   plan_.options = *ParseConfig(FindConfig("default")->json,
                                {{"epochs", "1"}, {"generator.encoder_hidden", "4"}});
-  ASSERT_THAT(Go(), IsOk());
-  const auto checkpoint = checkpoint::ReadCheckpoint(CheckpointFolder(plan_));
-  ASSERT_THAT(checkpoint, IsOk());
-  EXPECT_EQ(checkpoint->manifest.model.touching_classes, std::vector<std::string>{"lift"});
+  const checkpoint::Checkpoint checkpoint = Train();
+  EXPECT_EQ(checkpoint.manifest.model.touching_classes, std::vector<std::string>{"lift"});
 }
 
 TEST(RunLogTest, ResumingDropsRowsOfLostEpochs) {
