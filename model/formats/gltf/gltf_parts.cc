@@ -50,14 +50,14 @@ ordered_json ToArray(Vec3d a) {
 // No joint is rotated at rest, so a bind matrix is a translation.
 int AddSkin(const std::string& name, int first_joint, const std::vector<Vec3d>& rest_positions,
             GltfWriter* writer) {
-  std::vector<Vec3d> to_joints;
+  std::vector<retargeting::Affine> to_joints;
   ordered_json joints = ordered_json::array();
   for (const Vec3d& position : rest_positions) {
     joints.push_back(first_joint + static_cast<int>(to_joints.size()));
-    to_joints.push_back(-position);
+    to_joints.emplace_back().origin = -position;
   }
   writer->BeginView(GltfWriter::Use::kOther);
-  const int matrices = writer->AddTranslationMatrices(to_joints);
+  const int matrices = writer->AddMatrices(to_joints);
   return writer->Add("skins", {{"name", name},
                                {"inverseBindMatrices", matrices},
                                {"skeleton", first_joint},

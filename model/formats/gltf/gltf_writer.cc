@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 
@@ -36,6 +37,10 @@ void AppendChunk(uint32_t type, absl::string_view content, std::string* bytes) {
   bytes->append(content.data(), content.size());
 }
 
+void AppendFloats(std::initializer_list<double> values, std::vector<float>* out) {
+  for (double value : values) out->push_back(static_cast<float>(value));
+}
+
 std::string Dump(const ordered_json& json) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -66,41 +71,48 @@ int GltfWriter::AddAccessor(int component_type, const char* type, std::size_t co
                            {"type", type}});
 }
 
-void GltfWriter::Append(float value) {
-  uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  AppendWord(bits, &buffer_);
-}
-
-template <typename T>
-void GltfWriter::AppendWhole(T value) {
-  for (std::size_t byte = 0; byte < sizeof value; ++byte) {
-    buffer_.push_back(static_cast<char>(static_cast<uint32_t>(value) >> (8 * byte)));
-  }
-}
-
 void GltfWriter::EndAccessor() {
   PadTo4('\0', &buffer_);
   ordered_json& view = json_["bufferViews"].back();
   view["byteLength"] = buffer_.size() - view["byteOffset"].get<std::size_t>();
 }
 
-int GltfWriter::AddTimes(const std::vector<float>& seconds) {
-  const int accessor = AddAccessor(kFloat, "SCALAR", seconds.size());
-  for (float second : seconds) Append(second);
+int GltfWriter::AddFloats(const char* type, std::size_t components,
+                          const std::vector<float>& values) {
+  const int accessor = AddAccessor(kFloat, type, values.size() / components);
+  for (float value : values) {
+    uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    AppendWord(bits, &buffer_);
+  }
   EndAccessor();
+  return accessor;
+}
+
+template <typename Written, typename Value>
+int GltfWriter::AddWhole(int component_type, const char* type, std::size_t components,
+                         const std::vector<Value>& values) {
+  const int accessor = AddAccessor(component_type, type, values.size() / components);
+  for (Value value : values) {
+    for (std::size_t byte = 0; byte < sizeof(Written); ++byte) {
+      buffer_.push_back(static_cast<char>(static_cast<uint32_t>(value) >> (8 * byte)));
+    }
+  }
+  EndAccessor();
+  return accessor;
+}
+
+int GltfWriter::AddTimes(const std::vector<float>& seconds) {
+  const int accessor = AddFloats("SCALAR", 1, seconds);
   json_["accessors"].back()["min"] = {seconds.front()};
   json_["accessors"].back()["max"] = {seconds.back()};
   return accessor;
 }
 
 int GltfWriter::AddVectors(const std::vector<Vec3d>& vectors) {
-  const int accessor = AddAccessor(kFloat, "VEC3", vectors.size());
-  for (const Vec3d& vector : vectors) {
-    for (double value : {vector.x, vector.y, vector.z}) Append(static_cast<float>(value));
-  }
-  EndAccessor();
-  return accessor;
+  std::vector<float> values;
+  for (const Vec3d& v : vectors) AppendFloats({v.x, v.y, v.z}, &values);
+  return AddFloats("VEC3", 3, values);
 }
 
 int GltfWriter::AddPositions(const std::vector<Vec3d>& positions) {
@@ -117,93 +129,54 @@ int GltfWriter::AddPositions(const std::vector<Vec3d>& positions) {
 }
 
 int GltfWriter::AddRotations(const std::vector<Quaternion>& rotations) {
-  const int accessor = AddAccessor(kFloat, "VEC4", rotations.size());
-  for (const Quaternion& q : rotations) {
-    for (double value : {q.x, q.y, q.z, q.w}) Append(static_cast<float>(value));
-  }
-  EndAccessor();
-  return accessor;
-}
-
-int GltfWriter::AddTranslationMatrices(const std::vector<Vec3d>& translations) {
-  const int accessor = AddAccessor(kFloat, "MAT4", translations.size());
-  for (const Vec3d& t : translations) {
-    for (double value :
-         {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, t.x, t.y, t.z, 1.0}) {
-      Append(static_cast<float>(value));
-    }
-  }
-  EndAccessor();
-  return accessor;
+  std::vector<float> values;
+  for (const Quaternion& q : rotations) AppendFloats({q.x, q.y, q.z, q.w}, &values);
+  return AddFloats("VEC4", 4, values);
 }
 
 int GltfWriter::AddMatrices(const std::vector<retargeting::Affine>& matrices) {
-  const int accessor = AddAccessor(kFloat, "MAT4", matrices.size());
+  std::vector<float> values;
   for (const retargeting::Affine& m : matrices) {
-    for (double value : {m.x.x, m.x.y, m.x.z, 0.0, m.y.x, m.y.y, m.y.z, 0.0, m.z.x, m.z.y, m.z.z,
-                         0.0, m.origin.x, m.origin.y, m.origin.z, 1.0}) {
-      Append(static_cast<float>(value));
-    }
+    AppendFloats({m.x.x, m.x.y, m.x.z, 0, m.y.x, m.y.y, m.y.z, 0, m.z.x, m.z.y, m.z.z, 0,
+                  m.origin.x, m.origin.y, m.origin.z, 1},
+                 &values);
   }
-  EndAccessor();
-  return accessor;
+  return AddFloats("MAT4", 16, values);
 }
 
 int GltfWriter::AddIndices(const std::vector<uint32_t>& indices, std::size_t vertices) {
   // The largest number of either kind is not an index.
-  const bool small = vertices <= std::numeric_limits<uint16_t>::max();
-  const int accessor = AddAccessor(small ? kUnsignedShort : kUnsignedInt, "SCALAR", indices.size());
-  for (uint32_t index : indices) {
-    if (small) {
-      AppendWhole(static_cast<uint16_t>(index));
-    } else {
-      AppendWhole(index);
-    }
-  }
-  EndAccessor();
-  return accessor;
+  return vertices <= std::numeric_limits<uint16_t>::max()
+             ? AddWhole<uint16_t>(kUnsignedShort, "SCALAR", 1, indices)
+             : AddWhole<uint32_t>(kUnsignedInt, "SCALAR", 1, indices);
 }
 
 int GltfWriter::AddVertexJoints(const std::vector<int>& joints, std::size_t joint_count) {
-  const bool small = joint_count <= std::size_t{std::numeric_limits<uint8_t>::max()} + 1;
-  const int accessor = AddAccessor(small ? kUnsignedByte : kUnsignedShort, "VEC4", joints.size());
-  for (int joint : joints) {
-    for (int influence : {joint, 0, 0, 0}) {
-      if (small) {
-        AppendWhole(static_cast<uint8_t>(influence));
-      } else {
-        AppendWhole(static_cast<uint16_t>(influence));
-      }
-    }
-  }
-  EndAccessor();
-  return accessor;
+  std::vector<int> influences;
+  for (int joint : joints) influences.insert(influences.end(), {joint, 0, 0, 0});
+  return joint_count <= std::size_t{std::numeric_limits<uint8_t>::max()} + 1
+             ? AddWhole<uint8_t>(kUnsignedByte, "VEC4", 4, influences)
+             : AddWhole<uint16_t>(kUnsignedShort, "VEC4", 4, influences);
 }
 
 int GltfWriter::AddWholeWeights(std::size_t vertices) {
-  const int accessor = AddAccessor(kUnsignedByte, "VEC4", vertices);
+  std::vector<int> weights;
+  for (std::size_t i = 0; i < vertices; ++i) weights.insert(weights.end(), {255, 0, 0, 0});
+  const int accessor = AddWhole<uint8_t>(kUnsignedByte, "VEC4", 4, weights);
   json_["accessors"].back()["normalized"] = true;
-  for (std::size_t vertex = 0; vertex < vertices; ++vertex) buffer_.append("\xFF\0\0\0", 4);
-  EndAccessor();
   return accessor;
 }
 
 int GltfWriter::AddVertexJoints(const std::vector<std::array<int, 4>>& joints) {
-  const int accessor = AddAccessor(kUnsignedShort, "VEC4", joints.size());
-  for (const std::array<int, 4>& of_vertex : joints) {
-    for (int joint : of_vertex) AppendWhole(static_cast<uint16_t>(joint));
-  }
-  EndAccessor();
-  return accessor;
+  std::vector<int> all;
+  for (const auto& of_vertex : joints) all.insert(all.end(), of_vertex.begin(), of_vertex.end());
+  return AddWhole<uint16_t>(kUnsignedShort, "VEC4", 4, all);
 }
 
 int GltfWriter::AddVertexWeights(const std::vector<std::array<float, 4>>& weights) {
-  const int accessor = AddAccessor(kFloat, "VEC4", weights.size());
-  for (const std::array<float, 4>& of_vertex : weights) {
-    for (float weight : of_vertex) Append(weight);
-  }
-  EndAccessor();
-  return accessor;
+  std::vector<float> all;
+  for (const auto& of_vertex : weights) all.insert(all.end(), of_vertex.begin(), of_vertex.end());
+  return AddFloats("VEC4", 4, all);
 }
 
 std::string GltfWriter::Binary() {

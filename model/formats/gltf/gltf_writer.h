@@ -41,7 +41,6 @@ class GltfWriter {
   int AddVectors(const std::vector<retargeting::Vec3d>& vectors);
   int AddPositions(const std::vector<retargeting::Vec3d>& positions);  // with their range
   int AddRotations(const std::vector<retargeting::Quaternion>& rotations);
-  int AddTranslationMatrices(const std::vector<retargeting::Vec3d>& translations);
   int AddMatrices(const std::vector<retargeting::Affine>& matrices);
   int AddIndices(const std::vector<uint32_t>& indices, std::size_t vertices);
   // Assigns one joint to each vertex, with weight 1.
@@ -58,11 +57,13 @@ class GltfWriter {
  private:
   // Adds an accessor for the values appended next.
   int AddAccessor(int component_type, const char* type, std::size_t count);
-  void Append(float value);
-  template <typename T>
-  void AppendWhole(T value);
   // Pads the buffer to a multiple of four bytes and extends the view.
   void EndAccessor();
+  // Adds all values of an accessor of this type, in the order of the file.
+  int AddFloats(const char* type, std::size_t components, const std::vector<float>& values);
+  template <typename Written, typename Value>
+  int AddWhole(int component_type, const char* type, std::size_t components,
+               const std::vector<Value>& values);
 
   nlohmann::ordered_json json_;
   std::string buffer_;
