@@ -26,7 +26,6 @@
 #include "model/motion/recorded_motion.h"
 #include "model/motion/sbu.h"
 #include "model/motion/stated_unit.h"
-#include "model/retargeting/body_check.h"
 #include "model/retargeting/character.h"
 
 namespace duet::formats {

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
+#include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 #include "model/retargeting/joint_mapping.h"
 #include "model/retargeting/joint_tree.h"
@@ -56,6 +58,17 @@ absl::Status CheckMetresPerUnit(double metres);
 // Errors: INVALID_ARGUMENT naming `source` if joints cannot be mapped or the character has no size.
 absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_view source,
                                     const CharacterOptions& options);
+
+// Checks that the joints that were found in a file make a body. `poses` are the skeleton's.
+//
+// Errors: INVALID_ARGUMENT naming `source` and the file's joints if both hips or both shoulders are
+//         in one place in the whole motion: they are helpers with the names of joints.
+absl::Status CheckBody(absl::string_view source, const motion::Skeleton& skeleton,
+                       const motion::Poses& poses, const JointMap& map,
+                       const std::vector<std::string>& file_joints);
+
+// For each bone of a limb that has another length on the other side, a line for people to read.
+std::vector<std::string> UnequalBones(const motion::Skeleton& skeleton, const motion::Poses& poses);
 
 }  // namespace duet::retargeting
 

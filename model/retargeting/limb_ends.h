@@ -7,7 +7,6 @@
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 #include "model/motion/vec3.h"
-#include "model/retargeting/body_roles.h"
 #include "model/retargeting/character_rig.h"
 #include "model/retargeting/rotation.h"
 

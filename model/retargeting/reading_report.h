@@ -16,8 +16,12 @@ enum class Origin {
   kGuessed,  // inferred from the motion
   kDefault,  // used if nothing else determines it
 };
-// "given", "file", "guessed" or "default".
-absl::string_view OriginName(Origin origin);
+inline absl::string_view OriginName(Origin origin) {
+  return origin == Origin::kGiven     ? "given"
+         : origin == Origin::kFile    ? "file"
+         : origin == Origin::kGuessed ? "guessed"
+                                      : "default";
+}
 
 struct Setting {
   std::string value;  // "30 Hz", "centimetres", "y-up"

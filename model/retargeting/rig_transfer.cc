@@ -11,7 +11,7 @@
 #include "model/base/index.h"
 #include "model/base/median.h"
 #include "model/motion/recorded_motion.h"
-#include "model/retargeting/body_roles.h"
+#include "model/retargeting/character_rig.h"
 #include "model/retargeting/foot_pose.h"
 #include "model/retargeting/limb_ends.h"
 

@@ -1,10 +1,9 @@
-#include "model/retargeting/body_check.h"
-
 #include <string>
 #include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/retargeting/character.h"
 #include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
 
