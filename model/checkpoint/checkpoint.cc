@@ -15,7 +15,6 @@
 #include "model/base/sha256.h"
 #include "model/base/text.h"
 #include "model/checkpoint/critic_tensors.h"
-#include "model/checkpoint/model_card.h"
 
 namespace duet::checkpoint {
 namespace {

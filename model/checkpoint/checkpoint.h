@@ -2,6 +2,7 @@
 #define DUET_MODEL_CHECKPOINT_CHECKPOINT_H_
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -31,6 +32,14 @@ absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder);
 // Returns the error that WriteCheckpoint would return for this manifest, ignoring its weights and
 // time. Lets a long training run fail before it starts.
 absl::Status CheckManifest(Manifest manifest);
+
+// A description of the model for people, beside the manifest. No program reads it.
+inline constexpr char kModelCardFile[] = "MODEL_CARD.md";
+
+// A model card in Markdown: the content of the manifest, the intended use, the limits, and the
+// terms of the training data as a sentence to complete. Requires a manifest that ParseManifest
+// accepts.
+std::string ModelCard(const Manifest& manifest);
 
 // Writes a checkpoint folder with its model card atomically (a temporary folder, then a rename).
 // Sets manifest.weights, and manifest.created if it is empty. Returns the errors that

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "model/checkpoint/checkpoint.h"
-#include "model/checkpoint/tensor_spec.h"
 #include "model/engine/critic.h"
 #include "model/engine/model_description.h"
 

@@ -10,7 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "model/checkpoint/architecture.h"
-#include "model/checkpoint/tensor_spec.h"
+#include "model/checkpoint/safetensors.h"
 #include "model/engine/model_description.h"
 #include "model/motion/body_part.h"
 #include "model/motion/standardise.h"

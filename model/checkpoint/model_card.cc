@@ -1,5 +1,3 @@
-#include "model/checkpoint/model_card.h"
-
 #include <cstddef>
 #include <cstdint>
 
@@ -7,6 +5,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
+#include "model/checkpoint/checkpoint.h"
 
 namespace duet::checkpoint {
 namespace {

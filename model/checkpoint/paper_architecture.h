@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/checkpoint/tensor_spec.h"
+#include "model/checkpoint/safetensors.h"
 
 namespace duet::checkpoint {
 

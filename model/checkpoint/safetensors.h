@@ -19,6 +19,12 @@ struct Tensor {
   std::vector<float> values;  // row-major
 };
 
+// A tensor that a checkpoint must contain, float32.
+struct TensorSpec {
+  std::string name;
+  std::vector<int64_t> shape;
+};
+
 // Reads and writes the published safetensors format (data only: an 8-byte little-endian header
 // length, a JSON header, the tensors' bytes). Accepts a strict subset of it: see safetensors.cc.
 // Errors: INVALID_ARGUMENT naming the tensor and what was expected; DATA_LOSS for truncation.

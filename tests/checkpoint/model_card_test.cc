@@ -1,5 +1,3 @@
-#include "model/checkpoint/model_card.h"
-
 #include <gmock/gmock.h>
 
 #include "model/checkpoint/checkpoint.h"

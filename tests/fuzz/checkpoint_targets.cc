@@ -9,7 +9,6 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/sha256.h"
 #include "model/checkpoint/checkpoint.h"
-#include "model/checkpoint/model_card.h"
 #include "model/classifier/classifier_files.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"

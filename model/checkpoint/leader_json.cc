@@ -1,20 +1,80 @@
-#include "model/checkpoint/direction_json.h"
+#include "model/checkpoint/leader_json.h"
 
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model/base/strict_json.h"
+#include "model/engine/leader_features.h"
 
 namespace duet::checkpoint {
 namespace {
 
 using nlohmann::json;
+using nlohmann::ordered_json;
+using Feature = engine::LeaderStatistics::Feature;
 
-// Far above any fit, and low enough that products and sums cannot overflow.
-constexpr double kLargest = 1e6;
-constexpr double kSmallestDeviation = 1e-6;
+// Far above any person, and low enough that squares and sums cannot overflow.
+constexpr double kMost = 1e6;
+constexpr double kLeast = 1e-6;
+constexpr std::size_t kMaxNameBytes = 64;
+
+Feature ReadFeature(base::ObjectReader* fields, const std::vector<engine::LeaderFeature>& known,
+                    std::set<std::string>* seen) {
+  Feature feature;
+  feature.name = fields->String("name", kMaxNameBytes);
+  feature.mean = fields->Number("mean", -kMost, kMost);
+  feature.deviation = fields->Number("deviation", kLeast, kMost);
+  if (!seen->insert(feature.name).second) {
+    fields->Fail("name", absl::StrCat(json(feature.name).dump(), " is repeated"));
+  }
+  std::string names;
+  for (const engine::LeaderFeature& one : known) {
+    if (one.name == feature.name) return feature;
+    absl::StrAppend(&names, names.empty() ? "" : ", ", std::string(one.name));
+  }
+  fields->Fail("name",
+               absl::StrCat("expected one of ", names, ", got ", json(feature.name).dump()));
+  return feature;
+}
+
+}  // namespace
+
+absl::StatusOr<engine::LeaderStatistics> ReadLeaderStatistics(const json& value,
+                                                              const motion::Skeleton& skeleton,
+                                                              const std::string& path) {
+  base::ObjectReader reader(value, path);
+  engine::LeaderStatistics statistics;
+  const std::vector<engine::LeaderFeature> known = engine::LeaderFeatures(skeleton);
+  std::set<std::string> seen;
+  for (const json& item : reader.Array("features", known.size())) {
+    base::ObjectReader fields(
+        item, reader.PathOf(absl::StrCat("features[", statistics.features.size(), "]")));
+    statistics.features.push_back(ReadFeature(&fields, known, &seen));
+    reader.Update(fields.Finish());
+  }
+  if (reader.ok() && statistics.features.empty()) {
+    reader.Fail("features", "expected at least one feature, got none");
+  }
+  statistics.scale = reader.Number("scale", kLeast, kMost);
+  if (absl::Status status = reader.Finish(); !status.ok()) return status;
+  return statistics;
+}
+
+ordered_json LeaderStatisticsToJson(const engine::LeaderStatistics& statistics) {
+  ordered_json features = ordered_json::array();
+  for (const Feature& feature : statistics.features) {
+    features.push_back(
+        {{"name", feature.name}, {"mean", feature.mean}, {"deviation", feature.deviation}});
+  }
+  return {{"features", features}, {"scale", statistics.scale}};
+}
+
+namespace {
 
 std::vector<double> ReadNumbers(base::ObjectReader* reader, const std::string& key, int count,
                                 double smallest) {
@@ -24,8 +84,8 @@ std::vector<double> ReadNumbers(base::ObjectReader* reader, const std::string& k
   for (const json& value : array) {
     const std::string element = absl::StrCat(key, "[", numbers.size(), "]");
     numbers.push_back(value.is_number() ? value.get<double>() : std::nan(""));
-    if (!(numbers.back() >= smallest && numbers.back() <= kLargest)) {
-      reader->Fail(element, absl::StrCat("expected a number from ", smallest, " to ", kLargest,
+    if (!(numbers.back() >= smallest && numbers.back() <= kMost)) {
+      reader->Fail(element, absl::StrCat("expected a number from ", smallest, " to ", kMost,
                                          ", got ", base::Shown(value)));
     }
   }
@@ -39,14 +99,14 @@ std::vector<double> ReadNumbers(base::ObjectReader* reader, const std::string& k
 
 void ReadCoefficients(base::ObjectReader* reader, int count, std::vector<double>* cosine,
                       std::vector<double>* sine) {
-  *cosine = ReadNumbers(reader, "cosine", count, -kLargest);
-  *sine = ReadNumbers(reader, "sine", count, -kLargest);
+  *cosine = ReadNumbers(reader, "cosine", count, -kMost);
+  *sine = ReadNumbers(reader, "sine", count, -kMost);
 }
 
 void ReadAngleRegression(base::ObjectReader* reader, int count,
                          engine::AngleRegression* regression) {
-  regression->mean = ReadNumbers(reader, "mean", count, -kLargest);
-  regression->deviation = ReadNumbers(reader, "deviation", count, kSmallestDeviation);
+  regression->mean = ReadNumbers(reader, "mean", count, -kMost);
+  regression->deviation = ReadNumbers(reader, "deviation", count, kLeast);
   ReadCoefficients(reader, count, &regression->cosine, &regression->sine);
 }
 
@@ -75,7 +135,7 @@ engine::DirectionCorrection ReadCorrection(base::ObjectReader* direction, int co
   return correction;
 }
 
-nlohmann::ordered_json ToJson(const engine::AngleRegression& regression) {
+ordered_json ToJson(const engine::AngleRegression& regression) {
   return {{"mean", regression.mean},
           {"deviation", regression.deviation},
           {"cosine", regression.cosine},
@@ -102,12 +162,11 @@ std::optional<engine::DirectionRegression> ReadDirectionRegression(const motion:
   return regression;
 }
 
-nlohmann::ordered_json DirectionRegressionToJson(const engine::DirectionRegression& regression) {
-  nlohmann::ordered_json object = ToJson(regression);
+ordered_json DirectionRegressionToJson(const engine::DirectionRegression& regression) {
+  ordered_json object = ToJson(regression);
   if (!regression.correction) return object;
   object["correction"] = ToJson(*regression.correction);
-  nlohmann::ordered_json& classes = object["correction"]["classes"] =
-      nlohmann::ordered_json::array();
+  ordered_json& classes = object["correction"]["classes"] = ordered_json::array();
   for (const engine::ClassCoefficients& added : regression.correction->classes) {
     classes.push_back({{"cosine", added.cosine}, {"sine", added.sine}});
   }
