@@ -27,6 +27,15 @@ BvhDocument Export(const motion::Clip& clip) {
   return *std::move(document);
 }
 
+// Reads a document; notes what was decided.
+motion::Clip Read(const BvhDocument& document, std::vector<std::string>* notes = nullptr,
+                  BvhImportOptions options = {}) {
+  options.notes = notes;
+  const absl::StatusOr<motion::Clip> read = FromBvh(document, "a.bvh", options);
+  EXPECT_THAT(read, IsOk());
+  return read.value_or(motion::Clip());
+}
+
 // The document in another unit.
 BvhDocument Scaled(BvhDocument document, double factor) {
   for (BvhJoint& joint : document.joints) joint.offset = joint.offset * factor;
@@ -40,7 +49,7 @@ BvhDocument Scaled(BvhDocument document, double factor) {
 TEST(BvhImport, ReadsWhatWeWrite) {
   const motion::Clip clip = MakePerson();
   const absl::StatusOr<motion::Clip> read = FromBvh(Export(clip), "a.bvh");
-  ASSERT_TRUE(read.ok()) << read.status();
+  ASSERT_THAT(read, IsOk());
   EXPECT_EQ(read->joint_names, clip.joint_names);
   EXPECT_EQ(read->frame_rate_hz, 30);
   EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
@@ -53,9 +62,7 @@ TEST(BvhImport, ASkeletonWithoutFeetRequiresAUnit) {
   EXPECT_THAT(std::string(FromBvh(Export(clip), "a.bvh", options).status().message()),
               HasSubstr("a.bvh: size: expected a skeleton with feet to infer the unit"));
   options.metres_per_unit = 0.01;
-  const absl::StatusOr<motion::Clip> read = FromBvh(Export(clip), "a.bvh", options);
-  ASSERT_TRUE(read.ok()) << read.status();
-  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  EXPECT_LT(LargestDistance(Read(Export(clip), nullptr, options), clip), kOneMillimetre);
 }
 
 TEST(BvhImport, InfersTheUnitFromThePersonsSize) {
@@ -66,12 +73,8 @@ TEST(BvhImport, InfersTheUnitFromThePersonsSize) {
       {0.45 / 2.54, "unit: CMU's unit"}, {0.1, "unit: decimetres"}};
   for (const auto& [factor, note] : units) {
     std::vector<std::string> notes;
-    BvhImportOptions options;
-    options.notes = &notes;
-    const absl::StatusOr<motion::Clip> read =
-        FromBvh(Scaled(Export(clip), factor), "a.bvh", options);
-    ASSERT_TRUE(read.ok()) << read.status();
-    EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre) << note;
+    EXPECT_LT(LargestDistance(Read(Scaled(Export(clip), factor), &notes), clip), kOneMillimetre)
+        << note;
     EXPECT_THAT(notes, Contains(HasSubstr(note)));
   }
 }
@@ -83,9 +86,7 @@ TEST(BvhImport, AcceptsLegsFromSevenTenthsToOnePointFourMetres) {
       {0.69, false}, {0.71, true}, {1.39, true}, {1.41, false}};
   for (const auto& [metres, taken] : lengths) {
     std::vector<std::string> notes;
-    BvhImportOptions options;
-    options.notes = &notes;
-    ASSERT_TRUE(FromBvh(Scaled(Export(clip), metres / leg), "a.bvh", options).ok());
+    Read(Scaled(Export(clip), metres / leg), &notes);
     const std::string note = absl::StrCat("unit: centimetres (foot to torso is ", metres, " m)");
     EXPECT_EQ(std::find(notes.begin(), notes.end(), note) != notes.end(), taken) << metres;
   }
@@ -99,7 +100,7 @@ TEST(BvhImport, WarnsIfNoUnitGivesAPersonsSize) {
   BvhImportOptions options;
   options.notes = &notes;
   const absl::StatusOr<motion::Clip> guessed = FromBvh(odd, "a.bvh", options);
-  ASSERT_TRUE(guessed.ok()) << guessed.status();
+  ASSERT_THAT(guessed, IsOk());
   EXPECT_THAT(notes,
               Contains(HasSubstr("warning: unit: a guess: foot to torso is 224 units, which is no "
                                  "person's in any usual unit, and was read as 1 m")));
@@ -112,7 +113,7 @@ TEST(BvhImport, WarnsIfNoUnitGivesAPersonsSize) {
   options.metres_per_unit = 0.01 * leg / 2.24;
   notes.clear();
   const absl::StatusOr<motion::Clip> told = FromBvh(odd, "a.bvh", options);
-  ASSERT_TRUE(told.ok()) << told.status();
+  ASSERT_THAT(told, IsOk());
   EXPECT_LT(LargestDistance(*told, clip), kOneMillimetre);
   EXPECT_THAT(notes, Not(Contains(HasSubstr("unit:"))));
 }
@@ -121,12 +122,9 @@ TEST(BvhImport, WarnsIfNoUnitGivesAPersonsSize) {
 TEST(BvhImport, GuessesTheSameUnitForEveryClipOfARig) {
   BvhDocument odd = Scaled(Export(MakePerson()), 2.24);
   std::vector<std::string> before, after;
-  BvhImportOptions options;
-  options.notes = &before;
-  ASSERT_TRUE(FromBvh(odd, "a.bvh", options).ok());
+  Read(odd, &before);
   for (std::size_t i = 3; i < odd.values.size(); ++i) odd.values[i] *= 0.5f;
-  options.notes = &after;
-  ASSERT_TRUE(FromBvh(odd, "a.bvh", options).ok());
+  Read(odd, &after);
   EXPECT_EQ(before, after);
 }
 
@@ -152,18 +150,12 @@ TEST(BvhImport, FindsTheUpAxis) {
   for (motion::Vec3& p : y_down.poses.all()) p = {p.x, -p.y, -p.z};
   for (const motion::Clip* turned : {&z_up, &y_down}) {
     std::vector<std::string> notes;
-    BvhImportOptions options;
-    options.notes = &notes;
-    const absl::StatusOr<motion::Clip> read = FromBvh(Export(*turned), "a.bvh", options);
-    ASSERT_TRUE(read.ok()) << read.status();
-    EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+    EXPECT_LT(LargestDistance(Read(Export(*turned), &notes), clip), kOneMillimetre);
     EXPECT_THAT(notes, Contains(HasSubstr("up axis:")));
   }
   BvhImportOptions as_it_is;
   as_it_is.up_axis = motion::UpAxis::kYUp;
-  const absl::StatusOr<motion::Clip> read = FromBvh(Export(z_up), "a.bvh", as_it_is);
-  ASSERT_TRUE(read.ok()) << read.status();
-  EXPECT_LT(LargestDistance(*read, z_up), kOneMillimetre);
+  EXPECT_LT(LargestDistance(Read(Export(z_up), nullptr, as_it_is), z_up), kOneMillimetre);
 }
 
 TEST(BvhImport, WarnsAndAssumesYIfThePersonStandsAlongX) {
@@ -175,7 +167,7 @@ TEST(BvhImport, WarnsAndAssumesYIfThePersonStandsAlongX) {
   options.notes = &notes;
   options.report = &report;
   const absl::StatusOr<motion::Clip> read = FromBvh(Export(x_up), "a.bvh", options);
-  ASSERT_TRUE(read.ok()) << read.status();
+  ASSERT_THAT(read, IsOk());
   EXPECT_LT(LargestDistance(*read, x_up), kOneMillimetre);
   EXPECT_THAT(notes, Contains(HasSubstr("warning: up axis: expected a person who stands along")));
   EXPECT_THAT(report.remarks, Contains(HasSubstr("warning: up axis")));
@@ -191,27 +183,20 @@ TEST(BvhImport, FindsTheUpAxisFromTheWholeMotion) {
     p = {p.x, -p.z, p.y};
   }
   std::vector<std::string> notes;
-  BvhImportOptions options;
-  options.notes = &notes;
-  const absl::StatusOr<motion::Clip> read = FromBvh(Export(clip), "a.bvh", options);
-  ASSERT_TRUE(read.ok()) << read.status();
-  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
+  EXPECT_LT(LargestDistance(Read(Export(clip), &notes), clip), kOneMillimetre);
   EXPECT_THAT(notes, Not(Contains(HasSubstr("up axis:"))));
 }
 
 TEST(BvhImport, RoundsFrameTimesToTheIntendedRate) {
-  const std::pair<double, double> rates[] = {{0.0333333, 30}, {0.033333, 30},  {0.0083333, 120},
-                                             {0.041667, 24},  {0.0166667, 60}, {0.04, 25},
-                                             {0.008333, 120}, {0.0041666, 240}};
+  BvhDocument document = Export(MakePerson({2}));
+  const std::pair<double, double> rates[] = {
+      {0.0333333, 30},    {0.033333, 30},       {0.0083333, 120},  {0.041667, 24},
+      {0.0166667, 60},    {0.04, 25},           {0.008333, 120},   {0.0041666, 240},
+      {1 / 29.97, 29.97}, {1 / 119.88, 119.88}, {1 / 1.001, 1.001}};
   for (const auto& [frame_time, rate] : rates) {
-    BvhDocument document = Export(MakePerson({2}));
     document.frame_time_s = frame_time;
-    EXPECT_EQ(FromBvh(document, "a.bvh")->frame_rate_hz, rate) << frame_time;
-  }
-  for (const double rate : {29.97, 119.88, 1.001}) {
-    BvhDocument broadcast = Export(MakePerson({2}));
-    broadcast.frame_time_s = 1 / rate;
-    EXPECT_NEAR(FromBvh(broadcast, "a.bvh")->frame_rate_hz, rate, 1e-6);
+    EXPECT_NEAR(Read(document).frame_rate_hz, rate, rate == std::floor(rate) ? 0 : 1e-6)
+        << frame_time;
   }
 }
 
@@ -241,9 +226,7 @@ TEST(BvhImport, ReadsOneFrameMoreOrFewerThanStatedWithANote) {
         absl::StrReplaceAll(text, {{"Frames: 10", absl::StrCat("Frames: ", stated)}}), "a.bvh");
     ASSERT_THAT(document, IsOk());
     std::vector<std::string> notes;
-    BvhImportOptions options;
-    options.notes = &notes;
-    EXPECT_EQ(FromBvh(*document, "a.bvh", options)->frame_count(), 10);
+    EXPECT_EQ(Read(*document, &notes).frame_count(), 10);
     EXPECT_THAT(notes, Contains(absl::StrCat("frames: the file has 10, and states ", stated)));
   }
 }
@@ -296,12 +279,9 @@ TEST(BvhImport, ReadsPositionChannelsOfBothMeanings) {
     const motion::Clip clip = MakePerson(place);
     for (const auto& [kind, note] : kinds) {
       std::vector<std::string> notes;
-      BvhImportOptions options;
-      options.notes = &notes;
-      const absl::StatusOr<motion::Clip> read =
-          FromBvh(BelowAStandingRoot(Export(clip), kind), "a.bvh", options);
-      ASSERT_TRUE(read.ok()) << read.status();
-      EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre) << note;
+      EXPECT_LT(LargestDistance(Read(BelowAStandingRoot(Export(clip), kind), &notes), clip),
+                kOneMillimetre)
+          << note;
       EXPECT_THAT(notes, Contains(HasSubstr(note)));
     }
   }
@@ -309,9 +289,7 @@ TEST(BvhImport, ReadsPositionChannelsOfBothMeanings) {
 
 TEST(BvhImport, ReportsNoPositionChannelsIfOnlyTheRootHasThem) {
   std::vector<std::string> notes;
-  BvhImportOptions options;
-  options.notes = &notes;
-  ASSERT_TRUE(FromBvh(Export(MakePerson({2})), "a.bvh", options).ok());
+  Read(Export(MakePerson({2})), &notes);
   EXPECT_THAT(notes, Not(Contains(HasSubstr("position channels"))));
 }
 
