@@ -38,6 +38,12 @@ constexpr char kArm[] =
     "0 0 90 0 0 0 90\n"
     "\n";
 
+BvhDocument Parse(const std::string& text) {
+  absl::StatusOr<BvhDocument> document = ParseBvh(text, "a.bvh");
+  EXPECT_THAT(document, IsOk());
+  return document.ok() ? *std::move(document) : BvhDocument();
+}
+
 std::string ParseError(const std::string& text) {
   const absl::StatusOr<BvhDocument> document = ParseBvh(text, "a.bvh");
   EXPECT_EQ(document.status().code(), absl::StatusCode::kInvalidArgument) << document.status();
@@ -50,34 +56,31 @@ std::string ErrorWith(const std::string& from, const std::string& to) {
 }
 
 TEST(BvhDocument, ReadsAnyHierarchy) {
-  const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
-  ASSERT_TRUE(document.ok()) << document.status();
-  ASSERT_EQ(document->joints.size(), 3u);
-  EXPECT_EQ(document->joints[0].name, "Bip01 L UpperArm");
-  EXPECT_EQ(document->joints[1].name, "Fore Arm");
-  EXPECT_EQ(document->joints[2].name, "Fore Arm.end");
-  EXPECT_TRUE(document->joints[2].end_site);
-  EXPECT_EQ(document->joints[2].parent, 1);
-  EXPECT_THAT(document->joints[1].channels, ElementsAre(BvhChannel::kZRotation));
-  EXPECT_EQ(document->ChannelCount(), 7);
-  EXPECT_EQ(document->frame_count, 2);
-  EXPECT_DOUBLE_EQ(document->frame_time_s, 0.04);
+  const BvhDocument document = Parse(kArm);
+  ASSERT_EQ(document.joints.size(), 3u);
+  EXPECT_EQ(document.joints[0].name, "Bip01 L UpperArm");
+  EXPECT_EQ(document.joints[1].name, "Fore Arm");
+  EXPECT_EQ(document.joints[2].name, "Fore Arm.end");
+  EXPECT_TRUE(document.joints[2].end_site);
+  EXPECT_EQ(document.joints[2].parent, 1);
+  EXPECT_THAT(document.joints[1].channels, ElementsAre(BvhChannel::kZRotation));
+  EXPECT_EQ(document.ChannelCount(), 7);
+  EXPECT_EQ(document.frame_count, 2);
+  EXPECT_DOUBLE_EQ(document.frame_time_s, 0.04);
 }
 
 TEST(BvhDocument, LinesMayEndWithCarriageReturnsAlone) {
   std::string text = absl::StrReplaceAll(kArm, {{"\r\n", "\r"}, {"\n", "\r"}});
-  const absl::StatusOr<BvhDocument> document = ParseBvh(text, "a.bvh");
-  ASSERT_TRUE(document.ok()) << document.status();
-  EXPECT_EQ(document->joints[1].name, "Fore Arm");
-  EXPECT_EQ(document->frame_count, 2);
+  const BvhDocument document = Parse(text);
+  EXPECT_EQ(document.joints[1].name, "Fore Arm");
+  EXPECT_EQ(document.frame_count, 2);
   absl::StrReplaceAll({{"Frames:\t2", "Frames:\tx"}}, &text);
   EXPECT_THAT(ParseError(text), HasSubstr("a.bvh:16: "));
 }
 
 TEST(BvhDocument, AppliesChannelsInTheFilesOrder) {
-  const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
-  ASSERT_TRUE(document.ok()) << document.status();
-  const BvhKinematics kinematics(*document);
+  const BvhDocument document = Parse(kArm);
+  const BvhKinematics kinematics(document);
   // Yaw 90: +x goes to -z, +z to +x. The root stands where its channels say, not at OFFSET.
   std::vector<retargeting::Vec3d> at = kinematics.Positions(0);
   ExpectNear(at[0], {9, 8, 7});
@@ -91,13 +94,10 @@ TEST(BvhDocument, AppliesChannelsInTheFilesOrder) {
 // Rx 90 after (inside) Rz 90 is not Rz 90 after Rx 90.
 TEST(BvhDocument, PutsTheFirstChannelOutermost) {
   const auto end_of = [](const std::string& channels) {
-    const absl::StatusOr<BvhDocument> document = ParseBvh(
-        absl::StrCat(
-            "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 2 ", channels,
-            "\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 1\nFrame Time: 1\n90 90\n"),
-        "a.bvh");
-    EXPECT_TRUE(document.ok()) << document.status();
-    return BvhKinematics(*document).Positions(0)[1];
+    const BvhDocument document = Parse(absl::StrCat(
+        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 2 ", channels,
+        "\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 1\nFrame Time: 1\n90 90\n"));
+    return BvhKinematics(document).Positions(0)[1];
   };
   ExpectNear(end_of("Zrotation Xrotation"), {0, 0, 1});
   ExpectNear(end_of("Xrotation Zrotation"), {-1, 0, 0});
@@ -106,15 +106,12 @@ TEST(BvhDocument, PutsTheFirstChannelOutermost) {
 // Some programs write a joint's position channels in place of OFFSET, others in addition to it.
 TEST(BvhDocument, ReadsPositionChannelsBelowTheRootOfBothKinds) {
   const auto end_of = [](const std::string& values) {
-    const absl::StatusOr<BvhDocument> document = ParseBvh(
-        absl::StrCat(
-            "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
-            "CHANNELS 3 Xposition Yposition Zposition\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n"
-            "MOTION\nFrames: 1\nFrame Time: 1\n",
-            values, "\n"),
-        "a.bvh");
-    EXPECT_TRUE(document.ok()) << document.status();
-    return BvhKinematics(*document).Positions(0)[2];
+    const BvhDocument document = Parse(absl::StrCat(
+        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
+        "CHANNELS 3 Xposition Yposition Zposition\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n"
+        "MOTION\nFrames: 1\nFrame Time: 1\n",
+        values, "\n"));
+    return BvhKinematics(document).Positions(0)[2];
   };
   ExpectNear(end_of("0 10.5 0"), {0, 11.5, 0});
   ExpectNear(end_of("0 0.5 0"), {0, 11.5, 0});
@@ -131,87 +128,61 @@ std::string PelvisAndSpine(const std::string& frames) {
 }
 
 TEST(BvhDocument, ReadsPositionChannelsOfOneKindThroughoutAFile) {
-  const absl::StatusOr<BvhDocument> replacing =
-      ParseBvh(PelvisAndSpine("10 92 5 0 10 0\n20 92 5 0 10 0\n"), "a.bvh");
-  ASSERT_TRUE(replacing.ok()) << replacing.status();
-  EXPECT_EQ(FindPositionChannels(*replacing), PositionChannels::kReplaceOffset);
-  ExpectNear(BvhKinematics(*replacing).Positions(0)[1], {10, 92, 5});
-  ExpectNear(BvhKinematics(*replacing).Positions(1)[2], {20, 102, 5});
+  const BvhDocument replacing = Parse(PelvisAndSpine("10 92 5 0 10 0\n20 92 5 0 10 0\n"));
+  EXPECT_EQ(FindPositionChannels(replacing), PositionChannels::kReplaceOffset);
+  ExpectNear(BvhKinematics(replacing).Positions(0)[1], {10, 92, 5});
+  ExpectNear(BvhKinematics(replacing).Positions(1)[2], {20, 102, 5});
 
-  const absl::StatusOr<BvhDocument> adding =
-      ParseBvh(PelvisAndSpine("150 90 -190 0 0 0\n140 90 -190 0 0 0\n"), "a.bvh");
-  ASSERT_TRUE(adding.ok()) << adding.status();
-  EXPECT_EQ(FindPositionChannels(*adding), PositionChannels::kAddToOffset);
-  ExpectNear(BvhKinematics(*adding).Positions(0)[1], {300, 180, -390});
-  ExpectNear(BvhKinematics(*adding).Positions(1)[2], {290, 190, -390});
+  const BvhDocument adding = Parse(PelvisAndSpine("150 90 -190 0 0 0\n140 90 -190 0 0 0\n"));
+  EXPECT_EQ(FindPositionChannels(adding), PositionChannels::kAddToOffset);
+  ExpectNear(BvhKinematics(adding).Positions(0)[1], {300, 180, -390});
+  ExpectNear(BvhKinematics(adding).Positions(1)[2], {290, 190, -390});
 }
 
-// In the first frame the spine alone speaks for the wrong kind.
-TEST(BvhDocument, InfersPositionChannelsFromAllFrames) {
-  const absl::StatusOr<BvhDocument> document = ParseBvh(
-      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
-      "CHANNELS 1 Yposition\n}\n}\nMOTION\nFrames: 3\nFrame Time: 1\n4\n10\n9\n",
-      "a.bvh");
-  ASSERT_TRUE(document.ok()) << document.status();
-  EXPECT_EQ(FindPositionChannels(*document), PositionChannels::kReplaceOffset);
-  ExpectNear(BvhKinematics(*document).Positions(0)[1], {0, 4, 0});
+// A file with the hierarchy of one root, "a", and these values.
+BvhDocument OneRoot(const std::string& joints, int frames, const std::string& values) {
+  return Parse(absl::StrCat("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n", joints,
+                            "}\nMOTION\nFrames: ", frames, "\nFrame Time: 1\n", values, "\n"));
 }
 
-TEST(BvhDocument, OffsetsFromRoundingDoNotAffectPositionChannels) {
-  const absl::StatusOr<BvhDocument> document = ParseBvh(
-      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
-      "CHANNELS 1 Yposition\nJOINT c\n{\nOFFSET 0 1e-6 0\nCHANNELS 1 Yposition\n"
-      "JOINT d\n{\nOFFSET 0 1e-6 0\nCHANNELS 1 Yposition\n}\n}\n}\n}\n"
-      "MOTION\nFrames: 1\nFrame Time: 1\n10 0 0\n",
-      "a.bvh");
-  ASSERT_TRUE(document.ok()) << document.status();
-  EXPECT_EQ(FindPositionChannels(*document), PositionChannels::kReplaceOffset);
+std::string Joint(const std::string& name, const std::string& length,
+                  const std::string& below = "") {
+  return absl::StrCat("JOINT ", name, "\n{\nOFFSET 0 ", length, " 0\nCHANNELS 1 Yposition\n", below,
+                      "}\n");
 }
 
-// The root's channels are not those of the joint that is asked.
-TEST(BvhDocument, InfersPositionChannelsAfterThoseOfTheRoot) {
-  const absl::StatusOr<BvhDocument> document = ParseBvh(
-      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Yposition\nJOINT b\n{\nOFFSET 0 10 0\n"
-      "CHANNELS 1 Yposition\n}\n}\nMOTION\nFrames: 1\nFrame Time: 1\n0 10\n",
-      "a.bvh");
-  ASSERT_TRUE(document.ok()) << document.status();
-  EXPECT_EQ(FindPositionChannels(*document), PositionChannels::kReplaceOffset);
-}
-
-// A thousandth of a unit is rounding where bones are hundreds long.
-TEST(BvhDocument, RoundingIsRelativeToTheLongestOffset) {
-  const absl::StatusOr<BvhDocument> document = ParseBvh(
-      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 100 0\n"
-      "CHANNELS 1 Yposition\nJOINT c\n{\nOFFSET 0 1e-3 0\nCHANNELS 1 Yposition\n"
-      "JOINT d\n{\nOFFSET 0 1e-3 0\nCHANNELS 1 Yposition\n}\n}\n}\n}\n"
-      "MOTION\nFrames: 1\nFrame Time: 1\n100 0 0\n",
-      "a.bvh");
-  ASSERT_TRUE(document.ok()) << document.status();
-  EXPECT_EQ(FindPositionChannels(*document), PositionChannels::kReplaceOffset);
-}
-
-TEST(BvhDocument, PositionChannelsOfARootAreNotInferred) {
-  const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
-  ASSERT_TRUE(document.ok()) << document.status();
-  EXPECT_EQ(FindPositionChannels(*document), std::nullopt);
+TEST(BvhDocument, InfersPositionChannelsFromAllFramesAndJoints) {
+  const std::string no_channels = "CHANNELS 0\n";
+  const BvhDocument documents[] = {
+      // In the first frame, the spine alone speaks for the wrong kind.
+      OneRoot(no_channels + Joint("b", "10"), 3, "4\n10\n9"),
+      // Offsets from rounding have no vote.
+      OneRoot(no_channels + Joint("b", "10", Joint("c", "1e-6", Joint("d", "1e-6"))), 1, "10 0 0"),
+      // A thousandth of a unit is rounding where bones are hundreds long.
+      OneRoot(no_channels + Joint("b", "100", Joint("c", "1e-3", Joint("d", "1e-3"))), 1,
+              "100 0 0"),
+      // The root's channels are not those of the joint.
+      OneRoot("CHANNELS 1 Yposition\n" + Joint("b", "10"), 1, "0 10")};
+  for (const BvhDocument& document : documents) {
+    EXPECT_EQ(FindPositionChannels(document), PositionChannels::kReplaceOffset);
+  }
+  ExpectNear(BvhKinematics(documents[0]).Positions(0)[1], {0, 4, 0});
+  EXPECT_EQ(FindPositionChannels(Parse(kArm)), std::nullopt) << "those of a root are not inferred";
 }
 
 TEST(BvhDocument, WritesWhatItReads) {
-  const absl::StatusOr<BvhDocument> document = ParseBvh(kArm, "a.bvh");
-  ASSERT_TRUE(document.ok());
-  const std::string text = FormatBvh(*document);
+  const BvhDocument document = Parse(kArm);
+  const std::string text = FormatBvh(document);
   const absl::StatusOr<BvhDocument> again = ParseBvh(text, "b.bvh");
   ASSERT_TRUE(again.ok()) << again.status();
   EXPECT_EQ(FormatBvh(*again), text);
-  EXPECT_EQ(again->values, document->values);
+  EXPECT_EQ(again->values, document.values);
   EXPECT_EQ(again->joints[1].name, "Fore Arm");
 }
 
 TEST(BvhDocument, IgnoresAByteOrderMark) {
-  const absl::StatusOr<BvhDocument> document =
-      ParseBvh(absl::StrCat("\xEF\xBB\xBF", kArm), "a.bvh");
-  ASSERT_TRUE(document.ok()) << document.status();
-  EXPECT_EQ(document->values, ParseBvh(kArm, "a.bvh")->values);
+  const BvhDocument document = Parse(absl::StrCat("\xEF\xBB\xBF", kArm));
+  EXPECT_EQ(document.values, ParseBvh(kArm, "a.bvh")->values);
 }
 
 TEST(BvhDocument, NamesThePlaceOfAnError) {
@@ -262,12 +233,10 @@ TEST(BvhDocument, RejectsEndlessNesting) {
 
 TEST(BvhDocument, ReadsSeveralRoots) {
   const std::string root = "{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n}\n";
-  const absl::StatusOr<BvhDocument> document =
-      ParseBvh(absl::StrCat("HIERARCHY\nROOT a\n", root, "ROOT b\n", root,
-                            "MOTION\nFrames: 1\nFrame Time: 1\n1 2 3 4 5 6\n"),
-               "a.bvh");
-  ASSERT_TRUE(document.ok()) << document.status();
-  ExpectNear(BvhKinematics(*document).Positions(0)[1], {4, 5, 6});
+  const BvhDocument document =
+      Parse(absl::StrCat("HIERARCHY\nROOT a\n", root, "ROOT b\n", root,
+                         "MOTION\nFrames: 1\nFrame Time: 1\n1 2 3 4 5 6\n"));
+  ExpectNear(BvhKinematics(document).Positions(0)[1], {4, 5, 6});
 }
 
 }  // namespace
