@@ -312,21 +312,16 @@ absl::StatusOr<std::string> FormatChecked(Format format, const std::vector<motio
         people, skeleton, options.provenance,
         format == Format::kGlb ? gltf::GltfContainer::kBinary : gltf::GltfContainer::kText);
   }
-  if (people.size() == 1) {
-    return format == Format::kBvh   ? FormatBvhPerson(people[0], skeleton, options)
-           : format == Format::kCsv ? flat::FormatCsv(people[0])
-           : format == Format::kNpy ? flat::FormatNpy(people[0])
-                                    : flat::FormatJsonMotion(people[0], skeleton);
+  if (format == Format::kBvh) return FormatBvhPerson(people[0], skeleton, options);
+  if (format == Format::kCsv) return flat::FormatCsv(people);
+  if (format == Format::kNpy) return flat::FormatNpy(people);
+  if (format == Format::kJson) {
+    return flat::FormatJsonMotion(people, skeleton,
+                                  people.size() > 1 ? options.follower_rotations : nullptr);
   }
-  if (format == Format::kSbuText) {
-    flat::SbuOptions sbu;
-    sbu.joint_names = skeleton.joint_names;
-    return flat::FormatSbu({people[0], people[1]}, sbu);
-  }
-  const motion::ClipPair pair{people[0], people[1]};
-  if (format == Format::kCsv) return flat::FormatCsv(pair);
-  if (format == Format::kNpy) return flat::FormatNpy(pair);
-  return flat::FormatJsonMotion(pair, skeleton, options.follower_rotations);
+  flat::SbuOptions sbu;
+  sbu.joint_names = skeleton.joint_names;
+  return flat::FormatSbu({people[0], people[1]}, sbu);
 }
 
 absl::StatusOr<std::vector<fs::path>> WriteBvhPair(const fs::path& path,

@@ -184,7 +184,7 @@ void WriteCsvPair(const fs::path& from, const fs::path& to) {
     for (motion::Vec3& p : clip->poses.all()) p = {p.x, -p.z, p.y};
   }
   fs::create_directories(to);
-  WriteTestFile(to / "kick_01.csv", formats::flat::FormatCsv(pair));
+  WriteTestFile(to / "kick_01.csv", formats::flat::FormatCsv({pair.leader, pair.follower}));
 }
 
 TEST_F(ImportTest, InfersUnitAndAxisFromPositions) {

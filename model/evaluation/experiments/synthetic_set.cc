@@ -217,7 +217,7 @@ absl::Status WriteSyntheticJobs(const dataset::Dataset& dataset,
     // One person: the folder never contains the captured follower.
     DUET_RETURN_IF_ERROR(base::WriteFile(
         folder / leader,
-        formats::flat::FormatJsonMotion(job.sequence.pair.leader, dataset.skeleton)));
+        formats::flat::FormatJsonMotion({job.sequence.pair.leader}, dataset.skeleton)));
   }
   return base::WriteFile(folder / "manifest.tsv", lines);
 }

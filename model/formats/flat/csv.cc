@@ -377,34 +377,27 @@ void AppendFrame(const motion::Clip& clip, int frame, std::string* out) {
   }
 }
 
-// One person without a prefix, or a leader and a follower.
-std::string Format(const std::vector<const motion::Clip*>& people) {
-  std::string text = "# duet motion: frame_rate_hz=";
-  base::AppendNumber(&text, people[0]->frame_rate_hz);
-  absl::StrAppend(&text, " unit=", LengthUnitName(motion::LengthUnit::kMetres),
-                  " up_axis=", UpAxisName(motion::UpAxis::kYUp), "\nframe");
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    AppendHeader(people.size() == 1 ? "" : kPrefixes[i], *people[i], &text);
-  }
-  text += '\n';
-  for (int frame = 0; frame < people[0]->frame_count(); ++frame) {
-    absl::StrAppend(&text, frame);
-    for (const motion::Clip* person : people) AppendFrame(*person, frame, &text);
-    text += '\n';
-  }
-  return text;
-}
-
 }  // namespace
 
 absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source) {
   return CsvParser(text, source).Parse();
 }
 
-std::string FormatCsv(const motion::ClipPair& pair) {
-  return Format({&pair.leader, &pair.follower});
+std::string FormatCsv(const std::vector<motion::Clip>& people) {
+  std::string text = "# duet motion: frame_rate_hz=";
+  base::AppendNumber(&text, people[0].frame_rate_hz);
+  absl::StrAppend(&text, " unit=", LengthUnitName(motion::LengthUnit::kMetres),
+                  " up_axis=", UpAxisName(motion::UpAxis::kYUp), "\nframe");
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    AppendHeader(people.size() == 1 ? "" : kPrefixes[i], people[i], &text);
+  }
+  text += '\n';
+  for (int frame = 0; frame < people[0].frame_count(); ++frame) {
+    absl::StrAppend(&text, frame);
+    for (const motion::Clip& person : people) AppendFrame(person, frame, &text);
+    text += '\n';
+  }
+  return text;
 }
-
-std::string FormatCsv(const motion::Clip& person) { return Format({&person}); }
 
 }  // namespace duet::formats::flat

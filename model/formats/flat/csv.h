@@ -2,6 +2,7 @@
 #define DUET_MODEL_FORMATS_FLAT_CSV_H_
 
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
@@ -25,9 +26,8 @@ namespace duet::formats::flat {
 // Errors: INVALID_ARGUMENT "source:line: column 4: expected ..., got ...".
 absl::StatusOr<motion::RecordedMotion> ParseCsv(absl::string_view text, absl::string_view source);
 
-// Writes metres, y up. Requires a pair that CheckPair accepts, or a person that CheckClip accepts.
-std::string FormatCsv(const motion::ClipPair& pair);
-std::string FormatCsv(const motion::Clip& person);
+// Writes metres, y up. Requires one person, or a leader and a follower, whom CheckPeople accepts.
+std::string FormatCsv(const std::vector<motion::Clip>& people);
 
 }  // namespace duet::formats::flat
 

@@ -279,18 +279,12 @@ absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
   return motion;
 }
 
-std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
+std::string FormatJsonMotion(const std::vector<motion::Clip>& people,
+                             const motion::Skeleton& skeleton,
                              const motion::JointRotations* rotations) {
-  std::string text = FormatSettings(pair.leader, skeleton);
-  AppendPerson(kPeople[0], pair.leader, &text);
-  AppendPerson(kPeople[1], pair.follower, &text);
+  std::string text = FormatSettings(people[0], skeleton);
+  for (std::size_t i = 0; i < people.size(); ++i) AppendPerson(kPeople[i], people[i], &text);
   if (rotations != nullptr) AppendRotations(*rotations, &text);
-  return text + "}\n";
-}
-
-std::string FormatJsonMotion(const motion::Clip& person, const motion::Skeleton& skeleton) {
-  std::string text = FormatSettings(person, skeleton);
-  AppendPerson(kPeople[0], person, &text);
   return text + "}\n";
 }
 

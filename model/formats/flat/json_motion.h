@@ -27,16 +27,15 @@ namespace duet::formats::flat {
 absl::StatusOr<motion::RecordedMotion> ParseJsonMotion(absl::string_view text,
                                                        absl::string_view source);
 
-// Writes metres, y up. Requires a pair that CheckPair accepts, or one person that CheckClip
-// accepts, with the skeleton's joints.
+// Writes metres, y up. Requires one person, or a leader and a follower, whom CheckPeople accepts.
 //
 // `rotations` of the follower may be null; they add the fields
 //   "rig": [{"name": "torso", "parent": -1, "offset": [x, y, z], "joint": 2}, ...],
 //   "rotations": [[[x, y, z, w], ... rig joints], ... frames]
 // with the meaning of docs/rotations.md. ParseJsonMotion ignores them.
-std::string FormatJsonMotion(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
+std::string FormatJsonMotion(const std::vector<motion::Clip>& people,
+                             const motion::Skeleton& skeleton,
                              const motion::JointRotations* rotations = nullptr);
-std::string FormatJsonMotion(const motion::Clip& person, const motion::Skeleton& skeleton);
 
 }  // namespace duet::formats::flat
 

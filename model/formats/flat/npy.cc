@@ -194,11 +194,6 @@ std::string FormatNpyArray(const std::vector<int>& shape, absl::Span<const float
   return bytes;
 }
 
-// The positions of all frames and joints, one after the other.
-absl::Span<const float> Values(absl::Span<const motion::Vec3> positions) {
-  return {reinterpret_cast<const float*>(positions.data()), 3 * positions.size()};
-}
-
 }  // namespace
 
 absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::string_view source,
@@ -208,15 +203,14 @@ absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::s
   return NpyParser(*std::move(header), source).Parse(joint_names);
 }
 
-std::string FormatNpy(const motion::ClipPair& pair) {
-  std::vector<motion::Vec3> both(pair.leader.poses.all().begin(), pair.leader.poses.all().end());
-  both.insert(both.end(), pair.follower.poses.all().begin(), pair.follower.poses.all().end());
-  return FormatNpyArray({2, pair.leader.frame_count(), pair.leader.joint_count(), 3}, Values(both));
-}
-
-std::string FormatNpy(const motion::Clip& person) {
-  return FormatNpyArray({person.frame_count(), person.joint_count(), 3},
-                        Values(person.poses.all()));
+std::string FormatNpy(const std::vector<motion::Clip>& people) {
+  std::vector<motion::Vec3> all;
+  for (const motion::Clip& person : people) {
+    all.insert(all.end(), person.poses.all().begin(), person.poses.all().end());
+  }
+  std::vector<int> shape = {people[0].frame_count(), people[0].joint_count(), 3};
+  if (people.size() > 1) shape.insert(shape.begin(), 2);
+  return FormatNpyArray(shape, {reinterpret_cast<const float*>(all.data()), 3 * all.size()});
 }
 
 }  // namespace duet::formats::flat

@@ -21,9 +21,8 @@ absl::StatusOr<motion::RecordedMotion> ParseNpy(absl::string_view bytes, absl::s
                                                 const std::vector<std::string>& joint_names);
 
 // Writes float32 [2, frames, joints, 3], leader first, or [frames, joints, 3] for one person.
-// Requires a pair that CheckPair accepts, or one person that CheckClip accepts.
-std::string FormatNpy(const motion::ClipPair& pair);
-std::string FormatNpy(const motion::Clip& person);
+// Requires people whom CheckPeople accepts.
+std::string FormatNpy(const std::vector<motion::Clip>& people);
 
 }  // namespace duet::formats::flat
 

@@ -156,14 +156,15 @@ TEST(Csv, RejectsEveryTruncationExceptInTheLastValue) {
 TEST(Csv, ReadsBackAPairExactly) {
   motion::ClipPair pair{test::MakePerson(), test::MakePerson({60, 3, 0, {0, 1, 1.2f}, 30})};
   pair.leader.frame_rate_hz = pair.follower.frame_rate_hz = 29.97;
-  const absl::StatusOr<motion::RecordedMotion> motion = ParseCsv(FormatCsv(pair), "a.csv");
+  const absl::StatusOr<motion::RecordedMotion> motion =
+      ParseCsv(FormatCsv({pair.leader, pair.follower}), "a.csv");
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 2u);
   EXPECT_EQ(motion->people[0].joint_names, pair.leader.joint_names);
   EXPECT_EQ(motion->people[0].poses, pair.leader.poses);
   EXPECT_EQ(motion->people[1].poses, pair.follower.poses);
   EXPECT_EQ(motion->people[1].frame_rate_hz, 29.97);
-  EXPECT_THAT(FormatCsv(pair),
+  EXPECT_THAT(FormatCsv({pair.leader, pair.follower}),
               ::testing::StartsWith("# duet motion: frame_rate_hz=29.97 unit=metres "
                                     "up_axis=y-up\nframe,leader.head_x,"));
 }

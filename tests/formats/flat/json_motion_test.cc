@@ -47,7 +47,7 @@ TEST(JsonMotion, ReadsOnePerson) {
 
 TEST(JsonMotion, ReadsBackAPairExactly) {
   const motion::ClipPair pair{test::MakePerson(), test::MakePerson({60, 3, 0, {0, 1, 1.2f}, 30})};
-  const std::string text = FormatJsonMotion(pair, motion::SbuSkeleton());
+  const std::string text = FormatJsonMotion({pair.leader, pair.follower}, motion::SbuSkeleton());
   const absl::StatusOr<motion::RecordedMotion> motion = ParseJsonMotion(text, "a.json");
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 2u);
@@ -69,7 +69,8 @@ TEST(JsonMotion, WritesTheFollowersRotationsBesideThePair) {
   motion::JointRotations rotations;
   rotations.rig = {{"torso", -1, {}, 2}, {"neck", 0, {0, 0.25f, 0}, 1}};
   rotations.rotations = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}, {0.5f, 0.5f, -0.5f, 0.5f}};
-  const std::string text = FormatJsonMotion(pair, motion::SbuSkeleton(), &rotations);
+  const std::string text =
+      FormatJsonMotion({pair.leader, pair.follower}, motion::SbuSkeleton(), &rotations);
   const Json document = Json::parse(text);
   EXPECT_EQ(document["rig"][1], Json::parse(R"({"name": "neck", "parent": 0, "joint": 1,
                                                "offset": [0.0, 0.25, 0.0]})"));

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
@@ -17,7 +18,7 @@
 namespace duet::formats::flat {
 namespace {
 
-motion::ClipPair MakePair() {
+std::vector<motion::Clip> MakePair() {
   return {test::MakePerson({12}), test::MakePerson({12, 3, 0, {0, 1, 1.2f}, 30})};
 }
 
@@ -33,27 +34,27 @@ std::string Replaced(const std::string& from, const std::string& to) {
 }
 
 TEST(Npy, ReadsBackAPairExactly) {
-  const motion::ClipPair pair = MakePair();
+  const std::vector<motion::Clip> pair = MakePair();
   const absl::StatusOr<motion::RecordedMotion> motion =
-      ParseNpy(FormatNpy(pair), "a.npy", pair.leader.joint_names);
+      ParseNpy(FormatNpy(pair), "a.npy", pair[0].joint_names);
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 2u);
-  EXPECT_EQ(motion->people[0].poses, pair.leader.poses);
-  EXPECT_EQ(motion->people[1].poses, pair.follower.poses);
+  EXPECT_EQ(motion->people[0].poses, pair[0].poses);
+  EXPECT_EQ(motion->people[1].poses, pair[1].poses);
   EXPECT_EQ(motion->people[0].frame_rate_hz, 0);
 }
 
 // Versions 2 and 3 have four bytes for the length of the header where version 1 has two.
 TEST(Npy, ReadsLaterVersionsOfTheFormat) {
-  const motion::ClipPair pair = MakePair();
+  const std::vector<motion::Clip> pair = MakePair();
   for (const char version : {'\x02', '\x03'}) {
     std::string bytes = FormatNpy(pair);
     bytes[6] = version;
     bytes.insert(10, 2, '\0');
     const absl::StatusOr<motion::RecordedMotion> motion =
-        ParseNpy(bytes, "a.npy", pair.leader.joint_names);
+        ParseNpy(bytes, "a.npy", pair[0].joint_names);
     ASSERT_TRUE(motion.ok()) << motion.status();
-    EXPECT_EQ(motion->people[1].poses, pair.follower.poses);
+    EXPECT_EQ(motion->people[1].poses, pair[1].poses);
   }
   for (const char version : {'\0', '\x04'}) {
     std::string bytes = FormatNpy(pair);
@@ -75,7 +76,7 @@ TEST(Npy, IsReadAndWrittenByNumPy) {
   }
   const test::TemporaryFolder folder;
   const std::filesystem::path ours = folder / "duet_ours.npy", theirs = folder / "duet_theirs.npy";
-  const motion::ClipPair pair = MakePair();
+  const std::vector<motion::Clip> pair = MakePair();
   ASSERT_TRUE(base::WriteFile(ours, FormatNpy(pair)).ok());
   const std::string script =
       absl::StrCat("import numpy as n; a = n.load('", ours.string(),
@@ -85,11 +86,11 @@ TEST(Npy, IsReadAndWrittenByNumPy) {
   const absl::StatusOr<std::string> bytes = base::ReadFile(theirs, 1 << 20, "an array");
   ASSERT_TRUE(bytes.ok()) << bytes.status();
   const absl::StatusOr<motion::RecordedMotion> motion =
-      ParseNpy(*bytes, "b.npy", pair.leader.joint_names);
+      ParseNpy(*bytes, "b.npy", pair[0].joint_names);
   ASSERT_TRUE(motion.ok()) << motion.status();
   ASSERT_EQ(motion->people.size(), 1u);
   ASSERT_EQ(motion->people[0].frame_count(), 12);
-  EXPECT_EQ(motion->people[0].at(11, 14), 2 * pair.follower.at(11, 14));
+  EXPECT_EQ(motion->people[0].at(11, 14), 2 * pair[1].at(11, 14));
 }
 
 TEST(Npy, RejectsOtherArrays) {
