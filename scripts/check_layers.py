@@ -75,7 +75,7 @@ LAYERS = (
                 "training", "metrics", "protocol"),
           source_libraries=("torch",)),
     Layer("report", "model/evaluation/report",
-          sees=("base", "motion", "body", "dataset", "solver", "metrics")),
+          sees=("base", "motion", "dataset", "metrics")),
     Layer("experiments", "model/evaluation/experiments",
           sees=MOTION_FILES + MODELS + ("authoring", "body", "dataset", "metrics", "protocol",
                                         "baselines", "judge", "report"),

@@ -71,7 +71,6 @@ train() {
 # Measures the model that samples beside the deterministic one.
 sampled() {
   local models=(--runs "flow=${runs}/flow" --runs "ours=${runs}/default")
-  "${bin}/duet-eval" direction --data "${data}" --out "${results}" --runs "flow=${runs}/flow"
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" \
     --runs "flow=${runs}/flow-1" --runs "flow=${runs}/flow-2" --id 14_samples
   "${bin}/duet-eval" samples --data "${data}" --out "${results}" "${models[@]}" --starts none \
@@ -88,7 +87,6 @@ sampled() {
 
 measure() {
   local config half named=("full=${runs}/ablation/default") sets=()
-  "${bin}/duet-eval" data --data "${data}" --out "${results}"
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 10_methods \
     --title "Methods: leave one subject out" --baselines "${methods}" --printed afd,fid \
     --runs "ours=${runs}/default" --runs "mshl22=${runs}/mshl22" \

@@ -7,7 +7,6 @@
 #include "absl/strings/str_join.h"
 #include "model/base/text.h"
 #include "model/evaluation/baselines/class_models.h"
-#include "model/evaluation/baselines/other_people.h"
 
 namespace duet::evaluation::baselines {
 namespace {
@@ -60,7 +59,10 @@ class FrozenFirstFrame : public protocol::Method {
     return absl::OkStatus();
   }
   absl::StatusOr<motion::Poses> Predict(const dataset::Sequence& sequence) const override {
-    return FirstPoseHeld(sequence);
+    const motion::Poses& captured = sequence.pair.follower.poses;
+    motion::Poses held(0, captured.joint_count());
+    for (int t = 0; t < sequence.pair.leader.frame_count(); ++t) held.Append(captured[0]);
+    return held;
   }
   bool reads_first_pose() const override { return true; }
 };

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <iterator>
-#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -86,24 +85,6 @@ std::vector<float> OneClass(int classes, int interaction_class) {
   std::vector<float> weights(static_cast<size_t>(classes));
   weights[static_cast<size_t>(interaction_class)] = 1;
   return weights;
-}
-
-engine::LabelTrack TimeLineLabels(const dataset::Sequence& sequence, int classes) {
-  const auto at = [&](int frame) {
-    std::vector<float> weights(static_cast<size_t>(classes));
-    for (const dataset::LabelSpan& span : sequence.labels) {
-      if (span.begin > frame || frame >= span.end) continue;
-      weights[static_cast<size_t>(span.interaction_class)] = 1;
-    }
-    return weights;
-  };
-  std::set<int> edges;
-  for (const dataset::LabelSpan& span : sequence.labels) edges.insert({span.begin, span.end});
-  engine::LabelTrack labels(at(0));
-  for (const int edge : edges) {
-    if (edge > 0) labels.Change(edge, /*ease_frames=*/0, at(edge));
-  }
-  return labels;
 }
 
 absl::StatusOr<std::vector<motion::Poses>> SynthesizeSequences(

@@ -60,9 +60,6 @@ absl::StatusOr<motion::Poses> SynthesizeSequence(const engine::Synthesizer& synt
 // The label vector of one class at weight 1. Shapes: returns [classes].
 std::vector<float> OneClass(int classes, int interaction_class);
 
-// The classes of a sequence's time line as label weights: 1 for each class of a frame.
-engine::LabelTrack TimeLineLabels(const dataset::Sequence& sequence, int classes);
-
 // A leader, the labels to answer it with, and the sampling of the answer.
 struct LabelledLeader {
   const dataset::Sequence* sequence;

@@ -14,17 +14,12 @@ using ChosenCommand = std::function<absl::Status()>;
 
 void AddFoldsCommand(CLI::App* app, ChosenCommand* chosen);         // figures of methods by class
 void AddSamplesCommand(CLI::App* app, ChosenCommand* chosen);       // many answers to one leader
-void AddDanceCommand(CLI::App* app, ChosenCommand* chosen);         // whole takes of a dance
 void AddPlausibleCommand(CLI::App* app, ChosenCommand* chosen);     // what a viewer notices
 void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen);     // from captured ones
 void AddSweepCommand(CLI::App* app, ChosenCommand* chosen);         // label weights
 void AddMixesCommand(CLI::App* app, ChosenCommand* chosen);         // mixes, negatives, reaction
 void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen);  // the paper's Table 6
 void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6 and 7
-void AddDataCommand(CLI::App* app, ChosenCommand* chosen);          // tilt, noise and leaders
-void AddDirectionCommand(CLI::App* app, ChosenCommand* chosen);     // where the partner is
-void AddLiveCommand(CLI::App* app, ChosenCommand* chosen);          // reactions of live followers
-void AddHourCommand(CLI::App* app, ChosenCommand* chosen);          // an hour of live followers
 void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen);         // for duet batch's filter
 
 }  // namespace duet::evaluation::program

@@ -19,11 +19,9 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   program::ChosenCommand chosen;
   for (const auto add :
-       {program::AddFoldsCommand, program::AddSamplesCommand, program::AddDanceCommand,
-        program::AddPlausibleCommand, program::AddToldApartCommand, program::AddSweepCommand,
-        program::AddMixesCommand, program::AddAugmentationCommand, program::AddLatentCommand,
-        program::AddDataCommand, program::AddJudgeCommand, program::AddDirectionCommand,
-        program::AddLiveCommand, program::AddHourCommand}) {
+       {program::AddFoldsCommand, program::AddSamplesCommand, program::AddPlausibleCommand,
+        program::AddToldApartCommand, program::AddSweepCommand, program::AddMixesCommand,
+        program::AddAugmentationCommand, program::AddLatentCommand, program::AddJudgeCommand}) {
     add(&app, &chosen);
   }
   if (const std::optional<int> code = duet::base::ParseFlags(argc, argv, &app)) return *code;

@@ -147,14 +147,4 @@ report::ResultSection BeginAnswers(const ExperimentFlags& flags, const Experimen
   return section;
 }
 
-absl::Status FinishModelTables(const SectionFlags& flags, const ModelChoice& models,
-                               const MeasureModel& measure, report::ResultSection section) {
-  DUET_TRY(std::vector<FoldModel> opened, OpenModels(models));
-  for (const FoldModel& model : opened) {
-    DUET_TRY(SharedSynthesizer synthesizer, model.load(""));
-    DUET_TRY(section.tables.emplace_back(), measure(model.name, *synthesizer));
-  }
-  return FinishSection(flags, section);
-}
-
 }  // namespace duet::evaluation::program

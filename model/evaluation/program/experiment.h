@@ -105,15 +105,6 @@ report::ResultSection BeginExperiment(const ExperimentFlags& flags, const Experi
 report::ResultSection BeginAnswers(const ExperimentFlags& flags, const Experiment& experiment,
                                    const std::string& text);
 
-// Measures one model, which has this name in the tables.
-using MeasureModel = std::function<absl::StatusOr<report::Table>(const std::string& name,
-                                                                 const engine::Synthesizer& model)>;
-
-// Adds a table for each model of the command line, loaded without a fold, and finishes the section.
-// Errors: those of OpenModels, of loading a model, of `measure` and of FinishSection.
-absl::Status FinishModelTables(const SectionFlags& flags, const ModelChoice& models,
-                               const MeasureModel& measure, report::ResultSection section);
-
 }  // namespace duet::evaluation::program
 
 #endif  // DUET_MODEL_EVALUATION_PROGRAM_EXPERIMENT_H_

@@ -160,16 +160,13 @@ void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command) {
       ->check(CLI::Range(0, 10));
 }
 
-std::string LiveText(const experiments::AskedSamples& asked) {
-  return asked.live_delay ? absl::StrCat(*asked.live_delay, " frames of delay") : "no";
-}
-
 void AddSamplingSettings(const experiments::AskedSamples& asked, report::ResultSection* section) {
-  section->settings.insert(section->settings.end(), {{"variety", absl::StrCat(asked.variety)},
-                                                     {"candidates", absl::StrCat(asked.candidates)},
-                                                     {"reaction", absl::StrCat(asked.reaction)},
-                                                     {"seed", absl::StrCat(asked.seed)},
-                                                     {"live", LiveText(asked)}});
+  section->settings.insert(
+      section->settings.end(),
+      {{"variety", absl::StrCat(asked.variety)},
+       {"candidates", absl::StrCat(asked.candidates)},
+       {"seed", absl::StrCat(asked.seed)},
+       {"live", asked.live_delay ? absl::StrCat(*asked.live_delay, " frames of delay") : "no"}});
 }
 
 }  // namespace duet::evaluation::program

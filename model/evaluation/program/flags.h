@@ -112,8 +112,6 @@ void AddSeedFlag(uint64_t* seed, CLI::App* command);
 // --variety, --candidates, --reaction, --seed, --live
 void AddSamplingFlags(experiments::AskedSamples* asked, CLI::App* command);
 
-// Whether the answers are live, for a section's settings: "no", or the delay of the session.
-std::string LiveText(const experiments::AskedSamples& asked);
 // The values of AddSamplingFlags as settings of a section.
 void AddSamplingSettings(const experiments::AskedSamples& asked, report::ResultSection* section);
 

@@ -15,7 +15,6 @@
 #include "model/dataset/lone_leaders.h"
 #include "model/engine/live_synthesis.h"
 #include "model/evaluation/experiments/answers.h"
-#include "model/evaluation/experiments/looped_leaders.h"
 #include "model/evaluation/experiments/plausibility.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
@@ -262,8 +261,10 @@ absl::Status AddModel(const PlausibleArguments& arguments, const std::string& na
   }
   if (model.skeleton.joint_names == motion::SbuSkeleton().joint_names) {
     for (const char* const made : authoring::kMadeLeaders) {
-      leaders.push_back(
-          experiments::MakeLeaderSequence(made, arguments.seconds, model.frame_rate_hz));
+      dataset::Sequence& leader = leaders.emplace_back();
+      leader.id = made;
+      leader.pair.leader = {model.skeleton.joint_names, model.frame_rate_hz,
+                            authoring::MakeLeader(made, arguments.seconds, model.frame_rate_hz)};
     }
   }
   std::vector<Answer> answers;

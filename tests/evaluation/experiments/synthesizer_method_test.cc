@@ -57,21 +57,6 @@ TEST(SynthesizeSequences, AnswersClipsOfAnyLengthTogether) {
   }
 }
 
-TEST(TimeLineLabels, AreOneForTheClassesOfAFrame) {
-  dataset::Sequence sequence;
-  sequence.labels = {{0, 0, 10}, {1, 5, 20}};
-  const engine::LabelTrack track = TimeLineLabels(sequence, 2);
-  const auto at = [&](int frame) {
-    std::vector<float> weights(2);
-    track.At(frame, weights.data());
-    return weights;
-  };
-  for (const int frame : {0, 4}) EXPECT_THAT(at(frame), ElementsAre(1, 0)) << frame;
-  for (const int frame : {5, 9}) EXPECT_THAT(at(frame), ElementsAre(1, 1)) << frame;
-  for (const int frame : {10, 19}) EXPECT_THAT(at(frame), ElementsAre(0, 1)) << frame;
-  EXPECT_THAT(at(20), ElementsAre(0, 0));
-}
-
 TEST(SynthesizeSequences, PassesAFailureOn) {
   const dataset::Dataset dataset = MadeUpPairs(2);
   FakeSynthesizer model;

@@ -1,4 +1,4 @@
-#include "model/evaluation/experiments/looped_leaders.h"
+#include "model/authoring/made_leaders.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,12 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/authoring/made_leaders.h"
 #include "model/body/liveliness.h"
 #include "model/body/motion_quality.h"
 #include "model/body/posture.h"
-#include "tests/evaluation/support/made_up_pairs.h"
-#include "tests/support/sample_motion.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -75,56 +72,6 @@ TEST(MadeLeadersTest, MoveAsTheirNamesSay) {
   }
   const motion::Poses sit = made("sit");
   EXPECT_LT(sit.at(5 * 15, skeleton.root).y, sit.at(0, skeleton.root).y - 0.3f);
-}
-
-TEST(LoopTakeTest, NeedsMoreThanTheTwoFades) {
-  dataset::Sequence take;
-  take.pair.leader = {motion::SbuSkeleton().joint_names, kLeaderRate,
-                      duet::test::SwayingMotion(15, kLeaderRate)};
-  EXPECT_FALSE(IsLoopable(take));
-  take.pair.leader.poses = duet::test::SwayingMotion(16, kLeaderRate);
-  EXPECT_TRUE(IsLoopable(take));
-}
-
-TEST(LoopTakeTest, RepeatsTheLabelsWithTheLeader) {
-  dataset::Dataset dataset = duet::test::MadeUpPairs(1);
-  dataset.frame_rate_hz = kLeaderRate;
-  dataset::Sequence take;
-  take.pair.leader = {dataset.skeleton.joint_names, kLeaderRate,
-                      duet::test::SwayingMotion(60, kLeaderRate)};
-  take.pair.follower = take.pair.leader;
-  take.labels = {{1, 0, 20}, {2, 30, 60}};
-  ASSERT_TRUE(IsLoopable(take));
-  const dataset::Sequence looped = LoopTake(dataset, take, 8);
-  EXPECT_EQ(looped.pair.leader.frame_count(), 121);
-  EXPECT_EQ(looped.pair.follower.frame_count(), 1);
-  // The last half second (8 frames) of the take is faded into its next beginning.
-  ASSERT_EQ(LoopFrames(dataset, take), 52);
-  ASSERT_EQ(looped.labels.size(), 5u);
-  const int begins[] = {0, 30, 52, 82, 104}, ends[] = {20, 52, 72, 104, 121};
-  for (size_t i = 0; i < looped.labels.size(); ++i) {
-    EXPECT_EQ(looped.labels[i].interaction_class, i % 2 == 0 ? 1 : 2) << i;
-    EXPECT_EQ(looped.labels[i].begin, begins[i]) << i;
-    EXPECT_EQ(looped.labels[i].end, ends[i]) << i;
-  }
-}
-
-TEST(LoopClipsTest, JoinsClipsWithoutAJump) {
-  const motion::Skeleton skeleton = motion::SbuSkeleton();
-  const motion::Poses clip = test::SwayingMotion(40, kLeaderRate);
-  motion::Poses elsewhere = clip;
-  for (motion::Vec3& p : elsewhere.all()) p = RotateY(p, 2) + motion::Vec3{5, 0, -3};
-  const motion::Poses looped = LoopClips(skeleton, {clip, elsewhere}, 20, kLeaderRate);
-  ASSERT_EQ(looped.frame_count(), 301);
-  EXPECT_LT(LargestStep(looped), 3 * LargestStep(clip));
-  // Every clip begins where the first one does.
-  const int next = 40 - 8;
-  float farthest = 0;
-  for (int t = 0; t < looped.frame_count(); ++t) {
-    farthest = std::max(farthest, Distance(looped.at(t, skeleton.root), clip.at(0, skeleton.root)));
-  }
-  EXPECT_LT(farthest, 0.6f);
-  EXPECT_NEAR(Distance(looped.at(next + 20, skeleton.root), clip.at(20, skeleton.root)), 0, 1e-3);
 }
 
 }  // namespace
