@@ -1,0 +1,180 @@
+import contextlib
+import importlib.util
+import io
+import json
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+HAS_NUMPY = importlib.util.find_spec("numpy") is not None
+
+if HAS_NUMPY:
+    import make_everyday
+    import numpy
+    from everyday import captures, dataset_folder, staged
+
+JOINTS = ("Hips", "Spine", "Chest", "Neck", "Head", "HeadTop",
+          "LShoulder", "LElbow", "LWrist", "LHand", "RShoulder", "RElbow", "RWrist", "RHand",
+          "LHip", "LKnee", "LAnkle", "LToe", "RHip", "RKnee", "RAnkle", "RToe")
+PARENTS = (-1, 0, 1, 2, 3, 4, 2, 6, 7, 8, 2, 10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20)
+FLOOR = (1, 0, 1)
+
+
+def person(frames, speed=0.0):
+    """A body that faces +z, raises its right hand and walks ahead: [frames, joints, 3], metres."""
+    limb = {"Shoulder": (.2, 1.4, 0), "Elbow": (.25, 1.2, .1), "Wrist": (.2, 1.1, .3),
+            "Hand": (.2, 1.1, .4), "Hip": (.1, .9, 0), "Knee": (.1, .5, 0), "Ankle": (.1, .1, 0),
+            "Toe": (.1, .05, .15)}
+    middle = {"Hips": .95, "Spine": 1.1, "Chest": 1.3, "Neck": 1.5, "Head": 1.6, "HeadTop": 1.75}
+    pose = [(0, middle[name], 0) if name in middle
+            else numpy.array(limb[name[1:]]) * [1 if name[0] == "L" else -1, 1, 1] for name in JOINTS]
+    motion = numpy.repeat(numpy.array(pose, dtype=float)[None], frames, axis=0)
+    motion[:, JOINTS.index("RHand"), 1] += numpy.linspace(0, 0.5, frames)
+    motion[..., 2] += speed * numpy.arange(frames)[:, None]
+    return motion
+
+
+def archive(rate=60, **arrays):
+    return captures.Archive("people.npz", JOINTS, PARENTS, rate, arrays)
+
+
+@unittest.skipUnless(HAS_NUMPY, "needs python3-numpy")
+class CapturesTest(unittest.TestCase):
+    def pairs(self, spans, glitches=None, frames=300, left_out=False):
+        people = archive(a_18_01=person(frames), b_19_01=person(frames) + [0, 0, 1])
+        return captures.pairs(people, {"18_01": (1, left_out, spans)}, glitches or {})
+
+    def test_a_pair_begins_and_ends_with_its_classes(self):
+        pair, = self.pairs([("talk", 1.0, 3.0), ("walk", 2.0, 4.0)])
+        self.assertEqual((pair.name, pair.leader, pair.subjects), ("18_01", 1, ("18_01",)))
+        self.assertEqual(pair.spans, (("talk", 0, 2), ("walk", 1, 3)))
+        self.assertEqual([len(one) for one in pair.people], [90, 90])
+        height = pair.people[0][0, JOINTS.index("RHand"), 1]
+        self.assertAlmostEqual(height, 1.1 + .5 * 60 / 299, delta=.002)
+
+    def test_frames_with_glitches_are_left_out(self):
+        first, second = self.pairs([("talk", 0, 5)], {"b_19_01": [(100, 120)]})
+        self.assertEqual((first.name, second.name), ("18_01", "18_01_2"))
+        self.assertAlmostEqual(first.seconds, 100 / 60, delta=.05)
+        self.assertAlmostEqual(second.seconds, 179 / 60, delta=.05)
+
+    def test_short_stretches_are_dropped(self):
+        self.assertEqual(self.pairs([("talk", 0, 0.9)]), [])
+
+    def test_a_left_out_trial_has_a_second_subject(self):
+        self.assertEqual(self.pairs([("talk", 0, 5)], left_out=True)[0].subjects,
+                         ("18_01", captures.LEFT_OUT))
+
+    def test_a_missing_or_shorter_partner_is_named(self):
+        for partner, message in (({}, "b_19_01: expected an array, got none"),
+                                 ({"b_19_01": person(5)}, "b_19_01: expected 300 frames")):
+            with self.subTest(message), self.assertRaisesRegex(captures.CaptureError, message):
+                captures.pairs(archive(a_18_01=person(300), **partner),
+                               {"18_01": (0, False, [("talk", 0, 5)])}, {})
+
+    def test_the_stretches_name_known_classes(self):
+        trials = captures.read_stretches(make_everyday.STRETCHES)
+        named = {span[0] for _, _, spans in trials.values() for span in spans}
+        self.assertEqual(named, set(dataset_folder.CLASSES))
+        for name in named:
+            held = [left_out for _, left_out, spans in trials.values()
+                    if name in {span[0] for span in spans}]
+            self.assertGreaterEqual(len(held), 3, name)
+            self.assertTrue(any(held) and not all(held), name)
+
+
+@unittest.skipUnless(HAS_NUMPY, "needs python3-numpy")
+class StagedTest(unittest.TestCase):
+    def setUp(self):
+        self.random = numpy.random.default_rng(1)
+
+    def test_walkers_keep_beside_each_other(self):
+        leader, follower = staged.beside(person(90, speed=.03), JOINTS, self.random)
+        apart = (follower - leader)[:, 0] * FLOOR
+        distances = numpy.linalg.norm(apart, axis=1)
+        self.assertGreater(distances.min(), staged.BESIDE_METRES[0] - .01)
+        self.assertLess(distances.max(), staged.BESIDE_METRES[1] + .2)  # late by some frames
+
+    def test_a_mirror_image_raises_the_other_hand_face_to_face(self):
+        leader, follower = staged.mirror(person(90), JOINTS, self.random)
+        self.assertGreater(leader[-1, JOINTS.index("RHand"), 1], 1.5)
+        self.assertGreater(follower[-1, JOINTS.index("LHand"), 1], 1.5)
+        self.assertLess(follower[-1, JOINTS.index("RHand"), 1], 1.2)
+        for pose, ahead in ((leader[0], 1), (follower[0], -1)):
+            self.assertGreater(ahead * (pose[JOINTS.index("LToe")] - pose[JOINTS.index("LAnkle")])[2], 0)
+        self.assertIsNone(staged.mirror(person(90, speed=.03), JOINTS, self.random))
+
+    def test_talkers_face_each_other(self):
+        leader, follower = staged.facing(person(90), person(60), JOINTS, self.random)
+        self.assertEqual((len(leader), len(follower)), (60, 60))
+        distance = follower[0, 0, 2] - leader[0, 0, 2]
+        self.assertTrue(staged.FACING_METRES[0] <= distance <= staged.FACING_METRES[1])
+
+
+@unittest.skipUnless(HAS_NUMPY, "needs python3-numpy")
+class MakeEverydayTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.out = self.folder / "out"
+
+    def write(self, name, rate, **arrays):
+        numpy.savez(self.folder / name, joints=numpy.array(JOINTS), parents=numpy.array(PARENTS),
+                    fps=rate, **arrays)
+        return str(self.folder / name)
+
+    def make(self, **changed):
+        pair = {"a_18_01": person(150), "b_19_01": person(150), **changed}
+        (self.folder / "stretches.tsv").write_text(
+            "trial\tleader\tclass\tfrom_seconds\tto_seconds\tleft_out\n18_01\ta\ttalk\t0\t2.4\tno\n")
+        (self.folder / "single.tsv").write_text(
+            "key\tclass\tpair_trial\ns_02_01\twalk\t\ns_18_01\ttalk\tyes\n")
+        output = io.StringIO()
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
+            code = make_everyday.main([
+                "--trials", self.write("trials.npz", 60, **pair),
+                "--stretches", str(self.folder / "stretches.tsv"),
+                "--single", self.write("single.npz", 30, s_02_01=person(90, .03), s_18_01=person(90)),
+                "--table", str(self.folder / "single.tsv"), "--out", str(self.out)])
+        return code, output.getvalue()
+
+    def test_writes_two_data_sets_and_leaders(self):
+        code, output = self.make()
+        self.assertEqual(code, 0, output)
+        for name, pairs in (("first", ["18_01", "walk_s_02_01"]),
+                            ("second", ["18_01", *(f"18_01_copy{i}" for i in range(2, 9)),
+                                        "walk_s_02_01"])):
+            files = sorted((self.out / name / "pairs").iterdir())
+            self.assertEqual([file.stem for file in files], pairs)
+            lines = files[0].read_text().splitlines()
+            self.assertEqual(len(lines), 72)
+            self.assertEqual(len(lines[0].split(",")), 1 + 2 * 22 * 3)
+        self.assertIn("pairs/18_01.txt\ttalk\t0.000\t2.400",
+                      (self.out / "second/labels.tsv").read_text())
+        self.assertIn("pairs/18_01.txt\tleft\t18_01", (self.out / "first/index.tsv").read_text())
+        layout = json.loads((self.out / "first/dataset.json").read_text())
+        names = layout["skeleton"]["joint_names"]
+        self.assertEqual(sorted(joint for part in layout["skeleton"]["parts"]
+                                for joint in part["joints"]), sorted(names))
+        leader = json.loads((self.out / "leaders/walk_s_02_01.json").read_text())
+        self.assertEqual((len(leader["leader"]), leader["joint_names"]), (90, names))
+        # Half of a captured pair is no leader.
+        self.assertEqual(len(list((self.out / "leaders").iterdir())), 1)
+
+    def test_wrong_arrays_are_named(self):
+        wrong = person(150)
+        wrong[7, 0, 0] = numpy.nan
+        for changed, message in (({"a_18_01": wrong}, "a_18_01: expected finite numbers"),
+                                 ({"a_18_01": numpy.zeros((150, 3))}, "a_18_01: expected shape")):
+            with self.subTest(message):
+                code, output = self.make(**changed)
+                self.assertEqual(code, 1)
+                self.assertIn(message, output)
+
+
+if __name__ == "__main__":
+    unittest.main()
