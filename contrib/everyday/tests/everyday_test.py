@@ -1,4 +1,5 @@
 import contextlib
+import dataclasses
 import importlib.util
 import io
 import json
@@ -14,7 +15,7 @@ HAS_NUMPY = importlib.util.find_spec("numpy") is not None
 if HAS_NUMPY:
     import make_everyday
     import numpy
-    from everyday import captures, dataset_folder, staged
+    from everyday import baselines, captures, dataset_folder, figures, staged
 
 JOINTS = ("Hips", "Spine", "Chest", "Neck", "Head", "HeadTop",
           "LShoulder", "LElbow", "LWrist", "LHand", "RShoulder", "RElbow", "RWrist", "RHand",
@@ -112,6 +113,48 @@ class StagedTest(unittest.TestCase):
         self.assertEqual((len(leader), len(follower)), (60, 60))
         distance = follower[0, 0, 2] - leader[0, 0, 2]
         self.assertTrue(staged.FACING_METRES[0] <= distance <= staged.FACING_METRES[1])
+
+
+@unittest.skipUnless(HAS_NUMPY, "needs python3-numpy")
+class MeasureTest(unittest.TestCase):
+    """Two people walk side by side, .5 m apart; their hands meet."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        out = Path(self.folder.name) / "out"
+        leader = person(120, speed=.03)
+        self.apart = numpy.array([.5, 0, 0])
+        pair = captures.Pair("20_02", (leader, leader + self.apart), 0, (("walk", 0, 4),), ("20_02",))
+        dataset_folder.write([pair], JOINTS, PARENTS, 30, out)
+        self.data = baselines.read(out)
+        self.pair, = self.data.pairs
+
+    def test_the_nearest_follower_of_a_known_leader_is_its_own(self):
+        turned = staged._turned
+        moved = dataclasses.replace(self.pair, leader=turned(self.pair.leader, 1) + [3, 0, 1],
+                                    follower=turned(self.pair.follower, 1) + [3, 0, 1])
+        found = baselines.nearest(moved, [self.pair], 30, knows_pose=True)
+        numpy.testing.assert_allclose(found, moved.follower, atol=1e-3)
+
+    def test_the_mean_follower_keeps_its_place(self):
+        mean = baselines.class_mean(self.pair, [dataclasses.replace(self.pair, is_symmetric=False)])
+        numpy.testing.assert_allclose(mean[:, 0, 2], self.pair.leader[:, 0, 2], atol=.02)
+        numpy.testing.assert_allclose(mean[:, 0, 0], 0, atol=.02)  # with the mirrored pair
+
+    def test_figures_of_the_captured_follower_and_of_one_who_stands(self):
+        names = self.data.joint_names
+
+        def measured(follower):
+            return figures.pair(self.pair.leader, follower, self.pair.follower, names, 30)
+        own = measured(self.pair.follower)
+        self.assertEqual((own["error_m"], own["held"], own["speed"]), (0, 1, 1))
+        self.assertAlmostEqual(own["hands_m"], .1, places=3)
+        self.assertLess(own["facing_deg"], .01)
+        still = measured(numpy.repeat(self.pair.follower[:1], 120, axis=0))
+        self.assertLess(still["held"], .2)
+        self.assertGreater(still["distance_m"], 1)
+        self.assertEqual(figures.stillness(self.pair.follower[:1].repeat(9, axis=0), names, 30)["speed"], 0)
 
 
 @unittest.skipUnless(HAS_NUMPY, "needs python3-numpy")
