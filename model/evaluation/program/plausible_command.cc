@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/authoring/made_leaders.h"
+#include "model/base/split_mix.h"
 #include "model/base/statistics.h"
 #include "model/base/status_macros.h"
 #include "model/body/build.h"
@@ -89,6 +90,13 @@ experiments::ClassContacts ContactsOf(const engine::ModelDescription& model, int
   return contacts;
 }
 
+// The n-th seed of the answers: one that a server gives callers who name none, if the model has a
+// list of them.
+uint64_t SeedOf(const engine::ModelDescription& model, uint64_t n) {
+  const std::vector<uint64_t>& seeds = model.default_seeds;
+  return seeds.empty() ? n : seeds[base::SplitMix(n, 1) % seeds.size()];
+}
+
 // The answers to all leaders with one seed each, for one class.
 absl::Status AddAnswers(const PlausibleArguments& arguments, const engine::Synthesizer& synthesizer,
                         const std::vector<dataset::Sequence>& leaders, int label, int sample,
@@ -98,9 +106,8 @@ absl::Status AddAnswers(const PlausibleArguments& arguments, const engine::Synth
   const engine::LabelTrack labels(experiments::OneClass(model.class_count(), label));
   std::vector<experiments::LabelledLeader> asked;
   for (const dataset::Sequence& leader : leaders) {
-    const uint64_t seed =
-        arguments.asked.seed + asked.size() * 1000 + static_cast<uint64_t>(sample);
-    asked.push_back(Ask(leader, labels, arguments.asked, seed));
+    const uint64_t n = arguments.asked.seed + asked.size() * 1000 + static_cast<uint64_t>(sample);
+    asked.push_back(Ask(leader, labels, arguments.asked, SeedOf(model, n)));
   }
   DUET_TRY(auto followers, SynthesizeSequences(synthesizer, asked, experiments::StartGiven::kNone));
   for (size_t i = 0; i < leaders.size(); ++i) {
@@ -222,8 +229,8 @@ absl::StatusOr<report::Table> StillnessTable(const PlausibleArguments& arguments
                                                : experiments::OneClass(model.class_count(), c);
       std::vector<experiments::LabelledLeader> labelled;
       for (const dataset::Sequence& leader : held) {
-        labelled.push_back(
-            Ask(leader, engine::LabelTrack(weights), asked, asked.seed + labelled.size() * 1000));
+        labelled.push_back(Ask(leader, engine::LabelTrack(weights), asked,
+                               SeedOf(model, asked.seed + labelled.size() * 1000)));
       }
       DUET_TRY(auto followers,
                SynthesizeSequences(synthesizer, labelled, experiments::StartGiven::kNone));
