@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -39,6 +40,15 @@ constexpr float kNearestRoots = 0.17f;
 constexpr float kClearBend = 0.05f, kDown = 0.8f, kBack = 0.6f;
 // The planes of limbs turn over this time. Seconds, standard deviation.
 constexpr double kBendSeconds = 0.1;
+
+// The place of a foot: as planned, or drawn along the floor towards the hip as far as the leg needs
+// it. The body does not come down to any foot (stature.cc).
+Vec3 DrawnAlong(const body::Limb& leg, absl::Span<const Vec3> pose, Vec3 place) {
+  const Vec3 way = place - JointAt(pose, leg.upper);
+  const float length = body::LengthOf(leg, pose), level = Norm(Level(way));
+  const float reach = std::sqrt(std::max(0.0f, length * length - way.y * way.y));
+  return level <= reach ? place : place - Level(way) * (1 - reach / level);
+}
 
 }  // namespace
 
@@ -196,7 +206,8 @@ void FollowerSolver::PlaceFeet(const Situation& situation, const Stretches& stre
     const body::Limb& limb = body_.legs[leg];
     for (int t = given; t < frames; ++t) {
       const Vec3 facing = body::Facing(*skeleton_.hips, (*follower)[t]);
-      body::Reach(limb, footing.paths[leg][static_cast<std::size_t>(t)], facing, (*follower)[t]);
+      const Vec3 place = footing.paths[leg][static_cast<std::size_t>(t)];
+      body::Reach(limb, DrawnAlong(limb, (*follower)[t], place), facing, (*follower)[t]);
     }
   }
 }

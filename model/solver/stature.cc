@@ -23,6 +23,10 @@ constexpr float kReach = 0.998f;
 // Lasting hip heights are at least this, in lengths of the leg. Captured people stand at .96 on
 // average, dancers at .92.
 constexpr double kLeastHeight = 0.9;
+// The body comes down to its standing feet as far as this, in lengths of the leg. A foot that it
+// would have to come down further for leaves its place: people who are thrown back lose their stand
+// and do not sit down. Captured people's hips are lower in 1 of 1000 frames.
+constexpr float kDeepest = 0.7f;
 // What is longer than a dip: the deviation of a Gaussian. Seconds.
 constexpr double kLastingSeconds = 0.35;
 
@@ -64,7 +68,9 @@ class Stature {
         SmoothCorrection({frame_rate_hz_, kRiseSeconds, kNear, given_}, weights, wishes);
     for (int t = given_; t < poses_.frame_count(); ++t) {
       const float rise = std::min(static_cast<float>(rises[static_cast<std::size_t>(t)]), Room(t));
-      for (Vec3& joint : poses_[t]) joint.y += rise;
+      const float deepest = kDeepest * MeanLength(legs_, poses_[t]) - HipsAboveFoot(t);
+      const float bounded = std::max(rise, std::min(0.0f, deepest));
+      for (Vec3& joint : poses_[t]) joint.y += bounded;
     }
   }
 
@@ -85,16 +91,20 @@ class Stature {
     return footing_.standing[0][at] ? left : right;
   }
 
+  // The height of the hips above the lower planned foot, metres.
+  float HipsAboveFoot(int t) const {
+    const std::size_t at = static_cast<std::size_t>(t);
+    const float hips =
+        (JointAt(poses_[t], legs_[0].upper).y + JointAt(poses_[t], legs_[1].upper).y) / 2;
+    return hips - std::min(footing_.paths[0][at].y, footing_.paths[1][at].y);
+  }
+
   // How far the hips are below the least lasting height, metres.
   std::vector<double> LastingLacks() const {
     motion::Poses heights(poses_.frame_count(), 1);  // in lengths of the leg
     for (int t = 0; t < poses_.frame_count(); ++t) {
-      const std::size_t at = static_cast<std::size_t>(t);
-      const float hips =
-          (JointAt(poses_[t], legs_[0].upper).y + JointAt(poses_[t], legs_[1].upper).y) / 2;
-      const float lower = std::min(footing_.paths[0][at].y, footing_.paths[1][at].y);
       const float length = MeanLength(legs_, poses_[t]);
-      heights.at(t, 0).y = length > 0 ? (hips - lower) / length : 1;
+      heights.at(t, 0).y = length > 0 ? HipsAboveFoot(t) / length : 1;
     }
     heights = motion::GaussianFilter(heights, kLastingSeconds * frame_rate_hz_);
     std::vector<double> lacks;

@@ -73,6 +73,23 @@ TEST(FollowerSolverTest, EndsACrouchAndKeepsAShortDip) {
   EXPECT_LT(HipHeight(Solved(dip), 22), standing - 0.12);
 }
 
+TEST(FollowerSolverTest, APersonWhoIsThrownBackDoesNotSitDown) {
+  // Flies back by 0.4 m a frame; the plan made anew is a metre ahead of the given frames.
+  constexpr int kGiven = 15;
+  const auto back = [](int t, int from, float most) {
+    return Vec3{0, 0, -0.4f * std::clamp(static_cast<float>(t - from), 0.0f, most)};
+  };
+  const motion::Poses given = motion::Part(
+      test::Changed(Puppet(), [&](int t, Vec3 joint) { return joint + back(t, 12, 2); }), 0,
+      kGiven);
+  const motion::Poses plan = test::Changed(
+      Puppet(), [&](int t, Vec3 joint) { return t < kGiven ? joint : joint + back(t, 12, 4); });
+  const motion::Poses solved = Solved(plan, given);
+  for (int t = kGiven; t < kFrames; ++t) {
+    EXPECT_GT(HipHeight(solved, t), 0.65 * HipHeight(Puppet(), 0)) << t;
+  }
+}
+
 TEST(FollowerSolverTest, AFloatingFollowerComesDownAndAJumpStays) {
   const motion::Poses floating = test::Moved(Puppet(), {0, 0.2f, 0});
   const auto low = [](const motion::Poses& poses, int t) {
