@@ -21,7 +21,7 @@ constexpr uint64_t kTried = 128;
 constexpr std::size_t kChosen = 16;
 // Captured pairs that each class is judged by. With four, the chosen seeds change with the pairs.
 constexpr int kPairsOfClass = 8;
-constexpr double kLeastReach = 0.01;  // metres
+constexpr double kLeastMetres = 0.01;
 
 // How far a follower gets: the largest distance of a joint from where it was in the first frame,
 // mean over the joints.
@@ -37,11 +37,31 @@ double ReachOf(const Poses& follower) {
   return sum / follower.joint_count();
 }
 
-// Captured pairs of one class: the leaders' windows, and how far the followers get.
+// What followers of one class do, sums over its pairs: how far they get, and how near their leaders
+// they come, metres.
+struct Behaviour {
+  double reach = 0, nearest = 0;
+
+  void Add(int root, const Poses& leader, const Poses& follower) {
+    reach += ReachOf(follower);
+    float least = Distance(leader.at(0, root), follower.at(0, root));
+    for (int t = 1; t < follower.frame_count(); ++t) {
+      least = std::min(least, Distance(leader.at(t, root), follower.at(t, root)));
+    }
+    nearest += double{least};
+  }
+};
+
+// Captured pairs of one class: the leaders' windows, and what the followers do.
 struct ClassPairs {
   std::vector<engine::SynthesisWindow> windows;
-  double reach = 0;  // sum over the pairs
+  Behaviour captured;
 };
+
+double SquaredLogRatio(double a, double b) {
+  const double times = std::log(std::max(kLeastMetres, a) / std::max(kLeastMetres, b));
+  return times * times;
+}
 
 std::vector<ClassPairs> DrawPairs(const dataset::Dataset& dataset, std::vector<int> train) {
   base::Random random(0);
@@ -55,26 +75,27 @@ std::vector<ClassPairs> DrawPairs(const dataset::Dataset& dataset, std::vector<i
         MakeWindow(dataset, CapturedExample(dataset, sequence, StartKnowledge::kNone));
     window.labels = DrawFrameLabels(sequence, dataset.class_count(), {}, &random);
     pairs.windows.push_back(std::move(window));
-    pairs.reach += ReachOf(sequence.pair.follower.poses);
+    pairs.captured.Add(dataset.skeleton.root, sequence.pair.leader.poses,
+                       sequence.pair.follower.poses);
   }
   return classes;
 }
 
-// How unlike captured followers those of a seed are: the square of the logarithm of how much
-// farther they get, sum over the classes.
-absl::StatusOr<double> Unlikeness(const engine::Synthesizer& synthesizer,
+// How unlike captured followers those of a seed are: the squared logarithms of how much farther
+// they get, and of how much farther they stay away, sum over the classes.
+absl::StatusOr<double> Unlikeness(const engine::Synthesizer& synthesizer, int root,
                                   std::vector<ClassPairs>* classes, uint64_t seed) {
   double unlikeness = 0;
   for (ClassPairs& pairs : *classes) {
     for (engine::SynthesisWindow& window : pairs.windows) window.options.sampling.seed = seed;
-    double reach = 0;
-    for (const engine::WindowResult& follower : AnswerAll(synthesizer, pairs.windows)) {
-      if (!follower.ok()) return follower.status();
-      reach += ReachOf(*follower);
+    Behaviour answers;
+    const std::vector<engine::WindowResult> followers = AnswerAll(synthesizer, pairs.windows);
+    for (std::size_t i = 0; i < followers.size(); ++i) {
+      if (!followers[i].ok()) return followers[i].status();
+      answers.Add(root, pairs.windows[i].leader, *followers[i]);
     }
-    const double times =
-        std::log(std::max(kLeastReach, reach) / std::max(kLeastReach, pairs.reach));
-    unlikeness += times * times;
+    unlikeness += SquaredLogRatio(answers.reach, pairs.captured.reach) +
+                  SquaredLogRatio(answers.nearest, pairs.captured.nearest);
   }
   return unlikeness;
 }
@@ -87,7 +108,8 @@ absl::StatusOr<std::vector<uint64_t>> ChooseDefaultSeeds(const engine::Synthesiz
   std::vector<ClassPairs> classes = DrawPairs(dataset, train);
   std::vector<double> unlikeness;
   for (uint64_t seed = 0; seed < kTried; ++seed) {
-    const absl::StatusOr<double> one = Unlikeness(synthesizer, &classes, seed);
+    const absl::StatusOr<double> one =
+        Unlikeness(synthesizer, dataset.skeleton.root, &classes, seed);
     if (!one.ok()) return one.status();
     unlikeness.push_back(*one);
   }

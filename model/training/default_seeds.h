@@ -11,9 +11,10 @@
 namespace duet::training {
 
 // Chooses the seeds that a server draws from for callers who name none: of many seeds, those whose
-// followers move as far as captured ones do, in every class. Most of what a seed changes is the
-// same for all leaders of a class, so a seed whose followers hardly move beside training leaders
-// hardly moves beside others. The best comes first. The result depends only on the arguments.
+// followers get as far, and come as near their leaders, as captured ones do, in every class. Most
+// of what a seed changes is the same for all leaders of a class, so a seed whose followers hardly
+// move beside training leaders hardly moves beside others. The best comes first. The result depends
+// only on the arguments.
 //
 // Errors: INTERNAL if an answer is not finite. Requires a generator that samples, and at least one
 // sequence in `train`.

@@ -48,7 +48,7 @@ class EverFarther : public engine::Synthesizer {
   bool broken = false;
 };
 
-TEST(DefaultSeeds, AreThoseWhoseFollowersGetAsFarAsCapturedOnes) {
+TEST(DefaultSeeds, AreThoseWhoseFollowersDoAsCapturedOnes) {
   const dataset::Dataset dataset = MadeUpDataset();
   const auto seeds = ChooseDefaultSeeds(EverFarther(dataset), dataset, AllOf(dataset));
   ASSERT_THAT(seeds, IsOk());
