@@ -309,7 +309,8 @@ absl::Status Finish(const RunPlan& plan, const dataset::Dataset& dataset,
                     const checkpoint::Checkpoint& from, const EpochReport& last,
                     EpochTrainer* trainer, std::ostream* progress) {
   manifest.git_revision = kGitRevision;
-  manifest.metrics["training.reconstruction"] = last.reconstruction;
+  // A run that was killed after its last epoch has no report of it any more.
+  if (last.epoch > 0) manifest.metrics["training.reconstruction"] = last.reconstruction;
   if (std::isfinite(trainer->best_afd())) {
     manifest.metrics["validation.afd"] = trainer->best_afd();
     manifest.metrics["validation.epoch"] = static_cast<double>(trainer->best_epoch());
