@@ -29,29 +29,8 @@ ablate() { # CONFIG [FOLD...]
   for fold in "$@"; do "${command[@]}" --fold "${fold}"; done
 }
 
-# Makes the paper's augmented set of one half through server and client.
-make_set() { # HALF
-  local jobs="${runs}/jobs-$1" log="${runs}/set-$1.log" server="" port=""
-  "${bin}/duet-eval" augmentation --data "${data}" --seeds "$1" --write-jobs "${jobs}"
-  "${bin}/duet-server" --listen 127.0.0.1:0 --metrics-listen off \
-    --model-repository "${runs}/half/half-$1/checkpoint" >"${log}" 2>&1 &
-  server=$!
-  # shellcheck disable=SC2064  # expands now: stops this server
-  trap "kill ${server}" EXIT
-  until [[ -n "${port}" ]]; do
-    sleep 0.1
-    kill -0 "${server}" # fails if the server could not start; see ${log}
-    port="$(sed -n 's/.*"event":"serving".*"port":\([0-9]*\).*/\1/p' "${log}")"
-  done
-  "${bin}/duet" batch --manifest "${jobs}/manifest.tsv" --recipe recipes/sbu_300.textproto \
-    --out "${runs}/set-$1" --server "127.0.0.1:${port}" --quiet
-  kill "${server}"
-  wait "${server}"
-  trap - EXIT
-}
-
 train() {
-  local config folds half seed
+  local config folds seed
   read -ra folds <<<"${FOLDS:-}"
   for config in default flow mshl22; do
     "${bin}/duet-train" --data "${data}" --out "${runs}/${config}" --config "${config}" \
@@ -63,9 +42,6 @@ train() {
   done
   for config in default "${ablations[@]}"; do ablate "${config}" "${folds[@]}"; done
   "${bin}/duet-train" --data "${data}" --out "${runs}/half" --protocol half --seeds 1,2,3,4,5
-  for half in {1..5}; do
-    make_set "${half}"
-  done
 }
 
 # Measures the model that samples beside the deterministic one.
@@ -86,7 +62,7 @@ sampled() {
 }
 
 measure() {
-  local config half named=("full=${runs}/ablation/default") sets=()
+  local config named=("full=${runs}/ablation/default")
   "${bin}/duet-eval" folds --data "${data}" --out "${results}" --id 10_methods \
     --title "Methods: leave one subject out" --baselines "${methods}" --printed afd,fid \
     --runs "ours=${runs}/default" --runs "mshl22=${runs}/mshl22" \
@@ -101,9 +77,7 @@ measure() {
     ${FOLDS:+--subjects "${FOLDS// /,}"} "${named[@]/#/--runs=}" \
     --metrics "afd,afd_squared,root_aligned_afd,${quality},accuracy,fid"
   "${bin}/duet-eval" sweep --data "${data}" --runs "ours=${runs}/default" --out "${results}"
-  for half in {1..5}; do sets+=(--synthetic "${runs}/set-${half}"); done
-  "${bin}/duet-eval" augmentation --data "${data}" --runs "${runs}/half" \
-    "${sets[@]}" --out "${results}"
+  "${bin}/duet-eval" augmentation --data "${data}" --runs "${runs}/half" --out "${results}"
   "${bin}/duet-eval" latent --data "${data}" --runs "ours=${runs}/default" \
     --runs "mshl22=${runs}/mshl22" --clips all --out "${results}"
   scripts/training_results.py curves --run "${runs}"/default/s* --out "${results}"

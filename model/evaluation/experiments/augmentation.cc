@@ -5,14 +5,49 @@
 #include <cstddef>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "model/base/statistics.h"
 #include "model/base/status_macros.h"
+#include "model/evaluation/experiments/answers.h"
 #include "model/evaluation/metrics/judged_scores.h"
 #include "model/evaluation/metrics/scores.h"
+#include "model/training/augment.h"
 
 namespace duet::evaluation::experiments {
 namespace {
+
+constexpr double kLeastOwn = 0.75, kMostOwn = 1.25, kMostOwnMixed = 1;
+constexpr double kLeastOther = 0.1, kMostOther = 0.35;
+
+training::TrainingOptions::Augmentation Variations() {
+  training::TrainingOptions::Augmentation augmentation;
+  augmentation.swap_roles = 0.5;
+  augmentation.body_scale = 0.08;
+  augmentation.time_warp = 0.1;
+  augmentation.leader_yaw = 0.1;
+  return augmentation;
+}
+
+std::vector<float> DrawLabels(int classes, int own, bool mix, base::Random* random) {
+  std::vector<float> labels(static_cast<size_t>(classes), 0);
+  const double weight = random->Uniform(kLeastOwn, mix ? kMostOwnMixed : kMostOwn);
+  labels[static_cast<size_t>(own)] = static_cast<float>(weight);
+  if (!mix) return labels;
+  int other = static_cast<int>(random->Below(classes - 1));
+  if (other >= own) ++other;
+  labels[static_cast<size_t>(other)] = static_cast<float>(random->Uniform(kLeastOther, kMostOther));
+  return labels;
+}
+
+// A class's name as part of a file's.
+std::string FileName(std::string name) {
+  for (char& c : name) {
+    if (!absl::ascii_isalnum(static_cast<unsigned char>(c))) c = '_';
+  }
+  return name;
+}
 
 double Mean(const std::vector<double>& values) { return base::Summarise(values).mean; }
 double Deviation(const std::vector<double>& values) { return base::Summarise(values).deviation; }
@@ -41,24 +76,63 @@ int64_t SameSteps(int64_t epochs, size_t captured, size_t motions) {
 
 std::vector<Condition> Conditions(const DataHalf& half, const HalfOptions& options) {
   const std::vector<int>& captured = half.split.train;
-  const size_t own = captured.size(), made = half.synthetic.size(), served = half.served.size();
+  const size_t own = captured.size(), made = half.synthetic.size();
   const int64_t epochs = options.epochs;
   const std::string& both = options.synthetic_row;
-  std::vector<Condition> conditions = {
+  return {
       {kCapturedRow, {captured, {}}, epochs},
       {both, {captured, half.synthetic}, SameSteps(epochs, own, own + made)},
       {absl::StrCat(kCapturedRow, ", longer"), {captured, {}}, SameSteps(epochs, own + made, own)},
       {absl::StrCat(both, ", longer"), {captured, half.synthetic}, epochs},
       {"synthetic alone", {{}, half.synthetic}, SameSteps(epochs, own, made)}};
-  if (served > 0) {
-    conditions.push_back({"captured + set through the server",
-                          {captured, half.served},
-                          SameSteps(epochs, own, own + served)});
-  }
-  return conditions;
 }
 
 }  // namespace
+
+std::vector<SyntheticJob> PlanSyntheticSet(const dataset::Dataset& dataset,
+                                           const std::vector<int>& train,
+                                           const SyntheticPlanOptions& options) {
+  base::Random random(options.seed, 0);
+  std::vector<SyntheticJob> jobs;
+  for (int c = 0; c < dataset.class_count(); ++c) {
+    std::vector<int> leaders;
+    for (const int index : train) {
+      const dataset::Sequence& sequence = dataset.sequences[static_cast<size_t>(index)];
+      if (sequence.interaction_class == c) leaders.push_back(index);
+    }
+    random.Shuffle(&leaders);
+    for (int i = 0; i < options.match + options.mix; ++i) {
+      const int leader = leaders[static_cast<size_t>(i) % leaders.size()];
+      SyntheticJob job;
+      job.sequence =
+          Augment(dataset, dataset.sequences[static_cast<size_t>(leader)], Variations(), &random);
+      job.sequence.pair.follower.poses = {};
+      job.sequence.id = absl::StrFormat(
+          "%s-%03d", FileName(dataset.classes[static_cast<size_t>(c)]), jobs.size() + 1);
+      job.labels = DrawLabels(dataset.class_count(), c, i >= options.match, &random);
+      jobs.push_back(std::move(job));
+    }
+  }
+  return jobs;
+}
+
+absl::StatusOr<std::vector<dataset::Sequence>> SynthesizeJobs(
+    const dataset::Dataset& dataset, const engine::Synthesizer& synthesizer,
+    const std::vector<SyntheticJob>& jobs) {
+  DUET_RETURN_IF_ERROR(CheckModelFits(synthesizer.description(), dataset));
+  std::vector<dataset::Sequence> answered;
+  for (const SyntheticJob& job : jobs) {
+    absl::StatusOr<motion::Poses> follower =
+        SynthesizeSequence(synthesizer, job.sequence, job.labels, StartGiven::kNone);
+    if (!follower.ok()) {
+      return absl::Status(follower.status().code(),
+                          absl::StrCat(job.sequence.id, ": ", follower.status().message()));
+    }
+    answered.push_back(job.sequence);
+    answered.back().pair.follower.poses = *std::move(follower);
+  }
+  return answered;
+}
 
 void Trials::Add(const std::string& row, const std::string& trial, std::vector<double> values) {
   auto found = Find(rows_, row);
@@ -133,22 +207,6 @@ absl::StatusOr<std::vector<double>> ClassifierAccuracy(
   std::vector<double> accuracy = confusion.ClassAccuracies();
   accuracy.push_back(confusion.MeanClassAccuracy());
   return accuracy;
-}
-
-absl::Status AddServedSets(const std::vector<SyntheticSet>& sets, std::vector<DataHalf>* halves) {
-  for (const SyntheticSet& set : sets) {
-    bool used = false;
-    for (DataHalf& half : *halves) {
-      if (half.seed != set.half) continue;
-      half.served = set.sequences;
-      used = true;
-    }
-    if (!used) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("half of a synthetic set: expected one of the seeds, got ", set.half));
-    }
-  }
-  return absl::OkStatus();
 }
 
 absl::Status RunHalf(const dataset::Dataset& dataset, const DataHalf& half,

@@ -4,7 +4,6 @@
 
 #include "absl/status/status.h"
 #include "model/base/status_macros.h"
-#include "model/engine/finished_motions.h"
 #include "model/evaluation/metrics/judged_scores.h"
 #include "model/motion/filter.h"
 
@@ -37,25 +36,6 @@ dataset::Dataset PairsToTell(const dataset::Dataset& dataset,
   return pairs;
 }
 
-// A whole sequence as the window of a request in its own class.
-engine::SynthesisWindow WholeWindow(const dataset::Dataset& dataset,
-                                    const dataset::Sequence& sequence, StartGiven start) {
-  engine::SynthesisWindow window;
-  window.leader = sequence.pair.leader.poses;
-  window.partner_direction = sequence.partner_direction;
-  const std::vector<float> labels = OneClass(dataset.class_count(), sequence.interaction_class);
-  for (int t = 0; t < window.leader.frame_count(); ++t) {
-    window.labels.insert(window.labels.end(), labels.begin(), labels.end());
-  }
-  if (start == StartGiven::kNone) return window;
-  const motion::Clip& follower = sequence.pair.follower;
-  window.start = engine::FollowerStart{follower.at(0, dataset.skeleton.root), {}};
-  if (start == StartGiven::kPose) {
-    window.start->pose.assign(follower.poses[0].begin(), follower.poses[0].end());
-  }
-  return window;
-}
-
 }  // namespace
 
 judge::MotionClassifierOptions ToldApartOptions(uint64_t seed) {
@@ -84,22 +64,6 @@ absl::StatusOr<double> ToldApart(const dataset::Dataset& dataset,
   confusion.AddLikeliest(metrics::ClassesOf(test, all),
                          classifier.Probabilities(test, metrics::CapturedMotions(test, all)));
   return confusion.MeanClassAccuracy();
-}
-
-absl::StatusOr<dataset::Dataset> WithFinishedFollowers(const engine::ModelDescription& model,
-                                                       dataset::Dataset dataset, StartGiven start) {
-  std::vector<engine::SynthesisWindow> windows;
-  std::vector<motion::Poses> followers;
-  for (const dataset::Sequence& sequence : dataset.sequences) {
-    windows.push_back(WholeWindow(dataset, sequence, start));
-    followers.push_back(sequence.pair.follower.poses);
-  }
-  std::vector<engine::WindowResult> finished = engine::FinishMotions(model, windows, followers);
-  for (size_t i = 0; i < finished.size(); ++i) {
-    if (!finished[i].ok()) return finished[i].status();
-    dataset.sequences[i].pair.follower.poses = *std::move(finished[i]);
-  }
-  return dataset;
 }
 
 }  // namespace duet::evaluation::experiments

@@ -4,8 +4,6 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "model/engine/model_description.h"
-#include "model/evaluation/experiments/answers.h"
 #include "model/evaluation/judge/motion_classifier.h"
 #include "model/evaluation/metrics/scores.h"
 
@@ -24,12 +22,6 @@ absl::StatusOr<double> ToldApart(const dataset::Dataset& dataset,
                                  const std::vector<metrics::ScoredMotion>& training_answers,
                                  const std::vector<metrics::ScoredMotion>& test_answers,
                                  const judge::MotionClassifierOptions& options);
-
-// The data set with its captured followers finished as a server finishes a model's answers
-// (engine::FinishMotions), so that ToldApart distinguishes motions and not the stages that only
-// answers pass. `start`: of the answers. Errors: those of a stage.
-absl::StatusOr<dataset::Dataset> WithFinishedFollowers(const engine::ModelDescription& model,
-                                                       dataset::Dataset dataset, StartGiven start);
 
 }  // namespace duet::evaluation::experiments
 

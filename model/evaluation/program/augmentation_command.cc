@@ -7,7 +7,6 @@
 #include "absl/strings/str_join.h"
 #include "model/base/status_macros.h"
 #include "model/evaluation/experiments/augmentation.h"
-#include "model/evaluation/experiments/synthetic_set.h"
 #include "model/evaluation/judge/motion_classifier.h"
 #include "model/evaluation/program/commands.h"
 #include "model/evaluation/program/experiment.h"
@@ -24,8 +23,6 @@ struct AugmentationArguments {
   int repeats = 1;
   experiments::SyntheticPlanOptions plan;
   bool as_served = false;
-  std::vector<std::string> synthetic;
-  std::string write_jobs;
   int64_t epochs = judge::MotionClassifierOptions().epochs;
   SectionFlags section = {"40_augmentation", "Synthetic motion as training material (Table 6)"};
 };
@@ -78,44 +75,22 @@ report::ResultSection MakeSection(const dataset::Dataset& dataset,
   section.tables = {
       std::move(means), trials.Deviations("Accuracy, standard deviation over the trials"),
       trials.Gains("Gain over captured followers alone, paired", experiments::kCapturedRow)};
-  section.settings = {
-      {"data", dataset.name},
-      {"halves (seeds)", absl::StrJoin(arguments.seeds, ", ")},
-      {"classifiers a half", absl::StrCat(arguments.repeats)},
-      {"classifier epochs", absl::StrCat(arguments.epochs)},
-      {"synthetic motions a class",
-       absl::StrCat(arguments.plan.match, " match + ", arguments.plan.mix, " mix")},
-      {"in-process answers", arguments.as_served ? "as served" : "the network's own"},
-      {"sets through the server", absl::StrCat(arguments.synthetic.size())}};
+  section.settings = {{"data", dataset.name},
+                      {"halves (seeds)", absl::StrJoin(arguments.seeds, ", ")},
+                      {"classifiers a half", absl::StrCat(arguments.repeats)},
+                      {"classifier epochs", absl::StrCat(arguments.epochs)},
+                      {"synthetic motions a class",
+                       absl::StrCat(arguments.plan.match, " match + ", arguments.plan.mix, " mix")},
+                      {"models' answers", arguments.as_served ? "as served" : "the network's own"}};
   return section;
-}
-
-absl::Status WriteJobs(const dataset::Dataset& dataset, const AugmentationArguments& arguments) {
-  if (arguments.seeds.size() != 1) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--seeds: expected one with --write-jobs, got ", arguments.seeds.size()));
-  }
-  const uint64_t seed = arguments.seeds.front();
-  DUET_TRY(dataset::Split split, SplitInHalves(dataset, seed));
-  DUET_TRY(std::vector<experiments::SyntheticJob> jobs, PlanHalf(dataset, split, arguments, seed));
-  return WriteSyntheticJobs(dataset, jobs, seed, arguments.write_jobs);
 }
 
 absl::Status RunAugmentation(const AugmentationArguments& arguments) {
   DUET_TRY(dataset::Dataset dataset, dataset::ReadDataset(arguments.data));
-  if (!arguments.write_jobs.empty()) return WriteJobs(dataset, arguments);
-  if (arguments.runs.empty()) {
-    return absl::InvalidArgumentError("--runs: expected the output of duet-train, got none");
-  }
   std::vector<experiments::DataHalf> halves;
   for (const uint64_t seed : arguments.seeds) {
     DUET_TRY(halves.emplace_back(), PrepareHalf(dataset, arguments, seed));
   }
-  std::vector<experiments::SyntheticSet> sets;
-  for (const std::string& folder : arguments.synthetic) {
-    DUET_TRY(sets.emplace_back(), experiments::ReadSyntheticSet(dataset, folder));
-  }
-  DUET_RETURN_IF_ERROR(AddServedSets(sets, &halves));
   std::vector<std::string> columns = dataset.classes;
   columns.push_back("mean");
   experiments::Trials trials(std::move(columns));
@@ -135,9 +110,9 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
       "augmentation", "A classifier with and without synthetic training motion (Table 6)",
       RunAugmentation, app, chosen);
   AddDataFlag(&arguments->data, command);
-  CLI::Option* runs =
-      command->add_option("--runs", arguments->runs, "output of duet-train --protocol half")
-          ->type_name(kRuns);
+  command->add_option("--runs", arguments->runs, "output of duet-train --protocol half")
+      ->type_name(kRuns)
+      ->required();
   AddOption("--seeds", &arguments->seeds, "seeds of the halves; reads <runs>/half-<seed>", command)
       ->delimiter(',');
   AddNumber("--repeats", &arguments->repeats, 1, 1000, "classifiers trained on each half", command);
@@ -147,18 +122,7 @@ void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen) {
             "synthetic motions per class with only its label", command);
   AddNumber("--mix", &arguments->plan.mix, 0, 10000,
             "synthetic motions per class, mixed with another class", command);
-  command->add_flag("--as-served", arguments->as_served,
-                    "finish in-process answers as a server does");
-  command
-      ->add_option("--synthetic", arguments->synthetic,
-                   "data set that duet batch made from a manifest of --write-jobs; repeatable")
-      ->type_name(kSet)
-      ->allow_extra_args(false);
-  command
-      ->add_option("--write-jobs", arguments->write_jobs,
-                   "only write the leaders of one half's set and their manifest")
-      ->type_name(kSet)
-      ->excludes(runs);
+  command->add_flag("--as-served", arguments->as_served, "finish answers as a server does");
   AddSectionFlags(&arguments->section, command);
 }
 

@@ -25,7 +25,7 @@ std::string ShellWord(const std::string& word) {
 std::string Shown(const CLI::Option& option, const std::string& value) {
   // Without the names of its checks, which follow after colons.
   const std::string type = option.get_type_name().substr(0, option.get_type_name().find(':'));
-  const std::string folders[] = {kData, kRuns, kCheckpoint, kSet, kResults};
+  const std::string folders[] = {kData, kRuns, kCheckpoint, kResults};
   if (std::count(std::begin(folders), std::end(folders), type) > 0) return type;
   if (type != kNamedRuns) return ShellWord(value);
   const absl::StatusOr<NamedRuns> runs = ParseRuns(value);

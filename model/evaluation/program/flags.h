@@ -25,7 +25,6 @@ inline constexpr char kData[] = "DIR";
 inline constexpr char kRuns[] = "RUNS";
 inline constexpr char kNamedRuns[] = "[NAME=]RUNS";
 inline constexpr char kCheckpoint[] = "CHECKPOINT";
-inline constexpr char kSet[] = "SET";
 inline constexpr char kResults[] = "RESULTS";
 
 struct SectionFlags {

@@ -18,20 +18,10 @@ namespace {
 
 struct ToldApartArguments : ExperimentFlags {
   std::vector<uint64_t> seeds = {1, 2, 3};
-  bool finish_captured = false;
 };
 
 // One model's balanced accuracies. Shapes: [classifier seeds][folds].
 using Accuracies = std::vector<std::vector<double>>;
-
-// The data with which a model's answers are compared.
-absl::StatusOr<dataset::Dataset> Captured(const dataset::Dataset& dataset, const FoldModel& model,
-                                          const Fold& fold, const std::string& start,
-                                          const ToldApartArguments& arguments) {
-  if (!arguments.finish_captured) return dataset;
-  DUET_TRY(const SharedSynthesizer synthesizer, model.load(fold.subject));
-  return experiments::WithFinishedFollowers(synthesizer->description(), dataset, ParseStart(start));
-}
 
 absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, const Fold& fold,
                      const std::string& start, const ToldApartArguments& arguments,
@@ -39,10 +29,9 @@ absl::Status AddFold(const dataset::Dataset& dataset, const FoldModel& model, co
   const experiments::AskedSamples& asked = arguments.asked;
   DUET_TRY(auto training, Answers(dataset, model, fold, fold.split.train, start, asked));
   DUET_TRY(auto test, Answers(dataset, model, fold, fold.split.test, start, asked));
-  DUET_TRY(const auto captured, Captured(dataset, model, fold, start, arguments));
   for (size_t i = 0; i < arguments.seeds.size(); ++i) {
     DUET_TRY(double accuracy,
-             experiments::ToldApart(captured, training.front(), test.front(),
+             experiments::ToldApart(dataset, training.front(), test.front(),
                                     experiments::ToldApartOptions(arguments.seeds[i])));
     std::cerr << absl::StrFormat("%s%s without %s, classifier %d: %.3f\n", model.name,
                                  StartSuffix(ParseStart(start)), fold.subject, arguments.seeds[i],
@@ -87,8 +76,6 @@ absl::Status RunToldApart(const ToldApartArguments& arguments) {
       "person: on that fold's answers to leaders never seen, and on the captured pairs. Both sides "
       "go through the same Gaussian of 0.1 s, so that a capture's noise gives nothing away.");
   section.settings.emplace_back("classifiers (seeds)", absl::StrJoin(arguments.seeds, ", "));
-  section.settings.emplace_back("captured followers",
-                                arguments.finish_captured ? "finished as answers" : "as captured");
   DUET_TRY(section.tables.emplace_back(), Measure(experiment, arguments));
   return FinishSection(arguments.section, section);
 }
@@ -103,9 +90,6 @@ void AddToldApartCommand(CLI::App* app, ChosenCommand* chosen) {
   AddAnswersFlags("17_told_apart", "Told apart from captured pairs", arguments, command);
   AddOption("--seeds", &arguments->seeds, "seeds; one classifier per seed", command)
       ->delimiter(',');
-  command->add_flag("--finish-captured", arguments->finish_captured,
-                    "captured followers also pass the stages that a server's answers pass (limb "
-                    "lengths, floor, clean-up); with --as-served");
 }
 
 }  // namespace duet::evaluation::program

@@ -9,7 +9,6 @@
 #include <set>
 #include <sstream>
 
-#include "model/evaluation/experiments/synthetic_set.h"
 #include "tests/evaluation/support/made_up_pairs.h"
 #include "tests/support/fake_synthesizer.h"
 #include "tests/support/matchers.h"
@@ -135,7 +134,7 @@ TEST(ClassifierAccuracyTest, LearnsFromSyntheticMotionAlone) {
   EXPECT_LE(wrong->back(), 0.1);
 }
 
-TEST(RunHalfTest, TrainsEveryRowAndKeepsServedSetsToTheirHalf) {
+TEST(RunHalfTest, TrainsEveryRow) {
   const dataset::Dataset dataset = MadeUpPairs(4);
   std::vector<DataHalf> halves(2);
   for (uint64_t seed : {1, 2}) {
@@ -144,13 +143,6 @@ TEST(RunHalfTest, TrainsEveryRowAndKeepsServedSetsToTheirHalf) {
     half.split = *SplitInHalves(dataset, seed);
     half.synthetic = dataset.sequences;
   }
-  ASSERT_THAT(AddServedSets({{2, dataset.sequences}}, &halves), IsOk());
-  EXPECT_TRUE(halves[0].served.empty());
-  EXPECT_EQ(halves[1].served.size(), dataset.sequences.size());
-  EXPECT_THAT(
-      AddServedSets({{3, dataset.sequences}}, &halves),
-      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected one of the seeds, got 3")));
-
   Trials trials({"give", "flinch", "all"});
   std::ostringstream progress;
   for (const DataHalf& half : halves) {
@@ -163,11 +155,10 @@ TEST(RunHalfTest, TrainsEveryRowAndKeepsServedSetsToTheirHalf) {
     EXPECT_LE(row.values.back(), 1);
   }
   EXPECT_THAT(rows, testing::ElementsAre("captured", "with synthetic", "captured, longer",
-                                         "with synthetic, longer", "synthetic alone",
-                                         "captured + set through the server"));
-  // 5 rows for half 1 and 6 for half 2, two classifiers each.
+                                         "with synthetic, longer", "synthetic alone"));
+  // 5 rows for each half, two classifiers each.
   const std::string lines = progress.str();
-  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 22);
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 20);
 }
 
 }  // namespace

@@ -67,39 +67,6 @@ TEST(ToldApartTest, NoiseDoesNotDistinguishAnswers) {
   EXPECT_LE(*told, 0.7);
 }
 
-// A model of the data whose answers are cleaned up.
-engine::ModelDescription ModelOf(const dataset::Dataset& dataset) {
-  engine::ModelDescription model;
-  model.skeleton = dataset.skeleton;
-  model.classes = dataset.classes;
-  model.frame_rate_hz = dataset.frame_rate_hz;
-  model.samples = true;
-  return model;
-}
-
-TEST(ToldApartTest, FinishedFollowersDifferFromCapturedOnesOnlyByTheStages) {
-  const dataset::Dataset dataset = MadeUpPairs(6);
-  const auto finished = WithFinishedFollowers(ModelOf(dataset), dataset, StartGiven::kNone);
-  ASSERT_TRUE(finished.ok()) << finished.status();
-  const dataset::Sequence& before = dataset.sequences[0];
-  const dataset::Sequence& after = finished->sequences[0];
-  EXPECT_EQ(after.pair.leader.poses.all()[0], before.pair.leader.poses.all()[0]);
-  ASSERT_EQ(after.pair.follower.frame_count(), before.pair.follower.frame_count());
-  // Limbs have the lengths of the leader's, in every frame.
-  const motion::Bone bone = dataset.skeleton.bones[0];
-  const auto length = [&](const motion::Clip& clip, int t) {
-    return Distance(clip.at(t, bone.parent), clip.at(t, bone.child));
-  };
-  EXPECT_NEAR(length(after.pair.follower, 0), length(after.pair.follower, 3), 1e-5);
-  // With a first pose, that one stays as it is.
-  const auto posed = WithFinishedFollowers(ModelOf(dataset), dataset, StartGiven::kPose);
-  ASSERT_TRUE(posed.ok()) << posed.status();
-  const motion::Poses& pose = posed->sequences[0].pair.follower.poses;
-  for (int j = 0; j < pose.joint_count(); ++j) {
-    EXPECT_LT(Distance(pose.at(0, j), before.pair.follower.at(0, j)), 1e-4);
-  }
-}
-
 TEST(ToldApartTest, MissingAnswersAreRejected) {
   const dataset::Dataset dataset = MadeUpPairs(3);
   const auto same = [](motion::Poses*) {};

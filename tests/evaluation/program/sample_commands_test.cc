@@ -72,13 +72,5 @@ TEST(SampleCommandsTest, ToldApartHasAColumnAFold) {
   EXPECT_LE(accuracy, 1);
 }
 
-TEST(SampleCommandsTest, ToldApartFinishesCapturedFollowersIfAsked) {
-  const auto section = RunCommand(
-      AddToldApartCommand,
-      {"told-apart", "--seeds", "1", "--starts", "none", "--as-served", "--finish-captured"});
-  ASSERT_THAT(section, IsOk());
-  EXPECT_THAT(section->at("settings").dump(), HasSubstr("finished as answers"));
-}
-
 }  // namespace
 }  // namespace duet::evaluation::program
