@@ -13,10 +13,6 @@ namespace duet::authoring {
 
 // Of long clips: stands and sways; walks a figure of eight; dances; sits down and gets up.
 inline constexpr const char* kMadeLeaders[] = {"idle", "walk_eight", "dance", "sit"};
-// Of long live sessions, with what a game or a motion capture sends: stands and sways; whirls,
-// leaps and rushes about; walks, but frames stop for a tenth of a second to half a minute; dances,
-// and is elsewhere every few seconds. All stay within 2.5 m of the origin.
-inline constexpr const char* kHourLeaders[] = {"idle", "wild", "absent", "teleporting"};
 
 // A person of SbuSkeleton's joints with limbs of constant lengths, who starts facing -z near the
 // origin; standing feet do not move. Requires one of the names above.
@@ -24,11 +20,6 @@ motion::Poses MakeLeader(const std::string& name, double seconds, double frame_r
 
 // One frame of a person who stands at the origin and faces -z.
 motion::Poses StandingPerson();
-
-// The leader as a live session gets it from a source that loses frames: missing frames are
-// interpolated in a gap of up to a quarter of a second; in a longer one, the last pose is held
-// (contrib/capture). The gaps are three seconds apart.
-motion::Poses WithGaps(const motion::Poses& leader, double frame_rate_hz);
 
 }  // namespace duet::authoring
 

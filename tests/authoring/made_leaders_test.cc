@@ -8,89 +8,70 @@
 
 #include "model/body/liveliness.h"
 #include "model/body/motion_quality.h"
-#include "model/motion/skeleton.h"
+#include "model/body/posture.h"
 
 namespace duet::authoring {
 namespace {
 
-using motion::Poses;
+using body::LeanFrom;
 
-constexpr double kRate = 30;
+constexpr double kLeaderRate = 15;
 
-// The largest movement of the root in a frame.
-float LargestStep(const Poses& poses) {
-  const int root = motion::SbuSkeleton().root;
+float LargestStep(const motion::Poses& poses) {
   float largest = 0;
   for (int t = 1; t < poses.frame_count(); ++t) {
-    largest = std::max(largest, Distance(poses.at(t, root), poses.at(t - 1, root)));
+    for (int j = 0; j < poses.joint_count(); ++j) {
+      largest = std::max(largest, Distance(poses.at(t, j), poses.at(t - 1, j)));
+    }
   }
   return largest;
 }
 
-TEST(HourLeadersTest, StayNearTheOriginWithLimbsOfOneLength) {
+TEST(MadeLeadersTest, StandOnTheFloorWithLimbsOfOneLength) {
   const motion::Skeleton skeleton = motion::SbuSkeleton();
-  EXPECT_THAT(kHourLeaders, ::testing::ElementsAre("idle", "wild", "absent", "teleporting"));
-  for (const std::string name : kHourLeaders) {
-    const Poses leader = MakeLeader(name, 120, kRate);
-    ASSERT_EQ(leader.frame_count(), 120 * 30 + 1) << name;
-    float farthest = 0;
-    for (int t = 0; t < leader.frame_count(); ++t) {
-      const motion::Vec3 root = leader.at(t, skeleton.root);
-      farthest = std::max(farthest, std::hypot(root.x, root.z));
-    }
-    EXPECT_LT(farthest, 2.5f) << name;
-    // Interpolated frames shorten limbs a little.
-    EXPECT_LT(body::BoneLengthDrift(leader, skeleton), name == "absent" ? 0.02 : 1e-3) << name;
+  for (const std::string name : kMadeLeaders) {
+    const motion::Poses leader = MakeLeader(name, 30, kLeaderRate);
+    ASSERT_EQ(leader.frame_count(), 451) << name;
+    EXPECT_LT(body::BoneLengthDrift(leader, skeleton), 1e-3) << name;
+    const body::FloorGap gap = body::MeasureFloorGap(leader, skeleton, 0);
+    EXPECT_LT(gap.above, 0.02) << name;
+    EXPECT_LT(gap.below, 0.02) << name;
+    EXPECT_LT(body::MeasureLean(leader, skeleton, kLeaderRate, LeanFrom::kHips).max_degrees, 35)
+        << name;
+    EXPECT_LT(LargestStep(leader), 0.35f) << name;
   }
 }
 
-TEST(HourLeadersTest, MoveAsTheirNamesSay) {
-  const auto made = [](const char* name) { return MakeLeader(name, 60, kRate); };
-  EXPECT_LT(body::JointSpeed(made("idle"), kRate), 0.1);
-  EXPECT_GT(body::JointSpeed(made("wild"), kRate), 2);
-  EXPECT_LT(LargestStep(made("wild")), 0.3f) << "fast, but without jumps";
-  EXPECT_GT(LargestStep(made("teleporting")), 1);
-}
-
-TEST(HourLeadersTest, TheLastMinuteIsLikeTheFirst) {
-  for (const std::string name : kHourLeaders) {
-    const Poses leader = MakeLeader(name, 600, kRate);
-    const auto speed = [&](int first) {
-      Poses minute(0, leader.joint_count());
-      minute.Append(leader.frames(first, 1800));
-      return body::JointSpeed(minute, kRate);
-    };
-    const double ratio = speed(leader.frame_count() - 1800) / speed(0);
-    // An absent leader moves for 3 s of 3.1 to 33.
-    if (name == "absent") continue;
-    EXPECT_GT(ratio, 0.8) << name;
-    EXPECT_LT(ratio, 1.25) << name;
+TEST(MadeLeadersTest, StandingFeetDoNotSlide) {
+  for (const std::string name : kMadeLeaders) {
+    const motion::Poses leader = MakeLeader(name, 10, 60);
+    // Of a step, the instants of lifting and setting down are within 5 cm of the floor as well.
+    EXPECT_LT(body::MeasureFootSlide(leader, motion::SbuSkeleton(), 60).skating_ratio, 0.15)
+        << name;
   }
 }
 
-TEST(WithGapsTest, ShortGapsAreInterpolatedAndLongOnesHeld) {
-  Poses leader(1000, 1);
-  for (int t = 0; t < 1000; ++t) {
-    leader.at(t, 0) = {static_cast<float>(t) * static_cast<float>(t), 0, 0};
+TEST(MadeLeadersTest, MoveAsTheirNamesSay) {
+  const motion::Skeleton skeleton = motion::SbuSkeleton();
+  const auto made = [](const char* name) { return MakeLeader(name, 14, kLeaderRate); };
+  EXPECT_LT(body::JointSpeed(made("idle"), kLeaderRate), 0.1);
+  EXPECT_GT(body::JointSpeed(made("dance"), kLeaderRate), 0.3);
+  // An eight: wide, and where it began at the end.
+  const motion::Poses walk = made("walk_eight");
+  float widest = 0;
+  for (int t = 0; t < walk.frame_count(); ++t) {
+    widest = std::max(widest, std::abs(walk.at(t, skeleton.root).x));
   }
-  const Poses sent = WithGaps(leader, kRate);
-  const auto x = [&](int t) { return sent.at(t, 0).x; };
-  ASSERT_EQ(sent.frame_count(), 1000);
-  // Three seconds, then gaps of 3, 6 and 15 frames.
-  EXPECT_EQ(x(89), 89 * 89);
-  EXPECT_NEAR(x(91), (89 * 89 + 93 * 93) / 2.0, 0.1);
-  EXPECT_EQ(x(93), 93 * 93);
-  EXPECT_EQ(x(182), 182 * 182);
-  EXPECT_GT(x(183), 183 * 183) << "on a straight line";
-  EXPECT_EQ(x(189), 189 * 189);
-  EXPECT_EQ(x(278), 278 * 278);
-  for (int t = 279; t < 294; ++t) EXPECT_EQ(x(t), 278 * 278) << "held";
-  EXPECT_EQ(x(294), 294 * 294);
-}
-
-TEST(WithGapsTest, AMotionWithoutRoomForAGapIsUnchanged) {
-  const Poses leader(92, 2);
-  EXPECT_EQ(WithGaps(leader, kRate).frame_count(), 92);
+  EXPECT_NEAR(widest, 1.5, 0.1);
+  EXPECT_LT(Distance(walk.at(0, skeleton.root), walk.at(14 * 15, skeleton.root)), 0.1);
+  // It looks where it goes: half a second later its root is in front of it.
+  for (int t = 0; t + 8 < walk.frame_count(); t += 8) {
+    const motion::Vec3 way = walk.at(t + 4, skeleton.root) - walk.at(t, skeleton.root);
+    const motion::Vec3 across = walk.at(t, skeleton.hips->right) - walk.at(t, skeleton.hips->left);
+    EXPECT_GT(Dot(Cross({0, 1, 0}, across), way), 0) << t;
+  }
+  const motion::Poses sit = made("sit");
+  EXPECT_LT(sit.at(5 * 15, skeleton.root).y, sit.at(0, skeleton.root).y - 0.3f);
 }
 
 }  // namespace
