@@ -9,10 +9,40 @@
 
 #include "absl/status/status.h"
 #include "server/batching/batch_cost.h"
-#include "server/batching/lane.h"
+#include "server/batching/window_scheduler.h"
 #include "server/common/clock.h"
 
 namespace duet::server::batching {
+
+// The queues in which windows wait, the most urgent first. A batch contains windows of one lane
+// only, so that long calls do not delay short ones.
+enum class Lane {
+  kShort,  // interactive calls of little work, and the first window of long ones
+  kLong,   // the other windows of long interactive calls
+  kBulk
+};
+inline constexpr std::size_t kLanes = 3;
+
+// A call of more windows is long: more than about 20 s at 15 frames a second.
+inline constexpr int kShortCallWindows = 8;
+
+// `call_windows`: number of windows of the whole call, each counted once for each candidate: a call
+// with many candidates delays others as much as one that is as many times longer. The caller waits
+// for the first frames of a long call as for those of a short one. Later frames only have to keep
+// up with playback.
+constexpr Lane LaneOf(Priority priority, int call_windows, bool continues_call) {
+  if (priority == Priority::kBulk) return Lane::kBulk;
+  return continues_call && call_windows > kShortCallWindows ? Lane::kLong : Lane::kShort;
+}
+
+// Returns how many of `frames` waiting frames (at least 1) a free worker takes so that all workers
+// finish at about the same time: between 1 and `frames`. While the cost is unknown, the free
+// workers take equal numbers.
+//
+// `busy_seconds`: remaining time of each batch that other workers evaluate. `free_workers`:
+// including the one that asks, at least 1.
+int EvenShare(int frames, int free_workers, std::vector<double> busy_seconds,
+              const CostEstimate& cost);
 
 // The input of a decision about one waiting window.
 struct WaitingWindow {

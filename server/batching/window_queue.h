@@ -12,7 +12,6 @@
 #include "absl/status/status.h"
 #include "server/batching/batch_cost.h"
 #include "server/batching/batch_decision.h"
-#include "server/batching/lane.h"
 #include "server/batching/window_scheduler.h"
 
 namespace duet::server::batching {

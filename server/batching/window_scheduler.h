@@ -6,13 +6,27 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "absl/status/status.h"
 #include "model/engine/synthesizer.h"
-#include "server/batching/priority.h"
 #include "server/common/clock.h"
 
 namespace duet::server::batching {
+
+// How urgent a call is. Bulk windows start after waiting interactive windows; see Decide.
+enum class Priority { kInteractive, kBulk };
+
+// Returns the name in metrics and logs.
+constexpr std::string_view PriorityName(Priority priority) {
+  return priority == Priority::kBulk ? "bulk" : "interactive";
+}
+
+// Returns the part of a limit that calls of a priority may use: all of it for interactive calls,
+// three quarters for bulk calls, so that a quarter remains free for interactive calls.
+constexpr std::size_t ShareOf(std::size_t limit, Priority priority) {
+  return priority == Priority::kBulk ? limit - limit / 4 : limit;
+}
 
 // How long a window waited and how long it was computed.
 struct WindowTimings {

@@ -13,7 +13,6 @@
 #include "duet/v1/server_config.pb.h"
 #include "model/messages/field_places.h"
 #include "server/config/environment.h"
-#include "server/config/setting_sources.h"
 #include "server/config/settings.h"
 #include "server/config/task.h"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "absl/strings/str_cat.h"
-#include "server/config/memory_limit.h"
+#include "server/config/container_limits.h"
 
 namespace duet::server::config {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "absl/strings/string_view.h"
-#include "server/config/setting_sources.h"
+#include "server/config/settings.h"
 
 namespace duet::server::config {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "duet/v1/server_config.pb.h"
-#include "server/config/setting_sources.h"
+#include "server/config/settings.h"
 
 namespace duet::server::config {
 

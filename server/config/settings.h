@@ -2,15 +2,20 @@
 #define DUET_SERVER_CONFIG_SETTINGS_H_
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "duet/v1/server_config.pb.h"
-#include "server/config/memory_limit.h"
-#include "server/config/setting_sources.h"
+#include "server/config/container_limits.h"
 
 namespace duet::server::config {
+
+// The source of each setting, for messages: "command line", "environment DUET_SERVER_MAX_CALLS" or
+// "file duet.textproto:4:1". The key is the field as errors name it: "max_calls", or
+// "version_labels[1]" for a value of a repeated field. Settings that are absent have their default.
+using SettingSources = std::map<std::string, std::string>;
 
 // A configuration with every default filled in, and its mistakes.
 struct Settings {

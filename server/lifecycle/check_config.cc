@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
-#include "server/config/memory_limit.h"
+#include "server/config/container_limits.h"
 #include "server/config/memory_plan.h"
 #include "server/lifecycle/load_models.h"
 #include "server/metrics/process_metrics.h"

@@ -15,7 +15,7 @@
 #include "server/config/listen_address.h"
 #include "server/lifecycle/load_models.h"
 #include "server/lifecycle/secret_options.h"
-#include "server/security/server_credentials.h"
+#include "server/security/tls_certificates.h"
 #include "server/service/refusals.h"
 
 namespace duet::server::lifecycle {

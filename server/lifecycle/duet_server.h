@@ -24,7 +24,7 @@
 #include "server/registry/model_control.h"
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
-#include "server/registry/model_source.h"
+#include "server/registry/model_repository.h"
 #include "server/security/secret_files.h"
 #include "server/service/admission.h"
 #include "server/service/motion_synthesis_service.h"

@@ -10,7 +10,7 @@
 #include "duet/v1/server_config.pb.h"
 #include "server/registry/model_manager.h"
 #include "server/registry/model_registry.h"
-#include "server/registry/model_source.h"
+#include "server/registry/model_repository.h"
 
 namespace duet::server::lifecycle {
 

@@ -15,9 +15,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "server/common/activity.h"
-#include "server/config/cpu_budget.h"
+#include "server/config/container_limits.h"
 #include "server/config/load_config.h"
-#include "server/config/memory_limit.h"
 #include "server/config/memory_plan.h"
 #include "server/config/print_config.h"
 #include "server/lifecycle/check_config.h"
@@ -26,9 +25,9 @@
 #include "server/lifecycle/library_logs.h"
 #include "server/lifecycle/systemd_notifier.h"
 #include "server/lifecycle/validate_settings.h"
+#include "server/metrics/json_log.h"
+#include "server/metrics/log_sink.h"
 #include "server/metrics/process_metrics.h"
-#include "server/metrics/queued_log_sink.h"
-#include "server/metrics/text_log_sink.h"
 #include "server/watchdog/watchdog.h"
 
 namespace duet::server::lifecycle {

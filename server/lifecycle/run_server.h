@@ -5,7 +5,7 @@
 
 #include "server/lifecycle/validate_settings.h"
 #include "server/metrics/log_sink.h"
-#include "server/registry/model_source.h"
+#include "server/registry/model_repository.h"
 #include "server/watchdog/exit_codes.h"
 #include "server/watchdog/stop_signal.h"
 

@@ -9,7 +9,7 @@
 #include "absl/status/statusor.h"
 #include "server/config/load_config.h"
 #include "server/config/settings.h"
-#include "server/registry/model_source.h"
+#include "server/registry/model_repository.h"
 
 namespace duet::server::lifecycle {
 

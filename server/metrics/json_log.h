@@ -3,18 +3,30 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "absl/status/status.h"
 #include "absl/time/time.h"
-#include "server/metrics/admin_action.h"
 #include "server/metrics/call_log_filter.h"
 #include "server/metrics/call_record.h"
 #include "server/metrics/log_sink.h"
 
 namespace duet::server::metrics {
+
+// An action of an administrator, successful or not: one line of the audit log (JsonLog::Audit).
+struct AdminAction {
+  std::string caller;  // known by token or certificate; empty for an unknown caller
+  std::string peer;
+  std::string request_id;
+  std::string action;                                          // "LoadModel"
+  std::vector<std::pair<std::string, std::string>> arguments;  // {"model", "sbu"}, ...
+  absl::Status status;                                         // the result
+};
 
 enum class Severity { kInfo, kWarning, kError };
 
@@ -76,6 +88,25 @@ class JsonLog final : public CallObserver {
   const std::function<absl::Time()> now_;
   const LogOptions options_;
   CallLogFilter filter_;
+};
+
+// Formats a line of the JSON log for people. Returns any other line unchanged.
+//
+//   2022-05-01T12:00:00.123456Z INFO    call method=Synthesize code=OK frames=300
+std::string ToText(std::string_view json_line);
+
+// Passes every line on as text. Put it between the queue and the sink that writes, so that calls do
+// not wait for it.
+//
+// Threads: like the sink that it passes lines to.
+class TextLogSink final : public LogSink {
+ public:
+  explicit TextLogSink(std::shared_ptr<LogSink> sink) : sink_(std::move(sink)) {}
+  bool Write(std::string_view line) override { return sink_->Write(ToText(line)); }
+  std::uint64_t dropped_lines() const override { return sink_->dropped_lines(); }
+
+ private:
+  const std::shared_ptr<LogSink> sink_;
 };
 
 }  // namespace duet::server::metrics

@@ -2,6 +2,10 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include "server/common/mutex.h"
 
 namespace duet::server::metrics {
 
@@ -25,5 +29,105 @@ bool StreamLogSink::Write(std::string_view line) {
   ++dropped_;
   return false;
 }
+
+// Shared by the writing thread and the threads that log.
+class QueuedLogSink::Queue {
+ public:
+  Queue(std::shared_ptr<LogSink> sink, Options options)
+      : sink_(std::move(sink)), options_(std::move(options)) {}
+
+  bool Push(std::string_view line) {
+    {
+      common::MutexLock lock(mutex_);
+      if (lines_.size() >= options_.capacity) {
+        ++dropped_;
+        return false;
+      }
+      lines_.emplace_back(line);
+    }
+    changed_.NotifyAll();
+    return true;
+  }
+
+  std::uint64_t dropped() const {
+    common::MutexLock lock(mutex_);
+    return dropped_;
+  }
+
+  // Runs on the writing thread until the queue is closed and empty.
+  void Run() {
+    Batch batch;
+    std::uint64_t reported = 0;  // lost lines that notices have reported
+    while (Next(&batch)) {
+      std::uint64_t lost = 0;
+      for (const std::string& line : batch.lines) lost += sink_->Write(line) ? 0 : 1;
+      CountLost(lost);
+      // Lines are dropped only while the queue is full, so they followed the lines of the batch. If
+      // the notice is lost as well, the next one reports all lines.
+      const std::uint64_t unreported = batch.dropped + lost - reported;
+      if (unreported > 0 && sink_->Write(options_.drop_notice(unreported))) reported += unreported;
+    }
+    common::MutexLock lock(mutex_);
+    finished_ = true;
+    changed_.NotifyAll();
+  }
+
+  // Makes Run return. Returns false if it is still stuck in the sink after `patience`.
+  bool Close(std::chrono::milliseconds patience) {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    common::MutexLock lock(mutex_);
+    closed_ = true;
+    changed_.NotifyAll();
+    while (!finished_ && changed_.WaitUntil(mutex_, end)) {
+    }
+    return finished_;
+  }
+
+ private:
+  struct Batch {
+    std::vector<std::string> lines;
+    std::uint64_t dropped = 0;  // lines lost since the start, when the batch was taken
+  };
+
+  // Waits for lines and takes all of them. Returns false if the queue is closed and empty.
+  bool Next(Batch* batch) {
+    common::MutexLock lock(mutex_);
+    while (lines_.empty() && !closed_) changed_.Wait(mutex_);
+    batch->lines = std::exchange(lines_, {});
+    batch->dropped = dropped_;
+    return !batch->lines.empty();
+  }
+
+  void CountLost(std::uint64_t lines) {
+    common::MutexLock lock(mutex_);
+    dropped_ += lines;
+  }
+
+  const std::shared_ptr<LogSink> sink_;
+  const Options options_;
+  mutable common::Mutex mutex_;
+  common::CondVar changed_;
+  std::vector<std::string> lines_ DUET_GUARDED_BY(mutex_);
+  std::uint64_t dropped_ DUET_GUARDED_BY(mutex_) = 0;
+  bool closed_ DUET_GUARDED_BY(mutex_) = false;
+  bool finished_ DUET_GUARDED_BY(mutex_) = false;
+};
+
+QueuedLogSink::QueuedLogSink(std::shared_ptr<LogSink> sink, const Options& options)
+    : queue_(std::make_shared<Queue>(std::move(sink), options)),
+      patience_(options.patience),
+      writer_([queue = queue_] { queue->Run(); }) {}
+
+QueuedLogSink::~QueuedLogSink() {
+  if (queue_->Close(patience_)) {
+    writer_.join();
+  } else {
+    writer_.detach();
+  }
+}
+
+bool QueuedLogSink::Write(std::string_view line) { return queue_->Push(line); }
+
+std::uint64_t QueuedLogSink::dropped_lines() const { return queue_->dropped(); }
 
 }  // namespace duet::server::metrics

@@ -16,7 +16,6 @@
 #include "server/registry/model_registry.h"
 #include "server/registry/model_repository.h"
 #include "server/registry/model_status.h"
-#include "server/registry/version_label.h"
 #include "server/registry/version_policy.h"
 
 namespace duet::server::registry {

@@ -56,6 +56,15 @@ std::filesystem::path ResolveCheckpoint(const std::filesystem::path& folder);
 // or version in its manifest differ from those of its folder.
 LoadReport LoadCheckpoint(const std::filesystem::path& folder, const ModelLoader& loader);
 
+// How models are loaded.
+struct ModelSource {
+  std::string engine;  // for the log and replies (SynthesisHeader): "cpu, bf16, AVX-512"
+  ModelLoader load_folder;
+  // Loads the embedded models. The default model is the first.
+  std::function<absl::StatusOr<std::vector<std::shared_ptr<const engine::Synthesizer>>>()>
+      load_embedded;
+};
+
 }  // namespace duet::server::registry
 
 #endif  // DUET_SERVER_REGISTRY_MODEL_REPOSITORY_H_

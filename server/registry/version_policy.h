@@ -10,6 +10,16 @@
 
 namespace duet::server::registry {
 
+// A name that requests may use instead of a version number: "stable", "canary".
+struct VersionLabel {
+  std::string model;
+  std::string label;
+  uint32_t version = 0;
+  friend bool operator==(const VersionLabel& a, const VersionLabel& b) {
+    return a.model == b.model && a.label == b.label && a.version == b.version;
+  }
+};
+
 // Which versions of a model in the repository are served. Default: all.
 struct VersionPolicy {
   std::string model;               // empty: every model without a policy of its own

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "server/security/caller.h"
+#include "server/security/access_control.h"
 
 namespace duet::server::security {
 

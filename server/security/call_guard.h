@@ -10,7 +10,6 @@
 
 #include "absl/status/status.h"
 #include "server/security/access_control.h"
-#include "server/security/caller.h"
 
 namespace duet::server::security {
 

@@ -17,7 +17,6 @@
 #include "server/common/mutex.h"
 #include "server/security/access_control.h"
 #include "server/security/tls_certificates.h"
-#include "server/security/tls_material.h"
 
 namespace duet::server::security {
 

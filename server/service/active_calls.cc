@@ -1,6 +1,7 @@
 #include "server/service/active_calls.h"
 
 #include <algorithm>
+#include <chrono>
 
 namespace duet::server::service {
 namespace {
@@ -97,6 +98,21 @@ ActiveCalls::Calls ActiveCalls::All() {
     if (std::shared_ptr<ActiveCall> call = weak.lock()) alive.push_back(std::move(call));
   }
   return alive;
+}
+
+void OpenCalls::Add(int calls) {
+  common::MutexLock lock(mutex_);
+  open_ += calls;
+  if (open_ == 0) changed_.NotifyAll();
+}
+
+void OpenCalls::WaitForNone(double seconds) {
+  const auto end = std::chrono::steady_clock::now() +
+                   std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                       std::chrono::duration<double>(seconds));
+  common::MutexLock lock(mutex_);
+  while (open_ > 0 && changed_.WaitUntil(mutex_, end)) {
+  }
 }
 
 }  // namespace duet::server::service

@@ -7,7 +7,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "server/batching/priority.h"
+#include "server/batching/window_scheduler.h"
 #include "server/common/mutex.h"
 #include "server/service/share_pool.h"
 

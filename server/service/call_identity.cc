@@ -1,11 +1,13 @@
 #include "server/service/call_identity.h"
 
 #include <arpa/inet.h>
+#include <grpc/support/time.h>
 #include <netinet/in.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <random>
 
 #include "absl/strings/ascii.h"
@@ -79,6 +81,15 @@ std::string NewRequestId() {
   const uint64_t high = generator();
   const uint64_t low = generator();
   return absl::StrCat(absl::Hex(high, absl::kZeroPad16), absl::Hex(low, absl::kZeroPad16));
+}
+
+double SecondsLeft(const grpc::ServerContextBase& context) {
+  const gpr_timespec deadline = context.raw_deadline();
+  if (gpr_time_cmp(deadline, gpr_inf_future(deadline.clock_type)) == 0) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const gpr_timespec left = gpr_time_sub(deadline, gpr_now(deadline.clock_type));
+  return static_cast<double>(left.tv_sec) + 1e-9 * left.tv_nsec;
 }
 
 }  // namespace duet::server::service

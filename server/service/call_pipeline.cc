@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "server/common/activity.h"
 #include "server/common/trace_context.h"
 #include "server/service/call_identity.h"
 #include "server/service/refusals.h"
@@ -50,6 +51,34 @@ absl::Status CallPipeline::CheckSize(const grpc::ByteBuffer& bytes, std::size_t 
 absl::Status CallPipeline::Read(grpc::ByteBuffer bytes, google::protobuf::Message& request) const {
   const absl::Status fits = CheckSize(bytes);
   return fits.ok() ? ParseMessage(std::move(bytes), request) : fits;
+}
+
+CallScope::CallScope(const metrics::MethodInfo& method, CallIdentity identity,
+                     const std::vector<metrics::CallObserver*>& observers,
+                     const common::Clock& clock)
+    : observers_(observers), clock_(clock), begin_(clock.Now()) {
+  record_.method = method;
+  record_.request_id = std::move(identity.request_id);
+  record_.traceparent = std::move(identity.traceparent);
+  record_.peer = std::move(identity.peer);
+  ++common::ProcessVitals().calls;
+  for (metrics::CallObserver* observer : observers_) observer->CallStarted(method);
+}
+
+absl::Status CallScope::Enter(security::CallPass pass) {
+  pass_ = std::move(pass);
+  record_.caller = pass_.name();
+  record_.caller_is_listed = pass_.is_listed();
+  return pass_.status();
+}
+
+void CallScope::Finish(const absl::Status& status) {
+  // A caller that has its status has its share as well.
+  pass_.Release();
+  record_.status = status;
+  record_.total_seconds = ElapsedSeconds();
+  for (metrics::CallObserver* observer : observers_) observer->CallFinished(record_);
+  --common::ProcessVitals().calls;
 }
 
 }  // namespace duet::server::service

@@ -6,7 +6,7 @@
 
 #include "server/common/activity.h"
 #include "server/common/grpc_status.h"
-#include "server/service/call_deadline.h"
+#include "server/service/call_identity.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/wire.h"
 

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "absl/status/status.h"
-#include "server/service/open_calls.h"
+#include "server/service/active_calls.h"
 #include "server/service/reception.h"
 #include "server/service/streaming_call.h"
 

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "model/engine/candidates.h"
-#include "server/service/priority_message.h"
 #include "server/service/refusals.h"
+#include "server/service/validator.h"
 
 namespace duet::server::service {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/service/validate_size.h"
+#include "server/service/validate_leader.h"
 #include "server/service/violations.h"
 #include "server/service/window_check.h"
 

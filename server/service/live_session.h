@@ -19,7 +19,7 @@
 #include "server/batching/window_scheduler.h"
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
-#include "server/service/live_rig.h"
+#include "server/service/reply_rig.h"
 #include "server/service/request_limits.h"
 #include "server/service/validate_live.h"
 

@@ -11,12 +11,11 @@
 
 #include "model/engine/candidates.h"
 #include "server/common/activity.h"
-#include "server/service/call_deadline.h"
+#include "server/service/call_identity.h"
 #include "server/service/clip_replies.h"
 #include "server/service/live_inbox.h"
 #include "server/service/live_replies.h"
 #include "server/service/model_message.h"
-#include "server/service/priority_message.h"
 #include "server/service/refusals.h"
 #include "server/service/validate_live.h"
 #include "server/service/validator.h"

@@ -25,7 +25,6 @@
 #include "server/service/call_pipeline.h"
 #include "server/service/call_reactor.h"
 #include "server/service/live_session.h"
-#include "server/service/open_calls.h"
 #include "server/service/raw_service.h"
 #include "server/service/reception.h"
 #include "server/service/request_limits.h"

@@ -14,7 +14,7 @@
 #include "server/common/mutex.h"
 #include "server/service/active_calls.h"
 #include "server/service/admission.h"
-#include "server/service/call_scope.h"
+#include "server/service/call_pipeline.h"
 #include "server/service/share_pool.h"
 #include "server/service/streaming_call.h"
 

@@ -13,7 +13,7 @@
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
 #include "server/metrics/call_record.h"
-#include "server/service/call_scope.h"
+#include "server/service/call_pipeline.h"
 #include "server/service/share_pool.h"
 
 namespace duet::server::service {

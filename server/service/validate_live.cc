@@ -9,7 +9,6 @@
 #include "duet/v1/synthesis.pb.h"
 #include "server/service/validate_labels.h"
 #include "server/service/validate_leader.h"
-#include "server/service/validate_size.h"
 #include "server/service/validator.h"
 #include "server/service/violations.h"
 

@@ -11,12 +11,9 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
 #include "model/engine/window_seed.h"
-#include "server/service/priority_message.h"
-#include "server/service/validate_constraints.h"
 #include "server/service/validate_labels.h"
 #include "server/service/validate_leader.h"
 #include "server/service/validate_options.h"
-#include "server/service/validate_size.h"
 #include "server/service/violations.h"
 
 namespace duet::server::service {
@@ -293,6 +290,18 @@ absl::StatusOr<ValidatedRequest> Validation::Run() {
 }
 
 }  // namespace
+
+std::optional<batching::Priority> PriorityOf(const v1::SynthesizeRequest& request) {
+  if (!request.has_priority()) return batching::Priority::kInteractive;
+  switch (request.priority()) {
+    case v1::PRIORITY_INTERACTIVE:
+      return batching::Priority::kInteractive;
+    case v1::PRIORITY_BULK:
+      return batching::Priority::kBulk;
+    default:
+      return std::nullopt;
+  }
+}
 
 absl::StatusOr<ValidatedRequest> ValidateRequest(const v1::SynthesizeRequest& request,
                                                  const engine::ModelDescription& model,

@@ -2,17 +2,21 @@
 #define DUET_SERVER_SERVICE_VALIDATOR_H_
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
 #include "duet/v1/synthesis.pb.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/engine/model_description.h"
-#include "server/batching/priority.h"
+#include "server/batching/window_scheduler.h"
 #include "server/service/reply_mapping.h"
 #include "server/service/request_limits.h"
 
 namespace duet::server::service {
+
+// Returns the priority of a request. Defaults to interactive; absent if the value is unknown.
+std::optional<batching::Priority> PriorityOf(const v1::SynthesizeRequest& request);
 
 // A valid SynthesizeRequest, converted to the model's joints, units and classes.
 struct ValidatedRequest {

@@ -9,7 +9,7 @@ namespace duet::server::watchdog {
 // For a process that can no longer trust its heap, its locks or its log: it writes a few lines and
 // exits.
 
-// One line of the log (json_log.h, text_log_sink.h), formatted without allocating memory.
+// One line of the log (json_log.h), formatted without allocating memory.
 //
 //   LastLine line(/*text=*/false, "thread_stuck");
 //   line.Add("thread", "worker");

@@ -34,7 +34,6 @@
 #include "server/service/reply_mapping.h"
 #include "server/service/validator.h"
 #include "server/service/wire.h"
-#include "server/service/wire_survey.h"
 #include "tests/fuzz/promises.h"
 #include "tests/support/fake_synthesizer.h"
 

@@ -1,6 +1,6 @@
-#include "server/batching/even_share.h"
-
 #include <gtest/gtest.h>
+
+#include "server/batching/batch_decision.h"
 
 namespace duet::server::batching {
 namespace {

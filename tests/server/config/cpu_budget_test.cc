@@ -1,11 +1,10 @@
-#include "server/config/cpu_budget.h"
-
 #include <gtest/gtest.h>
 #include <sched.h>
 
 #include <filesystem>
 #include <string>
 
+#include "server/config/container_limits.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::server::config {

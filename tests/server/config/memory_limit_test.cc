@@ -1,11 +1,10 @@
-#include "server/config/memory_limit.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
 
+#include "server/config/container_limits.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::server::config {

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "server/config/memory_limit.h"
+#include "server/config/container_limits.h"
 #include "server/config/settings.h"
 #include "tests/support/matchers.h"
 

@@ -1,5 +1,3 @@
-#include "server/metrics/queued_log_sink.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +11,7 @@
 #include <vector>
 
 #include "server/common/mutex.h"
+#include "server/metrics/log_sink.h"
 #include "tests/support/matchers.h"
 
 namespace duet::server::metrics {

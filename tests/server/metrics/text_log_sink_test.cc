@@ -1,10 +1,10 @@
-#include "server/metrics/text_log_sink.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "server/metrics/json_log.h"
 
 namespace duet::server::metrics {
 namespace {

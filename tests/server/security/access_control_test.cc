@@ -7,7 +7,6 @@
 #include <thread>
 #include <vector>
 
-#include "server/security/constant_time.h"
 #include "tests/server/support/fake_clock.h"
 
 namespace duet::server::security {

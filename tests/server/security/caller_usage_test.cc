@@ -1,5 +1,3 @@
-#include "server/security/caller_usage.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -9,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/security/access_control.h"
 #include "tests/server/support/fake_clock.h"
 
 namespace duet::server::security {

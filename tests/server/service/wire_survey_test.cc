@@ -1,5 +1,3 @@
-#include "server/service/wire_survey.h"
-
 #include <gmock/gmock.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <gtest/gtest.h>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "duet/v1/synthesis.pb.h"
+#include "server/service/wire.h"
 #include "tests/server/support/refusal.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/matchers.h"

@@ -1,0 +1,143 @@
+#include "server/config/container_limits.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "absl/strings/numbers.h"
+
+namespace duet::server::config {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A line of /proc/self/cgroup, "<number>:<controllers>:/<path>".
+struct CgroupLine {
+  bool version_2 = false;       // no controllers: the only hierarchy of version 2
+  bool has_controller = false;  // version 1's hierarchy of the controller
+  fs::path path;                // without the leading "/"
+};
+
+CgroupLine ParseCgroupLine(const std::string& line, const std::string& controller) {
+  const std::size_t first = line.find(':');
+  const std::size_t second = first == std::string::npos ? first : line.find(':', first + 1);
+  if (second == std::string::npos || line.compare(second, 2, ":/") != 0) return {};
+  const std::string controllers = line.substr(first + 1, second - first - 1);
+  // Enclosed in commas, because "cpuacct" and "cpuset" are not "cpu".
+  const bool has_controller =
+      ("," + controllers + ",").find("," + controller + ",") != std::string::npos;
+  return {controllers.empty(), has_controller, line.substr(second + 2)};
+}
+
+// The cgroup's folder below `top` and those of its ancestors.
+std::vector<fs::path> WithAncestors(const fs::path& top, fs::path cgroup) {
+  std::vector<fs::path> folders;
+  while (true) {
+    folders.push_back(top / cgroup);
+    if (cgroup.empty()) return folders;
+    cgroup = cgroup.parent_path();
+  }
+}
+
+namespace fs = std::filesystem;
+
+std::optional<double> LimitOfVersion2(const fs::path& cgroup) {
+  return ParseCpuMax(FirstLine(cgroup / "cpu.max"));
+}
+
+// A quota of -1 means no limit.
+std::optional<double> LimitOfVersion1(const fs::path& cgroup) {
+  return ParseCpuMax(FirstLine(cgroup / "cpu.cfs_quota_us") + " " +
+                     FirstLine(cgroup / "cpu.cfs_period_us"));
+}
+
+// The processors that `taskset` and a cpuset allow this thread.
+double AffinityCores() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (sched_getaffinity(0, sizeof(set), &set) == 0) return CPU_COUNT(&set);
+  // The machine has more processors than the set can hold.
+  return std::thread::hardware_concurrency();
+}
+
+namespace fs = std::filesystem;
+
+// "max" is not a number and means no limit; so does a limit of 0, which no process could run under.
+std::uint64_t LimitIn(const fs::path& path) {
+  std::uint64_t limit = 0;
+  if (!absl::SimpleAtoi(FirstLine(path), &limit) || limit == 0) return kUnlimitedMemory;
+  return limit;
+}
+
+std::uint64_t MemoryOfMachine(const fs::path& system_root) {
+  std::ifstream file(system_root / "proc/meminfo");
+  std::string key, unit;
+  for (std::uint64_t kibibytes = 0; file >> key >> kibibytes; std::getline(file, unit)) {
+    if (key == "MemTotal:") return kibibytes << 10;
+  }
+  return kUnlimitedMemory;
+}
+
+}  // namespace
+
+CgroupFolders FindCgroups(const fs::path& system_root, const std::string& controller) {
+  fs::path version_1, version_2;
+  std::ifstream file(system_root / "proc/self/cgroup");
+  for (std::string line; std::getline(file, line);) {
+    CgroupLine cgroup = ParseCgroupLine(line, controller);
+    if (cgroup.version_2) version_2 = cgroup.path;
+    if (cgroup.has_controller) version_1 = std::move(cgroup.path);
+  }
+  const fs::path top = system_root / "sys/fs/cgroup";
+  return {WithAncestors(top / controller, version_1), WithAncestors(top, version_2)};
+}
+
+std::string FirstLine(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
+}
+
+std::optional<double> ParseCpuMax(const std::string& text) {
+  std::istringstream fields(text);
+  double quota = 0;
+  double period = 0;
+  // "max" does not parse as a number.
+  if (!(fields >> quota >> period) || !(quota > 0) || !(period > 0)) return std::nullopt;
+  return quota / period;
+}
+
+int AvailableCores(const fs::path& system_root) {
+  double cores = AffinityCores();
+  const CgroupFolders cgroups = FindCgroups(system_root, "cpu");
+  for (const fs::path& cgroup : cgroups.version_2) {
+    cores = std::min(cores, LimitOfVersion2(cgroup).value_or(cores));
+  }
+  for (const fs::path& cgroup : cgroups.version_1) {
+    cores = std::min(cores, LimitOfVersion1(cgroup).value_or(cores));
+  }
+  return std::max(1, static_cast<int>(std::floor(cores)));
+}
+
+std::uint64_t AvailableMemory(const fs::path& system_root) {
+  std::uint64_t limit = MemoryOfMachine(system_root);
+  const CgroupFolders cgroups = FindCgroups(system_root, "memory");
+  for (const fs::path& cgroup : cgroups.version_2) {
+    limit = std::min({limit, LimitIn(cgroup / "memory.max"), LimitIn(cgroup / "memory.high")});
+  }
+  // Version 1 writes its largest number, which exceeds every machine's memory, for no limit.
+  for (const fs::path& cgroup : cgroups.version_1) {
+    limit = std::min(limit, LimitIn(cgroup / "memory.limit_in_bytes"));
+  }
+  return limit;
+}
+
+}  // namespace duet::server::config
