@@ -60,7 +60,7 @@ struct OpenedCall {
 // The steps that calls of every method have in common.
 //
 // In:   Open, at the headers: identity and scope (from here on the call is counted), guard.
-//       Admission follows, then the message (Reception). Read: size -> bounds -> parser.
+//       Admission follows, then the message (Call). Read: size -> bounds -> parser.
 // Out:  Close: observers -> status and trailers. When a caller receives its status, the metrics
 //       already contain the call.
 //

@@ -1,13 +1,15 @@
 #include "server/service/call_reactor.h"
 
 #include <grpc/grpc.h>
+#include <grpcpp/impl/codegen/server_callback_handlers.h>
+#include <grpcpp/impl/rpc_method.h>
+#include <grpcpp/impl/rpc_service_method.h>
 
 #include <utility>
 
 #include "server/common/activity.h"
 #include "server/common/grpc_status.h"
 #include "server/service/call_identity.h"
-#include "server/service/call_pipeline.h"
 #include "server/service/wire.h"
 
 namespace duet::server::service {
@@ -17,6 +19,7 @@ namespace {
 // passes here, because the call began here later by the time that the request travelled.
 constexpr double kDeadlineSlackSeconds = 0.1;
 
+constexpr common::StepKind kOpening{"gRPC callback", "starting a call"};
 constexpr common::StepKind kReceived{"gRPC callback", "handling a request"};
 constexpr common::StepKind kWritten{"gRPC callback", "writing a reply"};
 constexpr common::StepKind kCancelled{"gRPC callback", "ending a cancelled call"};
@@ -25,8 +28,24 @@ using GrpcReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
 
 }  // namespace
 
-void CallReactor::Receive(std::shared_ptr<Reception> reception, Handler handle) {
-  reception_ = std::move(reception);
+// Does what the constructors of generated services do. gRPC itself serves unary methods as streams
+// this way (grpc::Service::MarkMethodStreamed).
+void RawService::Serve(const char* method,
+                       std::function<Reactor*(grpc::CallbackServerContext*)> open) {
+  using grpc::internal::CallbackBidiHandler;
+  using grpc::internal::RpcMethod;
+  using grpc::internal::RpcServiceMethod;
+  AddMethod(new RpcServiceMethod(method, RpcMethod::BIDI_STREAMING, nullptr));
+  MarkMethodRawCallback(methods_++,
+                        new CallbackBidiHandler<grpc::ByteBuffer, grpc::ByteBuffer>(
+                            [open = std::move(open)](grpc::CallbackServerContext* context) {
+                              const common::Step step(kOpening);
+                              return open(context);
+                            }));
+}
+
+void CallReactor::Receive(std::shared_ptr<Call> call, Handler handle) {
+  call_ = std::move(call);
   handle_ = std::move(handle);
   StartRead(&request_);
 }
@@ -34,22 +53,22 @@ void CallReactor::Receive(std::shared_ptr<Reception> reception, Handler handle) 
 void CallReactor::OnReadDone(bool ok) {
   const common::Step step(kReceived);
   // Copied, because the call may end while its message is handled.
-  const std::shared_ptr<Reception> reception = reception_;
+  const std::shared_ptr<Call> call = call_;
   grpc::ByteBuffer bytes;
   bytes.Swap(&request_);
   if (handle_ == nullptr) {
     if (ok) {
-      reception->HandOn(std::move(bytes));
+      call->OnMessage(std::move(bytes));
     } else if (!context_.IsCancelled()) {  // OnCancel ends a cancelled call
-      reception->EndOfMessages();
+      call->OnEndOfMessages();
     }
     return;
   }
   const Handler handle = std::exchange(handle_, nullptr);
   if (!ok) {
-    reception->Lost(context_.IsCancelled());
-  } else if (reception->Received()) {
-    handle(*this, reception, std::move(bytes));
+    call->OnNoMessage(context_.IsCancelled());
+  } else if (call->OnFirstMessage()) {
+    handle(*this, call, std::move(bytes));
   }
 }
 
@@ -59,19 +78,12 @@ void CallReactor::Respond(CallScope& scope, grpc::ByteBuffer response) {
   StartWriteAndFinish(&reply_, grpc::WriteOptions(), grpc::Status::OK);
 }
 
-void CallReactor::Run(std::shared_ptr<StreamingCall> call, std::shared_ptr<MessageSink> further) {
-  const std::shared_ptr<Reception> reception = reception_;
-  call_ = call;
-  reception->GoOn(std::move(call), std::move(further));
-}
-
 void CallReactor::Write(const google::protobuf::Message& reply) {
   reply_ = SerializeMessage(reply);
   StartWrite(&reply_);
 }
 
 void CallReactor::Finish(CallScope& scope, const absl::Status& status) {
-  if (reception_ != nullptr) reception_->Close();
   GrpcReactor& reactor = *this;
   CallPipeline::Close(scope, status, context_, reactor);
 }
@@ -92,10 +104,10 @@ void CallReactor::OnWriteDone(bool ok) {
 
 void CallReactor::OnCancel() {
   const common::Step step(kCancelled);
-  if (reception_ == nullptr) return;
+  if (call_ == nullptr) return;
   const bool expired = SecondsLeft(context_) <= kDeadlineSlackSeconds;
-  reception_->Abort(expired ? absl::DeadlineExceededError("the call's deadline passed")
-                            : absl::CancelledError("the caller cancelled"));
+  call_->Abort(expired ? absl::DeadlineExceededError("the call's deadline passed")
+                       : absl::CancelledError("the caller cancelled"));
 }
 
 }  // namespace duet::server::service

@@ -51,8 +51,8 @@ ClipReplies::ClipReplies(std::shared_ptr<const engine::Synthesizer> model, Valid
                                            WithPriority(std::move(options), priority_), scheduler,
                                            [on_progress = on_progress_] { (*on_progress)(); })) {}
 
-absl::Status ClipReplies::Start(std::function<void()> on_progress) {
-  *on_progress_ = std::move(on_progress);
+absl::Status ClipReplies::Start(SourceEvents events) {
+  *on_progress_ = std::move(events.on_progress);
   const absl::Status scheduled = stream_->Start();
   return scheduled.ok() ? scheduled : QueueRefusal(scheduled);
 }

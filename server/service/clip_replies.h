@@ -9,9 +9,9 @@
 #include "duet/v1/synthesis.pb.h"
 #include "model/engine/synthesizer.h"
 #include "server/batching/window_scheduler.h"
+#include "server/service/call.h"
 #include "server/service/clip_stream.h"
 #include "server/service/reply_rig.h"
-#include "server/service/streaming_call.h"
 #include "server/service/validator.h"
 
 namespace duet::server::service {
@@ -37,7 +37,7 @@ class ClipReplies final : public ReplySource {
               ClipStreamOptions options, batching::WindowScheduler& scheduler,
               ServerBuild build = {});
 
-  absl::Status Start(std::function<void()> on_progress) override;
+  absl::Status Start(SourceEvents events) override;
   NextReply Next(CallScope& scope) override;
   void Cancel() override { stream_->Cancel(); }
   void Report(metrics::CallRecord& record) const override;

@@ -1,14 +1,33 @@
 #include "server/service/live_replies.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
 
+#include "absl/status/statusor.h"
 #include "model/engine/candidates.h"
 #include "server/service/refusals.h"
 #include "server/service/validator.h"
+#include "server/service/wire.h"
 
 namespace duet::server::service {
+namespace {
+
+// Far above ten seconds of any skeleton at any rate.
+constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 20;
+
+absl::StatusOr<v1::SynthesizeLiveRequest> Parse(grpc::ByteBuffer bytes) {
+  if (bytes.Length() > kMaxMessageBytes) {
+    return LiveMessageTooLargeRefusal(bytes.Length(), kMaxMessageBytes);
+  }
+  v1::SynthesizeLiveRequest message;
+  const absl::Status parsed = ParseMessage(std::move(bytes), message);
+  if (!parsed.ok()) return parsed;
+  return message;
+}
+
+}  // namespace
 
 v1::LiveHeader MakeLiveHeader(const engine::ModelDescription& model,
                               const ValidatedLiveStart& start) {
@@ -53,9 +72,14 @@ LiveReplies::LiveReplies(std::shared_ptr<LiveSession> session, v1::LiveHeader he
   header_.set_history_frames(static_cast<uint32_t>(session_->history_frames()));
 }
 
-absl::Status LiveReplies::Start(std::function<void()> on_progress) {
-  session_->Start(std::move(on_progress));
+absl::Status LiveReplies::Start(SourceEvents events) {
+  session_->Start(std::move(events.on_progress));
+  session_->Read(std::move(events.read_next));
   return absl::OkStatus();
+}
+
+void LiveReplies::OnMessage(grpc::ByteBuffer bytes) {
+  session_->OnMessage(Parse(std::move(bytes)));
 }
 
 NextReply LiveReplies::Next(CallScope& scope) {

@@ -1,7 +1,6 @@
 #ifndef DUET_SERVER_SERVICE_LIVE_REPLIES_H_
 #define DUET_SERVER_SERVICE_LIVE_REPLIES_H_
 
-#include <functional>
 #include <memory>
 
 #include "absl/status/status.h"
@@ -9,13 +8,14 @@
 #include "model/engine/synthesis_options.h"
 #include "model/engine/synthesizer.h"
 #include "server/common/clock.h"
+#include "server/service/call.h"
 #include "server/service/live_session.h"
 #include "server/service/reply_mapping.h"
-#include "server/service/streaming_call.h"
 
 namespace duet::server::service {
 
-// The replies of SynthesizeLive: header, then frames and notices, then summary.
+// Makes the replies of SynthesizeLive: header, then frames and notices, then summary. Parses the
+// messages after the first one for its session.
 //
 // Model failures become INTERNAL without details; CallRecord::cause has the details for the log.
 class LiveReplies final : public ReplySource {
@@ -26,10 +26,14 @@ class LiveReplies final : public ReplySource {
               std::shared_ptr<const engine::Synthesizer> model, engine::SynthesisOptions options,
               const common::Clock& clock);
 
-  absl::Status Start(std::function<void()> on_progress) override;
+  absl::Status Start(SourceEvents events) override;
   NextReply Next(CallScope& scope) override;
   void Cancel() override { session_->Cancel(); }
   void Report(metrics::CallRecord& record) const override;
+  void OnMessage(grpc::ByteBuffer bytes) override;
+  void OnEndOfMessages() override { session_->OnEndOfMessages(); }
+  void OnDraining() override { session_->OnDraining(); }
+  bool OwesAnswers() const override { return session_->OwesAnswers(); }
 
  private:
   // The status with which the call ends.

@@ -83,7 +83,7 @@ class LiveSession final : public std::enable_shared_from_this<LiveSession> {
   // Answers the frames of the history. Call once, before everything else.
   void Start(std::function<void()> on_progress);
   // Begins to read messages. `read_next` reads one, within so many seconds, and returns false if
-  // there will be none (Reception::ReadNext).
+  // there will be none (Call::ReadNext).
   void Read(std::function<bool(double)> read_next);
 
   // The message that was read, or why it is not one.

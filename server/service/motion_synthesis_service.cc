@@ -13,7 +13,6 @@
 #include "server/common/activity.h"
 #include "server/service/call_identity.h"
 #include "server/service/clip_replies.h"
-#include "server/service/live_inbox.h"
 #include "server/service/live_replies.h"
 #include "server/service/model_message.h"
 #include "server/service/refusals.h"
@@ -66,11 +65,12 @@ common::TimePoint DeadlineOf(const grpc::ServerContextBase& context, const commo
 }  // namespace
 
 const MotionSynthesisService::StreamMethod MotionSynthesisService::kSynthesize = {
-    Method("Synthesize", "server_stream"), &MotionSynthesisService::Begin,
+    Method("Synthesize", "server_stream"), &MotionSynthesisService::Prepare,
     std::numeric_limits<std::size_t>::max(), /*needs_room=*/true};
 // A session has a place among the calls for as long as it lasts; its windows always join the queue.
 const MotionSynthesisService::StreamMethod MotionSynthesisService::kSynthesizeLive = {
-    Method("SynthesizeLive", "bidi_stream"), &MotionSynthesisService::BeginLive, kMaxLiveStartBytes,
+    Method("SynthesizeLive", "bidi_stream"), &MotionSynthesisService::PrepareLive,
+    kMaxLiveStartBytes,
     /*needs_room=*/false};
 
 MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
@@ -110,12 +110,11 @@ RawService::Reactor* MotionSynthesisService::OpenStream(Context* context,
     reactor->Finish(*opened.scope, admitted);
     return reactor;
   }
-  reactor->Receive(
-      Receive(std::move(opened), *std::move(place), *reactor),
-      [this, &method](CallReactor& received_by, const std::shared_ptr<Reception>& reception,
-                      grpc::ByteBuffer bytes) {
-        Handle(method, received_by, reception, std::move(bytes));
-      });
+  reactor->Receive(MakeCall(std::move(opened), *std::move(place), *reactor),
+                   [this, &method](CallReactor& received_by, const std::shared_ptr<Call>& call,
+                                   grpc::ByteBuffer bytes) {
+                     Handle(method, received_by.context(), call, std::move(bytes));
+                   });
   return reactor;
 }
 
@@ -158,70 +157,76 @@ absl::StatusOr<ShareLease> MotionSynthesisService::Hold(const std::string& clien
   return held;
 }
 
-std::shared_ptr<Reception> MotionSynthesisService::Receive(OpenedCall opened, ShareLease place,
-                                                           CallReactor& reactor) {
-  Reception::Parts parts;
-  parts.writer = &reactor;
-  parts.reader = &reactor;
+std::shared_ptr<Call> MotionSynthesisService::MakeCall(OpenedCall opened, ShareLease place,
+                                                       CallReactor& reactor) {
+  Call::Parts parts;
+  parts.transport = &reactor;
   parts.admission = parts_.admission;
   parts.clock = parts_.clock;
   parts.limits = parts_.reception;
   parts.scope = std::move(opened.scope);
   parts.client = std::move(opened.client);
   parts.place = std::move(place);
-  auto reception = std::make_shared<Reception>(std::move(parts));
-  calls_.Add(reception);
-  return reception;
+  std::shared_ptr<Call> call = Call::Create(std::move(parts));
+  calls_.Add(call);
+  return call;
 }
 
 void MotionSynthesisService::CountIfLarge(const grpc::ByteBuffer& bytes) {
   if (bytes.Length() >= kLargeRequestBytes) large_request_bytes_ += bytes.Length();
 }
 
-void MotionSynthesisService::Handle(const StreamMethod& method, CallReactor& reactor,
-                                    const std::shared_ptr<Reception>& reception,
-                                    grpc::ByteBuffer bytes) {
+void MotionSynthesisService::Handle(const StreamMethod& method, const Context& context,
+                                    const std::shared_ptr<Call>& call, grpc::ByteBuffer bytes) {
   CountIfLarge(bytes);
   const absl::Status fits = pipeline_.CheckSize(bytes, method.max_request_bytes);
   absl::StatusOr<ShareLease> held =
-      fits.ok() ? Hold(reception->client(), bytes) : absl::StatusOr<ShareLease>(fits);
+      fits.ok() ? Hold(call->client(), bytes) : absl::StatusOr<ShareLease>(fits);
   if (!held.ok()) {
-    reception->Refuse(held.status());
+    call->Refuse(held.status());
   } else if (bytes.Length() >= kLargeRequestBytes) {
-    HandleElsewhere(method, reactor, reception, std::move(bytes), *std::move(held));
+    HandleElsewhere(method, context, call, std::move(bytes), *std::move(held));
   } else {
-    (this->*method.begin)(reactor, reception, std::move(bytes), *std::move(held), nullptr);
+    Run(method, context, *call, std::move(bytes), *std::move(held), nullptr);
   }
 }
 
-// The reactor and the service live until the reception ends the call.
-void MotionSynthesisService::HandleElsewhere(const StreamMethod& method, CallReactor& reactor,
-                                             const std::shared_ptr<Reception>& reception,
+// The context and the service live until the call ends.
+void MotionSynthesisService::HandleElsewhere(const StreamMethod& method, const Context& context,
+                                             const std::shared_ptr<Call>& call,
                                              grpc::ByteBuffer bytes, ShareLease held) {
   auto lease = std::make_shared<ShareLease>(std::move(held));
   std::shared_ptr<TransportQuota::Received> received;
   if (parts_.transport != nullptr) {
     received = std::make_shared<TransportQuota::Received>(*parts_.transport, bytes.Length());
   }
-  large_requests_.Post([this, &method, &reactor, reception, bytes = std::move(bytes), lease,
+  large_requests_.Post([this, &method, &context, call, bytes = std::move(bytes), lease,
                         received = std::move(received)](bool run) mutable {
     const common::Step step(kHandlingLarge);
-    const std::optional<absl::Status> ended = reception->ended_meanwhile();
+    const std::optional<absl::Status> ended = call->ended_meanwhile();
     if (ended.has_value() || !run) {
       *lease = ShareLease();  // free before the caller knows
-      reception->Refuse(ended.value_or(DrainingRefusal()));
+      call->Refuse(ended.value_or(DrainingRefusal()));
     } else {
       // Moved, so that the bytes are freed before the parsed message is validated.
-      (this->*method.begin)(reactor, reception, std::move(bytes), std::move(*lease),
-                            std::move(received));
+      Run(method, context, *call, std::move(bytes), std::move(*lease), std::move(received));
     }
   });
 }
 
-void MotionSynthesisService::Begin(CallReactor& reactor,
-                                   const std::shared_ptr<Reception>& reception,
-                                   grpc::ByteBuffer bytes, ShareLease held,
-                                   std::shared_ptr<TransportQuota::Received> received) {
+void MotionSynthesisService::Run(const StreamMethod& method, const Context& context, Call& call,
+                                 grpc::ByteBuffer bytes, ShareLease held,
+                                 std::shared_ptr<TransportQuota::Received> received) {
+  absl::StatusOr<Call::Stream> stream = (this->*method.prepare)(
+      context, call, std::move(bytes), std::move(held), std::move(received));
+  if (!stream.ok()) return call.Refuse(stream.status());
+  stream->write_timeout_seconds = parts_.write_timeout_seconds;
+  call.Run(*std::move(stream));
+}
+
+absl::StatusOr<Call::Stream> MotionSynthesisService::Prepare(
+    const Context& context, Call& call, grpc::ByteBuffer bytes, ShareLease held,
+    std::shared_ptr<TransportQuota::Received> received) {
   v1::SynthesizeRequest request;
   // A large request consists mostly of positions. Without the reservation, the array would grow by
   // doubling and exist twice each time.
@@ -231,36 +236,20 @@ void MotionSynthesisService::Begin(CallReactor& reactor,
   }
   const absl::Status read = pipeline_.Read(std::move(bytes), request);
   received = nullptr;
-  if (!read.ok()) {
-    reception->Refuse(read);
-    return;
-  }
-  absl::StatusOr<Prepared> prepared =
-      Prepare(reactor.context(), *reception, request, std::move(held));
-  if (!prepared.ok()) {
-    reception->Refuse(prepared.status());
-    return;
-  }
-  reactor.Run(
-      StreamingCall::Create(std::move(prepared->call), std::move(prepared->replies), reactor));
-}
-
-absl::StatusOr<MotionSynthesisService::Prepared> MotionSynthesisService::Prepare(
-    const Context& context, Reception& reception, const v1::SynthesizeRequest& request,
-    ShareLease held) {
+  if (!read.ok()) return read;
   // The validator reports an unknown priority together with all other invalid fields.
   const batching::Priority priority =
       PriorityOf(request).value_or(batching::Priority::kInteractive);
   const absl::Status place = parts_.admission->CheckShare(priority);
   if (!place.ok()) return place;
-  const absl::Status room = parts_.scheduler->CheckRoom(priority, reception.client());
+  const absl::Status room = parts_.scheduler->CheckRoom(priority, call.client());
   if (!room.ok()) return QueueRefusal(room);
   absl::StatusOr<registry::ServedModel> served = FindModel(request.model());
   if (!served.ok()) return served.status();
   const engine::ModelDescription& model = served->model->description();
   absl::StatusOr<ValidatedRequest> validated = ValidateRequest(request, model, parts_.limits);
   if (!validated.ok()) return validated.status();
-  const absl::Status frames = reception.HoldFrames(
+  const absl::Status frames = call.HoldFrames(
       FramesOf(model, validated->clip.options, validated->clip.leader.frame_count()));
   if (!frames.ok()) return frames;
   std::optional<bool>& clean_up = validated->clip.options.clean_up;
@@ -268,14 +257,15 @@ absl::StatusOr<MotionSynthesisService::Prepared> MotionSynthesisService::Prepare
   ClipStreamOptions options;
   options.deadline = DeadlineOf(context, *parts_.clock, parts_.max_call_seconds);
   options.buffered_frames = parts_.buffered_frames;
-  options.client = reception.client();
-  StreamingCall::Parts call = CallParts(reception, options.deadline);
-  call.held_bytes = std::move(held);
+  options.client = call.client();
   const std::string engine = parts_.engine == nullptr ? "" : *parts_.engine;
-  return Prepared{std::move(call),
-                  std::make_unique<ClipReplies>(std::move(served->model), *std::move(validated),
+  Call::Stream stream;
+  stream.held_bytes = std::move(held);
+  stream.deadline = options.deadline;
+  stream.source = std::make_unique<ClipReplies>(std::move(served->model), *std::move(validated),
                                                 std::move(options), *parts_.scheduler,
-                                                ServerBuild{engine, parts_.version})};
+                                                ServerBuild{engine, parts_.version});
+  return stream;
 }
 
 absl::StatusOr<registry::ServedModel> MotionSynthesisService::FindModel(
@@ -292,59 +282,28 @@ bool MotionSynthesisService::CleansUp(const engine::ModelDescription& model) con
   return parts_.clean_up.value_or(model.cleaned_up_by_default());
 }
 
-StreamingCall::Parts MotionSynthesisService::CallParts(Reception& reception,
-                                                       common::TimePoint deadline) const {
-  StreamingCall::Parts call;
-  call.place = reception.TakePlace();
-  call.scope = reception.TakeScope();
-  call.deadline = deadline;
-  call.write_timeout_seconds = parts_.write_timeout_seconds;
-  call.clock = parts_.clock;
-  return call;
-}
-
 // `held` is released before the session starts: the session keeps the history that it needs, and
 // nothing else.
-void MotionSynthesisService::BeginLive(CallReactor& reactor,
-                                       const std::shared_ptr<Reception>& reception,
-                                       grpc::ByteBuffer bytes, ShareLease held,
-                                       std::shared_ptr<TransportQuota::Received> received) {
+absl::StatusOr<Call::Stream> MotionSynthesisService::PrepareLive(
+    const Context& context, Call& call, grpc::ByteBuffer bytes, ShareLease /*held*/,
+    std::shared_ptr<TransportQuota::Received> received) {
   v1::SynthesizeLiveRequest request;
-  absl::Status read = pipeline_.Read(std::move(bytes), request);
+  const absl::Status read = pipeline_.Read(std::move(bytes), request);
   received = nullptr;
-  if (read.ok() && !request.has_start()) {
+  if (!read.ok()) return read;
+  if (!request.has_start()) {
     Violations violations;
     violations.Malformed("payload", "start in the first message",
                          request.has_frames()         ? "frames"
                          : request.has_label_change() ? "label_change"
                                                       : "none");
-    read = violations.ToStatus();
+    return violations.ToStatus();
   }
-  if (!read.ok()) {
-    held = ShareLease();  // free before the caller knows
-    return reception->Refuse(read);
-  }
-  absl::StatusOr<PreparedLive> prepared =
-      PrepareLive(reactor.context(), *reception, std::move(*request.mutable_start()));
-  held = ShareLease();
-  if (!prepared.ok()) return reception->Refuse(prepared.status());
-  reactor.Run(
-      StreamingCall::Create(std::move(prepared->call), std::move(prepared->replies), reactor),
-      std::make_shared<LiveInbox>(prepared->session));
-  // Weak: the reception holds the session.
-  prepared->session->Read([weak = std::weak_ptr<Reception>(reception)](double timeout_seconds) {
-    const std::shared_ptr<Reception> alive = weak.lock();
-    return alive != nullptr && alive->ReadNext(timeout_seconds);
-  });
-}
-
-absl::StatusOr<MotionSynthesisService::PreparedLive> MotionSynthesisService::PrepareLive(
-    const Context& context, Reception& reception, v1::LiveStart start) {
-  absl::StatusOr<registry::ServedModel> served = FindModel(start.model(), "start.");
+  absl::StatusOr<registry::ServedModel> served = FindModel(request.start().model(), "start.");
   if (!served.ok()) return served.status();
   const engine::ModelDescription& model = served->model->description();
   absl::StatusOr<ValidatedLiveStart> valid =
-      ValidateLiveStart(std::move(start), model, parts_.limits);
+      ValidateLiveStart(std::move(*request.mutable_start()), model, parts_.limits);
   if (!valid.ok()) return valid.status();
   engine::SynthesisOptions& options = valid->live.options;
   if (!options.clean_up.has_value()) options.clean_up = CleansUp(model);
@@ -357,36 +316,36 @@ absl::StatusOr<MotionSynthesisService::PreparedLive> MotionSynthesisService::Pre
   parts.limits = parts_.limits;
   // A session lasts as long as its caller wants.
   parts.deadline = DeadlineOf(context, *parts_.clock, std::numeric_limits<double>::infinity());
-  parts.client = reception.client();
+  parts.client = call.client();
   parts.idle_seconds = parts_.live_idle_seconds;
   parts.buffered_frames = parts_.buffered_frames;
-  const common::TimePoint deadline = parts.deadline;
+  Call::Stream stream;
+  stream.takes_messages = true;
+  stream.deadline = parts.deadline;
   auto session = std::make_shared<LiveSession>(std::move(parts), *std::move(valid));
-  const absl::Status frames =
-      reception.HoldFrames(FramesOf(model, chosen, session->history_frames()));
+  const absl::Status frames = call.HoldFrames(FramesOf(model, chosen, session->history_frames()));
   if (!frames.ok()) return frames;
-  auto replies = std::make_unique<LiveReplies>(session, std::move(header), std::move(served->model),
-                                               chosen, *parts_.clock);
-  return PreparedLive{CallParts(reception, deadline), std::move(session), std::move(replies)};
+  stream.source = std::make_unique<LiveReplies>(std::move(session), std::move(header),
+                                                std::move(served->model), chosen, *parts_.clock);
+  return stream;
 }
 
 template <typename Request, typename Answer>
 void MotionSynthesisService::ServeUnary(const char* path, const metrics::MethodInfo& method,
                                         Answer answer) {
-  const auto handle = [this, answer](CallReactor& reactor,
-                                     const std::shared_ptr<Reception>& reception,
+  const auto handle = [this, answer](CallReactor& reactor, const std::shared_ptr<Call>& call,
                                      grpc::ByteBuffer bytes) {
     CountIfLarge(bytes);
     absl::StatusOr<ShareLease> held = ShareLease();
     // A full server still handles requests of ordinary size.
-    if (bytes.Length() >= kLargeRequestBytes) held = Hold(reception->client(), bytes);
-    if (!held.ok()) return reception->Refuse(held.status());
+    if (bytes.Length() >= kLargeRequestBytes) held = Hold(call->client(), bytes);
+    if (!held.ok()) return call->Refuse(held.status());
     Request request;
     const absl::Status read = pipeline_.Read(std::move(bytes), request);
-    if (!read.ok()) return reception->Refuse(read);
+    if (!read.ok()) return call->Refuse(read);
     const auto answered = answer(request);
-    if (!answered.ok()) return reception->Refuse(answered.status());
-    const std::unique_ptr<CallScope> scope = reception->Answer();
+    if (!answered.ok()) return call->Refuse(answered.status());
+    const std::unique_ptr<CallScope> scope = call->Answer();
     reactor.Respond(*scope, SerializeMessage(*answered));
   };
   Serve(path, [this, method, handle](Context* context) -> Reactor* {
@@ -395,7 +354,7 @@ void MotionSynthesisService::ServeUnary(const char* path, const metrics::MethodI
     const absl::Status serving =
         opened.status.ok() ? parts_.admission->CheckServing() : opened.status;
     if (serving.ok()) {
-      reactor->Receive(Receive(std::move(opened), ShareLease(), *reactor), handle);
+      reactor->Receive(MakeCall(std::move(opened), ShareLease(), *reactor), handle);
     } else {
       reactor->Finish(*opened.scope, serving);
     }

@@ -22,13 +22,10 @@
 #include "server/security/call_guard.h"
 #include "server/service/active_calls.h"
 #include "server/service/admission.h"
+#include "server/service/call.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/call_reactor.h"
-#include "server/service/live_session.h"
-#include "server/service/raw_service.h"
-#include "server/service/reception.h"
 #include "server/service/request_limits.h"
-#include "server/service/streaming_call.h"
 #include "server/service/transport_quota.h"
 
 namespace duet::server::service {
@@ -63,9 +60,9 @@ struct ServiceParts {
 
 // Implements duet.v1.MotionSynthesis. No method blocks or occupies a gRPC thread for long.
 //
-// Every call passes the CallPipeline and is admitted before its message is read (Reception). A
-// Synthesize call continues with model -> validator -> StreamingCall, which lives until its last
-// reply was taken or the caller went away.
+// Every call passes the CallPipeline and is admitted before its message is read. A call that
+// streams continues with model -> validator -> ReplySource, and lives until its last reply was
+// taken or the caller went away.
 class MotionSynthesisService final : public RawService {
  public:
   static constexpr char kServiceName[] = "duet.v1.MotionSynthesis";
@@ -96,12 +93,11 @@ class MotionSynthesisService final : public RawService {
   // A method that streams its replies.
   struct StreamMethod {
     metrics::MethodInfo info;
-    // Parses the first message and starts the call. `held` accounts for the bytes of the message;
-    // `received` is released with them.
-    void (MotionSynthesisService::*begin)(CallReactor& reactor,
-                                          const std::shared_ptr<Reception>& reception,
-                                          grpc::ByteBuffer bytes, ShareLease held,
-                                          std::shared_ptr<TransportQuota::Received> received);
+    // Parses the first message and finds out how to answer it. `held` accounts for the bytes of the
+    // message; `received` is released with them.
+    absl::StatusOr<Call::Stream> (MotionSynthesisService::*prepare)(
+        const Context& context, Call& call, grpc::ByteBuffer bytes, ShareLease held,
+        std::shared_ptr<TransportQuota::Received> received);
     std::size_t max_request_bytes;  // of the first message, if less than the server's limit
     // The call is refused while the queue has no room for its first window.
     bool needs_room;
@@ -113,42 +109,24 @@ class MotionSynthesisService final : public RawService {
   void CountIfLarge(const grpc::ByteBuffer& bytes);
   // Handles the first message of a call. Large messages are handled on a thread of their own,
   // because they would occupy one of gRPC's few threads.
-  void Handle(const StreamMethod& method, CallReactor& reactor,
-              const std::shared_ptr<Reception>& reception, grpc::ByteBuffer bytes);
-  void HandleElsewhere(const StreamMethod& method, CallReactor& reactor,
-                       const std::shared_ptr<Reception>& reception, grpc::ByteBuffer bytes,
-                       ShareLease held);
-  // StreamMethod::begin of Synthesize, and of SynthesizeLive.
-  void Begin(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
-             grpc::ByteBuffer bytes, ShareLease held,
-             std::shared_ptr<TransportQuota::Received> received);
-  void BeginLive(CallReactor& reactor, const std::shared_ptr<Reception>& reception,
-                 grpc::ByteBuffer bytes, ShareLease held,
-                 std::shared_ptr<TransportQuota::Received> received);
-  // A session that was found valid, with its replies.
-  struct PreparedLive {
-    StreamingCall::Parts call;
-    std::shared_ptr<LiveSession> session;
-    std::unique_ptr<ReplySource> replies;
-  };
-  absl::StatusOr<PreparedLive> PrepareLive(const Context& context, Reception& reception,
-                                           v1::LiveStart start);
+  void Handle(const StreamMethod& method, const Context& context, const std::shared_ptr<Call>& call,
+              grpc::ByteBuffer bytes);
+  void HandleElsewhere(const StreamMethod& method, const Context& context,
+                       const std::shared_ptr<Call>& call, grpc::ByteBuffer bytes, ShareLease held);
+  void Run(const StreamMethod& method, const Context& context, Call& call, grpc::ByteBuffer bytes,
+           ShareLease held, std::shared_ptr<TransportQuota::Received> received);
+  // StreamMethod::prepare of Synthesize, and of SynthesizeLive.
+  absl::StatusOr<Call::Stream> Prepare(const Context& context, Call& call, grpc::ByteBuffer bytes,
+                                       ShareLease held,
+                                       std::shared_ptr<TransportQuota::Received> received);
+  absl::StatusOr<Call::Stream> PrepareLive(const Context& context, Call& call,
+                                           grpc::ByteBuffer bytes, ShareLease held,
+                                           std::shared_ptr<TransportQuota::Received> received);
   // Finds the model that a request selects. `prefix`: precedes the fields in errors, as "start.".
   absl::StatusOr<registry::ServedModel> FindModel(const v1::ModelSelector& selector,
                                                   absl::string_view prefix = "") const;
   // Whether followers of a model are cleaned up if the request does not specify it.
   bool CleansUp(const engine::ModelDescription& model) const;
-  // What every streaming call holds until it ends.
-  StreamingCall::Parts CallParts(Reception& reception, common::TimePoint deadline) const;
-  // A Synthesize call that was found valid.
-  struct Prepared {
-    StreamingCall::Parts call;
-    std::unique_ptr<ReplySource> replies;
-  };
-  // Finds the model and validates the request. If it succeeds, takes place and scope from
-  // `reception`.
-  absl::StatusOr<Prepared> Prepare(const Context& context, Reception& reception,
-                                   const v1::SynthesizeRequest& request, ShareLease held);
   v1::ListModelsResponse List() const;
   absl::StatusOr<v1::GetModelResponse> Get(const v1::GetModelRequest& request) const;
   // Serves a unary method. `answer` maps const Request& to StatusOr<Response>.
@@ -163,7 +141,7 @@ class MotionSynthesisService final : public RawService {
   // Reserves bytes for a request. If too few are left, fails, and gives up calls of this client
   // whose readers have stalled, so that its next attempt succeeds.
   absl::StatusOr<ShareLease> Hold(const std::string& client, const grpc::ByteBuffer& bytes);
-  std::shared_ptr<Reception> Receive(OpenedCall opened, ShareLease place, CallReactor& reactor);
+  std::shared_ptr<Call> MakeCall(OpenedCall opened, ShareLease place, CallReactor& reactor);
 
   const ServiceParts parts_;
   const CallPipeline pipeline_;

@@ -1,4 +1,4 @@
-#include "server/service/live_inbox.h"
+#include "server/service/live_replies.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using absl::StatusCode;
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 
-class LiveInboxTest : public ::testing::Test {
+class LiveRepliesTest : public ::testing::Test {
  protected:
   void SetUp() override {
     absl::StatusOr<ValidatedLiveStart> valid =
@@ -33,14 +33,17 @@ class LiveInboxTest : public ::testing::Test {
     parts.scheduler = &scheduler_;
     parts.clock = &clock_;
     parts.buffered_frames = 10;
+    v1::LiveHeader header = MakeLiveHeader(model_->description(), *valid);
     session_ = std::make_shared<LiveSession>(std::move(parts), *std::move(valid));
-    session_->Start([] {});
+    replies_ = std::make_unique<LiveReplies>(session_, std::move(header), model_,
+                                             engine::SynthesisOptions(), clock_);
+    ASSERT_THAT(replies_->Start({[] {}, [](double) { return true; }}), IsOk());
   }
 
   // Sends bytes, and returns the error of the session.
   absl::Status Send(const std::string& bytes) {
     const grpc::Slice slice(bytes);
-    LiveInbox(session_).OnMessage(grpc::ByteBuffer(&slice, 1));
+    replies_->OnMessage(grpc::ByteBuffer(&slice, 1));
     return session_->Take().error;
   }
 
@@ -49,31 +52,31 @@ class LiveInboxTest : public ::testing::Test {
   std::shared_ptr<test::FakeSynthesizer> model_ =
       std::make_shared<test::FakeSynthesizer>(test::SamplingDescription());
   std::shared_ptr<LiveSession> session_;
+  std::unique_ptr<LiveReplies> replies_;
 };
 
-TEST_F(LiveInboxTest, MessagesReachTheSession) {
+TEST_F(LiveRepliesTest, MessagesReachTheSession) {
   v1::SynthesizeLiveRequest message;
   *message.mutable_frames() = test::SampleLeaderFrames(0, 1);
-  LiveInbox inbox(session_);
-  inbox.OnMessage(SerializeMessage(message));
+  replies_->OnMessage(SerializeMessage(message));
   scheduler_.RunNext();
   EXPECT_TRUE(session_->Take().frames.has_value());
-  inbox.OnDraining();
+  replies_->OnDraining();
   EXPECT_TRUE(session_->Take().notice.has_value());
-  inbox.OnEndOfMessages();
+  replies_->OnEndOfMessages();
   EXPECT_TRUE(session_->Take().end);
 }
 
-TEST_F(LiveInboxTest, BytesThatDoNotParseEndTheSession) {
+TEST_F(LiveRepliesTest, BytesThatDoNotParseEndTheSession) {
   EXPECT_THAT(Send(std::string(100, '\xff')),
               StatusIs(StatusCode::kInvalidArgument, HasSubstr("SynthesizeLiveRequest")));
 }
 
-TEST_F(LiveInboxTest, AnEmptyMessageEndsTheSession) {
+TEST_F(LiveRepliesTest, AnEmptyMessageEndsTheSession) {
   EXPECT_THAT(Send(""), StatusIs(StatusCode::kInvalidArgument, HasSubstr("payload")));
 }
 
-TEST_F(LiveInboxTest, ATooLargeMessageEndsTheSessionUnparsed) {
+TEST_F(LiveRepliesTest, ATooLargeMessageEndsTheSessionUnparsed) {
   EXPECT_THAT(Send(std::string(kMaxBytes, '\0')),
               StatusIs(StatusCode::kInvalidArgument, ::testing::_));
   SetUp();
@@ -83,7 +86,7 @@ TEST_F(LiveInboxTest, ATooLargeMessageEndsTheSessionUnparsed) {
                                  "1048577")));
 }
 
-TEST_F(LiveInboxTest, ManyTinyFieldsEndTheSessionUnparsed) {
+TEST_F(LiveRepliesTest, ManyTinyFieldsEndTheSessionUnparsed) {
   // Label changes, each with a vector, each with an empty weight: four bytes that take 150 parsed.
   std::string bomb;
   for (int i = 0; i < 100'000; ++i) bomb.append("\x1a\x02\x12\x00", 4);

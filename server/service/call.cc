@@ -1,0 +1,283 @@
+#include "server/service/call.h"
+
+#include "server/service/refusals.h"
+
+namespace duet::server::service {
+
+bool Call::OnFirstMessage() {
+  ShareLease slow;  // another message may arrive slowly while this one waits to be handled
+  common::MutexLock lock(mutex_);
+  if (state_ != State::kReceiving) return false;
+  state_ = State::kHandling;
+  slow = std::move(slow_);
+  return true;
+}
+
+void Call::OnNoMessage(bool cancelled) {
+  EndFrom(State::kReceiving,
+          cancelled ? absl::CancelledError("the caller disconnected before its request arrived")
+                    : NoMessageRefusal());
+}
+
+std::optional<absl::Status> Call::ended_meanwhile() const {
+  common::MutexLock lock(mutex_);
+  return end_;
+}
+
+void Call::Refuse(const absl::Status& reason) { EndFrom(State::kHandling, reason); }
+
+std::unique_ptr<CallScope> Call::Answer() {
+  common::MutexLock lock(mutex_);
+  state_ = State::kFinished;
+  return std::move(parts_.scope);
+}
+
+void Call::Run(Stream stream) {
+  stream_ = std::move(stream);
+  // Weak: work in progress may outlive a finished call, and must not keep it.
+  const std::weak_ptr<Call> weak = weak_from_this();
+  SourceEvents events;
+  events.on_progress = [weak] {
+    if (const auto alive = weak.lock()) alive->Advance();
+  };
+  events.read_next = [weak](double timeout_seconds) {
+    const auto alive = weak.lock();
+    return alive != nullptr && alive->ReadNext(timeout_seconds);
+  };
+  const absl::Status started = stream_.source->Start(std::move(events));
+  bool draining = false, ended = false;
+  {
+    common::MutexLock lock(mutex_);
+    if (!started.ok()) SetEnd(started);
+    ended = end_.has_value();
+    draining = draining_ && stream_.takes_messages;
+    state_ = State::kIdle;
+  }
+  if (draining) stream_.source->OnDraining();
+  if (ended) stream_.source->Cancel();
+  Advance();
+}
+
+bool Call::ReadNext(double timeout_seconds) {
+  common::MutexLock lock(mutex_);
+  if (state_ == State::kFinished || !stream_.takes_messages || reading_.has_value()) return false;
+  reading_ = {parts_.clock->Now(), timeout_seconds};
+  // Under the lock, so that Finish cannot let the transport be destroyed in between.
+  parts_.transport->Read();
+  return true;
+}
+
+bool Call::FinishReading() {
+  reading_.reset();
+  return state_ != State::kFinished && stream_.takes_messages;
+}
+
+void Call::OnMessage(grpc::ByteBuffer bytes) {
+  {
+    common::MutexLock lock(mutex_);
+    if (!FinishReading()) return;
+  }
+  stream_.source->OnMessage(std::move(bytes));
+}
+
+void Call::OnEndOfMessages() {
+  {
+    common::MutexLock lock(mutex_);
+    if (!FinishReading()) return;
+    stream_.takes_messages = false;
+  }
+  stream_.source->OnEndOfMessages();
+}
+
+void Call::OnWritten(bool ok) {
+  {
+    common::MutexLock lock(mutex_);
+    state_ = State::kIdle;
+    if (!ok) SetEnd(absl::CancelledError("the caller disconnected"));
+  }
+  if (!ok) stream_.source->Cancel();
+  Advance();
+}
+
+void Call::Advance() {
+  // Finish may drop the last other reference.
+  const std::shared_ptr<Call> self = shared_from_this();
+  while (true) {
+    std::optional<absl::Status> end;
+    {
+      common::MutexLock lock(mutex_);
+      again_ = true;
+      if (state_ != State::kIdle || breaking_off_) return;
+      end = end_;
+      state_ = end.has_value() ? State::kFinished : State::kAsking;
+      again_ = false;
+    }
+    if (end.has_value()) return Finish(*end);
+    const NextReply next = stream_.source->Next(*parts_.scope);
+    bool writes = false;
+    {
+      common::MutexLock lock(mutex_);
+      if (next.end.has_value()) SetEnd(*next.end);
+      writes = next.message != nullptr && !end_.has_value();
+      state_ = writes ? State::kWriting : State::kIdle;
+      if (writes) write_began_ = parts_.clock->Now();
+      if (!writes && !end_.has_value() && !again_) return;
+    }
+    if (writes) return parts_.transport->Write(*next.message);
+  }
+}
+
+void Call::Drain() {
+  {
+    common::MutexLock lock(mutex_);
+    if (std::exchange(draining_, true) || !is_streaming() || !stream_.takes_messages) return;
+  }
+  stream_.source->OnDraining();
+}
+
+void Call::Abort(const absl::Status& reason) {
+  if (EndFrom(State::kReceiving, reason)) return;
+  {
+    common::MutexLock lock(mutex_);
+    SetEnd(reason);
+    if (!is_streaming()) return;
+  }
+  stream_.source->Cancel();
+  Advance();
+}
+
+void Call::CheckTime(common::TimePoint now) {
+  absl::Status late_arrival;
+  std::optional<absl::Status> end;
+  bool break_off = false;
+  {
+    common::MutexLock lock(mutex_);
+    if (state_ == State::kReceiving) late_arrival = CheckArrival(now);
+    if (is_streaming() && !breaking_off_) {
+      break_off = breaking_off_ = EndLate(now);
+      end = end_;
+    }
+  }
+  if (!late_arrival.ok()) EndFrom(State::kReceiving, late_arrival);
+  if (break_off) return BreakOff(*end);
+  if (!end.has_value()) return;
+  stream_.source->Cancel();
+  Advance();
+}
+
+absl::Status Call::CheckArrival(common::TimePoint now) {
+  const double waited = common::SecondsBetween(begin_, now);
+  if (waited >= parts_.limits.timeout_seconds) {
+    return ReceiveTimeoutRefusal(parts_.limits.timeout_seconds);
+  }
+  if (waited < parts_.limits.slow_seconds || slow_) return absl::OkStatus();
+  absl::StatusOr<ShareLease> leave = parts_.admission->ArriveSlowly(parts_.client);
+  if (leave.ok()) slow_ = *std::move(leave);
+  return leave.status();
+}
+
+bool Call::EndLate(common::TimePoint now) {
+  if (reading_ && common::SecondsBetween(reading_->begin, now) >= reading_->timeout_seconds) {
+    SetEnd(LiveIdleRefusal(reading_->timeout_seconds));
+  }
+  if (now >= stream_.deadline) {
+    SetEnd(absl::DeadlineExceededError(
+        "the call's deadline passed, or it took longer than the server answers any call"));
+  }
+  const bool stalled = state_ == State::kWriting &&
+                       common::SecondsBetween(write_began_, now) >= stream_.write_timeout_seconds;
+  if (stalled) SetEnd(WriteTimeoutRefusal(stream_.write_timeout_seconds));
+  return stalled;
+}
+
+std::optional<common::TimePoint> Call::waiting_since() const {
+  common::MutexLock lock(mutex_);
+  if (state_ != State::kWriting || given_up_) return std::nullopt;
+  return write_began_;
+}
+
+std::optional<std::size_t> Call::GiveUpReader(common::TimePoint now, double seconds) {
+  ShareLease place;
+  absl::Status reason;
+  std::size_t bytes = 0;
+  {
+    common::MutexLock lock(mutex_);
+    if (state_ != State::kWriting || breaking_off_ || given_up_) return std::nullopt;
+    if (common::SecondsBetween(write_began_, now) < seconds) return std::nullopt;
+    SetEnd(StalledReaderRefusal(seconds));
+    reason = *end_;
+    breaking_off_ = true;
+    given_up_ = true;
+    // Another call waits for the place. The bytes are held until the call releases them.
+    place = std::move(parts_.place);
+    bytes = stream_.held_bytes.amount();
+  }
+  BreakOff(reason);
+  return bytes;
+}
+
+std::optional<common::TimePoint> Call::idle_since() const {
+  std::optional<common::TimePoint> since;
+  {
+    common::MutexLock lock(mutex_);
+    if (!is_streaming() || state_ == State::kWriting || !reading_ || given_up_) return since;
+    since = reading_->begin;
+  }
+  return stream_.source->OwesAnswers() ? std::nullopt : since;
+}
+
+bool Call::GiveUpIdle(common::TimePoint now, double seconds) {
+  const std::optional<common::TimePoint> since = idle_since();
+  if (!since.has_value() || common::SecondsBetween(*since, now) < seconds) return false;
+  {
+    common::MutexLock lock(mutex_);
+    if (std::exchange(given_up_, true)) return false;
+  }
+  Abort(DisplacedSessionRefusal(seconds));
+  return true;
+}
+
+void Call::BreakOff(const absl::Status& reason) {
+  stream_.source->Cancel();
+  parts_.transport->BreakOff(reason);
+  {
+    common::MutexLock lock(mutex_);
+    breaking_off_ = false;
+  }
+  Advance();
+}
+
+void Call::SetEnd(const absl::Status& reason) {
+  if (!end_.has_value()) end_ = reason;
+}
+
+bool Call::EndFrom(State state, const absl::Status& reason) {
+  {
+    common::MutexLock lock(mutex_);
+    if (state_ != state) return false;
+    state_ = State::kFinished;
+  }
+  Finish(reason);
+  return true;
+}
+
+void Call::Finish(const absl::Status& status) {
+  ShareLease place, held_bytes, slow;
+  {
+    common::MutexLock lock(mutex_);
+    place = std::move(parts_.place);
+    held_bytes = std::move(stream_.held_bytes);
+    slow = std::move(slow_);
+  }
+  const std::unique_ptr<CallScope> scope = std::move(parts_.scope);
+  if (stream_.source != nullptr) stream_.source->Report(scope->record());
+  // All shares are free before the call is reported, and the call is reported before its caller
+  // gets the status, so none of them is seen without the one before. Under no lock, because
+  // observers may be slow.
+  place = ShareLease();
+  held_bytes = ShareLease();
+  slow = ShareLease();
+  parts_.transport->Finish(*scope, status);
+}
+
+}  // namespace duet::server::service

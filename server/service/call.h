@@ -1,0 +1,235 @@
+#ifndef DUET_SERVER_SERVICE_CALL_H_
+#define DUET_SERVER_SERVICE_CALL_H_
+
+#include <google/protobuf/message.h>
+#include <grpcpp/support/byte_buffer.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "server/common/clock.h"
+#include "server/common/mutex.h"
+#include "server/metrics/call_record.h"
+#include "server/service/active_calls.h"
+#include "server/service/admission.h"
+#include "server/service/call_pipeline.h"
+#include "server/service/share_pool.h"
+
+namespace duet::server::service {
+
+// Time limits for the first message of a call.
+struct ReceptionLimits {
+  // A message that takes longer needs permission to arrive slowly (Admission), because the part
+  // that has arrived occupies memory.
+  double slow_seconds = 0.1;
+  double timeout_seconds = 30;
+};
+
+// Where a call's messages come from and where its replies go: a gRPC reactor, or a test.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+  // Begins to read a message after the first one. Call::OnMessage or Call::OnEndOfMessages follows,
+  // never within Read. Must neither block nor call the call.
+  virtual void Read() = 0;
+  // Begins to write. Call::OnWritten follows, never within Write. `reply` lives until then.
+  virtual void Write(const google::protobuf::Message& reply) = 0;
+  // Ends the call: reports it through its scope, then sends the status to the caller. Nothing is
+  // called on the transport afterwards.
+  virtual void Finish(CallScope& scope, const absl::Status& status) = 0;
+  // Aborts the write in progress, so that OnWritten follows soon. The caller receives the code and
+  // the message of `reason` without details, because trailers cannot overtake a message.
+  virtual void BreakOff(const absl::Status& reason) = 0;
+};
+
+// What a source has for its call now. If neither field is set, nothing is ready: on_progress will
+// be called.
+struct NextReply {
+  // The next message of the stream. Valid until the next call of ReplySource::Next.
+  const google::protobuf::Message* message = nullptr;
+  // Set after the last message: OK, or why the stream ends early.
+  std::optional<absl::Status> end;
+};
+
+// How a source reaches its call, from any thread, also after the source was destroyed.
+struct SourceEvents {
+  std::function<void()> on_progress;                      // Next may have become ready
+  std::function<bool(double timeout_seconds)> read_next;  // see Call::ReadNext
+};
+
+// Makes the replies of one streaming call, in order, and takes its further messages. A Call owns
+// it.
+//
+// Threads: the call serialises Start, Next and Report, and it serialises OnMessage and
+// OnEndOfMessages. Anything else may run concurrently. No method may block.
+class ReplySource {
+ public:
+  virtual ~ReplySource() = default;
+
+  // Begins to work. If it fails, the call ends with this status before any reply. Called once,
+  // before everything else.
+  virtual absl::Status Start(SourceEvents events) = 0;
+  // Returns the next reply. Adds what it contains to `scope.record()`. Not called again after
+  // NextReply::end.
+  virtual NextReply Next(CallScope& scope) = 0;
+  // Stops work that has not started. No reply is taken afterwards.
+  virtual void Cancel() = 0;
+  // Adds what is known once the call is over: model, options, time spent. Called once, last.
+  virtual void Report(metrics::CallRecord& record) const = 0;
+
+  // The rest is for methods that take several messages.
+
+  // A message has arrived. The next one is read only after read_next, so a call never holds more
+  // than one message that was not handled.
+  virtual void OnMessage(grpc::ByteBuffer) {}
+  // The caller sends no more messages. Called at most once.
+  virtual void OnEndOfMessages() {}
+  // The server has begun to drain; the call goes on. Called at most once.
+  virtual void OnDraining() {}
+  // Returns false while the caller has everything that follows from its messages so far.
+  virtual bool OwesAnswers() const { return true; }
+};
+
+// One call from its headers to its status. Waits for the first message, has it handled, and then
+// writes the replies of a source as fast as the caller reads them, one at a time. The first event
+// that ends the call determines its status: a refusal, the end of the source, cancellation, a time
+// limit, shutdown. Later events are ignored.
+//
+//   waiting for the message -> handling it -> refused (Refuse) or answered (Answer), or
+//                                             streaming (Run) until the source ends
+//
+// Only the thread that changes the state uses scope and transport, so the transport may be
+// destroyed after Finish, even while a worker runs a window.
+//
+// Threads: safe to call concurrently.
+class Call final : public ActiveCall, public std::enable_shared_from_this<Call> {
+ public:
+  struct Parts {
+    Transport* transport = nullptr;  // lives until Finish was called on it
+    Admission* admission = nullptr;
+    const common::Clock* clock = nullptr;
+    ReceptionLimits limits;
+    std::unique_ptr<CallScope> scope;
+    std::string client;
+    ShareLease place;  // empty for a method whose calls are not limited in number
+  };
+  // What a call needs to stream its replies.
+  struct Stream {
+    std::unique_ptr<ReplySource> source;
+    ShareLease held_bytes;  // of the request, until the call ends
+    common::TimePoint deadline = common::TimePoint::max();
+    // Maximum time that one reply may wait for its reader.
+    double write_timeout_seconds = std::numeric_limits<double>::infinity();
+    bool takes_messages = false;  // after the first one
+  };
+
+  static std::shared_ptr<Call> Create(Parts parts) {
+    return std::shared_ptr<Call>(new Call(std::move(parts)));
+  }
+
+  // The first message has arrived. Returns false if the call has ended: nobody handles the message.
+  bool OnFirstMessage();
+  // The first message will not arrive. `cancelled`: the caller has gone.
+  void OnNoMessage(bool cancelled);
+
+  // While the first message is handled: why the call is to end, if that is known.
+  std::optional<absl::Status> ended_meanwhile() const;
+  // Takes frames from the caller's share, each once for each candidate. Returns RESOURCE_EXHAUSTED
+  // if too few are left.
+  absl::Status HoldFrames(std::int64_t frames) { return parts_.scope->HoldFrames(frames); }
+  // Ends the handling with an error. Everything the call holds is released first.
+  void Refuse(const absl::Status& reason);
+  // Ends the handling with one reply, for which the caller closes the returned scope.
+  std::unique_ptr<CallScope> Answer();
+  // Ends the handling by streaming replies.
+  void Run(Stream stream);
+
+  // Reads the next message for the source. If none arrives within `timeout_seconds`, aborts the
+  // call with DEADLINE_EXCEEDED. Returns false, and reads nothing, if the call has ended or takes
+  // no further message, or if a message is being read already.
+  bool ReadNext(double timeout_seconds);
+  // A further message has arrived.
+  void OnMessage(grpc::ByteBuffer bytes);
+  // No further message will arrive.
+  void OnEndOfMessages();
+  // The write that Transport::Write began is over. `ok`: the caller took the reply.
+  void OnWritten(bool ok);
+
+  const std::string& client() const override { return parts_.client; }
+  // Notifies the source, now or as soon as there is one.
+  void Drain() override;
+  void Abort(const absl::Status& reason) override;
+  void CheckTime(common::TimePoint now) override;
+  std::optional<common::TimePoint> waiting_since() const override;
+  std::optional<std::size_t> GiveUpReader(common::TimePoint now, double seconds) override;
+  std::optional<common::TimePoint> idle_since() const override;
+  bool GiveUpIdle(common::TimePoint now, double seconds) override;
+
+ private:
+  enum class State {
+    kReceiving,  // the first message
+    kHandling,   // the first message
+    kIdle,       // no reply is ready
+    kAsking,     // the source is being asked for a reply
+    kWriting,
+    kFinished
+  };
+
+  // A further message that is being read.
+  struct Reading {
+    common::TimePoint begin;
+    double timeout_seconds = 0;
+  };
+
+  explicit Call(Parts parts) : parts_(std::move(parts)), begin_(parts_.clock->Now()) {}
+
+  bool is_streaming() const DUET_REQUIRES(mutex_) {
+    return state_ == State::kIdle || state_ == State::kAsking || state_ == State::kWriting;
+  }
+  // If the state is `state`, ends the call with `reason` and returns true.
+  bool EndFrom(State state, const absl::Status& reason) DUET_EXCLUDES(mutex_);
+  // The first reason counts.
+  void SetEnd(const absl::Status& reason) DUET_REQUIRES(mutex_);
+  // Gets permission to arrive slowly, if the first message needs it by now.
+  absl::Status CheckArrival(common::TimePoint now) DUET_REQUIRES(mutex_);
+  // Sets end_ if a stream has taken too long. Returns true if the write in progress is to be broken
+  // off.
+  bool EndLate(common::TimePoint now) DUET_REQUIRES(mutex_);
+  // The reading ends. Returns whether the source gets its result.
+  bool FinishReading() DUET_REQUIRES(mutex_);
+  // If nothing is being written: writes the next reply, or ends the call.
+  void Advance() DUET_EXCLUDES(mutex_);
+  // Ends the call with `reason` although a write is in progress. Requires breaking_off_ to be set.
+  void BreakOff(const absl::Status& reason) DUET_EXCLUDES(mutex_);
+  // Requires kFinished.
+  void Finish(const absl::Status& status) DUET_EXCLUDES(mutex_);
+
+  Parts parts_;  // the scope is used only by the thread that last changed state_
+  const common::TimePoint begin_;
+
+  mutable common::Mutex mutex_;
+  State state_ DUET_GUARDED_BY(mutex_) = State::kReceiving;
+  std::optional<absl::Status> end_ DUET_GUARDED_BY(mutex_);  // how the call is to finish
+  ShareLease slow_ DUET_GUARDED_BY(mutex_);  // permission to arrive slowly, if one was needed
+  bool draining_ DUET_GUARDED_BY(mutex_) = false;
+
+  // Constant from Run on, except held_bytes and takes_messages, which mutex_ guards.
+  Stream stream_;
+  bool again_ DUET_GUARDED_BY(mutex_) = false;  // progress was made while the source was asked
+  std::optional<Reading> reading_ DUET_GUARDED_BY(mutex_);
+  common::TimePoint write_began_ DUET_GUARDED_BY(mutex_);
+  // While it is set, the call does not finish: the transport must stay.
+  bool breaking_off_ DUET_GUARDED_BY(mutex_) = false;
+  bool given_up_ DUET_GUARDED_BY(mutex_) = false;  // GiveUpReader or GiveUpIdle has ended the call
+};
+
+}  // namespace duet::server::service
+
+#endif  // DUET_SERVER_SERVICE_CALL_H_

@@ -1,0 +1,575 @@
+// Call with a source that the test controls. clip_replies_test.cc and live_replies_test.cc test the
+// sources of Synthesize and SynthesizeLive.
+#include "server/service/call.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "duet/v1/model.pb.h"
+#include "server/service/refusals.h"
+#include "tests/server/support/fake_clock.h"
+#include "tests/server/support/fake_transport.h"
+#include "tests/server/support/recording_observer.h"
+#include "tests/server/support/refusal.h"
+#include "tests/support/matchers.h"
+
+namespace duet::server::service {
+namespace {
+
+using test::FakeClock;
+using test::RecordingObserver;
+
+using ::testing::_;
+
+using absl::StatusCode;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+// Any message can be a reply: here a ModelSelector with a name.
+using PuppetTransport = test::FakeTransport<v1::ModelSelector>;
+
+// What the test sees of a source that the call owns.
+struct SourceState {
+  absl::Status start;
+  std::deque<std::string> ready;  // names of the next replies
+  std::optional<absl::Status> end;
+  std::function<void()> on_next;  // called while a reply is asked for
+  SourceEvents events;
+  bool cancelled = false;
+  int reports = 0;
+  bool owes = false;
+  std::vector<std::size_t> message_sizes;
+  int ends = 0, drains = 0;
+};
+
+class PuppetSource final : public ReplySource {
+ public:
+  explicit PuppetSource(SourceState& state) : state_(state) {}
+
+  absl::Status Start(SourceEvents events) override {
+    state_.events = std::move(events);
+    return state_.start;
+  }
+  NextReply Next(CallScope&) override {
+    if (state_.on_next) std::exchange(state_.on_next, nullptr)();
+    if (state_.ready.empty()) return {nullptr, state_.end};
+    reply_.set_name(state_.ready.front());
+    state_.ready.pop_front();
+    return {&reply_, {}};
+  }
+  void Cancel() override { state_.cancelled = true; }
+  void Report(metrics::CallRecord& record) const override {
+    ++state_.reports;
+    record.model = "puppet";
+  }
+  void OnMessage(grpc::ByteBuffer bytes) override {
+    state_.message_sizes.push_back(bytes.Length());
+  }
+  void OnEndOfMessages() override { ++state_.ends; }
+  void OnDraining() override { ++state_.drains; }
+  bool OwesAnswers() const override { return state_.owes; }
+
+ private:
+  SourceState& state_;
+  v1::ModelSelector reply_;
+};
+
+grpc::ByteBuffer Bytes(std::size_t size) {
+  const grpc::Slice slice(std::string(size, 'x'));
+  return {&slice, 1};
+}
+
+class CallTest : public ::testing::Test {
+ protected:
+  CallTest() : admission_(Limits()) { admission_.SetState(Admission::State::kServing); }
+
+  static AdmissionLimits Limits() {
+    AdmissionLimits limits;
+    limits.max_calls = 4;
+    limits.max_slow_requests = 1;
+    return limits;
+  }
+
+  // A call that waits for its first message.
+  std::shared_ptr<Call> Receive(PuppetTransport& transport) {
+    Call::Parts parts;
+    parts.transport = &transport;
+    parts.admission = &admission_;
+    parts.clock = &clock_;
+    parts.limits = {0.1, 30};
+    parts.scope =
+        std::make_unique<CallScope>(metrics::MethodInfo{"service", "Method", "bidi_stream"},
+                                    CallIdentity{"id", "", "peer", "client"}, observers_, clock_);
+    parts.client = "client";
+    parts.place = *admission_.Admit("client");
+    return Call::Create(std::move(parts));
+  }
+
+  // Lets a call that handles its first message stream.
+  void Run(Call& call, bool takes_messages = false) {
+    Call::Stream stream;
+    stream.source = std::make_unique<PuppetSource>(source_);
+    stream.deadline = clock_.Now() + seconds(3600);
+    stream.write_timeout_seconds = 30;
+    stream.takes_messages = takes_messages;
+    call.Run(std::move(stream));
+  }
+
+  FakeClock clock_;
+  RecordingObserver observer_;
+  std::vector<metrics::CallObserver*> observers_ = {&observer_};
+  Admission admission_;
+  SourceState source_;
+  PuppetTransport transport_;
+};
+
+TEST_F(CallTest, ArrivedMessageIsHandled) {
+  const auto call = Receive(transport_);
+  EXPECT_TRUE(call->OnFirstMessage());
+  EXPECT_FALSE(transport_.finished.has_value());
+  call->Refuse(absl::NotFoundError("no such model"));
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kNotFound, _));
+  EXPECT_EQ(admission_.calls(), 0u);
+}
+
+TEST_F(CallTest, DisconnectBeforeTheMessageIsCancelledNotMalformed) {
+  Receive(transport_)->OnNoMessage(/*cancelled=*/true);
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, _));
+  EXPECT_EQ(admission_.calls(), 0u);
+}
+
+TEST_F(CallTest, CallThatEndsWithoutAMessageIsMalformed) {
+  Receive(transport_)->OnNoMessage(/*cancelled=*/false);
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kInvalidArgument, _));
+}
+
+TEST_F(CallTest, EventsAfterTheEndAreIgnored) {
+  const auto call = Receive(transport_);
+  call->Abort(DrainingRefusal());
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kUnavailable, _));
+  EXPECT_FALSE(call->OnFirstMessage());
+  call->OnNoMessage(/*cancelled=*/true);
+  call->Abort(absl::CancelledError("late"));
+  call->CheckTime(clock_.Now() + std::chrono::hours(1));
+  EXPECT_EQ(observer_.records().size(), 1u);
+}
+
+TEST_F(CallTest, ArrivedMessageNoLongerCountsAsSlow) {
+  PuppetTransport other;
+  const auto first = Receive(transport_), second = Receive(other);
+  first->CheckTime(clock_.Now() + seconds(1));
+  ASSERT_TRUE(first->OnFirstMessage());
+  second->CheckTime(clock_.Now() + seconds(1));
+  EXPECT_FALSE(other.finished.has_value()) << "the only leave to arrive slowly was kept";
+}
+
+TEST_F(CallTest, AbortWaitsForTheMessageBeingHandled) {
+  const auto call = Receive(transport_);
+  EXPECT_TRUE(call->OnFirstMessage());
+  EXPECT_FALSE(call->ended_meanwhile().has_value());
+  call->Abort(absl::CancelledError("gone"));
+  EXPECT_THAT(call->ended_meanwhile().value_or(absl::OkStatus()),
+              StatusIs(StatusCode::kCancelled, _));
+  call->CheckTime(clock_.Now() + std::chrono::hours(1));
+  EXPECT_FALSE(transport_.finished.has_value());
+  EXPECT_NE(call->Answer(), nullptr);
+}
+
+TEST_F(CallTest, CallThatEndedWhileItWasHandledWritesNothing) {
+  source_.ready = {"never"};
+  const auto call = Receive(transport_);
+  EXPECT_TRUE(call->OnFirstMessage());
+  call->Abort(absl::CancelledError("gone"));
+  Run(*call);
+  EXPECT_TRUE(source_.cancelled);
+  EXPECT_THAT(transport_.replies, IsEmpty());
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, "gone"));
+}
+
+TEST_F(CallTest, SlowMessageNeedsAdmission) {
+  PuppetTransport second_transport;
+  const auto first = Receive(transport_), second = Receive(second_transport);
+  clock_.Advance(milliseconds(99));
+  first->CheckTime(clock_.Now());
+  second->CheckTime(clock_.Now());
+  EXPECT_FALSE(transport_.finished.has_value());
+  clock_.Advance(milliseconds(1));
+  first->CheckTime(clock_.Now());
+  first->CheckTime(clock_.Now());  // has leave already
+  second->CheckTime(clock_.Now());
+  EXPECT_FALSE(transport_.finished.has_value());
+  ASSERT_TRUE(second_transport.finished.has_value());
+  EXPECT_EQ(second_transport.finished->code(), StatusCode::kResourceExhausted);
+  EXPECT_EQ(test::Decode(*second_transport.finished).retry_seconds, 1);
+
+  // The leave ends with the call.
+  first->Abort(absl::CancelledError("gone"));
+  PuppetTransport third_transport;
+  const auto third = Receive(third_transport);
+  clock_.Advance(milliseconds(100));
+  third->CheckTime(clock_.Now());
+  EXPECT_FALSE(third_transport.finished.has_value());
+}
+
+TEST_F(CallTest, MessageAfterTheTimeoutEndsTheCall) {
+  const auto call = Receive(transport_);
+  clock_.Advance(milliseconds(29999));
+  call->CheckTime(clock_.Now());
+  EXPECT_FALSE(transport_.finished.has_value());
+  clock_.Advance(milliseconds(1));
+  call->CheckTime(clock_.Now());
+  EXPECT_THAT(*transport_.finished,
+              StatusIs(StatusCode::kDeadlineExceeded, HasSubstr("receive_timeout_seconds = 30")));
+  EXPECT_EQ(admission_.calls(), 0u);
+}
+
+// A call that streams.
+class StreamTest : public CallTest {
+ protected:
+  void SetUp() override {
+    call_ = Receive(transport_);
+    ASSERT_TRUE(call_->OnFirstMessage());
+  }
+  void Run() { CallTest::Run(*call_); }
+  void Written(bool ok = true) { transport_.Written(*call_, ok); }
+  void Progress(std::string reply) {
+    source_.ready.push_back(std::move(reply));
+    source_.events.on_progress();
+  }
+  std::vector<std::string> written() const {
+    std::vector<std::string> names;
+    for (const v1::ModelSelector& reply : transport_.replies) names.push_back(reply.name());
+    return names;
+  }
+
+  std::shared_ptr<Call> call_;
+};
+
+TEST_F(StreamTest, WritesEachReplyOnceItIsReady) {
+  Run();
+  EXPECT_THAT(written(), IsEmpty());
+  Progress("one");
+  EXPECT_THAT(written(), ElementsAre("one"));
+  Progress("two");
+  EXPECT_THAT(written(), ElementsAre("one")) << "the first write is not over";
+  Written();
+  EXPECT_THAT(written(), ElementsAre("one", "two"));
+  Written();
+  EXPECT_FALSE(transport_.finished.has_value()) << "the source has not ended";
+}
+
+TEST_F(StreamTest, ProgressWhileTheSourceIsAskedIsNotLost) {
+  Run();
+  source_.on_next = [this] {
+    // Another thread makes a reply just after the source has found none.
+    source_.on_next = [this] { source_.ready.push_back("one"); };
+    source_.events.on_progress();
+  };
+  source_.events.on_progress();
+  EXPECT_THAT(written(), ElementsAre("one"));
+}
+
+TEST_F(StreamTest, EndsWithTheStatusOfItsSource) {
+  source_.ready = {"last"};
+  source_.end = absl::OkStatus();
+  Run();
+  Written();
+  EXPECT_THAT(*transport_.finished, IsOk());
+  EXPECT_EQ(source_.reports, 1);
+  EXPECT_EQ(observer_.WaitFor(1).model, "puppet");
+}
+
+TEST_F(StreamTest, SourceThatDoesNotStartEndsTheCallBeforeAnyReply) {
+  source_.start = absl::ResourceExhaustedError("full");
+  source_.ready = {"never"};
+  Run();
+  EXPECT_THAT(written(), IsEmpty());
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kResourceExhausted, "full"));
+  EXPECT_EQ(admission_.calls(), 0u);
+}
+
+TEST_F(StreamTest, AbortCancelsTheSourceAndDropsItsReplies) {
+  Run();
+  Progress("one");
+  Progress("two");
+  call_->Abort(absl::CancelledError("gone"));
+  call_->Abort(absl::UnavailableError("a later reason"));
+  EXPECT_TRUE(source_.cancelled);
+  EXPECT_FALSE(transport_.finished.has_value()) << "a write is in progress";
+  Written();
+  EXPECT_THAT(written(), ElementsAre("one"));
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, "gone"));
+  EXPECT_THAT(observer_.records(), SizeIs(1));
+}
+
+TEST_F(StreamTest, AbortWhileTheSourceIsAskedDropsItsReply) {
+  source_.ready = {"never"};
+  source_.on_next = [this] { call_->Abort(absl::CancelledError("gone")); };
+  Run();
+  EXPECT_THAT(written(), IsEmpty());
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, "gone"));
+}
+
+TEST_F(StreamTest, AbortWhileIdleEndsAtOnce) {
+  Run();
+  call_->Abort(absl::CancelledError("gone"));
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, "gone"));
+}
+
+TEST_F(StreamTest, FailedWriteEndsTheCall) {
+  source_.ready = {"one"};
+  Run();
+  Written(/*ok=*/false);
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, _));
+  EXPECT_TRUE(source_.cancelled);
+}
+
+TEST_F(StreamTest, IdleCallEndsAtItsDeadline) {
+  Run();
+  clock_.Advance(milliseconds(3600 * 1000 - 1));
+  call_->CheckTime(clock_.Now());
+  EXPECT_FALSE(transport_.finished.has_value());
+  clock_.Advance(milliseconds(1));
+  call_->CheckTime(clock_.Now());
+  EXPECT_TRUE(source_.cancelled);
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kDeadlineExceeded, _));
+}
+
+TEST_F(StreamTest, StalledReaderEndsTheCall) {
+  source_.ready = {"one", "two"};
+  Run();
+  clock_.Advance(seconds(29));
+  call_->CheckTime(clock_.Now());
+  Written();
+  clock_.Advance(seconds(29));
+  call_->CheckTime(clock_.Now());
+  EXPECT_EQ(transport_.broken_off, 0) << "each reply has its own time limit";
+  clock_.Advance(seconds(1));
+  call_->CheckTime(clock_.Now());
+  EXPECT_EQ(transport_.broken_off, 1);
+  EXPECT_TRUE(source_.cancelled);
+  EXPECT_FALSE(transport_.finished.has_value()) << "its write has not come back";
+  Written(/*ok=*/false);
+  EXPECT_THAT(*transport_.finished,
+              StatusIs(StatusCode::kDeadlineExceeded, HasSubstr("write_timeout_seconds = 30")));
+  EXPECT_EQ(admission_.calls(), 0u);
+}
+
+TEST_F(StreamTest, WriteThatCompletesDuringAnAbortKeepsTheTransport) {
+  source_.ready = {"one"};
+  Run();
+  transport_.on_break_off = [this] {
+    Written(/*ok=*/false);
+    EXPECT_FALSE(transport_.finished.has_value()) << "the transport would be gone";
+  };
+  clock_.Advance(seconds(30));
+  call_->CheckTime(clock_.Now());
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kDeadlineExceeded, _));
+}
+
+TEST_F(StreamTest, EndingAStalledCallReleasesItsPlaceImmediately) {
+  source_.ready = {"one"};
+  Run();
+  EXPECT_EQ(call_->waiting_since(), clock_.Now());
+  clock_.Advance(milliseconds(1999));
+  EXPECT_FALSE(call_->GiveUpReader(clock_.Now(), 2).has_value()) << "it has not waited long enough";
+  clock_.Advance(milliseconds(1));
+  EXPECT_TRUE(call_->GiveUpReader(clock_.Now(), 2).has_value());
+  EXPECT_EQ(admission_.calls(), 0u) << "although the write is still under way";
+  EXPECT_FALSE(call_->GiveUpReader(clock_.Now(), 0).has_value()) << "only once";
+  EXPECT_EQ(call_->waiting_since(), std::nullopt);
+  EXPECT_EQ(transport_.broken_off, 1);
+  EXPECT_FALSE(transport_.finished.has_value());
+  Written(/*ok=*/false);
+  for (const absl::Status& status : {transport_.broken_off_with, *transport_.finished}) {
+    EXPECT_THAT(status, StatusIs(StatusCode::kResourceExhausted, HasSubstr("while other calls")));
+  }
+}
+
+TEST_F(StreamTest, CallThatWaitsForItsSourceHasNoStalledReader) {
+  source_.ready = {"one"};
+  Run();
+  Written();
+  clock_.Advance(seconds(10));
+  EXPECT_EQ(call_->waiting_since(), std::nullopt);
+  EXPECT_FALSE(call_->GiveUpReader(clock_.Now(), 2).has_value());
+  EXPECT_EQ(transport_.broken_off, 0);
+  EXPECT_EQ(admission_.calls(), 1u);
+}
+
+TEST_F(StreamTest, EndedCallKeepsItsReasonWhenItsReaderStalls) {
+  source_.ready = {"one"};
+  Run();
+  call_->Abort(absl::UnavailableError("shutting down"));
+  EXPECT_TRUE(call_->GiveUpReader(clock_.Now(), 0).has_value());
+  EXPECT_THAT(transport_.broken_off_with, StatusIs(StatusCode::kUnavailable, "shutting down"));
+  Written(/*ok=*/false);
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kUnavailable, "shutting down"));
+}
+
+TEST_F(StreamTest, ProgressAfterTheCallIsGoneIsIgnored) {
+  Run();
+  call_->Abort(absl::CancelledError("gone"));
+  call_.reset();
+  source_.events.on_progress();
+  EXPECT_FALSE(source_.events.read_next(1));
+  EXPECT_THAT(written(), IsEmpty());
+}
+
+// Looks, when a call is reported, at what others can see and do at that moment.
+class ProbingObserver final : public metrics::CallObserver {
+ public:
+  explicit ProbingObserver(const Admission& admission) : admission_(admission) {}
+  void CallStarted(const metrics::MethodInfo&) override {}
+  void CallFinished(const metrics::CallRecord&) override {
+    calls_when_reported = admission_.calls();
+    call->Abort(absl::CancelledError("late"));  // would wait for itself if the call were locked
+  }
+
+  std::optional<std::size_t> calls_when_reported;
+  Call* call = nullptr;
+
+ private:
+  const Admission& admission_;
+};
+
+TEST_F(StreamTest, IsReportedUnderNoLockAndWithoutItsPlace) {
+  ProbingObserver probe(admission_);
+  observers_ = {&probe};
+  call_ = Receive(transport_);
+  probe.call = call_.get();
+  ASSERT_TRUE(call_->OnFirstMessage());
+  Run();
+  call_->Abort(absl::CancelledError("gone"));
+  EXPECT_EQ(probe.calls_when_reported, 0u);
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, "gone"));
+}
+
+// A call that takes several messages.
+class FurtherMessagesTest : public StreamTest {
+ protected:
+  void SetUp() override {
+    StreamTest::SetUp();
+    CallTest::Run(*call_, /*takes_messages=*/true);
+  }
+};
+
+TEST_F(FurtherMessagesTest, AreReadOnlyOnRequestOneAtATime) {
+  EXPECT_EQ(transport_.reads, 0);
+  EXPECT_TRUE(source_.events.read_next(30));
+  EXPECT_EQ(transport_.reads, 1);
+  EXPECT_FALSE(call_->ReadNext(30)) << "a message is being read already";
+  EXPECT_EQ(transport_.reads, 1);
+  call_->OnMessage(Bytes(3));
+  EXPECT_TRUE(call_->ReadNext(30));
+  call_->OnMessage(Bytes(5));
+  EXPECT_THAT(source_.message_sizes, ElementsAre(3u, 5u));
+  EXPECT_EQ(source_.ends, 0);
+}
+
+TEST_F(FurtherMessagesTest, SourceMayReadWhileItIsAsked) {
+  bool reads = false;
+  source_.on_next = [&] { reads = call_->ReadNext(30); };
+  source_.events.on_progress();
+  EXPECT_TRUE(reads);
+}
+
+TEST_F(FurtherMessagesTest, EndOfMessagesLeavesTheCallRunning) {
+  EXPECT_TRUE(call_->ReadNext(30));
+  call_->OnEndOfMessages();
+  EXPECT_EQ(source_.ends, 1);
+  EXPECT_FALSE(call_->ReadNext(30)) << "there are no more messages";
+  call_->Drain();
+  EXPECT_EQ(source_.drains, 0) << "no message is taken";
+  EXPECT_FALSE(transport_.finished.has_value());
+}
+
+TEST_F(FurtherMessagesTest, MessageThatDoesNotArriveInTimeEndsTheCall) {
+  EXPECT_TRUE(call_->ReadNext(5));
+  call_->OnMessage(Bytes(1));
+  clock_.Advance(seconds(60));
+  call_->CheckTime(clock_.Now());
+  EXPECT_FALSE(transport_.finished.has_value()) << "none is read";
+  EXPECT_TRUE(call_->ReadNext(5));
+  clock_.Advance(milliseconds(4999));
+  call_->CheckTime(clock_.Now());
+  EXPECT_FALSE(transport_.finished.has_value());
+  clock_.Advance(milliseconds(1));
+  call_->CheckTime(clock_.Now());
+  EXPECT_THAT(*transport_.finished,
+              StatusIs(StatusCode::kDeadlineExceeded, HasSubstr("live_idle_seconds = 5")));
+}
+
+TEST_F(FurtherMessagesTest, IdleCallGivesItsPlaceUp) {
+  EXPECT_EQ(call_->idle_since(), std::nullopt) << "no message is read";
+  EXPECT_TRUE(call_->ReadNext(60));
+  EXPECT_EQ(call_->idle_since(), clock_.Now());
+  clock_.Advance(milliseconds(4999));
+  EXPECT_FALSE(call_->GiveUpIdle(clock_.Now(), 5));
+  clock_.Advance(milliseconds(1));
+  EXPECT_EQ(admission_.calls(), 1u);
+  EXPECT_TRUE(call_->GiveUpIdle(clock_.Now(), 5));
+  EXPECT_EQ(admission_.calls(), 0u);
+  EXPECT_EQ(transport_.finished->code(), StatusCode::kResourceExhausted);
+  EXPECT_GT(test::Decode(*transport_.finished).retry_seconds, 0);
+  EXPECT_FALSE(call_->GiveUpIdle(clock_.Now(), 5)) << "only once";
+}
+
+TEST_F(FurtherMessagesTest, CallThatOwesAnswersIsNotIdle) {
+  EXPECT_TRUE(call_->ReadNext(60));
+  clock_.Advance(seconds(9));
+  source_.owes = true;
+  EXPECT_EQ(call_->idle_since(), std::nullopt);
+  EXPECT_FALSE(call_->GiveUpIdle(clock_.Now(), 5));
+  source_.owes = false;
+  Progress("being written");
+  EXPECT_EQ(call_->idle_since(), std::nullopt);
+  EXPECT_FALSE(transport_.finished.has_value());
+}
+
+TEST_F(FurtherMessagesTest, MessagesAfterTheEndAreDropped) {
+  EXPECT_TRUE(call_->ReadNext(30));
+  call_->Abort(absl::CancelledError("gone"));
+  call_->OnMessage(Bytes(3));
+  call_->OnEndOfMessages();
+  EXPECT_THAT(source_.message_sizes, IsEmpty());
+  EXPECT_EQ(source_.ends, 0);
+  EXPECT_FALSE(call_->ReadNext(30)) << "the transport may be gone";
+  EXPECT_EQ(transport_.reads, 1);
+}
+
+TEST_F(FurtherMessagesTest, DrainIsReportedOnce) {
+  EXPECT_EQ(source_.drains, 0);
+  call_->Drain();
+  call_->Drain();
+  EXPECT_EQ(source_.drains, 1);
+  EXPECT_FALSE(transport_.finished.has_value());
+  EXPECT_TRUE(call_->ReadNext(30));
+}
+
+TEST_F(StreamTest, DrainThatBeginsBeforeTheStreamIsReported) {
+  call_->Drain();
+  EXPECT_EQ(source_.drains, 0);
+  CallTest::Run(*call_, /*takes_messages=*/true);
+  EXPECT_EQ(source_.drains, 1);
+}
+
+TEST_F(StreamTest, CallOfOneMessageReadsNoFurtherOne) {
+  EXPECT_FALSE(call_->ReadNext(30)) << "its first message is still handled";
+  Run();
+  EXPECT_FALSE(call_->ReadNext(30));
+  EXPECT_EQ(transport_.reads, 0);
+}
+
+}  // namespace
+}  // namespace duet::server::service
