@@ -3,6 +3,7 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/message.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -10,13 +11,112 @@
 #include <utility>
 #include <vector>
 
+#include "absl/status/status.h"
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "server/admin/admin_message.h"
+#include "absl/strings/str_join.h"
+#include "duet/admin/v1/admin.pb.h"
+#include "model/base/text.h"
 #include "server/common/activity.h"
+#include "server/common/error_details.h"
+#include "server/registry/model_repository.h"
+#include "server/registry/model_status.h"
 #include "server/service/refusals.h"
 
 namespace duet::server::admin {
 namespace {
+
+namespace v1 = ::duet::admin::v1;
+
+constexpr std::size_t kLongestLabel = 63;
+
+// Collects the violations of a request: fields that are missing, and labels that are not 1 to 63
+// letters, digits, '-', '_' and '.'.
+class Fields {
+ public:
+  Fields& Name(const std::string& name) {
+    if (name.empty()) Add("name", "expected a model's name, got none");
+    return *this;
+  }
+  Fields& Version(uint32_t version) {
+    if (version == 0) Add("version", "expected a version of 1 or more, got none");
+    return *this;
+  }
+  Fields& Label(const std::string& label) {
+    const bool plain = std::all_of(label.begin(), label.end(), [](char c) {
+      return absl::ascii_isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.';
+    });
+    if (plain && !label.empty() && label.size() <= kLongestLabel) return *this;
+    Add("label", absl::StrCat("expected 1 to ", kLongestLabel,
+                              " letters, digits, '-', '_' and '.', got ", base::Quoted(label)));
+    return *this;
+  }
+
+  absl::Status status() const {
+    if (violations_.empty()) return absl::OkStatus();
+    absl::Status status = absl::InvalidArgumentError(absl::StrJoin(
+        violations_, "; ", [](std::string* out, const common::FieldViolation& violation) {
+          absl::StrAppend(out, violation.field, ": ", violation.description);
+        }));
+    common::AddBadRequest(status, violations_);
+    return status;
+  }
+
+ private:
+  void Add(std::string field, std::string description) {
+    violations_.push_back({std::move(field), std::move(description)});
+  }
+  std::vector<common::FieldViolation> violations_;
+};
+
+v1::ModelState ToMessage(registry::ModelState state) {
+  switch (state) {
+    case registry::ModelState::kLoading:
+      return v1::MODEL_STATE_LOADING;
+    case registry::ModelState::kServed:
+      return v1::MODEL_STATE_SERVED;
+    case registry::ModelState::kFailed:
+      return v1::MODEL_STATE_FAILED;
+    case registry::ModelState::kUnloaded:
+      return v1::MODEL_STATE_UNLOADED;
+  }
+  return v1::MODEL_STATE_UNSPECIFIED;
+}
+
+v1::ListModelsResponse ToMessage(const std::vector<registry::ModelStatus>& models,
+                                 const std::vector<registry::SkippedFolder>& skipped,
+                                 const std::vector<std::string>& problems) {
+  v1::ListModelsResponse response;
+  for (const registry::ModelStatus& model : models) {
+    v1::ModelVersion* message = response.add_models();
+    message->set_name(model.name);
+    message->set_version(model.version);
+    message->set_state(ToMessage(model.state));
+    message->set_error(model.error);
+    for (const std::string& label : model.version_labels) message->add_version_labels(label);
+    message->set_is_default(model.is_default);
+    message->set_load_seconds(model.load_seconds);
+    message->set_outdated(model.outdated);
+  }
+  for (const registry::SkippedFolder& folder : skipped) {
+    v1::SkippedFolder* message = response.add_skipped_folders();
+    message->set_folder(folder.folder);
+    message->set_reason(folder.reason);
+  }
+  for (const std::string& problem : problems) response.add_problems(problem);
+  return response;
+}
+
+v1::ReloadResponse ToMessage(const registry::ReloadReport& report) {
+  v1::ReloadResponse response;
+  for (const std::string& version : report.loaded) response.add_loaded(version);
+  for (const std::string& version : report.refused) response.add_refused(version);
+  for (const std::string& version : report.unloaded) response.add_unloaded(version);
+  response.set_unchanged_count(static_cast<uint32_t>(report.unchanged));
+  for (const std::string& problem : report.problems) response.add_problems(problem);
+  for (const std::string& label : report.refused_labels) response.add_problems(label);
+  return response;
+}
 
 constexpr metrics::MethodInfo Method(std::string_view name) {
   return {AdminService::kServiceName, name, "unary"};
@@ -91,10 +191,11 @@ AdminService::AdminService(AdminParts parts)
 template <typename Request, typename Answer>
 grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& context,
                                              const metrics::MethodInfo& method,
-                                             const Request& request, const Answer& answer) {
+                                             const Request& request, const absl::Status& valid,
+                                             const Answer& answer) {
   const common::Step step(kHandling);
   const auto call = std::make_shared<Call>(context, method, request, *this);
-  const absl::Status admitted = call->status().ok() ? Validate(request) : call->status();
+  const absl::Status admitted = call->status().ok() ? valid : call->status();
   if (admitted.ok()) {
     answer(call);
   } else {
@@ -106,7 +207,7 @@ grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& contex
 grpc::ServerUnaryReactor* AdminService::ListModels(grpc::CallbackServerContext* context,
                                                    const v1::ListModelsRequest* request,
                                                    v1::ListModelsResponse* response) {
-  return Open(*context, kListModels, *request, [&](const auto& call) {
+  return Open(*context, kListModels, *request, absl::OkStatus(), [&](const auto& call) {
     *response =
         ToMessage(parts_.control->List(), parts_.control->skipped(), parts_.control->problems());
     call->Finish(absl::OkStatus());
@@ -116,29 +217,33 @@ grpc::ServerUnaryReactor* AdminService::ListModels(grpc::CallbackServerContext* 
 grpc::ServerUnaryReactor* AdminService::LoadModel(grpc::CallbackServerContext* context,
                                                   const v1::LoadModelRequest* request,
                                                   v1::LoadModelResponse*) {
-  return Open(*context, kLoadModel, *request, [&](const auto& call) {
-    const absl::Status serving = parts_.admission->CheckServing();
-    if (!serving.ok()) return call->Finish(serving);
-    parts_.control->Load(request->name(), request->version(),
-                         [call](const absl::Status& status) { call->Finish(status); });
-  });
+  return Open(*context, kLoadModel, *request,
+              Fields().Name(request->name()).Version(request->version()).status(),
+              [&](const auto& call) {
+                const absl::Status serving = parts_.admission->CheckServing();
+                if (!serving.ok()) return call->Finish(serving);
+                parts_.control->Load(request->name(), request->version(),
+                                     [call](const absl::Status& status) { call->Finish(status); });
+              });
 }
 
 grpc::ServerUnaryReactor* AdminService::UnloadModel(grpc::CallbackServerContext* context,
                                                     const v1::UnloadModelRequest* request,
                                                     v1::UnloadModelResponse*) {
-  return Open(*context, kUnloadModel, *request, [&](const auto& call) {
-    const absl::Status serving = parts_.admission->CheckServing();
-    if (!serving.ok()) return call->Finish(serving);
-    parts_.control->Unload(request->name(), request->version(),
-                           [call](const absl::Status& status) { call->Finish(status); });
-  });
+  return Open(
+      *context, kUnloadModel, *request,
+      Fields().Name(request->name()).Version(request->version()).status(), [&](const auto& call) {
+        const absl::Status serving = parts_.admission->CheckServing();
+        if (!serving.ok()) return call->Finish(serving);
+        parts_.control->Unload(request->name(), request->version(),
+                               [call](const absl::Status& status) { call->Finish(status); });
+      });
 }
 
 grpc::ServerUnaryReactor* AdminService::Reload(grpc::CallbackServerContext* context,
                                                const v1::ReloadRequest* request,
                                                v1::ReloadResponse* response) {
-  return Open(*context, kReload, *request, [&](const auto& call) {
+  return Open(*context, kReload, *request, absl::OkStatus(), [&](const auto& call) {
     const absl::Status serving = parts_.admission->CheckServing();
     if (!serving.ok()) return call->Finish(serving);
     // The response lives until the call ends.
@@ -152,17 +257,23 @@ grpc::ServerUnaryReactor* AdminService::Reload(grpc::CallbackServerContext* cont
 grpc::ServerUnaryReactor* AdminService::SetLabel(grpc::CallbackServerContext* context,
                                                  const v1::SetLabelRequest* request,
                                                  v1::SetLabelResponse*) {
-  return Open(*context, kSetLabel, *request, [&](const auto& call) {
-    call->Finish(parts_.control->SetLabel(request->name(), request->label(), request->version()));
-  });
+  return Open(
+      *context, kSetLabel, *request,
+      Fields().Name(request->name()).Label(request->label()).Version(request->version()).status(),
+      [&](const auto& call) {
+        call->Finish(
+            parts_.control->SetLabel(request->name(), request->label(), request->version()));
+      });
 }
 
 grpc::ServerUnaryReactor* AdminService::DeleteLabel(grpc::CallbackServerContext* context,
                                                     const v1::DeleteLabelRequest* request,
                                                     v1::DeleteLabelResponse*) {
-  return Open(*context, kDeleteLabel, *request, [&](const auto& call) {
-    call->Finish(parts_.control->DeleteLabel(request->name(), request->label()));
-  });
+  return Open(*context, kDeleteLabel, *request,
+              Fields().Name(request->name()).Label(request->label()).status(),
+              [&](const auto& call) {
+                call->Finish(parts_.control->DeleteLabel(request->name(), request->label()));
+              });
 }
 
 }  // namespace duet::server::admin

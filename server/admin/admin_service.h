@@ -61,11 +61,11 @@ class AdminService final : public v1::Admin::CallbackService {
   class Call;
 
   // The common path of every call: counts and checks it. Passes it to `answer`, which ends it now
-  // or later, unless it is rejected.
+  // or later, unless it is rejected. `valid`: whether the request's fields are.
   template <typename Request, typename Answer>
   grpc::ServerUnaryReactor* Open(grpc::CallbackServerContext& context,
                                  const metrics::MethodInfo& method, const Request& request,
-                                 const Answer& answer);
+                                 const absl::Status& valid, const Answer& answer);
 
   const AdminParts parts_;
   const service::CallPipeline pipeline_;

@@ -9,13 +9,20 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "duet/v1/server_config.pb.h"
-#include "server/config/task.h"
 
 namespace CLI {
 class App;
 }  // namespace CLI
 
 namespace duet::server::config {
+
+// What the program is started for.
+enum class Task {
+  kServe,
+  kCheckConfig,  // load everything, report every mistake, and exit
+  kPrintConfig,  // print every setting and its source, and exit
+  kCheckHealth,  // ask the running server whether it is healthy, and exit
+};
 
 // The values of flags.
 struct Flags {

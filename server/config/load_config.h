@@ -13,8 +13,8 @@
 #include "duet/v1/server_config.pb.h"
 #include "model/messages/field_places.h"
 #include "server/config/environment.h"
+#include "server/config/flag_parser.h"
 #include "server/config/settings.h"
-#include "server/config/task.h"
 
 namespace duet::server::config {
 

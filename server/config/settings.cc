@@ -1,25 +1,63 @@
 #include "server/config/settings.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
+#include "model/base/printable.h"
 #include "model/base/text.h"
 #include "server/common/http_origin.h"
 #include "server/config/listen_address.h"
 #include "server/config/memory_plan.h"
-#include "server/config/mistakes.h"
 #include "server/config/setting.h"
 
 namespace duet::server::config {
 namespace {
+
+// Collects every mistake of a configuration, one line each:
+// "field: expected ..., got ... (source, if known); hint".
+class Mistakes {
+ public:
+  // `sources` outlives this object.
+  explicit Mistakes(const SettingSources& sources) : sources_(sources) {}
+
+  // `got` may quote a user's text as it is.
+  void Add(absl::string_view field, absl::string_view expected, absl::string_view got,
+           absl::string_view hint = "");
+  // `message` begins with the field and a colon; it may quote a user's text as it is.
+  void Add(const std::string& message, absl::string_view hint = "");
+
+  std::vector<std::string> Take() { return std::move(lines_); }
+
+ private:
+  const SettingSources& sources_;
+  std::vector<std::string> lines_;
+};
+
+constexpr std::size_t kMaxLineBytes = 1000;
+
+void Mistakes::Add(absl::string_view field, absl::string_view expected, absl::string_view got,
+                   absl::string_view hint) {
+  Add(absl::StrCat(field, ": expected ", expected, ", got ", got), hint);
+}
+
+void Mistakes::Add(const std::string& message, absl::string_view hint) {
+  const auto source = sources_.find(message.substr(0, message.find(':')));
+  std::string line = base::Printable(message, kMaxLineBytes);
+  if (source != sources_.end()) absl::StrAppend(&line, " (", source->second, ")");
+  if (!hint.empty()) absl::StrAppend(&line, "; ", hint);
+  lines_.push_back(std::move(line));
+}
 
 using v1::ServerConfig;
 

@@ -14,7 +14,7 @@
 #include "server/batching/batcher.h"
 #include "server/config/listen_address.h"
 #include "server/lifecycle/load_models.h"
-#include "server/lifecycle/secret_options.h"
+#include "server/lifecycle/validate_settings.h"
 #include "server/security/tls_certificates.h"
 #include "server/service/refusals.h"
 

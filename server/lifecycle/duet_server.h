@@ -15,7 +15,7 @@
 #include "server/common/mutex.h"
 #include "server/lifecycle/grpc_server.h"
 #include "server/lifecycle/heap_trimmer.h"
-#include "server/lifecycle/model_events.h"
+#include "server/lifecycle/load_models.h"
 #include "server/lifecycle/repeated_task.h"
 #include "server/lifecycle/self_check.h"
 #include "server/metrics/json_log.h"

@@ -1,10 +1,16 @@
 #include "server/lifecycle/run_server.h"
 
 #include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -13,6 +19,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "absl/time/clock.h"
 #include "server/common/activity.h"
 #include "server/config/container_limits.h"
@@ -20,10 +27,9 @@
 #include "server/config/memory_plan.h"
 #include "server/config/print_config.h"
 #include "server/lifecycle/check_config.h"
-#include "server/lifecycle/check_health.h"
 #include "server/lifecycle/duet_server.h"
 #include "server/lifecycle/library_logs.h"
-#include "server/lifecycle/systemd_notifier.h"
+#include "server/lifecycle/self_check.h"
 #include "server/lifecycle/validate_settings.h"
 #include "server/metrics/json_log.h"
 #include "server/metrics/log_sink.h"
@@ -37,6 +43,63 @@ using watchdog::kExitStopped;
 using watchdog::kExitUsage;
 
 namespace {
+
+// Reports the state of the process to systemd, or to another service manager that has set
+// NOTIFY_SOCKET. Does nothing without that variable.
+//
+// Source:  sd_notify(3): a datagram of lines to a Unix socket, which is abstract if its name begins
+//          with '@'.
+// Threads: safe to call concurrently.
+class SystemdNotifier {
+ public:
+  // `socket`: the value of NOTIFY_SOCKET; may be empty.
+  explicit SystemdNotifier(std::string socket) : socket_(std::move(socket)) {}
+  // Uses NOTIFY_SOCKET of this process.
+  static SystemdNotifier OfProcess();
+
+  // Calls are served. `status` is a line for people.
+  void Ready(absl::string_view status) const;
+  // A reload has begun. Ready ends it.
+  void Reloading() const;
+  void Stopping() const;
+
+ private:
+  void Send(const std::string& message) const;
+
+  const std::string socket_;
+};
+
+SystemdNotifier SystemdNotifier::OfProcess() {
+  const char* socket = std::getenv("NOTIFY_SOCKET");
+  return SystemdNotifier(socket == nullptr ? "" : socket);
+}
+
+void SystemdNotifier::Ready(absl::string_view status) const {
+  Send(absl::StrCat("READY=1\nSTATUS=", status));
+}
+
+void SystemdNotifier::Reloading() const {
+  // The time, of CLOCK_MONOTONIC, lets systemd match a READY=1 with one of several reloads.
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  Send(absl::StrCat("RELOADING=1\nMONOTONIC_USEC=",
+                    std::chrono::duration_cast<std::chrono::microseconds>(now).count()));
+}
+
+void SystemdNotifier::Stopping() const { Send("STOPPING=1"); }
+
+void SystemdNotifier::Send(const std::string& message) const {
+  sockaddr_un address = {};
+  if (socket_.empty() || socket_.size() >= sizeof(address.sun_path)) return;
+  address.sun_family = AF_UNIX;
+  std::copy(socket_.begin(), socket_.end(), address.sun_path);
+  if (socket_[0] == '@') address.sun_path[0] = '\0';
+  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + socket_.size());
+  const int descriptor = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) return;
+  sendto(descriptor, message.data(), message.size(), MSG_NOSIGNAL,
+         reinterpret_cast<const sockaddr*>(&address), length);
+  close(descriptor);
+}
 
 using watchdog::Watchdog;
 using watchdog::WatchdogOptions;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "duet/v1/server_config.pb.h"
 #include "server/common/activity.h"
 #include "server/lifecycle/repeated_task.h"
 
@@ -53,6 +54,11 @@ class SelfCheck {
   std::atomic<int> failures_{0};
   std::unique_ptr<RepeatedTask> task_;  // null after Stop
 };
+
+// Asks the server that runs on this machine with these settings for /healthz, which needs neither
+// certificates nor tokens. Without a metrics port, checks whether its gRPC port accepts
+// connections. Fails with UNAVAILABLE and the reason if the server is not healthy.
+absl::Status CheckHealth(const v1::ServerConfig& settings, double timeout_seconds);
 
 }  // namespace duet::server::lifecycle
 

@@ -9,7 +9,6 @@
 #include "absl/strings/string_view.h"
 #include "server/common/bindable.h"
 #include "server/config/listen_address.h"
-#include "server/lifecycle/secret_options.h"
 #include "server/security/secret_files.h"
 
 namespace duet::server::lifecycle {

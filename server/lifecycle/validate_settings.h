@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "duet/v1/server_config.pb.h"
 #include "server/config/load_config.h"
 #include "server/config/settings.h"
 #include "server/registry/model_repository.h"
+#include "server/security/secret_files.h"
 
 namespace duet::server::lifecycle {
 
@@ -36,6 +38,15 @@ enum class Ports { kFree, kMayBeInUse };
 ValidatedSettings ValidateSettings(const config::CommandLine& command_line, int cores,
                                    std::uint64_t memory_bytes, const EngineOpener& open_engine,
                                    Ports ports);
+
+// Returns the files of secrets that the settings name.
+inline security::SecretFiles::Options SecretsOf(const v1::ServerConfig& settings) {
+  security::SecretFiles::Options secrets;
+  secrets.tls = {settings.tls_certificate_file(), settings.tls_key_file(),
+                 settings.tls_client_ca_file()};
+  secrets.access = settings.access_file();
+  return secrets;
+}
 
 }  // namespace duet::server::lifecycle
 

@@ -65,4 +65,14 @@ absl::StatusOr<ShareLease> Admission::ArriveSlowly(const std::string& client) {
   return *std::move(leave);
 }
 
+TransportQuota::TransportQuota(std::size_t bytes) : bytes_(bytes), quota_("duet") {
+  quota_.Resize(bytes);
+}
+
+void TransportQuota::Add(std::ptrdiff_t bytes) {
+  common::MutexLock lock(mutex_);
+  received_ += bytes;
+  quota_.Resize(bytes_ + static_cast<std::size_t>(received_));
+}
+
 }  // namespace duet::server::service

@@ -26,7 +26,6 @@
 #include "server/service/call_pipeline.h"
 #include "server/service/call_reactor.h"
 #include "server/service/request_limits.h"
-#include "server/service/transport_quota.h"
 
 namespace duet::server::service {
 

@@ -9,7 +9,6 @@
 
 #include "server/common/activity.h"
 #include "server/watchdog/step_watch.h"
-#include "server/watchdog/stop_deadline.h"
 #include "server/watchdog/stop_signal.h"
 
 namespace duet::server::watchdog {

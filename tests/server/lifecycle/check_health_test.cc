@@ -1,5 +1,3 @@
-#include "server/lifecycle/check_health.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "server/lifecycle/self_check.h"
 #include "server/metrics/metrics_endpoint.h"
 #include "tests/server/support/running_service.h"
 #include "tests/support/matchers.h"

@@ -1,6 +1,6 @@
-#include "server/watchdog/stop_deadline.h"
-
 #include <gtest/gtest.h>
+
+#include "server/watchdog/step_watch.h"
 
 namespace duet::server::watchdog {
 namespace {
