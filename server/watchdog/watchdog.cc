@@ -1,18 +1,132 @@
 #include "server/watchdog/watchdog.h"
 
+#include <pthread.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <cinttypes>
+#include <cstdarg>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
 #include <ctime>
 
 #include "server/watchdog/exit_codes.h"
-#include "server/watchdog/last_words.h"
-#include "server/watchdog/thread_stack.h"
 
 namespace duet::server::watchdog {
 namespace {
+
+// For a process that can no longer trust its heap, its locks or its log: it writes a few lines and
+// exits.
+
+// One line of the log (json_log.h), formatted without allocating memory.
+//
+//   LastLine line(/*text=*/false, "thread_stuck");
+//   line.Add("thread", "worker");
+//   line.Write(STDERR_FILENO);
+class LastLine {
+ public:
+  // `event`, keys and texts are plain ASCII without quotes or backslashes. Fields that do not fit
+  // are omitted.
+  LastLine(bool text, const char* event);
+  void Add(const char* key, const char* value);
+  void Add(const char* key, std::int64_t value);
+  void Add(const char* key, double seconds);
+
+  // Ends the line and writes it to a descriptor. Blocks until the reader takes it. Call once.
+  void Write(int descriptor);
+
+ private:
+  void Append(const char* format, ...) __attribute__((format(printf, 2, 3)));
+
+  const bool text_;
+  std::size_t size_ = 0;
+  bool is_full_ = false;
+  // The size that a pipe writes atomically, so that no other line is mixed in.
+  char bytes_[4096];
+};
+
+constexpr std::size_t kEnd = 3;  // "}\n" and the terminator
+
+std::atomic<int> alarm_exit_code{0};
+
+void Exit(int) { _exit(alarm_exit_code); }
+
+LastLine::LastLine(bool text, const char* event) : text_(text) {
+  bytes_[0] = '\0';
+  timespec now = {};
+  clock_gettime(CLOCK_REALTIME, &now);
+  tm utc = {};
+  gmtime_r(&now.tv_sec, &utc);
+  char time[32];
+  std::strftime(time, sizeof(time), "%Y-%m-%dT%H:%M:%S", &utc);
+  const long microseconds = now.tv_nsec / 1000;
+  if (text_) {
+    Append("%s.%06ldZ ERROR   %s", time, microseconds, event);
+  } else {
+    Append(R"({"time":"%s.%06ldZ","severity":"ERROR","event":"%s")", time, microseconds, event);
+  }
+}
+
+void LastLine::Append(const char* format, ...) {
+  if (is_full_) return;
+  const std::size_t room = sizeof(bytes_) - kEnd - size_;
+  va_list values;
+  va_start(values, format);
+  const int length = std::vsnprintf(bytes_ + size_, room, format, values);
+  va_end(values);
+  if (length < 0 || static_cast<std::size_t>(length) >= room) {
+    bytes_[size_] = '\0';
+    is_full_ = true;
+    return;
+  }
+  size_ += static_cast<std::size_t>(length);
+}
+
+void LastLine::Add(const char* key, const char* value) {
+  if (text_ && std::strchr(value, ' ') == nullptr) {
+    Append(" %s=%s", key, value);
+  } else {
+    Append(text_ ? R"( %s="%s")" : R"(,"%s":"%s")", key, value);
+  }
+}
+
+void LastLine::Add(const char* key, std::int64_t value) {
+  Append(text_ ? " %s=%" PRId64 : ",\"%s\":%" PRId64, key, value);
+}
+
+void LastLine::Add(const char* key, double seconds) {
+  Append(text_ ? " %s=%.1f" : ",\"%s\":%.1f", key, seconds);
+}
+
+void LastLine::Write(int descriptor) {
+  std::memcpy(bytes_ + size_, text_ ? "\n" : "}\n", text_ ? 2 : 3);
+  size_ += text_ ? 1 : 2;
+  for (std::size_t done = 0; done < size_;) {
+    const ssize_t written = write(descriptor, bytes_ + done, size_ - done);
+    if (written < 0 && errno != EINTR) return;
+    if (written > 0) done += static_cast<std::size_t>(written);
+  }
+}
+
+// Makes the process exit with `exit_code` after `seconds`, even if the calling thread blocks
+// forever on the log or on a lock. Uses SIGALRM, which no other use may block.
+void EndWithin(unsigned seconds, int exit_code) {
+  alarm_exit_code = exit_code;
+  struct sigaction action = {};
+  action.sa_handler = Exit;
+  sigaction(SIGALRM, &action, nullptr);
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGALRM);
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  alarm(seconds);
+}
 
 using std::chrono::steady_clock;
 
@@ -27,12 +141,6 @@ constexpr double kPauseWhileStopping = 0.1;
 constexpr unsigned kLastSeconds = 3;
 // Maximum number of threads that get a line.
 constexpr int kMaxLines = 16;
-// Timeout for reading the stack of one thread. On a busy machine a thread that could respond may
-// not run for a while, so threads share some more time.
-constexpr std::chrono::milliseconds kStackPatience(50);
-constexpr std::chrono::milliseconds kSharedPatience(1500);
-static_assert(kMaxLines * kStackPatience + kSharedPatience < std::chrono::seconds(kLastSeconds));
-
 sigset_t WatchedSignals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -53,13 +161,8 @@ int WaitForSignal(double seconds) {
 }  // namespace
 
 Watchdog::Watchdog(const WatchdogOptions& options, StopSignal& stop)
-    : options_(options),
-      stop_(stop),
-      stop_seconds_(options.hurry_seconds),
-      shared_patience_(kSharedPatience) {
-  // Use now what allocates memory at its first use.
-  PrepareThreadStacks();
-  tzset();
+    : options_(options), stop_(stop), stop_seconds_(options.hurry_seconds) {
+  tzset();  // allocates memory at its first use
   thread_ = std::thread([this] { Run(); });
 }
 
@@ -145,18 +248,11 @@ void Watchdog::EndLate() {
 }
 
 void Watchdog::WriteThread(const char* event, const BusyThread& thread) {
-  char stack[2048];
-  const steady_clock::time_point begin = steady_clock::now();
-  WriteThreadStack(thread.thread_id, kStackPatience + shared_patience_, stack, sizeof(stack));
-  const auto used = std::chrono::ceil<std::chrono::milliseconds>(steady_clock::now() - begin);
-  shared_patience_ -=
-      std::clamp(used - kStackPatience, std::chrono::milliseconds(0), shared_patience_);
   LastLine line(options_.text_log, event);
   line.Add("thread", thread.step->thread);
   line.Add("thread_id", std::int64_t{thread.thread_id});
   line.Add("doing", thread.step->doing);
   line.Add("seconds", thread.seconds);
-  if (stack[0] != '\0') line.Add("stack", stack);
   line.Write(STDERR_FILENO);
 }
 

@@ -4,7 +4,6 @@
 #include <pthread.h>
 
 #include <atomic>
-#include <chrono>
 #include <thread>
 
 #include "server/common/activity.h"
@@ -66,7 +65,6 @@ class Watchdog {
   common::ThreadStates threads_;
   StepWatch watch_;
   StopDeadline deadline_;
-  std::chrono::milliseconds shared_patience_;  // what is left of it
 
   std::thread thread_;
 };

@@ -64,7 +64,6 @@ TEST(StuckThreadTest, AWorkerThatNeverReturnsEndsTheProcess) {
   EXPECT_EQ(thread["thread"], "worker");
   EXPECT_EQ(thread["doing"], "evaluating a batch");
   EXPECT_GE(thread["seconds"], 5.0);
-  EXPECT_THAT(thread.value("stack", ""), HasSubstr("duet-fake-server+0x"));
   const json stuck = server.WaitForEvent("stuck");
   EXPECT_EQ(stuck["threads"], 1);
   EXPECT_EQ(stuck["calls"], 1);

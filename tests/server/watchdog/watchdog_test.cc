@@ -31,17 +31,17 @@ constexpr double kNever = 1e6;
   while (true) pause();
 }
 
-// Starts a thread that holds a lock, and calls a function that never returns. Waits until the
-// thread has begun the step.
-void BlockIn(const common::StepKind& kind, void (*block)() = WaitForEver) {
+// Starts a thread that holds a lock and never returns. Waits until the thread has begun the
+// step.
+void BlockIn(const common::StepKind& kind) {
   static std::atomic<int> begun{0};
   const int before = begun;
-  std::thread([&kind, block] {
+  std::thread([&kind] {
     common::Mutex& mutex = *new common::Mutex;
     const common::MutexLock lock(mutex);
     const common::Step step(kind);
     ++begun;
-    block();
+    WaitForEver();
   }).detach();
   while (begun == before) std::this_thread::yield();
 }
@@ -79,48 +79,6 @@ TEST_F(WatchdogDeathTest, StuckThreadEndsTheProcess) {
                     HasSubstr(R"("doing":"working for ever","seconds":0.)"),
                     HasSubstr(R"("event":"stuck",)"), HasSubstr(R"("calls":3,)"),
                     HasSubstr("\"exit_code\":3}\n")));
-}
-
-// Responds to the request for its stack as late as a thread on a busy machine.
-void RespondLate() {
-  sigset_t request, pending;
-  sigemptyset(&request);
-  sigaddset(&request, SIGUSR2);
-  pthread_sigmask(SIG_BLOCK, &request, nullptr);
-  do {
-    std::this_thread::yield();
-    sigpending(&pending);
-  } while (sigismember(&pending, SIGUSR2) == 0);
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  pthread_sigmask(SIG_UNBLOCK, &request, nullptr);
-  WaitForEver();
-}
-
-void NeverRespond() {
-  sigset_t request;
-  sigemptyset(&request);
-  sigaddset(&request, SIGUSR2);
-  pthread_sigmask(SIG_BLOCK, &request, nullptr);
-  WaitForEver();
-}
-
-TEST_F(WatchdogDeathTest, StackOfAThreadThatRespondsLateIsShown) {
-  const auto process = [] {
-    Begin(Options(kSoon, kNever));
-    BlockIn(kWorking, RespondLate);
-    WaitForEver();
-  };
-  EXPECT_EXIT(process(), ExitedWithCode(kExitStuck), HasSubstr(R"("stack":")"));
-}
-
-TEST_F(WatchdogDeathTest, ThreadsThatNeverRespondDoNotKeepTheProcess) {
-  const auto process = [] {
-    for (int i = 0; i < 20; ++i) BlockIn(kWorking, NeverRespond);
-    Begin(Options(kSoon, kNever));
-    WaitForEver();
-  };
-  EXPECT_EXIT(process(), ExitedWithCode(kExitStuck),
-              AllOf(HasSubstr("thread_stuck"), ::testing::Not(HasSubstr(R"("stack":")"))));
 }
 
 TEST_F(WatchdogDeathTest, TextLogHasNoJson) {
