@@ -85,8 +85,7 @@ void ModelControl::Post(std::function<absl::Status()> work, Done done) {
 }
 
 void ModelControl::Load(std::string name, uint32_t version, Done done) {
-  Post([this, name = std::move(name),
-        version] { return manager_.Load(name, version, [this] { return thread_.stopping(); }); },
+  Post([this, name = std::move(name), version] { return manager_.Load(name, version); },
        std::move(done));
 }
 

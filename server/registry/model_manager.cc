@@ -81,7 +81,7 @@ void ModelManager::Add(const LoadReport& report) {
     return;
   }
   const engine::ModelDescription& model = (*report.model)->description();
-  Take(model.name, static_cast<uint32_t>(model.version), report, {});
+  Take(model.name, static_cast<uint32_t>(model.version), report, "");
 }
 
 absl::StatusOr<ModelManager::Folders> ModelManager::Scan() {
@@ -123,11 +123,8 @@ absl::StatusOr<ReloadReport> ModelManager::Reload(const std::function<bool()>& s
     common::MutexLock lock(mutex_);
     for (const auto& [name, versions] : models_) (*folders)[name];
   }
-  // Remembered, because `stop` may return true only once: as a signal arrives.
-  bool stopped = false;
-  const auto stops = [&stopped, &stop] { return stopped = stopped || stop(); };
   for (const auto& [name, versions] : *folders) {
-    if (!ReloadModel(name, versions, stops, report) || stopped) {
+    if (!ReloadModel(name, versions, stop, report)) {
       return absl::CancelledError("loading was stopped");
     }
   }
@@ -150,11 +147,11 @@ bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_ty
       PassOver(name, version);
       continue;
     }
-    if (IsUnchanged(name, version, folder, stop)) {
+    if (IsUnchanged(name, version, folder)) {
       ++report.unchanged;
     } else {
       if (stop()) return false;
-      const bool loaded = LoadFolder(name, version, folder, stop).ok();
+      const bool loaded = LoadFolder(name, version, folder).ok();
       (loaded ? report.loaded : report.refused).push_back(SourceOf(name, version));
     }
     // A version that cannot be loaded leaves its place to the next older one.
@@ -237,43 +234,33 @@ bool ModelManager::WillBeLabelled(const std::string& name, uint32_t version) con
   });
 }
 
-bool ModelManager::IsUnchanged(const std::string& name, uint32_t version, const fs::path& folder,
-                               const std::function<bool()>& stop) {
-  CheckpointFingerprint fingerprint;
-  {
-    common::MutexLock lock(mutex_);
-    const Version* known = Find(name, version);
-    if (known == nullptr || !known->served || !known->error.empty()) return false;
-    fingerprint = known->fingerprint;
-  }
-  // Not under the lock: it may read the weights.
-  if (!fingerprint.Matches(folder, CheckpointFingerprint::Clock::now(), stop)) return false;
+bool ModelManager::IsUnchanged(const std::string& name, uint32_t version,
+                               const fs::path& folder) const {
+  const std::string files = FilesOf(folder);
   common::MutexLock lock(mutex_);
-  models_[name][version].fingerprint = std::move(fingerprint);
-  return true;
+  const Version* known = Find(name, version);
+  return known != nullptr && known->served && known->error.empty() && !files.empty() &&
+         known->files == files;
 }
 
 absl::Status ModelManager::LoadFolder(const std::string& name, uint32_t version,
-                                      const fs::path& folder, const std::function<bool()>& stop) {
+                                      const fs::path& folder) {
   ModelLoader loader;
   {
     common::MutexLock lock(mutex_);
     models_[name][version].loading = true;
     loader = loader_;
   }
-  CheckpointFingerprint fingerprint = CheckpointFingerprint::Of(folder);
+  const std::string before = FilesOf(folder);
   const LoadReport report = LoadCheckpoint(folder, loader);
-  // Only what the loader accepted is worth reading again.
-  if (report.model.ok()) fingerprint.ReadContent(folder, stop);
   // If the files changed meanwhile, it is unknown which of them were loaded: the next reload loads
   // them again.
-  if (!fingerprint.IsUntouched(folder)) fingerprint = {};
-  Take(name, version, report, std::move(fingerprint));
+  Take(name, version, report, FilesOf(folder) == before ? before : "");
   return report.model.status();
 }
 
 void ModelManager::Take(const std::string& name, uint32_t version, const LoadReport& report,
-                        CheckpointFingerprint fingerprint) {
+                        const std::string& files) {
   if (report.model.ok()) registry_.Serve(*report.model);
   bool served = false;
   {
@@ -283,7 +270,7 @@ void ModelManager::Take(const std::string& name, uint32_t version, const LoadRep
     known.error = std::string(report.model.status().message());
     if (report.model.ok()) {
       known.served = true;
-      known.fingerprint = std::move(fingerprint);
+      known.files = files;
       known.load_seconds = report.load_seconds;
     }
     served = known.served;
@@ -308,8 +295,7 @@ void ModelManager::Retire(const std::string& name, uint32_t version, ReloadRepor
   report.unloaded.push_back(SourceOf(name, version));
 }
 
-absl::Status ModelManager::Load(absl::string_view name, uint32_t version,
-                                const std::function<bool()>& stop) {
+absl::Status ModelManager::Load(absl::string_view name, uint32_t version) {
   common::MutexLock working(work_mutex_);
   if (absl::Status status = CheckRepository(); !status.ok()) return status;
   const absl::StatusOr<Folders> folders = Scan();
@@ -319,7 +305,7 @@ absl::Status ModelManager::Load(absl::string_view name, uint32_t version,
     return absl::NotFoundError(absl::StrCat("version ", version, " of model ", base::Quoted(name),
                                             " is not in the repository"));
   }
-  const absl::Status loaded = LoadFolder(model->first, version, model->second.at(version), stop);
+  const absl::Status loaded = LoadFolder(model->first, version, model->second.at(version));
   if (!loaded.ok()) {
     return absl::FailedPreconditionError(
         absl::StrCat(SourceOf(name, version), " cannot be loaded: ", loaded.message()));

@@ -12,7 +12,6 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "server/common/mutex.h"
-#include "server/registry/checkpoint_fingerprint.h"
 #include "server/registry/model_registry.h"
 #include "server/registry/model_repository.h"
 #include "server/registry/model_status.h"
@@ -52,14 +51,14 @@ class ModelManager {
 
   // Loads new and changed checkpoints and those that failed before, as policies, labels and the
   // operator's requests specify, and removes versions that these exclude. Stops before the next
-  // checkpoint, or while files are compared, if `stop` returns true. Fails, without changes, if the
+  // checkpoint if `stop` returns true. Fails, without changes, if the
   // repository cannot be read or is empty.
   absl::StatusOr<ReloadReport> Reload(const std::function<bool()>& stop);
 
   // Loads a version even if policies exclude it or it is already served. Policies do not unload it
-  // later. `stop` as in Reload. Returns NOT_FOUND if the repository does not contain it, and
+  // later. Returns NOT_FOUND if the repository does not contain it, and
   // FAILED_PRECONDITION with the reason if it does not load or there is no repository.
-  absl::Status Load(absl::string_view name, uint32_t version, const std::function<bool()>& stop);
+  absl::Status Load(absl::string_view name, uint32_t version);
 
   // Stops serving a version until Load is called for it. Returns NOT_FOUND if it is not served, and
   // FAILED_PRECONDITION if a label or the default model needs it or there is no repository.
@@ -87,8 +86,8 @@ class ModelManager {
     bool served = false;
     bool loading = false;
     Wish wish = Wish::kAsThePolicySays;
-    std::string error;                  // of the last load; empty if it succeeded
-    CheckpointFingerprint fingerprint;  // of what is served
+    std::string error;  // of the last load; empty if it succeeded
+    std::string files;  // FilesOf what is served; empty if unknown
     double load_seconds = 0;
   };
   using Versions = std::map<uint32_t, Version, std::greater<>>;
@@ -118,12 +117,12 @@ class ModelManager {
   bool WillBeLabelled(const std::string& name, uint32_t version) const;
   // Returns true if the served version is the one in `folder`. Returns false if the last load
   // failed, even if the previous files were restored: only a successful load clears the error.
-  bool IsUnchanged(const std::string& name, uint32_t version, const std::filesystem::path& folder,
-                   const std::function<bool()>& stop);
+  bool IsUnchanged(const std::string& name, uint32_t version,
+                   const std::filesystem::path& folder) const;
   absl::Status LoadFolder(const std::string& name, uint32_t version,
-                          const std::filesystem::path& folder, const std::function<bool()>& stop);
+                          const std::filesystem::path& folder);
   void Take(const std::string& name, uint32_t version, const LoadReport& report,
-            CheckpointFingerprint fingerprint);
+            const std::string& files);
   void Retire(const std::string& name, uint32_t version, ReloadReport& report);
   std::vector<uint32_t> ServedVersions(const std::string& name) const;
   absl::Status CheckRepository() const;

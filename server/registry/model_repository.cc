@@ -1,13 +1,17 @@
 #include "server/registry/model_repository.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cstdint>
+#include <set>
 #include <system_error>
 #include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "server/common/clock.h"
 #include "server/registry/golden_check.h"
 
@@ -103,6 +107,23 @@ fs::path ResolveCheckpoint(const fs::path& folder) {
   fs::path resolved = fs::canonical(folder / kVolumeData, error);
   if (error) resolved = fs::canonical(folder, error);
   return error ? folder : resolved;
+}
+
+std::string FilesOf(const fs::path& folder) {
+  std::set<std::string> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(ResolveCheckpoint(folder), error);
+       !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    struct stat file = {};
+    if (IsHidden(name) || absl::EndsWith(name, ".md")) continue;
+    if (stat(entry->path().c_str(), &file) != 0 || !S_ISREG(file.st_mode)) continue;
+    // Programs cannot set the change time (ctim), so it differs even if the others were restored.
+    files.insert(absl::StrCat(name, " ", file.st_dev, ":", file.st_ino, ":", file.st_size, ":",
+                              file.st_mtim.tv_sec, ".", file.st_mtim.tv_nsec, ":",
+                              file.st_ctim.tv_sec, ".", file.st_ctim.tv_nsec));
+  }
+  return absl::StrJoin(files, "\n");
 }
 
 LoadReport LoadCheckpoint(const fs::path& folder, const ModelLoader& loader) {

@@ -52,6 +52,11 @@ absl::StatusOr<RepositoryListing> ListCheckpoints(const std::filesystem::path& r
 // All files read from it belong to the same checkpoint, even if the links change in the meantime.
 std::filesystem::path ResolveCheckpoint(const std::filesystem::path& folder);
 
+// Describes a checkpoint's files as the file system does: name, device, inode, size and times of
+// each. An equal text means equal content. Hidden files and documents (*.md), which no engine
+// reads, do not count. Empty if there are no files.
+std::string FilesOf(const std::filesystem::path& folder);
+
 // Loads one checkpoint folder and checks its results (golden_check.h). Rejects a checkpoint if name
 // or version in its manifest differ from those of its folder.
 LoadReport LoadCheckpoint(const std::filesystem::path& folder, const ModelLoader& loader);

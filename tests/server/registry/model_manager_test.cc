@@ -133,38 +133,6 @@ TEST_F(ModelManagerTest, ServesEveryVersionOfEveryModel) {
   EXPECT_EQ(Served(), "a/2 a/1 b/7");
 }
 
-TEST_F(ModelManagerTest, FilesOfARefusedCheckpointAreNotRead) {
-  Write("a", 1, "bad");
-  WriteTestFile(folder_ / "a/1/weights.safetensors", "torn");
-  WriteTestFile(folder_ / "a/1/optimizer", "");
-  fs::resize_file(folder_ / "a/1/optimizer", std::uintmax_t{64} << 30);  // sparse
-  int asked = 0;
-  const absl::StatusOr<ReloadReport> report = manager_.Reload([&asked] { return ++asked > 10; });
-  ASSERT_THAT(report, IsOk()) << "once for the checkpoint, never for a block of a file";
-  EXPECT_THAT(report->refused, ElementsAre("a/1"));
-}
-
-TEST_F(ModelManagerTest, ReloadStopsWhileItReadsAFile) {
-  Write("a", 1);
-  Write("b", 1);
-  WriteTestFile(folder_ / "a/1/optimizer", "");
-  fs::resize_file(folder_ / "a/1/optimizer", std::uintmax_t{64} << 30);  // sparse
-  int asked = 0;
-  EXPECT_THAT(manager_.Reload([&asked] { return ++asked > 10; }),
-              StatusIs(absl::StatusCode::kCancelled, HasSubstr("stopped")));
-  EXPECT_EQ(Served(), "a/1");
-}
-
-TEST_F(ModelManagerTest, ReloadStopsIfItIsToldOnceWhileItReadsTheLastFile) {
-  Write("a", 1);
-  WriteTestFile(folder_ / "a/1/optimizer", "");
-  fs::resize_file(folder_ / "a/1/optimizer", std::uintmax_t{64} << 30);  // sparse
-  int asked = 0;
-  EXPECT_THAT(manager_.Reload([&asked] { return ++asked == 10; }),
-              StatusIs(absl::StatusCode::kCancelled, HasSubstr("stopped")));
-  EXPECT_EQ(asked, 10);
-}
-
 TEST_F(ModelManagerTest, SecondReloadSkipsUnchangedCheckpoints) {
   Write("a", 1);
   Reload();
@@ -211,15 +179,14 @@ TEST_F(ModelManagerTest, ReplacesAVersionWhoseWeightsChanged) {
   EXPECT_EQ(Answer({}), "a/1 first+new");
 }
 
-TEST_F(ModelManagerTest, IdenticalCopyIsNotLoadedAgain) {
+TEST_F(ModelManagerTest, DocumentsAndHiddenFilesAreNoChange) {
   Write("a", 1);
-  WriteWeights("a/1", "+old");
   Reload();
-  events_.Take();
-  Write("a", 1);
-  WriteWeights("a/1", "+old");
+  WriteTestFile(folder_ / "a/1/MODEL_CARD.md", "better");
+  WriteTestFile(folder_ / "a/1/.nfs1", "");
   EXPECT_EQ(Reload().unchanged, 1);
-  EXPECT_THAT(events_.Take(), IsEmpty());
+  WriteTestFile(folder_ / "a/1/more", "");
+  EXPECT_THAT(Reload().loaded, ElementsAre("a/1"));
 }
 
 TEST_F(ModelManagerTest, TruncatedWeightsMakeAServedVersionOutdatedUntilTheyAreFixed) {
@@ -243,7 +210,7 @@ TEST_F(ModelManagerTest, NextSuccessfulLoadClearsTheError) {
   Write("a", 1);
   Reload();
   WriteWeights("a/1", "torn");
-  EXPECT_FALSE(manager_.Load("a", 1, kNever).ok());
+  EXPECT_FALSE(manager_.Load("a", 1).ok());
   EXPECT_TRUE(StatusOf("a", 1).outdated);
   Delete("a/1/weights.safetensors");
   Reload();
@@ -263,9 +230,9 @@ TEST_F(ModelManagerTest, RemovedOutdatedVersionIsUnloadedAndNotFailed) {
   EXPECT_FALSE(StatusOf("a", 1).outdated);
   WriteWeights("a/2", "torn");
   manager_.SetPolicies({{"a", {}, {1}}});
-  EXPECT_FALSE(manager_.Load("a", 2, kNever).ok());
+  EXPECT_FALSE(manager_.Load("a", 2).ok());
   WriteWeights("a/1", "+whole");
-  EXPECT_THAT(manager_.Load("a", 1, kNever), IsOk());
+  EXPECT_THAT(manager_.Load("a", 1), IsOk());
   Reload();
   EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
   EXPECT_EQ(StatusOf("a", 2).error, "");
@@ -446,7 +413,7 @@ TEST_F(ModelManagerTest, LoadsByNameWhatNoPolicyWants) {
   manager_.SetPolicies({{"a", 1, {}}});
   for (const int version : {1, 2}) Write("a", version);
   Reload();
-  EXPECT_THAT(manager_.Load("a", 1, kNever), IsOk());
+  EXPECT_THAT(manager_.Load("a", 1), IsOk());
   EXPECT_EQ(Served(), "a/2 a/1");
   Reload();
   EXPECT_EQ(Served(), "a/2 a/1") << "it stays";
@@ -457,17 +424,17 @@ TEST_F(ModelManagerTest, LoadsAgainEvenWhatHasNotChanged) {
   Reload();
   const std::weak_ptr<const engine::Synthesizer> before =
       std::get<ServedModel>(registry_.Find({})).model;
-  EXPECT_THAT(manager_.Load("a", 1, kNever), IsOk());
+  EXPECT_THAT(manager_.Load("a", 1), IsOk());
   EXPECT_TRUE(before.expired());
 }
 
 TEST_F(ModelManagerTest, LoadReportsMissingAndBrokenVersions) {
   Write("a", 1);
   Write("a", 2, "bad");
-  EXPECT_THAT(manager_.Load("a", 3, kNever),
+  EXPECT_THAT(manager_.Load("a", 3),
               StatusIs(kNotFound, HasSubstr("version 3 of model \"a\"")));
-  EXPECT_THAT(manager_.Load("../a", 1, kNever), StatusIs(kNotFound, HasSubstr("../a")));
-  EXPECT_THAT(manager_.Load("a", 2, kNever),
+  EXPECT_THAT(manager_.Load("../a", 1), StatusIs(kNotFound, HasSubstr("../a")));
+  EXPECT_THAT(manager_.Load("a", 2),
               StatusIs(kFailedPrecondition, HasSubstr("weights: expected 9 bytes, got 7")));
 }
 
@@ -480,7 +447,7 @@ TEST_F(ModelManagerTest, UnloadedVersionStaysUnloadedUntilItIsLoadedByName) {
   EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
   Reload();
   EXPECT_EQ(Served(), "a/1");
-  EXPECT_THAT(manager_.Load("a", 2, kNever), IsOk());
+  EXPECT_THAT(manager_.Load("a", 2), IsOk());
   Reload();
   EXPECT_EQ(Served(), "a/2 a/1");
 }
@@ -518,7 +485,7 @@ TEST(ModelManagerWithoutRepositoryTest, ServesWhatItIsGivenAndHasLabels) {
   ASSERT_THAT(report, IsOk());
   EXPECT_THAT(report->refused_labels, ElementsAre(HasSubstr("canary")));
   EXPECT_THAT(registry.List()[0].version_labels, ElementsAre("stable"));
-  EXPECT_THAT(manager.Load("fake", 1, kNever),
+  EXPECT_THAT(manager.Load("fake", 1),
               StatusIs(kFailedPrecondition, HasSubstr("repository")));
   EXPECT_THAT(manager.Unload("fake", 1), StatusIs(kFailedPrecondition, HasSubstr("repository")));
 }
