@@ -166,23 +166,30 @@ DuetServer::DuetServer(const v1::ServerConfig& settings, metrics::LogSink& sink,
   Configure(settings);
   control_.AddReloadable({"certificates and access file", [this] { return ReloadSecrets(); },
                           [this] { return secrets_->state(); }});
-  metrics_.SetQueueLength([this] { return static_cast<double>(scheduler_->queued_windows()); });
-  metrics_.SetPlacesInUse([this] { return static_cast<double>(admission_.calls()); });
   metrics_.SetCapacity({static_cast<int>(settings_.max_calls()),
                         static_cast<int>(settings_.max_queued_windows()),
                         static_cast<int>(settings_.workers())});
   metrics_.SetBuild(DUET_VERSION);
-  metrics_.SetModels([this] { return Served(registry_); });
-  if (secrets_->certificates() != nullptr) {
-    metrics_.SetCertificateEnd(
-        [this] { return static_cast<double>(absl::ToUnixSeconds(secrets_->certificate_end())); });
-  }
+  metrics_.SetRead(ReadValues(sink));
+}
+
+metrics::ReadValues DuetServer::ReadValues(const metrics::LogSink& sink) const {
+  metrics::ReadValues read;
+  read.queued_windows = [this] { return static_cast<double>(scheduler_->queued_windows()); };
+  read.places_in_use = [this] { return static_cast<double>(admission_.calls()); };
+  read.dropped_log_lines = [&sink] { return static_cast<double>(sink.dropped_lines()); };
+  read.ready = [this] { return Ready(); };
+  read.longest_step_seconds = [] { return common::ProcessVitals().longest_step_seconds.load(); };
+  read.models = [this] { return Served(registry_); };
   if (tracer_ != nullptr) {
-    metrics_.SetSpans([this] { return metrics::SpanCounts{tracer_->sent(), tracer_->dropped()}; });
+    read.spans = [this] { return metrics::SpanCounts{tracer_->sent(), tracer_->dropped()}; };
   }
-  metrics_.SetReady([this] { return Ready(); });
-  metrics_.SetLongestStep([] { return common::ProcessVitals().longest_step_seconds.load(); });
-  metrics_.SetDroppedLogLines([&sink] { return static_cast<double>(sink.dropped_lines()); });
+  if (secrets_->certificates() != nullptr) {
+    read.certificate_end = [this] {
+      return static_cast<double>(absl::ToUnixSeconds(secrets_->certificate_end()));
+    };
+  }
+  return read;
 }
 
 DuetServer::~DuetServer() {

@@ -113,6 +113,7 @@ class DuetServer {
   void UpdateHealth();
   void UpdateHealthLocked() DUET_REQUIRES(health_mutex_);
   void Close();
+  metrics::ReadValues ReadValues(const metrics::LogSink& sink) const;
   service::ServiceParts Parts();
   admin::AdminParts AdminParts();
 

@@ -11,9 +11,6 @@
 namespace duet::server::metrics {
 namespace {
 
-using prometheus::BuildCounter;
-using prometheus::BuildGauge;
-using prometheus::BuildHistogram;
 using prometheus::Labels;
 
 // One millisecond to one minute: a window takes tens of milliseconds, a long clip a minute.
@@ -68,115 +65,71 @@ Labels PriorityLabels(batching::Priority priority) {
 
 }  // namespace
 
+ServerMetrics::Counters& ServerMetrics::NewCounters(const char* name, const char* help) {
+  return prometheus::BuildCounter().Name(name).Help(help).Register(registry_);
+}
+
+ServerMetrics::Gauges& ServerMetrics::NewGauges(const char* name, const char* help) {
+  return prometheus::BuildGauge().Name(name).Help(help).Register(registry_);
+}
+
+ServerMetrics::Histograms& ServerMetrics::NewHistograms(const char* name, const char* help) {
+  return prometheus::BuildHistogram().Name(name).Help(help).Register(registry_);
+}
+
 ServerMetrics::ServerMetrics()
-    : started_(BuildCounter()
-                   .Name("grpc_server_started_total")
-                   .Help("RPCs started on the server.")
-                   .Register(registry_)),
-      handled_(BuildCounter()
-                   .Name("grpc_server_handled_total")
-                   .Help("RPCs completed on the server, by status code.")
-                   .Register(registry_)),
-      handling_seconds_(BuildHistogram()
-                            .Name("grpc_server_handling_seconds")
-                            .Help("Time from an RPC's start to its status.")
-                            .Register(registry_)),
-      in_flight_(BuildGauge()
-                     .Name("duet_calls_in_flight")
-                     .Help("RPCs being answered.")
-                     .Register(registry_)),
-      first_chunk_seconds_(BuildHistogram()
-                               .Name("duet_first_chunk_seconds")
-                               .Help("Time from a Synthesize call's start to its first chunk.")
-                               .Register(registry_)),
-      frames_(BuildCounter()
-                  .Name("duet_frames_total")
-                  .Help("Follower frames sent.")
-                  .Register(registry_)),
-      computed_frames_(BuildCounter()
-                           .Name("duet_computed_frames_total")
-                           .Help("Frames of evaluated windows, once for each expected sample.")
-                           .Register(registry_)),
-      queue_seconds_(BuildHistogram()
-                         .Name("duet_queue_seconds")
-                         .Help("Time that a window waited for a worker.")
-                         .Register(registry_)),
-      compute_seconds_(BuildHistogram()
-                           .Name("duet_compute_seconds")
-                           .Help("Time of one batch in the network.")
-                           .Register(registry_)
+    : started_(NewCounters("grpc_server_started_total", "RPCs started on the server.")),
+      handled_(NewCounters("grpc_server_handled_total",
+                           "RPCs completed on the server, by status code.")),
+      handling_seconds_(
+          NewHistograms("grpc_server_handling_seconds", "Time from an RPC's start to its status.")),
+      in_flight_(NewGauges("duet_calls_in_flight", "RPCs being answered.")),
+      first_chunk_seconds_(NewHistograms(
+          "duet_first_chunk_seconds", "Time from a Synthesize call's start to its first chunk.")),
+      frames_(NewCounters("duet_frames_total", "Follower frames sent.")),
+      computed_frames_(NewCounters("duet_computed_frames_total",
+                                   "Frames of evaluated windows, once for each expected sample.")),
+      queue_seconds_(
+          NewHistograms("duet_queue_seconds", "Time that a window waited for a worker.")),
+      compute_seconds_(NewHistograms("duet_compute_seconds", "Time of one batch in the network.")
                            .Add({}, SecondsBuckets())),
-      batch_size_(BuildHistogram()
-                      .Name("duet_batch_size")
-                      .Help("Windows evaluated together, once for each candidate.")
-                      .Register(registry_)
-                      .Add({}, BatchBuckets())),
+      batch_size_(
+          NewHistograms("duet_batch_size", "Windows evaluated together, once for each candidate.")
+              .Add({}, BatchBuckets())),
       windows_dropped_(
-          BuildCounter()
-              .Name("duet_windows_dropped_total")
-              .Help("Windows that never started: cancelled, or too late for their deadline.")
-              .Register(registry_)),
-      queued_windows_(BuildGauge()
-                          .Name("duet_queued_windows")
-                          .Help("Windows waiting for a worker, once for each candidate.")
-                          .Register(registry_)
-                          .Add({})),
-      load_seconds_(BuildGauge()
-                        .Name("duet_model_load_seconds")
-                        .Help("Time to load a checkpoint.")
-                        .Register(registry_)),
-      model_state_(BuildGauge()
-                       .Name("duet_model_state")
-                       .Help("1 if the checkpoint is served, 0 if it was rejected.")
-                       .Register(registry_)),
-      model_last_load_(
-          BuildGauge()
-              .Name("duet_model_last_load_successful")
-              .Help("1 if the checkpoint on disk was loaded, 0 if it was rejected, even "
-                    "if an earlier load of it is served.")
-              .Register(registry_)),
-      model_loads_(BuildCounter()
-                       .Name("duet_model_loads_total")
-                       .Help("Loads of checkpoints, by result.")
-                       .Register(registry_)),
-      folders_skipped_(BuildGauge()
-                           .Name("duet_model_folders_skipped")
-                           .Help("Folders in the model repository that hold no checkpoint.")
-                           .Register(registry_)
-                           .Add({})),
-      reloads_(BuildCounter()
-                   .Name("duet_reloads_total")
-                   .Help("Requested reloads of settings and models, by result.")
-                   .Register(registry_)),
-      log_lines_dropped_(
-          BuildCounter()
-              .Name("duet_log_lines_dropped_total")
-              .Help("Log lines lost because their reader was too slow or writing failed.")
-              .Register(registry_)
+          NewCounters("duet_windows_dropped_total",
+                      "Windows that never started: cancelled, or too late for their deadline.")),
+      queued_windows_(
+          NewGauges("duet_queued_windows", "Windows waiting for a worker, once for each candidate.")
               .Add({})),
-      self_check_failures_(BuildCounter()
-                               .Name("duet_self_check_failures_total")
-                               .Help("Times that the server did not answer its own call.")
-                               .Register(registry_)
+      load_seconds_(NewGauges("duet_model_load_seconds", "Time to load a checkpoint.")),
+      model_state_(
+          NewGauges("duet_model_state", "1 if the checkpoint is served, 0 if it was rejected.")),
+      model_last_load_(NewGauges("duet_model_last_load_successful",
+                                 "1 if the checkpoint on disk was loaded, 0 if it was rejected, "
+                                 "even if an earlier load of it is served.")),
+      model_loads_(NewCounters("duet_model_loads_total", "Loads of checkpoints, by result.")),
+      folders_skipped_(NewGauges("duet_model_folders_skipped",
+                                 "Folders in the model repository that hold no checkpoint.")
+                           .Add({})),
+      reloads_(NewCounters("duet_reloads_total",
+                           "Requested reloads of settings and models, by result.")),
+      log_lines_dropped_(
+          NewCounters("duet_log_lines_dropped_total",
+                      "Log lines lost because their reader was too slow or writing failed.")
+              .Add({})),
+      self_check_failures_(NewCounters("duet_self_check_failures_total",
+                                       "Times that the server did not answer its own call.")
                                .Add({})),
-      refusals_(BuildCounter()
-                    .Name("duet_refusals_total")
-                    .Help("Rejected RPCs, by the reason in their error details.")
-                    .Register(registry_)),
-      caller_calls_(BuildCounter()
-                        .Name("duet_caller_calls_total")
-                        .Help("Completed RPCs of the access file's callers, by status code.")
-                        .Register(registry_)),
-      secrets_reloads_(BuildCounter()
-                           .Name("duet_secrets_reloads_total")
-                           .Help("Reloads of changed certificates or of a changed access file.")
-                           .Register(registry_)),
-      secrets_last_reload_(
-          BuildGauge()
-              .Name("duet_secrets_last_reload_successful")
-              .Help("1 if the certificates or access file on disk are in use, 0 if they were "
-                    "rejected and the previous ones are.")
-              .Register(registry_)) {
+      refusals_(NewCounters("duet_refusals_total",
+                            "Rejected RPCs, by the reason in their error details.")),
+      caller_calls_(NewCounters("duet_caller_calls_total",
+                                "Completed RPCs of the access file's callers, by status code.")),
+      secrets_reloads_(NewCounters("duet_secrets_reloads_total",
+                                   "Reloads of changed certificates or of a changed access file.")),
+      secrets_last_reload_(NewGauges("duet_secrets_last_reload_successful",
+                                     "1 if the certificates or access file on disk are in use, 0 "
+                                     "if they were rejected and the previous ones are.")) {
   // Start at 0: Prometheus would not see the first rejection as an increase otherwise.
   for (const char* kind : {"access", "tls"}) {
     secrets_last_reload_.Add({{"kind", kind}}).Set(1);
@@ -251,37 +204,9 @@ void ServerMetrics::Reloaded(bool ok) {
   reloads_.Add({{"result", ok ? "ok" : "failed"}}).Increment();
 }
 
-void ServerMetrics::SetQueueLength(std::function<double()> queued_windows) {
-  queue_length_ = std::move(queued_windows);
-}
-
-void ServerMetrics::SetPlacesInUse(std::function<double()> places_in_use) {
-  places_in_use_ = std::move(places_in_use);
-}
-
-void ServerMetrics::SetDroppedLogLines(std::function<double()> dropped_log_lines) {
-  dropped_log_lines_ = std::move(dropped_log_lines);
-}
-
-void ServerMetrics::SetReady(std::function<bool()> ready) { ready_ = std::move(ready); }
-
-void ServerMetrics::SetLongestStep(std::function<double()> seconds) {
-  longest_step_ = std::move(seconds);
-}
-
-void ServerMetrics::SetModels(std::function<std::vector<ServedVersion>()> models) {
-  models_ = std::move(models);
-}
-
-void ServerMetrics::SetCertificateEnd(std::function<double()> certificate_end) {
-  certificate_end_ = std::move(certificate_end);
-}
-
-void ServerMetrics::SetSpans(std::function<SpanCounts()> spans) { spans_ = std::move(spans); }
-
 void ServerMetrics::SetCapacity(const Capacity& capacity) {
   const auto set = [this](const char* name, const char* help, int value) {
-    BuildGauge().Name(name).Help(help).Register(registry_).Add({}).Set(value);
+    NewGauges(name, help).Add({}).Set(value);
   };
   set("duet_max_calls", "Synthesize RPCs and live sessions that may be answered at a time.",
       capacity.calls);
@@ -292,10 +217,7 @@ void ServerMetrics::SetCapacity(const Capacity& capacity) {
 }
 
 void ServerMetrics::SetBuild(const std::string& version) {
-  BuildGauge()
-      .Name("duet_build_info")
-      .Help("1; the labels identify the program.")
-      .Register(registry_)
+  NewGauges("duet_build_info", "1; the labels identify the program.")
       .Add({{"version", version}})
       .Set(1);
 }
@@ -307,32 +229,32 @@ void ServerMetrics::SecretsReloaded(const std::string& kind, bool taken) {
 
 std::string ServerMetrics::Render() {
   common::MutexLock lock(render_mutex_);
-  if (queue_length_) queued_windows_.Set(queue_length_());
-  if (dropped_log_lines_) {
-    log_lines_dropped_.Increment(dropped_log_lines_() - log_lines_dropped_.Value());
+  if (read_.queued_windows) queued_windows_.Set(read_.queued_windows());
+  if (read_.dropped_log_lines) {
+    log_lines_dropped_.Increment(read_.dropped_log_lines() - log_lines_dropped_.Value());
   }
   std::vector<prometheus::MetricFamily> families = registry_.Collect();
-  if (models_) families.push_back(ModelInfo(models_()));
-  if (places_in_use_) {
+  if (read_.models) families.push_back(ModelInfo(read_.models()));
+  if (read_.places_in_use) {
     families.push_back(Gauge("duet_places_in_use",
                              "Places, of duet_max_calls, that calls and live sessions hold.",
-                             places_in_use_()));
+                             read_.places_in_use()));
   }
-  if (ready_) {
-    families.push_back(
-        Gauge("duet_ready", "1 while the server accepts and answers calls.", ready_() ? 1 : 0));
+  if (read_.ready) {
+    families.push_back(Gauge("duet_ready", "1 while the server accepts and answers calls.",
+                             read_.ready() ? 1 : 0));
   }
-  if (longest_step_) {
+  if (read_.longest_step_seconds) {
     families.push_back(Gauge("duet_longest_step_seconds",
                              "Duration of the longest step in progress of any thread.",
-                             longest_step_()));
+                             read_.longest_step_seconds()));
   }
-  if (certificate_end_) {
+  if (read_.certificate_end) {
     families.push_back(Gauge("duet_tls_certificate_expiry_timestamp_seconds",
-                             "When the server's certificate expires.", certificate_end_()));
+                             "When the server's certificate expires.", read_.certificate_end()));
   }
-  if (spans_) {
-    const SpanCounts spans = spans_();
+  if (read_.spans) {
+    const SpanCounts spans = read_.spans();
     families.push_back(Counter("duet_spans_sent_total", "Spans that the collector accepted.",
                                static_cast<double>(spans.sent)));
     families.push_back(Counter("duet_spans_dropped_total",

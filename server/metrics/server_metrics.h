@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/batching/window_scheduler.h"
@@ -36,6 +37,18 @@ struct ServedVersion {
   std::string model;
   int version = 0;
   bool is_default = false;
+};
+
+// Values that every scrape reads. Metrics of functions that are absent are omitted.
+struct ReadValues {
+  std::function<double()> queued_windows;
+  std::function<double()> places_in_use;
+  std::function<double()> dropped_log_lines;
+  std::function<bool()> ready;
+  std::function<double()> longest_step_seconds;
+  std::function<std::vector<ServedVersion>()> models;
+  std::function<SpanCounts()> spans;
+  std::function<double()> certificate_end;  // seconds since 1970
 };
 
 // Every metric of the server. Durations are histograms in seconds. Label values come from what is
@@ -70,8 +83,7 @@ struct ServedVersion {
 //   duet_model_load_seconds{checkpoint}                duration of the last load
 //   duet_model_state{checkpoint}                       1 served, 0 rejected; absent if unloaded
 //   duet_model_last_load_successful{checkpoint}        0: the files on disk were rejected; an
-//   earlier
-//                                                      load is still served, if there is one
+//                                                      earlier load may still be served
 //   duet_model_info{model, version, default}           1 for each version served now
 //   duet_model_loads_total{result}                     checkpoints loaded: ok or refused
 //   duet_model_folders_skipped                         folders that are not checkpoints
@@ -79,8 +91,7 @@ struct ServedVersion {
 // Of certificates and the access file:
 //   duet_secrets_reloads_total{kind, outcome}          times they were read again
 //   duet_secrets_last_reload_successful{kind}          0: the files on disk were rejected; the
-//   earlier
-//                                                      ones are still used
+//                                                      earlier ones are still used
 //   duet_tls_certificate_expiry_timestamp_seconds      end of the server's certificate
 // Of the program: duet_build_info{version}, and the standard process_* (process_metrics.h).
 // Of tracing, if it is enabled:
@@ -108,17 +119,8 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   void Reloaded(bool ok);
   void SelfCheckFailed() { self_check_failures_.Increment(); }
 
-  // Set the sources of values that every scrape reads. Call before the first Render.
-  void SetQueueLength(std::function<double()> queued_windows);
-  void SetPlacesInUse(std::function<double()> places_in_use);
-  void SetDroppedLogLines(std::function<double()> dropped_log_lines);
-  void SetReady(std::function<bool()> ready);
-  void SetLongestStep(std::function<double()> seconds);
-  void SetModels(std::function<std::vector<ServedVersion>()> models);
-  void SetSpans(std::function<SpanCounts()> spans);
-  // Seconds since 1970.
-  void SetCertificateEnd(std::function<double()> certificate_end);
-
+  // Call before the first Render.
+  void SetRead(ReadValues read) { read_ = std::move(read); }
   void SetCapacity(const Capacity& capacity);
   void SetBuild(const std::string& version);
 
@@ -129,39 +131,40 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   std::string Render();
 
  private:
+  using Counters = prometheus::Family<prometheus::Counter>;
+  using Gauges = prometheus::Family<prometheus::Gauge>;
+  using Histograms = prometheus::Family<prometheus::Histogram>;
+
+  Counters& NewCounters(const char* name, const char* help);
+  Gauges& NewGauges(const char* name, const char* help);
+  Histograms& NewHistograms(const char* name, const char* help);
+
   prometheus::Registry registry_;
-  prometheus::Family<prometheus::Counter>& started_;
-  prometheus::Family<prometheus::Counter>& handled_;
-  prometheus::Family<prometheus::Histogram>& handling_seconds_;
-  prometheus::Family<prometheus::Gauge>& in_flight_;
-  prometheus::Family<prometheus::Histogram>& first_chunk_seconds_;
-  prometheus::Family<prometheus::Counter>& frames_;
-  prometheus::Family<prometheus::Counter>& computed_frames_;
-  prometheus::Family<prometheus::Histogram>& queue_seconds_;
+  Counters& started_;
+  Counters& handled_;
+  Histograms& handling_seconds_;
+  Gauges& in_flight_;
+  Histograms& first_chunk_seconds_;
+  Counters& frames_;
+  Counters& computed_frames_;
+  Histograms& queue_seconds_;
   prometheus::Histogram& compute_seconds_;
   prometheus::Histogram& batch_size_;
-  prometheus::Family<prometheus::Counter>& windows_dropped_;
+  Counters& windows_dropped_;
   prometheus::Gauge& queued_windows_;
-  prometheus::Family<prometheus::Gauge>& load_seconds_;
-  prometheus::Family<prometheus::Gauge>& model_state_;
-  prometheus::Family<prometheus::Gauge>& model_last_load_;
-  prometheus::Family<prometheus::Counter>& model_loads_;
+  Gauges& load_seconds_;
+  Gauges& model_state_;
+  Gauges& model_last_load_;
+  Counters& model_loads_;
   prometheus::Gauge& folders_skipped_;
-  prometheus::Family<prometheus::Counter>& reloads_;
+  Counters& reloads_;
   prometheus::Counter& log_lines_dropped_;
   prometheus::Counter& self_check_failures_;
-  prometheus::Family<prometheus::Counter>& refusals_;
-  prometheus::Family<prometheus::Counter>& caller_calls_;
-  prometheus::Family<prometheus::Counter>& secrets_reloads_;
-  prometheus::Family<prometheus::Gauge>& secrets_last_reload_;
-  std::function<std::vector<ServedVersion>()> models_;
-  std::function<double()> certificate_end_;
-  std::function<SpanCounts()> spans_;
-  std::function<double()> queue_length_;
-  std::function<double()> places_in_use_;
-  std::function<double()> dropped_log_lines_;
-  std::function<bool()> ready_;
-  std::function<double()> longest_step_;
+  Counters& refusals_;
+  Counters& caller_calls_;
+  Counters& secrets_reloads_;
+  Gauges& secrets_last_reload_;
+  ReadValues read_;
   common::Mutex render_mutex_;  // one scrape at a time updates the values that it reads
 };
 

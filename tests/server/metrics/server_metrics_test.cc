@@ -131,7 +131,9 @@ TEST(ServerMetricsTest, MeasuresEachBatchOnce) {
 TEST(ServerMetricsTest, ReadsTheQueueLengthAtEveryScrape) {
   ServerMetrics metrics;
   double length = 3;
-  metrics.SetQueueLength([&] { return length; });
+  ReadValues read;
+  read.queued_windows = [&] { return length; };
+  metrics.SetRead(std::move(read));
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_queued_windows 3\n"));
   length = 5;
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_queued_windows 5\n"));
@@ -141,7 +143,9 @@ TEST(ServerMetricsTest, ReadsThePlacesInUseAtEveryScrape) {
   ServerMetrics metrics;
   EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_places_in_use")));
   double places = 3;
-  metrics.SetPlacesInUse([&] { return places; });
+  ReadValues read;
+  read.places_in_use = [&] { return places; };
+  metrics.SetRead(std::move(read));
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_places_in_use 3\n"));
   places = 0;
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_places_in_use 0\n"));
@@ -151,7 +155,9 @@ TEST(ServerMetricsTest, CountsDroppedLogLines) {
   ServerMetrics metrics;
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 0\n"));
   double dropped = 3;
-  metrics.SetDroppedLogLines([&] { return dropped; });
+  ReadValues read;
+  read.dropped_log_lines = [&] { return dropped; };
+  metrics.SetRead(std::move(read));
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 3\n"));
   dropped = 5;
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 5\n"));
@@ -197,7 +203,9 @@ TEST(ServerMetricsTest, ReportsCapacityAndBuild) {
 TEST(ServerMetricsTest, ReadsModelsAtEveryScrape) {
   ServerMetrics metrics;
   std::vector<ServedVersion> models = {{"sbu", 3, true}, {"k3hi", 1, false}};
-  metrics.SetModels([&] { return models; });
+  ReadValues read;
+  read.models = [&] { return models; };
+  metrics.SetRead(std::move(read));
   EXPECT_THAT(metrics.Render(),
               HasSubstr(R"(duet_model_info{model="sbu",version="3",default="true"} 1)"));
   models.erase(models.begin());
@@ -210,8 +218,10 @@ TEST(ServerMetricsTest, ReportsCertificatesAndSpansIfConfigured) {
   ServerMetrics metrics;
   EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_tls_certificate_expiry")));
   EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_spans_")));
-  metrics.SetCertificateEnd([] { return 1900000000.0; });
-  metrics.SetSpans([] { return SpanCounts{5, 2}; });
+  ReadValues read;
+  read.certificate_end = [] { return 1900000000.0; };
+  read.spans = [] { return SpanCounts{5, 2}; };
+  metrics.SetRead(std::move(read));
   metrics.SecretsReloaded("access", true);
   metrics.SecretsReloaded("tls", false);
   const std::string text = metrics.Render();
