@@ -11,7 +11,6 @@
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "server/metrics/call_record.h"
-#include "server/tracing/span.h"
 #include "server/tracing/span_queue.h"
 
 namespace duet::server::tracing {
@@ -25,7 +24,8 @@ Span ToSpan(const metrics::CallRecord& record, absl::Time end);
 // Threads: safe to call concurrently.
 class CallTracer final : public metrics::CallObserver {
  public:
-  // Sends to an OpenTelemetry collector. Fails like OtlpClient::Create.
+  // Sends to an OpenTelemetry collector. Fails with INVALID_ARGUMENT unless the endpoint is
+  // http://HOST:PORT (plain text) or https://HOST:PORT (TLS with the system's authorities).
   static absl::StatusOr<std::unique_ptr<CallTracer>> Open(const std::string& endpoint,
                                                           const std::string& program_version);
 

@@ -5,13 +5,30 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <thread>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "server/common/mutex.h"
-#include "server/tracing/span.h"
+#include "server/common/trace_context.h"
 
 namespace duet::server::tracing {
+
+using AttributeValue = std::variant<std::string, std::int64_t, double, bool>;
+
+// A finished call. Times are nanoseconds since 1970.
+struct Span {
+  common::TraceContext trace;
+  std::string name;  // "duet.v1.MotionSynthesis/Synthesize"
+  std::int64_t start = 0;
+  std::int64_t end = 0;
+  std::vector<std::pair<std::string, AttributeValue>> attributes;
+  std::vector<std::pair<std::int64_t, std::string>> events;  // time, name
+  bool failed = false;                                       // by an error of the server
+  std::string message;                                       // the error, if failed
+};
 
 // Sends spans in batches from a thread of its own, so that Add never blocks. Spans are dropped and
 // counted if the queue is full or they cannot be sent.
