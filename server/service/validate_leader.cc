@@ -208,6 +208,18 @@ void ValidateTiming(const v1::Motion& leader, const RequestLimits& limits, Viola
   }
 }
 
+bool ValidateCount(absl::string_view field, int values, std::optional<uint32_t> frames, int joints,
+                   Violations& violations) {
+  const uint64_t expected = uint64_t{frames.value_or(1)} * static_cast<uint64_t>(joints) * 3;
+  if (static_cast<uint64_t>(values) == expected) return true;
+  violations.Malformed(std::string(field),
+                       absl::StrCat(expected, " values (",
+                                    frames.has_value() ? absl::StrCat(*frames, " frames x ") : "",
+                                    joints, " joints x 3)"),
+                       absl::StrCat(values));
+  return false;
+}
+
 bool ValidateFinite(absl::string_view field,
                     const google::protobuf::RepeatedField<float>& positions,
                     Violations& violations) {

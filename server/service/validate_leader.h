@@ -1,6 +1,7 @@
 #ifndef DUET_SERVER_SERVICE_VALIDATE_LEADER_H_
 #define DUET_SERVER_SERVICE_VALIDATE_LEADER_H_
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -47,6 +48,11 @@ motion::Poses ReadPositions(absl::string_view field,
                             const google::protobuf::RepeatedField<float>& positions,
                             const std::vector<int>& joints, const motion::Coordinates& coordinates,
                             const RequestLimits& limits, Violations& violations);
+
+// Adds a violation unless there are three values for each joint of each frame; without `frames`, of
+// one pose. Returns whether there are.
+bool ValidateCount(absl::string_view field, int values, std::optional<uint32_t> frames, int joints,
+                   Violations& violations);
 
 // Returns true if all values are finite. Otherwise adds violations for the first few and a count.
 bool ValidateFinite(absl::string_view field,

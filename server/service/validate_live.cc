@@ -91,17 +91,13 @@ void ReadHistory(const v1::LiveStart& start, const RequestLimits& limits, Valida
                          absl::StrCat(frames));
     return;
   }
+  constexpr char kField[] = "history.follower_positions";
   const auto& positions = history.follower_positions();
-  const uint64_t expected = uint64_t{frames} * valid->reply.joints.size() * 3;
-  if (static_cast<uint64_t>(positions.size()) != expected) {
-    violations.Malformed("history.follower_positions",
-                         absl::StrCat(expected, " values (", frames, " frames x ",
-                                      valid->reply.joints.size(), " joints x 3)"),
-                         absl::StrCat(positions.size()));
+  const auto joints = static_cast<int>(valid->reply.joints.size());
+  if (!ValidateCount(kField, positions.size(), frames, joints, violations) ||
+      !ValidateFinite(kField, positions, violations)) {
     return;
   }
-  constexpr char kField[] = "history.follower_positions";
-  if (!ValidateFinite(kField, positions, violations)) return;
   const motion::Poses follower = ReadPositions(kField, positions, valid->reply.joints,
                                                valid->reply.coordinates, limits, violations);
   ValidateSize(kField, follower, violations);
@@ -115,19 +111,15 @@ motion::Poses ReadRigPose(const std::string& field,
                           const google::protobuf::RepeatedField<float>& positions,
                           const ReplyMapping& reply, const RequestLimits& limits,
                           Violations& violations) {
-  const std::size_t expected = reply.joints.size() * 3;
-  if (static_cast<std::size_t>(positions.size()) != expected) {
-    violations.Malformed(field,
-                         absl::StrCat(expected, " values (", reply.joints.size(), " joints x 3)"),
-                         absl::StrCat(positions.size()));
-    return motion::Poses(0, static_cast<int>(reply.joints.size()));
-  }
-  if (!ValidateFinite(field, positions, violations)) {
-    return motion::Poses(0, static_cast<int>(reply.joints.size()));
+  const auto joints = static_cast<int>(reply.joints.size());
+  motion::Poses none(0, joints);
+  if (!ValidateCount(field, positions.size(), std::nullopt, joints, violations) ||
+      !ValidateFinite(field, positions, violations)) {
+    return none;
   }
   const motion::Poses pose =
       ReadPositions(field, positions, reply.joints, reply.coordinates, limits, violations);
-  if (pose.empty()) return motion::Poses(0, static_cast<int>(reply.joints.size()));
+  if (pose.empty()) return none;
   // A session may begin with a frame without a person.
   if (!IsPoint(pose[0])) ValidateSize(field, pose, violations);
   return FromPositions(reply, positions);
@@ -205,13 +197,8 @@ absl::StatusOr<motion::Poses> ReadLeaderFrames(const v1::LeaderFrames& frames,
     violations.Malformed("first_frame", absl::StrCat("less than ", kMaxLiveFrames),
                          absl::StrCat(frames.first_frame()));
   }
-  const uint64_t expected = uint64_t{frames.frame_count()} * format.joints.size() * 3;
-  if (static_cast<uint64_t>(frames.positions_size()) != expected) {
-    violations.Malformed("positions",
-                         absl::StrCat(expected, " values (", frames.frame_count(), " frames x ",
-                                      format.joints.size(), " joints x 3)"),
-                         absl::StrCat(frames.positions_size()));
-  }
+  ValidateCount("positions", frames.positions_size(), frames.frame_count(),
+                static_cast<int>(format.joints.size()), violations);
   if (!violations.empty() || !ValidateFinite("positions", frames.positions(), violations)) {
     return violations.ToStatus();
   }

@@ -80,13 +80,8 @@ void Validation::Leader() {
   coordinates_ = ValidateCoordinates(leader, violations_);
 
   const bool finite = ValidateFinite("leader.positions", leader.positions(), violations_);
-  const uint64_t expected =
-      uint64_t{leader.frame_count()} * static_cast<uint64_t>(leader.joint_names_size()) * 3;
-  if (static_cast<uint64_t>(leader.positions_size()) != expected) {
-    violations_.Malformed("leader.positions",
-                          absl::StrCat(expected, " values (", leader.frame_count(), " frames x ",
-                                       leader.joint_names_size(), " joints x 3)"),
-                          absl::StrCat(leader.positions_size()));
+  if (!ValidateCount("leader.positions", leader.positions_size(), leader.frame_count(),
+                     leader.joint_names_size(), violations_)) {
     return;
   }
   if (!finite || !coordinates_.has_value() || joints_.empty()) return;
@@ -145,15 +140,11 @@ std::optional<engine::FollowerStart> Validation::Start() {
     return std::nullopt;
   }
   const auto& values = start.pose().positions();
-  const int expected = 3 * request_.leader().joint_names_size();
-  if (values.size() != expected) {
-    violations_.Malformed(
-        "follower_start.pose.positions",
-        absl::StrCat(expected, " values (", request_.leader().joint_names_size(), " joints x 3)"),
-        absl::StrCat(values.size()));
+  if (!ValidateCount("follower_start.pose.positions", values.size(), std::nullopt,
+                     request_.leader().joint_names_size(), violations_) ||
+      joints_.empty()) {
     return std::nullopt;
   }
-  if (joints_.empty()) return std::nullopt;
   std::vector<motion::Vec3> pose = StartPositions("follower_start.pose.positions", values, joints_);
   if (pose.empty()) return std::nullopt;
   ValidateSize("follower_start.pose.positions", motion::Poses(static_cast<int>(pose.size()), pose),
