@@ -73,7 +73,7 @@ class Duet:
                 "prlimit", f"--data={PROGRAM_BYTES}", f"--cpu={PROGRAM_SECONDS}", "--core=0",
                 self._program, *arguments, cwd=folder, stdin=asyncio.subprocess.DEVNULL,
                 stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
-                env={**os.environ, "DUET_CONFIG": "", "NO_COLOR": "1"})
+                env={**os.environ, "NO_COLOR": "1"})
             try:
                 async with asyncio.timeout(PROGRAM_SECONDS):
                     out, told = await process.communicate()

@@ -9,7 +9,6 @@
 """
 
 from duet_motion import aio, research
-from duet_motion.batch import Outcome
 from duet_motion.client import Client, SynthesisStream
 from duet_motion.errors import (CancelledError, DeadlineError, DuetError, FieldViolation,
                                 InvalidRequestError, MalformedReplyError, ModelNotFoundError,
@@ -23,10 +22,10 @@ from duet_motion.motion import Motion
 from duet_motion.options import TlsOptions
 from duet_motion.request import Constraint, SynthesisRequest
 from duet_motion.result import (FollowerChunk, FrameRun, JointRotations, ModelDetails, ModelInfo,
-                                MotionGrade, RequestLimits, RigJoint, SynthesisResult, Timings)
+                                MotionGrade, RequestLimits, RigJoint, SynthesisResult, Timings,
+                                VerticalEstimate)
 from duet_motion.retry import RetryOptions
 from duet_motion.sets import DataSetError, MotionSet, PaddedBatch, SetItem, pad, read_set
-from duet_motion.vertical import VerticalEstimate
 
 __version__ = "1.0.0"
 
@@ -35,7 +34,7 @@ __all__ = [
     "FollowerChunk", "FrameRun", "InvalidRequestError", "JointRotations", "LiveHeader", "LiveNotice",
     "LivePart", "LiveRequest", "LiveSummary", "MalformedReplyError",
     "ModelDetails", "ModelInfo", "ModelNotFoundError", "Motion", "MotionFileError", "MotionGrade",
-    "MotionSet", "NotPermittedError", "Outcome", "PaddedBatch", "RequestLimits",
+    "MotionSet", "NotPermittedError", "PaddedBatch", "RequestLimits",
     "RequestMismatchError", "RetryOptions", "RigJoint", "ServerBusyError", "SetItem",
     "SynthesisRequest", "SynthesisResult",
     "SynthesisStream", "Timings", "TlsOptions", "UnavailableError", "VerticalEstimate",

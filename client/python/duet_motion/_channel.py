@@ -9,9 +9,9 @@ from typing import Any, ClassVar, List, Optional, Tuple, TypeVar, Union
 
 import grpc
 
+from duet_motion import _settings
 from duet_motion._call import CallSettings, Metadata
 from duet_motion.errors import CancelledError
-from duet_motion._settings import Settings
 from duet_motion.motion import checked_number
 from duet_motion.options import TlsOptions
 from duet_motion.retry import RetryOptions
@@ -54,14 +54,13 @@ class Connected:
                  token: Optional[str] = None, authority: Optional[str] = None,
                  retry: RetryOptions = RetryOptions(),
                  max_concurrent_calls: int = DEFAULT_CONCURRENT_CALLS) -> None:
-        settings = Settings()
-        address = _first(address, settings.text("server"), DEFAULT_ADDRESS)
-        token = _first(token, settings.token(), "")
-        authority = _first(authority, settings.text("authority"), "")
-        options = settings.tls() if tls is None else tls_options(tls)
+        address = _first(address, _settings.text("SERVER"), DEFAULT_ADDRESS)
+        token = _first(token, _settings.token(), "")
+        authority = _first(authority, _settings.text("AUTHORITY"), "")
+        options = _settings.tls() if tls is None else tls_options(tls)
         self._settings = check_settings(
-            address, _first(timeout, settings.seconds("timeout"), DEFAULT_TIMEOUT),
-            _first(wait, settings.seconds("wait"), DEFAULT_WAIT), retry, options, token)
+            address, _first(timeout, _settings.seconds("TIMEOUT"), DEFAULT_TIMEOUT),
+            _first(wait, _settings.seconds("WAIT"), DEFAULT_WAIT), retry, options, token)
         check_concurrency("max_concurrent_calls", max_concurrent_calls)
         self._max_concurrent_calls = max_concurrent_calls
         self._turns = self._semaphore(max_concurrent_calls)

@@ -7,17 +7,16 @@
 from __future__ import annotations
 
 import asyncio
-import collections
 import contextlib
 import threading
 from types import TracebackType
-from typing import (Any, AsyncGenerator, AsyncIterator, Callable, Coroutine, Deque, Iterable,
-                    Iterator, List, Optional, Type)
+from typing import (Any, AsyncGenerator, AsyncIterator, Callable, Coroutine, List, Optional,
+                    Type)
 
 import grpc
 import grpc.aio
 
-from duet_motion import _channel, batch
+from duet_motion import _channel
 from duet_motion._call import Attempts, SynthesisCall
 from duet_motion._live_call import LiveCall
 from duet_motion._session import LiveSession
@@ -127,22 +126,6 @@ class Client(_channel.Connected):
     stream = spelled_out(stream_request, SynthesisRequest, "stream")
     live = spelled_out(live_request, LiveRequest, "live")
 
-    def synthesize_many(self, requests: Iterable[SynthesisRequest], *,
-                        concurrency: int = 4) -> AsyncIterator[batch.Outcome]:
-        """Runs many requests, several at a time, like
-        :meth:`duet_motion.Client.synthesize_many`.
-
-        Args:
-            requests: taken from the iterable as they are needed.
-            concurrency: maximum number of calls at a time, at least 1.
-
-        Raises:
-            ValueError: ``concurrency`` is below 1.
-            TypeError: a request is none; from the iterator, when its turn comes.
-        """
-        _channel.check_concurrency("concurrency", concurrency)
-        return self._many(batch.checked(requests), concurrency)
-
     def _stream(self, call: SynthesisCall) -> SynthesisStream:
         return SynthesisStream(self._stub, self._channel, self._closed, call)
 
@@ -158,34 +141,6 @@ class Client(_channel.Connected):
                 self._turns.release()
             else:
                 turn.cancel()
-
-    async def _many(self, requests: Iterator[SynthesisRequest],
-                    concurrency: int) -> AsyncGenerator[batch.Outcome, None]:
-        free = asyncio.Semaphore(concurrency)
-
-        async def outcome(request: SynthesisRequest) -> batch.Outcome:
-            async with free:
-                try:
-                    return batch.Outcome(request, result=await self.stream_request(request).result())
-                except DuetError as error:
-                    return batch.Outcome(request, error=error)
-
-        waiting: Deque[asyncio.Task[batch.Outcome]] = collections.deque()
-
-        def take(count: int) -> None:
-            for _, request in zip(range(count), requests):
-                waiting.append(asyncio.ensure_future(outcome(request)))
-
-        try:
-            take(batch.ahead(concurrency))
-            while waiting:
-                done = await waiting[0]
-                waiting.popleft()
-                take(1)
-                yield done
-        finally:
-            for task in waiting:
-                task.cancel()
 
     async def _unary(self, method: Any, request: Any, timeout: Optional[float]) -> Any:
         attempts = Attempts(self._settings, timeout)

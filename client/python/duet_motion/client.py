@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import threading
 from types import TracebackType
-from typing import Any, Callable, Generator, Iterable, Iterator, List, Optional, Type, TypeVar
+from typing import Any, Callable, Generator, Iterator, List, Optional, Type, TypeVar
 
 import grpc
 
-from duet_motion import _channel, batch
+from duet_motion import _channel
 from duet_motion._call import Attempts, SynthesisCall
 from duet_motion._signature import spelled_out
 from duet_motion.errors import CancelledError, DuetError, from_rpc_error
@@ -30,10 +30,9 @@ class Client(_channel.Connected):
     Safe to share between threads. The first call connects. :meth:`close` or ``with`` closes a
     client.
 
-    Omitted arguments are read from the environment and the configuration file of the program
-    `duet`: ``DUET_SERVER`` is the address, and the file ``DUET_CONFIG`` (default
-    ``~/.config/duet/config``) has lines such as ``server = lab:50051``, ``timeout = 300``,
-    ``wait = 30``, ``tls-ca = ca.pem`` or ``token-file = token``.
+    Omitted arguments are read from the environment, as the program `duet` does: ``DUET_SERVER`` is
+    the address, and ``DUET_TIMEOUT``, ``DUET_WAIT``, ``DUET_TLS_CA``, ``DUET_TOKEN_FILE`` and so on
+    stand for the program's flags.
 
     Args:
         address: ``host:port``, or any gRPC target (``unix:/run/duet.sock``). Calls are
@@ -125,24 +124,6 @@ class Client(_channel.Connected):
 
     synthesize = spelled_out(synthesize_request, SynthesisRequest, "synthesize")
     stream = spelled_out(stream_request, SynthesisRequest, "stream")
-
-    def synthesize_many(self, requests: Iterable[SynthesisRequest], *,
-                        concurrency: int = 4) -> Iterator[batch.Outcome]:
-        """Runs many requests, several at a time.
-
-        Outcomes are in the order of the requests. Each has a result or an error, so one failed call
-        does not end the others. Set ``priority="bulk"`` in requests to yield to interactive calls.
-
-        Args:
-            requests: taken from the iterable as they are needed, so it may be a long generator.
-            concurrency: maximum number of calls at a time, at least 1.
-
-        Raises:
-            ValueError: ``concurrency`` is below 1.
-            TypeError: a request is none; from the iterator, when its turn comes.
-        """
-        return batch.run(lambda request: self.stream_request(request).result(), requests,
-                         concurrency)
 
     def _stream(self, call: SynthesisCall) -> SynthesisStream:
         return SynthesisStream(self._stub, self._channel, self._closed, call)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import reprlib
 
-from duet_motion import _file_program
-from duet_motion.files import to_document
+from duet_motion import files
 from duet_motion.motion import Motion, axes_from_y_up
-from duet_motion.vertical import VerticalEstimate
+from duet_motion.result import VerticalEstimate
 
 
 def estimate_vertical(leader: Motion, *others: Motion) -> VerticalEstimate:
@@ -28,11 +27,11 @@ def estimate_vertical(leader: Motion, *others: Motion) -> VerticalEstimate:
         ValueError: a motion has no joints that are recognised, or is ``"sbu-normalised"``.
         FileNotFoundError: the program `duet` is missing.
     """
-    documents = []
+    people = []
     for person in (leader, *others):
         if not isinstance(person, Motion):
             raise ValueError(f"leader: expected a duet_motion.Motion, got {reprlib.repr(person)}")
-        documents.append(to_document(person.converted("metres", "y-up")))
-    values = _file_program.estimate_vertical(documents)
+        people.append(person.converted("metres", "y-up"))
+    values = files.inspect(people)["tilt"]
     values["up"] = axes_from_y_up(values["up"], leader.up_axis)
     return VerticalEstimate(**values)

@@ -15,8 +15,8 @@ from duet_motion._wire import CLEAN_UP, PRIORITIES, UNITS, UP_AXES
 from duet_motion.levelling import estimate_vertical
 from duet_motion.motion import (Motion, checked_array, checked_number, finite_number,
                                first_not_finite)
+from duet_motion.result import VerticalEstimate
 from duet_motion.v1 import model_pb2, motion_pb2, reaction_pb2, synthesis_pb2
-from duet_motion.vertical import VerticalEstimate
 
 if TYPE_CHECKING:
     from duet_motion.live import LiveRequest

@@ -230,45 +230,13 @@ class Calls:
                         "ipv4:127.0.0.1:1"):
             duet.Client(address, token="x").close()
 
-    def test_synthesize_many_keeps_the_order(self):
-        together = support.Together(4)
-        requests = [duet.SynthesisRequest(support.leader(), {"hug": 1}, seed=seed)
-                    for seed in range(9)]
-
-        def calls(client, _, gather):
-            return gather(client.synthesize_many(iter(requests), concurrency=4))
-        outcomes = self.calls(together, calls)
-        self.assertEqual([outcome.request.seed for outcome in outcomes], list(range(9)))
-        self.assertEqual(together.most, 4)
-        self.assertEqual([outcome.error is None for outcome in outcomes],
-                         [seed != 3 for seed in range(9)])
-        self.assertEqual(outcomes[4].unwrap().seed, 4)
-        with self.assertRaises(duet.InvalidRequestError):
-            outcomes[3].unwrap()
-
     def test_anything_but_a_request_is_a_type_error_that_says_how_to_make_one(self):
         fields = {"leader": support.leader(), "labels": {"hug": 1}}
-        request = duet.SynthesisRequest(**fields)
-        for wrong, message in (
-                ([request, fields], r"requests\[1\]: expected a duet_motion.SynthesisRequest, got "
-                                    r"dict .*; make one of these fields: "
-                                    r"duet_motion.SynthesisRequest\(\*\*fields\)"),
-                ([(support.leader(), {"hug": 1})], r"requests\[0\]: .* got tuple .*\(\*values\)"),
-                ([None], r"requests\[0\]: expected a duet_motion.SynthesisRequest, got NoneType None"),
-                (request, "requests: expected several .*, got one SynthesisRequest"),
-                (fields, "requests: expected several .*, got one dict")):
-            with self.subTest(message), self.assertRaisesRegex(TypeError, message):
-                self.calls(Script(), lambda client, _, gather, wrong=wrong:
-                           gather(client.synthesize_many(wrong)))
         with self.assertRaisesRegex(TypeError, "^request: expected a duet_motion.SynthesisRequest, got "
                                                "dict .*fields"):
             self.calls(Script(), lambda client, get, _: get(client.synthesize_request(fields)))
         with self.assertRaisesRegex(TypeError, "^request: expected a duet_motion.LiveRequest, got dict"):
             LiveCall({"leader": None}, None)
-
-    def test_concurrency_is_at_least_one(self):
-        with self.assertRaisesRegex(ValueError, "concurrency: expected 1 or more, got 0"):
-            self.calls(Script(), lambda client, get, _: client.synthesize_many([], concurrency=0))
 
 
 class WaitingTest(Calls, Waiting, unittest.TestCase):

@@ -45,14 +45,13 @@ class FilesTest(unittest.TestCase):
 
     def test_invalid_arguments_name_their_field(self):
         for arguments, message in (
-                ({"side": "both"}, "side: expected one of left, right, got 'both'"),
-                ({"unit": "feet"}, "unit: expected one of metres, .*, got 'feet'"),
-                ({"up_axis": "up"}, "up_axis: expected one of y-up, .*, got 'up'"),
-                ({"frame_rate_hz": 0}, "frame_rate_hz: expected a finite number above 0, got 0"),
-                ({"metres_per_unit": -1}, "metres_per_unit: expected a finite number .*, got -1"),
-                ({"resample_hz": "fast"}, "resample_hz: expected a finite number .*, got 'fast'"),
-                ({"joint_map": {"head": ""}}, "joint_map: expected names .*, got {'head': ''}"),
-                ({"joint_map": {"head": 3}}, "joint_map: expected names .*, got {'head': 3}")):
+                ({"side": "up"}, 'side: expected both, left or right, got "up"'),
+                ({"unit": "feet"}, 'unit: expected metres, .*, got "feet"'),
+                ({"up_axis": "up"}, 'up_axis: expected y-up, .*, got "up"'),
+                ({"frame_rate_hz": 0}, 'frame_rate_hz: expected a number above 0, got "0"'),
+                ({"metres_per_unit": -1}, "metres_per_unit: expected a number above 0"),
+                ({"resample_hz": "fast"}, "resample_hz: expected a number above 0"),
+                ({"joint_map": {"head": ""}}, "joint_map: expected MODEL_JOINT=FILE_JOINT")):
             with self.assertRaisesRegex(ValueError, f"^{message}"):
                 duet.read_motion(HUG, **arguments)
 
@@ -112,12 +111,6 @@ class FilesTest(unittest.TestCase):
         self.enterContext(contextlib.chdir(self.folder))
         duet.write_motion("--out.csv", self.hug)
         self.assertEqual(duet.read_motion("--out.csv").frame_count, 91)
-
-    def test_configuration_file_is_ignored(self):
-        settings = self.folder / "config"
-        settings.write_text("resample = 10\n", encoding="utf-8")
-        with mock.patch.dict(os.environ, {"DUET_CONFIG": str(settings)}):
-            self.assertEqual(duet.read_motion(HUG).frame_rate_hz, 30)
 
     def test_missing_program_explains_what_to_install(self):
         with mock.patch.dict(os.environ, {"DUET_PROGRAM": "no-such-duet"}):

@@ -1,9 +1,8 @@
-"""What follows a run of duet batch: verify, split, pack, table, card and sheet.
+"""What follows a run of duet batch: verify, split, pack and captures.
 
 tests/e2e/batch_test.py runs them on sets that duet batch wrote.
 """
 
-import csv
 import hashlib
 import io
 import json
@@ -17,6 +16,7 @@ import support  # noqa: F401
 import duet_motion as duet
 from duet_motion import sets
 from duet_motion.sets import __main__ as program
+from duet_motion.sets.captures import JOINTS as JOINTS_OF_SBU
 import numpy as np
 
 JOINTS = {"joint_names": ["hips", "head"], "parents": [-1, 0], "root_joint": "hips"}
@@ -55,7 +55,7 @@ class SetToolsTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
 
-    def write(self, name, records, shard="0/1", **summary):
+    def write(self, name, records, missing=0):
         """A set of these records, as a run would have left it."""
         folder = self.root / name
         (folder / ".duet-batch").mkdir(parents=True)
@@ -73,25 +73,17 @@ class SetToolsTest(unittest.TestCase):
         done = of_state["done"]
         files = {
             ".duet-batch/journal": journal,
-            ".duet-batch/job.json": json.dumps({"format": 2, "recipe_sha256": "ab", "shard": shard}),
+            ".duet-batch/job.json": json.dumps({"format": 2, "recipe_sha256": "ab", "shard": "0/1"}),
             "index.jsonl": "".join(json.dumps(record, separators=(",", ":")) + "\n" for record in done),
-            "index.tsv": "item\tname\n" + "".join(f"{one['item']}\t{one['name']}\n" for one in done),
-            "rejected.tsv": "item\n" + "".join(f"{one['item']}\n" for one in of_state["rejected"]),
-            "failed.tsv": "leader\titems\tcode\tmessage\tnames\n" + "".join(
-                f"{one['leader']}\t1\tNOT_FOUND\tno such file\t{one['name']}\n" for one in of_state["failed"]),
             "dataset.json": sets.records.to_json({
                 "format": "duet-batch", "format_version": 1, "recipe_sha256": "ab",
-                "items": {**counts, "missing": 0}, "frames": 3 * len(done),
+                "items": {**counts, "missing": missing}, "frames": 3 * len(done),
                 **({"frame_rate_hz": 30.0} if done else {}),
                 "frame_rates": [{"frame_rate_hz": 30.0, "items": len(done)}] if done else [],
                 "skeletons": [JOINTS],
                 "models": [{"name": "m@1", "terms": "For\nall <uses>.", "free_for_all_uses": True,
                             "interaction_classes": CLASSES, "skeleton": 0, **(MADE_BY if done else {})}],
-                "interaction_classes": CLASSES, "layout": "LAYOUT_MIRROR"}),
-            "summary.json": sets.records.to_json({
-                "planned": len(records), "whole_plan": True, **counts, "missing": 0,
-                "bytes": sum(file["bytes"] for one in done for file in one["files"]),
-                "models": ["m@1"], "recipe_sha256": "ab", "shard": shard, **summary})}
+                "interaction_classes": CLASSES})}
         for path, text in files.items():
             (folder / path).write_text(text, encoding="utf-8")
         return folder
@@ -113,12 +105,12 @@ class SetToolsTest(unittest.TestCase):
         (folder / "walks/1-hug.npy").write_bytes(npy(7))
         index = folder / "index.jsonl"
         index.write_text(index.read_text().replace("AVX2", "AVX-512", 1), encoding="utf-8")
-        (folder / "summary.json").unlink()
+        (folder / "dataset.json").unlink()
         report = sets.verify(folder)
         self.assertIsNone(report.missing)
         for expected in ("0-hug.npy: no such file", "1-hug.npy: was changed",
                          'engine: expected "cpu, bf16, AVX-512", got "cpu, bf16, AVX2"',
-                         "index.jsonl:1: is not what the journal says", "summary.json: expected"):
+                         "index.jsonl:1: is not what the journal says", "dataset.json: expected"):
             with self.subTest(expected):
                 self.assertTrue(any(expected in problem for problem in report.problems), report.problems)
         code, _, err = self.run_program("verify", folder)
@@ -196,45 +188,36 @@ class SetToolsTest(unittest.TestCase):
         self.assertEqual(self.run_program("pack", folder, self.root / "out")[0], 42)
         self.assertFalse((self.root / "out").exists())
 
-    def test_tables_have_a_row_for_each_item_of_a_split(self):
-        records = [record_of(0), record_of(1, extra={"note": "x, y"}),
-                   record_of(2, keyframes=[{"frame": 0, "labels": {"kick": 0.5}}])]
-        del records[2]["labels"]
+    def test_captures_have_the_folders_sides_and_unit_of_sbu(self):
+        people = np.zeros((2, 5, 15, 3), np.float32)
+        people[1, :, :, 0] = 1.28
+        data = io.BytesIO()
+        np.save(data, people)
+        records = [record_of(0, leader="sbu/s03s01/a.txt", frames=5),
+                   record_of(1, side="right", frames=5, labels={"kick": 0.5, "hug": 0.25})]
         folder = self.write("set", records)
-        self.assertEqual(self.run_program("table", folder)[1], "items/train.csv\n")
-        with (folder / "items/train.csv").open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        self.assertEqual([row["name"] for row in rows], [record["name"] for record in records])
-        self.assertEqual([row["label_hug"] for row in rows], ["1.0", "1.0", ""])
-        self.assertEqual([row["interaction_class"] for row in rows], ["hug", "hug", "kick"])
-        self.assertEqual(json.loads(rows[1]["extra"]), {"note": "x, y"})
-        packed = self.root / "packed"
-        sets.pack(folder, packed, kind="tar")
-        sets.table(packed)
-        with (packed / "items/train.csv").open(encoding="utf-8", newline="") as file:
-            row = list(csv.DictReader(file))[1]
-        with (packed / row["shard"]).open("rb") as file:
-            file.seek(int(row["offset"]))
-            self.assertEqual(file.read(int(row["bytes"])), npy(1))
-
-    def test_the_card_states_terms_and_keeps_a_card_of_the_user(self):
-        folder = self.write("set", [record_of(0)])
-        self.assertTrue(sets.card(folder))
-        text = (folder / "README.md").read_text(encoding="utf-8")
-        for expected in ("license_name: free-for-all-uses", "**free for all uses.** For all &lt;uses>.",
-                         "path: items/train.csv", "| train | 1 |", "Recipe (SHA-256): ab"):
-            self.assertIn(expected, text)
-        self.assertTrue(sets.card(folder))
-        (folder / "README.md").write_text("mine", encoding="utf-8")
-        self.assertFalse(sets.card(folder))
-        self.assertEqual((folder / "README.md").read_text(encoding="utf-8"), "mine")
-
-    def test_the_sheet_draws_a_sample_of_each_class(self):
-        folder = self.write("set", [record_of(number) for number in range(4)])
-        self.assertEqual(sets.sheet(folder, self.root / "sheet.png", per_class=3), 3)
-        self.assertEqual((self.root / "sheet.png").read_bytes()[:4], b"\x89PNG")
-        with self.assertRaisesRegex(duet.DataSetError, "expected items to draw, got none"):
-            sets.sheet(self.write("empty", []), self.root / "none.png")
+        description = json.loads((folder / "dataset.json").read_text())
+        description["skeletons"] = [{"joint_names": list(JOINTS_OF_SBU), "parents": [-1] * 15,
+                                     "root_joint": "torso"}]
+        (folder / "dataset.json").write_text(json.dumps(description), encoding="utf-8")
+        for record in records:
+            (folder / record["files"][0]["path"]).write_bytes(data.getvalue())
+        self.assertEqual(self.run_program("captures", folder, self.root / "sbu")[0], 0)
+        first = (self.root / "sbu/s03s01/06/001/skeleton_pos.txt").read_text().splitlines()
+        second = (self.root / "sbu/s00s00/03/001/skeleton_pos.txt").read_text().splitlines()
+        self.assertEqual(len(first), 3)  # 4/30 s at 15 Hz
+        left, right = [0.5, 0.5, 0.0] * 15, [0.0, 0.5, 0.0] * 15
+        for line, wanted in ((first[0], left + right), (second[0], right + left)):
+            values = [float(value) for value in line.split(",")]
+            self.assertEqual(values[0], 1)
+            np.testing.assert_allclose(values[1:], wanted, atol=1e-6)
+        self.assertEqual((self.root / "sbu/index.tsv").read_text(),
+                         "path\tleader_side\ns03s01/06/001/skeleton_pos.txt\tleft\n"
+                         "s00s00/03/001/skeleton_pos.txt\tright\n")
+        code, _, err = self.run_program("captures", folder, self.root / "k3hi", "--layout", "k3hi")
+        self.assertEqual(code, 42)
+        self.assertIn("class of the largest weight: expected approach,", err)
+        self.assertFalse((self.root / "k3hi").exists())
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ DESCRIPTION = {
     "format_version": 1, "items": {"done": 2, "rejected": 0, "failed": 0, "missing": 0},
     "skeletons": [{"joint_names": JOINTS, "parents": [-1, 0, 0], "root_joint": "root"}],
     "models": [{"name": "m@1", "interaction_classes": CLASSES, "skeleton": 0}],
-    "interaction_classes": CLASSES, "layout": "LAYOUT_MIRROR", "a field of the future": 1}
+    "interaction_classes": CLASSES, "a field of the future": 1}
 
 
 def pair_of(number, frames):

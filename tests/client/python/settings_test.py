@@ -1,4 +1,4 @@
-"""Environment and configuration file, as for the program (tests/client/cli/settings_test.cc)."""
+"""Values of omitted arguments from the environment."""
 
 import os
 import pathlib
@@ -8,7 +8,7 @@ from unittest import mock
 
 import support
 import duet_motion as duet
-from duet_motion._settings import Settings
+from duet_motion import _settings
 from duet_motion.v1 import synthesis_pb2
 
 LISTING = synthesis_pb2.ListModelsResponse(models=[{"name": "m"}])
@@ -32,59 +32,40 @@ class SettingsTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def write(self, text, path="config"):
-        file = self.folder / path
-        file.parent.mkdir(parents=True, exist_ok=True)
+    def write(self, text, name):
+        file = self.folder / name
         file.write_text(text, encoding="utf-8")
         return str(file)
 
-    def settings(self, text):
-        return Settings({"DUET_CONFIG": self.write(text)})
+    def test_unset_and_empty_variables_leave_the_default(self):
+        with mock.patch.dict(os.environ, {"DUET_SERVER": "", "DUET_TLS": "false"}):
+            self.assertIsNone(_settings.text("SERVER"))
+            self.assertIsNone(_settings.seconds("TIMEOUT"))
+            self.assertIsNone(_settings.tls())
+            self.assertIsNone(_settings.token())
 
-    def test_environment_overrides_the_file(self):
-        config = self.write("# the lab's server\nserver = lab:50051\n\n timeout=300 \n")
-        settings = Settings({"DUET_SERVER": "other:1", "DUET_CONFIG": config})
-        self.assertEqual((settings.text("server"), settings.seconds("timeout")), ("other:1", 300))
-        for variables in ({"DUET_CONFIG": config}, {"DUET_CONFIG": config, "DUET_SERVER": ""}):
-            self.assertEqual(Settings(variables).text("server"), "lab:50051")
-
-    def test_file_is_found_where_the_program_finds_it(self):
-        self.write("server = xdg:1\n", "x/duet/config")
-        self.write("server = home:1\n", "h/.config/duet/config")
-        home, xdg = str(self.folder / "h"), str(self.folder / "x")
-        for variables, server in (({"HOME": home}, "home:1"),
-                                  ({"HOME": home, "XDG_CONFIG_HOME": xdg}, "xdg:1"),
-                                  ({"HOME": home, "XDG_CONFIG_HOME": ""}, "home:1"),
-                                  ({"HOME": home, "DUET_CONFIG": ""}, None),
-                                  ({"HOME": str(self.folder / "none")}, None), ({}, None)):
-            with self.subTest(variables=variables):
-                self.assertEqual(Settings(variables).text("server"), server)
-        with self.assertRaises(FileNotFoundError):
-            Settings({"DUET_CONFIG": str(self.folder / "none")})
-
-    def test_malformed_file_is_rejected_with_its_line(self):
-        for text, message in (("server\n", r"config:1: expected a flag .* got 'server'"),
-                              ("\n--server = x\n", r"config:2: expected a flag"),
-                              ("timeout = soon\n", r"config:1: timeout: expected a number of sec"),
-                              ("tls = perhaps\n", "config:1: tls: expected true or false, got 'per"),
-                              ("token-file = /dev/null\n", "config:1: token-file: expected a file")):
-            with self.subTest(text=text), self.assertRaisesRegex(ValueError, message):
-                settings = self.settings(text)
-                settings.seconds("timeout"), settings.tls(), settings.token()
+    def test_invalid_value_is_rejected_with_its_variable(self):
+        for name, value, read, message in (
+                ("TIMEOUT", "soon", lambda: _settings.seconds("TIMEOUT"),
+                 "DUET_TIMEOUT: expected a number of seconds, got 'soon'"),
+                ("TLS", "perhaps", _settings.tls, "DUET_TLS: expected true or false, got 'perhaps'"),
+                ("TOKEN_FILE", "/dev/null", _settings.token, "DUET_TOKEN_FILE: expected a file with")):
+            with self.subTest(name), mock.patch.dict(os.environ, {f"DUET_{name}": value}):
+                with self.assertRaisesRegex(ValueError, message):
+                    read()
 
     def test_credentials_are_read_from_files(self):
-        ca = self.write(CERTIFICATE, "ca.pem")
-        token = self.write(" secret\n", "token")
-        settings = self.settings(f"tls-ca = {ca}\ntls-server-name = x\ntoken-file = {token}\nout = y")
-        self.assertEqual(settings.tls(), duet.TlsOptions(CERTIFICATE.encode(), server_name="x"))
-        self.assertEqual(settings.token(), "secret")
-        self.assertEqual(self.settings("tls = true").tls(), duet.TlsOptions())
-        self.assertIsNone(self.settings("tls = false").tls())
+        variables = {"DUET_TLS_CA": self.write(CERTIFICATE, "ca.pem"), "DUET_TLS_SERVER_NAME": "x",
+                     "DUET_TOKEN_FILE": self.write(" secret\n", "token")}
+        with mock.patch.dict(os.environ, variables):
+            self.assertEqual(_settings.tls(), duet.TlsOptions(CERTIFICATE.encode(), server_name="x"))
+            self.assertEqual(_settings.token(), "secret")
+        with mock.patch.dict(os.environ, {"DUET_TLS": "on"}):
+            self.assertEqual(_settings.tls(), duet.TlsOptions())
 
-    def test_client_without_arguments_uses_the_settings(self):
-        config = self.write("wait = 0\ntimeout = 50\n")
+    def test_client_without_arguments_uses_the_environment(self):
         with support.serving(support.Script(LISTING)) as address, mock.patch.dict(
-                os.environ, {"DUET_SERVER": address, "DUET_CONFIG": config}):
+                os.environ, {"DUET_SERVER": address, "DUET_WAIT": "0", "DUET_TIMEOUT": "50"}):
             with duet.Client() as client:
                 self.assertEqual(client.list_models()[0].name, "m")
                 self.assertEqual((client._settings.timeout, client._settings.wait), (50, 0))
@@ -93,8 +74,7 @@ class SettingsTest(unittest.TestCase):
 
     def test_argument_overrides_the_environment(self):
         with support.serving(support.Script(LISTING)) as address, mock.patch.dict(
-                os.environ, {"DUET_SERVER": "nobody:1",
-                             "DUET_CONFIG": self.write("tls = true\nauthority = x\n")}):
+                os.environ, {"DUET_SERVER": "nobody:1", "DUET_TLS": "true", "DUET_AUTHORITY": "x"}):
             with duet.Client(address, tls=False, authority="") as client:
                 self.assertEqual(client.list_models()[0].name, "m")
 

@@ -14,7 +14,6 @@ sys.path.insert(0, str(PACKAGE))
 # These servers have no health service; gRPC would log this at every connection.
 os.environ.setdefault("GRPC_VERBOSITY", "NONE")
 # Ignore the settings of the person who runs the tests.
-os.environ["DUET_CONFIG"] = ""
 os.environ.pop("DUET_SERVER", None)
 
 try:

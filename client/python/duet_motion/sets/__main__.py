@@ -38,26 +38,15 @@ def _pack(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _table(arguments: argparse.Namespace) -> int:
-    print(*sets.table(arguments.set, format=arguments.format), sep="\n")
-    return 0
-
-
-def _card(arguments: argparse.Namespace) -> int:
-    written = sets.card(arguments.set)
-    print("README.md" if written else "README.md is yours and stays as it is")
-    return 0
-
-
-def _sheet(arguments: argparse.Namespace) -> int:
-    count = sets.sheet(arguments.set, arguments.out, per_class=arguments.per_class)
+def _captures(arguments: argparse.Namespace) -> int:
+    count = sets.captures(arguments.set, arguments.out, layout=arguments.layout)
     print(f"{arguments.out}: {count} items")
     return 0
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python3 -m duet_motion.sets", epilog=_EPILOG,
-                                     description="Verifies, splits, packs and shows data sets of "
+                                     description="Verifies, splits, packs and converts data sets of "
                                                  "duet batch.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
@@ -77,12 +66,9 @@ def _parser() -> argparse.ArgumentParser:
                          help="arrays for numpy.load, or WebDataset's tar files (default: npz)")
     command.add_argument("--shard-bytes", type=int, default=256 << 20, metavar="BYTES",
                          help="maximum bytes of motion in a shard (default: 256 MiB)")
-    command = add("table", _table, "Write a table of items for each split")
-    command.add_argument("--format", choices=("csv", "parquet"), default="csv")
-    add("card", _card, "Write README.md: terms, splits, how to read the set")
-    command = add("sheet", _sheet, "Draw some items of each class")
-    command.add_argument("out", help="the picture: .png, .pdf or .svg")
-    command.add_argument("--per-class", type=int, default=12, metavar="COUNT")
+    command = add("captures", _captures, "Write the items as captures, for loaders of SBU or K3HI")
+    command.add_argument("out", help="the new folder")
+    command.add_argument("--layout", choices=("sbu", "k3hi"), default="sbu")
     return parser
 
 

@@ -10,13 +10,12 @@ import tarfile
 import zipfile
 from typing import Any, Dict, List, Tuple, Union
 
-from duet_motion.sets.records import (Record, contents, member_name, read_json, sha256_of, to_json,
-                                      write)
+from duet_motion.sets.records import Record, contents, read_json, sha256_of, to_json, write
 from duet_motion.sets.shards import DataSetError, Records, Shards
 from duet_motion.sets.splits import Path, Splits, read_splits, split_of
 
 SHARD_BYTES = 256 << 20
-_COPIED = ("README.md", "failed.tsv", "rejected.tsv", "summary.json")
+_COPIED = ("README.md", "failed.jsonl", "rejected.jsonl")
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the earliest date of a zip member
 
 
@@ -113,8 +112,7 @@ class _TarShard:
         self._tar = tarfile.open(out / name, "w", format=tarfile.PAX_FORMAT)
 
     def add(self, record: Record, files: List[Tuple[str, bytes]]) -> None:
-        named = [(member_name(self.name, path), data) for path, data in files]
-        for member, data in (*named, (f"{record['name']}.json", _line(record).encode())):
+        for member, data in (*files, (f"{record['name']}.json", _line(record).encode())):
             info = tarfile.TarInfo(member)  # with no time and no owner
             info.size = len(data)
             self._tar.addfile(info, io.BytesIO(data))

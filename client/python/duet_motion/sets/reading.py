@@ -21,16 +21,12 @@ import numpy.typing as npt
 
 from duet_motion.sets.shards import DataSetError, Records, Shards, parse_array
 from duet_motion.sets.splits import Splits, read_splits, split_of
-from duet_motion.files import read_pair
 from duet_motion.motion import Motion, Positions, checked_number, resample
 
 Path = Union[str, "os.PathLike[str]"]
 Weights = npt.NDArray[np.float32]
 
 _NEWEST_FORMAT = 1
-# The file types with two people that `duet` reads and that contain every position.
-_READ_BY_PROGRAM = (".json", ".csv", ".txt")
-_CAPTURES = ("LAYOUT_SBU", "LAYOUT_K3HI")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -213,19 +209,10 @@ class MotionSet(Sequence[SetItem]):
     def _read_file(self, record: Mapping[str, Any]) -> Positions:
         files = {pathlib.PurePosixPath(file["path"]).suffix: self.path / file["path"]
                  for file in record["files"]}
-        if ".npy" in files:
-            return parse_array(files[".npy"].read_bytes())
-        for ending in _READ_BY_PROGRAM:
-            if ending in files:
-                people = read_pair(files[ending])
-                if self._is_capture(files[ending]) and record.get("side") == "right":
-                    people = (people[1], people[0])
-                return np.stack([person.positions for person in people])
-        raise ValueError(f"expected .npy, {' or '.join(_READ_BY_PROGRAM)}, got "
-                         f"{', '.join(files)}; add FORMAT_NPY to the recipe's output formats")
-
-    def _is_capture(self, path: pathlib.Path) -> bool:
-        return self.description.get("layout") in _CAPTURES or path.suffix == ".txt"
+        if ".npy" not in files:
+            raise ValueError(f"expected .npy, got {', '.join(files)}; add FORMAT_NPY to the recipe's "
+                             "output formats")
+        return parse_array(files[".npy"].read_bytes())
 
     def _joint_names(self, record: Mapping[str, Any], joints: int) -> Sequence[str]:
         stated: Optional[Sequence[str]] = self.skeleton_of(record).get("joint_names")

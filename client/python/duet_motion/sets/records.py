@@ -66,31 +66,13 @@ def contents(folder: pathlib.Path, record: Record, shards: Shards) -> Iterator[T
         place = folder / record.get("shard", "") / path
         try:
             if "shard" in record:
-                data = shards.data(record["shard"], member_name(record["shard"], path))
+                data = shards.data(record["shard"], path)
             else:
                 data = place.read_bytes()
         except (OSError, KeyError, ValueError) as error:
             missing = isinstance(error, (FileNotFoundError, KeyError))
             raise DataSetError(f"{place}: {'no such file' if missing else error}") from error
         yield path, checked(data, file, str(place))
-
-
-def member_name(shard: str, path: str) -> str:
-    """The name of a file in a shard. WebDataset takes ``key.json`` for the record of an item, so a
-    motion in JSON is ``key.motion.json``."""
-    is_motion = shard.endswith(".tar") and path.endswith(".json")
-    return path.removesuffix(".json") + ".motion.json" if is_motion else path
-
-
-def largest_class(record: Record) -> str:
-    """The class of the largest weight, over all keyframes; "none" without a weight above 0."""
-    best, largest = "none", 0.0
-    keyframes = record["keyframes"] if "keyframes" in record else [record]
-    for labels in (keyframe.get("labels", {}) for keyframe in keyframes):
-        for name, weight in labels.items():
-            if weight > largest:
-                best, largest = name, weight
-    return best
 
 
 class Makers:

@@ -67,8 +67,7 @@ def split_of(record: Mapping[str, Any], splits: Splits) -> str:
 
 
 def split(path: Path, *, validation: float = 0.0, test: float = 0.0) -> Dict[str, int]:
-    """Divides a data set: writes ``splits.json``, which ``read_set``, :func:`table`, :func:`card` and
-    :func:`pack` follow. Repeat it with other shares as you like.
+    """Divides a data set: writes ``splits.json``, which ``read_set`` and :func:`pack` follow. Repeat it with other shares as you like.
 
     Returns:
         The number of items of each split.

@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import json
 import pathlib
-from typing import Dict, Iterator, List, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 from duet_motion.sets.records import Makers, contents, read_json, sha256_of
 from duet_motion.sets.shards import DataSetError, Records, Shards
@@ -53,22 +53,21 @@ def verify(path: Path) -> VerifyReport:
         difference = makers.difference(record)
         if difference:
             problems.append(difference)
-    problems += _changed_shards(folder)
     problems += _compare_with_journal(folder)
+    missing: Optional[int] = None
     try:
-        missing: Optional[int] = int(read_json(folder / "summary.json")["missing"])
-    except (DataSetError, KeyError, TypeError, ValueError) as error:
-        missing = None
-        problems.append(f"summary.json: expected the number of missing items, got {error}")
+        description = read_json(folder / "dataset.json")
+        missing = int(description["items"]["missing"])
+        problems += _changed_shards(folder, description)
+    except DataSetError as error:
+        problems.append(str(error))
+    except (KeyError, TypeError, ValueError) as error:
+        problems.append(f"dataset.json: expected the number of missing items, got {error}")
     return VerifyReport(items, files, problems, missing)
 
 
-def _changed_shards(folder: pathlib.Path) -> List[str]:
-    """Shards that differ, even where no item does, and a description that cannot be read."""
-    try:
-        description = read_json(folder / "dataset.json")
-    except DataSetError as error:
-        return [str(error)]
+def _changed_shards(folder: pathlib.Path, description: Dict[str, Any]) -> List[str]:
+    """Shards that differ, even where no item does."""
     digests = zip(description.get("shards", ()), description.get("shard_sha256", ()))
     return [f"{folder / shard}: was changed" for shard, digest in digests
             if (folder / shard).is_file() and sha256_of(folder / shard) != digest]
