@@ -3,21 +3,11 @@
 
 #include <cstdlib>
 #include <iostream>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "client/cli/program_environment.h"
 #include "model/base/program_output.h"
-
-namespace {
-
-std::optional<std::string> Variable(const std::string& name) {
-  const char* value = std::getenv(name.c_str());
-  return value == nullptr ? std::nullopt : std::optional<std::string>(value);
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   // Errors are in the status of a call. gRPC's own log lines would repeat them, and also appear
@@ -26,6 +16,6 @@ int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const int code = duet::client::cli::RunProgram(
       arguments, {duet::client::Client::Create, &std::cout, &std::cerr, &std::cin,
-                  isatty(STDERR_FILENO) == 1, STDIN_FILENO, Variable});
+                  isatty(STDERR_FILENO) == 1, STDIN_FILENO});
   return duet::base::FinishOutput("duet", code);
 }

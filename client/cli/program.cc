@@ -1,4 +1,4 @@
-#include <map>
+#include <algorithm>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -6,11 +6,9 @@
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/strip.h"
 #include "client/cli/command.h"
 #include "client/cli/program_environment.h"
 #include "client/cli/report.h"
-#include "client/cli/settings.h"
 #include "model/base/nearest.h"
 #include "model/base/text.h"
 #include "model/base/usage_text.h"
@@ -51,51 +49,6 @@ const CLI::App* FindCommand(const CLI::App& app, const std::string& name) {
   return nullptr;
 }
 
-// The error about the first setting that no command has a flag for; empty if there is none.
-std::string FindUnknownSetting(const CLI::App& app, const std::vector<Setting>& settings) {
-  Strings known;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    for (const std::string& flag : FlagsOf(*command)) known.push_back(flag.substr(2));
-  }
-  for (const Setting& setting : settings) {
-    if (std::find(known.begin(), known.end(), setting.name) != known.end()) continue;
-    return absl::StrCat(setting.source, ": no command has a flag --", setting.name,
-                        base::DidYouMean(setting.name, known));
-  }
-  return "";
-}
-
-// Whether a flag on the command line overrides or excludes this one.
-bool IsOverridden(const CLI::Option& flag, const Strings& arguments) {
-  if (IsGiven(flag.get_name(), arguments)) return true;
-  for (const CLI::Option* other : flag.get_excludes()) {
-    if (IsGiven(other->get_name(), arguments)) return true;
-  }
-  return false;
-}
-
-// Sets the flags of `command` to their settings, as if these were their defaults: rules between
-// flags ignore them.
-absl::Status ApplySettings(const std::vector<Setting>& settings, const Strings& arguments,
-                           CLI::App* command) {
-  std::map<std::string, std::vector<Setting>> lines;  // a repeatable flag may have several
-  for (const Setting& setting : settings) lines[setting.name].push_back(setting);
-  for (const auto& [name, values] : lines) {
-    CLI::Option* flag = command->get_option_no_throw(absl::StrCat("--", name));
-    if (flag == nullptr || IsOverridden(*flag, arguments)) continue;
-    for (const Setting& setting : values) flag->add_result(setting.value);
-    try {
-      flag->run_callback();
-    } catch (const CLI::ParseError& error) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(values.back().source, ": ", base::UsageText(error.what())));
-    }
-    flag->clear();
-    flag->default_str(values.back().value)->required(false);
-  }
-  return absl::OkStatus();
-}
-
 // The error about a first word that is not a command; empty if it is one.
 std::string FindUnknownCommand(const CLI::App& app, const Strings& arguments) {
   if (arguments.empty() || absl::StartsWith(arguments[0], "-")) return "";
@@ -134,24 +87,6 @@ std::string FindUnknownFlag(const CLI::App& app, const Strings& arguments) {
   return "";
 }
 
-// Reads the settings and sets the flags of the command that `arguments` name. Help works without.
-absl::Status UseSettings(const CLI::App& app, const std::vector<Command>& commands,
-                         const Strings& arguments, const Variables& variables) {
-  if (arguments.empty() || absl::StartsWith(arguments[0], "-") || IsGiven("--help", arguments)) {
-    return absl::OkStatus();
-  }
-  const absl::StatusOr<std::vector<Setting>> settings = ReadSettings(variables);
-  if (!settings.ok()) return settings.status();
-  const std::string unknown = FindUnknownSetting(app, *settings);
-  if (!unknown.empty()) return absl::InvalidArgumentError(unknown);
-  for (const Command& command : commands) {
-    if (command.app->get_name() == arguments[0]) {
-      return ApplySettings(*settings, arguments, command.app);
-    }
-  }
-  return absl::OkStatus();
-}
-
 }  // namespace
 
 int RunProgram(const Strings& arguments, const ProgramEnvironment& environment) {
@@ -166,8 +101,6 @@ int RunProgram(const Strings& arguments, const ProgramEnvironment& environment) 
     commands.push_back(add(&app));
   }
   app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
-  const absl::Status settings = UseSettings(app, commands, arguments, environment.variables);
-  if (!settings.ok()) return PrintUsageError(std::string(settings.message()), environment);
   const std::string unknown = FindUnknownCommand(app, arguments);
   if (!unknown.empty()) return PrintUsageError(unknown, environment);
   try {

@@ -10,7 +10,6 @@
 
 #include "absl/status/statusor.h"
 #include "client/admin_client.h"
-#include "client/cli/settings.h"
 #include "client/client.h"
 
 namespace duet::client::cli {
@@ -24,7 +23,6 @@ struct ProgramEnvironment {
   bool err_is_terminal = false;  // then progress is updated in place
   // The file descriptor of `in`, for reading that a signal can interrupt. Absent in tests.
   std::optional<int> in_descriptor = std::nullopt;
-  Variables variables = [](const std::string&) { return std::nullopt; };
   std::function<absl::StatusOr<std::unique_ptr<AdminClient>>(const ClientOptions&)> connect_admin =
       AdminClient::Create;
 };

@@ -12,7 +12,6 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
-#include "client/batch/level.h"
 #include "client/cli/flags.h"
 #include "client/cli/request_file.h"
 #include "model/base/nearest.h"
@@ -107,10 +106,13 @@ absl::Status ReadLeader(const ReactionArguments& arguments, formats::ReadOptions
   if (!leader.ok()) return leader.status();
   request->leader = *std::move(leader);
   if (request->up) return absl::OkStatus();
-  const batch::Levelled levelled =
-      batch::LevelBy(EstimateVertical(request->leader, *input, options, report.people));
-  request->up = levelled.up;
-  if (notes != nullptr && !levelled.note.empty()) notes->push_back(levelled.note);
+  const motion::VerticalEstimate vertical =
+      EstimateVertical(request->leader, *input, options, report.people);
+  const bool tilted = vertical.verdict == motion::TiltVerdict::kTilted;
+  if (tilted) request->up = vertical.up;
+  if (notes != nullptr) {
+    notes->push_back(absl::StrCat(tilted ? "levelled: " : "not levelled: ", Describe(vertical)));
+  }
   return absl::OkStatus();
 }
 
@@ -214,7 +216,6 @@ absl::StatusOr<SynthesisRequest> StartRequest(const ReactionArguments& arguments
   if (arguments.seed) request->seed = *arguments.seed;
   if (arguments.variety) request->variety = *arguments.variety;
   if (arguments.candidates) request->candidates = *arguments.candidates;
-  if (!arguments.pins.empty()) request->constraints = arguments.pins;
   return request;
 }
 

@@ -35,7 +35,6 @@ struct ReactionArguments {
   std::optional<uint64_t> seed;
   std::optional<float> variety;
   std::optional<int> candidates;
-  std::vector<JointConstraint> pins;
 };
 
 // --request, --label, --keyframe, --model, --follower-start, --seed, --variety and --candidates.

@@ -72,12 +72,14 @@ void ReportWaiting(const ServerArguments& arguments, std::ostream& err, ClientOp
 void AddServerFlags(CLI::App* app, ServerArguments* server) {
   app->add_option("--server", server->address,
                   "Server, or any gRPC target such as unix:/run/duet.sock")
+      ->envname("DUET_SERVER")
       ->capture_default_str()
       ->type_name("HOST:PORT")
       ->group(kServerGroup);
   app->add_option("--wait", server->wait_seconds,
                   "Seconds to retry a server that cannot be reached; at most --timeout")
       ->check(base::InRange(0.0, 86400.0))
+      ->envname("DUET_WAIT")
       ->capture_default_str()
       ->type_name("SECONDS")
       ->group(kServerGroup);
@@ -87,6 +89,7 @@ void AddServerFlags(CLI::App* app, ServerArguments* server) {
 void AddConnectionFlags(CLI::App* app, ServerArguments* server) {
   app->add_option("--timeout", server->timeout_seconds, "Deadline of the whole call, with retries")
       ->check(base::InRange(0.001, 86400.0))
+      ->envname("DUET_TIMEOUT")
       ->capture_default_str()
       ->type_name("SECONDS")
       ->group(kServerGroup);
@@ -94,23 +97,29 @@ void AddConnectionFlags(CLI::App* app, ServerArguments* server) {
 }
 
 void AddCredentialFlags(CLI::App* app, ServerArguments* server) {
-  const auto add = [app](const char* flag, const char* form, std::string* value, const char* help) {
-    return app->add_option(flag, *value, help)->type_name(form)->group(kServerGroup);
+  const auto add = [app](const char* flag, const char* variable, const char* form,
+                         std::string* value, const char* help) {
+    return app->add_option(flag, *value, help)
+        ->envname(variable)
+        ->type_name(form)
+        ->group(kServerGroup);
   };
   app->add_flag("--tls", server->tls, "Encrypt; trust the certificate authorities of the system")
+      ->envname("DUET_TLS")
       ->group(kServerGroup);
-  add("--tls-ca", "FILE", &server->tls_ca_file,
+  add("--tls-ca", "DUET_TLS_CA", "FILE", &server->tls_ca_file,
       "Encrypt; trust the certificate authorities in this file");
-  CLI::Option* certificate =
-      add("--tls-cert", "FILE", &server->tls_certificate_file, "Certificate of this client");
-  CLI::Option* key = add("--tls-key", "FILE", &server->tls_key_file, "Private key of this client");
+  CLI::Option* certificate = add("--tls-cert", "DUET_TLS_CERT", "FILE",
+                                 &server->tls_certificate_file, "Certificate of this client");
+  CLI::Option* key =
+      add("--tls-key", "DUET_TLS_KEY", "FILE", &server->tls_key_file, "Private key of this client");
   certificate->needs(key);
   key->needs(certificate);
-  add("--tls-server-name", "NAME", &server->tls_server_name,
+  add("--tls-server-name", "DUET_TLS_SERVER_NAME", "NAME", &server->tls_server_name,
       "Name in the server's certificate, if it differs from the address");
-  add("--token-file", "FILE", &server->token_file,
+  add("--token-file", "DUET_TOKEN_FILE", "FILE", &server->token_file,
       "Token that identifies the caller; only sent encrypted or to this machine");
-  add("--authority", "NAME", &server->authority,
+  add("--authority", "DUET_AUTHORITY", "NAME", &server->authority,
       "Name of the server that a proxy routes by, if it differs from the address");
 }
 

@@ -9,13 +9,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/types/span.h"
-#include "model/base/angle.h"
 #include "model/base/index.h"
 #include "model/base/median.h"
 #include "model/body/limbs.h"
 #include "model/motion/feet.h"
 #include "model/motion/inferred_coordinates.h"
-#include "model/motion/posture.h"
 
 namespace duet::client::cli {
 namespace {
@@ -26,8 +24,6 @@ using motion::Vec3;
 constexpr double kMostDrift = 0.1;
 // Rounding errors, in any unit.
 constexpr double kLeastLength = 1e-6;
-// Length of a left bone divided by the right one, or vice versa.
-constexpr double kMostAsymmetry = 1.15;
 constexpr double kMostBelowFloor = 0.1, kHighAboveFloor = 0.15, kMostTimeInTheAir = 0.25;
 // A fist in boxing reaches 11 m/s, a kicking foot 16.
 constexpr double kFastestJoint = 20, kFastestRoot = 10;
@@ -37,12 +33,6 @@ constexpr float kLeastSwap = 0.15f;
 // than this share of the bending is in the wrong direction, it is not noise.
 constexpr float kLeastBend = 0.04f;
 constexpr double kMostBentWrongly = 0.8;
-
-// Maximum lean of the mean standing direction in degrees. People lean forwards for a long time, but
-// rarely backwards or sideways. The tilt of a camera does not depend on the facing direction.
-constexpr double kMostForwardLean = 12, kMostOtherLean = 5;
-// Rotation of the shoulders against the hips in degrees. People reach 50, and more for a moment.
-constexpr double kMostTwist = 60, kMostTimeTwisted = 0.02;
 
 using base::Index;
 
@@ -63,12 +53,9 @@ class Checker {
     if (!checks_.back().good) return std::move(checks_);
     CheckSize();
     CheckLimbLengths();
-    CheckSymmetry();
     CheckFloor();
     CheckJumps();
     CheckSides();
-    CheckUpright();
-    CheckWaist();
     return std::move(checks_);
   }
 
@@ -143,41 +130,12 @@ class Checker {
         {{"mean_change", mean}, {"most_change", most}});
   }
 
-  // The limbs of a pair may be left and right, or right and left.
-  void CheckSymmetry() {
-    double most = 1;
-    std::string worst;
-    for (const std::vector<body::Limb>* limbs : {&body_.arms, &body_.legs}) {
-      if (limbs->size() != 2) continue;
-      const body::Limb &a = (*limbs)[0], &b = (*limbs)[1];
-      Compare({a.upper, a.middle}, {b.upper, b.middle}, &most, &worst);
-      Compare({a.middle, a.end}, {b.middle, b.end}, &most, &worst);
-    }
-    if (body_.arms.size() != 2 && body_.legs.size() != 2) return;
-    const bool good = most <= kMostAsymmetry;
-    Add("symmetry", good,
-        absl::StrFormat("left and right limbs differ by at most %s%s", Percent(most - 1),
-                        good ? "" : absl::StrCat(" (", worst, ")")),
-        {{"most_difference", most - 1}});
-  }
-
   double MedianLength(const motion::Bone& bone) const {
     std::vector<float> lengths;
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
       lengths.push_back(Distance(clip_.at(frame, bone.parent), clip_.at(frame, bone.child)));
     }
     return static_cast<double>(base::Median(std::move(lengths)));
-  }
-
-  void Compare(const motion::Bone& a, const motion::Bone& b, double* most,
-               std::string* worst) const {
-    const double first = MedianLength(a), second = MedianLength(b);
-    if (!(std::min(first, second) > 0)) return;
-    const double ratio = std::max(first, second) / std::min(first, second);
-    if (ratio <= *most) return;
-    *most = ratio;
-    *worst = absl::StrCat(skeleton_.joint_names[Index(a.parent)], " to ",
-                          skeleton_.joint_names[Index(a.child)], " and its counterpart");
   }
 
   void CheckFloor() {
@@ -318,47 +276,6 @@ class Checker {
     Add("sides", wrong.empty(), text, std::move(figures));
   }
 
-  // Mean lean of the person in the direction of the hips, and to the left of it, in degrees.
-  // `directions`: the standing direction of every frame.
-  std::pair<double, double> LeanFromOwnView(const std::vector<Vec3>& directions) const {
-    double forwards = 0, sideways = 0;
-    const auto angle = [](Vec3 up, Vec3 way) {
-      return base::kDegreesPerRadian *
-             std::asin(std::clamp(static_cast<double>(Dot(up, way)), -1.0, 1.0));
-    };
-    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
-      const Vec3 facing = body::Facing(*skeleton_.hips, clip_.poses[frame]);
-      forwards += angle(directions[Index(frame)], facing);
-      sideways += angle(directions[Index(frame)], Cross(Vec3{0, 1, 0}, facing));
-    }
-    return {forwards / clip_.frame_count(), sideways / clip_.frame_count()};
-  }
-
-  void CheckUpright() {
-    if (!skeleton_.feet || !skeleton_.hips) return;
-    const std::vector<Vec3> directions = motion::StandingDirections(skeleton_, clip_.poses);
-    // Frames without a direction are left out there.
-    if (directions.size() != Index(clip_.frame_count())) return;
-    const Vec3 up = motion::RobustMean(directions);
-    const double across = std::hypot(up.x, up.z);
-    const double all = std::atan2(across, up.y) * base::kDegreesPerRadian;
-    // Of a person who lies, the angles of motion::LeanOf are meaningless.
-    const motion::Lean lean = {across > 0 ? all * up.x / across : 0,
-                               across > 0 ? all * up.z / across : 0};
-    const auto [forwards, sideways] = LeanFromOwnView(directions);
-    const bool good =
-        all <= kMostForwardLean && std::hypot(std::min(forwards, 0.0), sideways) <= kMostOtherLean;
-    std::string text = absl::StrFormat(
-        "leans %.1f degrees on average (%.1f towards x, %.1f towards z)", all, lean.x, lean.z);
-    if (!good) text += ": a tilted camera or rotated axes, unless the person leans all the time";
-    Add("upright", good, text,
-        {{"lean_degrees", all},
-         {"lean_x_degrees", lean.x},
-         {"lean_z_degrees", lean.z},
-         {"lean_forwards_degrees", forwards},
-         {"lean_sideways_degrees", sideways}});
-  }
-
   // The left and the right shoulder.
   std::optional<motion::JointPair> Shoulders() const {
     if (body_.arms.size() != 2) return std::nullopt;
@@ -366,47 +283,6 @@ class Checker {
         skeleton_.joint_names[Index(body_.arms[0].upper)].find("left") != std::string::npos;
     return motion::JointPair{body_.arms[first_is_left ? 0 : 1].upper,
                              body_.arms[first_is_left ? 1 : 0].upper};
-  }
-
-  // Rotation from the hips to the shoulders about the trunk, 0 to 180 degrees. 0 if one of them has
-  // no length.
-  double Twist(const motion::JointPair& shoulders, int frame) const {
-    const auto at = [this, frame](int joint) { return clip_.at(frame, joint); };
-    const Vec3 trunk = at(shoulders.left) + at(shoulders.right) - at(skeleton_.hips->left) -
-                       at(skeleton_.hips->right);
-    const float length = Dot(trunk, trunk);
-    if (!(length > 0)) return 0;
-    const auto across = [&](const motion::JointPair& pair) {
-      const Vec3 way = at(pair.right) - at(pair.left);
-      return way - trunk * (Dot(way, trunk) / length);
-    };
-    const Vec3 hips = across(*skeleton_.hips), upper = across(shoulders);
-    const double norms = static_cast<double>(Norm(hips)) * static_cast<double>(Norm(upper));
-    if (!(norms > 0)) return 0;
-    return std::acos(std::clamp(static_cast<double>(Dot(hips, upper)) / norms, -1.0, 1.0)) *
-           base::kDegreesPerRadian;
-  }
-
-  void CheckWaist() {
-    const std::optional<motion::JointPair> shoulders = Shoulders();
-    if (!skeleton_.hips || !shoulders) return;
-    double most = 0;
-    int twisted = 0, worst = 0;
-    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
-      const double twist = Twist(*shoulders, frame);
-      twisted += twist > kMostTwist ? 1 : 0;
-      if (twist > most) worst = frame;
-      most = std::max(most, twist);
-    }
-    const double share = static_cast<double>(twisted) / clip_.frame_count();
-    std::string text = absl::StrFormat(
-        "shoulders turn at most %.0f degrees against the hips (frame %d)", most, worst);
-    if (twisted > 0) {
-      absl::StrAppendFormat(&text, ", more than %.0f for %s of the time", kMostTwist,
-                            Percent(share));
-    }
-    Add("waist", share <= kMostTimeTwisted, text,
-        {{"most_twist_degrees", most}, {"share_twisted", share}});
   }
 
   const motion::Clip& clip_;

@@ -19,12 +19,10 @@ struct SkeletonCheck {
 };
 
 // Checks whether a motion can be that of a person, in this order: finite (no position is infinite
-// or NaN), size (the distance from foot to root), limb lengths (nearly constant over time),
-// symmetry (left limbs are as long as right ones), floor (feet stay on it), jumps (no joint is
-// faster than people), sides (left and right are not swapped), upright (the mean standing direction
-// leans no more than people do), waist (shoulders rarely turn against the hips). Checks that need
-// joints which the skeleton does not have are left out. If a position is not finite, only the first
-// check is returned.
+// or NaN), size (the distance from foot to root), limb lengths (nearly constant over time), floor
+// (feet stay on it), jumps (no joint is faster than people), sides (left and right are not
+// swapped). Checks that need joints which the skeleton does not have are left out. If a position is
+// not finite, only the first check is returned.
 //
 // A check that is not good marks something to look at, not an error: Kinect's bones change their
 // length, and acrobats leave the floor.

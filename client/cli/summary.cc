@@ -144,7 +144,9 @@ std::string DescribeLosses(const live::LiveTotals& totals) {
 
 }  // namespace
 
-std::string DescribeRequest(const Synthesis& synthesis, const std::vector<std::string>& notes) {
+std::string DescribeSynthesis(const Synthesis& synthesis, const WrittenFiles& written,
+                              const std::vector<std::string>& notes) {
+  const SynthesisResult& result = synthesis.result;
   const motion::Clip& leader = synthesis.result.pair.leader;
   std::string text;
   absl::StrAppendFormat(&text, "leader    %s: %s, %.2f s at %g Hz\n",
@@ -153,12 +155,6 @@ std::string DescribeRequest(const Synthesis& synthesis, const std::vector<std::s
                         leader.frame_count() / leader.frame_rate_hz, leader.frame_rate_hz);
   for (const std::string& note : notes) absl::StrAppend(&text, "          ", note, "\n");
   absl::StrAppend(&text, "reaction  ", DescribeWeights(synthesis.request), "\n");
-  return text;
-}
-
-std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& written) {
-  const SynthesisResult& result = synthesis.result;
-  std::string text;
   absl::StrAppendFormat(&text, "follower  from %s@%d in %s, first frames after %s (%s, %s)\n",
                         result.model_name, result.model_version, Milliseconds(result.timings.total),
                         Milliseconds(result.timings.first_chunk),

@@ -12,10 +12,9 @@
 
 namespace duet::client::cli {
 
-// The request, which is the same for every sample; and the answer to one of them.
-std::string DescribeRequest(const Synthesis& synthesis, const std::vector<std::string>& notes);
-std::string DescribeAnswer(const Synthesis& synthesis, const WrittenFiles& written);
-// Both, for one sample.
+// The request and the answer. `notes`: on how the leader was read.
+std::string DescribeSynthesis(const Synthesis& synthesis, const WrittenFiles& written,
+                              const std::vector<std::string>& notes);
 nlohmann::json SynthesisJson(const Synthesis& synthesis, const WrittenFiles& written,
                              const std::vector<std::string>& notes);
 

@@ -52,19 +52,25 @@ def request(scene, count):
     duet.state = "Reading the leader"
     recording = leader.Recording(scene, duet.leader)
     yield from recording.take()
-    flags = [*recording.reading_flags(), *recording.label_flags(), *recording.place_flags(),
-             *recording.pins.flags]
+    flags = [*recording.reading_flags(), *recording.label_flags(), *recording.place_flags()]
     with tempfile.TemporaryDirectory() as work:
+        if recording.pins.constraints:
+            pinned = os.path.join(work, "pins.textproto")
+            with open(pinned, "w", encoding="utf-8") as file:
+                file.write("\n".join(recording.pins.constraints))
+            flags += ["--request", pinned]
         motion = os.path.join(work, "leader.bvh")
         recording.write(motion)
         duet.state = "Waiting for the server"
-        output = yield from program.run(
-            duet, "synthesize", "--server", duet.server, "--leader", motion, *flags,
-            *(["--model", duet.model] if duet.model else []), "--seed", duet.seed,
-            "--variety", f"{duet.variety:.4g}", "--candidates", str(duet.candidates),
-            "--samples", str(count), "--json", "--out", os.path.join(work, "pair.json"))
-        summaries = json.loads(output)
-        _list(scene, summaries.get("samples", [summaries]), work)
+        summaries = []
+        for seed in range(int(duet.seed), int(duet.seed) + count):
+            output = yield from program.run(
+                duet, "synthesize", "--server", duet.server, "--leader", motion, *flags,
+                *(["--model", duet.model] if duet.model else []), "--seed", str(seed),
+                "--variety", f"{duet.variety:.4g}", "--candidates", str(duet.candidates),
+                "--json", "--out", os.path.join(work, f"{seed}.json"))
+            summaries.append(json.loads(output))
+        _list(scene, summaries, work)
 
 
 def _list(scene, summaries, work):

@@ -40,11 +40,11 @@ def keyed_frames_of(pin):
 
 
 class Sampler:
-    """Collects the flags of the pins while the scene's frames are visited."""
+    """Collects the pins while the scene's frames are visited."""
 
     def __init__(self, scene, metres):
         self.scene, self.metres = scene, metres
-        self.flags = []
+        self.constraints = []  # of the request, in text format
         self._frames = [self._frames_in_range(pin) for pin in scene.duet.pins]
 
     def _frames_in_range(self, pin):
@@ -65,8 +65,10 @@ class Sampler:
             if frame not in frames:
                 continue
             x, y, z = (self.metres * value for value in place_of(pin))
-            self.flags += ["--pin", f"{pin.joint}@{frame - self.scene.frame_start}="
-                                    f"{x:.5f},{z:.5f},{-y:.5f},{pin.softness:.4g}"]
+            joint = pin.joint.replace("\\", "\\\\").replace('"', '\\"')
+            self.constraints.append(
+                f'constraints {{ joint_name: "{joint}" frame: {frame - self.scene.frame_start} '
+                f"position {{ x: {x:.5f} y: {z:.5f} z: {-y:.5f} }} softness: {pin.softness:.4g} }}")
 
 
 def place_of(pin):

@@ -4,6 +4,7 @@ other models."""
 import json
 import math
 import pathlib
+import re
 import shutil
 import tempfile
 import unittest
@@ -115,12 +116,11 @@ class BlenderShapeTest(unittest.TestCase):
     def test_keyed_bone_and_softness_are_sent_in_metres_with_y_up(self):
         self.assertEqual((self.state["bone_pin"]["bone"], self.state["bone_pin"]["thing"]),
                          ("Head", "Puppet"))
-        *hands, _, head = self.state["flags"]
-        self.assertEqual([flag.split("=")[0] for flag in hands[1::2]],
-                         ["right_hand@14", "right_hand@34"])
-        joint, _, numbers = head.partition("=")
-        self.assertEqual(joint, "head@39")
-        *place, softness = map(float, numbers.split(","))
+        *hands, head = self.state["constraints_sent"]
+        for hand, frame in zip(hands, (14, 34), strict=True):
+            self.assertIn(f'joint_name: "right_hand" frame: {frame} ', hand)
+        self.assertIn('joint_name: "head" frame: 39 ', head)
+        *place, softness = map(float, re.findall(r"(?:x|y|z|softness): (\S+)", head))
         x, y, z = self.state["bone_pin"]["place"]
         self.assert_near(place, (x, z, -y), 1e-4)
         self.assertEqual(softness, 1)

@@ -32,7 +32,7 @@ function changePin(all, index, fields) {
   return true;
 }
 
-// right_hand@40=0.2,1.3,0.5,0.25, as the program's --pin.
+// right_hand@40=0.2,1.3,0.5,0.25, a joint, a frame, a place and a softness.
 const writePin = ({joint, frame, position, softness}) =>
     `${joint}@${frame}=${[...position, ...(softness ? [softness] : [])].join(',')}`;
 

@@ -207,7 +207,7 @@ TEST_F(MotionCommandsTest, InspectReadsAFileWithoutAFrameRate) {
   ASSERT_EQ(Run({"inspect", Path("one.npy")}), 0);
   EXPECT_THAT(out(), AllOf(HasSubstr("NPY, 1 person, 60 frames\n"),
                            HasSubstr("frame rate  unknown; specify it with --frame-rate HZ\n"),
-                           HasSubstr("unit        metres  (default)\n"), HasSubstr("ok   symmetry"),
+                           HasSubstr("unit        metres  (default)\n"), HasSubstr("ok   sides"),
                            Not(HasSubstr("jumps"))));
   EXPECT_EQ(RunJson({"inspect", "--json", Path("one.npy")})["files"][0]["people"][0]["frame_rate"],
             nullptr);

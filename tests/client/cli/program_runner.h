@@ -1,9 +1,7 @@
 #ifndef DUET_TESTS_CLIENT_CLI_PROGRAM_RUNNER_H_
 #define DUET_TESTS_CLIENT_CLI_PROGRAM_RUNNER_H_
 
-#include <map>
 #include <memory>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -30,16 +28,13 @@ class ProgramRunner : public ::testing::Test {
     out_.str("");
     err_.str("");
     std::istringstream in(input);
-    ProgramEnvironment environment{[this](const ClientOptions& options) -> absl::StatusOr<Client> {
-                                     options_ = options;
-                                     if (connection_ != nullptr) return Client(connection_);
-                                     return absl::UnavailableError("no server was expected");
-                                   },
-                                   &out_, &err_, &in};
-    environment.variables = [this](const std::string& name) {
-      const auto found = variables_.find(name);
-      return found == variables_.end() ? std::nullopt : std::optional<std::string>(found->second);
-    };
+    const ProgramEnvironment environment{
+        [this](const ClientOptions& options) -> absl::StatusOr<Client> {
+          options_ = options;
+          if (connection_ != nullptr) return Client(connection_);
+          return absl::UnavailableError("no server was expected");
+        },
+        &out_, &err_, &in};
     return RunProgram(arguments, environment);
   }
 
@@ -52,7 +47,6 @@ class ProgramRunner : public ::testing::Test {
   const test::TemporaryFolder folder_;
   std::shared_ptr<Connection> connection_;  // null: the program must not connect
   ClientOptions options_;                   // of the last connection
-  std::map<std::string, std::string> variables_;
 
  private:
   std::ostringstream out_, err_;

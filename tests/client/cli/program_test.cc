@@ -1,5 +1,7 @@
 // The whole program against a connection that a test scripts.
+#include <cstdlib>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -298,13 +300,14 @@ TEST_F(ProgramTest, PrintsASummaryAsText) {
   EXPECT_THAT(out(), HasSubstr("          cleaned up\n"));
 }
 
-TEST_F(ProgramTest, PinsAreSentAndWhatRemainsIsReported) {
+TEST_F(ProgramTest, WhatRemainsOfPinsIsReported) {
   Answer([](SynthesisResult* result) { result->constraint_metres = {0.004f, 0.123f}; });
-  const Strings pins = {"--pin", "head@3=0,1.5,-2", "--pin", "right_hand@7=1,1,1,0.5"};
+  WriteTestFile(
+      folder_ / "pins",
+      "constraints { joint_name: 'head' frame: 3 position { y: 1.5 z: -2 } }"
+      "constraints { joint_name: 'right_hand' frame: 7 position { x: 1 } softness: 0.5 }");
+  const Strings pins = {"--request", Path("pins")};
   ASSERT_EQ(Synthesize("pair.html", pins), 0) << err();
-  ASSERT_EQ(sent_.back().constraints.size(), 2u);
-  EXPECT_EQ(sent_.back().constraints[0].position, (motion::Vec3{0, 1.5f, -2}));
-  EXPECT_EQ(sent_.back().constraints[1].softness, 0.5f);
   EXPECT_THAT(out(),
               HasSubstr("          pins: 1 reached, right_hand in frame 7 is 12.3 cm away\n"));
   const nlohmann::json second = SynthesizeJson(pins)["constraints"][1];
@@ -329,50 +332,6 @@ TEST_F(ProgramTest, PrintsASummaryAsJson) {
   EXPECT_EQ(json["files"], std::vector<std::string>{Path("pair.html")});
 }
 
-TEST_F(ProgramTest, EachSampleIsACallWithItsOwnFiles) {
-  Answer([](SynthesisResult* result) {
-    for (motion::Vec3& p : result->pair.follower.poses.all()) {
-      p.x += static_cast<float>(result->seed);
-    }
-  });
-  ASSERT_EQ(Synthesize("pair.csv", {"--seed", "7", "--samples", "3", "--out", Path("pair.bvh")}), 0)
-      << err();
-  EXPECT_THAT(sent_,
-              ElementsAre(Field(&SynthesisRequest::seed, 7), Field(&SynthesisRequest::seed, 8),
-                          Field(&SynthesisRequest::seed, 9)));
-  EXPECT_FALSE(Exists("pair.csv"));
-  formats::ReadOptions options;
-  options.side = formats::Side::kRight;
-  for (int seed : {7, 8, 9}) {
-    const std::string stem = "pair.seed" + std::to_string(seed);
-    EXPECT_TRUE(Exists(stem + ".leader.bvh"));
-    EXPECT_TRUE(Exists(stem + ".follower.bvh"));
-    EXPECT_THAT(out(), HasSubstr(Path(stem + ".csv")));
-    const absl::StatusOr<motion::Clip> follower = ReadLeader(folder_ / (stem + ".csv"), options);
-    ASSERT_THAT(follower, IsOk());
-    EXPECT_NEAR(follower->at(3, 0).x, leader_.at(3, 0).x + static_cast<float>(seed), 1e-4);
-  }
-}
-
-TEST_F(ProgramTest, SeveralSamplesAreAJsonList) {
-  const nlohmann::json samples = SynthesizeJson({"--samples", "2"})["samples"];
-  ASSERT_EQ(samples.size(), 2u);
-  EXPECT_EQ(samples[1]["seed"], 1);
-  EXPECT_EQ(samples[1]["files"], Strings{Path("pair.seed1.csv")});
-}
-
-TEST_F(ProgramTest, SamplesThatCannotBeMadeAreRejectedFirst) {
-  EXPECT_CALL(*server_, GetModel).Times(0);
-  EXPECT_EQ(Synthesize("pair.html", {"--seed", "18446744073709551610", "--samples", "7"}), 42);
-  EXPECT_THAT(err(), HasSubstr("--samples: expected at most 6 with seed 18446744073709551610, so "
-                               "that no seed exceeds the largest, got 7"));
-  std::filesystem::rename(folder_ / "leader.csv", folder_ / "pair.seed8.csv");
-  EXPECT_EQ(Run({"synthesize", "--leader", Path("pair.seed8.csv"), "--label", "kick", "--out",
-                 Path("pair.csv"), "--seed", "7", "--samples", "2"}),
-            42);
-  EXPECT_THAT(err(), HasSubstr("would replace the file that is read"));
-}
-
 TEST_F(ProgramTest, NoFileOfAPairReplacesAnInput) {
   EXPECT_CALL(*server_, GetModel).Times(0);
   const std::string start = Path("start.json"), leader = Path("leader.csv");
@@ -392,17 +351,6 @@ TEST_F(ProgramTest, NoFileOfAPairReplacesAnInput) {
     EXPECT_EQ(Run(Strings{"synthesize", "--label", "kick=1"} + flags), 42);
     EXPECT_THAT(err(), HasSubstr(replaced + ": would replace the file that is read"));
   }
-}
-
-TEST_F(ProgramTest, FailedSampleEndsTheCommandAndKeepsEarlierSamples) {
-  EXPECT_CALL(*server_, Synthesize)
-      .WillOnce([](const SynthesisRequest& request, const ChunkCallback&) {
-        return absl::StatusOr<SynthesisResult>(Follow(request));
-      })
-      .WillOnce(Return(absl::UnavailableError("away")));
-  EXPECT_EQ(Synthesize("pair.csv", {"--samples", "3"}), 1);
-  EXPECT_TRUE(Exists("pair.seed0.csv"));
-  EXPECT_FALSE(Exists("pair.seed1.csv"));
 }
 
 TEST_F(ProgramTest, PrintsSeedAndVarietyOfAModelThatSamples) {
@@ -490,9 +438,6 @@ TEST_F(ProgramTest, InvalidUseOfPipesMakesNoCall) {
   refused(2, {"--leader", Path("leader.csv"), "--out", "-"}, "--output-format");
   refused(2, {"--leader", Path("leader.csv"), "--out", "-", "--output-format", "bvh"},
           "bvh cannot be used with --out -");
-  refused(
-      2, {"--leader", Path("leader.csv"), "--out", "-", "--output-format", "csv", "--samples", "2"},
-      "each answer needs a file");
 }
 
 TEST_F(ProgramTest, UnknownClassIsRejectedWithASuggestion) {
@@ -503,13 +448,23 @@ TEST_F(ProgramTest, UnknownClassIsRejectedWithASuggestion) {
                         "mean hug?"));
 }
 
-TEST_F(ProgramTest, ServerIsReadFromTheEnvironment) {
-  variables_["DUET_SERVER"] = "lab:7";
+TEST_F(ProgramTest, ConnectionIsReadFromTheEnvironmentUnlessFlagsStateIt) {
+  WriteTestFile(folder_ / "token", "secret\n");
+  const std::map<const char*, std::string> variables = {
+      {"DUET_SERVER", "lab:7"}, {"DUET_TIMEOUT", "3"}, {"DUET_TOKEN_FILE", Path("token")}};
+  for (const auto& [name, value] : variables) setenv(name, value.c_str(), 1);
   EXPECT_CALL(*server_, ListModels).WillRepeatedly(Return(std::vector{SbuModel().model}));
   EXPECT_EQ(Run({"models"}), 0);
   EXPECT_EQ(options_.server_address, "lab:7");
+  EXPECT_EQ(options_.deadline, absl::Seconds(3));
+  EXPECT_EQ(options_.token, "secret");
   EXPECT_EQ(Run({"models", "--server", "mine:8"}), 0);
   EXPECT_EQ(options_.server_address, "mine:8");
+  setenv("DUET_TIMEOUT", "soon", 1);
+  EXPECT_EQ(Run({"models"}), 2);
+  EXPECT_THAT(err(), HasSubstr("--timeout: expected "));
+  EXPECT_EQ(Run({"--version"}), 0);
+  for (const auto& [name, value] : variables) unsetenv(name);
 }
 
 TEST_F(ProgramTest, UsageErrorMakesNoCall) {

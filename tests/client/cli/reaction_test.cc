@@ -5,7 +5,6 @@
 #include <variant>
 #include <vector>
 
-#include "client/batch/text_values.h"
 #include "client/cli/request_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -43,24 +42,6 @@ TEST(ParseKeyframeTest, ReadsAFrameAndWeights) {
   for (const char* text : {"", "30", "30:", "kick=1", "-1:kick=1", "x:kick=1",
                            "30:kick=", "30:kick=1,", "30:,kick=1", "8.5:kick", "8b:kick"}) {
     EXPECT_THAT(ParseKeyframe(text), StatusIs(kInvalid, HasSubstr("expected FRAME:CLASS=WEIGHT")))
-        << text;
-  }
-}
-
-TEST(ParsePinTest, ReadsJointFramePositionAndSoftness) {
-  const absl::StatusOr<JointConstraint> pin = batch::ParsePin("right_hand@40=-0.2,1.3,5e-1");
-  ASSERT_THAT(pin, IsOk());
-  EXPECT_EQ(pin->joint, "right_hand");
-  EXPECT_EQ(pin->frame, 40);
-  EXPECT_EQ(pin->position, (motion::Vec3{-0.2f, 1.3f, 0.5f}));
-  EXPECT_EQ(pin->softness, 0);
-  EXPECT_EQ(batch::ParsePin("head@0=0,1,2,0.25")->softness, 0.25f);
-  for (const char* text :
-       {"", "head", "head@3", "head@3=", "head@3=0,1", "head@3=0,1,2,3", "head@3=0,1,2,-0.1",
-        "head@3=0,1,2,", "head@3=0,1,2,0,0", "head@3=0,1,nan", "head@3=0,inf,2", "head@3=0,1,2,nan",
-        "@3=0,1,2", "head@=0,1,2", "head@-1=0,1,2", "head@1.5=0,1,2", "head=0,1,2", "3@head=0,1,2",
-        "head@3=a,b,c"}) {
-    EXPECT_THAT(batch::ParsePin(text), StatusIs(kInvalid, HasSubstr("expected JOINT@FRAME=X,Y,Z")))
         << text;
   }
 }

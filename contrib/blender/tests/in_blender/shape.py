@@ -134,7 +134,7 @@ head.keyframe_insert("softness", frame=50)
 recording = duet_blender.leader.Recording(scene, leader)
 for _ in recording.take():
     pass
-state["flags"] = recording.pins.flags
+state["constraints_sent"] = recording.pins.constraints
 state["bone_pin"] = {"bone": head.bone, "thing": head.thing.name, "place": place(rig, "Head", 50)}
 state["keyed"] = {}
 for frame in (25, 45):
