@@ -74,15 +74,15 @@ def measure(name, build, program, folder, *flags):
     """One run; its row of the table."""
     with serving(build / program, folder) as (server, address):
         served, start = processor_seconds(server.pid), time.monotonic()
+        out = pathlib.Path(tempfile.mkdtemp(dir=folder))
         client = subprocess.Popen(
-            [build / "bin/duet", "batch", *flags, "--out", tempfile.mkdtemp(dir=folder), "--server", address,
-             "--json"], stdout=subprocess.PIPE, text=True)
-        events = [json.loads(line) for line in client.stdout]
+            [build / "bin/duet", "batch", *flags, "--out", out, "--server", address, "--quiet"])
         _, status, usage = os.wait4(client.pid, 0)
         seconds, served = time.monotonic() - start, processor_seconds(server.pid) - served
     if os.waitstatus_to_exitcode(status) != 0:
-        raise SystemExit(f"{name}: exit {os.waitstatus_to_exitcode(status)}, {events[-1:]}")
-    settled = events[-1]["done"] + events[-1]["rejected"]
+        raise SystemExit(f"{name}: exit {os.waitstatus_to_exitcode(status)}")
+    counts = json.loads((out / "dataset.json").read_text(encoding="utf-8"))["items"]
+    settled = counts["done"] + counts["rejected"]
     return (name, f"{settled:,}", f"{settled / seconds:,.0f}",
             f"{1e6 * (usage.ru_utime + usage.ru_stime) / settled:,.0f}", f"{1e6 * served / settled:,.0f}",
             f"{usage.ru_maxrss / 1024:.0f}")

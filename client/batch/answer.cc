@@ -1,10 +1,19 @@
 #include "client/batch/answer.h"
 
 #include <cmath>
+#include <map>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/string_view.h"
 #include "client/error_details.h"
+#include "model/body/limbs.h"
+#include "model/body/liveliness.h"
+#include "model/body/penetration.h"
+#include "model/body/posture.h"
+#include "model/motion/feet.h"
 #include "model/motion/levelling.h"
 
 namespace duet::client::batch {
@@ -72,7 +81,6 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
   request.keyframes = ToFrames(item.keyframes, leader.clip.frame_count());
   request.follower_start = leader.follower_start;
   request.partner_direction = item.leader->partner_direction;
-  request.constraints = item.leader->pins;
   request.up = recipe.input.up;
   request.seed = SeedOf(item, recipe.seed, leader.sha256 + leader.start_sha256, retry);
   request.variety = recipe.variety;
@@ -84,7 +92,6 @@ SynthesisRequest ToRequest(const Item& item, const Recipe& recipe, const ModelIn
 
 RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const SynthesisResult& result,
                           const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry) {
-  const motion::ClipPair level = Upright(result.pair, recipe.input.up);
   RecordedAnswer answer;
   answer.leader_sha256 = leader.sha256;
   answer.model = absl::StrCat(result.model_name, "@", result.model_version);
@@ -95,14 +102,67 @@ RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const Synthesi
   answer.keyframes = ToFrames(item.keyframes, result.pair.leader.frame_count());
   answer.frames = result.pair.follower.frame_count();
   answer.frame_rate_hz = result.pair.follower.frame_rate_hz;
-  answer.quality = Measure(level, skeleton, result);
-  if (recipe.classifier != nullptr) {
-    Recognise(*recipe.classifier, LargestClass(item), level, &answer.quality);
-  }
-  answer.pin_metres = result.constraint_metres;
+  answer.quality = Measure(Upright(result.pair, recipe.input.up), skeleton, result);
   answer.answers = retry + 1;
   answer.made_by = MadeByOf(result);
   return answer;
+}
+
+Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
+                const SynthesisResult& result) {
+  const motion::Poses& leader = pair.leader.poses;
+  const motion::Poses& follower = pair.follower.poses;
+  Quality quality;
+  std::map<std::string, double>& figures = quality.figures;
+  const double lean =
+      body::MeasureLean(follower, skeleton, pair.follower.frame_rate_hz, body::LeanFrom::kHips)
+          .max_degrees;
+  if (!std::isnan(lean)) figures["lean_degrees"] = lean;
+  if (skeleton.feet.has_value()) {
+    const body::FloorGap gap =
+        body::MeasureFloorGap(follower, skeleton, motion::FloorHeight(*skeleton.feet, leader));
+    figures["foot_above_floor_metres"] = gap.above;
+    figures["foot_below_floor_metres"] = gap.below;
+  }
+  figures["distance_metres"] = body::RootDistance(leader, follower, skeleton);
+  figures["penetration_metres"] =
+      body::MeasurePenetration(leader, follower, skeleton,
+                               body::LimbParts(body::FindBody(skeleton)))
+          .max_depth_metres;
+  figures["range_of_motion_metres"] = body::RangeOfMotion(follower);
+  if (result.grade.has_value()) {
+    figures["twisted"] = result.grade->twisted;
+    figures["skating"] = result.grade->skating;
+    figures["leader_skating"] = result.grade->leader_skating;
+    figures["overlapping"] = result.grade->overlapping;
+  }
+  quality.unfamiliarity = result.unfamiliarity;
+  return quality;
+}
+
+std::vector<std::string> WhyRejected(const v1::QualityFilter& filter, const Quality& quality) {
+  std::map<std::string, double> figures = quality.figures;
+  if (quality.unfamiliarity) figures["unfamiliarity"] = *quality.unfamiliarity;
+  if (figures.count("skating") > 0) {
+    figures["skating_over_leader"] = figures["skating"] - figures["leader_skating"];
+  }
+  std::vector<std::string> reasons;
+  const auto check = [&](absl::string_view limit_name, double limit) {
+    const std::string name(limit_name.substr(4));  // without max_ or min_
+    const auto found = figures.find(name);
+    if (found == figures.end()) return;
+    const bool at_most = absl::StartsWith(limit_name, "max_");
+    if (at_most ? found->second <= limit : found->second >= limit) return;
+    reasons.push_back(absl::StrFormat("%s: expected at %s %g, got %.4g", name,
+                                      at_most ? "most" : "least", limit, found->second));
+  };
+  std::vector<const google::protobuf::FieldDescriptor*> limits;
+  filter.GetReflection()->ListFields(filter, &limits);
+  for (const google::protobuf::FieldDescriptor* limit : limits) {
+    if (limit->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) continue;
+    check(limit->name(), filter.GetReflection()->GetDouble(filter, limit));
+  }
+  return reasons;
 }
 
 }  // namespace duet::client::batch

@@ -2,6 +2,7 @@
 #define DUET_CLIENT_BATCH_ANSWER_H_
 
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "client/batch/flow/call_gate.h"
@@ -10,6 +11,8 @@
 #include "client/batch/record.h"
 #include "client/request.h"
 #include "client/result.h"
+#include "model/motion/clip.h"
+#include "model/motion/skeleton.h"
 
 namespace duet::client::batch {
 
@@ -35,6 +38,14 @@ std::string RequestId(const Item& item, int retry);
 // level world.
 RecordedAnswer ToRecorded(const Item& item, const Recipe& recipe, const SynthesisResult& result,
                           const LoadedLeader& leader, const motion::Skeleton& skeleton, int retry);
+
+// `pair`: of the result, level and at any rate. Requires at least one frame and the joints of the
+// skeleton.
+Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
+                const SynthesisResult& result);
+
+// The limits that an answer exceeds, one text for each; empty if it passes.
+std::vector<std::string> WhyRejected(const v1::QualityFilter& filter, const Quality& quality);
 
 }  // namespace duet::client::batch
 

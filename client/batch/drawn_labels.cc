@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
-#include "client/batch/leader_source.h"
+#include "client/batch/leaders.h"
 #include "client/batch/text_values.h"
 
 namespace duet::client::batch {

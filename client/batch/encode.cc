@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "client/batch/capture_layout.h"
-#include "model/formats/flat/sbu_text.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/recorded_motion.h"
 #include "model/motion/resample.h"
@@ -15,14 +13,10 @@ formats::Format FileFormat(v1::Format format) {
   switch (format) {
     case v1::FORMAT_BVH:
       return formats::Format::kBvh;
-    case v1::FORMAT_CSV:
-      return formats::Format::kCsv;
-    case v1::FORMAT_NPY:
-      return formats::Format::kNpy;
     case v1::FORMAT_GLB:
       return formats::Format::kGlb;
     default:
-      return formats::Format::kJson;
+      return formats::Format::kNpy;
   }
 }
 
@@ -44,20 +38,6 @@ absl::Status AddFiles(v1::Format format, const motion::ClipPair& pair,
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::vector<EncodedFile>> EncodeCapture(const dataset::DatasetLayout& captures,
-                                                       formats::Side leader_side,
-                                                       const motion::ClipPair& pair) {
-  formats::flat::SbuOptions options;
-  options.joint_names = captures.skeleton.joint_names;
-  options.frame_rate_hz = captures.frame_rate_hz;
-  options.coordinates = captures.coordinates;
-  formats::flat::SbuRecording people = {pair.leader, pair.follower};
-  if (leader_side == formats::Side::kRight) std::swap(people.left, people.right);
-  absl::StatusOr<std::string> text = FormatSbu(people, options);
-  if (!text.ok()) return text.status();
-  return std::vector<EncodedFile>{{".txt", *std::move(text)}};
-}
-
 motion::Clip AtRate(motion::Clip clip, double rate_hz) {
   if (clip.frame_rate_hz == rate_hz || clip.frame_count() < 2) return clip;
   clip.poses = motion::Resample(clip.poses, clip.frame_rate_hz, rate_hz);
@@ -71,37 +51,24 @@ std::vector<std::string> EndingsOf(v1::Format format) {
   switch (format) {
     case v1::FORMAT_BVH:
       return {".leader.bvh", ".follower.bvh"};
-    case v1::FORMAT_CSV:
-      return {".csv"};
-    case v1::FORMAT_NPY:
-      return {".npy"};
     case v1::FORMAT_GLB:
       return {".glb"};
     default:
-      return {".json"};
+      return {".npy"};
   }
 }
 
-std::optional<double> RateOf(const v1::Output& output) {
-  const dataset::DatasetLayout* const captures = CapturesOf(output.layout());
-  if (captures != nullptr) return captures->frame_rate_hz;
-  if (output.has_frame_rate_hz()) return output.frame_rate_hz();
-  return std::nullopt;
-}
-
 motion::ClipPair AtOutputRate(motion::ClipPair pair, const v1::Output& output) {
-  const std::optional<double> rate_hz = RateOf(output);
-  if (!rate_hz.has_value()) return pair;
-  return {AtRate(std::move(pair.leader), *rate_hz), AtRate(std::move(pair.follower), *rate_hz)};
+  if (!output.has_frame_rate_hz()) return pair;
+  const double rate_hz = output.frame_rate_hz();
+  return {AtRate(std::move(pair.leader), rate_hz), AtRate(std::move(pair.follower), rate_hz)};
 }
 
-absl::StatusOr<std::vector<EncodedFile>> Encode(const v1::Output& output, formats::Side leader_side,
+absl::StatusOr<std::vector<EncodedFile>> Encode(const v1::Output& output,
                                                 const motion::ClipPair& pair,
                                                 const motion::Skeleton& skeleton) {
   absl::Status status = CheckPair(pair);
   if (!status.ok()) return status;
-  const dataset::DatasetLayout* const captures = CapturesOf(output.layout());
-  if (captures != nullptr) return EncodeCapture(*captures, leader_side, pair);
   std::vector<EncodedFile> all;
   for (const int format : output.formats()) {
     status = AddFiles(static_cast<v1::Format>(format), pair, skeleton, &all);

@@ -1,7 +1,6 @@
 #ifndef DUET_CLIENT_BATCH_ENCODE_H_
 #define DUET_CLIENT_BATCH_ENCODE_H_
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,16 +20,13 @@ struct EncodedFile {
 // What follows an item's name in the names of its files of a format.
 std::vector<std::string> EndingsOf(v1::Format format);
 
-// The frame rate of every item in Hz, set by the layout or the recipe. Absent: each item has its
-// leader's rate.
-std::optional<double> RateOf(const v1::Output& output);
-
-// The pair at that rate. Both people have the same number of frames before and after.
+// The pair at the frame rate of the recipe, if it states one. Both people have the same number of
+// frames before and after.
 motion::ClipPair AtOutputRate(motion::ClipPair pair, const v1::Output& output);
 
-// The files of a pair: two for BVH, one for any other format. A layout of captures has one file
-// with the leader on its side. INVALID_ARGUMENT for a pair that the format cannot hold.
-absl::StatusOr<std::vector<EncodedFile>> Encode(const v1::Output& output, formats::Side leader_side,
+// The files of a pair: two for BVH, one for any other format. INVALID_ARGUMENT for a pair that the
+// format cannot hold.
+absl::StatusOr<std::vector<EncodedFile>> Encode(const v1::Output& output,
                                                 const motion::ClipPair& pair,
                                                 const motion::Skeleton& skeleton);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -37,22 +36,17 @@ absl::Status CheckSameJob(const fs::path& shard, const JobIdentity& first,
       [](const JobIdentity::Model& a, const JobIdentity::Model& b) {
         return ModelText(a.choice) == ModelText(b.choice) && a.weights_sha256 == b.weights_sha256;
       });
-  if (same_models && first.up == other.up) return absl::OkStatus();
-  return absl::FailedPreconditionError(
-      absl::StrCat(shard.string(), ": expected the ",
-                   same_models ? "vertical (input.level)" : "models and weights",
-                   " of the other items, got another"));
+  if (same_models) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat(
+      shard.string(), ": expected the models and weights of the other items, got others"));
 }
 
 // Moves the files of an item. A run that was stopped may have moved some of them.
-absl::Status MoveFiles(const fs::path& from, const fs::path& to,
-                       const nlohmann::ordered_json& record) {
-  if (record["state"] != kDone) return absl::OkStatus();
-  for (const nlohmann::ordered_json& file : record["files"]) {
-    const std::string path = file["path"];
+absl::Status MoveFiles(const fs::path& from, const fs::path& to, const v1::IndexEntry& record) {
+  for (const v1::IndexEntry::File& file : record.files()) {
     std::error_code error;
-    if (!fs::exists(from / path, error)) continue;
-    absl::Status status = RenameInto((from / path).string(), (to / path).string());
+    if (!fs::exists(from / file.path(), error)) continue;
+    absl::Status status = RenameInto((from / file.path()).string(), (to / file.path()).string());
     if (!status.ok()) return status;
   }
   return absl::OkStatus();
@@ -67,7 +61,7 @@ absl::Status Take(const JobFolder& shard, const JobFolder& folder, int64_t* item
   absl::Status status = journal.Open(folder.journal(), known->size());
   if (!status.ok()) return status;
   status = made->ForEach([&](const JournalEntry& entry) {
-    const absl::StatusOr<nlohmann::ordered_json> record = ParseRecord(entry.record);
+    const absl::StatusOr<v1::IndexEntry> record = ParseRecord(entry.record);
     if (!record.ok()) return absl::OkStatus();  // the run requests it again
     journal.Add(entry.item, entry.record);
     ++*items;

@@ -21,7 +21,7 @@ struct Gathered {
 // after an interruption, and shards may be incomplete: the run makes what is missing.
 //
 // Errors: ABORTED if a shard is in use or a folder cannot be written; FAILED_PRECONDITION if a
-// shard has another recipe, other models or another vertical; DATA_LOSS for a damaged journal.
+// shard has another recipe or other models; DATA_LOSS for a damaged journal.
 absl::StatusOr<Gathered> GatherShards(const JobIdentity& wanted, const JobFolder& folder,
                                       JobIdentity* begun);
 

@@ -1,215 +1,218 @@
 #include "client/batch/index.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <string>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
-#include "absl/strings/str_replace.h"
-#include "client/batch/capture_layout.h"
-#include "client/batch/dataset_json.h"
 #include "client/batch/durable_file.h"
+#include "client/batch/encode.h"
 #include "client/batch/record.h"
+#include "model/motion/coordinates.h"
 
 namespace duet::client::batch {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr size_t kCausesKept = 20;
+constexpr char kFormat[] = "duet-batch";
+constexpr int kFormatVersion = 1;
 
-constexpr const char* kFields[] = {
-    "item",  "id",   "name",    "leader",     "leader_sha256", "side",   "reaction",     "labels",
-    "model", "seed", "variety", "candidates", "request_id",    "frames", "frame_rate_hz"};
-
-std::string Plain(std::string text) {
-  return absl::StrReplaceAll(text, {{"\t", " "}, {"\n", " "}, {"\r", " "}});
+bool Same(const motion::Skeleton& a, const motion::Skeleton& b) {
+  return a.joint_names == b.joint_names && a.Parents() == b.Parents() && a.root == b.root;
 }
 
-// A field as a TSV cell, without tabs and line ends; empty if the field is missing.
-std::string Cell(const ordered_json& object, const char* name) {
-  const auto found = object.find(name);
-  if (found == object.end()) return "";
-  return Plain(found->is_string() ? found->get<std::string>() : Line(*found));
-}
-
-// "kick=1,hug=0.5", or the keyframes as JSON.
-std::string LabelsCell(const ordered_json& record) {
-  if (!record.contains("labels")) return Cell(record, "keyframes");
-  std::vector<std::string> labels;
-  for (const auto& [name, weight] : record["labels"].items()) {
-    labels.push_back(absl::StrCat(name, "=", weight.dump()));
+// Each skeleton once, at the index that SkeletonIndices returns.
+ordered_json SkeletonsJson(const std::vector<motion::Skeleton>& skeletons) {
+  ordered_json array = ordered_json::array();
+  const std::vector<int> indices = SkeletonIndices(skeletons);
+  for (size_t model = 0; model < skeletons.size(); ++model) {
+    if (indices[model] != static_cast<int>(array.size())) continue;
+    const motion::Skeleton& skeleton = skeletons[model];
+    array.push_back({{"joint_names", skeleton.joint_names},
+                     {"parents", skeleton.Parents()},
+                     {"root_joint", skeleton.joint_names[static_cast<size_t>(skeleton.root)]}});
   }
-  return Plain(absl::StrJoin(labels, ","));
+  return array;
 }
 
-// A field of every file, separated by commas.
-std::string FilesCell(const ordered_json& record, const char* field) {
-  std::vector<std::string> cells;
-  for (const ordered_json& file : record["files"]) cells.push_back(Cell(file, field));
-  return absl::StrJoin(cells, ",");
+void AddText(const char* name, const std::string& text, ordered_json* object) {
+  if (!text.empty()) (*object)[name] = text;
 }
 
-std::string ReasonsCell(const ordered_json& record) {
-  std::vector<std::string> reasons;
-  for (const ordered_json& reason : record["reasons"]) reasons.push_back(reason);
-  return Plain(absl::StrJoin(reasons, "; "));
-}
-
-// A table of items: the columns of every answer, and then its own.
-class Table {
- public:
-  Table(const JobFolder& folder, const std::string& name, std::vector<std::string> own_columns)
-      : file_(folder.temporary() / name),
-        path_(folder.out() / name),
-        own_columns_(std::move(own_columns)) {}
-
-  absl::Status Open() {
-    std::vector<std::string> header(std::begin(kFields), std::end(kFields));
-    header.insert(header.end(), std::begin(kQualityFields), std::end(kQualityFields));
-    header.emplace_back("unfamiliarity");
-    absl::Status status = file_.Open();
-    return status.ok() ? Append(header, own_columns_) : status;
+ordered_json ModelsJson(const SetSource& source, const SetCounts& counts) {
+  const std::vector<int> skeletons = SkeletonIndices(source.skeletons);
+  ordered_json array = ordered_json::array();
+  for (size_t i = 0; i < source.models.size(); ++i) {
+    const ModelInfo& about = source.models[i];
+    const std::string name = absl::StrCat(about.name, "@", about.version);
+    ordered_json model = {{"name", name}};
+    AddText("weights_sha256", about.weights_sha256, &model);
+    AddText("terms", about.terms, &model);
+    model["free_for_all_uses"] = about.free_for_all_uses;
+    AddText("description", about.description, &model);
+    model["interaction_classes"] = about.interaction_classes;
+    model["skeleton"] = skeletons[i];
+    if (about.frame_rate_hz > 0) model["frame_rate_hz"] = about.frame_rate_hz;
+    model["samples"] = about.samples;
+    const auto made_by = counts.made_by.find(name);
+    if (made_by != counts.made_by.end()) AddMadeBy(made_by->second, &model);
+    array.push_back(std::move(model));
   }
-  absl::Status Add(const ordered_json& record, const std::vector<std::string>& own_cells) {
-    std::vector<std::string> cells;
-    for (const char* field : kFields) {
-      cells.push_back(absl::string_view(field) == "labels" ? LabelsCell(record)
-                                                           : Cell(record, field));
+  return array;
+}
+
+// The classes of all models, each once, in the order of the models.
+std::vector<std::string> AllClasses(const std::vector<ModelInfo>& models) {
+  std::vector<std::string> all;
+  for (const ModelInfo& model : models) {
+    for (const std::string& name : model.interaction_classes) {
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
     }
-    for (const char* figure : kQualityFields) cells.push_back(Cell(record["quality"], figure));
-    cells.push_back(Cell(record, "unfamiliarity"));
-    return Append(cells, own_cells);
   }
+  return all;
+}
+
+ordered_json FilesJson(v1::Format format) {
+  ordered_json files = {{"format", v1::Format_Name(format)},
+                        {"endings", EndingsOf(format)},
+                        {"unit", format == v1::FORMAT_BVH ? "centimetres" : "metres"},
+                        {"up_axis", motion::UpAxisName(motion::UpAxis::kYUp)}};
+  if (format == v1::FORMAT_NPY) {
+    files["dtype"] = "float32";
+    files["shape"] = {"people", "frames", "joints", "coordinates"};
+  }
+  return files;
+}
+
+// A file with the records of one state.
+class RecordFile {
+ public:
+  RecordFile(const JobFolder& folder, const std::string& name)
+      : file_(folder.temporary() / name), path_(folder.out() / name) {}
+  absl::Status Open() { return file_.Open(); }
+  absl::Status Add(const std::string& record) { return file_.Append(record + "\n"); }
   absl::Status Finish() { return file_.Finish(path_); }
 
  private:
-  absl::Status Append(const std::vector<std::string>& common, const std::vector<std::string>& own) {
-    return file_.Append(
-        absl::StrCat(absl::StrJoin(common, "\t"), "\t", absl::StrJoin(own, "\t"), "\n"));
-  }
-
   DurableFile file_;
   const std::filesystem::path path_;
-  const std::vector<std::string> own_columns_;
 };
 
-// The files with one line for each item.
 class IndexWriter {
  public:
-  IndexWriter(const JobFolder& folder, bool captures)
-      : captures_(captures),
-        lines_(folder.temporary() / "index.jsonl"),
-        lines_path_(folder.out() / "index.jsonl"),
-        done_table_(folder, "index.tsv", DoneColumns(captures)),
-        rejected_table_(folder, "rejected.tsv", {"answers", "reasons", "extra"}),
-        failed_table_(folder) {}
+  explicit IndexWriter(const JobFolder& folder)
+      : done_(folder, "index.jsonl"),
+        rejected_(folder, "rejected.jsonl"),
+        failed_(folder, "failed.jsonl") {}
 
   absl::Status Open() {
-    absl::Status status = lines_.Open();
-    status.Update(done_table_.Open());
-    status.Update(rejected_table_.Open());
-    status.Update(failed_table_.Open());
+    absl::Status status = done_.Open();
+    status.Update(rejected_.Open());
+    status.Update(failed_.Open());
     return status;
   }
 
-  absl::Status Add(const JournalEntry& entry) {
-    const absl::StatusOr<ordered_json> record = ParseRecord(entry.record);
+  absl::Status Add(const std::string& text) {
+    const absl::StatusOr<v1::IndexEntry> record = ParseRecord(text);
     if (!record.ok()) return record.status();
-    if ((*record)["state"] == kDone) return AddDone(*record);
-    if ((*record)["state"] == kFailed) {
-      ++counts_.failed;
-      return failed_table_.Add(*record);
+    if (record->state() == kDone) {
+      CountDone(*record);
+      return done_.Add(text);
     }
-    ++counts_.rejected;
-    return rejected_table_.Add(
-        *record, {Cell(*record, "answers"), ReasonsCell(*record), Cell(*record, "extra")});
+    if (record->state() == kRejected) {
+      ++counts_.rejected;
+      return rejected_.Add(text);
+    }
+    if (counts_.failed++ == 0) counts_.first_failure = record->error().message();
+    failed_leaders_.insert(record->leader());
+    return failed_.Add(text);
   }
 
-  absl::Status Finish() {
-    absl::Status status = rejected_table_.Finish();
-    status.Update(failed_table_.Finish());
-    counts_.failures = failed_table_.causes().Largest(kCausesKept);
-    counts_.failed_leaders = failed_table_.leaders();
-    status.Update(done_table_.Finish());
-    status.Update(lines_.Finish(lines_path_));
-    return status;
+  absl::StatusOr<SetCounts> Finish() {
+    absl::Status status = rejected_.Finish();
+    status.Update(failed_.Finish());
+    status.Update(done_.Finish());
+    if (!status.ok()) return status;
+    counts_.failed_leaders = static_cast<int64_t>(failed_leaders_.size());
+    return std::move(counts_);
   }
-
-  const SetCounts& counts() const { return counts_; }
-  const DoneItems& done() const { return done_; }
 
  private:
-  // The columns that readers of captures need come first.
-  static std::vector<std::string> DoneColumns(bool captures) {
-    std::vector<std::string> columns = {"files", "sha256", "extra"};
-    if (captures) columns.insert(columns.begin(), {"path", "leader_side"});
-    return columns;
-  }
-
-  absl::Status AddDone(const ordered_json& record) {
+  void CountDone(const v1::IndexEntry& record) {
     ++counts_.done;
-    for (const ordered_json& file : record["files"]) counts_.bytes += file["bytes"].get<uint64_t>();
-    done_.Add(record);
-    std::vector<std::string> cells = {FilesCell(record, "path"), FilesCell(record, "sha256"),
-                                      Cell(record, "extra")};
-    if (captures_) {
-      cells.insert(cells.begin(), {Cell(record["files"][0], "path"), Cell(record, "side")});
+    counts_.frames += record.frames();
+    ++counts_.items_by_rate[record.frame_rate_hz()];
+    if (const std::optional<MadeBy> how = MadeByOf(record)) {
+      counts_.made_by.try_emplace(record.model(), *how);
     }
-    absl::Status status = lines_.Append(Line(record) + "\n");
-    status.Update(done_table_.Add(record, cells));
-    return status;
   }
 
-  const bool captures_;  // in a layout of captures
-  DurableFile lines_;
-  const std::filesystem::path lines_path_;
-  Table done_table_, rejected_table_;
-  FailureTable failed_table_;
+  RecordFile done_, rejected_, failed_;
+  std::set<std::string> failed_leaders_;
   SetCounts counts_;
-  DoneItems done_;
 };
-
-std::string SummaryJson(const SetSource& source, const SetCounts& counts,
-                        const PlannedItems& planned) {
-  ordered_json models = ordered_json::array();
-  for (const ModelInfo& model : source.models) models.push_back(NameOfModel(model));
-  const ordered_json summary = {
-      {"planned", planned.count},
-      {"whole_plan", planned.whole},
-      {"done", counts.done},
-      {"rejected", counts.rejected},
-      {"failed", counts.failed},
-      {"missing", planned.count - counts.done - counts.rejected - counts.failed},
-      {"bytes", counts.bytes},
-      {"models", models},
-      {"recipe_sha256", source.recipe.digest},
-      {"shard", absl::StrCat(source.shard.index, "/", source.shard.count)}};
-  return summary.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-}
 
 }  // namespace
 
+std::vector<int> SkeletonIndices(const std::vector<motion::Skeleton>& skeletons) {
+  std::vector<int> indices;
+  int count = 0;
+  for (size_t i = 0; i < skeletons.size(); ++i) {
+    size_t first = 0;
+    while (!Same(skeletons[first], skeletons[i])) ++first;
+    indices.push_back(first < i ? indices[first] : count++);
+  }
+  return indices;
+}
+
+std::string DatasetJson(const SetSource& source, const SetCounts& counts, int64_t planned) {
+  ordered_json dataset = {{"format", kFormat},
+                          {"format_version", kFormatVersion},
+                          {"recipe_sha256", source.recipe.digest},
+                          {"items",
+                           {{"done", counts.done},
+                            {"rejected", counts.rejected},
+                            {"failed", counts.failed},
+                            {"missing", planned - counts.done - counts.rejected - counts.failed}}},
+                          {"frames", counts.frames}};
+  const v1::Output& output = source.recipe.output;
+  if (output.has_frame_rate_hz()) {
+    dataset["frame_rate_hz"] = output.frame_rate_hz();
+  } else if (counts.items_by_rate.size() == 1) {
+    dataset["frame_rate_hz"] = counts.items_by_rate.begin()->first;
+  }
+  dataset["frame_rates"] = ordered_json::array();
+  for (const auto& [rate_hz, items] : counts.items_by_rate) {
+    dataset["frame_rates"].push_back({{"frame_rate_hz", rate_hz}, {"items", items}});
+  }
+  dataset["skeletons"] = SkeletonsJson(source.skeletons);
+  dataset["models"] = ModelsJson(source, counts);
+  dataset["interaction_classes"] = AllClasses(source.models);
+  dataset["files"] = ordered_json::array();
+  for (const int format : output.formats()) {
+    dataset["files"].push_back(FilesJson(static_cast<v1::Format>(format)));
+  }
+  return dataset.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const SetSource& source,
-                                     const PlannedItems& planned, const JobFolder& folder) {
-  IndexWriter writer(folder, CapturesOf(source.recipe.output.layout()) != nullptr);
+                                     int64_t planned, const JobFolder& folder) {
+  IndexWriter writer(folder);
   absl::Status status = writer.Open();
   if (status.ok()) {
-    status = journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry); });
-  }
-  if (status.ok()) status = writer.Finish();
-  if (status.ok()) {
-    status = WriteDurably(folder.temporary() / "dataset.json", folder.out() / "dataset.json",
-                          DatasetJson(source, writer.counts(), planned.count, writer.done()));
-  }
-  // Last: its presence means that the others are there.
-  if (status.ok()) {
-    status = WriteDurably(folder.temporary() / "summary.json", folder.out() / "summary.json",
-                          SummaryJson(source, writer.counts(), planned));
+    status =
+        journal.ForEach([&writer](const JournalEntry& entry) { return writer.Add(entry.record); });
   }
   if (!status.ok()) return status;
-  return writer.counts();
+  absl::StatusOr<SetCounts> counts = writer.Finish();
+  if (!counts.ok()) return counts;
+  // Last: it describes the others.
+  status = WriteDurably(folder.temporary() / "dataset.json", folder.out() / "dataset.json",
+                        DatasetJson(source, *counts, planned));
+  if (!status.ok()) return status;
+  return counts;
 }
 
 }  // namespace duet::client::batch

@@ -2,33 +2,32 @@
 #define DUET_CLIENT_BATCH_INDEX_H_
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/batch/failures.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
+#include "client/batch/origins.h"
 #include "client/batch/recipe.h"
-#include "client/batch/shard.h"
 #include "client/result.h"
 #include "model/motion/skeleton.h"
 
 namespace duet::client::batch {
 
-// The number of items in a data set by result.
+// What a data set holds, collected from the records of its items. Memory grows with the number of
+// different frame rates and models, and of leaders that failed.
 struct SetCounts {
   int64_t done = 0;
   int64_t rejected = 0;
   int64_t failed = 0;
   int64_t failed_leaders = 0;  // different files of items that failed
-  uint64_t bytes = 0;
-  std::vector<FailureCause> failures;  // the causes of most items
-};
-
-// The planned items.
-struct PlannedItems {
-  int64_t count = 0;
-  bool whole = false;  // a run has reached the end of the plan: `count` is final
+  std::string first_failure;   // why the first of them failed
+  // Of the items that are done.
+  uint64_t frames = 0;
+  std::map<double, int64_t> items_by_rate;  // Hz
+  std::map<std::string, MadeBy> made_by;    // the first item of each model, "name@version"
 };
 
 // What the items of a set were made with. `models` and `skeletons` are those of the plan.
@@ -36,15 +35,20 @@ struct SetSource {
   const Recipe& recipe;
   const std::vector<ModelInfo>& models;
   const std::vector<motion::Skeleton>& skeletons;
-  Shard shard;
 };
 
-// Writes index.jsonl and index.tsv (done items), rejected.tsv, failed.tsv (failures.h),
-// dataset.json (dataset_json.h) and summary.json, in the order of the items and without times. The
-// files only depend on the journal's records, not on their order. Each replaces the one of an
-// earlier run when it is finished.
+// The index of each model's skeleton in dataset.json. Equal skeletons have the same index.
+std::vector<int> SkeletonIndices(const std::vector<motion::Skeleton>& skeletons);
+
+// The content of dataset.json: Dataset of proto/duet/batch/v1/dataset.proto. `planned`: the number
+// of items of a finished set.
+std::string DatasetJson(const SetSource& source, const SetCounts& counts, int64_t planned);
+
+// Writes index.jsonl (done items), rejected.jsonl and failed.jsonl, in the order of the items and
+// without times, and then dataset.json. They only depend on the journal's records, not on their
+// order. Each replaces the one of an earlier run when it is finished.
 absl::StatusOr<SetCounts> WriteIndex(const JournalReader& journal, const SetSource& source,
-                                     const PlannedItems& planned, const JobFolder& folder);
+                                     int64_t planned, const JobFolder& folder);
 
 }  // namespace duet::client::batch
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "client/batch/dataset_json.h"
 #include "client/error_details.h"
 #include "model/base/sha256.h"
 #include "nlohmann/json.hpp"
@@ -16,7 +15,6 @@ namespace {
 constexpr int kAttempts = 3;  // of a call that fails temporarily
 constexpr size_t kQueuedItems = 64;
 constexpr size_t kQueuedAnswers = 64;
-constexpr size_t kCausesReported = 20;
 constexpr size_t kUnwrittenBytes = size_t{64} << 20;
 // How long items are collected before they are flushed to disk together. A flush costs as much as
 // several items, and an item that is lost before the flush is requested again.
@@ -40,17 +38,12 @@ Job::Job(Parts parts, Plan plan, const JobOptions& options)
     : parts_(std::move(parts)),
       plan_(std::move(plan)),
       options_(options),
-      gate_(static_cast<int>(parts_.servers.size()), options.calls, options.patience),
+      gate_(options.calls, options.patience),
       queue_(kQueuedItems),
       answers_(kQueuedAnswers),
       settled_(kUnwrittenBytes),
       skeleton_indices_(SkeletonIndices(parts_.skeletons)),
       leaders_(parts_.models.size()) {}
-
-Client& Job::NextClient(int server) {
-  std::vector<Client>& clients = parts_.servers[static_cast<size_t>(server)];
-  return clients[turns_++ % clients.size()];
-}
 
 void Job::Stop() {
   gate_.Stop();
@@ -66,7 +59,7 @@ void Job::StopWith(const absl::Status& status) {
 }
 
 Progress Job::progress() const {
-  return {planned_, resumed_, done_, rejected_, failed_, unfinished_, bytes_, gate_.state()};
+  return {planned_, resumed_, done_, rejected_, failed_, unfinished_, gate_.state()};
 }
 
 // Returns false after a stop.
@@ -83,8 +76,7 @@ absl::Status Job::Feed() {
     if (!item->has_value() || (*item)->number >= options_.limit) {
       return absl::AbortedError("the list of leaders was changed during the run");
     }
-    const std::string& place = (*item)->place;
-    if (!parts_.shard.Has(place) || !InShare(place, options_.share)) continue;
+    if (!parts_.shard.Has((*item)->place)) continue;
     ++planned_;
     if (parts_.survey->IsSettled((*item)->number)) {
       ++resumed_;
@@ -92,7 +84,6 @@ absl::Status Job::Feed() {
       return absl::OkStatus();
     }
   }
-  fed_ = true;
   return absl::OkStatus();
 }
 
@@ -115,24 +106,23 @@ void Job::Ask(Work work) {
   }
   SynthesisRequest request =
       ToRequest(work.item, parts_.recipe, parts_.models[model], *leader, work.retry);
-  const std::optional<flow::ServerChoice::Call> call = gate_.Start();
+  const std::optional<int64_t> call = gate_.Start();
   if (!call.has_value()) {
     queue_.Done();
     return queue_.Stop();  // no more calls start
   }
-  NextClient(call->server)
-      .SynthesizeAsync(std::move(request), [this, call = *call, work = std::move(work)](
-                                               absl::StatusOr<SynthesisResult> result) {
-        gate_.Finish(call, CallEndOf(result.status()), DelayOf(result.status()));
-        answers_.Put({work, std::move(result)});
-      });
+  parts_.client.SynthesizeAsync(std::move(request), [this, call = *call, work = std::move(work)](
+                                                        absl::StatusOr<SynthesisResult> result) {
+    gate_.Finish(call, CallEndOf(result.status()), DelayOf(result.status()));
+    answers_.Put({work, std::move(result)});
+  });
 }
 
 void Job::KeepUntilClosed() {
   while (std::optional<Answered> answered = answers_.Take()) Receive(*std::move(answered));
 }
 
-// All answers of a set are made in the same way, by whatever server.
+// All answers of a set are made in the same way, whichever server of a name answers.
 absl::Status Job::CheckMaker(const SynthesisResult& result) const {
   const std::string model = absl::StrCat(result.model_name, "@", result.model_version);
   const absl::Status same = parts_.survey->makers().Check(model, MadeByOf(result));
@@ -193,8 +183,7 @@ void Job::Judge(Work work, const SynthesisResult& result) {
 
 void Job::Keep(const Item& item, const RecordedAnswer& answer, const motion::ClipPair& pair) {
   const motion::Skeleton& skeleton = parts_.skeletons[static_cast<size_t>(item.model)];
-  absl::StatusOr<std::vector<EncodedFile>> encoded =
-      Encode(parts_.recipe.output, item.side, pair, skeleton);
+  absl::StatusOr<std::vector<EncodedFile>> encoded = Encode(parts_.recipe.output, pair, skeleton);
   if (!encoded.ok()) return Fail(item, encoded.status());
   std::vector<RecordedFile> recorded;
   for (const EncodedFile& file : *encoded) {
@@ -210,10 +199,8 @@ void Job::Fail(const Item& item, const absl::Status& error) {
 
 // Writes no journal record, so the next run requests the item again.
 void Job::FailForNow(const Item& item, const absl::Status& error) {
-  ++unfinished_;
   const std::lock_guard<std::mutex> lock(unfinished_mutex_);
-  unfinished_causes_.Add(item.leader->given, absl::StatusCodeToString(error.code()),
-                         error.message(), 1, 0);
+  if (unfinished_++ == 0) first_unfinished_ = absl::StrCat(item.name, ": ", error.message());
 }
 
 void Job::Settle(Settled settled) {
@@ -250,12 +237,7 @@ absl::Status Job::Write(const std::vector<Settled>& all, FileGroup* files, Journ
 }
 
 void Job::Count(const Settled& settled) {
-  for (const EncodedFile& file : settled.files) bytes_ += file.content.size();
-  if (settled.state == kFailed) {
-    ++failed_;
-    return;
-  }
-  ++(settled.state == kDone ? done_ : rejected_);
+  ++(settled.state == kDone ? done_ : settled.state == kFailed ? failed_ : rejected_);
 }
 
 absl::Status Job::RunThreads(JournalWriter* writer) {
@@ -284,10 +266,9 @@ absl::StatusOr<JobReport> Job::Finish() {
   // A run that was stopped has not reached all of them. Earlier runs may have settled more.
   report.planned = std::max<int64_t>(parts_.planned, journal->count());
   report.unfinished = unfinished_;
-  report.unfinished_causes = unfinished_causes_.Largest(kCausesReported);
-  const SetSource source{parts_.recipe, parts_.models, parts_.skeletons, parts_.shard};
-  absl::StatusOr<SetCounts> counts =
-      WriteIndex(*journal, source, {report.planned, fed_ && parts_.whole_plan}, *parts_.folder);
+  report.first_unfinished = first_unfinished_;
+  absl::StatusOr<SetCounts> counts = WriteIndex(
+      *journal, {parts_.recipe, parts_.models, parts_.skeletons}, report.planned, *parts_.folder);
   if (!counts.ok()) return counts.status();
   report.set = *std::move(counts);
   return report;

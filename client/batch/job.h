@@ -15,7 +15,6 @@
 #include "client/batch/answer.h"
 #include "client/batch/durable_file.h"
 #include "client/batch/encode.h"
-#include "client/batch/failures.h"
 #include "client/batch/flow/call_gate.h"
 #include "client/batch/flow/queues.h"
 #include "client/batch/index.h"
@@ -30,11 +29,9 @@ namespace duet::client::batch {
 
 struct JobOptions {
   flow::Options calls;
-  // Maximum time for which all servers may be away before the run ends.
+  // Maximum time for which the server may be away before the run ends.
   flow::Duration patience = std::chrono::minutes(2);
-  // The part of the plan to make: its first items, and a share of these, chosen by hash.
-  int64_t limit = std::numeric_limits<int64_t>::max();
-  double share = 1;
+  int64_t limit = std::numeric_limits<int64_t>::max();  // only the first items of the plan
 };
 
 // Progress of a run, in items.
@@ -45,7 +42,6 @@ struct Progress {
   int64_t rejected = 0;
   int64_t failed = 0;      // permanently
   int64_t unfinished = 0;  // failed temporarily
-  uint64_t bytes = 0;
   flow::CallGate::State calls;
 };
 
@@ -54,7 +50,7 @@ struct JobReport {
   SetCounts set;        // the content of the data set now
   int64_t planned = 0;  // items of the finished data set
   int64_t unfinished = 0;
-  std::vector<FailureCause> unfinished_causes;  // the largest; without numbers of leaders
+  std::string first_unfinished;  // why the first of them failed
   // Why the run ended early; OK if it did not, or if Stop ended it.
   absl::Status stopped;
   bool complete() const { return set.done + set.rejected + set.failed >= planned; }
@@ -71,21 +67,19 @@ struct JobReport {
 // writes the same files.
 class Job {
  public:
-  // `servers`: the clients of each server, which take turns and do not retry. `models` and
-  // `skeletons` are those of the plan. `folder` is open and was begun with the recipe. `survey`
-  // covers the same part of the plan and the same folder; `planned` and `whole_plan` come from the
-  // check of that part.
+  // `client` does not retry. `models` and `skeletons` are those of the
+  // plan. `folder` is open and was begun with the recipe. `survey` covers the same part of the plan
+  // and the same folder; `planned` comes from the check of that part.
   struct Parts {
     Recipe recipe;
     Shard shard;
     std::vector<ModelInfo> models;
     std::vector<motion::Skeleton> skeletons;
-    RequestLimits limits;  // of the servers, if they are known
-    std::vector<std::vector<Client>> servers;
+    RequestLimits limits;  // of the server, if they are known
+    Client client;
     const JobFolder* folder = nullptr;
     Survey* survey = nullptr;
-    int64_t planned = 0;      // items of the part in the job's shard
-    bool whole_plan = false;  // whether these are all items
+    int64_t planned = 0;  // items of the part in the job's shard
   };
   // The plan begins with its first item.
   Job(Parts parts, Plan plan, const JobOptions& options);
@@ -134,7 +128,6 @@ class Job {
   absl::Status RunThreads(JournalWriter* writer);
   absl::StatusOr<JobReport> Finish();
   void StopWith(const absl::Status& status);
-  Client& NextClient(int server);
 
   Parts parts_;
   Plan plan_;
@@ -149,10 +142,8 @@ class Job {
 
   std::atomic<int64_t> planned_{0}, resumed_{0}, done_{0}, rejected_{0}, failed_{0};
   std::atomic<int64_t> unfinished_{0};
-  std::atomic<uint64_t> bytes_{0}, turns_{0};
   std::mutex unfinished_mutex_;
-  FailureCauses unfinished_causes_;
-  bool fed_ = false;  // Feed has reached the end of the part
+  std::string first_unfinished_;
   std::mutex stop_mutex_;
   absl::Status stopped_with_;
 };

@@ -35,18 +35,7 @@ std::string ToJson(const JobIdentity& identity) {
                                    {"recipe", identity.recipe_json},
                                    {"shard", ShardText(identity.shard)},
                                    {"models", models}};
-  if (identity.up) object["up"] = {identity.up->x, identity.up->y, identity.up->z};
   return object.dump(2) + "\n";
-}
-
-motion::Vec3 ReadUp(base::ObjectReader* reader) {
-  std::vector<float> xyz;
-  for (const nlohmann::json& value : reader->Array("up", 3)) {
-    if (value.is_number()) xyz.push_back(value.get<float>());
-  }
-  if (xyz.size() == 3) return {xyz[0], xyz[1], xyz[2]};
-  reader->Fail("up", "expected 3 numbers");
-  return {};
 }
 
 JobIdentity::Model ReadModel(const nlohmann::json& json, base::ObjectReader* parent) {
@@ -72,7 +61,6 @@ absl::StatusOr<JobIdentity> FromJson(const std::string& text) {
   for (const nlohmann::json& model : reader.Array("models", kMaxModels)) {
     identity.models.push_back(ReadModel(model, &reader));
   }
-  if (reader.Has("up")) identity.up = ReadUp(&reader);
   absl::Status status = reader.Finish();
   if (!status.ok()) return status;
   return identity;
@@ -89,7 +77,7 @@ absl::Status Refuse(const fs::path& out, const std::string& begun_with) {
 
 JobIdentity IdentityOf(const Recipe& recipe, const Shard& shard,
                        const std::vector<ModelInfo>& models) {
-  JobIdentity identity{recipe.digest, recipe.json, shard, {}, recipe.input.up};
+  JobIdentity identity{recipe.digest, recipe.json, shard, {}};
   for (const ModelInfo& model : models) {
     ModelChoice choice;
     choice.name = model.name;
@@ -163,8 +151,8 @@ bool JobFolder::HasAnswers() const {
   const absl::StatusOr<JournalReader> records = JournalReader::Open(journal());
   if (!records.ok()) return true;
   const absl::Status all_failed = records->ForEach([](const JournalEntry& entry) {
-    const absl::StatusOr<nlohmann::ordered_json> record = ParseRecord(entry.record);
-    const bool failed = record.ok() && (*record)["state"] == kFailed;
+    const absl::StatusOr<v1::IndexEntry> record = ParseRecord(entry.record);
+    const bool failed = record.ok() && record->state() == kFailed;
     return failed ? absl::OkStatus() : absl::AlreadyExistsError("answered");
   });
   return !all_failed.ok();

@@ -2,17 +2,15 @@
 #define DUET_CLIENT_BATCH_JOB_FOLDER_H_
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/batch/durable_file.h"
+#include "client/batch/plan.h"
 #include "client/batch/recipe.h"
-#include "client/batch/shard.h"
 #include "client/result.h"
-#include "model/motion/vec3.h"
 
 namespace duet::client::batch {
 
@@ -25,8 +23,7 @@ struct JobIdentity {
   std::string recipe_digest;
   std::string recipe_json;  // Recipe::json
   Shard shard;
-  std::vector<Model> models;       // empty before a job has begun
-  std::optional<motion::Vec3> up;  // of every leader (SynthesisOptions::up)
+  std::vector<Model> models;  // empty before a job has begun
 };
 
 // The identity of a job of this recipe, with the models that a server serves; none: not known yet.
@@ -38,8 +35,8 @@ absl::Status CheckWeights(const JobIdentity& begun, const JobIdentity& now);
 
 // A data set's folder, held by one process.
 //
-//   <out>/                     the data set: files, dataset.json, index.tsv, index.jsonl,
-//                              rejected.tsv, failed.tsv, summary.json
+//   <out>/                     the data set: files, dataset.json, index.jsonl, rejected.jsonl,
+//                              failed.jsonl
 //   <out>/.duet-batch/         job.json, journal, lock; temporary files
 class JobFolder {
  public:

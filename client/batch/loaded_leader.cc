@@ -34,7 +34,7 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
   const bool own = start.empty() || std::filesystem::equivalent(file, entry.file, error);
   // The settings describe leaders; another file may have another format.
   if (!own && formats::IsReadable(file)) options.format.reset();
-  options.side = entry.follower_start_side.value_or(own ? OtherSide(side) : formats::Side::kLeft);
+  options.side = own ? OtherSide(side) : formats::Side::kLeft;
   absl::StatusOr<FollowerStart> pose = ReadStart(file, options);
   if (!pose.ok()) return pose.status();
   loaded->follower_start = *std::move(pose);
@@ -100,8 +100,7 @@ absl::Status WithMendingField(const absl::Status& status) {
 
 // Whether two lines read the same motion.
 bool SameMotion(const LeaderEntry& a, const LeaderEntry& b) {
-  return a.file == b.file && a.follower_start == b.follower_start &&
-         a.follower_start_side == b.follower_start_side;
+  return a.file == b.file && a.follower_start == b.follower_start;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "client/batch/leader_source.h"
+#include "client/batch/leaders.h"
 #include "client/batch/recipe.h"
 #include "client/request.h"
 #include "client/result.h"

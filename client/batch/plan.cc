@@ -1,6 +1,7 @@
 #include "client/batch/plan.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <set>
 #include <utility>
 
@@ -8,9 +9,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
-#include "client/batch/capture_layout.h"
+#include "absl/strings/str_split.h"
 #include "client/batch/drawn_labels.h"
-#include "client/batch/file_name.h"
 #include "client/batch/journal.h"
 #include "client/batch/text_values.h"
 #include "model/base/random.h"
@@ -21,6 +21,12 @@ namespace duet::client::batch {
 namespace {
 
 constexpr size_t kIdDigits = 32;
+// File systems allow 255 bytes; extensions and the names of temporary files need the rest.
+constexpr std::size_t kMaxPartBytes = 200;
+// Linux opens paths of up to 4095 bytes; the data set's folder needs the rest.
+constexpr std::size_t kMaxPathBytes = 1000;
+constexpr std::size_t kDigestDigits = 16;
+constexpr std::size_t kKeptBytes = 120;
 
 uint64_t DrawnNumber(const std::string& from) {
   uint64_t number = 0;
@@ -47,15 +53,9 @@ std::string Asked(const Item& item, const Recipe& recipe, const ModelInfo& model
   for (const TimedLabels& keyframe : item.keyframes) {
     absl::StrAppend(&text, keyframe.at, ":", Text(keyframe.labels), "\n");
   }
-  if (leader.follower_start_side) {
-    absl::StrAppend(&text, "start side ", SideName(*leader.follower_start_side), "\n");
-  }
   if (leader.partner_direction) {
     const motion::Vec3& to = *leader.partner_direction;
     absl::StrAppend(&text, "direction ", to.x, ",", to.y, ",", to.z, "\n");
-  }
-  for (const JointConstraint& pin : leader.pins) {
-    absl::StrAppend(&text, "pin ", PinText(pin), "\n");
   }
   if (recipe.candidates != 1) absl::StrAppend(&text, "candidates ", recipe.candidates, "\n");
   if (recipe.input.up) {
@@ -84,47 +84,47 @@ void SetDigests(const Recipe& recipe, const ModelInfo& model, Item* item) {
                                     "\n", item->model, "\n", item->sample));
 }
 
-// All combinations of a grid's weights; the last axis changes fastest.
-std::vector<Labels> Combinations(const v1::Grid& grid) {
-  std::vector<Labels> all = {{}};
-  for (const v1::Grid::Axis& axis : grid.axes()) {
-    std::vector<Labels> longer;
-    for (const Labels& labels : all) {
-      for (const float weight : axis.weights()) {
-        longer.push_back(labels);
-        longer.back().push_back({axis.interaction_class(), weight});
-      }
-    }
-    all = std::move(longer);
-  }
-  for (Labels& labels : all) SortByClass(&labels);
-  return all;
-}
-
 // The prefix of a leader's errors: its line of the manifest, or the leader as listed.
 const std::string& PlaceOf(const LeaderEntry& leader) {
   return leader.line.empty() ? leader.given : leader.line;
 }
 
-bool Means(const ModelChoice& choice, const ModelInfo& model) {
-  return choice.name == model.name && choice.version.value_or(model.version) == model.version &&
-         (choice.version_label.empty() ||
-          std::count(model.version_labels.begin(), model.version_labels.end(),
-                     choice.version_label) > 0);
+uint32_t HexNumber(absl::string_view digits) {
+  uint32_t number = 0;
+  for (const char c : digits) {
+    number = number * 16 + static_cast<uint32_t>(c <= '9' ? c - '0' : c - 'a' + 10);
+  }
+  return number;
+}
+
+// At most the first `bytes` bytes, without truncating a character.
+std::string Beginning(const std::string& text, std::size_t bytes) {
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xc0u) == 0x80u) --bytes;
+  return text.substr(0, bytes);
+}
+
+std::string Shortened(const std::string& text, const std::string& of) {
+  return absl::StrCat(Beginning(text, kKeptBytes), "_",
+                      base::Sha256Hex(of).substr(0, kDigestDigits));
 }
 
 }  // namespace
 
-std::string LargestClass(const Item& item) {
-  ClassWeight largest{"none", 0};
-  const auto look = [&largest](const Labels& labels) {
-    for (const ClassWeight& label : labels) {
-      if (label.weight > largest.weight) largest = label;
-    }
-  };
-  look(item.labels);
-  for (const TimedLabels& keyframe : item.keyframes) look(keyframe.labels);
-  return largest.interaction_class;
+bool Shard::Has(absl::string_view item_id) const {
+  // The id is a digest, so its hex digits are uniformly distributed.
+  return static_cast<int>(HexNumber(item_id.substr(0, 8)) % static_cast<uint32_t>(count)) == index;
+}
+
+absl::StatusOr<Shard> ParseShard(absl::string_view text) {
+  const std::pair<std::string, std::string> parts = absl::StrSplit(text, absl::MaxSplits('/', 1));
+  Shard shard;
+  if (absl::SimpleAtoi(parts.first, &shard.index) && absl::SimpleAtoi(parts.second, &shard.count) &&
+      shard.index >= 0 && shard.index < shard.count) {
+    return shard;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("expected INDEX/COUNT such as 0/8, with an index from 0 to COUNT - 1, got ",
+                   base::Quoted(text)));
 }
 
 std::string NameOfLabels(const Labels& labels) {
@@ -136,6 +136,16 @@ std::string NameOfLabels(const Labels& labels) {
     name += absl::StrReplaceAll(WeightText(label.weight), {{".", "p"}, {"-", "m"}, {"+", ""}});
   }
   return name;
+}
+
+std::string FitFileName(const std::string& name) {
+  std::vector<std::string> parts = absl::StrSplit(name, '/');
+  for (std::string& part : parts) {
+    if (part.size() > kMaxPartBytes) part = Shortened(part, part);
+  }
+  std::string fitting = absl::StrJoin(parts, "/");
+  if (fitting.size() <= kMaxPathBytes) return fitting;
+  return Shortened(absl::StrReplaceAll(name, {{"/", "_"}}), name);
 }
 
 uint64_t SeedOf(const Item& item, uint64_t recipe_seed, absl::string_view content, int retry) {
@@ -158,10 +168,6 @@ absl::StatusOr<Plan> Plan::Create(Recipe recipe, std::vector<ModelInfo> models,
   absl::Status status = plan.CheckClasses();
   if (!status.ok()) return status;
   for (const ModelInfo& model : plan.models_) {
-    const dataset::DatasetLayout* const captures = CapturesOf(plan.recipe_.output.layout());
-    if (captures != nullptr) status.Update(CheckJoints(*captures, model));
-    status.Update(plan.CheckClassifier(model));
-    if (!status.ok()) return status;
     if (plan.recipe_.samples > 1 && !model.samples) {
       return absl::InvalidArgumentError(
           absl::StrCat("samples: expected 1, got ", plan.recipe_.samples, ". ", model.name, "@",
@@ -218,11 +224,6 @@ absl::Status Plan::AddReaction(const v1::Reaction& reaction) {
       added.back().keyframes.push_back({keyframe.at(), ToLabels(keyframe.labels())});
     }
   }
-  if (reaction.has_grid()) {
-    for (Labels& labels : Combinations(reaction.grid())) {
-      added.push_back({"", std::move(labels), {}});
-    }
-  }
   if (reaction.has_each_class()) {
     for (const std::string& name : ClassesOr(ClassesOf(reaction))) {
       added.push_back({"", {{name, RangeOf(reaction.each_class()).min}}, {}});
@@ -260,18 +261,6 @@ absl::Status Plan::CheckClasses() const {
   return absl::OkStatus();
 }
 
-absl::Status Plan::CheckClassifier(const ModelInfo& model) const {
-  if (recipe_.classifier == nullptr) return absl::OkStatus();
-  for (const std::string& joint : recipe_.classifier->parts().skeleton.joint_names) {
-    const auto& known = model.joint_names;
-    if (std::find(known.begin(), known.end(), joint) != known.end()) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat("filter.classifier: expected a model with joint ", base::Quoted(joint),
-                     ", got ", model.name, "@", model.version, " without it"));
-  }
-  return absl::OkStatus();
-}
-
 // An id decides the labels by itself, so that no file is read for them.
 std::string Plan::DrawnFrom(const LeaderEntry& leader) {
   if (drawn_.empty() || leader.has_id) return leader.key;
@@ -289,19 +278,8 @@ void Plan::DrawFor(const LeaderEntry& leader) {
   }
 }
 
-std::string Plan::ModelNames() const {
-  return absl::StrJoin(models_, ", ", [](std::string* out, const ModelInfo& model) {
-    absl::StrAppend(out, model.name, "@", model.version);
-  });
-}
-
-absl::Status Plan::CheckForModels(const LeaderEntry& leader) const {
-  for (const int index : leader_models_) {
-    const ModelInfo& model = models_[static_cast<size_t>(index)];
-    const absl::Status pins = CheckPinJoints(leader.pins, model);
-    if (!pins.ok()) {
-      return absl::InvalidArgumentError(absl::StrCat(PlaceOf(leader), ": ", pins.message()));
-    }
+absl::Status Plan::CheckLabels(const LeaderEntry& leader) const {
+  for (const ModelInfo& model : models_) {
     const auto& known = model.interaction_classes;
     for (const ClassWeight& label : leader.labels) {
       if (std::count(known.begin(), known.end(), label.interaction_class) > 0) continue;
@@ -310,29 +288,6 @@ absl::Status Plan::CheckForModels(const LeaderEntry& leader) const {
           absl::StrJoin(known, ", "), "), got ", base::Quoted(label.interaction_class)));
     }
   }
-  return absl::OkStatus();
-}
-
-// In this order: the manifest, the recipe, an index.tsv, left.
-void Plan::SetSides(const LeaderEntry& leader, const dataset::IndexEntry* indexed) {
-  const std::optional<Sides>& asked = recipe_.input.side;
-  sides_ = {asked == Sides::kRight ? formats::Side::kRight : formats::Side::kLeft};
-  if (asked == Sides::kBoth) sides_ = {formats::Side::kLeft, formats::Side::kRight};
-  if (leader.side.has_value()) sides_ = {*leader.side};
-  if (indexed == nullptr || leader.side.has_value() || asked.has_value()) return;
-  const dataset::LeaderSide side = indexed->leader_side;
-  ++(side == dataset::LeaderSide::kRight  ? indexed_sides_.right
-     : side == dataset::LeaderSide::kLeft ? indexed_sides_.left
-                                          : indexed_sides_.unknown);
-  if (side == dataset::LeaderSide::kRight) sides_ = {formats::Side::kRight};
-}
-
-// Sets what an index.tsv may state about a leader.
-absl::Status Plan::UseIndex(LeaderEntry* leader) {
-  const absl::StatusOr<const dataset::IndexEntry*> indexed = indexes_.Find(leader->file);
-  if (!indexed.ok()) return indexed.status();
-  if (*indexed != nullptr && leader->group.empty()) leader->group = (*indexed)->group;
-  SetSides(*leader, *indexed);
   return absl::OkStatus();
 }
 
@@ -346,38 +301,18 @@ absl::Status Plan::BeginLeader(LeaderEntry leader) {
     return absl::InvalidArgumentError(absl::StrCat(
         PlaceOf(leader), ": labels: expected some, since the recipe has no reactions, got none"));
   }
-  const absl::Status indexed = UseIndex(&leader);
-  if (!indexed.ok()) return indexed;
-  leader_models_.clear();
-  const absl::StatusOr<ModelChoice> choice =
-      leader.model.empty() ? ModelChoice() : ParseModelChoice(leader.model);
-  for (size_t i = 0; i < models_.size(); ++i) {
-    if (leader.model.empty() || (choice.ok() && Means(*choice, models_[i]))) {
-      leader_models_.push_back(static_cast<int>(i));
-    }
-  }
-  if (leader_models_.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(PlaceOf(leader), ": model: expected one of the recipe's (", ModelNames(),
-                     "), got ", base::Quoted(leader.model)));
-  }
-  absl::Status status = CheckForModels(leader);
+  absl::Status status = CheckLabels(leader);
   if (!status.ok()) return status;
+  sides_ = {recipe_.input.side == Sides::kRight ? formats::Side::kRight : formats::Side::kLeft};
+  if (recipe_.input.side == Sides::kBoth) sides_ = {formats::Side::kLeft, formats::Side::kRight};
+  if (leader.side.has_value()) sides_ = {*leader.side};
   leader_ = std::make_shared<const LeaderEntry>(std::move(leader));
   side_ = reaction_ = model_ = 0;
   sample_ = 0;
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::string> Plan::NameOf(const Item& item) {
-  const v1::Layout layout = recipe_.output.layout();
-  if (CapturesOf(layout) != nullptr) {
-    const absl::StatusOr<std::string> folder =
-        CaptureFolder(layout, LargestClass(item), item.leader->given);
-    if (folder.ok()) return CaptureName(layout, *folder, ++clips_[*folder]);
-    return absl::InvalidArgumentError(absl::StrCat(PlaceOf(*item.leader), ": reaction ",
-                                                   item.reaction, ": ", folder.status().message()));
-  }
+std::string Plan::NameOf(const Item& item) const {
   std::string name = item.leader->key;
   if (recipe_.input.side == Sides::kBoth) absl::StrAppend(&name, "-", SideName(item.side));
   absl::StrAppend(&name, "-", item.reaction);
@@ -386,11 +321,10 @@ absl::StatusOr<std::string> Plan::NameOf(const Item& item) {
     absl::StrAppend(&name, "-", PlainName(model.name), "_", model.version);
   }
   if (recipe_.samples > 1) absl::StrAppend(&name, "-s", item.sample);
-  if (layout == v1::LAYOUT_MIRROR) return name;
-  return absl::StrCat(PlainName(LargestClass(item)), "/", name);
+  return name;
 }
 
-absl::StatusOr<Item> Plan::MakeItem() {
+Item Plan::MakeItem() {
   const LabelledReaction& reaction = reactions_[reaction_];
   Item item;
   item.number = number_;
@@ -400,12 +334,11 @@ absl::StatusOr<Item> Plan::MakeItem() {
   item.labels = reaction.labels;
   item.keyframes = reaction.keyframes;
   item.drawn = reaction.drawn;
-  item.model = leader_models_[model_];
+  item.model = static_cast<int>(model_);
   item.sample = sample_;
-  absl::StatusOr<std::string> name = NameOf(item);
-  if (!name.ok()) return name.status();
-  item.name = FitFileName(*name);
-  if (item.name != *name) item.full_name = *std::move(name);
+  std::string name = NameOf(item);
+  item.name = FitFileName(name);
+  if (item.name != name) item.full_name = std::move(name);
   SetDigests(recipe_, models_[static_cast<size_t>(item.model)], &item);
   return item;
 }
@@ -414,7 +347,7 @@ absl::StatusOr<Item> Plan::MakeItem() {
 bool Plan::Advance() {
   if (++sample_ < recipe_.samples) return true;
   sample_ = 0;
-  if (++model_ < leader_models_.size()) return true;
+  if (++model_ < models_.size()) return true;
   model_ = 0;
   if (++reaction_ < reactions_.size()) return true;
   reaction_ = 0;
@@ -433,14 +366,10 @@ absl::StatusOr<std::optional<Item>> Plan::Next() {
     return absl::FailedPreconditionError(
         absl::StrCat("plan: expected at most ", kMaxItems, " items, got more. Make several sets."));
   }
-  absl::StatusOr<Item> item = MakeItem();
-  if (!item.ok()) {
-    leader_ = nullptr;
-    return item.status();
-  }
+  Item item = MakeItem();
   ++number_;
   if (!Advance()) leader_ = nullptr;
-  return std::optional<Item>(*std::move(item));
+  return std::optional<Item>(std::move(item));
 }
 
 }  // namespace duet::client::batch

@@ -2,7 +2,6 @@
 #define DUET_CLIENT_BATCH_PLAN_H_
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,9 +9,8 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "client/batch/leader_digests.h"
-#include "client/batch/leader_indexes.h"
-#include "client/batch/leader_source.h"
+#include "client/batch/leaders.h"
+#include "client/batch/origins.h"
 #include "client/batch/recipe.h"
 #include "client/result.h"
 
@@ -23,7 +21,7 @@ struct Item {
   int64_t number = 0;     // from 0, in the order of the leaders
   std::string id;         // 32 hex digits: the digest of the whole request
   std::string asked;      // the same of what is asked of the leader's file
-  std::string place;      // 32 hex digits that decide the shard and the share that have the item
+  std::string place;      // 32 hex digits that decide the shard that has the item
   std::string name;       // unique path of its files, without extension
   std::string full_name;  // the name before it was shortened; empty if it was not
   std::shared_ptr<const LeaderEntry> leader;
@@ -41,21 +39,26 @@ struct Item {
 // every JSON reader can represent it.
 uint64_t SeedOf(const Item& item, uint64_t recipe_seed, absl::string_view content, int retry);
 
-// The number of leaders whose side an index.tsv states, because neither the list nor the recipe
-// does.
-struct IndexedSides {
-  int64_t left = 0;
-  int64_t right = 0;
-  int64_t unknown = 0;  // read as left
+// One of several jobs that make a data set together, each a part of the items.
+struct Shard {
+  int index = 0;
+  int count = 1;
+
+  // Whether an item belongs to this shard. Depends only on a hash of Item::place, so that the
+  // shards have similar sizes on every machine and for every order of the leaders.
+  bool Has(absl::string_view place) const;
 };
+
+// "2/8": the third of eight. INVALID_ARGUMENT.
+absl::StatusOr<Shard> ParseShard(absl::string_view text);
 
 // The items of a recipe and a list of leaders, one after the other. Memory does not depend on the
 // length of the list.
 class Plan {
  public:
   // `models` are the recipe's models, in its order. INVALID_ARGUMENT for classes that a model does
-  // not have, two reactions with the same name, several samples of a model that does not sample,
-  // and joints that the layout does not have.
+  // not have, two reactions with the same name, and several samples of a model that does not
+  // sample.
   static absl::StatusOr<Plan> Create(Recipe recipe, std::vector<ModelInfo> models,
                                      std::unique_ptr<LeaderSource> leaders);
 
@@ -63,9 +66,6 @@ class Plan {
   // line of a manifest (such as an unknown class), the next call continues with the next leader.
   // Any other error ends the plan.
   absl::StatusOr<std::optional<Item>> Next();
-
-  // Of the leaders so far.
-  const IndexedSides& indexed_sides() const { return indexed_sides_; }
 
  private:
   struct LabelledReaction {
@@ -80,17 +80,13 @@ class Plan {
   absl::Status AddDrawn(const v1::Reaction& reaction);
   absl::Status AddNamed(const v1::Reaction& reaction, LabelledReaction labelled);
   absl::Status CheckClasses() const;
-  absl::Status CheckClassifier(const ModelInfo& model) const;
-  std::string ModelNames() const;
-  absl::Status CheckForModels(const LeaderEntry& leader) const;
+  absl::Status CheckLabels(const LeaderEntry& leader) const;
   std::vector<std::string> ClassesOr(const std::vector<std::string>& classes) const;
   std::string DrawnFrom(const LeaderEntry& leader);
   void DrawFor(const LeaderEntry& leader);
-  void SetSides(const LeaderEntry& leader, const dataset::IndexEntry* indexed);
-  absl::Status UseIndex(LeaderEntry* leader);
   absl::Status BeginLeader(LeaderEntry leader);
-  absl::StatusOr<Item> MakeItem();
-  absl::StatusOr<std::string> NameOf(const Item& item);
+  Item MakeItem();
+  std::string NameOf(const Item& item) const;
   bool Advance();
 
   Recipe recipe_;
@@ -98,26 +94,25 @@ class Plan {
   std::unique_ptr<LeaderSource> leaders_;
   std::vector<LabelledReaction> fixed_;  // the same for each leader
   std::vector<v1::Reaction> drawn_;      // different for each leader
-  LeaderIndexes indexes_;
-  IndexedSides indexed_sides_;
   ReadDigests digests_;
 
   // The current leader, and the position of the next item in it.
   std::shared_ptr<const LeaderEntry> leader_;
   std::vector<formats::Side> sides_;
   std::vector<LabelledReaction> reactions_;
-  std::vector<int> leader_models_;
   size_t side_ = 0, reaction_ = 0, model_ = 0;
   int sample_ = 0;
   int64_t number_ = 0;
-  std::map<std::string, int> clips_;  // clips so far, by folder of a layout of captures
 };
-
-// The class with the largest weight, over all keyframes; "none" if no weight is positive.
-std::string LargestClass(const Item& item);
 
 // Classes and weights as a name: "kick", "kick0p5+hug1". A single weight of 1 is left out.
 std::string NameOfLabels(const Labels& labels);
+
+// `name`, a path of several parts without an ending, as file systems and archives can hold it: a
+// part of more than 200 bytes becomes its beginning and the digest of the whole part, "long_..._" +
+// 16 hex digits; a path that is still longer than 1000 bytes becomes a single such part. Short
+// names stay as they are, different ones stay different, and the same name always gives the same.
+std::string FitFileName(const std::string& name);
 
 }  // namespace duet::client::batch
 

@@ -3,32 +3,27 @@
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <google/protobuf/util/json_util.h>
+#include <google/protobuf/util/message_differencer.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "client/batch/capture_layout.h"
+#include "absl/strings/str_split.h"
 #include "client/batch/drawn_labels.h"
-#include "client/batch/level.h"
 #include "client/batch/text_values.h"
 #include "model/base/file.h"
 #include "model/base/printable.h"
 #include "model/base/sha256.h"
-#include "model/base/strict_json.h"
 #include "model/base/text.h"
-#include "model/classifier/classifier_files.h"
 #include "model/messages/message_text.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/stated_unit.h"
-#include "model/retargeting/joint_table.h"
 
 namespace duet::client::batch {
 namespace {
@@ -38,7 +33,7 @@ constexpr uint32_t kMaxSamples = 10'000;
 constexpr uint32_t kMaxMixes = 10'000;
 constexpr uint32_t kMaxRetries = 100;
 constexpr uint32_t kMaxCandidates = 16;
-constexpr size_t kMaxGrid = 100'000;
+constexpr float kMinUprightCosine = 0.70710678f;  // of 45 degrees
 
 // Of the names in a message.
 constexpr size_t kLongestField = 200, kLongestValue = 200;
@@ -78,24 +73,6 @@ void CheckLabels(const v1::Labels& labels, const std::string& field, Checker* ch
     check->Expect(!name.empty(), field + ".weights", "an empty name", "a class");
     check->Weight(absl::StrCat(field, ".weights[", name, "]"), weight);
   }
-}
-
-void CheckGrid(const v1::Grid& grid, const std::string& field, Checker* check) {
-  std::vector<std::string> names;
-  size_t size = 1;
-  check->Expect(grid.axes_size() > 0, field + ".axes", "none", "one or more");
-  for (int i = 0; i < grid.axes_size(); ++i) {
-    const v1::Grid::Axis& axis = grid.axes(i);
-    const std::string at = absl::StrCat(field, ".axes[", i, "]");
-    check->Expect(!axis.interaction_class().empty(), at + ".interaction_class", "none", "a class");
-    check->Expect(axis.weights_size() > 0, at + ".weights", "none", "one or more");
-    for (const float weight : axis.weights()) check->Weight(at + ".weights", weight);
-    check->Different(at + ".weights", axis.weights());
-    names.push_back(axis.interaction_class());
-    size = std::min(kMaxGrid + 1, size * static_cast<size_t>(std::max(1, axis.weights_size())));
-  }
-  check->Different(field + ".axes", names);
-  check->Expect(size <= kMaxGrid, field, "more combinations", "at most 100000");
 }
 
 void CheckRange(const WeightRange& range, const std::string& field, Checker* check) {
@@ -147,8 +124,6 @@ void CheckReaction(const v1::Reaction& reaction, const std::string& field, Check
   switch (reaction.kind_case()) {
     case v1::Reaction::kLabels:
       return CheckLabels(reaction.labels(), field + ".labels", check);
-    case v1::Reaction::kGrid:
-      return CheckGrid(reaction.grid(), field + ".grid", check);
     case v1::Reaction::kMixes:
       return CheckMixes(reaction.mixes(), field + ".mixes", check);
     case v1::Reaction::kEachClass:
@@ -156,7 +131,7 @@ void CheckReaction(const v1::Reaction& reaction, const std::string& field, Check
     case v1::Reaction::kSchedule:
       return CheckSchedule(reaction.schedule(), field + ".schedule", check);
     case v1::Reaction::KIND_NOT_SET:
-      check->Expect(false, field, "nothing", "one of labels, grid, mixes, each_class and schedule");
+      check->Expect(false, field, "nothing", "one of labels, mixes, each_class and schedule");
   }
 }
 
@@ -164,48 +139,31 @@ LeaderInput ReadInput(const v1::LeaderInput& proto, Checker* check) {
   LeaderInput input;
   formats::ReadOptions& reading = input.reading;
   check->Expect(v1::Side_IsValid(proto.side()), "input.side", absl::StrCat(proto.side()), "a side");
-  if (proto.side() == v1::SIDE_LEFT) input.side = Sides::kLeft;
   if (proto.side() == v1::SIDE_RIGHT) input.side = Sides::kRight;
   if (proto.side() == v1::SIDE_BOTH) input.side = Sides::kBoth;
   input.starts_as_other_person = proto.follower_start() == v1::FOLLOWER_START_OTHER_PERSON;
   if (proto.has_frame_rate_hz()) reading.frame_rate_hz = proto.frame_rate_hz();
-  std::optional<double> metres_per_unit;
-  if (proto.has_metres_per_unit()) metres_per_unit = proto.metres_per_unit();
+  if (proto.has_metres_per_unit()) reading.metres_per_unit = proto.metres_per_unit();
   check->Expect(reading.frame_rate_hz.value_or(1) > 0, "input.frame_rate_hz",
                 absl::StrCat(proto.frame_rate_hz()), "more than 0");
-  check->Expect(metres_per_unit.value_or(1) > 0, "input.metres_per_unit",
+  check->Expect(reading.metres_per_unit.value_or(1) > 0, "input.metres_per_unit",
                 absl::StrCat(proto.metres_per_unit()), "more than 0");
-  std::optional<motion::LengthUnit> unit;
-  if (proto.has_unit()) {
-    unit = motion::ParseLengthUnit(proto.unit());
-    check->Expect(unit.has_value(), "input.unit", base::Quoted(proto.unit()),
-                  motion::kLengthUnitNames);
-  }
-  std::optional<motion::UpAxis> up_axis;
-  if (proto.has_up_axis()) {
-    up_axis = motion::ParseUpAxis(proto.up_axis());
-    check->Expect(up_axis.has_value(), "input.up_axis", base::Quoted(proto.up_axis()),
-                  motion::kUpAxisNames);
-  }
-  reading.metres_per_unit = motion::StatedMetresPerUnit(metres_per_unit, unit);
-  reading.coordinates = motion::StatedCoordinates(unit, up_axis);
   if (proto.has_format()) {
     reading.format = formats::ParseFormat(proto.format());
     check->Expect(reading.format.has_value(), "input.format", base::Quoted(proto.format()),
                   formats::kReadableFormatNames);
   }
-  if (proto.has_level()) {
-    const absl::StatusOr<Level> level = ParseLevel(proto.level());
-    check->Expect(level.ok(), "input.level", base::Quoted(proto.level()),
-                  "auto, off or X,Y,Z less than 45 degrees from 0,1,0");
-    if (level.ok()) input.level = *level;
+  if (proto.up_size() > 0) {
+    const auto& up = proto.up();
+    input.up = proto.up_size() == 3 ? motion::Vec3{up[0], up[1], up[2]} : motion::Vec3{};
+    check->Expect(IsFinite(*input.up) && input.up->y > kMinUprightCosine * Norm(*input.up),
+                  "input.up", absl::StrJoin(up, ","), "X,Y,Z less than 45 degrees from 0,1,0");
   }
-  input.up = input.level.up;
   reading.joint_overrides.insert(proto.joint_map().begin(), proto.joint_map().end());
   return input;
 }
 
-// Every limit is 0 or more; the probability of a class is a share.
+// Every limit is 0 or more.
 void CheckFilter(const v1::QualityFilter& filter, Checker* check) {
   const google::protobuf::Descriptor& fields = *filter.GetDescriptor();
   for (int i = 0; i < fields.field_count(); ++i) {
@@ -215,39 +173,22 @@ void CheckFilter(const v1::QualityFilter& filter, Checker* check) {
     check->Expect(limit >= 0, absl::StrCat("filter.", field->name()), absl::StrCat(limit),
                   "0 or more");
   }
-  if (filter.has_classifier()) {
-    const double probability = filter.classifier().min_probability();
-    check->Expect(probability > 0 && probability <= 1, "filter.classifier.min_probability",
-                  absl::StrCat(probability), "above 0, at most 1");
-    check->Expect(!filter.classifier().model().empty(), "filter.classifier.model", "none",
-                  "the folder of a judge (duet-eval judge)");
-  }
   check->Count("filter.retries_per_item", filter.retries_per_item(), 0, kMaxRetries);
 }
 
 // The formats of the enum that a set can have.
 bool IsFormat(int format) { return v1::Format_IsValid(format) && format != v1::FORMAT_UNSPECIFIED; }
 
-v1::Output ReadOutput(const v1::Output& proto, Checker* check) {
-  v1::Output output = proto;
-  check->Expect(v1::Layout_IsValid(proto.layout()), "output.layout", absl::StrCat(proto.layout()),
-                "a layout");
-  if (proto.layout() == v1::LAYOUT_UNSPECIFIED) output.set_layout(v1::LAYOUT_MIRROR);
-  const bool own_format = CapturesOf(output.layout()) != nullptr;
-  check->Expect(own_format || proto.formats_size() > 0, "output.formats", "none", "one or more");
-  check->Expect(!own_format || proto.formats_size() == 0, "output.formats", "some",
-                "none: the layout has its own");
-  for (const int format : proto.formats()) {
+void CheckOutput(const v1::Output& output, Checker* check) {
+  check->Expect(output.formats_size() > 0, "output.formats", "none", "one or more");
+  for (const int format : output.formats()) {
     check->Expect(IsFormat(format), "output.formats", absl::StrCat(format),
-                  "FORMAT_BVH, FORMAT_CSV, FORMAT_NPY, FORMAT_JSON or FORMAT_GLB");
+                  "FORMAT_BVH, FORMAT_NPY or FORMAT_GLB");
   }
-  check->Different("output.formats", proto.formats());
-  check->Expect(!own_format || !proto.has_frame_rate_hz(), "output.frame_rate_hz", "one",
-                "none: the layout has a rate of its own");
-  const double rate_hz = proto.has_frame_rate_hz() ? proto.frame_rate_hz() : 1;
+  check->Different("output.formats", output.formats());
+  const double rate_hz = output.has_frame_rate_hz() ? output.frame_rate_hz() : 1;
   check->Expect(rate_hz > 0 && rate_hz <= motion::kMaxFrameRateHz, "output.frame_rate_hz",
                 absl::StrCat(rate_hz), "above 0, at most 1000");
-  return output;
 }
 
 void ReadModels(const v1::Recipe& proto, Checker* check, Recipe* recipe) {
@@ -260,7 +201,7 @@ void ReadModels(const v1::Recipe& proto, Checker* check, Recipe* recipe) {
   if (recipe->models.empty()) recipe->models.emplace_back();
 }
 
-// Without the classifier, the digest and the JSON.
+// Without the digest and the JSON.
 absl::StatusOr<Recipe> FromProto(const v1::Recipe& proto) {
   Checker check;
   Recipe recipe;
@@ -284,13 +225,13 @@ absl::StatusOr<Recipe> FromProto(const v1::Recipe& proto) {
   recipe.input = ReadInput(proto.input(), &check);
   CheckFilter(proto.filter(), &check);
   recipe.filter = proto.filter();
-  recipe.output = ReadOutput(proto.output(), &check);
+  CheckOutput(proto.output(), &check);
+  recipe.output = proto.output();
   if (!check.status().ok()) return check.status();
   return recipe;
 }
 
 constexpr std::size_t kMaxRecipeBytes = std::size_t{4} << 20;
-constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
 
 // Equal for files with the same content: map entries are sorted by key.
 std::string Digest(const v1::Recipe& recipe) {
@@ -313,127 +254,40 @@ std::string ToJson(const v1::Recipe& recipe) {
   return json;
 }
 
-void Apply(const RecipeOverrides& overrides, v1::Recipe* recipe) {
-  if (overrides.retries_per_item) {
-    recipe->mutable_filter()->set_retries_per_item(
-        static_cast<uint32_t>(*overrides.retries_per_item));
-  }
-  if (!overrides.input_format.empty()) {
-    recipe->mutable_input()->set_format(overrides.input_format);
-  }
-  if (!overrides.level.empty()) recipe->mutable_input()->set_level(overrides.level);
-  if (overrides.frame_rate_hz) {
-    recipe->mutable_output()->set_frame_rate_hz(*overrides.frame_rate_hz);
-  }
-}
-
-// Merges the joint map file that the recipe names into its joint map.
-absl::Status TakeJointTable(const std::filesystem::path& folder, v1::LeaderInput* input) {
-  if (input->joint_map_file().empty()) return absl::OkStatus();
-  const std::filesystem::path path = folder / input->joint_map_file();
-  const absl::StatusOr<std::string> text =
-      base::ReadFile(path, kMaxTableBytes, "a table of joints");
-  if (!text.ok()) return text.status();
-  const absl::StatusOr<retargeting::JointOverrides> table =
-      retargeting::ParseJointTable(*text, path.string());
-  if (!table.ok()) return table.status();
-  input->clear_joint_map_file();
-  input->mutable_joint_map()->insert(table->begin(), table->end());  // keeps existing entries
-  return absl::OkStatus();
-}
-
-// Reads the classifier that the recipe names, and replaces its path by its digest.
-absl::StatusOr<std::shared_ptr<const classifier::Classifier>> TakeClassifier(
-    const std::filesystem::path& folder, v1::ClassifierFilter* filter) {
-  if (filter->model().empty()) return nullptr;
-  absl::StatusOr<classifier::StoredClassifier> stored =
-      classifier::ReadClassifier(folder / filter->model());
-  if (!stored.ok()) return stored.status();
-  filter->set_model(stored->sha256);
-  return std::make_shared<const classifier::Classifier>(std::move(stored->classifier));
-}
-
-using nlohmann::json;
-
-constexpr size_t kDescribed = 5;
-
-// All values except objects and arrays, by path: "reactions[0].labels.weights.kick".
-using Fields = std::map<std::string, json>;
-
-void Flatten(const json& value, const std::string& path, Fields* fields) {
-  if (value.is_object() && !value.empty()) {
-    for (const auto& [name, member] : value.items()) {
-      Flatten(member, path.empty() ? name : absl::StrCat(path, ".", name), fields);
-    }
-  } else if (value.is_array() && !value.empty()) {
-    for (size_t i = 0; i < value.size(); ++i) {
-      Flatten(value[i], absl::StrCat(path, "[", i, "]"), fields);
-    }
-  } else if (!path.empty()) {
-    (*fields)[path] = value;
-  }
-}
-
-std::string ShownAt(const Fields& fields, const std::string& path) {
-  const auto found = fields.find(path);
-  return found == fields.end() ? "none" : base::Shown(found->second);
-}
-
 }  // namespace
 
-absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
-                                   const std::filesystem::path& folder,
-                                   const RecipeOverrides& overrides) {
+absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json) {
   v1::Recipe parsed;
   absl::Status status = messages::ParseMessage(
       text, json ? messages::MessageSyntax::kJson : messages::MessageSyntax::kTextFormat, &parsed);
-  if (status.ok() && parsed.has_input()) status = TakeJointTable(folder, parsed.mutable_input());
-  absl::StatusOr<std::shared_ptr<const classifier::Classifier>> classifier = nullptr;
-  if (status.ok() && parsed.filter().has_classifier()) {
-    classifier = TakeClassifier(folder, parsed.mutable_filter()->mutable_classifier());
-    status = classifier.status();
-  }
   if (!status.ok()) return status;
-  Apply(overrides, &parsed);
   absl::StatusOr<Recipe> recipe = FromProto(parsed);
   if (!recipe.ok()) return recipe;
   recipe->digest = Digest(parsed);
   recipe->json = ToJson(parsed);
-  recipe->classifier = *std::move(classifier);
   return recipe;
 }
 
-absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path,
-                                  const RecipeOverrides& overrides) {
+absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path) {
   const absl::StatusOr<std::string> text = base::ReadFile(path, kMaxRecipeBytes, "a recipe");
   if (!text.ok()) return text.status();
-  absl::StatusOr<Recipe> recipe =
-      ParseRecipe(*text, path.extension() == ".json", path.parent_path(), overrides);
+  absl::StatusOr<Recipe> recipe = ParseRecipe(*text, path.extension() == ".json");
   if (recipe.ok()) return recipe;
   return absl::Status(recipe.status().code(),
                       absl::StrCat(path.string(), ": ", recipe.status().message()));
 }
 
-std::string DescribeDifference(const std::string& expected, const std::string& got) {
-  const json before = json::parse(expected, nullptr, false), now = json::parse(got, nullptr, false);
-  if (!before.is_object() || !now.is_object()) return "";
-  Fields old_fields, new_fields;
-  Flatten(before, "", &old_fields);
-  Flatten(now, "", &new_fields);
-  std::set<std::string> paths;
-  for (const auto& [path, value] : old_fields) paths.insert(path);
-  for (const auto& [path, value] : new_fields) paths.insert(path);
-  std::vector<std::string> described;
-  size_t differing = 0;
-  for (const std::string& path : paths) {
-    const std::string was = ShownAt(old_fields, path), is = ShownAt(new_fields, path);
-    if (was == is || ++differing > kDescribed) continue;
-    described.push_back(absl::StrCat(path, ": expected ", was, ", got ", is));
-  }
-  if (differing > kDescribed) {
-    described.push_back(absl::StrCat("and ", differing - kDescribed, " more"));
-  }
-  return absl::StrJoin(described, "; ");
+std::string DescribeDifference(const std::string& before, const std::string& now) {
+  v1::Recipe old_recipe, new_recipe;
+  const auto read = [](const std::string& json, v1::Recipe* recipe) {
+    return messages::ParseMessage(json, messages::MessageSyntax::kJson, recipe).ok();
+  };
+  if (!read(before, &old_recipe) || !read(now, &new_recipe)) return "";
+  std::string text;
+  google::protobuf::util::MessageDifferencer differencer;
+  differencer.ReportDifferencesToString(&text);
+  differencer.Compare(old_recipe, new_recipe);
+  return absl::StrJoin(absl::StrSplit(text, '\n', absl::SkipEmpty()), "; ");
 }
 
 Labels ToLabels(const v1::Labels& proto) {

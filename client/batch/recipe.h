@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,7 +11,6 @@
 #include "absl/strings/string_view.h"
 #include "client/request.h"
 #include "duet/batch/v1/batch.pb.h"
-#include "model/classifier/classifier.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/vec3.h"
 
@@ -30,19 +28,11 @@ struct TimedLabels {
 
 enum class Sides { kLeft, kRight, kBoth };
 
-// How to level leaders from a tilted camera.
-struct Level {
-  bool automatic = true;           // estimate the vertical; level if the evidence is strong
-  std::optional<motion::Vec3> up;  // the vertical, if the caller specifies it
-};
-
 struct LeaderInput {
-  std::optional<Sides> side;  // absent: as index.tsv states, or left
+  Sides side = Sides::kLeft;
   bool starts_as_other_person = false;
-  formats::ReadOptions reading;  // without side and skeleton
-  Level level;
-  // The vertical of every leader, for requests: of `level`, or what an automatic one found.
-  std::optional<motion::Vec3> up;
+  formats::ReadOptions reading;    // without side and skeleton
+  std::optional<motion::Vec3> up;  // the vertical of every leader (SynthesisOptions::up)
 };
 
 // A recipe that was checked. proto/duet/batch/v1/batch.proto documents the fields.
@@ -55,38 +45,24 @@ struct Recipe {
   int candidates = 1;
   LeaderInput input;
   v1::QualityFilter filter;
-  std::shared_ptr<const classifier::Classifier> classifier;  // of the filter; null: none
-  v1::Output output;                                         // with a layout
+  v1::Output output;
   // Digest of everything above in hex. Recipes with the same digest are equal.
   std::string digest;
-  // The same as one JSON object with the proto's field names. Files that the recipe names
-  // are represented by their content.
+  // The same as one JSON object with the proto's field names.
   std::string json;
 };
 
-// Values of the command line that override the recipe.
-struct RecipeOverrides {
-  std::optional<int> retries_per_item;
-  std::string input_format;  // empty: the recipe's
-  std::optional<double> frame_rate_hz;
-  std::string level;  // empty: the recipe's
-};
-
-// Parses a recipe: JSON or text format. Unknown fields are rejected. Files that it names
-// are relative to `folder`. INVALID_ARGUMENT "FIELD: expected ..., got ...".
-absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json,
-                                   const std::filesystem::path& folder = {},
-                                   const RecipeOverrides& overrides = {});
+// Parses a recipe: JSON or text format. Unknown fields are rejected. INVALID_ARGUMENT "FIELD:
+// expected ..., got ...".
+absl::StatusOr<Recipe> ParseRecipe(absl::string_view text, bool json);
 
 // Reads a recipe file: JSON if it ends in ".json", otherwise text format. Errors name the file;
 // also NOT_FOUND.
-absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path,
-                                  const RecipeOverrides& overrides = {});
+absl::StatusOr<Recipe> ReadRecipe(const std::filesystem::path& path);
 
-// How two recipes differ, each as Recipe::json: 'seed: expected 7, got 9; output.formats[1]:
-// expected none, got "FORMAT_CSV"', the first five fields and the number of the others. Empty if
-// they are equal, or if one of them is not a JSON object.
-std::string DescribeDifference(const std::string& expected, const std::string& got);
+// How a recipe was changed, both as Recipe::json: "modified: seed: 7 -> 9; added:
+// output.formats[1]: FORMAT_GLB". Empty if they are equal, or if one of them is no recipe.
+std::string DescribeDifference(const std::string& before, const std::string& now);
 
 // A label vector of a recipe, by class name.
 Labels ToLabels(const v1::Labels& proto);

@@ -1,16 +1,19 @@
 #include "client/batch/record.h"
 
-#include <algorithm>
+#include <google/protobuf/util/json_util.h>
+
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
-#include "absl/types/span.h"
 #include "client/batch/text_values.h"
+#include "model/base/printable.h"
 
 namespace duet::client::batch {
 namespace {
 
 using nlohmann::ordered_json;
+
+constexpr std::size_t kLongestReason = 300;  // why a text is no record
 
 // A float as the shortest decimal with the same value: 0.1 instead of 0.10000000149.
 ordered_json Number(float value) { return ordered_json::parse(WeightText(value)); }
@@ -32,14 +35,13 @@ ordered_json KeyframesJson(const std::vector<WeightKeyframe>& keyframes) {
   return array;
 }
 
+// In the order of the message's fields.
 ordered_json QualityJson(const Quality& quality) {
   ordered_json object = ordered_json::object();
-  for (const char* name : kQualityFields) {
-    const auto figure = quality.figures.find(name);
-    if (figure != quality.figures.end()) object[name] = Rounded(figure->second);
-    if (name == kRecognisedClass && !quality.recognised_class.empty()) {
-      object[name] = quality.recognised_class;
-    }
+  const google::protobuf::Descriptor& fields = *v1::QualityFigures::descriptor();
+  for (int i = 0; i < fields.field_count(); ++i) {
+    const auto figure = quality.figures.find(fields.field(i)->name());
+    if (figure != quality.figures.end()) object[figure->first] = Rounded(figure->second);
   }
   return object;
 }
@@ -75,9 +77,6 @@ ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswe
     const motion::Vec3& to = *item.leader->partner_direction;
     record["partner_direction"] = {Number(to.x), Number(to.y), Number(to.z)};
   }
-  if (!item.leader->pins.empty()) {
-    record["constraints"] = PinsJson(item.leader->pins, answer.pin_metres);
-  }
   record["model"] = answer.model;
   record["seed"] = answer.seed;
   record["variety"] = Number(answer.variety);
@@ -95,85 +94,30 @@ ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswe
   return record;
 }
 
-// Larger than the depth of any record.
-constexpr int kMaxDepth = 8;
+absl::Status Expect(bool good, const char* field, const char* expected) {
+  if (good) return absl::OkStatus();
+  return absl::DataLossError(absl::StrCat(field, ": expected ", expected, ", got none"));
+}
 
-using IsOfType = bool (*)(const ordered_json& value);
-
-bool IsText(const ordered_json& value) { return value.is_string(); }
-bool IsNumber(const ordered_json& value) { return value.is_number(); }
-bool IsCount(const ordered_json& value) { return value.is_number_unsigned(); }
-bool IsTexts(const ordered_json& value) {
-  return value.is_array() && std::all_of(value.begin(), value.end(), IsText);
-}
-bool IsNumbers(const ordered_json& value) {
-  return value.is_object() && std::all_of(value.begin(), value.end(), IsNumber);
-}
-// Whether an object has a field of a type.
-bool Has(const ordered_json& object, const char* name, IsOfType is_type) {
-  const auto found = object.find(name);
-  return found != object.end() && is_type(*found);
-}
-// Figures, and the class that a classifier recognised.
-bool IsQuality(const ordered_json& value) {
-  if (!value.is_object()) return false;
-  for (const auto& [name, figure] : value.items()) {
-    if (name == "recognised_class" ? !IsText(figure) : !IsNumber(figure)) return false;
+absl::Status CheckRecord(const v1::IndexEntry& record) {
+  absl::Status status = Expect(!record.name().empty(), "name", "a text");
+  if (record.state() == kFailed) return status;
+  status.Update(Expect(!record.id().empty(), "id", "a text"));
+  status.Update(Expect(!record.side().empty(), "side", "a text"));
+  status.Update(Expect(!record.model().empty(), "model", "a text"));
+  status.Update(Expect(record.frames() > 0, "frames", "a number of frames"));
+  status.Update(Expect(record.frame_rate_hz() > 0, "frame_rate_hz", "a number"));
+  status.Update(Expect(record.has_quality(), "quality", "figures"));
+  if (record.state() == kRejected) {
+    status.Update(Expect(record.reasons_size() > 0, "reasons", "one or more"));
+    return status;
   }
-  return true;
-}
-bool IsKeyframes(const ordered_json& value) {
-  return value.is_array() && std::all_of(value.begin(), value.end(), [](const ordered_json& one) {
-           return one.is_object() && Has(one, "labels", IsNumbers);
-         });
-}
-bool IsFiles(const ordered_json& value) {
-  return value.is_array() && !value.empty() &&
-         std::all_of(value.begin(), value.end(), [](const ordered_json& file) {
-           return file.is_object() && Has(file, "path", IsText) && Has(file, "bytes", IsCount) &&
-                  Has(file, "sha256", IsText);
-         });
-}
-
-struct Field {
-  const char* name;
-  IsOfType is_type;
-  const char* expected;
-};
-constexpr Field kOfAnyRecord[] = {{"state", IsText, "a text"}, {"name", IsText, "a text"}};
-constexpr Field kOfAnAnswer[] = {{"id", IsText, "a text"},
-                                 {"side", IsText, "a text"},
-                                 {"model", IsText, "a text"},
-                                 {"frames", IsCount, "a number of frames"},
-                                 {"frame_rate_hz", IsNumber, "a number"},
-                                 {"quality", IsQuality, "an object of figures"}};
-constexpr Field kOfDone[] = {{"files", IsFiles, "an array of files"}};
-constexpr Field kOfRejected[] = {{"reasons", IsTexts, "an array of texts"}};
-constexpr Field kWhereGiven[] = {{"skeleton", IsCount, "an index"},
-                                 {"labels", IsNumbers, "an object of numbers"},
-                                 {"keyframes", IsKeyframes, "an array of labels"}};
-
-absl::Status CheckFields(const ordered_json& record, absl::Span<const Field> fields,
-                         bool must_be_there) {
-  for (const Field& field : fields) {
-    if (!must_be_there && !record.contains(field.name)) continue;
-    if (Has(record, field.name, field.is_type)) continue;
-    return absl::DataLossError(
-        absl::StrCat(field.name, ": expected ", field.expected, ", got ",
-                     record.contains(field.name) ? "something else" : "none"));
+  status.Update(Expect(record.state() == kDone, "state", "done, rejected or failed"));
+  status.Update(Expect(record.files_size() > 0, "files", "one or more"));
+  for (const v1::IndexEntry::File& file : record.files()) {
+    status.Update(Expect(!file.path().empty(), "files.path", "a text"));
   }
-  return absl::OkStatus();
-}
-
-absl::Status CheckRecord(const ordered_json& record) {
-  absl::Status status = CheckFields(record, kOfAnyRecord, true);
-  if (status.ok()) status = CheckFields(record, kWhereGiven, false);
-  if (!status.ok() || record["state"] == kFailed) return status;
-  status = CheckFields(record, kOfAnAnswer, true);
-  if (!status.ok()) return status;
-  if (record["state"] == kDone) return CheckFields(record, kOfDone, true);
-  if (record["state"] == kRejected) return CheckFields(record, kOfRejected, true);
-  return absl::DataLossError("state: expected done, rejected or failed, got another");
+  return status;
 }
 
 }  // namespace
@@ -212,14 +156,16 @@ std::string Line(const ordered_json& record) {
   return record.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-absl::StatusOr<ordered_json> ParseRecord(absl::string_view text) {
-  bool too_deep = false;
-  const auto within_depth = [&too_deep](int depth, ordered_json::parse_event_t, ordered_json&) {
-    too_deep = too_deep || depth > kMaxDepth;
-    return !too_deep;
-  };
-  ordered_json record = ordered_json::parse(text.begin(), text.end(), within_depth, false);
-  if (too_deep || !record.is_object()) return absl::DataLossError("is not a record");
+absl::StatusOr<v1::IndexEntry> ParseRecord(absl::string_view text) {
+  v1::IndexEntry record;
+  google::protobuf::util::JsonParseOptions options;
+  options.ignore_unknown_fields = true;
+  const auto parsed = google::protobuf::util::JsonStringToMessage(
+      google::protobuf::StringPiece(text.data(), text.size()), &record, options);
+  if (!parsed.ok()) {
+    return absl::DataLossError(
+        absl::StrCat("is not a record: ", base::Printable(parsed.ToString(), kLongestReason)));
+  }
   absl::Status status = CheckRecord(record);
   if (!status.ok()) return status;
   return record;

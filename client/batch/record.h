@@ -2,6 +2,7 @@
 #define DUET_CLIENT_BATCH_RECORD_H_
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -10,9 +11,8 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "client/batch/made_by.h"
+#include "client/batch/origins.h"
 #include "client/batch/plan.h"
-#include "client/batch/quality.h"
 #include "client/request.h"
 
 namespace duet::client::batch {
@@ -22,6 +22,13 @@ namespace duet::client::batch {
 inline constexpr char kDone[] = "done";
 inline constexpr char kRejected[] = "rejected";
 inline constexpr char kFailed[] = "failed";
+
+// Quality of an answer: the figures of QualityFigures of proto/duet/batch/v1/batch.proto by their
+// names there. Figures are absent if the skeleton does not have their joints.
+struct Quality {
+  std::map<std::string, double> figures;
+  std::optional<double> unfamiliarity;  // IndexEntry.unfamiliarity
+};
 
 struct RecordedFile {
   std::string path;
@@ -42,7 +49,6 @@ struct RecordedAnswer {
   double frame_rate_hz = 0;
   int skeleton = 0;  // index into dataset.json's
   Quality quality;
-  std::vector<float> pin_metres;  // of the leader's pins
   int answers = 1;
   MadeBy made_by;
 };
@@ -59,10 +65,9 @@ nlohmann::ordered_json FailedRecord(const Item& item, const absl::Status& error)
 // character.
 std::string Line(const nlohmann::ordered_json& record);
 
-// Parses a record from an untrusted file. Checks the types of the fields that readers use, and that
-// the fields of the record's state are present. Keeps other fields. Errors: DATA_LOSS
-// "FIELD: expected ..., got ...".
-absl::StatusOr<nlohmann::ordered_json> ParseRecord(absl::string_view text);
+// Parses a record from an untrusted file, which must have the fields of its state. Ignores fields
+// of later versions. Errors: DATA_LOSS "FIELD: expected ..., got none", or what is no record.
+absl::StatusOr<v1::IndexEntry> ParseRecord(absl::string_view text);
 
 }  // namespace duet::client::batch
 

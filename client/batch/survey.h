@@ -3,14 +3,12 @@
 
 #include <cstdint>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
-#include "client/batch/leader_digests.h"
-#include "client/batch/made_by.h"
+#include "client/batch/origins.h"
 #include "client/batch/plan.h"
 
 namespace duet::client::batch {
@@ -32,11 +30,10 @@ class Survey {
                                                       const JobIdentity& identity,
                                                       const Repeats& repeats);
 
-  // Adds an item of this run's share of the plan. Returns whether it is settled. Call it for each
-  // item of the share, in the order of the plan. Errors: FAILED_PRECONDITION, with the item or the
-  // leader, if the set was begun with another plan or a leader's file has changed since; ABORTED,
-  // DATA_LOSS as in Open.
-  absl::StatusOr<bool> Add(const Item& item);
+  // Adds an item of this run's share of the plan. Call it for each item of the share, in the order
+  // of the plan. Errors: FAILED_PRECONDITION, with the item or the leader, if the set was begun
+  // with another plan or a leader's file has changed since; ABORTED, DATA_LOSS as in Open.
+  absl::Status Add(const Item& item);
 
   // Of the items that were added.
   bool IsSettled(int64_t item) const {
@@ -52,8 +49,8 @@ class Survey {
   Survey(const JobFolder& folder, const JobIdentity& identity, const Repeats& repeats,
          JournalReader journal)
       : folder_(folder), identity_(identity), repeats_(repeats), journal_(std::move(journal)) {}
-  absl::Status CheckLeader(const LeaderEntry& leader, const nlohmann::ordered_json& record);
-  bool IsSettledNow(const nlohmann::ordered_json& record) const;
+  absl::Status CheckLeader(const LeaderEntry& leader, const v1::IndexEntry& record);
+  bool IsSettledNow(const v1::IndexEntry& record) const;
 
   const JobFolder& folder_;
   const JobIdentity& identity_;

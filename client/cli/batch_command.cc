@@ -1,38 +1,243 @@
+#include <algorithm>
 #include <atomic>
-#include <cstdlib>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <ostream>
+#include <set>
 #include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
-#include "absl/strings/str_join.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/strip.h"
+#include "absl/time/time.h"
+#include "client/batch/durable_file.h"
 #include "client/batch/gather.h"
 #include "client/batch/job.h"
-#include "client/batch/leader_source.h"
-#include "client/batch/level.h"
+#include "client/batch/leaders.h"
 #include "client/batch/plan_check.h"
 #include "client/batch/survey.h"
-#include "client/cli/batch_flags.h"
-#include "client/cli/batch_plan.h"
-#include "client/cli/batch_progress.h"
-#include "client/cli/batch_report.h"
-#include "client/cli/batch_servers.h"
 #include "client/cli/command.h"
+#include "client/cli/flags.h"
+#include "client/cli/server.h"
 #include "client/cli/stop_signals.h"
 #include "client/model_skeleton.h"
+#include "model/base/counted.h"
+#include "model/base/program_flags.h"
+#include "model/base/text.h"
 
 namespace duet::client::cli {
 namespace {
 
-absl::StatusOr<batch::Shard> ShardOf(const BatchArguments& arguments) {
-  if (arguments.shard.has_value()) return *arguments.shard;
-  return batch::ShardFromEnvironment([](const char* name) -> std::optional<std::string> {
-    const char* value = std::getenv(name);
-    if (value == nullptr) return std::nullopt;
-    return std::string(value);
-  });
+// Maximum time to wait for a server before a run begins.
+constexpr double kFirstAnswerSeconds = 30;
+
+// How many leaders of a run may have items that fail permanently, without the run counting as
+// failed: a number, or a share of its leaders.
+struct AllowedFailures {
+  int64_t leaders = 0;
+  std::optional<double> share;  // 0 to 1, instead of the number
+
+  bool Allows(int64_t failed_leaders, int64_t all_leaders) const {
+    if (!share.has_value()) return failed_leaders <= leaders;
+    return static_cast<double>(failed_leaders) <= *share * static_cast<double>(all_leaders);
+  }
+};
+
+// "5" or "2%".
+absl::StatusOr<AllowedFailures> ParseAllowedFailures(absl::string_view text) {
+  AllowedFailures allowed;
+  absl::string_view number = text;
+  if (absl::ConsumeSuffix(&number, "%")) {
+    double percent = 0;
+    if (absl::SimpleAtod(number, &percent) && percent >= 0 && percent <= 100) {
+      allowed.share = percent / 100;
+      return allowed;
+    }
+  } else if (absl::SimpleAtoi(number, &allowed.leaders) && allowed.leaders >= 0) {
+    return allowed;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("expected a number of leaders, or a share of them from 0% to 100%, got ",
+                   base::Quoted(text)));
+}
+
+struct BatchArguments {
+  std::vector<std::string> leaders;     // files, folders
+  std::string manifest;                 // a file, "-" or empty
+  std::filesystem::path manifest_copy;  // the manifest "-" once it was read
+  std::filesystem::path recipe;
+  std::filesystem::path out;
+  ServerArguments server;
+  batch::Shard shard;
+  int max_in_flight = batch::flow::Options().max_in_flight;
+  double patience_seconds = 120;
+  int64_t limit = std::numeric_limits<int64_t>::max();
+  batch::Repeats repeats;
+  AllowedFailures allow_failed;
+  bool dry_run = false;
+  bool quiet = false;
+};
+
+// Reads a manifest and owns its open file.
+class OpenManifest final : public batch::LeaderSource {
+ public:
+  // Relative paths begin at `folder`; errors call the manifest `name`.
+  OpenManifest(const std::filesystem::path& path, const std::filesystem::path& folder,
+               const std::string& name)
+      : file_(path), source_(batch::ReadManifest(file_, folder, name)) {}
+  bool ok() const { return file_.is_open(); }
+  absl::StatusOr<std::optional<batch::LeaderEntry>> Next() override { return source_->Next(); }
+
+ private:
+  std::ifstream file_;
+  std::unique_ptr<batch::LeaderSource> source_;
+};
+
+// The leaders that the flags name. A manifest "-" is read from `in` unless it was copied.
+absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(const BatchArguments& arguments,
+                                                                 const batch::Recipe& recipe,
+                                                                 std::istream* in) {
+  if (arguments.manifest.empty()) {
+    return batch::ListLeaders(arguments.leaders, recipe.input.reading.format);
+  }
+  const bool copied = !arguments.manifest_copy.empty();
+  if (arguments.manifest == "-" && !copied) {
+    if (in == nullptr) {
+      return absl::NotFoundError("--manifest -: expected a list of leaders, got no standard input");
+    }
+    return batch::ReadManifest(*in, "", "-");
+  }
+  const std::filesystem::path given(arguments.manifest);
+  auto manifest =
+      copied ? std::make_unique<OpenManifest>(arguments.manifest_copy, "", arguments.manifest)
+             : std::make_unique<OpenManifest>(given, given.parent_path(), arguments.manifest);
+  if (!manifest->ok()) {
+    return absl::NotFoundError(absl::StrCat(arguments.manifest, ": cannot be opened"));
+  }
+  return std::unique_ptr<batch::LeaderSource>(std::move(manifest));
+}
+
+// Copies a manifest "-" to `folder`, because a run walks its plan several times.
+absl::Status CopyManifest(const std::filesystem::path& folder, std::istream* in,
+                          BatchArguments* arguments) {
+  if (arguments->manifest != "-" || in == nullptr) return absl::OkStatus();
+  arguments->manifest_copy = folder / "manifest";
+  std::ofstream copy(arguments->manifest_copy, std::ios::binary);
+  // operator<< fails if the source is empty.
+  if (in->peek() != std::istream::traits_type::eof()) copy << in->rdbuf();
+  copy.close();
+  return copy ? absl::OkStatus() : batch::CannotWrite(arguments->manifest_copy, errno);
+}
+
+// What a run and a dry run share.
+struct Prepared {
+  batch::Recipe recipe;
+  std::vector<ModelInfo> models;
+  RequestLimits limits;
+  std::vector<motion::Skeleton> skeletons;
+};
+
+// Asks for the models that the set was begun with, or for the recipe's.
+absl::Status AskModels(const BatchArguments& arguments, const ProgramEnvironment& environment,
+                       const batch::JobIdentity& begun, Prepared* prepared) {
+  absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
+  if (!options.ok()) return options.status();
+  options->deadline = options->wait =
+      absl::Seconds(std::max(0.1, std::min(arguments.patience_seconds, kFirstAnswerSeconds)));
+  const absl::StatusOr<Client> client = environment.connect(*options);
+  if (!client.ok()) return client.status();
+  std::vector<ModelChoice> choices;
+  for (const batch::JobIdentity::Model& model : begun.models) choices.push_back(model.choice);
+  if (choices.empty()) choices = prepared->recipe.models;
+  for (const ModelChoice& choice : choices) {
+    absl::StatusOr<ModelDetails> details = client->GetModel(choice);
+    if (!details.ok()) return details.status();
+    absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(details->model);
+    if (!skeleton.ok()) return skeleton.status();
+    prepared->models.push_back(std::move(details->model));
+    prepared->skeletons.push_back(*std::move(skeleton));
+    prepared->limits = details->limits;  // the same for all models of a server
+  }
+  return absl::OkStatus();
+}
+
+// Checks every line of the manifest.
+absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
+                                       const ProgramEnvironment& environment,
+                                       const Prepared& prepared,
+                                       const std::function<absl::Status(const batch::Item&)>& visit,
+                                       const std::function<bool()>& stopped) {
+  absl::StatusOr<std::unique_ptr<batch::LeaderSource>> leaders =
+      OpenLeaders(arguments, prepared.recipe, environment.in);
+  if (!leaders.ok()) return leaders.status();
+  absl::StatusOr<batch::Plan> plan =
+      batch::Plan::Create(prepared.recipe, prepared.models, *std::move(leaders));
+  if (!plan.ok()) return plan.status();
+  return CheckPlan({arguments.shard, arguments.limit}, &*plan, visit, stopped);
+}
+
+// Reads the leader of each item, and reports once each that cannot be used.
+class LeaderReader {
+ public:
+  LeaderReader(const Prepared& prepared, std::ostream& err)
+      : prepared_(prepared), leaders_(prepared.skeletons.size()), err_(err) {}
+
+  absl::Status Read(const batch::Item& item) {
+    const std::shared_ptr<batch::SharedLeader> shared =
+        leaders_.Get(item.leader, item.side, item.model);
+    const absl::StatusOr<batch::LoadedLeader>& leader =
+        shared->Get(prepared_.recipe.input, prepared_.skeletons[static_cast<size_t>(item.model)],
+                    prepared_.limits);
+    if (leader.ok()) {
+      frames += leader->clip.frame_count();
+    } else if (bad_.insert(std::string(leader.status().message())).second) {
+      err_ << "cannot be used: " << leader.status().message() << "\n";
+    }
+    return absl::OkStatus();
+  }
+  int64_t bad_count() const { return static_cast<int64_t>(bad_.size()); }
+
+  int64_t frames = 0;
+
+ private:
+  const Prepared& prepared_;
+  batch::LastLeaders leaders_;
+  std::ostream& err_;
+  std::set<std::string> bad_;  // messages
+};
+
+absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
+                                const ProgramEnvironment& environment, Prepared prepared) {
+  const batch::JobIdentity begun =
+      batch::ReadJobIdentity(ShardFolder(arguments.out, arguments.shard))
+          .value_or(batch::JobIdentity());
+  const absl::Status status = AskModels(arguments, environment, begun, &prepared);
+  if (!status.ok()) return status;
+  LeaderReader reader(prepared, *environment.err);
+  const absl::StatusOr<batch::PlanCheck> check = Check(
+      arguments, environment, prepared,
+      [&reader](const batch::Item& item) { return reader.Read(item); }, [] { return false; });
+  if (!check.ok()) return check.status();
+  *environment.out << base::Counted(check->items, "item") << " of "
+                   << base::Counted(check->leaders, "leader") << ", "
+                   << base::Counted(reader.frames, "frame") << "\n";
+  const absl::Status lines = BadLinesError(*check);
+  if (!lines.ok()) return lines;
+  return arguments.allow_failed.Allows(reader.bad_count(), check->files) ? kExitDone
+                                                                         : kExitBadInput;
 }
 
 // The job that a signal stops. A signal may arrive before the job exists.
@@ -58,26 +263,131 @@ class RunningJob {
   std::atomic<bool> stopped_{false};
 };
 
+int64_t ItemsOfRun(const batch::Progress& progress) {
+  return progress.done + progress.rejected + progress.failed + progress.unfinished;
+}
+
+double Rate(const batch::Progress& progress, double seconds) {
+  return seconds > 0 ? static_cast<double>(ItemsOfRun(progress)) / seconds : 0;
+}
+
+std::optional<double> SecondsLeft(const batch::Progress& progress, int64_t total, double seconds) {
+  const double rate = Rate(progress, seconds);
+  if (rate <= 0) return std::nullopt;
+  const int64_t left = total - progress.resumed - ItemsOfRun(progress);
+  return static_cast<double>(std::max<int64_t>(left, 0)) / rate;
+}
+
+std::string Clock(double seconds) {
+  const auto whole = static_cast<int64_t>(seconds + 0.5);
+  if (whole < 3600) return absl::StrFormat("%d:%02d", whole / 60, whole % 60);
+  return absl::StrFormat("%d:%02d:%02d", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+void AddCount(const char* what, int64_t count, std::string* line) {
+  if (count > 0) absl::StrAppend(line, ", ", count, " ", what);
+}
+
+// One line about how far a run is: items, rate, time left, refusals and failures.
+std::string ProgressLine(const batch::Progress& progress, int64_t total, double seconds) {
+  std::string line = absl::StrCat(progress.resumed + ItemsOfRun(progress), " of ", total);
+  absl::StrAppendFormat(&line, " items, %.1f a second", Rate(progress, seconds));
+  if (const auto left = SecondsLeft(progress, total, seconds); left.has_value()) {
+    absl::StrAppend(&line, ", ", Clock(*left), " left");
+  }
+  absl::StrAppend(&line, ", ", progress.calls.in_flight, " of ", progress.calls.limit,
+                  " calls at once");
+  AddCount("refusals", progress.calls.refusals, &line);
+  AddCount("rejected", progress.rejected, &line);
+  AddCount("failed", progress.failed, &line);
+  AddCount("unfinished", progress.unfinished, &line);
+  return line;
+}
+
+// Shows the progress of a run while it lives: in place on a terminal, otherwise a line every ten
+// seconds.
+class ProgressDisplay {
+ public:
+  // `total`: items that the run makes or has. Job and environment outlive the display.
+  ProgressDisplay(const batch::Job& job, int64_t total, const ProgramEnvironment& environment)
+      : job_(job), total_(total), environment_(environment) {
+    shower_ = std::thread([this] { ShowUntilEnd(); });
+  }
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ProgressDisplay& operator=(const ProgressDisplay&) = delete;
+  ~ProgressDisplay() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      end_ = true;
+    }
+    ended_.notify_all();
+    shower_.join();
+    Show();
+    if (environment_.err_is_terminal) *environment_.err << "\n" << std::flush;
+  }
+
+ private:
+  void Show() {
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const std::string line = ProgressLine(job_.progress(), total_, seconds);
+    if (environment_.err_is_terminal) {
+      // Returns to the start of the line, and clears the rest of the previous text.
+      *environment_.err << "\r" << line << "\x1b[K" << std::flush;
+    } else {
+      *environment_.err << line << "\n" << std::flush;
+    }
+  }
+  void ShowUntilEnd() {
+    const std::chrono::milliseconds interval(environment_.err_is_terminal ? 200 : 10000);
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!ended_.wait_for(lock, interval, [this] { return end_; })) Show();
+  }
+
+  const batch::Job& job_;
+  const int64_t total_;
+  const ProgramEnvironment& environment_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool end_ = false;
+  std::thread shower_;
+};
+
 batch::JobOptions ToJobOptions(const BatchArguments& arguments) {
   batch::JobOptions options;
   options.calls.max_in_flight = arguments.max_in_flight;
   options.patience = absl::ToChronoNanoseconds(absl::Seconds(arguments.patience_seconds));
   options.limit = arguments.limit;
-  options.share = arguments.share;
   return options;
 }
 
-ProgressDisplay::Kind DisplayKind(const BatchArguments& arguments,
-                                  const ProgramEnvironment& environment) {
-  if (arguments.json) return ProgressDisplay::Kind::kEvents;
-  if (arguments.quiet) return ProgressDisplay::Kind::kNone;
-  return environment.err_is_terminal ? ProgressDisplay::Kind::kTerminal
-                                     : ProgressDisplay::Kind::kLines;
-}
-
-ExitCode CodeOf(const batch::JobReport& report, bool allowed, bool stopped) {
-  if (stopped || report.unfinished > 0 || !report.complete()) return kExitRetry;
-  return allowed ? kExitDone : kExitBadInput;
+void Report(const BatchArguments& arguments, const std::filesystem::path& folder,
+            const batch::JobReport& report, bool failures_allowed,
+            const ProgramEnvironment& environment) {
+  const batch::SetCounts& set = report.set;
+  const int64_t missing = report.planned - set.done - set.rejected - set.failed;
+  if (!arguments.quiet) {
+    *environment.out << folder.string() << ": " << set.done << " done, " << set.rejected
+                     << " rejected, " << set.failed << " failed, " << missing << " missing\n";
+  }
+  std::ostream& err = *environment.err;
+  if (report.planned == 0) {
+    err << "duet: the plan has no items: the list of leaders is empty, or --limit or --shard "
+           "leaves "
+           "none\n";
+  }
+  if (set.failed > 0) {
+    err << base::Counted(set.failed, "item") << " of "
+        << base::Counted(set.failed_leaders, "leader") << " failed permanently ("
+        << (folder / "failed.jsonl").string() << "), the first: " << set.first_failure << "\n";
+    if (failures_allowed) err << "duet: --allow-failed permits them\n";
+  }
+  if (report.unfinished > 0) {
+    err << base::Counted(report.unfinished, "item")
+        << " failed temporarily; run the command again. The first: " << report.first_unfinished
+        << "\n";
+  }
 }
 
 absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job,
@@ -85,162 +395,75 @@ absl::StatusOr<ExitCode> RunJob(const BatchArguments& arguments, batch::Job& job
                                 const ProgramEnvironment& environment, const RunningJob& running) {
   absl::StatusOr<batch::JobReport> report;
   {
-    const ProgressDisplay display(DisplayKind(arguments, environment), job, check.items,
-                                  arguments.json ? *environment.out : *environment.err);
+    std::optional<ProgressDisplay> display;
+    if (!arguments.quiet) display.emplace(job, check.items, environment);
     report = job.Run();
   }
   if (!report.ok()) return report.status();
   const bool allowed = arguments.allow_failed.Allows(report->set.failed_leaders, check.files);
   Report(arguments, folder, *report, allowed, environment);
   if (!report->stopped.ok()) return report->stopped;
-  return CodeOf(*report, allowed, running.stopped());
+  if (running.stopped() || report->unfinished > 0 || !report->complete()) return kExitRetry;
+  return allowed ? kExitDone : kExitBadInput;
 }
 
-// The state that a run and a dry run share.
-struct Prepared {
-  batch::Recipe recipe;
-  batch::Shard shard;
-  std::vector<ModelInfo> models;
-  RequestLimits limits;
-  std::vector<motion::Skeleton> skeletons;
-  std::vector<std::vector<Client>> servers;
-};
-
-absl::Status Prepare(const BatchArguments& arguments, const ProgramEnvironment& environment,
-                     const batch::JobIdentity& begun, Prepared* prepared) {
-  absl::StatusOr<ResolvedModels> resolved =
-      AskModels(arguments, environment, prepared->recipe, begun.models);
-  if (!resolved.ok()) return resolved.status();
-  for (const ModelInfo& model : resolved->models) {
-    absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(model);
-    if (!skeleton.ok()) return skeleton.status();
-    prepared->skeletons.push_back(*std::move(skeleton));
-  }
-  prepared->models = std::move(resolved->models);
-  prepared->limits = resolved->limits;
-  absl::StatusOr<std::vector<std::vector<Client>>> servers = Connect(arguments, environment);
-  if (!servers.ok()) return servers.status();
-  prepared->servers = *std::move(servers);
-  return absl::OkStatus();
-}
-
-// Checks every line of the manifest, and every leader of the part that has an item which `survey`
-// (may be null) does not find settled.
-absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
-                                       const ProgramEnvironment& environment,
-                                       const Prepared& prepared, batch::Survey* survey,
-                                       const std::function<bool()>& stopped) {
-  std::vector<std::string> passed_over;
-  absl::StatusOr<batch::Plan> plan =
-      MakePlan(arguments, prepared.recipe, prepared.models, environment.in, &passed_over);
-  if (!plan.ok()) return plan.status();
-  ReportPassedOver(arguments, passed_over, environment);
-  batch::PlanPart part{prepared.shard, arguments.limit, arguments.share, nullptr};
-  if (survey != nullptr) {
-    part.is_settled = [survey](const batch::Item& item) { return survey->Add(item); };
-  }
-  absl::StatusOr<batch::PlanCheck> check =
-      CheckPlan(prepared.recipe, prepared.skeletons, prepared.limits, part, &*plan, stopped);
-  if (check.ok()) ReportIndexedSides(arguments, plan->indexed_sides(), environment);
-  return check;
-}
-
-// Chooses the vertical of the leaders if the recipe leaves it open: that which the set was begun
-// with, or for a new set that of a strong estimate.
-absl::Status ChooseVertical(const BatchArguments& arguments, const ProgramEnvironment& environment,
-                            const batch::JobIdentity& begun, const std::function<bool()>& stopped,
-                            Prepared* prepared) {
-  batch::LeaderInput& input = prepared->recipe.input;
-  if (!input.level.automatic) return absl::OkStatus();
-  if (!begun.models.empty()) {
-    input.up = begun.up;
-    return absl::OkStatus();
-  }
-  // A manifest on standard input can be read only once.
-  if (arguments.manifest == "-" && arguments.manifest_copy.empty()) return absl::OkStatus();
-  const absl::StatusOr<std::unique_ptr<batch::LeaderSource>> leaders =
-      OpenLeaders(arguments, prepared->recipe, nullptr, nullptr);
-  if (!leaders.ok()) return leaders.status();
-  const batch::Levelled levelled =
-      batch::LevelBy(EstimateVertical(input, prepared->skeletons.front(), leaders->get(), stopped));
-  input.up = levelled.up;
-  if (!arguments.quiet && !arguments.json) *environment.err << "leaders " << levelled.note << "\n";
-  return absl::OkStatus();
-}
-
-absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
-                                const ProgramEnvironment& environment, Prepared prepared) {
-  const batch::JobIdentity begun =
-      batch::ReadJobIdentity(ShardFolder(arguments.out, prepared.shard))
-          .value_or(batch::JobIdentity());
-  absl::Status status = Prepare(arguments, environment, begun, &prepared);
-  if (status.ok()) {
-    status = ChooseVertical(
-        arguments, environment, begun, [] { return false; }, &prepared);
-  }
-  if (!status.ok()) return status;
-  const absl::StatusOr<batch::PlanCheck> check =
-      Check(arguments, environment, prepared, nullptr, [] { return false; });
-  if (!check.ok()) return check.status();
-  const bool good = check->bad_line_count == 0 &&
-                    arguments.allow_failed.Allows(check->bad_leader_count, check->files);
-  absl::StatusOr<batch::Estimate> estimate = batch::Estimate();
-  if (check->bad_line_count == 0) {
-    estimate = EstimateJob(prepared.recipe, prepared.models, prepared.skeletons, prepared.limits,
-                           *check, prepared.servers.front().front());
-    if (!estimate.ok()) {
-      ReportBadLeaders(arguments, *check, environment);
-      return estimate.status();
+// Opens the set, joins the shards of its job, and compares its models with the servers'.
+absl::Status OpenSet(const BatchArguments& arguments, const ProgramEnvironment& environment,
+                     batch::JobFolder* folder, batch::JobIdentity* begun, Prepared* prepared) {
+  const batch::JobIdentity wanted = IdentityOf(prepared->recipe, arguments.shard);
+  absl::Status status = folder->Open(wanted, begun);
+  if (status.ok() && arguments.shard.count == 1) {
+    const absl::StatusOr<batch::Gathered> gathered = GatherShards(wanted, *folder, begun);
+    status = gathered.status();
+    if (status.ok() && gathered->shards > 0 && !arguments.quiet) {
+      *environment.err << "gathered " << gathered->shards << " of " << gathered->count
+                       << " shards, " << base::Counted(gathered->items, "item") << "\n";
     }
   }
-  Report(arguments, *check, *estimate, environment);
-  return good ? kExitDone : kExitBadInput;
+  if (status.ok()) status = AskModels(arguments, environment, *begun, prepared);
+  if (!status.ok()) return status;
+  return CheckWeights(*begun, IdentityOf(prepared->recipe, arguments.shard, prepared->models));
 }
 
-absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
+absl::StatusOr<ExitCode> RunWhole(const BatchArguments& given,
                                   const ProgramEnvironment& environment, Prepared prepared) {
   RunningJob running;
   const StopSignals signals([&running] { running.Stop(); });
-  batch::JobFolder folder(ShardFolder(arguments.out, prepared.shard));
+  BatchArguments arguments = given;
+  batch::JobFolder folder(ShardFolder(arguments.out, arguments.shard));
   batch::JobIdentity begun;
-  const batch::JobIdentity wanted = IdentityOf(prepared.recipe, prepared.shard);
-  absl::Status status = folder.Open(wanted, &begun);
-  if (status.ok() && prepared.shard.count == 1) {
-    const absl::StatusOr<batch::Gathered> gathered = GatherShards(wanted, folder, &begun);
-    status = gathered.status();
-    if (status.ok()) ReportGathered(arguments, *gathered, environment);
-  }
-  if (status.ok()) status = Prepare(arguments, environment, begun, &prepared);
+  absl::Status status = OpenSet(arguments, environment, &folder, &begun, &prepared);
+  if (status.ok()) status = CopyManifest(folder.temporary(), environment.in, &arguments);
   if (!status.ok()) return status;
-  BatchArguments repeatable = arguments;
-  status = CopyManifest(folder.temporary(), environment.in, &repeatable);
-  if (status.ok()) {
-    status = ChooseVertical(
-        repeatable, environment, begun, [&running] { return running.stopped(); }, &prepared);
-  }
-  if (!status.ok()) return status;
-  const batch::JobIdentity identity = IdentityOf(prepared.recipe, prepared.shard, prepared.models);
-  status = CheckWeights(begun, identity);
-  if (!status.ok()) return status;
+  const batch::JobIdentity identity = IdentityOf(prepared.recipe, arguments.shard, prepared.models);
   const absl::StatusOr<std::unique_ptr<batch::Survey>> survey =
       batch::Survey::Open(folder, identity, arguments.repeats);
   if (!survey.ok()) return survey.status();
   const absl::StatusOr<batch::PlanCheck> check = Check(
-      repeatable, environment, prepared, survey->get(), [&running] { return running.stopped(); });
+      arguments, environment, prepared,
+      [&survey](const batch::Item& item) { return (*survey)->Add(item); },
+      [&running] { return running.stopped(); });
   if (!check.ok()) return check.status();
-  ReportBadLeaders(arguments, *check, environment);
   status = BadLinesError(*check);
   if (!status.ok()) return status;
   if (running.stopped()) return kExitRetry;
+  absl::StatusOr<std::unique_ptr<batch::LeaderSource>> leaders =
+      OpenLeaders(arguments, prepared.recipe, nullptr);
+  if (!leaders.ok()) return leaders.status();
   absl::StatusOr<batch::Plan> plan =
-      MakePlan(repeatable, prepared.recipe, prepared.models, nullptr, nullptr);
+      batch::Plan::Create(prepared.recipe, prepared.models, *std::move(leaders));
   if (!plan.ok()) return plan.status();
+  absl::StatusOr<ClientOptions> options = ToClientOptions(arguments.server);
+  if (!options.ok()) return options.status();
+  options->retry.max_attempts = 1;  // the job retries
+  absl::StatusOr<Client> client = environment.connect(*options);
+  if (!client.ok()) return client.status();
   // Until now, another recipe could still use the folder.
   if (begun.models.empty()) status = folder.Begin(identity);
   if (!status.ok()) return status;
-  batch::Job job({std::move(prepared.recipe), prepared.shard, std::move(prepared.models),
-                  std::move(prepared.skeletons), prepared.limits, std::move(prepared.servers),
-                  &folder, survey->get(), check->items, check->whole_plan},
+  batch::Job job({std::move(prepared.recipe), arguments.shard, std::move(prepared.models),
+                  std::move(prepared.skeletons), prepared.limits, *std::move(client), &folder,
+                  survey->get(), check->items},
                  *std::move(plan), ToJobOptions(arguments));
   running.Set(&job);
   absl::StatusOr<ExitCode> code =
@@ -254,27 +477,114 @@ absl::StatusOr<ExitCode> RunBatch(const BatchArguments& arguments,
   const absl::Status inputs = batch::CheckInputs(arguments.leaders, arguments.out);
   if (!inputs.ok()) return inputs;
   Prepared prepared;
-  absl::StatusOr<batch::Recipe> recipe = batch::ReadRecipe(arguments.recipe, arguments.overrides);
+  absl::StatusOr<batch::Recipe> recipe = batch::ReadRecipe(arguments.recipe);
   if (!recipe.ok()) return recipe.status();
   prepared.recipe = *std::move(recipe);
-  const absl::StatusOr<batch::Shard> shard = ShardOf(arguments);
-  if (!shard.ok()) return shard.status();
-  prepared.shard = *shard;
   return arguments.dry_run ? RunDry(arguments, environment, std::move(prepared))
                            : RunWhole(arguments, environment, std::move(prepared));
+}
+
+constexpr char kFooter[] = R"(
+To continue a run that stopped for any reason, run the same command again. docs/batch.md has a tour.
+`python3 -m duet_motion.sets` verifies, splits and packs data sets.
+
+Exit codes:
+  0   every item is settled: done, or rejected by the recipe's filter
+  1   run it again: stopped, a server away, a full disk, items that failed temporarily
+  2   the command line is invalid
+  42  items of more leaders than --allow-failed permits failed permanently (failed.jsonl), or the
+      recipe, the input or the models are rejected
+
+Example:
+  duet batch walks/ --recipe mixes.textproto --out set
+)";
+
+void AddInputFlags(CLI::App* app, BatchArguments* arguments) {
+  constexpr char kGroup[] = "Input";
+  CLI::Option* leaders =
+      app->add_option("leaders", arguments->leaders, "Motion files, and folders of them")
+          ->type_name("LEADER");
+  app->add_option("--manifest", arguments->manifest,
+                  "List of leaders, tab-separated, one on each line; - for standard input")
+      ->excludes(leaders)
+      ->type_name("FILE")
+      ->group(kGroup);
+  app->add_option("--recipe", arguments->recipe,
+                  "Reactions and outputs for each leader: text format, or JSON in a .json file")
+      ->type_name("FILE")
+      ->group(kGroup);
+  app->add_option("--limit", arguments->limit, "Make only the first items of the plan")
+      ->check(CLI::Range(int64_t{0}, std::numeric_limits<int64_t>::max()))
+      ->type_name("COUNT")
+      ->group(kGroup);
+  AddParsed(app, "--shard", "INDEX/COUNT", batch::ParseShard, &arguments->shard,
+            "Make only this part of the items, in its own folder below --out; index from 0")
+      ->group(kGroup);
+}
+
+void AddOutputFlags(CLI::App* app, BatchArguments* arguments) {
+  static constexpr char kGroup[] = "Output";
+  app->add_option("--out", arguments->out, "Folder of the data set")
+      ->type_name("FOLDER")
+      ->group(kGroup);
+  app->add_flag("--retry-failed", arguments->repeats.failed, "Retry items that failed permanently")
+      ->group(kGroup);
+  app->add_flag("--verify", arguments->repeats.changed,
+                "Read every file of earlier runs, and make those that were changed again")
+      ->group(kGroup);
+  AddParsed(app, "--allow-failed", "COUNT|PERCENT%", ParseAllowedFailures, &arguments->allow_failed,
+            "Exit with 0 although this many leaders, or this share of them, have items that failed "
+            "permanently")
+      ->group(kGroup);
+  app->add_flag("--dry-run", arguments->dry_run,
+                "Check every line and every leader, and count items; writes nothing")
+      ->group(kGroup);
+  app->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kGroup);
+}
+
+void AddFlowFlags(CLI::App* app, BatchArguments* arguments) {
+  app->add_option("--server", arguments->server.address,
+                  "Server, or any gRPC target such as dns:///pool:50051")
+      ->envname("DUET_SERVER")
+      ->capture_default_str()
+      ->type_name("HOST:PORT")
+      ->group(kServerGroup);
+  AddConnectionFlags(app, &arguments->server);
+  app->add_option("--max-in-flight", arguments->max_in_flight,
+                  "Maximum number of concurrent calls; the actual number adapts")
+      ->check(base::InRange(1, 256))
+      ->capture_default_str()
+      ->type_name("COUNT")
+      ->group(kServerGroup);
+  app->add_option("--patience", arguments->patience_seconds,
+                  "Seconds for which the server may be away before the run ends")
+      ->check(base::InRange(0.0, 86400.0))
+      ->capture_default_str()
+      ->type_name("SECONDS")
+      ->group(kServerGroup);
+}
+
+// Checks flags that depend on each other.
+void CheckTogether(const BatchArguments& arguments) {
+  if (arguments.leaders.empty() && arguments.manifest.empty()) {
+    RejectMissing("leaders or --manifest");
+  }
+  if (arguments.recipe.empty()) RejectMissing("--recipe");
+  if (arguments.out.empty()) RejectMissing("--out");
 }
 
 }  // namespace
 
 Command AddBatchCommand(CLI::App* program) {
   const auto arguments = std::make_shared<BatchArguments>();
-  Command command;
-  command.app = AddBatchFlags(program, arguments.get());
-  command.run = [arguments](const ProgramEnvironment& environment) {
-    return RunBatch(*arguments, environment);
-  };
-  command.servers = [arguments] { return absl::StrJoin(arguments->servers, ", "); };
-  return command;
+  CLI::App* app =
+      program->add_subcommand("batch", "Turn many leaders and a recipe into a data set");
+  AddInputFlags(app, arguments.get());
+  AddOutputFlags(app, arguments.get());
+  AddFlowFlags(app, arguments.get());
+  app->footer(kFooter);
+  app->callback([arguments] { CheckTogether(*arguments); });
+  return MakeServerCommand(app, arguments, RunBatch);
 }
 
 }  // namespace duet::client::cli

@@ -78,8 +78,11 @@ main() {
   port="$(port_of_server "${scratch}/server.log")" ||
     { tail -n 5 "${scratch}/server.log" >&2 && requeue_or_fail 1; }
 
-  # The array's index and count select the shard (SLURM_ARRAY_TASK_ID, SLURM_ARRAY_TASK_COUNT).
-  duet batch "$@" --server "127.0.0.1:${port}" --patience 10 &
+  local shard=()
+  if [[ -n "${SLURM_ARRAY_TASK_ID:-}" ]]; then
+    shard=(--shard "${SLURM_ARRAY_TASK_ID}/${SLURM_ARRAY_TASK_COUNT}")
+  fi
+  duet batch "$@" "${shard[@]}" --server "127.0.0.1:${port}" --patience 10 &
   client_pid=$!
   wait "${client_pid}"
   status=$?

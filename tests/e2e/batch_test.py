@@ -4,10 +4,8 @@ killed, what duet_motion.sets makes of them, shards of a job, refusals, and Ctrl
     batch_test.py [KILLS] [test...]     how often the kill test kills; 6
 """
 
-import csv
 import hashlib
 import json
-import math
 import os
 import pathlib
 import random
@@ -47,8 +45,8 @@ def digests(folder):
     return found
 
 
-def entries(folder):
-    lines = (folder / "index.jsonl").read_text(encoding="utf-8").splitlines()
+def entries(folder, name="index.jsonl"):
+    lines = (folder / name).read_text(encoding="utf-8").splitlines()
     return [json.loads(line) for line in lines]
 
 
@@ -56,45 +54,6 @@ def sets(*words):
     """Runs a command of duet_motion.sets."""
     return tools.run(sys.executable, "-m", "duet_motion.sets", *words,
                      env={**os.environ, "PYTHONPATH": str(tools.SOURCE / "client" / "python")})
-
-
-def read_k3hi(folder):
-    """As a loader of K3HI reads it, class folder by class folder: path to frames of the points of two
-    people, in metres, y up."""
-    found = {}
-    for path in sorted(folder.glob("*ing/[0-9][0-9][0-9].txt")):
-        frames = []
-        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
-            values = [float(value) for value in line.split(",")]
-            assert values[0] == number and len(values) == 1 + 2 * 3 * 15, path
-            frames.append([(1.28 - 2.56 * x, 0.96 - 1.92 * y, 1.28 * z) for x, y, z in
-                           zip(values[1::3], values[2::3], values[3::3])])
-        found[path.relative_to(folder).as_posix()] = frames
-    return found
-
-
-def write_turning_leader(path, degrees):
-    """A person who stands for a second at each of nine places and faces another way at each, as captured
-    by a camera that is tilted towards z."""
-    pose = {"head": (0, 1.48, 0), "neck": (0, 1.27, 0), "torso": (0, 1.05, 0)}
-    for side, x in (("left", -1), ("right", 1)):
-        pose.update({f"{side}_shoulder": (.15 * x, 1.27, 0), f"{side}_elbow": (.18 * x, .98, 0),
-                     f"{side}_hand": (.18 * x, .7, 0), f"{side}_hip": (.09 * x, .85, 0),
-                     f"{side}_knee": (.1 * x, .43, 0), f"{side}_foot": (.1 * x, .03, 0)})
-    tilt = math.radians(degrees)
-    rows = [",".join(["frame"] + [f"{joint}_{axis}" for joint in pose for axis in "xyz"])]
-    for frame in range(9 * 15):
-        place = frame // 15
-        yaw = 0.7 * place
-        row = [str(frame)]
-        for x, y, z in pose.values():
-            x, z = (x * math.cos(yaw) + z * math.sin(yaw) + place % 3,
-                    z * math.cos(yaw) - x * math.sin(yaw) + place // 3)
-            y, z = (y * math.cos(tilt) - z * math.sin(tilt), y * math.sin(tilt) + z * math.cos(tilt))
-            row += [f"{value:.5f}" for value in (x, y, z)]
-        rows.append(",".join(row))
-    path.write_text("# duet motion: frame_rate_hz=15 unit=metres up_axis=y-up\n" +
-                    "\n".join(rows) + "\n", encoding="utf-8")
 
 
 class BatchTest(tools.ServedTest):
@@ -136,25 +95,6 @@ class BatchTest(tools.ServedTest):
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 
-    def test_a_job_estimates_the_vertical_once_and_keeps_it(self):
-        out, recipe, leaders = self.out(), self.recipe(), self.out("leaders")
-        leaders.mkdir()
-        write_turning_leader(leaders / "a.csv", 10)
-        first = self.batch(out, recipe, leaders=leaders)
-        self.assertRegex(first.stderr, "leaders levelled: tilted by (9|10)\\.")
-        ups = []
-        for name, degrees in (("b.csv", -10), ("c.csv", 0)):
-            ups.append(json.loads((out / ".duet-batch" / "job.json").read_text())["up"])
-            write_turning_leader(leaders / name, degrees)  # together, no longer tilted
-            self.batch(out, recipe, leaders=leaders)
-        self.assertAlmostEqual(ups[0][2], math.sin(math.radians(10)), delta=0.02)
-        self.assertEqual(ups, [ups[0]] * 2)
-        self.verified(out)
-        fresh = self.batch(self.out("fresh"), recipe, leaders=leaders)
-        self.assertNotIn("leaders levelled", fresh.stderr)
-        refused = self.batch(out, recipe, "--level", "off", code=42, leaders=leaders)
-        self.assertIn("was begun with another recipe: input.level", refused.stderr)
-
     def test_folder_becomes_a_data_set(self):
         out = self.out()
         self.batch(out, self.recipe())
@@ -162,8 +102,6 @@ class BatchTest(tools.ServedTest):
         self.assertEqual(len(index), 3 * (6 + 2) * 2)
         self.assertEqual([entry["item"] for entry in index], list(range(len(index))))
         self.assertTrue((out / "far" / "push-kick-s1.npy").is_file())
-        rows = (out / "index.tsv").read_text(encoding="utf-8").splitlines()
-        self.assertEqual(len(rows), len(index) + 1)
         for entry in index:
             self.assertEqual(entry["request_id"], "batch-" + entry["id"])
             self.assertEqual(entry["candidates"], 1)
@@ -172,8 +110,8 @@ class BatchTest(tools.ServedTest):
             for file in entry["files"]:
                 content = (out / file["path"]).read_bytes()
                 self.assertEqual(hashlib.sha256(content).hexdigest(), file["sha256"])
-        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
-        self.assertEqual((summary["done"], summary["missing"]), (len(index), 0))
+        self.assertEqual(json.loads((out / "dataset.json").read_text(encoding="utf-8"))["items"],
+                         {"done": len(index), "rejected": 0, "failed": 0, "missing": 0})
         self.verified(out)
         (out / "far" / "push-kick-s1.npy").write_bytes(b"changed")
         self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
@@ -208,36 +146,14 @@ class BatchTest(tools.ServedTest):
             self.assertEqual(sorted(json.dumps([entry[field] for field in asked])
                                     for entry in entries(out)), expected)
 
-    def test_captures_are_led_by_whom_their_index_names(self):
-        captures = self.out("captures")
-        self.batch(captures, self.recipe(
-            text="reactions { labels { weights { key: 'kick' value: 1 } } } "
-                 "output { layout: LAYOUT_SBU %s }"))
-        shutil.rmtree(captures / ".duet-batch")
-        index = captures / "index.tsv"
-        rows = index.read_text(encoding="utf-8").splitlines()
-        side = rows[0].split("\t").index("leader_side")
-        changed = rows[2].split("\t")
-        changed[side] = "right"
-        index.write_text("\n".join([*rows[:2], "\t".join(changed), *rows[3:]]) + "\n",
-                         encoding="utf-8")
-        found = self.batch(self.out(), self.recipe(), leaders=captures / "s00s00")
-        self.assertIn("leaders by index.tsv: 2 left, 1 right\n", found.stderr)
-        path = changed[rows[0].split("\t").index("path")]
-        self.assertEqual({entry["leader"] for entry in entries(self.out())
-                          if entry["side"] == "right"}, {str(captures / path)})
-
-    def test_files_without_motion_are_skipped(self):
+    def test_text_of_a_folder_is_skipped(self):
         leaders, out = self.out("leaders"), self.out()
         leaders.mkdir()
         shutil.copy(tools.sample("kick"), leaders)
-        keyframes = leaders / "kick.txt"
-        shutil.copy(tools.SOURCE / "samples" / "keyframes" / "kick.txt", keyframes)
-        result = self.batch(out, self.recipe(), "--limit", "1", leaders=leaders)
-        self.assertIn(f"skipped, not a motion: {keyframes}\n", result.stderr)
+        shutil.copy(tools.SOURCE / "samples" / "keyframes" / "kick.txt", leaders)
+        result = self.batch(out, self.recipe(), "--limit", "1", "--quiet", leaders=leaders)
         self.assertEqual([entry["leader"] for entry in entries(out)], [str(leaders / "kick.bvh")])
-        quiet = self.batch(out, self.recipe(), "--limit", "1", "--quiet", leaders=leaders)
-        self.assertEqual(quiet.stderr, "")
+        self.assertEqual(result.stderr, "")
 
     def test_a_server_that_answers_in_another_way_is_refused_by_name(self):
         out, recipe = self.out(), self.recipe()
@@ -276,7 +192,7 @@ class BatchTest(tools.ServedTest):
         try:
             while True:
                 client = subprocess.Popen(
-                    self.command(out, recipe, "--patience", "60", "--quiet", "--channels", "2",
+                    self.command(out, recipe, "--patience", "60", "--quiet",
                                  server=server.address),
                     stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
                 if kills < KILLS:
@@ -287,7 +203,7 @@ class BatchTest(tools.ServedTest):
                     except subprocess.TimeoutExpired:
                         pass
                     kills += 1
-                    unsettled.append(not (out / "summary.json").exists())
+                    unsettled.append(not (out / "dataset.json").exists())
                     if kills % 3 == 0:
                         server.kill()
                     client.kill()
@@ -394,7 +310,7 @@ class BatchTest(tools.ServedTest):
         self.assertLess(len(made), 48)
         missing = 48 - len(made)
         self.assertIn(f"{len(made)} done, 0 rejected, 0 failed, {missing} missing", said.decode())
-        self.assertEqual(json.loads((out / "summary.json").read_text())["missing"], missing)
+        self.assertEqual(json.loads((out / "dataset.json").read_text())["items"]["missing"], missing)
         self.assertIn(f" {missing} items missing", self.verified(out, 1).stdout)
         self.batch(out, recipe)
         self.assertEqual(len(entries(out)), 48)
@@ -414,13 +330,13 @@ class BatchTest(tools.ServedTest):
             "".join(lines[:frames] + ["Frames: 1\n"] + lines[frames + 1:frames + 3]),
             encoding="utf-8")
         result = self.batch(out, self.recipe(), "--dry-run", code=42, leaders=broken)
-        self.assertIn("2 leaders cannot be used, of 32 items", result.stderr)
-        self.assertIn("still.bvh: frames: expected at least 2, got 1 (16 items)", result.stderr)
+        self.assertIn("still.bvh: frames: expected at least 2, got 1\n", result.stderr)
+        self.assertEqual(result.stderr.count("cannot be used: "), 2)
         self.assertFalse(out.exists())
 
     def test_invalid_lines_are_rejected_before_the_run(self):
         out, manifest = self.out(), self.out("manifest.tsv")
-        rows = ["leader\tlabels\tside", f"{self.leaders}/kick.bvh\tkick=1\t",
+        rows = ["leader\tlabels\tleader_side", f"{self.leaders}/kick.bvh\tkick=1\t",
                 f"{self.leaders}/hug.bvh\tkik=1\t", f"{self.leaders}/hug.bvh\thug=1\tlft",
                 f"{self.leaders}/hug.bvh"]
         manifest.write_text("\n".join(rows) + "\n", encoding="utf-8")
@@ -431,7 +347,7 @@ class BatchTest(tools.ServedTest):
             self.assertEqual(result.returncode, 42, result.stderr)
             self.assertIn("3 bad lines", result.stderr)
             self.assertIn(f'{manifest}:3: labels: expected classes of sbu@3', result.stderr)
-            self.assertIn(f'{manifest}:4: side: expected left or right, got "lft"', result.stderr)
+            self.assertIn(f'{manifest}:4: leader_side: expected left or right, got "lft"', result.stderr)
             self.assertIn(f"{manifest}:5: columns: expected 3", result.stderr)
         self.assertFalse((out / "index.jsonl").exists())
         self.assertFalse((out / ".duet-batch" / "job.json").exists())
@@ -446,12 +362,11 @@ class BatchTest(tools.ServedTest):
         whole = tools.sample("hug").read_text(encoding="utf-8")
         (leaders / "cut.bvh").write_text(whole[:len(whole) // 2], encoding="utf-8")
         result = self.batch(out, self.recipe(), code=42, leaders=leaders)
-        self.assertIn("1 leader cannot be used, of 16 items", result.stderr)
-        self.assertIn("16 items of 1 leader: INVALID_ARGUMENT: ", result.stderr)
+        self.assertIn(f"16 items of 1 leader failed permanently ({out}/failed.jsonl), the first: ",
+                      result.stderr)
         self.assertEqual(len(entries(out)), 16)
-        rows = (out / "failed.tsv").read_text(encoding="utf-8").splitlines()
-        self.assertEqual(len(rows), 2)
-        self.assertEqual(rows[1].split("\t")[:2], [str(leaders / "cut.bvh"), "16"])
+        failed = entries(out, "failed.jsonl")
+        self.assertEqual([entry["leader"] for entry in failed], [str(leaders / "cut.bvh")] * 16)
 
     def test_a_tolerated_share_of_bad_leaders_lets_shards_merge(self):
         leaders, recipe = self.out("leaders"), self.recipe()
@@ -467,7 +382,7 @@ class BatchTest(tools.ServedTest):
                 self.assertEqual(len(entries(self.out(number))), 48)
         result = self.batch(self.out(1), recipe, "--allow-failed", "1", leaders=leaders)
         self.assertIn("16 failed", result.stdout)
-        self.assertIn("--allow-failed permits the 1 leader that failed", result.stderr)
+        self.assertIn("--allow-failed permits them", result.stderr)
         for index in range(2):
             self.batch(self.out(), recipe, "--shard", f"{index}/2", "--allow-failed", "25%",
                        leaders=leaders)
@@ -478,20 +393,10 @@ class BatchTest(tools.ServedTest):
         wrong = self.batch(self.out("wrong"), recipe, "--allow-failed", "many", code=2)
         self.assertIn("--allow-failed: expected a number of leaders, or a share", wrong.stderr)
 
-    def test_causes_beyond_the_first_are_counted(self):
-        leaders, out = self.out("leaders"), self.out()
-        leaders.mkdir()
-        for number in range(7):
-            (leaders / f"{number}.bvh").write_text(f"HIERARCHY\nROOT{number}", encoding="utf-8")
-        (leaders / "lost.bvh").symlink_to("/nowhere")
-        result = self.batch(out, self.recipe(), code=42, leaders=leaders)
-        self.assertIn("8 leaders cannot be used", result.stderr)
-        self.assertIn("  and 3 other causes\n", result.stderr)
-
     def test_a_set_among_its_leaders_is_rejected(self):
         result = self.batch(self.leaders / "set", self.recipe(), code=42)
         self.assertIn("--out: expected a folder outside", result.stderr)
-        result = self.batch(self.out(), self.recipe(), "--server", "localhost:1", code=42,
+        result = self.batch(self.out(), self.recipe(), code=42, server="localhost:1",
                             leaders=self.out("nothing"))
         self.assertIn("nothing: no such file or folder", result.stderr)
 
@@ -528,7 +433,7 @@ class BatchTest(tools.ServedTest):
         described = json.loads((mixed / "dataset.json").read_text(encoding="utf-8"))
         self.assertNotIn("frame_rate_hz", described)
         self.assertEqual([rate["frame_rate_hz"] for rate in described["frame_rates"]], [30, 120])
-        self.batch(out, self.recipe(), "--rate", "25", leaders=leaders)
+        self.batch(out, self.recipe("frame_rate_hz: 25"), leaders=leaders)
         dataset = json.loads((out / "dataset.json").read_text(encoding="utf-8"))
         self.assertEqual(dataset["frame_rate_hz"], 25)
         for entry, before in zip(entries(out), entries(mixed)):
@@ -538,7 +443,7 @@ class BatchTest(tools.ServedTest):
             if numpy is not None:
                 pair = numpy.load(out / entry["files"][0]["path"])
                 self.assertEqual(pair.shape, (2, entry["frames"], 15, 3))
-        another = self.batch(out, self.recipe(), "--rate", "50", code=42, leaders=leaders)
+        another = self.batch(out, self.recipe("frame_rate_hz: 50"), code=42, leaders=leaders)
         self.assertIn("was begun with another recipe", another.stderr)
 
     def test_invalid_arguments_are_rejected(self):
@@ -546,31 +451,22 @@ class BatchTest(tools.ServedTest):
                             ((self.leaders, "--out", "x"), "--recipe"),
                             ((self.leaders, "--recipe", "r"), "--out"),
                             ((self.leaders, "--manifest", "m"), "excludes"),
-                            ((self.leaders, "--shard", "3/3"), "INDEX/COUNT"),
-                            ((self.leaders, "--sample", "2"), "--sample")):
+                            ((self.leaders, "--shard", "3/3"), "INDEX/COUNT")):
             result = tools.duet("batch", *words)
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertIn(said, result.stderr)
 
-    def test_events_are_json_lines(self):
-        result = self.batch(self.out(), self.recipe(), "--json")
-        events = [json.loads(line) for line in result.stdout.splitlines()]
-        self.assertEqual({event["event"] for event in events}, {"progress", "end"})
-        self.assertEqual((events[-1]["done"], events[-1]["missing"]), (48, 0))
-
     def test_another_recipe_is_rejected(self):
         out = self.out()
         self.batch(out, self.recipe(), "--limit", "2")
-        result = self.batch(out, self.recipe("formats: FORMAT_CSV"), code=42)
+        result = self.batch(out, self.recipe("formats: FORMAT_BVH"), code=42)
         self.assertIn("was begun with another recipe", result.stderr)
 
     def test_gathered_shards_equal_a_single_run(self):
         recipe, out = self.recipe(), self.out()
         for index in range(2):
             self.batch(out, recipe, "--shard", f"{index}/3")
-        environment = dict(os.environ, JOB_COMPLETION_INDEX="2", JOB_COMPLETIONS="3")
-        last = tools.run(*self.command(out, recipe, "--limit", "20"), env=environment)
-        self.assertEqual(last.returncode, 0, last.stderr)
+        self.batch(out, recipe, "--shard", "2/3", "--limit", "20")
         # The shard that is not complete, and a file that was changed, are made by the run itself.
         changed = next((out / "shard-0-of-3").glob("*.npy"))
         changed.write_bytes(changed.read_bytes()[:-1] + b"x")
@@ -585,7 +481,7 @@ class BatchTest(tools.ServedTest):
         recipe, out = self.recipe(), self.out()
         for index in range(2):
             self.batch(out, recipe, "--shard", f"{index}/2")
-        other = self.batch(out, self.recipe("formats: FORMAT_CSV"), code=42)
+        other = self.batch(out, self.recipe("formats: FORMAT_BVH"), code=42)
         self.assertIn("shard-0-of-2: was begun with another recipe", other.stderr)
         recipe = self.recipe()
         job = out / "shard-1-of-2" / ".duet-batch" / "job.json"
@@ -595,11 +491,10 @@ class BatchTest(tools.ServedTest):
         refused = self.batch(out, recipe, code=42)
         self.assertIn("shard-1-of-2: expected the models and weights of the other", refused.stderr)
 
-    def test_sets_are_split_packed_shown_and_described(self):
+    def test_sets_are_split_and_packed(self):
         out = self.out()
         shutil.copytree(self.whole, out)
-        for words in (("split", out, "--validation", "0.4", "--test", "0.2"), ("table", out), ("card", out),
-                      ("sheet", out, out / "sheet.png"), ("pack", out, self.out("tar"), "--kind", "tar"),
+        for words in (("split", out, "--validation", "0.4", "--test", "0.2"), ("pack", out, self.out("tar"), "--kind", "tar"),
                       ("pack", out, self.out("npz"))):
             made = sets(*words)
             self.assertEqual(made.returncode, 0, made.stderr)
@@ -607,63 +502,30 @@ class BatchTest(tools.ServedTest):
             self.assertEqual([{**entry, "shard": 0, "split": 0} for entry in entries(packed)],
                              [{**entry, "shard": 0, "split": 0} for entry in entries(out)])
             self.verified(packed)
-        self.assertIn("**not free for all uses.**", (out / "README.md").read_text(encoding="utf-8"))
         self.verified(out)
-
-    def test_k3hi_layout_is_readable(self):
-        out, single = self.out(), self.folder / "single.json"
-        self.batch(out, self.recipe(text='models: "k3hi" reactions { each_class {} } '
-                                         'output { layout: LAYOUT_K3HI %s }'))
-        index, found = {e["files"][0]["path"]: e for e in entries(out)}, read_k3hi(out)
-        self.assertEqual(set(found), set(index))
-        folders = {path.partition("/")[0]: entry["reaction"] for path, entry in index.items()}
-        self.assertEqual(folders, {
-            "approaching": "approach", "departing": "depart", "exchanging": "exchange_object",
-            "kicking": "kick", "pointing": "point", "punching": "punch", "pushing": "push",
-            "shaking": "shake_hands"})
-        self.assertEqual(len(found), 3 * len(folders))  # of each leader one
-        with (out / "index.tsv").open(encoding="utf-8", newline="") as table:
-            sides = {row["path"]: row["leader_side"] for row in csv.DictReader(table, delimiter="\t")}
-        self.assertEqual(sides, dict.fromkeys(found, "left"))
-        # Compares one item with the answer to a single call; both have 30 Hz.
-        entry, frames = index["punching/002.txt"], found["punching/002.txt"]
-        result = tools.duet("synthesize", "--server", self.server.address, "--model", "k3hi",
-                            "--leader", entry["leader"], "--label", "punch=1", "--seed",
-                            entry["seed"], "--out", single)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        asked = json.loads(single.read_text())
-        self.assertEqual(asked["frame_rate_hz"], 30)
-        self.assertEqual(len(frames), len(asked["leader"]))
-        for points, leader, follower in zip(frames, asked["leader"], asked["follower"]):
-            for came, wanted in zip(points, leader + follower):
-                self.assertLess(math.dist(came, wanted), 1e-4)
 
     def test_manifest_is_read_from_a_pipe(self):
         out = self.out()
-        lines = [{"leader": str(self.leaders / "kick.bvh"), "labels": {"hug": 1}, "seed": 5,
-                  "take": "seven"},
-                 {"leader": str(self.leaders / "none.bvh"), "labels": {"hug": 1}}]
+        lines = ["leader\tlabels\tseed\ttake", f"{self.leaders}/kick.bvh\thug=1\t5\tseven",
+                 f"{self.leaders}/none.bvh\thug=1\t\t"]
         command = [tools.PROGRAMS / "duet", "batch", "--manifest", "-", "--recipe",
                    self.recipe(text="output { formats: FORMAT_NPY %s }"), "--out", out, "--server",
                    self.server.address]
-        result = tools.run(*command, input="\n".join(map(json.dumps, lines)))
+        result = tools.run(*command, input="\n".join(lines) + "\n")
         self.assertEqual(result.returncode, 42, result.stderr)
         self.assertIn("1 done, 0 rejected, 1 failed", result.stdout)
         (entry,) = entries(out)
         self.assertEqual((entry["seed"], entry["extra"]), (5, {"take": "seven"}))
-        _, failed = (out / "failed.tsv").read_text(encoding="utf-8").splitlines()
-        self.assertIn("none.bvh: no such file", failed)
-        self.assertIn("1 item of 1 leader: NOT_FOUND: no such file", result.stderr)
+        (failed,) = entries(out, "failed.jsonl")
+        self.assertEqual(failed["error"]["code"], "NOT_FOUND")
+        self.assertIn("none.bvh: no such file", result.stderr)
 
     def test_rejected_items_are_listed(self):
         out = self.out()
         self.batch(out, self.recipe("} filter { max_distance_metres: 0.9 retries_per_item: 2"))
-        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
-        self.assertEqual(summary["done"] + summary["rejected"], 48)
-        self.assertGreater(summary["rejected"], 0)
-        rows = (out / "rejected.tsv").read_text(encoding="utf-8").splitlines()
-        self.assertEqual(len(rows), summary["rejected"] + 1)
-        self.assertIn("expected at most 0.9", rows[1])
+        rejected = entries(out, "rejected.jsonl")
+        self.assertEqual(len(entries(out)) + len(rejected), 48)
+        self.assertIn("expected at most 0.9", rejected[0]["reasons"][0])
         for entry in entries(out):
             self.assertLessEqual(entry["quality"]["distance_metres"], 0.9)
 

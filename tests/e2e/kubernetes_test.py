@@ -135,9 +135,9 @@ class KubernetesTest(unittest.TestCase):
 
     def test_every_completion_is_a_shard(self):
         job = of_kind(objects_of("batch"), "Job")[0]["spec"]
-        environment = {one["name"]: one["value"]
-                       for one in job["template"]["spec"]["containers"][0]["env"]}
-        self.assertEqual(environment["JOB_COMPLETIONS"], str(job["completions"]))
+        command = job["template"]["spec"]["containers"][0]["command"]
+        self.assertEqual(command[-2:],
+                         ["--shard", f"$(JOB_COMPLETION_INDEX)/{job['completions']}"])
         self.assertEqual(job["template"]["metadata"]["labels"]["duet.dev/client"], "true")
 
     def verify_models(self, folder):

@@ -15,7 +15,7 @@
 #include "client/batch/index.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
-#include "client/batch/manifest.h"
+#include "client/batch/leaders.h"
 #include "client/batch/recipe.h"
 #include "model/base/sha256.h"
 #include "tests/fuzz/promises.h"
@@ -29,7 +29,6 @@ using client::batch::JournalReader;
 
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
 constexpr auto kDataLoss = absl::StatusCode::kDataLoss;
-constexpr auto kNotFound = absl::StatusCode::kNotFound;
 constexpr auto kFailedPrecondition = absl::StatusCode::kFailedPrecondition;
 
 // One folder for all inputs of a process: files are replaced, not removed.
@@ -39,13 +38,8 @@ const test::TemporaryFolder& Folder() {
 }
 
 Broken Recipe(absl::string_view input, bool json) {
-  const absl::StatusOr<client::batch::Recipe> recipe =
-      client::batch::ParseRecipe(input, json, Folder().path());
-  // Of a table of joints that a recipe names.
-  if (!recipe.ok()) {
-    return CheckRefusal(recipe.status(),
-                        {kInvalidArgument, kNotFound, absl::StatusCode::kPermissionDenied});
-  }
+  const absl::StatusOr<client::batch::Recipe> recipe = client::batch::ParseRecipe(input, json);
+  if (!recipe.ok()) return CheckRefusal(recipe.status(), {kInvalidArgument});
   return recipe->models.empty() || recipe->digest.empty() ? "a recipe has no model or no digest"
                                                           : "";
 }
@@ -93,7 +87,7 @@ Broken BatchJournal(absl::string_view input) {
   fs::create_directories(Folder() / "set/.duet-batch/tmp");
   const client::batch::Recipe recipe;
   const absl::StatusOr<client::batch::SetCounts> counts =
-      WriteIndex(*journal, client::batch::SetSource{recipe, {}, {}, {}}, {},
+      WriteIndex(*journal, client::batch::SetSource{recipe, {}, {}}, 0,
                  client::batch::JobFolder(Folder() / "set"));
   if (!counts.ok()) return CheckRefusal(counts.status(), {kDataLoss});
   return counts->done + counts->rejected + counts->failed == visited ? "" : "records are lost";

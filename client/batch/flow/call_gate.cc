@@ -37,70 +37,19 @@ void CallWindow::Finish(int64_t call, CallEnd end, std::optional<Duration> delay
   ++failures_;
 }
 
-std::optional<ServerChoice::Call> ServerChoice::Start(Time now) {
-  std::optional<size_t> best;
-  int most_room = 0;
-  for (size_t i = 1; i <= windows_.size(); ++i) {
-    const size_t server = (last_ + i) % windows_.size();
-    const CallWindow& window = windows_[server];
-    const int room = window.limit() - window.in_flight();
-    if (!window.MayStart(now) || room <= most_room) continue;
-    best = server;
-    most_room = room;
-  }
-  if (!best.has_value()) return std::nullopt;
-  last_ = *best;
-  return Call{static_cast<int>(*best), windows_[*best].Start()};
-}
-
-void ServerChoice::Finish(const Call& call, CallEnd end, std::optional<Duration> delay, Time now) {
-  windows_[static_cast<size_t>(call.server)].Finish(call.number, end, delay, now);
-}
-
-std::optional<Time> ServerChoice::NextOpening(Time now) const {
-  std::optional<Time> next;
-  for (const CallWindow& window : windows_) {
-    if (window.in_flight() >= window.limit() || window.opens() <= now) continue;
-    next = std::min(next.value_or(window.opens()), window.opens());
-  }
-  return next;
-}
-
-int ServerChoice::in_flight() const {
-  int sum = 0;
-  for (const CallWindow& window : windows_) sum += window.in_flight();
-  return sum;
-}
-
-int ServerChoice::limit() const {
-  int sum = 0;
-  for (const CallWindow& window : windows_) sum += window.limit();
-  return sum;
-}
-
-bool ServerChoice::HasRoom() const {
-  return std::any_of(windows_.begin(), windows_.end(),
-                     [](const CallWindow& window) { return window.in_flight() < window.limit(); });
-}
-
-bool ServerChoice::all_away() const {
-  return std::all_of(windows_.begin(), windows_.end(),
-                     [](const CallWindow& window) { return window.away(); });
-}
-
-std::optional<ServerChoice::Call> CallGate::Start() {
+std::optional<int64_t> CallGate::Start() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopped_) {
     const Time now = std::chrono::steady_clock::now();
-    std::optional<ServerChoice::Call> call = servers_.Start(now);
-    if (call.has_value()) {
-      // Wakes one more thread if a window has room for a call, now or after a delay.
-      if (servers_.HasRoom()) changed_.notify_one();
+    const bool has_room = window_.in_flight() < window_.limit();
+    if (has_room && now >= window_.opens()) {
+      const int64_t call = window_.Start();
+      // Wakes one more thread if there is room for another call.
+      if (window_.in_flight() < window_.limit()) changed_.notify_one();
       return call;
     }
-    const std::optional<Time> opening = servers_.NextOpening(now);
-    if (opening.has_value()) {
-      changed_.wait_until(lock, *opening);
+    if (has_room) {
+      changed_.wait_until(lock, window_.opens());
     } else {
       changed_.wait(lock);
     }
@@ -108,12 +57,12 @@ std::optional<ServerChoice::Call> CallGate::Start() {
   return std::nullopt;
 }
 
-void CallGate::Finish(const ServerChoice::Call& call, CallEnd end, std::optional<Duration> delay) {
+void CallGate::Finish(int64_t call, CallEnd end, std::optional<Duration> delay) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const Time now = std::chrono::steady_clock::now();
-  servers_.Finish(call, end, delay, now);
+  window_.Finish(call, end, delay, now);
   if (end == CallEnd::kRefused) ++refusals_;
-  if (!servers_.all_away()) {
+  if (!window_.away()) {
     away_since_.reset();
   } else if (!away_since_.has_value()) {
     away_since_ = now;
@@ -132,7 +81,7 @@ void CallGate::Stop() {
 
 CallGate::State CallGate::state() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return {servers_.in_flight(), servers_.limit(), refusals_, lost_patience_};
+  return {window_.in_flight(), window_.limit(), refusals_, lost_patience_};
 }
 
 }  // namespace duet::client::batch::flow

@@ -4,15 +4,13 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <functional>
 #include <mutex>
 #include <optional>
-#include <vector>
 
 namespace duet::client::batch::flow {
 
-// How many concurrent calls each server gets, and when. Time is a parameter, so that tests can
-// simulate any sequence of events. Threads: the caller locks.
+// How many concurrent calls the server gets, and when. In CallWindow, time is a parameter, so that
+// tests can simulate any sequence of events.
 
 using Time = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::nanoseconds;
@@ -25,12 +23,12 @@ enum class CallEnd {
 };
 
 struct Options {
-  int max_in_flight = 64;  // for each server
+  int max_in_flight = 64;
   Duration first_backoff = std::chrono::milliseconds(50);
   Duration longest_backoff = std::chrono::seconds(5);
 };
 
-// The window of calls in flight at one server.
+// The window of calls in flight. Threads: the caller locks.
 //
 // Grows by one for each answer until the first refusal, then by one for each full window of
 // answers. It is halved when the server is full, once for all calls in flight at that time, and set
@@ -66,45 +64,18 @@ class CallWindow {
   Time opens_{};
 };
 
-// Several servers: each call goes to the one with the most free capacity.
-class ServerChoice {
- public:
-  ServerChoice(int servers, const Options& options)
-      : windows_(static_cast<size_t>(servers), CallWindow(options)) {}
-
-  struct Call {
-    int server = 0;
-    int64_t number = 0;
-  };
-  // nullopt while no server may get another call.
-  std::optional<Call> Start(Time now);
-  void Finish(const Call& call, CallEnd end, std::optional<Duration> delay, Time now);
-
-  // When Start may succeed although no call ends; nullopt if a call must end first.
-  std::optional<Time> NextOpening(Time now) const;
-  int in_flight() const;
-  int limit() const;
-  // Whether a window is not full, regardless of the time.
-  bool HasRoom() const;
-  bool all_away() const;
-
- private:
-  std::vector<CallWindow> windows_;
-  size_t last_ = 0;  // equal servers take turns
-};
-
-// Makes threads wait until a ServerChoice allows a call.
+// Makes threads wait until a CallWindow allows a call.
 //
 // Threads: safe to call concurrently.
 class CallGate {
  public:
-  // `patience`: maximum time for which all servers may be away.
-  CallGate(int servers, const Options& options, Duration patience)
-      : servers_(servers, options), patience_(patience) {}
+  // `patience`: maximum time for which the server may be away.
+  CallGate(const Options& options, Duration patience) : window_(options), patience_(patience) {}
 
-  // Waits until a call may start. nullopt after Stop, and when the patience is exceeded.
-  std::optional<ServerChoice::Call> Start();
-  void Finish(const ServerChoice::Call& call, CallEnd end, std::optional<Duration> delay);
+  // Waits until a call may start, and returns its number. nullopt after Stop, and when the patience
+  // is exceeded.
+  std::optional<int64_t> Start();
+  void Finish(int64_t call, CallEnd end, std::optional<Duration> delay);
   // No more calls start; calls in progress continue.
   void Stop();
 
@@ -119,7 +90,7 @@ class CallGate {
  private:
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  ServerChoice servers_;
+  CallWindow window_;
   Duration patience_;
   std::optional<Time> away_since_;
   int64_t refusals_ = 0;

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/batch/answer.h"
-#include "client/batch/manifest.h"
+#include "client/batch/leaders.h"
 #include "client/batch/recipe.h"
-#include "client/batch/shard.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/motion/skeleton.h"
@@ -87,35 +87,18 @@ TEST(Plan, OnlySeveralCandidatesChangeTheItem) {
   EXPECT_NE(id("candidates: 4"), id("candidates: 5"));
 }
 
-TEST(Plan, PinsChangeTheItemAndNeedJointsOfTheModel) {
-  ModelInfo model = Model("sbu");
-  model.joint_names = motion::SbuSkeleton().joint_names;
-  const auto id = [&model](const std::string& pins) {
-    return (*PlanOf(kKick, "leader\tconstraints\na.bvh\t" + pins + "\n", {model}))[0].id;
-  };
-  EXPECT_EQ(id(""), "54e9b2a470fe12910b8bf016da00fb89");
-  EXPECT_NE(id("head@3=0,1,2"), id(""));
-  EXPECT_NE(id("head@3=0,1,2"), id("head@3=0,1,2,0.5"));
-  EXPECT_THAT(PlanOf(kKick, "leader\tconstraints\na.bvh\twing@3=0,1,2\n", {model}),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("m:2: constraints: expected joints of sbu@2 (head, ")));
-}
-
 TEST(Plan, EveryKindOfReaction) {
   const auto items = PlanOf(R"(
-    reactions { grid { axes { interaction_class: 'kick' weights: 0.5 weights: 1 }
-                       axes { interaction_class: 'hug' weights: -1 weights: 0 } } }
     reactions { each_class {} }
     reactions { name: 'turn' schedule { keyframes { at: 0 labels { weights { key: 'kick' value: 1 } } }
                                         keyframes { at: 1 labels { weights { key: 'hug' value: 1 } } } } }
     reactions { name: 'm' mixes { count: 2 classes_in_mix: 3 } })",
                             "leader\na.bvh\n");
   ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items), ElementsAre("a-2-hugm1+kick0p5", "a-2-hug0+kick0p5", "a-2-hugm1+kick1",
-                                         "a-2-hug0+kick1", "a-2-kick", "a-2-push", "a-2-hug",
-                                         "a-2-turn", "a-2-m0", "a-2-m1"));
-  EXPECT_EQ((*items)[7].keyframes.size(), 2u);
-  EXPECT_EQ((*items)[8].labels.size(), 3u);
+  EXPECT_THAT(Names(*items),
+              ElementsAre("a-2-kick", "a-2-push", "a-2-hug", "a-2-turn", "a-2-m0", "a-2-m1"));
+  EXPECT_EQ((*items)[3].keyframes.size(), 2u);
+  EXPECT_EQ((*items)[4].labels.size(), 3u);
 }
 
 TEST(Plan, MixesDifferFromLeaderToLeaderAndNotFromRunToRun) {
@@ -139,29 +122,17 @@ TEST(Plan, MixesDifferFromLeaderToLeaderAndNotFromRunToRun) {
   EXPECT_EQ(mixes.size(), 6u);
 }
 
-TEST(Plan, LabelsSeedAndModelOfALineOverrideTheRecipe) {
-  const auto items = PlanOf(std::string(kKick) + "models: 'sbu' models: 'k3hi' samples: 2",
-                            "leader\tlabels\tseed\tmodel\na.bvh\thug=1\t9\tk3hi@2\n",
-                            {Model("sbu"), Model("k3hi")});
+TEST(Plan, LabelsSideSeedAndGroupOfALineOverrideTheRecipe) {
+  const auto items =
+      PlanOf(std::string(kKick) + "samples: 2",
+             "leader\tlabels\tseed\tleader_side\tgroup\na.bvh\thug=1,kick=0.5\t9\tright\tann\n");
   ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items), ElementsAre("a-2-hug-k3hi_2-s0", "a-2-hug-k3hi_2-s1"));
+  EXPECT_THAT(Names(*items), ElementsAre("a-2-hug1+kick0p5-s0", "a-2-hug1+kick0p5-s1"));
+  EXPECT_EQ((*items)[0].side, formats::Side::kRight);
+  EXPECT_EQ((*items)[0].leader->group, "ann");
+  EXPECT_THAT((*items)[0].leader->extra, ::testing::IsEmpty());
   EXPECT_EQ(SeedOf((*items)[1], 0, "content", 0), 10u);
   EXPECT_NE(SeedOf((*items)[1], 0, "content", 1), 10u);
-}
-
-TEST(Plan, LinesNameTheSideAsSynthesizeDoesOrByTheEarlierName) {
-  for (const char* column : {"leader_side", "side"}) {
-    const auto items = PlanOf(kKick, absl::StrCat("leader\t", column, "\na.bvh\tright\n"));
-    ASSERT_THAT(items, IsOk());
-    EXPECT_EQ((*items)[0].side, formats::Side::kRight) << column;
-    EXPECT_THAT((*items)[0].leader->extra, ::testing::IsEmpty()) << column;
-    EXPECT_THAT(PlanOf(kKick, absl::StrCat("leader\t", column, "\na.bvh\tlft\n")),
-                StatusIs(absl::StatusCode::kInvalidArgument,
-                         absl::StrCat("m:2: ", column, ": expected left or right, got \"lft\"")));
-  }
-  EXPECT_THAT(PlanOf(kKick, "leader\tside\tleader_side\na.bvh\tright\tleft\n"),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("side: expected none beside leader_side")));
 }
 
 TEST(Plan, SeedsDifferFromItemToItem) {
@@ -239,40 +210,10 @@ TEST_F(ListedLeaders, FollowersStartCountsByItsContentToo) {
   EXPECT_NE(seed("1,0,1", "content"), seed("1,0,2", "content"));
 }
 
-TEST_F(ListedLeaders, IndexOfCapturesStatesTheSideThatNobodyElseStates) {
-  test::WriteTestFile(folder_ / "index.tsv", "path\tleader_side\nwalks/a.bvh\tright\n");
-  const auto side = [this](const std::string& recipe, const std::string& column = "") {
-    return (*PlanOf(
-        kKick + recipe,
-        absl::StrCat("leader\tside\n", (folder_ / "walks/a.bvh").string(), "\t", column, "\n")))[0]
-        .side;
-  };
-  EXPECT_EQ(side(""), formats::Side::kRight);
-  EXPECT_EQ(side("", "left"), formats::Side::kLeft);
-  EXPECT_EQ(side("input { side: SIDE_LEFT }"), formats::Side::kLeft);
-  EXPECT_EQ(Of(kKick, (folder_ / "walks/b.bvh").string())[0].side, formats::Side::kLeft);
-}
-
-TEST_F(ListedLeaders, GroupComesFromTheManifestOrTheIndexAndChangesNoSeed) {
-  test::WriteTestFile(folder_ / "index.tsv", "path\tleader_side\tgroup\nwalks/a.bvh\tleft\tann\n");
-  const std::string leader = (folder_ / "walks/a.bvh").string();
-  const Item indexed = (*PlanOf(kKick, absl::StrCat("leader\n", leader, "\n")))[0];
-  EXPECT_EQ(indexed.leader->group, "ann");
-  const Item listed = (*PlanOf(kKick, absl::StrCat("leader\tgroup\n", leader, "\tbob\n")))[0];
-  EXPECT_EQ(listed.leader->group, "bob");
-  EXPECT_THAT(listed.leader->extra, ::testing::IsEmpty());
-  EXPECT_NE(listed.id, indexed.id);
-  EXPECT_EQ(SeedOf(listed, 7, "content", 0), SeedOf(indexed, 7, "content", 0));
-}
-
-TEST(Plan, BothSidesLeadAndClassFoldersGoByTheLargestWeight) {
-  const auto items = PlanOf(
-      "input { side: SIDE_BOTH } reactions { labels { "
-      "weights { key: 'kick' value: 0.5 } weights { key: 'hug' value: 1 } } }",
-      "leader\na.bvh\n", {Model("sbu")}, "layout: LAYOUT_CLASS_FOLDERS");
+TEST(Plan, BothSidesLead) {
+  const auto items = PlanOf(std::string("input { side: SIDE_BOTH } ") + kKick, "leader\na.bvh\n");
   ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items),
-              ElementsAre("hug/a-2-left-hug1+kick0p5", "hug/a-2-right-hug1+kick0p5"));
+  EXPECT_THAT(Names(*items), ElementsAre("a-2-left-kick", "a-2-right-kick"));
   EXPECT_EQ((*items)[1].side, formats::Side::kRight);
 }
 
@@ -307,56 +248,10 @@ TEST(Plan, EachClassTakesAFixedWeight) {
   EXPECT_THAT(Names(*items), ElementsAre("a-2-hug0p5", "b-3-hug0p5"));
 }
 
-// Of a layout of captures.
-absl::StatusOr<std::vector<Item>> CapturesPlan(
-    const std::string& layout, const std::string& manifest,
-    std::vector<std::string> joints = motion::SbuSkeleton().joint_names) {
-  ModelInfo model = Model("sbu");
-  model.interaction_classes = {"kick", "push", "hug", "waltz"};
-  model.joint_names = std::move(joints);
-  return PlanOfRecipe("output { layout: " + layout + " } ", manifest, {model});
-}
-
-TEST(Plan, SbuClipsAreCountedInTheirSetsAndClasses) {
-  const auto items = CapturesPlan("LAYOUT_SBU",
-                                  "leader\tlabels\n"
-                                  "sbu/s01s02/03/001/skeleton_pos.txt\tkick=1\n"
-                                  "sbu/s01s02/03/002/skeleton_pos.txt\tkick=0.3,hug=0.2\n"
-                                  "sbu/s03s01/x.bvh\tkick=0.3,hug=0.4\n"
-                                  "sbu/s03s01/s01s02/y.bvh\tkick=-1,hug=1\n"
-                                  "walk.bvh\tpush=1\n");
-  ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items), ElementsAre("s01s02/03/001/skeleton_pos", "s01s02/03/002/skeleton_pos",
-                                         "s03s01/06/001/skeleton_pos", "s01s02/06/001/skeleton_pos",
-                                         "s00s00/04/001/skeleton_pos"));
-}
-
-TEST(Plan, K3hiClipsAreCountedInTheirClasses) {
-  const auto items = CapturesPlan(
-      "LAYOUT_K3HI", "leader\tlabels\ns01s02/a.bvh\tkick=1\nb.bvh\tkick=1\nb.bvh\tpush=1\n");
-  ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items), ElementsAre("kicking/001", "kicking/002", "pushing/001"));
-}
-
-TEST(Plan, ClassesWithoutACaptureFolderAreRejected) {
-  const auto refused = [](const char* message) {
-    return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message));
-  };
-  EXPECT_THAT(
-      CapturesPlan("LAYOUT_K3HI", "leader\tlabels\na.bvh\thug=1\n"),
-      refused("m:2: reaction hug: class of the largest weight: expected one that the layout has "
-              "a folder for (approach,"));
-  EXPECT_THAT(CapturesPlan("LAYOUT_SBU", "leader\tlabels\na.bvh\tkick=-1\n"),
-              refused(", got \"none\""));
-  EXPECT_THAT(CapturesPlan("LAYOUT_SBU", "leader\tlabels\na.bvh\tkick=1\n", {"head", "tail"}),
-              refused("sbu@2 with head, tail"));
-}
-
-// The recipe of Table 6's set: 25 leaders make 300 clips, 50 of each class.
+// The recipe of Table 6's set: 25 leaders make 300 clips, 25 of each class in either way.
 TEST(Plan, SbuThreeHundred) {
   ModelInfo model = Model("sbu", false);
   model.interaction_classes = {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
-  model.joint_names = motion::SbuSkeleton().joint_names;
   std::string manifest = "leader\n";
   for (int i = 0; i < 25; ++i) manifest += absl::StrCat("walk", i, ".bvh\n");
   const char* const source = std::getenv("DUET_SOURCE_DIR");
@@ -365,18 +260,13 @@ TEST(Plan, SbuThreeHundred) {
       PlanOfRecipe(test::ReadTestFile(std::filesystem::path(source) / "recipes/sbu_300.textproto"),
                    manifest, {model});
   ASSERT_THAT(items, IsOk());
-  std::map<std::string, int> clips, alone;
+  std::map<std::string, int> clips;
   for (const Item& item : *items) {
-    const std::string folder = item.name.substr(0, 9);
-    ++clips[folder];
-    if (item.labels.size() == 1) ++alone[folder];
+    ++clips[item.reaction];
+    EXPECT_EQ(item.labels.size(), absl::StartsWith(item.reaction, "match_") ? 1u : 2u);
   }
-  EXPECT_THAT(clips,
-              ElementsAre(Pair("s00s00/03", 50), Pair("s00s00/04", 50), Pair("s00s00/05", 50),
-                          Pair("s00s00/06", 50), Pair("s00s00/07", 50), Pair("s00s00/08", 50)));
-  EXPECT_THAT(alone,
-              ElementsAre(Pair("s00s00/03", 25), Pair("s00s00/04", 25), Pair("s00s00/05", 25),
-                          Pair("s00s00/06", 25), Pair("s00s00/07", 25), Pair("s00s00/08", 25)));
+  EXPECT_THAT(clips, SizeIs(12));
+  for (const auto& [reaction, count] : clips) EXPECT_EQ(count, 25) << reaction;
 }
 
 TEST(Plan, InvalidCombinationsAreRejected) {
@@ -397,8 +287,8 @@ TEST(Plan, InvalidCombinationsAreRejected) {
   EXPECT_THAT(PlanOf(std::string(kKick) + "samples: 2", "leader\na.bvh\n", {Model("sbu", false)}),
               refused("has one answer"));
   EXPECT_THAT(PlanOf(""), refused("m:2: labels: expected some, since the recipe has no reactions"));
-  EXPECT_THAT(PlanOf(kKick, "leader\tmodel\na.bvh\tother\n"),
-              refused("m:2: model: expected one of the recipe's (sbu@2), got \"other\""));
+  EXPECT_THAT(PlanOf(kKick, "leader\tlabels\na.bvh\twaltz=1\n"),
+              refused("m:2: labels: expected classes of sbu@2 (kick, push, hug), got \"waltz\""));
 }
 
 TEST(ToRequest, KeyframesFallOnFrames) {
@@ -443,34 +333,38 @@ TEST(Shard, IsParsedStrictly) {
   }
 }
 
-ReadVariable Environment(std::vector<std::pair<std::string, std::string>> variables) {
-  return [variables = std::move(variables)](const char* name) -> std::optional<std::string> {
-    for (const auto& [key, value] : variables) {
-      if (key == name) return value;
-    }
-    return std::nullopt;
-  };
+std::string Repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
 }
 
-TEST(Shard, IsFoundInAClustersEnvironment) {
-  EXPECT_EQ(ShardFromEnvironment(Environment({}))->count, 1);
-  const auto kubernetes =
-      ShardFromEnvironment(Environment({{"JOB_COMPLETION_INDEX", "3"}, {"JOB_COMPLETIONS", "4"}}));
-  EXPECT_EQ(kubernetes->index, 3);
-  EXPECT_EQ(kubernetes->count, 4);
-  const auto slurm = ShardFromEnvironment(Environment({{"SLURM_ARRAY_TASK_ID", "5"},
-                                                       {"SLURM_ARRAY_TASK_MIN", "1"},
-                                                       {"SLURM_ARRAY_TASK_COUNT", "8"}}));
-  EXPECT_EQ(slurm->index, 4);
-  const auto aws = ShardFromEnvironment(
-      Environment({{"AWS_BATCH_JOB_ARRAY_INDEX", "1"}, {"AWS_BATCH_JOB_ARRAY_SIZE", "2"}}));
-  EXPECT_EQ(aws->index, 1);
-  EXPECT_THAT(ShardFromEnvironment(Environment({{"JOB_COMPLETION_INDEX", "3"}})),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("JOB_COMPLETIONS: expected a number, got none")));
-  EXPECT_THAT(
-      ShardFromEnvironment(Environment({{"JOB_COMPLETION_INDEX", "4"}, {"JOB_COMPLETIONS", "4"}})),
-      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("expected one of 4 indices from 0")));
+TEST(FitFileName, ShortNamesStayAsTheyAre) {
+  for (const std::string& name :
+       {std::string(), std::string("walks/a-2-kick"), std::string(200, 'x')}) {
+    EXPECT_EQ(FitFileName(name), name);
+  }
+}
+
+TEST(FitFileName, LongPartsAreTruncatedWithADigest) {
+  const std::string fitting = FitFileName("walks/" + std::string(300, 'x') + "/a-kick");
+  EXPECT_THAT(fitting, MatchesRegex("walks/x{120}_[0-9a-f]{16}/a-kick"));
+  EXPECT_EQ(fitting, FitFileName("walks/" + std::string(300, 'x') + "/a-kick"));
+  EXPECT_NE(fitting, FitFileName("walks/" + std::string(301, 'x') + "/a-kick"));
+}
+
+TEST(FitFileName, CharactersAreNotSplit) {
+  // Two and three bytes a character.
+  EXPECT_THAT(FitFileName("x" + Repeated("\xc3\xa9", 200)),
+              StartsWith("x" + Repeated("\xc3\xa9", 59) + "_"));
+  EXPECT_THAT(FitFileName("x" + Repeated("\xe6\xad\xa9", 200)),
+              StartsWith("x" + Repeated("\xe6\xad\xa9", 39) + "_"));
+}
+
+TEST(FitFileName, PathsThatAreTooDeepBecomeOnePart) {
+  const std::string fitting = FitFileName(Repeated("a/", 3000) + "b");
+  EXPECT_THAT(fitting, MatchesRegex("(a_){60}_[0-9a-f]{16}"));
+  EXPECT_NE(fitting, FitFileName(Repeated("a/", 3001) + "b"));
 }
 
 }  // namespace

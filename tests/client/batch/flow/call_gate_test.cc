@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 TEST(CallGate, NeverStartsMoreCallsThanTheWindow) {
   Options options;
   options.max_in_flight = 3;
-  CallGate gate(1, options, hours(1));
+  CallGate gate(options, hours(1));
   std::atomic<int> under_way{0}, most{0}, made{0};
   std::vector<std::thread> threads;
   for (int i = 0; i < 8; ++i) {
@@ -38,7 +38,7 @@ TEST(CallGate, NeverStartsMoreCallsThanTheWindow) {
 }
 
 TEST(CallGate, StopWakesWaitingThreads) {
-  CallGate gate(1, Options(), hours(1));
+  CallGate gate(Options(), hours(1));
   while (gate.state().in_flight < gate.state().limit) gate.Start();
   std::thread waiting([&gate] { EXPECT_FALSE(gate.Start().has_value()); });
   gate.Stop();
@@ -48,7 +48,7 @@ TEST(CallGate, StopWakesWaitingThreads) {
 TEST(CallGate, EndsIfServersStayAway) {
   Options options;
   options.first_backoff = options.longest_backoff = milliseconds(1);
-  CallGate gate(1, options, milliseconds(0));
+  CallGate gate(options, milliseconds(0));
   gate.Finish(*gate.Start(), CallEnd::kAway, std::nullopt);
   EXPECT_FALSE(gate.state().lost_patience);
   gate.Finish(*gate.Start(), CallEnd::kAway, std::nullopt);
@@ -57,7 +57,7 @@ TEST(CallGate, EndsIfServersStayAway) {
 }
 
 TEST(CallGate, CountsRefusals) {
-  CallGate gate(1, Options(), hours(1));
+  CallGate gate(Options(), hours(1));
   gate.Finish(*gate.Start(), CallEnd::kRefused, milliseconds(0));
   EXPECT_EQ(gate.state().refusals, 1);
 }

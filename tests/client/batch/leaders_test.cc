@@ -1,10 +1,9 @@
-#include "client/batch/leader_source.h"
+#include "client/batch/leaders.h"
 
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "client/batch/manifest.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/motion/reading_setting.h"
@@ -40,7 +39,7 @@ std::vector<std::string> Keys(const std::vector<LeaderEntry>& entries) {
 
 TEST(Manifest, ReadsTsvByItsHeader) {
   const auto entries = ReadText(
-      "side\tleader\tlabels\tmood\tseed\tpartner_direction\tfollower_start\n"
+      "\xEF\xBB\xBFleader_side\tleader\tlabels\tmood\tseed\tpartner_direction\tfollower_start\r\n"
       "right\twalks/a.bvh\thug=0.5,kick=1\tcalm\t7\t1,0,0\tstart.csv\n"
       "\t/b.csv\t\t\t\t\t0,1,2\n");
   ASSERT_THAT(entries, IsOk());
@@ -61,30 +60,10 @@ TEST(Manifest, ReadsTsvByItsHeader) {
   EXPECT_TRUE((*entries)[1].extra.empty());
 }
 
-TEST(Manifest, ReadsJsonLines) {
-  const auto entries = ReadText(
-      "\xEF\xBB\xBF{\"leader\": \"a.bvh\", \"id\": \"x/y.1\", \"labels\": {\"kick\": 0.5}, "
-      "\"take\": 3}\r\n\n{\"leader\": \"b.bvh\", \"id\": \"z\", \"model\": \"sbu@2\"}\n");
+TEST(Manifest, IdsNameTheOutputs) {
+  const auto entries = ReadText("leader\tid\na.bvh\tx/y.1\n\nb.bvh\tz\n");
   ASSERT_THAT(entries, IsOk());
   EXPECT_THAT(Keys(*entries), ElementsAre("x/y_1", "z"));
-  EXPECT_EQ((*entries)[0].labels[0].weight, 0.5f);
-  EXPECT_THAT((*entries)[0].extra, ElementsAre(Pair("take", "3")));
-  EXPECT_EQ((*entries)[1].model, "sbu@2");
-}
-
-TEST(Manifest, ReadsPinsOfBothFormats) {
-  for (const char* text :
-       {"leader\tconstraints\na.bvh\tright_hand@40=0.1,1.2,-3;head@0=0,2,0,0.5\n",
-        "{\"leader\": \"a.bvh\", \"constraints\": [\"right_hand@40=0.1,1.2,-3\", "
-        "\"head@0=0,2,0,0.5\"]}\n"}) {
-    const auto entries = ReadText(text);
-    ASSERT_THAT(entries, IsOk());
-    const Pins& pins = entries->front().pins;
-    ASSERT_EQ(pins.size(), 2u) << text;
-    EXPECT_EQ(PinText(pins[0]), "right_hand@40=0.1,1.2,-3");
-    EXPECT_EQ(PinText(pins[1]), "head@0=0,2,0,0.5");
-    EXPECT_TRUE(entries->front().extra.empty());
-  }
 }
 
 struct BadManifest {
@@ -101,9 +80,10 @@ TEST_P(BadManifests, AreRefusedByLine) {
 INSTANTIATE_TEST_SUITE_P(
     All, BadManifests,
     ::testing::Values(
-        BadManifest{"leader\tside\na.bvh\n",
+        BadManifest{"leader\tleader_side\na.bvh\n",
                     "m:2: columns: expected 2 as the first line names, got 1"},
-        BadManifest{"leader\tside\na.bvh\tup\n", "m:2: side: expected left or right, got \"up\""},
+        BadManifest{"leader\tleader_side\na.bvh\tup\n",
+                    "m:2: leader_side: expected left or right, got \"up\""},
         BadManifest{"side\nleft\n", "m:1: columns: expected leader among the names"},
         BadManifest{"leader\tside\n\tleft\n", "m:2: leader: expected a motion file, got nothing"},
         BadManifest{"leder\tid\n", "of the first line, got \"leder\\tid\""},
@@ -112,20 +92,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadManifest{"leader\tlabels\na.bvh\tkick=1,kick=0\n", "each class once"},
         BadManifest{"leader\tlabels\na.bvh\tkick=2.5\n", "from -2 to 2, got \"kick=2.5\""},
         BadManifest{"leader\tpartner_direction\na.bvh\t1\n", "partner_direction: expected X,Y,Z"},
-        BadManifest{"leader\tconstraints\na.bvh\thead@x=0,1,2\n",
-                    "m:2: constraints: expected JOINT@FRAME=X,Y,Z"},
-        BadManifest{"leader\tconstraints\na.bvh\thead@1=0,1,2;head@1=0,1,3\n",
-                    "m:2: constraints: expected each joint once in a frame"},
         BadManifest{"leader\tid\na.bvh\tx\nb.bvh\tx\n",
                     "m:3: id: expected one that no other line has, got \"x\""},
         BadManifest{"leader\tid\na.bvh\t..\n",
                     "m:2: id: expected a name, or names separated by /, other than . and .., got "
                     "\"..\""},
         BadManifest{"leader\tid\na.bvh\tx\nb.bvh\t\n",
-                    "m:3: id: expected one, as on the lines before, got nothing"},
-        BadManifest{"{\"leader\": \"a.bvh\"}\nnot json\n",
-                    "m:2: line: expected a JSON object, got \"not json\""},
-        BadManifest{"{\"leader\": \"a.bvh\"}\n{\"leader\"\n", "m:2: line: not JSON"}));
+                    "m:3: id: expected one, as on the lines before, got nothing"}));
 
 TEST(ManifestTest, ContinuesAfterABadLine) {
   std::istringstream in("leader\tseed\na.bvh\tx\nb.bvh\t2\n");
@@ -165,28 +138,21 @@ TEST_F(ListLeadersTest, FoldersAreMirroredByName) {
   EXPECT_THAT(*keys, ElementsAre("c", "walks/a", "walks/a_csv", "walks/b"));
 }
 
-TEST_F(ListLeadersTest, FilesWithoutMotionAreSkipped) {
+TEST_F(ListLeadersTest, TextAndJsonOfAFolderAreSkippedUnlessTheFormatIsStated) {
   const test::TemporaryFolder folder;
-  test::WriteTestFile(folder / "walk.txt", "\n1,0.5,-1e-3,\t2\n");
-  test::WriteTestFile(folder / "keys.txt", "# A kick, key by key\nat 0\n");
-  test::WriteTestFile(folder / "count.txt", "12\n");
-  test::WriteTestFile(folder / "motion.json", R"({"format": "duet-motion", "version": 1})");
-  test::WriteTestFile(folder / "plain.JSON", R"({"leader": []})");
-  test::WriteTestFile(folder / "keys.json", R"({"keyframes": [{"at": 0}]})");
-  test::WriteTestFile(folder / "empty.json", "");
-  test::WriteTestFile(folder / "walk.bvh", "# looked at when its turn comes");
-  std::vector<std::string> passed_over;
-  auto source = ListLeaders({folder.path().string()}, std::nullopt, &passed_over);
-  ASSERT_THAT(source, IsOk());
-  EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("motion", "plain", "walk", "walk_txt"));
-  std::vector<std::string> wanted;
-  for (const char* name : {"count.txt", "empty.json", "keys.json", "keys.txt"}) {
-    wanted.push_back((folder / name).string());
+  for (const char* name : {"walk.txt", "motion.JSON", "walk.bvh"}) {
+    test::WriteTestFile(folder / name, "");
   }
-  EXPECT_EQ(passed_over, wanted);
+  const auto listed = [&folder](const std::optional<formats::Format>& format) {
+    return Keys(*ReadAll(**ListLeaders({folder.path().string()}, format)));
+  };
+  EXPECT_THAT(listed(std::nullopt), ElementsAre("walk"));
+  EXPECT_THAT(listed(formats::Format::kSbuText), ElementsAre("walk"));
+  EXPECT_THAT(listed(formats::Format::kJson), ElementsAre("motion"));
   // Somebody who names a file means it.
-  source = ListLeaders({(folder / "keys.txt").string()}, std::nullopt, &passed_over);
-  EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("keys"));
+  const auto source = ListLeaders({(folder / "walk.txt").string()});
+  ASSERT_THAT(source, IsOk());
+  EXPECT_THAT(Keys(*ReadAll(**source)), ElementsAre("walk"));
 }
 
 TEST_F(ListLeadersTest, FormatFlagAllowsAnyExtension) {
@@ -257,6 +223,13 @@ TEST_F(ListLeadersTest, ADataSetAmongItsLeadersIsRejected) {
 TEST(KeyOf, IsValidInFileSystemsAndArchives) {
   EXPECT_EQ(KeyOf("../walks/./Kick 1.v2"), "walks/Kick_1_v2");
   EXPECT_EQ(KeyOf("/abs/a:b+c-d_e"), "abs/a_b+c-d_e");
+  // Letters of other scripts stay, and bytes that are no UTF-8 go.
+  EXPECT_EQ(KeyOf("caf\xc3\xa9/\xe6\xad\xa9/\xf0\x9f\x92\x83"), "caf\xc3\xa9/\xe6\xad\xa9/\xf0\x9f\x92\x83");
+  EXPECT_EQ(KeyOf("caf\xe9"), "caf_");
+  EXPECT_EQ(KeyOf("\xc0\xaf"), "__");            // longer than needed
+  EXPECT_EQ(KeyOf("\xed\xa0\x80"), "___");       // half of a UTF-16 pair
+  EXPECT_EQ(KeyOf("\xf4\x90\x80\x80"), "____");  // beyond the last character
+  EXPECT_EQ(KeyOf("\xe6\xad"), "__");            // cut short
 }
 
 }  // namespace

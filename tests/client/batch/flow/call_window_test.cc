@@ -109,34 +109,5 @@ TEST(CallWindow, ProbesAtIncreasingIntervalsWhileTheServerIsAway) {
   EXPECT_FALSE(window.away());
 }
 
-TEST(ServerChoice, GivesEachServerItsShare) {
-  ServerChoice servers(2, Limits());
-  std::vector<int> calls(2);
-  while (const auto call = servers.Start(kStart)) ++calls[static_cast<size_t>(call->server)];
-  EXPECT_THAT(calls, ::testing::Each(CallWindow(Limits()).limit()));
-}
-
-TEST(ServerChoice, EqualServersTakeTurns) {
-  ServerChoice servers(3, Limits());
-  std::vector<int> order;
-  while (const auto call = servers.Start(kStart)) order.push_back(call->server);
-  EXPECT_THAT(order, ::testing::ElementsAre(1, 2, 0, 1, 2, 0));
-}
-
-TEST(ServerChoice, SendsNoCallsToAServerThatIsAway) {
-  ServerChoice servers(2, Limits());
-  auto call = servers.Start(kStart);
-  servers.Finish(*call, CallEnd::kAway, seconds(5), kStart);
-  const int away = call->server;
-  for (int i = 0; i < 2; ++i) {
-    call = servers.Start(kStart);
-    ASSERT_TRUE(call.has_value());
-    EXPECT_NE(call->server, away);
-  }
-  EXPECT_FALSE(servers.Start(kStart).has_value());
-  EXPECT_EQ(servers.NextOpening(kStart), kStart + seconds(5));
-  EXPECT_FALSE(servers.all_away());
-}
-
 }  // namespace
 }  // namespace duet::client::batch::flow

@@ -1,4 +1,4 @@
-#include "client/batch/dataset_json.h"
+#include "client/batch/index.h"
 
 #include <google/protobuf/util/json_util.h>
 
@@ -38,20 +38,14 @@ Recipe WithFormats(const std::vector<v1::Format>& formats) {
   Recipe recipe;
   recipe.digest = "cafe";
   for (const v1::Format format : formats) recipe.output.add_formats(format);
-  recipe.output.set_layout(v1::LAYOUT_MIRROR);
   return recipe;
-}
-
-nlohmann::ordered_json Done(int frames, double rate_hz) {
-  return {{"frames", frames}, {"frame_rate_hz", rate_hz}};
 }
 
 // The set of `models` with these skeletons.
 v1::Dataset Described(const Recipe& recipe, const std::vector<ModelInfo>& models,
-                      const std::vector<motion::Skeleton>& skeletons, const DoneItems& done,
-                      const SetCounts& counts = {}, int64_t planned = 0) {
-  const std::string json =
-      DatasetJson(SetSource{recipe, models, skeletons, {}}, counts, planned, done);
+                      const std::vector<motion::Skeleton>& skeletons, const SetCounts& counts,
+                      int64_t planned = 0) {
+  const std::string json = DatasetJson(SetSource{recipe, models, skeletons}, counts, planned);
   v1::Dataset dataset;
   const auto status = google::protobuf::util::JsonStringToMessage(json, &dataset);
   EXPECT_TRUE(status.ok()) << status.ToString() << "\n" << json;
@@ -59,18 +53,16 @@ v1::Dataset Described(const Recipe& recipe, const std::vector<ModelInfo>& models
 }
 
 TEST(DatasetJson, ParsesAsTheProtoMessage) {
-  DoneItems done;
-  done.Add(Done(30, 15));
-  done.Add(Done(7, 30));
-  done.Add(Done(3, 30));
   SetCounts counts;
+  counts.frames = 40;
+  counts.items_by_rate = {{15, 1}, {30, 2}};
   counts.done = 3;
   counts.rejected = 2;
   counts.failed = 1;
   const v1::Dataset dataset =
       Described(WithFormats({v1::FORMAT_NPY, v1::FORMAT_BVH}),
                 {Model("one", {"kick", "hug"}), Model("two", {"hug", "wave"})},
-                {Stick(), motion::SbuSkeleton()}, done, counts, 10);
+                {Stick(), motion::SbuSkeleton()}, counts, 10);
   EXPECT_EQ(dataset.format(), "duet-batch");
   EXPECT_EQ(dataset.format_version(), 1u);
   EXPECT_EQ(dataset.recipe_sha256(), "cafe");
@@ -103,10 +95,9 @@ TEST(DatasetJson, ParsesAsTheProtoMessage) {
 }
 
 TEST(DatasetJson, StatesTheCommonFrameRate) {
-  DoneItems done;
-  done.Add(Done(30, 60));
-  done.Add(Done(30, 60));
-  EXPECT_EQ(Described(WithFormats({v1::FORMAT_NPY}), {Model("one", {"kick"})}, {Stick()}, done)
+  SetCounts counts;
+  counts.items_by_rate = {{60, 2}};
+  EXPECT_EQ(Described(WithFormats({v1::FORMAT_NPY}), {Model("one", {"kick"})}, {Stick()}, counts)
                 .frame_rate_hz(),
             60);
 }
@@ -115,19 +106,6 @@ TEST(DatasetJson, RecipesFrameRateIsStatedBeforeAnyItemIsDone) {
   Recipe recipe = WithFormats({v1::FORMAT_NPY});
   recipe.output.set_frame_rate_hz(25);
   EXPECT_EQ(Described(recipe, {Model("one", {"kick"})}, {Stick()}, {}).frame_rate_hz(), 25);
-}
-
-TEST(DatasetJson, CapturesHaveTheirUnitAndRate) {
-  Recipe recipe = WithFormats({});
-  recipe.output.set_layout(v1::LAYOUT_K3HI);
-  const v1::Dataset dataset =
-      Described(recipe, {Model("one", {"kick"})}, {motion::SbuSkeleton()}, {});
-  EXPECT_EQ(dataset.layout(), v1::LAYOUT_K3HI);
-  EXPECT_EQ(dataset.frame_rate_hz(), 30);
-  ASSERT_EQ(dataset.files_size(), 1);
-  EXPECT_FALSE(dataset.files(0).has_format());
-  EXPECT_EQ(dataset.files(0).unit(), "sbu-normalised");
-  EXPECT_EQ(dataset.files(0).up_axis(), "y-down");
 }
 
 TEST(SkeletonIndices, ModelsOfOneSkeletonShareIt) {

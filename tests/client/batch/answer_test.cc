@@ -1,14 +1,12 @@
-#include "client/batch/quality.h"
+#include "client/batch/answer.h"
 
 #include <google/protobuf/text_format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "tests/classifier/random_classifier.h"
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
 
@@ -56,31 +54,6 @@ TEST(Measure, MeasuresThePlaceOfTheFollower) {
   EXPECT_GT(FigureOf(sunk, "foot_below_floor_metres"), 0.4);
 }
 
-TEST(Recognise, UsesTheRequestedClassInAnyOrderOfJoints) {
-  const auto classifier = classifier::Classifier::Create(test::RandomClassifier());
-  ASSERT_TRUE(classifier.ok());
-  const motion::ClipPair pair = Pair({1, 0, 0});
-  Quality kick, hug, none, turned;
-  Recognise(*classifier, "kick", pair, &kick);
-  Recognise(*classifier, "hug", pair, &hug);
-  Recognise(*classifier, "none", pair, &none);
-  const double of_kick = FigureOf(kick, "class_probability");
-  EXPECT_NEAR(of_kick + FigureOf(hug, "class_probability"), 1, 1e-5);
-  EXPECT_EQ(kick.recognised_class, of_kick > 0.5 ? "kick" : "hug");
-  EXPECT_EQ(kick.recognised_class, hug.recognised_class);
-  EXPECT_EQ(none.recognised_class, "");
-  EXPECT_THAT(none.figures, IsEmpty());
-  motion::ClipPair reversed = pair;
-  for (motion::Clip* clip : {&reversed.leader, &reversed.follower}) {
-    std::reverse(clip->joint_names.begin(), clip->joint_names.end());
-    for (int t = 0; t < kFrames; ++t) {
-      std::reverse(clip->poses[t].begin(), clip->poses[t].end());
-    }
-  }
-  Recognise(*classifier, "kick", reversed, &turned);
-  EXPECT_NEAR(FigureOf(turned, "class_probability"), of_kick, 1e-6);
-}
-
 TEST(Measure, OmitsFiguresWithoutTheirJoints) {
   motion::Skeleton skeleton = motion::SbuSkeleton();
   skeleton.hips.reset();
@@ -105,7 +78,6 @@ Quality Good() {
                      {"distance_metres", 1},
                      {"penetration_metres", 0.1},
                      {"range_of_motion_metres", 0.1},
-                     {"class_probability", 0.25},
                      {"twisted", 0.2},
                      {"skating", 0.5},
                      {"leader_skating", 0.25},
@@ -135,8 +107,6 @@ TEST(WhyRejected, EachLimitIsCheckedSeparately) {
       {"max_overlapping: 0", "overlapping: expected at most 0, got 0.1"},
       {"max_skating_over_leader: 0.2", "skating_over_leader: expected at most 0.2, got 0.25"},
       {"max_skating_over_leader: 0.25", ""},
-      {"classifier { min_probability: 0.5 }", "class_probability: expected at least 0.5, got 0.25"},
-      {"classifier { min_probability: 0.25 }", ""},
   };
   for (const auto& one : kCases) {
     const std::vector<std::string> reasons = WhyRejected(Filter(one.limit), Good());
@@ -150,7 +120,7 @@ TEST(WhyRejected, EachLimitIsCheckedSeparately) {
 
 TEST(WhyRejected, UnknownFiguresPass) {
   EXPECT_THAT(WhyRejected(Filter("max_lean_degrees: 1 max_unfamiliarity: 1 max_twisted: 0 "
-                                 "max_skating_over_leader: 0 classifier { min_probability: 1 }"),
+                                 "max_skating_over_leader: 0"),
                           Quality()),
               IsEmpty());
 }

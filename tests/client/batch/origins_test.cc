@@ -1,4 +1,4 @@
-#include "client/batch/made_by.h"
+#include "client/batch/origins.h"
 
 #include <nlohmann/json.hpp>
 
@@ -31,25 +31,21 @@ TEST(Makers, NameEveryDifference) {
   EXPECT_THAT(makers.Check("sbu@2", kFirst), IsOk());
 }
 
-TEST(Makers, CompareOnlyWhatIsKnown) {
-  Makers makers;
-  EXPECT_THAT(makers.Check("sbu@2", {true, "", ""}), IsOk());
-  EXPECT_THAT(makers.Check("sbu@2", kFirst), IsOk());
-  EXPECT_THAT(makers.Check("sbu@2", {true, "", ""}), IsOk());
-  EXPECT_THAT(makers.Check("sbu@2", {true, "torch", ""}),
-              StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("got \"torch\"")));
-}
-
 TEST(Makers, RecordsHoldWhatAnAnswerWasMadeBy) {
-  nlohmann::ordered_json record = {{"model", "sbu@2"}};
-  EXPECT_EQ(MadeByOf(record), std::nullopt) << "of a version that did not store it";
+  v1::IndexEntry record;
+  record.set_model("sbu@2");
+  EXPECT_EQ(MadeByOf(record), std::nullopt) << "of an item without an answer";
   Makers makers;
   EXPECT_THAT(makers.CheckRecord(record), IsOk());
-  AddMadeBy(kFirst, &record);
-  EXPECT_EQ(record.dump(), R"({"model":"sbu@2","cleaned_up":true,"engine":"cpu, bf16, AVX-512",)"
-                           R"("server_version":"1.0.0"})");
+  nlohmann::ordered_json json;
+  AddMadeBy(kFirst, &json);
+  EXPECT_EQ(json.dump(), R"({"cleaned_up":true,"engine":"cpu, bf16, AVX-512",)"
+                         R"("server_version":"1.0.0"})");
+  record.set_cleaned_up(true);
+  record.set_engine(kFirst.engine);
+  record.set_server_version(kFirst.server_version);
   EXPECT_THAT(makers.CheckRecord(record), IsOk());
-  record["cleaned_up"] = false;
+  record.set_cleaned_up(false);
   EXPECT_THAT(makers.CheckRecord(record),
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr("clean_up: expected on")));
 }

@@ -1,8 +1,9 @@
-#ifndef DUET_CLIENT_BATCH_LEADER_SOURCE_H_
-#define DUET_CLIENT_BATCH_LEADER_SOURCE_H_
+#ifndef DUET_CLIENT_BATCH_LEADERS_H_
+#define DUET_CLIENT_BATCH_LEADERS_H_
 
 #include <cstdint>
 #include <filesystem>
+#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,12 +29,9 @@ struct LeaderEntry {
   std::filesystem::path file;
   std::optional<formats::Side> side;
   Labels labels;               // if not empty, override the recipe's reactions
-  std::string model;           // one of the recipe's; empty: all of them
   std::string follower_start;  // a point or a file; empty: set by the recipe
-  std::optional<formats::Side> follower_start_side;
   std::optional<motion::Vec3> partner_direction;
   std::string group;  // whose leaders are all in one split; empty: none
-  Pins pins;
   std::optional<uint64_t> seed;
   std::vector<std::pair<std::string, std::string>> extra;  // other columns, by name
 };
@@ -52,17 +50,22 @@ class LeaderSource {
   virtual absl::StatusOr<std::optional<LeaderEntry>> Next() = 0;
 };
 
-// Files, and folders (all motion files below, also links to missing ones, by name; .txt and .json
-// files that hold something else are skipped and added to `passed_over`, which may be null). Files
-// of a folder are named by their path in it, other files by their own name. With `format`, a file
-// may have any extension, and files of a folder any extension that is not that of another format.
+// Files, and folders: all motion files below, also links to missing ones, by name; .txt and .json
+// files only if `format` is theirs, because these can be anything. Files of a folder are named by
+// their path in it, other files by their own name. With `format`, a file may have any extension,
+// and files of a folder any extension that is not that of another format.
 //
 // Errors: NOT_FOUND for missing inputs; INVALID_ARGUMENT for a file of unknown format, for two
 //         leaders with the same key, and if there is no motion file.
 absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
     const std::vector<std::string>& inputs,
-    const std::optional<formats::Format>& format = std::nullopt,
-    std::vector<std::string>* passed_over = nullptr);
+    const std::optional<formats::Format>& format = std::nullopt);
+
+// Reads a manifest line by line: tab-separated values whose first row names the columns
+// (docs/batch.md). Relative paths begin at `folder`; errors call the manifest `name`. `in` outlives
+// the source.
+std::unique_ptr<LeaderSource> ReadManifest(std::istream& in, const std::filesystem::path& folder,
+                                           const std::string& name);
 
 // Checks inputs before anything else is done: NOT_FOUND for missing ones, and INVALID_ARGUMENT if
 // the data set `out` is in a folder of leaders, where the next run would take its files for
@@ -71,4 +74,4 @@ absl::Status CheckInputs(const std::vector<std::string>& inputs, const std::file
 
 }  // namespace duet::client::batch
 
-#endif  // DUET_CLIENT_BATCH_LEADER_SOURCE_H_
+#endif  // DUET_CLIENT_BATCH_LEADERS_H_

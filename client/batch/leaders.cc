@@ -1,0 +1,376 @@
+#include "client/batch/leaders.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <istream>
+#include <map>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "absl/container/flat_hash_set.h"
+#include "absl/hash/hash.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
+#include "client/batch/text_values.h"
+#include "model/base/missing_file.h"
+#include "model/base/text.h"
+#include "model/formats/motion_file.h"
+#include "model/motion/reading_setting.h"
+
+namespace duet::client::batch {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMaxLineBytes = size_t{1} << 20;
+
+// Bytes of the UTF-8 character at `at`; 0 if the bytes there are not valid UTF-8.
+std::size_t CharacterBytes(const std::string& text, std::size_t at) {
+  const auto byte = [&text](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const auto follows = [&byte](std::size_t i) { return (byte(i) & 0xc0u) == 0x80u; };
+  const unsigned first = byte(at), second = byte(at + 1);
+  if (first < 0x80) return 1;
+  if (first >= 0xc2 && first <= 0xdf) return follows(at + 1) ? 2 : 0;
+  if (first >= 0xe0 && first <= 0xef) {
+    // Rejects overlong encodings and UTF-16 surrogates.
+    const bool allowed = (first != 0xe0 || second >= 0xa0) && (first != 0xed || second < 0xa0);
+    return allowed && follows(at + 1) && follows(at + 2) ? 3 : 0;
+  }
+  if (first >= 0xf0 && first <= 0xf4) {
+    const bool allowed = (first != 0xf0 || second >= 0x90) && (first != 0xf4 || second < 0x90);
+    return allowed && follows(at + 1) && follows(at + 2) && follows(at + 3) ? 4 : 0;
+  }
+  return 0;
+}
+
+// `text` with each byte that is not UTF-8 replaced by '_', so that JSON can hold it.
+std::string AsUtf8(const std::string& text) {
+  std::string valid;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t bytes = CharacterBytes(text, at);
+    valid += bytes == 0 ? "_" : text.substr(at, bytes);
+    at += bytes == 0 ? 1 : bytes;
+  }
+  return valid;
+}
+
+// A list of files that is complete before the first one is returned.
+class LeaderList final : public LeaderSource {
+ public:
+  absl::StatusOr<std::optional<LeaderEntry>> Next() override {
+    if (next_ == entries_.size()) return std::optional<LeaderEntry>();
+    return std::optional<LeaderEntry>(entries_[next_++]);
+  }
+
+  absl::Status Add(const fs::path& file, const fs::path& named) {
+    LeaderEntry entry;
+    entry.key = KeyOf(fs::path(named).replace_extension());
+    entry.given = file.string();
+    entry.file = file;
+    if (!keys_.insert(entry.key).second) {
+      // Two files differ only in their extension: the second key keeps it.
+      entry.key = KeyOf(named);
+      if (!keys_.insert(entry.key).second) {
+        return absl::InvalidArgumentError(
+            absl::StrCat(file.string(), ": name: expected a unique one, got ", entry.key,
+                         ", which another leader has. Use different file names, or list one folder "
+                         "above both files"));
+      }
+    }
+    entries_.push_back(std::move(entry));
+    return absl::OkStatus();
+  }
+
+  bool empty() const { return entries_.empty(); }
+
+ private:
+  std::vector<LeaderEntry> entries_;
+  std::set<std::string> keys_;
+  size_t next_ = 0;
+};
+
+// Whether a file of a folder may be a leader. Without a format, its extension must be that of a
+// motion and of nothing else; with one, its extension must not be that of another format.
+bool MayLead(const fs::path& file, const std::optional<formats::Format>& format) {
+  const std::string extension = absl::AsciiStrToLower(file.extension().string());
+  if (!format.has_value()) {
+    return formats::IsReadable(file) && extension != ".txt" && extension != ".json";
+  }
+  return formats::FormatOf(file).value_or(*format) == *format;
+}
+
+absl::Status AddFolder(const fs::path& folder, const std::optional<formats::Format>& format,
+                       LeaderList* list) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    std::error_code unknown;
+    const bool missing = it->is_symlink(unknown) && !it->exists(unknown);
+    if ((missing || it->is_regular_file(unknown)) && MayLead(it->path(), format)) {
+      files.push_back(it->path());
+    }
+  }
+  if (error) {
+    return absl::PermissionDeniedError(absl::StrCat(folder.string(), ": ", error.message()));
+  }
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    absl::Status status = list->Add(file, file.lexically_relative(folder));
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>& format,
+                      LeaderList* list) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return AddFolder(path, format, list);
+  if (fs::exists(path, error)) {
+    if (format.has_value() || formats::IsReadable(path)) return list->Add(path, path.filename());
+    return MendedBy(formats::UnknownExtension(path, formats::kReadableExtensions),
+                    motion::ReadingSetting::kFormat);
+  }
+  return base::MissingFile(path, "file or folder");
+}
+
+// The columns of a line by name, without empty ones.
+using Columns = std::map<std::string, std::string>;
+
+// Collects all errors of a line.
+class LineProblems {
+ public:
+  void Add(absl::string_view column, absl::string_view problem) {
+    problems_.push_back(absl::StrCat(column, ": ", problem));
+  }
+  absl::Status ToStatus() const {
+    if (problems_.empty()) return absl::OkStatus();
+    return absl::InvalidArgumentError(absl::StrJoin(problems_, "; "));
+  }
+
+ private:
+  std::vector<std::string> problems_;
+};
+
+// Removes a column and returns its value; empty if it is missing.
+std::string Take(const char* name, Columns* columns) {
+  const auto found = columns->find(name);
+  if (found == columns->end()) return "";
+  std::string value = std::move(found->second);
+  columns->erase(found);
+  return value;
+}
+
+template <typename Value>
+void TakeParsed(const char* name, absl::StatusOr<Value> (*parse)(absl::string_view),
+                Columns* columns, std::optional<Value>* value, LineProblems* problems) {
+  const std::string text = Take(name, columns);
+  if (text.empty()) return;
+  absl::StatusOr<Value> parsed = parse(text);
+  if (!parsed.ok()) return problems->Add(name, parsed.status().message());
+  *value = *std::move(parsed);
+}
+
+// Fills all fields except the key.
+absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns columns) {
+  LeaderEntry entry;
+  LineProblems problems;
+  entry.given = Take("leader", &columns);
+  if (entry.given.empty()) problems.Add("leader", "expected a motion file, got nothing");
+  const std::filesystem::path path(entry.given);
+  entry.file = path.is_absolute() ? path : folder / path;
+  entry.group = Take("group", &columns);
+  entry.follower_start = Take("follower_start", &columns);
+  if (!entry.follower_start.empty() && !ParsePoint(entry.follower_start).has_value() &&
+      std::filesystem::path(entry.follower_start).is_relative()) {
+    entry.follower_start = (folder / entry.follower_start).string();
+  }
+  std::optional<Labels> labels;
+  TakeParsed("labels", ParseLabels, &columns, &labels, &problems);
+  TakeParsed("leader_side", ParseSide, &columns, &entry.side, &problems);
+  TakeParsed("partner_direction", ParseDirection, &columns, &entry.partner_direction, &problems);
+  TakeParsed("seed", ParseSeed, &columns, &entry.seed, &problems);
+  absl::Status status = problems.ToStatus();
+  if (!status.ok()) return status;
+  entry.labels = std::move(labels).value_or(Labels());
+  entry.extra.assign(columns.begin(), columns.end());
+  return entry;
+}
+
+class Manifest final : public LeaderSource {
+ public:
+  Manifest(std::istream& in, std::filesystem::path folder, std::string name)
+      : in_(in), folder_(std::move(folder)), name_(std::move(name)) {}
+
+  absl::StatusOr<std::optional<LeaderEntry>> Next() override {
+    for (std::string line; !ended_ && ReadLine(&line);) {
+      if (line.empty()) continue;
+      if (header_.empty()) {
+        const absl::Status begun = Begin(line);
+        ended_ = !begun.ok();
+        if (ended_) return At(begun);
+        continue;
+      }
+      absl::StatusOr<LeaderEntry> entry = ParseLine(line);
+      if (!entry.ok()) return At(entry.status());
+      return std::optional<LeaderEntry>(*std::move(entry));
+    }
+    if (in_.bad()) return absl::DataLossError(absl::StrCat(name_, ": cannot be read"));
+    return std::optional<LeaderEntry>();
+  }
+
+ private:
+  bool ReadLine(std::string* line) {
+    if (!std::getline(in_, *line)) return false;
+    if (++line_ == 1) *line = std::string(base::SkipByteOrderMark(*line));
+    if (!line->empty() && line->back() == '\r') line->pop_back();
+    return true;
+  }
+
+  absl::Status Begin(const std::string& line) {
+    header_ = absl::StrSplit(line, '\t');
+    if (std::find(header_.begin(), header_.end(), "leader") != header_.end()) {
+      return absl::OkStatus();
+    }
+    return absl::InvalidArgumentError(absl::StrCat(
+        "columns: expected leader among the names of the first line, got ", base::Quoted(line)));
+  }
+
+  absl::StatusOr<Columns> ParseRow(const std::string& line) const {
+    const std::vector<std::string> cells = absl::StrSplit(line, '\t');
+    if (cells.size() != header_.size()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "columns: expected ", header_.size(), " as the first line names, got ", cells.size()));
+    }
+    Columns columns;
+    for (size_t i = 0; i < cells.size(); ++i) {
+      if (!cells[i].empty()) columns[header_[i]] = cells[i];
+    }
+    return columns;
+  }
+
+  absl::StatusOr<LeaderEntry> ParseLine(const std::string& line) {
+    if (line.size() > kMaxLineBytes) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("line: expected at most 1 MiB, got ", line.size(), " bytes"));
+    }
+    absl::StatusOr<Columns> columns = ParseRow(line);
+    if (!columns.ok()) return columns.status();
+    const std::string id = Take("id", &*columns);
+    absl::StatusOr<LeaderEntry> entry = ToEntry(folder_, *std::move(columns));
+    // Bad lines register their ids too, so that a later line with the same id is reported.
+    absl::StatusOr<std::string> key = KeyFor(id, entry.ok() ? entry->given : "");
+    if (!entry.ok() && !key.ok()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(entry.status().message(), "; ", key.status().message()));
+    }
+    if (!entry.ok()) return entry;
+    if (!key.ok()) return key.status();
+    entry->key = *std::move(key);
+    entry->has_id = !id.empty();
+    entry->line = absl::StrCat(name_, ":", line_);
+    return entry;
+  }
+
+  // The key of an id, which must be unique; without ids, the leader's path and the line number,
+  // which are unique.
+  absl::StatusOr<std::string> KeyFor(const std::string& id, const std::filesystem::path& leader) {
+    if (!has_ids_.has_value()) has_ids_ = !id.empty();
+    if (*has_ids_ != !id.empty()) {
+      return absl::InvalidArgumentError(
+          *has_ids_ ? "id: expected one, as on the lines before, got nothing"
+                    : "id: expected none, as on the lines before, got one");
+    }
+    if (id.empty()) {
+      return absl::StrCat(KeyOf(std::filesystem::path(leader).replace_extension()), "-", line_);
+    }
+    std::string key = KeyOf(id);
+    if (key.empty()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("id: expected a name, or names separated by /, other than . and .., got ",
+                       base::Quoted(id)));
+    }
+    if (ids_.insert(absl::Hash<std::string>()(key)).second) return key;
+    return absl::InvalidArgumentError(
+        absl::StrCat("id: expected one that no other line has, got ", base::Quoted(id)));
+  }
+
+  absl::Status At(const absl::Status& status) const {
+    return absl::Status(status.code(), absl::StrCat(name_, ":", line_, ": ", status.message()));
+  }
+
+  std::istream& in_;
+  std::filesystem::path folder_;
+  std::string name_;
+  int64_t line_ = 0;
+  bool ended_ = false;  // without a header, no line can be read
+  std::vector<std::string> header_;
+  std::optional<bool> has_ids_;
+  absl::flat_hash_set<size_t> ids_;
+};
+
+// Whether a path is the folder or below it.
+bool IsWithin(const fs::path& path, const fs::path& folder) {
+  const auto [in_folder, in_path] =
+      std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
+  return in_folder == folder.end();
+}
+
+}  // namespace
+
+std::string KeyOf(const std::filesystem::path& path) {
+  std::string key;
+  for (const std::filesystem::path& part : path.relative_path().lexically_normal()) {
+    std::string name = AsUtf8(part.string());
+    if (name.empty() || name == "." || name == "..") continue;
+    for (char& c : name) {
+      const auto byte = static_cast<unsigned char>(c);
+      // Bytes from 0x80 on are letters of other scripts in UTF-8.
+      if (!absl::ascii_isalnum(byte) && byte < 0x80 && c != '_' && c != '-' && c != '+') c = '_';
+    }
+    if (!key.empty()) key += '/';
+    key += name;
+  }
+  return key;
+}
+
+absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
+    const std::vector<std::string>& inputs, const std::optional<formats::Format>& format) {
+  auto list = std::make_unique<LeaderList>();
+  for (const std::string& input : inputs) {
+    absl::Status status = AddInput(input, format, list.get());
+    if (!status.ok()) return status;
+  }
+  if (list->empty()) {
+    const absl::Status none = absl::InvalidArgumentError(
+        absl::StrCat("leaders: expected one or more motion files, got none. Formats: ",
+                     formats::kReadableExtensions));
+    return format.has_value() ? none : MendedBy(none, motion::ReadingSetting::kFormat);
+  }
+  return std::unique_ptr<LeaderSource>(std::move(list));
+}
+
+std::unique_ptr<LeaderSource> ReadManifest(std::istream& in, const std::filesystem::path& folder,
+                                           const std::string& name) {
+  return std::make_unique<Manifest>(in, folder, name);
+}
+
+absl::Status CheckInputs(const std::vector<std::string>& inputs, const fs::path& out) {
+  std::error_code error;
+  const fs::path set = fs::weakly_canonical(fs::absolute(out), error);
+  for (const std::string& input : inputs) {
+    if (!fs::exists(input, error)) return base::MissingFile(input, "file or folder");
+    if (!fs::is_directory(input, error) || !IsWithin(set, fs::canonical(input, error))) continue;
+    return absl::InvalidArgumentError(absl::StrCat("--out: expected a folder outside ", input,
+                                                   ", whose files are leaders, got ", out.string(),
+                                                   "; choose another folder"));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace duet::client::batch
