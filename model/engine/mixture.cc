@@ -21,8 +21,8 @@ constexpr double kChangeSeconds = 0.08;
 // answers are averaged; one who reaches further than the second does.
 constexpr float kNoReach = 0.15f, kFullReach = 0.35f;
 // The strength of a class in its time. A class that is seen for a part of the time is recognised
-// better if it is somewhat exaggerated: captured ingredients that survive in half-and-half mixes
-// went from .31 to .38 of a single answer's (duet-eval mixes, people left out).
+// better if it is somewhat exaggerated: with 1, a half-and-half mix keeps .31 instead of .38 of the
+// geometry of its weaker class (duet-eval mixes, s05 left out).
 constexpr float kFullStrength = 1.25f;
 // The largest part of an avoided class that is subtracted, relative to what the request changes. A
 // larger one changes the request itself.
