@@ -21,6 +21,7 @@ from everyday import baselines, figures
 
 LIVE_DELAY = 2       # frames
 STILL_SECONDS = 8.0
+STILL_FROM = 3.0     # seconds, by when the follower has come to rest
 SEEDS = (0, 1, 2)
 
 
@@ -53,9 +54,9 @@ class Model:
     def _motion(self, leader):
         return self._duet.Motion(leader, self._joints, self._rate)
 
-    def clip(self, leader, labels, seed, start=None):
+    def clip(self, leader, labels, seed, start=None, variety=1.0):
         return self._client.synthesize(self._motion(leader), labels=labels, model=self._name, seed=seed,
-                                       follower_start=start).follower.positions
+                                       variety=variety, follower_start=start).follower.positions
 
     def live(self, leader, labels, seed, start=None):
         request = self._duet.LiveRequest(self._joints, self._rate, labels, model=self._name, seed=seed,
@@ -74,26 +75,29 @@ def _answers(model, pair, train, rate):
         "model": [model.clip(leader, label, seed) for seed in SEEDS],
         "nearest neighbour+pose": [baselines.nearest(pair, train, rate, knows_pose=True)],
         "model+pose": [model.clip(leader, label, seed, first) for seed in SEEDS],
+        "model+pose, variety 0": [model.clip(leader, label, 0, first, variety=0)],
         "model+pose, live": [model.live(leader, label, seed, first) for seed in SEEDS[:1]],
     }
 
 
-def _still_rows(model, pairs, joints, rate):
-    """Leaders who stand: (row, class, figures) of followers without a class and with it."""
-    frames = round(STILL_SECONDS * rate)
+def _still_figures(model, pairs, joints, rate):
+    """Leaders who stand: {(row, class): [figures]} of followers without a class and with it."""
+    frames, found = round(STILL_SECONDS * rate), {}
     for pair in pairs:
         leader = numpy.repeat(pair.leader[:1], frames, axis=0)
         for kind, answer in (("clip", model.clip), ("live", model.live)):
-            for row, labels in (("no class", {pair.label: 0}), ("its class", {pair.label: 1})):
-                follower = answer(leader, labels, 0)
-                yield f"still leader, {row}, {kind}", pair.label, figures.stillness(
-                    follower[round(3 * rate):], joints, rate)
+            for label, weight in (("none", 0), (pair.label, 1)):
+                follower = answer(leader, {pair.label: weight}, 0)
+                found.setdefault((f"still leader, {kind}", label), []).append(
+                    figures.stillness(follower[round(STILL_FROM * rate):], joints, rate))
+    return found
 
 
-def _print(rows, columns):
+def _print(found, columns):
     print("row\tclass\t" + "\t".join(columns))
-    for row, label, found in rows:
-        print(f"{row}\t{label}\t" + "\t".join(f"{found[column]:.2f}" for column in columns), flush=True)
+    for (row, label), some in found.items():
+        mean = figures.mean(some)
+        print(f"{row}\t{label}\t" + "\t".join(f"{mean[column]:.2f}" for column in columns))
 
 
 def main():
@@ -111,16 +115,15 @@ def main():
     for pair in tests:
         for row, followers in _answers(model, pair, train, data.rate).items():
             for follower in followers:
-                by_class.setdefault((pair.label, row), []).append(
+                by_class.setdefault((row, pair.label), []).append(
                     figures.pair(pair.leader, follower, pair.follower, data.joint_names, data.rate))
             if options.films:
                 from everyday import film
                 film.write(pair.leader, followers[0], data.parents, data.rate,
                            options.films / f"{pair.label}_{pair.name}_{row.replace(' ', '_')}.png")
-    _print([(row, label, figures.mean(found)) for (label, row), found in by_class.items()],
-           figures.COLUMNS)
+    _print(by_class, figures.COLUMNS)
     print()
-    _print(_still_rows(model, tests, data.joint_names, data.rate), figures.STILL_COLUMNS)
+    _print(_still_figures(model, tests, data.joint_names, data.rate), figures.STILL_COLUMNS)
     return 0
 
 

@@ -72,9 +72,9 @@ def pair(leader, follower, captured, joints, rate):
 
 
 def mean(found):
-    """The mean of each column, without trials that lack it."""
+    """The mean of each column, without the trials that lack it."""
     values = {column: [one[column] for one in found if not numpy.isnan(one[column])]
-              for column in COLUMNS}
+              for column in found[0]}
     return {column: numpy.mean(some) if some else numpy.nan for column, some in values.items()}
 
 
