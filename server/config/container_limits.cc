@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/numbers.h"
 
@@ -17,6 +18,22 @@ namespace duet::server::config {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The folders in which the kernel shows the limits that apply to this process: those of its own
+// cgroup and of each ancestor, because every one of them limits it. A folder may not exist: inside
+// a container the process's own cgroup appears as the top, whatever path the kernel reports.
+struct CgroupFolders {
+  std::vector<std::filesystem::path> version_1;  // of the controller's own hierarchy
+  std::vector<std::filesystem::path> version_2;
+};
+
+// The first line of a file; empty if the file cannot be read.
+std::string FirstLine(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
+}
 
 // A line of /proc/self/cgroup, "<number>:<controllers>:/<path>".
 struct CgroupLine {
@@ -46,7 +63,19 @@ std::vector<fs::path> WithAncestors(const fs::path& top, fs::path cgroup) {
   }
 }
 
-namespace fs = std::filesystem;
+// Finds the folders of a controller, such as "cpu" or "memory". `system_root` is "/" except in
+// tests.
+CgroupFolders FindCgroups(const fs::path& system_root, const std::string& controller) {
+  fs::path version_1, version_2;
+  std::ifstream file(system_root / "proc/self/cgroup");
+  for (std::string line; std::getline(file, line);) {
+    CgroupLine cgroup = ParseCgroupLine(line, controller);
+    if (cgroup.version_2) version_2 = cgroup.path;
+    if (cgroup.has_controller) version_1 = std::move(cgroup.path);
+  }
+  const fs::path top = system_root / "sys/fs/cgroup";
+  return {WithAncestors(top / controller, version_1), WithAncestors(top, version_2)};
+}
 
 std::optional<double> LimitOfVersion2(const fs::path& cgroup) {
   return ParseCpuMax(FirstLine(cgroup / "cpu.max"));
@@ -67,8 +96,6 @@ double AffinityCores() {
   return std::thread::hardware_concurrency();
 }
 
-namespace fs = std::filesystem;
-
 // "max" is not a number and means no limit; so does a limit of 0, which no process could run under.
 std::uint64_t LimitIn(const fs::path& path) {
   std::uint64_t limit = 0;
@@ -86,25 +113,6 @@ std::uint64_t MemoryOfMachine(const fs::path& system_root) {
 }
 
 }  // namespace
-
-CgroupFolders FindCgroups(const fs::path& system_root, const std::string& controller) {
-  fs::path version_1, version_2;
-  std::ifstream file(system_root / "proc/self/cgroup");
-  for (std::string line; std::getline(file, line);) {
-    CgroupLine cgroup = ParseCgroupLine(line, controller);
-    if (cgroup.version_2) version_2 = cgroup.path;
-    if (cgroup.has_controller) version_1 = std::move(cgroup.path);
-  }
-  const fs::path top = system_root / "sys/fs/cgroup";
-  return {WithAncestors(top / controller, version_1), WithAncestors(top, version_2)};
-}
-
-std::string FirstLine(const fs::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  return line;
-}
 
 std::optional<double> ParseCpuMax(const std::string& text) {
   std::istringstream fields(text);

@@ -49,8 +49,6 @@ std::string Line(absl::Time now, Severity severity, std::string_view event, cons
   return line.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-using Json = nlohmann::ordered_json;
-
 // Unquoted if the end of the value is unambiguous, otherwise as JSON.
 std::string ValueText(const Json& value) {
   if (!value.is_string()) return value.dump();

@@ -63,7 +63,7 @@ SynthesisResult Follow(const SynthesisRequest& request) {
   result.window_count = 1;
   result.attempt_count = 1;
   result.request_id = "request-1";
-  result.seed = request.seed;
+  result.seed = request.seed.value_or(0);
   result.variety = request.variety;
   result.candidates = request.candidates;
   result.cleaned_up = request.clean_up.value_or(false);

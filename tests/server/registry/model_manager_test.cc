@@ -431,8 +431,7 @@ TEST_F(ModelManagerTest, LoadsAgainEvenWhatHasNotChanged) {
 TEST_F(ModelManagerTest, LoadReportsMissingAndBrokenVersions) {
   Write("a", 1);
   Write("a", 2, "bad");
-  EXPECT_THAT(manager_.Load("a", 3),
-              StatusIs(kNotFound, HasSubstr("version 3 of model \"a\"")));
+  EXPECT_THAT(manager_.Load("a", 3), StatusIs(kNotFound, HasSubstr("version 3 of model \"a\"")));
   EXPECT_THAT(manager_.Load("../a", 1), StatusIs(kNotFound, HasSubstr("../a")));
   EXPECT_THAT(manager_.Load("a", 2),
               StatusIs(kFailedPrecondition, HasSubstr("weights: expected 9 bytes, got 7")));
@@ -485,8 +484,7 @@ TEST(ModelManagerWithoutRepositoryTest, ServesWhatItIsGivenAndHasLabels) {
   ASSERT_THAT(report, IsOk());
   EXPECT_THAT(report->refused_labels, ElementsAre(HasSubstr("canary")));
   EXPECT_THAT(registry.List()[0].version_labels, ElementsAre("stable"));
-  EXPECT_THAT(manager.Load("fake", 1),
-              StatusIs(kFailedPrecondition, HasSubstr("repository")));
+  EXPECT_THAT(manager.Load("fake", 1), StatusIs(kFailedPrecondition, HasSubstr("repository")));
   EXPECT_THAT(manager.Unload("fake", 1), StatusIs(kFailedPrecondition, HasSubstr("repository")));
 }
 
