@@ -642,9 +642,11 @@ TEST(LeaderStatisticsInManifest, RejectsByName) {
                   // The tiny skeleton has no hands.
                   {"/leader_statistics/features/0/name", "\"hand_reach\"",
                    "leader_statistics.features[0].name: expected one of mean_joint_speed, "
-                   "highest_joint_speed"},
-                  // A reader of only version 1 would reject them.
-                  {"/format_version", "1", "leader_statistics"}});
+                   "highest_joint_speed"}});
+  // A reader of only version 1 would reject them.
+  Manifest older = ManifestWithLeaders();
+  older.format_version = 1;
+  EXPECT_THAT(ParseManifest(SerializeManifest(older)), IsInvalid("leader_statistics"));
 }
 
 }  // namespace
