@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <numeric>
 
 #include "absl/strings/str_cat.h"
@@ -71,24 +70,6 @@ void AddCurve(const SweepCurve& curve, LabelControl* sums) {
     raised.push_back(RaisedProbability(curve, i));
   }
   sums->rank_correlation += RankCorrelation(SweepWeights(), raised);
-}
-
-report::PlotSeries MeanLine(const std::string& name, const std::vector<SweepCurve>& curves,
-                            int of_class) {
-  const std::vector<double>& weights = SweepWeights();
-  const std::vector<double> means = MeanProbabilities(curves, of_class);
-  report::PlotSeries line{name, {}};
-  for (size_t i = 0; i < weights.size(); ++i) line.points.push_back({weights[i], means[i]});
-  return line;
-}
-
-std::string Caption(SweepKind kind, const std::string& name, const std::string& told) {
-  if (kind == SweepKind::kOwn) {
-    return absl::StrCat("Leaders of ", name, " answered with the weight of ", name, " alone, ",
-                        told, ": the judges' mean probability of every class.");
-  }
-  return absl::StrCat("Leaders of the other classes answered with their own class at 1 and ", name,
-                      " added, ", told, ": the judges' mean probability of ", name, ".");
 }
 
 }  // namespace
@@ -169,46 +150,28 @@ report::Table ControlTable(const std::string& title, const std::vector<std::stri
   return table;
 }
 
-report::LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
-                           const std::vector<SweepCurve>& curves, SweepKind kind, int raised) {
-  const std::string& raised_name = classes[static_cast<size_t>(raised)];
-  report::LinePlot plot;
-  plot.title = title;
-  plot.x_label = "weight of " + raised_name;
-  plot.y_label =
-      "mean probability of " + (kind == SweepKind::kOwn ? std::string("each class") : raised_name);
-  plot.y_range = {0, 1};
-  plot.markers = true;
-  plot.marked_x = {0, 1};
-  const std::vector<SweepCurve> selected = Select(curves, kind, raised);
-  for (int c = 0; c < static_cast<int>(classes.size()); ++c) {
-    const std::string& name = classes[static_cast<size_t>(c)];
-    if (kind == SweepKind::kOwn) {
-      if (!selected.empty()) plot.series.push_back(MeanLine(name, selected, c));
-    } else {
-      std::vector<SweepCurve> beside;
-      std::copy_if(selected.begin(), selected.end(), std::back_inserter(beside),
-                   [c](const SweepCurve& curve) { return curve.own == c; });
-      if (!beside.empty()) plot.series.push_back(MeanLine("beside " + name, beside, raised));
-    }
+report::Table ProbabilityTable(const std::string& title, const std::vector<std::string>& classes,
+                               const std::vector<SweepCurve>& curves, SweepKind kind) {
+  report::Table table{title};
+  for (const double weight : SweepWeights()) table.columns.push_back(absl::StrCat(weight));
+  for (size_t c = 0; c < classes.size(); ++c) {
+    const int raised = static_cast<int>(c);
+    table.rows.push_back({classes[c], MeanProbabilities(Select(curves, kind, raised), raised)});
   }
-  return plot;
+  table.notes = {"The judges' mean probability of a class, by its weight."};
+  return table;
 }
 
 void AddSweep(const std::vector<std::string>& classes, const std::vector<SweepCurve>& curves,
-              const SweepNames& names, report::ResultSection* section) {
+              const std::string& told, report::ResultSection* section) {
   for (const SweepKind kind : {SweepKind::kOwn, SweepKind::kAdded}) {
-    const bool own = kind == SweepKind::kOwn;
-    const char* const title = own ? "Own class alone, " : "Another class beside the own one, ";
-    section->tables.push_back(ControlTable(absl::StrCat(title, names.told), classes, curves, kind));
-    for (size_t c = 0; c < classes.size(); ++c) {
-      const std::string& name = classes[c];
-      section->figures.push_back(
-          {absl::StrCat(section->id, own ? "_own_" : "_added_", name, names.name_end),
-           Caption(kind, name, names.told),
-           SweepPlot(absl::StrCat(name, own ? " alone, " : " added, ", names.told), classes, curves,
-                     kind, static_cast<int>(c))});
-    }
+    const std::string title = absl::StrCat(kind == SweepKind::kOwn ? "Own class alone, "
+                                                                   : "Another class beside the own "
+                                                                     "one, ",
+                                           told);
+    section->tables.push_back(ControlTable(title, classes, curves, kind));
+    section->tables.push_back(
+        ProbabilityTable(absl::StrCat(title, ": probabilities"), classes, curves, kind));
   }
 }
 

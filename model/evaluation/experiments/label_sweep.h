@@ -63,20 +63,14 @@ std::vector<double> MeanProbabilities(const std::vector<SweepCurve>& curves, int
 report::Table ControlTable(const std::string& title, const std::vector<std::string>& classes,
                            const std::vector<SweepCurve>& curves, SweepKind kind);
 
-// kOwn: the mean probability of every class against the weight of class `raised`. kAdded: only that
-// of class `raised`, a line for each own class.
-report::LinePlot SweepPlot(const std::string& title, const std::vector<std::string>& classes,
-                           const std::vector<SweepCurve>& curves, SweepKind kind, int raised);
+// The mean probability of each raised class, by its weight: one row per raised class.
+report::Table ProbabilityTable(const std::string& title, const std::vector<std::string>& classes,
+                               const std::vector<SweepCurve>& curves, SweepKind kind);
 
-// The names of a sweep, by the model's input about the follower's first frame.
-struct SweepNames {
-  std::string told;      // ends titles and captions: "without a start"
-  std::string name_end;  // ends the figures' names: "", "_root"
-};
-
-// Adds a sweep's tables, one per kind, and its figures, one per kind and raised class.
+// Adds both tables for each kind. `told`: what the requests tell, the end of the titles, such as
+// "without a start".
 void AddSweep(const std::vector<std::string>& classes, const std::vector<SweepCurve>& curves,
-              const SweepNames& names, report::ResultSection* section);
+              const std::string& told, report::ResultSection* section);
 
 }  // namespace duet::evaluation::experiments
 

@@ -86,10 +86,9 @@ absl::StatusOr<std::vector<experiments::SweepCurve>> SweepFolds(const dataset::D
   return curves;
 }
 
-experiments::SweepNames Names(experiments::StartGiven start) {
-  if (start == experiments::StartGiven::kNone) return {"without a start", ""};
-  const bool root = start == experiments::StartGiven::kRoot;
-  return {root ? "given the first root" : "given the first pose", root ? "_root" : "_pose"};
+const char* Told(experiments::StartGiven start) {
+  if (start == experiments::StartGiven::kNone) return "without a start";
+  return start == experiments::StartGiven::kRoot ? "given the first root" : "given the first pose";
 }
 
 absl::Status RunSweep(const SweepArguments& arguments) {
@@ -117,7 +116,7 @@ absl::Status RunSweep(const SweepArguments& arguments) {
   for (const std::string& name : arguments.starts) {
     const experiments::StartGiven start = ParseStart(name);
     DUET_TRY(auto curves, SweepFolds(dataset, folds, start, arguments));
-    experiments::AddSweep(dataset.classes, curves, Names(start), &section);
+    experiments::AddSweep(dataset.classes, curves, Told(start), &section);
   }
   return FinishSection(arguments.section, section);
 }

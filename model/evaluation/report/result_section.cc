@@ -21,30 +21,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json KindToJson(const LinePlot& plot) {
-  ordered_json series = ordered_json::array();
-  for (const PlotSeries& one : plot.series) {
-    ordered_json x = ordered_json::array(), y = ordered_json::array();
-    for (const auto& point : one.points) {
-      x.push_back(point[0]);
-      y.push_back(point[1]);
-    }
-    series.push_back({{"name", one.name}, {"x", std::move(x)}, {"y", std::move(y)}});
-  }
-  ordered_json y_range = nullptr;
-  if (plot.y_range) y_range = {plot.y_range->first, plot.y_range->second};
-  return {{"kind", "lines"},
-          {"title", plot.title},
-          {"x_label", plot.x_label},
-          {"y_label", plot.y_label},
-          {"series", std::move(series)},
-          {"y_range", std::move(y_range)},
-          {"log_y", plot.log_y},
-          {"markers", plot.markers},
-          {"marked_x", plot.marked_x},
-          {"running_mean", plot.running_mean}};
-}
-
 ordered_json KindToJson(const LatentPlot& plot) {
   return {{"kind", "latent"},        {"title", plot.title},       {"class_names", plot.class_names},
           {"classes", plot.classes}, {"features", plot.features}, {"perplexity", plot.perplexity},

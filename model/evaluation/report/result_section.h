@@ -1,11 +1,9 @@
 #ifndef DUET_MODEL_EVALUATION_REPORT_RESULT_SECTION_H_
 #define DUET_MODEL_EVALUATION_REPORT_RESULT_SECTION_H_
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -20,25 +18,6 @@
 // The data of figures. scripts/make_report.py draws them.
 
 namespace duet::evaluation::report {
-
-struct PlotSeries {
-  std::string name;
-  std::vector<std::array<double, 2>> points;  // x, y; a point that is not finite leaves a gap
-};
-
-// Lines over labelled axes.
-struct LinePlot {
-  std::string title;
-  std::string x_label;
-  std::string y_label;
-  std::vector<PlotSeries> series;
-  std::optional<std::pair<double, double>> y_range;  // default: the range of the points
-  bool log_y = false;                                // values of 0 and below leave gaps
-  bool markers = false;                              // for sweeps with few points
-  std::vector<double> marked_x;                      // vertical dotted lines
-  // Above 1: lines are means over this many points, with the points themselves faint behind.
-  int running_mean = 1;
-};
 
 // A map of a feature space by t-SNE, one point per sample. Shapes: features and classes [samples].
 struct LatentPlot {
@@ -66,9 +45,9 @@ struct PosePlot {
   double frame_rate_hz = 0;
 };
 
-using Plot = std::variant<LinePlot, LatentPlot, PosePlot>;
+using Plot = std::variant<LatentPlot, PosePlot>;
 
-// The field "kind" names the alternative: "lines", "latent" or "poses". Values that are not finite
+// The field "kind" names the alternative: "latent" or "poses". Values that are not finite
 // are null. Positions are in metres, rounded to 0.1 mm.
 nlohmann::ordered_json ToJson(const Plot& plot);
 

@@ -96,5 +96,41 @@ TEST(MeanProbabilities, AreOfOneClassOverAllCurves) {
   EXPECT_NEAR(MeanProbabilities({MakeSweepCurve(0, 0, Rising)}, 1).back(), 0.2, 1e-6);
 }
 
+TEST(ControlTable, HasARowForEachRaisedClass) {
+  const std::vector<SweepCurve> curves = {
+      MakeSweepCurve(0, 0, Rising), MakeSweepCurve(1, 1, Falling), MakeSweepCurve(1, 0, Falling)};
+  const report::Table own = ControlTable("own", {"a", "b"}, curves, SweepKind::kOwn);
+  ASSERT_THAT(own.rows, SizeIs(3));
+  EXPECT_EQ(own.rows[0].values.front(), 1);
+  EXPECT_EQ(own.rows[1].values.front(), 0);
+  EXPECT_EQ(own.rows[2].name, "all");
+  EXPECT_EQ(own.rows[2].values.front(), 0.5);
+  const report::Table added = ControlTable("added", {"a", "b"}, curves, SweepKind::kAdded);
+  EXPECT_EQ(added.rows[0].values.front(), 0);
+  EXPECT_TRUE(std::isnan(added.rows[1].values.front()));
+}
+
+TEST(ProbabilityTable, HasTheMeanOfEachRaisedClassByItsWeight) {
+  const std::vector<SweepCurve> curves = {MakeSweepCurve(0, 0, Rising), MakeSweepCurve(0, 0, Level),
+                                          MakeSweepCurve(1, 0, Falling)};
+  const report::Table own = ProbabilityTable("t", {"a", "b"}, curves, SweepKind::kOwn);
+  ASSERT_THAT(own.columns, SizeIs(SweepWeights().size()));
+  EXPECT_EQ(own.columns.front(), "-1");
+  EXPECT_NEAR(own.rows[0].values.back(), (0.8 + 0.5) / 2, 1e-6);
+  EXPECT_TRUE(std::isnan(own.rows[1].values.back()));
+  const report::Table added = ProbabilityTable("t", {"a", "b"}, curves, SweepKind::kAdded);
+  EXPECT_NEAR(added.rows[0].values.front(), 0.6, 1e-6);
+}
+
+TEST(AddSweep, AddsTwoTablesAKind) {
+  report::ResultSection section;
+  AddSweep({"a", "b"}, {MakeSweepCurve(0, 0, Level), MakeSweepCurve(1, 0, Falling)},
+           "given the first root", &section);
+  ASSERT_THAT(section.tables, SizeIs(4));
+  EXPECT_EQ(section.tables[0].title, "Own class alone, given the first root");
+  EXPECT_EQ(section.tables[3].title,
+            "Another class beside the own one, given the first root: probabilities");
+}
+
 }  // namespace
 }  // namespace duet::evaluation::experiments

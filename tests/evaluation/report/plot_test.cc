@@ -1,8 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "model/evaluation/report/result_section.h"
 #include "tests/support/sample_motion.h"
 
@@ -13,28 +11,6 @@ using nlohmann::json;
 
 // As a reader of the file gets it.
 json Written(const Plot& plot) { return json::parse(ToJson(plot).dump()); }
-
-TEST(PlotTest, LinesHaveTheirAxesAndNullForGaps) {
-  LinePlot plot;
-  plot.title = "Losses";
-  plot.x_label = "epoch";
-  plot.series = {{"bone", {{1, 2.5}, {2, std::nan("")}}}};
-  plot.y_range = {0, 1};
-  plot.log_y = true;
-  plot.marked_x = {2};
-  plot.running_mean = 9;
-  const json written = Written(plot);
-  EXPECT_EQ(written["kind"], "lines");
-  EXPECT_EQ(written["title"], "Losses");
-  EXPECT_EQ(written["x_label"], "epoch");
-  EXPECT_EQ(written["series"][0],
-            json::parse(R"({"name": "bone", "x": [1, 2], "y": [2.5, null]})"));
-  EXPECT_EQ(written["y_range"], json::parse("[0, 1]"));
-  EXPECT_EQ(written["log_y"], true);
-  EXPECT_EQ(written["marked_x"], json::parse("[2]"));
-  EXPECT_EQ(written["running_mean"], 9);
-  EXPECT_TRUE(Written(LinePlot())["y_range"].is_null());
-}
 
 TEST(PlotTest, LatentSpaceHasAVectorAndAClassForEachSample) {
   const json written =

@@ -38,7 +38,7 @@ TEST(ResultSectionTest, JsonHasEveryField) {
   ASSERT_EQ(section["figures"].size(), 1u);
   EXPECT_EQ(section["figures"][0]["name"], "10_folds_curve");
   EXPECT_EQ(section["figures"][0]["caption"], "A curve of \"errors\".");
-  EXPECT_EQ(section["figures"][0]["plot"]["kind"], "lines");
+  EXPECT_EQ(section["figures"][0]["plot"]["kind"], "latent");
 }
 
 TEST(ResultSectionTest, JsonKeepsTheFiguresOfTablesExactly) {

@@ -19,9 +19,11 @@ evaluation::report::ResultSection ExampleSection(const std::string& id) {
   section.title = "Methods & classes";
   section.text = {"First <paragraph>.", "Second one."};
   section.tables = {table};
-  evaluation::report::LinePlot plot;
+  evaluation::report::LatentPlot plot;
   plot.title = "Curve";
-  plot.series = {{"ours", {{0, 1}, {1, 2}}}};
+  plot.class_names = {"kick"};
+  plot.classes = {0};
+  plot.features = {{1, 2}};
   section.figures = {{id + "_curve", "A curve of \"errors\".", plot}};
   section.settings = {{"data", "SBU"}, {"seeds", "1, 2"}};
   section.command = "duet-eval folds --data DIR";
