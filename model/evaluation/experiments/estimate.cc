@@ -13,6 +13,9 @@ namespace {
 constexpr int kResamples = 400;
 constexpr double kLowShare = 0.025, kHighShare = 0.975;
 
+// A series with a smaller deviation has no correlation with another.
+constexpr double kConstant = 1e-9;
+
 }  // namespace
 
 Estimate Bootstrap(const std::vector<int>& leaders, const Statistic& statistic) {
@@ -47,6 +50,18 @@ Estimate BootstrapMean(const std::vector<int>& leaders, const std::vector<double
 
 double Ratio(double numerator, double denominator) {
   return denominator == 0 ? NAN : numerator / denominator;
+}
+
+double Correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  const double mean_a = base::Mean(a), mean_b = base::Mean(b);
+  double product = 0, square_a = 0, square_b = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    product += (a[i] - mean_a) * (b[i] - mean_b);
+    square_a += std::pow(a[i] - mean_a, 2);
+    square_b += std::pow(b[i] - mean_b, 2);
+  }
+  const double scale = std::sqrt(square_a * square_b);
+  return scale > kConstant ? product / scale : 0;
 }
 
 report::Table EstimateTable(const std::string& title, const std::vector<std::string>& variants) {

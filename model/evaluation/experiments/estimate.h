@@ -29,6 +29,9 @@ Estimate BootstrapMean(const std::vector<int>& leaders, const std::vector<double
 // NaN for a denominator of 0.
 double Ratio(double numerator, double denominator);
 
+// Pearson's correlation; 0 if either side is constant. Shapes: both [samples].
+double Correlation(const std::vector<double>& a, const std::vector<double>& b);
+
 // A table with three columns for each variant: its figure, and both ends of its interval.
 report::Table EstimateTable(const std::string& title, const std::vector<std::string>& variants);
 // Shapes: estimates [variants].

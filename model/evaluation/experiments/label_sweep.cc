@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/statistics.h"
 #include "model/evaluation/experiments/answers.h"
+#include "model/evaluation/experiments/estimate.h"
 
 namespace duet::evaluation::experiments {
 namespace {
@@ -95,15 +95,7 @@ LabelControl MeasureControl(const std::vector<SweepCurve>& curves) {
 }
 
 double RankCorrelation(const std::vector<double>& x, const std::vector<double>& y) {
-  const std::vector<double> a = Ranks(x), b = Ranks(y);
-  const double mean_a = base::Mean(a), mean_b = base::Mean(b);
-  double ab = 0, aa = 0, bb = 0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    ab += (a[i] - mean_a) * (b[i] - mean_b);
-    aa += (a[i] - mean_a) * (a[i] - mean_a);
-    bb += (b[i] - mean_b) * (b[i] - mean_b);
-  }
-  return aa * bb == 0 ? 0 : ab / std::sqrt(aa * bb);
+  return Correlation(Ranks(x), Ranks(y));
 }
 
 std::vector<SweepCurve> Select(const std::vector<SweepCurve>& curves, SweepKind kind, int raised) {

@@ -24,9 +24,6 @@ using motion::Vec3;
 
 // The time about the leader's action in which a follower goes back.
 constexpr double kBeforeActionSeconds = 0.3, kAfterActionSeconds = 1;
-// A series with a smaller deviation has no correlation with another.
-constexpr double kConstant = 1e-9;
-
 // A clip with its first and last frames repeated.
 void Pad(int frames, motion::Clip* clip) {
   Poses padded(0, clip->joint_count());
@@ -42,18 +39,6 @@ std::vector<double> Positions(const Poses& poses, int joint, Vec3 away) {
   std::vector<double> along;
   for (int t = 0; t < poses.frame_count(); ++t) along.push_back(Dot(poses.at(t, joint), away));
   return along;
-}
-
-double Correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const double mean_a = base::Mean(a), mean_b = base::Mean(b);
-  double product = 0, square_a = 0, square_b = 0;
-  for (size_t i = 0; i < a.size(); ++i) {
-    product += (a[i] - mean_a) * (b[i] - mean_b);
-    square_a += std::pow(a[i] - mean_a, 2);
-    square_b += std::pow(b[i] - mean_b, 2);
-  }
-  const double scale = std::sqrt(square_a * square_b);
-  return scale > kConstant ? product / scale : 0;
 }
 
 // The change of the head's and the root's mean position away from the leader in every frame.
