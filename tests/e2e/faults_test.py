@@ -238,7 +238,7 @@ class NoProcTest(unittest.TestCase):
     def test_training_and_evaluation_report_missing_files(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(self.check("duet-train", "--data", folder, "--out", folder), 1)
-            self.assertEqual(self.check("duet-eval", "data", "--data", folder), 1)
+            self.assertEqual(self.check("duet-eval", "folds", "--data", folder), 1)
 
     def test_server_reports_an_unusable_engine(self):
         self.assertNotIn(self.check("duet-server", "--engine", "torch", "--listen", "127.0.0.1:0",

@@ -57,12 +57,12 @@ class FakeConnection : public Connection {
     if (!status.ok()) return status;
     SynthesisResult result;
     result.pair = {request.leader, request.leader};
-    const auto by = static_cast<float>(request.seed % 1000) / 1000 + distance;
+    const auto by = static_cast<float>(*request.seed % 1000) / 1000 + distance;
     for (motion::Vec3& position : result.pair.follower.poses.all()) position.x += by;
     result.model_name = request.model.name;
     result.model_version = *request.model.version;
     result.request_id = request.request_id;
-    result.seed = request.seed;
+    result.seed = *request.seed;
     result.candidates = request.candidates;
     result.grade = grade;
     result.cleaned_up = made_by.cleaned_up;

@@ -224,7 +224,8 @@ TEST(KeyOf, IsValidInFileSystemsAndArchives) {
   EXPECT_EQ(KeyOf("../walks/./Kick 1.v2"), "walks/Kick_1_v2");
   EXPECT_EQ(KeyOf("/abs/a:b+c-d_e"), "abs/a_b+c-d_e");
   // Letters of other scripts stay, and bytes that are no UTF-8 go.
-  EXPECT_EQ(KeyOf("caf\xc3\xa9/\xe6\xad\xa9/\xf0\x9f\x92\x83"), "caf\xc3\xa9/\xe6\xad\xa9/\xf0\x9f\x92\x83");
+  EXPECT_EQ(KeyOf("caf\xc3\xa9/\xe6\xad\xa9/\xf0\x9f\x92\x83"),
+            "caf\xc3\xa9/\xe6\xad\xa9/\xf0\x9f\x92\x83");
   EXPECT_EQ(KeyOf("caf\xe9"), "caf_");
   EXPECT_EQ(KeyOf("\xc0\xaf"), "__");            // longer than needed
   EXPECT_EQ(KeyOf("\xed\xa0\x80"), "___");       // half of a UTF-16 pair
