@@ -286,40 +286,6 @@ TEST(ServerProcessTest, SigtermDuringAReloadStopsAfterTheCheckpointUnderWay) {
   EXPECT_THAT(server.Rest(), testing::Not(HasSubstr("model_loaded")));
 }
 
-// The bytes that a process has read from files.
-long BytesRead(pid_t pid) {
-  std::ifstream io(absl::StrCat("/proc/", pid, "/io"));
-  std::string name;
-  long bytes = 0;
-  io >> name >> bytes;
-  EXPECT_EQ(name, "rchar:");
-  return bytes;
-}
-
-TEST(ServerProcessTest, SigtermDoesNotWaitForALargeFileBesideACheckpoint) {
-  constexpr long kSomeBlocks = 1 << 25;
-  TemporaryFolder folder;
-  const auto write = [&folder](const std::string& place) {
-    WriteCheckpoint(folder, place);
-    WriteTestFile(folder / place / "optimizer", "");
-    fs::resize_file(folder / place / "optimizer", std::uintmax_t{64} << 30);  // sparse
-  };
-  const auto stop_while_reading = [](Process& server, long already_read) {
-    while (BytesRead(server.pid()) < already_read + kSomeBlocks) std::this_thread::yield();
-    server.Signal(SIGTERM);
-    EXPECT_EQ(server.Wait(), 0);
-  };
-  WriteCheckpoint(folder, "a/1");
-  Process reloads(Flags({"--model-repository", folder.path().string()}));
-  EXPECT_FALSE(reloads.WaitForEvent("serving").is_null());
-  write("a/2");
-  const long before = BytesRead(reloads.pid());
-  reloads.Signal(SIGHUP);
-  stop_while_reading(reloads, before);
-  Process starts(Flags({"--model-repository", folder.path().string()}));
-  stop_while_reading(starts, 0);
-}
-
 TEST(ServerProcessTest, ASecondSignalEndsTheDrainSecondsAsWell) {
   Process server(Flags({"--drain-seconds", "3600", "--grace-seconds", "3600"}));
   LongCall call(server.WaitForEvent("serving"));
