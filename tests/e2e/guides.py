@@ -32,7 +32,7 @@ class GuideTest(unittest.TestCase):
                 pathlib.Path(folder, copied).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(path, pathlib.Path(folder, copied))
             yield folder, {
-                **os.environ, "DUET_SERVER": server.address, "DUET_CONFIG": "",
+                **os.environ, "DUET_SERVER": server.address,
                 # In place of the preferences and add-ons of whoever runs this test.
                 "BLENDER_USER_CONFIG": f"{folder}/blender", "BLENDER_USER_SCRIPTS": f"{folder}/blender",
                 # `python3` is the one that runs this test and has the modules.

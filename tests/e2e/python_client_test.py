@@ -22,7 +22,6 @@ except ImportError as error:
 
 PACKAGE = tools.SOURCE / "client" / "python"
 os.environ["DUET_PROGRAM"] = str(tools.PROGRAMS / "duet")
-os.environ["DUET_CONFIG"] = ""
 sys.path.insert(0, str(PACKAGE))
 
 import duet_motion as duet  # noqa: E402

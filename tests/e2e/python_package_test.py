@@ -52,7 +52,7 @@ class PythonPackageTest(tools.FolderTest):
         """Runs Python in an empty folder, without the programs of Duet."""
         with tempfile.TemporaryDirectory(dir=self.folder) as folder:
             return tools.run(python, *words, cwd=folder,
-                             env={"PATH": str(python.parent), "DUET_CONFIG": "", **environment})
+                             env={"PATH": str(python.parent), **environment})
 
     def test_names_state_version_and_platform(self):
         cmake = (tools.SOURCE / "CMakeLists.txt").read_text(encoding="utf-8")
@@ -78,7 +78,7 @@ class PythonPackageTest(tools.FolderTest):
                   "--target", installed, self.archive(".whl")).check_returncode()
         self.assertEqual([path.name for path in installed.iterdir() if path.suffix == ""],
                          ["duet_motion"])
-        environment = {**os.environ, "PYTHONPATH": str(installed), "DUET_CONFIG": "",
+        environment = {**os.environ, "PYTHONPATH": str(installed),
                        "DUET_PROGRAM": str(tools.PROGRAMS / "duet")}
         with tools.running_server() as server:
             environment["DUET_SERVER"] = server.address
