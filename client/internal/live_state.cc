@@ -220,6 +220,7 @@ v1::LiveStart LiveState::StartWithHistory(int answered, int first) {
     // So that all frames come from the same version, cleaned up in the same way.
     start.mutable_model()->set_name(info_->model_name);
     start.mutable_model()->set_version(static_cast<uint32_t>(info_->model_version));
+    start.set_seed(info_->seed);  // that the server chose, if the request has none
     start.set_clean_up(info_->cleaned_up ? v1::CLEAN_UP_ON : v1::CLEAN_UP_OFF);
   }
   if (labels_changed_ || start.label_keyframes_size() > 0) {

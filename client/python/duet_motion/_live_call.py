@@ -203,6 +203,12 @@ class LiveCall:
         most = self._history_start() + int(_START_SECONDS * self.motion.frame_rate_hz)
         return max(min(most, self._leader.end), end + self.request.delay)
 
+    def _seed(self) -> Optional[int]:
+        """A resumed session keeps the seed that the server chose."""
+        if self.request.seed is not None:
+            return int(self.request.seed)
+        return None if self.header is None else self.header.seed
+
     def _start(self, end: int) -> live_pb2.LiveStart:
         request, header = self.request, self.header
         first = self._history_start()
@@ -210,7 +216,7 @@ class LiveCall:
             model=to_selector(request.model), leader=motion_pb2.Motion(
                 joint_names=self.motion.joint_names, frame_rate_hz=self.motion.frame_rate_hz,
                 unit=UNITS[self.motion.unit], up_axis=UP_AXES[self.motion.up_axis]),
-            seed=int(request.seed), variety=float(request.variety),
+            seed=self._seed(), variety=float(request.variety),
             reaction=float(request.reaction),
             candidates=int(request.candidates),
             clean_up=CLEAN_UP[None if request.clean_up is None else bool(request.clean_up)],

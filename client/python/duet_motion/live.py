@@ -112,7 +112,8 @@ class LiveRequest:
         delay: how many later leader frames the server waits for before it answers a frame, 0 to
             10. 0 answers at once; a few frames give a better reaction.
         plan: number of provisional frames to send with each answer, 0 to 30.
-        seed: selects an answer of a model that samples, 0 to 2^64 - 1.
+        seed: selects an answer of a model that samples, 0 to 2^64 - 1. None: a typical one of the model;
+            ``LiveHeader.seed`` has it.
         variety: how much answers differ between seeds, 0 to 2.
         reaction: how much the leader's motion moves the follower, 0 to 2.
         model: ``"sbu"``, ``"sbu@3"`` for a version, ``"sbu:stable"`` for a version label; empty:
@@ -142,7 +143,7 @@ class LiveRequest:
     keyframes: Optional[Mapping[int, Labels]] = None
     delay: int = 0
     plan: int = 0
-    seed: int = 0
+    seed: Optional[int] = None
     variety: float = 1.0
     reaction: float = 1.0
     model: str = ""

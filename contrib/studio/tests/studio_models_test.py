@@ -43,7 +43,7 @@ class StudioModelsTest(StudioTest):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "pair.json"
             tools.duet("synthesize", "--server", self.server.address, "--model", "salsa", "--leader",
-                       tools.sample("salsa"), "--label", "basic=1", "--out",
+                       tools.sample("salsa"), "--label", "basic=1", "--seed", "0", "--out",
                        file).check_returncode()
             pair = json.loads(file.read_text(encoding="utf-8"))
         self.assertEqual(self.joints(page), pair["joint_names"])

@@ -77,6 +77,7 @@ class StudioTest(unittest.TestCase):
         return np.reshape(page.evaluate(FOLLOWER), (frames, 15, 3))
 
     def expected(self, labels=None, **settings):
+        settings.setdefault("seed", 0)  # as the page begins
         with duet.Client(self.server.address) as client:
             if labels is not None:
                 classes = client.get_model().model.interaction_classes
