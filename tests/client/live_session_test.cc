@@ -202,6 +202,8 @@ TEST_F(LiveSessionTest, ABrokenStreamIsResumedWithTheHistory) {
   EXPECT_EQ(start.model().name(), "dancer");
   EXPECT_EQ(start.model().version(), 3u);
   EXPECT_EQ(start.clean_up(), v1::CLEAN_UP_ON);
+  EXPECT_FALSE(mirror_.starts()[0].has_seed());
+  EXPECT_TRUE(start.has_seed()) << "the one that the server chose";
 }
 
 TEST_F(LiveSessionTest, FramesWithoutAnAnswerAreInTheStartOfTheNextStream) {

@@ -123,6 +123,8 @@ class LiveTest(unittest.TestCase):
         parts, _ = run(lambda client: answered(client, together=True), mirror)
         self.assert_whole(parts)
         start = mirror.streams[1][0].start
+        self.assertFalse(mirror.streams[0][0].start.HasField("seed"))
+        self.assertTrue(start.HasField("seed"))  # the one that the server chose
         self.assertEqual(start.history.first_frame + start.history.follower_frame_count, 7)
         self.assertEqual(start.leader.frame_count, FRAMES - start.history.first_frame)
         self.assertFalse(mirror.streams[1][1:])
