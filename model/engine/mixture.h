@@ -21,8 +21,8 @@ namespace duet::engine {
 //   leader has reached out furthest, then the other answer's displacement from where the body is. A
 //   weight of one half has half of the time, at full strength; 1 has all of it. Classes of the same
 //   kind are averaged by the network.
-// - Of an avoided class, only what does not concern the request is subtracted, and never more than
-//   half as much as the request moves the follower. Without a request, all of it is.
+// - Of an avoided class, only what does not concern the request is subtracted: for a weight of -1,
+//   at most half as much as the request moves the follower. Without a request, all of it is.
 // - Reaction is a factor of the difference that the leader's motion makes.
 //
 // Every evaluation has the same noise, and the frames that the window continues from.

@@ -20,8 +20,10 @@ namespace duet::server::batching {
 struct QueuedWindow {
   WindowJob job;
   common::TimePoint queued_at;
-  int frames = 0;      // that its model is expected to compute: the window's, once for each sample
-  int candidates = 0;  // 1 for a model that does not sample
+  int frames = 0;  // that its model is expected to compute: the window's, once for each evaluation
+  // Evaluations of the window (engine::EvaluationCount): its candidates, twice as many with a
+  // scaled reaction. 1 for a model that does not sample.
+  int candidates = 0;
 
   int Turns() const;  // TurnsOf its frames
 };
