@@ -17,10 +17,13 @@ namespace {
 
 using motion::Poses;
 
+// Seeds that are tried, and how many of them are kept: enough that callers see different people,
+// and few enough that all are good. The cost is kTried answers to kPairsOfClass leaders of each
+// class: some ten seconds for the data of the embedded models.
 constexpr uint64_t kTried = 128;
 constexpr std::size_t kChosen = 16;
-// Captured pairs that each class is judged by. With four, the chosen seeds change with the pairs.
 constexpr int kPairsOfClass = 8;
+// Shorter distances count as this one: followers who stand still have no logarithm. Metres.
 constexpr double kLeastMetres = 0.01;
 
 // How far a follower gets: the largest distance of a joint from where it was in the first frame,
