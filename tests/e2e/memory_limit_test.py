@@ -21,10 +21,12 @@ except ImportError as error:
 if tools.SANITIZED:
     tools.skip("a sanitizer takes several times the memory that the server plans with")
 
-# gRPC's, where more arrived within a tenth of a second than it has memory for, and of calls that were
-# ended while a message was under way: neither can have details.
+# gRPC's, where more arrived within a tenth of a second than it has memory for ("Transport closed" of a
+# call that began on a connection that was just ended so), and of calls that were ended while a message
+# was under way: neither can have details.
 TRANSPORTS_WORDS = ("GOAWAY received", "RST_STREAM with error code 11", "Connection reset by peer",
-                    "Broken pipe", "while other calls waited for a place or for memory")
+                    "Broken pipe", "Transport closed",
+                    "while other calls waited for a place or for memory")
 LIMIT = 400 * mixes.MIB
 SECONDS = 700  # for everything, on a busy machine
 LEADER = mixes.request(144000, rate=240, chunk_frames=240)  # ten minutes: 26 MB
