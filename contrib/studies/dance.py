@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Measures a served model on a whole take of a dance, beside the captured follower (README.md).
+"""Measures served models on whole takes of a dance, beside the captured follower (README.md).
 
     contrib/studies/dance.py --data salsa --take take_05
+    contrib/studies/dance.py --data salsa --take take_03 take_05 take_11 --model salsa@1 salsa@2
 """
 
 import argparse
@@ -68,28 +69,41 @@ def moved_by_half(follower):
     return follower.with_positions(np.roll(follower.positions, follower.frame_count // 2, axis=0))
 
 
+def answers_of(client, model, take, seeds):
+    """The followers of a take, one for each seed."""
+    leader, captured, labels = take
+    return [client.synthesize(leader, keyframes=labels, seed=seed, model=model,
+                              follower_start=captured.positions[0]).follower for seed in range(seeds)]
+
+
+def rows_of(client, models, take, seeds):
+    """{name of a row: figures} of one take."""
+    leader, captured, _ = take
+    held = captured.with_positions(np.repeat(captured.positions[:1], captured.frame_count, axis=0))
+    rows = {"captured": measure(leader, captured, captured), "first pose held": measure(leader, captured, held)}
+    for model in models:
+        answers = answers_of(client, model, take, seeds)
+        name = model or "answer"
+        for suffix, shown in (("", answers), (", moved by half", map(moved_by_half, answers))):
+            rows[name + suffix] = np.mean([measure(leader, captured, answer) for answer in shown], axis=0)
+    return rows
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", maxsplit=1)[0])
     parser.add_argument("--data", type=Path, required=True, help="folder of the data set")
-    parser.add_argument("--take", required=True, help="path or subject of a take that the model has not seen")
+    parser.add_argument("--take", nargs="+", required=True,
+                        help="paths or subjects of takes that the models have not seen; the figures are means over them")
     parser.add_argument("--server", help="host:port (default: DUET_SERVER, or localhost:50051)")
-    parser.add_argument("--model", default="", help="name of the model (default: the server's)")
+    parser.add_argument("--model", nargs="+", default=[""],
+                        help="names of models, each NAME or NAME@VERSION (default: the server's)")
     parser.add_argument("--seeds", type=int, default=3, help="answers (default: %(default)s)")
     options = parser.parse_args()
-    leader, captured, labels = read_take(options.data, options.take)
-    held = captured.with_positions(np.repeat(captured.positions[:1], captured.frame_count, axis=0))
-    answers = []
     with duet.Client(options.server) as client:
-        for seed in range(options.seeds):
-            answers.append(client.synthesize(leader, keyframes=labels, seed=seed, model=options.model,
-                                             follower_start=captured.positions[0]).follower)
-    people.print_table(
-        ("error", "distance", "hands", "turns", "matched", "speed"),
-        [("captured", measure(leader, captured, captured)),
-         ("first pose held", measure(leader, captured, held)),
-         ("answer", np.mean([measure(leader, captured, answer) for answer in answers], axis=0)),
-         ("answer, moved by half",
-          np.mean([measure(leader, captured, moved_by_half(answer)) for answer in answers], axis=0))])
+        tables = [rows_of(client, options.model, read_take(options.data, take), options.seeds)
+                  for take in options.take]
+    people.print_table(("error", "distance", "hands", "turns", "matched", "speed"),
+                       [(name, np.nanmean([table[name] for table in tables], axis=0)) for name in tables[0]])
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ def joint_speed(positions, rate):
 
 def hands_held(leader, follower, names):
     """The share of frames in which a hand of one is near a hand of the other."""
-    hands = joints(names, "_wrist", "_hand")
+    hands = joints(names, "_hand", "_wrist")
     apart = np.linalg.norm(leader[:, hands, None] - follower[:, None, hands], axis=-1)
     return float((apart.min(axis=(1, 2)) < HOLD_METRES).mean())
 
