@@ -1,7 +1,6 @@
-#include "contrib/load/grpc_live_target.h"
+#include "contrib/load/server_sessions.h"
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -11,7 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/internal/proto_conversion.h"
-#include "contrib/load/channels.h"
+#include "contrib/load/inbox.h"
 #include "duet/v1/synthesis.grpc.pb.h"
 #include "grpcpp/client_context.h"
 #include "grpcpp/support/client_callback.h"
@@ -21,36 +20,6 @@ namespace {
 
 using Stub = v1::MotionSynthesis::Stub;
 
-// What arrived and Wait has not returned yet.
-class EventQueue {
- public:
-  void Add(const LiveEvent& event) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (event.ended) --open_;
-    events_.push_back(event);
-    changed_.notify_all();
-  }
-  void Opened() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ++open_;
-  }
-  std::vector<LiveEvent> Wait(Time until) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait_until(lock, until, [this] { return !events_.empty(); });
-    return std::exchange(events_, {});
-  }
-  void WaitUntilNoneIsOpen() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [this] { return open_ == 0; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<LiveEvent> events_;
-  int open_ = 0;
-};
-
 // One session. gRPC's threads report each message. Messages are written one at a time; those that
 // wait are in a queue. gRPC may call back on the thread that starts an operation, so no lock is
 // held meanwhile.
@@ -58,7 +27,7 @@ class Session final
     : public grpc::ClientBidiReactor<v1::SynthesizeLiveRequest, v1::SynthesizeLiveResponse>,
       public std::enable_shared_from_this<Session> {
  public:
-  Session(int index, EventQueue* events) : index_(index), events_(events) {}
+  Session(int index, Inbox<LiveEvent>* events) : index_(index), events_(events) {}
 
   void Begin(Stub& stub, const std::string& authorization, absl::Duration longest,
              v1::SynthesizeLiveRequest start) {
@@ -98,7 +67,7 @@ class Session final
       event.first_frame = static_cast<int>(response_.frames().first_frame());
       event.frames = static_cast<int>(response_.frames().frame_count());
       event.server_seconds = double{response_.frames().server_seconds()};
-      if (event.frames > 0) events_->Add(event);
+      if (event.frames > 0) events_->Add(event, false);
     } else if (response_.has_summary()) {
       const v1::LiveSummary& summary = response_.summary();
       summed_up_ = true;
@@ -120,9 +89,9 @@ class Session final
     event.ended = ended_;
     // Release the session first. It holds a connection, and gRPC's thread must not release the last
     // reference to one, because closing it waits for that thread.
-    EventQueue* const events = events_;
+    Inbox<LiveEvent>* const events = events_;
     std::exchange(self_, nullptr).reset();
-    events->Add(event);
+    events->Add(event, true);
   }
 
  private:
@@ -166,7 +135,7 @@ class Session final
   }
 
   const int index_;
-  EventQueue* const events_;
+  Inbox<LiveEvent>* const events_;
   grpc::ClientContext context_;
   v1::SynthesizeLiveResponse response_;
   EndedSession ended_;
@@ -186,9 +155,9 @@ int ThereAndBack(int frame, int frames) {
   return at < frames ? at : 2 * (frames - 1) - at;
 }
 
-class GrpcLiveTarget final : public LiveTarget {
+class ServerSessions final : public LiveTarget {
  public:
-  GrpcLiveTarget(const std::vector<std::shared_ptr<grpc::Channel>>& channels,
+  ServerSessions(const std::vector<std::shared_ptr<grpc::Channel>>& channels,
                  const client::ClientOptions& options, v1::LiveStart start,
                  std::vector<motion::Poses> leaders, absl::Duration longest)
       : authorization_(options.token.empty() ? "" : absl::StrCat("Bearer ", options.token)),
@@ -198,9 +167,9 @@ class GrpcLiveTarget final : public LiveTarget {
         begin_(Now()) {
     for (const auto& channel : channels) stubs_.push_back(v1::MotionSynthesis::NewStub(channel));
   }
-  GrpcLiveTarget(const GrpcLiveTarget&) = delete;
-  GrpcLiveTarget& operator=(const GrpcLiveTarget&) = delete;
-  ~GrpcLiveTarget() override {
+  ServerSessions(const ServerSessions&) = delete;
+  ServerSessions& operator=(const ServerSessions&) = delete;
+  ~ServerSessions() override {
     CancelAll();
     events_.WaitUntilNoneIsOpen();
   }
@@ -249,7 +218,7 @@ class GrpcLiveTarget final : public LiveTarget {
   const v1::LiveStart start_;
   const std::vector<motion::Poses> leaders_;
   const Time begin_;
-  EventQueue events_;
+  Inbox<LiveEvent> events_;
   std::vector<std::unique_ptr<Stub>> stubs_;
   std::vector<std::shared_ptr<Session>> sessions_;
 };
@@ -277,15 +246,15 @@ absl::StatusOr<v1::LiveStart> MakeLiveStart(const LiveContent& content,
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<LiveTarget>> ConnectLiveTarget(const client::ClientOptions& options,
-                                                              int connections,
-                                                              LiveSessions sessions) {
+absl::StatusOr<std::unique_ptr<LiveTarget>> ConnectSessions(const client::ClientOptions& options,
+                                                            int connections,
+                                                            LiveSessions sessions) {
   const absl::StatusOr<v1::LiveStart> start =
       MakeLiveStart(sessions.content, sessions.model, sessions.frame_rate_hz);
   if (!start.ok()) return start.status();
   const auto channels = OpenChannels(options, connections);
   if (!channels.ok()) return channels.status();
-  return std::make_unique<GrpcLiveTarget>(*channels, options, *start, std::move(sessions.leaders),
+  return std::make_unique<ServerSessions>(*channels, options, *start, std::move(sessions.leaders),
                                           sessions.longest);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "contrib/load/program/load_program.h"
+#include "contrib/load/load_program.h"
 #include "model/base/program_output.h"
 
 namespace {
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, StopAtSignal);
   std::signal(SIGTERM, StopAtSignal);
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  const int code = duet::contrib::load::program::RunLoadProgram(
+  const int code = duet::contrib::load::RunLoadProgram(
       arguments, {&std::cout, &std::cerr, [] { return stopped != 0; }});
   return duet::base::FinishOutput("duet-load", code);
 }
