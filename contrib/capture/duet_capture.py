@@ -191,7 +191,7 @@ def main() -> None:
                         help="of the leader (default: the sender's, measured for a second)")
     parser.add_argument("--delay", type=int, default=0, metavar="FRAMES",
                         help="leader frames that the server waits for before it answers, 0 to 10")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seed", type=int, help="selects an answer of a model that samples (default: a typical one)")
     parser.add_argument("--variety", type=float, default=1.0, metavar="0..2",
                         help="0 typical, 1 as varied as people, at most 2")
     parser.add_argument("--joint", action="append", default=[], metavar="MODEL=CAPTURE",

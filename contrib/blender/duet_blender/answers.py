@@ -11,6 +11,7 @@ from . import leader, partner, pins, program, retarget
 from .program import DuetError
 
 GALLERY_SIZE = 8
+_LARGEST_SEED = 2 ** 31 - 1  # of a field in Blender
 _FAULTS = ("twist", "overlap", "slide")
 
 
@@ -45,8 +46,8 @@ def _folder(scene):
 
 
 def request(scene, count):
-    """A generator that requests `count` answers with consecutive seeds and lists them, best
-    first."""
+    """A generator that requests `count` answers with consecutive seeds and lists them, best first. The first seed is
+    the panel's or the server's choice."""
     duet = scene.duet
     program.find(duet.program)
     duet.state = "Reading the leader"
@@ -63,13 +64,15 @@ def request(scene, count):
         recording.write(motion)
         duet.state = "Waiting for the server"
         summaries = []
-        for seed in range(int(duet.seed), int(duet.seed) + count):
+        seed = duet.seed if duet.own_seed else None
+        for index in range(count):
             output = yield from program.run(
                 duet, "synthesize", "--server", duet.server, "--leader", motion, *flags,
-                *(["--model", duet.model] if duet.model else []), "--seed", str(seed),
-                "--variety", f"{duet.variety:.4g}", "--candidates", str(duet.candidates),
-                "--json", "--out", os.path.join(work, f"{seed}.json"))
+                *(["--model", duet.model] if duet.model else []),
+                *([] if seed is None else ["--seed", str(seed)]), "--variety", f"{duet.variety:.4g}", "--candidates", str(duet.candidates),
+                "--json", "--out", os.path.join(work, f"{index}.json"))
             summaries.append(json.loads(output))
+            seed = summaries[-1]["seed"] + 1
         _list(scene, summaries, work)
 
 
@@ -103,6 +106,8 @@ def show(scene, index):
     if retarget.follows(duet.target):
         yield from retarget.follow(scene, duet.target)
     duet.chosen = index
+    if not duet.own_seed:
+        duet.seed = min(int(answer.seed), _LARGEST_SEED)
     duet.state = ", ".join(filter(None, (f"{partner.NAME}: seed {answer.seed}", answer.pins)))
 
 

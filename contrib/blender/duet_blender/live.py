@@ -84,7 +84,7 @@ class Session:
         self._begin, self._stop_by, self._error = clock(), None, ""
         self._stream = Stream(path, [
             "--server", duet.server, *(["--model", duet.model] if duet.model else []),
-            "--seed", duet.seed, "--variety", f"{duet.variety:.4g}", "--candidates", duet.candidates,
+            *(["--seed", duet.seed] if duet.own_seed else []), "--variety", f"{duet.variety:.4g}", "--candidates", duet.candidates,
             "--delay", duet.delay, *flags], clock)
         self._stream.send({"joints": [name for name, _, _, _ in self._recording.joints],
                            "rate": self.rate})

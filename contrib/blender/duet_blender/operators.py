@@ -201,7 +201,7 @@ class DUET_OT_keep(bpy.types.Operator):
 
     def execute(self, context):
         duet = context.scene.duet
-        seed = duet.answers[duet.chosen].seed if duet.answers else duet.seed
+        seed = duet.answers[duet.chosen].seed if duet.answers else duet.seed  # a live partner has no answer
         duet.state = partner.keep(context.scene, f"seed {seed}")
         return {"FINISHED"}
 

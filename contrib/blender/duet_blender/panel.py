@@ -23,7 +23,11 @@ class VIEW3D_PT_duet(bpy.types.Panel):
         row = box.row(align=True)
         row.operator("duet.key_labels", icon="KEY_HLT")
         row.operator("duet.ask_for_classes", icon="FILE_REFRESH", text="Classes")
-        layout.prop(duet, "seed")
+        row = layout.row(heading="Seed")
+        row.prop(duet, "own_seed", text="")
+        field = row.row()
+        field.active = duet.own_seed
+        field.prop(duet, "seed", text="")
         layout.prop(duet, "variety")
         layout.prop(duet, "candidates")
         layout.prop(duet, "body")

@@ -80,8 +80,10 @@ class DuetSettings(bpy.types.PropertyGroup):
         name="Body", description="The partner's body",
         items=(("MANNEQUIN", "Mannequin", "Duet's mannequin"),
                ("LEADER", "Leader's rig", "A copy of the leader's armature and meshes")))
-    seed: bpy.props.IntProperty(name="Seed", min=0, default=0,
-                                description="Selects an answer of a model that samples")
+    own_seed: bpy.props.BoolProperty(
+        name="Seed", description="Request the answer of this seed. Otherwise the server chooses one by the leader's "
+                                 "motion, and the field shows it")
+    seed: bpy.props.IntProperty(name="Seed", min=0, description="Selects an answer of a model that samples")
     variety: bpy.props.FloatProperty(name="Variety", min=0, max=2, default=1,
                                      description="0: the typical answer; 1: as varied as people")
     candidates: bpy.props.IntProperty(

@@ -35,7 +35,7 @@ class BlenderLiveTest(tools.FolderTest):
         cls.state = json.loads((cls.folder / "state.json").read_text(encoding="utf-8"))
         cls.undisturbed = tools.run(
             tools.PROGRAMS / "duet", "live", "--server", cls.second.address, "--from", "-", "--to",
-            "-", "--label", "hug=1", "--seed", "0",
+            "-", "--label", "hug=1",
             input="".join(json.dumps(line) + "\n" for line in cls.state["lines"]))
         assert cls.undisturbed.returncode == 0, cls.undisturbed.stderr
 

@@ -18,7 +18,7 @@ function keptFrames() {
   return {frames, positions: take.positions};
 }
 
-// Requests one answer. Calls `show` with each chunk.
+// Requests one answer; `seed`: '' for one that the server chooses. Calls `show` with each chunk.
 async function ask(leader, seed, kept, signal, show) {
   const {motion} = leader;
   const values = motion.joint_names.length * 3;
@@ -26,12 +26,12 @@ async function ask(leader, seed, kept, signal, show) {
   const positions = new Float32Array(motion.positions.length);
   if (kept) positions.set(kept.positions.subarray(0, kept.frames * values));
   const take = {
-    seed, positions, leader: leader.name, settings: JSON.stringify(settings),
+    positions, leader: leader.name, settings: JSON.stringify({...settings, seed}),
     model: state.model.name, version: state.model.version, samples: Boolean(state.model.samples),
     kept: kept?.frames ?? 0,
   };
   const pins = sentPins(settings, state.model.joint_names, take.kept);
-  let summary = null;
+  let [header, summary] = [null, null];
   for await (const answer of callServer('Synthesize', 'SynthesizeRequest',
                                         requestOf(motion, seed, kept), 'SynthesizeResponse', signal)) {
     if (answer.chunk) {
@@ -42,53 +42,54 @@ async function ask(leader, seed, kept, signal, show) {
       positions.set(fresh, first * values + known);
       show?.(first + known / values, fresh);
     }
-    summary = summary || answer.summary;
+    header ||= answer.header;
+    summary ||= answer.summary;
   }
-  if (!summary) throw new CallError('The reply is incomplete. Press React again.');
+  if (!header || !summary) throw new CallError('The reply is incomplete. Press React again.');
   return {
-    ...take, unfamiliarity: summary.unfamiliarity ?? 0, grade: summary.grade ?? null,
+    ...take, seed: header.seed ?? 0, unfamiliarity: summary.unfamiliarity ?? 0, grade: summary.grade ?? null,
     pins: pins.map(({joint, frame, position}, i) => ({
       joint, frame, position, metres: summary.constraint_metres[i] ?? 0})),
   };
 }
 
-function tellWaiting(seeds) {
-  tell(seeds.length === 1 ? 'Waiting for the server …'
-                          : `Waiting for seeds ${seeds[0]} to ${seeds[seeds.length - 1]} …`);
-}
-
-// The first seed of `count` answers. A gallery is asked again with the same seeds, whichever of its
-// answers is chosen.
+// The first seed of `count` answers, '' for one that the server chooses. A gallery is asked again with
+// the same seeds, whichever of its answers is chosen.
 function firstSeed(count) {
   const seeds = seedsOf(state.takes);
   return count > 1 && seeds.length > 1 && seeds.includes(settings.seed) ? Math.min(...seeds)
                                                                        : settings.seed;
 }
 
-// Requests `count` answers with the current settings and consecutive seeds. Cancels running calls.
+// Requests `count` answers with the current settings and consecutive seeds, the first one that of the
+// settings or the server's. Cancels running calls.
 // If one fails, the answers of before stay.
 async function react(count) {
   stopCalls();
   const call = state.call = new AbortController();
   const {leader} = state;
   const [asked, kept, begun] = [askedFor(), keptFrames(), performance.now()];
-  const first = firstSeed(count);
-  const seeds = Array.from({length: count}, (_, index) => first + index);
-  tellWaiting(seeds);
-  if (count > 1) awaitGallery(seeds);
+  const seed = firstSeed(count);
+  tell('Waiting for the server …');
+  if (count > 1) awaitGallery(count);
   try {
     const show = count === 1 ? (first, positions) => theatre.takeFrames(first, positions) : null;
-    const takes = await Promise.all(seeds.map(async (seed, index) => {
-      const take = await ask(leader, seed, kept, call.signal, show);
+    const answered = async (index, one) => {
+      const take = await ask(leader, one, kept, call.signal, show);
       if (!call.signal.aborted && count > 1) arriveInGallery(index);
       return take;
-    }));
+    };
+    // The other seeds follow the first, which only its answer names if the server chooses it.
+    const first = answered(0, seed);
+    const start = seed === '' && count > 1 ? (await first).seed : seed;
+    const others = Array.from({length: count - 1}, (_, i) => answered(i + 1, start + i + 1));
+    const takes = await Promise.all([first, ...others]);
     if (call.signal.aborted) return;
     state.call = null;
     const chosen = galleryOrder(takes, gallery.order)[0];
     Object.assign(state, {takes, chosen, asked});
-    settings.seed = takes[chosen].seed;
-    await finish((performance.now() - begun) / 1000, seeds);
+    if (count > 1) settings.seed = takes[chosen].seed;
+    await finish((performance.now() - begun) / 1000);
   } catch (error) {
     if (call.signal.aborted) return;
     call.abort();
@@ -98,13 +99,13 @@ async function react(count) {
   }
 }
 
-function describeSeeds(seeds, take) {
-  if (!take.samples) return 'one answer';
-  return seeds.length === 1 ? `seed ${seeds[0]}`
-                            : `seeds ${seeds[0]} to ${seeds[seeds.length - 1]}: choose one`;
+function describeSeeds(takes) {
+  if (!takes[0].samples) return 'one answer';
+  return takes.length === 1 ? `seed ${takes[0].seed}`
+                            : `seeds ${takes[0].seed} to ${takes[takes.length - 1].seed}: choose one`;
 }
 
-async function finish(seconds, seeds) {
+async function finish(seconds) {
   const {takes, chosen} = state;
   showFields();
   showAnswer();
@@ -115,7 +116,7 @@ async function finish(seconds, seeds) {
   const stays = kept > 0 ? ` Frames 0 to ${kept - 1} are as before.` : '';
   const missed = takes[chosen].pins.filter(({metres}) => metres >= 0.01).length;
   const pins = missed > 0 ? ` ${missed} of ${takes[chosen].pins.length} pins missed.` : '';
-  tell(`Answered in ${seconds.toFixed(2)} s, ${describeSeeds(seeds, takes[chosen])}.${stays}${pins}${far}`);
+  tell(`Answered in ${seconds.toFixed(2)} s, ${describeSeeds(takes)}.${stays}${pins}${far}`);
   if (takes.length > 1 && isNarrow()) {
     element('gallery').scrollIntoView({block: 'nearest'});
   }
@@ -142,8 +143,7 @@ function connectAsking() {
   element('show-eight').addEventListener('click', () => react(GALLERY_SIZE));
   element('another').addEventListener('click', () => {
     const count = state.takes.length > 1 ? GALLERY_SIZE : 1;
-    const {takes} = state;
-    settings.seed = takes.length > 0 ? Math.max(...seedsOf(takes)) + 1 : settings.seed + 1;
+    if (state.takes.length > 0) settings.seed = Math.max(...seedsOf(state.takes)) + 1;
     react(count);
   });
 }

@@ -57,10 +57,10 @@ function addGrade(tile, grade) {
 }
 
 // Shows tiles without pictures while the answers are on their way.
-function awaitGallery(seeds) {
+function awaitGallery(count) {
   gallery.thumbnails = [];
-  gallery.tiles = seeds.map((seed) => {
-    const tile = makeTile(`seed ${seed}`);
+  gallery.tiles = Array.from({length: count}, () => {
+    const tile = makeTile('…');
     tile.disabled = true;
     tile.classList.add('waiting');
     return tile;

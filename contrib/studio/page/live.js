@@ -27,9 +27,10 @@ class FrameStore {
 // from 0 again.
 class LiveSession {
   constructor(settings, on) {
-    this.settings = settings;  // {model, joints, frameRate, weights, delay, plan, seed}
+    this.settings = settings;  // {model, joints, frameRate, weights, delay, plan}
     this.on = on;
     this.attempts = 0;
+    this.seed = null;  // the server's choice, which a resumed or new session keeps
     this.restart();
     this.connect();
   }
@@ -82,7 +83,7 @@ class LiveSession {
     const start = {
       model: selectorOf(settings.model),
       leader: {joint_names: settings.joints, frame_rate_hz: settings.frameRate, unit: METRES, up_axis: Y_UP},
-      label_vector: messageOf(settings.weights), seed: settings.seed,
+      label_vector: messageOf(settings.weights), ...(this.seed !== null && {seed: this.seed}),
       delay_frames: settings.delay, plan_frames: settings.plan,
     };
     // Frames without an answer belong to the start: the server evaluates all of it, whereas it skips
@@ -143,6 +144,7 @@ class LiveSession {
     const {header, frames, notice} = message;
     if (header) {
       this.kept = Math.max(1, header.history_frames ?? 0);
+      this.seed = header.seed ?? 0;
       this.attempts = 0;
       this.on.state('open', '');
     } else if (frames) {

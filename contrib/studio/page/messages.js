@@ -44,7 +44,10 @@ const MESSAGES = {
     frame_count: [1, 'uint32'], unfamiliarity: [6, 'double'], grade: [7, 'MotionGrade'],
     constraint_metres: [8, 'float[]'],
   },
-  SynthesizeResponse: {chunk: [2, 'MotionChunk'], summary: [3, 'SynthesisSummary']},
+  SynthesisHeader: {seed: [10, 'uint64']},
+  SynthesizeResponse: {
+    header: [1, 'SynthesisHeader'], chunk: [2, 'MotionChunk'], summary: [3, 'SynthesisSummary'],
+  },
   LiveHistory: {
     first_frame: [1, 'uint32'], follower_frame_count: [2, 'uint32'],
     follower_positions: [3, 'float[]'],
@@ -63,8 +66,8 @@ const MESSAGES = {
     start: [1, 'LiveStart'], frames: [2, 'LeaderFrames'], label_change: [3, 'LabelChange'],
   },
   LiveHeader: {
-    model_name: [1, 'string'], model_version: [2, 'uint32'], first_frame: [14, 'uint32'],
-    history_frames: [15, 'uint32'],
+    model_name: [1, 'string'], model_version: [2, 'uint32'], seed: [9, 'uint64'],
+    first_frame: [14, 'uint32'], history_frames: [15, 'uint32'],
   },
   FollowerFrames: {
     first_frame: [1, 'uint32'], frame_count: [2, 'uint32'], positions: [3, 'float[]'],

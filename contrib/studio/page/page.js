@@ -93,8 +93,11 @@ function changed(what) {
 }
 
 function isStale() {
-  const isOther = state.model.samples && !seedsOf(state.takes).includes(settings.seed);
-  return state.takes.length > 0 && (state.asked !== askedFor() || isOther);
+  const take = state.takes[state.chosen];
+  if (!take) return false;
+  const isOther = settings.seed === '' ? JSON.parse(take.settings).seed !== ''
+                                       : !seedsOf(state.takes).includes(settings.seed);
+  return state.asked !== askedFor() || (state.model.samples && isOther);
 }
 
 function showButtons() {
@@ -118,8 +121,15 @@ function showButtons() {
   const isKept = settings.keep > 0 && state.takes[state.chosen]?.kept !== settings.keep;
   element('react').classList.toggle('primary', !answered || stale || isKept);
   element('grade').textContent = describeGrade(state.takes[state.chosen]?.grade);
+  showSeed();
   root.dataset.stale = stale;
   tellNext(answered, stale, isKept);
+}
+
+// Shows the seed that the server chose in the field that is left to it.
+function showSeed() {
+  const {seed} = isStale() ? {} : state.takes[state.chosen] ?? {};
+  document.querySelector('[name=seed]').placeholder = seed === undefined ? 'automatic' : `${seed} (automatic)`;
 }
 
 // Says what to do next.
@@ -213,7 +223,7 @@ function showWork() {
 
 function tellShown() {
   if (state.takes.length > 0 && root.dataset.stale === 'false') {
-    tell(state.model.samples ? `Seed ${settings.seed}.` : 'One answer.');
+    tell(state.model.samples ? `Seed ${state.takes[state.chosen].seed}.` : 'One answer.');
   }
 }
 
@@ -266,8 +276,8 @@ function connectSettings() {
   document.querySelector('aside').addEventListener('input', ({target}) => {
     if (!(target.name in settings)) return;
     if (target.type === 'number' && !target.checkValidity()) return;
-    settings[target.name] = typeof DEFAULTS[target.name] === 'number' ? Number(target.value)
-                                                                      : target.value;
+    const isNumber = typeof DEFAULTS[target.name] === 'number' || (target.name === 'seed' && target.value !== '');
+    settings[target.name] = isNumber ? Number(target.value) : target.value;
     if (target.name === 'model') attempt(chooseModel)();
     else changed(target.name.replaceAll('_', ' '));
   });

@@ -114,6 +114,7 @@ function floats(value, field) {
 const weight = within(-MAX_WEIGHT, MAX_WEIGHT);
 const frameNumber = within(0, MAX_SESSION_FRAMES, true);
 const seedNumber = within(0, Number.MAX_SAFE_INTEGER, true);
+const seedSetting = (value, field) => (value === '' ? '' : seedNumber(value, field));
 
 // The points of a curve, with ascending frames.
 function points(value, field) {
@@ -130,7 +131,7 @@ function points(value, field) {
 const SETTINGS_CHECK = record({
   ...Object.fromEntries(Object.entries(DEFAULTS).filter(([, value]) => typeof value === 'string')
       .map(([name]) => [name, name in CHOICES ? oneOf(...CHOICES[name]) : textOf(2000)])),
-  labels: tableOf(weight), curves: tableOf(points), seed: seedNumber, variety: within(0, 2),
+  labels: tableOf(weight), curves: tableOf(points), seed: seedSetting, variety: within(0, 2),
   candidates: within(1, MAX_CANDIDATES, true), keep: frameNumber,
   turn: textOf(20, /^$|^-?\d+(\.\d+)?$/, 'degrees as text, or ""'),
   pose: listOf(within(-100, 100), MAX_POSE), leader: textOf(500), file: textOf(20),

@@ -13,11 +13,11 @@ const settings = {
   leader: '', file: '',  // the name and the fingerprint of the leader's file
   // Reading the file.
   side: 'left', unit: '', metres_per_unit: '', up_axis: '', frame_rate: '', joint_map: '',
-  // The request. `labels` are the sliders' weights, `curves` those that change (curves.js), `start`
-  // is the place of the follower's root, `turn` its direction in degrees with the pose `pose`
-  // (start.js), `keep` the number of frames of the answer to keep (asking.js), and `pins` are in
-  // pins.js.
-  model: '', labels: {}, curves: {}, seed: 0, variety: 1, candidates: 1, start: '', turn: '',
+  // The request. `labels` are the sliders' weights, `curves` those that change (curves.js), `seed` is a
+  // number or '' for one that the server chooses by the leader, `start` is the place of the follower's
+  // root, `turn` its direction in degrees with the pose `pose` (start.js), `keep` the number of frames
+  // of the answer to keep (asking.js), and `pins` are in pins.js.
+  model: '', labels: {}, curves: {}, seed: '', variety: 1, candidates: 1, start: '', turn: '',
   pose: [], direction: '', clean_up: 'auto', keep: 0, pins: [],
   // Downloading.
   resample: '', rig_joint_map: '',
@@ -116,7 +116,8 @@ function takeSetting(name, text) {
   } else if (name === 'keep') {
     settings.keep = Math.floor(readNumber(text, 0, 1e6, 0));
   } else if (name === 'seed') {
-    settings.seed = Math.floor(readNumber(text, 0, Number.MAX_SAFE_INTEGER, 0));
+    const seed = readNumber(text, 0, Number.MAX_SAFE_INTEGER, '');
+    settings.seed = seed === '' ? '' : Math.floor(seed);
   } else if (name === 'variety') {
     settings.variety = readNumber(text, 0, 2, 1);
   } else if (name === 'candidates') {
@@ -165,7 +166,8 @@ function selectorOf(model) {
   return version ? {name, version: Number(version)} : {name};
 }
 
-// The request for an answer to the leader's motion. `kept`: null, or the first frames of an answer
+// The request for an answer to the leader's motion. `seed`: '' for one that the server chooses. `kept`:
+// null, or the first frames of an answer
 // to keep, {frames, positions}; the request is then about the leader from the last of them on.
 function requestOf(leader, seed, kept) {
   const values = leader.joint_names.length * 3;
@@ -176,7 +178,7 @@ function requestOf(leader, seed, kept) {
     leader: {joint_names: leader.joint_names, frame_rate_hz: leader.frame_rate_hz, unit: METRES,
              up_axis: Y_UP, frame_count: leader.frames - first,
              positions: leader.positions.subarray(first * values)},
-    seed, variety: settings.variety, candidates: settings.candidates,
+    ...(seed !== '' && {seed}), variety: settings.variety, candidates: settings.candidates,
   };
   if (classes.some((name) => curveOf(settings, name).length > 0)) {
     request.label_keyframes = labelKeyframes(settings, classes, first, leader.frames).map(

@@ -87,7 +87,7 @@ function connect() {
   };
   spar.session = new LiveSession({
     model: nameOf(model), joints: model.joint_names, frameRate: FRAME_RATE, weights: spar.weights,
-    delay: Number(element('delay').value), plan: PLAN_FRAMES, seed: 0,
+    delay: Number(element('delay').value), plan: PLAN_FRAMES,
     acceptsStart: model.accepts_follower_start,
   }, on);
 }

@@ -76,8 +76,12 @@ class StudioTest(unittest.TestCase):
     def shown(self, page, frames=91):
         return np.reshape(page.evaluate(FOLLOWER), (frames, 15, 3))
 
+    def default_seed(self, sample="hug"):
+        """The seed that the server chooses for a sample."""
+        with duet.Client(self.server.address) as client:
+            return client.synthesize(duet.read_motion(tools.sample(sample)), {"hug": 1}).seed
+
     def expected(self, labels=None, **settings):
-        settings.setdefault("seed", 0)  # as the page begins
         with duet.Client(self.server.address) as client:
             if labels is not None:
                 classes = client.get_model().model.interaction_classes

@@ -78,8 +78,9 @@ settings.program = duet
 finished = react()
 again = react()  # in place of the last one
 after_two = sorted(thing.name for thing in bpy.data.objects if thing.type == "ARMATURE")
+seed = settings.seed  # the server's choice
 assert bpy.ops.duet.keep() == {"FINISHED"}
-settings.seed = 4
+settings.own_seed, settings.seed = True, 4
 react()
 after_take = sorted(thing.name for thing in bpy.data.objects if thing.type == "ARMATURE")
 
@@ -99,7 +100,7 @@ scene.frame_set(FIRST_FRAME)
 own_torso = list(own.matrix_world @ own.pose.bones["torso"].head) if own else []
 scene.frame_set(20)
 settings.body = "MANNEQUIN"
-settings.seed = 0
+settings.own_seed = False
 react()
 
 recording = duet_blender.leader.Recording(scene, leader)
@@ -111,7 +112,7 @@ body = bpy.data.objects.get("Duet follower body")
 state = {
     "known": known, "asked": asked, "refused_without_leader": refused, "still": still,
     "missing": missing, "finished": finished, "failures": failures, "again": again,
-    "after_two": after_two, "after_take": after_take, "unmapped": unmapped, "own_rig": own_rig,
+    "after_two": after_two, "seed": seed, "after_take": after_take, "unmapped": unmapped, "own_rig": own_rig,
     "own_bones": own_bones, "leaders_bones": leaders_bones, "own_torso": own_torso,
     "joints": [joint.name for joint in settings.joints],
     "tails": [name for name, _, _, tail in recording.joints if tail],

@@ -62,6 +62,8 @@ def answered(answer, joint, frame):
 
 
 # ---- The gallery.
+assert bpy.ops.duet.react() == {"FINISHED"}
+state["own_seed"] = settings.seed  # the server's choice
 assert bpy.ops.duet.show_eight() == {"FINISHED"}
 state["seeds"] = [int(answer.seed) for answer in settings.answers]
 state["faults"] = [answer.faults for answer in settings.answers]
@@ -221,7 +223,7 @@ for name, size, prefix in (("Usual", 1, ""), ("Large", 1.15, "mixamorig:"), ("Sm
         continue
     assert bpy.ops.duet.follow() == {"FINISHED"}  # replaces its own constraints
     state["constraints"] = sum(len(bone.constraints) for bone in character.pose.bones)
-    settings.seed = 5
+    settings.own_seed, settings.seed = True, 5
     assert bpy.ops.duet.react() == {"FINISHED"}  # the armature follows the new partner
     state["followed"] = distances(character)
     state["steps"] = [[largest_step(follower(), joint), largest_step(character, JOINTS[joint])]
