@@ -24,6 +24,7 @@ Path = Union[str, "os.PathLike[str]"]
 LAYOUTS: Mapping[str, float] = {"humanml3d": 20.0, "humanml3d-263": 20.0, "intergen": 30.0,
                                 "intergen-262": 30.0, "inter-x": 30.0}
 """The layouts and their frame rates."""
+_WRITTEN = tuple(layout for layout in LAYOUTS if layout != "humanml3d-263")
 
 # Source: Loper et al. 2015 (SMPL), Pavlakos et al. 2019 (SMPL-X). A foot is its ball.
 JOINTS: Tuple[str, ...] = (
@@ -31,17 +32,12 @@ JOINTS: Tuple[str, ...] = (
     "right_ankle", "spine3", "left_foot", "right_foot", "neck", "left_collar", "right_collar", "head",
     "left_shoulder", "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist")
 PARENTS = (-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19)
-_PELVIS, _LEFT_HIP, _RIGHT_HIP, _LEFT_SHOULDER, _RIGHT_SHOULDER = 0, 1, 2, 16, 17
+_PELVIS, _LEFT_HIP, _RIGHT_HIP = 0, 1, 2
 _FEET = [7, 10, 8, 11]  # left ankle and ball, right ankle and ball
 _INTERHUMAN = 62 * 3 + 51 * 6
 _MAX_POSITION = 1e7
 
-# HumanML3D: chains of inverse kinematics, and the direction of the bone that ends at each joint at rest.
-_CHAINS = ((0, 2, 5, 8, 11), (0, 1, 4, 7, 10), (0, 3, 6, 9, 12, 15), (9, 14, 17, 19, 21), (9, 13, 16, 18, 20))
-_CHAIN_REST = np.tile([0.0, -1.0, 0.0], (22, 1))
-_CHAIN_REST[[1, 13]], _CHAIN_REST[[2, 14]] = (1, 0, 0), (-1, 0, 0)
-_CHAIN_REST[[3, 6, 9, 12]], _CHAIN_REST[[10, 11, 15]] = (0, 1, 0), (0, 0, 1)
-# InterGen: the same in a T pose that faces z.
+# InterGen: the direction of the bone that ends at each joint in a T pose that faces z.
 _T_REST = np.tile([0.0, 1.0, 0.0], (22, 1))
 _T_REST[[1, 2]], _T_REST[[13, 14]] = [(0.6, -0.8, 0), (-0.6, -0.8, 0)], [(0.6, 0.8, 0), (-0.6, 0.8, 0)]
 _T_REST[[16, 18, 20]], _T_REST[[17, 19, 21]] = (1, 0, 0), (-1, 0, 0)
@@ -119,27 +115,21 @@ def to_array(people: Sequence[Motion], layout: str) -> Positions:
 
     Args:
         people: one person or two, in metres or millimetres.
-        layout: one of :data:`LAYOUTS`.
+        layout: one of :data:`LAYOUTS` but ``"humanml3d-263"``: HumanML3D's own program makes these features of
+            the positions.
 
     Raises:
-        ValueError: joints are missing; there is less than one frame of features; or two people are given for
-            ``"humanml3d-263"``, which does not hold where they are.
+        ValueError: joints are missing, or there is less than one frame of features.
     """
-    rate = LAYOUTS[checked_choice("layout", layout, LAYOUTS)]
+    rate = LAYOUTS[checked_choice("layout", layout, _WRITTEN)]
     bodies = [to_body(person).resampled(rate).positions.astype(np.float64) for person in people]
-    if not 1 <= len(bodies) <= (1 if layout == "humanml3d-263" else 2):
-        raise ValueError(f"people: expected one{'' if layout == 'humanml3d-263' else ' or two'} for layout "
-                         f"{layout}, got {len(bodies)}")
-    if layout in ("humanml3d-263", "intergen-262") and min(map(len, bodies)) < 2:
-        raise ValueError(f"frames: expected at least 2 for layout {layout}, got fewer")
-    if layout == "humanml3d-263":
-        array = _humanml3d(bodies[0])
-    elif layout == "intergen-262":
-        array = np.stack([_intergen(body) for body in _at_intergen_start(bodies)])
-    else:
-        array = np.stack(bodies)
-    is_one = layout != "humanml3d-263" and len(bodies) == 1
-    result: Positions = (array[0] if is_one else array).astype(np.float32)
+    if not 1 <= len(bodies) <= 2:
+        raise ValueError(f"people: expected one or two, got {len(bodies)}")
+    if layout == "intergen-262":
+        if min(map(len, bodies)) < 2:
+            raise ValueError(f"frames: expected at least 2 for layout {layout}, got fewer")
+        bodies = [_intergen(body) for body in _at_intergen_start(bodies)]
+    result: Positions = (bodies[0] if len(bodies) == 1 else np.stack(bodies)).astype(np.float32)
     return result
 
 
@@ -237,51 +227,6 @@ def to_body(person: Motion) -> Motion:
         body[f"{side}_foot"] = find(toe) if toe in person.joint_names else ankle + 0.13 * flat + 0.06 * shin
         body[f"{side}_collar"] = 0.25 * (body["neck"] + body["spine3"]) + 0.5 * body[f"{side}_shoulder"]
     return Motion(np.stack([body[name] for name in JOINTS], axis=1), JOINTS, person.frame_rate_hz)
-
-
-def _humanml3d(body: Array) -> Array:
-    """HumanML3D's 263 numbers for each frame t but the last:
-
-    0 half of the turn about y from t to t + 1, radians; 1-2 x and z of the root's way to t + 1, in the heading
-    of t + 1; 3 the root's height; 4-66 joints relative to the root's x and z, in the heading of t; 67-192
-    rotations of joints 1 to 21, each as the first two columns of its matrix one after the other: along each
-    chain, the smallest rotation from a fixed direction to the bone, relative to the one before; 193-258 the ways
-    of all joints to t + 1; 259-262 whether ankles and balls of the feet stay.
-
-    The lowest joint is put on the floor, and the person at x = z = 0, facing z. The heading comes from the
-    shoulders minus the hips, filtered by a Gaussian of 20 frames.
-
-    Source: Guo et al. 2022, "Generating diverse and natural 3D human motions from text", and
-    motion_representation.ipynb of github.com/EricGuo5513/HumanML3D, written anew from its definition. The data
-    set first moves everybody onto the bones of one capture, which is not done here. In the one frame in which a
-    person turns past the direction opposite to z, the notebook writes the turn with the wrong sign; here it is
-    right.
-    """
-    first = body[0]
-    across = first[_RIGHT_HIP] - first[_LEFT_HIP] + first[_RIGHT_SHOULDER] - first[_LEFT_SHOULDER]
-    at = _placed(body, first[_PELVIS], across)
-    line = (at[:, _RIGHT_SHOULDER] - at[:, _LEFT_SHOULDER]) - (at[:, _RIGHT_HIP] - at[:, _LEFT_HIP])
-    ahead = np.pad(np.cross([0, 1, 0], _unit(line, (-1, 0, 0))), ((80, 80), (0, 0)), mode="edge")
-    weights = np.exp(-0.5 * (np.arange(-80, 81) / 20.0) ** 2)
-    smooth = np.stack([np.convolve(axis, weights / weights.sum(), "valid") for axis in ahead.T], axis=1)
-    angles = np.unwrap(_heading(smooth))
-    turns = _about_y(angles)
-    local = _rotated(turns, at - at[:, :1] * [1, 0, 1])[:-1]
-    way = _rotated(turns[1:], (at[1:] - at[:-1])[:, :1])[:, 0]
-    rotations = np.zeros((len(at), 22, 6))
-    for chain in _CHAINS:
-        before = turns
-        for parent, joint in zip(chain, chain[1:]):
-            rest = _CHAIN_REST[joint]
-            bone = _unit(at[:, joint] - at[:, parent], rest)
-            rotation = _smallest_rotation(rest, bone, (0, 1, 0) if rest[2] else (0, 0, 1))
-            rotations[:, joint] = _columns(np.swapaxes(before, 1, 2) @ rotation)
-            before = rotation
-    count = len(at) - 1
-    return np.concatenate([
-        np.diff(angles)[:, None] / 2, way[:, [0, 2]], at[:-1, 0, 1:2], local[:, 1:].reshape(count, -1),
-        rotations[:-1, 1:].reshape(count, -1), _rotated(turns[:-1], at[1:] - at[:-1]).reshape(count, -1),
-        (_squared_ways(at) < 0.002)], axis=1)
 
 
 def _from_humanml3d(features: Array) -> Array:
@@ -387,16 +332,6 @@ def _unit(v: Array, otherwise: npt.ArrayLike) -> Array:
     return np.asarray(np.where(length > 1e-9, v / np.maximum(length, 1e-9), otherwise))
 
 
-def _smallest_rotation(rest: Array, bone: Array, beside: Tuple[int, int, int]) -> Array:
-    """``[frames, 3, 3]``: the smallest rotation from a unit vector to others (Rodrigues), about `beside` if they
-    are opposite."""
-    cosine = bone @ rest
-    half_turn = 2 * np.outer(beside, beside) - np.eye(3)
-    cross = _skew(np.cross(rest, bone))
-    scale = 1 / np.maximum(1 + cosine, 1e-12)[:, None, None]
-    return np.where((1 + cosine < 1e-12)[:, None, None], half_turn, np.eye(3) + cross + cross @ cross * scale)
-
-
 def _nearest_rotation(matrices: Array) -> Array:
     """The rotations R that maximise trace(R^T matrix) (Kabsch)."""
     u, _, vt = np.linalg.svd(matrices)
@@ -418,11 +353,6 @@ def _skew(v: Array) -> Array:
     zero = np.zeros_like(x)
     rows: Array = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1)
     return rows.reshape(x.shape + (3, 3))
-
-
-def _columns(rotations: Array) -> Array:
-    """``[frames, 6]``: the first two columns, one after the other (Zhou et al. 2019)."""
-    return np.asarray(np.swapaxes(rotations[..., :2], -1, -2)).reshape(len(rotations), 6)
 
 
 def _along(path: Sequence[Array], share: float) -> Array:
