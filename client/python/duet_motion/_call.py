@@ -9,7 +9,6 @@ from typing import Callable, List, Optional, Tuple
 
 import grpc
 
-from duet_motion._fields import with_joint_names
 from duet_motion._reply import ReplyAssembler
 from duet_motion.errors import DuetError, make_error
 from duet_motion.motion import checked_number
@@ -126,7 +125,6 @@ class SynthesisCall:
         check_kind(request, SynthesisRequest)
         self.attempts = Attempts(settings, request.timeout, request.request_id)
         self._wire = to_proto(request)
-        self._leader = request.leader
         self._vertical = request.vertical
         self._reply = ReplyAssembler(request.leader, bool(request.rotations),
                                      len(request.constraints))
@@ -160,7 +158,7 @@ class SynthesisCall:
             return None
         if self._resumed_after and ended.code is grpc.StatusCode.NOT_FOUND:
             raise self._model_is_gone(ended)
-        return self.attempts.wait_after(with_joint_names(ended, self._leader), answered)
+        return self.attempts.wait_after(ended, answered)
 
     def no_turn(self, calls: int) -> DuetError:
         """The error of a call whose timeout expires before its client may start it."""

@@ -9,11 +9,10 @@ import grpc
 import numpy as np
 
 from duet_motion._call import Attempts, CallSettings
-from duet_motion._fields import with_joint_names
 from duet_motion._labels import LabelTrack
 from duet_motion._live_reply import LiveReply
-from duet_motion._live_rotations import LiveRotations
 from duet_motion._reply import malformed
+from duet_motion._rotations import LiveRotations
 from duet_motion._wire import CLEAN_UP, UNITS, UP_AXES
 from duet_motion.errors import DuetError, make_error
 from duet_motion.live import LiveHeader, LiveNotice, LivePart, LiveRequest, LiveSummary
@@ -183,7 +182,7 @@ class LiveCall:
             # The interruption begins now; the first attempt to resume follows at once.
             self.attempts = Attempts(self._settings, request_id=self.request.request_id)
             return 0.0
-        return self.attempts.wait_after(with_joint_names(ended, self.motion), answered)
+        return self.attempts.wait_after(ended, answered)
 
     def _resumed_from(self) -> int:
         """The follower's first frame in a new stream. Frames that were final only because the

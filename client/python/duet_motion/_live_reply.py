@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Optional
 
-import grpc
 import numpy as np
 
-from duet_motion._reply import check_format, is_broken_connection, malformed
-from duet_motion.errors import DuetError, make_error
+from duet_motion._reply import check_format, end_of_stream, malformed
+from duet_motion.errors import DuetError
 from duet_motion.motion import Motion, Positions
 from duet_motion.v1 import live_pb2
 
@@ -83,15 +82,5 @@ class LiveReply:
 
     def end(self, error: Optional[DuetError]) -> Optional[DuetError]:
         """Handles the end of the stream; returns None if the reply is complete, else its error."""
-        if error is not None and not is_broken_connection(error):
-            return error
-        if self.summary is not None:
-            return None
-        if error is not None and self.header is None:
-            return error
-        return make_error(
-            grpc.StatusCode.UNAVAILABLE,
-            f"the session broke off before frame {self.next_frame}"
-            f"{f': {error.message}' if error else ' without a summary'}",
-            violations=error.violations if error else (), reason=error.reason if error else "",
-            retry_delay=error.retry_delay if error else None)
+        return end_of_stream(error, self.summary is not None, self.header is not None,
+                             f"the session broke off before frame {self.next_frame}")

@@ -49,6 +49,22 @@ def check_format(header: Union[synthesis_pb2.SynthesisHeader, live_pb2.LiveHeade
                         f"{leader.up_axis}, got {header.unit} and {header.up_axis}")
 
 
+def end_of_stream(error: Optional[DuetError], is_complete: bool, has_header: bool,
+                  broke_off: str) -> Optional[DuetError]:
+    """The error of a stream that ended with ``error`` or without one; None if the reply was complete,
+    even if the stream broke after it."""
+    if error is not None and not is_broken_connection(error):
+        return error
+    if is_complete:
+        return None
+    if error is None:
+        return make_error(grpc.StatusCode.UNAVAILABLE, broke_off)
+    if not has_header:
+        return error
+    return make_error(grpc.StatusCode.UNAVAILABLE, f"{broke_off}: {error.message}",
+                      violations=error.violations, reason=error.reason, retry_delay=error.retry_delay)
+
+
 class ReplyAssembler:
     """The reply of one call, over all its streams."""
 
@@ -185,18 +201,9 @@ class ReplyAssembler:
 
     def end_stream(self, error: Optional[DuetError]) -> Optional[DuetError]:
         """Handles the end of a stream; returns None if the reply is complete, else its error."""
-        if error is not None and not is_broken_connection(error):
-            return error
-        if self._summary is not None:
-            return None  # the reply was complete before the stream broke
-        if error is not None and self.header is None:
-            return error
-        message = (f"the reply ended without a summary, after {self.received} of "
-                   f"{self._leader.frame_count} frames{f': {error.message}' if error else ''}")
-        return make_error(grpc.StatusCode.UNAVAILABLE, message,
-                          violations=error.violations if error else (),
-                          reason=error.reason if error else "",
-                          retry_delay=error.retry_delay if error else None)
+        return end_of_stream(error, self._summary is not None, self.header is not None,
+                             f"the reply ended without a summary, after {self.received} of "
+                             f"{self._leader.frame_count} frames")
 
     def result(self, attempts: int, first_chunk: float, total: float) -> SynthesisResult:
         """The complete reply. Requires that end_stream returned None."""

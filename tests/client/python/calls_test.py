@@ -125,21 +125,6 @@ class Calls:
                     self.run_calls(address, lambda client, get, _: get(call(client)), wait=0.05,
                                    timeout=support.LONGEST_CALL)
 
-    def test_violations_name_frame_and_joint(self):
-        bad = support.bad_request(("leader.positions[14]", "is inf, expected a finite number"),
-                                  ("follower_start.pose.positions[4]", "is too far"))
-        refusal = Failure(grpc.StatusCode.INVALID_ARGUMENT,
-                          "leader.positions[14]: is inf, expected a finite number", bad)
-        with self.assertRaises(duet.InvalidRequestError) as caught:
-            self.synthesize([refusal])
-        self.assertEqual(
-            [(violation.field, violation.description) for violation in caught.exception.violations],
-            [("leader.positions[1, 1, 2]",
-              "frame 1, joint 'left', z: is inf, expected a finite number"),
-             ("follower_start[1, 1]", "frame 0, joint 'left', y: is too far")])
-        self.assertIn("leader.positions[1, 1, 2] (frame 1, joint 'left', z): is inf",
-                      str(caught.exception))
-
     def test_attempts_are_counted_and_limited(self):
         away = [Failure(UNAVAILABLE, "away")]
         with self.assertRaisesRegex(duet.UnavailableError, r"away \(after 4 attempts\)"):
