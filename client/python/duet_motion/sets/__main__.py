@@ -38,16 +38,9 @@ def _pack(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _captures(arguments: argparse.Namespace) -> int:
-    count = sets.captures(arguments.set, arguments.out, layout=arguments.layout)
-    print(f"{arguments.out}: {count} items")
-    return 0
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python3 -m duet_motion.sets", epilog=_EPILOG,
-                                     description="Verifies, splits, packs and converts data sets of "
-                                                 "duet batch.")
+                                     description="Verifies, splits and packs data sets of duet batch.")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     def add(name: str, run: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
@@ -66,9 +59,6 @@ def _parser() -> argparse.ArgumentParser:
                          help="arrays for numpy.load, or WebDataset's tar files (default: npz)")
     command.add_argument("--shard-bytes", type=int, default=256 << 20, metavar="BYTES",
                          help="maximum bytes of motion in a shard (default: 256 MiB)")
-    command = add("captures", _captures, "Write the items as captures, for loaders of SBU or K3HI")
-    command.add_argument("out", help="the new folder")
-    command.add_argument("--layout", choices=("sbu", "k3hi"), default="sbu")
     return parser
 
 

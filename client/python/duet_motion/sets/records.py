@@ -73,25 +73,3 @@ def contents(folder: pathlib.Path, record: Record, shards: Shards) -> Iterator[T
             missing = isinstance(error, (FileNotFoundError, KeyError))
             raise DataSetError(f"{place}: {'no such file' if missing else error}") from error
         yield path, checked(data, file, str(place))
-
-
-class Makers:
-    """How the answers of each model were made, which is the same for all of them."""
-
-    _FIELDS = ("cleaned_up", "engine", "server_version")
-
-    def __init__(self) -> None:
-        self._first: Dict[str, Record] = {}
-
-    def difference(self, record: Record) -> str:
-        """How an answer differs from its model's first; empty if it does not."""
-        if "cleaned_up" not in record:
-            return ""
-        first = self._first.setdefault(record["model"], record)
-        differing = [f"{field}: expected {json.dumps(first[field])}, got {json.dumps(record[field])}"
-                     for field in self._FIELDS
-                     if field in first and field in record and first[field] != record[field]]
-        if not differing:
-            return ""
-        return (f"{record['name']}: model {record['model']}: an answer was made in another way than "
-                f"the set's first one: {'; '.join(differing)}")
