@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "client/batch/flow/call_gate.h"
-#include "client/batch/loaded_leader.h"
+#include "client/batch/leaders.h"
 #include "client/batch/plan.h"
 #include "client/batch/record.h"
 #include "client/request.h"
@@ -46,6 +47,25 @@ Quality Measure(const motion::ClipPair& pair, const motion::Skeleton& skeleton,
 
 // The limits that an answer exceeds, one text for each; empty if it passes.
 std::vector<std::string> WhyRejected(const v1::QualityFilter& filter, const Quality& quality);
+
+// A file of a pair.
+struct EncodedFile {
+  std::string ending;  // ".npy", ".leader.bvh"
+  std::string content;
+};
+
+// What follows an item's name in the names of its files of a format.
+std::vector<std::string> EndingsOf(v1::Format format);
+
+// The pair at the frame rate of the recipe, if it states one. Both people have the same number of
+// frames before and after.
+motion::ClipPair AtOutputRate(motion::ClipPair pair, const v1::Output& output);
+
+// The files of a pair: two for BVH, one for any other format. INVALID_ARGUMENT for a pair that the
+// format cannot hold.
+absl::StatusOr<std::vector<EncodedFile>> Encode(const v1::Output& output,
+                                                const motion::ClipPair& pair,
+                                                const motion::Skeleton& skeleton);
 
 }  // namespace duet::client::batch
 

@@ -22,16 +22,6 @@ namespace fs = std::filesystem;
 constexpr mode_t kFileMode = 0644;
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
-absl::Status WriteAll(int descriptor, absl::string_view content, const fs::path& path) {
-  while (!content.empty()) {
-    const ssize_t written = write(descriptor, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return CannotWrite(path, errno);
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return absl::OkStatus();
-}
-
 // Flushes the names of new folders, including parents, to disk.
 absl::Status MakeFolders(const fs::path& folder) {
   std::vector<fs::path> missing;
@@ -63,6 +53,16 @@ absl::Status CannotWrite(const fs::path& path, int error) {
       absl::StrCat("cannot write ", path.string(), ": ", std::generic_category().message(error));
   return base::IsLasting(error) ? absl::FailedPreconditionError(message)
                                 : absl::AbortedError(message);
+}
+
+absl::Status WriteAll(int descriptor, absl::string_view content, const fs::path& path) {
+  while (!content.empty()) {
+    const ssize_t written = write(descriptor, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return CannotWrite(path, errno);
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return absl::OkStatus();
 }
 
 absl::Status RenameInto(const std::string& from, const std::string& to) {

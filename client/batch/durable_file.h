@@ -78,6 +78,9 @@ class DurableFile {
   bool finished_ = false;
 };
 
+// Writes all of `content` to an open file; errors name `path`.
+absl::Status WriteAll(int descriptor, absl::string_view content, const std::filesystem::path& path);
+
 // "cannot write <path>: <what errno means>". FAILED_PRECONDITION if no retry changes it: a file
 // where a folder must be or the reverse, links that lead back to themselves, a disk that
 // is read-only; otherwise ABORTED.

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/batch/answer.h"
 #include "client/batch/durable_file.h"
-#include "client/batch/encode.h"
 #include "client/batch/record.h"
 #include "model/motion/coordinates.h"
 
@@ -86,26 +86,16 @@ ordered_json FilesJson(v1::Format format) {
   return files;
 }
 
-// A file with the records of one state.
-class RecordFile {
- public:
-  RecordFile(const JobFolder& folder, const std::string& name)
-      : file_(folder.temporary() / name), path_(folder.out() / name) {}
-  absl::Status Open() { return file_.Open(); }
-  absl::Status Add(const std::string& record) { return file_.Append(record + "\n"); }
-  absl::Status Finish() { return file_.Finish(path_); }
-
- private:
-  DurableFile file_;
-  const std::filesystem::path path_;
-};
+constexpr char kDoneFile[] = "index.jsonl", kRejectedFile[] = "rejected.jsonl",
+               kFailedFile[] = "failed.jsonl";
 
 class IndexWriter {
  public:
   explicit IndexWriter(const JobFolder& folder)
-      : done_(folder, "index.jsonl"),
-        rejected_(folder, "rejected.jsonl"),
-        failed_(folder, "failed.jsonl") {}
+      : folder_(folder),
+        done_(folder.temporary() / kDoneFile),
+        rejected_(folder.temporary() / kRejectedFile),
+        failed_(folder.temporary() / kFailedFile) {}
 
   absl::Status Open() {
     absl::Status status = done_.Open();
@@ -119,21 +109,21 @@ class IndexWriter {
     if (!record.ok()) return record.status();
     if (record->state() == kDone) {
       CountDone(*record);
-      return done_.Add(text);
+      return done_.Append(text + "\n");
     }
     if (record->state() == kRejected) {
       ++counts_.rejected;
-      return rejected_.Add(text);
+      return rejected_.Append(text + "\n");
     }
     if (counts_.failed++ == 0) counts_.first_failure = record->error().message();
     failed_leaders_.insert(record->leader());
-    return failed_.Add(text);
+    return failed_.Append(text + "\n");
   }
 
   absl::StatusOr<SetCounts> Finish() {
-    absl::Status status = rejected_.Finish();
-    status.Update(failed_.Finish());
-    status.Update(done_.Finish());
+    absl::Status status = rejected_.Finish(folder_.out() / kRejectedFile);
+    status.Update(failed_.Finish(folder_.out() / kFailedFile));
+    status.Update(done_.Finish(folder_.out() / kDoneFile));
     if (!status.ok()) return status;
     counts_.failed_leaders = static_cast<int64_t>(failed_leaders_.size());
     return std::move(counts_);
@@ -149,7 +139,8 @@ class IndexWriter {
     }
   }
 
-  RecordFile done_, rejected_, failed_;
+  const JobFolder& folder_;
+  DurableFile done_, rejected_, failed_;
   std::set<std::string> failed_leaders_;
   SetCounts counts_;
 };

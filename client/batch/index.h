@@ -9,8 +9,8 @@
 #include "absl/status/statusor.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
-#include "client/batch/origins.h"
 #include "client/batch/recipe.h"
+#include "client/batch/record.h"
 #include "client/result.h"
 #include "model/motion/skeleton.h"
 

@@ -1,6 +1,7 @@
 #ifndef DUET_CLIENT_BATCH_JOB_FOLDER_H_
 #define DUET_CLIENT_BATCH_JOB_FOLDER_H_
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -43,9 +44,9 @@ class JobFolder {
   explicit JobFolder(std::filesystem::path out) : out_(std::move(out)) {}
 
   // Creates and locks the folder, removes temporary files of runs that were killed, and reads the
-  // identity of the job into `begun`, with no models if there is no job. Removes a job of another
-  // recipe that has no answers yet. ABORTED if the folder is locked or cannot be written;
-  // FAILED_PRECONDITION, with the differences, if that is not the `wanted` identity.
+  // identity of the job into `begun`, with no models if there is no job. ABORTED if the folder is
+  // locked or cannot be written; FAILED_PRECONDITION, with the differences, if that is not the
+  // `wanted` identity.
   absl::Status Open(const JobIdentity& wanted, JobIdentity* begun);
   // Stores the identity of a new job.
   absl::Status Begin(const JobIdentity& identity) const;
@@ -58,8 +59,6 @@ class JobFolder {
   std::filesystem::path state() const { return out_ / ".duet-batch"; }
   // Reads the identity of the job and compares it with the wanted one.
   absl::Status Compare(const JobIdentity& wanted, JobIdentity* begun) const;
-  bool HasAnswers() const;
-  absl::Status Discard() const;
 
   std::filesystem::path out_;
   FolderLock lock_;
@@ -71,6 +70,23 @@ absl::StatusOr<JobIdentity> ReadJobIdentity(const std::filesystem::path& out);
 
 // The folder of a shard's data set: `out` itself unless there are several shards.
 std::filesystem::path ShardFolder(const std::filesystem::path& out, const Shard& shard);
+
+struct Gathered {
+  int shards = 0;
+  int count = 0;  // of the job
+  int64_t items = 0;
+};
+
+// Moves what the shards of a job made, in the folders <out>/shard-INDEX-of-COUNT, into the set of
+// `folder`, and removes their folders. A run without shards calls it before its survey, which
+// compares the leaders and the makers of all items. `folder` is open for `wanted`; `begun` is the
+// identity that it was begun with, and becomes that of the shards for a new set. It can be repeated
+// after an interruption, and shards may be incomplete: the run makes what is missing.
+//
+// Errors: ABORTED if a shard is in use or a folder cannot be written; FAILED_PRECONDITION if a
+// shard has another recipe or other models; DATA_LOSS for a damaged journal.
+absl::StatusOr<Gathered> GatherShards(const JobIdentity& wanted, const JobFolder& folder,
+                                      JobIdentity* begun);
 
 }  // namespace duet::client::batch
 

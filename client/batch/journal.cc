@@ -17,7 +17,6 @@ namespace {
 
 constexpr size_t kDigestDigits = 8;
 constexpr mode_t kFileMode = 0644;
-constexpr size_t kReadBlock = size_t{1} << 12;
 
 std::string Digest(absl::string_view text) {
   return base::Sha256Hex({text.data(), text.size()}).substr(0, kDigestDigits);
@@ -44,36 +43,24 @@ bool ParseLine(absl::string_view line, ParsedLine* parsed) {
 }  // namespace
 
 absl::StatusOr<JournalReader> JournalReader::Open(const std::filesystem::path& path) {
-  JournalReader reader;
-  reader.path_ = path;
-  reader.descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (reader.descriptor_ < 0 && errno == ENOENT) return reader;
-  if (reader.descriptor_ < 0) return absl::ErrnoToStatus(errno, path.string());
-  absl::Status status = reader.Load();
+  JournalReader reader(path);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file && errno == ENOENT) return reader;
+  if (!file) return absl::ErrnoToStatus(errno, path.string());
+  absl::Status status = reader.Load(&file);
   if (!status.ok()) return status;
   return reader;
 }
 
-JournalReader::JournalReader(JournalReader&& other) noexcept
-    : path_(std::move(other.path_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      offsets_(std::move(other.offsets_)),
-      count_(other.count_),
-      size_(other.size_) {}
-
-JournalReader::~JournalReader() {
-  if (descriptor_ >= 0) close(descriptor_);
-}
-
-absl::Status JournalReader::Load() {
-  std::ifstream file(path_, std::ios::binary);
+absl::Status JournalReader::Load(std::istream* file) {
   uint64_t position = 0;
-  for (std::string line; std::getline(file, line);) {
+  for (std::string line; std::getline(*file, line);) {
     const uint64_t offset = position;
     position += line.size() + 1;
     ParsedLine parsed;
     // A line that reaches the end of the file has no newline.
-    if (file.eof() || !ParseLine(line, &parsed)) continue;
+    if (file->eof() || !ParseLine(line, &parsed)) continue;
     if (parsed.item >= kMaxItems) {
       return absl::DataLossError(absl::StrCat(path_.string(), ": byte ", offset,
                                               ": item: expected a number below ", kMaxItems,
@@ -85,7 +72,7 @@ absl::Status JournalReader::Load() {
     known = offset + 1;
     size_ = position;
   }
-  if (file.bad()) return absl::DataLossError(absl::StrCat(path_.string(), ": cannot be read"));
+  if (file->bad()) return absl::DataLossError(absl::StrCat(path_.string(), ": cannot be read"));
   return absl::OkStatus();
 }
 
@@ -93,31 +80,16 @@ bool JournalReader::Has(int64_t item) const {
   return item < end() && offsets_[static_cast<size_t>(item)] != 0;
 }
 
-absl::StatusOr<std::string> JournalReader::LineAt(uint64_t offset) const {
-  std::string line;
-  while (true) {
-    const size_t before = line.size();
-    line.resize(before + kReadBlock);
-    const ssize_t got =
-        pread(descriptor_, line.data() + before, kReadBlock, static_cast<off_t>(offset + before));
-    if (got < 0 && errno == EINTR) {
-      line.resize(before);
-      continue;
-    }
-    if (got <= 0) return absl::DataLossError(absl::StrCat(path_.string(), ": changed while read"));
-    line.resize(before + static_cast<size_t>(got));
-    const size_t end = line.find('\n', before);
-    if (end == std::string::npos) continue;
-    line.resize(end);
-    return line;
-  }
+absl::StatusOr<JournalEntry> JournalReader::Read(int64_t item) const {
+  std::ifstream file(path_, std::ios::binary);
+  return ReadFrom(&file, item);
 }
 
-absl::StatusOr<JournalEntry> JournalReader::Read(int64_t item) const {
-  const absl::StatusOr<std::string> line = LineAt(offsets_[static_cast<size_t>(item)] - 1);
-  if (!line.ok()) return line.status();
+absl::StatusOr<JournalEntry> JournalReader::ReadFrom(std::istream* file, int64_t item) const {
+  file->seekg(static_cast<std::streamoff>(offsets_[static_cast<size_t>(item)] - 1));
+  std::string line;
   ParsedLine parsed;
-  if (ParseLine(*line, &parsed) && parsed.item == item) {
+  if (std::getline(*file, line) && ParseLine(line, &parsed) && parsed.item == item) {
     return JournalEntry{item, std::string(parsed.record)};
   }
   return absl::DataLossError(absl::StrCat(path_.string(), ": changed while read"));
@@ -125,9 +97,10 @@ absl::StatusOr<JournalEntry> JournalReader::Read(int64_t item) const {
 
 absl::Status JournalReader::ForEach(
     const std::function<absl::Status(const JournalEntry&)>& visit) const {
+  std::ifstream file(path_, std::ios::binary);
   for (int64_t item = 0; item < end(); ++item) {
     if (!Has(item)) continue;
-    const absl::StatusOr<JournalEntry> entry = Read(item);
+    const absl::StatusOr<JournalEntry> entry = ReadFrom(&file, item);
     if (!entry.ok()) return entry.status();
     absl::Status status = visit(*entry);
     if (!status.ok()) return status;
@@ -157,16 +130,7 @@ void JournalWriter::Add(int64_t item, absl::string_view record) {
 }
 
 absl::Status JournalWriter::Commit() {
-  absl::string_view rest = pending_;
-  while (broken_.ok() && !rest.empty()) {
-    const ssize_t written = write(descriptor_, rest.data(), rest.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      broken_ = CannotWrite(path_, errno);
-    } else {
-      rest.remove_prefix(static_cast<size_t>(written));
-    }
-  }
+  if (broken_.ok()) broken_ = WriteAll(descriptor_, pending_, path_);
   pending_.clear();
   if (broken_.ok() && fdatasync(descriptor_) != 0) broken_ = CannotWrite(path_, errno);
   return broken_;

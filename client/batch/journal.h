@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <istream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -37,9 +39,6 @@ class JournalReader {
   // A missing journal is empty. Damaged lines are skipped: their items have an earlier record, or
   // none. DATA_LOSS for an item number that no plan can have.
   static absl::StatusOr<JournalReader> Open(const std::filesystem::path& path);
-  JournalReader(JournalReader&& other) noexcept;
-  JournalReader& operator=(JournalReader&&) = delete;
-  ~JournalReader();
 
   bool Has(int64_t item) const;
   // The last record of an item. Requires Has(item).
@@ -54,12 +53,11 @@ class JournalReader {
   uint64_t size() const { return size_; }
 
  private:
-  JournalReader() = default;
-  absl::Status Load();
-  absl::StatusOr<std::string> LineAt(uint64_t offset) const;
+  explicit JournalReader(std::filesystem::path path) : path_(std::move(path)) {}
+  absl::Status Load(std::istream* file);
+  absl::StatusOr<JournalEntry> ReadFrom(std::istream* file, int64_t item) const;
 
   std::filesystem::path path_;
-  int descriptor_ = -1;
   std::vector<uint64_t> offsets_;  // of items' lines, plus 1; 0: none
   int64_t count_ = 0;
   uint64_t size_ = 0;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <istream>
 #include <map>
 #include <set>
 #include <system_error>
@@ -12,13 +11,16 @@
 #include "absl/hash/hash.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "client/batch/text_values.h"
 #include "model/base/missing_file.h"
+#include "model/base/sha256.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/reading_setting.h"
+#include "model/motion/stated_unit.h"
+#include "nlohmann/json.hpp"
 
 namespace duet::client::batch {
 namespace {
@@ -27,36 +29,12 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMaxLineBytes = size_t{1} << 20;
 
-// Bytes of the UTF-8 character at `at`; 0 if the bytes there are not valid UTF-8.
-std::size_t CharacterBytes(const std::string& text, std::size_t at) {
-  const auto byte = [&text](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-  };
-  const auto follows = [&byte](std::size_t i) { return (byte(i) & 0xc0u) == 0x80u; };
-  const unsigned first = byte(at), second = byte(at + 1);
-  if (first < 0x80) return 1;
-  if (first >= 0xc2 && first <= 0xdf) return follows(at + 1) ? 2 : 0;
-  if (first >= 0xe0 && first <= 0xef) {
-    // Rejects overlong encodings and UTF-16 surrogates.
-    const bool allowed = (first != 0xe0 || second >= 0xa0) && (first != 0xed || second < 0xa0);
-    return allowed && follows(at + 1) && follows(at + 2) ? 3 : 0;
-  }
-  if (first >= 0xf0 && first <= 0xf4) {
-    const bool allowed = (first != 0xf0 || second >= 0x90) && (first != 0xf4 || second < 0x90);
-    return allowed && follows(at + 1) && follows(at + 2) && follows(at + 3) ? 4 : 0;
-  }
-  return 0;
-}
-
-// `text` with each byte that is not UTF-8 replaced by '_', so that JSON can hold it.
+// `text` with a '_' for bytes that are not UTF-8, so that JSON can hold it.
 std::string AsUtf8(const std::string& text) {
-  std::string valid;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t bytes = CharacterBytes(text, at);
-    valid += bytes == 0 ? "_" : text.substr(at, bytes);
-    at += bytes == 0 ? 1 : bytes;
-  }
-  return valid;
+  const std::string json =
+      nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return absl::StrReplaceAll(nlohmann::json::parse(json).get<std::string>(),
+                             {{"\xEF\xBF\xBD", "_"}});
 }
 
 // A list of files that is complete before the first one is returned.
@@ -142,21 +120,6 @@ absl::Status AddInput(const fs::path& path, const std::optional<formats::Format>
 // The columns of a line by name, without empty ones.
 using Columns = std::map<std::string, std::string>;
 
-// Collects all errors of a line.
-class LineProblems {
- public:
-  void Add(absl::string_view column, absl::string_view problem) {
-    problems_.push_back(absl::StrCat(column, ": ", problem));
-  }
-  absl::Status ToStatus() const {
-    if (problems_.empty()) return absl::OkStatus();
-    return absl::InvalidArgumentError(absl::StrJoin(problems_, "; "));
-  }
-
- private:
-  std::vector<std::string> problems_;
-};
-
 // Removes a column and returns its value; empty if it is missing.
 std::string Take(const char* name, Columns* columns) {
   const auto found = columns->find(name);
@@ -166,22 +129,27 @@ std::string Take(const char* name, Columns* columns) {
   return value;
 }
 
+// Does nothing for an empty column.
 template <typename Value>
-void TakeParsed(const char* name, absl::StatusOr<Value> (*parse)(absl::string_view),
-                Columns* columns, std::optional<Value>* value, LineProblems* problems) {
+absl::Status TakeParsed(const char* name, absl::StatusOr<Value> (*parse)(absl::string_view),
+                        Columns* columns, std::optional<Value>* value) {
   const std::string text = Take(name, columns);
-  if (text.empty()) return;
+  if (text.empty()) return absl::OkStatus();
   absl::StatusOr<Value> parsed = parse(text);
-  if (!parsed.ok()) return problems->Add(name, parsed.status().message());
+  if (!parsed.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(name, ": ", parsed.status().message()));
+  }
   *value = *std::move(parsed);
+  return absl::OkStatus();
 }
 
 // Fills all fields except the key.
 absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns columns) {
   LeaderEntry entry;
-  LineProblems problems;
   entry.given = Take("leader", &columns);
-  if (entry.given.empty()) problems.Add("leader", "expected a motion file, got nothing");
+  if (entry.given.empty()) {
+    return absl::InvalidArgumentError("leader: expected a motion file, got nothing");
+  }
   const std::filesystem::path path(entry.given);
   entry.file = path.is_absolute() ? path : folder / path;
   entry.group = Take("group", &columns);
@@ -191,11 +159,11 @@ absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns
     entry.follower_start = (folder / entry.follower_start).string();
   }
   std::optional<Labels> labels;
-  TakeParsed("labels", ParseLabels, &columns, &labels, &problems);
-  TakeParsed("leader_side", ParseSide, &columns, &entry.side, &problems);
-  TakeParsed("partner_direction", ParseDirection, &columns, &entry.partner_direction, &problems);
-  TakeParsed("seed", ParseSeed, &columns, &entry.seed, &problems);
-  absl::Status status = problems.ToStatus();
+  absl::Status status = TakeParsed("labels", ParseLabels, &columns, &labels);
+  status.Update(TakeParsed("leader_side", ParseSide, &columns, &entry.side));
+  status.Update(
+      TakeParsed("partner_direction", ParseDirection, &columns, &entry.partner_direction));
+  status.Update(TakeParsed("seed", ParseSeed, &columns, &entry.seed));
   if (!status.ok()) return status;
   entry.labels = std::move(labels).value_or(Labels());
   entry.extra.assign(columns.begin(), columns.end());
@@ -204,8 +172,8 @@ absl::StatusOr<LeaderEntry> ToEntry(const std::filesystem::path& folder, Columns
 
 class Manifest final : public LeaderSource {
  public:
-  Manifest(std::istream& in, std::filesystem::path folder, std::string name)
-      : in_(in), folder_(std::move(folder)), name_(std::move(name)) {}
+  Manifest(std::unique_ptr<std::istream> in, std::filesystem::path folder, std::string name)
+      : in_(std::move(in)), folder_(std::move(folder)), name_(std::move(name)) {}
 
   absl::StatusOr<std::optional<LeaderEntry>> Next() override {
     for (std::string line; !ended_ && ReadLine(&line);) {
@@ -220,13 +188,13 @@ class Manifest final : public LeaderSource {
       if (!entry.ok()) return At(entry.status());
       return std::optional<LeaderEntry>(*std::move(entry));
     }
-    if (in_.bad()) return absl::DataLossError(absl::StrCat(name_, ": cannot be read"));
+    if (in_->bad()) return absl::DataLossError(absl::StrCat(name_, ": cannot be read"));
     return std::optional<LeaderEntry>();
   }
 
  private:
   bool ReadLine(std::string* line) {
-    if (!std::getline(in_, *line)) return false;
+    if (!std::getline(*in_, *line)) return false;
     if (++line_ == 1) *line = std::string(base::SkipByteOrderMark(*line));
     if (!line->empty() && line->back() == '\r') line->pop_back();
     return true;
@@ -265,10 +233,6 @@ class Manifest final : public LeaderSource {
     absl::StatusOr<LeaderEntry> entry = ToEntry(folder_, *std::move(columns));
     // Bad lines register their ids too, so that a later line with the same id is reported.
     absl::StatusOr<std::string> key = KeyFor(id, entry.ok() ? entry->given : "");
-    if (!entry.ok() && !key.ok()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(entry.status().message(), "; ", key.status().message()));
-    }
     if (!entry.ok()) return entry;
     if (!key.ok()) return key.status();
     entry->key = *std::move(key);
@@ -304,7 +268,7 @@ class Manifest final : public LeaderSource {
     return absl::Status(status.code(), absl::StrCat(name_, ":", line_, ": ", status.message()));
   }
 
-  std::istream& in_;
+  const std::unique_ptr<std::istream> in_;
   std::filesystem::path folder_;
   std::string name_;
   int64_t line_ = 0;
@@ -319,6 +283,96 @@ bool IsWithin(const fs::path& path, const fs::path& folder) {
   const auto [in_folder, in_path] =
       std::mismatch(folder.begin(), folder.end(), path.begin(), path.end());
   return in_folder == folder.end();
+}
+
+absl::StatusOr<FollowerStart> ReadStart(const std::filesystem::path& file,
+                                        const formats::ReadOptions& options) {
+  absl::StatusOr<std::vector<motion::Vec3>> pose = formats::ReadFollowerStart(file, options);
+  if (!pose.ok()) return pose.status();
+  return FollowerStart(*std::move(pose));
+}
+
+absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const LeaderInput& input,
+                      formats::ReadOptions options, LoadedLeader* loaded) {
+  const std::string& start = entry.follower_start;
+  if (start.empty() && !input.starts_as_other_person) return absl::OkStatus();
+  if (const std::optional<motion::Vec3> root = ParsePoint(start); root.has_value()) {
+    loaded->follower_start = *root;
+    return absl::OkStatus();
+  }
+  const std::filesystem::path file = start.empty() ? entry.file : std::filesystem::path(start);
+  std::error_code error;
+  // In the leader's own file, the follower is the other person.
+  const bool own = start.empty() || std::filesystem::equivalent(file, entry.file, error);
+  // The settings describe leaders; another file may have another format.
+  if (!own && formats::IsReadable(file)) options.format.reset();
+  options.side = own ? OtherSide(side) : formats::Side::kLeft;
+  absl::StatusOr<FollowerStart> pose = ReadStart(file, options);
+  if (!pose.ok()) return pose.status();
+  loaded->follower_start = *std::move(pose);
+  if (own) return absl::OkStatus();
+  absl::StatusOr<std::string> digest = base::Sha256HexOfFile(file);
+  if (!digest.ok()) return digest.status();
+  loaded->start_sha256 = *std::move(digest);
+  return absl::OkStatus();
+}
+
+// Checks the limits that would make the server reject every call with this leader.
+absl::Status CheckLimits(const std::filesystem::path& file, const motion::Clip& clip,
+                         const RequestLimits& limits) {
+  const auto refuse = [&file](const auto&... what) {
+    return absl::InvalidArgumentError(absl::StrCat(file.string(), ": ", what...));
+  };
+  const double rate_hz = clip.frame_rate_hz;
+  const int frames = clip.frame_count();
+  if (frames < limits.min_frames) {
+    return refuse("frames: expected at least ", limits.min_frames, ", got ", frames);
+  }
+  if (limits.max_frame_rate_hz > 0 &&
+      (rate_hz < limits.min_frame_rate_hz || rate_hz > limits.max_frame_rate_hz)) {
+    return refuse("frame rate: expected ", limits.min_frame_rate_hz, " to ",
+                  limits.max_frame_rate_hz, " Hz, got ", rate_hz,
+                  ". Resample it (duet convert --resample HZ).");
+  }
+  const double max_seconds = absl::ToDoubleSeconds(limits.max_duration);
+  if (max_seconds > 0 && frames > max_seconds * rate_hz) {
+    return refuse("duration: expected at most ", max_seconds, " s, got ", frames / rate_hz,
+                  " s. Cut it into several leaders.");
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<LoadedLeader> Load(const LeaderEntry& entry, formats::Side side,
+                                  const LeaderInput& input, const motion::Skeleton& skeleton,
+                                  const RequestLimits& limits) {
+  formats::ReadOptions options = input.reading;
+  options.skeleton = skeleton;
+  options.side = side;
+  absl::StatusOr<motion::Clip> clip = formats::ReadLeader(entry.file, options);
+  if (!clip.ok()) return clip.status();
+  absl::Status status = CheckLimits(entry.file, *clip, limits);
+  if (!status.ok()) return status;
+  absl::StatusOr<std::string> digest = base::Sha256HexOfFile(entry.file);
+  if (!digest.ok()) return digest.status();
+  LoadedLeader loaded;
+  loaded.clip = *std::move(clip);
+  loaded.sha256 = *std::move(digest);
+  status = SetStart(entry, side, input, options, &loaded);
+  if (!status.ok()) return status;
+  return loaded;
+}
+
+absl::Status WithMendingField(const absl::Status& status) {
+  const absl::string_view field = motion::MendingField(status);
+  if (field.empty()) return status;
+  return absl::Status(
+      status.code(),
+      absl::StrCat(status.message(), "; specify it in the recipe: input { ", field, " }"));
+}
+
+// Whether two lines read the same motion.
+bool SameMotion(const LeaderEntry& a, const LeaderEntry& b) {
+  return a.file == b.file && a.follower_start == b.follower_start;
 }
 
 }  // namespace
@@ -355,9 +409,10 @@ absl::StatusOr<std::unique_ptr<LeaderSource>> ListLeaders(
   return std::unique_ptr<LeaderSource>(std::move(list));
 }
 
-std::unique_ptr<LeaderSource> ReadManifest(std::istream& in, const std::filesystem::path& folder,
+std::unique_ptr<LeaderSource> ReadManifest(std::unique_ptr<std::istream> in,
+                                           const std::filesystem::path& folder,
                                            const std::string& name) {
-  return std::make_unique<Manifest>(in, folder, name);
+  return std::make_unique<Manifest>(std::move(in), folder, name);
 }
 
 absl::Status CheckInputs(const std::vector<std::string>& inputs, const fs::path& out) {
@@ -371,6 +426,24 @@ absl::Status CheckInputs(const std::vector<std::string>& inputs, const fs::path&
                                                    "; choose another folder"));
   }
   return absl::OkStatus();
+}
+
+absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
+                                        const LeaderInput& input, const motion::Skeleton& skeleton,
+                                        const RequestLimits& limits) {
+  absl::StatusOr<LoadedLeader> loaded = Load(entry, side, input, skeleton, limits);
+  if (!loaded.ok()) return WithMendingField(loaded.status());
+  return loaded;
+}
+
+std::shared_ptr<SharedLeader> LastLeaders::Get(const std::shared_ptr<const LeaderEntry>& entry,
+                                               formats::Side side, int skeleton) {
+  Last& last = last_[static_cast<size_t>(skeleton)];
+  if (last.leader == nullptr || last.side != side ||
+      (last.entry != entry && !SameMotion(*last.entry, *entry))) {
+    last = {entry, side, std::make_shared<SharedLeader>(entry, side)};
+  }
+  return last.leader;
 }
 
 }  // namespace duet::client::batch

@@ -1,18 +1,21 @@
 #include "client/batch/plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <set>
 #include <utility>
 
+#include "absl/container/flat_hash_set.h"
+#include "absl/hash/hash.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
-#include "client/batch/drawn_labels.h"
 #include "client/batch/journal.h"
 #include "client/batch/text_values.h"
+#include "model/base/counted.h"
 #include "model/base/random.h"
 #include "model/base/sha256.h"
 #include "model/base/text.h"
@@ -27,6 +30,8 @@ constexpr std::size_t kMaxPartBytes = 200;
 constexpr std::size_t kMaxPathBytes = 1000;
 constexpr std::size_t kDigestDigits = 16;
 constexpr std::size_t kKeptBytes = 120;
+// Drawn weights are multiples of 1 / kWeightsInOne, so that they have few decimals.
+constexpr double kWeightsInOne = 1000;
 
 uint64_t DrawnNumber(const std::string& from) {
   uint64_t number = 0;
@@ -106,6 +111,33 @@ std::string Beginning(const std::string& text, std::size_t bytes) {
 std::string Shortened(const std::string& text, const std::string& of) {
   return absl::StrCat(Beginning(text, kKeptBytes), "_",
                       base::Sha256Hex(of).substr(0, kDigestDigits));
+}
+
+float DrawWeight(const WeightRange& range, base::Random* random) {
+  const double weight = random->Uniform(range.min, range.max);
+  return static_cast<float>(std::round(weight * kWeightsInOne) / kWeightsInOne);
+}
+
+Labels DrawMix(const v1::Mixes& mixes, std::vector<std::string> classes, base::Random* random) {
+  random->Shuffle(&classes);
+  Labels labels;
+  for (uint32_t c = 0; c < ClassesInMix(mixes); ++c) {
+    labels.push_back({classes[c], DrawWeight(RangeOf(mixes), random)});
+  }
+  SortByClass(&labels);
+  return labels;
+}
+
+// The classes of mixes, or of a vector for each class; empty: the model's.
+std::vector<std::string> ClassesOf(const v1::Reaction& reaction) {
+  const auto& classes =
+      reaction.has_mixes() ? reaction.mixes().classes() : reaction.each_class().classes();
+  return {classes.begin(), classes.end()};
+}
+
+// A class or a model as a part of a file name, without dashes, which separate the parts.
+std::string PlainName(const std::string& name) {
+  return absl::StrReplaceAll(KeyOf(name), {{"/", "_"}, {"-", "_"}, {"+", "_"}});
 }
 
 }  // namespace
@@ -201,21 +233,24 @@ absl::Status Plan::AddNamed(const v1::Reaction& reaction, LabelledReaction label
 
 absl::Status Plan::AddDrawn(const v1::Reaction& reaction) {
   const std::vector<std::string> classes = ClassesOr(ClassesOf(reaction));
-  absl::Status status = CheckDrawn(reaction, classes);
-  if (!status.ok()) return status;
+  if (ClassesInMix(reaction.mixes()) > classes.size()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("reactions: classes_in_mix: expected at most the ", classes.size(),
+                     " classes, got ", ClassesInMix(reaction.mixes())));
+  }
   const auto same_name = [&reaction](const v1::Reaction& other) {
     return other.name() == reaction.name();
   };
   if (std::any_of(drawn_.begin(), drawn_.end(), same_name)) {
     return absl::InvalidArgumentError(
-        "reactions: expected a name for each of several drawn reactions, got the same name twice");
+        "reactions: expected a name for each of several mixes, got the same name twice");
   }
   drawn_.push_back(reaction);
   return absl::OkStatus();
 }
 
 absl::Status Plan::AddReaction(const v1::Reaction& reaction) {
-  if (IsDrawn(reaction)) return AddDrawn(reaction);
+  if (reaction.has_mixes()) return AddDrawn(reaction);
   std::vector<LabelledReaction> added;
   if (reaction.has_labels()) added.push_back({"", ToLabels(reaction.labels()), {}});
   if (reaction.has_schedule()) {
@@ -226,7 +261,7 @@ absl::Status Plan::AddReaction(const v1::Reaction& reaction) {
   }
   if (reaction.has_each_class()) {
     for (const std::string& name : ClassesOr(ClassesOf(reaction))) {
-      added.push_back({"", {{name, RangeOf(reaction.each_class()).min}}, {}});
+      added.push_back({"", {{name, 1}}, {}});
     }
   }
   for (LabelledReaction& labelled : added) {
@@ -264,16 +299,20 @@ absl::Status Plan::CheckClasses() const {
 // An id decides the labels by itself, so that no file is read for them.
 std::string Plan::DrawnFrom(const LeaderEntry& leader) {
   if (drawn_.empty() || leader.has_id) return leader.key;
-  const std::string digest = digests_.Of(leader);
-  return digest.empty() ? leader.key : absl::StrCat("content ", digest);
+  const absl::StatusOr<std::string> digest = base::Sha256HexOfFile(leader.file);
+  return digest.ok() ? absl::StrCat("content ", digest->substr(0, 16)) : leader.key;
 }
 
 void Plan::DrawFor(const LeaderEntry& leader) {
   const std::string from = DrawnFrom(leader);
   for (size_t i = 0; i < drawn_.size(); ++i) {
     base::Random random(DrawnNumber(absl::StrCat("mixes ", recipe_.seed, " ", i, " ", from)));
-    for (DrawnLabels& one : Draw(drawn_[i], ClassesOr(ClassesOf(drawn_[i])), &random)) {
-      reactions_.push_back({std::move(one.name), std::move(one.labels), {}, true});
+    const std::string& name = drawn_[i].name();
+    for (uint32_t mix = 0; mix < drawn_[i].mixes().count(); ++mix) {
+      reactions_.push_back({absl::StrCat(name.empty() ? "mix" : name, mix),
+                            DrawMix(drawn_[i].mixes(), ClassesOr(ClassesOf(drawn_[i])), &random),
+                            {},
+                            true});
     }
   }
 }
@@ -370,6 +409,46 @@ absl::StatusOr<std::optional<Item>> Plan::Next() {
   ++number_;
   if (!Advance()) leader_ = nullptr;
   return std::optional<Item>(std::move(item));
+}
+
+absl::StatusOr<PlanCheck> CheckPlan(const PlanPart& part, Plan* plan,
+                                    const std::function<absl::Status(const Item&)>& visit,
+                                    const std::function<bool()>& stopped) {
+  PlanCheck check;
+  absl::flat_hash_set<size_t> files;  // hashes of leaders as listed
+  std::shared_ptr<const LeaderEntry> last_leader;
+  formats::Side last_side = formats::Side::kLeft;
+  while (!stopped()) {
+    const absl::StatusOr<std::optional<Item>> next = plan->Next();
+    if (absl::IsInvalidArgument(next.status())) {
+      if (check.bad_line_count++ >= static_cast<int64_t>(PlanCheck::kListed)) continue;
+      check.bad_lines.emplace_back(next.status().message());
+      continue;
+    }
+    if (!next.ok()) return next.status();
+    if (!next->has_value()) break;
+    const Item& item = **next;
+    if (!part.Has(item)) continue;
+    ++check.items;
+    if (item.leader != last_leader || item.side != last_side) ++check.leaders;
+    if (item.leader != last_leader) files.insert(absl::Hash<std::string>()(item.leader->given));
+    last_leader = item.leader;
+    last_side = item.side;
+    if (check.bad_line_count > 0) continue;
+    absl::Status status = visit(item);
+    if (!status.ok()) return status;
+  }
+  check.files = static_cast<int64_t>(files.size());
+  return check;
+}
+
+absl::Status BadLinesError(const PlanCheck& check) {
+  if (check.bad_line_count == 0) return absl::OkStatus();
+  std::string lines = absl::StrJoin(check.bad_lines, "\n  ");
+  const auto more = check.bad_line_count - static_cast<int64_t>(check.bad_lines.size());
+  if (more > 0) absl::StrAppend(&lines, "\n  and ", more, " more");
+  return absl::InvalidArgumentError(absl::StrCat(base::Counted(check.bad_line_count, "bad line"),
+                                                 "; no call was made:\n  ", lines));
 }
 
 }  // namespace duet::client::batch

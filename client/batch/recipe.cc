@@ -15,7 +15,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
-#include "client/batch/drawn_labels.h"
 #include "client/batch/text_values.h"
 #include "model/base/file.h"
 #include "model/base/printable.h"
@@ -75,13 +74,6 @@ void CheckLabels(const v1::Labels& labels, const std::string& field, Checker* ch
   }
 }
 
-void CheckRange(const WeightRange& range, const std::string& field, Checker* check) {
-  check->Weight(field + ".min_weight", range.min);
-  check->Weight(field + ".max_weight", range.max);
-  check->Expect(range.min <= range.max, field + ".min_weight", absl::StrCat(range.min),
-                "at most max_weight");
-}
-
 void CheckMixes(const v1::Mixes& mixes, const std::string& field, Checker* check) {
   check->Count(field + ".count", mixes.count(), 1, kMaxMixes);
   check->Different(field + ".classes", mixes.classes());
@@ -89,15 +81,11 @@ void CheckMixes(const v1::Mixes& mixes, const std::string& field, Checker* check
   check->Count(field + ".classes_in_mix", in_mix, 1, 1000);
   check->Expect(mixes.classes_size() == 0 || in_mix <= static_cast<uint32_t>(mixes.classes_size()),
                 field + ".classes_in_mix", absl::StrCat(in_mix), "no more than there are classes");
-  CheckRange(RangeOf(mixes), field, check);
-}
-
-void CheckEachClass(const v1::EachClass& each, const std::string& field, Checker* check) {
-  check->Different(field + ".classes", each.classes());
-  CheckRange(RangeOf(each), field, check);
-  if (!each.has_beside()) return;
-  CheckRange({each.beside().min_weight(), each.beside().max_weight()}, field + ".beside", check);
-  check->Expect(each.classes_size() != 1, field + ".classes", "one", "two or more with beside");
+  const WeightRange range = RangeOf(mixes);
+  check->Weight(field + ".min_weight", range.min);
+  check->Weight(field + ".max_weight", range.max);
+  check->Expect(range.min <= range.max, field + ".min_weight", absl::StrCat(range.min),
+                "at most max_weight");
 }
 
 void CheckSchedule(const v1::Schedule& schedule, const std::string& field, Checker* check) {
@@ -127,7 +115,7 @@ void CheckReaction(const v1::Reaction& reaction, const std::string& field, Check
     case v1::Reaction::kMixes:
       return CheckMixes(reaction.mixes(), field + ".mixes", check);
     case v1::Reaction::kEachClass:
-      return CheckEachClass(reaction.each_class(), field + ".each_class", check);
+      return check->Different(field + ".each_class.classes", reaction.each_class().classes());
     case v1::Reaction::kSchedule:
       return CheckSchedule(reaction.schedule(), field + ".schedule", check);
     case v1::Reaction::KIND_NOT_SET:
@@ -288,6 +276,15 @@ std::string DescribeDifference(const std::string& before, const std::string& now
   differencer.ReportDifferencesToString(&text);
   differencer.Compare(old_recipe, new_recipe);
   return absl::StrJoin(absl::StrSplit(text, '\n', absl::SkipEmpty()), "; ");
+}
+
+WeightRange RangeOf(const v1::Mixes& mixes) {
+  return {mixes.has_min_weight() ? mixes.min_weight() : 0.25f,
+          mixes.has_max_weight() ? mixes.max_weight() : 1};
+}
+
+uint32_t ClassesInMix(const v1::Mixes& mixes) {
+  return mixes.has_classes_in_mix() ? mixes.classes_in_mix() : 2;
 }
 
 Labels ToLabels(const v1::Labels& proto) {

@@ -67,6 +67,14 @@ std::string DescribeDifference(const std::string& before, const std::string& now
 // A label vector of a recipe, by class name.
 Labels ToLabels(const v1::Labels& proto);
 
+struct WeightRange {
+  float min = 1;
+  float max = 1;
+};
+// What mixes say, with their defaults.
+WeightRange RangeOf(const v1::Mixes& mixes);
+uint32_t ClassesInMix(const v1::Mixes& mixes);
+
 }  // namespace duet::client::batch
 
 #endif  // DUET_CLIENT_BATCH_RECIPE_H_

@@ -94,33 +94,22 @@ ordered_json WithAnswer(const Item& item, const char* state, const RecordedAnswe
   return record;
 }
 
-absl::Status Expect(bool good, const char* field, const char* expected) {
-  if (good) return absl::OkStatus();
-  return absl::DataLossError(absl::StrCat(field, ": expected ", expected, ", got none"));
-}
-
-absl::Status CheckRecord(const v1::IndexEntry& record) {
-  absl::Status status = Expect(!record.name().empty(), "name", "a text");
-  if (record.state() == kFailed) return status;
-  status.Update(Expect(!record.id().empty(), "id", "a text"));
-  status.Update(Expect(!record.side().empty(), "side", "a text"));
-  status.Update(Expect(!record.model().empty(), "model", "a text"));
-  status.Update(Expect(record.frames() > 0, "frames", "a number of frames"));
-  status.Update(Expect(record.frame_rate_hz() > 0, "frame_rate_hz", "a number"));
-  status.Update(Expect(record.has_quality(), "quality", "figures"));
-  if (record.state() == kRejected) {
-    status.Update(Expect(record.reasons_size() > 0, "reasons", "one or more"));
-    return status;
-  }
-  status.Update(Expect(record.state() == kDone, "state", "done, rejected or failed"));
-  status.Update(Expect(record.files_size() > 0, "files", "one or more"));
-  for (const v1::IndexEntry::File& file : record.files()) {
-    status.Update(Expect(!file.path().empty(), "files.path", "a text"));
-  }
-  return status;
-}
-
 }  // namespace
+
+MadeBy MadeByOf(const SynthesisResult& result) {
+  return {result.cleaned_up, result.engine, result.server_version};
+}
+
+std::optional<MadeBy> MadeByOf(const v1::IndexEntry& record) {
+  if (!record.has_cleaned_up()) return std::nullopt;
+  return MadeBy{record.cleaned_up(), record.engine(), record.server_version()};
+}
+
+void AddMadeBy(const MadeBy& made_by, ordered_json* record) {
+  (*record)["cleaned_up"] = made_by.cleaned_up;
+  if (!made_by.engine.empty()) (*record)["engine"] = made_by.engine;
+  if (!made_by.server_version.empty()) (*record)["server_version"] = made_by.server_version;
+}
 
 ordered_json DoneRecord(const Item& item, const RecordedAnswer& answer,
                         const std::vector<RecordedFile>& files) {
@@ -166,9 +155,10 @@ absl::StatusOr<v1::IndexEntry> ParseRecord(absl::string_view text) {
     return absl::DataLossError(
         absl::StrCat("is not a record: ", base::Printable(parsed.ToString(), kLongestReason)));
   }
-  absl::Status status = CheckRecord(record);
-  if (!status.ok()) return status;
-  return record;
+  for (const char* state : {kDone, kRejected, kFailed}) {
+    if (record.state() == state) return record;
+  }
+  return absl::DataLossError("state: expected done, rejected or failed, got another");
 }
 
 }  // namespace duet::client::batch

@@ -11,9 +11,9 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "client/batch/origins.h"
 #include "client/batch/plan.h"
 #include "client/request.h"
+#include "client/result.h"
 
 namespace duet::client::batch {
 
@@ -22,6 +22,18 @@ namespace duet::client::batch {
 inline constexpr char kDone[] = "done";
 inline constexpr char kRejected[] = "rejected";
 inline constexpr char kFailed[] = "failed";
+
+// What decides the bits of an answer besides its request and the weights.
+struct MadeBy {
+  bool cleaned_up = false;
+  std::string engine;
+  std::string server_version;
+};
+
+MadeBy MadeByOf(const SynthesisResult& result);
+// Absent for items without an answer.
+std::optional<MadeBy> MadeByOf(const v1::IndexEntry& record);
+void AddMadeBy(const MadeBy& made_by, nlohmann::ordered_json* record);
 
 // Quality of an answer: the figures of QualityFigures of proto/duet/batch/v1/batch.proto by their
 // names there. Figures are absent if the skeleton does not have their joints.
@@ -65,8 +77,8 @@ nlohmann::ordered_json FailedRecord(const Item& item, const absl::Status& error)
 // character.
 std::string Line(const nlohmann::ordered_json& record);
 
-// Parses a record from an untrusted file, which must have the fields of its state. Ignores fields
-// of later versions. Errors: DATA_LOSS "FIELD: expected ..., got none", or what is no record.
+// Parses a record of the journal, whose digest was right. Ignores fields of later versions.
+// DATA_LOSS for what is no record.
 absl::StatusOr<v1::IndexEntry> ParseRecord(absl::string_view text);
 
 }  // namespace duet::client::batch

@@ -4,37 +4,35 @@
 #include <system_error>
 #include <utility>
 
+#include "absl/hash/hash.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
-#include "client/batch/record.h"
-#include "client/batch/text_values.h"
 #include "model/base/sha256.h"
-#include "model/base/strict_json.h"
+#include "model/base/text.h"
 
 namespace duet::client::batch {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
-// The fields in which an item differs from its record, each as 'labels: expected ..., got ...'.
-std::string DescribeChange(const std::string& text, const Item& item, const JobIdentity& identity) {
-  const ordered_json record = ordered_json::parse(text, nullptr, false);
-  ordered_json now = FailedRecord(item, absl::OkStatus());
-  now["model"] = ModelText(identity.models[static_cast<size_t>(item.model)].choice);
-  std::vector<std::string> changes;
-  const auto shown = [](const ordered_json& of, const char* field) {
-    return of.contains(field) ? base::Shown(nlohmann::json(of[field])) : std::string("none");
-  };
-  for (const char* field : {"leader", "side", "group", "reaction", "labels", "model", "name"}) {
-    // The record of a failed item has no model.
-    if (!record.contains(field) && field == std::string("model")) continue;
-    const std::string was = shown(record, field), is = shown(now, field);
-    if (was != is) changes.push_back(absl::StrCat(field, ": expected ", was, ", got ", is));
-  }
-  if (!changes.empty()) return absl::StrJoin(changes, "; ");
-  return "id: expected what the set was begun with, got another seed, follower_start, "
-         "partner_direction or keyframes";
+constexpr size_t kDigits = 16;  // of a digest
+
+uint64_t KeyOfFile(const LeaderEntry& leader) {
+  return absl::Hash<std::string>()(leader.file.lexically_normal().string());
+}
+
+// The first 64 bits of a digest, and their text.
+uint64_t FirstBits(const std::string& sha256) {
+  uint64_t digest = 0;
+  (void)absl::SimpleHexAtoi(sha256.substr(0, kDigits), &digest);
+  return digest;
+}
+std::string Hex(uint64_t digest) { return absl::StrCat(absl::Hex(digest, absl::kZeroPad16)); }
+
+std::string Describe(const MadeBy& made_by) {
+  return absl::StrCat("clean_up ", made_by.cleaned_up ? "on" : "off", ", engine ",
+                      base::Quoted(made_by.engine), ", server_version ",
+                      base::Quoted(made_by.server_version));
 }
 
 // Whether only the labels may differ, which are drawn from the content of the leader: the item
@@ -57,12 +55,43 @@ bool IsWhole(const fs::path& out, const v1::IndexEntry::File& file, bool read) {
 
 }  // namespace
 
+bool LeaderDigests::Knows(const LeaderEntry& leader) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return digests_.contains(KeyOfFile(leader));
+}
+
+absl::Status LeaderDigests::Check(const LeaderEntry& leader, const std::string& sha256) {
+  const uint64_t digest = FirstBits(sha256);
+  uint64_t known = 0;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    known = digests_.try_emplace(KeyOfFile(leader), digest).first->second;
+  }
+  if (known == digest) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat(
+      "leader ", leader.given, ": expected the file that earlier answers were made of (sha256 ",
+      Hex(known), "...), got a changed one (sha256 ", sha256.substr(0, kDigits),
+      "...). Restore the file, or make another data set with another --out"));
+}
+
+absl::Status Makers::Check(const std::string& model, const MadeBy& made_by) {
+  const std::string now = Describe(made_by);
+  std::string first;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    first = first_.try_emplace(model, now).first->second;
+  }
+  if (first == now) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat(
+      "model ", model, ": an answer was made in another way than the set's first one: expected ",
+      first, ", got ", now));
+}
+
 absl::StatusOr<std::unique_ptr<Survey>> Survey::Open(const JobFolder& folder,
-                                                     const JobIdentity& identity,
                                                      const Repeats& repeats) {
   absl::StatusOr<JournalReader> journal = JournalReader::Open(folder.journal());
   if (!journal.ok()) return journal.status();
-  return std::unique_ptr<Survey>(new Survey(folder, identity, repeats, *std::move(journal)));
+  return std::unique_ptr<Survey>(new Survey(folder, repeats, *std::move(journal)));
 }
 
 absl::Status Survey::Add(const Item& item) {
@@ -77,11 +106,13 @@ absl::Status Survey::Add(const Item& item) {
   if (!status.ok()) return status;
   if (record->id() != item.id && !IsDrawnAnew(*record, item)) {
     return absl::FailedPreconditionError(absl::StrCat(
-        folder_.out().string(), ": item ", item.number, " (", item.name,
-        "): ", DescribeChange(entry->record, item, identity_),
+        folder_.out().string(), ": item ", item.number, ": expected ", record->name(), " of ",
+        record->leader(), " as the set was begun with, got ", item.name, " of ", item.leader->given,
+        same_leader ? ", asked in another way" : "",
         ". Keep the leaders in their order and add new ones at the end, or use another --out"));
   }
-  status = makers_.CheckRecord(*record);
+  const std::optional<MadeBy> made_by = MadeByOf(*record);
+  if (made_by.has_value()) status = makers_.Check(record->model(), *made_by);
   if (!status.ok() || !IsSettledNow(*record)) return status;
   const auto at = static_cast<size_t>(item.number);
   if (settled_.size() <= at) settled_.resize(at + 1);

@@ -2,16 +2,57 @@
 #define DUET_CLIENT_BATCH_SURVEY_H_
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "absl/container/flat_hash_map.h"
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/batch/job_folder.h"
 #include "client/batch/journal.h"
-#include "client/batch/origins.h"
+#include "client/batch/leaders.h"
 #include "client/batch/plan.h"
+#include "client/batch/record.h"
 
 namespace duet::client::batch {
+
+// What all answers of a data set are made from: the content of each leader's file, and one kind of
+// server for each model.
+
+// The digest of each leader's file when its first answer was made, which ensures that all answers
+// of a data set are made from the same leaders. Takes little more than 16 bytes for each file.
+//
+// Threads: safe to call concurrently.
+class LeaderDigests {
+ public:
+  // Whether the digest of the leader's file is known.
+  bool Knows(const LeaderEntry& leader) const;
+  // Stores the first digest of the leader's file. FAILED_PRECONDITION, with the leader, if `sha256`
+  // differs from it.
+  absl::Status Check(const LeaderEntry& leader, const std::string& sha256);
+
+ private:
+  mutable std::mutex mutex_;
+  absl::flat_hash_map<uint64_t, uint64_t> digests_;  // by hash of the path; the first 64 bits
+};
+
+// How the answers of each model of a set were made, which must be the same for all of them.
+//
+// Threads: safe to call concurrently.
+class Makers {
+ public:
+  // Stores how the first answer of a model, "name@version", was made. FAILED_PRECONDITION, with
+  // what differs, if this one was made in another way.
+  absl::Status Check(const std::string& model, const MadeBy& made_by);
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::string> first_;  // in words, by model
+};
 
 // Which settled items a run requests again, besides those whose files are missing or have another
 // size.
@@ -24,10 +65,9 @@ struct Repeats {
 // call.
 class Survey {
  public:
-  // `folder` is open and was begun, or will be begun, with `identity`; both outlive the survey.
-  // Errors: ABORTED, DATA_LOSS if the folder cannot be written or read.
+  // `folder` is open and outlives the survey. Errors: ABORTED, DATA_LOSS if it cannot be written or
+  // read.
   static absl::StatusOr<std::unique_ptr<Survey>> Open(const JobFolder& folder,
-                                                      const JobIdentity& identity,
                                                       const Repeats& repeats);
 
   // Adds an item of this run's share of the plan. Call it for each item of the share, in the order
@@ -46,14 +86,12 @@ class Survey {
   Makers& makers() { return makers_; }
 
  private:
-  Survey(const JobFolder& folder, const JobIdentity& identity, const Repeats& repeats,
-         JournalReader journal)
-      : folder_(folder), identity_(identity), repeats_(repeats), journal_(std::move(journal)) {}
+  Survey(const JobFolder& folder, const Repeats& repeats, JournalReader journal)
+      : folder_(folder), repeats_(repeats), journal_(std::move(journal)) {}
   absl::Status CheckLeader(const LeaderEntry& leader, const v1::IndexEntry& record);
   bool IsSettledNow(const v1::IndexEntry& record) const;
 
   const JobFolder& folder_;
-  const JobIdentity& identity_;
   const Repeats repeats_;
   JournalReader journal_;
   std::vector<bool> settled_;  // by item number

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -23,11 +22,10 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/strip.h"
 #include "absl/time/time.h"
-#include "client/batch/durable_file.h"
-#include "client/batch/gather.h"
 #include "client/batch/job.h"
+#include "client/batch/job_folder.h"
 #include "client/batch/leaders.h"
-#include "client/batch/plan_check.h"
+#include "client/batch/plan.h"
 #include "client/batch/survey.h"
 #include "client/cli/command.h"
 #include "client/cli/flags.h"
@@ -75,9 +73,8 @@ absl::StatusOr<AllowedFailures> ParseAllowedFailures(absl::string_view text) {
 }
 
 struct BatchArguments {
-  std::vector<std::string> leaders;     // files, folders
-  std::string manifest;                 // a file, "-" or empty
-  std::filesystem::path manifest_copy;  // the manifest "-" once it was read
+  std::vector<std::string> leaders;  // files, folders
+  std::string manifest;              // a file, or empty
   std::filesystem::path recipe;
   std::filesystem::path out;
   ServerArguments server;
@@ -91,55 +88,18 @@ struct BatchArguments {
   bool quiet = false;
 };
 
-// Reads a manifest and owns its open file.
-class OpenManifest final : public batch::LeaderSource {
- public:
-  // Relative paths begin at `folder`; errors call the manifest `name`.
-  OpenManifest(const std::filesystem::path& path, const std::filesystem::path& folder,
-               const std::string& name)
-      : file_(path), source_(batch::ReadManifest(file_, folder, name)) {}
-  bool ok() const { return file_.is_open(); }
-  absl::StatusOr<std::optional<batch::LeaderEntry>> Next() override { return source_->Next(); }
-
- private:
-  std::ifstream file_;
-  std::unique_ptr<batch::LeaderSource> source_;
-};
-
-// The leaders that the flags name. A manifest "-" is read from `in` unless it was copied.
+// The leaders that the flags name.
 absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(const BatchArguments& arguments,
-                                                                 const batch::Recipe& recipe,
-                                                                 std::istream* in) {
+                                                                 const batch::Recipe& recipe) {
   if (arguments.manifest.empty()) {
     return batch::ListLeaders(arguments.leaders, recipe.input.reading.format);
   }
-  const bool copied = !arguments.manifest_copy.empty();
-  if (arguments.manifest == "-" && !copied) {
-    if (in == nullptr) {
-      return absl::NotFoundError("--manifest -: expected a list of leaders, got no standard input");
-    }
-    return batch::ReadManifest(*in, "", "-");
-  }
-  const std::filesystem::path given(arguments.manifest);
-  auto manifest =
-      copied ? std::make_unique<OpenManifest>(arguments.manifest_copy, "", arguments.manifest)
-             : std::make_unique<OpenManifest>(given, given.parent_path(), arguments.manifest);
-  if (!manifest->ok()) {
+  auto file = std::make_unique<std::ifstream>(arguments.manifest);
+  if (!file->is_open()) {
     return absl::NotFoundError(absl::StrCat(arguments.manifest, ": cannot be opened"));
   }
-  return std::unique_ptr<batch::LeaderSource>(std::move(manifest));
-}
-
-// Copies a manifest "-" to `folder`, because a run walks its plan several times.
-absl::Status CopyManifest(const std::filesystem::path& folder, std::istream* in,
-                          BatchArguments* arguments) {
-  if (arguments->manifest != "-" || in == nullptr) return absl::OkStatus();
-  arguments->manifest_copy = folder / "manifest";
-  std::ofstream copy(arguments->manifest_copy, std::ios::binary);
-  // operator<< fails if the source is empty.
-  if (in->peek() != std::istream::traits_type::eof()) copy << in->rdbuf();
-  copy.close();
-  return copy ? absl::OkStatus() : batch::CannotWrite(arguments->manifest_copy, errno);
+  const std::filesystem::path folder = std::filesystem::path(arguments.manifest).parent_path();
+  return batch::ReadManifest(std::move(file), folder, arguments.manifest);
 }
 
 // What a run and a dry run share.
@@ -175,13 +135,11 @@ absl::Status AskModels(const BatchArguments& arguments, const ProgramEnvironment
 }
 
 // Checks every line of the manifest.
-absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments,
-                                       const ProgramEnvironment& environment,
-                                       const Prepared& prepared,
+absl::StatusOr<batch::PlanCheck> Check(const BatchArguments& arguments, const Prepared& prepared,
                                        const std::function<absl::Status(const batch::Item&)>& visit,
                                        const std::function<bool()>& stopped) {
   absl::StatusOr<std::unique_ptr<batch::LeaderSource>> leaders =
-      OpenLeaders(arguments, prepared.recipe, environment.in);
+      OpenLeaders(arguments, prepared.recipe);
   if (!leaders.ok()) return leaders.status();
   absl::StatusOr<batch::Plan> plan =
       batch::Plan::Create(prepared.recipe, prepared.models, *std::move(leaders));
@@ -228,8 +186,8 @@ absl::StatusOr<ExitCode> RunDry(const BatchArguments& arguments,
   if (!status.ok()) return status;
   LeaderReader reader(prepared, *environment.err);
   const absl::StatusOr<batch::PlanCheck> check = Check(
-      arguments, environment, prepared,
-      [&reader](const batch::Item& item) { return reader.Read(item); }, [] { return false; });
+      arguments, prepared, [&reader](const batch::Item& item) { return reader.Read(item); },
+      [] { return false; });
   if (!check.ok()) return check.status();
   *environment.out << base::Counted(check->items, "item") << " of "
                    << base::Counted(check->leaders, "leader") << ", "
@@ -425,30 +383,26 @@ absl::Status OpenSet(const BatchArguments& arguments, const ProgramEnvironment& 
   return CheckWeights(*begun, IdentityOf(prepared->recipe, arguments.shard, prepared->models));
 }
 
-absl::StatusOr<ExitCode> RunWhole(const BatchArguments& given,
+absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
                                   const ProgramEnvironment& environment, Prepared prepared) {
   RunningJob running;
   const StopSignals signals([&running] { running.Stop(); });
-  BatchArguments arguments = given;
   batch::JobFolder folder(ShardFolder(arguments.out, arguments.shard));
   batch::JobIdentity begun;
   absl::Status status = OpenSet(arguments, environment, &folder, &begun, &prepared);
-  if (status.ok()) status = CopyManifest(folder.temporary(), environment.in, &arguments);
   if (!status.ok()) return status;
-  const batch::JobIdentity identity = IdentityOf(prepared.recipe, arguments.shard, prepared.models);
   const absl::StatusOr<std::unique_ptr<batch::Survey>> survey =
-      batch::Survey::Open(folder, identity, arguments.repeats);
+      batch::Survey::Open(folder, arguments.repeats);
   if (!survey.ok()) return survey.status();
   const absl::StatusOr<batch::PlanCheck> check = Check(
-      arguments, environment, prepared,
-      [&survey](const batch::Item& item) { return (*survey)->Add(item); },
+      arguments, prepared, [&survey](const batch::Item& item) { return (*survey)->Add(item); },
       [&running] { return running.stopped(); });
   if (!check.ok()) return check.status();
   status = BadLinesError(*check);
   if (!status.ok()) return status;
   if (running.stopped()) return kExitRetry;
   absl::StatusOr<std::unique_ptr<batch::LeaderSource>> leaders =
-      OpenLeaders(arguments, prepared.recipe, nullptr);
+      OpenLeaders(arguments, prepared.recipe);
   if (!leaders.ok()) return leaders.status();
   absl::StatusOr<batch::Plan> plan =
       batch::Plan::Create(prepared.recipe, prepared.models, *std::move(leaders));
@@ -459,7 +413,9 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& given,
   absl::StatusOr<Client> client = environment.connect(*options);
   if (!client.ok()) return client.status();
   // Until now, another recipe could still use the folder.
-  if (begun.models.empty()) status = folder.Begin(identity);
+  if (begun.models.empty()) {
+    status = folder.Begin(IdentityOf(prepared.recipe, arguments.shard, prepared.models));
+  }
   if (!status.ok()) return status;
   batch::Job job({std::move(prepared.recipe), arguments.shard, std::move(prepared.models),
                   std::move(prepared.skeletons), prepared.limits, *std::move(client), &folder,
@@ -505,7 +461,7 @@ void AddInputFlags(CLI::App* app, BatchArguments* arguments) {
       app->add_option("leaders", arguments->leaders, "Motion files, and folders of them")
           ->type_name("LEADER");
   app->add_option("--manifest", arguments->manifest,
-                  "List of leaders, tab-separated, one on each line; - for standard input")
+                  "List of leaders, tab-separated, one on each line")
       ->excludes(leaders)
       ->type_name("FILE")
       ->group(kGroup);

@@ -95,7 +95,7 @@ class BatchRepairTest(tools.ServedTest):
         os.truncate(out / "dataset.json", 100)
         found = self.verified(out, 42).stderr
         for problem in (f"{files[0]}: no such file", f"{files[1]}: was changed", f"{files[2]}: was changed",
-                        "is not what the journal says", "dataset.json: expected a JSON object", "repeat the duet batch command with --verify"):
+                        "dataset.json: expected a JSON object", "repeat the duet batch command with --verify"):
             self.assertIn(problem, found)
         self.run_in_folder(*self.command(out.name, "--verify"))
         self.check_whole(out)
@@ -159,7 +159,7 @@ class BatchRepairTest(tools.ServedTest):
         other[other.index("recipe.textproto")] = "other.textproto"
         (self.folder / "other.textproto").write_text(RECIPE.replace("seed: 7", "seed: 8"), encoding="utf-8")
         refused = self.run_in_folder(*other, code=42)
-        self.assertIn("id: expected what the set was begun with, got another seed", refused.stderr)
+        self.assertIn("as the set was begun with, got", refused.stderr)
         self.run_in_folder(*self.command(out.name))
         self.check_whole(out)
 

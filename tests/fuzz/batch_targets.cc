@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -60,8 +61,8 @@ Broken RecipeText(absl::string_view input) { return Recipe(input, /*json=*/false
 Broken RecipeJson(absl::string_view input) { return Recipe(input, /*json=*/true); }
 
 Broken BatchManifest(absl::string_view input) {
-  std::istringstream in{std::string(input)};
-  const auto manifest = client::batch::ReadManifest(in, "folder", "input");
+  const auto manifest = client::batch::ReadManifest(
+      std::make_unique<std::istringstream>(std::string(input)), "folder", "input");
   while (true) {
     const absl::StatusOr<std::optional<client::batch::LeaderEntry>> entry = manifest->Next();
     if (!entry.ok()) return CheckRefusal(entry.status());

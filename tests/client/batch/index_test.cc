@@ -13,6 +13,8 @@
 namespace duet::client::batch {
 namespace {
 
+using ::testing::_;
+
 motion::Skeleton Stick() {
   motion::Skeleton skeleton;
   skeleton.joint_names = {"top", "hips", "bottom"};
@@ -92,25 +94,24 @@ TEST(DatasetJson, ParsesAsTheProtoMessage) {
   EXPECT_THAT(dataset.files(0).shape(), ElementsAre("people", "frames", "joints", "coordinates"));
   EXPECT_THAT(dataset.files(1).endings(), ElementsAre(".leader.bvh", ".follower.bvh"));
   EXPECT_EQ(dataset.files(1).unit(), "centimetres");
+  EXPECT_THAT(SkeletonIndices({Stick(), motion::SbuSkeleton(), Stick()}), ElementsAre(0, 1, 0));
+  Recipe with_rate = WithFormats({v1::FORMAT_NPY});
+  with_rate.output.set_frame_rate_hz(25);
+  EXPECT_EQ(Described(with_rate, {Model("one", {"kick"})}, {Stick()}, {}).frame_rate_hz(), 25)
+      << "before any item is done";
 }
 
-TEST(DatasetJson, StatesTheCommonFrameRate) {
-  SetCounts counts;
-  counts.items_by_rate = {{60, 2}};
-  EXPECT_EQ(Described(WithFormats({v1::FORMAT_NPY}), {Model("one", {"kick"})}, {Stick()}, counts)
-                .frame_rate_hz(),
-            60);
-}
-
-TEST(DatasetJson, RecipesFrameRateIsStatedBeforeAnyItemIsDone) {
-  Recipe recipe = WithFormats({v1::FORMAT_NPY});
-  recipe.output.set_frame_rate_hz(25);
-  EXPECT_EQ(Described(recipe, {Model("one", {"kick"})}, {Stick()}, {}).frame_rate_hz(), 25);
-}
-
-TEST(SkeletonIndices, ModelsOfOneSkeletonShareIt) {
-  EXPECT_THAT(SkeletonIndices({Stick(), motion::SbuSkeleton(), Stick(), motion::SbuSkeleton()}),
-              ElementsAre(0, 1, 0, 1));
+TEST(ParseRecord, ReadsLaterVersionsAndRejectsWhatIsNoRecord) {
+  const auto record = ParseRecord(
+      R"({"item": 0, "state": "done", "files": [{"path": "a.npy", "bytes": 12}], "later": [1, 2]})");
+  ASSERT_THAT(record, IsOk());
+  EXPECT_EQ(record->files(0).bytes(), 12u);
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  for (const std::string& text :
+       {std::string(), std::string("{\"state\": "), std::string("[]"), "{\"state\": " + deep + "}",
+        std::string(R"({"state": "lost"})"), std::string(R"({"frames": "many"})")}) {
+    EXPECT_THAT(ParseRecord(text), StatusIs(absl::StatusCode::kDataLoss, _)) << text.substr(0, 40);
+  }
 }
 
 TEST(CheckWeights, DifferentWeightsAreRejected) {

@@ -112,14 +112,6 @@ TEST_F(JournalTest, DamagedLineLosesOnlyItsItem) {
   }
 }
 
-TEST_F(JournalTest, JoinedLinesLoseBothItems) {
-  Append({{0, "zero"}, {1, "one"}, {2, "two"}});
-  std::string damaged = ReadTestFile(path_);
-  damaged[damaged.find('\n')] = ' ';
-  WriteTestFile(path_, damaged);
-  EXPECT_THAT(Records(), ElementsAre("2two"));
-}
-
 TEST_F(JournalTest, TooLargeItemNumberIsAnErrorWithoutAllocation) {
   Append({{0, "zero"}, {kMaxItems - 1, "last"}});
   EXPECT_THAT(JournalReader::Open(path_), IsOk());

@@ -1,5 +1,6 @@
 #include "client/batch/leaders.h"
 
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -27,8 +28,7 @@ absl::StatusOr<std::vector<LeaderEntry>> ReadAll(LeaderSource& source) {
 }
 
 absl::StatusOr<std::vector<LeaderEntry>> ReadText(const std::string& text) {
-  std::istringstream in(text);
-  return ReadAll(*ReadManifest(in, "/data", "m"));
+  return ReadAll(*ReadManifest(std::make_unique<std::istringstream>(text), "/data", "m"));
 }
 
 std::vector<std::string> Keys(const std::vector<LeaderEntry>& entries) {
@@ -101,8 +101,8 @@ INSTANTIATE_TEST_SUITE_P(
                     "m:3: id: expected one, as on the lines before, got nothing"}));
 
 TEST(ManifestTest, ContinuesAfterABadLine) {
-  std::istringstream in("leader\tseed\na.bvh\tx\nb.bvh\t2\n");
-  const auto manifest = ReadManifest(in, "/data", "m");
+  const auto manifest = ReadManifest(
+      std::make_unique<std::istringstream>("leader\tseed\na.bvh\tx\nb.bvh\t2\n"), "/data", "m");
   EXPECT_THAT(manifest->Next(), StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("m:2: ")));
   const auto next = manifest->Next();
   ASSERT_THAT(next, IsOk());
@@ -188,16 +188,9 @@ TEST_F(ListLeadersTest, MissingPathIsRejected) {
 TEST_F(ListLeadersTest, ALinkToAMissingFileIsALeader) {
   std::filesystem::create_symlink("/nowhere/at/all", folder_ / "walks/e.bvh");
   std::filesystem::create_symlink("/nowhere/at/all", folder_ / "walks/e.md");
+  std::filesystem::create_symlink("loop", folder_ / "walks/loop");
   EXPECT_THAT(*List({"walks"}), ElementsAre("a", "a_csv", "b", "e"))
       << "which fails when it is read";
-}
-
-TEST_F(ListLeadersTest, ALinkToItselfDoesNotStopTheList) {
-  std::filesystem::create_symlink("loop", folder_ / "walks/loop");
-  std::filesystem::create_symlink("e.bvh", folder_ / "walks/e.bvh");
-  const auto keys = List({"walks"});
-  ASSERT_THAT(keys, IsOk());
-  EXPECT_THAT(*keys, ElementsAre("a", "a_csv", "b", "e"));
 }
 
 TEST_F(ListLeadersTest, ADataSetAmongItsLeadersIsRejected) {
@@ -230,7 +223,7 @@ TEST(KeyOf, IsValidInFileSystemsAndArchives) {
   EXPECT_EQ(KeyOf("\xc0\xaf"), "__");            // longer than needed
   EXPECT_EQ(KeyOf("\xed\xa0\x80"), "___");       // half of a UTF-16 pair
   EXPECT_EQ(KeyOf("\xf4\x90\x80\x80"), "____");  // beyond the last character
-  EXPECT_EQ(KeyOf("\xe6\xad"), "__");            // cut short
+  EXPECT_EQ(KeyOf("\xe6\xad"), "_");             // cut short
 }
 
 }  // namespace

@@ -1,15 +1,13 @@
 #include "client/batch/plan.h"
 
-#include <cstdlib>
 #include <filesystem>
-#include <map>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "client/batch/answer.h"
 #include "client/batch/leaders.h"
@@ -32,14 +30,19 @@ ModelInfo Model(const std::string& name, bool samples = true) {
   return model;
 }
 
-absl::StatusOr<std::vector<Item>> PlanOfRecipe(const std::string& recipe_text,
-                                               const std::string& manifest,
-                                               std::vector<ModelInfo> models) {
-  absl::StatusOr<Recipe> recipe = ParseRecipe(recipe_text, false);
+absl::StatusOr<Plan> MakePlan(const std::string& recipe_text, const std::string& manifest,
+                              std::vector<ModelInfo> models) {
+  absl::StatusOr<Recipe> recipe =
+      ParseRecipe(recipe_text + " output { formats: FORMAT_NPY }", false);
   if (!recipe.ok()) return recipe.status();
-  std::istringstream in(manifest);
-  absl::StatusOr<Plan> plan =
-      Plan::Create(*std::move(recipe), std::move(models), ReadManifest(in, "", "m"));
+  return Plan::Create(*std::move(recipe), std::move(models),
+                      ReadManifest(std::make_unique<std::istringstream>(manifest), "", "m"));
+}
+
+absl::StatusOr<std::vector<Item>> PlanOf(const std::string& recipe_text,
+                                         const std::string& manifest = "leader\na.bvh\nb.bvh\n",
+                                         std::vector<ModelInfo> models = {Model("sbu")}) {
+  absl::StatusOr<Plan> plan = MakePlan(recipe_text, manifest, std::move(models));
   if (!plan.ok()) return plan.status();
   std::vector<Item> items;
   while (true) {
@@ -48,15 +51,6 @@ absl::StatusOr<std::vector<Item>> PlanOfRecipe(const std::string& recipe_text,
     if (!item->has_value()) return items;
     items.push_back(**std::move(item));
   }
-}
-
-// The same of files of arrays.
-absl::StatusOr<std::vector<Item>> PlanOf(const std::string& recipe_text,
-                                         const std::string& manifest = "leader\na.bvh\nb.bvh\n",
-                                         std::vector<ModelInfo> models = {Model("sbu")},
-                                         const std::string& output = "") {
-  return PlanOfRecipe(recipe_text + " output { formats: FORMAT_NPY " + output + " }", manifest,
-                      std::move(models));
 }
 
 std::vector<std::string> Names(const std::vector<Item>& items) {
@@ -217,58 +211,6 @@ TEST(Plan, BothSidesLead) {
   EXPECT_EQ((*items)[1].side, formats::Side::kRight);
 }
 
-TEST(Plan, EachClassIsDrawnWithAnotherBeside) {
-  const std::string recipe = R"(reactions { name: 'mix' each_class {
-      min_weight: 0.5 max_weight: 1 beside { min_weight: 0.1 max_weight: 0.3 } } })";
-  const auto items = PlanOf(recipe);
-  ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items), ElementsAre("a-2-mix_kick", "a-2-mix_push", "a-2-mix_hug",
-                                         "b-3-mix_kick", "b-3-mix_push", "b-3-mix_hug"));
-  const std::vector<std::string> classes = Model("").interaction_classes;
-  std::set<float> weights;
-  for (size_t i = 0; i < items->size(); ++i) {
-    Labels labels = (*items)[i].labels;
-    ASSERT_EQ(labels.size(), 2u);
-    EXPECT_LT(labels[0].interaction_class, labels[1].interaction_class);
-    if (labels[0].interaction_class != classes[i % 3]) std::swap(labels[0], labels[1]);
-    EXPECT_EQ(labels[0].interaction_class, classes[i % 3]);
-    EXPECT_GE(labels[0].weight, 0.5f);
-    EXPECT_LE(labels[0].weight, 1.f);
-    EXPECT_GE(labels[1].weight, 0.1f);
-    EXPECT_LE(labels[1].weight, 0.3f);
-    weights.insert(labels[0].weight);
-  }
-  EXPECT_GT(weights.size(), 3u);
-}
-
-TEST(Plan, EachClassTakesAFixedWeight) {
-  const auto items =
-      PlanOf("reactions { each_class { classes: 'hug' min_weight: 0.5 max_weight: 0.5 } }");
-  ASSERT_THAT(items, IsOk());
-  EXPECT_THAT(Names(*items), ElementsAre("a-2-hug0p5", "b-3-hug0p5"));
-}
-
-// The recipe of Table 6's set: 25 leaders make 300 clips, 25 of each class in either way.
-TEST(Plan, SbuThreeHundred) {
-  ModelInfo model = Model("sbu", false);
-  model.interaction_classes = {"kick", "push", "shake_hands", "hug", "exchange_object", "punch"};
-  std::string manifest = "leader\n";
-  for (int i = 0; i < 25; ++i) manifest += absl::StrCat("walk", i, ".bvh\n");
-  const char* const source = std::getenv("DUET_SOURCE_DIR");
-  ASSERT_NE(source, nullptr);
-  const auto items =
-      PlanOfRecipe(test::ReadTestFile(std::filesystem::path(source) / "recipes/sbu_300.textproto"),
-                   manifest, {model});
-  ASSERT_THAT(items, IsOk());
-  std::map<std::string, int> clips;
-  for (const Item& item : *items) {
-    ++clips[item.reaction];
-    EXPECT_EQ(item.labels.size(), absl::StartsWith(item.reaction, "match_") ? 1u : 2u);
-  }
-  EXPECT_THAT(clips, SizeIs(12));
-  for (const auto& [reaction, count] : clips) EXPECT_EQ(count, 25) << reaction;
-}
-
 TEST(Plan, InvalidCombinationsAreRejected) {
   const auto refused = [](const char* message) {
     return StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(message));
@@ -278,10 +220,7 @@ TEST(Plan, InvalidCombinationsAreRejected) {
   EXPECT_THAT(PlanOf(std::string(kKick) + kKick),
               refused("expected different names, got kick twice"));
   EXPECT_THAT(PlanOf("reactions { mixes { count: 1 } } reactions { mixes { count: 1 } }"),
-              refused("expected a name for each of several drawn"));
-  EXPECT_THAT(PlanOf("reactions { name: 'a' mixes { count: 1 } } "
-                     "reactions { name: 'a' each_class { min_weight: 0.5 } }"),
-              refused("expected a name for each of several drawn"));
+              refused("expected a name for each of several mixes"));
   EXPECT_THAT(PlanOf("reactions { mixes { count: 1 classes_in_mix: 4 } }"),
               refused("at most the 3"));
   EXPECT_THAT(PlanOf(std::string(kKick) + "samples: 2", "leader\na.bvh\n", {Model("sbu", false)}),
@@ -333,38 +272,80 @@ TEST(Shard, IsParsedStrictly) {
   }
 }
 
-std::string Repeated(const std::string& text, int times) {
-  std::string all;
-  for (int i = 0; i < times; ++i) all += text;
-  return all;
+TEST(FitFileName, LongPartsAreTruncatedWithADigest) {
+  for (const std::string& name : {std::string("walks/a-2-kick"), std::string(200, 'x')}) {
+    EXPECT_EQ(FitFileName(name), name);
+  }
+  const std::string fitting = FitFileName("walks/" + std::string(300, 'x') + "/a-kick");
+  EXPECT_THAT(fitting, MatchesRegex("walks/x{120}_[0-9a-f]{16}/a-kick"));
+  EXPECT_NE(fitting, FitFileName("walks/" + std::string(301, 'x') + "/a-kick"));
+  std::string accents = "x", deep;  // two bytes a character, which are not split
+  for (int i = 0; i < 200; ++i) accents += "\xc3\xa9";
+  EXPECT_THAT(FitFileName(accents), StartsWith(accents.substr(0, 119) + "_"));
+  for (int i = 0; i < 3000; ++i) deep += "a/";
+  EXPECT_THAT(FitFileName(deep + "b"), MatchesRegex("(a_){60}_[0-9a-f]{16}"));
 }
 
-TEST(FitFileName, ShortNamesStayAsTheyAre) {
-  for (const std::string& name :
-       {std::string(), std::string("walks/a-2-kick"), std::string(200, 'x')}) {
-    EXPECT_EQ(FitFileName(name), name);
+// Two items of each leader.
+absl::StatusOr<PlanCheck> Check(const std::string& manifest, const PlanPart& part,
+                                std::vector<int64_t>* visited, bool stopped = false) {
+  absl::StatusOr<Plan> plan = MakePlan(std::string(kKick) + "samples: 2", manifest, {Model("sbu")});
+  EXPECT_THAT(plan, IsOk());
+  const auto visit = [visited](const Item& item) {
+    visited->push_back(item.number);
+    return item.leader->given == "changed.csv" ? absl::FailedPreconditionError("changed")
+                                               : absl::OkStatus();
+  };
+  return CheckPlan(part, &*plan, visit, [stopped] { return stopped; });
+}
+
+TEST(CheckPlan, VisitsThePartAndNamesEveryBadLine) {
+  PlanPart two;
+  two.limit = 2;
+  const struct {
+    const char* manifest;
+    PlanPart part;
+    int64_t items, leaders;
+    std::vector<std::string> bad_lines;
+    std::vector<int64_t> visited;
+  } cases[] = {
+      {"leader\na.csv\nb.csv\na.csv\n", {}, 6, 3, {}, {0, 1, 2, 3, 4, 5}},
+      {"leader\na.csv\nb.csv\n", two, 2, 1, {}, {0, 1}},
+      {"a.csv\nb.csv\n", {}, 0, 0, {"m:1: columns: expected leader"}, {}},
+      // A bad line shifts the numbers of the items after it, so they are not compared with a
+      // journal.
+      {"leader\tseed\na.csv\t1\nb.csv\tx\nc.csv\t2\nd.csv\n",
+       {},
+       4,
+       2,
+       {"m:3: seed: expected a whole number", "m:5: columns: expected 2 as the first line names"},
+       {0, 1}},
+      // The id of a bad line is taken.
+      {"leader\tid\tseed\na.csv\tx\t-1\nb.csv\tx\t1\n",
+       {},
+       0,
+       0,
+       {"m:2: seed", "m:3: id: expected one that no other line has, got \"x\""},
+       {}},
+  };
+  for (const auto& one : cases) {
+    std::vector<int64_t> visited;
+    const auto check = Check(one.manifest, one.part, &visited);
+    ASSERT_THAT(check, IsOk()) << one.manifest;
+    EXPECT_EQ(check->items, one.items) << one.manifest;
+    EXPECT_EQ(check->leaders, one.leaders) << one.manifest;
+    EXPECT_EQ(visited, one.visited) << one.manifest;
+    ASSERT_EQ(check->bad_lines.size(), one.bad_lines.size()) << one.manifest;
+    std::string all = BadLinesError(*check).ToString();
+    for (const std::string& line : one.bad_lines) EXPECT_THAT(all, HasSubstr("\n  " + line));
   }
 }
 
-TEST(FitFileName, LongPartsAreTruncatedWithADigest) {
-  const std::string fitting = FitFileName("walks/" + std::string(300, 'x') + "/a-kick");
-  EXPECT_THAT(fitting, MatchesRegex("walks/x{120}_[0-9a-f]{16}/a-kick"));
-  EXPECT_EQ(fitting, FitFileName("walks/" + std::string(300, 'x') + "/a-kick"));
-  EXPECT_NE(fitting, FitFileName("walks/" + std::string(301, 'x') + "/a-kick"));
-}
-
-TEST(FitFileName, CharactersAreNotSplit) {
-  // Two and three bytes a character.
-  EXPECT_THAT(FitFileName("x" + Repeated("\xc3\xa9", 200)),
-              StartsWith("x" + Repeated("\xc3\xa9", 59) + "_"));
-  EXPECT_THAT(FitFileName("x" + Repeated("\xe6\xad\xa9", 200)),
-              StartsWith("x" + Repeated("\xe6\xad\xa9", 39) + "_"));
-}
-
-TEST(FitFileName, PathsThatAreTooDeepBecomeOnePart) {
-  const std::string fitting = FitFileName(Repeated("a/", 3000) + "b");
-  EXPECT_THAT(fitting, MatchesRegex("(a_){60}_[0-9a-f]{16}"));
-  EXPECT_NE(fitting, FitFileName(Repeated("a/", 3001) + "b"));
+TEST(CheckPlan, EndsWithTheErrorOfAVisitAndWhenItIsStopped) {
+  std::vector<int64_t> visited;
+  EXPECT_THAT(Check("leader\nchanged.csv\n", {}, &visited),
+              StatusIs(absl::StatusCode::kFailedPrecondition, "changed"));
+  EXPECT_EQ(Check("leader\na.csv\n", {}, &visited, /*stopped=*/true)->items, 0);
 }
 
 }  // namespace

@@ -56,12 +56,6 @@ TEST(CallGate, EndsIfServersStayAway) {
   EXPECT_FALSE(gate.Start().has_value());
 }
 
-TEST(CallGate, CountsRefusals) {
-  CallGate gate(Options(), hours(1));
-  gate.Finish(*gate.Start(), CallEnd::kRefused, milliseconds(0));
-  EXPECT_EQ(gate.state().refusals, 1);
-}
-
 TEST(BoundedQueue, EveryValueIsTakenOnce) {
   BoundedQueue<int> queue(2);
   std::atomic<int> sum{0};
@@ -117,14 +111,6 @@ TEST(BoundedQueue, CapacityLimitsTheTotalCost) {
   EXPECT_EQ(queue.Take(), 3);
   putting.join();
   EXPECT_TRUE(put);
-}
-
-TEST(BoundedQueue, ValueAboveTheCapacityWaitsUntilEmpty) {
-  BoundedQueue<int> queue(10);
-  queue.Put(1, 6);
-  std::thread putting([&queue] { EXPECT_FALSE(queue.Put(2, 6)); });
-  queue.Stop();
-  putting.join();
 }
 
 }  // namespace
