@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "absl/status/statusor.h"
-#include "client/cli/exit_code.h"
 #include "client/cli/program_environment.h"
+#include "client/cli/report.h"
 
 namespace duet::client::cli {
 

@@ -171,10 +171,7 @@ json PersonJson(const InspectedPerson& person) {
     if (joint.parts.empty()) missing.push_back(joint.joint);
   }
   for (const SkeletonCheck& check : person.checks) {
-    checks.push_back({{"name", check.name},
-                      {"good", check.good},
-                      {"text", check.text},
-                      {"figures", check.figures}});
+    checks.push_back({{"name", check.name}, {"good", check.good}, {"text", check.text}});
   }
   return {{"frame_rate", SettingJson(person.report.frame_rate)},
           {"unit", SettingJson(person.report.unit)},

@@ -1,8 +1,8 @@
-#include <algorithm>
 #include <ostream>
 #include <string>
 #include <vector>
 
+#include "absl/algorithm/container.h"
 #include "absl/status/status.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -23,25 +23,6 @@ int PrintUsageError(const std::string& message, const ProgramEnvironment& enviro
   return kExitUsage;
 }
 
-// "--server" of "--server" and "--server=lab:50051".
-std::string FlagOf(const std::string& argument) { return argument.substr(0, argument.find('=')); }
-
-bool IsGiven(const std::string& flag, const Strings& arguments) {
-  for (const std::string& argument : arguments) {
-    if (argument == "--") return false;
-    if (FlagOf(argument) == flag) return true;
-  }
-  return false;
-}
-
-Strings FlagsOf(const CLI::App& command) {
-  Strings names;
-  for (const CLI::Option* option : command.get_options()) {
-    if (!option->get_positional()) names.push_back(option->get_name());
-  }
-  return names;
-}
-
 const CLI::App* FindCommand(const CLI::App& app, const std::string& name) {
   for (const CLI::App* command : app.get_subcommands({})) {
     if (command->get_name() == name) return command;
@@ -52,37 +33,32 @@ const CLI::App* FindCommand(const CLI::App& app, const std::string& name) {
 // The error about a first word that is not a command; empty if it is one.
 std::string FindUnknownCommand(const CLI::App& app, const Strings& arguments) {
   if (arguments.empty() || absl::StartsWith(arguments[0], "-")) return "";
-  if (FindCommand(app, arguments[0]) != nullptr || IsGiven("--help", arguments)) return "";
+  if (FindCommand(app, arguments[0]) != nullptr) return "";
   Strings known;
   for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
   return absl::StrCat("There is no command ", base::Quoted(arguments[0]),
                       base::DidYouMean(arguments[0], known));
 }
 
-// "; did you mean --admin-server?" for --server, of which the known flag is a longer form, or for a
-// flag with another spelling.
-std::string SuggestedFlag(const std::string& flag, const Strings& known) {
-  for (const std::string& name : known) {
-    if (absl::EndsWith(name, flag.substr(1))) return absl::StrCat("; did you mean ", name, "?");
+// The names of the flags of a command and of its actions.
+void AddFlagsOf(const CLI::App& command, Strings* names) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_positional()) names->push_back(option->get_name());
   }
-  return base::DidYouMean(flag, known);
+  for (const CLI::App* action : command.get_subcommands({})) AddFlagsOf(*action, names);
 }
 
 // The error about the first flag that the command does not have; empty if there is none.
 std::string FindUnknownFlag(const CLI::App& app, const Strings& arguments) {
   const CLI::App* command = arguments.empty() ? nullptr : FindCommand(app, arguments[0]);
   if (command == nullptr) return "";
-  Strings known = FlagsOf(*command);
-  for (const CLI::App* subcommand : command->get_subcommands({})) {
-    const Strings further = FlagsOf(*subcommand);
-    known.insert(known.end(), further.begin(), further.end());
-  }
+  Strings known;
+  AddFlagsOf(*command, &known);
   for (const std::string& argument : arguments) {
     if (argument == "--") break;
-    if (!absl::StartsWith(argument, "--")) continue;
-    const std::string flag = FlagOf(argument);
-    if (std::find(known.begin(), known.end(), flag) != known.end()) continue;
-    return absl::StrCat(arguments[0], " has no flag ", flag, SuggestedFlag(flag, known));
+    const std::string flag = argument.substr(0, argument.find('='));
+    if (!absl::StartsWith(flag, "--") || absl::c_linear_search(known, flag)) continue;
+    return absl::StrCat(arguments[0], " has no flag ", flag, base::DidYouMean(flag, known));
   }
   return "";
 }

@@ -9,22 +9,20 @@
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "client/cli/flags.h"
-#include "client/cli/request_file.h"
+#include "duet/v1/synthesis.pb.h"
+#include "model/base/file.h"
 #include "model/base/nearest.h"
 #include "model/base/program_flags.h"
 #include "model/base/text.h"
-#include "model/motion/inferred_coordinates.h"
+#include "model/messages/message_text.h"
+#include "model/motion/motion_limits.h"
 #include "model/motion/vertical.h"
 
 namespace duet::client::cli {
 namespace {
-
-// The heights of a root joint, as shares of the leader's leg, of a person who sits or leaps.
-constexpr double kLowestRoot = 0.3, kHighestRoot = 1.6;
 
 absl::Status Expected(absl::string_view expected, absl::string_view text) {
   return absl::InvalidArgumentError(
@@ -55,27 +53,6 @@ absl::StatusOr<FollowerStart> ReadStart(const ReactionArguments& arguments,
       ReadFollowerStart(arguments.follower_start, options);
   if (!pose.ok()) return pose.status();
   return FollowerStart(*std::move(pose));
-}
-
-// Warns of a start on the floor, such as 0,0,1.2, or in the air: it is the place of the root joint.
-void WarnOfHeight(const FollowerStart& start, const motion::Clip& leader,
-                  const motion::Skeleton& skeleton, std::vector<std::string>* notes) {
-  const motion::Vec3* root = std::get_if<motion::Vec3>(&start);
-  if (root == nullptr || notes == nullptr || !skeleton.feet) return;
-  float floor = std::numeric_limits<float>::max();
-  for (int frame = 0; frame < leader.frame_count(); ++frame) {
-    for (const int foot : {skeleton.feet->left, skeleton.feet->right}) {
-      floor = std::min(floor, leader.at(frame, foot).y);
-    }
-  }
-  const double leg = LegLength(skeleton, leader.poses);
-  const double height = static_cast<double>(root->y - floor);
-  if (height >= kLowestRoot * leg && height <= kHighestRoot * leg) return;
-  notes->push_back(
-      absl::StrFormat("warning: --follower-start: expected Y near %.2f m, where the %s of a "
-                      "standing person is, got %g: it is a place of that joint, not of the floor",
-                      static_cast<double>(floor) + leg,
-                      skeleton.joint_names[static_cast<std::size_t>(skeleton.root)], root->y));
 }
 
 // Everybody whom the camera captured: the leader and, in a file with two people, the other person.
@@ -114,6 +91,113 @@ absl::Status ReadLeader(const ReactionArguments& arguments, formats::ReadOptions
     notes->push_back(absl::StrCat(tilted ? "levelled: " : "not levelled: ", Describe(vertical)));
   }
   return absl::OkStatus();
+}
+
+absl::Status Refused(const char* field, const std::string& expected, const std::string& got) {
+  return absl::InvalidArgumentError(absl::StrCat(field, ": expected ", expected, ", got ", got));
+}
+
+template <typename Point>
+motion::Vec3 FromProto(const Point& point) {
+  return {point.x(), point.y(), point.z()};
+}
+
+std::vector<motion::Vec3> ToPoints(const google::protobuf::RepeatedField<float>& positions) {
+  std::vector<motion::Vec3> points;
+  for (int i = 0; i + 2 < positions.size(); i += 3) {
+    points.push_back({positions[i], positions[i + 1], positions[i + 2]});
+  }
+  return points;
+}
+
+absl::StatusOr<motion::Clip> FromProto(const v1::Motion& leader) {
+  if (leader.unit() != v1::LENGTH_UNIT_METRES) {
+    return Refused("leader.unit", "LENGTH_UNIT_METRES", v1::LengthUnit_Name(leader.unit()));
+  }
+  if (leader.up_axis() != v1::UP_AXIS_Y_UP) {
+    return Refused("leader.up_axis", "UP_AXIS_Y_UP", v1::UpAxis_Name(leader.up_axis()));
+  }
+  const std::size_t floats =
+      std::size_t{leader.frame_count()} * 3 * static_cast<std::size_t>(leader.joint_names_size());
+  if (static_cast<std::size_t>(leader.positions_size()) != floats) {
+    return Refused("leader.positions", absl::StrCat(floats, " values (3 for each joint and frame)"),
+                   absl::StrCat(leader.positions_size()));
+  }
+  motion::Clip clip;
+  clip.joint_names = {leader.joint_names().begin(), leader.joint_names().end()};
+  clip.frame_rate_hz = leader.frame_rate_hz();
+  clip.poses = motion::Poses(leader.joint_names_size(), ToPoints(leader.positions()));
+  return clip;
+}
+
+std::vector<ClassWeight> FromProto(const v1::LabelVector& labels) {
+  std::vector<ClassWeight> weights;
+  for (const v1::ClassWeight& weight : labels.weights()) {
+    weights.push_back({weight.interaction_class(), weight.weight()});
+  }
+  return weights;
+}
+
+ModelChoice FromProto(const v1::ModelSelector& selector) {
+  ModelChoice choice;
+  choice.name = selector.name();
+  if (selector.has_version()) choice.version = static_cast<int>(selector.version());
+  choice.version_label = selector.version_label();
+  return choice;
+}
+
+absl::Status FillOptions(const v1::SynthesizeRequest& in, SynthesisOptions* out) {
+  if (in.has_partner_direction()) out->partner_direction = FromProto(in.partner_direction());
+  if (in.has_up()) out->up = FromProto(in.up());
+  if (in.has_seed()) out->seed = in.seed();
+  if (in.has_variety()) out->variety = in.variety();
+  if (in.has_reaction()) out->reaction = in.reaction();
+  if (in.has_candidates()) out->candidates = static_cast<int>(in.candidates());
+  if (in.clean_up() != v1::CLEAN_UP_UNSPECIFIED) out->clean_up = in.clean_up() == v1::CLEAN_UP_ON;
+  out->rotations = in.reply_rotations();
+  if (in.has_priority()) {
+    if (in.priority() == v1::PRIORITY_UNSPECIFIED) {
+      return Refused("priority", "PRIORITY_INTERACTIVE or PRIORITY_BULK", "PRIORITY_UNSPECIFIED");
+    }
+    if (in.priority() == v1::PRIORITY_BULK) out->priority = Priority::kBulk;
+  }
+  if (in.has_chunk_frames()) out->chunk_frames = static_cast<int>(in.chunk_frames());
+  for (const v1::JointConstraint& constraint : in.constraints()) {
+    out->constraints.push_back({constraint.joint_name(), static_cast<int>(constraint.frame()),
+                                FromProto(constraint.position()), constraint.softness()});
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<SynthesisRequest> FromProto(const v1::SynthesizeRequest& in) {
+  if (in.reply_joint_names_size() > 0) {
+    return Refused("reply_joint_names", "none: every output needs all joints",
+                   absl::StrCat(in.reply_joint_names_size()));
+  }
+  SynthesisRequest out;
+  const absl::Status options = FillOptions(in, &out);
+  if (!options.ok()) return options;
+  out.model = FromProto(in.model());
+  if (in.has_leader()) {
+    absl::StatusOr<motion::Clip> leader = FromProto(in.leader());
+    if (!leader.ok()) return leader.status();
+    out.leader = *std::move(leader);
+  }
+  out.weights = FromProto(in.label_vector());
+  for (const v1::LabelKeyframe& keyframe : in.label_keyframes()) {
+    out.keyframes.push_back(
+        {static_cast<int>(keyframe.frame()), FromProto(keyframe.label_vector())});
+  }
+  if (in.follower_start().has_root_position()) {
+    out.follower_start = FromProto(in.follower_start().root_position());
+  } else if (in.follower_start().has_pose()) {
+    out.follower_start = ToPoints(in.follower_start().pose().positions());
+  }
+  return out;
+}
+
+absl::Status InFile(const std::filesystem::path& file, const absl::Status& status) {
+  return {status.code(), absl::StrCat(file.string(), ": ", status.message())};
 }
 
 }  // namespace
@@ -191,6 +275,19 @@ absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text) {
   return keyframe;
 }
 
+absl::StatusOr<SynthesisRequest> ReadRequestFile(const std::filesystem::path& file) {
+  const absl::StatusOr<std::string> text =
+      base::ReadFile(file, motion::kMaxMotionFileBytes, "a request");
+  if (!text.ok()) return text.status();
+  v1::SynthesizeRequest message;
+  const absl::Status parsed =
+      messages::ParseMessage(*text, messages::MessageSyntax::kTextFormat, &message);
+  if (!parsed.ok()) return InFile(file, parsed);
+  absl::StatusOr<SynthesisRequest> request = FromProto(message);
+  if (!request.ok()) return InFile(file, request.status());
+  return request;
+}
+
 absl::Status CheckInputs(const ReactionArguments& arguments) {
   absl::Status status = ReadJoints(arguments.input.joint_map).status();
   if (status.ok() && !arguments.leader.empty()) {
@@ -247,11 +344,7 @@ absl::Status ReadMotions(const ReactionArguments& arguments, const motion::Skele
     request->follower_start = *std::move(start);
   }
   if (arguments.leader.empty()) return absl::OkStatus();
-  const absl::Status status = ReadLeader(arguments, *options, in, request, notes);
-  if (status.ok() && request->follower_start && !request->up) {
-    WarnOfHeight(*request->follower_start, request->leader, skeleton, notes);
-  }
-  return status;
+  return ReadLeader(arguments, *options, in, request, notes);
 }
 
 }  // namespace duet::client::cli

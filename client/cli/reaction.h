@@ -52,6 +52,14 @@ absl::StatusOr<ClassWeight> ParseClassWeight(absl::string_view text);
 // "30:kick=1,hug=0": weights at a frame.
 absl::StatusOr<WeightKeyframe> ParseKeyframe(absl::string_view text);
 
+// Reads a duet.v1.SynthesizeRequest in protobuf's text format. The leader, which may be absent, is
+// in metres, y up; reply_joint_names is not supported.
+//
+// Errors: INVALID_ARGUMENT "FILE: line 3:5: ..." for text that is no such message, and "FILE:
+// field: expected ..., got ..."; those of reading a file. The server checks what depends on the
+// model.
+absl::StatusOr<SynthesisRequest> ReadRequestFile(const std::filesystem::path& file);
+
 // Checks that the files of the flags exist and have a known format. Needs no skeleton, so that a
 // wrong name is rejected before the first call to the server.
 absl::Status CheckInputs(const ReactionArguments& arguments);

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "client/cli/exit_code.h"
 #include "client/error_details.h"
 #include "model/motion/reading_setting.h"
 #include "nlohmann/json.hpp"

@@ -67,6 +67,34 @@ void ReportWaiting(const ServerArguments& arguments, std::ostream& err, ClientOp
   };
 }
 
+// TLS, the token, and the name for a proxy.
+void AddCredentialFlags(CLI::App* app, ServerArguments* server) {
+  const auto add = [app](const char* flag, const char* variable, const char* form,
+                         std::string* value, const char* help) {
+    return app->add_option(flag, *value, help)
+        ->envname(variable)
+        ->type_name(form)
+        ->group(kServerGroup);
+  };
+  app->add_flag("--tls", server->tls, "Encrypt; trust the certificate authorities of the system")
+      ->envname("DUET_TLS")
+      ->group(kServerGroup);
+  add("--tls-ca", "DUET_TLS_CA", "FILE", &server->tls_ca_file,
+      "Encrypt; trust the certificate authorities in this file");
+  CLI::Option* certificate = add("--tls-cert", "DUET_TLS_CERT", "FILE",
+                                 &server->tls_certificate_file, "Certificate of this client");
+  CLI::Option* key =
+      add("--tls-key", "DUET_TLS_KEY", "FILE", &server->tls_key_file, "Private key of this client");
+  certificate->needs(key);
+  key->needs(certificate);
+  add("--tls-server-name", "DUET_TLS_SERVER_NAME", "NAME", &server->tls_server_name,
+      "Name in the server's certificate, if it differs from the address");
+  add("--token-file", "DUET_TOKEN_FILE", "FILE", &server->token_file,
+      "Token that identifies the caller; only sent encrypted or to this machine");
+  add("--authority", "DUET_AUTHORITY", "NAME", &server->authority,
+      "Name of the server that a proxy routes by, if it differs from the address");
+}
+
 }  // namespace
 
 void AddServerFlags(CLI::App* app, ServerArguments* server) {
@@ -94,33 +122,6 @@ void AddConnectionFlags(CLI::App* app, ServerArguments* server) {
       ->type_name("SECONDS")
       ->group(kServerGroup);
   AddCredentialFlags(app, server);
-}
-
-void AddCredentialFlags(CLI::App* app, ServerArguments* server) {
-  const auto add = [app](const char* flag, const char* variable, const char* form,
-                         std::string* value, const char* help) {
-    return app->add_option(flag, *value, help)
-        ->envname(variable)
-        ->type_name(form)
-        ->group(kServerGroup);
-  };
-  app->add_flag("--tls", server->tls, "Encrypt; trust the certificate authorities of the system")
-      ->envname("DUET_TLS")
-      ->group(kServerGroup);
-  add("--tls-ca", "DUET_TLS_CA", "FILE", &server->tls_ca_file,
-      "Encrypt; trust the certificate authorities in this file");
-  CLI::Option* certificate = add("--tls-cert", "DUET_TLS_CERT", "FILE",
-                                 &server->tls_certificate_file, "Certificate of this client");
-  CLI::Option* key =
-      add("--tls-key", "DUET_TLS_KEY", "FILE", &server->tls_key_file, "Private key of this client");
-  certificate->needs(key);
-  key->needs(certificate);
-  add("--tls-server-name", "DUET_TLS_SERVER_NAME", "NAME", &server->tls_server_name,
-      "Name in the server's certificate, if it differs from the address");
-  add("--token-file", "DUET_TOKEN_FILE", "FILE", &server->token_file,
-      "Token that identifies the caller; only sent encrypted or to this machine");
-  add("--authority", "DUET_AUTHORITY", "NAME", &server->authority,
-      "Name of the server that a proxy routes by, if it differs from the address");
 }
 
 absl::StatusOr<ClientOptions> ToClientOptions(const ServerArguments& arguments) {

@@ -29,8 +29,6 @@ struct ServerArguments {
 void AddServerFlags(CLI::App* app, ServerArguments* server);
 // --timeout and the credential flags.
 void AddConnectionFlags(CLI::App* app, ServerArguments* server);
-// TLS, the token, and the name for a proxy.
-void AddCredentialFlags(CLI::App* app, ServerArguments* server);
 
 inline constexpr char kServerGroup[] = "Server";
 

@@ -60,8 +60,8 @@ class Checker {
   }
 
  private:
-  void Add(std::string name, bool good, std::string text, std::map<std::string, double> figures) {
-    checks_.push_back({std::move(name), good, std::move(text), std::move(figures)});
+  void Add(std::string name, bool good, std::string text) {
+    checks_.push_back({std::move(name), good, std::move(text)});
   }
 
   void CheckFinite() {
@@ -74,8 +74,7 @@ class Checker {
     }
     Add("finite", bad == 0,
         bad == 0 ? "every position is a finite number"
-                 : absl::StrCat("a position is not finite in ", bad, " frames, first in ", first),
-        {{"bad_frames", bad}});
+                 : absl::StrCat("a position is not finite in ", bad, " frames, first in ", first));
   }
 
   void CheckSize() {
@@ -86,8 +85,7 @@ class Checker {
         absl::StrFormat("foot to %s %.2f m%s", skeleton_.joint_names[Index(skeleton_.root)], leg,
                         good ? ""
                              : absl::StrFormat(", expected %.1f to %.1f m. Check the unit",
-                                               motion::kShortestLeg, motion::kLongestLeg)),
-        {{"foot_to_root_metres", leg}});
+                                               motion::kShortestLeg, motion::kLongestLeg)));
   }
 
   double Drift(const motion::Bone& bone) const {
@@ -126,8 +124,7 @@ class Checker {
       absl::StrAppend(&text, ", most ", BoneName(skeleton_, worst), ", ", Percent(most));
     const std::string none = BoneWithoutLength();
     if (!none.empty()) absl::StrAppend(&text, "; ", none, " has no length");
-    Add("limb lengths", most <= kMostDrift && none.empty(), text,
-        {{"mean_change", mean}, {"most_change", most}});
+    Add("limb lengths", most <= kMostDrift && none.empty(), text);
   }
 
   double MedianLength(const motion::Bone& bone) const {
@@ -154,10 +151,7 @@ class Checker {
       absl::StrAppendFormat(&text, ", both feet more than %.2f m above for %s of the time",
                             kHighAboveFloor, Percent(high));
     }
-    Add("floor", below <= kMostBelowFloor && high <= kMostTimeInTheAir, text,
-        {{"height_metres", static_cast<double>(floor)},
-         {"below_metres", std::max(0.0, below)},
-         {"share_in_the_air", high}});
+    Add("floor", below <= kMostBelowFloor && high <= kMostTimeInTheAir, text);
   }
 
   void CheckJumps() {
@@ -184,7 +178,7 @@ class Checker {
                                        skeleton_.joint_names[Index(fastest_joint)], fastest);
     if (jumps > 0)
       absl::StrAppend(&text, "; faster than people in ", jumps, " frames, first ", first);
-    Add("jumps", jumps == 0, text, {{"jumps", jumps}, {"fastest_metres_per_second", fastest}});
+    Add("jumps", jumps == 0, text);
   }
 
   // Whether a joint and its counterpart swap places in a frame.
@@ -271,9 +265,7 @@ class Checker {
       wrong.push_back(absl::StrCat("left and right change places in ", swaps, " frames"));
     std::string text = wrong.empty() ? "left and right are where they belong" : "";
     for (const std::string& what : wrong) absl::StrAppend(&text, text.empty() ? "" : "; ", what);
-    std::map<std::string, double> figures = {{"swaps", swaps}, {"shoulders_oppose_hips", oppose}};
-    if (bent_wrongly.has_value()) figures["bent_wrongly"] = *bent_wrongly;
-    Add("sides", wrong.empty(), text, std::move(figures));
+    Add("sides", wrong.empty(), text);
   }
 
   // The left and the right shoulder.

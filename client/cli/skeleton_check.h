@@ -1,7 +1,6 @@
 #ifndef DUET_CLIENT_CLI_SKELETON_CHECK_H_
 #define DUET_CLIENT_CLI_SKELETON_CHECK_H_
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -14,8 +13,7 @@ namespace duet::client::cli {
 struct SkeletonCheck {
   std::string name;  // "limb lengths"
   bool good = true;
-  std::string text;                       // the finding, for people
-  std::map<std::string, double> figures;  // the same for programs, with units in the names
+  std::string text;  // the finding
 };
 
 // Checks whether a motion can be that of a person, in this order: finite (no position is infinite

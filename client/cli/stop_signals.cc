@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "client/cli/exit_code.h"
+#include "client/cli/report.h"
 
 namespace duet::client::cli {
 

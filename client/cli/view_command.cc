@@ -140,15 +140,11 @@ Each FILE is a motion of one or two people. walk.leader.bvh includes walk.follow
 )";
 
 std::string TitleOf(const std::vector<Take>& takes) {
-  std::vector<std::string> names;
-  for (const Take& take : takes) {
-    if (names.size() < kMaxNamesInTitle) names.push_back(take.name);
-  }
-  std::string title = absl::StrJoin(names, ", ");
-  if (takes.size() > names.size()) {
-    absl::StrAppend(&title, " and ", takes.size() - names.size(), " more");
-  }
-  return title;
+  const std::size_t named = std::min(takes.size(), kMaxNamesInTitle);
+  const std::string names =
+      absl::StrJoin(takes.begin(), takes.begin() + static_cast<std::ptrdiff_t>(named), ", ",
+                    [](std::string* out, const Take& take) { out->append(take.name); });
+  return absl::StrCat(names, named < takes.size() ? ", ..." : "");
 }
 
 std::string Describe(const std::vector<Take>& takes) {

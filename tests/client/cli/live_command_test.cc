@@ -8,9 +8,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "client/cli/exit_code.h"
 #include "client/cli/program_environment.h"
-#include "client/cli/summary.h"
+#include "client/cli/report.h"
 #include "client/internal/connect.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -278,27 +277,6 @@ TEST_F(LiveCommandTest, InvalidInputsAreNamed) {
   EXPECT_EQ(Run({"--from", Leader(), "--to", "-", "--label", "hugg=1"}), kExitBadInput);
   EXPECT_THAT(err_.str(), HasSubstr("hugg"));
   EXPECT_THAT(mirror_.starts(), IsEmpty());
-}
-
-TEST(LiveReportTest, LossesAreInWords) {
-  live::LiveReport report;
-  report.info.model_name = "sbu";
-  report.info.model_version = 2;
-  report.frame_rate_hz = 30;
-  report.totals.time = absl::Seconds(12.3);
-  report.totals.frames = 362;
-  report.totals.latency = {absl::Milliseconds(2), absl::Milliseconds(8)};
-  report.totals.gap_frames = 3;
-  report.totals.late_frames = 1;
-  report.totals.skipped_frames = 2;
-  report.totals.resumed = 2;
-  EXPECT_EQ(DescribeLive(report),
-            "model     sbu@2, seed 0, delay 0 frames\n"
-            "live      12.3 s, 362 follower frames at 30 Hz\n"
-            "latency   p50 2.0 ms, p99 8.0 ms\n"
-            "losses    3 missing leader frames interpolated; 1 late leader frame dropped; 2 "
-            "follower frames from an older plan, because the server could not keep up\n"
-            "resumed   2 times, without losing a frame\n");
 }
 
 }  // namespace

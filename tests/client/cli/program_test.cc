@@ -268,15 +268,6 @@ TEST_F(ProgramTest, ARequestCanHoldTheLeader) {
   EXPECT_THAT(out(), HasSubstr("leader    " + Path("request") + ": 20 frames"));
 }
 
-TEST_F(ProgramTest, AnInvalidRequestMakesNoCall) {
-  EXPECT_CALL(*server_, GetModel).Times(0);
-  WriteTestFile(folder_ / "request", "varity: 1");
-  EXPECT_EQ(Synthesize("pair.html", {"--request", Path("request")}), 42);
-  EXPECT_THAT(err(), HasSubstr("request: line 1:7: "));
-  EXPECT_EQ(Synthesize("pair.html", {"--request", Path("no")}), 42);
-  EXPECT_THAT(err(), HasSubstr("no: no such file"));
-}
-
 TEST_F(ProgramTest, FollowerStartsAsTheOtherPersonOfTheLeadersFile) {
   motion::ClipPair pair{leader_, leader_};
   for (motion::Vec3& position : pair.follower.poses.all()) position.x += 3;
@@ -298,6 +289,8 @@ TEST_F(ProgramTest, PrintsASummaryAsText) {
   Answer([](SynthesisResult* result) { result->cleaned_up = true; });
   ASSERT_EQ(Synthesize("pair.html"), 0);
   EXPECT_THAT(out(), HasSubstr("          cleaned up\n"));
+  ASSERT_EQ(Synthesize("pair.html", {"--quiet"}), 0);
+  EXPECT_EQ(out() + err(), "");
 }
 
 TEST_F(ProgramTest, WhatRemainsOfPinsIsReported) {
@@ -403,11 +396,6 @@ TEST_F(ProgramTest, PrintsTheGradeIfTheServerReportsIt) {
   EXPECT_EQ(json["bad_runs"][1], (nlohmann::json{{"first_frame", 3}, {"frame_count", 2}}));
 }
 
-TEST_F(ProgramTest, QuietPrintsNothing) {
-  ASSERT_EQ(Synthesize("pair.html", {"--quiet"}), 0);
-  EXPECT_EQ(out() + err(), "");
-}
-
 TEST_F(ProgramTest, SynthesizesBetweenPipes) {
   ASSERT_EQ(Run({"synthesize", "--leader", "-", "--input-format", "csv", "--label", "kick=1",
                  "--out", "-", "--output-format", "csv"},
@@ -467,38 +455,6 @@ TEST_F(ProgramTest, ConnectionIsReadFromTheEnvironmentUnlessFlagsStateIt) {
   for (const auto& [name, value] : variables) unsetenv(name);
 }
 
-TEST_F(ProgramTest, UsageErrorMakesNoCall) {
-  EXPECT_CALL(*server_, GetModel).Times(0);
-  EXPECT_EQ(Synthesize("pair.fbx"), 2);
-  EXPECT_THAT(err(), HasSubstr(".fbx"));
-  EXPECT_EQ(out(), "");
-}
-
-TEST_F(ProgramTest, MissingLeaderMakesNoCall) {
-  EXPECT_CALL(*server_, GetModel).Times(0);
-  EXPECT_EQ(Run({"synthesize", "--leader", Path("no.bvh"), "--label", "kick=1", "--out",
-                 Path("pair.html")}),
-            42);
-  EXPECT_THAT(err(), HasSubstr("no.bvh: no such file"));
-}
-
-TEST_F(ProgramTest, MissingFollowerStartMakesNoCall) {
-  EXPECT_CALL(*server_, GetModel).Times(0);
-  EXPECT_EQ(Synthesize("pair.html", {"--follower-start", Path("no.bvh")}), 42);
-  EXPECT_THAT(err(), HasSubstr("no.bvh: no such file"));
-  EXPECT_EQ(Synthesize("pair.html", {"--follower-start", "0,1"}), 42);
-  EXPECT_THAT(err(), HasSubstr("--follower-start: 0,1: no such file; expected a motion file or "
-                               "X,Y,Z"));
-}
-
-TEST_F(ProgramTest, AMalformedLeaderIsBadInput) {
-  WriteTestFile(folder_ / "leader.csv", "not,a,motion\n1,2,3\n");
-  EXPECT_CALL(*server_, Synthesize).Times(0);
-  EXPECT_EQ(Synthesize("pair.html"), 42);
-  EXPECT_THAT(err(), HasSubstr("leader.csv"));
-  EXPECT_FALSE(Exists("pair.html"));
-}
-
 TEST_F(ProgramTest, JointMapFileMapsTheJoints) {
   std::string text = ReadTestFile(folder_ / "leader.csv");
   text = absl::StrReplaceAll(text, {{".left_hand_", ".paw_"}, {".right_hand_", ".claw_"}});
@@ -522,29 +478,12 @@ TEST_F(ProgramTest, JointMapFileMapsTheJoints) {
   EXPECT_THAT(err(), HasSubstr("rig.txt:1: expected MODEL_JOINT=FILE_JOINT"));
 }
 
-TEST_F(ProgramTest, MissingJointMapFileMakesNoCall) {
-  EXPECT_CALL(*server_, GetModel).Times(0);
-  EXPECT_EQ(Synthesize("pair.html", {"--joint-map", Path("no.txt")}), 42);
-  EXPECT_THAT(err(), HasSubstr("no.txt: no such file"));
-}
-
 TEST_F(ProgramTest, AMissingFrameRateNamesItsFlag) {
   std::string text = ReadTestFile(folder_ / "leader.csv");
   WriteTestFile(folder_ / "leader.csv", text.substr(text.find('\n') + 1));
   EXPECT_EQ(Synthesize("pair.html"), 42);
   EXPECT_THAT(err(), AllOf(HasSubstr("frame rate: expected one, got none"),
                            HasSubstr("\nSpecify it with --frame-rate HZ.\n")));
-}
-
-TEST_F(ProgramTest, UnknownUnitNamesItsFlag) {
-  motion::Clip point = leader_;
-  for (motion::Vec3& position : point.poses.all()) position = {0, 1, 0};
-  ASSERT_THAT(formats::WritePair(folder_ / "pair.bvh", {point, point}, motion::SbuSkeleton()),
-              IsOk());
-  EXPECT_EQ(Run({"synthesize", "--leader", Path("pair.leader.bvh"), "--label", "kick=1", "--out",
-                 Path("pair.html")}),
-            42);
-  EXPECT_THAT(err(), HasSubstr("\nSpecify it with --metres-per-unit METRES.\n"));
 }
 
 TEST_F(ProgramTest, RejectionListsEveryField) {
@@ -635,45 +574,48 @@ TEST_F(ProgramTest, TokenIsTheOnlyLineOfItsFile) {
   EXPECT_FALSE(options_.tls.has_value());
 }
 
-TEST_F(ProgramTest, ATokenFileWithoutATokenIsBadInput) {
-  WriteTestFile(folder_ / "token", " \n");
-  EXPECT_EQ(Run({"models", "--token-file", Path("token")}), 42);
-  EXPECT_THAT(err(), HasSubstr("token: expected a token, got an empty file"));
-  EXPECT_EQ(Run({"models", "--token-file", Path("no-token")}), 42);
-  EXPECT_THAT(err(), HasSubstr("no-token"));
+TEST_F(ProgramTest, BadInputsAreNamedBeforeAnyCall) {
+  EXPECT_CALL(*server_, GetModel).Times(0);
+  WriteTestFile(folder_ / "request", "varity: 1");
+  const std::pair<Strings, const char*> cases[] = {
+      {{"--leader", Path("no.bvh")}, "no.bvh: no such file"},
+      {{"--follower-start", Path("no.bvh")}, "no.bvh: no such file"},
+      {{"--follower-start", "0,1"},
+       "--follower-start: 0,1: no such file; expected a motion file or X,Y,Z"},
+      {{"--joint-map", Path("no.txt")}, "no.txt: no such file"},
+      {{"--request", Path("request")}, "request: line 1:7: "},
+      {{"--request", Path("no")}, "no: no such file"}};
+  for (const auto& [flags, message] : cases) {
+    Strings arguments = {"synthesize", "--label", "kick", "--out", Path("pair.html")};
+    if (flags[0] != "--leader") arguments = arguments + Strings{"--leader", Path("leader.csv")};
+    EXPECT_EQ(Run(arguments + flags), 42);
+    EXPECT_THAT(err(), HasSubstr(message));
+  }
 }
 
-TEST_F(ProgramTest, AMissingCertificateIsBadInput) {
-  EXPECT_EQ(Run({"models", "--tls-ca", Path("no.pem")}), 42);
-  EXPECT_THAT(err(), HasSubstr("no.pem"));
-}
-
-TEST_F(ProgramTest, AFileWithoutACertificateIsBadInput) {
+TEST_F(ProgramTest, BadCredentialsAreNamed) {
   const test::TestCertificate own = test::MakeTestCertificate("client.test");
   WriteTestFile(folder_ / "junk.pem", "certificate");
-  WriteTestFile(folder_ / "empty.pem", "");
+  WriteTestFile(folder_ / "empty", " \n");
+  WriteTestFile(folder_ / "large.pem", std::string((1 << 20) + 1, 'x'));
   WriteTestFile(folder_ / "cert.pem", own.certificate);
   WriteTestFile(folder_ / "other.pem", test::MakeTestCertificate("other.test").private_key);
   const std::string cert = Path("cert.pem"), junk = Path("junk.pem"), other = Path("other.pem");
-  EXPECT_EQ(Run({"models", "--tls-ca", junk}), 42);
-  EXPECT_THAT(err(), HasSubstr("tls_ca: " + junk + ": expected PEM certificates, got none"));
-  EXPECT_EQ(Run({"models", "--tls-ca", Path("empty.pem")}), 42);
-  EXPECT_THAT(err(), HasSubstr("empty.pem: expected PEM, got an empty file"));
-  EXPECT_EQ(Run({"models", "--tls-cert", junk, "--tls-key", other}), 42);
-  EXPECT_THAT(err(), HasSubstr("tls_cert: " + junk + ": expected PEM certificates, "));
-  EXPECT_EQ(Run({"models", "--tls-cert", cert, "--tls-key", junk}), 42);
-  EXPECT_THAT(err(), HasSubstr("tls_key: " + junk + ": expected a private key in PEM "));
-  EXPECT_EQ(Run({"models", "--tls-cert", cert, "--tls-key", other}), 42);
-  EXPECT_THAT(err(), HasSubstr("tls_key: " + other +
-                               ": expected the key of the first "
-                               "certificate in tls_cert: " +
-                               cert + ", got another"));
-}
-
-TEST_F(ProgramTest, AFileTooLargeForACertificateIsBadInput) {
-  WriteTestFile(folder_ / "ca.pem", std::string((1 << 20) + 1, 'x'));
-  EXPECT_EQ(Run({"models", "--tls-ca", Path("ca.pem")}), 42);
-  EXPECT_THAT(err(), HasSubstr("ca.pem: expected a PEM file of at most 1 MiB, got more"));
+  const std::pair<Strings, std::string> cases[] = {
+      {{"--tls-ca", Path("no.pem")}, "no.pem"},
+      {{"--tls-ca", junk}, "tls_ca: " + junk + ": expected PEM certificates, got none"},
+      {{"--tls-ca", Path("large.pem")},
+       "large.pem: expected a PEM file of at most 1 MiB, got more"},
+      {{"--tls-cert", junk, "--tls-key", other}, "tls_cert: " + junk + ": expected PEM"},
+      {{"--tls-cert", cert, "--tls-key", junk}, "tls_key: " + junk + ": expected a private key"},
+      {{"--tls-cert", cert, "--tls-key", other},
+       "tls_key: " + other + ": expected the key of the first certificate in tls_cert: " + cert},
+      {{"--token-file", Path("empty")}, "empty: expected a token, got an empty file"},
+      {{"--token-file", Path("no-token")}, "no-token"}};
+  for (const auto& [flags, message] : cases) {
+    EXPECT_EQ(Run(Strings{"models"} + flags), 42);
+    EXPECT_THAT(err(), HasSubstr(message));
+  }
 }
 
 }  // namespace

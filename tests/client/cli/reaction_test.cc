@@ -5,10 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "client/cli/request_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "model/motion/coordinates.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -170,77 +168,6 @@ TEST_F(RequestFileTest, FlagsOverrideIt) {
   EXPECT_EQ(request->model.name, "k3hi");
   EXPECT_TRUE(request->weights.empty()) << "keyframes replace the labels of the file";
   EXPECT_THAT(request->keyframes, SizeIs(1));
-}
-
-// The leader that is read from a file with the point (1, 2, 3), which states no coordinates.
-motion::Vec3 ReadPoint(const InputArguments& input) {
-  const test::TemporaryFolder folder;
-  ReactionArguments arguments;
-  arguments.leader = folder / "leader.csv";
-  arguments.input = input;
-  arguments.input.frame_rate_hz = 30;
-  test::WriteTestFile(arguments.leader, "frame,pelvis_x,pelvis_y,pelvis_z\n0,1,2,3\n");
-  motion::Skeleton skeleton;
-  skeleton.joint_names = {"pelvis"};
-  SynthesisRequest request;
-  EXPECT_THAT(ReadMotions(arguments, skeleton, nullptr, &request, nullptr), IsOk());
-  return request.leader.poses.empty() ? motion::Vec3{} : request.leader.at(0, 0);
-}
-
-TEST(ReadMotionsTest, UnitAndAxisOverrideTheFile) {
-  using motion::LengthUnit;
-  using motion::UpAxis;
-  const struct {
-    std::optional<LengthUnit> unit;
-    std::optional<UpAxis> up_axis;
-    motion::Coordinates coordinates;
-  } cases[] = {
-      {std::nullopt, UpAxis::kZUp, {LengthUnit::kMetres, UpAxis::kZUp}},
-      {LengthUnit::kMillimetres, UpAxis::kZUp, {LengthUnit::kMillimetres, UpAxis::kZUp}},
-      {LengthUnit::kMillimetres, std::nullopt, {LengthUnit::kMillimetres, UpAxis::kYUp}},
-      {LengthUnit::kSbuNormalised, std::nullopt, {LengthUnit::kSbuNormalised, UpAxis::kYDown}}};
-  for (const auto& [unit, up_axis, coordinates] : cases) {
-    InputArguments input;
-    input.unit = unit;
-    input.up_axis = up_axis;
-    EXPECT_LT(Distance(ReadPoint(input), ToWorld(coordinates, {1, 2, 3})), 1e-5f);
-    input.metres_per_unit = 0.01;  // overrides the unit
-    if (unit == LengthUnit::kSbuNormalised) continue;
-    EXPECT_LT(Distance(ReadPoint(input), motion::ToWorld({LengthUnit::kMetres, coordinates.up_axis},
-                                                         {.01f, .02f, .03f})),
-              1e-6F);
-  }
-}
-
-// The notes on a follower's start for a leader who stands: 0.9 m from foot to pelvis.
-std::vector<std::string> NotesOnStart(const std::string& start) {
-  const test::TemporaryFolder folder;
-  ReactionArguments arguments;
-  arguments.leader = folder / "leader.csv";
-  arguments.input.frame_rate_hz = 30;
-  arguments.follower_start = start;
-  test::WriteTestFile(arguments.leader,
-                      "frame,pelvis_x,pelvis_y,pelvis_z,left_foot_x,left_foot_y,left_foot_z,"
-                      "right_foot_x,right_foot_y,right_foot_z\n0,0,1,0,0,0.1,0,0,0.1,0\n");
-  motion::Skeleton skeleton;
-  skeleton.joint_names = {"pelvis", "left_foot", "right_foot"};
-  skeleton.bones = {{0, 1}, {0, 2}};
-  skeleton.feet = motion::JointPair{1, 2};
-  SynthesisRequest request;
-  std::vector<std::string> notes;
-  EXPECT_THAT(ReadMotions(arguments, skeleton, nullptr, &request, &notes), IsOk());
-  EXPECT_THAT(notes.front(), HasSubstr("not levelled"));
-  notes.erase(notes.begin());
-  return notes;
-}
-
-TEST(ReadMotionsTest, AStartOnTheFloorOrInTheAirGetsAWarning) {
-  EXPECT_THAT(NotesOnStart("0,0,1.2"),
-              ElementsAre(HasSubstr("warning: --follower-start: expected Y near 1.00 m, where the "
-                                    "pelvis of a standing person is, got 0")));
-  EXPECT_THAT(NotesOnStart("0,5,1.2"), ElementsAre(HasSubstr("got 5")));
-  EXPECT_THAT(NotesOnStart("0,0.5,1.2"), ElementsAre());
-  EXPECT_THAT(NotesOnStart("0,1.1,1.2"), ElementsAre());
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "absl/synchronization/notification.h"
-#include "client/cli/exit_code.h"
+#include "client/cli/report.h"
 #include "gtest/gtest.h"
 
 namespace duet::client::cli {

