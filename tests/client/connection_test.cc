@@ -52,14 +52,6 @@ class ConnectionTest : public ::testing::Test {
   SynthesisRequest request_;
 };
 
-TEST_F(ConnectionTest, SynthesizesInOneAttempt) {
-  stub_->streams = {Good()};
-  const absl::StatusOr<SynthesisResult> result = Synthesize();
-  ASSERT_THAT(result, IsOk());
-  EXPECT_EQ(result->pair.follower.poses, FollowerFor(request_.leader));
-  EXPECT_EQ(result->attempt_count, 1);
-}
-
 TEST_F(ConnectionTest, EveryAttemptCarriesTheSameDeadlineAndRequestId) {
   request_.request_id = "mine";
   stub_->streams = {Refused(absl::UnavailableError("away")), Good()};
@@ -152,11 +144,6 @@ TEST_F(ConnectionTest, FullServerIsRetriedOnlyForBulk) {
   EXPECT_THAT(time_.sleeps, ElementsAre(absl::Milliseconds(500)));
 }
 
-TEST_F(ConnectionTest, ExpiredCallIsNotRetried) {
-  stub_->streams = {Refused(absl::DeadlineExceededError("too late"))};
-  EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kDeadlineExceeded, "too late"));
-}
-
 TEST_F(ConnectionTest, CallbackGetsEveryFrameOnceAcrossRetries) {
   stub_->streams = {Broken(), Good(3)};
   motion::Poses frames(0, request_.leader.joint_count());
@@ -246,12 +233,6 @@ TEST_F(ConnectionTest, GetModelRetriesAndReads) {
   EXPECT_EQ(details->model.name, "dancer");
   EXPECT_EQ(details->limits.min_frames, 2);
   EXPECT_EQ(stub_->get_model_requests[1].model().version(), 2u);
-}
-
-TEST_F(ConnectionTest, GetModelReturnsARejection) {
-  stub_->get_model = {ServiceError(absl::StatusCode::kNotFound, "no such model")};
-  EXPECT_THAT(ConnectionImpl(stub_, options_, time_.Environment()).GetModel({}),
-              StatusIs(absl::StatusCode::kNotFound, "no such model"));
 }
 
 }  // namespace

@@ -1,15 +1,12 @@
 // The client over a real connection to an in-process server.
 #include <atomic>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "absl/synchronization/notification.h"
 #include "client/client.h"
-#include "client/error_details.h"
 #include "client/internal/connect.h"
-#include "duet/rpc/v1/status.pb.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_service.h"
@@ -21,7 +18,6 @@ namespace {
 
 using test::FakeServer;
 using test::FollowerFor;
-using test::HeaderFor;
 using test::kLongestCall;
 using test::ReplyFor;
 using test::ThreeJointLeader;
@@ -72,57 +68,6 @@ TEST_F(GrpcClientTest, SynthesizesOverTheWire) {
   EXPECT_EQ(request_id, "job-7");
 }
 
-TEST_F(GrpcClientTest, StreamsChunksToTheCallback) {
-  server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
-                                        Writer* writer) {
-    return WriteAll(ReplyFor(request_.leader, 2), writer);
-  };
-  absl::StatusOr<Client> client = Client::Create(options_);
-  ASSERT_THAT(client, IsOk());
-  std::vector<int> first_frames;
-  ASSERT_THAT(client->SynthesizeStreaming(request_,
-                                          [&](const FollowerChunk& chunk) {
-                                            first_frames.push_back(chunk.first_frame);
-                                            return absl::OkStatus();
-                                          }),
-              IsOk());
-  EXPECT_THAT(first_frames, ElementsAre(0, 2, 4));
-}
-
-TEST_F(GrpcClientTest, BrokenStreamIsRetried) {
-  int calls = 0;
-  server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
-                                        Writer* writer) {
-    if (++calls == 1) {
-      writer->Write(HeaderFor(request_.leader));
-      return grpc::Status(grpc::StatusCode::UNAVAILABLE, "going away");
-    }
-    return WriteAll(ReplyFor(request_.leader, 5), writer);
-  };
-  const absl::StatusOr<SynthesisResult> result = Synthesize();
-  ASSERT_THAT(result, IsOk());
-  EXPECT_EQ(result->attempt_count, 2);
-}
-
-TEST_F(GrpcClientTest, RejectionNamesEveryField) {
-  server_.service().on_synthesize = [](grpc::ServerContext*, const v1::SynthesizeRequest&,
-                                       Writer*) {
-    rpc::v1::BadRequest bad;
-    rpc::v1::BadRequest::FieldViolation* violation = bad.add_field_violations();
-    violation->set_field("leader.positions[3]");
-    violation->set_description("NaN, expected a finite value");
-    rpc::v1::Status details;
-    google::protobuf::Any* any = details.add_details();
-    any->set_type_url("type.googleapis.com/google.rpc.BadRequest");
-    any->set_value(bad.SerializeAsString());
-    return grpc::Status(grpc::StatusCode::INVALID_ARGUMENT, "refused", details.SerializeAsString());
-  };
-  const absl::Status status = Synthesize().status();
-  EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument,
-                               "refused: leader.positions[3]: NaN, expected a finite value"));
-  ASSERT_EQ(FieldViolations(status).size(), 1u);
-}
-
 TEST_F(GrpcClientTest, DeadlineEndsACall) {
   server_.service().on_synthesize = [&](grpc::ServerContext*, const v1::SynthesizeRequest&,
                                         Writer*) {
@@ -147,43 +92,11 @@ TEST_F(GrpcClientTest, ServerThatReportsNotServingGetsNoCalls) {
               StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
 }
 
-TEST_F(GrpcClientTest, ServerThatReportsNotServingIsReachable) {
-  server_.SetServing(false);
-  options_.retry.max_attempts = 4;
-  options_.wait = absl::ZeroDuration();
-  EXPECT_THAT(Synthesize(),
-              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
-}
-
 TEST_F(GrpcClientTest, MissingServerIsReportedWithItsAddressAfterTheWait) {
   options_.server_address = "127.0.0.1:1";
   options_.wait = absl::Milliseconds(50);
   EXPECT_THAT(Synthesize(), StatusIs(absl::StatusCode::kUnavailable,
                                      HasSubstr("the server at 127.0.0.1:1 is not running: ")));
-}
-
-TEST_F(GrpcClientTest, MissingServerIsUnavailableAfterEveryAttempt) {
-  // Port 1 of this machine: nothing listens there.
-  options_.server_address = "127.0.0.1:1";
-  options_.retry.max_attempts = 4;
-  EXPECT_THAT(Synthesize(),
-              StatusIs(absl::StatusCode::kUnavailable, HasSubstr("after 4 attempts")));
-}
-
-TEST_F(GrpcClientTest, CallsRunConcurrentlyOnOneClient) {
-  server_.service().on_list_models = [](grpc::ServerContext*, v1::ListModelsResponse* response) {
-    response->add_models()->set_name("dancer");
-    return grpc::Status::OK;
-  };
-  absl::StatusOr<Client> client = Client::Create(options_);
-  ASSERT_THAT(client, IsOk());
-  std::vector<std::thread> threads;
-  std::atomic<int> good{0};
-  for (int i = 0; i < 8; ++i) {
-    threads.emplace_back([copy = *client, &good] { good += copy.ListModels().ok() ? 1 : 0; });
-  }
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(good, 8);
 }
 
 TEST_F(GrpcClientTest, EachAsynchronousCallEndsOnce) {

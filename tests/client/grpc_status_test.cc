@@ -35,8 +35,6 @@ grpc::Status Refusal(const std::string& message, const rpc::v1::Status& details)
   return {grpc::StatusCode::INVALID_ARGUMENT, message, details.SerializeAsString()};
 }
 
-TEST(FromGrpcTest, OkStatusIsConverted) { EXPECT_THAT(FromGrpc(grpc::Status::OK), IsOk()); }
-
 TEST(FromGrpcTest, CodeAndMessageAreKept) {
   EXPECT_THAT(FromGrpc({grpc::StatusCode::NOT_FOUND, "no such model"}),
               StatusIs(absl::StatusCode::kNotFound, "no such model"));
@@ -65,16 +63,6 @@ TEST(FromGrpcTest, ViolationsInTheMessageAreNotRepeated) {
                                "label_vector: empty, expected at least one weight"));
 }
 
-TEST(FromGrpcTest, EmptyMessageListsTheViolations) {
-  rpc::v1::Status details;
-  Pack(TwoViolations(), "BadRequest", &details);
-  EXPECT_THAT(
-      FromGrpc(Refusal("", details)),
-      StatusIs(absl::StatusCode::kInvalidArgument,
-               "leader.frame_rate_hz: 0, expected 1 to 240; label_vector: empty, expected at "
-               "least one weight"));
-}
-
 TEST(FromGrpcTest, RetryInfoAndErrorInfoAreReadable) {
   rpc::v1::Status details;
   rpc::v1::RetryInfo retry;
@@ -100,13 +88,6 @@ TEST(FromGrpcTest, MalformedDetailsKeepCodeAndMessage) {
   const absl::Status status = FromGrpc(Refusal("bad", details));
   EXPECT_THAT(status, StatusIs(absl::StatusCode::kInvalidArgument, "bad"));
   EXPECT_THAT(FieldViolations(status), IsEmpty());
-}
-
-TEST(ErrorDetailsTest, StatusWithoutDetailsHasNone) {
-  const absl::Status status = absl::UnavailableError("away");
-  EXPECT_THAT(FieldViolations(status), IsEmpty());
-  EXPECT_EQ(RetryDelay(status), std::nullopt);
-  EXPECT_EQ(ErrorReason(status), "");
 }
 
 TEST(ErrorDetailsTest, NegativeRetryDelayIsIgnored) {

@@ -18,12 +18,6 @@ TEST(LabelTrackTest, AStepKeepsTheOldWeightsUntilTheFrameBefore) {
   EXPECT_THAT(track.From(0), ElementsAre(Key(0, 1), Key(9, 1), Key(10, 2)));
 }
 
-TEST(LabelTrackTest, AChangeAtTheFirstFrameReplacesTheWeights) {
-  LabelTrack track({{0, {{"hug", 1}}}});
-  track.Change(0, {{"hug", 2}}, 0);
-  EXPECT_THAT(track.From(0), ElementsAre(Key(0, 2)));
-}
-
 TEST(LabelTrackTest, AnEaseBeginsAtTheWeightsOfItsFrame) {
   LabelTrack track({{0, {{"hug", 0}}}});
   track.Change(10, {{"hug", 1}}, 10);

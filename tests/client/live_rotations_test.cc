@@ -34,13 +34,6 @@ TEST(LiveRotationsTest, ReadsTheFramesThatTheCallerDoesNotHave) {
   EXPECT_THAT((*read)->rotations, SizeIs(3));
 }
 
-TEST(LiveRotationsTest, AFrameThatTheCallerHasIsNoRotation) {
-  LiveRotations rotations(true, kJoints);
-  const auto read = rotations.Read(Frames(2, true), 2);
-  ASSERT_THAT(read, IsOk());
-  EXPECT_FALSE(read->has_value());
-}
-
 TEST(LiveRotationsTest, TheNearerSignIsChosenAlsoInAnotherStream) {
   LiveRotations rotations(true, kJoints);
   ASSERT_THAT(rotations.Read(Frames(1, true, 0.8F, 0.6F), 0), IsOk());

@@ -26,11 +26,6 @@ TEST(ToSkeleton, FindsLandmarksByName) {
   EXPECT_EQ(skeleton->feet, (motion::JointPair{3, 1}));
 }
 
-TEST(ToSkeleton, FirstJointCanBeALandmark) {
-  EXPECT_EQ(ToSkeleton(Model({"left_hip", "right_hip"}))->hips, (motion::JointPair{0, 1}));
-  EXPECT_EQ(ToSkeleton(Model({"right_foot", "left_foot"}))->feet, (motion::JointPair{1, 0}));
-}
-
 TEST(ToSkeleton, AnklesAreTheFeetOfAModelWithToes) {
   const auto skeleton =
       ToSkeleton(Model({"hips", "left_ankle", "left_toe", "right_ankle", "right_toe"}));

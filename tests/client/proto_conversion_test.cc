@@ -1,7 +1,5 @@
 #include "client/internal/proto_conversion.h"
 
-#include <limits>
-
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"
@@ -160,16 +158,6 @@ TEST(SynthesizeRequestTest, ValuesThatTheProtoCannotHoldAreRejected) {
                 r->model = {"dancer", 1, "canary"};
               }),
               StatusIs(kInvalid, HasSubstr("got both: 1 and \"canary\"")));
-}
-
-TEST(SynthesizeRequestTest, ValuesThatTheServerValidatesAreSent) {
-  SynthesisRequest request = GoodRequest();
-  request.leader.poses.all()[0].x = std::numeric_limits<float>::quiet_NaN();
-  request.leader.frame_rate_hz = -1;
-  request.weights = {{"kick", 1000}, {"kick", 2}};
-  request.variety = -1;
-  request.candidates = 1000;
-  EXPECT_THAT(ToProto(request), IsOk());
 }
 
 v1::Model GoodModel() {

@@ -141,19 +141,6 @@ TEST_F(ReplyWithRotationsTest, AssemblesThem) {
   EXPECT_EQ(result.rotations->rotations.size(), 10u);
 }
 
-TEST_F(ReplyWithRotationsTest, ARepeatedStreamHandsOutEachFrameOnce) {
-  Reply reply = ReplyFor(leader_, 2);
-  AddRotations(&reply);
-  rotating_.StartStream();
-  ASSERT_THAT(rotating_.Accept(reply[0]), IsOk());
-  ASSERT_THAT(rotating_.Accept(reply[1]), IsOk());
-  ASSERT_THAT(FeedWithRotations(), IsOk());
-  ASSERT_EQ(chunks_.size(), 3u);
-  EXPECT_EQ(chunks_[1].first_frame, 2);
-  EXPECT_EQ(chunks_[1].rotations->rotations.size(), 4u);
-  EXPECT_EQ(std::move(rotating_).TakeResult().rotations->rotations.size(), 10u);
-}
-
 TEST_F(ReplyWithRotationsTest, RejectsWhatIsNoRig) {
   const auto header = [](const std::function<void(v1::SynthesisHeader*)>& spoil) {
     return [spoil](Reply* reply) { spoil(reply->front().mutable_header()); };
@@ -198,12 +185,6 @@ TEST_F(ReplyAssemblerTest, RejectsRotationsThatNobodyAskedFor) {
   EXPECT_THAT(
       FeedSpoilt([](Reply* r) { (*r)[1].mutable_chunk()->add_rotations(1); }),
       StatusIs(absl::StatusCode::kInternal, HasSubstr("chunk.rotations: expected 0 values")));
-}
-
-TEST_F(ReplyAssemblerTest, ReadsUnfamiliarity) {
-  ASSERT_THAT(FeedSpoilt([](Reply* r) { r->back().mutable_summary()->set_unfamiliarity(1.25); }),
-              IsOk());
-  EXPECT_EQ(std::move(assembler_).TakeResult().unfamiliarity, 1.25);
 }
 
 TEST_F(ReplyAssemblerTest, ReadsTheGrade) {

@@ -67,12 +67,6 @@ TEST_F(TlsTest, ACertificateOfAnotherNameIsRefused) {
   EXPECT_THAT(Call(), StatusIs(kUnavailable, HasSubstr("")));
 }
 
-TEST_F(TlsTest, PlainTextIsRejectedByATlsServer) {
-  StartServer(false);
-  options_.tls.reset();
-  EXPECT_THAT(Call(), StatusIs(kUnavailable, HasSubstr("")));
-}
-
 TEST_F(TlsTest, ClientCertificateIsSentOnRequest) {
   StartServer(true);
   EXPECT_THAT(Call(), StatusIs(kUnavailable, HasSubstr("")));

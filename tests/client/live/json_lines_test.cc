@@ -106,14 +106,6 @@ TEST(JsonLinesSourceTest, IgnoresTheByteOrderMarkOfAShell) {
       << "a mark is only expected at the beginning";
 }
 
-TEST(JsonLinesSourceTest, TheFormatHasTheModelsJoints) {
-  Text text(Header({{"rate", 59.94}}));
-  const auto format = text->Open();
-  ASSERT_THAT(format, IsOk());
-  EXPECT_EQ(format->joint_names, Joints());
-  EXPECT_EQ(format->frame_rate_hz, 59.94);
-}
-
 TEST(JsonLinesSourceTest, JointsMayHaveOtherNamesAndAnotherOrder) {
   std::vector<std::string> names(Joints().rbegin(), Joints().rend());
   for (std::string& name : names) absl::StrReplaceAll({{"left_", "L"}, {"right_", "R"}}, &name);

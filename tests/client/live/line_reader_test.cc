@@ -81,13 +81,5 @@ TEST(LineReaderTest, ALineIsNotEndless) {
   writer.join();
 }
 
-TEST(LineReaderTest, StreamsHaveLinesToo) {
-  std::istringstream in("one\ntwo");
-  const auto lines = ReadLinesOf(in);
-  EXPECT_EQ(NextOf(*lines), "one");
-  lines->Stop();
-  EXPECT_EQ(NextOf(*lines), std::nullopt);
-}
-
 }  // namespace
 }  // namespace duet::client::live

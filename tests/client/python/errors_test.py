@@ -32,11 +32,6 @@ class ErrorsTest(unittest.TestCase):
                          "INVALID_ARGUMENT: two fields: leader.unit: 0, expected 1; and more")
         self.assertTrue(error.is_permanent)
 
-    def test_message_names_each_violation_once(self):
-        error = from_rpc_error(Refusal(grpc.StatusCode.INVALID_ARGUMENT, "seed: 1, expected 2",
-                                       support.details(support.bad_request(("seed", "1, expected 2")))))
-        self.assertEqual(error.message, "seed: 1, expected 2")
-
     def test_retry_delay_is_read(self):
         code = grpc.StatusCode.RESOURCE_EXHAUSTED
         full = from_rpc_error(Refusal(code, "full", support.details(support.retry_info(1.5))))

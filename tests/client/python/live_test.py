@@ -11,7 +11,6 @@ import duet_motion as duet
 import duet_motion.aio
 import grpc
 import numpy as np
-from duet_motion._labels import LabelTrack
 from duet_motion.v1 import live_pb2, motion_pb2
 from support import Failure, Mirror
 
@@ -86,13 +85,6 @@ class LiveTest(unittest.TestCase):
         self.assert_whole(parts)
         self.assertEqual(parts[0].leader_frame, 3)
 
-    def test_several_frames_in_one_call(self):
-        mirror = Mirror()
-        parts, _ = run(lambda client: answered(client, support.leader(70), together=True), mirror)
-        self.assert_whole(parts, 70)
-        self.assertEqual([message.frames.frame_count for message in mirror.streams[0][1:]],
-                         [32, 32, 6])
-
     def test_broken_stream_resumes_with_the_history_of_both(self):
         for failure in (RESET, Failure(grpc.StatusCode.INTERNAL, "RST_STREAM"),
                         Failure(grpc.StatusCode.CANCELLED), "end", "drain"):
@@ -151,31 +143,6 @@ class LiveTest(unittest.TestCase):
         np.testing.assert_array_equal(history.rig_leader_positions, leader.positions[0].ravel())
         np.testing.assert_array_equal(history.rig_follower_positions,
                                       support.follower_of(leader)[0].ravel())
-
-    def test_malformed_rotations_are_refused(self):
-        class Spoiled(Mirror):
-            def SynthesizeLive(self, requests, context):
-                for response in super().SynthesizeLive(requests, context):
-                    if response.HasField("frames"):
-                        self.spoil(response.frames)
-                    yield response
-
-        for field, spoil in (
-                ("frames.rig: expected joints in the first", lambda frames: frames.ClearField("rig")),
-                ("frames.rotations: expected 8", lambda frames: frames.rotations.pop()),
-                (r"frames.rotations\[0..3\]: expected a unit",
-                 lambda frames: frames.rotations.__setitem__(3, 2)),
-                (r"frames.rig\[1\].parent", lambda frames: frames.rig and
-                 setattr(frames.rig[1], "parent", 1))):
-            with self.subTest(field):
-                mirror = Spoiled()
-                mirror.spoil = spoil
-                with self.assertRaisesRegex(duet.DuetError, field):
-                    run(lambda client: answered(client, rotations=True), mirror)
-
-    def test_parts_have_no_rotations_unless_asked(self):
-        parts, _ = run(answered, Mirror())
-        self.assertIsNone(parts[0].rotations)
 
     def test_messages_never_go_to_a_stream_that_has_ended(self):
         class Ended:
@@ -243,12 +210,6 @@ class LiveTest(unittest.TestCase):
         messages = asyncio.run(asyncio.wait_for(sent(), support.LONGEST_CALL))
         self.assertEqual(messages[0].WhichOneof("payload"), "start")
         np.testing.assert_array_equal(np.reshape(positions_of(messages), leader.shape), leader)
-
-    def test_stream_that_breaks_before_its_first_frame_begins_again(self):
-        mirror = Mirror({"after": 0, "act": RESET}, {"after": 0, "act": RESET})
-        parts, session = run(answered, mirror)
-        self.assert_whole(parts)
-        self.assertFalse(mirror.streams[2][0].start.HasField("history"))
 
     def test_stream_that_breaks_repeatedly_loses_nothing(self):
         mirror = Mirror(*({"after": 1, "act": RESET} for _ in range(FRAMES - 2)))
@@ -418,27 +379,6 @@ class LiveTest(unittest.TestCase):
                     await session.change_labels({})
 
         run(wrong, Mirror())
-
-
-class LabelTrackTest(unittest.TestCase):
-    def test_change_begins_with_the_weights_of_its_frame(self):
-        track = LabelTrack({0: {"a": 0}, 10: {"a": 1}, 20: {"b": 1}})
-        track.change(5, {"b": 2}, 10)
-        self.assertEqual(track.at(5), {"a": 0.5, "b": 0})
-        self.assertEqual(track.at(10), {"a": 0.25, "b": 1.0})
-        self.assertEqual(track.at(40), {"b": 2})
-
-    def test_change_without_ease_is_a_step(self):
-        track = LabelTrack({0: {"a": 1}})
-        track.change(7, {"b": 1}, 0)
-        self.assertEqual((track.at(6), track.at(7)), ({"a": 1, "b": 0}, {"b": 1}))
-        track.change(0, {"a": 2}, 0)
-        self.assertEqual(track.since(0), [(0, {"a": 2})])
-
-    def test_since_forgets_what_no_longer_applies(self):
-        track = LabelTrack({0: {"a": 1}, 10: {"a": 2}, 20: {"a": 3}})
-        self.assertEqual(track.since(15), [(10, {"a": 2}), (20, {"a": 3})])
-        self.assertEqual(track.at(16), {"a": 2.6})
 
 
 if __name__ == "__main__":

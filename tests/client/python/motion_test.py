@@ -1,6 +1,5 @@
 """duet.Motion."""
 
-import pickle
 import unittest
 
 import support
@@ -37,11 +36,6 @@ class MotionTest(unittest.TestCase):
         self.assertEqual(chosen.joint_names, ("right", "root"))
         np.testing.assert_array_equal(chosen.positions, motion.positions[:, [2, 0]])
         self.assertEqual(chosen.frame_rate_hz, 30)
-
-    def test_selects_frames(self):
-        motion = support.leader()
-        np.testing.assert_array_equal(motion.frames(2, 4).positions, motion.positions[2:4])
-        np.testing.assert_array_equal(motion.frames(-2).positions, motion.positions[-2:])
 
     def test_invalid_arguments_name_their_field(self):
         for changes, message in (
@@ -87,11 +81,6 @@ class MotionTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "nan at frame 4, joint 'root', z"):
             support.leader(positions=positions)
 
-    def test_float32_overflow_is_rejected(self):
-        large = support.leader(positions=np.full((2, 3, 3), 1e36))
-        with self.assertRaisesRegex(ValueError, "expected a finite float32, got .* joint 'root', x"):
-            large.converted("millimetres")
-
     def test_resamples_as_the_program_does(self):
         # The rule of ResampledFrameCount (tests/motion/resample_test.cc): the end is never cut off.
         motion = support.leader(7)
@@ -119,12 +108,6 @@ class MotionTest(unittest.TestCase):
                 np.testing.assert_allclose(outer.converted().positions, inner.positions, rtol=1e-6)
         with self.assertRaisesRegex(ValueError, "sbu-normalised"):
             inner.converted("sbu-normalised")
-
-    def test_can_be_pickled(self):
-        motion = support.leader(unit="millimetres")
-        copy = pickle.loads(pickle.dumps(motion))
-        np.testing.assert_array_equal(copy.positions, motion.positions)
-        self.assertEqual((copy.joint_names, copy.unit), (motion.joint_names, "millimetres"))
 
 
 if __name__ == "__main__":

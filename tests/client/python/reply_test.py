@@ -55,10 +55,6 @@ class ReplyTest(unittest.TestCase):
         self.accept(support.summary(self.leader, 1, constraint_metres=[0.5, 0]))
         self.assertEqual(self.reply.result(1, 0, 0).constraint_metres, (0.5, 0))
 
-    def test_server_without_candidates_draws_one(self):
-        self.accept(*support.good_reply(self.leader, size=6, candidates=0))
-        self.assertEqual(self.reply.result(1, 0, 0).candidates, 1)
-
     def test_malformed_messages_are_rejected(self):
         leader, head = self.leader, support.header(self.leader)
         whole = support.good_reply(leader, size=6)

@@ -72,12 +72,6 @@ class SettingsTest(unittest.TestCase):
             with duet.Client(timeout=7, wait=3) as client:
                 self.assertEqual((client._settings.timeout, client._settings.wait), (7, 3))
 
-    def test_argument_overrides_the_environment(self):
-        with support.serving(support.Script(LISTING)) as address, mock.patch.dict(
-                os.environ, {"DUET_SERVER": "nobody:1", "DUET_TLS": "true", "DUET_AUTHORITY": "x"}):
-            with duet.Client(address, tls=False, authority="") as client:
-                self.assertEqual(client.list_models()[0].name, "m")
-
 
 if __name__ == "__main__":
     unittest.main()
