@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Optional, Tuple
+from typing import Any, Optional, Tuple, Type, TypeVar, cast
 
 import grpc
 import numpy as np
@@ -12,6 +12,8 @@ import numpy.typing as npt
 from duet_motion.errors import MalformedReplyError
 from duet_motion.motion import Motion, Positions
 from duet_motion.v1 import model_pb2, reaction_pb2, synthesis_pb2
+
+_Kind = TypeVar("_Kind")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -233,6 +235,14 @@ class ModelDetails:
     limits: RequestLimits
 
 
+def _read(message: Any, kind: Type[_Kind], **given: Any) -> _Kind:
+    """A value whose fields have the names of a message's, except those that are given."""
+    values = {field.name: getattr(message, field.name) for field in dataclasses.fields(cast(Any, kind))
+              if field.name not in given}
+    return kind(**{name: value if isinstance(value, (str, float, int)) else tuple(value)
+                   for name, value in values.items()}, **given)
+
+
 def model_from_proto(model: model_pb2.Model) -> ModelInfo:
     """Raises MalformedReplyError if a bone names a joint that does not exist."""
     bones = tuple((bone.parent_joint, bone.child_joint) for bone in model.bones)
@@ -243,29 +253,14 @@ def model_from_proto(model: model_pb2.Model) -> ModelInfo:
                 grpc.StatusCode.INTERNAL,
                 f"the server's reply is malformed: bones of {model.name}@{model.version}: expected "
                 f"joints 0 to {joints - 1}, got {bone[0]} and {bone[1]}")
-    return ModelInfo(
-        name=model.name, version=model.version, version_labels=tuple(model.version_labels),
-        is_default=model.is_default, interaction_classes=tuple(model.interaction_classes),
-        joint_names=tuple(model.joint_names), bones=bones, root_joint=model.root_joint,
-        frame_rate_hz=model.frame_rate_hz, window_frames=model.window_frames,
-        accepts_follower_start=model.accepts_follower_start, samples=model.samples,
-        description=model.description, terms=model.terms, weights_sha256=model.weights_sha256,
-        free_for_all_uses=model.free_for_all_uses)
+    return _read(model, ModelInfo, bones=bones)
 
 
 def grade_from_proto(grade: reaction_pb2.MotionGrade) -> MotionGrade:
-    return MotionGrade(
-        twisted=grade.twisted, skating=grade.skating, leader_skating=grade.leader_skating,
-        overlapping=grade.overlapping,
-        bad_runs=tuple(FrameRun(run.first_frame, run.frame_count) for run in grade.bad_runs))
+    return _read(grade, MotionGrade, bad_runs=tuple(
+        FrameRun(run.first_frame, run.frame_count) for run in grade.bad_runs))
 
 
 def details_from_proto(response: synthesis_pb2.GetModelResponse) -> ModelDetails:
-    limits = response.limits
-    return ModelDetails(model_from_proto(response.model), RequestLimits(
-        min_frame_rate_hz=limits.min_frame_rate_hz, max_frame_rate_hz=limits.max_frame_rate_hz,
-        min_frames=limits.min_frames, max_duration_seconds=limits.max_duration_seconds,
-        max_chunk_frames=limits.max_chunk_frames, max_keyframes=limits.max_label_keyframes,
-        max_abs_weight=limits.max_abs_weight, max_variety=limits.max_variety,
-        max_candidates=limits.max_candidates, max_request_bytes=limits.max_request_bytes,
-        max_constraints=limits.max_constraints))
+    limits = _read(response.limits, RequestLimits, max_keyframes=response.limits.max_label_keyframes)
+    return ModelDetails(model_from_proto(response.model), limits)

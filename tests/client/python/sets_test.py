@@ -159,21 +159,9 @@ class SetsTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "frames: expected 1 or more, got 0"):
             duet.pad(items, frames=0)
 
-    def test_a_set_without_a_description_is_read(self):
-        reactions = duet.read_set(self.write(description=None))
-        self.assertEqual(reactions.interaction_classes, ("hug", "kick"))
-        self.assertEqual(reactions[0].leader.joint_names, ("joint_0", "joint_1", "joint_2"))
-        with self.assertRaisesRegex(duet.DataSetError, "expected one skeleton, got 0"):
-            reactions.joint_names
-
-    def test_an_item_has_the_skeleton_of_its_model(self):
+    def test_an_item_has_its_own_skeleton(self):
         other = {"joint_names": ["a", "b", "c"], "parents": [-1, 0, 1]}
-        several = {**DESCRIPTION, "skeletons": [*DESCRIPTION["skeletons"], other], "models": [
-            *DESCRIPTION["models"], {"name": "n@1", "skeleton": 1}]}
-        del ITEMS[0].record["skeleton"]
-        self.addCleanup(ITEMS[0].record.update, skeleton=0)
-        of_model = duet.read_set(self.write(items=ITEMS[:1], description=several, model="n@1"))
-        self.assertEqual(of_model[0].leader.joint_names, ("a", "b", "c"))
+        several = {**DESCRIPTION, "skeletons": [*DESCRIPTION["skeletons"], other]}
         of_item = duet.read_set(self.write(items=ITEMS[:1], description=several, skeleton=1))
         self.assertEqual(of_item[0].leader.joint_names, ("a", "b", "c"))
 

@@ -90,11 +90,10 @@ class MotionSet(Sequence[SetItem]):
             index, None if split is None else lambda record: split_of(record, splits) == split)
         """The record of each item, in order."""
         self.description: Mapping[str, Any] = _read_description(self.path)
-        """``dataset.json``: counts, models and their terms, skeletons (docs/batch.md). Empty if the
-        set has no such file."""
+        """``dataset.json``: counts, models and their terms, skeletons (docs/batch.md)."""
         self._check_split(splits)
-        self._skeletons: List[Mapping[str, Any]] = list(self.description.get("skeletons", ()))
-        self.interaction_classes = self._classes()
+        self._skeletons: List[Mapping[str, Any]] = self.description["skeletons"]
+        self.interaction_classes = tuple(self.description["interaction_classes"])
         """Every class with weights in any item, in the order of the label vector."""
         self._shards = Shards(self.path)
 
@@ -134,21 +133,16 @@ class MotionSet(Sequence[SetItem]):
         Raises:
             DataSetError: the set has several skeletons, or none.
         """
-        skeleton = self._only_skeleton()
-        if "parents" not in skeleton:
-            raise DataSetError(f"{self.path}: expected parents of joints in dataset.json, got none")
-        return tuple(skeleton["parents"])
+        return tuple(self._only_skeleton()["parents"])
 
     def skeleton_of(self, record: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The joints of an item, a DatasetSkeleton of ``dataset.json``; empty if the set states none.
+        """The joints of an item, a DatasetSkeleton of ``dataset.json``.
 
         Args:
             record: the item's line of ``index.jsonl``.
         """
-        of_model = next((model.get("skeleton", 0) for model in self.description.get("models", ())
-                         if model["name"] == record.get("model")), 0)
-        skeleton = int(record.get("skeleton", of_model))
-        return self._skeletons[skeleton] if skeleton < len(self._skeletons) else {}
+        skeleton: int = record["skeleton"]
+        return self._skeletons[skeleton]
 
     def _only_skeleton(self) -> Mapping[str, Any]:
         if len(self._skeletons) != 1:
@@ -163,13 +157,6 @@ class MotionSet(Sequence[SetItem]):
             raise DataSetError(f"{self.path}: split: expected {' or '.join(names)}, got "
                                f"{self.split!r}")
 
-    def _classes(self) -> Tuple[str, ...]:
-        classes = self.description.get("interaction_classes")
-        if classes is None:
-            classes = sorted({name for record in self.records for _, labels in _keyframes(record)
-                              for name in labels})
-        return tuple(classes)
-
     def _item(self, record: Mapping[str, Any]) -> SetItem:
         pair = self._read(record)
         rate = float(record["frame_rate_hz"])
@@ -178,10 +165,10 @@ class MotionSet(Sequence[SetItem]):
             pair = np.stack([resample(person, rate, self.frame_rate_hz) for person in pair])
             weights = resample(weights, rate, self.frame_rate_hz)
             rate = self.frame_rate_hz
-        names = self._joint_names(record, pair.shape[2])
         try:
+            names = self.skeleton_of(record)["joint_names"]
             leader, follower = (Motion(person, names, rate) for person in pair)
-        except ValueError as error:
+        except (LookupError, ValueError) as error:
             raise DataSetError(f"{self.path}: {record['name']}: {error}") from error
         return SetItem(record, pair, leader, follower, self.interaction_classes, weights)
 
@@ -214,18 +201,12 @@ class MotionSet(Sequence[SetItem]):
                              "output formats")
         return parse_array(files[".npy"].read_bytes())
 
-    def _joint_names(self, record: Mapping[str, Any], joints: int) -> Sequence[str]:
-        stated: Optional[Sequence[str]] = self.skeleton_of(record).get("joint_names")
-        return stated or [f"joint_{joint}" for joint in range(joints)]
-
     def _weights(self, record: Mapping[str, Any], frames: int) -> Weights:
         """Linear between keyframes, constant before the first and after the last."""
         keyframes = _keyframes(record)
         at = [frame for frame, _ in keyframes]
         columns = [np.interp(np.arange(frames), at, [labels.get(name, 0.0) for _, labels in keyframes])
                    for name in self.interaction_classes]
-        if not columns:
-            return np.zeros((frames, 0), np.float32)
         return np.stack(columns, axis=1).astype(np.float32)
 
 
@@ -283,14 +264,12 @@ def _keyframes(record: Mapping[str, Any]) -> List[Tuple[int, Mapping[str, float]
 
 def _read_description(path: pathlib.Path) -> Mapping[str, Any]:
     file = path / "dataset.json"
-    if not file.is_file():
-        return {}
     try:
         description: Dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         version = description["format_version"]
-    except (ValueError, KeyError, TypeError) as error:
-        raise DataSetError(f"{file}: expected a JSON object with format_version, got {error!r}"
-                           ) from error
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise DataSetError(f"{file}: expected a JSON object with format_version, got {error!r}; duet "
+                           "batch writes it at the end of a run") from error
     if version > _NEWEST_FORMAT:
         raise DataSetError(f"{file}: format_version: expected at most {_NEWEST_FORMAT}, got "
                            f"{version}; upgrade duet-motion")
