@@ -132,21 +132,6 @@ class BatchRepairTest(tools.ServedTest):
         self.assertEqual([entry["item"] for entry in entries(out)], list(range(36)))
         self.verified(out)
 
-    def test_changed_leader_is_rejected(self):
-        leaders, out = self.folder / "changing", self.folder / "other"
-        shutil.copytree(self.leaders, leaders)
-        command = self.command(out, leaders=leaders)
-        self.run_in_folder(*command, "--limit", "15")
-        journal = (out / ".duet-batch" / "journal").read_bytes()
-        with (leaders / "hug.bvh").open("a", encoding="utf-8") as file:
-            file.write("\n")
-        result = self.run_in_folder(*command, code=42)
-        self.assertIn(f"leader {leaders / 'hug.bvh'}: expected the file", result.stderr)
-        self.assertEqual((out / ".duet-batch" / "journal").read_bytes(), journal)
-        shutil.copy(tools.sample("hug"), leaders)
-        self.run_in_folder(*command)
-        self.verified(out)
-
     def test_a_damaged_identity_says_how_to_go_on(self):
         out, _ = self.copy_of_whole("identity")
         job = out / ".duet-batch" / "job.json"

@@ -146,23 +146,6 @@ class BatchTest(tools.ServedTest):
             self.assertEqual(sorted(json.dumps([entry[field] for field in asked])
                                     for entry in entries(out)), expected)
 
-    def test_a_server_that_answers_in_another_way_is_refused_by_name(self):
-        out, recipe = self.out(), self.recipe()
-        self.batch(out, recipe, "--limit", "3")
-        model = json.loads((out / "dataset.json").read_text(encoding="utf-8"))["models"][0]
-        self.assertIs(model["cleaned_up"], True)
-        self.assertRegex(model["engine"], "^cpu, (f32|bf16|bf16 \\(AMX\\)), [A-Z].*$")
-        self.assertRegex(model["server_version"], "^[0-9]+\\.[0-9]+\\.[0-9]+$")
-        other = tools.Server("--clean-up", "off")
-        try:
-            refused = self.batch(out, recipe, server=other.address, code=42)
-        finally:
-            other.stop()
-        self.assertIn("model sbu@3: an answer was made in another way than the set's first one: "
-                      "expected clean_up on, ", refused.stderr)
-        self.batch(out, recipe)
-        self.assertEqual(digests(out), digests(self.whole))
-
     def test_answer_equals_that_of_synthesize(self):
         out, single = self.whole, self.folder / "single.npy"
         entry = next(e for e in entries(out) if e["name"] == "hug-kick-s0")
@@ -309,15 +292,9 @@ class BatchTest(tools.ServedTest):
         broken = self.out("broken")
         broken.mkdir()
         (broken / "a.bvh").write_text("HIERARCHY", encoding="utf-8")
-        kick = (self.leaders / "kick.bvh").read_text(encoding="utf-8")
-        lines = kick.splitlines(keepends=True)
-        frames = next(i for i, line in enumerate(lines) if line.startswith("Frames:"))
-        (broken / "still.bvh").write_text(
-            "".join(lines[:frames] + ["Frames: 1\n"] + lines[frames + 1:frames + 3]),
-            encoding="utf-8")
         result = self.batch(out, self.recipe(), "--dry-run", code=42, leaders=broken)
-        self.assertIn("still.bvh: frames: expected at least 2, got 1\n", result.stderr)
-        self.assertEqual(result.stderr.count("cannot be used: "), 2)
+        self.assertEqual(result.stderr.count("cannot be used: "), 1)
+        self.assertIn("a.bvh", result.stderr)
         self.assertFalse(out.exists())
 
     def test_invalid_lines_are_rejected_before_the_run(self):

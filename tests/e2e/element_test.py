@@ -118,11 +118,6 @@ class ElementTest(tools.FolderTest):
                 for event in page.events("Network.requestWillBeSent")}
         self.assertLessEqual(urls, {f"{self.pages}.html", "events.js", "duet-motion.js"})
 
-    def test_script_may_precede_the_element(self):
-        page = self.open('<script src="duet-motion.js"></script>'
-                         f'<duet-motion paused>{INLINE}</duet-motion>', over="file")
-        self.sees(page)
-
     def test_fetches_only_src_and_defines_no_global_names(self):
         page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
         self.sees(page)
@@ -235,20 +230,6 @@ class ElementTest(tools.FolderTest):
         self.assertEqual(page.evaluate("elements[0].shadowRoot.querySelector('output').textContent")
                          [-8:], "/ 1.97 s")
 
-    def test_canvas_has_the_elements_size(self):
-        page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
-        page.evaluate("elements[0].style.width = '300px'")
-        page.wait_until("elements[0].canvas.width === 300 * devicePixelRatio")
-        page.next_frame()
-        self.sees(page, left=0, right=0.5, top=0)
-        self.assertEqual(page.evaluate("elements[0].canvas.height / devicePixelRatio"), 188)
-
-    def test_shows_both_on_a_phone(self):
-        page = self.open('<duet-motion src="pair.json" paused controls></duet-motion>', width=360,
-                         height=640)
-        self.sees(page, left=0, right=1)
-        self.assertEqual(page.evaluate("document.documentElement.scrollWidth"), 360)
-
     def test_the_wheel_scrolls_the_page_until_it_has_the_focus(self):
         page = self.open('<duet-motion src="pair.json" paused></duet-motion><pre>' + "\n" * 200
                          + "</pre>")
@@ -284,12 +265,6 @@ class ElementTest(tools.FolderTest):
             self.assertEqual(page.evaluate("elements[0].shadowRoot.querySelector('[role=alert]')"
                                            ".textContent"), detail["message"])
 
-    def test_has_an_accessible_name_and_role(self):
-        page = self.open('<duet-motion src="pair.json" paused></duet-motion>'
-                         '<duet-motion src="pair.json" paused aria-label="A hug"></duet-motion>')
-        self.assertEqual(page.evaluate(
-            "elements.map((one) => [one.getAttribute('role'), one.getAttribute('aria-label')])"),
-            [["group", "Motion in three dimensions"], ["group", "A hug"]])
 
 
 class Handler(http.server.SimpleHTTPRequestHandler):

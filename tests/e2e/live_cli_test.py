@@ -96,23 +96,6 @@ class LiveCliTest(unittest.TestCase):
         self.assertEqual(before[:50], after[:50])
         self.assertGreater(difference(before[50:], after[50:]), 0.01)
 
-    def test_standard_input_may_end_early(self):
-        follower = pathlib.Path(self.folder.name) / "early.bvh"
-        self.run_live("--from", "-", "--to", follower, "--delay", "3", lines=self.leader[:21])
-        self.assertIn("Frames: 20\n", follower.read_text(encoding="utf-8"))
-        empty = follower.with_name("empty.bvh")
-        self.assertIn("no frames", self.run_live("--from", "-", "--to", empty,
-                                                 lines=self.leader[:1]).stdout)
-        self.assertFalse(empty.exists())
-        self.assertIn("got no data", self.run_live("--from", "-", "--to", empty, lines=[],
-                                                   code=42).stderr)
-
-    def test_a_malformed_line_is_named_and_the_frames_before_it_are_written(self):
-        lines = self.leader[:11] + [{"positions": [[0, 1]]}]
-        result = self.run_live("--from", "-", "--to", "-", lines=lines, code=42)
-        self.assertIn("line 12", result.stderr)
-        self.assertEqual(len(frames_of(result.stdout)), 10)
-
     def interrupted(self, name, *signals):
         """Sends signals to a run after ten frames. Returns its frames and the motion that it wrote."""
         follower = pathlib.Path(self.folder.name) / name

@@ -64,18 +64,6 @@ class PythonClientTest(tools.ServedTest):
         np.testing.assert_array_equal(answers[0], answers[1])
         self.assertGreater(np.abs(answers[0] - answers[2]).max(), 0.01)
 
-    def test_best_of_several_candidates(self):
-        farthest = 0
-        for seed in range(4):
-            answers = [self.client.synthesize(self.hug, {"hug": 1}, seed=seed, candidates=candidates)
-                       for candidates in (1, 4, 4)]
-            self.assertEqual([answer.candidates for answer in answers], [1, 4, 4])
-            positions = [answer.follower.positions for answer in answers]
-            np.testing.assert_array_equal(positions[1], positions[2])
-            farthest = max(farthest, np.abs(positions[0] - positions[1]).max())
-        self.assertGreater(farthest, 0.01)  # the first sample is not the best for every seed
-        self.assertEqual(self.client.get_model().limits.max_candidates, 16)
-
     def test_grade_is_returned_at_any_frame_rate(self):
         for rate in (30, 240):
             grade = self.client.synthesize(self.hug.resampled(rate), {"hug": 1}, seed=3).grade
@@ -145,19 +133,6 @@ class PythonClientTest(tools.ServedTest):
         with self.assertRaisesRegex(duet.InvalidRequestError, "reply_rotations: expected LENGTH_"):
             self.client.synthesize(unequal, {"hug": 1}, rotations=True)
 
-    def test_keyframes_change_the_answer(self):
-        result = self.client.synthesize(self.hug, keyframes={0: {"hug": 1}, 60: {"push": 1}})
-        plain = self.client.synthesize(self.hug, {"hug": 1})
-        self.assertGreater(
-            np.abs(result.follower.positions - plain.follower.positions)[-20:].max(), 0.05)
-
-    def test_follower_starts_at_follower_start(self):
-        result = self.client.synthesize(self.hug, {"hug": 1}, follower_start=(0, 1.1, 1.5),
-                                        clean_up=False)
-        self.assertFalse(result.cleaned_up)
-        start = result.follower.joint("torso")[0]
-        self.assertLess(np.linalg.norm(start[[0, 2]] - [0, 1.5]), 0.3)
-
     def test_stream_yields_chunks(self):
         with self.client.stream(self.hug, {"hug": 1}, chunk_frames=10) as stream:
             firsts = [chunk.first_frame for chunk in stream]
@@ -180,19 +155,6 @@ class PythonClientTest(tools.ServedTest):
         with self.assertRaises(duet.RequestMismatchError):
             self.client.synthesize(self.hug.select(["head", "neck"]), {"hug": 1})
 
-    def test_violations_name_frame_and_joint(self):
-        positions = self.hug.positions.copy()
-        positions[7, 4, 1] = np.nan
-        unchecked = object.__new__(duet.Motion)
-        for field in dataclasses.fields(duet.Motion):
-            object.__setattr__(unchecked, field.name, getattr(self.hug, field.name))
-        object.__setattr__(unchecked, "positions", positions)
-        with self.assertRaises(duet.InvalidRequestError) as caught:
-            self.client.synthesize(unchecked, {"hug": 1})
-        self.assertEqual([violation.field for violation in caught.exception.violations],
-                         ["leader.positions[7, 4, 1]"])
-        self.assertIn(f"frame 7, joint {self.hug.joint_names[4]!r}, y", str(caught.exception))
-
     def test_300_gathered_calls_succeed(self):
         async def ask():
             async with duet.aio.Client(self.server.address) as client:
@@ -203,13 +165,6 @@ class PythonClientTest(tools.ServedTest):
         np.testing.assert_array_equal(
             results[3].follower.positions,
             self.client.synthesize(self.hug, {"hug": 1}, seed=3).follower.positions)
-
-    def test_environment_sets_the_server(self):
-        ran = tools.run(
-            sys.executable, "-B", "-c",
-            "import duet_motion as duet\nprint(len(duet.Client().list_models()))",
-            env={**os.environ, "PYTHONPATH": str(PACKAGE), "DUET_SERVER": self.server.address})
-        self.assertEqual((ran.returncode, ran.stdout), (0, "4\n"), ran.stderr)
 
     def test_killed_server_is_reported_with_its_address(self):
         server = tools.Server()
@@ -224,24 +179,6 @@ class PythonClientTest(tools.ServedTest):
                 with self.assertRaisesRegex(duet.UnavailableError,
                                             f"the server at {server.address} "):
                     stream.result()
-
-    def test_every_packing_of_a_data_set_is_read_alike(self):
-        with tempfile.TemporaryDirectory() as folder:
-            sets = {}
-            out = pathlib.Path(folder) / "none"
-            tools.duet("batch", tools.sample("hug"), "--recipe", tools.SOURCE / "recipes" / "mixes.textproto",
-                       "--out", out, "--server", self.server.address, "--quiet").check_returncode()
-            for packing in ("npz", "tar"):
-                duet.sets.pack(out, out.with_name(packing), kind=packing)
-            for packing in ("none", "npz", "tar"):
-                sets[packing] = list(duet.read_set(out.with_name(packing), frame_rate_hz=15))
-        for item, npz, tar in zip(sets["none"], sets["npz"], sets["tar"]):
-            self.assertEqual(item.leader.joint_names, self.hug.joint_names)
-            self.assertTrue(item.weights.any())
-            for other in (npz, tar):
-                np.testing.assert_array_equal(item.pair, other.pair)
-        # Each class once, and 20 mixes of two.
-        self.assertEqual([len(items) for items in sets.values()], [26] * 3)
 
     @unittest.skipIf(importlib.util.find_spec("torch") is None,
                      "no Python module torch; install the package python3-torch")

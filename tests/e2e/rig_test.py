@@ -50,30 +50,12 @@ class RigTest(tools.ServedTest):
         """The channel values, which are the same whatever joints are called."""
         return (self.folder / file).read_text(encoding="utf-8").partition("MOTION")[2]
 
-    def test_unknown_joint_names_are_rejected_with_the_flag_to_use(self):
-        done = self.convert("refused.bvh", "--rig", self.rig)
-        self.assertNotEqual(done.returncode, 0)
-        self.assertIn("strange.bvh", done.stderr)
-        self.assertIn(ADVICE, done.stderr)
-        self.assertFalse((self.folder / "refused.bvh").exists())
-
     def test_joint_map_file_maps_the_joints(self):
         self.convert("known.bvh", "--rig", self.leader).check_returncode()
         done = self.convert("told.bvh", "--rig", self.rig, "--rig-joint-map", self.table)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.motion_of("told.bvh"), self.motion_of("known.bvh"))
         self.assertIn("JOINT Part1", (self.folder / "told.bvh").read_text(encoding="utf-8"))
-
-    def test_pairs_override_the_file(self):
-        spoilt = self.folder / "spoilt.txt"
-        spoilt.write_text(self.table.read_text(encoding="utf-8").replace(
-            f"left_hand = {self.strange['left_hand']}", "left_hand = Nowhere"), encoding="utf-8")
-        flags = ("--rig", self.rig, "--rig-joint-map", spoilt)
-        done = self.convert("spoilt.bvh", *flags)
-        self.assertIn("left_hand=Nowhere", done.stderr)
-        done = self.convert("mended.bvh", *flags, "--rig-joint-map",
-                            f"left_hand={self.strange['left_hand']}")
-        self.assertEqual(done.returncode, 0, done.stderr)
 
     def dancer(self):
         """The joints' names and the follower of the salsa."""
@@ -121,14 +103,6 @@ class RigTest(tools.ServedTest):
         for side in ("left", "right"):
             at, wanted = joints.index(f"{side}_foot"), names.index(f"{side}_ankle")
             self.assertLess(np.abs(on_rig[:, at] - follower[:, wanted]).max(), 0.002, side)
-
-    def test_joint_map_without_a_rig_or_a_file_is_rejected(self):
-        done = self.convert("mistake.bvh", "--rig-joint-map", self.table)
-        self.assertIn("--rig", done.stderr)
-        self.assertEqual(done.returncode, 2)
-        done = self.convert("mistake.bvh", "--rig", self.rig, "--rig-joint-map",
-                            self.folder / "nowhere.txt")
-        self.assertIn("nowhere.txt: no such file", done.stderr)
 
 
 if __name__ == "__main__":
