@@ -35,6 +35,10 @@ void Product(benchmark::State& state, Precision precision, Bf16Product product) 
     state.SkipWithError("this processor does not multiply bfloat16");
     return;
   }
+  if (precision == Precision::kInt16 && !HasInt16()) {
+    state.SkipWithError("this processor does not multiply integers of 16 bits (AVX-512 VNNI)");
+    return;
+  }
   if (product == Bf16Product::kAmx && !HasAmx()) {
     state.SkipWithError("this processor does not multiply tiles (AMX)");
     return;
@@ -61,6 +65,7 @@ void Sizes(benchmark::internal::Benchmark* bench) {
   bench->Args({45, 160, 480})->Args({720, 160, 480})->Args({720, 480, 160});  // the transformer's
 }
 BENCHMARK_CAPTURE(Product, f32, Precision::kFloat32, Bf16Product::kBest)->Apply(Sizes);
+BENCHMARK_CAPTURE(Product, int16, Precision::kInt16, Bf16Product::kBest)->Apply(Sizes);
 BENCHMARK_CAPTURE(Product, bf16, Precision::kBfloat16, Bf16Product::kAvx512)->Apply(Sizes);
 BENCHMARK_CAPTURE(Product, bf16_amx, Precision::kBfloat16, Bf16Product::kAmx)->Apply(Sizes);
 

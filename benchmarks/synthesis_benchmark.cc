@@ -11,6 +11,7 @@
 
 #include "model/cpu_engine/cpu_synthesizer.h"
 #include "model/cpu_engine/kernels/gemm_bf16.h"
+#include "model/cpu_engine/kernels/gemm_int16.h"
 #include "model/engine/clip_synthesis.h"
 #include "model/torch_engine/torch_synthesizer.h"
 
@@ -140,6 +141,11 @@ int main(int argc, char** argv) {
   if (duet::cpu_engine::kernels::HasBf16()) {
     bf16 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kBfloat16}));
     Register("bf16", bf16);
+  }
+  Models int16;
+  if (duet::cpu_engine::kernels::HasInt16()) {
+    int16 = Loaded(duet::cpu_engine::LoadEmbeddedSynthesizers({{}, Precision::kInt16}));
+    Register("int16", int16);
   }
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();

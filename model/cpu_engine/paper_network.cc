@@ -108,7 +108,8 @@ PaperNetwork::PaperNetwork(const checkpoint::Checkpoint& checkpoint, Precision p
                           .Pack(precision),
                       weights.Values(at("attention_score"))};
   }
-  output_ = weights.FindLayer("output").Pack(Precision::kFloat32);
+  output_ = weights.FindLayer("output").Pack(precision == Precision::kBfloat16 ? Precision::kFloat32
+                                                                               : precision);
   if (!has_base_) return;
   base_.bias = weights.Values("base.bias");
   if (weights.Has("base.weight")) base_ = weights.FindLayer("base");
@@ -127,7 +128,8 @@ PaperNetwork::Slice PaperNetwork::FindSlice(const checkpoint::Manifest& manifest
     if (weights.Has(at + "fc.weight")) input[d] = Chained(weights.FindLayer(at + "fc"), input[d]);
     slice.recurrent[d] = weights.FindLayer(prefix + "weight_hh", "").Pack(precision_);
   }
-  slice.input = Stacked(input[0], input[1]).Pack(Precision::kFloat32);
+  slice.input = Stacked(input[0], input[1])
+                    .Pack(precision_ == Precision::kBfloat16 ? Precision::kFloat32 : precision_);
   return slice;
 }
 

@@ -199,6 +199,7 @@ TEST(ParityTest, WideGeneratorEqualsLibTorch) {
   for (const int frames : {9, 4, 9}) inputs.push_back(Input(manifest, frames, Told::kRoot, 3));
   EXPECT_LT(FromTorch(checkpoint, Precision::kFloat32, inputs), 1e-5f);
   EXPECT_LT(FromTorch(checkpoint, Precision::kBfloat16, inputs), 2e-3f);
+  EXPECT_LT(FromTorch(checkpoint, Precision::kInt16, inputs), 2e-4f);
 }
 
 // The maximum shift of a joint by rounded weights, metres. Of models that sample, it is larger: a
@@ -208,21 +209,26 @@ float MaximumShift(const Manifest& manifest) {
   return manifest.model.name == "salsa" ? 10e-3f : 5e-3f;
 }
 
-TEST(ParityTest, RoundedWeightsMoveJointsByMillimetresAtMost) {
+// bfloat16 by millimetres, integers of 16 bits by an eighth of that.
+TEST(ParityTest, RoundedWeightsMoveJointsLittle) {
   for (const Checkpoint& checkpoint : Embedded()) {
-    const float farthest =
-        FromTorch(checkpoint, Precision::kBfloat16,
-                  HumanInputs(checkpoint.manifest, checkpoint.manifest.model.window_frames));
-    EXPECT_LT(farthest, MaximumShift(checkpoint.manifest))
-        << checkpoint.manifest.model.name << " " << checkpoint.manifest.model.version;
-    EXPECT_GT(farthest, 1e-6f);  // the precision is different
+    for (const Precision precision : {Precision::kBfloat16, Precision::kInt16}) {
+      const float farthest =
+          FromTorch(checkpoint, precision,
+                    HumanInputs(checkpoint.manifest, checkpoint.manifest.model.window_frames));
+      const float part = precision == Precision::kInt16 ? 0.125f : 1;
+      EXPECT_LT(farthest, part * MaximumShift(checkpoint.manifest))
+          << checkpoint.manifest.model.name << " " << checkpoint.manifest.model.version;
+      EXPECT_GT(farthest, 1e-6f);  // the precision is different
+    }
   }
 }
 
 TEST(ParityTest, AnswersAreBitIdenticalInAnyBatch) {
   for (const Checkpoint& checkpoint : Embedded()) {
     const std::vector<NetworkInput> inputs = Inputs(checkpoint.manifest);
-    for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
+    for (const Precision precision :
+         {Precision::kFloat32, Precision::kBfloat16, Precision::kInt16}) {
       const auto network = MakeCpuNetwork(checkpoint, precision);
       const std::vector<motion::Poses> together = Answers(*network, inputs);
       ASSERT_EQ(together.size(), inputs.size());

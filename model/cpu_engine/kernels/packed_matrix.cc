@@ -54,7 +54,11 @@ PackedMatrix::PackedMatrix(const std::vector<float>& weights, const std::vector<
   PackPanels(weights.data(), inputs, 1, outputs, inputs, panels_.data());
   if (!bias_.empty()) bias_.resize(Size(std::ptrdiff_t{PanelCount(outputs)} * kPanel));
   if (precision == Precision::kFloat32) return;
-  rounded_panels_ = RoundedPanels(panels_, outputs, inputs);
+  if (precision == Precision::kBfloat16) {
+    rounded_panels_ = RoundedPanels(panels_, outputs, inputs);
+  } else {
+    integers_ = RoundPanels(panels_, outputs, inputs);
+  }
   panels_ = {};
 }
 
@@ -65,6 +69,8 @@ void PackedMatrix::Multiply(int rows, const float* x, std::ptrdiff_t x_stride, f
   const float* bias = bias_.empty() ? nullptr : bias_.data();
   if (precision_ == Precision::kBfloat16) {
     GemmBf16(in, rounded_panels_.data(), bias, out);
+  } else if (precision_ == Precision::kInt16) {
+    GemmInt16(in, integers_, bias, out);
   } else {
     GemmF32(in, panels_.data(), bias, out);
   }

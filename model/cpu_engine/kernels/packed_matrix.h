@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/cpu_engine/kernels/gemm_int16.h"
 #include "model/cpu_engine/kernels/matrix.h"
 
 namespace duet::cpu_engine::kernels {
@@ -12,7 +13,8 @@ namespace duet::cpu_engine::kernels {
 // The type of the factors of products. Sums are float32.
 enum class Precision {
   kFloat32,
-  kBfloat16  // half the memory and, with HasBf16(), twice the speed
+  kBfloat16,  // half the memory and, where IsBf16Faster(), twice the speed
+  kInt16      // half the memory and, with HasInt16(), twice the speed; sums of an exact int32
 };
 
 // Packs a matrix [outputs, inputs], whose value of output n and input k is
@@ -48,6 +50,7 @@ class PackedMatrix {
   Precision precision_ = Precision::kFloat32;
   std::vector<float> panels_;
   std::vector<uint16_t> rounded_panels_;
+  Int16Matrix integers_;
   std::vector<float> bias_;  // empty, or padded with zeros to whole panels
 };
 

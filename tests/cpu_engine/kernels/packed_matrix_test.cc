@@ -76,7 +76,7 @@ TEST_P(PackedMatrixTest, EqualsTheDefinition) {
 
 TEST_P(PackedMatrixTest, ARowDoesNotDependOnTheOthers) {
   constexpr int kRows = 25, kInputs = 601, kOutputs = 77;
-  for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16}) {
+  for (const Precision precision : {Precision::kFloat32, Precision::kBfloat16, Precision::kInt16}) {
     const PackedMatrix matrix(Values(kOutputs * kInputs), {}, kOutputs, kInputs, precision);
     const std::vector<float> x = Values(kRows * kInputs);
     std::vector<float> together(kRows * kOutputs), alone(kOutputs);
@@ -87,6 +87,85 @@ TEST_P(PackedMatrixTest, ARowDoesNotDependOnTheOthers) {
                                    together.begin() + (r + 1) * kOutputs);
       EXPECT_EQ(alone, row) << r;
     }
+  }
+}
+
+// The root of the sum of squares.
+double Norm(const float* values, int count) {
+  double squares = 0;
+  for (int k = 0; k < count; ++k) squares += double{values[k]} * values[k];
+  return std::sqrt(squares);
+}
+
+TEST_P(PackedMatrixTest, IntegersAreOffByLittleOfTheNorms) {
+  for (const Case& c : Cases()) {
+    const std::vector<float> weights = Values(c.outputs * c.inputs), bias = Values(c.outputs);
+    const int x_stride = c.inputs + 3, y_stride = c.outputs + 2;
+    std::vector<float> x = Values(c.rows * x_stride);
+    x[0] = 1e4f;  // one value beside which the others are small
+    std::vector<float> y(static_cast<std::size_t>(c.rows * y_stride), -99);
+    const PackedMatrix matrix(weights, bias, c.outputs, c.inputs, Precision::kInt16);
+    matrix.Multiply(c.rows, x.data(), x_stride, y.data(), y_stride);
+    for (int r = 0; r < c.rows; ++r) {
+      const float* const row = x.data() + r * x_stride;
+      for (int n = 0; n < c.outputs; ++n) {
+        const float* const column = weights.data() + n * c.inputs;
+        double sum = bias[static_cast<std::size_t>(n)];
+        for (int k = 0; k < c.inputs; ++k) sum += double{row[k]} * column[k];
+        const double error = 6e-5 * Norm(row, c.inputs) * Norm(column, c.inputs) + 1e-6;
+        ASSERT_NEAR(y[static_cast<std::size_t>(r * y_stride + n)], sum, error)
+            << c.rows << " rows, " << c.inputs << " -> " << c.outputs << " at " << r << ", " << n;
+      }
+      ASSERT_EQ(y[static_cast<std::size_t>(r * y_stride + c.outputs)], -99) << "wrote past a row";
+    }
+  }
+}
+
+// Rows that reach the bound of the sums: in one value, and in all alike.
+TEST_P(PackedMatrixTest, SumsOfIntegersNeverOverflow) {
+  for (const int inputs : {1, 2, 3, 300, 512}) {
+    for (const float sign : {-1.0f, 1.0f}) {
+      const std::vector<float> weights(static_cast<std::size_t>(inputs), 3.0f);
+      const std::vector<float> x(static_cast<std::size_t>(inputs), sign * 7.0f);
+      float y = 0;
+      PackedMatrix(weights, {}, 1, inputs, Precision::kInt16).Multiply(1, x.data(), &y);
+      EXPECT_NEAR(y / (sign * 21.0f * static_cast<float>(inputs)), 1, 1e-3) << inputs;
+    }
+  }
+}
+
+TEST_P(PackedMatrixTest, IntegersKeepZerosAndPassOnWhatIsNotFinite) {
+  const PackedMatrix matrix({1, 2, 0, 0}, {5, 6}, 2, 2, Precision::kInt16);
+  for (const auto& [value, finite] : {std::pair(0.0f, true),
+                                      {1e-40f, true},
+                                      {1e30f, false},
+                                      {std::nanf(""), false},
+                                      {HUGE_VALF, false}}) {
+    const float x[] = {value, 0};
+    float y[2];
+    matrix.Multiply(1, x, y);
+    EXPECT_EQ(std::isfinite(y[0]), finite) << value;
+    if (!finite) continue;
+    EXPECT_EQ(y[0], 5) << value;
+    EXPECT_EQ(y[1], 6) << value;
+  }
+}
+
+TEST_P(PackedMatrixTest, PortableIntegersEqualTheProcessors) {
+  constexpr int kRows = 14, kInputs = 601, kOutputs = 70;
+  const std::vector<float> weights = Values(kInputs * kOutputs), x = Values(kRows * kInputs);
+  std::vector<float> panels(static_cast<std::size_t>(PanelCount(kOutputs) * kInputs * kPanel)),
+      bias = Values(PanelCount(kOutputs) * kPanel);
+  PackPanels(weights.data(), kInputs, 1, kOutputs, kInputs, panels.data());
+  const Int16Matrix matrix = RoundPanels(panels, kOutputs, kInputs);
+  std::vector<float> y(kRows * kOutputs), same(kRows * kOutputs);
+  for (const float* begin :
+       {static_cast<const float*>(bias.data()), static_cast<const float*>(nullptr)}) {
+    GemmInt16({x.data(), kInputs, kRows, kInputs}, matrix, begin, {y.data(), kOutputs, kOutputs});
+    GemmInt16Portable({x.data(), kInputs, kRows, kInputs}, matrix, begin,
+                      {same.data(), kOutputs, kOutputs});
+    // Units that round differently move single values to the next integer.
+    for (std::size_t i = 0; i < y.size(); ++i) EXPECT_NEAR(y[i], same[i], 2e-3);
   }
 }
 

@@ -135,7 +135,8 @@ INSTANTIATE_TEST_SUITE_P(
                   [](v1::ServerConfig& c) { c.set_threads_per_worker(3); }},
         BadConfig{"engine: expected ENGINE_CPU or ENGINE_TORCH, got 0",
                   [](v1::ServerConfig& c) { c.set_engine(v1::ENGINE_UNSPECIFIED); }},
-        BadConfig{"precision: expected PRECISION_AUTO, PRECISION_F32 or PRECISION_BF16, got 9",
+        BadConfig{"precision: expected PRECISION_AUTO, PRECISION_F32, PRECISION_BF16 or "
+                  "PRECISION_INT16, got 9",
                   [](v1::ServerConfig& c) { c.set_precision(static_cast<v1::Precision>(9)); }},
         BadConfig{"precision: expected PRECISION_F32 with ENGINE_TORCH, got PRECISION_BF16",
                   [](v1::ServerConfig& c) {
