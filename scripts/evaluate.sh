@@ -80,7 +80,6 @@ measure() {
   "${bin}/duet-eval" augmentation --data "${data}" --runs "${runs}/half" --out "${results}"
   "${bin}/duet-eval" latent --data "${data}" --runs "ours=${runs}/default" \
     --runs "mshl22=${runs}/mshl22" --clips all --out "${results}"
-  scripts/training_results.py curves --run "${runs}"/default/s* --out "${results}"
 }
 
 train

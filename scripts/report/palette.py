@@ -1,17 +1,11 @@
 """The one palette of the evaluation's figures.
 
-Series differ in colour and in marker or dash, so that a figure survives a print in grey.
+Classes differ in colour and in marker, so that a figure survives a print in grey.
 """
 
 # Okabe and Ito 2008, without the yellow that is too faint on white paper.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#7F7F7F")
-DASHES = ("-", (0, (5, 2)), (0, (1, 2)), (0, (5, 2, 1, 2)),
-          (0, (8, 2)), (0, (3, 1, 1, 1)), (0, (1, 1, 4, 1)), (0, (3, 4)))
 MARKERS = ("o", "s", "^", "D", "v", "p", "<", ">")
-
-INK = "#222222"
-GRID = "#dddddd"
-MARK = "#888888"
 
 # Left, middle and right of a body. The left side is the paler one.
 LEADER = {"left": "#7db3d8", "middle": COLOURS[0], "right": "#00588a"}
@@ -20,10 +14,6 @@ FOLLOWER = {"left": "#f0a46a", "middle": COLOURS[1], "right": "#a84a00"}
 
 def colour(index):
     return COLOURS[index % len(COLOURS)]
-
-
-def dash(index):
-    return DASHES[index % len(DASHES)]
 
 
 def marker(index):

@@ -1,12 +1,12 @@
 """Draws the figures of result sections with matplotlib."""
 
-from report import latent, lines, poses
+from report import latent, poses
 
 # An SVG keeps its text as text, and the same data gives the same file.
 STYLE = {"svg.fonttype": "none", "svg.hashsalt": "duet", "font.size": 9, "axes.titlesize": 11,
          "axes.titleweight": "bold", "axes.titlelocation": "left", "axes.spines.top": False,
          "axes.spines.right": False, "axes.axisbelow": True, "legend.frameon": False}
-DRAW = {"lines": lines.draw, "latent": latent.draw, "poses": poses.draw}
+DRAW = {"latent": latent.draw, "poses": poses.draw}
 
 
 def use_matplotlib():

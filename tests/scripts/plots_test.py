@@ -1,21 +1,13 @@
 import importlib.util
-import math
 import tempfile
 import unittest
 from pathlib import Path
 
 import report_example as example
-from report import latent, lines, palette, plots, poses
+from report import latent, plots, poses
 
 HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None
 HAS_SKLEARN = importlib.util.find_spec("sklearn") is not None
-
-
-class LinesTest(unittest.TestCase):
-    def test_running_mean_skips_gaps(self):
-        smooth = lines.running_mean([1, math.nan, 4, 4], 3)
-        self.assertEqual([smooth[0], smooth[2], smooth[3]], [1, 4, 4])
-        self.assertTrue(math.isnan(smooth[1]))
 
 
 @unittest.skipUnless(HAS_MATPLOTLIB, "needs python3-matplotlib")
@@ -30,26 +22,9 @@ class DrawTest(unittest.TestCase):
         files, remark = plots.draw_plot(plot, self.folder, "figure")
         return files, remark, (self.folder / "figure.svg").read_text(encoding="utf-8")
 
-    def test_lines_have_title_labels_and_series(self):
-        files, remark, svg = self.draw(example.line_plot(markers=True, marked_x=[1]))
-        self.assertEqual((files, remark), (["figure.svg"], ""))
-        for text in ("Curve", "ours", "theirs"):
-            self.assertIn(f">{text}</text>", svg)
-        for index in (0, 1):
-            self.assertIn(palette.colour(index).lower(), svg)
-        self.assertEqual((self.folder / "figure.png").read_bytes()[1:4], b"PNG")
-
     def test_the_same_data_gives_the_same_file(self):
-        first = self.draw(example.line_plot())[2]
-        self.assertEqual(first, self.draw(example.line_plot())[2])
-
-    def test_a_logarithmic_axis_leaves_gaps_at_zero(self):
-        from matplotlib import pyplot
-        figure, _ = lines.draw(example.line_plot(log_y=True, running_mean=3))
-        faint = figure.axes[0].lines[2].get_ydata()  # of "theirs", before its mean
-        pyplot.close(figure)
-        self.assertTrue(math.isnan(faint[0]))
-        self.assertEqual(list(faint[1:]), [2, 1])
+        first = self.draw(example.pose_plot())[2]
+        self.assertEqual(first, self.draw(example.pose_plot())[2])
 
     def test_a_strip_has_a_row_for_each_pair_and_an_animation(self):
         files, _, svg = self.draw(example.pose_plot())

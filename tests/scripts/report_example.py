@@ -1,14 +1,6 @@
 """A section with one of everything, for the tests."""
 
 
-def line_plot(**more):
-    return {"kind": "lines", "title": "Curve", "x_label": "x", "y_label": "y",
-            "series": [{"name": "ours", "x": [0, 1, 2], "y": [1, None, 3]},
-                       {"name": "theirs", "x": [0, 1, 2], "y": [0, 2, 1]}],
-            "y_range": None, "log_y": False, "markers": False, "marked_x": [], "running_mean": 1,
-            **more}
-
-
 def latent_plot():
     """Two groups of ten points far apart."""
     return {"kind": "latent", "title": "ours", "class_names": ["kick", "hug"],
@@ -38,6 +30,6 @@ def section(section_id="10_folds"):
                      {"name": "frozen_first_frame", "printed": False, "values": [0.7, None]}],
             "notes": ["lower is better"], "decimals": 3, "best": "lowest"}],
         "figures": [{"name": section_id + "_curve", "caption": "A curve of \"errors\".",
-                     "plot": line_plot()}],
+                     "plot": pose_plot()}],
         "settings": [{"name": "data", "value": "SBU"}, {"name": "seeds", "value": "1, 2"}],
         "command": "duet-eval folds --data DIR", "date": "2024-02-29"}
