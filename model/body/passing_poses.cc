@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "model/body/hands.h"
+#include "model/body/contact.h"
 
 namespace duet::body {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "model/body/contact.h"
 #include "model/body/grade.h"
-#include "model/body/hands.h"
 #include "model/engine/window_seed.h"
 #include "model/solver/pins.h"
 

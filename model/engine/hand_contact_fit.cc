@@ -5,7 +5,7 @@
 
 #include "model/base/median.h"
 #include "model/base/statistics.h"
-#include "model/body/hands.h"
+#include "model/body/contact.h"
 
 namespace duet::engine {
 namespace {

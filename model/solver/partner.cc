@@ -7,7 +7,7 @@
 
 #include "absl/types/span.h"
 #include "model/base/angle.h"
-#include "model/body/hands.h"
+#include "model/body/contact.h"
 #include "model/motion/capsules.h"
 #include "model/motion/filter.h"
 #include "model/solver/geometry.h"

@@ -69,14 +69,6 @@ TEST(StillnessTest, APersonWhoStandsStillDoesNotMove) {
   EXPECT_LT(figures.feet_apart, 0.4);
 }
 
-TEST(StillnessTest, SpeedIsTheMeanOverTheJoints) {
-  motion::Poses person = Standing(30);
-  for (int t = 0; t < 30; ++t) {
-    for (int j = 0; j < 3; ++j) person.at(t, j).x += 0.02f * static_cast<float>(t);
-  }
-  EXPECT_NEAR(Stillness(person).joint_speed, 0.02 * 15 * 3 / 15, 1e-4);  // 3 of 15 joints
-}
-
 TEST(StillnessTest, CountsFramesInWhichEitherHandIsAboveItsShoulder) {
   motion::Poses person = Standing(10);
   const Body body = FindBody(Sbu());

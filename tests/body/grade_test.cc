@@ -2,7 +2,7 @@
 
 #include "gmock/gmock.h"
 #include "model/authoring/puppet.h"
-#include "model/body/hands.h"
+#include "model/body/contact.h"
 #include "tests/support/bodies.h"
 
 namespace duet::body {
@@ -71,18 +71,6 @@ TEST(Grade, NamesTheFramesThatOverlap) {
   EXPECT_EQ(grade.bad_runs[0].first, 5);
   EXPECT_EQ(grade.bad_runs[0].count, 3);
   EXPECT_EQ(grade.bad_runs[1].first, 20);
-}
-
-TEST(Grade, KeepsNoMoreRunsThanItMay) {
-  GradeSum sum;
-  FrameMeasures twisted;
-  twisted.twist_degrees = 90;
-  for (int run = 0; run < 2 * kMostRuns; ++run) {
-    sum.Add(twisted);
-    sum.Add({});
-  }
-  EXPECT_EQ(sum.Get().bad_runs.size(), std::size_t{kMostRuns});
-  EXPECT_DOUBLE_EQ(sum.Get().twisted, 0.5);
 }
 
 TEST(TwistDegrees, IsTheTurnOfTheShouldersAgainstTheHips) {

@@ -9,7 +9,7 @@
 #include "model/base/statistics.h"
 #include "model/body/build.h"
 #include "model/body/grade.h"
-#include "model/body/hands.h"
+#include "model/body/contact.h"
 #include "model/body/liveliness.h"
 #include "model/body/passing_poses.h"
 #include "model/body/posture.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "model/body/limbs.h"
-#include "model/body/surface.h"
+#include "model/body/contact.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 

@@ -5,11 +5,10 @@
 #include <limits>
 
 #include "model/base/statistics.h"
+#include "model/body/contact.h"
 #include "model/body/liveliness.h"
 #include "model/body/motion_quality.h"
-#include "model/body/penetration.h"
 #include "model/body/posture.h"
-#include "model/body/touch.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/filter.h"
 
