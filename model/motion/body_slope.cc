@@ -1,5 +1,3 @@
-#include "model/motion/body_slope.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,7 @@
 
 #include "absl/types/span.h"
 #include "model/motion/posture.h"
+#include "model/motion/slope_evidence.h"
 
 namespace duet::motion {
 namespace {

@@ -19,16 +19,6 @@ inline constexpr double kNoiseFilterSeconds = 0.1;
 // Returns the motion smoothed by a Gaussian of kNoiseFilterSeconds.
 Poses WithoutNoise(const Poses& poses, double frame_rate_hz);
 
-// Repairs single frames in which a joint jumps away and back, as when a tracker loses a hand: the
-// joint gets the median position of its neighbouring frames. Returns the number of repaired
-// positions.
-//
-// A position is repaired (Hampel's rule) if its distance from the median of the five frames around
-// it exceeds both 10 cm and 6 times the median of those five distances. The extreme frame of a fast
-// punch is kept, because its neighbours move as well. A motion of fewer than three frames is
-// unchanged. Units: metres.
-int RepairJumps(Poses* poses);
-
 }  // namespace duet::motion
 
 #endif  // DUET_MODEL_MOTION_FILTER_H_

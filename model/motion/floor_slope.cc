@@ -1,5 +1,3 @@
-#include "model/motion/floor_slope.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,6 +5,7 @@
 #include <utility>
 
 #include "model/base/angle.h"
+#include "model/motion/slope_evidence.h"
 
 namespace duet::motion {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "model/base/angle.h"
 #include "model/base/median.h"
@@ -10,25 +11,10 @@
 namespace duet::motion {
 namespace {
 
-// Distance up to which points have full weight, times the median one. Planes: Huber's 1.345 sigma.
-constexpr double kPlaneReach = 2;
+// Distance up to which points have full weight, times the median one.
 constexpr double kMeanReach = 2;
 constexpr double kSmallestReach = 1e-4;  // if all points coincide
-constexpr int kPlaneSteps = 20;
 constexpr int kMeanSteps = 30;
-constexpr double kFlatDeterminant =
-    1e-9;  // of the normal equations, per point; below it, there is no plane
-
-// y = slope_x x + slope_z z + height
-struct Plane {
-  double slope_x = 0;
-  double slope_z = 0;
-  double height = 0;
-
-  double Residual(Vec3 point) const {
-    return point.y - (slope_x * point.x + slope_z * point.z + height);
-  }
-};
 
 Vec3 Mean(const std::vector<Vec3>& points, const std::vector<double>& weights) {
   double x = 0, y = 0, z = 0, sum = 0;
@@ -41,29 +27,9 @@ Vec3 Mean(const std::vector<Vec3>& points, const std::vector<double>& weights) {
   return {static_cast<float>(x / sum), static_cast<float>(y / sum), static_cast<float>(z / sum)};
 }
 
-// Weighted least squares about the weighted mean; horizontal if the points are on a line.
-Plane FitPlane(const std::vector<Vec3>& points, const std::vector<double>& weights) {
-  const Vec3 mean = Mean(points, weights);
-  double xx = 0, xz = 0, zz = 0, xy = 0, zy = 0, sum = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 p = points[i] - mean;
-    xx += weights[i] * p.x * p.x;
-    xz += weights[i] * p.x * p.z;
-    zz += weights[i] * p.z * p.z;
-    xy += weights[i] * p.x * p.y;
-    zy += weights[i] * p.z * p.y;
-    sum += weights[i];
-  }
-  const double determinant = xx * zz - xz * xz;
-  if (determinant <= kFlatDeterminant * sum * sum) return {0, 0, mean.y};
-  const double slope_x = (xy * zz - zy * xz) / determinant;
-  const double slope_z = (zy * xx - xy * xz) / determinant;
-  return {slope_x, slope_z, mean.y - slope_x * mean.x - slope_z * mean.z};
-}
-
-// 1 for residuals up to `reach` times the median one, falling in proportion beyond.
-std::vector<double> HuberWeights(std::vector<double> residuals, double reach) {
-  const double full = std::max(reach * base::Median(residuals), kSmallestReach);
+// 1 for residuals up to kMeanReach times the median one, falling in proportion beyond.
+std::vector<double> HuberWeights(std::vector<double> residuals) {
+  const double full = std::max(kMeanReach * base::Median(residuals), kSmallestReach);
   for (double& residual : residuals) residual = residual > full ? full / residual : 1;
   return residuals;
 }
@@ -106,7 +72,7 @@ Vec3 RobustMean(const std::vector<Vec3>& points) {
   for (int step = 0; step < kMeanSteps; ++step) {
     mean = Mean(points, weights);
     for (std::size_t i = 0; i < points.size(); ++i) weights[i] = Distance(points[i], mean);
-    weights = HuberWeights(weights, kMeanReach);
+    weights = HuberWeights(std::move(weights));
   }
   return mean;
 }
@@ -119,21 +85,6 @@ Lean LeanOf(Vec3 up) {
 Lean MeanLean(const std::vector<Vec3>& directions) {
   if (directions.empty()) return {};
   return LeanOf(Mean(directions, std::vector<double>(directions.size(), 1)));
-}
-
-Lean FloorLean(const std::vector<Vec3>& points) {
-  if (points.empty()) return {};
-  std::vector<double> weights(points.size(), 1);
-  Plane plane;
-  for (int step = 0; step < kPlaneSteps; ++step) {
-    plane = FitPlane(points, weights);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      weights[i] = std::abs(plane.Residual(points[i]));
-    }
-    weights = HuberWeights(weights, kPlaneReach);
-  }
-  return {-std::atan(plane.slope_x) * base::kDegreesPerRadian,
-          -std::atan(plane.slope_z) * base::kDegreesPerRadian};
 }
 
 float HeightQuantile(const std::vector<Vec3>& points, double share) {

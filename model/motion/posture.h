@@ -39,10 +39,6 @@ Lean LeanOf(Vec3 up);
 // The lean of the mean of directions.
 Lean MeanLean(const std::vector<Vec3>& directions);
 
-// Fits the plane y = a x + b z + c to points by least squares with Huber's weights, and returns the
-// lean of its normal in degrees. {0, 0} if the points do not define a plane.
-Lean FloorLean(const std::vector<Vec3>& points);
-
 // The quantile `share` (0 to 1) of the points' heights. Requires at least one point.
 float HeightQuantile(const std::vector<Vec3>& points, double share);
 

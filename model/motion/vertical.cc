@@ -7,7 +7,6 @@
 #include "absl/strings/str_format.h"
 #include "model/base/angle.h"
 #include "model/motion/posture.h"
-#include "model/motion/slope.h"
 
 namespace duet::motion {
 namespace {

@@ -5,19 +5,18 @@
 #include <utility>
 
 #include "absl/strings/string_view.h"
-#include "model/motion/body_slope.h"
 #include "model/motion/clip.h"
-#include "model/motion/floor_slope.h"
 #include "model/motion/skeleton.h"
+#include "model/motion/slope_evidence.h"
 #include "model/motion/vec3.h"
 
 // Estimates the true vertical of a capture, which a tilted camera rotates, from the people in it.
 //
 // Two kinds of evidence, each with its standard error (docs/decisions/captures.md):
 //
-//   floor   A plane through the places where feet rest (floor_slope.h). Feet that rest in one place
+//   floor   A plane through the places where feet rest (FloorEvidence). Feet that rest in one place
 //           or on one line do not define it.
-//   bodies  The directions in which people stand (body_slope.h). A camera's tilt is the same
+//   bodies  The directions in which people stand (BodyEvidence). A camera's tilt is the same
 //           whichever way a person faces; a person's own lean turns with the person. People who
 //           face one way do not tell the two apart.
 //

@@ -9,19 +9,6 @@
 namespace duet::motion {
 namespace {
 
-TEST(SegmentDistanceTest, KnownCases) {
-  const Vec3 o = {0, 0, 0}, x = {1, 0, 0};
-  EXPECT_NEAR(SegmentDistance(o, x, {0.5f, -1, 2}, {0.5f, 1, 2}), 2, 1e-6);      // crossing
-  EXPECT_NEAR(SegmentDistance(o, x, {0, 3, 0}, {1, 3, 0}), 3, 1e-6);             // parallel
-  EXPECT_NEAR(SegmentDistance(o, x, {4, 4, 0}, {9, 4, 0}), 5, 1e-6);             // parallel, apart
-  EXPECT_NEAR(SegmentDistance(o, x, {3, 0, 0}, {7, 0, 0}), 2, 1e-6);             // in line
-  EXPECT_NEAR(SegmentDistance(o, x, {0.25f, 0, 0}, {0.75f, 0, 0}), 0, 1e-6);     // overlapping
-  EXPECT_NEAR(SegmentDistance(o, o, {0, 2, -1}, {0, 2, 1}), 2, 1e-6);            // point, segment
-  EXPECT_NEAR(SegmentDistance({0, 2, -1}, {0, 2, 1}, o, o), 2, 1e-6);            // segment, point
-  EXPECT_NEAR(SegmentDistance(o, o, {3, 4, 0}, {3, 4, 0}), 5, 1e-6);             // two points
-  EXPECT_NEAR(SegmentDistance(o, x, {2, 1, 0}, {2, 5, 0}), std::sqrt(2), 1e-6);  // corner
-}
-
 TEST(SegmentDistanceTest, AgreesWithAFineGrid) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> uniform(-1, 1);

@@ -48,17 +48,6 @@ TEST_P(EveryKind, KeepsHandedness) {
   EXPECT_NEAR(Dot(Cross(x, y), z), 1, 1e-6) << "determinant";
 }
 
-TEST(Coordinates, UpIsUp) {
-  EXPECT_EQ(ToWorld({LengthUnit::kMetres, UpAxis::kYUp}, {1, 2, 3}), (Vec3{1, 2, 3}));
-  EXPECT_EQ(ToWorld({LengthUnit::kMetres, UpAxis::kZUp}, {1, 3, 2}), (Vec3{1, 2, -3}));
-  EXPECT_EQ(ToWorld({LengthUnit::kMetres, UpAxis::kYDown}, {1, -2, 3}), (Vec3{1, 2, -3}));
-}
-
-TEST(Coordinates, MillimetresAreScaled) {
-  const Vec3 world = ToWorld({LengthUnit::kMillimetres, UpAxis::kZUp}, {1000, 500, 1750});
-  EXPECT_LT(Distance(world, {1, 1.75f, -0.5f}), 1e-6f);
-}
-
 // The data set's documentation, in millimetres: X = 1280 - 2560 x, Y = 960 - 1920 y,
 // Z = 10000 z / 7.8125.
 TEST(Coordinates, SbuFollowsItsDocumentation) {
@@ -66,13 +55,6 @@ TEST(Coordinates, SbuFollowsItsDocumentation) {
   EXPECT_NEAR(world.x, (1280 - 2560 * 0.25) / 1000, 1e-6);
   EXPECT_NEAR(world.y, (960 - 1920 * 0.75) / 1000, 1e-6);
   EXPECT_NEAR(world.z, 10000 * 2 / 7.8125 / 1000, 1e-6);
-}
-
-TEST(Coordinates, SbuImpliesItsUpAxis) {
-  const Vec3 position{0.1f, 0.2f, 0.3f};
-  const Vec3 wanted = ToWorld({LengthUnit::kSbuNormalised, UpAxis::kYDown}, position);
-  EXPECT_EQ(ToWorld({LengthUnit::kSbuNormalised, UpAxis::kYUp}, position), wanted);
-  EXPECT_EQ(ToWorld({LengthUnit::kSbuNormalised, UpAxis::kZUp}, position), wanted);
 }
 
 TEST(Coordinates, AreStatedByUnitOrAxis) {
@@ -99,12 +81,6 @@ TEST(Coordinates, HaveOneSpellingThatReadsBack) {
   EXPECT_EQ(UpAxisName(UpAxis::kYUp), "y-up");
   EXPECT_EQ(UpAxisName(UpAxis::kZUp), "z-up");
   EXPECT_EQ(UpAxisName(UpAxis::kYDown), "y-down");
-}
-
-TEST(Coordinates, AcceptTheNameOfTheAxisAlone) {
-  EXPECT_EQ(ParseUpAxis("y"), UpAxis::kYUp);
-  EXPECT_EQ(ParseUpAxis("z"), UpAxis::kZUp);
-  EXPECT_EQ(ParseUpAxis("-y"), UpAxis::kYDown);
 }
 
 TEST(Coordinates, RejectUnknownNames) {

@@ -10,14 +10,6 @@
 namespace duet::motion {
 namespace {
 
-TEST(IsLegLength, RangeIncludesBothEnds) {
-  EXPECT_FALSE(IsLegLength(std::nextafter(0.7, 0)));
-  EXPECT_TRUE(IsLegLength(0.7));
-  EXPECT_TRUE(IsLegLength(1.4));
-  EXPECT_FALSE(IsLegLength(std::nextafter(1.4, 2)));
-  EXPECT_FALSE(IsLegLength(std::nan("")));
-}
-
 TEST(LegLength, IsTheMeanOfBothLegs) {
   const Skeleton skeleton = SbuSkeleton();
   Poses poses(1, 15);
@@ -26,14 +18,6 @@ TEST(LegLength, IsTheMeanOfBothLegs) {
   }
   poses.at(0, skeleton.Find("left_foot")).y = -2;
   EXPECT_DOUBLE_EQ(LegLength(skeleton, poses), 1.5);  // left 1 + 2, right 0
-}
-
-TEST(LegLength, IgnoresAFewWrongFrames) {
-  const Skeleton skeleton = SbuSkeleton();
-  Clip clip = test::MakePerson({5});
-  const double length = LegLength(skeleton, clip.poses);
-  clip.at(0, skeleton.Find("left_foot")).y = -50;
-  EXPECT_NEAR(LegLength(skeleton, clip.poses), length, 1e-6);
 }
 
 TEST(InferUnit, IsTheOneInWhichTheMedianLegIsAPersons) {

@@ -1,9 +1,10 @@
 #include "model/motion/posture.h"
 
-#include <gmock/gmock.h>
-
 #include <cmath>
 
+#include "gmock/gmock.h"
+#include "model/motion/feet.h"
+#include "model/motion/levelling.h"
 #include "tests/support/matchers.h"
 
 namespace duet::motion {
@@ -27,14 +28,6 @@ TEST(StandingDirectionsTest, PointFromTheFeetToTheNeck) {
   const Vec3 up = StandingDirections(neckless, leaning)[0];
   EXPECT_NEAR(up.y, std::sqrt(0.5), 1e-6);
   EXPECT_NEAR(up.z, std::sqrt(0.5), 1e-6);
-}
-
-TEST(StandingDirectionsTest, NeedFeetAndABody) {
-  Skeleton footless = Figure();
-  footless.feet.reset();
-  EXPECT_THAT(StandingDirections(footless, Poses(3, 4)), IsEmpty());
-  EXPECT_THAT(LowerFeet(footless, Poses(3, 4)), IsEmpty());
-  EXPECT_THAT(StandingDirections(Figure(), Poses(3, 4)), IsEmpty());
 }
 
 TEST(LowerFeetTest, AreTheLowerOfBothInEachFrame) {
@@ -62,29 +55,56 @@ TEST(LeanTest, IsTowardsXAndZInDegrees) {
   EXPECT_EQ(MeanLean({}).x, 0);
 }
 
-TEST(FloorLeanTest, IsThatOfThePlaneOfMostPoints) {
-  std::vector<Vec3> feet;
-  for (int i = 0; i < 10; ++i) {
-    for (int k = 0; k < 10; ++k) {
-      const auto x = static_cast<float>(i), z = static_cast<float>(k);
-      // Every eleventh foot is in the air.
-      feet.push_back({x, 0.1f * x - 0.2f * z + ((10 * i + k) % 11 == 0 ? 2 : 0), z});
-    }
-  }
-  EXPECT_NEAR(FloorLean(feet).x, -std::atan(0.1) * 180 / M_PI, 0.1);
-  EXPECT_NEAR(FloorLean(feet).z, std::atan(0.2) * 180 / M_PI, 0.1);
-}
-
-TEST(FloorLeanTest, OfNoPlaneIsLevel) {
-  EXPECT_EQ(FloorLean({}).x, 0);
-  EXPECT_EQ(FloorLean({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}}).x, 0);
-}
-
 TEST(HeightQuantileTest, IsTheHeightThatAShareIsBelow) {
   const std::vector<Vec3> points = {{0, 4, 0}, {0, 0, 0}, {0, 3, 0}, {0, 1, 0}, {0, 2, 0}};
   EXPECT_EQ(HeightQuantile(points, 0), 0);
   EXPECT_EQ(HeightQuantile(points, 0.25), 1);
   EXPECT_EQ(HeightQuantile(points, 1), 4);
+}
+
+TEST(LowerFootTest, IsTheLowerOfBothInEachFrame) {
+  Poses poses(3, 3);
+  const JointPair feet{0, 2};
+  for (int t = 0; t < 3; ++t) {
+    poses.at(t, 0).y = static_cast<float>(t);
+    poses.at(t, 1).y = -5;  // no foot
+    poses.at(t, 2).y = 1.5f;
+  }
+  EXPECT_THAT(LowerFoot(feet, poses), ElementsAre(0, 1, 1.5f));
+  EXPECT_EQ(LowestFoot(feet, poses), 0);
+  poses.at(2, 2).y = -1;
+  EXPECT_EQ(LowestFoot(feet, poses), -1);
+  EXPECT_GT(LowestFoot(feet, Poses(0, 3)), 1e30f);
+}
+
+void ExpectNear(Vec3 a, Vec3 b, float tolerance) { EXPECT_LT(Distance(a, b), tolerance); }
+
+TEST(LevellingTest, VerticalAndFloorComeToTheirPlaces) {
+  // The camera is pitched by 10 degrees: the vertical leans along +z.
+  const float angle = 10 * static_cast<float>(M_PI) / 180;
+  const Levelling levelling({0, 2 * std::cos(angle), 2 * std::sin(angle)}, -0.8f);
+  ExpectNear(levelling.Apply({0, std::cos(angle), std::sin(angle)}), {0, 1.8f, 0}, 1e-6f);
+  // Across the view nothing turns; along it the camera's axis rises.
+  ExpectNear(levelling.Apply({1, 0, 0}), {1, 0.8f, 0}, 1e-6f);
+  ExpectNear(levelling.Apply({0, 0, 1}), {0, 0.8f + std::sin(angle), std::cos(angle)}, 1e-6f);
+}
+
+TEST(LevellingTest, KeepsDistancesAndHandedness) {
+  const Levelling levelling({0.2f, 0.9f, -0.3f}, 1);
+  const Vec3 origin = levelling.Apply({0, 0, 0});
+  const Vec3 x = levelling.Apply({1, 0, 0}) - origin;
+  const Vec3 y = levelling.Apply({0, 1, 0}) - origin;
+  const Vec3 z = levelling.Apply({0, 0, 1}) - origin;
+  ExpectNear(Cross(x, y), z, 1e-6f);
+  EXPECT_NEAR(Norm(x), 1, 1e-6);
+  EXPECT_NEAR(Norm(y), 1, 1e-6);
+}
+
+TEST(LevellingTest, InvertUndoesApply) {
+  const Levelling levelling({0.1f, 1, 0.17f}, -0.83f);
+  const Poses captured(2, {{0.3f, -0.2f, 2.5f}, {-1.2f, 0.8f, 3.4f}});
+  const Poses back = levelling.Invert(levelling.Apply(captured));
+  for (int j = 0; j < 2; ++j) ExpectNear(back.at(0, j), captured.at(0, j), 2e-6f);
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 #include "model/motion/resample.h"
 
 #include <cmath>
+#include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
+#include "model/motion/filter.h"
 #include "tests/support/status_matchers.h"
 
 namespace duet::motion {
@@ -58,35 +59,12 @@ TEST_P(EverySampler, FollowsALine) {
   }
 }
 
-TEST_P(EverySampler, TakesASingleFrame) {
-  const Poses motion = Motion(1, 15, Line);
-  for (double frame : {0.0, 0.5, 3.0}) EXPECT_EQ(At(GetParam(), motion, frame), motion.at(0, 0));
-}
-
-TEST(SampleLinear, IsLinearBetweenNeighbours) {
-  const Poses motion = Motion(3, 1, Parabola);
-  EXPECT_LT(Distance(At(SampleLinear, motion, 1.25), {1.75f, 1, -0.5f}), 1e-6f);
-}
-
 TEST(SampleCubic, FollowsAParabola) {
   const Poses motion = Motion(9, 10, Parabola);
   for (double frame = 1; frame <= 7; frame += 0.13) {
     EXPECT_LT(Distance(At(SampleCubic, motion, frame), Parabola(static_cast<float>(frame / 10))),
               1e-5f)
         << frame;
-  }
-}
-
-TEST(SampleCubic, HasNoKinks) {
-  const Poses motion = Motion(12, 5, Wave);
-  const double step = 1e-2;
-  for (int t = 1; t < 11; ++t) {
-    const auto velocity = [&](Sampler sampler, double from) {
-      return (At(sampler, motion, from + step) - At(sampler, motion, from)) /
-             static_cast<float>(step);
-    };
-    const Vec3 before = velocity(SampleCubic, t - step), after = velocity(SampleCubic, t);
-    EXPECT_LT(Distance(before, after), 0.05f) << "velocity jumps at frame " << t;
   }
 }
 
@@ -140,10 +118,49 @@ TEST(ResampleByRate, RejectsRatesThatNoMotionHas) {
   EXPECT_EQ(clip.frame_count(), 1000);
 }
 
-TEST(PartTest, HasTheFramesFromTheFirstOn) {
-  const Poses poses(1, {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
-  EXPECT_EQ(Part(poses, 1, 2), Poses(1, {{2, 0, 0}, {3, 0, 0}}));
-  EXPECT_TRUE(Part(poses, 3, 0).empty());
+// One joint that is at `x` frame after frame.
+Poses Along(const std::vector<float>& x) {
+  Poses poses(static_cast<int>(x.size()), 1);
+  for (size_t t = 0; t < x.size(); ++t) poses.at(static_cast<int>(t), 0) = {x[t], 1, -x[t]};
+  return poses;
+}
+
+TEST(GaussianFilterTest, SteadyMotionStays) {
+  const Poses steady = Along({0, 2, 4, 6, 8, 10, 12, 14, 16, 18});
+  const Poses smooth = GaussianFilter(steady, 1);
+  for (int t = 0; t < 10; ++t) {
+    EXPECT_NEAR(smooth.at(t, 0).x, steady.at(t, 0).x, 1e-5) << t;
+    EXPECT_NEAR(smooth.at(t, 0).y, 1, 1e-6) << t;
+  }
+}
+
+TEST(GaussianFilterTest, ImpulseBecomesTheKernel) {
+  const Poses smooth = GaussianFilter(Along({0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0}), 1);
+  double sum = 0;
+  for (int i = -3; i <= 3; ++i) sum += std::exp(-0.5 * i * i);
+  for (int t = 0; t < 11; ++t) {
+    const int i = t - 5;
+    EXPECT_NEAR(smooth.at(t, 0).x, std::abs(i) > 3 ? 0 : std::exp(-0.5 * i * i) / sum, 1e-6) << t;
+  }
+}
+
+TEST(GaussianFilterTest, ClipShorterThanTheKernelIsSmoothed) {
+  const Poses smooth = GaussianFilter(Along({0, 1}), 2);
+  ASSERT_EQ(smooth.frame_count(), 2);
+  EXPECT_NEAR(smooth.at(0, 0).x, 0, 1e-6);
+  EXPECT_NEAR(smooth.at(1, 0).x, 1, 1e-6);
+  EXPECT_EQ(GaussianFilter(Along({5}), 2), Along({5}));
+}
+
+TEST(WithoutNoiseTest, FiltersTheSameTimeAtEveryRate) {
+  // A jump of 1 m in the middle of 2 s: what is left of it 0.1 s before, at 15 and at 60 Hz.
+  for (const int rate : {15, 60}) {
+    Poses jump(2 * rate, 1);
+    for (int t = rate; t < 2 * rate; ++t) jump.at(t, 0) = {1, 0, 0};
+    const float before = WithoutNoise(jump, rate).at(rate - rate / 5, 0).x;
+    EXPECT_NEAR(before, 0.03, 0.02) << rate;
+    EXPECT_GT(before, 0.005) << rate;
+  }
 }
 
 }  // namespace

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
+#include "model/motion/body_part.h"
+#include "model/motion/limb_lengths.h"
+#include "model/motion/skeleton_json.h"
 #include "tests/support/matchers.h"
 
 namespace duet::motion {
 namespace {
-
-TEST(SbuSkeleton, IsValid) { EXPECT_THAT(Validate(SbuSkeleton()), IsOk()); }
 
 TEST(SbuSkeleton, HasThePapersBones) {
   // Section 3.4, 1-based and without direction.
@@ -36,13 +36,6 @@ TEST(SbuSkeleton, LandmarksAreWhatTheyAreCalled) {
   EXPECT_EQ(skeleton.feet, (JointPair{skeleton.Find("left_foot"), skeleton.Find("right_foot")}));
 }
 
-TEST(Skeleton, FindsJointsByName) {
-  EXPECT_EQ(SbuSkeleton().Find("head"), 0);
-  EXPECT_EQ(SbuSkeleton().Find("right_foot"), 14);
-  EXPECT_EQ(SbuSkeleton().Find("tail"), -1);
-  EXPECT_EQ(SbuSkeleton().Find(""), -1);
-}
-
 TEST(Skeleton, HandsAreTheWristsIfItHasThem) {
   Skeleton skeleton = SbuSkeleton();
   EXPECT_EQ(FindHands(skeleton), (JointPair{5, 8}));
@@ -54,88 +47,153 @@ TEST(Skeleton, HandsAreTheWristsIfItHasThem) {
   EXPECT_FALSE(FindHands(skeleton).has_value());
 }
 
-TEST(Skeleton, KnowsParents) {
-  EXPECT_THAT(SbuSkeleton().Parents(),
-              ::testing::ElementsAre(1, 2, -1, 1, 3, 4, 1, 6, 7, 2, 9, 10, 2, 12, 13));
+TEST(Skeleton, IsRejectedByField) {
+  const struct {
+    std::function<void(Skeleton&)> how;
+    const char* why;
+  } cases[] = {
+      {[](Skeleton& s) { s.joint_names.clear(); }, "joint_names: expected at least one joint"},
+      {[](Skeleton& s) { s.joint_names[3] = ""; }, "joint_names: expected non-empty names"},
+      {[](Skeleton& s) { s.joint_names[3] = "head"; }, "joint_names: \"head\" is repeated"},
+      {[](Skeleton& s) { s.root = 15; }, "root: expected a joint index from 0 to 14, got 15"},
+      {[](Skeleton& s) { s.hips->left = 99; }, "left_hip: expected a joint index"},
+      {[](Skeleton& s) { s.feet->right = -1; }, "right_foot: expected a joint index"},
+      {[](Skeleton& s) { s.bones.pop_back(); }, "bones: expected 14 to connect 15 joints, got 13"},
+      {[](Skeleton& s) { s.bones[0].child = -2; }, "bones: expected a joint index from 0 to 14"},
+      {[](Skeleton& s) { s.bones[0].parent = 2, s.bones[0].child = 3; },
+       "expected one parent of joint 3, got another"},
+      {[](Skeleton& s) { s.bones[6].parent = 4; }, "below the root, got it elsewhere"},
+      {[](Skeleton& s) { s.bones[2].parent = 4; },  // shoulder <- elbow <- shoulder
+       "below the root, got it elsewhere"}};
+  for (const auto& one : cases) {
+    Skeleton skeleton = SbuSkeleton();
+    one.how(skeleton);
+    EXPECT_THAT(Validate(skeleton),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(one.why)));
+  }
 }
 
-struct Broken {
-  const char* what;
-  std::function<void(Skeleton&)> how;
-  const char* why;
-};
-
-class BrokenSkeleton : public ::testing::TestWithParam<Broken> {};
-
-TEST_P(BrokenSkeleton, IsRejectedByField) {
-  Skeleton skeleton = SbuSkeleton();
-  GetParam().how(skeleton);
-  EXPECT_THAT(Validate(skeleton),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(GetParam().why)));
+TEST(SbuParts, AreFiveOfThreeJoints) {
+  const std::vector<BodyPart> parts = SbuParts();
+  EXPECT_THAT(Validate(parts, SbuSkeleton()), IsOk());
+  ASSERT_EQ(parts.size(), 5u);
+  std::vector<int> joints;
+  for (const BodyPart& part : parts) {
+    EXPECT_EQ(part.joints.size(), 3u) << part.name;
+    joints.insert(joints.end(), part.joints.begin(), part.joints.end());
+  }
+  std::sort(joints.begin(), joints.end());
+  EXPECT_THAT(joints, ::testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Skeleton, BrokenSkeleton,
-    ::testing::Values(Broken{"no_joints", [](Skeleton& s) { s.joint_names.clear(); },
-                             "joint_names: expected at least one joint"},
-                      Broken{"unnamed", [](Skeleton& s) { s.joint_names[3] = ""; },
-                             "joint_names: expected non-empty names"},
-                      Broken{"name_twice", [](Skeleton& s) { s.joint_names[3] = "head"; },
-                             "joint_names: \"head\" is repeated"},
-                      Broken{"root_high", [](Skeleton& s) { s.root = 15; },
-                             "root: expected a joint index from 0 to 14, got 15"},
-                      Broken{"root_low", [](Skeleton& s) { s.root = -1; },
-                             "root: expected a joint index from 0 to 14, got -1"},
-                      Broken{"left_hip", [](Skeleton& s) { s.hips->left = 99; },
-                             "left_hip: expected a joint index"},
-                      Broken{"right_hip", [](Skeleton& s) { s.hips->right = 99; },
-                             "right_hip: expected a joint index"},
-                      Broken{"left_foot", [](Skeleton& s) { s.feet->left = 99; },
-                             "left_foot: expected a joint index"},
-                      Broken{"right_foot", [](Skeleton& s) { s.feet->right = 99; },
-                             "right_foot: expected a joint index"},
-                      Broken{"bone_missing", [](Skeleton& s) { s.bones.pop_back(); },
-                             "bones: expected 14 to connect 15 joints, got 13"},
-                      Broken{"bone_more",
-                             [](Skeleton& s) {
-                               s.bones.push_back({0, 1});
-                             },
-                             "bones: expected 14 to connect 15 joints, got 15"},
-                      Broken{"bone_joint", [](Skeleton& s) { s.bones[0].child = -2; },
-                             "bones: expected a joint index from 0 to 14, got -2"},
-                      Broken{"two_parents",
-                             [](Skeleton& s) {
-                               s.bones[0] = {2, 3};
-                             },
-                             "expected one parent of joint 3, got another"},
-                      Broken{"root_has_a_parent",
-                             [](Skeleton& s) {
-                               s.bones[0] = {0, 2};
-                             },
-                             "expected no parent of joint 2, got another"},
-                      Broken{"bone_to_itself", [](Skeleton& s) { s.bones[6].parent = 4; },
-                             "below the root, got it elsewhere"},
-                      Broken{"circle_of_two",
-                             [](Skeleton& s) {
-                               s.bones[2].parent = 4;  // shoulder <- elbow <- shoulder
-                             },
-                             "below the root, got it elsewhere"}),
-    [](const ::testing::TestParamInfo<Broken>& broken) { return broken.param.what; });
+TEST(BodyParts, AreRejectedByName) {
+  const auto refused = [](const std::vector<BodyPart>& parts, const char* why) {
+    EXPECT_THAT(Validate(parts, SbuSkeleton()),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(why)));
+  };
+  refused({}, "parts: expected at least one, got none");
+  refused({{"arm", {3}}, {"trunk", {}}}, "parts: expected at least one joint of \"trunk\"");
+  refused({{"trunk", {0, 15}}}, "parts.trunk: expected a joint index from 0 to 14, got 15");
+  refused({{"trunk", {-1}}}, "parts.trunk: expected a joint index from 0 to 14, got -1");
+}
 
-TEST(Skeleton, LandmarksMayBeAbsent) {
+using nlohmann::json;
+
+json Complete() { return json::parse(SkeletonToJson(SbuSkeleton(), SbuParts()).dump()); }
+
+TEST(SkeletonJson, RoundTrip) {
+  const absl::StatusOr<SkeletonDocument> read = ReadSkeleton(Complete(), "skeleton");
+  ASSERT_THAT(read, IsOk());
+  const Skeleton& got = read->skeleton;
+  const Skeleton wanted = SbuSkeleton();
+  EXPECT_EQ(got.joint_names, wanted.joint_names);
+  EXPECT_EQ(got.bones, wanted.bones);
+  EXPECT_EQ(got.root, wanted.root);
+  EXPECT_EQ(got.hips, wanted.hips);
+  EXPECT_EQ(got.feet, wanted.feet);
+  EXPECT_EQ(read->parts, SbuParts());
+}
+
+TEST(SkeletonJson, LandmarksMayBeAbsentBothSidesTogether) {
   Skeleton skeleton = SbuSkeleton();
   skeleton.hips.reset();
   skeleton.feet.reset();
-  EXPECT_THAT(Validate(skeleton), IsOk());
+  const json bare = json::parse(SkeletonToJson(skeleton, SbuParts()).dump());
+  const absl::StatusOr<SkeletonDocument> read = ReadSkeleton(bare, "skeleton");
+  ASSERT_THAT(read, IsOk());
+  EXPECT_FALSE(read->skeleton.hips.has_value());
+  EXPECT_FALSE(read->skeleton.feet.has_value());
+  for (const char* field : {"left_hip", "right_hip", "left_foot", "right_foot"}) {
+    json one_side = Complete();
+    one_side.erase(field);
+    EXPECT_THAT(ReadSkeleton(one_side, "skeleton"),
+                StatusIs(absl::StatusCode::kInvalidArgument,
+                         HasSubstr(std::string("skeleton.") + field + ": missing")));
+  }
 }
 
-TEST(Skeleton, TwentyJointsAreAsGood) {
-  Skeleton skeleton;
-  for (int j = 0; j < 20; ++j) {
-    skeleton.joint_names.push_back("joint" + std::to_string(j));
-    if (j > 0) skeleton.bones.push_back({(j - 1) / 2, j});
+TEST(SkeletonJson, RejectsByFieldAndPlace) {
+  const struct {
+    const char* pointer;
+    const char* value;
+    const char* why;
+  } cases[] = {
+      {"/joint_names/3", "\"head\"", "a.joint_names: \"head\" is repeated"},
+      {"/bones/2", "[\"neck\"]",
+       "a.bones[2]: expected a pair of joint names, parent first, got [\"neck\"]"},
+      {"/bones/2/1", "\"tail\"", "a.bones[2]: expected one of skeleton.joint_names, got \"tail\""},
+      {"/bones", "[]", "a.bones: expected 14 to connect 15 joints, got 0"},
+      {"/parts/1/joints/0", "\"tail\"",
+       "a.parts[1].joints: expected one of skeleton.joint_names, got \"tail\""},
+      {"/parts/1/joints", "[]", "a.parts: expected at least one joint of \"right_arm\""},
+      {"/parts/1/name", "\"left_arm\"", "a.parts[1].name: \"left_arm\" is repeated or reserved"},
+      {"/parts/1/name", "\"a/b\"", "a.parts[1].name: expected 1 to 64 letters"},
+      {"/parts", "[]", "a.parts: expected at least one, got none"},
+      {"/root", "\"tail\"", "a.root: expected one of skeleton.joint_names, got \"tail\""},
+      {"/left_hip", "3", "a.left_hip: expected a string"},
+      {"/tail", "3", "unknown field \"tail\""},
+  };
+  for (const auto& one : cases) {
+    json value = Complete();
+    value[json::json_pointer(one.pointer)] = json::parse(one.value);
+    EXPECT_THAT(ReadSkeleton(value, "a"),
+                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr(one.why)))
+        << one.pointer << " " << one.value;
   }
-  EXPECT_THAT(Validate(skeleton), IsOk());
+}
+
+// A chain of three joints, its bones listed child first.
+Skeleton Chain() {
+  Skeleton skeleton;
+  skeleton.joint_names = {"root", "middle", "end"};
+  skeleton.bones = {{1, 2}, {0, 1}};
+  skeleton.root = 0;
+  return skeleton;
+}
+
+TEST(LimbLengthsTest, MedianIsOverTheFrames) {
+  const Poses poses(3, {{0, 0, 0},
+                        {1, 0, 0},
+                        {1, 2, 0},  // 2, 1
+                        {0, 0, 0},
+                        {3, 0, 0},
+                        {3, 9, 0},  // 9, 3
+                        {0, 0, 0},
+                        {2, 0, 0},
+                        {2, 3, 0}});  // 3, 2
+  EXPECT_THAT(MedianBoneLengths(Chain(), poses), ElementsAre(FloatEq(3), FloatEq(2)));
+}
+
+TEST(LimbLengthsTest, SettingKeepsRootAndDirections) {
+  Poses poses(3, {{1, 1, 1}, {1, 3, 1}, {5, 3, 1}});
+  SetBoneLengths(Chain(), {0.5f, 1}, &poses);
+  EXPECT_THAT(poses.all(), ElementsAre(Vec3{1, 1, 1}, Vec3{1, 2, 1}, Vec3{1.5f, 2, 1}));
+}
+
+TEST(LimbLengthsTest, BoneWithoutDirectionStaysPut) {
+  Poses poses(3, {{1, 1, 1}, {1, 1, 1}, {1, 2, 1}});
+  SetBoneLengths(Chain(), {3, 1}, &poses);
+  EXPECT_THAT(poses.all(), ElementsAre(Vec3{1, 1, 1}, Vec3{1, 1, 1}, Vec3{1, 4, 1}));
 }
 
 }  // namespace
