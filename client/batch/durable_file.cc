@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/write_error.h"
+#include "model/base/file.h"
 
 namespace duet::client::batch {
 namespace {

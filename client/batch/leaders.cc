@@ -14,7 +14,7 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "client/batch/text_values.h"
-#include "model/base/missing_file.h"
+#include "model/base/file.h"
 #include "model/base/sha256.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"

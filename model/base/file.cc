@@ -7,17 +7,56 @@
 #include <cerrno>
 #include <fstream>
 #include <ios>
+#include <string>
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
 #include "model/base/descriptor.h"
-#include "model/base/missing_file.h"
-#include "model/base/write_error.h"
+#include "model/base/printable.h"
 
 namespace duet::base {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Empty if the path is no symbolic link.
+std::string DescribeLink(const fs::path& path) {
+  std::error_code error;
+  const fs::path target = fs::read_symlink(path, error);
+  if (error) return "";
+  const bool exists = fs::exists(path, error);
+  return !exists && error == std::errc::too_many_symbolic_link_levels
+             ? "; it is a symbolic link that leads back to itself"
+             : absl::StrCat("; it is a symbolic link to ", EscapeControls(target.string()));
+}
+
+}  // namespace
+
+absl::Status MissingFile(const fs::path& path, absl::string_view kind) {
+  return absl::NotFoundError(absl::StrCat(path.string(), ": no such ", kind, DescribeLink(path)));
+}
+
+bool IsLasting(int error) {
+  switch (error) {
+    case EISDIR:
+    case ELOOP:
+    case ENAMETOOLONG:
+    case ENOTDIR:
+    case EROFS:
+      return true;
+    default:
+      return false;
+  }
+}
+
+absl::Status CannotBeWritten(const fs::path& path, int error) {
+  const std::string why = error == 0 ? "" : ": " + std::generic_category().message(error);
+  const std::string message = absl::StrCat(path.string(), ": cannot be written", why);
+  return IsLasting(error) ? absl::FailedPreconditionError(message)
+                          : absl::PermissionDeniedError(message);
+}
+
+namespace {
 
 constexpr std::size_t kReadBlock = std::size_t{1} << 16;
 constexpr std::size_t kMebibyte = std::size_t{1} << 20;

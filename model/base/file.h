@@ -21,9 +21,21 @@ absl::StatusOr<std::string> ReadFile(const std::filesystem::path& path, std::siz
                                      absl::string_view expected);
 
 // Replaces a file atomically: a failed write leaves no partial file. A pipe or a device is written
-// to directly. Errors: INVALID_ARGUMENT (a folder), and those of CannotBeWritten (write_error.h),
+// to directly. Errors: INVALID_ARGUMENT (a folder), and those of CannotBeWritten,
 // naming the path.
 absl::Status WriteFile(const std::filesystem::path& path, absl::string_view content);
+
+// NOT_FOUND "<path>: no such <kind>" for a path that cannot be opened because nothing is there. If
+// the path is a symbolic link, the message says where it leads.
+absl::Status MissingFile(const std::filesystem::path& path, absl::string_view kind = "file");
+
+// Whether writing fails with this errno again until somebody changes the path or its mount. A full
+// disk and a folder that is closed may be different the next time.
+bool IsLasting(int error);
+
+// "<path>: cannot be written: <what errno means>". FAILED_PRECONDITION if the error lasts,
+// otherwise PERMISSION_DENIED.
+absl::Status CannotBeWritten(const std::filesystem::path& path, int error);
 
 }  // namespace duet::base
 

@@ -5,7 +5,6 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "model/base/json_events.h"
 #include "model/base/printable.h"
 #include "model/base/text.h"
 
@@ -28,7 +27,7 @@ class StrictBuilder final : public nlohmann::json_sax<json> {
       : max_depth_(max_depth), max_values_(max_values), skipped_(skipped) {}
 
   json Take() { return std::move(root_); }
-  // Empty without an error.
+  // Why the parser stopped.
   const std::string& problem() const { return problem_; }
 
   bool null() override { return Add(nullptr); }
@@ -141,11 +140,8 @@ absl::StatusOr<json> Parse(std::string_view text, int max_depth, std::size_t max
     return absl::InvalidArgumentError(absl::StrCat("not JSON: a NUL at byte ", at));
   }
   StrictBuilder builder(max_depth, max_values, skipped);
-  if (ReadJsonEvents(text, &builder)) return builder.Take();
-  if (!builder.problem().empty()) return absl::InvalidArgumentError(builder.problem());
-  StrictBuilder again(max_depth, max_values, skipped);  // names the place of an error
-  if (json::sax_parse(text.begin(), text.end(), &again)) return again.Take();
-  return absl::InvalidArgumentError(again.problem());
+  if (json::sax_parse(text.begin(), text.end(), &builder)) return builder.Take();
+  return absl::InvalidArgumentError(builder.problem());
 }
 
 std::string_view SkipPrelude(absl::string_view text) {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/missing_file.h"
+#include "model/base/file.h"
 #include "model/motion/reading_setting.h"
 #include "model/retargeting/reading_report.h"
 

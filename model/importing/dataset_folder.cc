@@ -9,7 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "model/base/file.h"
-#include "model/base/missing_file.h"
+#include "model/base/file.h"
 #include "model/dataset/dataset.h"
 #include "model/formats/flat/sbu_text.h"
 #include "model/motion/skeleton_json.h"

@@ -62,24 +62,11 @@ TEST(Folder, RejectsOtherKindsOfFiles) {
   EXPECT_THAT(ReadIn(folder.path(), "pipe"), Refused("expected a regular file"));
 }
 
-TEST(Folder, RejectsOtherKindsThanFolders) {
-  const TemporaryFolder folder;
-  WriteTestFile(folder / "file", "");
-  EXPECT_THAT(Folder::Open(folder / "file"), Refused("expected a folder"));
-  EXPECT_THAT(Folder::Open(folder / "absent"), StatusIs(absl::StatusCode::kNotFound, _));
-}
-
 TEST(WriteFolder, CreatesParentsAndFiles) {
   const TemporaryFolder folder;
   ASSERT_THAT(WriteFolder(folder / "x/y/z", {{"a", "1"}, {"b", ""}}), IsOk());
   EXPECT_EQ(ReadTestFile(folder / "x/y/z/a"), "1");
   EXPECT_EQ(ReadTestFile(folder / "x/y/z/b"), "");
-}
-
-TEST(WriteFolder, AcceptsATrailingSeparator) {
-  const TemporaryFolder folder;
-  ASSERT_THAT(WriteFolder(folder / "x/", {{"a", "1"}}), IsOk());
-  EXPECT_EQ(ReadTestFile(folder / "x/a"), "1");
 }
 
 TEST(WriteFolder, ReplacesNothing) {
@@ -132,14 +119,6 @@ TEST(WriteFolder, LeavesNothingWhenTheDiskIsFullWithinAFile) {
   EXPECT_FALSE(status.ok());
   EXPECT_THAT(std::string(status.message()), HasSubstr("/a"));
   EXPECT_TRUE(fs::is_empty(folder.path()));
-}
-
-TEST(WriteFolder, NamesAParentThatIsNoFolder) {
-  const TemporaryFolder folder;
-  WriteTestFile(folder / "file", "");
-  const absl::Status status = WriteFolder(folder / "file/x", {{"a", "1"}});
-  EXPECT_FALSE(status.ok());
-  EXPECT_THAT(std::string(status.message()), HasSubstr("file"));
 }
 
 }  // namespace

@@ -74,14 +74,24 @@ TEST_F(FileTest, ReportsThePathThatCannotBeWritten) {
                        HasSubstr("/dev/full: cannot be written: No space left on device")));
 }
 
-TEST_F(FileTest, LeavesNothingBesideTheFile) {
-  ASSERT_THAT(WriteFile(Path("a"), "x"), IsOk());
-  int files = 0;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
-    EXPECT_EQ(entry.path(), Path("a"));
-    ++files;
-  }
-  EXPECT_EQ(files, 1);
+absl::Status NotFound(const fs::path& path, absl::string_view rest) {
+  return absl::NotFoundError(path.string() + std::string(rest));
+}
+
+TEST(MissingFile, SaysWhereASymbolicLinkLeads) {
+  test::TemporaryFolder folder;
+  fs::create_symlink("gone.bvh", folder / "link.bvh");
+  EXPECT_EQ(MissingFile(folder / "link.bvh"),
+            NotFound(folder / "link.bvh", ": no such file; it is a symbolic link to gone.bvh"));
+}
+
+TEST(MissingFile, RecognisesLinksInACircle) {
+  test::TemporaryFolder folder;
+  fs::create_symlink("b.bvh", folder / "a.bvh");
+  fs::create_symlink("a.bvh", folder / "b.bvh");
+  EXPECT_EQ(MissingFile(folder / "a.bvh"),
+            NotFound(folder / "a.bvh",
+                     ": no such file; it is a symbolic link that leads back to itself"));
 }
 
 }  // namespace

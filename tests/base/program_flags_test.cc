@@ -1,11 +1,12 @@
 #include "model/base/program_flags.h"
 
+#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
+#include "model/base/program_output.h"
 #include "tests/support/matchers.h"
 
 namespace duet::base {
@@ -88,6 +89,26 @@ TEST_F(ProgramFlags, ErrorsStateWhatWasExpected) {
             "--folder: expected a folder that exists, got \"/no/such\"");
   EXPECT_EQ(Error({"fit", "--data", "x", "--quiet=maybe"}),
             "--quiet: expected true or false, got \"maybe\"");
+}
+
+TEST(ProgramOutputTest, KeepsTheExitCodeOfWhatIsWritten) {
+  std::ostringstream out, err;
+  out << "answer\n";
+  EXPECT_THAT(FlushOutput(&out), IsOk());
+  EXPECT_EQ(FinishOutput("duet", 0, &out, &err), 0);
+  EXPECT_EQ(FinishOutput("duet", 42, &out, &err), 42);
+  EXPECT_EQ(err.str(), "");
+}
+
+TEST(ProgramOutputTest, SuccessWithoutOutputIsNone) {
+  std::ofstream full("/dev/full");
+  std::ostringstream err;
+  full << "answer\n";
+  EXPECT_EQ(FinishOutput("duet", 0, &full, &err), 1);
+  EXPECT_EQ(err.str(), "duet: standard output: cannot write all of it: No space left on device\n");
+  EXPECT_EQ(FinishOutput("duet", 42, &full, &err), 42) << "which has its own message";
+  EXPECT_THAT(FlushOutput(&full),
+              StatusIs(absl::StatusCode::kAborted, StartsWith("standard output: ")));
 }
 
 }  // namespace

@@ -1,14 +1,16 @@
 #include "model/base/random.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <set>
+#include <vector>
 
+#include "gmock/gmock.h"
+#include "model/base/open_uniforms.h"
+#include "model/base/statistics.h"
 #include "tests/support/matchers.h"
 
 namespace duet::base {
@@ -62,56 +64,57 @@ TEST(RandomTest, IntegersAndOrdersStayTheSame) {
   EXPECT_THAT(values, ElementsAre(2, 3, 5, 6, 1, 0, 4, 7));
 }
 
-TEST(RandomTest, StreamsDependOnlyOnSeedAndPart) {
-  std::set<double> first;
-  for (const uint64_t seed : {1, 2}) {
-    for (const int64_t part : {2, 3}) {
-      EXPECT_EQ(Random(seed, part).Uniform(), Random(seed, part).Uniform());
-      first.insert(Random(seed, part).Uniform());
+TEST(MeanTest, IgnoresMissingValues) {
+  EXPECT_EQ(Mean({1, std::nan(""), 4}), 2.5);
+  EXPECT_TRUE(std::isnan(Mean({std::nan("")})));
+  EXPECT_TRUE(std::isnan(Mean({})));
+}
+
+TEST(QuantileTest, LiesBetweenNeighbours) {
+  EXPECT_DOUBLE_EQ(Quantile({40, 10, 30, 20}, 0.5), 25);
+  EXPECT_DOUBLE_EQ(Quantile({40, 10, 30, 20}, 0.9), 37);
+  EXPECT_EQ(Quantile({7}, 0.9), 7);
+  EXPECT_TRUE(std::isnan(Quantile({}, 0.5)));
+}
+
+TEST(SummariseTest, MeanAndSampleDeviation) {
+  const MeanAndDeviation summary = Summarise({1, 2, 3, 6});
+  EXPECT_DOUBLE_EQ(summary.mean, 3);
+  EXPECT_DOUBLE_EQ(summary.deviation, std::sqrt(14.0 / 3));
+}
+
+TEST(SummariseTest, TooFewValuesHaveNoDeviation) {
+  EXPECT_EQ(Summarise({4}).mean, 4);
+  EXPECT_TRUE(std::isnan(Summarise({4}).deviation));
+  EXPECT_TRUE(std::isnan(Summarise({}).mean));
+}
+
+std::vector<double> OneByOne(uint64_t seed, int64_t part, std::size_t count) {
+  Random random(seed, part);
+  std::vector<double> numbers(count);
+  for (double& number : numbers) number = random.OpenUniform();
+  return numbers;
+}
+
+TEST(FillOpenUniform, EqualsRandomBitForBit) {
+  for (const uint64_t seed : {uint64_t{0}, uint64_t{7}, std::numeric_limits<uint64_t>::max()}) {
+    for (const int64_t part : {int64_t{0}, int64_t{-3}, int64_t{1} << 40}) {
+      std::vector<double> numbers(1000);  // more than three blocks
+      FillOpenUniform(seed, part, 1000, numbers.data());
+      EXPECT_EQ(numbers, OneByOne(seed, part, 1000)) << seed << " " << part;
     }
-    first.insert(Random(seed).Uniform());
   }
-  EXPECT_EQ(first.size(), 6u) << "all of them differ";
 }
 
-TEST(RandomTest, UniformNumbersFillTheirInterval) {
-  Random random(7, 0);
-  double low = 1, high = 0;
-  for (int i = 0; i < 20000; ++i) {
-    const double drawn = random.Uniform();
-    low = std::min(low, drawn);
-    high = std::max(high, drawn);
+TEST(FillOpenUniform, WritesOnlyWhatIsAskedFor) {
+  for (const std::size_t count :
+       {std::size_t{0}, std::size_t{1}, std::size_t{312}, std::size_t{313}}) {
+    std::vector<double> numbers(count + 1, -1);
+    FillOpenUniform(5, 0, static_cast<std::ptrdiff_t>(count), numbers.data());
+    EXPECT_EQ(numbers.back(), -1);
+    numbers.pop_back();
+    EXPECT_EQ(numbers, OneByOne(5, 0, count));
   }
-  EXPECT_GE(low, 0);
-  EXPECT_LT(low, 0.01);
-  EXPECT_LT(high, 1);
-  EXPECT_GT(high, 0.99);
-}
-
-TEST(RandomTest, NormalNumbersHaveTheirDeviation) {
-  Random random(7, 0);
-  constexpr int kDraws = 20000;
-  double sum = 0, squares = 0, standard_squares = 0;
-  for (int i = 0; i < kDraws; ++i) {
-    const double drawn = random.Normal(2), standard = random.StandardNormal();
-    sum += drawn + standard;
-    squares += drawn * drawn;
-    standard_squares += standard * standard;
-  }
-  EXPECT_NEAR(sum / kDraws, 0, 0.1);
-  EXPECT_NEAR(squares / kDraws, 4, 0.2);
-  EXPECT_NEAR(standard_squares / kDraws, 1, 0.05);
-}
-
-TEST(RandomTest, ChanceHasItsProbability) {
-  Random random(7, 0);
-  int taken = 0;
-  for (int i = 0; i < 10000; ++i) {
-    taken += random.Chance(0.25) ? 1 : 0;
-    EXPECT_FALSE(random.Chance(0));
-    EXPECT_TRUE(random.Chance(1));
-  }
-  EXPECT_NEAR(taken, 2500, 150);
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
+#include "model/base/nearest.h"
+#include "model/base/printable.h"
 #include "tests/support/matchers.h"
 
 namespace duet::base {
@@ -62,21 +63,6 @@ TEST(AppendFixed, NeverWritesAMinusBeforeZero) {
   EXPECT_EQ(Fixed(std::numeric_limits<double>::max(), 3).size(), 313u);
 }
 
-TEST(Quoted, EscapesBytesThatAreNotPrintableAscii) {
-  EXPECT_EQ(Quoted("head"), "\"head\"");
-  EXPECT_EQ(Quoted("a\nb\"c\\d\xff"), R"("a\nb\"c\\d\xff")");
-}
-
-TEST(Quoted, LeavesSingleQuotes) {
-  EXPECT_EQ(Quoted("'>f4'"), "\"'>f4'\"");
-  EXPECT_EQ(Quoted(R"(a\'b)"), R"("a\\'b")");
-}
-
-TEST(Quoted, ShowsOnlyTheBeginningOfALongText) {
-  EXPECT_EQ(Quoted(std::string(64, 'x')), "\"" + std::string(64, 'x') + "\"");
-  EXPECT_EQ(Quoted(std::string(65, 'x')), "\"" + std::string(64, 'x') + "...\"");
-}
-
 TEST(ErrorAt, PointsAtAPlace) {
   EXPECT_EQ(ErrorAt("a.csv", 3, "no"), absl::InvalidArgumentError("a.csv:3: no"));
   EXPECT_EQ(ErrorAt("a.csv", 3, 7, "no"), absl::InvalidArgumentError("a.csv:3:7: no"));
@@ -106,6 +92,63 @@ TEST(LineReader, CarriageReturnsAloneEndLines) {
   std::vector<std::string> read;
   for (absl::string_view line; lines.Next(&line);) read.emplace_back(line);
   EXPECT_THAT(read, ElementsAre("a", "", "b"));
+}
+
+TEST(Printable, EscapesBytesThatAreNotPrintableAscii) {
+  EXPECT_EQ(Printable("no field \"c\"", 64), "no field \"c\"");
+  EXPECT_EQ(Printable("a\nb\x7f\xff\r", 64), R"(a\nb\x7f\xff\r)");
+  // Each byte alone: an escape swallows nothing that follows it.
+  EXPECT_EQ(Printable("\x01"
+                      "1",
+                      64),
+            R"(\x011)");
+}
+
+TEST(Printable, ShowsOnlyTheBeginningOfALongText) {
+  EXPECT_EQ(Printable(std::string(8, 'x'), 8), "xxxxxxxx");
+  EXPECT_EQ(Printable(std::string(9, 'x'), 8), "xxxxxxxx...");
+}
+
+TEST(EscapeControls, KeepsLettersOfEveryScript) {
+  EXPECT_EQ(EscapeControls("\x1b[31mh\xc3\xbc"
+                           "ftgelenk\x07\n\x7f"),
+            "\\x1b[31mh\xc3\xbc"
+            "ftgelenk\\x07\\n\\x7f");
+}
+
+using ::testing::Optional;
+
+const std::vector<std::string>& Classes() {
+  static const auto& classes =
+      *new std::vector<std::string>{"kick", "push", "punch", "shake_hands"};
+  return classes;
+}
+
+TEST(Nearest, FindsANameWithOneEdit) {
+  EXPECT_THAT(Nearest("kik", Classes()), Optional(std::string("kick")));    // left out
+  EXPECT_THAT(Nearest("kickk", Classes()), Optional(std::string("kick")));  // added
+  EXPECT_THAT(Nearest("kock", Classes()), Optional(std::string("kick")));   // changed
+  EXPECT_THAT(Nearest("kcik", Classes()), Optional(std::string("kick")));   // swapped
+  EXPECT_THAT(Nearest("Kick", Classes()), Optional(std::string("kick")));   // case
+  EXPECT_THAT(Nearest("shakehands", Classes()), Optional(std::string("shake_hands")));
+}
+
+TEST(Nearest, FindsTheNearestAndAmongSeveralTheFirst) {
+  EXPECT_THAT(Nearest("puncch", {"punt", "punch"}), Optional(std::string("punch")));
+  EXPECT_THAT(Nearest("cat", {"bat", "hat"}), Optional(std::string("bat")));
+}
+
+TEST(Nearest, IsAbsentForOtherWords) {
+  EXPECT_EQ(Nearest("dance", Classes()), std::nullopt);
+  EXPECT_EQ(Nearest("", Classes()), std::nullopt);
+  EXPECT_EQ(Nearest("kick", {}), std::nullopt);
+  EXPECT_EQ(Nearest("kick", Classes()), std::nullopt);  // is one of them
+  EXPECT_EQ(Nearest(std::string(1000, 'k'), Classes()), std::nullopt);
+}
+
+TEST(DidYouMean, EndsAMessage) {
+  EXPECT_EQ(DidYouMean("kik", Classes()), "; did you mean kick?");
+  EXPECT_EQ(DidYouMean("dance", Classes()), "");
 }
 
 }  // namespace

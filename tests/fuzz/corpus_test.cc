@@ -56,7 +56,6 @@ constexpr Target kTargets[] = {
     {"gltf", Gltf},
     {"http_request", HttpRequest},
     {"joint_map", JointMap},
-    {"json_events", JsonEvents},
     {"json_motion", JsonMotion},
     {"judge", Judge},
     {"keyframes", Keyframes},

@@ -17,7 +17,6 @@
 #include "model/motion/motion_limits.h"
 #include "model/motion/recorded_motion.h"
 #include "model/retargeting/joint_table.h"
-#include "tests/base/json_event_comparison.h"
 #include "tests/fuzz/promises.h"
 #include "tests/support/test_motion.h"
 
@@ -111,10 +110,6 @@ Broken Bvh(absl::string_view input) {
 }
 
 Broken Csv(absl::string_view input) { return ReadMotion(Format::kCsv, input, kFrameRateHz); }
-
-Broken JsonEvents(absl::string_view input) {
-  return base::test::CompareJsonEvents({input.data(), input.size()});
-}
 
 Broken JsonMotion(absl::string_view input) {
   return ReadMotion(Format::kJson, input, kFrameRateHz);

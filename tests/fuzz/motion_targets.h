@@ -10,7 +10,6 @@ namespace duet::fuzz {
 Broken Bvh(absl::string_view input);
 Broken Csv(absl::string_view input);
 Broken Gltf(absl::string_view input);
-Broken JsonEvents(absl::string_view input);  // base::ReadJsonEvents beside nlohmann::json
 Broken JsonMotion(absl::string_view input);
 Broken Npy(absl::string_view input);
 Broken SbuText(absl::string_view input);

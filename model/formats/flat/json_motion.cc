@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "model/base/json_events.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
 #include "model/motion/motion_limits.h"
@@ -248,7 +247,7 @@ void ReadPeople(absl::string_view text, base::ObjectReader* reader,
   if (!reader->ok()) return;
   PositionReader positions(reader, people);
   const absl::string_view document = base::SkipByteOrderMark(text);
-  if (base::ReadJsonEvents({document.data(), document.size()}, &positions)) return;
+  if (Json::sax_parse(document.begin(), document.end(), &positions)) return;
   reader->Fail("frames", "expected JSON");
 }
 
