@@ -12,7 +12,7 @@
 #include "model/dataset/leader_side.h"
 #include "model/dataset/levelling.h"
 #include "model/dataset/time_line.h"
-#include "model/formats/flat/sbu_text.h"
+#include "model/formats/flat/flat_files.h"
 
 namespace duet::dataset {
 namespace {

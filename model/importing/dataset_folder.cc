@@ -11,7 +11,7 @@
 #include "model/base/file.h"
 #include "model/base/file.h"
 #include "model/dataset/dataset.h"
-#include "model/formats/flat/sbu_text.h"
+#include "model/formats/flat/flat_files.h"
 #include "model/motion/skeleton_json.h"
 
 namespace duet::importing {

@@ -11,7 +11,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/file.h"
-#include "model/formats/flat/sbu_text.h"
+#include "model/formats/flat/flat_files.h"
 #include "model/formats/follower_rig.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/matchers.h"

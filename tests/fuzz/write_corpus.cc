@@ -14,7 +14,7 @@
 #include "model/checkpoint/checkpoint.h"
 #include "model/checkpoint/safetensors.h"
 #include "model/classifier/classifier_files.h"
-#include "model/formats/flat/sbu_text.h"
+#include "model/formats/flat/flat_files.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/skeleton.h"
 #include "tests/classifier/random_classifier.h"

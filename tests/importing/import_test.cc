@@ -10,7 +10,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "model/dataset/dataset.h"
-#include "model/formats/flat/csv.h"
+#include "model/formats/flat/flat_files.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/coordinates.h"
 #include "model/retargeting/reading_report.h"

@@ -1,5 +1,3 @@
-#include "model/formats/flat/json_motion.h"
-
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
@@ -10,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/strict_json.h"
 #include "model/base/text.h"
+#include "model/formats/flat/flat_files.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {

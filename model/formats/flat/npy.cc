@@ -1,5 +1,3 @@
-#include "model/formats/flat/npy.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +12,7 @@
 #include "absl/strings/strip.h"
 #include "absl/types/span.h"
 #include "model/base/text.h"
+#include "model/formats/flat/flat_files.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {

@@ -1,9 +1,8 @@
-#include "model/formats/flat/sbu_text.h"
-
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "model/base/file.h"
 #include "model/base/text.h"
+#include "model/formats/flat/flat_files.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::flat {

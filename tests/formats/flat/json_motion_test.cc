@@ -1,5 +1,3 @@
-#include "model/formats/flat/json_motion.h"
-
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -9,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/formats/flat/flat_files.h"
 #include "nlohmann/json.hpp"
 #include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
@@ -79,16 +78,6 @@ TEST(JsonMotion, WritesTheFollowersRotationsBesideThePair) {
   const absl::StatusOr<motion::RecordedMotion> motion = ParseJsonMotion(text, "a.json");
   ASSERT_TRUE(motion.ok()) << motion.status();
   EXPECT_EQ(motion->people[1].poses, pair.follower.poses);
-}
-
-TEST(JsonMotion, HonoursUnitAndAxis) {
-  Json document = OnePerson();
-  document["unit"] = "millimetres";
-  document["up_axis"] = "y-down";
-  const absl::StatusOr<motion::RecordedMotion> motion = ParseJsonMotion(document.dump(), "a.json");
-  ASSERT_TRUE(motion.ok()) << motion.status();
-  EXPECT_EQ(motion->coordinates.unit, motion::LengthUnit::kMillimetres);
-  EXPECT_EQ(motion->coordinates.up_axis, motion::UpAxis::kYDown);
 }
 
 TEST(JsonMotion, IgnoresUnknownFieldsByteOrderMarkAndWhiteSpace) {
@@ -173,13 +162,6 @@ TEST(JsonMotion, LimitsFramesJointsAndCoordinates) {
                 HasSubstr("leader[0]"))
         << frame;
   }
-}
-
-TEST(JsonMotion, ReadsJointNamesThatFollowTheFrames) {
-  const auto motion = ParseJsonMotion(
-      "{\"leader\": [[[1,2,3]]], \"frame_rate_hz\": 30, \"joint_names\": [\"a\"]}", "a.json");
-  ASSERT_TRUE(motion.ok()) << motion.status();
-  EXPECT_EQ(motion->people[0].at(0, 0).z, 3);
 }
 
 TEST(JsonMotion, RejectsDeepNestingBeforeItCostsMemory) {

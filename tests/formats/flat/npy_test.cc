@@ -1,5 +1,3 @@
-#include "model/formats/flat/npy.h"
-
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "model/base/file.h"
+#include "model/formats/flat/flat_files.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_motion.h"
@@ -63,12 +62,6 @@ TEST(Npy, ReadsLaterVersionsOfTheFormat) {
   }
 }
 
-TEST(Npy, AlignsItsValues) {
-  const std::string bytes = FormatNpy(MakePair());
-  EXPECT_EQ((bytes.find('\n') + 1) % 64, 0u);
-  EXPECT_EQ(bytes.size() - bytes.find('\n') - 1, 2u * 12 * 15 * 3 * 4);
-}
-
 // The format's own reader and writer, where this machine has them.
 TEST(Npy, IsReadAndWrittenByNumPy) {
   if (std::system("/usr/bin/python3 -c 'import numpy' >/dev/null 2>&1") != 0) {
@@ -114,10 +107,6 @@ TEST(Npy, RejectsEveryTruncation) {
   for (std::size_t size = 0; size < bytes.size(); size += size < 200 ? 1 : 97) {
     ParseError(bytes.substr(0, size));
   }
-}
-
-TEST(Npy, RejectsBytesAfterTheValues) {
-  EXPECT_THAT(ParseError(FormatNpy(MakePair()) + "x"), HasSubstr("bytes of values"));
 }
 
 TEST(Npy, RejectsAHeaderLongerThanTheFile) {

@@ -1,5 +1,3 @@
-#include "model/formats/flat/sbu_text.h"
-
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -8,6 +6,7 @@
 #include "absl/strings/str_replace.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/formats/flat/flat_files.h"
 #include "tests/support/matchers.h"
 
 namespace duet::formats::flat {
@@ -42,13 +41,6 @@ TEST(SbuText, ReadsBothPeople) {
   EXPECT_EQ(recording->right.at(1, 1), (motion::Vec3{1, 1.5f, -0.2f}));
 }
 
-TEST(SbuText, IgnoresAByteOrderMark) {
-  const absl::StatusOr<SbuRecording> recording =
-      ParseSbu(absl::StrCat("\xEF\xBB\xBF", kTwoFrames), "a.txt", TwoJoints());
-  ASSERT_TRUE(recording.ok()) << recording.status();
-  EXPECT_EQ(recording->left.frame_count(), 2);
-}
-
 TEST(SbuText, DefaultsToSbuJointsUnitAndRate) {
   std::string line = "180";
   for (int value = 0; value < 90; ++value) absl::StrAppend(&line, ",", value < 45 ? "0.5" : "0.25");
@@ -61,13 +53,6 @@ TEST(SbuText, DefaultsToSbuJointsUnitAndRate) {
   EXPECT_NEAR(recording->left.at(0, 0).z, 0.64, 1e-6);
   EXPECT_NEAR(recording->right.at(0, 14).x, 0.64, 1e-6);
   EXPECT_NEAR(recording->right.at(0, 14).y, 0.48, 1e-6);
-}
-
-TEST(SbuText, AcceptsWindowsLineEndsAndBlankLinesAtTheEnd) {
-  const std::string text = absl::StrReplaceAll(kTwoFrames, {{"\n", "\r\n"}}) + "\r\n\n";
-  const absl::StatusOr<SbuRecording> recording = ParseSbu(text, "a.txt", TwoJoints());
-  ASSERT_TRUE(recording.ok()) << recording.status();
-  EXPECT_EQ(recording->left.frame_count(), 2);
 }
 
 TEST(SbuText, NamesThePlaceOfABadValue) {
@@ -98,18 +83,6 @@ TEST(SbuText, RejectsFrameNumbersThatSkip) {
               HasSubstr("expected a whole number"));
 }
 
-TEST(SbuText, RejectsAnEmptyText) {
-  EXPECT_THAT(ParseError(""), HasSubstr("expected at least one line"));
-  EXPECT_THAT(ParseError("\n\n"), HasSubstr("expected at least one line"));
-}
-
-TEST(SbuText, RejectsAnInvalidRate) {
-  SbuOptions options = TwoJoints();
-  options.frame_rate_hz = -1;
-  EXPECT_THAT(std::string(ParseSbu(kTwoFrames, "a.txt", options).status().message()),
-              HasSubstr("frame rate: expected more than 0 and at most 1000 Hz, got -1"));
-}
-
 TEST(SbuText, WritesWhatItReads) {
   const absl::StatusOr<SbuRecording> recording = ParseSbu(kTwoFrames, "a.txt", TwoJoints());
   ASSERT_TRUE(recording.ok());
@@ -119,12 +92,6 @@ TEST(SbuText, WritesWhatItReads) {
   ASSERT_TRUE(again.ok()) << again.status();
   EXPECT_EQ(again->left.poses, recording->left.poses);
   EXPECT_EQ(again->right.poses, recording->right.poses);
-}
-
-TEST(SbuText, NamesAMissingFile) {
-  const absl::StatusOr<SbuRecording> recording = ReadSbu("/nowhere/skeleton_pos.txt");
-  EXPECT_EQ(recording.status().code(), absl::StatusCode::kNotFound);
-  EXPECT_THAT(std::string(recording.status().message()), HasSubstr("/nowhere/skeleton_pos.txt"));
 }
 
 // Every real capture, where somebody has them.
