@@ -15,7 +15,6 @@
 #include "client/viewer/page.h"
 #include "model/base/file.h"
 #include "model/base/program_output.h"
-#include "model/base/file.h"
 #include "model/formats/motion_file.h"
 #include "model/formats/people.h"
 

@@ -1,6 +1,5 @@
 #include "tests/fuzz/checkpoint_targets.h"
 
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,27 +8,13 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/sha256.h"
 #include "model/checkpoint/checkpoint.h"
-#include "model/classifier/classifier_files.h"
-#include "model/motion/clip.h"
-#include "model/motion/skeleton.h"
-#include "nlohmann/json.hpp"
 #include "tests/fuzz/promises.h"
 
 namespace duet::fuzz {
 namespace {
 
-constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
 constexpr auto kInvalidArgument = absl::StatusCode::kInvalidArgument;
 constexpr auto kDataLoss = absl::StatusCode::kDataLoss;
-
-// Two frames of people who stand in one point: a classifier takes them as they are.
-motion::ClipPair PairOf(const motion::Skeleton& skeleton) {
-  motion::Clip clip;
-  clip.joint_names = skeleton.joint_names;
-  clip.frame_rate_hz = 30;
-  clip.poses = motion::Poses(2, skeleton.joint_count());
-  return {clip, clip};
-}
 
 }  // namespace
 
@@ -48,23 +33,6 @@ Broken Checkpoint(absl::string_view input) {
   if (ModelCard(*manifest).empty()) return "a model has no card";
   return CheckRefusal(checkpoint::ParseCheckpoint(text, Std(parts[1])).status(),
                       {kInvalidArgument, kDataLoss});
-}
-
-Broken Judge(absl::string_view input) {
-  const std::vector<absl::string_view> parts = Parts(input, 2);
-  const std::string weights(Std(parts[1]));
-  nlohmann::json json = nlohmann::json::parse(parts[0], nullptr, false);
-  if (json.is_object()) json["weights_sha256"] = base::Sha256Hex(weights);
-  const std::string text =
-      json.is_object() ? json.dump(-1, ' ', true, kReplace) : std::string(Std(parts[0]));
-  const auto stored = classifier::ParseClassifier(text, weights);
-  if (!stored.ok()) return CheckRefusal(stored.status(), {kInvalidArgument, kDataLoss});
-  float sum = 0;
-  const classifier::Classifier& judge = stored->classifier;
-  for (const float probability : judge.Probabilities(PairOf(judge.parts().skeleton))) {
-    sum += probability;
-  }
-  return std::abs(sum - 1) < 1e-3f ? "" : absl::StrCat("probabilities add up to ", sum);
 }
 
 Broken Safetensors(absl::string_view input) {

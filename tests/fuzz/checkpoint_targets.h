@@ -8,7 +8,6 @@ namespace duet::fuzz {
 
 // Checkpoints. The digests that they carry are fitted to the input first.
 Broken Checkpoint(absl::string_view input);  // manifest, NUL, weights
-Broken Judge(absl::string_view input);       // judge.json, NUL, weights
 Broken Safetensors(absl::string_view input);
 
 }  // namespace duet::fuzz

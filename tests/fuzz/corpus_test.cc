@@ -57,7 +57,6 @@ constexpr Target kTargets[] = {
     {"http_request", HttpRequest},
     {"joint_map", JointMap},
     {"json_motion", JsonMotion},
-    {"judge", Judge},
     {"keyframes", Keyframes},
     {"npy", Npy},
     {"recipe_json", RecipeJson},

@@ -13,11 +13,9 @@
 
 #include "model/checkpoint/checkpoint.h"
 #include "model/checkpoint/safetensors.h"
-#include "model/classifier/classifier_files.h"
 #include "model/formats/flat/flat_files.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/skeleton.h"
-#include "tests/classifier/random_classifier.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/architectures.h"
@@ -82,16 +80,6 @@ class Corpus {
     Write("safetensors/three", SerializeSafetensors(tiny.tensors, {{"format", "pt"}}));
   }
 
-  void WriteJudge() const {
-    const fs::path folder = folder_ / "judge";
-    classifier::WriteClassifier(folder, test::RandomClassifier(1, 1)).IgnoreError();
-    const std::string json = test::ReadTestFile(folder / "judge.json");
-    const std::string weights = test::ReadTestFile(folder / "weights.safetensors");
-    fs::remove(folder / "judge.json");
-    fs::remove(folder / "weights.safetensors");
-    Write("judge/random", json + '\0' + weights);
-  }
-
   void WriteRequest() const {
     v1::SynthesizeRequest request = test::SampleRequest(2);
     Write("synthesis_request/sample", request.SerializeAsString());
@@ -129,7 +117,6 @@ int main(int argc, char** argv) {
   corpus.WriteMotions();
   corpus.WriteGltf();
   corpus.WriteCheckpoints();
-  corpus.WriteJudge();
   corpus.WriteRequest();
   return 0;
 }

@@ -40,7 +40,7 @@ dataset::Dataset PairsToTell(const dataset::Dataset& dataset,
 
 judge::MotionClassifierOptions ToldApartOptions(uint64_t seed) {
   judge::MotionClassifierOptions options;
-  options.sees = classifier::Sees::kBoth;
+  options.sees = judge::Sees::kBoth;
   options.body_noise = 0.01;
   options.seed = seed;
   return options;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "model/base/sha256.h"
 #include "model/base/status_macros.h"
+#include "model/motion/standardise.h"
 #include "model/network/batch.h"
 #include "model/network/discriminator.h"
 #include "model/training/augment.h"
@@ -17,14 +19,75 @@ namespace duet::evaluation::judge {
 struct MotionClassifier::Model {
   std::vector<network::Discriminator> members;
   std::string hash;
-  int64_t hidden = 0;  // units of each direction
-  classifier::Sees sees = classifier::Sees::kFollower;
+  Sees sees = Sees::kFollower;
 };
 
 namespace {
 
 // Motions per batch outside training: bounds memory and the padding of short motions.
 constexpr size_t kTestBatch = 64;
+
+using motion::StandardOrigin;
+
+motion::Standardisation Standard(const motion::Skeleton& skeleton, const motion::Poses& leader,
+                                 const std::optional<motion::Vec3>& partner_direction,
+                                 StandardOrigin origin) {
+  if (partner_direction) return {skeleton, leader, FacingYaw(*partner_direction), origin};
+  return {skeleton, leader, motion::YawDirection::kRemove, origin};
+}
+
+// Writes the positions relative to the root, from column `first` on.
+void PutAboutRoot(const motion::Poses& poses, int root, int first, motion::Poses* input) {
+  for (int t = 0; t < poses.frame_count(); ++t) {
+    for (int j = 0; j < poses.joint_count(); ++j) {
+      input->at(t, first + j) = poses.at(t, j) - poses.at(t, root);
+    }
+  }
+}
+
+// Writes central differences, one-sided at the ends, times the rate.
+void PutVelocity(const motion::Poses& poses, double rate, int first, motion::Poses* input) {
+  const int frames = poses.frame_count();
+  for (int t = 0; t < frames; ++t) {
+    const int before = std::max(t - 1, 0), after = std::min(t + 1, frames - 1);
+    const float a_second =
+        after == before ? 0 : static_cast<float>(rate) / static_cast<float>(after - before);
+    for (int j = 0; j < poses.joint_count(); ++j) {
+      input->at(t, first + j) = (poses.at(after, j) - poses.at(before, j)) * a_second;
+    }
+  }
+}
+
+// Number of input vectors per joint.
+constexpr int InputParts(Sees sees) { return sees == Sees::kBoth ? 5 : 3; }
+
+// What the classifier sees of a pair. Shapes: returns [frames, InputParts x joints], all joints of
+// the first part first.
+motion::Poses ClassifierInput(const motion::Skeleton& skeleton, const dataset::Sequence& sequence,
+                              Sees sees) {
+  const motion::ClipPair& pair = sequence.pair;
+  const std::optional<motion::Vec3>& partner_direction = sequence.partner_direction;
+  const motion::Poses& follower = pair.follower.poses;
+  const motion::Poses& leader = pair.leader.poses;
+  const double rate = pair.follower.frame_rate_hz;
+  const auto every_frame =
+      Standard(skeleton, leader, partner_direction, StandardOrigin::kEveryFrame);
+  const auto first_frame =
+      Standard(skeleton, leader, partner_direction, StandardOrigin::kFirstFrame);
+  const motion::Poses from_leader = every_frame.Apply(follower);
+  const int frames = from_leader.frame_count(), joints = skeleton.joint_count();
+  motion::Poses input(frames, InputParts(sees) * joints);
+  for (int t = 0; t < frames; ++t) {
+    std::copy(from_leader[t].begin(), from_leader[t].end(), input[t].begin());
+  }
+  PutAboutRoot(from_leader, skeleton.root, joints, &input);
+  PutVelocity(first_frame.Apply(follower), rate, 2 * joints, &input);
+  if (sees == Sees::kFollower) return input;
+  const motion::Poses leads = first_frame.Apply(leader);
+  PutAboutRoot(leads, skeleton.root, 3 * joints, &input);
+  PutVelocity(leads, rate, 4 * joints, &input);
+  return input;
+}
 
 struct MotionBatch {
   torch::Tensor motion;   // [N, T, 3 J]
@@ -45,12 +108,11 @@ std::vector<dataset::Sequence> WithFollowers(const dataset::Dataset& dataset,
 
 MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
                             const std::vector<dataset::Sequence>& sequences,
-                            classifier::Sees sees) {
+                            Sees sees) {
   std::vector<motion::Poses> inputs;
   std::vector<int64_t> lengths, classes;
   for (const dataset::Sequence& sequence : sequences) {
-    inputs.push_back(
-        ClassifierInput(dataset.skeleton, sequence.pair, sequence.partner_direction, sees));
+    inputs.push_back(ClassifierInput(dataset.skeleton, sequence, sees));
     lengths.push_back(sequence.pair.follower.frame_count());
     classes.push_back(sequence.interaction_class);
   }
@@ -63,7 +125,7 @@ MotionBatch MakeMotionBatch(const dataset::Dataset& dataset,
 // `size` sequences in each batch but the last, in order.
 std::vector<MotionBatch> Batches(const dataset::Dataset& dataset,
                                  const std::vector<dataset::Sequence>& sequences, size_t size,
-                                 classifier::Sees sees) {
+                                 Sees sees) {
   std::vector<MotionBatch> batches;
   for (size_t first = 0; first < sequences.size(); first += size) {
     const auto begin = sequences.begin() + static_cast<std::ptrdiff_t>(first);
@@ -117,7 +179,7 @@ network::Discriminator TrainNetwork(const dataset::Dataset& dataset,
                                     const std::vector<dataset::Sequence>& sequences,
                                     const MotionClassifierOptions& options) {
   network::DiscriminatorOptions sizes;
-  sizes.input = 3 * classifier::InputParts(options.sees) * dataset.skeleton.joint_count();
+  sizes.input = 3 * InputParts(options.sees) * dataset.skeleton.joint_count();
   sizes.window_frames = dataset.LongestFrameCount();
   sizes.hidden = options.hidden;
   sizes.outputs = dataset.class_count();
@@ -179,7 +241,6 @@ absl::StatusOr<MotionClassifier> MotionClassifier::Train(
   const std::vector<dataset::Sequence> sequences = WithFollowers(dataset, motions);
   auto model = std::make_shared<Model>();
   model->sees = options.sees;
-  model->hidden = options.hidden;
   for (int64_t m = 0; m < options.members; ++m) {
     MotionClassifierOptions member = options;
     member.seed = options.seed * static_cast<uint64_t>(options.members) + static_cast<uint64_t>(m);
@@ -217,25 +278,6 @@ metrics::FeatureSet MotionClassifier::Features(
     network::AppendRows(torch::cat(features, 1), &rows);
   }
   return rows;
-}
-
-classifier::ClassifierParts MotionClassifier::Parts(const dataset::Dataset& dataset) const {
-  classifier::ClassifierParts parts;
-  parts.classes = dataset.classes;
-  parts.skeleton = dataset.skeleton;
-  parts.frame_rate_hz = dataset.frame_rate_hz;
-  parts.window_frames = dataset.LongestFrameCount();
-  parts.hidden = static_cast<int>(model_->hidden);
-  parts.networks = static_cast<int>(model_->members.size());
-  for (size_t n = 0; n < model_->members.size(); ++n) {
-    for (const auto& named : model_->members[n]->named_parameters()) {
-      const torch::Tensor values = named.value().detach().contiguous();
-      checkpoint::Tensor tensor{absl::StrCat(n, ".", named.key()), values.sizes().vec(), {}};
-      tensor.values.assign(values.data_ptr<float>(), values.data_ptr<float>() + values.numel());
-      parts.tensors.push_back(std::move(tensor));
-    }
-  }
-  return parts;
 }
 
 const std::string& MotionClassifier::hash() const { return model_->hash; }

@@ -20,7 +20,7 @@ void AddSweepCommand(CLI::App* app, ChosenCommand* chosen);         // label wei
 void AddMixesCommand(CLI::App* app, ChosenCommand* chosen);         // mixes, negatives, reaction
 void AddAugmentationCommand(CLI::App* app, ChosenCommand* chosen);  // the paper's Table 6
 void AddLatentCommand(CLI::App* app, ChosenCommand* chosen);        // Figures 6 and 7
-void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen);         // for duet batch's filter
+void AddJudgeCommand(CLI::App* app, ChosenCommand* chosen);         // tells whether classes differ
 
 }  // namespace duet::evaluation::program
 

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,12 +9,9 @@
 #include "tests/evaluation/support/run_command.h"
 #include "tests/support/matchers.h"
 #include "tests/support/sample_motion.h"
-#include "tests/support/temporary_folder.h"
 
 namespace duet::evaluation::program {
 namespace {
-
-using test::TemporaryFolder;
 
 // Four clips of each class. Followers stand at a distance of their class.
 void WriteCaptures(const dataset::CaptureFolder& folder) {
@@ -41,8 +37,7 @@ class JudgeCommandTest : public ::testing::Test {
  protected:
   absl::Status Run(std::vector<std::string> words) {
     WriteCaptures(captures_);
-    words.insert(words.begin(), {"judge", "--data", captures_.path().string(), "--out",
-                                 (folder_ / "judge").string()});
+    words.insert(words.begin(), {"judge", "--data", captures_.path().string()});
     ::testing::internal::CaptureStdout();
     absl::Status status = test::RunCommand(AddJudgeCommand, std::move(words));
     out_ = ::testing::internal::GetCapturedStdout();
@@ -50,7 +45,6 @@ class JudgeCommandTest : public ::testing::Test {
   }
 
   dataset::CaptureFolder captures_;
-  TemporaryFolder folder_;
   std::string out_;
 };
 
@@ -58,9 +52,7 @@ TEST_F(JudgeCommandTest, PartsTellWhetherClassesCanBeToldApart) {
   ASSERT_THAT(Run({"--parts", "2", "--epochs", "30"}), IsOk());
   EXPECT_THAT(out_,
               AllOf(HasSubstr("kick: 4 of 4 recognised\n"), HasSubstr("punch: 4 of 4 recognised\n"),
-                    HasSubstr(" % of the held-out followers classified correctly\n"
-                              "trained on 24 followers of 6 classes\n")));
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "judge" / "judge.json"));
+                    HasSubstr(" % of the held-out followers classified correctly\n")));
 }
 
 TEST_F(JudgeCommandTest, PartsTellWhatTheOthersAreTakenFor) {
@@ -68,11 +60,6 @@ TEST_F(JudgeCommandTest, PartsTellWhatTheOthersAreTakenFor) {
   ASSERT_THAT(Run({"--parts", "4", "--epochs", "0"}), IsOk());
   EXPECT_THAT(out_, ContainsRegex("kick: [0-4] of 4 recognised; [1-4] taken for [a-z_]+"));
   EXPECT_THAT(out_, Not(HasSubstr("100.0 %")));
-}
-
-TEST_F(JudgeCommandTest, PartsAndPeopleExcludeEachOther) {
-  EXPECT_THAT(Run({"--parts", "2", "--hold-out", "s01"}),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("--parts")));
 }
 
 }  // namespace
