@@ -143,9 +143,7 @@ absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint che
   const std::string text = SerializeManifest(manifest);
   // Content that cannot be read back must not be written.
   if (absl::Status status = ParseCheckpoint(text, weights).status(); !status.ok()) return status;
-  return base::WriteFolder(folder, {{manifest.weights.file, weights},
-                                    {kManifestFile, text},
-                                    {kModelCardFile, ModelCard(manifest)}});
+  return base::WriteFolder(folder, {{manifest.weights.file, weights}, {kManifestFile, text}});
 }
 
 }  // namespace duet::checkpoint

@@ -33,15 +33,7 @@ absl::StatusOr<Checkpoint> ReadCheckpoint(const std::filesystem::path& folder);
 // time. Lets a long training run fail before it starts.
 absl::Status CheckManifest(Manifest manifest);
 
-// A description of the model for people, beside the manifest. No program reads it.
-inline constexpr char kModelCardFile[] = "MODEL_CARD.md";
-
-// A model card in Markdown: the content of the manifest, the intended use, the limits, and the
-// terms of the training data as a sentence to complete. Requires a manifest that ParseManifest
-// accepts.
-std::string ModelCard(const Manifest& manifest);
-
-// Writes a checkpoint folder with its model card atomically (a temporary folder, then a rename).
+// Writes a checkpoint folder atomically (a temporary folder, then a rename).
 // Sets manifest.weights, and manifest.created if it is empty. Returns the errors that
 // ReadCheckpoint would return for the result. ALREADY_EXISTS if the folder exists.
 absl::Status WriteCheckpoint(const std::filesystem::path& folder, Checkpoint checkpoint);

@@ -155,7 +155,7 @@ def timeless(folder):
         content = file.read_bytes()
         if file.name == "log.csv":
             content = re.sub(rb",[^,\n]*$", b"", content, flags=re.MULTILINE)
-        elif file.name in ("manifest.json", "MODEL_CARD.md"):
+        elif file.name == "manifest.json":
             content = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", b"", content)
         found[name.as_posix()] = content
     return found

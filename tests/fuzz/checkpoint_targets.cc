@@ -30,7 +30,6 @@ Broken Checkpoint(absl::string_view input) {
     const absl::Status again = checkpoint::ParseManifest(text).status();
     if (!again.ok()) return absl::StrCat("a manifest is not read again: ", again.ToString());
   }
-  if (ModelCard(*manifest).empty()) return "a model has no card";
   return CheckRefusal(checkpoint::ParseCheckpoint(text, Std(parts[1])).status(),
                       {kInvalidArgument, kDataLoss});
 }

@@ -182,7 +182,7 @@ TEST_F(ModelManagerTest, ReplacesAVersionWhoseWeightsChanged) {
 TEST_F(ModelManagerTest, DocumentsAndHiddenFilesAreNoChange) {
   Write("a", 1);
   Reload();
-  WriteTestFile(folder_ / "a/1/MODEL_CARD.md", "better");
+  WriteTestFile(folder_ / "a/1/NOTES.md", "better");
   WriteTestFile(folder_ / "a/1/.nfs1", "");
   EXPECT_EQ(Reload().unchanged, 1);
   WriteTestFile(folder_ / "a/1/more", "");
