@@ -2,15 +2,11 @@
 #define DUET_CONTRIB_LOAD_INBOX_H_
 
 #include <condition_variable>
-#include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
 
-#include "absl/status/statusor.h"
-#include "client/options.h"
 #include "contrib/load/figures.h"
-#include "grpcpp/channel.h"
 
 namespace duet::contrib::load {
 
@@ -44,11 +40,6 @@ class Inbox {
   std::vector<Event> events_;
   int open_ = 0;
 };
-
-// Connections to a server that are established. Errors: INVALID_ARGUMENT for invalid options,
-// UNAVAILABLE if one is not established within the deadline.
-absl::StatusOr<std::vector<std::shared_ptr<grpc::Channel>>> OpenChannels(
-    const client::ClientOptions& options, int connections);
 
 }  // namespace duet::contrib::load
 

@@ -11,6 +11,7 @@
 #include "client/request.h"
 #include "client/result.h"
 #include "contrib/load/calls.h"
+#include "grpcpp/channel.h"
 #include "model/motion/clip.h"
 
 namespace duet::contrib::load {
@@ -36,6 +37,11 @@ struct CallRequest {
 // Resolves the model at the server, and tries a call, so that rejections are known before
 // measuring. Errors: the server's status, except rejections for lack of capacity.
 absl::StatusOr<CallRequest> FindRequest(const client::Client& client, const CallContent& content);
+
+// Connections to a server that are established. Errors: INVALID_ARGUMENT for invalid options,
+// UNAVAILABLE if one is not established within the deadline.
+absl::StatusOr<std::vector<std::shared_ptr<grpc::Channel>>> OpenChannels(
+    const client::ClientOptions& options, int connections);
 
 // A server, over `connections` connections that calls use in turn. Every call sends `request`, has
 // the options' deadline, one attempt, and no thread of its own. A reply without all its frames ends

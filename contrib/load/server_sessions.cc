@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/internal/proto_conversion.h"
 #include "contrib/load/inbox.h"
+#include "contrib/load/server_calls.h"
 #include "duet/v1/synthesis.grpc.pb.h"
 #include "grpcpp/client_context.h"
 #include "grpcpp/support/client_callback.h"
