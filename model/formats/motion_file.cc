@@ -360,10 +360,9 @@ bool IsReadable(const fs::path& path) { return FormatOf(path).has_value(); }
 
 std::string HowToConvert(const fs::path& path) {
   static const auto& converters = *new std::map<std::string, const char*>{
-      {".fbx", "convert it with duet-fbx (contrib/formats)"},
+      {".fbx", "convert it with duet_fbx.py (contrib/formats)"},
       {".amc", "convert it with duet_asf.py (contrib/formats)"},
       {".asf", "convert its .amc with duet_asf.py (contrib/formats)"},
-      {".usda", "duet-usd (contrib/formats) writes it from .json"},
       {".npz", "read a motion of AMASS or SMPL with duet_motion.research"}};
   const auto found = converters.find(absl::AsciiStrToLower(path.extension().string()));
   return found == converters.end() ? "" : found->second;

@@ -27,7 +27,7 @@
 //   .json   positions, one or two people
 //   .npy    positions as an array, [frames, joints, 3] or [2, frames, joints, 3]
 //
-// Programs of contrib/formats convert FBX, ASF/AMC and USD; duet_motion.research reads and writes
+// Scripts of contrib/formats convert FBX and ASF/AMC; duet_motion.research reads and writes
 // the arrays of research.
 
 namespace duet::formats {
@@ -126,7 +126,7 @@ inline constexpr char kWritableExtensions[] =
     ".glb, .gltf, .bvh, .csv, .npy, .json or .txt (SBU text)";
 inline constexpr char kReadableExtensions[] =
     ".txt (SBU text), .bvh, .gltf, .glb, .csv, .npy or .json";
-// What converts a file of another format: "convert it with duet-fbx (contrib/formats)". Empty if
+// What converts a file of another format: "convert it with duet_fbx.py (contrib/formats)". Empty if
 // nothing does.
 std::string HowToConvert(const std::filesystem::path& path);
 // INVALID_ARGUMENT "path: extension: expected <known>, got ...", with HowToConvert.

@@ -97,8 +97,9 @@ TEST_F(FollowerRigTest, ReportsTheExtensionsOfRigs) {
         FormatOntoRig(Follower(), {folder_ / "leader.bvh", {}}, format).status(),
         StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("it is written in its own format")));
   }
-  EXPECT_THAT(FormatOntoRig(Follower(), {"rig.fbx", {}}, Format::kGlb),
-              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("convert it with duet-fbx")));
+  EXPECT_THAT(
+      FormatOntoRig(Follower(), {"rig.fbx", {}}, Format::kGlb),
+      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("convert it with duet_fbx.py")));
 }
 
 }  // namespace

@@ -329,11 +329,10 @@ TEST_F(MotionFile, ReportsTheKnownExtensions) {
 }
 
 TEST_F(MotionFile, NamesTheProgramThatConvertsAnotherFormat) {
-  const std::map<std::string, std::string> converters = {{"a.fbx", "convert it with duet-fbx"},
-                                                         {"a.FBX", "convert it with duet-fbx"},
+  const std::map<std::string, std::string> converters = {{"a.fbx", "convert it with duet_fbx.py"},
+                                                         {"a.FBX", "convert it with duet_fbx.py"},
                                                          {"01_02.amc", "duet_asf.py"},
                                                          {"01.asf", "duet_asf.py"},
-                                                         {"a.usda", "duet-usd"},
                                                          {"a.npz", "duet_motion.research"}};
   for (const auto& [file, converter] : converters) {
     EXPECT_THAT(std::string(ReadLeader(file).status().message()), HasSubstr(converter)) << file;
