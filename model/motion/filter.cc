@@ -21,13 +21,27 @@ std::vector<double> GaussianKernel(double sigma, int radius) {
   return kernel;
 }
 
-// A frame of the motion continued beyond its ends by reflection about its end points, repeatedly if
-// the clip is short. Requires two frames.
-Vec3 Reflected(const Poses& poses, int frame, int joint) {
-  const int last = poses.frame_count() - 1;
-  if (frame < 0) return 2 * poses.at(0, joint) - Reflected(poses, -frame, joint);
-  if (frame > last) return 2 * poses.at(last, joint) - Reflected(poses, 2 * last - frame, joint);
-  return poses.at(frame, joint);
+// The motion continued by `radius` frames beyond each end, by reflection about its end points,
+// repeatedly if the clip is short: [frames + 2 radius, 3 joints]. Requires two frames.
+std::vector<double> Continued(const Poses& poses, int radius) {
+  const int frames = poses.frame_count(), last = frames - 1;
+  const std::ptrdiff_t width = 3 * std::ptrdiff_t{poses.joint_count()};
+  std::vector<double> rows(static_cast<std::size_t>((frames + 2 * radius) * width));
+  double* const first = rows.data() + radius * width;
+  const float* const values = &poses.all().front().x;
+  std::copy_n(values, frames * width, first);
+  const auto reflect = [&](int frame, int end, int other) {
+    for (std::ptrdiff_t i = 0; i < width; ++i) {
+      const float at_end = 2 * values[end * width + i];
+      first[frame * width + i] = at_end - static_cast<float>(first[other * width + i]);
+    }
+  };
+  // From the ends outwards: each frame reflects one that is there already.
+  for (int beyond = 1; beyond <= radius; ++beyond) {
+    reflect(-beyond, 0, beyond);
+    reflect(last + beyond, last, last - beyond);
+  }
+  return rows;
 }
 
 }  // namespace
@@ -36,20 +50,18 @@ Poses GaussianFilter(const Poses& poses, double sigma_frames) {
   if (!(sigma_frames > 0) || poses.frame_count() < 2) return poses;
   const int radius = static_cast<int>(std::ceil(kKernelSigmas * sigma_frames));
   const std::vector<double> kernel = GaussianKernel(sigma_frames, radius);
-  Poses smooth(poses.frame_count(), poses.joint_count());
-  for (int t = 0; t < poses.frame_count(); ++t) {
-    for (int j = 0; j < poses.joint_count(); ++j) {
-      double x = 0, y = 0, z = 0;
-      for (int i = -radius; i <= radius; ++i) {
-        const double weight = kernel[static_cast<std::size_t>(i + radius)];
-        const Vec3 point = Reflected(poses, t + i, j);
-        x += weight * point.x;
-        y += weight * point.y;
-        z += weight * point.z;
-      }
-      smooth.at(t, j) = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
-    }
+  const std::vector<double> rows = Continued(poses, radius);
+  const std::size_t width = 3 * static_cast<std::size_t>(poses.joint_count());
+  // Coordinate by coordinate of a whole clip, so that compilers vectorise the sums.
+  std::vector<double> sums(3 * poses.all().size(), 0.0);
+  for (std::size_t i = 0; i < kernel.size(); ++i) {
+    const double weight = kernel[i];
+    const double* const from = rows.data() + i * width;
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += weight * from[k];
   }
+  Poses smooth(poses.frame_count(), poses.joint_count());
+  float* out = &smooth.all().front().x;
+  for (const double sum : sums) *out++ = static_cast<float>(sum);
   return smooth;
 }
 
