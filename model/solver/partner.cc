@@ -28,6 +28,8 @@ constexpr float kNearest = 0.17f, kFarthest = 2.6f;
 // capsules are approximate; the least distance of the axes of trunks, and of heads. Metres.
 constexpr float kTrunk = 0.11f, kHead = 0.09f, kShoulders = 0.1f, kSoft = 0.03f;
 constexpr float kLeastTrunks = 0.2f, kLeastHeads = 0.21f;
+// Axes that are farther apart than any of these sums do not overlap. Metres.
+constexpr float kNeverCloser = 0.25f;
 // What a body is moved for one overlap at most; how far it comes for a hand. Metres.
 constexpr float kMostPush = 0.3f, kMostCome = 0.3f;
 // A hand is farther than this from the leader's surface; its radius is within. Metres.
@@ -56,6 +58,24 @@ Core CoreOf(const motion::Skeleton& skeleton, const body::Body& body, absl::Span
       {{chest, hips, kTrunk},
        {head, Lerp(head, chest, 0.5f), kHead},
        {JointAt(pose, body.shoulders->left), JointAt(pose, body.shoulders->right), kShoulders}}};
+}
+
+// A circle on the floor around a core's axes.
+struct Circle {
+  Vec3 centre;
+  float radius;
+};
+
+Circle CircleAround(const Core& core) {
+  const Vec3 centre = Lerp(core[0].from, core[0].to, 0.5f);
+  float squared = 0;
+  for (const Capsule& part : core) {
+    for (const Vec3 end : {part.from, part.to}) {
+      const Vec3 away = Level(end - centre);
+      squared = std::max(squared, Dot(away, away));
+    }
+  }
+  return {centre, std::sqrt(squared)};
 }
 
 // Where the trunk faces along the floor, of length 1.
@@ -126,6 +146,9 @@ void Partner::FaceLeader(const motion::Poses& leader, const ContactRules& rules,
 float Partner::Overlap(absl::Span<const Vec3> leader, absl::Span<const Vec3> follower,
                        float allowed) const {
   const Core a = CoreOf(skeleton_, body_, leader), b = CoreOf(skeleton_, body_, follower);
+  const Circle around_a = CircleAround(a), around_b = CircleAround(b);
+  const float apart = Norm(Level(around_a.centre - around_b.centre));
+  if (apart > around_a.radius + around_b.radius + kNeverCloser) return 0;
   float deepest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (std::size_t j = 0; j < b.size(); ++j) {
