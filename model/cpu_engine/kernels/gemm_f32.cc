@@ -22,40 +22,42 @@ struct Product {
   Output y;
 };
 
-// Computes kCount rows by kPairs times two vectors of columns from `column` on, in registers over
-// all inputs.
-template <int kCount, int kPairs>
+// Computes kCount rows by kVectors vectors of columns from `column` on, in registers over all
+// inputs. More than one are pairs that share a panel.
+template <int kCount, int kVectors>
 HWY_INLINE void Tile(const Product& product, int row, int column) {
+  constexpr int kSides = kVectors == 1 ? 1 : 2, kPairs = kVectors / kSides;
   const Tag d;
-  const int lanes = static_cast<int>(Lanes()), step = 2 * lanes;
+  const int lanes = static_cast<int>(Lanes()), step = kSides * lanes;
   const float* weights[kPairs];
-  Vector sums[kCount][2 * kPairs];
+  Vector sums[kCount][kVectors];
   for (int p = 0; p < kPairs; ++p) {
     const int at = column + p * step;
     weights[p] = product.panels + static_cast<ptrdiff_t>(at / kPanel) * product.x.width * kPanel +
                  at % kPanel;
-    for (int side = 0; side < 2; ++side) {
+    for (int side = 0; side < kSides; ++side) {
       const Vector begin =
           product.bias == nullptr ? hn::Zero(d) : hn::LoadU(d, product.bias + at + side * lanes);
-      for (int r = 0; r < kCount; ++r) sums[r][2 * p + side] = begin;
+      for (int r = 0; r < kCount; ++r) sums[r][kSides * p + side] = begin;
     }
   }
   const float* HWY_RESTRICT x = product.x.values + row * product.x.stride;
   for (int k = 0; k < product.x.width; ++k) {
-    Vector w[2 * kPairs];
+    Vector w[kVectors];
     for (int p = 0; p < kPairs; ++p) {
-      w[2 * p] = hn::LoadU(d, weights[p]);
-      w[2 * p + 1] = hn::LoadU(d, weights[p] + lanes);
+      for (int side = 0; side < kSides; ++side) {
+        w[kSides * p + side] = hn::LoadU(d, weights[p] + side * lanes);
+      }
       weights[p] += kPanel;
     }
     for (int r = 0; r < kCount; ++r) {
       const Vector value = hn::Set(d, x[r * product.x.stride + k]);
-      for (int v = 0; v < 2 * kPairs; ++v) sums[r][v] = hn::MulAdd(value, w[v], sums[r][v]);
+      for (int v = 0; v < kVectors; ++v) sums[r][v] = hn::MulAdd(value, w[v], sums[r][v]);
     }
   }
   for (int r = 0; r < kCount; ++r) {
     float* y = product.y.values + (row + r) * product.y.stride + column;
-    for (int v = 0; v < 2 * kPairs; ++v) {
+    for (int v = 0; v < kVectors; ++v) {
       const int valid = product.y.width - column - v * lanes;
       if (valid > 0) StoreFirst(valid, sums[r][v], y + v * lanes);
     }
@@ -66,11 +68,12 @@ HWY_INLINE void Tile(const Product& product, int row, int column) {
 template <int kCount>
 HWY_INLINE void Strip(const Product& product, int row, int column, int end) {
   constexpr int kPairs = kRows / kCount < 4 ? kRows / kCount : 4;
-  const int step = 2 * static_cast<int>(Lanes());
+  const int lanes = static_cast<int>(Lanes()), step = 2 * lanes;
   for (; column + (kPairs - 1) * step < end; column += kPairs * step) {
-    Tile<kCount, kPairs>(product, row, column);
+    Tile<kCount, 2 * kPairs>(product, row, column);
   }
-  for (; column < end; column += step) Tile<kCount, 1>(product, row, column);
+  for (; column + lanes < end; column += step) Tile<kCount, 2>(product, row, column);
+  if (column < end) Tile<kCount, 1>(product, row, column);
 }
 
 template <int kCount>

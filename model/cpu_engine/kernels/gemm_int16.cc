@@ -168,10 +168,10 @@ DUET_VNNI inline __m512i AddProducts(__m512i sums, __m512i x, __m512i w) {
   return sums;
 }
 
-// Computes kCount rows by kPanels panels from column `column` on, in registers over the block.
-template <int kCount, int kPanels>
+// Computes kCount rows by kVectors vectors of columns from column `column` on, in registers over
+// the block.
+template <int kCount, int kVectors>
 DUET_VNNI __attribute__((noinline)) void Tile(const Block& block, int column) {
-  constexpr int kVectors = 2 * kPanels;
   const int16_t* weights = block.panels + column / kPanel * block.panel;
   __m512i sums[kCount][kVectors];
   for (int r = 0; r < kCount; ++r) {
@@ -215,9 +215,10 @@ DUET_VNNI inline void Strip(const Block& block) {
   constexpr int kPanels = kRows / kCount < 4 ? kRows / kCount : 4;
   int column = 0;
   for (; column + (kPanels - 1) * kPanel < block.y.width; column += kPanels * kPanel) {
-    Tile<kCount, kPanels>(block, column);
+    Tile<kCount, 2 * kPanels>(block, column);
   }
-  for (; column < block.y.width; column += kPanel) Tile<kCount, 1>(block, column);
+  for (; column + kLanes < block.y.width; column += kPanel) Tile<kCount, 2>(block, column);
+  if (column < block.y.width) Tile<kCount, 1>(block, column);
 }
 
 template <int kCount>
