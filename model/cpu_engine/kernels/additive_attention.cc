@@ -6,11 +6,33 @@
 #define HWY_TARGET_INCLUDE "model/cpu_engine/kernels/additive_attention.cc"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "model/cpu_engine/kernels/softmax-inl.h"
 #include "model/cpu_engine/kernels/vector_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
+
+// Turns `count` values, at least 1, into weights with the sum 1.
+HWY_INLINE void Softmax(int count, float* HWY_RESTRICT values) {
+  const Tag d;
+  const Vector lowest = hn::Set(d, -3e38f);
+  Vector largest = lowest;
+  for (int j = 0; j < count; j += Lanes()) {
+    const auto valid = hn::FirstN(d, static_cast<size_t>(HWY_MIN(count - j, Lanes())));
+    largest = hn::Max(largest, hn::IfThenElse(valid, LoadFirst(count - j, values + j), lowest));
+  }
+  largest = hn::MaxOfLanes(d, largest);
+  Vector sum = hn::Zero(d);
+  for (int j = 0; j < count; j += Lanes()) {
+    const auto valid = hn::FirstN(d, static_cast<size_t>(HWY_MIN(count - j, Lanes())));
+    const Vector e = hn::IfThenElseZero(valid, Exp(LoadFirst(count - j, values + j) - largest));
+    sum = sum + e;
+    StoreFirst(count - j, e, values + j);
+  }
+  const Vector share = hn::Set(d, 1.0f) / hn::SumOfLanes(d, sum);
+  for (int j = 0; j < count; j += Lanes()) {
+    StoreFirst(count - j, LoadFirst(count - j, values + j) * share, values + j);
+  }
+}
 
 HWY_INLINE float Energy(const AdditiveAttention& in, const float* HWY_RESTRICT encoded) {
   const Tag d;

@@ -6,7 +6,6 @@
 #define HWY_TARGET_INCLUDE "model/cpu_engine/kernels/rowwise.cc"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-#include "model/cpu_engine/kernels/softmax-inl.h"
 #include "model/cpu_engine/kernels/vector_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,16 +53,6 @@ void Norm(const NormRow& row) {
   }
 }
 
-void SoftmaxWithBias(int count, float factor, const float* bias, float* HWY_RESTRICT values) {
-  const Vector by = hn::Set(Tag(), factor);
-  for (int j = 0; j < count; j += Lanes()) {
-    const int valid = count - j;
-    StoreFirst(valid, hn::MulAdd(by, LoadFirst(valid, values + j), LoadFirst(valid, bias + j)),
-               values + j);
-  }
-  Softmax(count, values);
-}
-
 }  // namespace duet::cpu_engine::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -73,14 +62,10 @@ namespace duet::cpu_engine::kernels {
 HWY_EXPORT(GeluInPlace);
 HWY_EXPORT(SiluInPlace);
 HWY_EXPORT(Norm);
-HWY_EXPORT(SoftmaxWithBias);
 
 void Gelu(std::ptrdiff_t count, float* values) { HWY_DYNAMIC_DISPATCH(GeluInPlace)(count, values); }
 void Silu(std::ptrdiff_t count, float* values) { HWY_DYNAMIC_DISPATCH(SiluInPlace)(count, values); }
 void LayerNorm(const NormRow& row) { HWY_DYNAMIC_DISPATCH(Norm)(row); }
-void BiasedSoftmax(int count, float factor, const float* bias, float* values) {
-  HWY_DYNAMIC_DISPATCH(SoftmaxWithBias)(count, factor, bias, values);
-}
 
 }  // namespace duet::cpu_engine::kernels
 #endif

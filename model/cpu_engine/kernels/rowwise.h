@@ -23,9 +23,6 @@ struct NormRow {
 };
 void LayerNorm(const NormRow& row);
 
-// values = softmax(factor values + bias), in place, for a row of `count`.
-void BiasedSoftmax(int count, float factor, const float* bias, float* values);
-
 }  // namespace duet::cpu_engine::kernels
 
 #endif  // DUET_MODEL_CPU_ENGINE_KERNELS_ROWWISE_H_

@@ -1,28 +1,154 @@
 #include "model/cpu_engine/kernels/self_attention.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "model/cpu_engine/kernels/gemm_f32.h"
-#include "model/cpu_engine/kernels/packed_matrix.h"
-#include "model/cpu_engine/kernels/rowwise.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "model/cpu_engine/kernels/self_attention.cc"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
 
-namespace duet::cpu_engine::kernels {
+#include "model/cpu_engine/kernels/vector_math-inl.h"
 
-void AttendToSelf(const SelfAttention& in) {
-  const std::ptrdiff_t frames = in.frames;
-  float* const scores = in.scratch;
-  float* const keys = scores + frames * frames;
-  float* const values = keys + std::ptrdiff_t{PanelCount(in.frames)} * in.size * kPanel;
-  PackPanels(in.keys, in.in_stride, 1, in.frames, in.size, keys);
-  GemmF32({in.queries, in.in_stride, in.frames, in.size}, keys, nullptr,
-          {scores, frames, in.frames});
-  const float factor = 1 / std::sqrt(static_cast<float>(in.size));
-  for (std::ptrdiff_t i = 0; i < frames; ++i) {
-    BiasedSoftmax(in.frames, factor, in.distance + frames - 1 - i, scores + i * frames);
+HWY_BEFORE_NAMESPACE();
+namespace duet::cpu_engine::kernels::HWY_NAMESPACE {
+
+// Rows of a tile: the sums of three vectors of columns each fit the registers besides the factors.
+constexpr int kRows = HWY_TARGET <= HWY_AVX3 ? 8 : 4;
+
+// A window's head with its scratch. The lanes of vectors are queries, so that the largest score
+// and the sum of a query are lane by lane.
+struct Head {
+  const SelfAttention& in;
+  ptrdiff_t stride;  // queries, rounded up to whole vectors of any instruction set
+  float* queries;    // [size, stride], transposed
+  float* weights;    // [frames, stride]: of the keys, a column for each query
+  float* distance;   // [frames + stride]: in.distance backwards
+};
+
+HWY_INLINE Vector LoadPart(ptrdiff_t valid, const float* from) {
+  if constexpr (kMasksMemory) {
+    const Tag d;
+    return hn::MaskedLoad(hn::FirstN(d, static_cast<size_t>(valid)), d, from);
+  } else {
+    return LoadFirst(valid, from);
   }
-  PackPanels(in.values, 1, in.in_stride, in.size, in.frames, values);
-  GemmF32({scores, frames, in.frames, in.frames}, values, nullptr,
-          {in.out, in.out_stride, in.size});
 }
 
+// A product whose rows and inputs may lie any distance apart:
+// y[r, c] = sum over k of x[r * x_row + k * x_step] * w[k * w_stride + c].
+struct Product {
+  int rows, inputs;
+  const float* x;
+  ptrdiff_t x_row, x_step;
+  const float* w;
+  ptrdiff_t w_stride;
+  float* y;
+  ptrdiff_t y_stride;
+};
+
+// Computes kVectors vectors of columns, of which the last has `last` columns. Requires kCount rows.
+template <int kCount, int kVectors>
+HWY_NOINLINE void Tiles(const Product& p, ptrdiff_t last) {
+  const Tag d;
+  for (int first = 0; first < p.rows; first += kCount) {
+    // The last tile ends at the last row: it computes some rows again.
+    const ptrdiff_t row = HWY_MIN(first, p.rows - kCount);
+    Vector sums[kCount][kVectors];
+    for (int r = 0; r < kCount; ++r) {
+      for (int v = 0; v < kVectors; ++v) sums[r][v] = hn::Zero(d);
+    }
+    const float* HWY_RESTRICT x = p.x + row * p.x_row;
+    const float* HWY_RESTRICT w = p.w;
+    const ptrdiff_t x_row = p.x_row;
+    for (int k = 0; k < p.inputs; ++k, x += p.x_step, w += p.w_stride) {
+      Vector by[kVectors];
+      for (int v = 0; v < kVectors - 1; ++v) by[v] = hn::LoadU(d, w + v * Lanes());
+      by[kVectors - 1] = LoadPart(last, w + (kVectors - 1) * Lanes());
+      for (int r = 0; r < kCount; ++r) {
+        const Vector value = hn::Set(d, x[r * x_row]);
+        for (int v = 0; v < kVectors; ++v) sums[r][v] = hn::MulAdd(value, by[v], sums[r][v]);
+      }
+    }
+    for (int r = 0; r < kCount; ++r) {
+      float* const y = p.y + (row + r) * p.y_stride;
+      for (int v = 0; v < kVectors - 1; ++v) hn::StoreU(sums[r][v], d, y + v * Lanes());
+      StoreFirst(last, sums[r][kVectors - 1], y + (kVectors - 1) * Lanes());
+    }
+  }
+}
+
+template <int kVectors>
+void TilesOf(const Product& p, ptrdiff_t last) {
+  (p.rows < kRows ? Tiles<1, kVectors> : Tiles<kRows, kVectors>)(p, last);
+}
+
+void Multiply(Product p, ptrdiff_t columns) {
+  while (columns > 0) {
+    const ptrdiff_t vectors = HWY_MIN((columns + Lanes() - 1) / Lanes(), ptrdiff_t{3});
+    const ptrdiff_t last = HWY_MIN(columns - (vectors - 1) * Lanes(), Lanes());
+    (vectors == 1 ? TilesOf<1> : vectors == 2 ? TilesOf<2> : TilesOf<3>)(p, last);
+    columns -= vectors * Lanes();
+    p.w += vectors * Lanes();
+    p.y += vectors * Lanes();
+  }
+}
+
+// Turns the products of all keys with a vector of queries into weights.
+void Weigh(const Head& head, ptrdiff_t column) {
+  const Tag d;
+  const ptrdiff_t frames = head.in.frames, stride = head.stride;
+  const Vector factor = hn::Set(d, 1 / std::sqrt(static_cast<float>(head.in.size)));
+  float* const weights = head.weights + column;
+  const float* const distance = head.distance + frames - 1 + column;
+  Vector largest = hn::Set(d, -3e38f), sum = hn::Zero(d);
+  for (ptrdiff_t key = 0; key < frames; ++key) {
+    const Vector bias = hn::LoadU(d, distance - key);
+    const Vector score = hn::MulAdd(factor, hn::LoadU(d, weights + key * stride), bias);
+    largest = hn::Max(largest, score);
+    hn::StoreU(score, d, weights + key * stride);
+  }
+  for (ptrdiff_t key = 0; key < frames; ++key) {
+    const Vector e = Exp(hn::LoadU(d, weights + key * stride) - largest);
+    sum = sum + e;
+    hn::StoreU(e, d, weights + key * stride);
+  }
+  const Vector share = hn::Set(d, 1.0f) / sum;
+  for (ptrdiff_t key = 0; key < frames; ++key) {
+    hn::StoreU(hn::LoadU(d, weights + key * stride) * share, d, weights + key * stride);
+  }
+}
+
+void Attend(const SelfAttention& in) {
+  const ptrdiff_t frames = in.frames, stride = SelfAttentionStride(in.frames);
+  const Head head{in, stride, in.scratch, in.scratch + in.size * stride,
+                  in.scratch + (in.size + frames) * stride};
+  for (ptrdiff_t i = 0; i < frames; ++i) {
+    const float* const query = in.queries + i * in.in_stride;
+    for (ptrdiff_t k = 0; k < in.size; ++k) head.queries[k * stride + i] = query[k];
+  }
+  for (ptrdiff_t k = 0; k < in.size; ++k) {
+    std::fill(head.queries + k * stride + frames, head.queries + (k + 1) * stride, 0.0f);
+  }
+  std::reverse_copy(in.distance, in.distance + 2 * frames - 1, head.distance);
+  std::fill(head.distance + 2 * frames - 1, head.distance + frames + stride, 0.0f);
+  Multiply(
+      {in.frames, in.size, in.keys, in.in_stride, 1, head.queries, stride, head.weights, stride},
+      stride);
+  for (ptrdiff_t column = 0; column < frames; column += Lanes()) Weigh(head, column);
+  Multiply({in.frames, in.frames, head.weights, 1, stride, in.values, in.in_stride, in.out,
+            in.out_stride},
+           in.size);
+}
+
+}  // namespace duet::cpu_engine::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace duet::cpu_engine::kernels {
+
+HWY_EXPORT(Attend);
+
+void AttendToSelf(const SelfAttention& attention) { HWY_DYNAMIC_DISPATCH(Attend)(attention); }
+
 }  // namespace duet::cpu_engine::kernels
+#endif

@@ -3,8 +3,6 @@
 
 #include <cstddef>
 
-#include "model/cpu_engine/kernels/matrix.h"
-
 namespace duet::cpu_engine::kernels {
 
 // One head of one window.
@@ -18,10 +16,10 @@ struct SelfAttention {
   float* scratch;  // SelfAttentionScratch(frames, size) values
 };
 
+// Queries of a row of the scratch: whole vectors of any instruction set.
+inline constexpr std::ptrdiff_t SelfAttentionStride(int frames) { return (frames + 15) / 16 * 16; }
 inline constexpr std::ptrdiff_t SelfAttentionScratch(int frames, int size) {
-  return std::ptrdiff_t{frames} * frames +
-         std::ptrdiff_t{kPanel} * (std::ptrdiff_t{PanelCount(frames)} * size +
-                                   std::ptrdiff_t{PanelCount(size)} * frames);
+  return SelfAttentionStride(frames) * (size + frames + 1) + frames;
 }
 
 // out = softmax over the keys of (queries keys^T / sqrt(size) + distance), times values.
