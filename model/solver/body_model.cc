@@ -22,6 +22,7 @@ Vec3 AxisOf(Vec3 v) {
 
 float MedianDistance(const motion::Poses& person, int a, int b) {
   std::vector<float> lengths;
+  lengths.reserve(static_cast<std::size_t>(person.frame_count()));
   for (int t = 0; t < person.frame_count(); ++t) {
     lengths.push_back(Distance(person.at(t, a), person.at(t, b)));
   }
@@ -107,6 +108,11 @@ BodyModel::Axes BodyModel::AxesOf(int left, int right, absl::Span<const Vec3> po
 BodyModel::Rigid BodyModel::MeasureRigid(const std::vector<int>& joints, int origin, int left,
                                          int right, const motion::Poses& person) const {
   std::vector<std::vector<float>> x(joints.size()), y(joints.size()), z(joints.size());
+  for (auto* const coordinate : {&x, &y, &z}) {
+    for (std::vector<float>& values : *coordinate) {
+      values.reserve(static_cast<std::size_t>(person.frame_count()));
+    }
+  }
   for (int t = 0; t < person.frame_count(); ++t) {
     const Axes axes = AxesOf(left, right, person[t]);
     Vec3 middle;
@@ -122,7 +128,8 @@ BodyModel::Rigid BodyModel::MeasureRigid(const std::vector<int>& joints, int ori
   }
   Rigid rigid{joints, {}};
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    rigid.places.push_back({base::Median(x[i]), base::Median(y[i]), base::Median(z[i])});
+    rigid.places.push_back({base::Median(std::move(x[i])), base::Median(std::move(y[i])),
+                            base::Median(std::move(z[i]))});
   }
   return rigid;
 }

@@ -51,6 +51,11 @@ void Solve(const Bands& factors, std::vector<double>* values) {
   }
 }
 
+// Nothing to correct: the correction is zero without solving for it.
+bool AreZero(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return value == 0; });
+}
+
 bool IsGiven(const CorrectionCost& cost, std::size_t frame) {
   return static_cast<int>(frame) < cost.given;
 }
@@ -76,14 +81,14 @@ std::vector<double> SmoothCorrection(const CorrectionCost& cost, const std::vect
   for (std::size_t t = 0; t < values.size(); ++t) {
     values[t] = IsGiven(cost, t) ? 0 : weights[t] * wishes[t];
   }
-  Solve(FactorsOf(cost, weights), &values);
+  if (!AreZero(values)) Solve(FactorsOf(cost, weights), &values);
   return values;
 }
 
 std::vector<motion::Vec3> SmoothShift(const CorrectionCost& cost,
                                       const std::vector<double>& weights,
                                       const std::vector<motion::Vec3>& wishes) {
-  const Bands factors = FactorsOf(cost, weights);
+  Bands factors;
   std::vector<motion::Vec3> result(wishes.size());
   std::vector<double> values(wishes.size());
   for (float motion::Vec3::*const coordinate :
@@ -91,6 +96,8 @@ std::vector<motion::Vec3> SmoothShift(const CorrectionCost& cost,
     for (std::size_t t = 0; t < values.size(); ++t) {
       values[t] = IsGiven(cost, t) ? 0 : weights[t] * double{wishes[t].*coordinate};
     }
+    if (AreZero(values)) continue;
+    if (factors.empty()) factors = FactorsOf(cost, weights);
     Solve(factors, &values);
     for (std::size_t t = 0; t < values.size(); ++t) {
       result[t].*coordinate = static_cast<float>(values[t]);
