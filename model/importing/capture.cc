@@ -1,5 +1,3 @@
-#include "model/importing/capture.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -9,6 +7,7 @@
 #include "absl/strings/str_format.h"
 #include "model/base/median.h"
 #include "model/formats/motion_file.h"
+#include "model/importing/steps.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/resample.h"
 
@@ -36,13 +35,17 @@ absl::StatusOr<motion::Clip> ReadPerson(const fs::path& path, formats::Side side
   read.skeleton = options.skeleton;
   read.joint_overrides = options.joint_overrides;
   read.frame_rate_hz = options.frame_rate_hz;
-  read.notes = options.notes;
+  retargeting::ReadingReport report;
+  read.report = &report;
   const std::optional<formats::Format> format = formats::FormatOf(path);
   if (format.has_value() && HasHierarchy(*format)) {
     read.metres_per_unit = 1;
     read.coordinates = motion::Coordinates{};
   }
   absl::StatusOr<motion::Clip> person = formats::ReadLeader(path, read);
+  if (person.ok() && options.notes != nullptr) {
+    for (std::string& note : report.Notes()) options.notes->push_back(std::move(note));
+  }
   if (person.ok() || format != formats::Format::kNpy) return person;
   return absl::Status(
       person.status().code(),

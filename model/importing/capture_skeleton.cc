@@ -1,5 +1,3 @@
-#include "model/importing/capture_skeleton.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <optional>
@@ -7,16 +5,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "model/base/file.h"
 #include "model/base/strict_json.h"
-#include "model/base/text.h"
 #include "model/dataset/skeleton_completion.h"
 #include "model/formats/bvh/bvh_document.h"
-#include "model/formats/flat/flat_files.h"
 #include "model/formats/motion_file.h"
+#include "model/importing/steps.h"
 #include "model/motion/motion_limits.h"
-#include "model/motion/recorded_motion.h"
 #include "model/motion/skeleton_json.h"
 #include "model/retargeting/anatomy.h"
 #include "model/retargeting/joint_names.h"
@@ -94,61 +89,18 @@ absl::StatusOr<motion::Skeleton> BvhSkeleton(const std::string& text, const std:
   return Keep(ParentsToSkeleton(std::move(names), parents), kept);
 }
 
-// A file of positions has a hierarchy only by the names of SBU's joints.
-absl::Status CheckSbuNames(const motion::RecordedMotion& motion, const std::string& source) {
-  const std::vector<std::string>& names = motion.people.front().joint_names;
-  const motion::Skeleton sbu = motion::SbuSkeleton();
-  if (std::set<std::string>(names.begin(), names.end()) ==
-      std::set<std::string>(sbu.joint_names.begin(), sbu.joint_names.end())) {
-    return absl::OkStatus();
-  }
-  return absl::InvalidArgumentError(
-      absl::StrCat(source,
-                   ": skeleton: expected the 15 joints of SBU, because positions have no "
-                   "hierarchy, got ",
-                   absl::StrJoin(names, ", "), "; specify --skeleton FILE"));
-}
-
+// A file of positions has no hierarchy, but may have the names of SBU's joints.
 absl::StatusOr<motion::Skeleton> ReadCaptured(const fs::path& file) {
   const std::optional<formats::Format> format = formats::FormatOf(file);
-  if (format == formats::Format::kSbuText || format == formats::Format::kNpy) {
-    return motion::SbuSkeleton();
+  if (format == formats::Format::kGltf || format == formats::Format::kGlb) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.string(), ": skeleton: expected --skeleton for glTF, got none"));
   }
+  if (format != formats::Format::kBvh) return motion::SbuSkeleton();
   const absl::StatusOr<std::string> text =
       base::ReadFile(file, motion::kMaxMotionFileBytes, "a motion");
   if (!text.ok()) return text.status();
-  if (format == formats::Format::kBvh) return BvhSkeleton(*text, file.string());
-  if (format != formats::Format::kCsv && format != formats::Format::kJson) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        file.string(),
-        ": skeleton: expected a format that has one, got another; specify --skeleton"));
-  }
-  const absl::StatusOr<motion::RecordedMotion> motion =
-      format == formats::Format::kCsv ? formats::flat::ParseCsv(*text, file.string())
-                                      : formats::flat::ParseJsonMotion(*text, file.string());
-  if (!motion.ok()) return motion.status();
-  if (absl::Status status = CheckSbuNames(*motion, file.string()); !status.ok()) return status;
-  return motion::SbuSkeleton();
-}
-
-// Makes another joint the root of the tree.
-absl::Status MoveRoot(const std::string& name, motion::Skeleton* skeleton) {
-  const int root = skeleton->Find(name);
-  if (root < 0) {
-    return absl::InvalidArgumentError(absl::StrCat("--root: expected one of ",
-                                                   absl::StrJoin(skeleton->joint_names, ", "),
-                                                   ", got ", base::Quoted(name)));
-  }
-  const std::vector<int> parents = skeleton->Parents();
-  for (int at = root; parents[static_cast<std::size_t>(at)] >= 0;
-       at = parents[static_cast<std::size_t>(at)]) {
-    const motion::Bone bone = {parents[static_cast<std::size_t>(at)], at};
-    for (motion::Bone& other : skeleton->bones) {
-      if (other == bone) std::swap(other.parent, other.child);
-    }
-  }
-  skeleton->root = root;
-  return absl::OkStatus();
+  return BvhSkeleton(*text, file.string());
 }
 
 // Omits fingers and face: they move little, but losses weight every joint equally.
@@ -198,8 +150,7 @@ void Rename(const retargeting::Anatomy& anatomy, motion::Skeleton* skeleton) {
   }
 }
 
-absl::StatusOr<CaptureSkeleton> Complete(motion::Skeleton skeleton, const std::string& source,
-                                         bool all_joints) {
+absl::StatusOr<CaptureSkeleton> Complete(motion::Skeleton skeleton, const std::string& source) {
   const auto in_file = [&](const absl::Status& status) {
     return absl::InvalidArgumentError(
         absl::StrCat(source, ": ", status.message(), "; specify --skeleton"));
@@ -208,12 +159,10 @@ absl::StatusOr<CaptureSkeleton> Complete(motion::Skeleton skeleton, const std::s
   absl::StatusOr<retargeting::Anatomy> anatomy = retargeting::FindAnatomy(skeleton);
   if (!anatomy.ok()) return in_file(anatomy.status());
   const int before = skeleton.joint_count();
-  if (!all_joints) {
-    skeleton = WithoutFingersAndFace(skeleton, anatomy->hands);
-    skeleton.hips = skeleton.feet = std::nullopt;
-    anatomy = retargeting::FindAnatomy(skeleton);
-    if (!anatomy.ok()) return in_file(anatomy.status());
-  }
+  skeleton = WithoutFingersAndFace(skeleton, anatomy->hands);
+  skeleton.hips = skeleton.feet = std::nullopt;
+  anatomy = retargeting::FindAnatomy(skeleton);
+  if (!anatomy.ok()) return in_file(anatomy.status());
   CaptureSkeleton found;
   found.notes = anatomy->notes;
   if (skeleton.joint_count() < before) {
@@ -263,14 +212,11 @@ absl::StatusOr<CaptureSkeleton> ReadSpecified(const std::string& specified) {
 
 }  // namespace
 
-absl::StatusOr<CaptureSkeleton> FindSkeleton(const fs::path& file, const SkeletonOptions& options) {
-  if (!options.skeleton.empty()) return ReadSpecified(options.skeleton);
+absl::StatusOr<CaptureSkeleton> FindSkeleton(const fs::path& file, const std::string& specified) {
+  if (!specified.empty()) return ReadSpecified(specified);
   absl::StatusOr<motion::Skeleton> skeleton = ReadCaptured(file);
   if (!skeleton.ok()) return skeleton.status();
-  if (!options.root.empty()) {
-    if (absl::Status status = MoveRoot(options.root, &*skeleton); !status.ok()) return status;
-  }
-  return Complete(*std::move(skeleton), file.filename().string(), options.all_joints);
+  return Complete(*std::move(skeleton), file.filename().string());
 }
 
 }  // namespace duet::importing

@@ -1,5 +1,3 @@
-#include "model/importing/dataset_folder.h"
-
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -9,9 +7,9 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "model/base/file.h"
-#include "model/base/file.h"
 #include "model/dataset/dataset.h"
 #include "model/formats/flat/flat_files.h"
+#include "model/importing/steps.h"
 #include "model/motion/skeleton_json.h"
 
 namespace duet::importing {

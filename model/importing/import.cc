@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -15,8 +16,7 @@
 #include "model/base/file.h"
 #include "model/base/text.h"
 #include "model/formats/motion_file.h"
-#include "model/importing/capture.h"
-#include "model/importing/dataset_folder.h"
+#include "model/importing/steps.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/posture.h"
 
@@ -164,14 +164,15 @@ class Importer {
     absl::StatusOr<CaptureSkeleton> found;
     for (const PairFiles& files : pairs_) {  // the first readable one; ReadPairs reports the others
       found = FindSkeleton(options_.from / files.first, options_.skeleton);
-      if (found.ok() || !options_.skeleton.skeleton.empty()) break;
+      if (found.ok() || !options_.skeleton.empty()) break;
     }
     if (!found.ok()) return found.status();
     skeleton_ = *std::move(found);
     const motion::Skeleton& skeleton = skeleton_.skeleton;
     Assume("skeleton", absl::StrCat(skeleton.joint_count(), " joints, from ", skeleton_.origin),
-           "--skeleton FILE, --all-joints");
-    Assume("root", skeleton.joint_names[static_cast<std::size_t>(skeleton.root)], "--root JOINT");
+           "--skeleton FILE");
+    Assume("root", skeleton.joint_names[static_cast<std::size_t>(skeleton.root)],
+           "--skeleton FILE");
     for (const std::string& note : skeleton_.notes) Assume("joints", note, "--skeleton FILE");
     return absl::OkStatus();
   }
@@ -323,7 +324,6 @@ class Importer {
       status = SetProperty("--touches", options_.touches,
                            [](dataset::ClassLayout* one) { one->touches = true; });
     }
-    if (status.ok()) status = SetEffectors();
     if (!status.ok()) return status;
     for (const dataset::ClassLayout& one : classes_) {
       Assume("class",
@@ -336,40 +336,20 @@ class Importer {
     return absl::OkStatus();
   }
 
-  absl::StatusOr<dataset::ClassLayout*> FindClass(const std::string& flag,
-                                                  const std::string& label) {
-    std::vector<std::string> labels;
-    for (dataset::ClassLayout& one : classes_) {
-      if (one.name == label) return &one;
-      labels.push_back(one.name);
-    }
-    return absl::InvalidArgumentError(absl::StrCat(
-        flag, ": expected one of ", absl::StrJoin(labels, ", "), ", got ", base::Quoted(label)));
-  }
-
   template <typename Set>
   absl::Status SetProperty(const std::string& flag, const std::vector<std::string>& labels,
                            Set set) {
     for (const std::string& label : labels) {
-      const absl::StatusOr<dataset::ClassLayout*> one = FindClass(flag, label);
-      if (!one.ok()) return one.status();
-      set(*one);
-    }
-    return absl::OkStatus();
-  }
-
-  absl::Status SetEffectors() {
-    for (const auto& [label, joints] : options_.effectors) {
-      const absl::StatusOr<dataset::ClassLayout*> one = FindClass("--effectors", label);
-      if (!one.ok()) return one.status();
-      (*one)->effectors.clear();
-      for (const std::string& joint : joints) {
-        (*one)->effectors.push_back(skeleton_.skeleton.Find(joint));
-        if ((*one)->effectors.back() >= 0) continue;
-        return absl::InvalidArgumentError(absl::StrCat(
-            "--effectors: expected one of ", absl::StrJoin(skeleton_.skeleton.joint_names, ", "),
-            ", got ", base::Quoted(joint)));
+      const auto one = std::find_if(classes_.begin(), classes_.end(),
+                                    [&label](const auto& known) { return known.name == label; });
+      if (one != classes_.end()) {
+        set(&*one);
+        continue;
       }
+      std::vector<std::string> known;
+      for (const dataset::ClassLayout& other : classes_) known.push_back(other.name);
+      return absl::InvalidArgumentError(absl::StrCat(
+          flag, ": expected one of ", absl::StrJoin(known, ", "), ", got ", base::Quoted(label)));
     }
     return absl::OkStatus();
   }
@@ -397,7 +377,7 @@ class Importer {
       if (ruled.count(one.name) == 0) continue;
       Assume("leader",
              absl::StrCat(one.name, ": who moves ", JointNames(one.effectors), " farther"),
-             "--effectors CLASS=JOINT,...");
+             "--table FILE");
     }
     if (!close.empty()) {
       Assume("leader",

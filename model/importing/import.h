@@ -2,14 +2,12 @@
 #define DUET_MODEL_IMPORTING_IMPORT_H_
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
-#include "model/importing/capture_skeleton.h"
-#include "model/importing/pairing.h"
+#include "model/importing/steps.h"
 #include "model/motion/coordinates.h"
 #include "model/retargeting/joint_mapping.h"
 
@@ -21,7 +19,7 @@ struct ImportOptions {
   std::filesystem::path out;    // the data set
   std::string name;             // of the data set; if empty, the folder's
   std::filesystem::path table;  // of pairs; if empty, pairs.tsv in `from`, or file names
-  SkeletonOptions skeleton;
+  std::string skeleton;         // as in FindSkeleton; if empty, that of the captures
   retargeting::JointOverrides joint_overrides;
   std::optional<double> frame_rate_hz;  // overrides the files' own
   std::optional<double> to_rate_hz;     // of the data set; if absent, the files', at most 30
@@ -30,10 +28,9 @@ struct ImportOptions {
   double longest_seconds = 10;  // longer pairs are cut into equal pieces
   // Properties of classes, by label.
   std::vector<std::string> symmetric, handed, touches;
-  std::map<std::string, std::vector<std::string>> effectors;  // joints of the data set
-  std::optional<bool> level;                                  // if absent, if people lean or float
-  bool skip_refused = false;                                  // continue without unusable pairs
-  bool overwrite = false;                                     // replace a data set at `out`
+  std::optional<bool> level;  // if absent, if people lean or float
+  bool skip_refused = false;  // continue without unusable pairs
+  bool overwrite = false;     // replace a data set at `out`
 };
 
 // A value that the files do not state, the inferred value, and the flag that overrides it.

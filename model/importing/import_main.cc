@@ -30,8 +30,7 @@ struct Words {
   std::string solve;  // a data set
   std::string up_axis;
   std::string level;
-  std::vector<std::string> effectors;  // CLASS=JOINT,JOINT
-  std::vector<std::string> joints;     // JOINT=FILE_JOINT
+  std::vector<std::string> joints;  // JOINT=FILE_JOINT
 };
 
 void Declare(ImportOptions* options, Words* words, CLI::App* app) {
@@ -50,13 +49,9 @@ void Declare(ImportOptions* options, Words* words, CLI::App* app) {
                   "Tab-separated table of leader, follower, label and subjects (default: "
                   "FROM/pairs.tsv, if it exists)")
       ->type_name("FILE");
-  app->add_option("--skeleton", options->skeleton.skeleton,
+  app->add_option("--skeleton", options->skeleton,
                   "sbu, or a file with the skeleton object of dataset.json (default: inferred)")
       ->type_name("FILE");
-  app->add_option("--root", options->skeleton.root,
-                  "Root joint of the skeleton (default: inferred)")
-      ->type_name("JOINT");
-  app->add_flag("--all-joints", options->skeleton.all_joints, "Include fingers and face");
   app->add_option(
          "--joint-map", words->joints,
          "Joint of the file for a joint of the skeleton, if its name is ambiguous; repeatable")
@@ -93,9 +88,6 @@ void Declare(ImportOptions* options, Words* words, CLI::App* app) {
   app->add_option("--touches", options->touches, "Classes in which bodies may touch")
       ->delimiter(',')
       ->type_name("CLASS");
-  app->add_option("--effectors", words->effectors,
-                  "Joints of a class: the person who moves them farther leads; repeatable")
-      ->type_name("CLASS=JOINT,JOINT");
   app->add_option("--level", words->level, "Level the people (default: if they lean or float)")
       ->check(CLI::IsMember({"yes", "no"}))
       ->type_name("yes|no");
@@ -112,11 +104,6 @@ absl::Status Parse(const Words& words, ImportOptions* options) {
   if (!words.up_axis.empty()) {
     options->up_axis = motion::ParseUpAxis(words.up_axis);
     if (!options->up_axis) return Wrong("--up-axis", words.up_axis, motion::kUpAxisNames);
-  }
-  for (const std::string& word : words.effectors) {
-    const std::pair<std::string, std::string> parts = absl::StrSplit(word, absl::MaxSplits('=', 1));
-    if (parts.second.empty()) return Wrong("--effectors", word, "CLASS=JOINT,JOINT");
-    options->effectors[parts.first] = absl::StrSplit(parts.second, ',');
   }
   for (const std::string& word : words.joints) {
     std::pair<std::string, std::string> parts = absl::StrSplit(word, absl::MaxSplits('=', 1));

@@ -1,5 +1,3 @@
-#include "model/importing/pairing.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
@@ -15,6 +13,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "model/base/text.h"
+#include "model/importing/steps.h"
 
 namespace duet::importing {
 namespace {

@@ -12,7 +12,7 @@
 #include "model/body/build.h"
 #include "model/body/limbs.h"
 #include "model/dataset/dataset.h"
-#include "model/importing/dataset_folder.h"
+#include "model/importing/steps.h"
 #include "model/solver/body_model.h"
 #include "model/solver/person.h"
 

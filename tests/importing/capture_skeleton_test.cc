@@ -1,9 +1,8 @@
-#include "model/importing/capture_skeleton.h"
-
 #include <gmock/gmock.h>
 
 #include "absl/strings/str_replace.h"
 #include "model/formats/motion_file.h"
+#include "model/importing/steps.h"
 #include "tests/importing/bvh_people.h"
 #include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
@@ -18,11 +17,11 @@ class FindSkeletonTest : public ::testing::Test {
  protected:
   absl::StatusOr<CaptureSkeleton> Find(const std::string& name, const std::string& text) {
     WriteTestFile(folder_ / name, text);
-    return FindSkeleton(folder_ / name, options_);
+    return FindSkeleton(folder_ / name, specified_);
   }
 
   TemporaryFolder folder_;
-  SkeletonOptions options_;
+  std::string specified_;
 };
 
 TEST_F(FindSkeletonTest, ReadsTheHierarchyOfABvhWithDuetsNames) {
@@ -47,7 +46,8 @@ TEST_F(FindSkeletonTest, ReadsTheHierarchyOfABvhWithDuetsNames) {
 TEST_F(FindSkeletonTest, OmitsJointsAtTheirParents) {
   motion::ClipPair pair = {test::MakePerson(), test::MakePerson()};
   ASSERT_THAT(formats::WritePair(folder_ / "pair.bvh", pair, motion::SbuSkeleton()), IsOk());
-  const absl::StatusOr<CaptureSkeleton> found = FindSkeleton(folder_ / "pair.leader.bvh", options_);
+  const absl::StatusOr<CaptureSkeleton> found =
+      FindSkeleton(folder_ / "pair.leader.bvh", specified_);
   ASSERT_THAT(found, IsOk());
   EXPECT_EQ(found->skeleton.joint_count(), 15);
   EXPECT_EQ(found->skeleton.joint_names[static_cast<std::size_t>(found->skeleton.root)], "torso");
@@ -55,7 +55,7 @@ TEST_F(FindSkeletonTest, OmitsJointsAtTheirParents) {
             found->skeleton.Find("neck"));
 }
 
-TEST_F(FindSkeletonTest, OmitsFingersUnlessRequested) {
+TEST_F(FindSkeletonTest, OmitsFingers) {
   const std::string fingers = absl::StrReplaceAll(
       BvhText({}), {{"JOINT LeftHand\n{\nOFFSET 26 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
                      "End Site\n",
@@ -67,10 +67,6 @@ TEST_F(FindSkeletonTest, OmitsFingersUnlessRequested) {
   ASSERT_THAT(found, IsOk());
   EXPECT_EQ(found->skeleton.joint_count(), 20);
   EXPECT_THAT(found->notes, Contains("left out: 1 joints of fingers and face"));
-  options_.all_joints = true;
-  const absl::StatusOr<CaptureSkeleton> all = Find("kick.bvh", fingers);
-  ASSERT_THAT(all, IsOk());
-  EXPECT_EQ(all->skeleton.joint_count(), 21);
 }
 
 TEST_F(FindSkeletonTest, NamesWhatIsMissing) {
@@ -82,19 +78,11 @@ TEST_F(FindSkeletonTest, NamesWhatIsMissing) {
                              HasSubstr("--skeleton"))));
 }
 
-// Positions have no hierarchy.
-TEST_F(FindSkeletonTest, OtherNamesOfPositionsNeedASkeleton) {
-  EXPECT_THAT(Find("kick.csv", "hips_x,hips_y,hips_z\n0,1,0\n0,1,0\n"),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       AllOf(HasSubstr("expected the 15 joints of SBU"), HasSubstr("got hips"),
-                             HasSubstr("--skeleton FILE"))));
-}
-
 TEST_F(FindSkeletonTest, SpecifiedSkeletonsOverrideTheFile) {
-  options_.skeleton = "sbu";
+  specified_ = "sbu";
   EXPECT_EQ(Find("kick.bvh", BvhText({}))->skeleton.joint_names, motion::SbuSkeleton().joint_names);
-  options_.skeleton = (folder_ / "skeleton.json").string();
-  WriteTestFile(options_.skeleton, R"({
+  specified_ = (folder_ / "skeleton.json").string();
+  WriteTestFile(specified_, R"({
       "joint_names": ["Hips", "LeftUpLeg", "LeftFoot", "RightUpLeg", "RightFoot", "LeftArm",
                       "RightArm"],
       "bones": [["Hips", "LeftUpLeg"], ["LeftUpLeg", "LeftFoot"], ["Hips", "RightUpLeg"],
@@ -103,20 +91,6 @@ TEST_F(FindSkeletonTest, SpecifiedSkeletonsOverrideTheFile) {
   ASSERT_THAT(found, IsOk());
   EXPECT_EQ(found->skeleton.joint_count(), 7);
   EXPECT_EQ(found->parts.size(), 5u);
-}
-
-TEST_F(FindSkeletonTest, AnotherRootReversesBones) {
-  options_.root = "Chest";
-  const absl::StatusOr<CaptureSkeleton> found = Find("kick.bvh", BvhText({}));
-  ASSERT_THAT(found, IsOk());
-  const motion::Skeleton& skeleton = found->skeleton;
-  EXPECT_EQ(skeleton.root, skeleton.Find("chest"));
-  EXPECT_EQ(skeleton.Parents()[static_cast<std::size_t>(skeleton.Find("hips"))],
-            skeleton.Find("spine"));
-  options_.root = "Tail";
-  EXPECT_THAT(Find("kick.bvh", BvhText({})),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       AllOf(HasSubstr("--root: expected one of "), HasSubstr("got \"Tail\""))));
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
-#include "model/importing/pairing.h"
-
 #include <gmock/gmock.h>
 
 #include "absl/strings/str_cat.h"
+#include "model/importing/steps.h"
 #include "tests/support/matchers.h"
 
 namespace duet::importing {

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/dataset/dataset.h"
-#include "model/importing/dataset_folder.h"
+#include "model/importing/steps.h"
 #include "tests/solver/noisy_person.h"
 #include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
