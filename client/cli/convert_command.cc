@@ -141,13 +141,15 @@ absl::StatusOr<WrittenFiles> WriteOntoRig(const Conversion& conversion,
                                           const std::filesystem::path& output, Format format) {
   WrittenFiles written{{output}, {}};
   formats::FollowerRig rig = *conversion.rig;
-  rig.reading.notes = &written.notes;
+  retargeting::ReadingReport report;
+  rig.reading.report = &report;
   const absl::StatusOr<std::string> content =
       formats::FormatOntoRig(conversion.people[0], rig, format);
   if (motion::MendingSetting(content.status()) == motion::ReadingSetting::kJointMap) {
     return MendedBy(content.status(), motion::ReadingSetting::kRigJointMap);
   }
   if (!content.ok()) return content.status();
+  written.notes = report.Notes();
   const absl::Status status = base::WriteFile(output, *content);
   if (!status.ok()) return NotWritten(status);
   return written;

@@ -56,15 +56,6 @@ std::string DescribeSetting(const char* name, const std::optional<Setting>& sett
   return absl::StrFormat("  %-11s %s  (%s)\n", name, base::EscapeControls(setting->value), origin);
 }
 
-// "Spine1", or "0.50 Head + 0.50 HeadTop".
-std::string DescribeParts(const std::vector<JointReading::Part>& parts) {
-  if (parts.size() == 1 && parts[0].weight == 1) return base::EscapeControls(parts[0].name);
-  return absl::StrJoin(parts, " + ", [](std::string* out, const JointReading::Part& part) {
-    absl::StrAppendFormat(out, "%.2f %s", static_cast<double>(part.weight),
-                          base::EscapeControls(part.name));
-  });
-}
-
 std::string DescribeJoints(const std::vector<JointReading>& joints) {
   std::string text = "  joints\n";
   for (const JointReading& joint : joints) {
@@ -73,7 +64,7 @@ std::string DescribeJoints(const std::vector<JointReading>& joints) {
       absl::StrAppend(&text, "missing", "\n");
       continue;
     }
-    absl::StrAppend(&text, DescribeParts(joint.parts));
+    absl::StrAppend(&text, base::EscapeControls(DescribeParts(joint.parts)));
     const std::string why = joint.origin == retargeting::Origin::kGiven ? "given" : joint.why;
     if (!why.empty()) {
       absl::StrAppend(&text, "  (", base::EscapeControls(why), ")");

@@ -18,7 +18,7 @@
 #include "model/motion/motion_limits.h"
 #include "model/motion/reading_setting.h"
 #include "model/motion/stated_unit.h"
-#include "model/retargeting/joint_table.h"
+#include "model/retargeting/joint_mapping.h"
 
 namespace duet::client::cli {
 namespace {
@@ -60,7 +60,7 @@ absl::StatusOr<std::string> ReadWhole(std::istream* in) {
 
 // A stated unit may be wrong. An inferred one always gives the legs of a person.
 void WarnOfSize(const motion::Clip& clip, const formats::ReadOptions& options) {
-  if (!options.skeleton.feet) return;
+  if (!options.skeleton.feet || options.report == nullptr) return;
   const double leg = LegLength(options.skeleton, clip.poses);
   if (leg >= kShortestLikelyLeg && leg <= kLongestLikelyLeg) return;
   const std::optional<motion::InferredUnit> unit = motion::InferUnit({leg});
@@ -69,8 +69,7 @@ void WarnOfSize(const motion::Clip& clip, const formats::ReadOptions& options) {
       options.skeleton.joint_names[static_cast<std::size_t>(options.skeleton.root)], " is ",
       absl::StrFormat("%.3g", leg), " m; ",
       unit.has_value() ? absl::StrCat(unit->name, " would fit; ") : "", "specify the unit");
-  if (options.notes != nullptr) options.notes->push_back(warning);
-  if (options.report != nullptr) options.report->remarks.push_back(warning);
+  options.report->remarks.push_back(warning);
 }
 
 // An index of a joint, or -1.

@@ -13,7 +13,6 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "model/formats/motion_file.h"
-#include "model/formats/people.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
 
@@ -61,7 +60,7 @@ class MotionInput {
   // Its name in errors and reports.
   const std::string& name() const { return name_; }
 
-  // Like formats::ReadLeader. Warns in the notes and the report of a person of no likely size.
+  // Like formats::ReadLeader. Warns in the report of a person of no likely size.
   absl::StatusOr<motion::Clip> Read(const formats::ReadOptions& options) const;
 
  private:

@@ -16,7 +16,6 @@
 #include "model/base/file.h"
 #include "model/base/program_output.h"
 #include "model/formats/motion_file.h"
-#include "model/formats/people.h"
 
 namespace duet::client::cli {
 namespace {

@@ -62,7 +62,6 @@ motion::VerticalEstimate EstimateVertical(const motion::Clip& leader, const Moti
   evidence.Add(leader);
   if (people >= 2) {
     options.side = batch::OtherSide(options.side);
-    options.notes = nullptr;
     options.report = nullptr;
     const absl::StatusOr<motion::Clip> other = input.Read(options);
     if (other.ok()) evidence.Add(*other);
@@ -77,11 +76,11 @@ absl::Status ReadLeader(const ReactionArguments& arguments, formats::ReadOptions
   if (!input.ok()) return input.status();
   retargeting::ReadingReport report;
   options.side = arguments.leader_side;
-  options.notes = notes;
   options.report = &report;
   absl::StatusOr<motion::Clip> leader = input->Read(options);
   if (!leader.ok()) return leader.status();
   request->leader = *std::move(leader);
+  if (notes != nullptr) *notes = report.Notes();
   if (request->up) return absl::OkStatus();
   const motion::VerticalEstimate vertical =
       EstimateVertical(request->leader, *input, options, report.people);

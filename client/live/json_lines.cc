@@ -192,15 +192,11 @@ absl::StatusOr<std::vector<motion::Vec3>> JsonLinesSource::ReadPositions(
 
 absl::Status JsonLinesSource::MapJoints(const std::vector<motion::Vec3>& pose) {
   const motion::Poses first(static_cast<int>(pose.size()), pose);
-  absl::StatusOr<retargeting::JointMap> map =
-      retargeting::MapJoints("joints", joint_names_, first, options_.skeleton, options_.joints);
+  absl::StatusOr<retargeting::JointMap> map = retargeting::MapJoints(
+      "joints", joint_names_, first, options_.skeleton, options_.joints, &joints_);
   if (!map.ok()) return map.status();
   map_ = *std::move(map);
   return absl::OkStatus();
-}
-
-std::vector<std::string> JsonLinesSource::Notes() const {
-  return map_.has_value() ? map_->notes : std::vector<std::string>();
 }
 
 absl::Status JsonLinesSink::Start(const LeaderFormat& format) {

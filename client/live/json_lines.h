@@ -47,7 +47,7 @@ class JsonLinesSource final : public LeaderSource {
   absl::StatusOr<std::optional<LeaderEvent>> Next() override;
   void Stop() override { lines_->Stop(); }
   bool IsLive() const override { return options_.is_live; }
-  std::vector<std::string> Notes() const override;
+  std::vector<std::string> Notes() const override { return retargeting::JointNotes(joints_); }
 
  private:
   absl::StatusOr<std::optional<nlohmann::json>> NextObject();
@@ -65,7 +65,8 @@ class JsonLinesSource final : public LeaderSource {
   double frame_rate_hz_ = 0;
   float metres_per_unit_ = 1;
   motion::Coordinates coordinates_;
-  std::optional<retargeting::JointMap> map_;  // after the first frame
+  std::optional<retargeting::JointMap> map_;       // after the first frame
+  std::vector<retargeting::JointReading> joints_;  // how it was made
   int next_index_ = 0;
   std::optional<int64_t> first_frame_;  // the first frame's number
   std::optional<double> first_time_;    // and time

@@ -6,7 +6,7 @@
 #include "model/base/file.h"
 #include "model/formats/bvh/bvh_document.h"
 #include "model/formats/bvh/bvh_motion.h"
-#include "model/formats/gltf/gltf_rig.h"
+#include "model/formats/gltf/gltf_motion.h"
 #include "model/formats/reading.h"
 #include "model/motion/motion_limits.h"
 

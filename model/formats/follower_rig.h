@@ -26,7 +26,7 @@ bool HasRig(Format format);
 bool FitsRig(Format written, Format rig);
 
 // Formats the follower on the rig: everything in the rig's file except the motion is kept
-// (bvh::OntoBvhRig, gltf::OntoGltfRig). Adds to rig.reading.notes, like every reader.
+// (bvh::OntoBvhRig, gltf::OntoGltfRig). Reports to rig.reading.report, like every reader.
 //
 // Errors: those of reading the rig; INVALID_ARGUMENT for an unsuitable rig, or a format that
 //         FitsRig does not accept.

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <map>
+#include <system_error>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -14,8 +15,7 @@
 #include "model/formats/bvh/bvh_motion.h"
 #include "model/formats/flat/flat_files.h"
 #include "model/formats/gltf/gltf_document.h"
-#include "model/formats/gltf/gltf_export.h"
-#include "model/formats/gltf/gltf_import.h"
+#include "model/formats/gltf/gltf_motion.h"
 #include "model/formats/reading.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/motion_limits.h"
@@ -50,10 +50,8 @@ struct Source {
   }
 };
 
-// Adds a note and a remark, which `duet inspect` prints.
-void Remark(const std::string& what, const ReadOptions& options) {
-  if (options.notes != nullptr) options.notes->push_back(what);
-  if (options.report != nullptr) options.report->remarks.push_back(what);
+void Remark(std::string what, const ReadOptions& options) {
+  if (options.report != nullptr) options.report->remarks.push_back(std::move(what));
 }
 
 // A file of positions may not state its up axis, which is z for Blender.
@@ -151,9 +149,6 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
       source, person.joint_names, person.poses, options.skeleton, options.joint_overrides,
       options.report == nullptr ? nullptr : &options.report->joints);
   if (!map.ok()) return map.status();
-  if (options.notes != nullptr) {
-    options.notes->insert(options.notes->end(), map->notes.begin(), map->notes.end());
-  }
   const motion::Coordinates coordinates = CoordinatesOf(options, motion.coordinates);
   motion::Clip clip;
   clip.joint_names = options.skeleton.joint_names;
@@ -168,9 +163,6 @@ absl::StatusOr<motion::Clip> ToSkeleton(const motion::RecordedMotion& motion,
   const absl::Status body =
       CheckBody(source, options.skeleton, clip.poses, *map, person.joint_names);
   if (!body.ok()) return body;
-  for (const std::string& line : retargeting::UnequalBones(options.skeleton, clip.poses)) {
-    Remark(absl::StrCat("warning: ", line), options);
-  }
   if (!options.coordinates.has_value()) WarnOfUpAxis(clip, options);
   return clip;
 }
@@ -444,6 +436,48 @@ absl::StatusOr<std::vector<fs::path>> WritePeople(const fs::path& path, Format f
   absl::Status status = base::WriteFile(path, *content);
   if (!status.ok()) return status;
   return std::vector<fs::path>{path};
+}
+
+absl::StatusOr<ReadPeople> ReadAllPeople(PersonReader read, const ReadOptions& options) {
+  ReadPeople all;
+  retargeting::ReadingReport report;
+  ReadOptions first = options;
+  first.side = Side::kLeft;
+  first.report = &report;
+  absl::StatusOr<motion::Clip> person = read(first);
+  if (!person.ok()) return person.status();
+  all.people.push_back(*std::move(person));
+  all.notes = report.Notes();
+  if (report.people < 2) return all;
+  ReadOptions second = options;
+  second.side = Side::kRight;
+  second.report = nullptr;
+  person = read(second);
+  if (!person.ok()) return person.status();
+  all.people.push_back(*std::move(person));
+  return all;
+}
+
+absl::Status CheckReadable(const std::filesystem::path& path, const std::optional<Format>& format) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    return base::MissingFile(path);
+  }
+  if (std::filesystem::is_directory(path, error)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path.string(), ": expected a motion file, got a folder"));
+  }
+  if (format.has_value() || IsReadable(path)) return absl::OkStatus();
+  if (!HowToConvert(path).empty()) return UnknownExtension(path, kReadableExtensions);
+  return MendedBy(UnknownExtension(path, kReadableExtensions), motion::ReadingSetting::kFormat);
+}
+
+absl::Status CheckFolderOf(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (std::filesystem::is_directory(folder, error)) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(path.string(), ": there is no folder ", folder.string()));
 }
 
 }  // namespace duet::formats

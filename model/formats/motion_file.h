@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
@@ -57,9 +58,7 @@ struct ReadOptions {
   // hold one motion and reject a name.
   std::optional<std::string> animation;
   retargeting::JointOverrides joint_overrides;
-  // Receives the decisions (unit, up axis, torso joint) as text. May be null.
-  std::vector<std::string>* notes = nullptr;
-  // Receives the decisions with all details, also if reading fails. May be null.
+  // Receives the decisions (unit, up axis, torso joint), also if reading fails. May be null.
   retargeting::ReadingReport* report = nullptr;
 };
 
@@ -80,6 +79,16 @@ absl::StatusOr<motion::Clip> ParseLeader(const std::string& content, const std::
 // The first frame of any file that ReadLeader reads, as a follower's start. [skeleton joints]
 absl::StatusOr<std::vector<motion::Vec3>> ReadFollowerStart(const std::filesystem::path& path,
                                                             const ReadOptions& options = {});
+
+// All people of a file, at most two.
+struct ReadPeople {
+  std::vector<motion::Clip> people;
+  std::vector<std::string> notes;  // on how the first was read
+};
+
+// Reads one person, like ReadLeader, from a source that the function knows.
+using PersonReader = absl::FunctionRef<absl::StatusOr<motion::Clip>(const ReadOptions&)>;
+absl::StatusOr<ReadPeople> ReadAllPeople(PersonReader read, const ReadOptions& options);
 
 inline constexpr double kCentimetre = 0.01;
 
@@ -131,6 +140,13 @@ inline constexpr char kReadableExtensions[] =
 std::string HowToConvert(const std::filesystem::path& path);
 // INVALID_ARGUMENT "path: extension: expected <known>, got ...", with HowToConvert.
 absl::Status UnknownExtension(const std::filesystem::path& path, absl::string_view known);
+
+// Checks, before any work is done, that a file exists and has a format that is read: `format`, or
+// that of its extension. Errors: NOT_FOUND, INVALID_ARGUMENT.
+absl::Status CheckReadable(const std::filesystem::path& path, const std::optional<Format>& format);
+
+// INVALID_ARGUMENT unless the folder that a file is to be written to exists.
+absl::Status CheckFolderOf(const std::filesystem::path& path);
 
 }  // namespace duet::formats
 

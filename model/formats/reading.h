@@ -23,7 +23,6 @@ inline retargeting::CharacterOptions CharacterOptionsOf(const ReadOptions& optio
   character.joint_overrides = options.joint_overrides;
   character.metres_per_unit = options.metres_per_unit;
   if (options.coordinates.has_value()) character.up_axis = options.coordinates->up_axis;
-  character.notes = options.notes;
   character.report = options.report;
   return character;
 }

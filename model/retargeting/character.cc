@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/poses.h"
 #include "model/motion/reading_setting.h"
@@ -18,8 +17,6 @@ namespace {
 // The assumed leg length if it fits a person in no known unit, metres.
 constexpr double kTypicalLeg = 1;
 constexpr double kLargestUnit = 1000;
-// Range without a warning of the height from feet to head of a straightened character, metres.
-constexpr double kShortestPerson = 1.3, kTallestPerson = 2.1;
 // In units of the file. A smaller character is treated as having no size.
 constexpr double kSmallestLeg = 1e-3;
 
@@ -36,10 +33,8 @@ class ClipMaker {
         source_, character_.tree, options_.skeleton, options_.joint_overrides,
         options_.report == nullptr ? nullptr : &options_.report->joints, options_.missing_toes);
     if (!map.ok()) return map.status();
-    for (std::string& note : map->notes) Note(std::move(note));
     const absl::StatusOr<double> scale = MetresPerUnit(map->straight);
     if (!scale.ok()) return scale.status();
-    if (!options_.metres_per_unit.has_value()) CheckStature(*scale, map->straight);
     motion::Clip clip;
     clip.joint_names = options_.skeleton.joint_names;
     clip.frame_rate_hz = character_.frame_rate_hz;
@@ -53,7 +48,6 @@ class ClipMaker {
     const absl::Status body =
         CheckBody(source_, options_.skeleton, clip.poses, *map, character_.tree.names);
     if (!body.ok()) return body;
-    for (const std::string& line : UnequalBones(options_.skeleton, clip.poses)) Warn(line);
     if (options_.fit != nullptr) {
       *options_.fit = {*scale, coordinates.up_axis, *std::move(map)};
     }
@@ -61,37 +55,9 @@ class ClipMaker {
   }
 
  private:
-  void Note(std::string note) {
-    if (options_.notes != nullptr) options_.notes->push_back(std::move(note));
-  }
-
-  // The height from the middle of the feet to the head; absent if the skeleton lacks either.
-  std::optional<double> Stature(const std::vector<motion::Vec3>& straight) const {
-    const int head = options_.skeleton.Find("head");
-    if (!options_.skeleton.feet || head < 0) return std::nullopt;
-    const auto at = [&straight](int joint) { return straight[static_cast<size_t>(joint)]; };
-    const motion::Vec3 feet =
-        (at(options_.skeleton.feet->left) + at(options_.skeleton.feet->right)) / 2;
-    return static_cast<double>(at(head).y - feet.y);
-  }
-
-  // Leg length does not distinguish a small adult in an unusual unit from a child in inches.
-  void CheckStature(double metres_per_unit, const std::vector<motion::Vec3>& straight) {
-    const std::optional<double> stature = Stature(straight);
-    if (!stature.has_value()) return;
-    const double metres = *stature * metres_per_unit;
-    if (metres >= kShortestPerson && metres <= kTallestPerson) return;
-    Warn(absl::StrCat("size: expected ", kShortestPerson, " to ", kTallestPerson,
-                      " m from the feet to the head of an adult, got ", Rounded(metres, 0.01),
-                      "; specify the metres per unit if the unit is another"));
-  }
-
-  // Adds a note and a remark, which `duet inspect` prints.
-  void Warn(const std::string& what) {
-    Note(absl::StrCat("warning: ", what));
-    if (options_.report != nullptr) {
-      options_.report->remarks.push_back(absl::StrCat("warning: ", what));
-    }
+  void Warn(const std::string& what) const {
+    if (options_.report == nullptr) return;
+    options_.report->remarks.push_back(absl::StrCat("warning: ", what));
   }
 
   absl::Status UnitNeeded(absl::string_view why) const {
@@ -117,7 +83,6 @@ class ClipMaker {
     if (const std::optional<motion::InferredUnit> unit = motion::InferUnit({length})) {
       const std::string why =
           absl::StrCat("foot to ", root, " is ", Rounded(length * unit->metres, 0.01), " m");
-      Note(absl::StrCat("unit: ", unit->name, " (", why, ")"));
       ReportUnit({unit->name, Origin::kGuessed, why});
       return unit->metres;
     }
@@ -125,13 +90,11 @@ class ClipMaker {
       return UnitNeeded(
           absl::StrCat("expected a distance from foot to ", root, ", got ", length, " units"));
     }
-    const std::string why =
-        absl::StrCat("foot to ", root, " is ", length,
-                     " units, which is no person's in any usual unit, and was read as ",
-                     kTypicalLeg, " m; specify the metres per unit if the size matters");
-    Note(absl::StrCat("warning: unit: a guess: ", why));
-    ReportUnit({absl::StrCat(kTypicalLeg / length, " m"), Origin::kGuessed, why});
-    if (options_.report != nullptr) options_.report->remarks.push_back("warning: unit: a guess");
+    ReportUnit({absl::StrCat(kTypicalLeg / length, " m"), Origin::kGuessed,
+                absl::StrCat("foot to ", root, " is ", length, " units")});
+    Warn(absl::StrCat("unit: a guess: legs of ", length,
+                      " units are no person's in any usual unit, and were read as ", kTypicalLeg,
+                      " m; specify the metres per unit if the size matters"));
     return kTypicalLeg / length;
   }
 
@@ -153,15 +116,13 @@ class ClipMaker {
         motion::InferUpAxis(options_.skeleton, {&clip.poses});
     const motion::UpAxis up = found.value_or(motion::UpAxis::kYUp);
     ReportUpAxis(up, found.has_value() ? Origin::kGuessed : Origin::kDefault,
-                 found.has_value() ? "the feet are below the root along it" : "");
+                 !found.has_value()             ? ""
+                 : up == motion::UpAxis::kYDown ? "the feet are above the root along it"
+                                                : "the feet are below the root along it");
     if (!found.has_value() && options_.skeleton.feet) {
       Warn(
           "up axis: expected a person who stands along y, z or -y, got none; assuming y; specify "
           "the up axis if it is another");
-    }
-    if (up == motion::UpAxis::kZUp) Note("up axis: z (the feet are below the root along it)");
-    if (up == motion::UpAxis::kYDown) {
-      Note("up axis: y pointing down (the feet are above the root along it)");
     }
     return up;
   }
@@ -190,8 +151,6 @@ namespace {
 constexpr int kCheckedFrames = 100;
 // Of the body's size.
 constexpr double kOnePlace = 0.002;
-// The longer of two bones over the other. Captures differ by up to a third.
-constexpr double kUnequal = 1.6;
 
 class Body {
  public:
@@ -247,27 +206,6 @@ absl::Status CheckBody(absl::string_view source, const motion::Skeleton& skeleto
                     motion::ReadingSetting::kJointMap);
   }
   return absl::OkStatus();
-}
-
-std::vector<std::string> UnequalBones(const motion::Skeleton& skeleton,
-                                      const motion::Poses& poses) {
-  const Body body(skeleton, poses);
-  const char* const bones[][2] = {
-      {"shoulder", "elbow"}, {"elbow", "hand"}, {"hip", "knee"}, {"knee", "foot"}};
-  std::vector<std::string> lines;
-  for (const auto& [from, to] : bones) {
-    const auto length = [&body, from = from, to = to](const char* side) {
-      return body.Distance(absl::StrCat(side, from), absl::StrCat(side, to));
-    };
-    const double left = length("left_"), right = length("right_");
-    if (left < 0 || right < 0) continue;
-    if (std::max(left, right) <= kUnequal * std::min(left, right)) continue;
-    lines.push_back(absl::StrFormat(
-        "joints: expected equal lengths from %s to %s on both sides, got %.2f m on the left and "
-        "%.2f m on the right; is one of them another joint? Then specify a joint map",
-        from, to, left, right));
-  }
-  return lines;
 }
 
 }  // namespace duet::retargeting

@@ -41,13 +41,12 @@ struct CharacterOptions {
   JointOverrides joint_overrides;
   MissingToes missing_toes = MissingToes::kRejected;
   // If absent, the unit that motion::InferUnit returns. If there is none, legs are taken as 1 m
-  // long, with a warning. A further warning reports a person who is smaller or taller than adults.
+  // long, with a warning.
   std::optional<double> metres_per_unit;
   // If absent, the axis that motion::InferUpAxis returns; if there is none, y, with a warning.
   std::optional<motion::UpAxis> up_axis;
-  std::vector<std::string>* notes = nullptr;  // receives the decisions as text; may be null
-  ReadingReport* report = nullptr;            // receives them with all details; may be null
-  CharacterFit* fit = nullptr;                // receives them as values; may be null
+  ReadingReport* report = nullptr;  // receives the decisions; may be null
+  CharacterFit* fit = nullptr;      // receives them as values; may be null
 };
 
 // INVALID_ARGUMENT unless a file's unit may have this length.
@@ -66,9 +65,6 @@ absl::StatusOr<motion::Clip> ToClip(const Character& character, absl::string_vie
 absl::Status CheckBody(absl::string_view source, const motion::Skeleton& skeleton,
                        const motion::Poses& poses, const JointMap& map,
                        const std::vector<std::string>& file_joints);
-
-// For each bone of a limb that has another length on the other side, a line for people to read.
-std::vector<std::string> UnequalBones(const motion::Skeleton& skeleton, const motion::Poses& poses);
 
 }  // namespace duet::retargeting
 

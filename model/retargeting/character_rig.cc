@@ -136,12 +136,11 @@ CharacterRig RestRig(const JointTree& tree, const CharacterFit& fit,
   return rig;
 }
 
-void NoteRestFrame(int frame, const CharacterOptions& options) {
-  const std::string note =
+void NoteRestFrame(int frame, ReadingReport* report) {
+  if (report == nullptr) return;
+  report->remarks.push_back(
       absl::StrCat("rest pose: that of frame ", frame,
-                   ", because the bones of the rig at rest make no standing person");
-  if (options.notes != nullptr) options.notes->push_back(note);
-  if (options.report != nullptr) options.report->remarks.push_back(note);
+                   ", because the bones of the rig at rest make no standing person"));
 }
 
 namespace {

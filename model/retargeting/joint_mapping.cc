@@ -8,7 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/types/span.h"
@@ -92,7 +91,6 @@ class Mapper {
         readings_(readings) {
     found_.resize(skeleton.joint_names.size());
     why_.resize(skeleton.joint_names.size());
-    overridden_.resize(skeleton.joint_names.size(), false);
     used_.resize(names.size(), false);
   }
 
@@ -115,7 +113,6 @@ class Mapper {
     if (!identity_) MapAliases();
     ChooseAmongNamesakes(&tree);
     if (missing_toes == MissingToes::kAtTheFeet) PlaceMissingToes();
-    if (!identity_) PlaceHeadAtAnEnd(tree);
     const std::vector<motion::Vec3> straight = PullStraight(tree, FindLandmarks());
     measured_ = {straight};
     if (!identity_) PlaceTrunk();
@@ -140,7 +137,6 @@ class Mapper {
                                                        base::DidYouMean(name, names_)));
       }
       Take(joint, index);
-      overridden_[static_cast<size_t>(joint)] = true;
       given_.insert(joint);
     }
     return absl::OkStatus();
@@ -175,8 +171,7 @@ class Mapper {
       if (!found_[joint].has_value() || found_[joint]->terms.size() > 1) continue;
       const std::size_t count = Namesakes(static_cast<int>(joint)).size();
       if (count < 2 || !why_[joint].empty()) continue;
-      Note(skeleton_.joint_names[joint].c_str(), found_[joint]->terms[0].joint,
-           absl::StrCat("the first of ", count, " joints of that name"));
+      why_[joint] = absl::StrCat("the first of ", count, " joints of that name");
     }
   }
 
@@ -200,9 +195,8 @@ class Mapper {
       const int joint = skeleton_.Find(targets[i]);
       used_[static_cast<size_t>(SourceOf(joint).terms[0].joint)] = false;
       Take(joint, limb[i]);
-      Note(targets[i].c_str(), limb[i],
-           absl::StrCat("of ", candidates[i].size(),
-                        " joints of that name, the one that makes a limb"));
+      Note(joint, absl::StrCat("of ", candidates[i].size(),
+                               " joints of that name, the one that makes a limb"));
     }
   }
 
@@ -232,7 +226,7 @@ class Mapper {
       if (const int index = FindUnused({of, "hand"}); index >= 0) Take(wrist, index);
     } else if (!Found(wrist) && Found(hand)) {
       std::swap(found_[static_cast<size_t>(wrist)], found_[static_cast<size_t>(hand)]);
-      why_[static_cast<size_t>(wrist)] = "the file's hand begins at the wrist";
+      Note(wrist, "the file's hand begins at the wrist");
     }
     if (Found(hand) || !Found(wrist) || !Found(elbow)) return;
     for (const char* end : {"handmiddle1", "middle1", "middle01", "handend", "wristend"}) {
@@ -240,7 +234,7 @@ class Mapper {
     }
     found_[static_cast<size_t>(hand)] =
         Mix({{&SourceOf(wrist), 1 + kHandReach}, {&SourceOf(elbow), -kHandReach}});
-    why_[static_cast<size_t>(hand)] = "beyond the wrist, away from the elbow";
+    Note(hand, "beyond the wrist, away from the elbow");
   }
 
   void PlaceMissingToes() {
@@ -249,7 +243,7 @@ class Mapper {
       const bool toe = bone.parent == skeleton_.feet->left || bone.parent == skeleton_.feet->right;
       if (!toe || Found(bone.child) || !Found(bone.parent)) continue;
       found_[static_cast<size_t>(bone.child)] = SourceOf(bone.parent);
-      why_[static_cast<size_t>(bone.child)] = "at the foot; the file has no toes";
+      Note(bone.child, "at the foot; the file has no toes");
     }
   }
 
@@ -275,7 +269,6 @@ class Mapper {
         map.sources.push_back(*std::move(found_[joint]));
       }
     }
-    map.notes = std::move(notes_);
     if (missing.empty()) return map;
     return MendedBy(
         absl::InvalidArgumentError(absl::StrCat(
@@ -391,36 +384,6 @@ class Mapper {
     return landmarks;
   }
 
-  // Maps the head to the end of the neck if the file has no joint for the head.
-  void PlaceHeadAtAnEnd(const JointTree& tree) {
-    const int head = skeleton_.Find("head");
-    const Landmarks landmarks = FindLandmarks();
-    if (head < 0 || Found(head) || !landmarks.shoulders) return;
-    const int chest = CommonAncestor(tree, landmarks.shoulders->left, landmarks.shoulders->right);
-    const std::vector<motion::Vec3> straight = PullStraight(tree, landmarks);
-    int best = -1;
-    for (int joint = 0; joint < static_cast<int>(names_.size()); ++joint) {
-      if (!IsEndAbove(tree, chest, joint)) continue;
-      const auto height = [&straight](int j) { return straight[static_cast<size_t>(j)].y; };
-      if (best < 0 || height(joint) > height(best)) best = joint;
-    }
-    if (best < 0) return;
-    Take(head, best);
-    overridden_[static_cast<size_t>(head)] = true;
-    Note("head", best, "the end of the neck; no joint is named head");
-  }
-
-  // Whether `joint` is an end whose ancestors up to the chest are all on neither side.
-  bool IsEndAbove(const JointTree& tree, int chest, int joint) const {
-    const auto& parsed = parsed_[static_cast<size_t>(joint)];
-    if (used_[static_cast<size_t>(joint)] || !absl::EndsWith(parsed.base, "end")) return false;
-    if (chest < 0 || joint == chest || !IsAtOrBelow(tree, joint, chest)) return false;
-    for (; joint != chest; joint = tree.parents[static_cast<size_t>(joint)]) {
-      if (parsed_[static_cast<size_t>(joint)].side != BodySide::kMiddle) return false;
-    }
-    return true;
-  }
-
   // The mean distance over the measured frames.
   float MeanDistance(const JointSource& a, const JointSource& b) const {
     double sum = 0;
@@ -454,10 +417,10 @@ class Mapper {
     const int best = FindNearest(middle, width, IsNeck);
     if (best >= 0) {
       Take(neck, best);
-      Note("neck", best, "the neck joint nearest to half way between the shoulders");
+      Note(neck, "the neck joint nearest to half way between the shoulders");
     } else {
       found_[static_cast<size_t>(neck)] = middle;
-      Note("neck", "half way between the shoulders", "no neck joint is near");
+      Note(neck, "half way between the shoulders; no neck joint is near");
     }
   }
 
@@ -471,10 +434,10 @@ class Mapper {
     const int best = FindNearest(middle, kTorsoReach * SpineLength(), IsSpine);
     if (best >= 0) {
       Take(torso, best);
-      Note("torso", best, "the spine joint nearest to half way from hips to neck");
+      Note(torso, "the spine joint nearest to half way from hips to neck");
     } else {
       found_[static_cast<size_t>(torso)] = middle;
-      Note("torso", "half way from hips to neck", "no spine joint is near");
+      Note(torso, "half way from hips to neck; no spine joint is near");
     }
   }
 
@@ -489,10 +452,10 @@ class Mapper {
     const int best = FindNearest(place, kTorsoReach * SpineLength(), IsSpine);
     if (best >= 0) {
       Take(joint, best);
-      return Note(target, best, "the spine joint nearest to its place");
+      return Note(joint, "the spine joint nearest to its place");
     }
     found_[static_cast<size_t>(joint)] = place;
-    Note(target, "between hips and neck", "no spine joint is near");
+    Note(joint, "between hips and neck; no spine joint is near");
   }
 
   // Above the head, in the direction from hips to neck, unless the file has an end of the head that
@@ -506,31 +469,30 @@ class Mapper {
                                             {&SourceOf(skeleton_.Find("neck")), kHeadTopRise},
                                             {&SourceOf(skeleton_.hips->left), -kHeadTopRise / 2},
                                             {&SourceOf(skeleton_.hips->right), -kHeadTopRise / 2}});
-    Note("head_top", "above the head", "the file has no end of the head");
+    Note(top, "above the head; the file has no end of the head");
   }
 
   // Capture software has the head joint at the base of the skull. The skeleton's is in the middle
   // of the head: half way to its end or, in a file without that end, along the neck.
   void RaiseHead() {
     const int head = skeleton_.Find("head"), neck = skeleton_.Find("neck");
-    if (!Found(head) || overridden_[static_cast<size_t>(head)] || !HasSpineEnds()) return;
+    if (!Found(head) || given_.count(head) > 0 || !HasSpineEnds()) return;
     if (skeleton_.Find("head_top") >= 0) return;  // its head is the joint at the base of the skull
     const JointSource base = SourceOf(head);
     for (const char* end : {"headend", "headtopend", "headtop"}) {
       const int index = FindUnused({BodySide::kMiddle, end});
       if (index < 0) continue;
+      const auto i = static_cast<size_t>(index);
       const JointSource top = Whole(index);
       if (MeanDistance(base, top) < kShortestHead * SpineLength()) continue;
       SourceOf(head) = Mix({{&base, 0.5f}, {&top, 0.5f}});
-      return Note("head", index, "half way to it from the head's joint");
+      return Note(head, absl::StrCat("half way from the head's joint to ", names_[i]));
     }
     const float way = MeanDistance(base, SourceOf(neck)) / SpineLength();
     if (!(way > kShortestNeck && way < kLongestNeck)) return;
     const float rise = kHeadRise / way;
     SourceOf(head) = Mix({{&base, 1 + rise}, {&SourceOf(neck), -rise}});
-    why_[static_cast<size_t>(head)] =
-        "raised from the base of the skull to its middle, away from the neck";
-    notes_.push_back(absl::StrCat("head: ", why_[static_cast<size_t>(head)]));
+    Note(head, "raised from the base of the skull to its middle, away from the neck");
   }
 
   bool HasSpineEnds() const {
@@ -545,16 +507,8 @@ class Mapper {
     return MeanDistance(hips, SourceOf(skeleton_.Find("neck")));
   }
 
-  void Note(const char* target, int index, const std::string& reason) {
-    why_[static_cast<size_t>(skeleton_.Find(target))] = reason;
-    notes_.push_back(
-        absl::StrCat(target, ": ", names_[static_cast<size_t>(index)], " (", reason, ")"));
-  }
-  // Notes a joint between others.
-  void Note(const char* target, const char* place, const char* reason) {
-    why_[static_cast<size_t>(skeleton_.Find(target))] = absl::StrCat(place, "; ", reason);
-    notes_.push_back(absl::StrCat(target, ": ", place, " (", reason, ")"));
-  }
+  // Explains the source of a joint of the skeleton.
+  void Note(int joint, std::string why) { why_[static_cast<size_t>(joint)] = std::move(why); }
 
   absl::string_view source_;
   const std::vector<std::string>& names_;
@@ -564,9 +518,7 @@ class Mapper {
   bool identity_ = false;                                 // the file has the skeleton's names
   std::vector<bool> used_;                                // [names]
   std::vector<std::optional<JointSource>> found_;         // [skeleton joints]
-  std::vector<bool> overridden_;                          // [skeleton joints] named by the user
   std::vector<absl::Span<const motion::Vec3>> measured_;  // poses in which distances are taken
-  std::vector<std::string> notes_;
   std::vector<std::string> why_;  // [skeleton joints] unless the name is sufficient
   std::set<int> given_;           // joints that the user names
 };

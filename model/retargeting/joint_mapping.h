@@ -33,9 +33,6 @@ struct JointMap {
   std::vector<JointSource> sources;  // [skeleton joints]
   // The straightened character (PullStraight), if the file has a hierarchy.
   std::vector<motion::Vec3> straight;  // [skeleton joints]
-  // The choices between several joints, for people to read:
-  // "torso: mixamorig:Spine1 (the spine joint nearest to half way from hips to neck)".
-  std::vector<std::string> notes;
 };
 
 // What happens if a file has no joint for a skeleton's toes, the joints beyond its feet.
@@ -51,8 +48,7 @@ enum class MissingToes {
 // and the spine joint nearest to half way from hips to neck. A head joint at the base of the skull
 // is raised to the middle of the head.
 //
-// Only the hierarchy decides, so that all clips of one rig map alike. In a hierarchy without a
-// head, the end of the neck is used as the head.
+// Only the hierarchy decides, so that all clips of one rig map alike.
 //
 // Errors: INVALID_ARGUMENT naming `source`, the skeleton's joints without a source, the names that
 //         the file has, or an override that names no joint of the skeleton or of the file.
@@ -76,6 +72,17 @@ absl::StatusOr<JointMap> MapJoints(absl::string_view source, const std::vector<s
 
 // Converts one frame of the file's joints to the skeleton's. [names] -> [skeleton joints]
 std::vector<motion::Vec3> ApplyJointMap(const JointMap& map, absl::Span<const motion::Vec3> pose);
+
+// Parses a user's table of joints, one per line:
+//
+//   # model joint = joint of the file
+//   left_hand = LeftWrist
+//   torso = Chest 3
+//
+// '#' at the beginning of a line starts a comment; white space around names is ignored.
+//
+// Errors: INVALID_ARGUMENT "source:line: ..." for any other line or a repeated joint.
+absl::StatusOr<JointOverrides> ParseJointTable(absl::string_view text, absl::string_view source);
 
 }  // namespace duet::retargeting
 

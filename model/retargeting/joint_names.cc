@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -16,15 +15,11 @@ namespace {
 
 using WordList = std::vector<std::string>;
 
-enum class NamePart { kPrefix, kSuffix };
-
-// A word is a prefix or suffix of a file if this share of its names have it, and at least so many:
-// ends and helpers often lack it. No part of the body is in so many names.
-constexpr double kShared = 0.75;
-constexpr std::size_t kFewestShared = 8;
-// The share of running numbers that are different.
+// Numbers at the end of names are running ones if this share of the names, and at least so many,
+// have one, and this share of the numbers is different.
+constexpr double kNumbered = 0.75;
+constexpr std::size_t kFewestNumbered = 8;
 constexpr double kDifferent = 0.9;
-constexpr char kEndWord[] = "end";
 
 struct AliasRow {
   const char* base;  // the skeleton's
@@ -58,9 +53,9 @@ const std::vector<AliasRow>& AliasTable() {
 
 bool IsNoise(const std::string& word) {
   static const auto* const kNoise = new std::vector<std::string>{
-      "mixamorig",  "bip",  "bip01",    "bip001", "valvebiped", "valve", "biped",
-      "character1", "def",  "org",      "mch",    "jnt",        "j",     "b",
-      "bn",         "skel", "skeleton", "root",   "armature",   "c"};
+      "mixamorig", "bip",  "bip01",    "bip001", "valvebiped", "valve", "biped", "character1",
+      "def",       "org",  "mch",      "jnt",    "j",          "b",     "bn",    "skel",
+      "skeleton",  "root", "armature", "c",      "cc",         "base"};
   return std::find(kNoise->begin(), kNoise->end(), word) != kNoise->end();
 }
 
@@ -140,45 +135,6 @@ ParsedJointName ParseWords(WordList words) {
   return parsed;
 }
 
-// The place of the word that may be a prefix or a suffix of the name, if words of its own would be
-// left. The end of a bone has its joint's name and "end".
-WordList::const_iterator FindAffix(NamePart part, const WordList& words) {
-  const bool is_end = words.size() > 1 && words.back() == kEndWord;
-  if (words.size() < (is_end ? 3U : 2U)) return words.end();
-  const auto place = part == NamePart::kPrefix ? words.begin() : words.end() - (is_end ? 2 : 1);
-  return SideOf(*place) == BodySide::kMiddle ? place : words.end();
-}
-
-// The word that most of the names have as their prefix or suffix; empty if there is none.
-std::string FindShared(NamePart part, const std::vector<WordList>& all) {
-  std::map<std::string, std::size_t> counts;
-  for (const WordList& words : all) {
-    const auto place = FindAffix(part, words);
-    if (place != words.end()) ++counts[*place];
-  }
-  for (const auto& [word, count] : counts) {
-    if (count >= kFewestShared && count >= kShared * static_cast<double>(all.size())) return word;
-  }
-  return "";
-}
-
-// Removes a shared word from the names, unless names that differed would then be the same.
-bool StripShared(NamePart part, std::vector<WordList>* all) {
-  const std::string shared = FindShared(part, *all);
-  if (shared.empty()) return false;
-  std::vector<WordList> stripped = *all;
-  for (WordList& words : stripped) {
-    const auto place = FindAffix(part, words);
-    if (place != words.end() && *place == shared) words.erase(place);
-  }
-  const auto different = [](const std::vector<WordList>& names) {
-    return std::set<WordList>(names.begin(), names.end()).size();
-  };
-  if (different(stripped) < different(*all)) return false;
-  *all = std::move(stripped);
-  return true;
-}
-
 bool IsNumber(absl::string_view word) {
   return std::all_of(word.begin(), word.end(),
                      [](unsigned char c) { return absl::ascii_isdigit(c); });
@@ -195,7 +151,8 @@ void StripRunningNumbers(std::vector<WordList>* all) {
     numbered.push_back(&words);
   }
   const auto count = static_cast<double>(numbered.size());
-  if (numbered.size() < kFewestShared || count < kShared * static_cast<double>(all->size())) return;
+  if (numbered.size() < kFewestNumbered) return;
+  if (count < kNumbered * static_cast<double>(all->size())) return;
   if (static_cast<double>(numbers.size()) < kDifferent * count) return;
   for (WordList* words : numbered) words->pop_back();
 }
@@ -210,10 +167,6 @@ std::vector<ParsedJointName> ParseJointNames(const std::vector<std::string>& nam
   std::vector<WordList> all;
   for (const std::string& name : names) all.push_back(Words(WithoutNamespace(name)));
   StripRunningNumbers(&all);
-  for (const NamePart part : {NamePart::kPrefix, NamePart::kSuffix}) {
-    while (StripShared(part, &all)) {
-    }
-  }
   std::vector<ParsedJointName> parsed;
   for (WordList& words : all) parsed.push_back(ParseWords(std::move(words)));
   return parsed;

@@ -1,5 +1,3 @@
-#include "model/retargeting/joint_table.h"
-
 #include <string>
 #include <utility>
 
@@ -7,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "model/base/text.h"
+#include "model/retargeting/joint_mapping.h"
 
 namespace duet::retargeting {
 

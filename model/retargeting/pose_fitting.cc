@@ -1,11 +1,10 @@
-#include "model/retargeting/pose_fitting.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "model/base/angle.h"
 #include "model/base/index.h"
+#include "model/retargeting/rig_fitting.h"
 
 namespace duet::retargeting {
 namespace {

@@ -41,6 +41,13 @@ struct JointReading {
   std::string why;  // empty if the joint was found by its name
 };
 
+// "Spine1", or "0.50 Head + 0.50 HeadTop".
+std::string DescribeParts(const std::vector<JointReading::Part>& parts);
+
+// A line for each joint that was chosen among several, or placed:
+// "torso: mixamorig:Spine1 (the spine joint nearest to half way from hips to neck)".
+std::vector<std::string> JointNotes(const std::vector<JointReading>& joints);
+
 // How a motion file was read. If reading failed, it holds everything up to the failure.
 struct ReadingReport {
   std::string format;  // "BVH"
@@ -49,6 +56,9 @@ struct ReadingReport {
   std::optional<Setting> frame_rate, unit, up_axis;  // absent: unknown
   std::vector<JointReading> joints;                  // [skeleton joints]
   std::vector<std::string> remarks;                  // other decisions, and warnings
+
+  // What was inferred, for people who see nothing else of the report: one line each.
+  std::vector<std::string> Notes() const;
 };
 
 }  // namespace duet::retargeting

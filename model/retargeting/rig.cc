@@ -1,11 +1,10 @@
-#include "model/retargeting/rig.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "model/base/median.h"
+#include "model/retargeting/rig_fitting.h"
 
 namespace duet::retargeting {
 namespace {

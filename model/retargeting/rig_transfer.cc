@@ -1,5 +1,3 @@
-#include "model/retargeting/rig_transfer.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 
 #include "model/base/angle.h"
 
@@ -106,6 +108,72 @@ Quaternion FitRotation(const std::vector<Correspondence>& correspondences,
   const Eigen::Vector4d q = Eigen::SelfAdjointEigenSolver<Matrix4>(m).eigenvectors().col(3);
   const double side = q[3] < 0 ? -1 : 1;
   return Normalised({side * q[3], side * q[0], side * q[1], side * q[2]});
+}
+
+namespace {
+
+// Cosine of the middle angle below which only the sum of the others is defined.
+constexpr double kGimbalLock = 1e-5;
+
+Vec3d AxisOf(int axis) {
+  return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+}
+
+double Component(Vec3d a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
+
+// `angle` plus the multiple of 2 pi that brings it nearest to `previous`.
+EulerAngles Nearest(EulerAngles angles, const EulerAngles& previous) {
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    angles[i] += 2 * kPi * std::round((previous[i] - angles[i]) / (2 * kPi));
+  }
+  return angles;
+}
+
+double SquaredDifference(const EulerAngles& a, const EulerAngles& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+// Cosine of the middle angle.
+double MiddleCosine(Quaternion q, EulerOrder order) {
+  const Vec3d i = Rotate(q, AxisOf(order[0])), j = Rotate(q, AxisOf(order[1]));
+  return std::hypot(Component(i, order[0]), Component(j, order[0]));
+}
+
+}  // namespace
+
+Quaternion FromEuler(EulerAngles angles, EulerOrder order) {
+  Quaternion q;
+  for (std::size_t i = 0; i < order.size(); ++i) q = q * AxisAngle(AxisOf(order[i]), angles[i]);
+  return q;
+}
+
+EulerAngles ToEuler(Quaternion q, EulerOrder order, EulerAngles previous) {
+  const auto [i, j, k] = order;
+  // An element of the rotation matrix.
+  const auto at = [&q](int row, int column) { return Component(Rotate(q, AxisOf(column)), row); };
+  const double parity = (i + 1) % 3 == j ? 1 : -1;
+  const double sine = std::clamp(parity * at(i, k), -1.0, 1.0);
+  const double cosine = MiddleCosine(q, order);
+  if (cosine < kGimbalLock) {
+    const double sign = sine > 0 ? 1 : -1;
+    const double sum = std::atan2(parity * at(k, j), at(j, j));
+    return Nearest({sum - parity * sign * previous[2], sign * kPi / 2, previous[2]}, previous);
+  }
+  const EulerAngles first = {std::atan2(-parity * at(j, k), at(k, k)), std::atan2(sine, cosine),
+                             std::atan2(-parity * at(i, j), at(i, i))};
+  const EulerAngles second = {first[0] + kPi, kPi - first[1], first[2] + kPi};
+  const EulerAngles a = Nearest(first, previous), b = Nearest(second, previous);
+  return SquaredDifference(a, previous) <= SquaredDifference(b, previous) ? a : b;
+}
+
+std::vector<EulerAngles> ToEulerTrack(const std::vector<Quaternion>& turns, EulerOrder order) {
+  std::vector<EulerAngles> track;
+  for (const Quaternion& turn : turns) {
+    track.push_back(ToEuler(turn, order, track.empty() ? EulerAngles{} : track.back()));
+  }
+  return track;
 }
 
 }  // namespace duet::retargeting

@@ -1,12 +1,11 @@
 #ifndef DUET_MODEL_RETARGETING_ROTATION_H_
 #define DUET_MODEL_RETARGETING_ROTATION_H_
 
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "model/motion/vec3.h"
-
-// Rotations in double precision: joint angles accumulate along a chain.
 
 namespace duet::retargeting {
 
@@ -72,6 +71,21 @@ struct RotationPrior {
 // matrix.
 Quaternion FitRotation(const std::vector<Correspondence>& correspondences,
                        const std::vector<RotationPrior>& priors);
+
+// Three different axes (0 x, 1 y, 2 z): R = R(axes[0]) R(axes[1]) R(axes[2]); axes[2] applies
+// first.
+using EulerOrder = std::array<int, 3>;
+// Radians, in the same order as the axes.
+using EulerAngles = std::array<double, 3>;
+
+Quaternion FromEuler(EulerAngles angles, EulerOrder order);
+// The angles of `q` nearest to `previous` among both solutions plus multiples of 2 pi, so that a
+// smooth motion has smooth angles. In gimbal lock the middle angle is +-pi / 2 and the others share
+// an axis: the last angle then keeps its previous value.
+EulerAngles ToEuler(Quaternion q, EulerOrder order, EulerAngles previous);
+
+// The angles of every frame, each nearest to the previous frame's. Shapes: [frames] to [frames].
+std::vector<EulerAngles> ToEulerTrack(const std::vector<Quaternion>& turns, EulerOrder order);
 
 }  // namespace duet::retargeting
 

@@ -13,8 +13,6 @@
 #include "model/motion/levelling.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
-#include "model/retargeting/pose_fitting.h"
-#include "model/retargeting/rig.h"
 #include "model/retargeting/rig_fitting.h"
 #include "model/retargeting/rotation.h"
 

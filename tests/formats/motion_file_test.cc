@@ -84,32 +84,6 @@ TEST_F(MotionFile, RejectsPeopleThatAFormatCannotHold) {
               HasSubstr("people: expected one or two, got 3"));
 }
 
-TEST_F(MotionFile, ReportNamesTheOriginOfEachDecision) {
-  using retargeting::Origin;
-  const fs::path file = folder_ / "half.csv";
-  auto text = FormatPeople(Format::kCsv, {pair_.leader}, kSkeleton);
-  ASSERT_TRUE(text.ok());
-  const std::string comment = text->substr(0, text->find('\n'));
-  text->replace(0, comment.size(), "# unit=metres");
-  ASSERT_TRUE(base::WriteFile(file, *text).ok());
-  retargeting::ReadingReport report;
-  ReadOptions options;
-  options.report = &report;
-  EXPECT_FALSE(ReadLeader(file, options).ok());
-  EXPECT_EQ(report.format, "CSV");
-  EXPECT_EQ(report.frame_rate, std::nullopt);
-  EXPECT_EQ(report.unit->origin, Origin::kFile);
-  EXPECT_EQ(report.up_axis->origin, Origin::kDefault);
-  ASSERT_EQ(report.joints.size(), 15u);
-  EXPECT_EQ(report.joints[0].parts[0].name, "head");
-  options.frame_rate_hz = 25;
-  options.coordinates = motion::Coordinates{};
-  EXPECT_TRUE(ReadLeader(file, options).ok());
-  EXPECT_EQ(report.frame_rate->value, "25 Hz");
-  EXPECT_EQ(report.frame_rate->origin, Origin::kGiven);
-  EXPECT_EQ(report.up_axis->origin, Origin::kGiven);
-}
-
 TEST_F(MotionFile, ReadsBackThePairThatItWrites) {
   const std::map<const char*, float> errors = {{"a.csv", 0},     {"a.json", 0},    {"a.npy", 0},
                                                {"a.CSV", 0},     {"a.txt", 1e-5f}, {"a.glb", 2e-5f},
@@ -135,25 +109,35 @@ TEST_F(MotionFile, ReadsBackThePairThatItWrites) {
   EXPECT_THAT(binary, ElementsAre(true, false));
 }
 
-TEST_F(MotionFile, MetresPerUnitScaleEveryFormatOfPositions) {
-  for (const char* name : {"a.csv", "a.json", "a.npy", "a.txt"}) {
-    ASSERT_TRUE(WritePair(folder_ / name, pair_, kSkeleton).ok());
-    ReadOptions options;
-    options.frame_rate_hz = 30;
-    options.coordinates = motion::Coordinates{};
-    const absl::StatusOr<motion::Clip> metres = ReadLeader(folder_ / name, options);
-    ASSERT_THAT(metres, IsOk());
-    options.coordinates.reset();
-    options.metres_per_unit = 0.5;
-    const absl::StatusOr<motion::Clip> half = ReadLeader(folder_ / name, options);
-    ASSERT_THAT(half, IsOk());
-    motion::Clip expected = *metres;
-    for (motion::Vec3& p : expected.poses.all()) p = p * 0.5F;
-    EXPECT_LT(LargestDistance(*half, expected), 1e-5F) << name;
-    options.metres_per_unit = 2000;
-    EXPECT_THAT(ReadLeader(folder_ / name, options),
-                StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("metres per unit")));
-  }
+TEST_F(MotionFile, ReadsAllPeopleLeaderFirst) {
+  const auto read = [](const fs::path& file) {
+    return ReadAllPeople([&](const ReadOptions& person) { return ReadLeader(file, person); }, {});
+  };
+  ASSERT_THAT(WritePair(folder_ / "two.csv", pair_, kSkeleton), IsOk());
+  const absl::StatusOr<ReadPeople> two = read(folder_ / "two.csv");
+  ASSERT_THAT(two, IsOk());
+  ASSERT_EQ(two->people.size(), 2u);
+  EXPECT_LT(LargestDistance(two->people[1], pair_.follower), 1e-5f);
+  ASSERT_THAT(WritePair(folder_ / "a.bvh", pair_, kSkeleton), IsOk());
+  const absl::StatusOr<ReadPeople> one = read(folder_ / "a.leader.bvh");
+  ASSERT_THAT(one, IsOk());
+  EXPECT_EQ(one->people.size(), 1u);
+  EXPECT_THAT(one->notes, Contains(HasSubstr("unit: centimetres")));
+}
+
+TEST_F(MotionFile, FilesAndFoldersAreCheckedBeforeTheyAreUsed) {
+  EXPECT_THAT(CheckReadable(folder_ / "absent.bvh", std::nullopt),
+              StatusIs(absl::StatusCode::kNotFound, EndsWith("absent.bvh: no such file")));
+  EXPECT_THAT(CheckReadable(folder_, std::nullopt),
+              StatusIs(absl::StatusCode::kInvalidArgument,
+                       EndsWith(": expected a motion file, got a folder")));
+  test::WriteTestFile(folder_ / "a.obj", "");
+  EXPECT_THAT(CheckReadable(folder_ / "a.obj", std::nullopt),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("extension: expected")));
+  EXPECT_THAT(CheckReadable(folder_ / "a.obj", Format::kCsv), IsOk());
+  EXPECT_THAT(CheckFolderOf("new.csv"), IsOk());
+  EXPECT_THAT(CheckFolderOf(folder_ / "no/new.csv"),
+              StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("there is no folder ")));
 }
 
 TEST_F(MotionFile, WritesBvhInTheRequestedUnit) {
@@ -182,29 +166,6 @@ TEST_F(MotionFile, WritesABvhForEachPersonInOneWorld) {
   EXPECT_LT(LargestDistance(*follower, pair_.follower), 0.001f);
 }
 
-TEST_F(MotionFile, ReadsEitherPersonOfAGltfFileAndItsBufferBesideIt) {
-  test::GltfBuilder builder;
-  test::AddPerson(pair_.leader, {}, &builder);
-  test::AddPerson(pair_.follower, {}, &builder);
-  ASSERT_TRUE(base::WriteFile(folder_ / "a.glb", builder.Binary()).ok());
-  ASSERT_TRUE(base::WriteFile(folder_ / "b.gltf", builder.WithFile("b.bin")).ok());
-  ASSERT_TRUE(base::WriteFile(folder_ / "b.bin", builder.buffer()).ok());
-  for (const char* name : {"a.glb", "b.gltf"}) {
-    ReadOptions options;
-    options.metres_per_unit = 2;
-    options.frame_rate_hz = 30;
-    for (Side side : {Side::kLeft, Side::kRight}) {
-      options.side = side;
-      const absl::StatusOr<motion::Clip> clip = ReadLeader(folder_ / name, options);
-      ASSERT_THAT(clip, IsOk());
-      motion::Clip larger = side == Side::kLeft ? pair_.leader : pair_.follower;
-      for (motion::Vec3& p : larger.poses.all()) p = p * 2;
-      EXPECT_LT(LargestDistance(*clip, larger), 0.002f) << name;
-    }
-    EXPECT_TRUE(IsReadable(name));
-  }
-}
-
 TEST_F(MotionFile, ABufferIsNoLinkToAnotherFolder) {
   test::GltfBuilder builder;
   test::AddPerson(pair_.leader, {}, &builder);
@@ -231,12 +192,6 @@ TEST_F(MotionFile, ABufferIsNoLinkToAnotherFolder) {
   EXPECT_THAT(ReadLeader(folder_ / "here/a.gltf").status(), IsOk());
 }
 
-TEST_F(MotionFile, SbuTextHasTheRateOfSbuUnlessTheCallerStatesOne) {
-  const fs::path path = folder_ / "skeleton_pos.txt";
-  ASSERT_TRUE(base::WriteFile(path, *flat::FormatSbu({pair_.leader, pair_.follower})).ok());
-  EXPECT_EQ(ReadLeader(path)->frame_rate_hz, 15);
-}
-
 TEST_F(MotionFile, UsesTheCallersCoordinates) {
   const fs::path path = folder_ / "a.csv";
   std::string header = "frame", row = "0";
@@ -260,51 +215,24 @@ TEST_F(MotionFile, WarnsIfTheUpAxisIsProbablyAnother) {
   for (motion::Clip* clip : {&z_up.leader, &z_up.follower}) {
     for (motion::Vec3& p : clip->poses.all()) p = {p.x, -p.z, p.y};
   }
-  const fs::path path = folder_ / "a.csv";
-  ASSERT_TRUE(WritePair(path, z_up, kSkeleton).ok());
-  std::vector<std::string> notes;
-  ReadOptions options;
-  options.notes = &notes;
-  ASSERT_TRUE(ReadLeader(path, options).ok());
-  EXPECT_THAT(notes, Contains(HasSubstr("not below the root along y; z-up would fit")));
-  notes.clear();
-  options.coordinates = {motion::LengthUnit::kMetres, motion::UpAxis::kZUp};
-  const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
-  ASSERT_THAT(clip, IsOk());
-  EXPECT_LT(LargestDistance(*clip, pair_.leader), 1e-5f);
-  EXPECT_THAT(notes, ::testing::IsEmpty());
-  options.coordinates.reset();
-  ASSERT_TRUE(WritePair(path, pair_, kSkeleton).ok());
-  ASSERT_TRUE(ReadLeader(path, options).ok());
-  EXPECT_THAT(notes, ::testing::IsEmpty());
-}
-
-// Two joints may be the neck: in the first frame the upper one is between the shoulders, in all
-// others the lower one.
-TEST_F(MotionFile, MapsJointsFromTheWholeMotion) {
-  motion::Clip person = pair_.leader;
-  person.joint_names[1] = "LowerNeck";
-  person.joint_names.push_back("UpperNeck");
-  std::string text = "frame";
-  for (const std::string& joint : person.joint_names) {
-    absl::StrAppend(&text, ",", joint, "_x,", joint, "_y,", joint, "_z");
-  }
-  for (const int frame : {0, 1, 2}) {
-    absl::StrAppend(&text, "\n", frame);
-    std::vector<motion::Vec3> pose(pair_.leader.poses[0].begin(), pair_.leader.poses[0].end());
-    pose.push_back(pose[1] + motion::Vec3{0, 0.05f, 0});
-    if (frame == 0) std::swap(pose[1], pose.back());
-    for (const motion::Vec3& p : pose) absl::StrAppend(&text, ",", p.x, ",", p.y, ",", p.z);
-  }
-  const fs::path path = folder_ / "a.csv";
-  ASSERT_TRUE(base::WriteFile(path, text + "\n").ok());
-  ReadOptions options;
-  options.frame_rate_hz = 30;
-  std::vector<std::string> notes;
-  options.notes = &notes;
-  const absl::StatusOr<motion::Clip> clip = ReadLeader(path, options);
-  ASSERT_THAT(clip, IsOk());
-  EXPECT_THAT(notes, Contains(HasSubstr("neck: LowerNeck (")));
+  const auto remarks = [this](const motion::ClipPair& pair, const motion::Clip& wanted,
+                              const std::optional<motion::Coordinates>& coordinates) {
+    EXPECT_THAT(WritePair(folder_ / "a.csv", pair, kSkeleton), IsOk());
+    retargeting::ReadingReport report;
+    ReadOptions options;
+    options.report = &report;
+    options.coordinates = coordinates;
+    const absl::StatusOr<motion::Clip> clip = ReadLeader(folder_ / "a.csv", options);
+    EXPECT_THAT(clip, IsOk());
+    EXPECT_LT(LargestDistance(*clip, wanted), 1e-5f);
+    return report.remarks;
+  };
+  EXPECT_THAT(remarks(z_up, z_up.leader, std::nullopt),
+              Contains(HasSubstr("not below the root along y; z-up would fit")));
+  EXPECT_THAT(remarks(z_up, pair_.leader,
+                      motion::Coordinates{motion::LengthUnit::kMetres, motion::UpAxis::kZUp}),
+              ::testing::IsEmpty());
+  EXPECT_THAT(remarks(pair_, pair_.leader, std::nullopt), ::testing::IsEmpty());
 }
 
 TEST_F(MotionFile, ReadsTheFirstFrameAsAFollowersStart) {
@@ -356,15 +284,24 @@ TEST_F(MotionFile, RejectsAnInconsistentPair) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(MotionFile, NamesAFileThatCannotBeReadOrWritten) {
-  EXPECT_EQ(ReadLeader(folder_ / "none.csv").status().code(), absl::StatusCode::kNotFound);
-  fs::create_directories(folder_ / "folder.csv");
-  EXPECT_THAT(std::string(ReadLeader(folder_ / "folder.csv").status().message()),
-              HasSubstr("got a folder"));
-  EXPECT_THAT(Refusal(WritePair(folder_ / "folder.csv", pair_, kSkeleton)),
-              HasSubstr("expected a file, got a folder"));
-  EXPECT_THAT(Refusal(WritePair(folder_ / "no" / "a.csv", pair_, kSkeleton)),
-              HasSubstr("cannot be written"));
+TEST_F(MotionFile, AFollowerIsWrittenOnARigInTheRigsOwnFormat) {
+  ASSERT_THAT(WritePeople(folder_ / "rig.bvh", Format::kBvh, {pair_.leader}, kSkeleton), IsOk());
+  const absl::StatusOr<std::string> text =
+      FormatOntoRig(pair_.follower, {folder_ / "rig.bvh", {}}, Format::kBvh);
+  ASSERT_THAT(text, IsOk());
+  ReadOptions options;
+  options.format = Format::kBvh;
+  const absl::StatusOr<motion::Clip> read = ParseLeader(*text, "written", options);
+  ASSERT_THAT(read, IsOk());
+  EXPECT_LT(Distance(read->at(9, 11), pair_.follower.at(9, 11)), 0.01f) << "a foot";
+  const auto refused = [&](const char* rig, Format format) {
+    return std::string(
+        FormatOntoRig(pair_.follower, {folder_ / rig, {}}, format).status().message());
+  };
+  EXPECT_THAT(refused("rig.csv", Format::kGlb), HasSubstr("rig: expected a .bvh, .glb or .gltf"));
+  EXPECT_THAT(refused("rig.fbx", Format::kGlb), HasSubstr("convert it with duet-fbx"));
+  EXPECT_THAT(refused("rig.bvh", Format::kGlb), HasSubstr("it is written in its own format"));
+  EXPECT_THAT(refused("none.glb", Format::kGlb), HasSubstr("none.glb: no such file"));
 }
 
 struct DecimalComma : std::numpunct<char> {

@@ -11,12 +11,11 @@
 #include "model/dataset/layout.h"
 #include "model/dataset/leader_side.h"
 #include "model/formats/bvh/bvh_motion.h"
-#include "model/formats/gltf/gltf_import.h"
-#include "model/formats/gltf/gltf_rig.h"
+#include "model/formats/gltf/gltf_motion.h"
 #include "model/formats/motion_file.h"
 #include "model/motion/motion_limits.h"
 #include "model/motion/recorded_motion.h"
-#include "model/retargeting/joint_table.h"
+#include "model/retargeting/joint_mapping.h"
 #include "tests/fuzz/promises.h"
 #include "tests/support/test_motion.h"
 
@@ -65,12 +64,10 @@ std::optional<Format> FormatToWrite(absl::string_view input) {
 }
 
 Broken ReadMotion(Format format, absl::string_view input, std::optional<double> frame_rate_hz) {
-  std::vector<std::string> notes;
   retargeting::ReadingReport report;
   formats::ReadOptions options;
   options.format = format;
   options.frame_rate_hz = frame_rate_hz;
-  options.notes = &notes;
   options.report = &report;
   for (const formats::Side side : {formats::Side::kLeft, formats::Side::kRight}) {
     options.side = side;

@@ -43,15 +43,6 @@ TEST(FindAnatomyTest, CollarBonesAreTrunkAndToesAreLeg) {
                                           HasSubstr("trunk Hips, Spine, LeftShoulder")));
 }
 
-TEST(FindAnatomyTest, KeepsKnownHipsAndFeet) {
-  motion::Skeleton skeleton = MixamoSkeleton();
-  skeleton.joint_names[11] = "a";
-  skeleton.feet = motion::JointPair{11, 14};
-  const absl::StatusOr<Anatomy> anatomy = FindAnatomy(skeleton);
-  ASSERT_THAT(anatomy, IsOk());
-  EXPECT_EQ(anatomy->feet, *skeleton.feet);
-}
-
 TEST(FindAnatomyTest, UsesTheEndOfTheArmAsAnUnnamedHand) {
   motion::Skeleton skeleton = MixamoSkeleton();
   skeleton.joint_names[8] = "tip";

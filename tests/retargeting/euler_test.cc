@@ -1,5 +1,3 @@
-#include "model/retargeting/euler.h"
-
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -7,6 +5,7 @@
 
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
+#include "model/retargeting/rotation.h"
 
 namespace duet::retargeting {
 namespace {
@@ -66,16 +65,6 @@ TEST(Euler, TheMiddleAnglePassesOverTheTop) {
   }
 }
 
-TEST(Euler, AnglesContinueBeyondAFullTurn) {
-  for (const EulerOrder& order : kOrders) {
-    EulerAngles angles = {};
-    for (double turn = 0; turn < 4 * kPi; turn += 0.1) {
-      angles = ToEuler(FromEuler({turn, 0.2, -0.1}, order), order, angles);
-    }
-    EXPECT_GT(angles[0], 12);
-  }
-}
-
 TEST(Euler, InGimbalLockTheLastAngleStays) {
   for (const EulerOrder& order : kOrders) {
     for (const double middle : {kPi / 2, -kPi / 2}) {
@@ -87,24 +76,6 @@ TEST(Euler, InGimbalLockTheLastAngleStays) {
   }
 }
 
-double LargestStep(const std::vector<EulerAngles>& track) {
-  double largest = 0;
-  for (std::size_t frame = 1; frame < track.size(); ++frame) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      largest = std::max(largest, std::abs(track[frame][i] - track[frame - 1][i]));
-    }
-  }
-  return largest;
-}
-
-double LargestTrueStep(const std::vector<Quaternion>& turns) {
-  double largest = 0;
-  for (std::size_t frame = 1; frame < turns.size(); ++frame) {
-    largest = std::max(largest, Angle(turns[frame], turns[frame - 1]));
-  }
-  return largest;
-}
-
 double LargestError(const std::vector<EulerAngles>& track, const std::vector<Quaternion>& turns,
                     const EulerOrder& order) {
   double largest = 0;
@@ -112,81 +83,6 @@ double LargestError(const std::vector<EulerAngles>& track, const std::vector<Qua
     largest = std::max(largest, Angle(FromEuler(track[frame], order), turns[frame]));
   }
   return largest;
-}
-
-// A limb that swings through the lock and on: no angle turns farther than the limb.
-TEST(EulerTrack, ThroughGimbalLockNoAngleChangesMoreThanTheJoint) {
-  for (const EulerOrder& order : kOrders) {
-    for (const double side : {1.0, -1.0}) {
-      std::vector<Quaternion> turns;
-      for (int frame = 0; frame <= 40; ++frame) {
-        turns.push_back(FromEuler({0.4, side * (0.6 + 0.05 * frame), -0.2}, order));
-      }
-      const std::vector<EulerAngles> track = ToEulerTrack(turns, order);
-      EXPECT_LT(LargestError(track, turns, order), 2e-5);
-      EXPECT_LT(LargestStep(track), LargestTrueStep(turns) + 1e-5);
-    }
-  }
-}
-
-// Up to the lock, eleven frames in it, and down on another side, a quarter turn away: what the lock
-// leaves open has its quarter turn while the limb stands, a share of it each frame.
-TEST(EulerTrack, TheFreeAngleInGimbalLockIsInterpolated) {
-  for (const EulerOrder& order : kOrders) {
-    std::vector<Quaternion> turns;
-    for (int frame = 0; frame <= 20; ++frame) {
-      turns.push_back(FromEuler({0, kPi / 2 - 0.05 * (20 - frame), 0}, order));
-    }
-    for (int frame = 0; frame < 10; ++frame) turns.push_back(turns.back());
-    const Quaternion top = turns.back();
-    const Quaternion aside = FromEuler({kPi / 2, 0, 0}, order);  // turns the way down
-    for (int frame = 1; frame <= 20; ++frame) {
-      const Quaternion down = AxisAngle(
-          {order[1] == 0 ? 1.0 : 0.0, order[1] == 1 ? 1.0 : 0.0, order[1] == 2 ? 1.0 : 0.0},
-          -0.05 * frame);
-      turns.push_back(aside * down * Inverse(aside) * top);
-    }
-    const std::vector<EulerAngles> track = ToEulerTrack(turns, order);
-    EXPECT_LT(LargestError(track, turns, order), 2e-5);
-    EXPECT_NEAR(LargestStep(track), kPi / 2 / 10, 1e-3);
-  }
-}
-
-// Past the lock at one degree, with three degrees a frame.
-std::vector<Quaternion> PastTheLock(const EulerOrder& order) {
-  const double degree = kPi / 180;
-  std::vector<Quaternion> turns;
-  for (int frame = -10; frame <= 10; ++frame) {
-    const double along = 3 * degree * (frame + 0.5), aside = degree;
-    turns.push_back(
-        FromEuler({std::atan2(aside, along), kPi / 2 - std::hypot(along, aside), 0}, order) *
-        FromEuler({0, 0, -((order[0] + 1) % 3 == order[1] ? 1 : -1) * std::atan2(aside, along)},
-                  order));
-  }
-  return turns;
-}
-
-TEST(EulerTrack, NearGimbalLockAnglesChangeByAtMostAQuarterTurn) {
-  const double degree = kPi / 180;
-  for (const EulerOrder& order : kOrders) {
-    const std::vector<Quaternion> turns = PastTheLock(order);
-    const std::vector<EulerAngles> track = ToEulerTrack(turns, order);
-    EXPECT_LT(LargestTrueStep(turns), 5 * degree);
-    EXPECT_LT(LargestStep(track), kPi / 2 + LargestTrueStep(turns));
-    EXPECT_LT(LargestError(track, turns, order), 2e-5);
-  }
-}
-
-// One frame in the lock has no time to turn: half on the way in, half on the way out.
-TEST(EulerTrack, OneFrameInGimbalLockGetsHalfTheChange) {
-  const EulerOrder order = {2, 0, 1};
-  const std::vector<Quaternion> turns = {FromEuler({0.1, 1.5, 0}, order),
-                                         FromEuler({0.1, kPi / 2, 0}, order),
-                                         FromEuler({0.9, 1.5, -0.8}, order)};
-  const std::vector<EulerAngles> track = ToEulerTrack(turns, order);
-  EXPECT_NEAR(track[1][2], (track[0][2] + track[2][2]) / 2, 1e-9);
-  EXPECT_LT(LargestStep(track), 0.6);
-  EXPECT_LT(LargestError(track, turns, order), 2e-5);
 }
 
 TEST(EulerTrack, NoFrameAndOnlyLockedFramesAreValid) {

@@ -10,7 +10,6 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "gmock/gmock.h"
-#include "gtest/gtest.h"
 #include "model/retargeting/joint_names.h"
 #include "tests/support/matchers.h"
 
@@ -201,32 +200,22 @@ void ExpectEveryJoint(const std::vector<motion::Vec3>& mapped) {
 
 TEST_P(Conventions, FindEveryJointInAHierarchy) {
   const JointTree tree = MakeTree(GetParam());
-  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", tree, motion::SbuSkeleton());
+  std::vector<JointReading> readings;
+  const absl::StatusOr<JointMap> map =
+      MapJoints("a.bvh", tree, motion::SbuSkeleton(), {}, &readings);
   ASSERT_TRUE(map.ok()) << map.status();
   ExpectEveryJoint(MapPose(*map, tree, MakePose(GetParam())));
-  EXPECT_THAT(map->notes, Contains(HasSubstr("torso: " + GetParam().torso + " (")));
-}
-
-// Some rigs turn every joint's axes along its bone: at rest all bones lie on a line.
-TEST_P(Conventions, FindEveryJointInAnyRestPose) {
-  JointTree tree = MakeTree(GetParam());
-  for (std::size_t j = 0; j < tree.names.size(); ++j) {
-    if (ParseJointName(tree.names[j]).side != BodySide::kMiddle) continue;
-    tree.offsets[j] = {Norm(tree.offsets[j]), 0, 0};
-  }
-  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", tree, motion::SbuSkeleton());
-  ASSERT_TRUE(map.ok()) << map.status();
-  ExpectEveryJoint(MapPose(*map, tree, MakePose(GetParam())));
-  EXPECT_THAT(map->notes, Contains(HasSubstr("torso: " + GetParam().torso + " (")));
+  EXPECT_THAT(JointNotes(readings), Contains(HasSubstr("torso: " + GetParam().torso + " (")));
 }
 
 TEST_P(Conventions, FindEveryJointWithoutAHierarchy) {
   const NamedPose pose = MakePose(GetParam());
+  std::vector<JointReading> readings;
   const absl::StatusOr<JointMap> map =
-      MapJoints("a.csv", pose.names, OneFrame(pose), motion::SbuSkeleton());
+      MapJoints("a.csv", pose.names, OneFrame(pose), motion::SbuSkeleton(), {}, &readings);
   ASSERT_TRUE(map.ok()) << map.status();
   ExpectEveryJoint(ApplyJointMap(*map, pose.positions));
-  EXPECT_THAT(map->notes, Contains(HasSubstr("torso: " + GetParam().torso + " (")));
+  EXPECT_THAT(JointNotes(readings), Contains(HasSubstr("torso: " + GetParam().torso + " (")));
 }
 
 // The joints of a professional capture: wrists and hands, toes, three joints between hips and neck.
@@ -272,8 +261,9 @@ INSTANTIATE_TEST_SUITE_P(All, Conventions, ::testing::ValuesIn(AllConventions())
 // Maps the only frame of a file without a hierarchy.
 absl::StatusOr<JointMap> MapFrame(const NamedPose& pose,
                                   const motion::Skeleton& skeleton = motion::SbuSkeleton(),
-                                  const JointOverrides& overrides = {}) {
-  return MapJoints("a.bvh", pose.names, OneFrame(pose), skeleton, overrides);
+                                  const JointOverrides& overrides = {},
+                                  std::vector<JointReading>* readings = nullptr) {
+  return MapJoints("a.bvh", pose.names, OneFrame(pose), skeleton, overrides, readings);
 }
 
 // Joints at x = 0, 1, ..., and the x of each joint of the skeleton.
@@ -292,7 +282,6 @@ std::vector<float> MapRow(const std::vector<std::string>& names, const motion::S
   EXPECT_THAT(map, IsOk());
   std::vector<float> mapped;
   if (!map.ok()) return mapped;
-  EXPECT_TRUE(map->notes.empty());
   for (const motion::Vec3& at : ApplyJointMap(*map, pose.positions)) mapped.push_back(at.x);
   return mapped;
 }
@@ -324,13 +313,6 @@ TEST(JointMapping, UsesTheSkeletonsOwnNames) {
   names.push_back("marker");
   wanted[5] = 16;
   EXPECT_EQ(MapRow(names, skeleton, {{"left_hand", "marker"}}), wanted);
-}
-
-TEST(JointMapping, FindsATorsoByNameWithoutHips) {
-  motion::Skeleton skeleton = SkeletonOf({"torso", "head", "left_hand", "right_hand"});
-  skeleton.bones = {{0, 1}, {0, 2}, {0, 3}};
-  EXPECT_THAT(MapRow({"Torso", "Head", "LeftHand", "RightHand"}, skeleton),
-              ElementsAre(0, 1, 2, 3));
 }
 
 TEST(JointMapping, KeepsWristAndHandApart) {
@@ -369,34 +351,10 @@ TEST(JointMapping, ReportsMissingJointsAndUnknownOverrides) {
 }
 
 TEST(JointMapping, InterpolatesTheTorsoIfNoSpineJointIsNear) {
-  const absl::StatusOr<JointMap> map = MapFrame(Renamed("mixamorig:Spine", "bone"));
-  ASSERT_THAT(map, IsOk());
-  EXPECT_THAT(map->notes, Contains(HasSubstr("torso: half way")));
-}
-
-TEST(JointMapping, MeasuresTheTrunkOverTheWholeMotion) {
-  const NamedPose pose = MakePose(AllConventions()[0]);
-  const auto spine1 = std::find(pose.names.begin(), pose.names.end(), "mixamorig:Spine1");
-  const auto at = static_cast<int>(spine1 - pose.names.begin());
-  motion::Poses poses = OneFrame(pose);
-  std::swap(poses.at(0, at), poses.at(0, at + 1));
-  for (int frame = 1; frame < 4; ++frame) poses.Append(pose.positions);
-  const absl::StatusOr<JointMap> map = MapJoints("a.csv", pose.names, poses, motion::SbuSkeleton());
-  ASSERT_THAT(map, IsOk());
-  EXPECT_THAT(map->notes, Contains(HasSubstr("torso: mixamorig:Spine1 (")));
-}
-
-TEST(JointMapping, UsesOnlyTheEndOfTheNeckAsAMissingHead) {
-  Convention c = AllConventions()[0];
-  c.middle = {{"Hips", 0.97f}, {"Spine", 1.18f}, {"Neck", 1.43f}, {"Neck.end", 1.63f}};
-  const JointTree tree = MakeTree(c);
-  const absl::StatusOr<JointMap> map = MapJoints("a.bvh", tree, motion::SbuSkeleton());
-  ASSERT_THAT(map, IsOk());
-  ExpectEveryJoint(MapPose(*map, tree, MakePose(c)));
-  EXPECT_THAT(map->notes, Contains(HasSubstr("head: Neck.end (the end of the neck")));
-  c.middle = {{"Hips", 0.97f}, {"Spine", 1.18f}, {"Neck", 1.43f}, {"left ear end", 1.63f}};
-  EXPECT_THAT(MapJoints("a.bvh", MakeTree(c), motion::SbuSkeleton()).status().message(),
-              HasSubstr("expected joints for head, got none;"));
+  std::vector<JointReading> readings;
+  ASSERT_THAT(MapFrame(Renamed("mixamorig:Spine", "bone"), motion::SbuSkeleton(), {}, &readings),
+              IsOk());
+  EXPECT_THAT(JointNotes(readings), Contains(HasSubstr("torso: half way")));
 }
 
 TEST(JointMapping, StraightensTheCharacterFromTheHierarchyOnly) {
@@ -431,10 +389,11 @@ class NamesakeTest : public ::testing::Test {
   // The number in the file of the joint that was found for `target`.
   int Find(const std::string& target) {
     const motion::Skeleton skeleton = motion::SbuSkeleton();
-    const absl::StatusOr<JointMap> map = MapJoints("a.bvh", tree_, skeleton);
+    std::vector<JointReading> readings;
+    const absl::StatusOr<JointMap> map = MapJoints("a.bvh", tree_, skeleton, {}, &readings);
     EXPECT_THAT(map, IsOk());
     if (!map.ok()) return -1;
-    notes_ = map->notes;
+    notes_ = JointNotes(readings);
     return map->sources[static_cast<std::size_t>(skeleton.Find(target))].terms[0].joint;
   }
 
@@ -473,25 +432,6 @@ TEST_F(NamesakeTest, AHelperAtThePelvisIsNoHip) {
                                "limb)"));
 }
 
-// Half way down the thigh, and in the shin: twist joints that have lost their own words.
-TEST_F(NamesakeTest, AJointWithinABoneIsNoEndOfIt) {
-  std::map<std::string, int> joints;
-  AddPerson([&](const std::string& side, double sign) {
-    joints["hip" + side] = Add("UpLeg_" + side, hips_, {0.1 * sign, -0.05, 0});
-    const int within = Add("_UpLeg_" + side, joints["hip" + side], {0, -0.2, 0});
-    const int knee = Add("LoLeg_" + side, within, {0, -0.25, 0});
-    const int shin = Add("_LoLeg_" + side, knee, {0, -0.2, 0});
-    joints["knee" + side] = knee;
-    Add("Foot_" + side, shin, {0, -0.22, 0});
-    AddArm(side, sign, chest_);
-  });
-  for (const char* side : {"left_", "right_"}) {
-    const std::string letter = side[0] == 'l' ? "L" : "R";
-    EXPECT_EQ(Find(std::string(side) + "hip"), joints["hip" + letter]);
-    EXPECT_EQ(Find(std::string(side) + "knee"), joints["knee" + letter]);
-  }
-}
-
 TEST_F(NamesakeTest, TheHandIsTheOneOfTheArm) {
   std::map<std::string, int> hands;
   AddPerson([&](const std::string& side, double sign) {
@@ -505,14 +445,24 @@ TEST_F(NamesakeTest, TheHandIsTheOneOfTheArm) {
   EXPECT_THAT(notes_, Contains(HasSubstr("left_hand: Hand_L (of 3 joints of that name")));
 }
 
-TEST_F(NamesakeTest, AnotherJointIsTheFirstOfItsNameWithANote) {
-  AddPerson([&](const std::string& side, double sign) {
-    AddArm(side, sign, chest_);
-    AddLeg(side, sign, hips_);
-  });
-  Add("Head", hips_, {0, 1, 0});
-  EXPECT_EQ(tree_.names[static_cast<std::size_t>(Find("head"))], "Head");
-  EXPECT_THAT(notes_, Contains("head: Head (the first of 2 joints of that name)"));
+TEST(JointTable, ReadsOneJointPerLine) {
+  const absl::StatusOr<JointOverrides> table = ParseJointTable(
+      "\xEF\xBB\xBF# ours\r\n\r\nleft_hand=LeftWrist\r\n  torso = Chest 3 \r\nhead=a=b", "a.txt");
+  ASSERT_TRUE(table.ok()) << table.status();
+  EXPECT_THAT(*table, ElementsAre(Pair("head", "a=b"), Pair("left_hand", "LeftWrist"),
+                                  Pair("torso", "Chest 3")));
+}
+
+TEST(JointTable, NamesTheLineOfAnError) {
+  for (const char* bad : {"head", "=Head", "head=", "head = "}) {
+    const auto status = ParseJointTable(std::string("# one\n") + bad + "\n", "a.txt").status();
+    EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument) << bad;
+    EXPECT_THAT(std::string(status.message()),
+                HasSubstr("a.txt:2: expected MODEL_JOINT=FILE_JOINT"))
+        << bad;
+  }
+  EXPECT_THAT(std::string(ParseJointTable("head=a\nhead = b\n", "a.txt").status().message()),
+              HasSubstr("a.txt:2: expected each joint once, got \"head\" twice"));
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "model/retargeting/pose_fitting.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -7,7 +5,7 @@
 #include "gtest/gtest.h"
 #include "model/base/angle.h"
 #include "model/motion/skeleton.h"
-#include "model/retargeting/rig.h"
+#include "model/retargeting/rig_fitting.h"
 #include "tests/support/expect_near.h"
 #include "tests/support/test_motion.h"
 
@@ -93,12 +91,6 @@ TEST_F(Arm, PointsWhereTheBonesDo) {
   ExpectNear(Rotate(lower_, kUp), {0, 0, 1});
 }
 
-TEST_F(Arm, PointsAtTheHandFromWhereTheElbowCameToStand) {
-  Fit({kUpperArm + 0.1f, 0, 0}, {0, 0, kForearm});  // a bone longer than its median
-  ExpectNear(Rotate(upper_, kUp), {1, 0, 0});
-  ExpectNear(Rotate(lower_, kUp), Unit({0.1, 0, 0.25}, {}));
-}
-
 TEST_F(Arm, TheElbowsPlaneTwistsTheUpperArmWhicheverWayItBends) {
   Fit({kUpperArm, 0, 0}, {0, 0, kForearm});
   ExpectNear(Rotate(upper_, {1, 0, 0}), {0, -1, 0});  // the rest pose's hinge
@@ -119,60 +111,6 @@ TEST_F(Arm, AStraightArmKeepsMostOfItsTwist) {
   const double fades = std::atan2(std::sin(twist), 5 + std::cos(twist));
   EXPECT_NEAR(Angle(upper_, bent), fades, 1e-3);
   EXPECT_NEAR(Angle(upper_, swing), twist - fades, 1e-3);
-}
-
-TEST_F(Arm, AStraightArmOppositeToItsRestPoseKeepsAllOfItsTwist) {
-  Fit({0, -kUpperArm, 0}, {kForearm, 0, 0});
-  const Quaternion bent = upper_;
-  Fit({0, -kUpperArm, 0}, {0, -kForearm, 0});
-  EXPECT_LT(Angle(upper_, bent), 1e-4);
-}
-
-// An arm that was straight bends in another plane than before: the turn of the upper arm about
-// itself, which moves no joint, waits until the elbow has bent.
-TEST_F(Arm, ATwistThatCatchesUpMakesNoJointTurnTooFast) {
-  const auto bent = [](double bend, double plane) {
-    const double across = kForearm * std::sin(bend);
-    return motion::Vec3{static_cast<float>(kForearm * std::cos(bend)),
-                        static_cast<float>(across * std::cos(plane)),
-                        static_cast<float>(across * std::sin(plane))};
-  };
-  Fit({kUpperArm, 0, 0}, bent(1, 0));
-  Fit({kUpperArm, 0, 0}, bent(0, 0));
-  Quaternion before = Inverse(upper_) * lower_;
-  for (int t = 1; t <= 8; ++t) {
-    Fit({kUpperArm, 0, 0}, bent(0.34 * std::min(t, 4), 2.5));
-    const Quaternion elbow = Inverse(upper_) * lower_;
-    // 0.34 radians in a frame are 584 degrees per second.
-    EXPECT_LT(Angle(before, elbow) * base::kDegreesPerRadian * 30, 860) << t;
-    ExpectNear(Rotate(upper_, kUp), {1, 0, 0});
-    before = elbow;
-  }
-}
-
-TEST_F(Arm, ABoneWithoutLengthStaysAsItWas) {
-  Fit({kUpperArm, 0, 0}, {0, 0, kForearm});
-  const Quaternion before = upper_;
-  Fit({0, 0, 0}, {0, 0, 0});
-  ExpectNear(Rotate(upper_, kUp), Rotate(before, kUp));
-}
-
-// Both arms of a beam lie on one line: the turn about it is that of the frame before.
-TEST(PoseFitting, ABranchOnOneLineTurnsNoFurtherThanItMust) {
-  motion::Skeleton beam;
-  beam.joint_names = {"middle", "left", "right"};
-  beam.bones = {{0, 1}, {0, 2}};
-  motion::Clip clip;
-  clip.joint_names = beam.joint_names;
-  clip.frame_rate_hz = 30;
-  clip.Append({{0, 0, 0}, {0.5f, 0, 0}, {-0.5f, 0, 0}});
-  const Rig rig = MakeRig(beam, clip);
-  PoseFitter fitter(rig, clip.frame_rate_hz);
-  const std::vector<motion::Vec3> upright = {{0, 0, 0}, {0, 0.5f, 0}, {0, -0.5f, 0}};
-  const Quaternion quarter = AxisAngle({0, 0, 1}, kRightAngle);
-  for (int frame = 0; frame < 3; ++frame) {
-    EXPECT_LT(Angle(fitter.Fit(upright).rotations[0], quarter), 0.01) << frame;
-  }
 }
 
 }  // namespace

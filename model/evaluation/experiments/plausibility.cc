@@ -8,13 +8,13 @@
 #include "model/base/angle.h"
 #include "model/base/statistics.h"
 #include "model/body/build.h"
-#include "model/body/grade.h"
 #include "model/body/contact.h"
+#include "model/body/grade.h"
 #include "model/body/liveliness.h"
 #include "model/body/passing_poses.h"
 #include "model/body/posture.h"
 #include "model/motion/filter.h"
-#include "model/retargeting/rig_animation.h"
+#include "model/retargeting/rig_fitting.h"
 
 namespace duet::evaluation::experiments {
 namespace {

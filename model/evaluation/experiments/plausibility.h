@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "model/body/limbs.h"
 #include "model/body/contact.h"
+#include "model/body/limbs.h"
 #include "model/motion/poses.h"
 #include "model/motion/skeleton.h"
 

@@ -24,23 +24,15 @@ constexpr int kManyDecimals = 9;
 // With fewer decimals, exporters round: .016 is a step of 16 ms, not 1/60.
 constexpr int kFewestTruncated = 4;
 
-const std::vector<double>& CommonRatesHz() {
-  static const auto* const kRates =
-      new std::vector<double>{12, 15, 20, 24, 25, 30, 48, 50, 60, 72, 90, 100, 120, 144, 240};
-  return *kRates;
-}
+constexpr double kCommonRatesHz[] = {12, 15, 20, 24,  25,  30,  48, 50,
+                                     60, 72, 90, 100, 120, 144, 240};
 
-const std::vector<double>& BroadcastRatesHz() {
-  static const auto* const kRates = new std::vector<double>{29.97, 59.94};
-  return *kRates;
-}
-
-// The nearest of some rates whose frame time has the decimals of `seconds`; 0 if there is none.
-double Nearest(const std::vector<double>& rates, double seconds, int decimals) {
+// The nearest common rate whose frame time has the decimals of `seconds`; 0 if there is none.
+double NearestCommon(double seconds, int decimals) {
   const double step = std::pow(10, -decimals);
   const double truncated = decimals >= kFewestTruncated ? step : step / 2;
   double nearest = 0;
-  for (double rate : rates) {
+  for (double rate : kCommonRatesHz) {
     const double missing = 1 / rate - seconds;
     const bool fits = missing > -step / 2 && missing < truncated;
     if (fits && std::abs(rate - 1 / seconds) < std::abs(nearest - 1 / seconds)) nearest = rate;
@@ -48,7 +40,10 @@ double Nearest(const std::vector<double>& rates, double seconds, int decimals) {
   return nearest;
 }
 
-}  // namespace
+constexpr int kMaxChannels = 6;
+constexpr int kOffsetDecimals = 6;
+constexpr int kValueDecimals = 5;
+constexpr int kFrameTimeDecimals = 9;
 
 std::optional<int> DecimalsOf(absl::string_view number) {
   const std::size_t point = number.find('.');
@@ -58,28 +53,6 @@ std::optional<int> DecimalsOf(absl::string_view number) {
                                  [](unsigned char c) { return absl::ascii_isdigit(c); });
   return plain ? std::optional<int>(static_cast<int>(decimals.size())) : std::nullopt;
 }
-
-double RateOfFrameTime(double seconds, std::optional<int> decimals) {
-  const double rate = 1 / seconds, whole = std::round(rate);
-  const auto is_whole = [&](double tolerance) {
-    return whole >= 1 && std::abs(rate - whole) < tolerance * whole;
-  };
-  if (is_whole(kExact)) return whole;
-  const int digits = decimals.value_or(kManyDecimals);
-  if (const double common = Nearest(CommonRatesHz(), seconds, digits); common > 0) return common;
-  if (is_whole(kRateTolerance)) return whole;
-  const double broadcast = Nearest(BroadcastRatesHz(), seconds, digits);
-  return broadcast > 0 ? broadcast : rate;
-}
-
-namespace {
-
-constexpr int kMaxChannels = 6;
-constexpr int kOffsetDecimals = 6;
-constexpr int kValueDecimals = 5;
-constexpr int kFrameTimeDecimals = 9;
-// As a fraction of the longest OFFSET.
-constexpr double kRoundingOffset = 1e-4;
 
 struct ChannelName {
   BvhChannel channel;
@@ -422,37 +395,19 @@ double* Axis(BvhChannel position_channel, retargeting::Vec3d* vector) {
   }
 }
 
-// Distances of a joint's position channels from zero and from OFFSET, summed over all frames. Each
-// is limited to the length of OFFSET (`most`): a channel farther away moves freely.
-struct PositionVote {
-  double from_zero = 0, from_offset = 0, most = 0;
-};
-
-// Returns the votes of all joints. Only joints below a root vote, unless OFFSET is mere rounding.
-std::vector<PositionVote> PositionVotes(const BvhDocument& document) {
-  double longest = 0;
-  for (const BvhJoint& joint : document.joints) longest = std::max(longest, Norm(joint.offset));
-  std::vector<PositionVote> votes(document.joints.size());
-  const float* value = document.values.data();
-  for (int frame = 0; frame < document.frame_count; ++frame) {
-    for (std::size_t j = 0; j < document.joints.size(); ++j) {
-      const BvhJoint& joint = document.joints[j];
-      retargeting::Vec3d offset = joint.offset;
-      const bool votes_here = joint.parent >= 0 && Norm(offset) > kRoundingOffset * longest;
-      for (BvhChannel channel : joint.channels) {
-        const double v = static_cast<double>(*value++);
-        if (!votes_here || !IsPosition(channel)) continue;
-        const double o = *Axis(channel, &offset), most = std::abs(o);
-        votes[j].from_zero += std::min(std::abs(v), most);
-        votes[j].from_offset += std::min(std::abs(v - o), most);
-        votes[j].most += most;
-      }
-    }
-  }
-  return votes;
-}
-
 }  // namespace
+
+double RateOfFrameTime(double seconds, std::optional<int> decimals) {
+  const double rate = 1 / seconds, whole = std::round(rate);
+  const auto is_whole = [&](double tolerance) {
+    return whole >= 1 && std::abs(rate - whole) < tolerance * whole;
+  };
+  if (is_whole(kExact)) return whole;
+  const int digits = decimals.value_or(kManyDecimals);
+  if (const double common = NearestCommon(seconds, digits); common > 0) return common;
+  if (is_whole(kRateTolerance)) return whole;
+  return rate;
+}
 
 int BvhDocument::ChannelCount() const {
   std::size_t count = 0;
@@ -466,31 +421,12 @@ absl::StatusOr<BvhDocument> ParseBvh(absl::string_view text, absl::string_view s
 
 std::string FormatBvh(const BvhDocument& document) { return BvhFormatter(document).Format(); }
 
-std::optional<PositionChannels> FindPositionChannels(const BvhDocument& document) {
-  const std::vector<PositionVote> votes = PositionVotes(document);
-  double sum = 0;
-  int voters = 0;
-  for (const PositionVote& vote : votes) {
-    if (!(vote.most > 0)) continue;
-    sum += (vote.from_zero - vote.from_offset) / vote.most;
-    ++voters;
-  }
-  if (voters == 0) return std::nullopt;
-  return sum < 0 ? PositionChannels::kAddToOffset : PositionChannels::kReplaceOffset;
-}
-
-BvhKinematics::BvhKinematics(const BvhDocument& document)
-    : document_(document),
-      adds_to_offset_(FindPositionChannels(document) == PositionChannels::kAddToOffset) {}
-
 BvhKinematics::Local BvhKinematics::LocalTransform(std::size_t joint, const float* values) const {
   Local local{document_.joints[joint].offset, {}};
   for (BvhChannel channel : document_.joints[joint].channels) {
     const double value = static_cast<double>(*values++);
     if (!IsPosition(channel)) {
       local.rotation = local.rotation * ChannelRotation(channel, value);
-    } else if (adds_to_offset_ && document_.joints[joint].parent >= 0) {
-      *Axis(channel, &local.translation) += value;
     } else {
       *Axis(channel, &local.translation) = value;
     }

@@ -12,9 +12,6 @@
 
 namespace duet::formats::bvh {
 
-// The number of decimals of a number such as ".0333"; absent for one in another notation.
-std::optional<int> DecimalsOf(absl::string_view number);
-
 // The rate in Hz that a written frame time stands for. Exporters round: .0333 is 1/30, .0167 is
 // 1/60, .0083 is 1/120. In this order:
 //
@@ -23,7 +20,6 @@ std::optional<int> DecimalsOf(absl::string_view number);
 // or
 //   of four decimals and more also truncated;
 // - an integer within half a per mille;
-// - a broadcast rate (29.97, 59.94) whose frame time has these decimals;
 // - the rate as it is.
 double RateOfFrameTime(double seconds, std::optional<int> decimals);
 
@@ -67,29 +63,14 @@ absl::StatusOr<BvhDocument> ParseBvh(absl::string_view text, absl::string_view s
 // The inverse of ParseBvh. Requires joints in depth-first order, as ParseBvh returns them.
 std::string FormatBvh(const BvhDocument& document);
 
-// The meaning of position channels of joints below the root. Programs write both kinds; a file uses
-// only one.
-enum class PositionChannels {
-  kReplaceOffset,  // the joint's offset from its parent
-  kAddToOffset,    // its difference from OFFSET
-};
-
-// Infers the meaning of a file's position channels from all joints and frames: bones hardly change
-// their length, so values near OFFSET replace it and values near zero add to it. Each joint has one
-// vote from -1 to 1. A pelvis that moves freely below a fixed root has a vote near 0. Returns
-// kReplaceOffset if the votes are even. Absent if both mean the same: no joint below a root has
-// position channels and an OFFSET.
-std::optional<PositionChannels> FindPositionChannels(const BvhDocument& document);
-
 // Computes the joint positions of a frame by forward kinematics, in the file's unit.
 //
-// The rotations of a joint apply in the order of its channels, with the first one outermost. A
-// root's position channels replace OFFSET; FindPositionChannels determines the meaning of the
-// others.
+// The rotations of a joint apply in the order of its channels, with the first one outermost.
+// Position channels replace OFFSET.
 class BvhKinematics {
  public:
   // `document` must outlive the kinematics.
-  explicit BvhKinematics(const BvhDocument& document);
+  explicit BvhKinematics(const BvhDocument& document) : document_(document) {}
   std::vector<retargeting::Vec3d> Positions(int frame) const { return PoseAt(frame).positions; }
 
   // Positions and the rotations of the joints' axes, in the file's axes. [joints]
@@ -107,7 +88,6 @@ class BvhKinematics {
   Local LocalTransform(std::size_t joint, const float* values) const;
 
   const BvhDocument& document_;
-  bool adds_to_offset_ = false;  // of joints below the root
 };
 
 }  // namespace duet::formats::bvh

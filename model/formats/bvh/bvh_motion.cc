@@ -13,10 +13,8 @@
 #include "model/motion/coordinates.h"
 #include "model/motion/recorded_motion.h"
 #include "model/retargeting/character_rig.h"
-#include "model/retargeting/euler.h"
-#include "model/retargeting/pose_fitting.h"
-#include "model/retargeting/rig.h"
-#include "model/retargeting/rig_transfer.h"
+#include "model/retargeting/rig_fitting.h"
+#include "model/retargeting/rotation.h"
 
 namespace duet::formats::bvh {
 namespace {
@@ -123,28 +121,6 @@ double FrameRate(const BvhDocument& document) {
   return RateOfFrameTime(document.frame_time_s, document.frame_time_decimals);
 }
 
-// Adds a note and a remark, which `duet inspect` prints.
-void Remark(const std::string& what, const BvhImportOptions& options) {
-  if (options.notes != nullptr) options.notes->push_back(what);
-  if (options.report != nullptr) options.report->remarks.push_back(what);
-}
-
-void NoteFrameCount(const BvhDocument& document, const BvhImportOptions& options) {
-  if (!document.stated_frame_count.has_value()) return;
-  Remark(absl::StrCat("frames: the file has ", document.frame_count, ", and states ",
-                      *document.stated_frame_count),
-         options);
-}
-
-void NotePositionChannels(const BvhDocument& document, const BvhImportOptions& options) {
-  const std::optional<PositionChannels> found = FindPositionChannels(document);
-  if (!found.has_value()) return;
-  const bool replace = *found == PositionChannels::kReplaceOffset;
-  Remark(absl::StrCat("position channels below the root: ", replace ? "in place of" : "added to",
-                      " OFFSET (as most joints have it)"),
-         options);
-}
-
 void Report(const BvhDocument& document, double frame_rate_hz, retargeting::ReadingReport* report) {
   if (report == nullptr) return;
   report->people =
@@ -153,6 +129,9 @@ void Report(const BvhDocument& document, double frame_rate_hz, retargeting::Read
   report->frame_rate =
       retargeting::Setting{absl::StrCat(frame_rate_hz, " Hz"), retargeting::Origin::kFile,
                            absl::StrCat("Frame Time ", document.frame_time_s)};
+  if (!document.stated_frame_count.has_value()) return;
+  report->remarks.push_back(absl::StrCat("frames: the file has ", document.frame_count,
+                                         ", and states ", *document.stated_frame_count));
 }
 
 }  // namespace
@@ -161,8 +140,6 @@ absl::StatusOr<motion::Clip> FromBvh(const BvhDocument& document, absl::string_v
                                      const BvhImportOptions& options) {
   const Range joints = JointsOfPerson(document, options.person);
   const BvhKinematics kinematics(document);
-  NoteFrameCount(document, options);
-  NotePositionChannels(document, options);
   Report(document, FrameRate(document), options.report);
   retargeting::Character character;
   character.tree = TreeOf(PersonOf(document, joints));
@@ -270,7 +247,7 @@ absl::StatusOr<Rig> ReadRig(const BvhDocument& document, absl::string_view sourc
       retargeting::FindRestFrame(rig.rig, *read, source);
   if (!frame.ok()) return frame.status();
   if (!frame->has_value()) return rig;
-  NoteRestFrame(**frame, options);
+  NoteRestFrame(**frame, options.report);
   BvhKinematics::Pose pose = BvhKinematics(document).PoseAt(**frame);
   const auto first = static_cast<std::ptrdiff_t>(joints.begin);
   const auto last = static_cast<std::ptrdiff_t>(joints.end);
@@ -281,13 +258,12 @@ absl::StatusOr<Rig> ReadRig(const BvhDocument& document, absl::string_view sourc
 
 class RigWriter {
  public:
-  RigWriter(Rig rig, absl::string_view source, std::optional<PositionChannels> positions)
+  RigWriter(Rig rig, absl::string_view source)
       : document_(std::move(rig.person)),
         source_(source),
         fit_(std::move(rig.fit)),
         rig_(std::move(rig.rig)),
         axes_(std::move(rig.axes)),
-        adds_to_offset_(positions == PositionChannels::kAddToOffset),
         to_world_(retargeting::ToWorldAxes(fit_.up_axis)) {
     // Joints below the root may also have position channels.
     for (std::size_t j = 0; j < document_.joints.size(); ++j) {
@@ -318,8 +294,7 @@ class RigWriter {
       const BvhJoint& joint = document_.joints[j];
       const Quaternion above = joint.parent < 0 ? Quaternion{} : AxesIn(pose, Index(joint.parent));
       const Vec3d parent_at = joint.parent < 0 ? Vec3d{} : pose.positions[Index(joint.parent)];
-      Vec3d place = Rotate(Inverse(above), ToFile(pose.positions[j] - parent_at));
-      if (joint.parent >= 0 && adds_to_offset_) place = place - joint.offset;
+      const Vec3d place = Rotate(Inverse(above), ToFile(pose.positions[j] - parent_at));
       (*tracks)[j].turns.push_back(Inverse(above) * AxesIn(pose, j));
       (*tracks)[j].places.push_back(place);
     }
@@ -347,7 +322,6 @@ class RigWriter {
   retargeting::CharacterFit fit_;
   retargeting::CharacterRig rig_;
   std::vector<Quaternion> axes_;  // [joints], at rest
-  bool adds_to_offset_;
   Quaternion to_world_;
 };
 
@@ -357,7 +331,7 @@ absl::StatusOr<BvhDocument> OntoBvhRig(const motion::Clip& clip, const BvhDocume
                                        absl::string_view source, const BvhImportOptions& options) {
   absl::StatusOr<Rig> read = ReadRig(rig, source, options);
   if (!read.ok()) return read.status();
-  return RigWriter(*std::move(read), source, FindPositionChannels(rig)).Write(clip);
+  return RigWriter(*std::move(read), source).Write(clip);
 }
 
 }  // namespace duet::formats::bvh

@@ -1,5 +1,3 @@
-#include "model/formats/gltf/gltf_buffers.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -13,6 +11,7 @@
 #include "absl/strings/strip.h"
 #include "model/base/hex.h"
 #include "model/base/text.h"
+#include "model/formats/gltf/gltf_document.h"
 #include "model/motion/motion_limits.h"
 
 namespace duet::formats::gltf {

@@ -1,14 +1,12 @@
-#include "model/formats/gltf/gltf_export.h"
-
 #include <cstddef>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "model/formats/gltf/gltf_parts.h"
+#include "model/formats/gltf/gltf_motion.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/recorded_motion.h"
 #include "model/retargeting/mannequin.h"
-#include "model/retargeting/rig_animation.h"
+#include "model/retargeting/rig_fitting.h"
 
 namespace duet::formats::gltf {
 namespace {

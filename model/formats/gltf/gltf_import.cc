@@ -1,5 +1,3 @@
-#include "model/formats/gltf/gltf_import.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -13,6 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "model/base/index.h"
 #include "model/base/text.h"
+#include "model/formats/gltf/gltf_motion.h"
 #include "model/formats/gltf/gltf_puppet.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/motion_limits.h"
@@ -144,14 +143,8 @@ class Importer {
     return absl::Status(code, absl::StrCat(source, ": ", message));
   }
 
-  void Note(std::string note) const {
-    if (options_.notes != nullptr) options_.notes->push_back(std::move(note));
-  }
-
-  // Adds a note and a remark, which `duet inspect` prints.
-  void Remark(const std::string& what) const {
-    if (options_.report != nullptr) options_.report->remarks.push_back(what);
-    Note(what);
+  void Remark(std::string what) const {
+    if (options_.report != nullptr) options_.report->remarks.push_back(std::move(what));
   }
 
   // The animations with keys for the character; only the one of the given name if there is a name.
@@ -216,13 +209,7 @@ class Importer {
   absl::StatusOr<motion::Clip> Play(Puppet* puppet, absl::string_view source) const {
     Timing timing = puppet->FindTiming();
     const std::optional<double> stated = StatedRate();
-    if (options_.frame_rate_hz.has_value()) {
-      timing.rate_hz = *options_.frame_rate_hz;
-    } else if (stated.has_value()) {
-      timing.rate_hz = *stated;
-    } else {
-      Note(absl::StrCat("frame rate: ", timing.rate_hz, " Hz, as the animation's keys suggest"));
-    }
+    timing.rate_hz = options_.frame_rate_hz.value_or(stated.value_or(timing.rate_hz));
     if (options_.report != nullptr) {
       options_.report->frame_rate = stated.has_value()
                                         ? retargeting::Setting{absl::StrCat(timing.rate_hz, " Hz"),
@@ -236,10 +223,6 @@ class Importer {
     if (!(frames <= motion::kMaxMotionFrames)) {
       return Error(source, absl::StrCat("animation: expected at most ", motion::kMaxMotionFrames,
                                         " frames, got ", timing.end - timing.start, " s"));
-    }
-    if (options_.posed != nullptr) {
-      *options_.posed = document_;
-      puppet->Pose(timing.start + options_.posed_frame / timing.rate_hz, options_.posed);
     }
     retargeting::Character character;
     character.tree = puppet->Tree();

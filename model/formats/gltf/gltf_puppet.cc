@@ -240,18 +240,6 @@ Affine Puppet::Local(int node, std::optional<double> seconds) const {
   return retargeting::FromParts({written.translation, Normalised(written.rotation), written.scale});
 }
 
-void Puppet::Pose(double seconds, GltfDocument* document) const {
-  for (std::size_t node = 0; node < tracks_.size(); ++node) {
-    if (tracks_[node].empty()) continue;
-    const retargeting::Parts parts = PartsAt(static_cast<int>(node), seconds);
-    GltfNode& posed = document->nodes[node];
-    posed.matrix.reset();
-    posed.translation = parts.translation;
-    posed.rotation = parts.rotation;
-    posed.scale = parts.scale;
-  }
-}
-
 void Puppet::Stand(std::optional<double> seconds) {
   for (const std::vector<int>* nodes : {&members_.above, &members_.nodes}) {
     for (int node : *nodes) {

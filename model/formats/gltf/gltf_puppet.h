@@ -6,7 +6,6 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "model/formats/gltf/gltf_buffers.h"
 #include "model/formats/gltf/gltf_document.h"
 #include "model/motion/vec3.h"
 #include "model/retargeting/affine.h"
@@ -82,9 +81,6 @@ class Puppet {
   retargeting::JointTree Tree();
   // The places of the members in the world.
   std::vector<motion::Vec3> PoseAt(double seconds);
-
-  // Puts the nodes of `document`, a copy of the puppet's, in the pose of a time.
-  void Pose(double seconds, GltfDocument* document) const;
 
   // How far the joints move from where they start: the mean of their largest distances, as a
   // fraction of the character's size.

@@ -1,5 +1,3 @@
-#include "model/formats/gltf/gltf_rig.h"
-
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,11 +9,10 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/index.h"
 #include "model/formats/gltf/gltf_document.h"
-#include "model/formats/gltf/gltf_parts.h"
+#include "model/formats/gltf/gltf_motion.h"
 #include "model/formats/gltf/gltf_writer.h"
 #include "model/motion/coordinates.h"
 #include "model/retargeting/character_rig.h"
-#include "model/retargeting/rig_transfer.h"
 
 namespace duet::formats::gltf {
 namespace {
@@ -65,11 +62,9 @@ Place LocalPlace(const GltfNode& node) {
 
 class RigAnimator {
  public:
-  // `file` is the document as it was read, `document` has the character in its rest pose.
-  RigAnimator(const GltfDocument& file, const GltfDocument& document, std::vector<int> nodes,
+  RigAnimator(const GltfDocument& document, std::vector<int> nodes,
               const retargeting::CharacterFit& fit)
-      : file_(file),
-        document_(document),
+      : document_(document),
         nodes_(std::move(nodes)),
         fit_(fit),
         to_world_(retargeting::ToWorldAxes(fit.up_axis)) {
@@ -124,7 +119,7 @@ class RigAnimator {
 
   void AddJoint(std::size_t j, const std::vector<CharacterPose>& poses, GltfWriter* writer,
                 AnimationWriter* animation) const {
-    const Place written = LocalPlace(file_.nodes[Index(nodes_[j])]);
+    const Place written = LocalPlace(document_.nodes[Index(nodes_[j])]);
     std::vector<Quaternion> turns;
     std::vector<Vec3d> places;
     bool turned = false, moved = false;
@@ -154,7 +149,6 @@ class RigAnimator {
     written["scale"] = {rest.scale, rest.scale, rest.scale};
   }
 
-  const GltfDocument& file_;
   const GltfDocument& document_;
   std::vector<int> nodes_;    // [joints]
   std::vector<int> parents_;  // [joints]
@@ -185,17 +179,13 @@ absl::StatusOr<GltfWriter> Gather(absl::string_view content, const GltfDocument&
   return GltfWriter(std::move(json), std::move(all));
 }
 
-// A character of a file. The rest pose is that of the nodes, or of a frame of the animation if the
-// nodes make no standing person.
+// A character of a file.
 struct RigFile {
   GltfDocument document;
-  std::optional<GltfDocument> at_rest;  // if it is not the document itself
   std::vector<int> nodes;
   retargeting::CharacterFit fit;
 
-  RigAnimator Animator() const {
-    return {document, at_rest.has_value() ? *at_rest : document, nodes, fit};
-  }
+  RigAnimator Animator() const { return {document, nodes, fit}; }
 };
 
 absl::StatusOr<RigFile> ReadRigFile(absl::string_view content, absl::string_view source,
@@ -203,24 +193,20 @@ absl::StatusOr<RigFile> ReadRigFile(absl::string_view content, absl::string_view
                                     const GltfImportOptions& options) {
   absl::StatusOr<GltfDocument> document = ParseGltf(content, source);
   if (!document.ok()) return document.status();
-  RigFile file{*std::move(document), std::nullopt, {}, {}};
+  RigFile file{*std::move(document), {}, {}};
   GltfImportOptions reading = options;
   reading.fit = &file.fit;
   reading.nodes = &file.nodes;
-  absl::StatusOr<motion::Clip> read = FromGltf(file.document, source, read_file, reading);
+  const absl::StatusOr<motion::Clip> read = FromGltf(file.document, source, read_file, reading);
   if (!read.ok()) return read.status();
   const absl::StatusOr<std::optional<int>> frame =
       retargeting::FindRestFrame(file.Animator().Rig(), *read, source);
   if (!frame.ok()) return frame.status();
   if (!frame->has_value()) return file;
-  NoteRestFrame(**frame, options);
-  reading.notes = nullptr;
-  reading.report = nullptr;
-  reading.posed = &file.at_rest.emplace();
-  reading.posed_frame = **frame;
-  read = FromGltf(file.document, source, read_file, reading);
-  if (!read.ok()) return read.status();
-  return file;
+  return absl::InvalidArgumentError(
+      absl::StrCat(source,
+                   ": rig: rest pose: expected a standing person, got nodes that make one only in "
+                   "their animation; export the rig in its T pose"));
 }
 
 }  // namespace

@@ -103,71 +103,12 @@ TEST(BvhDocument, PutsTheFirstChannelOutermost) {
   ExpectNear(end_of("Xrotation Zrotation"), {-1, 0, 0});
 }
 
-// Some programs write a joint's position channels in place of OFFSET, others in addition to it.
-TEST(BvhDocument, ReadsPositionChannelsBelowTheRootOfBothKinds) {
-  const auto end_of = [](const std::string& values) {
-    const BvhDocument document = Parse(absl::StrCat(
-        "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
-        "CHANNELS 3 Xposition Yposition Zposition\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n"
-        "MOTION\nFrames: 1\nFrame Time: 1\n",
-        values, "\n"));
-    return BvhKinematics(document).Positions(0)[2];
-  };
-  ExpectNear(end_of("0 10.5 0"), {0, 11.5, 0});
-  ExpectNear(end_of("0 0.5 0"), {0, 11.5, 0});
-}
-
-// A pelvis that moves freely below a root that stands still, and a spine. Where the pelvis is in
-// one frame says nothing: here it is nearer to zero than to its OFFSET, there the other way round.
-std::string PelvisAndSpine(const std::string& frames) {
-  return absl::StrCat(
-      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT pelvis\n{\nOFFSET 150 90 -200\n"
-      "CHANNELS 3 Xposition Yposition Zposition\nJOINT spine\n{\nOFFSET 0 10 0\n"
-      "CHANNELS 3 Xposition Yposition Zposition\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n",
-      frames);
-}
-
-TEST(BvhDocument, ReadsPositionChannelsOfOneKindThroughoutAFile) {
-  const BvhDocument replacing = Parse(PelvisAndSpine("10 92 5 0 10 0\n20 92 5 0 10 0\n"));
-  EXPECT_EQ(FindPositionChannels(replacing), PositionChannels::kReplaceOffset);
-  ExpectNear(BvhKinematics(replacing).Positions(0)[1], {10, 92, 5});
-  ExpectNear(BvhKinematics(replacing).Positions(1)[2], {20, 102, 5});
-
-  const BvhDocument adding = Parse(PelvisAndSpine("150 90 -190 0 0 0\n140 90 -190 0 0 0\n"));
-  EXPECT_EQ(FindPositionChannels(adding), PositionChannels::kAddToOffset);
-  ExpectNear(BvhKinematics(adding).Positions(0)[1], {300, 180, -390});
-  ExpectNear(BvhKinematics(adding).Positions(1)[2], {290, 190, -390});
-}
-
-// A file with the hierarchy of one root, "a", and these values.
-BvhDocument OneRoot(const std::string& joints, int frames, const std::string& values) {
-  return Parse(absl::StrCat("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n", joints,
-                            "}\nMOTION\nFrames: ", frames, "\nFrame Time: 1\n", values, "\n"));
-}
-
-std::string Joint(const std::string& name, const std::string& length,
-                  const std::string& below = "") {
-  return absl::StrCat("JOINT ", name, "\n{\nOFFSET 0 ", length, " 0\nCHANNELS 1 Yposition\n", below,
-                      "}\n");
-}
-
-TEST(BvhDocument, InfersPositionChannelsFromAllFramesAndJoints) {
-  const std::string no_channels = "CHANNELS 0\n";
-  const BvhDocument documents[] = {
-      // In the first frame, the spine alone speaks for the wrong kind.
-      OneRoot(no_channels + Joint("b", "10"), 3, "4\n10\n9"),
-      // Offsets from rounding have no vote.
-      OneRoot(no_channels + Joint("b", "10", Joint("c", "1e-6", Joint("d", "1e-6"))), 1, "10 0 0"),
-      // A thousandth of a unit is rounding where bones are hundreds long.
-      OneRoot(no_channels + Joint("b", "100", Joint("c", "1e-3", Joint("d", "1e-3"))), 1,
-              "100 0 0"),
-      // The root's channels are not those of the joint.
-      OneRoot("CHANNELS 1 Yposition\n" + Joint("b", "10"), 1, "0 10")};
-  for (const BvhDocument& document : documents) {
-    EXPECT_EQ(FindPositionChannels(document), PositionChannels::kReplaceOffset);
-  }
-  ExpectNear(BvhKinematics(documents[0]).Positions(0)[1], {0, 4, 0});
-  EXPECT_EQ(FindPositionChannels(Parse(kArm)), std::nullopt) << "those of a root are not inferred";
+TEST(BvhDocument, PositionChannelsBelowTheRootReplaceOffset) {
+  const BvhDocument document = Parse(
+      "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\nJOINT b\n{\nOFFSET 0 10 0\n"
+      "CHANNELS 3 Xposition Yposition Zposition\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n"
+      "MOTION\nFrames: 1\nFrame Time: 1\n0 10.5 0\n");
+  ExpectNear(BvhKinematics(document).Positions(0)[2], {0, 11.5, 0});
 }
 
 TEST(BvhDocument, WritesWhatItReads) {

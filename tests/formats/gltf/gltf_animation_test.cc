@@ -103,16 +103,6 @@ TEST(GltfTrack, RotatesAlongTheShorterArc) {
   EXPECT_NEAR(Dot(third, third), 1, 1e-12);
 }
 
-TEST(GltfTrack, SplinesOfRotationsHaveLengthOne) {
-  const auto track = Track(GltfPath::kRotation, GltfInterpolation::kCubicSpline, {0, 1},
-                           {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0,  //
-                            0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0});
-  ASSERT_TRUE(track.ok()) << track.status();
-  const Quaternion half = track->RotationAt(0.5);
-  EXPECT_LT(Angle(half, retargeting::AxisAngle({0, 0, 1}, kPi / 2)), 1e-5);
-  EXPECT_NEAR(Dot(half, half), 1, 1e-12);
-}
-
 TEST(GltfTrack, RejectsInvalidKeys) {
   const auto error = [](const std::vector<float>& times, const std::vector<float>& values,
                         GltfInterpolation interpolation = GltfInterpolation::kLinear) {

@@ -1,5 +1,3 @@
-#include "model/formats/gltf/gltf_buffers.h"
-
 #include <cmath>
 #include <limits>
 #include <string>
@@ -8,6 +6,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/formats/gltf/gltf_document.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/matchers.h"
 

@@ -71,14 +71,6 @@ TEST(GltfDocument, ReadsTheChunksOfABinaryFile) {
   EXPECT_EQ(document->binary, "12345678");
 }
 
-TEST(GltfDocument, IgnoresUnknownChunks) {
-  std::string binary = test::BinaryGltf(kArm, "12345678");
-  binary.replace(binary.size() - 12, 3, "XYZ");
-  const absl::StatusOr<GltfDocument> document = ParseGltf(binary, "a.glb");
-  ASSERT_TRUE(document.ok()) << document.status();
-  EXPECT_FALSE(document->binary.has_value());
-}
-
 TEST(GltfDocument, RejectsOtherKindsOfFiles) {
   EXPECT_THAT(ParseError(""), HasSubstr("a.gltf: expected glTF, a JSON object or binary"));
   EXPECT_THAT(ParseError(""), HasSubstr("got an empty file"));

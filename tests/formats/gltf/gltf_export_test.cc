@@ -1,5 +1,3 @@
-#include "model/formats/gltf/gltf_export.h"
-
 #include <cmath>
 #include <limits>
 #include <map>
@@ -7,9 +5,8 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "model/formats/gltf/gltf_buffers.h"
 #include "model/formats/gltf/gltf_document.h"
-#include "model/formats/gltf/gltf_import.h"
+#include "model/formats/gltf/gltf_motion.h"
 #include "nlohmann/json.hpp"
 #include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
@@ -85,18 +82,6 @@ TEST(GltfExport, KeepsARateThatKeysDoNotDetermine) {
   EXPECT_EQ(ReadBack(Format({clip}), 0).frame_rate_hz, 29.97);
 }
 
-TEST(GltfExport, KeepsTheSizeOfAChild) {
-  motion::Clip clip = Person(0, 0);
-  for (motion::Vec3& position : clip.poses.all()) position = position * 0.4f;
-  EXPECT_LT(LargestDistance(ReadBack(Format({clip}), 0), clip), kRounding);
-}
-
-TEST(GltfExport, KeepsOneFrame) {
-  PersonOptions one;
-  one.frames = 1;
-  EXPECT_EQ(ReadBack(Format({MakePerson(one)}), 0).frame_count(), 1);
-}
-
 TEST(GltfExport, EachPersonHasASkeletonAndAMannequinOfTheirOwn) {
   const nlohmann::json json = Json({Person(0, 0), Person(1, 3)});
   std::map<std::string, int> nodes;
@@ -111,16 +96,6 @@ TEST(GltfExport, EachPersonHasASkeletonAndAMannequinOfTheirOwn) {
   EXPECT_NE(json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"],
             json["materials"][2]["pbrMetallicRoughness"]["baseColorFactor"]);
   EXPECT_EQ(Json({Person(0, 0)})["nodes"][0]["name"], "person");
-}
-
-// Bones of constant length turn; only the root moves as well.
-TEST(GltfExport, TranslatesOnlyTheRootIfBoneLengthsAreConstant) {
-  const nlohmann::json json = Json({Person(0, 0)});
-  int moves = 0;
-  for (const auto& channel : json["animations"][0]["channels"]) {
-    moves += channel["target"]["path"] == "translation" ? 1 : 0;
-  }
-  EXPECT_LE(moves, 3);  // neck and hips of this person sway against the trunk
 }
 
 // A vertex of the mannequin, taken along by its joint's bind matrix, is where it was at rest.
@@ -162,25 +137,6 @@ TEST(GltfExport, StoresTheProvenanceOfTheFollower) {
   EXPECT_EQ(extras["labels"][0]["weights"]["hug"], 1);
   EXPECT_EQ(extras["labels"][1]["frame"], 30);
   EXPECT_EQ(extras["labels"][1]["weights"]["push"], -0.5);
-}
-
-TEST(GltfExport, RejectsPeopleThatNoFileCanHold) {
-  const auto refused = [](const std::vector<motion::Clip>& people) {
-    return std::string(FormatGltf(people, motion::SbuSkeleton(), nullptr, GltfContainer::kBinary)
-                           .status()
-                           .message());
-  };
-  motion::Clip clip = Person(0, 0);
-  EXPECT_THAT(refused({}), HasSubstr("people: expected one or two, got 0"));
-  motion::Clip renamed = clip;
-  renamed.joint_names[0] = "skull";
-  EXPECT_THAT(refused({renamed}), HasSubstr("expected the skeleton's 15"));
-  motion::Clip broken = clip;
-  broken.at(3, 3).x = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THAT(refused({broken}), HasSubstr("person"));
-  motion::Clip shorter = clip;
-  shorter.poses.Resize(10);
-  EXPECT_NE(refused({clip, shorter}), "");
 }
 
 }  // namespace

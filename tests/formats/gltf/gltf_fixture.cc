@@ -6,8 +6,7 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "model/motion/skeleton.h"
-#include "model/retargeting/pose_fitting.h"
-#include "model/retargeting/rig.h"
+#include "model/retargeting/rig_fitting.h"
 
 namespace duet::test {
 namespace {

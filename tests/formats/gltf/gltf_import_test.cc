@@ -1,5 +1,3 @@
-#include "model/formats/gltf/gltf_import.h"
-
 #include <cmath>
 #include <string>
 #include <vector>
@@ -7,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "model/formats/gltf/gltf_motion.h"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/matchers.h"
 #include "tests/support/test_motion.h"
@@ -63,46 +62,14 @@ TEST(GltfImport, ReadsAPersonWithEveryInterpolation) {
   }
 }
 
-TEST(GltfImport, ReadsABufferWithinTheDocument) {
-  GltfBuilder builder;
-  AddPerson(MakePerson(), {}, &builder);
-  ExpectReads(builder.WithDataUri(), MakePerson());
-}
-
-TEST(GltfImport, ReadsABufferBesideTheDocument) {
-  GltfBuilder builder;
-  const motion::Clip clip = MakePerson();
-  AddPerson(clip, {}, &builder);
-  const absl::StatusOr<GltfDocument> document =
-      ParseGltf(builder.WithFile("my%20walk.bin"), "a.gltf");
-  ASSERT_THAT(document, IsOk());
-  const absl::StatusOr<motion::Clip> read =
-      FromGltf(*document, "a.gltf", [&](const std::string& name) {
-        EXPECT_EQ(name, "my walk.bin");
-        return absl::StatusOr<std::string>(builder.buffer());
-      });
-  ASSERT_THAT(read, IsOk());
-  EXPECT_LT(LargestDistance(*read, clip), kOneMillimetre);
-  const absl::Status missing = FromGltf(*document, "a.gltf", NoFiles).status();
-  EXPECT_EQ(missing.code(), absl::StatusCode::kNotFound);
-  EXPECT_THAT(std::string(missing.message()),
-              HasSubstr("a.gltf: buffers[0]: my walk.bin: no such file"));
-}
-
 TEST(GltfImport, AppliesTheAncestorsOfTheSkeleton) {
   GltfPersonOptions options;
   options.centimetres_below_an_armature = true;
-  std::vector<std::string> notes;
+  retargeting::ReadingReport report;
   GltfImportOptions read_options;
-  read_options.notes = &notes;
+  read_options.report = &report;
   ExpectReads(OnePerson(MakePerson(), options), MakePerson(), read_options);
-  EXPECT_THAT(notes, Contains(HasSubstr("unit: metres")));
-}
-
-TEST(GltfImport, ReadsASkeletonWithoutASkin) {
-  GltfPersonOptions options;
-  options.with_skin = false;
-  ExpectReads(OnePerson(MakePerson(), options), MakePerson());
+  EXPECT_THAT(report.Notes(), Contains(HasSubstr("unit: metres")));
 }
 
 TEST(GltfImport, ReadsEitherCharacterOfAFileWithTwo) {
@@ -141,16 +108,6 @@ GltfBuilder WithTwoAnimations(const std::string& second) {
   return builder;
 }
 
-TEST(GltfImport, UsesTheFirstOfSeveralAnimationsWithANote) {
-  const GltfBuilder builder = WithTwoAnimations("run");
-  std::vector<std::string> notes;
-  GltfImportOptions options;
-  options.notes = &notes;
-  ASSERT_TRUE(Read(builder.Binary(), options).ok());
-  EXPECT_THAT(notes,
-              Contains(HasSubstr("animation: \"walk\", the first of 2 that move the skeleton")));
-}
-
 // Puts an animation before the others in which joints only tremble, radians.
 void AddPose(const std::string& name, float tremble, GltfBuilder* builder) {
   const int times = builder->AddAccessor({0, 0.5f, 1}, "SCALAR");
@@ -171,12 +128,13 @@ TEST(GltfImport, UsesTheFirstAnimationInWhichTheBodyMoves) {
   for (const float tremble : {0.0f, 0.002f}) {
     GltfBuilder builder = WithTwoAnimations("run");
     AddPose("T pose", tremble, &builder);
-    std::vector<std::string> notes;
+    retargeting::ReadingReport report;
     GltfImportOptions options;
-    options.notes = &notes;
+    options.report = &report;
     ExpectReads(builder.Binary(), clip, options);
-    EXPECT_THAT(notes, Contains(HasSubstr("animation: \"walk\", the first in which the body moves "
-                                          "of 3 that move the skeleton: \"T pose\", \"walk\"")));
+    EXPECT_THAT(report.Notes(),
+                Contains(HasSubstr("animation: \"walk\", the first in which the body moves "
+                                   "of 3 that move the skeleton: \"T pose\", \"walk\"")));
     options.animation = "T pose";
     EXPECT_EQ(Read(builder.Binary(), options)->frame_count(), 31);
   }
@@ -187,23 +145,23 @@ TEST(GltfImport, WarnsOfAnAnimationInWhichNothingMoves) {
   AddPerson(MakePerson(), {}, &builder);
   AddPose("T pose", 0, &builder);
   builder.json()["animations"].erase(1);
-  std::vector<std::string> notes;
+  retargeting::ReadingReport report;
   GltfImportOptions options;
-  options.notes = &notes;
+  options.report = &report;
   ASSERT_THAT(Read(builder.Binary(), options), IsOk());
-  EXPECT_THAT(notes, Contains("warning: animation: \"T pose\": no joint moves"));
+  EXPECT_THAT(report.Notes(), Contains("warning: animation: \"T pose\": no joint moves"));
 }
 
 TEST(GltfImport, AnAnimationIsChosenByItsName) {
   const GltfBuilder builder = WithTwoAnimations("Rig|run");
-  std::vector<std::string> notes;
+  retargeting::ReadingReport report;
   GltfImportOptions options;
-  options.notes = &notes;
+  options.report = &report;
   for (const char* name : {"walk", "Rig|run", "run"}) {
     options.animation = name;
     EXPECT_TRUE(Read(builder.Binary(), options).ok()) << name;
   }
-  EXPECT_THAT(notes, Not(Contains(HasSubstr("animation: "))));
+  EXPECT_THAT(report.Notes(), Not(Contains(HasSubstr("animation: "))));
   options.animation = "ru\n";
   EXPECT_THAT(ReadError(builder.Binary(), options),
               HasSubstr("animation: expected \"walk\", \"Rig|run\", got \"ru\\n\""));
@@ -212,14 +170,14 @@ TEST(GltfImport, AnAnimationIsChosenByItsName) {
 TEST(GltfImport, SamplesAtTheKeysRateOrTheSpecifiedOne) {
   motion::Clip clip = MakePerson({25});
   clip.frame_rate_hz = 24;
-  std::vector<std::string> notes;
+  retargeting::ReadingReport report;
   GltfImportOptions options;
-  options.notes = &notes;
+  options.report = &report;
   const absl::StatusOr<motion::Clip> as_keyed = Read(OnePerson(clip), options);
   ASSERT_THAT(as_keyed, IsOk());
   EXPECT_EQ(as_keyed->frame_rate_hz, 24);
   EXPECT_EQ(as_keyed->frame_count(), 25);
-  EXPECT_THAT(notes, Contains(HasSubstr("frame rate: 24 Hz")));
+  EXPECT_THAT(report.Notes(), Contains(HasSubstr("frame rate: 24 Hz")));
   options.frame_rate_hz = 48;
   const absl::StatusOr<motion::Clip> given = Read(OnePerson(clip), options);
   ASSERT_THAT(given, IsOk());
@@ -252,13 +210,6 @@ TEST(GltfImport, RejectsFilesWithoutAMovingSkeleton) {
               HasSubstr("a.glb: expected an animation of the skeleton, got none"));
 }
 
-TEST(GltfImport, RejectsJointsThatItCannotMap) {
-  GltfBuilder builder;
-  AddPerson(MakePerson({2}), {}, &builder);
-  for (nlohmann::json& node : builder.json()["nodes"]) node["name"] = "bone";
-  EXPECT_THAT(ReadError(builder.Binary()), HasSubstr("a.glb: joints: expected joints for head"));
-}
-
 TEST(GltfImport, RejectsMoreFramesThanAMotionMayHave) {
   GltfBuilder builder;
   motion::Clip slow = MakePerson({3});
@@ -275,17 +226,6 @@ TEST(GltfImport, RejectsMoreNodesThanASkeletonMayHave) {
   }
   EXPECT_THAT(ReadError(builder.Binary()),
               HasSubstr("skeleton: expected at most 1024 nodes, got 10"));
-}
-
-TEST(GltfImport, RejectsEveryTruncation) {
-  GltfBuilder builder;
-  AddPerson(MakePerson({2}), {}, &builder);
-  const std::string binary = builder.Binary();
-  for (std::size_t size = 0; size < binary.size(); size += size < 64 ? 1 : 7) {
-    ReadError(binary.substr(0, size));
-  }
-  const std::string text = builder.WithFile("a.bin");
-  for (std::size_t size = 0; size < text.size(); size += 7) ReadError(text.substr(0, size));
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
-#include "model/formats/gltf/gltf_rig.h"
-
 #include <algorithm>
 #include <string>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "model/formats/gltf/gltf_buffers.h"
 #include "model/formats/gltf/gltf_document.h"
+#include "model/formats/gltf/gltf_motion.h"
 #include "nlohmann/json.hpp"
 #include "tests/formats/gltf/gltf_fixture.h"
 #include "tests/support/matchers.h"
@@ -124,24 +122,6 @@ TEST(OntoGltfRig, AcceptsACharacterWithoutAnimation) {
   test::AddPerson(test::MakePerson(), {}, &builder);
   builder.json().erase("animations");
   EXPECT_LT(Error(OntoRig(builder.Binary())), 0.005);
-}
-
-TEST(OntoGltfRig, ReadsBuffersInTheSameFolder) {
-  test::GltfBuilder builder;
-  test::AddPerson(test::MakePerson(), {}, &builder);
-  const std::string rig = builder.WithFile("data.bin");
-  const auto read = [&builder](const std::string&) {
-    return absl::StatusOr<std::string>(builder.buffer());
-  };
-  const absl::StatusOr<std::string> written =
-      OntoGltfRig(Follower(), rig, "rig.gltf", read, {}, GltfContainer::kBinary);
-  ASSERT_THAT(written.status(), IsOk());
-  EXPECT_LT(Error(*written), 0.005);
-  EXPECT_THAT(
-      std::string(OntoGltfRig(Follower(), rig, "rig.gltf", NoFile, {}, GltfContainer::kBinary)
-                      .status()
-                      .message()),
-      HasSubstr("data.bin"));
 }
 
 }  // namespace
