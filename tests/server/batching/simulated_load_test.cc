@@ -153,15 +153,6 @@ TEST(SimulatedLoadTest, EveryCallMeetsItsDeadlineBelowCapacity) {
   }
 }
 
-TEST(SimulatedLoadTest, LateCallsAreRejectedRatherThanDropped) {
-  int too_late = 0;
-  const double capacity = 2 * 16 / kSlow.Seconds(16);
-  const double goodput = Goodput(kSlow, 2 * capacity, 0.15, &too_late);
-  // Of what comes in ten seconds and is not answered in time, most hears so at once.
-  EXPECT_GT(too_late, 0.5 * 10 * (2 * capacity - goodput));
-  EXPECT_EQ((Goodput(kSlow, 0.5 * capacity, 0.15, &too_late), too_late), 0);
-}
-
 // A call that asks for one of so many windows after the other, and has done so for a while.
 void KeepAsking(Simulation& simulation, int call_windows, Priority priority, int* evaluated) {
   simulation.Submit(call_windows, true, priority, TimePoint::max(),

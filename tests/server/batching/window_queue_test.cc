@@ -60,12 +60,6 @@ Served Serve(WindowQueue& queue, common::TimePoint now, milliseconds takes) {
   return {turn.batch.windows.size(), job.priority, job.model};
 }
 
-TEST(WindowQueueTest, IsEmptyAtFirst) {
-  WindowQueue queue(Options(1, 4));
-  EXPECT_EQ(queue.size(), 0u);
-  EXPECT_THAT(queue.Next(kNow).batch.windows, IsEmpty());
-}
-
 TEST(WindowQueueTest, ReturnsEachWindowOnce) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 2));
@@ -132,16 +126,6 @@ TEST(WindowQueueTest, ReservesAQuarterForInteractiveCalls) {
   EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
 }
 
-TEST(WindowQueueTest, WaitingInteractiveWindowsLeaveLessRoomForBulk) {
-  const Model model = NewModel();
-  WindowQueue queue({4, 1, {1}});
-  for (int i = 1; i <= 2; ++i) queue.Push(Job(model), kNow);
-  EXPECT_TRUE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
-  queue.Push(Job(model), kNow);
-  EXPECT_FALSE(queue.HasRoomFor(Job(model, Priority::kBulk), kNow));
-  EXPECT_TRUE(queue.HasRoomFor(Job(model), kNow));
-}
-
 TEST(WindowQueueTest, DropsCancelledAndExpiredWindows) {
   const Model model = NewModel();
   WindowQueue queue(Options(1, 4));
@@ -189,18 +173,6 @@ TEST(WindowQueueTest, RetriesWhenAnEstimateIsOld) {
   job.deadline = later + milliseconds(10);
   queue.Push(std::move(job), later);
   EXPECT_EQ(Serve(queue, later, milliseconds(1)).windows, 1u);
-}
-
-TEST(WindowQueueTest, FreeWorkersShareWaitingWindows) {
-  const Model model = NewModel();
-  WindowQueue queue(Options(2, 16));
-  for (int i = 0; i < 8; ++i) queue.Push(Job(model), kNow);
-  const Turn first = queue.Next(kNow), second = queue.Next(kNow);
-  EXPECT_EQ(first.batch.windows.size(), 4u);
-  EXPECT_EQ(second.batch.windows.size(), 4u);
-  queue.Finished(first.batch, kNow);
-  for (int i = 0; i < 8; ++i) queue.Push(Job(model), kNow);
-  EXPECT_EQ(queue.Next(kNow).batch.windows.size(), 8u) << "the other worker is busy";
 }
 
 TEST(WindowQueueTest, LongCallYieldsToShortOnes) {
@@ -298,29 +270,6 @@ TEST(WindowQueueTest, IdleModelAccumulatesNoClaims) {
   }
   EXPECT_GE(of_busy, 4);
   EXPECT_LE(of_busy, 6);
-}
-
-TEST(WindowQueueTest, LongCallsAndBulkRunInShortBatchesWhileShortCallsArrive) {
-  const Model model = NewModel();
-  for (const Priority priority : {Priority::kInteractive, Priority::kBulk}) {
-    WindowQueue queue(Options(1, 16));
-    const auto push_long = [&](int count) {
-      for (int i = 0; i < count; ++i) {
-        WindowJob job = LaterJob(model, priority);
-        job.call_windows = kShortCallWindows + 1;
-        queue.Push(std::move(job), kNow);
-      }
-    };
-    push_long(1);
-    EXPECT_EQ(Serve(queue, kNow, milliseconds(5)).windows, 1u);
-    push_long(16);
-    EXPECT_EQ(Serve(queue, kNow, milliseconds(5 * 16)).windows, 16u);
-    queue.Push(Job(model), kNow);
-    EXPECT_EQ(Serve(queue, kNow, milliseconds(5)).windows, 1u);
-    push_long(16);
-    EXPECT_EQ(Serve(queue, kNow, milliseconds(5 * 3)).windows, 3u);
-    EXPECT_EQ(Serve(queue, kNow + seconds(1), milliseconds(5 * 13)).windows, 13u);
-  }
 }
 
 TEST(WindowQueueTest, ReleasesRemovedModels) {
@@ -421,14 +370,6 @@ TEST(WindowQueueTest, CandidatesTakeRoom) {
   EXPECT_EQ(queue.candidates(), 5u);
 }
 
-TEST(WindowQueueTest, EmptyQueueHasRoomForAnyNumberOfCandidates) {
-  const Model sampler = NewSampler();
-  WindowQueue queue({8, 1, {1}});
-  EXPECT_TRUE(queue.HasRoomFor(SamplingJob(sampler, 16), kNow));
-  queue.Push(SamplingJob(sampler, 16), kNow);
-  EXPECT_FALSE(queue.HasRoomFor(SamplingJob(sampler, 1), kNow));
-}
-
 TEST(WindowQueueTest, CandidatesCountInAClientsShareOfTheRoom) {
   const Model sampler = NewSampler();
   WindowQueueOptions options{8, 1, {1}};
@@ -471,24 +412,6 @@ TEST(WindowQueueTest, ClientsShareTheWorkWhateverTheirCandidates) {
     }
   }
   EXPECT_NEAR(static_cast<double>(frames["heavy"]) / frames["light"], 1, 0.02);
-}
-
-TEST(WindowQueueTest, HeavyWindowsLeaveAWorkerWhileLightOnesArrive) {
-  const Model sampler = NewSampler();
-  WindowQueue queue(Options(2, 16));
-  queue.Push(SamplingJob(sampler, 1), kNow);
-  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 1u);
-  for (int i = 0; i < 2; ++i) queue.Push(SamplingJob(sampler, 16), kNow);
-  const Turn first = queue.Next(kNow);
-  EXPECT_EQ(first.batch.Candidates(), 16);
-  const Turn none = queue.Next(kNow);
-  EXPECT_THAT(none.batch.windows, IsEmpty());
-  EXPECT_EQ(none.look_again, kNow + seconds(1));
-  queue.Push(SamplingJob(sampler, 3), kNow);
-  EXPECT_EQ(Serve(queue, kNow, milliseconds(1)).windows, 1u);
-  EXPECT_THAT(queue.Next(kNow).batch.windows, IsEmpty());
-  queue.Finished(first.batch, kNow + milliseconds(10));
-  EXPECT_EQ(queue.Next(kNow + milliseconds(10)).batch.Candidates(), 16);
 }
 
 TEST(WindowQueueTest, ReturningClientClaimsNoTurnsOfItsAbsence) {
@@ -554,10 +477,6 @@ class ComesInTimeTest : public ::testing::Test {
   const common::TimePoint now_ = kNow + milliseconds(10);
   WindowQueue queue_{Options(1, 1)};
 };
-
-TEST_F(ComesInTimeTest, EmptyQueueAcceptsAnyDeadline) {
-  EXPECT_TRUE(queue_.ComesInTime(Due(milliseconds(1)), now_));
-}
 
 TEST_F(ComesInTimeTest, CountsEarlierWindows) {
   for (int i = 0; i < 6; ++i) queue_.Push(Job(model_), now_);

@@ -101,15 +101,6 @@ TEST(MemoryPlanTest, WarnsAboutExplicitSettingsThatDoNotFit) {
                         HasSubstr("536 MB for max_transport_bytes"))));
 }
 
-TEST(MemoryPlanTest, ExplicitMemoryLimitReplacesTheMachines) {
-  v1::ServerConfig config;
-  config.set_memory_limit_bytes(400 * kMebibyte);
-  const v1::ServerConfig options = OptionsFor(kUnlimitedMemory, config);
-  EXPECT_EQ(options.memory_limit_bytes(), 400 * kMebibyte);
-  EXPECT_EQ(options.max_held_bytes(), OptionsFor(400 * kMebibyte).max_held_bytes());
-  EXPECT_THAT(MemoryWarnings(options, 4000 * kMebibyte), IsEmpty());
-}
-
 TEST(MemoryPlanTest, WarnsAboutALimitAboveTheMachinesMemory) {
   v1::ServerConfig config;
   config.set_memory_limit_bytes(4000 * kMebibyte);
@@ -118,13 +109,6 @@ TEST(MemoryPlanTest, WarnsAboutALimitAboveTheMachinesMemory) {
       MemoryWarnings(options, 400 * kMebibyte),
       ElementsAre(AllOf(HasSubstr("got 4194304000"), HasSubstr("expected at most 419430400")),
                   HasSubstr("the limit is 419 MB")));
-}
-
-TEST(MemoryPlanTest, WarnsAboutModelsLargerThanPlanned) {
-  const v1::ServerConfig options = OptionsFor(1024 * kMebibyte);
-  EXPECT_THAT(MemoryWarnings(options, 1024 * kMebibyte, 80 * kMebibyte), IsEmpty());
-  EXPECT_THAT(MemoryWarnings(options, 1024 * kMebibyte, 500 * kMebibyte),
-              ElementsAre(HasSubstr("524 MB for the program and its models")));
 }
 
 TEST(MemoryPlanTest, RefusesALimitThatNoServerFitsInto) {

@@ -17,7 +17,6 @@ namespace {
 // A value that the flag of a setting accepts.
 std::string SampleValue(const Setting& setting) {
   if (setting.name() == "version_labels") return "sbu:stable=3";
-  if (setting.name() == "version_policies") return "sbu=latest:2";
   switch (setting.field().cpp_type()) {
     case Setting::Field::CPPTYPE_ENUM:
       return ChoicesOf(*setting.field().enum_type()).front().flag_value;
@@ -104,18 +103,6 @@ TEST(EverySettingTest, NumberOutOfRangeIsRejectedByName) {
         testing::Contains(AllOf(testing::StartsWith(absl::StrCat(setting.name(), ": expected ")),
                                 HasSubstr(" (command line)"))));
   }
-}
-
-TEST(ChoicesTest, DropThePrefixOfTheEnum) {
-  EXPECT_THAT(ChoicesOf(*v1::CleanUpPolicy_descriptor()),
-              ElementsAre(Field(&Choice::flag_value, "auto"), Field(&Choice::flag_value, "on"),
-                          Field(&Choice::flag_value, "off")));
-}
-
-TEST(ChoicesTest, JoinWithOr) {
-  EXPECT_EQ(OneOf({"a"}), "a");
-  EXPECT_EQ(OneOf({"a", "b"}), "a or b");
-  EXPECT_EQ(OneOf({"a", "b", "c"}), "a, b or c");
 }
 
 TEST(SettingTest, RangeNamesTheTypesLargestNumberAndAnExtraZero) {

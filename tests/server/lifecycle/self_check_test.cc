@@ -60,13 +60,6 @@ TEST(CheckListenerTest, ListenerThatDoesNotAcceptFails) {
               StatusIs(StatusCode::kUnavailable, HasSubstr("connected, but got no answer")));
 }
 
-TEST(CheckListenerTest, ServerThatClosesTheConnectionPasses) {
-  const Listener listener;
-  std::thread server([&] { close(listener.Accept()); });
-  EXPECT_THAT(CheckListener("127.0.0.1", listener.port(), 60), IsOk());
-  server.join();
-}
-
 TEST(CheckListenerTest, ErrorNamesAPortWithoutAListener) {
   Listener listener;
   listener.Close();
@@ -98,21 +91,6 @@ TEST(SelfCheckTest, UnhealthyAfterThreeFailuresUntilASuccess) {
   while (turns < 2) std::this_thread::yield();
   EXPECT_TRUE(check.healthy());
   EXPECT_TRUE(check.passes());
-}
-
-TEST(SelfCheckTest, StaysHealthyAfterTwoFailures) {
-  std::atomic<int> checks{0};
-  std::atomic<int> unhealthy{0};
-  SelfCheckOptions options;
-  options.interval_seconds = 0.001;
-  options.check = [&] {
-    return ++checks % 3 == 0 ? absl::OkStatus() : absl::UnavailableError("no answer");
-  };
-  options.failed = [](const absl::Status&) {};
-  options.changed = [](bool) {};
-  const SelfCheck check(options);
-  while (checks < 30) unhealthy += check.healthy() ? 0 : 1;
-  EXPECT_EQ(unhealthy, 0);
 }
 
 }  // namespace

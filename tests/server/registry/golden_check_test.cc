@@ -71,17 +71,6 @@ TEST(CheckAnswersTest, AsksForNoClassAndForEachAlone) {
   }
 }
 
-TEST(CheckAnswersTest, LongWindowsAreCutShort) {
-  engine::ModelDescription description = test::FakeDescription();
-  description.window_frames = 3000;
-  FakeSynthesizer model(description);
-  model.on_batch = [](absl::Span<const engine::SynthesisWindow* const> windows) {
-    EXPECT_EQ(windows[0]->leader.frame_count(), 60);
-    EXPECT_EQ(windows[0]->labels.size(), 60u * 6);
-  };
-  EXPECT_THAT(CheckAnswers(model), IsOk());
-}
-
 TEST(CheckAnswersTest, RejectsFollowersThatAreFarAwayOrNotFinite) {
   for (const float x : {9.0f, -6e32f, std::numeric_limits<float>::infinity(),
                         std::numeric_limits<float>::quiet_NaN()}) {
@@ -94,15 +83,6 @@ TEST(CheckAnswersTest, RejectsFollowersThatAreFarAwayOrNotFinite) {
                 StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("m in frame 0")))
         << x;
   }
-}
-
-TEST(CheckAnswersTest, RefusesAModelThatFails) {
-  FakeSynthesizer model;
-  model.window_status = [](const engine::SynthesisWindow&) {
-    return absl::InternalError("the network's result is not finite");
-  };
-  EXPECT_THAT(CheckAnswers(model),
-              StatusIs(absl::StatusCode::kInternal, HasSubstr("result is not finite")));
 }
 
 }  // namespace

@@ -40,18 +40,6 @@ TEST(ListCheckpointsTest, FindsNameAndVersionFolders) {
   EXPECT_THAT(listing->skipped, IsEmpty());
 }
 
-TEST(ListCheckpointsTest, HasAnOrderOfItsOwn) {
-  TemporaryFolder folder;
-  std::vector<fs::path> sorted;
-  for (const char version : {'5', '9', '1', '7', '3', '8', '2', '6', '4'}) {
-    MakeCheckpoint(folder, std::string("sbu/") + version);
-  }
-  for (char version = '1'; version <= '9'; ++version) {
-    sorted.push_back(folder / (std::string("sbu/") + version));
-  }
-  EXPECT_EQ(ListCheckpoints(folder.path())->checkpoints, sorted);
-}
-
 // "folder: reason" of each.
 std::vector<std::string> Skipped(const RepositoryListing& listing) {
   std::vector<std::string> skipped;
@@ -124,13 +112,6 @@ TEST(ListCheckpointsTest, NamesARepositoryThatIsNotThere) {
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("/nonexistent/models")));
 }
 
-TEST(ListCheckpointsTest, NamesARepositoryThatIsAFile) {
-  TemporaryFolder folder;
-  WriteTestFile(folder / "models", "");
-  EXPECT_THAT(ListCheckpoints(folder / "models"),
-              StatusIs(absl::StatusCode::kNotFound, HasSubstr("models")));
-}
-
 // Gives root's powers up for a scope, since root opens every folder.
 class Unprivileged {
  public:
@@ -186,24 +167,6 @@ TEST(LoadCheckpointTest, RejectsAManifestThatContradictsItsFolder) {
                AllOf(HasSubstr("got sbu version 4"), HasSubstr("expected model sbu version 3"))));
   EXPECT_THAT(LoadCheckpoint("/models/sbu/3", LoaderOf("k3hi", 3)).model,
               StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("got k3hi version 3")));
-}
-
-TEST(LoadCheckpointTest, RefusesAModelWhoseAnswersAreAbsurd) {
-  const ModelLoader loader =
-      [](const fs::path&) -> absl::StatusOr<std::shared_ptr<const engine::Synthesizer>> {
-    auto model = std::make_shared<FakeSynthesizer>();
-    model->answer = [](motion::Vec3, absl::Span<const float>) { return motion::Vec3{6e32f, 0, 0}; };
-    return model;
-  };
-  EXPECT_THAT(
-      LoadCheckpoint("/models/fake/1", loader).model,
-      StatusIs(absl::StatusCode::kInvalidArgument, HasSubstr("weights: expected every joint")));
-}
-
-TEST(LoadCheckpointTest, PassesOnWhyALoaderFailed) {
-  const ModelLoader loader = [](const fs::path&) { return absl::DataLossError("torn"); };
-  EXPECT_THAT(LoadCheckpoint("/models/sbu/3", loader).model,
-              StatusIs(absl::StatusCode::kDataLoss, "torn"));
 }
 
 }  // namespace

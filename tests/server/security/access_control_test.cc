@@ -68,19 +68,6 @@ TEST_F(AccessControlTest, NeitherRoleIncludesTheOther) {
   EXPECT_EQ(Ask(Token("digest-ops"), Role::kAdmin), Answer::kAllowed);
 }
 
-TEST_F(AccessControlTest, CallersHaveSeparateLimits) {
-  Caller limited = Studio();
-  limited.limits.calls_per_second = 2;
-  access_.Replace({limited, Farm()});
-  EXPECT_EQ(Ask(Token("digest-1")), Answer::kAllowed);
-  EXPECT_EQ(Ask(Token("digest-2")), Answer::kAllowed);
-  const auto refused = access_.Decide(Token("digest-1"), Role::kSynthesise);
-  EXPECT_EQ(refused.answer, Answer::kTooManyCalls);
-  EXPECT_DOUBLE_EQ(refused.retry_seconds, 0.5);
-  EXPECT_EQ(refused.caller->caller.name, "studio");
-  EXPECT_EQ(Ask(Certificate("farm.example")), Answer::kAllowed);
-}
-
 TEST_F(AccessControlTest, WrongRoleDoesNotCountAsACall) {
   Caller limited = Studio();
   limited.limits.calls_per_second = 1;

@@ -35,15 +35,6 @@ TEST(CallerUsageTest, RejectedCallGetsARetryDelay) {
   EXPECT_TRUE(usage.TakeCall(4, clock.Now()).has_value());
 }
 
-TEST(CallerUsageTest, SupportsRatesBelowOnePerSecond) {
-  FakeClock clock;
-  CallerUsage usage;
-  EXPECT_FALSE(usage.TakeCall(0.1, clock.Now()).has_value());
-  EXPECT_NEAR(usage.TakeCall(0.1, clock.Now()).value(), 10, 1e-9);
-  clock.Advance(milliseconds(10'000));
-  EXPECT_FALSE(usage.TakeCall(0.1, clock.Now()).has_value());
-}
-
 TEST(CallerUsageTest, PauseSavesAtMostOneSecondsCalls) {
   FakeClock clock;
   CallerUsage usage;

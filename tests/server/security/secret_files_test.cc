@@ -61,21 +61,6 @@ class SecretFilesTest : public ::testing::Test {
   std::unique_ptr<SecretFiles> files_;
 };
 
-TEST_F(SecretFilesTest, WithoutFilesThereIsNeitherListNorCertificate) {
-  ASSERT_THAT(Open(), IsOk());
-  EXPECT_EQ(files_->access(), nullptr);
-  EXPECT_EQ(files_->certificates(), nullptr);
-  EXPECT_THAT(files_->Refresh(), IsEmpty());
-}
-
-TEST_F(SecretFilesTest, RejectsInvalidFilesAtTheStart) {
-  UseAccess("nonsense");
-  EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kInvalidArgument,
-                               AllOf(HasSubstr("access_file: "), HasSubstr("access:1: "))));
-  options_.access = folder_ / "none";
-  EXPECT_THAT(Open(), StatusIs(absl::StatusCode::kNotFound, HasSubstr("access_file: ")));
-}
-
 TEST_F(SecretFilesTest, ReportsEveryMistakeAtTheStart) {
   UseAccess("# nobody\n");
   UseTls();
@@ -109,17 +94,6 @@ TEST_F(SecretFilesTest, EmptiedListKeepsTheOldOne) {
   WriteTestFile(options_.access, Line("a"));
   ASSERT_EQ(files_->Refresh().size(), 1u);
   EXPECT_THAT(files_->state(), IsOk());
-}
-
-TEST_F(SecretFilesTest, RejectsCertificateNamesWithoutClientAuthorities) {
-  UseAccess("a synthesise cert:a.example\n");
-  EXPECT_THAT(Open(),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("access:1: expected no cert: without tls_client_ca_file")));
-  UseTls();
-  options_.tls.client_ca = folder_ / "ca.pem";
-  WriteTestFile(options_.tls.client_ca, first_.certificate);
-  EXPECT_THAT(Open(), IsOk());
 }
 
 TEST_F(SecretFilesTest, AppliesARewrittenList) {

@@ -78,15 +78,5 @@ TEST_F(TlsMaterialTest, ErrorNamesAMissingFileAndItsSetting) {
               StatusIs(absl::StatusCode::kNotFound, HasSubstr("tls_key_file: ")));
 }
 
-TEST_F(TlsMaterialTest, RejectsAnEmptyFileOfAuthorities) {
-  const TemporaryFolder folder;
-  for (const char* name : {"cert.pem", "key.pem"}) WriteTestFile(folder / name, "x");
-  WriteTestFile(folder / "ca.pem", "");
-  EXPECT_THAT(
-      ReadTlsMaterial({folder / "cert.pem", folder / "key.pem", folder / "ca.pem"}),
-      StatusIs(kInvalid,
-               HasSubstr("tls_client_ca_file: expected PEM certificates, got an empty file")));
-}
-
 }  // namespace
 }  // namespace duet::server::security

@@ -22,12 +22,6 @@ AdmissionLimits Calls(std::size_t max_calls) {
   return limits;
 }
 
-TEST(AdmissionTest, LoadsBeforeItServes) {
-  Admission admission(Calls(4));
-  EXPECT_THAT(admission.Admit("a"), StatusIs(StatusCode::kUnavailable, _));
-  EXPECT_THAT(admission.CheckServing(), StatusIs(StatusCode::kUnavailable, _));
-}
-
 TEST(AdmissionTest, AdmitsUpToItsLimitAndAgainWhenOneLeaves) {
   Admission admission(Calls(2));
   admission.SetState(Admission::State::kServing);
@@ -62,32 +56,6 @@ TEST(AdmissionTest, DrainingAdmitsNobodyButKeepsWhoIsIn) {
   admission.SetState(Admission::State::kDraining);
   EXPECT_THAT(admission.Admit("a"), StatusIs(StatusCode::kUnavailable, _));
   EXPECT_EQ(admission.calls(), 1u);
-}
-
-TEST(AdmissionTest, OneClientLeavesPlacesToOthers) {
-  AdmissionLimits limits = Calls(4);
-  limits.client_share = 0.75;
-  Admission admission(limits);
-  admission.SetState(Admission::State::kServing);
-  std::vector<ShareLease> places;
-  for (int i = 0; i < 3; ++i) places.push_back(*admission.Admit("greedy"));
-  EXPECT_THAT(admission.Admit("greedy"), StatusIs(StatusCode::kResourceExhausted, _));
-  EXPECT_THAT(admission.Admit("other"), IsOk());
-}
-
-TEST(AdmissionTest, HoldsAsManyBytesAsMayBeHeld) {
-  AdmissionLimits limits;
-  limits.max_held_bytes = 100;
-  Admission admission(limits);
-  absl::StatusOr<ShareLease> held = admission.Hold("a", 60);
-  ASSERT_THAT(held, IsOk());
-  const absl::StatusOr<ShareLease> more = admission.Hold("b", 41);
-  EXPECT_THAT(more, StatusIs(StatusCode::kResourceExhausted, HasSubstr("max_held_bytes = 100")));
-  EXPECT_EQ(test::Decode(more.status()).reason, "TOO_MANY_BYTES");
-  EXPECT_EQ(test::Decode(more.status()).retry_seconds, 1);
-  EXPECT_EQ(admission.held_bytes(), 60u);
-  held = ShareLease();
-  EXPECT_THAT(admission.Hold("b", 41), IsOk());
 }
 
 }  // namespace

@@ -90,12 +90,6 @@ TEST(ClipStreamTest, GivesEveryFrameInOrder) {
   }
 }
 
-TEST(ClipStreamTest, HasNothingBeforeItsFirstWindow) {
-  PuppetStream stream(200);
-  ASSERT_THAT(stream->Start(), IsOk());
-  EXPECT_EQ(stream->Take(30).kind, Kind::kPending);
-}
-
 TEST(ClipStreamTest, ClipOfOneWindowEndsWithItsWindow) {
   PuppetStream stream(40);
   ASSERT_THAT(stream->Start(), IsOk());
@@ -133,22 +127,6 @@ TEST(ClipStreamTest, WindowMayCompleteBeforeItsSubmissionReturns) {
   EXPECT_EQ(stream->Take(200).kind, Kind::kEnd);
 }
 
-TEST(ClipStreamTest, GivesFramesAfterItsFirstWindow) {
-  PuppetStream stream(200);
-  ASSERT_THAT(stream->Start(), IsOk());
-  stream.scheduler().RunNext();
-  EXPECT_EQ(stream->Take(8).poses.frame_count(), 8);
-  EXPECT_EQ(stream.scheduler().queued_windows(), 1u);
-}
-
-TEST(ClipStreamTest, TellsOfProgressAfterEachWindow) {
-  PuppetStream stream(200);
-  ASSERT_THAT(stream->Start(), IsOk());
-  EXPECT_EQ(stream.progress(), 0);
-  stream.scheduler().RunNext();
-  EXPECT_EQ(stream.progress(), 1);
-}
-
 TEST(ClipStreamTest, HasOneWindowInTheQueueAtATime) {
   PuppetStream stream(2000);
   ASSERT_THAT(stream->Start(), IsOk());
@@ -156,13 +134,6 @@ TEST(ClipStreamTest, HasOneWindowInTheQueueAtATime) {
     ASSERT_EQ(stream.scheduler().queued_windows(), 1u);
     stream.scheduler().RunNext();
   }
-}
-
-TEST(ClipStreamTest, PassesOnPriorityAndDeadline) {
-  PuppetStream stream(200);
-  ASSERT_THAT(stream->Start(), IsOk());
-  EXPECT_EQ(stream.scheduler().NextPriority(), batching::Priority::kBulk);
-  EXPECT_EQ(stream.scheduler().NextDeadline(), common::TimePoint(std::chrono::seconds(7)));
 }
 
 TEST(ClipStreamTest, TellsHowManyWindowsTheClipHas) {
@@ -173,17 +144,6 @@ TEST(ClipStreamTest, TellsHowManyWindowsTheClipHas) {
   EXPECT_EQ(stream.scheduler().NextCallWindows(), windows);
   stream.RunAll();
   EXPECT_EQ(stream->stats().windows, windows);
-}
-
-TEST(ClipStreamTest, UnreadRepliesPauseTheClip) {
-  constexpr int kBuffered = 50;
-  PuppetStream stream(3000, kBuffered);
-  ASSERT_THAT(stream->Start(), IsOk());
-  stream.RunAll();
-  const int held = stream->stats().peak_buffered_frames;
-  EXPECT_GE(held, kBuffered);
-  EXPECT_LT(held, kBuffered + FakeDescription().window_frames);
-  EXPECT_LT(stream->stats().windows, 5);
 }
 
 TEST(ClipStreamTest, PausedClipResumesWhenItsBufferIsRead) {
@@ -213,22 +173,6 @@ TEST(ClipStreamTest, HoldsLittleHoweverLongTheClip) {
   EXPECT_EQ(end, Kind::kEnd);
   EXPECT_EQ(frames, 9000u);
   EXPECT_LT(stream->stats().peak_buffered_frames, kBuffered + FakeDescription().window_frames);
-}
-
-TEST(ClipStreamTest, CountsWindowsAndTimes) {
-  PuppetStream stream(200);
-  ASSERT_THAT(stream->Start(), IsOk());
-  stream.RunAll();
-  const ClipStreamStats stats = stream->stats();
-  EXPECT_GT(stats.windows, 200 / 46);
-  EXPECT_DOUBLE_EQ(stats.queue_seconds, 0.25 * stats.windows);
-  EXPECT_DOUBLE_EQ(stats.compute_seconds, 0.5 * stats.windows);
-}
-
-TEST(ClipStreamTest, ReportsARefusal) {
-  PuppetStream stream(200);
-  stream.scheduler().Refuse(absl::ResourceExhaustedError("full"));
-  EXPECT_THAT(stream->Start(), StatusIs(absl::StatusCode::kResourceExhausted, "full"));
 }
 
 TEST(ClipStreamTest, FailsWhenALaterWindowIsRefused) {

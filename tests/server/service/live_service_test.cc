@@ -103,52 +103,6 @@ TEST(LiveServiceTest, FirstMessageMustBeAStart) {
   EXPECT_EQ(running.admission().calls(), 0u);
 }
 
-TEST(LiveServiceTest, SecondStartEndsTheSession) {
-  RunningService running(LiveSetup());
-  Session session(running, Start());
-  session.Send(Start());
-  EXPECT_THAT(Decode(session.Finish()).Of("payload"), HasSubstr("got a second start"));
-}
-
-TEST(LiveServiceTest, ImpossibleStartsNameTheirFields) {
-  RunningService running(LiveSetup());
-  Message frames = Start(3), history = Start(3), late = Start(3), nan = Start(3), rate = Start();
-  frames.mutable_start()->mutable_leader()->set_frame_count(std::numeric_limits<int32_t>::max());
-  history.mutable_start()->mutable_history()->set_follower_frame_count(
-      std::numeric_limits<uint32_t>::max());
-  late.mutable_start()->mutable_history()->set_first_frame(std::numeric_limits<uint32_t>::max());
-  nan.mutable_start()->mutable_history()->set_follower_positions(
-      5, std::numeric_limits<float>::quiet_NaN());
-  rate.mutable_start()->mutable_leader()->set_frame_rate_hz(
-      std::numeric_limits<double>::quiet_NaN());
-  for (const auto& [message, field] :
-       {std::pair<Message, std::string>{frames, "start.leader.positions"},
-        {history, "start.history.follower_frame_count"},
-        {late, "start.history.first_frame"},
-        {nan, "start.history.follower_positions[5]"},
-        {rate, "start.leader.frame_rate_hz"}}) {
-    const Refusal refusal = RefusalOf(running, message);
-    EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
-    EXPECT_THAT(refusal.Fields(), Contains(field));
-  }
-}
-
-TEST(LiveServiceTest, AnUnknownModelIsNamedAsAFieldOfTheStart) {
-  RunningService running(LiveSetup());
-  Message message = Start();
-  message.mutable_start()->mutable_model()->set_name("nobody");
-  const Refusal refusal = RefusalOf(running, message);
-  EXPECT_EQ(refusal.code, StatusCode::kNotFound);
-  EXPECT_THAT(refusal.Fields(), ElementsAre("start.model.name"));
-}
-
-TEST(LiveServiceTest, MoreHistoryThanTenSecondsIsRefused) {
-  RunningService running(LiveSetup());
-  const Refusal refusal = RefusalOf(running, Start(10 * 15 + 1));
-  EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(refusal.Fields(), Contains("start.leader.frame_count"));
-}
-
 TEST(LiveServiceTest, HugeStartIsRefusedUnparsed) {
   RunningService running(LiveSetup());
   Message message = Start(3);
@@ -157,21 +111,6 @@ TEST(LiveServiceTest, HugeStartIsRefusedUnparsed) {
   const Refusal refusal = RefusalOf(running, message);
   EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
   EXPECT_THAT(refusal.message, HasSubstr("4194304 bytes"));
-}
-
-TEST(LiveServiceTest, StartOfTinyMessagesIsRefusedUnparsed) {
-  RunningService running(LiveSetup());
-  std::string keyframes;  // LiveStart.label_keyframes, each with an empty label vector
-  for (int i = 0; i < 100'000; ++i) keyframes.append("\x22\x02\x12\x00", 4);
-  std::string bomb = "\x0a";  // SynthesizeLiveRequest.start
-  for (std::size_t size = keyframes.size(); size > 0; size >>= 7) {
-    bomb.push_back(static_cast<char>((size & 0x7f) | (size > 0x7f ? 0x80 : 0)));
-  }
-  RawCall call(running.channel(), kMethod, bomb + keyframes);
-  EXPECT_FALSE(call.Read().has_value());
-  const Refusal refusal = Decode(call.Finish());
-  EXPECT_EQ(refusal.code, StatusCode::kInvalidArgument);
-  EXPECT_THAT(refusal.Of("start.label_keyframes"), HasSubstr("expected at most 65536"));
 }
 
 TEST(LiveServiceTest, BytesOfAStartAreHeldOnlyUntilTheSessionBegins) {
@@ -186,18 +125,6 @@ TEST(LiveServiceTest, BytesOfAStartAreHeldOnlyUntilTheSessionBegins) {
   EXPECT_EQ(running.admission().held_bytes(), 0u);
   Message longer = Start(100);
   EXPECT_EQ(RefusalOf(running, longer).code, StatusCode::kResourceExhausted);
-  EXPECT_EQ(running.admission().held_bytes(), 0u);
-}
-
-TEST(LiveServiceTest, LargeStartIsHandledLikeALargeRequest) {
-  RunningService running(LiveSetup());
-  Message message = Start(3);
-  // Unknown names: more than a mebibyte.
-  for (int i = 0; i < 1100; ++i) {
-    message.mutable_start()->mutable_leader()->add_joint_names(std::string(1024, 'x'));
-  }
-  EXPECT_EQ(RefusalOf(running, message).code, StatusCode::kInvalidArgument);
-  EXPECT_GE(running.service().large_request_bytes(), std::uint64_t{1} << 20);
   EXPECT_EQ(running.admission().held_bytes(), 0u);
 }
 
@@ -224,29 +151,6 @@ TEST(LiveServiceTest, SessionsThatOpenAtOnceNeedNoRoomInTheQueue) {
     EXPECT_EQ(session->Read().frames().frame_count(), 1u);
     EXPECT_TRUE(session->Finish().ok());
   }
-}
-
-TEST(LiveServiceTest, IdleSessionsOfAClientDoNotShutItsOwnClipsOut) {
-  test::FakeClock clock;
-  RunningService::Setup setup = LiveSetup();
-  setup.clock = &clock;
-  setup.admission.max_calls = 2;
-  RunningService running(setup);
-  Session first(running, Start());
-  EXPECT_TRUE(first.Read().has_header());
-  Session second(running, Start());
-  EXPECT_TRUE(second.Read().has_header());
-  const auto clip = [&] { return test::Call(running.stub(), SampleRequest()).status; };
-  EXPECT_EQ(Decode(clip()).reason, "TOO_MANY_CALLS") << "neither has been idle for long";
-  // Idle counts from the moment at which the server began to wait for a message.
-  while (!clip().ok()) clock.Advance(std::chrono::seconds(5));
-  EXPECT_EQ(running.admission().calls(), 1u) << "the other session goes on";
-  int displaced = 0;
-  for (Session* session : {&first, &second}) {
-    const Refusal refusal = Decode(session->Finish());
-    displaced += refusal.code == StatusCode::kResourceExhausted && refusal.retry_seconds > 0;
-  }
-  EXPECT_EQ(displaced, 1);
 }
 
 TEST(LiveServiceTest, SessionsAreBoundedByThePlacesOfCalls) {

@@ -240,16 +240,6 @@ TEST_F(LiveSessionTest, AResumedSessionHasTheSameRigAndRotations) {
   }
 }
 
-TEST_F(LiveSessionTest, WithoutRotationsThereIsNoRig) {
-  Create();
-  Send(Frames(0, 5));
-  RunAll();
-  const Taken taken = Take();
-  ASSERT_FALSE(taken.parts.empty());
-  EXPECT_EQ(taken.parts[0].rig_size(), 0);
-  EXPECT_EQ(taken.parts[0].rotations_size(), 0);
-}
-
 TEST_F(LiveSessionTest, OneWindowAtATimeAndProgressIsReported) {
   Create();
   for (int t = 0; t < 9; ++t) Send(Frames(t, 1));
@@ -339,17 +329,6 @@ TEST_F(LiveSessionTest, TooLongAGapEndsTheSessionAfterItsFrames) {
   EXPECT_EQ(reads_, 0);
 }
 
-TEST_F(LiveSessionTest, TheLongestGapIsFilled) {
-  Create();
-  Send(Frames(0, 3));
-  RunAll();
-  Send(Frames(3 + 2 * kRate, 1));
-  RunAll();
-  const Taken taken = Take();
-  EXPECT_THAT(taken.error, IsOk());
-  EXPECT_EQ(taken.frames(), 3 + 2 * kRate + 1);
-}
-
 TEST_F(LiveSessionTest, LateFramesAreDroppedAndAreNotTheNewest) {
   Create();
   Send(Frames(0, 10));
@@ -369,15 +348,6 @@ TEST_F(LiveSessionTest, LateFramesAreDroppedAndAreNotTheNewest) {
   EXPECT_EQ(output.frames->capture_seconds(), 9);
   EXPECT_EQ(output.arrival, clock_.Now() - std::chrono::milliseconds(500));
   EXPECT_EQ(session_->stats().late_frames, 3);
-}
-
-TEST_F(LiveSessionTest, AMessageMayBePartlyLate) {
-  Create();
-  Send(Frames(0, 10));
-  Send(Frames(8, 5));
-  RunAll();
-  EXPECT_EQ(Take().frames(), 13);
-  EXPECT_EQ(session_->stats().late_frames, 2);
 }
 
 TEST_F(LiveSessionTest, SkippedEvaluationsAreTold) {
@@ -408,19 +378,6 @@ TEST_F(LiveSessionTest, AFailedWindowEndsTheSession) {
   EXPECT_THAT(taken.error, StatusIs(StatusCode::kInternal, "of the engine"));
   EXPECT_EQ(taken.fault, LiveFault::kWindow);
   EXPECT_EQ(scheduler_.queued_windows(), 0);
-}
-
-TEST_F(LiveSessionTest, AWindowThatIsNotFiniteEndsTheSession) {
-  model_->answer = [](motion::Vec3, absl::Span<const float>) {
-    return motion::Vec3{std::numeric_limits<float>::quiet_NaN(), 0, 0};
-  };
-  Create();
-  Send(Frames(0, 1));
-  RunAll();
-  const Taken taken = Take();
-  EXPECT_EQ(taken.frames(), 0);
-  EXPECT_THAT(taken.error, StatusIs(StatusCode::kInternal, ::testing::_));
-  EXPECT_EQ(taken.fault, LiveFault::kWindow);
 }
 
 TEST_F(LiveSessionTest, AWindowThatTheSchedulerRefusesEndsTheSession) {
@@ -537,19 +494,6 @@ TEST_F(LiveSessionTest, ADrainIsReportedToACallerThatSendsNothing) {
   EXPECT_FALSE(taken.end);
 }
 
-TEST_F(LiveSessionTest, ASessionGoesOnWhileTheServerDrains) {
-  Create();
-  Send(Frames(0, 1));
-  session_->OnDraining();
-  for (int t = 1; t < 20; ++t) {
-    Send(Frames(t, 1));
-    RunAll();
-  }
-  const Taken taken = Take();
-  EXPECT_EQ(taken.frames(), 20);
-  EXPECT_THAT(taken.error, IsOk());
-}
-
 TEST_F(LiveSessionTest, InvalidMessagesEndTheSession) {
   Message second_start;
   second_start.mutable_start();
@@ -564,71 +508,12 @@ TEST_F(LiveSessionTest, InvalidMessagesEndTheSession) {
   }
 }
 
-TEST_F(LiveSessionTest, AMessageThatDidNotParseEndsTheSessionAfterItsFrames) {
-  Create();
-  Send(Frames(0, 3));
-  RunAll();
-  Send(absl::InvalidArgumentError("no message"));
-  const Taken taken = Take();
-  EXPECT_EQ(taken.frames(), 3);
-  EXPECT_THAT(taken.error, StatusIs(StatusCode::kInvalidArgument, "no message"));
-  EXPECT_EQ(reads_, 0);
-}
-
-TEST_F(LiveSessionTest, InvalidFramesAndLabelsEndTheSession) {
-  Message endless = Frames(0, 1), many = Frames(0, 1), none = Frames(0, 1), last = Frames(0, 1);
-  endless.mutable_frames()->set_positions(7, std::numeric_limits<float>::quiet_NaN());
-  many.mutable_frames()->set_frame_count(std::numeric_limits<uint32_t>::max());
-  none.mutable_frames()->set_frame_count(0);
-  last.mutable_frames()->set_first_frame(std::numeric_limits<uint32_t>::max());
-  Message unknown, weight = LabelChange(std::numeric_limits<float>::quiet_NaN());
-  AddWeight(*unknown.mutable_label_change()->mutable_label_vector(), "tango", 1);
-  Message ease = LabelChange(1), frame = LabelChange(1);
-  ease.mutable_label_change()->set_ease_frames(std::numeric_limits<uint32_t>::max());
-  frame.mutable_label_change()->set_frame(std::numeric_limits<uint32_t>::max());
-  for (const auto& [message, field] : {std::pair<Message, std::string>{endless, "frames.positions"},
-                                       {many, "frames.frame_count"},
-                                       {none, "frames.frame_count"},
-                                       {last, "frames.first_frame"},
-                                       {unknown, "label_change.label_vector"},
-                                       {weight, "label_change.label_vector"},
-                                       {ease, "label_change.ease_frames"},
-                                       {frame, "label_change.frame"}}) {
-    Create();
-    Send(message);
-    const Taken taken = Take();
-    EXPECT_FALSE(taken.error.ok()) << field;
-    EXPECT_THAT(std::string(taken.error.message()), HasSubstr(field));
-    EXPECT_EQ(scheduler_.queued_windows(), 0);
-    EXPECT_EQ(reads_, 0);
-  }
-}
-
 TEST_F(LiveSessionTest, ALeaderInCentimetresEndsTheSessionWithItsFirstFrame) {
   Create();
   Message centimetres = Frames(0, 1);
   for (float& value : *centimetres.mutable_frames()->mutable_positions()) value *= 100;
   Send(centimetres);
   EXPECT_THAT(Take().error, IsInvalid("frames.positions: expected the size of a person"));
-}
-
-TEST_F(LiveSessionTest, ALeaderInOnePointEndsTheSessionWithItsFirstFrame) {
-  Create();
-  Message zeros = Frames(0, 1);
-  for (float& value : *zeros.mutable_frames()->mutable_positions()) value = 0;
-  Send(zeros);
-  EXPECT_THAT(Take().error, IsInvalid("frames.positions: expected the size of a person"));
-}
-
-TEST_F(LiveSessionTest, ATimeOfCaptureMayBeAnyNumber) {
-  Create();
-  Message frames = Frames(0, 1);
-  frames.mutable_frames()->set_capture_seconds(std::numeric_limits<double>::quiet_NaN());
-  Send(frames);
-  RunAll();
-  const Taken taken = Take();
-  ASSERT_THAT(taken.parts, SizeIs(1));
-  EXPECT_TRUE(std::isnan(taken.parts[0].capture_seconds()));
 }
 
 TEST_F(LiveSessionTest, ALabelChangeCountsFromTheNextFrame) {
@@ -676,13 +561,6 @@ TEST_F(LiveSessionTest, AnnouncedLabelChangesAreBounded) {
   change.mutable_label_change()->set_frame(static_cast<uint32_t>(20 + 2 * most));
   Send(change);
   EXPECT_THAT(Take().error, IsInvalid("label_change.frame"));
-}
-
-TEST_F(LiveSessionTest, LabelChangesThatApplyAreNotCounted) {
-  Create();
-  const int most = RequestLimits().max_label_keyframes;
-  for (int i = 0; i < most + 10; ++i) Send(LabelChange(0.5F));
-  EXPECT_THAT(Take().error, IsOk());
 }
 
 TEST_F(LiveSessionTest, MessagesWindowsAndTheReaderRunAtTheSameTime) {

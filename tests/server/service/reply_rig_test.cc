@@ -1,4 +1,3 @@
-#include "server/service/reply_rig.h"
 
 #include <gtest/gtest.h>
 
@@ -199,15 +198,6 @@ TEST(ReplyRig, HasTheFollowersBoneLengthsAndNotTheLeaders) {
                 1e-5);
     }
   }
-}
-
-// A long clip does not make a long header: the person is a part of its frames, from all of it.
-TEST(ReplyRig, TakesFramesFromTheWholeLeader) {
-  const RigSource source = MakeRigSource(kSkeleton, test::SwayingMotion(2000, kRate), kRate);
-  EXPECT_LE(source.person.frame_count(), 256);
-  EXPECT_GE(source.person.frame_count(), 200);
-  EXPECT_EQ(source.person.at(source.person.frame_count() - 1, 0),
-            test::SwayingMotion(2000, kRate).at((source.person.frame_count() - 1) * 8, 0));
 }
 
 }  // namespace

@@ -64,15 +64,6 @@ TEST(ServiceRefusalTest, RejectionOfAMalformedRequestListsEveryField) {
   EXPECT_EQ(running.calls().WaitFor(1).status.code(), StatusCode::kInvalidArgument);
 }
 
-TEST(ServiceRefusalTest, UnsuitableSkeletonIsAFailedPrecondition) {
-  RunningService running;
-  v1::SynthesizeRequest request = SampleRequest();
-  request.mutable_leader()->set_joint_names(0, "hat");
-  const Refusal refusal = Decode(Call(running.stub(), request).status);
-  EXPECT_EQ(refusal.code, StatusCode::kFailedPrecondition);
-  EXPECT_THAT(refusal.Fields(), ElementsAre("leader.joint_names[0]", "leader.joint_names"));
-}
-
 TEST(ServiceRefusalTest, LargestRejectionReachesTheClient) {
   RunningService running;
   v1::SynthesizeRequest request;
@@ -117,34 +108,6 @@ TEST(ServiceRefusalTest, UnknownModelErrorListsServedModels) {
   EXPECT_EQ(refusal.reason, "MODEL_NOT_FOUND");
 }
 
-TEST(ServiceRefusalTest, UnknownVersionErrorListsServedVersions) {
-  RunningService running;
-  v1::SynthesizeRequest request = SampleRequest();
-  request.mutable_model()->set_version(7);
-  const Refusal refusal = Decode(Call(running.stub(), request).status);
-  EXPECT_EQ(refusal.code, StatusCode::kNotFound);
-  EXPECT_THAT(refusal.Of("model.version"),
-              HasSubstr("expected a served version of model fake (1), got 7"));
-}
-
-TEST(ServiceRefusalTest, UnknownLabelErrorListsLabels) {
-  RunningService running;
-  v1::SynthesizeRequest request = SampleRequest();
-  request.mutable_model()->set_version_label("canary");
-  const Refusal refusal = Decode(Call(running.stub(), request).status);
-  EXPECT_EQ(refusal.code, StatusCode::kNotFound);
-  EXPECT_THAT(refusal.Of("model.version_label"),
-              HasSubstr("expected a label of model fake (none), got \"canary\""));
-}
-
-TEST(ServiceRefusalTest, VersionLabelSelectsItsVersion) {
-  RunningService running;
-  ASSERT_TRUE(running.registry().SetLabel("fake", "stable", 1).ok());
-  v1::SynthesizeRequest request = SampleRequest();
-  request.mutable_model()->set_version_label("stable");
-  EXPECT_TRUE(Call(running.stub(), request).status.ok());
-}
-
 RunningService::Setup SmallRequests() {
   RunningService::Setup setup;
   setup.limits.max_request_bytes = 8192;  // 40 frames are 7 kB
@@ -175,14 +138,6 @@ TEST(ServiceRefusalTest, EveryMethodHasTheLimit) {
   }
 }
 
-TEST(ServiceRefusalTest, TransportRejectsARequestFarAboveTheLimit) {
-  RunningService running(SmallRequests());
-  const grpc::Status status = Call(running.stub(), SampleRequest(400)).status;
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_THAT(std::string(running.calls().WaitFor(1).status.message()),
-              HasSubstr("more than twice max_request_bytes"));
-}
-
 TEST(ServiceRefusalTest, RejectsACompressedRequest) {
   RunningService running;
   TimedContext context;
@@ -203,27 +158,6 @@ TEST(ServiceRefusalTest, FullQueueRejectsBeforeTheHeader) {
   EXPECT_EQ(refusal.retry_seconds, 1);
   EXPECT_EQ(Trailer(context, "grpc-retry-pushback-ms"), "1000");
   EXPECT_EQ(service.running.admission().calls(), 0u) << "the place is free again";
-}
-
-TEST(ServiceRefusalTest, RejectsCallsAboveTheLimitUntilOneEnds) {
-  RunningService::Setup setup;
-  setup.admission.max_calls = 1;
-  PuppetService service(setup);
-  TimedContext context;
-  const auto first = service.running.stub().Synthesize(&context, SampleRequest(20));
-  service.puppet.WaitForJobs(1);
-  const Refusal refusal = Decode(Call(service.running.stub(), SampleRequest()).status);
-  EXPECT_EQ(refusal.code, StatusCode::kResourceExhausted);
-  EXPECT_EQ(refusal.reason, "TOO_MANY_CALLS");
-  EXPECT_EQ(refusal.metadata.at("max_calls"), "1");
-  EXPECT_EQ(refusal.retry_seconds, 1);
-
-  service.puppet.RunNext();
-  EXPECT_TRUE(ReadAll(*first).status.ok());
-  TimedContext next_context;
-  const auto next = service.running.stub().Synthesize(&next_context, SampleRequest(20));
-  service.puppet.RunNext();
-  EXPECT_TRUE(ReadAll(*next).status.ok());
 }
 
 TEST(ServiceRefusalTest, RejectedRequestReleasesItsPlace) {
@@ -279,18 +213,6 @@ TEST(ServiceEndTest, ModelFailureIsInternalWithDetailsOnlyInTheLog) {
   EXPECT_THAT(refusal.message, HasSubstr(record.request_id));
 }
 
-TEST(ServiceEndTest, AFailedCallDoesNotFailOthers) {
-  auto model = std::make_shared<FakeSynthesizer>();
-  model->window_status = [](const engine::SynthesisWindow& window) {
-    return window.leader.frame_count() == 20 ? absl::InternalError("broken") : absl::OkStatus();
-  };
-  RunningService::Setup setup;
-  setup.model = model;
-  RunningService running(setup);
-  EXPECT_FALSE(Call(running.stub(), SampleRequest(20)).status.ok());
-  EXPECT_TRUE(Call(running.stub(), SampleRequest(30)).status.ok());
-}
-
 // Whether a call's window was in line before its deadline of so many seconds passed, which then
 // ended the call.
 bool ExpiresInLine(int seconds) {
@@ -314,16 +236,6 @@ TEST(ServiceEndTest, AnExpiredCallNeverStarts) {
   // As long as a busy machine needs for it to come into line.
   int seconds = 1;
   while (!ExpiresInLine(seconds)) seconds *= 2;
-}
-
-TEST(ServiceEndTest, ACallWithoutADeadlineHasNone) {
-  PuppetService service;
-  grpc::ClientContext context;
-  const auto reader = service.running.stub().Synthesize(&context, SampleRequest());
-  service.puppet.WaitForJobs(1);
-  EXPECT_EQ(service.puppet.NextDeadline(), common::TimePoint::max());
-  service.puppet.RunNext();
-  EXPECT_TRUE(ReadAll(*reader).status.ok());
 }
 
 TEST(ServiceEndTest, ACancelledCallNeverStarts) {
@@ -428,29 +340,6 @@ TEST(ServiceRecordTest, SaysWhatACallDid) {
   EXPECT_GE(record.total_seconds, record.first_chunk_seconds);
 }
 
-TEST(ModelMethodsTest, ListsModelsByNameNewestFirst) {
-  RunningService running;
-  for (const auto& [name, version] : {std::pair{"other", 1}, std::pair{"fake", 2}}) {
-    engine::ModelDescription description = FakeDescription();
-    description.name = name;
-    description.version = version;
-    running.registry().Serve(std::make_shared<FakeSynthesizer>(description));
-  }
-  ASSERT_TRUE(running.registry().SetLabel("fake", "stable", 1).ok());
-  TimedContext context;
-  v1::ListModelsResponse response;
-  ASSERT_TRUE(running.stub().ListModels(&context, v1::ListModelsRequest(), &response).ok());
-  ASSERT_EQ(response.models_size(), 3);
-  EXPECT_EQ(response.models(0).name(), "fake");
-  EXPECT_EQ(response.models(0).version(), 2u);
-  EXPECT_TRUE(response.models(0).is_default());
-  EXPECT_EQ(response.models(1).version(), 1u);
-  EXPECT_FALSE(response.models(1).is_default());
-  EXPECT_THAT(response.models(1).version_labels(), ElementsAre("stable"));
-  EXPECT_EQ(response.models(2).name(), "other");
-  EXPECT_FALSE(response.models(2).is_default());
-}
-
 TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
   RunningService running;
   TimedContext context;
@@ -477,41 +366,6 @@ TEST(ModelMethodsTest, DescribesAModelAndItsLimits) {
   EXPECT_EQ(response.limits().max_variety(), 2);
   EXPECT_EQ(response.limits().max_candidates(), 16u);
   EXPECT_EQ(response.limits().max_request_bytes(), 32u << 20);
-}
-
-TEST(ModelMethodsTest, SaysWhetherAModelSamples) {
-  RunningService::Setup setup;
-  setup.model = std::make_shared<FakeSynthesizer>(SamplingDescription());
-  RunningService running(setup);
-  TimedContext context;
-  v1::GetModelResponse response;
-  ASSERT_TRUE(running.stub().GetModel(&context, v1::GetModelRequest(), &response).ok());
-  EXPECT_TRUE(response.model().samples());
-}
-
-TEST(ModelMethodsTest, GetModelNamesWhatIsNotServed) {
-  RunningService running;
-  TimedContext context;
-  v1::GetModelRequest request;
-  request.mutable_model()->set_name("nobody");
-  v1::GetModelResponse response;
-  const Refusal refusal = Decode(running.stub().GetModel(&context, request, &response));
-  EXPECT_EQ(refusal.code, StatusCode::kNotFound);
-  EXPECT_THAT(refusal.Fields(), ElementsAre("model.name"));
-}
-
-TEST(ModelMethodsTest, ACallKeepsItsModelWhenAnotherTakesItsPlace) {
-  PuppetService service;
-  TimedContext context;
-  const auto reader = service.running.stub().Synthesize(&context, SampleRequest(20));
-  service.puppet.WaitForJobs(1);
-  auto replacement = std::make_shared<FakeSynthesizer>();
-  replacement->window_status = [](const engine::SynthesisWindow&) {
-    return absl::InternalError("new");
-  };
-  service.running.registry().Serve(replacement);
-  service.puppet.RunNext();
-  EXPECT_TRUE(ReadAll(*reader).status.ok());
 }
 
 }  // namespace

@@ -53,19 +53,6 @@ float LargestDifference(const std::vector<float>& a,
   return largest;
 }
 
-TEST(SynthesizeTest, StreamsHeaderThenChunksThenSummary) {
-  RunningService running;
-  const v1::SynthesizeRequest request = SampleRequest(200);
-  const Reply reply = Call(running.stub(), request);
-  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
-  ASSERT_GE(reply.messages.size(), 3u);
-  EXPECT_TRUE(reply.messages.front().has_header());
-  for (std::size_t i = 1; i + 1 < reply.messages.size(); ++i) {
-    EXPECT_TRUE(reply.messages[i].has_chunk()) << "message " << i;
-  }
-  EXPECT_TRUE(reply.messages.back().has_summary());
-}
-
 TEST(SynthesizeTest, TheHeaderSaysWhoAnswersAndHow) {
   RunningService running;
   v1::SynthesizeRequest request = SampleRequest(50);
@@ -128,34 +115,6 @@ TEST(SynthesizeTest, ChunksFollowEachOtherWithoutGaps) {
   EXPECT_THAT(reply.ChunkFrames(), Each(Le(7)));
 }
 
-TEST(SynthesizeTest, DefaultChunkHasThirtyFrames) {
-  PuppetScheduler puppet;
-  RunningService running(&puppet);
-  TimedContext context;
-  const auto reader = running.stub().Synthesize(&context, SampleRequest(46));
-  puppet.RunNext();  // all 46 frames are there before the first chunk is cut
-  EXPECT_THAT(ReadAll(*reader).ChunkFrames(), ElementsAre(30, 16));
-}
-
-TEST(SynthesizeTest, OneFrameAChunk) {
-  RunningService running;
-  v1::SynthesizeRequest request = SampleRequest(20);
-  request.set_chunk_frames(1);
-  EXPECT_THAT(Call(running.stub(), request).ChunkFrames(), ElementsAreArray(std::vector(20, 1)));
-}
-
-TEST(SynthesizeTest, TheSummaryCountsWhatWasSent) {
-  RunningService running;
-  const Reply reply = Call(running.stub(), SampleRequest(200));
-  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
-  const v1::SynthesisSummary& summary = reply.messages.back().summary();
-  EXPECT_EQ(summary.frame_count(), 200u);
-  EXPECT_EQ(summary.chunk_count(), reply.messages.size() - 2);
-  EXPECT_GT(summary.window_count(), 200u / 46u);
-  EXPECT_GE(summary.queue_seconds(), 0);
-  EXPECT_GE(summary.compute_seconds(), 0);
-}
-
 TEST(SynthesizeTest, FirstChunkIsSentAfterTheFirstWindow) {
   PuppetScheduler puppet;
   RunningService running(&puppet);
@@ -172,19 +131,6 @@ TEST(SynthesizeTest, FirstChunkIsSentAfterTheFirstWindow) {
   while (reader->Read(&message)) {
   }
   reader->Finish();
-}
-
-TEST(SynthesizeTest, HeaderIsSentBeforeTheFirstWindowIsEvaluated) {
-  PuppetScheduler puppet;
-  RunningService running(&puppet);
-  TimedContext context;
-  const auto reader = running.stub().Synthesize(&context, SampleRequest(46));
-  v1::SynthesizeResponse message;
-  ASSERT_TRUE(reader->Read(&message));
-  EXPECT_TRUE(message.has_header());
-  EXPECT_EQ(puppet.queued_windows(), 1u);
-  puppet.RunNext();
-  EXPECT_TRUE(ReadAll(*reader).status.ok());
 }
 
 TEST(SynthesizeTest, AnswersWithTheModelsMotion) {
@@ -299,21 +245,6 @@ TEST(SynthesizeTest, RepliesWithTheRequestedJointsInTheirOrder) {
   }
 }
 
-TEST(SynthesizeTest, RepliesInTheLeadersJointOrder) {
-  RunningService::Setup setup;
-  setup.model = Echo();
-  RunningService running(setup);
-  v1::SynthesizeRequest request = SampleRequest(30);
-  v1::Motion& leader = *request.mutable_leader();
-  leader.mutable_joint_names()->SwapElements(0, 14);
-  const Reply reply = Call(running.stub(), request);
-  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
-  EXPECT_THAT(reply.messages.front().header().joint_names(),
-              ElementsAreArray(leader.joint_names()));
-  // What was said of the joint called first must come back for the joint called first.
-  EXPECT_LT(LargestDifference(reply.Positions(), leader.positions()), 1e-4F);
-}
-
 using UnitAndAxis = std::tuple<v1::LengthUnit, v1::UpAxis, float>;  // the unit's length of a metre
 
 class CoordinatesTest : public ::testing::TestWithParam<UnitAndAxis> {};
@@ -374,13 +305,6 @@ TEST_P(RateTest, TheReplyIsAtTheLeadersRate) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Several, RateTest, ::testing::Values(1, 12.5, 15, 29.97, 60, 240));
-
-TEST(SynthesizeTest, AnswersTwoFrames) {
-  RunningService running;
-  const Reply reply = Call(running.stub(), SampleRequest(2));
-  EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
-  EXPECT_THAT(reply.ChunkFrames(), ElementsAre(2));
-}
 
 TEST(SynthesizeTest, AnswersTenMinutesWithABoundedBuffer) {
   RunningService::Setup setup;
