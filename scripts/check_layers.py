@@ -29,8 +29,8 @@ MOTION_FILES = ("base", "motion", "retargeting", "flat formats", "bvh format", "
                 "formats")
 MODELS = ("engine", "checkpoint", "embedded checkpoints", "network", "torch engine", "training")
 MEASURING = ("metrics", "protocol", "baselines", "judge", "report", "experiments")
-SERVER = ("server common", "batching", "registry", "server metrics", "security", "tracing",
-          "server config", "service", "admin", "watchdog", "lifecycle")
+SERVER = ("server common", "batching", "registry", "server metrics", "security",
+          "server config", "service", "admin", "lifecycle")
 
 LAYERS = (
     # The method, innermost first.
@@ -89,8 +89,6 @@ LAYERS = (
     Layer("server metrics", "server/metrics", sees=("base", "batching", "server common"),
           libraries=("prometheus",)),
     Layer("security", "server/security", sees=("base", "server common"), libraries=("rpc",)),
-    Layer("tracing", "server/tracing", sees=("base", "server common", "server metrics"),
-          libraries=("rpc",)),
     Layer("server config", "server/config", sees=("base", "messages", "server common"),
           libraries=("rpc",)),
     Layer("service", "server/service",
@@ -101,7 +99,6 @@ LAYERS = (
           sees=("base", "engine", "server common", "batching", "registry", "server metrics",
                 "security", "service"),
           libraries=("rpc", "prometheus")),
-    Layer("watchdog", "server/watchdog", sees=("server common",)),
     Layer("lifecycle", "server/lifecycle", sees=("base", "motion", "engine") + SERVER,
           libraries=("rpc", "prometheus")),
     Layer("server program", "server/program",
@@ -126,7 +123,7 @@ LAYERS = (
 GUARDED_LIBRARIES = {
     "torch": ("torch/", "ATen/", "c10/", "caffe2/"),
     "highway": ("hwy/",),
-    "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/", "duet/otlp/",
+    "rpc": ("grpc/", "grpcpp/", "grpc++/", "google/", "duet/v1/", "duet/rpc/",
             "duet/admin/"),
     "prometheus": ("prometheus/",),
 }

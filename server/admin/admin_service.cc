@@ -17,7 +17,6 @@
 #include "absl/strings/str_join.h"
 #include "duet/admin/v1/admin.pb.h"
 #include "model/base/text.h"
-#include "server/common/activity.h"
 #include "server/common/error_details.h"
 #include "server/registry/model_repository.h"
 #include "server/registry/model_status.h"
@@ -128,8 +127,6 @@ constexpr metrics::MethodInfo kReload = Method("Reload");
 constexpr metrics::MethodInfo kSetLabel = Method("SetLabel");
 constexpr metrics::MethodInfo kDeleteLabel = Method("DeleteLabel");
 
-constexpr common::StepKind kHandling{"gRPC callback", "handling an admin call"};
-
 // gRPC reads the messages; the listener limits their size.
 constexpr std::size_t kNoRawRequests = 0;
 
@@ -186,14 +183,13 @@ class AdminService::Call {
 AdminService::AdminService(AdminParts parts)
     : parts_(std::move(parts)),
       pipeline_(kNoRawRequests, /*client_key=*/"", parts_.observers, *parts_.clock, parts_.guard,
-                security::Role::kAdmin, /*trace_ratio=*/std::nullopt) {}
+                security::Role::kAdmin) {}
 
 template <typename Request, typename Answer>
 grpc::ServerUnaryReactor* AdminService::Open(grpc::CallbackServerContext& context,
                                              const metrics::MethodInfo& method,
                                              const Request& request, const absl::Status& valid,
                                              const Answer& answer) {
-  const common::Step step(kHandling);
   const auto call = std::make_shared<Call>(context, method, request, *this);
   const absl::Status admitted = call->status().ok() ? valid : call->status();
   if (admitted.ok()) {

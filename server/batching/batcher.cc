@@ -14,15 +14,10 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "server/batching/window_queue.h"
-#include "server/common/activity.h"
 #include "server/common/mutex.h"
 
 namespace duet::server::batching {
 namespace {
-
-constexpr common::StepKind kTaking{"worker", "taking windows from the queue"};
-constexpr common::StepKind kEvaluating{"worker", "evaluating a batch"};
-constexpr common::StepKind kAnswering{"worker", "passing a result on"};
 
 absl::Status ShuttingDown() { return absl::UnavailableError("the server is shutting down"); }
 
@@ -147,12 +142,7 @@ absl::Status Batcher::CheckRoom(Priority priority, const std::string& client) co
 
 std::size_t Batcher::queued_windows() const { return queued_; }
 
-void Batcher::CountQueue() {
-  const std::size_t now = queue_.candidates();
-  const std::size_t before = queued_.exchange(now);
-  common::ProcessVitals().queued_windows +=
-      static_cast<std::int64_t>(now) - static_cast<std::int64_t>(before);
-}
+void Batcher::CountQueue() { queued_ = queue_.candidates(); }
 
 void Batcher::Work() {
   while (std::optional<Turn> turn = Next()) {
@@ -166,7 +156,6 @@ void Batcher::Work() {
 }
 
 std::optional<Turn> Batcher::Next() {
-  const common::Step step(kTaking);
   common::MutexLock lock(mutex_);
   while (true) {
     Turn turn;
@@ -188,7 +177,6 @@ std::optional<Turn> Batcher::Next() {
 }
 
 void Batcher::WaitUntil(common::TimePoint time) {
-  const common::Idle idle;
   if (time == common::TimePoint::max()) {
     changed_.Wait(mutex_);
   } else {
@@ -199,11 +187,7 @@ void Batcher::WaitUntil(common::TimePoint time) {
 // By value, so that the model is released as soon as its windows are done.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 void Batcher::Run(Batch batch) {
-  std::vector<engine::WindowResult> results;
-  {
-    const common::Step step(kEvaluating);
-    results = Evaluate(batch);
-  }
+  std::vector<engine::WindowResult> results = Evaluate(batch);
   const common::TimePoint end = clock_.Now();
   {
     common::MutexLock lock(mutex_);
@@ -225,7 +209,6 @@ void Batcher::Run(Batch batch) {
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
 void Batcher::Answer(QueuedWindow window, engine::WindowResult result,
                      WindowTimings timings) const {
-  const common::Step step(kAnswering);
   if (observer_ != nullptr) observer_->WindowFinished(window.job.priority, timings);
   window.job.done({std::move(result), timings});
 }

@@ -50,4 +50,15 @@ std::string ReasonOf(const absl::Status& status) {
   return detail.reason();
 }
 
+absl::Status Join(const std::vector<absl::Status>& statuses) {
+  absl::Status joined;
+  for (const absl::Status& status : statuses) {
+    if (status.ok()) continue;
+    joined = joined.ok() ? status
+                         : absl::Status(joined.code(),
+                                        absl::StrCat(joined.message(), "\n", status.message()));
+  }
+  return joined;
+}
+
 }  // namespace duet::server::common

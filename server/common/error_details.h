@@ -50,6 +50,10 @@ void AddErrorInfo(absl::Status& status, absl::string_view reason,
 // Returns the reason in a status's ErrorInfo, or an empty string if there is none.
 std::string ReasonOf(const absl::Status& status);
 
+// Returns all failures as one status: the code of the first, and one message per line. OK if none
+// failed.
+absl::Status Join(const std::vector<absl::Status>& statuses);
+
 }  // namespace duet::server::common
 
 #endif  // DUET_SERVER_COMMON_ERROR_DETAILS_H_

@@ -2,14 +2,16 @@
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/message.h>
+#include <google/protobuf/text_format.h>
+#include <unistd.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <map>
+#include <exception>
+#include <sstream>
 #include <utility>
-#include <vector>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -17,34 +19,33 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "model/base/file.h"
+#include "model/base/nearest.h"
+#include "model/base/text.h"
 #include "model/messages/message_text.h"
-#include "server/config/flag_parser.h"
+#include "server/config/setting.h"
 
 namespace duet::server::config {
 namespace {
 
-constexpr std::size_t kMaxConfigBytes = std::size_t{1} << 20;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Reflection;
 
-// Splits a command line into flags, each with the words that follow it. A negative number is not a
-// flag.
-std::vector<std::vector<std::string>> SplitFlags(int argc, const char* const* argv) {
-  std::vector<std::vector<std::string>> flags;
-  for (int i = 1; i < argc; ++i) {
-    const absl::string_view word = argv[i];
-    const bool is_flag = absl::StartsWith(word, "--") ||
-                         (word.size() > 1 && word[0] == '-' && absl::ascii_isalpha(word[1]));
-    if (is_flag || flags.empty()) flags.emplace_back();
-    flags.back().emplace_back(word);
-  }
-  return flags;
-}
+constexpr std::size_t kMaxConfigBytes = std::size_t{1} << 20;
+constexpr char kConfigVariable[] = "DUET_SERVER_CONFIG";
+
+constexpr char kFooter[] = R"(
+Every flag that has a value may be an environment variable instead: DUET_SERVER_MAX_CALLS=64 for
+--max-calls 64. Flags override variables, variables override the file.
+
+Signals: SIGTERM and SIGINT drain and stop, a second one at once. SIGHUP reads labels, the model
+repository, certificates and the access file again.
+)";
 
 // Merges settings over those of `command_line`. `source` returns the source of a field, given its
 // name within `settings`.
 template <typename Source>
 void Override(const v1::ServerConfig& settings, const Source& source, CommandLine* command_line) {
-  using google::protobuf::FieldDescriptor;
-  const google::protobuf::Reflection& reflection = *settings.GetReflection();
+  const Reflection& reflection = *settings.GetReflection();
   std::vector<const FieldDescriptor*> fields;
   reflection.ListFields(settings, &fields);
   for (const FieldDescriptor* field : fields) {
@@ -67,22 +68,17 @@ void AddErrors(const absl::Status& status, CommandLine* command_line) {
   }
 }
 
-// Parses each flag of a command line separately, so that every mistake is reported and the other
-// flags count. `first` is the first mistake of the command line as a whole.
-Flags ParseEach(int argc, const char* const* argv, const absl::Status& first,
-                CommandLine* command_line) {
-  Flags all;
-  for (std::vector<std::string>& words : SplitFlags(argc, argv)) {
-    const absl::StatusOr<Flags> one = FlagParser().ParseOne(std::move(words));
-    AddErrors(one.status(), command_line);
-    if (!one.ok()) continue;
-    all.config.MergeFrom(one->config);
-    if (!one->config_path.empty()) all.config_path = one->config_path;
-    if (one->task != Task::kServe) all.task = one->task;
+// Sets a field to values that a flag or a variable has. Mistakes begin with `name`.
+void SetValues(const Setting& setting, const std::vector<std::string>& values,
+               const std::string& name, const std::string& source, CommandLine* command_line) {
+  v1::ServerConfig config;
+  for (const std::string& value : values) {
+    const absl::Status set = setting.Set(value, &config);
+    if (!set.ok())
+      AddErrors(absl::Status(set.code(), absl::StrCat(name, ": ", set.message())), command_line);
   }
-  // Such as a flag that is repeated.
-  if (command_line->errors.empty()) AddErrors(first, command_line);
-  return all;
+  Override(
+      config, [&source](const std::string&) { return source; }, command_line);
 }
 
 void ReadFile(const std::string& path, CommandLine* command_line) {
@@ -96,8 +92,112 @@ void ReadFile(const std::string& path, CommandLine* command_line) {
   Override(config, source, command_line);
 }
 
+void ReadVariables(const Environment& environment, CommandLine* command_line) {
+  const std::vector<Setting> settings = AllSettings();
+  std::vector<std::string> known = {kConfigVariable};
+  for (const Setting& setting : settings) known.push_back(setting.variable());
+  for (const auto& [name, value] : environment) {
+    const auto setting =
+        std::find_if(settings.begin(), settings.end(),
+                     [&name = name](const Setting& one) { return one.variable() == name; });
+    if (setting == settings.end()) {
+      if (name == kConfigVariable) continue;
+      command_line->errors.push_back(
+          absl::StrCat(name, ": sets nothing", base::DidYouMean(name, known)));
+      continue;
+    }
+    std::vector<std::string> values = {value};
+    if (setting->field().is_repeated()) values = absl::StrSplit(value, ' ', absl::SkipEmpty());
+    SetValues(*setting, values, name, absl::StrCat("environment ", name), command_line);
+  }
+}
+
+bool IsSwitch(const Setting& setting) {
+  return setting.field().cpp_type() == Setting::Field::CPPTYPE_BOOL;
+}
+
+// All values are texts for CLI11; Setting::Set reads them, as it does those of variables.
+void AddFlags(CLI::App& app) {
+  app.set_version_flag("--version", std::string("duet-server ") + DUET_VERSION);
+  app.footer(kFooter);
+  const std::string config =
+      "Configuration file: duet.v1.ServerConfig in text format, or in JSON if its name ends in "
+      ".json; flags override it";
+  app.add_option("--config", config)->option_text("FILE");
+  // CLI11 takes a help only by a constant reference.
+  const std::pair<const char*, const std::string> tasks[] = {
+      {"--check-config",
+       "Check settings and secrets, load every model, report every mistake, and exit"},
+      {"--print-config", "Print every setting and its source, and exit"},
+      {"--check-health",
+       "Ask the server that runs here with these settings whether it is healthy, and exit"}};
+  for (const auto& [flag, help] : tasks) app.add_flag(flag, help);
+  for (const Setting& setting : AllSettings()) {
+    const std::string flag = "--" + setting.flag();
+    const std::string help = setting.help();
+    if (IsSwitch(setting)) {
+      app.add_flag(absl::StrCat(flag, ",!--no-", setting.flag()), help);
+      continue;
+    }
+    CLI::Option* option = app.add_option(flag, help)->option_text(setting.unit());
+    if (setting.field().is_repeated()) {
+      option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    }
+  }
+}
+
+// Describes the words that CLI11 left over. An unknown flag's value may be among them, so the error
+// names the flag.
+absl::Status NotAFlag(const CLI::App& app, const std::vector<std::string>& words) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& flag : option->get_lnames()) known.push_back("--" + flag);
+  }
+  for (const std::string& word : words) {
+    if (!absl::StartsWith(word, "-")) continue;
+    const std::string flag = word.substr(0, word.find('='));
+    return absl::InvalidArgumentError(
+        absl::StrCat(flag, ": there is no such flag", base::DidYouMean(flag, known)));
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("expected flags only, got ", base::Quoted(words[0])));
+}
+
+// Parses the command line; `print` receives the text of --help or --version.
+absl::Status ParseFlags(CLI::App& app, int argc, const char* const* argv,
+                        std::optional<std::string>* print) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {
+    std::ostringstream text;
+    app.exit(wanted, text, text);
+    // CLI11 marks the negative name of a switch.
+    *print = absl::StrReplaceAll(text.str(), {{"{false}", ""}});
+  } catch (const CLI::ExtrasError&) {
+    return NotAFlag(app, app.remaining());
+  } catch (const std::exception& error) {
+    return absl::InvalidArgumentError(error.what());
+  }
+  return absl::OkStatus();
+}
+
+Task TaskOf(const CLI::App& app) {
+  if (app.count("--check-config") > 0) return Task::kCheckConfig;
+  if (app.count("--print-config") > 0) return Task::kPrintConfig;
+  return app.count("--check-health") > 0 ? Task::kCheckHealth : Task::kServe;
+}
+
 std::string PrefixLines(absl::string_view prefix, absl::string_view lines) {
   return absl::StrCat(prefix, absl::StrReplaceAll(lines, {{"\n", absl::StrCat("\n", prefix)}}));
+}
+
+// An empty text counts as absent.
+bool IsAbsent(const v1::ServerConfig& settings, const FieldDescriptor& field) {
+  const Reflection& reflection = *settings.GetReflection();
+  if (field.is_repeated()) return reflection.FieldSize(settings, &field) == 0;
+  return !reflection.HasField(settings, &field) ||
+         (field.cpp_type() == FieldDescriptor::CPPTYPE_STRING &&
+          reflection.GetString(settings, &field).empty());
 }
 
 }  // namespace
@@ -127,30 +227,45 @@ absl::Status ReadConfigFile(const std::filesystem::path& path, v1::ServerConfig*
       PrefixLines(absl::StrCat("--config: ", path.string(), ": "), status.message()));
 }
 
+Environment ReadEnvironment(const char* const* variables) {
+  Environment environment;
+  for (; *variables != nullptr; ++variables) {
+    const std::pair<std::string, std::string> variable =
+        absl::StrSplit(*variables, absl::MaxSplits('=', 1));
+    const absl::string_view name = variable.first;
+    if (!absl::StartsWith(name, kVariablePrefix)) continue;
+    const absl::string_view setting = name.substr(kVariablePrefix.size());
+    // No setting has such a name.
+    const bool is_service_link = setting == "SERVICE_HOST" ||
+                                 absl::StartsWith(setting, "SERVICE_PORT") || setting == "PORT" ||
+                                 absl::StartsWith(setting, "PORT_");
+    if (!is_service_link) environment.insert(variable);
+  }
+  return environment;
+}
+
+Environment ProcessEnvironment() { return ReadEnvironment(environ); }
+
 CommandLine ParseCommandLine(int argc, const char* const* argv, const Environment& environment) {
   CommandLine command_line;
-  absl::StatusOr<Flags> flags = FlagParser().Parse(argc, argv, &command_line.print);
+  CLI::App app("Answers one character's motion with another's, over gRPC.", "duet-server");
+  AddFlags(app);
+  const absl::Status parsed = ParseFlags(app, argc, argv, &command_line.print);
   if (command_line.print.has_value()) return command_line;
-  if (!flags.ok()) flags = ParseEach(argc, argv, flags.status(), &command_line);
-  std::map<std::string, Flags> variables;
-  std::string config_path;
-  for (const auto& [name, value] : environment) {
-    absl::StatusOr<Flags> variable = FlagParser().ParseVariable(name, value);
-    AddErrors(variable.status(), &command_line);
-    if (!variable.ok()) continue;
-    if (!variable->config_path.empty()) config_path = variable->config_path;
-    variables[name] = *std::move(variable);
+  AddErrors(parsed, &command_line);
+  command_line.task = TaskOf(app);
+  const auto variable = environment.find(kConfigVariable);
+  std::string file = variable == environment.end() ? "" : variable->second;
+  if (app.count("--config") > 0) file = app["--config"]->results().back();
+  if (!file.empty()) ReadFile(file, &command_line);
+  ReadVariables(environment, &command_line);
+  for (const Setting& setting : AllSettings()) {
+    const std::string flag = "--" + setting.flag();
+    std::vector<std::string> values = app[flag]->results();
+    if (!setting.field().is_repeated() && values.size() > 1)
+      values.erase(values.begin(), values.end() - 1);
+    SetValues(setting, values, flag, "command line", &command_line);
   }
-  if (!flags->config_path.empty()) config_path = flags->config_path;
-  if (!config_path.empty()) ReadFile(config_path, &command_line);
-  for (const auto& [name, variable] : variables) {
-    const std::string source = absl::StrCat("environment ", name);
-    Override(
-        variable.config, [&source](const std::string&) { return source; }, &command_line);
-  }
-  command_line.task = flags->task;
-  Override(
-      flags->config, [](const std::string&) { return "command line"; }, &command_line);
   return command_line;
 }
 
@@ -166,6 +281,33 @@ absl::StatusOr<v1::ServerConfig> ResolveSettings(const CommandLine& command_line
   Settings settings = ReadSettings(command_line, cores, memory_bytes);
   if (settings.mistakes.empty()) return std::move(settings.values);
   return absl::InvalidArgumentError(absl::StrJoin(settings.mistakes, "\n"));
+}
+
+std::string PrintConfig(const v1::ServerConfig& settings, const SettingSources& sources) {
+  google::protobuf::TextFormat::Printer printer;
+  printer.SetSingleLineMode(true);
+  std::string text;
+  const auto print = [&](const FieldDescriptor& field, int index, const std::string& name) {
+    std::string value;
+    printer.PrintFieldValueToString(settings, &field, index, &value);
+    const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+    const auto source = sources.find(name);
+    absl::StrAppend(&text, field.name(), is_message ? " { " : ": ", value, is_message ? "}" : "",
+                    "  # ", source == sources.end() ? "default" : source->second, "\n");
+  };
+  for (const Setting& setting : AllSettings()) {
+    const FieldDescriptor& field = setting.field();
+    if (IsAbsent(settings, field)) {
+      absl::StrAppend(&text, "# ", field.name(), " is not set\n");
+    } else if (!field.is_repeated()) {
+      print(field, -1, field.name());
+    } else {
+      for (int i = 0; i < settings.GetReflection()->FieldSize(settings, &field); ++i) {
+        print(field, i, absl::StrCat(field.name(), "[", i, "]"));
+      }
+    }
+  }
+  return text;
 }
 
 }  // namespace duet::server::config

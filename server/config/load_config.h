@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,8 +13,6 @@
 #include "absl/status/statusor.h"
 #include "duet/v1/server_config.pb.h"
 #include "model/messages/field_places.h"
-#include "server/config/environment.h"
-#include "server/config/flag_parser.h"
 #include "server/config/settings.h"
 
 namespace duet::server::config {
@@ -30,15 +29,33 @@ absl::StatusOr<v1::ServerConfig> ParseConfigText(std::string_view text, bool jso
 absl::Status ReadConfigFile(const std::filesystem::path& path, v1::ServerConfig* config,
                             messages::FieldPlaces* places);
 
+// Environment variables by name.
+using Environment = std::map<std::string, std::string>;
+
+// Returns the variables of this process that begin with "DUET_SERVER_", except those that
+// Kubernetes sets in every container beside a Service named duet-server: DUET_SERVER_SERVICE_HOST,
+// DUET_SERVER_PORT_50051_TCP and the like.
+Environment ProcessEnvironment();
+// Does the same for a null-terminated array of "NAME=value".
+Environment ReadEnvironment(const char* const* variables);
+
+// What the program is started for.
+enum class Task {
+  kServe,
+  kCheckConfig,  // load everything, report every mistake, and exit
+  kPrintConfig,  // print every setting and its source, and exit
+  kCheckHealth,  // ask the running server whether it is healthy, and exit
+};
+
 // What a command line requests, merged with the environment and the configuration file.
 struct CommandLine {
-  using Task = config::Task;
   Task task = Task::kServe;
   // The file, overridden by the environment, overridden by the flags. Values of a repeated field
   // are concatenated in that order.
   v1::ServerConfig config;
   SettingSources sources;
-  // Every mistake in flags, variables and the file. A field with a mistake is absent from `config`.
+  // Every mistake in flags, variables and the file; of flags that do not exist or lack a value,
+  // only the first. A field with a mistake is absent from `config`.
   std::vector<std::string> errors;
   std::optional<std::string> print;  // the text of --help or --version
 };
@@ -56,6 +73,11 @@ Settings ReadSettings(const CommandLine& command_line, int cores,
 // Returns only the values. Fails with INVALID_ARGUMENT and every mistake.
 absl::StatusOr<v1::ServerConfig> ResolveSettings(const CommandLine& command_line, int cores,
                                                  std::uint64_t memory_bytes = kUnlimitedMemory);
+
+// Formats every setting with its value and source as a configuration file in text format:
+//   max_calls: 64  # file duet.textproto:3:1
+//   drain_seconds: 0  # default
+std::string PrintConfig(const v1::ServerConfig& settings, const SettingSources& sources);
 
 }  // namespace duet::server::config
 

@@ -6,10 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
 #include "duet/v1/options.pb.h"
 #include "duet/v1/server_config.pb.h"
 
 namespace duet::server::config {
+
+// The prefix of variables that set what flags set: DUET_SERVER_MAX_CALLS for --max-calls.
+inline constexpr absl::string_view kVariablePrefix = "DUET_SERVER_";
 
 // A value of an enum, as flags and as configuration files spell it.
 struct Choice {
@@ -49,10 +54,15 @@ class Setting {
   // One paragraph, with the default.
   std::string help() const;
 
+  // Sets the field to a value that is spelled as on the command line, or adds it to a repeated
+  // field. Fails with INVALID_ARGUMENT "expected ..., got ...". Ranges are checked elsewhere.
+  absl::Status Set(const std::string& text, v1::ServerConfig* config) const;
   // Sets the field to its default, if that does not have to be computed.
   void SetDefault(v1::ServerConfig* config) const;
 
  private:
+  absl::Status SetChoice(const std::string& text, v1::ServerConfig* config) const;
+
   const Field* field_;
 };
 

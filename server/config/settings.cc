@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,8 +15,7 @@
 #include "absl/strings/string_view.h"
 #include "model/base/printable.h"
 #include "model/base/text.h"
-#include "server/common/http_origin.h"
-#include "server/config/listen_address.h"
+#include "server/common/listen_address.h"
 #include "server/config/memory_plan.h"
 #include "server/config/setting.h"
 
@@ -59,6 +57,8 @@ void Mistakes::Add(const std::string& message, absl::string_view hint) {
   lines_.push_back(std::move(line));
 }
 
+using common::AddressOf;
+using common::ListenAddress;
 using v1::ServerConfig;
 
 std::string TextOf(double value) { return base::NumberText(value); }
@@ -147,7 +147,7 @@ void CheckFields(ServerConfig* values, Mistakes& mistakes) {
 
 // The normal form of an address; "off" after a mistake.
 std::string ReadAddress(absl::string_view field, const std::string& text, Mistakes& mistakes) {
-  const absl::StatusOr<ListenAddress> address = ParseListenAddress(text);
+  const absl::StatusOr<ListenAddress> address = common::ParseListenAddress(text);
   if (address.ok()) return ToString(*address);
   mistakes.Add(absl::StrCat(field, ": ", address.status().message()));
   return "off";
@@ -253,12 +253,6 @@ void ReadMemory(const ServerConfig& given, std::uint64_t memory_bytes, ServerCon
   }
 }
 
-void ReadWatchdog(ServerConfig* values) {
-  constexpr double kShortestDefault = 60;
-  if (values->has_watchdog_seconds()) return;
-  values->set_watchdog_seconds(std::max(values->max_call_seconds(), kShortestDefault));
-}
-
 // Whether metadata may hold text under this key.
 bool IsMetadataKey(absl::string_view key) {
   return !absl::EndsWith(key, "-bin") && std::all_of(key.begin(), key.end(), [](unsigned char c) {
@@ -270,10 +264,6 @@ void CheckNames(const ServerConfig& values, Mistakes& mistakes) {
   if (!values.client_key().empty() && !IsMetadataKey(values.client_key())) {
     mistakes.Add("client_key", "lower-case letters, digits, '-', '_' and '.', not ending in -bin",
                  absl::StrCat("\"", values.client_key(), "\""));
-  }
-  if (!values.otlp_endpoint().empty()) {
-    const absl::Status status = common::ParseHttpOrigin(values.otlp_endpoint()).status();
-    if (!status.ok()) mistakes.Add(absl::StrCat("otlp_endpoint: ", status.message()));
   }
 }
 
@@ -301,26 +291,6 @@ void CheckLabels(const ServerConfig& values, Mistakes& mistakes) {
   }
 }
 
-void CheckPolicies(const ServerConfig& values, Mistakes& mistakes) {
-  std::set<std::string> models;
-  for (int i = 0; i < values.version_policies_size(); ++i) {
-    const v1::VersionPolicy& policy = values.version_policies(i);
-    const std::string field = absl::StrCat("version_policies[", i, "]");
-    const bool has_zero = std::count(policy.versions().begin(), policy.versions().end(), 0U) > 0 ||
-                          (policy.has_latest() && policy.latest() == 0);
-    if (policy.model().empty()) {
-      mistakes.Add(field, "a model's name, or \"*\" for every other", "none");
-    } else if (!models.insert(policy.model()).second) {
-      mistakes.Add(field, "one policy for each model",
-                   absl::StrCat("a second of model \"", policy.model(), "\""));
-    } else if (policy.has_latest() && policy.versions_size() > 0) {
-      mistakes.Add(field, "either latest or versions", "both");
-    } else if (has_zero) {
-      mistakes.Add(field, "numbers of 1 or more", "0");
-    }
-  }
-}
-
 }  // namespace
 
 Settings ReadSettings(const ServerConfig& given, int cores, const SettingSources& sources,
@@ -332,11 +302,9 @@ Settings ReadSettings(const ServerConfig& given, int cores, const SettingSources
   CheckFields(&values, mistakes);
   ReadEngine(given, cores, &values, mistakes);
   ReadMemory(given, memory_bytes, &values, mistakes);
-  ReadWatchdog(&values);
   CheckNames(values, mistakes);
   CheckSecurity(values, mistakes);
   CheckLabels(values, mistakes);
-  CheckPolicies(values, mistakes);
   return {std::move(values), mistakes.Take()};
 }
 

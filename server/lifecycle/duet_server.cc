@@ -12,7 +12,7 @@
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "server/batching/batcher.h"
-#include "server/config/listen_address.h"
+#include "server/common/listen_address.h"
 #include "server/lifecycle/load_models.h"
 #include "server/lifecycle/validate_settings.h"
 #include "server/security/tls_certificates.h"
@@ -35,13 +35,10 @@ constexpr double kLookSeconds = 0.05;
 constexpr double kCheckTimeSeconds = 0.02;
 // Timeout of a self-check.
 constexpr double kSelfCheckTimeoutSeconds = 5;
+// A batch takes milliseconds: workers that finish none for this long while windows wait hang.
+constexpr double kQueueStuckSeconds = 10;
 // Interval for returning the memory of large requests.
 constexpr double kTrimSeconds = 1;
-
-constexpr common::StepKind kLookingAtTime{"time limits", "ending calls that exceed time limits"};
-constexpr common::StepKind kTrimming{"memory", "returning memory to the system"};
-constexpr common::StepKind kHousekeeping{"housekeeping",
-                                         "reading certificates, counting unlogged calls"};
 
 // Limits of the admin service, far above what an operator needs.
 constexpr std::size_t kAdminRequestBytes = std::size_t{64} << 10;
@@ -78,34 +75,12 @@ std::optional<bool> CleanUpOf(const v1::ServerConfig& settings) {
   return settings.clean_up() == v1::CLEAN_UP_POLICY_ON;
 }
 
-config::ListenAddress ListenAddressOf(const v1::ServerConfig& settings) {
-  return config::AddressOf(settings.listen()).value_or(config::ListenAddress());
+common::ListenAddress ListenAddressOf(const v1::ServerConfig& settings) {
+  return common::AddressOf(settings.listen()).value_or(common::ListenAddress());
 }
 
 absl::Status OfSetting(absl::string_view setting, const absl::Status& status) {
   return absl::Status(status.code(), absl::StrCat(setting, ": ", status.message()));
-}
-
-// Maximum number of lines of one kind in the text of /readyz, which load balancers fetch often.
-constexpr std::size_t kMostLines = 20;
-
-// `kind` precedes each line; `kinds` is its plural.
-void AppendLines(const std::vector<std::string>& lines, absl::string_view kind,
-                 absl::string_view kinds, std::string* text) {
-  const std::size_t shown = std::min(lines.size(), kMostLines);
-  for (std::size_t i = 0; i < shown; ++i) absl::StrAppend(text, kind, " ", lines[i], "\n");
-  if (lines.size() == shown) return;
-  absl::StrAppend(text, "and ", lines.size() - shown, " more ", kinds,
-                  "; duet admin models lists all\n");
-}
-
-std::string LineOf(const registry::ModelStatus& model) {
-  return absl::StrCat(model.name, "/", model.version, ": ",
-                      model.state == registry::ModelState::kServed    ? "served"
-                      : model.state == registry::ModelState::kLoading ? "loading"
-                                                                      : "failed",
-                      model.outdated ? ", outdated" : "", model.error.empty() ? "" : ": ",
-                      model.error);
 }
 
 std::vector<metrics::ServedVersion> Served(const registry::ModelRegistry& registry) {
@@ -124,7 +99,6 @@ metrics::LogOptions LogOptionsOf(const v1::ServerConfig& settings) {
   log.level = settings.log_level() == v1::LOG_LEVEL_ERROR     ? metrics::Severity::kError
               : settings.log_level() == v1::LOG_LEVEL_WARNING ? metrics::Severity::kWarning
                                                               : metrics::Severity::kInfo;
-  log.success_ratio = settings.log_success_ratio();
   log.refusals_per_second = static_cast<int>(settings.log_refusals_per_second());
   return log;
 }
@@ -135,25 +109,16 @@ absl::StatusOr<std::unique_ptr<DuetServer>> DuetServer::Start(
   absl::StatusOr<std::unique_ptr<security::SecretFiles>> secrets =
       security::SecretFiles::Open(SecretsOf(settings));
   if (!secrets.ok()) return secrets.status();
-  std::unique_ptr<tracing::CallTracer> tracer;
-  if (!settings.otlp_endpoint().empty()) {
-    auto opened = tracing::CallTracer::Open(settings.otlp_endpoint(), DUET_VERSION);
-    if (!opened.ok()) return opened.status();
-    tracer = *std::move(opened);
-  }
-  std::unique_ptr<DuetServer> server(
-      new DuetServer(settings, sink, *std::move(secrets), std::move(tracer)));
+  std::unique_ptr<DuetServer> server(new DuetServer(settings, sink, *std::move(secrets)));
   const absl::Status listening = server->Listen(std::move(self_check));
   if (!listening.ok()) return listening;
   return server;
 }
 
 DuetServer::DuetServer(const v1::ServerConfig& settings, metrics::LogSink& sink,
-                       std::unique_ptr<security::SecretFiles> secrets,
-                       std::unique_ptr<tracing::CallTracer> tracer)
+                       std::unique_ptr<security::SecretFiles> secrets)
     : settings_(settings),
       log_(sink, absl::Now, LogOptionsOf(settings)),
-      tracer_(std::move(tracer)),
       secrets_(std::move(secrets)),
       events_(log_, metrics_, [this] { UpdateHealth(); }),
       manager_(registry_, events_),
@@ -179,11 +144,7 @@ metrics::ReadValues DuetServer::ReadValues(const metrics::LogSink& sink) const {
   read.places_in_use = [this] { return static_cast<double>(admission_.calls()); };
   read.dropped_log_lines = [&sink] { return static_cast<double>(sink.dropped_lines()); };
   read.ready = [this] { return Ready(); };
-  read.longest_step_seconds = [] { return common::ProcessVitals().longest_step_seconds.load(); };
   read.models = [this] { return Served(registry_); };
-  if (tracer_ != nullptr) {
-    read.spans = [this] { return metrics::SpanCounts{tracer_->sent(), tracer_->dropped()}; };
-  }
   if (secrets_->certificates() != nullptr) {
     read.certificate_end = [this] {
       return static_cast<double>(absl::ToUnixSeconds(secrets_->certificate_end()));
@@ -211,10 +172,6 @@ service::ServiceParts DuetServer::Parts() {
   parts.admission = &admission_;
   parts.transport = &transport_;
   parts.observers = {&metrics_, &log_};
-  if (tracer_ != nullptr) {
-    parts.observers.push_back(tracer_.get());
-    parts.trace_ratio = settings_.trace_ratio();
-  }
   parts.guard = security::CallGuard(secrets_->access());
   parts.limits = Limits(settings_);
   parts.reception.timeout_seconds = settings_.receive_timeout_seconds();
@@ -240,7 +197,7 @@ admin::AdminParts DuetServer::AdminParts() {
 }
 
 absl::Status DuetServer::ListenForAdmin() {
-  const std::optional<config::ListenAddress> address = config::AddressOf(settings_.admin_listen());
+  const std::optional<common::ListenAddress> address = common::AddressOf(settings_.admin_listen());
   if (!address.has_value()) return absl::OkStatus();
   GrpcServerOptions options;
   options.listen = *address;
@@ -270,8 +227,8 @@ absl::Status DuetServer::Listen(std::function<absl::Status()> self_check) {
   SetHealth(false);
   if (absl::Status admin = ListenForAdmin(); !admin.ok()) return admin;
   Watch(std::move(self_check));
-  const std::optional<config::ListenAddress> metrics =
-      config::AddressOf(settings_.metrics_listen());
+  const std::optional<common::ListenAddress> metrics =
+      common::AddressOf(settings_.metrics_listen());
   if (!metrics.has_value()) return absl::OkStatus();
   metrics::MetricsEndpointOptions endpoint;
   endpoint.host = metrics->host;
@@ -279,7 +236,6 @@ absl::Status DuetServer::Listen(std::function<absl::Status()> self_check) {
   endpoint.render = [this] { return metrics_.Render(); };
   endpoint.healthy = [this] { return self_check_ == nullptr || self_check_->healthy(); };
   endpoint.ready = [this] { return Ready(); };
-  endpoint.describe = [this] { return Describe(); };
   absl::StatusOr<std::unique_ptr<metrics::MetricsEndpoint>> started =
       metrics::MetricsEndpoint::Start(std::move(endpoint));
   if (!started.ok()) return OfSetting("metrics_listen", started.status());
@@ -310,12 +266,12 @@ absl::Status DuetServer::ReloadSecrets() {
 }
 
 void DuetServer::Watch(std::function<absl::Status()> self_check) {
-  watch_.push_back(std::make_unique<RepeatedTask>(kLookingAtTime, kCheckTimeSeconds,
-                                                  [this] { service_.CheckTime(); }));
-  watch_.push_back(std::make_unique<RepeatedTask>(kTrimming, kTrimSeconds, [this] {
+  watch_.push_back(
+      std::make_unique<RepeatedTask>(kCheckTimeSeconds, [this] { service_.CheckTime(); }));
+  watch_.push_back(std::make_unique<RepeatedTask>(kTrimSeconds, [this] {
     heap_trimmer_.Look(service_.large_request_bytes(), admission_.held_bytes());
   }));
-  watch_.push_back(std::make_unique<RepeatedTask>(kHousekeeping, kHousekeepingSeconds, [this] {
+  watch_.push_back(std::make_unique<RepeatedTask>(kHousekeepingSeconds, [this] {
     Tell(secrets_->Look());
     log_.TellUnlogged();
   }));
@@ -331,39 +287,33 @@ void DuetServer::Watch(std::function<absl::Status()> self_check) {
     log_.Error("self_check_failed", {{"message", std::string(status.message())}});
   };
   check.changed = [this](bool passes) { SetReachable(passes); };
+  if (settings_.watchdog_seconds() > 0) {
+    stuck_ = std::make_unique<LastResort>(
+        "stuck", "no self-check succeeded for watchdog_seconds; the process ends to be restarted",
+        kExitStuck);
+    const double limit = settings_.self_check_seconds() + settings_.watchdog_seconds();
+    stuck_->Set(limit);
+    check.passed = [this, limit] { stuck_->Set(limit); };
+  }
   self_check_ = std::make_unique<SelfCheck>(std::move(check));
 }
 
-absl::Status DuetServer::CheckItself() const {
-  double timeout = kSelfCheckTimeoutSeconds;
-  // A slow check must not look like a stuck thread.
-  if (settings_.watchdog_seconds() > 0)
-    timeout = std::min(timeout, settings_.watchdog_seconds() / 4);
-  const absl::Status listens = CheckListener(ListenAddressOf(settings_).host, grpc_.port, timeout);
-  return listens.ok() ? CheckAnswers(*grpc_.server, timeout) : listens;
+absl::Status DuetServer::CheckItself() {
+  const absl::Status listens =
+      CheckListener(ListenAddressOf(settings_).host, grpc_.port, kSelfCheckTimeoutSeconds);
+  if (!listens.ok()) return listens;
+  const absl::Status answers = CheckAnswers(*grpc_.server, kSelfCheckTimeoutSeconds);
+  if (!answers.ok()) return answers;
+  const std::uint64_t batches = metrics_.batches();
+  const common::TimePoint now = common::Clock::Real().Now();
+  if (scheduler_->queued_windows() == 0 || batches != seen_batches_) queue_moved_ = now;
+  seen_batches_ = batches;
+  if (common::SecondsBetween(queue_moved_, now) < kQueueStuckSeconds) return absl::OkStatus();
+  return absl::UnavailableError("windows wait, and no worker finishes a batch");
 }
 
 bool DuetServer::Ready() const {
   return !draining_ && reachable_ && admission_.state() == service::Admission::State::kServing;
-}
-
-std::string DuetServer::Describe() const {
-  std::string text;
-  if (draining_) text = "draining\n";
-  if (!reachable_) absl::StrAppend(&text, "self-check: failed, see the log\n");
-  std::vector<std::string> failed, others, skipped;
-  for (const registry::ModelStatus& model : manager_.List()) {
-    if (model.state == registry::ModelState::kUnloaded) continue;
-    (model.error.empty() ? others : failed).push_back(LineOf(model));
-  }
-  failed.insert(failed.end(), others.begin(), others.end());
-  for (const registry::SkippedFolder& folder : manager_.skipped()) {
-    skipped.push_back(absl::StrCat(folder.folder, ": ", folder.reason));
-  }
-  AppendLines(failed, "model", "models", &text);
-  AppendLines(skipped, "skipped", "skipped folders", &text);
-  AppendLines(control_.problems(), "problem", "problems", &text);
-  return text;
 }
 
 void DuetServer::Configure(const v1::ServerConfig& settings) {
@@ -432,6 +382,7 @@ void DuetServer::Close() {
   service_.FinishAborted(kLastMessageSeconds);
   // gRPC 1.51 crashes if a call within the process begins while the server shuts down.
   if (self_check_ != nullptr) self_check_->Stop();
+  if (stuck_ != nullptr) stuck_->Set(0);
   grpc_.server->Shutdown(std::chrono::system_clock::now() + kFlush);
 }
 

@@ -2,6 +2,7 @@
 #define DUET_SERVER_LIFECYCLE_DUET_SERVER_H_
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <set>
@@ -12,10 +13,12 @@
 #include "duet/v1/server_config.pb.h"
 #include "server/admin/admin_service.h"
 #include "server/batching/window_scheduler.h"
+#include "server/common/clock.h"
 #include "server/common/mutex.h"
 #include "server/lifecycle/grpc_server.h"
 #include "server/lifecycle/heap_trimmer.h"
 #include "server/lifecycle/load_models.h"
+#include "server/lifecycle/process_end.h"
 #include "server/lifecycle/repeated_task.h"
 #include "server/lifecycle/self_check.h"
 #include "server/metrics/json_log.h"
@@ -28,7 +31,6 @@
 #include "server/security/secret_files.h"
 #include "server/service/admission.h"
 #include "server/service/motion_synthesis_service.h"
-#include "server/tracing/call_tracer.h"
 
 namespace duet::server::lifecycle {
 
@@ -49,8 +51,8 @@ class DuetServer {
  public:
   // `settings` are resolved (config::Settings). `sink` outlives the server. `self_check` replaces
   // connecting to the server's own port. Fails with UNAVAILABLE, the setting and the reason if it
-  // cannot listen on an address, and like SecretFiles::Open and CallTracer::Open if their files or
-  // settings are invalid (ValidateSettings reports those before).
+  // cannot listen on an address, and like SecretFiles::Open if its files are invalid
+  // (ValidateSettings reports those before).
   static absl::StatusOr<std::unique_ptr<DuetServer>> Start(
       const v1::ServerConfig& settings, metrics::LogSink& sink,
       std::function<absl::Status()> self_check = nullptr);
@@ -70,7 +72,7 @@ class DuetServer {
   // Changes models while the server runs.
   registry::ModelControl& control() { return control_; }
   int admin_port() const { return admin_grpc_.port; }
-  // Uses the labels and policies of these settings from the next reload.
+  // Uses the labels of these settings from the next reload.
   void Configure(const v1::ServerConfig& settings);
 
   // Reports NOT_SERVING, continues to serve for drain_seconds, lets calls finish for grace_seconds,
@@ -88,12 +90,11 @@ class DuetServer {
 
  private:
   DuetServer(const v1::ServerConfig& settings, metrics::LogSink& sink,
-             std::unique_ptr<security::SecretFiles> secrets,
-             std::unique_ptr<tracing::CallTracer> tracer);
+             std::unique_ptr<security::SecretFiles> secrets);
   absl::Status Listen(std::function<absl::Status()> self_check);
   absl::Status ListenForAdmin();
-  // Checks that the server accepts connections and answers calls.
-  absl::Status CheckItself() const;
+  // Checks that the server accepts connections, answers calls, and evaluates windows that wait.
+  absl::Status CheckItself();
   // Starts the periodic tasks: time limits, memory, secrets, counts of unlogged calls, the
   // self-check.
   void Watch(std::function<absl::Status()> self_check);
@@ -104,8 +105,6 @@ class DuetServer {
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
   // Takes no lock: a lock that is held forever must not hide that the server is not ready.
   bool Ready() const;
-  // Describes the state of each model for people, one line each, up to a limit.
-  std::string Describe() const;
   // Sets the status of the server and of each model in gRPC's health service.
   void SetHealth(bool serving);
   // Applies the result of the last self-check.
@@ -119,7 +118,6 @@ class DuetServer {
 
   const v1::ServerConfig settings_;
   metrics::JsonLog log_;
-  const std::unique_ptr<tracing::CallTracer> tracer_;  // null: spans go nowhere
   metrics::ServerMetrics metrics_;
   const std::unique_ptr<security::SecretFiles> secrets_;
   ModelEvents events_;
@@ -138,7 +136,11 @@ class DuetServer {
   std::set<std::string> health_models_ DUET_GUARDED_BY(health_mutex_);  // ever told of
   HeapTrimmer heap_trimmer_;
   std::vector<std::unique_ptr<RepeatedTask>> watch_;
+  std::unique_ptr<LastResort> stuck_;      // null without a limit: see watchdog_seconds
   std::unique_ptr<SelfCheck> self_check_;  // null when the options want none
+  // Used only by the self-check: the batches that it saw last, and since when the queue moves.
+  std::uint64_t seen_batches_ = 0;
+  common::TimePoint queue_moved_;
   std::unique_ptr<metrics::MetricsEndpoint> endpoint_;
   registry::ModelControl control_;
   admin::AdminService admin_;

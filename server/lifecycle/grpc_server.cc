@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "server/common/bindable.h"
+#include "server/common/listen_address.h"
 
 namespace duet::server::lifecycle {
 namespace {

@@ -9,13 +9,13 @@
 #include <memory>
 
 #include "absl/status/statusor.h"
-#include "server/config/listen_address.h"
+#include "server/common/listen_address.h"
 
 namespace duet::server::lifecycle {
 
 // The part of the settings that gRPC itself enforces.
 struct GrpcServerOptions {
-  config::ListenAddress listen;
+  common::ListenAddress listen;
   bool reflection = false;
   std::size_t max_request_bytes = 0;
   std::size_t max_transport_bytes = 0;

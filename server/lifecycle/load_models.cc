@@ -83,15 +83,6 @@ void ConfigureModels(const v1::ServerConfig& settings, registry::ModelManager& m
     labels.push_back({label.model(), label.label(), label.version()});
   }
   manager.SetLabels(std::move(labels));
-  std::vector<registry::VersionPolicy> policies;
-  for (const v1::VersionPolicy& message : settings.version_policies()) {
-    registry::VersionPolicy policy;
-    if (message.model() != "*") policy.model = message.model();
-    if (message.has_latest()) policy.latest = message.latest();
-    policy.versions.assign(message.versions().begin(), message.versions().end());
-    policies.push_back(std::move(policy));
-  }
-  manager.SetPolicies(std::move(policies));
 }
 
 absl::StatusOr<LoadFindings> LoadModels(const v1::ServerConfig& settings,

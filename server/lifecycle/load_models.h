@@ -19,7 +19,7 @@
 
 namespace duet::server::lifecycle {
 
-// Gives the manager the labels and policies of the settings.
+// Gives the manager the labels of the settings.
 void ConfigureModels(const v1::ServerConfig& settings, registry::ModelManager& manager);
 
 struct LoadFindings {
@@ -41,7 +41,7 @@ absl::StatusOr<LoadFindings> LoadModels(const v1::ServerConfig& settings,
 // Sets the default model and the labels after models were loaded. Returns the labels that cannot be
 // set now because their versions are not served.
 // Fails with FAILED_PRECONDITION if no model is served, NOT_FOUND if the default model is not
-// served, and INVALID_ARGUMENT if labels or policies name models that do not exist.
+// served, and INVALID_ARGUMENT if labels name models that do not exist.
 absl::StatusOr<std::vector<std::string>> SettleModels(const v1::ServerConfig& settings,
                                                       registry::ModelManager& manager,
                                                       registry::ModelRegistry& registry);

@@ -5,11 +5,8 @@
 
 namespace duet::server::lifecycle {
 
-RepeatedTask::RepeatedTask(const common::StepKind& kind, double pause_seconds,
-                           std::function<void()> task)
-    : thread_([this, &kind, pause_seconds, task = std::move(task)] {
-        Run(kind, pause_seconds, task);
-      }) {}
+RepeatedTask::RepeatedTask(double pause_seconds, std::function<void()> task)
+    : thread_([this, pause_seconds, task = std::move(task)] { Run(pause_seconds, task); }) {}
 
 RepeatedTask::~RepeatedTask() {
   {
@@ -20,8 +17,7 @@ RepeatedTask::~RepeatedTask() {
   thread_.join();
 }
 
-void RepeatedTask::Run(const common::StepKind& kind, double pause_seconds,
-                       const std::function<void()>& task) {
+void RepeatedTask::Run(double pause_seconds, const std::function<void()>& task) {
   const auto pause = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
       std::chrono::duration<double>(pause_seconds));
   while (true) {
@@ -32,7 +28,6 @@ void RepeatedTask::Run(const common::StepKind& kind, double pause_seconds,
       }
       if (stopping_) return;
     }
-    const common::Step step(kind);
     task();
   }
 }

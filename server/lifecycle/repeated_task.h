@@ -4,7 +4,6 @@
 #include <functional>
 #include <thread>
 
-#include "server/common/activity.h"
 #include "server/common/mutex.h"
 
 namespace duet::server::lifecycle {
@@ -12,13 +11,12 @@ namespace duet::server::lifecycle {
 // Runs a task repeatedly on a thread of its own, with a pause in between, until destroyed.
 class RepeatedTask {
  public:
-  // `kind` describes the task to the watchdog.
-  RepeatedTask(const common::StepKind& kind, double pause_seconds, std::function<void()> task);
+  RepeatedTask(double pause_seconds, std::function<void()> task);
   // Waits for a task that is running.
   ~RepeatedTask();
 
  private:
-  void Run(const common::StepKind& kind, double pause_seconds, const std::function<void()>& task);
+  void Run(double pause_seconds, const std::function<void()>& task);
 
   common::Mutex mutex_;
   common::CondVar changed_;

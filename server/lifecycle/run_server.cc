@@ -1,11 +1,14 @@
 #include "server/lifecycle/run_server.h"
 
+#include <google/protobuf/stubs/logging.h>
+#include <grpc/support/log.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstddef>
@@ -21,26 +24,18 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "absl/time/clock.h"
-#include "server/common/activity.h"
 #include "server/config/container_limits.h"
 #include "server/config/load_config.h"
 #include "server/config/memory_plan.h"
-#include "server/config/print_config.h"
-#include "server/lifecycle/check_config.h"
 #include "server/lifecycle/duet_server.h"
-#include "server/lifecycle/library_logs.h"
+#include "server/lifecycle/process_end.h"
 #include "server/lifecycle/self_check.h"
 #include "server/lifecycle/validate_settings.h"
 #include "server/metrics/json_log.h"
 #include "server/metrics/log_sink.h"
 #include "server/metrics/process_metrics.h"
-#include "server/watchdog/watchdog.h"
 
 namespace duet::server::lifecycle {
-
-using watchdog::kExitFailed;
-using watchdog::kExitStopped;
-using watchdog::kExitUsage;
 
 namespace {
 
@@ -101,8 +96,44 @@ void SystemdNotifier::Send(const std::string& message) const {
   close(descriptor);
 }
 
-using watchdog::Watchdog;
-using watchdog::WatchdogOptions;
+// The libraries accept only plain functions.
+std::atomic<metrics::JsonLog*> current_log{nullptr};
+
+void LogLibrary(const char* library, bool error, const std::string& message) {
+  metrics::JsonLog* log = current_log.load(std::memory_order_acquire);
+  if (log == nullptr) return;
+  log->Library(library, error ? metrics::Severity::kError : metrics::Severity::kInfo, message);
+}
+
+void LogGrpc(gpr_log_func_args* args) {
+  LogLibrary("grpc", args->severity == GPR_LOG_SEVERITY_ERROR, args->message);
+}
+
+void LogProtobuf(google::protobuf::LogLevel level, const char*, int, const std::string& message) {
+  // A malformed request is the caller's error, not the server's.
+  LogLibrary("protobuf", level == google::protobuf::LOGLEVEL_FATAL, message);
+}
+
+// Writes the messages of gRPC and Protobuf to the log as JSON while it exists, so that every line
+// of the server's output parses.
+//
+// Threads: construct it before gRPC starts; at most one exists at a time.
+class LibraryLogs {
+ public:
+  // `log` outlives it.
+  explicit LibraryLogs(metrics::JsonLog& log) {
+    current_log.store(&log, std::memory_order_release);
+    gpr_set_log_function(LogGrpc);
+    google::protobuf::SetLogHandler(LogProtobuf);
+  }
+  ~LibraryLogs() {
+    google::protobuf::SetLogHandler(nullptr);
+    gpr_set_log_function(nullptr);
+    current_log.store(nullptr, std::memory_order_release);
+  }
+  LibraryLogs(const LibraryLogs&) = delete;
+  LibraryLogs& operator=(const LibraryLogs&) = delete;
+};
 
 // Each connection needs a descriptor, and gRPC's listener does not recover from running out.
 void RaiseDescriptorLimit() {
@@ -115,24 +146,8 @@ void RaiseDescriptorLimit() {
 // Resolves the settings again: flags and variables stay, the file may have changed.
 using ReadSettings = std::function<absl::StatusOr<v1::ServerConfig>()>;
 
-constexpr common::StepKind kStarting{"main", "starting and loading models", /*is_bounded=*/false};
-constexpr common::StepKind kDraining{"main", "draining", /*is_bounded=*/false};
-constexpr common::StepKind kEnding{"main", "joining threads", /*is_bounded=*/false};
-
-// Maximum time to exit when no call is left: gRPC sends statuses for a second; a running self-check
-// and a stuck log take at most five seconds each.
-constexpr double kEndSeconds = 10;
-
 // Less than the image's HEALTHCHECK waits.
 constexpr double kHealthSeconds = 4;
-
-WatchdogOptions WatchdogOf(const v1::ServerConfig& values) {
-  WatchdogOptions wanted;
-  wanted.step_seconds = values.watchdog_seconds();
-  wanted.hurry_seconds = kEndSeconds;
-  wanted.text_log = values.log_format() == v1::LOG_FORMAT_TEXT;
-  return wanted;
-}
 
 // The number of served models, for the status line of systemd.
 std::string ServedText(DuetServer& server) {
@@ -146,16 +161,10 @@ std::string ServedText(DuetServer& server) {
                       outdated == 0 ? "" : absl::StrCat(", ", outdated, " of them outdated"));
 }
 
-StopSignal::Kind WaitForSignal(StopSignal& stop) {
-  const common::Idle idle;
-  return stop.Wait();
-}
-
 // Listens, loads and begins to serve. Fails with CANCELLED if a signal to stop arrives before that.
 absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const v1::ServerConfig& values,
                                                          const ModelSource& source,
                                                          StopSignal& stop, metrics::LogSink& sink) {
-  const common::Step step(kStarting);
   absl::StatusOr<std::unique_ptr<DuetServer>> server = DuetServer::Start(values, sink);
   if (!server.ok()) return server;
   absl::Status status = (*server)->Load(source, [&stop] { return stop.WaitFor(0); });
@@ -167,14 +176,13 @@ absl::StatusOr<std::unique_ptr<DuetServer>> StartServing(const v1::ServerConfig&
 // Serves until a signal to stop, and reloads at a signal to reload.
 void ServeUntilStopped(DuetServer& server, StopSignal& stop, const SystemdNotifier& systemd) {
   systemd.Ready(ServedText(server));
-  while (WaitForSignal(stop) == StopSignal::Kind::kReload) {
+  while (stop.Wait() == StopSignal::Kind::kReload) {
     systemd.Reloading();
     server.control().Reload([&server, &systemd](const auto& report) {
       if (!absl::IsCancelled(report.status())) systemd.Ready(ServedText(server));
     });
   }
   systemd.Stopping();
-  const common::Step step(kDraining);
   server.Drain([&stop](double seconds) { return !stop.WaitFor(seconds); });
 }
 
@@ -191,9 +199,6 @@ absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_s
                    StopSignal& stop, metrics::LogSink& sink) {
   const v1::ServerConfig& values = settings.values;
   const ModelSource& source = *settings.source;
-  // Never destroyed: it watches until the process has exited.
-  auto* const last_resort = new Watchdog(WatchdogOf(values), stop);
-  const common::Step step(kEnding);  // covers what follows the steps below
   metrics::JsonLog log(sink, absl::Now, LogOptionsOf(values));
   const LibraryLogs library_logs(log);
   for (const std::string& mistake : settings.resource_mistakes) {
@@ -211,7 +216,7 @@ absl::Status Serve(const ValidatedSettings& settings, const ReadSettings& read_s
     return server.status();
   }
   WarnOfMemory(values, log);
-  last_resort->AllowToStop(values.drain_seconds() + values.grace_seconds() + kEndSeconds);
+  stop.AllowToStop(values.drain_seconds() + values.grace_seconds() + StopSignal::kHurrySeconds);
   DuetServer& serving = **server;
   const auto configure = [&serving, &read_settings] {
     const absl::StatusOr<v1::ServerConfig> current = read_settings();
@@ -248,22 +253,22 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   }
   const int cores = config::AvailableCores();
   const std::uint64_t memory = config::AvailableMemory();
-  if (command_line.task == config::CommandLine::Task::kPrintConfig ||
-      command_line.task == config::CommandLine::Task::kCheckHealth) {
+  if (command_line.task == config::Task::kPrintConfig ||
+      command_line.task == config::Task::kCheckHealth) {
     const config::Settings settings = config::ReadSettings(command_line, cores, memory);
     Complain(settings.mistakes);
     if (!settings.mistakes.empty()) return kExitUsage;
-    if (command_line.task == config::CommandLine::Task::kCheckHealth) {
+    if (command_line.task == config::Task::kCheckHealth) {
       return ReportHealth(settings.values);
     }
     std::cout << config::PrintConfig(settings.values, command_line.sources);
     return kExitStopped;
   }
-  const bool check = command_line.task == config::CommandLine::Task::kCheckConfig;
+  const bool check = command_line.task == config::Task::kCheckConfig;
   const ValidatedSettings settings = ValidateSettings(command_line, cores, memory, open_engine,
                                                       check ? Ports::kMayBeInUse : Ports::kFree);
   if (check) {
-    stop.Unblock();
+    stop.Release();
     return CheckConfig(settings, std::cout);
   }
   if (!settings.setting_mistakes.empty()) {
@@ -276,9 +281,6 @@ int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine
   std::signal(SIGPIPE, SIG_IGN);
   metrics::QueuedLogSink::Options log;
   log.drop_notice = [](std::uint64_t dropped) { return metrics::DroppedLinesNotice(dropped); };
-  if (settings.values.log_format() == v1::LOG_FORMAT_TEXT) {
-    sink = std::make_shared<metrics::TextLogSink>(std::move(sink));
-  }
   // Outlives everything that logs, and writes the last lines before the process exits.
   metrics::QueuedLogSink queued_sink(std::move(sink), log);
   const auto read_settings = [&] { return config::ResolveSettings(read(), cores, memory); };

@@ -3,23 +3,21 @@
 
 #include <memory>
 
+#include "server/lifecycle/process_end.h"
 #include "server/lifecycle/validate_settings.h"
 #include "server/metrics/log_sink.h"
 #include "server/registry/model_repository.h"
-#include "server/watchdog/exit_codes.h"
-#include "server/watchdog/stop_signal.h"
 
 namespace duet::server::lifecycle {
 
 using registry::ModelSource;
-using watchdog::StopSignal;
 
 // Runs duet-server from the command line to the exit code: listen, load, serve, reload on SIGHUP,
 // drain. If a thread hangs, the process ends with kExitStuck or kExitLate and this function does
 // not return.
 //
-// `stop` was constructed before any thread and is never destroyed: a watchdog records signals until
-// the process has exited. A slow or stuck `sink` delays only the log.
+// `stop` is never destroyed: it limits the time until the process has exited. A slow or stuck
+// `sink` delays only the log.
 int RunServer(int argc, const char* const* argv, const EngineOpener& open_engine, StopSignal& stop,
               std::shared_ptr<metrics::LogSink> sink);
 

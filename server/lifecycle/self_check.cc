@@ -1,77 +1,35 @@
 #include "server/lifecycle/self_check.h"
 
 #include <netdb.h>
-#include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "absl/cleanup/cleanup.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
-#include "server/config/listen_address.h"
+#include "server/common/listen_address.h"
 
 namespace duet::server::lifecycle {
 namespace {
 
-// A TCP connection to a server on this machine, for checks of its health. Each step fails with
-// UNAVAILABLE and its name. All of them together take at most the time that Open was given.
-//
-// Threads: not safe to call concurrently. Blocks.
-class LocalConnection {
- public:
-  // `address` is one that the server listens on; if it means every interface, this machine's
-  // loopback address is used.
-  static absl::StatusOr<LocalConnection> Open(const config::ListenAddress& address,
-                                              double timeout_seconds);
-  LocalConnection(LocalConnection&& other) noexcept;
-  LocalConnection& operator=(LocalConnection&&) = delete;
-  ~LocalConnection();
+constexpr absl::string_view kRequest =
+    "GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
 
-  // Sends a short text.
-  absl::Status Send(absl::string_view text) const;
-  // Sends nothing more.
-  absl::Status EndOutput() const;
-  // Waits for data or the end of the connection.
-  absl::Status WaitForAnswer() const;
-  // Returns what the server sends until it ends the connection, at most 64 KiB of it.
-  absl::StatusOr<std::string> ReadAll() const;
-
- private:
-  LocalConnection(int socket, double end_seconds) : socket_(socket), end_seconds_(end_seconds) {}
-  absl::Status Connect(const config::ListenAddress& address);
-  // Returns whether the socket is ready in time. Polls at least once.
-  bool WaitFor(int events) const;
-
-  int socket_;
-  double end_seconds_;  // of the steady clock
-};
-
-constexpr std::size_t kMostAnswerBytes = 64 << 10;
-
-double NowSeconds() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(now).count();
-}
-
-absl::Status Failure(absl::string_view step, int error) {
-  return absl::UnavailableError(absl::StrCat("the server does not answer on its own port: ", step,
-                                             error == 0 ? "" : ": ",
-                                             error == 0 ? "" : std::strerror(error)));
+absl::Status Failure(absl::string_view step, absl::string_view error) {
+  return absl::UnavailableError(
+      absl::StrCat("the server does not answer on its own port: ", step, ": ", error));
 }
 
 std::string Reachable(const std::string& host) {
@@ -79,110 +37,63 @@ std::string Reachable(const std::string& host) {
   return host == "::" ? "::1" : host;
 }
 
-absl::StatusOr<LocalConnection> LocalConnection::Open(const config::ListenAddress& address,
-                                                      double timeout_seconds) {
-  LocalConnection connection(-1, NowSeconds() + timeout_seconds);
-  if (absl::Status status = connection.Connect(address); !status.ok()) return status;
-  return connection;
-}
-
-LocalConnection::LocalConnection(LocalConnection&& other) noexcept
-    : socket_(std::exchange(other.socket_, -1)), end_seconds_(other.end_seconds_) {}
-
-LocalConnection::~LocalConnection() {
-  if (socket_ >= 0) close(socket_);
-}
-
-absl::Status LocalConnection::Connect(const config::ListenAddress& address) {
+// Sends `text`, which may be empty, to a server on this machine, ends the output, and returns the
+// first line that the server sends: empty if it only ends the connection. If `address` means every
+// interface, this machine's loopback address is used. Blocks, each step for at most
+// `timeout_seconds`. Fails with UNAVAILABLE and the step.
+absl::StatusOr<std::string> Ask(const common::ListenAddress& address, absl::string_view text,
+                                double timeout_seconds) {
   addrinfo hints = {};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* found = nullptr;
   const int unresolved = getaddrinfo(Reachable(address.host).c_str(),
                                      std::to_string(address.port).c_str(), &hints, &found);
   if (unresolved != 0) {
-    return Failure(absl::StrCat("cannot resolve ", address.host, ": ", gai_strerror(unresolved)),
-                   0);
+    return Failure(absl::StrCat("cannot resolve ", address.host), gai_strerror(unresolved));
   }
-  socket_ = socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  const int opening = socket_ < 0 ? errno : 0;
-  const bool connected = socket_ >= 0 && connect(socket_, found->ai_addr, found->ai_addrlen) == 0;
-  int error = connected ? 0 : errno;
-  freeaddrinfo(found);
-  if (opening != 0) return Failure("cannot open a socket", opening);
-  if (error == EINPROGRESS) {
-    if (!WaitFor(POLLOUT)) return Failure("cannot connect in time", 0);
-    socklen_t size = sizeof(error);
-    getsockopt(socket_, SOL_SOCKET, SO_ERROR, &error, &size);
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, freeaddrinfo);
+  const int descriptor = socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) return Failure("cannot open a socket", std::strerror(errno));
+  const auto closing = absl::MakeCleanup([descriptor] { close(descriptor); });
+  timeval timeout = {};
+  timeout.tv_sec = static_cast<time_t>(timeout_seconds);
+  timeout.tv_usec =
+      static_cast<suseconds_t>((timeout_seconds - static_cast<double>(timeout.tv_sec)) * 1e6);
+  setsockopt(descriptor, SOL_SOCKET, SO_SNDTIMEO, &timeout, sizeof(timeout));  // also of connect
+  setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof(timeout));
+  if (connect(descriptor, found->ai_addr, found->ai_addrlen) != 0) {
+    return Failure("cannot connect", std::strerror(errno));
   }
-  return error == 0 ? absl::OkStatus() : Failure("cannot connect", error);
-}
-
-bool LocalConnection::WaitFor(int events) const {
-  while (true) {
-    const int left = static_cast<int>(std::max(0.0, 1000 * (end_seconds_ - NowSeconds())));
-    pollfd wanted = {socket_, static_cast<std::int16_t>(events), 0};
-    const int ready = poll(&wanted, 1, left);
-    if (ready > 0) return true;
-    if (left <= 0 || (ready < 0 && errno != EINTR)) return false;
+  if (send(descriptor, text.data(), text.size(), MSG_NOSIGNAL) < 0 ||
+      shutdown(descriptor, SHUT_WR) != 0) {
+    return Failure("cannot send", std::strerror(errno));
   }
+  char answer[256];
+  const ssize_t size = recv(descriptor, answer, sizeof(answer), 0);
+  if (size < 0) return Failure("connected, but got no answer", std::strerror(errno));
+  const absl::string_view received(answer, static_cast<std::size_t>(size));
+  return std::string(received.substr(0, received.find("\r\n")));
 }
-
-absl::Status LocalConnection::Send(absl::string_view text) const {
-  const ssize_t sent = send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
-  if (sent < 0) return Failure("cannot send", errno);
-  return static_cast<std::size_t>(sent) == text.size() ? absl::OkStatus()
-                                                       : Failure("cannot send at once", 0);
-}
-
-absl::Status LocalConnection::EndOutput() const {
-  return shutdown(socket_, SHUT_WR) == 0 ? absl::OkStatus()
-                                         : Failure("cannot shut the connection down", errno);
-}
-
-absl::Status LocalConnection::WaitForAnswer() const {
-  return WaitFor(POLLIN) ? absl::OkStatus() : Failure("connected, but got no answer", 0);
-}
-
-absl::StatusOr<std::string> LocalConnection::ReadAll() const {
-  std::string answer;
-  while (answer.size() < kMostAnswerBytes) {
-    if (absl::Status status = WaitForAnswer(); !status.ok()) return status;
-    char buffer[4096];
-    const ssize_t read = recv(socket_, buffer, sizeof(buffer), 0);
-    if (read < 0 && errno != EAGAIN && errno != EINTR) return Failure("cannot read", errno);
-    if (read == 0) break;
-    if (read > 0) answer.append(buffer, static_cast<std::size_t>(read));
-  }
-  return answer;
-}
-
-constexpr common::StepKind kChecking{"self-check", "calling the server itself"};
-
-constexpr absl::string_view kRequest =
-    "GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
 
 }  // namespace
 
 absl::Status CheckListener(const std::string& host, int port, double timeout_seconds) {
-  absl::StatusOr<LocalConnection> connection = LocalConnection::Open({host, port}, timeout_seconds);
-  if (!connection.ok()) return connection.status();
-  // Send nothing: plain text would be an error in the log of a server with TLS, and a TLS handshake
-  // needs certificates.
-  if (absl::Status status = connection->EndOutput(); !status.ok()) return status;
-  // Data, or the end of the connection, shows that the server accepted it.
-  return connection->WaitForAnswer();
+  // Sends nothing: plain text would be an error in the log of a server with TLS, and a TLS
+  // handshake needs certificates. Data, or the end of the connection, shows that the server
+  // accepted it.
+  return Ask({host, port}, "", timeout_seconds).status();
 }
 
 SelfCheck::SelfCheck(SelfCheckOptions options)
     : options_(std::move(options)),
-      task_(std::make_unique<RepeatedTask>(kChecking, options_.interval_seconds,
-                                           [this] { Check(); })) {}
+      task_(std::make_unique<RepeatedTask>(options_.interval_seconds, [this] { Check(); })) {}
 
 void SelfCheck::Check() {
   const absl::Status status = options_.check();
   const bool passed = passes();
   if (status.ok()) {
     failures_ = 0;
+    options_.passed();
   } else {
     ++failures_;
     options_.failed(status);
@@ -191,21 +102,17 @@ void SelfCheck::Check() {
 }
 
 absl::Status CheckHealth(const v1::ServerConfig& settings, double timeout_seconds) {
-  const std::optional<config::ListenAddress> metrics = config::AddressOf(settings.metrics_listen());
+  const std::optional<common::ListenAddress> metrics = common::AddressOf(settings.metrics_listen());
   if (!metrics.has_value()) {
-    const std::optional<config::ListenAddress> grpc = config::AddressOf(settings.listen());
+    const std::optional<common::ListenAddress> grpc = common::AddressOf(settings.listen());
     if (!grpc.has_value()) return absl::UnavailableError("listen: expected host:port, got none");
     return CheckListener(grpc->host, grpc->port, timeout_seconds);
   }
-  absl::StatusOr<LocalConnection> connection = LocalConnection::Open(*metrics, timeout_seconds);
-  if (!connection.ok()) return connection.status();
-  if (absl::Status status = connection->Send(kRequest); !status.ok()) return status;
-  const absl::StatusOr<std::string> answer = connection->ReadAll();
+  const absl::StatusOr<std::string> answer = Ask(*metrics, kRequest, timeout_seconds);
   if (!answer.ok()) return answer.status();
   if (absl::StartsWith(*answer, "HTTP/1.1 200 ")) return absl::OkStatus();
-  const std::vector<absl::string_view> lines = absl::StrSplit(*answer, "\r\n");
   return absl::UnavailableError(
-      absl::StrCat("/healthz: expected the status 200, got \"", lines[0], "\""));
+      absl::StrCat("/healthz: expected the status 200, got \"", *answer, "\""));
 }
 
 }  // namespace duet::server::lifecycle

@@ -8,7 +8,6 @@
 
 #include "absl/status/status.h"
 #include "duet/v1/server_config.pb.h"
-#include "server/common/activity.h"
 #include "server/lifecycle/repeated_task.h"
 
 namespace duet::server::lifecycle {
@@ -26,6 +25,7 @@ absl::Status CheckListener(const std::string& host, int port, double timeout_sec
 struct SelfCheckOptions {
   double interval_seconds = 10;
   std::function<absl::Status()> check;              // such as CheckListener
+  std::function<void()> passed = [] {};             // called at each success
   std::function<void(const absl::Status&)> failed;  // called at each failure
   // Called when the result of a check differs from the previous one.
   std::function<void(bool passes)> changed;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,14 @@ inline security::SecretFiles::Options SecretsOf(const v1::ServerConfig& settings
   secrets.access = settings.access_file();
   return secrets;
 }
+
+// Loads the models that the settings name, with the code of a server start, and writes one line for
+// each model and for each mistake: mistakes in settings, checkpoints that do not load, folders that
+// are not checkpoints, labels that point nowhere. Does not listen. Settings that do not fit the
+// memory cause a warning, which is not a mistake.
+//
+// Returns the exit code: kExitUsage for mistakes in settings, kExitFailed for any other.
+int CheckConfig(const ValidatedSettings& settings, std::ostream& out);
 
 }  // namespace duet::server::lifecycle
 

@@ -4,15 +4,6 @@
 
 namespace duet::server::metrics {
 
-bool CallLogFilter::LogSuccess() {
-  if (success_ratio_ <= 0) return false;
-  common::MutexLock lock(mutex_);
-  // The credit starts at one line; each call adds success_ratio_.
-  const bool log = successes_ >= 1;
-  successes_ += success_ratio_ - (log ? 1 : 0);
-  return log;
-}
-
 bool CallLogFilter::LogRefusal(int code, double now) {
   common::MutexLock lock(mutex_);
   Second& second = seconds_.at(static_cast<std::size_t>(code));

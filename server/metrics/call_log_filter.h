@@ -10,9 +10,8 @@
 
 namespace duet::server::metrics {
 
-// Decides which calls are logged, so that neither a busy server nor a flood of rejected calls fills
-// the disk: a fraction of the successful calls, and a number of rejected calls per second and
-// status code. It counts the rejected calls that are not logged.
+// Decides which rejected calls are logged, so that a flood of them does not fill the disk: a number
+// per second and status code. It counts the others.
 //
 // Threads: safe to call concurrently. Uses neither gRPC nor abseil.
 class CallLogFilter {
@@ -26,13 +25,9 @@ class CallLogFilter {
     std::uint64_t calls = 0;
   };
 
-  // `success_ratio`: fraction of successful calls, 0 to 1. `refusals_per_second`: at least 0.
-  CallLogFilter(double success_ratio, int refusals_per_second)
-      : success_ratio_(success_ratio), refusals_per_second_(refusals_per_second) {}
+  // `refusals_per_second`: at least 0.
+  explicit CallLogFilter(int refusals_per_second) : refusals_per_second_(refusals_per_second) {}
 
-  // Whether to log a successful call. Logged calls are evenly spread and include the first, unless
-  // none are logged.
-  bool LogSuccess();
   // Whether to log a rejected call. `code`: a gRPC status code, 1 to 16, or kLibraries; `now`: in
   // seconds.
   bool LogRefusal(int code, double now);
@@ -49,10 +44,8 @@ class CallLogFilter {
     std::uint64_t unlogged = 0;
   };
 
-  const double success_ratio_;
   const int refusals_per_second_;
   common::Mutex mutex_;
-  double successes_ DUET_GUARDED_BY(mutex_) = 1;  // credit of successful calls, in lines
   std::array<Second, kCodes> seconds_ DUET_GUARDED_BY(mutex_);
 };
 

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "absl/status/status.h"
-#include "server/common/trace_context.h"
 
 namespace duet::server::metrics {
 
@@ -22,8 +21,7 @@ struct MethodInfo {
 struct CallRecord {
   MethodInfo method;
   std::string request_id;
-  std::string traceparent;     // W3C trace context; empty if the caller sent none
-  common::TraceContext trace;  // this call's span in that trace, or in a new one
+  std::string traceparent;  // W3C trace context; empty if the caller sent none
   std::string peer;
   std::string caller;             // known by token or certificate; empty for an unknown caller
   bool caller_is_listed = false;  // in the access file, which bounds the number of such names
@@ -50,7 +48,7 @@ struct CallRecord {
   double total_seconds = 0;
 };
 
-// Observes every call. Implemented by the metrics, the log and the tracer.
+// Observes every call. Implemented by the metrics and the log.
 //
 // Threads: called concurrently. Must neither block nor throw.
 class CallObserver {

@@ -1,6 +1,5 @@
 #include "server/metrics/json_log.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
@@ -37,6 +36,9 @@ std::string_view Name(Severity severity) {
   return "ERROR";
 }
 
+// In a traceparent, 00-<trace id>-<span id>-<flags>.
+constexpr std::size_t kTraceIdAt = 3, kTraceIdSize = 32;
+
 double ToSeconds(absl::Time time) { return absl::ToDoubleSeconds(time - absl::UnixEpoch()); }
 
 std::string Line(absl::Time now, Severity severity, std::string_view event, const Json& fields) {
@@ -47,21 +49,6 @@ std::string Line(absl::Time now, Severity severity, std::string_view event, cons
   if (fields.is_object()) line.update(fields);
   // Callers can send any bytes; a log line is always valid UTF-8.
   return line.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-// Unquoted if the end of the value is unambiguous, otherwise as JSON.
-std::string ValueText(const Json& value) {
-  if (!value.is_string()) return value.dump();
-  const std::string text = value.get<std::string>();
-  const bool bare = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return c > ' ' && c < 0x7f && c != '"' && c != '=';
-  });
-  return bare ? text : value.dump();
-}
-
-std::string Word(const Json& line, const char* key) {
-  const auto found = line.find(key);
-  return found == line.end() || !found->is_string() ? "" : found->get<std::string>();
 }
 
 }  // namespace
@@ -78,10 +65,9 @@ void JsonLog::CallFinished(const CallRecord& record) {
   Json fields;
   fields["method"] = record.method.name;
   fields["request_id"] = record.request_id;
-  if (!record.traceparent.empty()) fields["traceparent"] = record.traceparent;
-  if (!record.trace.trace_id.empty()) {
-    fields["trace_id"] = record.trace.trace_id;
-    fields["span_id"] = record.trace.span_id;
+  if (!record.traceparent.empty()) {
+    fields["traceparent"] = record.traceparent;
+    fields["trace_id"] = record.traceparent.substr(kTraceIdAt, kTraceIdSize);
   }
   fields["peer"] = record.peer;
   if (!record.caller.empty()) fields["caller"] = record.caller;
@@ -110,16 +96,12 @@ void JsonLog::CallFinished(const CallRecord& record) {
     fields["compute_seconds"] = record.compute_seconds;
   }
   fields["total_seconds"] = record.total_seconds;
-  if (record.status.ok() && options_.success_ratio < 1) {
-    fields["sampled_ratio"] = options_.success_ratio;
-  }
   Write(severity, "call", fields);
 }
 
 bool JsonLog::IsWanted(const CallRecord& record, Severity severity) {
   if (severity < options_.level) return false;
-  if (record.status.ok()) return filter_.LogSuccess();
-  return severity == Severity::kError ||
+  return record.status.ok() || severity == Severity::kError ||
          filter_.LogRefusal(static_cast<int>(record.status.code()), ToSeconds(now_()));
 }
 
@@ -164,20 +146,6 @@ void JsonLog::Error(std::string_view event, Json fields) { Write(Severity::kErro
 void JsonLog::Write(Severity severity, std::string_view event, const Json& fields) {
   if (severity < options_.level) return;
   sink_.Write(Line(now_(), severity, event, fields));
-}
-
-std::string ToText(std::string_view json_line) {
-  constexpr std::size_t kSeverityWidth = 7;  // WARNING
-  const Json line = Json::parse(json_line, nullptr, /*allow_exceptions=*/false);
-  if (!line.is_object()) return std::string(json_line);
-  std::string severity = Word(line, "severity");
-  severity.resize(std::max(severity.size(), kSeverityWidth), ' ');
-  std::string text = Word(line, "time") + " " + severity + " " + Word(line, "event");
-  for (const auto& [key, value] : line.items()) {
-    if (key == "time" || key == "severity" || key == "event") continue;
-    text += " " + key + "=" + ValueText(value);
-  }
-  return text;
 }
 
 }  // namespace duet::server::metrics

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -33,7 +32,6 @@ enum class Severity { kInfo, kWarning, kError };
 // Selects the lines to log.
 struct LogOptions {
   Severity level = Severity::kInfo;  // minimum severity
-  double success_ratio = 1;          // fraction of successful calls, 0 to 1
   int refusals_per_second = 10;      // for each status code; the rest is counted
 };
 
@@ -58,7 +56,7 @@ class JsonLog final : public CallObserver {
       : sink_(sink),
         now_(std::move(now)),
         options_(options),
-        filter_(options.success_ratio, options.refusals_per_second) {}
+        filter_(options.refusals_per_second) {}
   // Reports the calls that were not logged.
   ~JsonLog() override;
 
@@ -88,25 +86,6 @@ class JsonLog final : public CallObserver {
   const std::function<absl::Time()> now_;
   const LogOptions options_;
   CallLogFilter filter_;
-};
-
-// Formats a line of the JSON log for people. Returns any other line unchanged.
-//
-//   2022-05-01T12:00:00.123456Z INFO    call method=Synthesize code=OK frames=300
-std::string ToText(std::string_view json_line);
-
-// Passes every line on as text. Put it between the queue and the sink that writes, so that calls do
-// not wait for it.
-//
-// Threads: like the sink that it passes lines to.
-class TextLogSink final : public LogSink {
- public:
-  explicit TextLogSink(std::shared_ptr<LogSink> sink) : sink_(std::move(sink)) {}
-  bool Write(std::string_view line) override { return sink_->Write(ToText(line)); }
-  std::uint64_t dropped_lines() const override { return sink_->dropped_lines(); }
-
- private:
-  const std::shared_ptr<LogSink> sink_;
 };
 
 }  // namespace duet::server::metrics

@@ -2,8 +2,11 @@
 #define DUET_SERVER_METRICS_METRICS_ENDPOINT_H_
 
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "absl/status/statusor.h"
 
@@ -15,8 +18,6 @@ struct MetricsEndpointOptions {
   std::function<std::string()> render;  // the Prometheus text
   std::function<bool()> healthy;        // whether the server is still reachable
   std::function<bool()> ready;          // whether calls are being served
-  // Describes the state in detail, in lines for people. May be null.
-  std::function<std::string()> describe;
   // Maximum duration of a connection, from accept to close, and maximum number of connections. A
   // new connection replaces the oldest.
   double connection_seconds = 5;
@@ -24,8 +25,7 @@ struct MetricsEndpointOptions {
 };
 
 // A small HTTP server beside gRPC: GET /metrics for Prometheus, /healthz (200 while the process is
-// healthy, otherwise 503) and /readyz (200 while calls are served, otherwise 503; the body
-// describes the state).
+// healthy, otherwise 503) and /readyz (200 while calls are served, otherwise 503).
 //
 // One thread serves all connections without blocking: a client that sends or reads slowly, or not
 // at all, delays no other client. The callbacks run on that thread and must be quick.
@@ -37,6 +37,24 @@ class MetricsEndpoint {
   virtual ~MetricsEndpoint() = default;
   virtual int port() const = 0;
 };
+
+// The content of one page of the endpoint.
+struct HttpPage {
+  int code = 200;  // 200 or 503
+  std::string content_type = "text/plain";
+  std::string body;
+};
+
+// Path -> function that makes the page.
+using HttpPages = std::map<std::string, std::function<HttpPage()>, std::less<>>;
+
+// The largest head of a request, in bytes.
+inline constexpr std::size_t kMaxHttpHeadBytes = 8192;
+
+// Returns the whole response (RFC 9112) to what a client has sent so far, or nullopt while the head
+// of its request is incomplete. Serves GET and HEAD of known pages; anything else gets 400, 404,
+// 405, 431 or 505. Request bodies are not read. The connection ends with the response.
+std::optional<std::string> HttpReply(std::string_view received, const HttpPages& pages);
 
 }  // namespace duet::server::metrics
 

@@ -179,6 +179,7 @@ void ServerMetrics::WindowFinished(batching::Priority priority,
 void ServerMetrics::BatchFinished(const batching::WindowTimings& timings) {
   compute_seconds_.Observe(timings.compute_seconds);
   batch_size_.Observe(timings.batch_size);
+  ++batches_;
 }
 
 void ServerMetrics::ModelLoaded(const std::string& checkpoint, double seconds, bool loaded,
@@ -244,22 +245,9 @@ std::string ServerMetrics::Render() {
     families.push_back(Gauge("duet_ready", "1 while the server accepts and answers calls.",
                              read_.ready() ? 1 : 0));
   }
-  if (read_.longest_step_seconds) {
-    families.push_back(Gauge("duet_longest_step_seconds",
-                             "Duration of the longest step in progress of any thread.",
-                             read_.longest_step_seconds()));
-  }
   if (read_.certificate_end) {
     families.push_back(Gauge("duet_tls_certificate_expiry_timestamp_seconds",
                              "When the server's certificate expires.", read_.certificate_end()));
-  }
-  if (read_.spans) {
-    const SpanCounts spans = read_.spans();
-    families.push_back(Counter("duet_spans_sent_total", "Spans that the collector accepted.",
-                               static_cast<double>(spans.sent)));
-    families.push_back(Counter("duet_spans_dropped_total",
-                               "Spans lost because the collector was unavailable or too slow.",
-                               static_cast<double>(spans.dropped)));
   }
   for (prometheus::MetricFamily& family : ReadProcessMetrics()) {
     families.push_back(std::move(family));

@@ -7,6 +7,7 @@
 #include <prometheus/histogram.h>
 #include <prometheus/registry.h>
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -26,12 +27,6 @@ struct Capacity {
   int workers = 0;
 };
 
-// Spans since the start.
-struct SpanCounts {
-  std::uint64_t sent = 0;
-  std::uint64_t dropped = 0;
-};
-
 // A model version that is served.
 struct ServedVersion {
   std::string model;
@@ -45,9 +40,7 @@ struct ReadValues {
   std::function<double()> places_in_use;
   std::function<double()> dropped_log_lines;
   std::function<bool()> ready;
-  std::function<double()> longest_step_seconds;
   std::function<std::vector<ServedVersion>()> models;
-  std::function<SpanCounts()> spans;
   std::function<double()> certificate_end;  // seconds since 1970
 };
 
@@ -77,8 +70,7 @@ struct ReadValues {
 //   duet_workers                                       batches that may be evaluated at a time
 // Of the server as a whole:
 //   duet_ready                                         1 while /readyz returns 200, otherwise 0
-//   duet_self_check_failures_total                     failed connections to its own port
-//   duet_longest_step_seconds                          duration of the longest step in progress
+//   duet_self_check_failures_total                     failed calls of the server to itself
 // Of models:
 //   duet_model_load_seconds{checkpoint}                duration of the last load
 //   duet_model_state{checkpoint}                       1 served, 0 rejected; absent if unloaded
@@ -94,8 +86,6 @@ struct ReadValues {
 //                                                      earlier ones are still used
 //   duet_tls_certificate_expiry_timestamp_seconds      end of the server's certificate
 // Of the program: duet_build_info{version}, and the standard process_* (process_metrics.h).
-// Of tracing, if it is enabled:
-//   duet_spans_sent_total, duet_spans_dropped_total    spans that the collector accepted, and lost
 // Of the log:
 //   duet_log_lines_dropped_total                       lines lost to a slow reader or a full disk
 //
@@ -118,6 +108,8 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   void FoldersSkipped(int folders);
   void Reloaded(bool ok);
   void SelfCheckFailed() { self_check_failures_.Increment(); }
+  // Batches evaluated since the start.
+  std::uint64_t batches() const { return batches_; }
 
   // Call before the first Render.
   void SetRead(ReadValues read) { read_ = std::move(read); }
@@ -164,6 +156,7 @@ class ServerMetrics final : public CallObserver, public batching::WindowObserver
   Counters& caller_calls_;
   Counters& secrets_reloads_;
   Gauges& secrets_last_reload_;
+  std::atomic<std::uint64_t> batches_{0};
   ReadValues read_;
   common::Mutex render_mutex_;  // one scrape at a time updates the values that it reads
 };

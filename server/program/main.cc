@@ -70,8 +70,7 @@ absl::StatusOr<ModelSource> OpenCpuEngine(const ServerConfig& settings) {
     if (!duet::cpu_engine::kernels::HasInt16()) {
       return absl::InvalidArgumentError(
           "precision: expected PRECISION_F32, got PRECISION_INT16; this processor does not "
-          "multiply "
-          "integers of 16 bits (AVX-512 VNNI)");
+          "multiply integers of 16 bits (AVX-512 VNNI)");
     }
     engine.precision = Precision::kInt16;
   }
@@ -116,7 +115,7 @@ int main(int argc, char** argv) {
   duet::server::lifecycle::LimitFreeMemory();
   // Never deleted (see RunServer); static, so that LeakSanitizer still finds it when the process
   // ends.
-  static auto* const stop = new duet::server::watchdog::StopSignal;
+  static auto* const stop = new duet::server::lifecycle::StopSignal;
   const int code = duet::server::lifecycle::RunServer(
       argc, argv, OpenEngine, *stop,
       std::make_shared<duet::server::metrics::StreamLogSink>(stderr));

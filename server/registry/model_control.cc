@@ -4,15 +4,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/common/activity.h"
 
 namespace duet::server::registry {
 namespace {
-
-// Not bounded: a file system may be slow, and calls are answered meanwhile.
-constexpr common::StepKind kReloading{"model loader", "reloading", /*is_bounded=*/false};
-constexpr common::StepKind kChanging{"model loader", "loading or unloading a model",
-                                     /*is_bounded=*/false};
 
 absl::Status Stopping() { return absl::CancelledError("the server is stopping"); }
 
@@ -70,14 +64,12 @@ absl::StatusOr<ReloadReport> ModelControl::ReloadNow() {
 
 void ModelControl::Reload(ReloadDone done) {
   thread_.Post([this, done = std::move(done)](bool run) {
-    const common::Step step(kReloading);
     done(run ? ReloadNow() : absl::StatusOr<ReloadReport>(Stopping()));
   });
 }
 
 void ModelControl::Post(std::function<absl::Status()> work, Done done) {
   thread_.Post([this, work = std::move(work), done = std::move(done)](bool run) {
-    const common::Step step(kChanging);
     const absl::Status status = run ? work() : Stopping();
     if (run) observer_.Changed();
     done(status);

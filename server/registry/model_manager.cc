@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 #include "absl/strings/numbers.h"
@@ -26,11 +25,6 @@ void ModelManager::UseRepository(fs::path repository, ModelLoader loader) {
   common::MutexLock lock(mutex_);
   repository_ = std::move(repository);
   loader_ = std::move(loader);
-}
-
-void ModelManager::SetPolicies(std::vector<VersionPolicy> policies) {
-  common::MutexLock lock(mutex_);
-  policies_ = std::move(policies);
 }
 
 void ModelManager::SetLabels(std::vector<VersionLabel> labels) {
@@ -133,20 +127,8 @@ absl::StatusOr<ReloadReport> ModelManager::Reload(const std::function<bool()>& s
 
 bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_type& folders,
                                const std::function<bool()>& stop, ReloadReport& report) {
-  VersionPolicy policy;
-  {
-    common::MutexLock lock(mutex_);
-    policy = PolicyOf(name, policies_);
-  }
-  uint32_t places = policy.latest.value_or(std::numeric_limits<uint32_t>::max());
-  std::vector<uint32_t> keep;
   for (const auto& [version, folder] : folders) {
-    const bool wanted = IsWanted(name, version, policy, places);
-    if (wanted) keep.push_back(version);
-    if (!wanted && !IsLabelled(name, version) && !WillBeLabelled(name, version)) {
-      PassOver(name, version);
-      continue;
-    }
+    if (IsUnloaded(name, version)) continue;
     if (IsUnchanged(name, version, folder)) {
       ++report.unchanged;
     } else {
@@ -154,35 +136,14 @@ bool ModelManager::ReloadModel(const std::string& name, const Folders::mapped_ty
       const bool loaded = LoadFolder(name, version, folder).ok();
       (loaded ? report.loaded : report.refused).push_back(SourceOf(name, version));
     }
-    // A version that cannot be loaded leaves its place to the next older one.
-    const std::vector<uint32_t> served = ServedVersions(name);
-    if (std::find(served.begin(), served.end(), version) != served.end() && places > 0) --places;
   }
   // Moved first: a version without labels may be unloaded below.
   for (std::string& label : ApplyLabelsOf(name)) report.refused_labels.push_back(std::move(label));
   for (const uint32_t version : ServedVersions(name)) {
-    if (std::find(keep.begin(), keep.end(), version) != keep.end()) continue;
-    if (folders.count(version) > 0 && IsLabelled(name, version)) continue;
-    Retire(name, version, report);
+    if (folders.count(version) == 0) Retire(name, version, report);
   }
   ForgetWithout(folders, name);
-  for (const uint32_t version : policy.versions) {
-    if (policy.model == name && folders.count(version) == 0) {
-      report.problems.push_back(absl::StrCat("version_policies: version ", version, " of model ",
-                                             name, " is not in the repository"));
-    }
-  }
   return true;
-}
-
-void ModelManager::PassOver(const std::string& name, uint32_t version) {
-  {
-    common::MutexLock lock(mutex_);
-    Version& known = models_[name][version];
-    if (known.served || known.error.empty()) return;
-    known.error.clear();
-  }
-  observer_.Forgotten(SourceOf(name, version));
 }
 
 void ModelManager::ForgetWithout(const Folders::mapped_type& folders, const std::string& name) {
@@ -201,17 +162,10 @@ void ModelManager::ForgetWithout(const Folders::mapped_type& folders, const std:
   for (const std::string& source : forgotten) observer_.Forgotten(source);
 }
 
-bool ModelManager::IsWanted(const std::string& name, uint32_t version, const VersionPolicy& policy,
-                            uint32_t places) const {
-  const Wish wish = WishFor(name, version);
-  if (wish != Wish::kAsThePolicySays) return wish == Wish::kLoaded;
-  return policy.Names(version) && places > 0;
-}
-
-ModelManager::Wish ModelManager::WishFor(const std::string& name, uint32_t version) const {
+bool ModelManager::IsUnloaded(const std::string& name, uint32_t version) const {
   common::MutexLock lock(mutex_);
   const Version* known = Find(name, version);
-  return known == nullptr ? Wish::kAsThePolicySays : known->wish;
+  return known != nullptr && known->unloaded;
 }
 
 const ModelManager::Version* ModelManager::Find(const std::string& name, uint32_t version) const {
@@ -219,19 +173,6 @@ const ModelManager::Version* ModelManager::Find(const std::string& name, uint32_
   if (model == models_.end()) return nullptr;
   const auto known = model->second.find(version);
   return known == model->second.end() ? nullptr : &known->second;
-}
-
-bool ModelManager::IsLabelled(const std::string& name, uint32_t version) const {
-  const std::vector<uint32_t> labelled = registry_.LabelledVersions(name);
-  return std::find(labelled.begin(), labelled.end(), version) != labelled.end();
-}
-
-bool ModelManager::WillBeLabelled(const std::string& name, uint32_t version) const {
-  if (WishFor(name, version) == Wish::kUnloaded) return false;
-  common::MutexLock lock(mutex_);
-  return std::any_of(labels_.begin(), labels_.end(), [&](const VersionLabel& label) {
-    return label.model == name && label.version == version;
-  });
 }
 
 bool ModelManager::IsUnchanged(const std::string& name, uint32_t version,
@@ -311,7 +252,7 @@ absl::Status ModelManager::Load(absl::string_view name, uint32_t version) {
         absl::StrCat(SourceOf(name, version), " cannot be loaded: ", loaded.message()));
   }
   common::MutexLock lock(mutex_);
-  models_[model->first][version].wish = Wish::kLoaded;
+  models_[model->first][version].unloaded = false;
   return absl::OkStatus();
 }
 
@@ -324,7 +265,7 @@ absl::Status ModelManager::Unload(absl::string_view name, uint32_t version) {
     Version& known = models_[std::string(name)][version];
     known.served = false;
     known.error.clear();
-    known.wish = Wish::kUnloaded;
+    known.unloaded = true;
   }
   observer_.Unloaded(SourceOf(name, version));
   return absl::OkStatus();
@@ -389,15 +330,12 @@ std::vector<std::string> ModelManager::UnknownNames() const {
   std::vector<std::string> names;
   for (const auto& [name, versions] : models_) names.push_back(name);
   std::vector<std::string> unknown;
-  const auto check = [&](absl::string_view field, std::size_t index, const std::string& model) {
-    if (model.empty() || std::find(names.begin(), names.end(), model) != names.end()) return;
-    unknown.push_back(absl::StrCat(field, "[", index,
+  for (std::size_t i = 0; i < labels_.size(); ++i) {
+    const std::string& model = labels_[i].model;
+    if (std::find(names.begin(), names.end(), model) != names.end()) continue;
+    unknown.push_back(absl::StrCat("version_labels[", i,
                                    "].model: expected one of: ", absl::StrJoin(names, ", "),
                                    ", got ", base::Quoted(model), base::DidYouMean(model, names)));
-  };
-  for (std::size_t i = 0; i < labels_.size(); ++i) check("version_labels", i, labels_[i].model);
-  for (std::size_t i = 0; i < policies_.size(); ++i) {
-    check("version_policies", i, policies_[i].model);
   }
   return unknown;
 }

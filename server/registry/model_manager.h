@@ -15,7 +15,6 @@
 #include "server/registry/model_registry.h"
 #include "server/registry/model_repository.h"
 #include "server/registry/model_status.h"
-#include "server/registry/version_policy.h"
 
 namespace duet::server::registry {
 
@@ -39,8 +38,6 @@ class ModelManager {
   // Sets the repository and the loader. Without a repository, only models passed to Add are served,
   // and nothing can be loaded or unloaded.
   void UseRepository(std::filesystem::path repository, ModelLoader loader);
-  // Takes effect with the next Reload.
-  void SetPolicies(std::vector<VersionPolicy> policies);
   // Sets the configured labels. The next Reload or ApplyLabels moves the labels whose configuration
   // has changed and deletes those that were removed from it. Other labels keep the version that the
   // operator assigned.
@@ -49,15 +46,14 @@ class ModelManager {
   // Serves a loaded model, or records why it failed to load.
   void Add(const LoadReport& report);
 
-  // Loads new and changed checkpoints and those that failed before, as policies, labels and the
-  // operator's requests specify, and removes versions that these exclude. Stops before the next
-  // checkpoint if `stop` returns true. Fails, without changes, if the
-  // repository cannot be read or is empty.
+  // Loads new and changed checkpoints and those that failed before, except those that the operator
+  // unloaded, and removes versions whose folders are gone. Stops before the next checkpoint if
+  // `stop` returns true. Fails, without changes, if the repository cannot be read or is empty.
   absl::StatusOr<ReloadReport> Reload(const std::function<bool()>& stop);
 
-  // Loads a version even if policies exclude it or it is already served. Policies do not unload it
-  // later. Returns NOT_FOUND if the repository does not contain it, and
-  // FAILED_PRECONDITION with the reason if it does not load or there is no repository.
+  // Loads a version even if it is already served. Returns NOT_FOUND if the repository does not
+  // contain it, and FAILED_PRECONDITION with the reason if it does not load or there is no
+  // repository.
   absl::Status Load(absl::string_view name, uint32_t version);
 
   // Stops serving a version until Load is called for it. Returns NOT_FOUND if it is not served, and
@@ -68,7 +64,7 @@ class ModelManager {
   // reason. The next call retries them.
   std::vector<std::string> ApplyLabels();
 
-  // Returns one line for each configured label and policy whose model is neither in the repository
+  // Returns one line for each configured label whose model is neither in the repository
   // nor served: the field, the known names, and the unknown name.
   std::vector<std::string> UnknownNames() const;
 
@@ -80,14 +76,12 @@ class ModelManager {
   bool Knows(absl::string_view name) const;
 
  private:
-  // The operator's request, which overrides policies.
-  enum class Wish { kAsThePolicySays, kLoaded, kUnloaded };
   struct Version {
     bool served = false;
     bool loading = false;
-    Wish wish = Wish::kAsThePolicySays;
-    std::string error;  // of the last load; empty if it succeeded
-    std::string files;  // FilesOf what is served; empty if unknown
+    bool unloaded = false;  // by the operator
+    std::string error;      // of the last load; empty if it succeeded
+    std::string files;      // FilesOf what is served; empty if unknown
     double load_seconds = 0;
   };
   using Versions = std::map<uint32_t, Version, std::greater<>>;
@@ -101,20 +95,11 @@ class ModelManager {
                    const std::function<bool()>& stop, ReloadReport& report);
   // ApplyLabels for one model; if empty, for every model.
   std::vector<std::string> ApplyLabelsOf(absl::string_view name);
-  // Returns true if policy or operator include a version. `places`: how many more versions the
-  // policy includes.
-  bool IsWanted(const std::string& name, uint32_t version, const VersionPolicy& policy,
-                uint32_t places) const;
-  // Records a version that exists but is excluded.
-  void PassOver(const std::string& name, uint32_t version);
   // Forgets every version of a model that has no folder and is not served.
   void ForgetWithout(const Folders::mapped_type& folders, const std::string& name);
   // Returns null if the version is unknown.
   const Version* Find(const std::string& name, uint32_t version) const DUET_REQUIRES(mutex_);
-  Wish WishFor(const std::string& name, uint32_t version) const;
-  // Returns true if a label points to a version, or is configured to.
-  bool IsLabelled(const std::string& name, uint32_t version) const;
-  bool WillBeLabelled(const std::string& name, uint32_t version) const;
+  bool IsUnloaded(const std::string& name, uint32_t version) const;
   // Returns true if the served version is the one in `folder`. Returns false if the last load
   // failed, even if the previous files were restored: only a successful load clears the error.
   bool IsUnchanged(const std::string& name, uint32_t version,
@@ -134,7 +119,6 @@ class ModelManager {
   mutable common::Mutex mutex_;
   std::filesystem::path repository_ DUET_GUARDED_BY(mutex_);
   ModelLoader loader_ DUET_GUARDED_BY(mutex_);
-  std::vector<VersionPolicy> policies_ DUET_GUARDED_BY(mutex_);
   std::vector<VersionLabel> labels_ DUET_GUARDED_BY(mutex_);          // of the configuration
   std::vector<VersionLabel> applied_labels_ DUET_GUARDED_BY(mutex_);  // of those, the ones set
   std::map<std::string, Versions, std::less<>> models_ DUET_GUARDED_BY(mutex_);

@@ -142,15 +142,6 @@ FindResult ModelRegistry::Find(const ModelQuery& query) const {
   return Describe(found->first, entry, version);
 }
 
-std::vector<uint32_t> ModelRegistry::LabelledVersions(absl::string_view name) const {
-  common::MutexLock lock(mutex_);
-  std::vector<uint32_t> versions;
-  const auto entry = entries_.find(name);
-  if (entry == entries_.end()) return versions;
-  for (const auto& [label, version] : entry->second.labels) versions.push_back(version);
-  return versions;
-}
-
 std::string ModelRegistry::default_model() const {
   common::MutexLock lock(mutex_);
   return DefaultName();

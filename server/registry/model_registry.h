@@ -68,9 +68,6 @@ class ModelRegistry {
   // Returns every version, by name, newest first.
   std::vector<ServedModel> List() const;
 
-  // Returns the versions to which labels of a model point.
-  std::vector<uint32_t> LabelledVersions(absl::string_view name) const;
-
   // Returns the name of the default model; empty if no model is served.
   std::string default_model() const;
 

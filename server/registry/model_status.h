@@ -10,12 +10,22 @@
 
 namespace duet::server::registry {
 
+// A name that requests may use instead of a version number: "stable", "canary".
+struct VersionLabel {
+  std::string model;
+  std::string label;
+  uint32_t version = 0;
+  friend bool operator==(const VersionLabel& a, const VersionLabel& b) {
+    return a.model == b.model && a.label == b.label && a.version == b.version;
+  }
+};
+
 // State of a version that is or was in the repository.
 enum class ModelState {
   kLoading,   // for the first time; a version stays kServed while it is reloaded
   kServed,    // available to calls
   kFailed,    // could not be loaded
-  kUnloaded,  // in the repository, but excluded by policy or operator
+  kUnloaded,  // in the repository, but excluded by the operator
 };
 
 struct ModelStatus {
@@ -35,7 +45,7 @@ struct ModelStatus {
 struct ReloadReport {
   std::vector<std::string> loaded;    // new or replaced
   std::vector<std::string> refused;   // ModelStatus::error has the reason
-  std::vector<std::string> unloaded;  // removed from the repository, or excluded
+  std::vector<std::string> unloaded;  // removed from the repository
   int unchanged = 0;
   std::vector<std::string> refused_labels;  // whose versions are not served
   std::vector<std::string> problems;        // other errors
@@ -53,7 +63,7 @@ class ModelObserver {
   virtual void Loaded(const LoadReport& report, bool still_served) = 0;
   // A version is no longer served.
   virtual void Unloaded(const std::string& source) = 0;
-  // A version that could not be loaded was removed from the repository, or excluded.
+  // A version that could not be loaded was removed from the repository.
   virtual void Forgotten(const std::string& source) = 0;
   // The repository was scanned. `skipped`: every folder that is not a checkpoint.
   virtual void Scanned(const std::vector<SkippedFolder>& skipped) = 0;

@@ -13,7 +13,7 @@
 #include "absl/strings/strip.h"
 #include "model/base/counted.h"
 #include "model/base/text.h"
-#include "server/common/join_status.h"
+#include "server/common/error_details.h"
 
 namespace duet::server::security {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "model/base/file.h"
-#include "server/common/join_status.h"
+#include "server/common/error_details.h"
 #include "server/security/access_list.h"
 
 namespace duet::server::security {

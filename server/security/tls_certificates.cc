@@ -16,7 +16,7 @@
 #include "absl/strings/string_view.h"
 #include "model/base/file.h"
 #include "model/base/pem.h"
-#include "server/common/join_status.h"
+#include "server/common/error_details.h"
 
 namespace duet::server::security {
 namespace {

@@ -1,5 +1,8 @@
 #include "server/service/call.h"
 
+#include <algorithm>
+#include <chrono>
+
 #include "server/service/refusals.h"
 
 namespace duet::server::service {
@@ -190,51 +193,15 @@ bool Call::EndLate(common::TimePoint now) {
   return stalled;
 }
 
-std::optional<common::TimePoint> Call::waiting_since() const {
-  common::MutexLock lock(mutex_);
-  if (state_ != State::kWriting || given_up_) return std::nullopt;
-  return write_began_;
-}
-
-std::optional<std::size_t> Call::GiveUpReader(common::TimePoint now, double seconds) {
-  ShareLease place;
+void Call::BreakOffWrite() {
   absl::Status reason;
-  std::size_t bytes = 0;
   {
     common::MutexLock lock(mutex_);
-    if (state_ != State::kWriting || breaking_off_ || given_up_) return std::nullopt;
-    if (common::SecondsBetween(write_began_, now) < seconds) return std::nullopt;
-    SetEnd(StalledReaderRefusal(seconds));
-    reason = *end_;
+    if (state_ != State::kWriting || breaking_off_ || !end_.has_value()) return;
     breaking_off_ = true;
-    given_up_ = true;
-    // Another call waits for the place. The bytes are held until the call releases them.
-    place = std::move(parts_.place);
-    bytes = stream_.held_bytes.amount();
+    reason = *end_;
   }
   BreakOff(reason);
-  return bytes;
-}
-
-std::optional<common::TimePoint> Call::idle_since() const {
-  std::optional<common::TimePoint> since;
-  {
-    common::MutexLock lock(mutex_);
-    if (!is_streaming() || state_ == State::kWriting || !reading_ || given_up_) return since;
-    since = reading_->begin;
-  }
-  return stream_.source->OwesAnswers() ? std::nullopt : since;
-}
-
-bool Call::GiveUpIdle(common::TimePoint now, double seconds) {
-  const std::optional<common::TimePoint> since = idle_since();
-  if (!since.has_value() || common::SecondsBetween(*since, now) < seconds) return false;
-  {
-    common::MutexLock lock(mutex_);
-    if (std::exchange(given_up_, true)) return false;
-  }
-  Abort(DisplacedSessionRefusal(seconds));
-  return true;
 }
 
 void Call::BreakOff(const absl::Status& reason) {
@@ -278,6 +245,87 @@ void Call::Finish(const absl::Status& status) {
   held_bytes = ShareLease();
   slow = ShareLease();
   parts_.transport->Finish(*scope, status);
+}
+
+namespace {
+
+constexpr std::size_t kFewest = 64;
+
+void RemoveDead(std::vector<std::weak_ptr<Call>>& calls) {
+  const auto dead = [](const std::weak_ptr<Call>& call) { return call.expired(); };
+  calls.erase(std::remove_if(calls.begin(), calls.end(), dead), calls.end());
+}
+
+}  // namespace
+
+void ActiveCalls::Add(const std::shared_ptr<Call>& call) {
+  std::optional<absl::Status> ended;
+  bool draining = false;
+  {
+    common::MutexLock lock(mutex_);
+    if (calls_.size() >= look_at_) {
+      RemoveDead(calls_);
+      // Seldom enough to cost each call little, however many are alive.
+      look_at_ = std::max(kFewest, 2 * calls_.size());
+    }
+    calls_.push_back(call);
+    ended = ended_;
+    draining = draining_;
+  }
+  if (draining) call->Drain();
+  if (ended) call->Abort(*ended);
+}
+
+void ActiveCalls::Drain() {
+  {
+    // A call that was admitted before the drain began may be added after this.
+    common::MutexLock lock(mutex_);
+    draining_ = true;
+  }
+  for (const std::shared_ptr<Call>& call : All()) call->Drain();
+}
+
+void ActiveCalls::AbortAll(const absl::Status& reason) {
+  {
+    // A call that was admitted before the server stopped admitting calls may be added after this.
+    common::MutexLock lock(mutex_);
+    ended_ = reason;
+  }
+  for (const std::shared_ptr<Call>& call : All()) call->Abort(reason);
+}
+
+void ActiveCalls::CheckTime(common::TimePoint now) {
+  for (const std::shared_ptr<Call>& call : All()) call->CheckTime(now);
+}
+
+void ActiveCalls::BreakOffWrites() {
+  for (const std::shared_ptr<Call>& call : All()) call->BreakOffWrite();
+}
+
+std::vector<std::shared_ptr<Call>> ActiveCalls::All() {
+  std::vector<std::shared_ptr<Call>> alive;
+  common::MutexLock lock(mutex_);
+  RemoveDead(calls_);
+  alive.reserve(calls_.size());
+  for (const std::weak_ptr<Call>& weak : calls_) {
+    if (std::shared_ptr<Call> call = weak.lock()) alive.push_back(std::move(call));
+  }
+  return alive;
+}
+
+void OpenCalls::Add(int calls) {
+  common::MutexLock lock(mutex_);
+  open_ += calls;
+  if (open_ == 0) changed_.NotifyAll();
+}
+
+void OpenCalls::WaitForNone(double seconds) {
+  const auto end = std::chrono::steady_clock::now() +
+                   std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                       std::chrono::duration<double>(seconds));
+  common::MutexLock lock(mutex_);
+  while (open_ > 0 && changed_.WaitUntil(mutex_, end)) {
+  }
 }
 
 }  // namespace duet::server::service

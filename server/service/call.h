@@ -12,12 +12,12 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
 #include "server/metrics/call_record.h"
-#include "server/service/active_calls.h"
 #include "server/service/admission.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/share_pool.h"
@@ -93,8 +93,6 @@ class ReplySource {
   virtual void OnEndOfMessages() {}
   // The server has begun to drain; the call goes on. Called at most once.
   virtual void OnDraining() {}
-  // Returns false while the caller has everything that follows from its messages so far.
-  virtual bool OwesAnswers() const { return true; }
 };
 
 // One call from its headers to its status. Waits for the first message, has it handled, and then
@@ -109,7 +107,7 @@ class ReplySource {
 // destroyed after Finish, even while a worker runs a window.
 //
 // Threads: safe to call concurrently.
-class Call final : public ActiveCall, public std::enable_shared_from_this<Call> {
+class Call final : public std::enable_shared_from_this<Call> {
  public:
   struct Parts {
     Transport* transport = nullptr;  // lives until Finish was called on it
@@ -162,15 +160,15 @@ class Call final : public ActiveCall, public std::enable_shared_from_this<Call> 
   // The write that Transport::Write began is over. `ok`: the caller took the reply.
   void OnWritten(bool ok);
 
-  const std::string& client() const override { return parts_.client; }
-  // Notifies the source, now or as soon as there is one.
-  void Drain() override;
-  void Abort(const absl::Status& reason) override;
-  void CheckTime(common::TimePoint now) override;
-  std::optional<common::TimePoint> waiting_since() const override;
-  std::optional<std::size_t> GiveUpReader(common::TimePoint now, double seconds) override;
-  std::optional<common::TimePoint> idle_since() const override;
-  bool GiveUpIdle(common::TimePoint now, double seconds) override;
+  const std::string& client() const { return parts_.client; }
+  // The server begins to drain: notifies the source, now or as soon as there is one.
+  void Drain();
+  // Ends the call early. The first reason counts.
+  void Abort(const absl::Status& reason);
+  // If the call was aborted and its last write is still in progress, breaks that off.
+  void BreakOffWrite();
+  // Ends the call if a time limit has passed.
+  void CheckTime(common::TimePoint now);
 
  private:
   enum class State {
@@ -227,7 +225,59 @@ class Call final : public ActiveCall, public std::enable_shared_from_this<Call> 
   common::TimePoint write_began_ DUET_GUARDED_BY(mutex_);
   // While it is set, the call does not finish: the transport must stay.
   bool breaking_off_ DUET_GUARDED_BY(mutex_) = false;
-  bool given_up_ DUET_GUARDED_BY(mutex_) = false;  // GiveUpReader or GiveUpIdle has ended the call
+};
+
+// All active calls. Does not keep them alive.
+//
+// Threads: safe to call concurrently.
+class ActiveCalls {
+ public:
+  void Add(const std::shared_ptr<Call>& call);
+  // Notifies all calls, and every call that is added later, that the server drains.
+  void Drain();
+  // Ends all calls, and every call that is added later.
+  void AbortAll(const absl::Status& reason);
+  // Breaks off the writes of calls that were aborted.
+  void BreakOffWrites();
+  void CheckTime(common::TimePoint now);
+
+ private:
+  std::vector<std::shared_ptr<Call>> All();
+
+  common::Mutex mutex_;
+  bool draining_ DUET_GUARDED_BY(mutex_) = false;
+  std::optional<absl::Status> ended_ DUET_GUARDED_BY(mutex_);  // why calls added later end at once
+  std::vector<std::weak_ptr<Call>> calls_ DUET_GUARDED_BY(mutex_);
+  std::size_t look_at_ DUET_GUARDED_BY(mutex_) =
+      64;  // number of calls at which ended ones are removed
+};
+
+// Counts the calls that gRPC has not finished. Their status may not have been sent yet.
+//
+// Threads: safe to call concurrently.
+class OpenCalls {
+ public:
+  // Counts one call during its lifetime.
+  class Ticket {
+   public:
+    explicit Ticket(OpenCalls& calls) : calls_(calls) { calls_.Add(1); }
+    ~Ticket() { calls_.Add(-1); }
+    Ticket(const Ticket&) = delete;
+    Ticket& operator=(const Ticket&) = delete;
+
+   private:
+    OpenCalls& calls_;
+  };
+
+  // Waits until there are none, at most `seconds`.
+  void WaitForNone(double seconds);
+
+ private:
+  void Add(int calls);
+
+  common::Mutex mutex_;
+  common::CondVar changed_;
+  int open_ DUET_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace duet::server::service

@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -18,9 +18,41 @@
 #include "server/common/grpc_status.h"
 #include "server/metrics/call_record.h"
 #include "server/security/call_guard.h"
-#include "server/service/call_identity.h"
 
 namespace duet::server::service {
+
+// Identifies a call in logs and traces.
+struct CallIdentity {
+  std::string request_id;   // the caller's x-request-id, or a generated one
+  std::string traceparent;  // W3C trace context, empty when absent or malformed
+  std::string peer;
+  // Identifies the client for shared limits: the client that a trusted proxy names, or else the
+  // peer's address without its port. Of an IPv6 address, only the network part (/64) is used,
+  // because one machine can have all addresses of its network.
+  std::string client;
+};
+
+// Reads a call's metadata. Malformed values are ignored: a request ID must be one of
+// model/base/request_id.h, and a traceparent must have the W3C format. A call does not fail because
+// of them, because a proxy may have written them.
+//
+// `client_key`: the metadata key in which a trusted proxy names its client; empty if there is none.
+CallIdentity IdentifyCall(const grpc::ServerContextBase& context, const std::string& client_key);
+
+// Returns the client of a gRPC peer string, such as "ipv4:192.0.2.7:4711" or "ipv6:%5B::1%5D:4711".
+std::string ClientOf(std::string_view peer);
+
+bool IsTraceparent(std::string_view text);
+
+// Returns 128 random bits in hexadecimal.
+std::string NewRequestId();
+
+// Returns the seconds until a call's deadline: negative if it has passed, infinite if there is
+// none.
+//
+// Does not use the context's deadline(), which overflows for a timeout of 99,999,999 hours, the
+// maximum of the wire format.
+double SecondsLeft(const grpc::ServerContextBase& context);
 
 // One call as its observers see it. Begins with the constructor and ends with Finish.
 //
@@ -67,18 +99,17 @@ struct OpenedCall {
 // Threads: const methods are safe to call concurrently.
 class CallPipeline {
  public:
-  // `client_key`: see IdentifyCall. `trace_ratio`: see ServiceParts. `role`: required by every
+  // `client_key`: see IdentifyCall. `role`: required by every
   // method. All arguments outlive the pipeline and its calls.
   CallPipeline(std::size_t max_request_bytes, std::string client_key,
                std::vector<metrics::CallObserver*> observers, const common::Clock& clock,
-               security::CallGuard guard, security::Role role, std::optional<double> trace_ratio)
+               security::CallGuard guard, security::Role role)
       : max_request_bytes_(max_request_bytes),
         client_key_(std::move(client_key)),
         observers_(std::move(observers)),
         clock_(clock),
         guard_(guard),
-        role_(role),
-        trace_ratio_(trace_ratio) {}
+        role_(role) {}
 
   OpenedCall Open(const grpc::ServerContextBase& context, const metrics::MethodInfo& method) const;
 
@@ -106,7 +137,6 @@ class CallPipeline {
   const common::Clock& clock_;
   const security::CallGuard guard_;
   const security::Role role_;
-  const std::optional<double> trace_ratio_;
 };
 
 }  // namespace duet::server::service

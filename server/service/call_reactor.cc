@@ -7,9 +7,8 @@
 
 #include <utility>
 
-#include "server/common/activity.h"
 #include "server/common/grpc_status.h"
-#include "server/service/call_identity.h"
+#include "server/service/call_pipeline.h"
 #include "server/service/wire.h"
 
 namespace duet::server::service {
@@ -18,11 +17,6 @@ namespace {
 // When its deadline passes, a client resets the call. The reset can arrive before the deadline
 // passes here, because the call began here later by the time that the request travelled.
 constexpr double kDeadlineSlackSeconds = 0.1;
-
-constexpr common::StepKind kOpening{"gRPC callback", "starting a call"};
-constexpr common::StepKind kReceived{"gRPC callback", "handling a request"};
-constexpr common::StepKind kWritten{"gRPC callback", "writing a reply"};
-constexpr common::StepKind kCancelled{"gRPC callback", "ending a cancelled call"};
 
 using GrpcReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
 
@@ -39,7 +33,6 @@ void RawService::Serve(const char* method,
   MarkMethodRawCallback(methods_++,
                         new CallbackBidiHandler<grpc::ByteBuffer, grpc::ByteBuffer>(
                             [open = std::move(open)](grpc::CallbackServerContext* context) {
-                              const common::Step step(kOpening);
                               return open(context);
                             }));
 }
@@ -51,7 +44,6 @@ void CallReactor::Receive(std::shared_ptr<Call> call, Handler handle) {
 }
 
 void CallReactor::OnReadDone(bool ok) {
-  const common::Step step(kReceived);
   // Copied, because the call may end while its message is handled.
   const std::shared_ptr<Call> call = call_;
   grpc::ByteBuffer bytes;
@@ -97,13 +89,9 @@ void CallReactor::BreakOff(const absl::Status& reason) {
                                status.error_message().c_str(), nullptr);
 }
 
-void CallReactor::OnWriteDone(bool ok) {
-  const common::Step step(kWritten);
-  call_->OnWritten(ok);
-}
+void CallReactor::OnWriteDone(bool ok) { call_->OnWritten(ok); }
 
 void CallReactor::OnCancel() {
-  const common::Step step(kCancelled);
   if (call_ == nullptr) return;
   const bool expired = SecondsLeft(context_) <= kDeadlineSlackSeconds;
   call_->Abort(expired ? absl::DeadlineExceededError("the call's deadline passed")

@@ -10,7 +10,6 @@
 #include <memory>
 
 #include "absl/status/status.h"
-#include "server/service/active_calls.h"
 #include "server/service/call.h"
 
 namespace duet::server::service {

@@ -11,7 +11,7 @@
 #include "server/batching/window_scheduler.h"
 #include "server/service/call.h"
 #include "server/service/clip_stream.h"
-#include "server/service/reply_rig.h"
+#include "server/service/reply_mapping.h"
 #include "server/service/validator.h"
 
 namespace duet::server::service {

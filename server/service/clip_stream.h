@@ -18,6 +18,10 @@
 
 namespace duet::server::service {
 
+// Returns the error of a window's result, or INTERNAL if an engine that violates its contract
+// returned another shape than [frames, joints], or positions that are not finite.
+absl::Status CheckWindow(const engine::WindowResult& result, int frames, int joints);
+
 struct ClipStreamOptions {
   batching::Priority priority = batching::Priority::kInteractive;
   common::TimePoint deadline = common::TimePoint::max();

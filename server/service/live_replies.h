@@ -33,7 +33,6 @@ class LiveReplies final : public ReplySource {
   void OnMessage(grpc::ByteBuffer bytes) override;
   void OnEndOfMessages() override { session_->OnEndOfMessages(); }
   void OnDraining() override { session_->OnDraining(); }
-  bool OwesAnswers() const override { return session_->OwesAnswers(); }
 
  private:
   // The status with which the call ends.

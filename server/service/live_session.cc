@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/service/validate_leader.h"
+#include "server/service/clip_stream.h"
+#include "server/service/request_fields.h"
 #include "server/service/violations.h"
-#include "server/service/window_check.h"
 
 namespace duet::server::service {
 namespace {
@@ -402,11 +402,6 @@ void LiveSession::FillFrames(v1::FollowerFrames* frames) {
   }
   frames->set_leader_frame(static_cast<uint32_t>(live_.next_leader_frame() - 1));
   frames->set_capture_seconds(capture_seconds_);
-}
-
-bool LiveSession::OwesAnswers() const {
-  common::MutexLock lock(mutex_);
-  return in_flight_ || !ready_.empty() || !notices_.empty() || !error_.ok();
 }
 
 void LiveSession::Cancel() { cancelled_->store(true, std::memory_order_release); }

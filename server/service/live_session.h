@@ -19,7 +19,7 @@
 #include "server/batching/window_scheduler.h"
 #include "server/common/clock.h"
 #include "server/common/mutex.h"
-#include "server/service/reply_rig.h"
+#include "server/service/reply_mapping.h"
 #include "server/service/request_limits.h"
 #include "server/service/validate_live.h"
 
@@ -93,8 +93,6 @@ class LiveSession final : public std::enable_shared_from_this<LiveSession> {
   void OnDraining();
 
   LiveOutput Take();
-  // Returns true while a window is evaluated, or frames, a notice or an error wait to be taken.
-  bool OwesAnswers() const;
   void Cancel();
 
   int first_frame() const { return first_frame_; }

@@ -14,9 +14,8 @@
 #include "duet/v1/synthesis.pb.h"
 #include "model/engine/candidates.h"
 #include "model/engine/live_synthesis.h"
-#include "server/common/activity.h"
 #include "server/registry/model_registry.h"
-#include "server/service/call_identity.h"
+#include "server/service/call_pipeline.h"
 #include "server/service/clip_replies.h"
 #include "server/service/live_replies.h"
 #include "server/service/refusals.h"
@@ -88,19 +87,12 @@ constexpr metrics::MethodInfo Method(std::string_view name, std::string_view typ
 constexpr metrics::MethodInfo kListModels = Method("ListModels", "unary");
 constexpr metrics::MethodInfo kGetModel = Method("GetModel", "unary");
 
-constexpr common::StepKind kHandlingLarge{"large requests", "handling a large request"};
-
 // Larger requests are handled on a separate thread, because parsing and validation take 8 ms per
 // MiB. Their memory is returned to the system.
 constexpr std::size_t kLargeRequestBytes = std::size_t{1} << 20;
 
 // Far above ten seconds of two motions of any skeleton at any rate.
 constexpr std::size_t kMaxLiveStartBytes = std::size_t{4} << 20;
-
-// A reader that has taken nothing for this long has stalled, and a live session without a message
-// is idle. Longer than delays of a network or a busy machine, and short enough for rejected
-// callers, which retry every second.
-constexpr double kStalledSeconds = 5;
 
 // What a call's leader frames count in its caller's quota: once for each candidate.
 std::int64_t FramesOf(const engine::ModelDescription& model,
@@ -134,7 +126,7 @@ const MotionSynthesisService::StreamMethod MotionSynthesisService::kSynthesizeLi
 MotionSynthesisService::MotionSynthesisService(ServiceParts parts)
     : parts_(std::move(parts)),
       pipeline_(parts_.limits.max_request_bytes, parts_.client_key, parts_.observers, *parts_.clock,
-                parts_.guard, security::Role::kSynthesise, parts_.trace_ratio) {
+                parts_.guard, security::Role::kSynthesise) {
   Serve("/duet.v1.MotionSynthesis/Synthesize",
         [this](Context* context) { return OpenStream(context, kSynthesize); });
   Serve("/duet.v1.MotionSynthesis/SynthesizeLive",
@@ -153,8 +145,8 @@ RawService::Reactor* MotionSynthesisService::OpenStream(Context* context,
                                                         const StreamMethod& method) {
   OpenedCall opened = pipeline_.Open(*context, method.info);
   auto* reactor = new CallReactor(*context, open_calls_);
-  absl::StatusOr<ShareLease> place =
-      opened.status.ok() ? Admit(opened.client) : absl::StatusOr<ShareLease>(opened.status);
+  absl::StatusOr<ShareLease> place = opened.status.ok() ? parts_.admission->Admit(opened.client)
+                                                        : absl::StatusOr<ShareLease>(opened.status);
   absl::Status admitted = place.status();
   // Places and queue are checked before the request is read. The smaller shares of bulk calls are
   // checked afterwards, because the priority is in the request.
@@ -178,41 +170,7 @@ RawService::Reactor* MotionSynthesisService::OpenStream(Context* context,
 
 void MotionSynthesisService::FinishAborted(double seconds) {
   open_calls_.WaitForNone(seconds);
-  while (calls_.GiveUpSlowestReader(std::nullopt, parts_.clock->Now(), 0).has_value()) {
-  }
-}
-
-absl::StatusOr<ShareLease> MotionSynthesisService::Admit(const std::string& client) {
-  absl::StatusOr<ShareLease> place = parts_.admission->Admit(client);
-  while (absl::IsResourceExhausted(place.status())) {
-    if (!FreePlaceFor(client)) break;
-    place = parts_.admission->Admit(client);
-  }
-  return place;
-}
-
-bool MotionSynthesisService::FreePlaceFor(const std::string& client) {
-  // Calls of this client first: a client that has used its share must not displace others.
-  const bool full = parts_.admission->calls() >= parts_.admission->max_calls();
-  const common::TimePoint now = parts_.clock->Now();
-  return calls_.GiveUpSlowestReader(client, now, kStalledSeconds).has_value() ||
-         calls_.GiveUpLongestIdle(client, now, kStalledSeconds) ||
-         (full && calls_.GiveUpSlowestReader(std::nullopt, now, kStalledSeconds).has_value());
-}
-
-absl::StatusOr<ShareLease> MotionSynthesisService::Hold(const std::string& client,
-                                                        const grpc::ByteBuffer& bytes) {
-  absl::StatusOr<ShareLease> held = parts_.admission->Hold(client, bytes.Length());
-  if (held.ok()) return held;
-  // The bytes are freed a little later, so this attempt fails nevertheless.
-  std::size_t freed = 0;
-  while (freed < bytes.Length()) {
-    const std::optional<std::size_t> more =
-        calls_.GiveUpSlowestReader(client, parts_.clock->Now(), kStalledSeconds);
-    if (!more.has_value()) break;
-    freed += *more;
-  }
-  return held;
+  calls_.BreakOffWrites();
 }
 
 std::shared_ptr<Call> MotionSynthesisService::MakeCall(OpenedCall opened, ShareLease place,
@@ -238,8 +196,9 @@ void MotionSynthesisService::Handle(const StreamMethod& method, const Context& c
                                     const std::shared_ptr<Call>& call, grpc::ByteBuffer bytes) {
   CountIfLarge(bytes);
   const absl::Status fits = pipeline_.CheckSize(bytes, method.max_request_bytes);
-  absl::StatusOr<ShareLease> held =
-      fits.ok() ? Hold(call->client(), bytes) : absl::StatusOr<ShareLease>(fits);
+  absl::StatusOr<ShareLease> held = fits.ok()
+                                        ? parts_.admission->Hold(call->client(), bytes.Length())
+                                        : absl::StatusOr<ShareLease>(fits);
   if (!held.ok()) {
     call->Refuse(held.status());
   } else if (bytes.Length() >= kLargeRequestBytes) {
@@ -260,7 +219,6 @@ void MotionSynthesisService::HandleElsewhere(const StreamMethod& method, const C
   }
   large_requests_.Post([this, &method, &context, call, bytes = std::move(bytes), lease,
                         received = std::move(received)](bool run) mutable {
-    const common::Step step(kHandlingLarge);
     const std::optional<absl::Status> ended = call->ended_meanwhile();
     if (ended.has_value() || !run) {
       *lease = ShareLease();  // free before the caller knows
@@ -396,7 +354,9 @@ void MotionSynthesisService::ServeUnary(const char* path, const metrics::MethodI
     CountIfLarge(bytes);
     absl::StatusOr<ShareLease> held = ShareLease();
     // A full server still handles requests of ordinary size.
-    if (bytes.Length() >= kLargeRequestBytes) held = Hold(call->client(), bytes);
+    if (bytes.Length() >= kLargeRequestBytes) {
+      held = parts_.admission->Hold(call->client(), bytes.Length());
+    }
     if (!held.ok()) return call->Refuse(held.status());
     Request request;
     const absl::Status read = pipeline_.Read(std::move(bytes), request);

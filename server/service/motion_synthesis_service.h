@@ -20,7 +20,6 @@
 #include "server/metrics/call_record.h"
 #include "server/registry/model_registry.h"
 #include "server/security/call_guard.h"
-#include "server/service/active_calls.h"
 #include "server/service/admission.h"
 #include "server/service/call.h"
 #include "server/service/call_pipeline.h"
@@ -47,8 +46,6 @@ struct ServiceParts {
   double live_idle_seconds = 60;       // see LiveSessionParts
   std::string client_key;              // see IdentifyCall
   security::CallGuard guard{nullptr};  // without an access list, every caller is allowed
-  // Fraction of calls without a trace for which a sampled trace is started. Absent: none.
-  std::optional<double> trace_ratio;
   // Whether followers are cleaned up if the request does not specify it. Absent: the model's
   // default (ModelDescription::cleaned_up_by_default).
   std::optional<bool> clean_up;
@@ -131,15 +128,6 @@ class MotionSynthesisService final : public RawService {
   // Serves a unary method. `answer` maps const Request& to StatusOr<Response>.
   template <typename Request, typename Answer>
   void ServeUnary(const char* path, const metrics::MethodInfo& method, Answer answer);
-  // Takes a place for a call. If there is none, gives up calls with FreePlaceFor.
-  absl::StatusOr<ShareLease> Admit(const std::string& client);
-  // Ends a call of this client whose reader has stalled, an idle live session of this client, or,
-  // if no place is left at all, a call of any client whose reader has stalled. Returns false if
-  // there is none.
-  bool FreePlaceFor(const std::string& client);
-  // Reserves bytes for a request. If too few are left, fails, and gives up calls of this client
-  // whose readers have stalled, so that its next attempt succeeds.
-  absl::StatusOr<ShareLease> Hold(const std::string& client, const grpc::ByteBuffer& bytes);
   std::shared_ptr<Call> MakeCall(OpenedCall opened, ShareLease place, CallReactor& reactor);
 
   const ServiceParts parts_;

@@ -74,20 +74,6 @@ absl::Status WriteTimeoutRefusal(double seconds) {
   return status;
 }
 
-absl::Status StalledReaderRefusal(double seconds) {
-  return Retryable(absl::ResourceExhaustedError(
-                       absl::StrCat("the caller read no reply for ", seconds,
-                                    " s while other calls waited for a place or for memory")),
-                   common::kReasonWriteTimeout);
-}
-
-absl::Status DisplacedSessionRefusal(double seconds) {
-  return Retryable(absl::ResourceExhaustedError(
-                       absl::StrCat("the live session got no message for ", seconds,
-                                    " s while another call of its client waited for a place")),
-                   common::kReasonReceiveTimeout);
-}
-
 absl::Status NoMessageRefusal() {
   absl::Status status = absl::InvalidArgumentError(
       "expected a request, got none or one of more than twice max_request_bytes, which the "

@@ -30,10 +30,6 @@ absl::Status ReceiveTimeoutRefusal(double seconds);
 // The same for the next message of a live session, which has a time limit of its own.
 absl::Status LiveIdleRefusal(double seconds);
 absl::Status WriteTimeoutRefusal(double seconds);
-// RESOURCE_EXHAUSTED: other calls waited for the place of a call whose reader had stalled.
-absl::Status StalledReaderRefusal(double seconds);
-// RESOURCE_EXHAUSTED: a call of the same client needed the place of an idle live session.
-absl::Status DisplacedSessionRefusal(double seconds);
 // INVALID_ARGUMENT: the call ended without a message.
 absl::Status NoMessageRefusal();
 // Adds RetryInfo to a RESOURCE_EXHAUSTED of the scheduler. Any other error of the scheduler means

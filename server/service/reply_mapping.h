@@ -1,18 +1,31 @@
 #ifndef DUET_SERVER_SERVICE_REPLY_MAPPING_H_
 #define DUET_SERVER_SERVICE_REPLY_MAPPING_H_
 
+#include <google/protobuf/repeated_field.h>
+
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "duet/v1/motion.pb.h"
 #include "duet/v1/synthesis.pb.h"
+#include "model/motion/clip.h"
 #include "model/motion/coordinates.h"
 #include "model/motion/levelling.h"
 #include "model/motion/poses.h"
-#include "server/service/reply_rig.h"
+#include "model/motion/skeleton.h"
+#include "model/retargeting/rig_fitting.h"
+#include "model/retargeting/rotation.h"
 
 namespace duet::server::service {
+
+// What the rig of a reply is made from before the follower exists.
+struct RigSource {
+  motion::Skeleton skeleton;
+  // Frames of the leader, spread over its motion: the rest pose has their proportions.
+  motion::Clip person;
+  double ankle_height_on_floor = 0;  // metres
+};
 
 // Maps the model's follower to the caller's joints, order, unit, up axis and tilt.
 struct ReplyMapping {
@@ -41,6 +54,95 @@ motion::Poses FromPositions(const ReplyMapping& reply,
 // Fills in a chunk. `poses`: in the model's joint order, level world metres.
 void FillChunk(const ReplyMapping& reply, const motion::Poses& poses, int first_frame,
                v1::MotionChunk& chunk);
+
+// Writes a rig and its poses in the caller's joints, unit, up axis and tilt.
+class RigFormat {
+ public:
+  // joints: for each joint of the reply, its index in the model; all of the model's, in any order.
+  // Requires a unit that is the same in all directions. `levelling`: from the caller's world to the
+  // follower's.
+  RigFormat(const motion::Coordinates& coordinates,
+            const std::optional<motion::Levelling>& levelling, const std::vector<int>& joints);
+
+  void AppendRig(const retargeting::Rig& rig,
+                 google::protobuf::RepeatedPtrField<v1::RigJoint>* joints) const;
+  // Appends [rig joints, 4]: quaternions x, y, z, w.
+  void AppendRotations(const retargeting::RigPose& pose,
+                       google::protobuf::RepeatedField<float>* rotations) const;
+
+ private:
+  motion::Coordinates coordinates_;
+  retargeting::Quaternion to_caller_;  // from the world's axes
+  retargeting::Quaternion tilt_;       // from the follower's world to the caller's
+  std::vector<int> reply_joints_;      // for each joint of the model, its index in the reply
+};
+
+// Requires a leader with at least one frame. leader: [frames, skeleton joints], metres, y up.
+RigSource MakeRigSource(const motion::Skeleton& skeleton, const motion::Poses& leader,
+                        double frame_rate_hz);
+
+// A rig with the proportions of the source's person and the bone lengths of the follower's first
+// frame. Requires a follower with at least one frame.
+retargeting::Rig MakeReplyRig(const RigSource& source, const motion::Poses& follower);
+
+// The joint rotations of one reply, frame by frame, in the caller's unit, up axis and tilt. The rig
+// has the leader's proportions and the bone lengths of the follower's first frame.
+class ReplyRig {
+ public:
+  // joints: for each joint of the reply, its index in the model; all of the model's, in any order.
+  // Requires a unit that is the same in all directions, and a follower with at least one frame.
+  // `levelling`: from the caller's world to the follower's.
+  ReplyRig(const RigSource& source, const motion::Coordinates& coordinates,
+           const std::optional<motion::Levelling>& levelling, const std::vector<int>& joints,
+           const motion::Poses& follower);
+  ReplyRig(const ReplyRig&) = delete;
+  ReplyRig& operator=(const ReplyRig&) = delete;
+
+  void FillHeader(v1::SynthesisHeader& header) const;
+  // Adds the rotations of the next frames, and moves the joints of `poses` to where forward
+  // kinematics puts them: resampled bones change their lengths a little, the rig's do not.
+  void AddRotations(motion::Poses* poses, v1::MotionChunk& chunk);
+
+ private:
+  const RigFormat format_;
+  const retargeting::Rig rig_;
+  retargeting::RigFitter fitter_;
+};
+
+// The joint rotations of a live session. The rig has the proportions of the leader and the bone
+// lengths of the follower in frame 0, so a resumed session has the same rig if its caller sends
+// both frames again. Everything is computed from the follower's frames as the caller gets them.
+class LiveRig {
+ public:
+  // leader, follower: frame 0 of both, [1, joints], in the model's joint order, level metres.
+  // Requires a reply in a unit that is the same in all directions, with every joint.
+  LiveRig(const motion::Skeleton& skeleton, const ReplyMapping& reply, const motion::Poses& leader,
+          const motion::Poses& follower);
+  LiveRig(const LiveRig&) = delete;
+  LiveRig& operator=(const LiveRig&) = delete;
+
+  // Number of the last frames that the rotations of a frame depend on.
+  static int HistoryFrames(double frame_rate_hz) {
+    return retargeting::EndlessRigFitter::HistoryFrames(frame_rate_hz);
+  }
+
+  void AppendRig(google::protobuf::RepeatedPtrField<v1::RigJoint>* joints) const;
+
+  // Gives the bones the rig's lengths, before the frames are rounded for the caller. The rig has
+  // those of frame 0 already.
+  void KeepBoneLengths(int first_frame, motion::Poses* poses) const;
+
+  // Fits the next frames, as the caller gets them, and appends their rotations: [frames, rig, 4].
+  void Fit(int first_frame, const motion::Poses& poses,
+           google::protobuf::RepeatedField<float>* rotations);
+
+ private:
+  const motion::Skeleton skeleton_;
+  const RigFormat format_;
+  const std::vector<float> bone_lengths_;
+  const retargeting::Rig rig_;
+  retargeting::EndlessRigFitter fitter_;
+};
 
 }  // namespace duet::server::service
 

@@ -30,8 +30,6 @@ class ShareLease {
   ~ShareLease();
 
   explicit operator bool() const { return pool_ != nullptr; }
-  // The amount that the lease holds; 0 if empty.
-  std::size_t amount() const { return pool_ != nullptr ? amount_ : 0; }
 
  private:
   friend class SharePool;

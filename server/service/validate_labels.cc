@@ -1,5 +1,3 @@
-#include "server/service/validate_labels.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -9,6 +7,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/string_view.h"
 #include "model/base/text.h"
+#include "server/service/request_fields.h"
 
 namespace duet::server::service {
 namespace {

@@ -1,5 +1,3 @@
-#include "server/service/validate_leader.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -13,6 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "model/base/median.h"
 #include "model/base/text.h"
+#include "server/service/request_fields.h"
 
 namespace duet::server::service {
 namespace {

@@ -7,8 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "duet/v1/synthesis.pb.h"
-#include "server/service/validate_labels.h"
-#include "server/service/validate_leader.h"
+#include "server/service/request_fields.h"
 #include "server/service/validator.h"
 #include "server/service/violations.h"
 

@@ -1,5 +1,3 @@
-#include "server/service/validate_options.h"
-
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "model/base/text.h"
+#include "server/service/request_fields.h"
 
 namespace duet::server::service {
 namespace {

@@ -11,9 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "model/base/text.h"
 #include "model/engine/window_seed.h"
-#include "server/service/validate_labels.h"
-#include "server/service/validate_leader.h"
-#include "server/service/validate_options.h"
+#include "server/service/request_fields.h"
 #include "server/service/violations.h"
 
 namespace duet::server::service {

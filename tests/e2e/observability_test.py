@@ -1,12 +1,9 @@
-"""What a server tells of itself: to promtool and a real Prometheus, to a collector of traces, and to
-whoever reads its log."""
+"""What a server tells of itself: to promtool and a real Prometheus, and to whoever reads its log."""
 
-import concurrent.futures
 import json
 import pathlib
 import re
 import shutil
-import struct
 import subprocess
 import tempfile
 import time
@@ -146,182 +143,6 @@ class MetricsTest(unittest.TestCase):
             prometheus.wait(timeout=tools.STOP_SECONDS)
 
 
-def fields(message):
-    """The fields of a protobuf message by number, read without any schema."""
-    found, at = {}, 0
-
-    def varint(start):
-        value = shift = 0
-        while True:
-            byte = message[start]
-            value |= (byte & 127) << shift
-            start, shift = start + 1, shift + 7
-            if byte < 128:
-                return value, start
-
-    while at < len(message):
-        tag, at = varint(at)
-        kind = tag & 7
-        if kind == 0:
-            value, at = varint(at)
-        elif kind == 1:
-            value, at = struct.unpack_from("<q", message, at)[0], at + 8
-        else:
-            assert kind == 2, kind
-            size, at = varint(at)
-            value, at = message[at:at + size], at + size
-        found.setdefault(tag >> 3, []).append(value)
-    return found
-
-
-class Collector:
-    """An OpenTelemetry collector as far as a test needs one. It knows OTLP's field numbers by heart,
-    and no schema of ours."""
-
-    def __init__(self):
-        self.spans = []
-        self._server = grpc.server(concurrent.futures.ThreadPoolExecutor(2))
-        handler = grpc.unary_unary_rpc_method_handler(self._export)
-        self._server.add_generic_rpc_handlers((grpc.method_handlers_generic_handler(
-            "opentelemetry.proto.collector.trace.v1.TraceService", {"Export": handler}),))
-        self.port = self._server.add_insecure_port("127.0.0.1:0")
-        self._server.start()
-
-    def _export(self, request, _):
-        for resource_spans in fields(request)[1]:
-            outer = fields(resource_spans)
-            service = self._attributes(fields(outer[1][0])[1])["service.name"]
-            for scope_spans in outer[2]:
-                self.spans += [self._span(service, span) for span in fields(scope_spans)[2]]
-        return b""
-
-    @staticmethod
-    def _attributes(encoded):
-        """KeyValue: 1 key, 2 value; of it 1 string, 2 bool, 3 int, 4 double."""
-        attributes = {}
-        for pair in map(fields, encoded):
-            (number, (value,)), = fields(pair[2][0]).items()
-            if number == 1:
-                value = value.decode()
-            elif number == 4:
-                value = struct.unpack("<d", struct.pack("<q", value))[0]
-            attributes[pair[1][0].decode()] = value
-        return attributes
-
-    def _span(self, service, encoded):
-        span = fields(encoded)
-        return {"service": service, "trace": span[1][0].hex(), "id": span[2][0].hex(),
-                "parent": span.get(4, [b""])[0].hex(), "name": span[5][0].decode(),
-                "kind": span[6][0], "start": span[7][0], "end": span[8][0],
-                "attributes": self._attributes(span[9]),
-                "events": [fields(event)[2][0].decode() for event in span.get(11, [])],
-                "failed": 15 in span}
-
-    def stop(self):
-        self._server.stop(None).wait()
-
-
-class TraceTest(unittest.TestCase):
-    def setUp(self):
-        self.collector = Collector()
-        self.addCleanup(self.collector.stop)
-
-    def start(self, *flags):
-        server = tools.Server(*flags, metrics="127.0.0.1:0")
-        self.addCleanup(server.stop)
-        channel = grpc.insecure_channel(server.address)
-        self.addCleanup(channel.close)
-        return server, synthesis_pb2_grpc.MotionSynthesisStub(channel)
-
-    def exporting(self, *flags):
-        return self.start("--otlp-endpoint", f"http://127.0.0.1:{self.collector.port}", *flags)
-
-    @staticmethod
-    def returned(stub, traceparent=None):
-        """The traceparent that comes back with a reply."""
-        metadata = (("traceparent", traceparent),) if traceparent else None
-        _, call = stub.ListModels.with_call(synthesis_pb2.ListModelsRequest(),
-                                            timeout=tools.RUN_SECONDS, metadata=metadata)
-        return dict(call.trailing_metadata()).get("traceparent")
-
-    def test_trace_passes_through_the_server(self):
-        server, stub = self.exporting()
-        begin = time.time_ns()
-        came = self.returned(stub, f"00-{TRACE}-{PARENT}-01")
-        tools.wait_until(lambda: self.collector.spans, "a span")
-        span, = self.collector.spans
-        self.assertEqual((span["service"], span["trace"], span["parent"], span["name"]),
-                         ("duet-server", TRACE, PARENT, "duet.v1.MotionSynthesis/ListModels"))
-        self.assertEqual(came, f"00-{TRACE}-{span['id']}-01")
-        self.assertEqual(span["kind"], 2)  # SPAN_KIND_SERVER
-        self.assertLess(begin, span["end"])
-        self.assertLessEqual(span["start"], span["end"])
-        self.assertLess(span["end"] - begin, 60e9)
-        self.assertEqual(span["attributes"]["rpc.system"], "grpc")
-        self.assertEqual(span["attributes"]["rpc.grpc.status_code"], 0)
-        self.assertFalse(span["failed"])
-        call, = server.events("call")
-        self.assertEqual((call["trace_id"], call["span_id"], call["traceparent"]),
-                         (TRACE, span["id"], f"00-{TRACE}-{PARENT}-01"))
-        tools.wait_until(
-            lambda: "duet_spans_sent_total 1\n" in get(server.metrics_port, "/metrics"),
-            "the count of spans")
-
-    def test_the_caller_decides_what_is_sampled(self):
-        _, stub = self.exporting()
-        self.assertEqual(self.returned(stub, f"00-{TRACE}-{PARENT}-00")[-2:], "00")
-        self.returned(stub, f"00-{TRACE}-{PARENT}-01")
-        tools.wait_until(lambda: self.collector.spans, "a span")
-        self.assertEqual(len(self.collector.spans), 1)
-
-    def test_call_without_a_trace_starts_one(self):
-        _, stub = self.exporting()
-        came = self.returned(stub)
-        tools.wait_until(lambda: self.collector.spans, "a span")
-        span, = self.collector.spans
-        self.assertEqual(came, f"00-{span['trace']}-{span['id']}-01")
-        self.assertEqual(span["parent"], "")
-
-    def test_synthesize_span_has_the_time_of_the_first_chunk(self):
-        server, _ = self.exporting()
-        answer = tools.duet("synthesize", "--server", server.address, "--leader",
-                            tools.sample("kick"), "--label", "kick=1", "--out", "-",
-                            "--output-format", "csv")
-        self.assertEqual(answer.returncode, 0, answer.stderr)
-        self.named = lambda: [span for span in self.collector.spans
-                              if span["name"].endswith("/Synthesize")]
-        tools.wait_until(self.named, "a span")
-        span, = self.named()
-        self.assertEqual(span["events"], ["first_chunk"])
-        self.assertEqual(span["attributes"]["duet.model"], "sbu")
-        self.assertGreater(span["attributes"]["duet.frames"], 0)
-        self.assertGreater(span["attributes"]["duet.compute_seconds"], 0)
-
-    def test_trace_is_propagated_without_a_collector(self):
-        _, stub = self.start()
-        came = self.returned(stub, f"00-{TRACE}-{PARENT}-01")
-        self.assertRegex(came, f"^00-{TRACE}-[0-9a-f]{{16}}-01$")
-        self.assertNotIn(PARENT, came)
-        self.assertIsNone(self.returned(stub))
-        self.assertEqual(self.collector.spans, [])
-
-    def test_absent_collector_loses_only_spans(self):
-        server, stub = self.exporting()
-        self.collector.stop()
-        for _ in range(5):
-            self.assertIsNotNone(self.returned(stub))
-        tools.wait_until(
-            lambda: "duet_spans_dropped_total 5\n" in get(server.metrics_port, "/metrics"),
-            "the count of lost spans")
-        self.assertIn("duet_spans_sent_total 0\n", get(server.metrics_port, "/metrics"))
-
-    def test_invalid_endpoint_prevents_the_start(self):
-        wrong = tools.run(tools.PROGRAMS / "duet-server", "--listen", "127.0.0.1:0",
-                          "--metrics-listen", "off", "--otlp-endpoint", "collector:4317")
-        self.assertNotEqual(wrong.returncode, 0)
-        self.assertIn("otlp_endpoint: expected", wrong.stderr)
-
-
 class LogTest(unittest.TestCase):
     def start(self, *flags):
         server = tools.Server(*flags)
@@ -349,28 +170,22 @@ class LogTest(unittest.TestCase):
         self.assertEqual({line["code"] for line in server.events("calls_not_logged")},
                          {"NOT_FOUND"})
 
-    def test_share_of_successes_is_logged(self):
-        server, stub = self.start("--log-success-ratio", "0.1")
-        for _ in range(40):
-            stub.ListModels(synthesis_pb2.ListModelsRequest(), timeout=tools.RUN_SECONDS)
-        server.stop()
-        self.assertEqual(len(server.events("call")), 4)
-        self.assertEqual(server.events("call")[0]["sampled_ratio"], 0.1)
+    def test_a_callers_trace_is_in_its_line_and_comes_back(self):
+        server, stub = self.start()
+        given = f"00-{TRACE}-{PARENT}-01"
 
-    def test_text_log_is_readable(self):
-        server = subprocess.Popen(
-            [tools.PROGRAMS / "duet-server", "--listen", "127.0.0.1:0", "--metrics-listen", "off",
-             "--log-format", "text"], stderr=subprocess.PIPE, text=True)
-        lines = []
-        for line in server.stderr:
-            lines.append(line)
-            if " serving " in line:
-                break
-        server.terminate()
-        server.communicate(timeout=tools.STOP_SECONDS)
-        for line in lines:
-            self.assertRegex(line, r"^\d{4}-\d\d-\d\dT[\d:.]+Z (INFO   |WARNING|ERROR  ) \w+ ")
-        self.assertRegex(lines[-1], r" serving port=\d+ ")
+        def returned(metadata):
+            _, call = stub.ListModels.with_call(synthesis_pb2.ListModelsRequest(),
+                                                timeout=tools.RUN_SECONDS, metadata=metadata)
+            return dict(call.trailing_metadata()).get("traceparent")
+
+        self.assertEqual(returned((("traceparent", given),)), given)
+        self.assertIsNone(returned(None))
+        self.assertIsNone(returned((("traceparent", given[:-1]),)), "malformed")
+        tools.wait_until(lambda: len(server.events("call")) == 3, "the calls are logged")
+        self.assertEqual([(line.get("trace_id"), line.get("traceparent"))
+                          for line in server.events("call")],
+                         [(TRACE, given), (None, None), (None, None)])
 
     def test_level_omits_less_severe_lines(self):
         process = tools.run(tools.PROGRAMS / "duet-server", "--listen", "127.0.0.1:0",

@@ -24,12 +24,9 @@
 #include "model/base/request_id.h"
 #include "model/engine/clip_synthesis.h"
 #include "server/common/clock.h"
-#include "server/common/trace_context.h"
 #include "server/config/load_config.h"
-#include "server/config/print_config.h"
-#include "server/metrics/http_reply.h"
+#include "server/metrics/metrics_endpoint.h"
 #include "server/security/access_list.h"
-#include "server/service/call_identity.h"
 #include "server/service/call_pipeline.h"
 #include "server/service/reply_mapping.h"
 #include "server/service/validator.h"
@@ -53,7 +50,7 @@ const server::service::CallPipeline& Pipeline() {
   google::protobuf::SetLogHandler(nullptr);
   static const auto* const kPipeline = new server::service::CallPipeline(
       kMaxRequestBytes, "", {}, server::common::Clock::Real(), server::security::CallGuard(nullptr),
-      server::security::Role::kSynthesise, std::nullopt);
+      server::security::Role::kSynthesise);
   return *kPipeline;
 }
 
@@ -181,10 +178,6 @@ Broken HttpRequest(absl::string_view input) {
 Broken CallMetadata(absl::string_view input) {
   std::vector<std::string> lines = absl::StrSplit(input, absl::MaxSplits('\n', 2));
   lines.resize(3);
-  const auto trace = server::common::ContinueTrace(lines[0]);
-  if (trace.has_value() && !server::service::IsTraceparent(Traceparent(*trace))) {
-    return "a trace goes on under a traceparent that is none";
-  }
   if (base::IsRequestId(lines[1]) && absl::StrContains(lines[1], ' ')) {
     return "a request id has blanks";
   }

@@ -99,7 +99,7 @@ absl::StatusOr<std::shared_ptr<const Synthesizer>> LoadFolder(const std::filesys
 
 int main(int argc, char** argv) {
   // Never deleted (see RunServer); static, so that LeakSanitizer still finds it.
-  static auto* const stop = new duet::server::watchdog::StopSignal;
+  static auto* const stop = new duet::server::lifecycle::StopSignal;
   const duet::server::lifecycle::ModelSource source{
       "fake", LoadFolder, [] {
         return std::vector<std::shared_ptr<const Synthesizer>>{

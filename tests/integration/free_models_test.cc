@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "server/lifecycle/check_config.h"
+#include "server/lifecycle/validate_settings.h"
 #include "tests/integration/running_server.h"
 #include "tests/support/status_matchers.h"
 #include "tests/support/temporary_folder.h"
@@ -87,14 +87,6 @@ std::vector<std::string> Served(Running& server) {
   return models;
 }
 
-TEST(EmbeddedModelsTest, AllAreServedByDefault) {
-  Running server;
-  ASSERT_THAT(Load(server, ThreeEmbedded()), IsOk());
-  ASSERT_THAT(server->Serve(), IsOk());
-  EXPECT_THAT(Served(server), ElementsAre("dance/1 free", "first/2*", "first/1"));
-  EXPECT_THAT(server.log.Events("models_left_out"), IsEmpty());
-}
-
 TEST(EmbeddedModelsTest, FreeServesOnlyFreeOnesAndNamesTheOthers) {
   Running server(Options(v1::SERVED_MODELS_FREE));
   ASSERT_THAT(Load(server, ThreeEmbedded()), IsOk());
@@ -144,24 +136,6 @@ class FreeRepositoryTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(FreeRepositoryTest, AllServesEveryCheckpoint) {
-  Running server(Options(v1::SERVED_MODELS_ALL, repository()));
-  ASSERT_THAT(Load(server, ThreeEmbedded()), IsOk());
-  ASSERT_THAT(server->Serve(), IsOk());
-  EXPECT_THAT(Served(server), ElementsAre("dance/1* free", "sbu/1"));
-}
-
-TEST_F(FreeRepositoryTest, FreeRefusesOtherCheckpointsAtTheStart) {
-  Running server(Options(v1::SERVED_MODELS_FREE, repository()));
-  ASSERT_THAT(Load(server, ThreeEmbedded()), IsOk());
-  ASSERT_THAT(server->Serve(), IsOk());
-  EXPECT_THAT(Served(server), ElementsAre("dance/1* free"));
-  const std::vector<json> refused = server.log.Events("model_refused");
-  ASSERT_EQ(refused.size(), 1u);
-  EXPECT_EQ(refused[0]["source"], "sbu/1");
-  EXPECT_THAT(refused[0].value("message", ""), HasSubstr(kRefused));
-}
-
 TEST_F(FreeRepositoryTest, FreeRefusesOtherCheckpointsAtAReloadAndByRequest) {
   Running server(Options(v1::SERVED_MODELS_FREE, repository()));
   ASSERT_THAT(Load(server, ThreeEmbedded()), IsOk());
@@ -176,13 +150,6 @@ TEST_F(FreeRepositoryTest, FreeRefusesOtherCheckpointsAtAReloadAndByRequest) {
               StatusIs(absl::StatusCode::kFailedPrecondition, HasSubstr(kRefused)));
   EXPECT_THAT(Served(server), ElementsAre("dance/2* free", "dance/1 free"))
       << "the free checkpoint that dance/1 was stays";
-}
-
-TEST_F(FreeRepositoryTest, FreeWithoutAFreeOneCannotServe) {
-  Write("dance/1", "research");
-  Running server(Options(v1::SERVED_MODELS_FREE, repository()));
-  ASSERT_THAT(Load(server, ThreeEmbedded()), IsOk());
-  EXPECT_THAT(server->Serve(), StatusIs(absl::StatusCode::kFailedPrecondition, kNoneLeft));
 }
 
 // What --check-config writes, and its exit code.

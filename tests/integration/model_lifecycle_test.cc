@@ -203,36 +203,6 @@ TEST_F(ModelLifecycleTest, ABadModelIsRefusedAndWhatIsServedStays) {
                                HasSubstr(R"(duet_model_state{checkpoint="fake/2"} 0)"),
                                HasSubstr(R"(duet_model_loads_total{result="refused"} 2)"),
                                HasSubstr(R"(duet_reloads_total{result="failed"} 1)")));
-  EXPECT_THAT(HttpGet(server().metrics_port(), "/readyz"),
-              AllOf(HasSubstr("HTTP/1.1 200"),
-                    HasSubstr("model fake/2: failed: weights: expected 9 bytes")));
-}
-
-TEST_F(ModelLifecycleTest, WeightsThatAreTornAndMendedShowEverywhere) {
-  ASSERT_THAT(server().Serve(), IsOk());
-  const std::string one = R"(duet_model_last_load_successful{checkpoint="fake/1"} 1)";
-  const std::string zero = R"(duet_model_last_load_successful{checkpoint="fake/1"} 0)";
-  EXPECT_THAT(Metrics(), HasSubstr(one));
-  WriteTestFile(folder_ / "fake/1/weights.safetensors", "torn");
-  admin::ReloadResponse reloaded;
-  ASSERT_TRUE(Reload(&reloaded).ok());
-  EXPECT_THAT(reloaded.refused(), ElementsAre("fake/1"));
-  EXPECT_THAT(ListModels(),
-              ElementsAre("fake/1 SERVED: weights: expected 9 bytes, got 4 (outdated)"));
-  EXPECT_THAT(Metrics(),
-              AllOf(HasSubstr(zero), HasSubstr(R"(duet_model_state{checkpoint="fake/1"} 1)")));
-  EXPECT_THAT(
-      HttpGet(server().metrics_port(), "/readyz"),
-      AllOf(HasSubstr("HTTP/1.1 200"),
-            HasSubstr("model fake/1: served, outdated: weights: expected 9 bytes, got 4\n")));
-  const std::vector<json> refused = server_->log.Events("model_refused");
-  ASSERT_EQ(refused.size(), 1u);
-  EXPECT_EQ(refused[0]["still_served"], true);
-  fs::remove(folder_ / "fake/1/weights.safetensors");
-  ASSERT_TRUE(Reload(&reloaded).ok());
-  EXPECT_THAT(ListModels(), ElementsAre("fake/1 SERVED"));
-  EXPECT_THAT(Metrics(), HasSubstr(one));
-  EXPECT_THAT(HttpGet(server().metrics_port(), "/readyz"), HasSubstr("model fake/1: served\n"));
 }
 
 TEST_F(ModelLifecycleTest, AFolderThatIsNoCheckpointShowsEverywhere) {
@@ -248,59 +218,7 @@ TEST_F(ModelLifecycleTest, AFolderThatIsNoCheckpointShowsEverywhere) {
   EXPECT_EQ(list.skipped_folders(0).folder(), "fake/02");
   EXPECT_THAT(list.skipped_folders(0).reason(), HasSubstr("expected a version"));
   EXPECT_THAT(Metrics(), HasSubstr("duet_model_folders_skipped 1"));
-  EXPECT_THAT(HttpGet(server().metrics_port(), "/readyz"), HasSubstr("skipped fake/02: expected"));
   EXPECT_EQ(server_->log.Events("folder_skipped").size(), 1u) << "once, however often it is seen";
-}
-
-TEST_F(ModelLifecycleTest, TextOfReadinessStaysShortWithManyFoldersAndModels) {
-  ASSERT_THAT(server().Serve(), IsOk());
-  for (int i = 0; i < 300; ++i) fs::create_directories(folder_ / absl::StrCat("foreign", i));
-  for (int i = 0; i < 30; ++i) Write(absl::StrCat("more", 10 + i, "/1"), i == 29 ? "bad" : "good");
-  admin::ReloadResponse reloaded;
-  ASSERT_TRUE(Reload(&reloaded).ok());
-  const std::string text = HttpGet(server().metrics_port(), "/readyz");
-  EXPECT_LT(text.size(), 8000u);
-  EXPECT_THAT(text, HasSubstr("ready\nmodel more39/1: failed: weights")) << "failed ones first";
-  EXPECT_THAT(text, HasSubstr("and 11 more models; duet admin models lists all\n"));
-  EXPECT_THAT(text, HasSubstr("skipped foreign0: has no folder of a version"));
-  EXPECT_THAT(text, HasSubstr("and 280 more skipped folders; duet admin models lists all\n"));
-  TimedContext context;
-  admin::ListModelsResponse list;
-  ASSERT_TRUE(stub_->ListModels(&context, admin::ListModelsRequest(), &list).ok());
-  EXPECT_EQ(list.skipped_folders_size(), 300);
-}
-
-TEST_F(ModelLifecycleTest, NoCallFailsWhileModelsAreReplacedUnderIt) {
-  ASSERT_THAT(server().Serve(), IsOk());
-  std::atomic<bool> over{false};
-  std::atomic<int> calls{0};
-  std::vector<std::string> failures;
-  server::common::Mutex mutex;
-  std::vector<std::thread> callers;
-  for (int i = 0; i < 3; ++i) {
-    callers.emplace_back([&] {
-      while (!over) {
-        const Reply reply = Call(synthesis(), RequestTo(1));
-        ++calls;
-        if (reply.status.ok()) continue;
-        server::common::MutexLock lock(mutex);
-        failures.push_back(reply.status.error_message());
-      }
-    });
-  }
-  admin::ReloadResponse reloaded;
-  constexpr int kReloads = 10;
-  for (int i = 0; i < kReloads; ++i) {
-    const int before = calls;
-    // Every third is broken; the good one before it stays.
-    Write("fake/1", i % 3 == 2 ? "bad" : "good");
-    EXPECT_TRUE(Reload(&reloaded).ok());
-    while (calls == before) std::this_thread::yield();
-  }
-  over = true;
-  for (std::thread& caller : callers) caller.join();
-  EXPECT_THAT(failures, IsEmpty());
-  EXPECT_GE(calls, kReloads);
 }
 
 TEST_F(ModelLifecycleTest, ACallFinishesOnAModelThatIsUnloadedUnderIt) {
@@ -381,21 +299,6 @@ TEST_F(ModelLifecycleTest, HealthTellsOfEachModel) {
   EXPECT_EQ(watch.Read().value_or(""), "\x08\x02");
   EXPECT_EQ(Health(server_->channel, kOther), "NOT_SERVING");
   EXPECT_EQ(Health(server_->channel, ""), "SERVING") << "the whole server goes on";
-}
-
-TEST_F(ModelLifecycleTest, LabelsMoveAtOnce) {
-  Write("fake/2", "good");
-  ASSERT_THAT(server().Serve(), IsOk());
-  ASSERT_TRUE(LoadModel("fake", 2).ok());
-  ASSERT_TRUE(SetLabel("fake", "stable", 1).ok());
-  v1::SynthesizeRequest request = SampleRequest(40);
-  request.mutable_model()->set_version_label("stable");
-  EXPECT_EQ(Call(synthesis(), request).messages.front().header().model_version(), 1u);
-  ASSERT_TRUE(SetLabel("fake", "stable", 2).ok());
-  EXPECT_EQ(Call(synthesis(), request).messages.front().header().model_version(), 2u);
-  EXPECT_THAT(ListModels(), ElementsAre("fake/2 SERVED+stable", "fake/1 SERVED"));
-  ASSERT_TRUE(DeleteLabel("fake", "stable").ok());
-  EXPECT_EQ(Call(synthesis(), request).status.error_code(), StatusCode::NOT_FOUND);
 }
 
 TEST_F(ModelLifecycleTest, EachRefusalHasItsCodeAndSaysWhy) {

@@ -1,27 +1,21 @@
-#include "server/watchdog/stop_signal.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <csignal>
 
-#include "server/watchdog/watchdog.h"
+#include "server/lifecycle/process_end.h"
 
 namespace duet::test {
 namespace {
 
-using server::watchdog::StopSignal;
-using server::watchdog::Watchdog;
-
-TEST(StopSignalTest, SeesNothingBeforeASignal) {
-  StopSignal stop;
-  EXPECT_FALSE(stop.WaitFor(0));
-  EXPECT_FALSE(stop.WaitFor(0.001));
-}
+using server::lifecycle::kExitLate;
+using server::lifecycle::LastResort;
+using server::lifecycle::StopSignal;
 
 TEST(StopSignalTest, SeesSignalsThatCameWhileNobodyWaited) {
   StopSignal stop;
-  const Watchdog watchdog({}, stop);
+  EXPECT_FALSE(stop.WaitFor(0));
+  EXPECT_FALSE(stop.WaitFor(0.001));
   for (const int signal : {SIGTERM, SIGINT}) {
     kill(getpid(), signal);
     EXPECT_TRUE(stop.WaitFor(60));
@@ -29,34 +23,42 @@ TEST(StopSignalTest, SeesSignalsThatCameWhileNobodyWaited) {
   }
 }
 
-TEST(StopSignalTest, SeesSignalsFromBeforeTheWatchdog) {
-  StopSignal stop;
-  kill(getpid(), SIGTERM);
-  const Watchdog watchdog({}, stop);
-  EXPECT_TRUE(stop.WaitFor(60));
-}
-
-TEST(StopSignalTest, WaitEndsWithASignal) {
-  StopSignal stop;
-  const Watchdog watchdog({}, stop);
-  kill(getpid(), SIGTERM);
-  EXPECT_EQ(stop.Wait(), StopSignal::Kind::kStop);
-  EXPECT_FALSE(stop.WaitFor(0));
-  kill(getpid(), SIGHUP);
-  EXPECT_EQ(stop.Wait(), StopSignal::Kind::kReload);
-}
-
 TEST(StopSignalTest, TellsReloadsFromStops) {
   StopSignal stop;
-  stop.Note(StopSignal::Kind::kReload);
+  kill(getpid(), SIGHUP);
   EXPECT_FALSE(stop.WaitFor(0)) << "a reload stops nothing";
   EXPECT_EQ(stop.Wait(), StopSignal::Kind::kReload);
-  stop.Note(StopSignal::Kind::kReload);
-  stop.Note(StopSignal::Kind::kReload);
-  stop.Note(StopSignal::Kind::kStop);
+  kill(getpid(), SIGHUP);
+  kill(getpid(), SIGHUP);
+  kill(getpid(), SIGTERM);
   EXPECT_EQ(stop.Wait(), StopSignal::Kind::kStop) << "before the reload that came first";
   EXPECT_EQ(stop.Wait(), StopSignal::Kind::kReload);
   EXPECT_FALSE(stop.WaitFor(0));
+}
+
+TEST(StopSignalDeathTest, EndsAProcessThatDoesNotExitInTime) {
+  EXPECT_EXIT(
+      {
+        StopSignal stop;
+        stop.AllowToStop(0.01);
+        kill(getpid(), SIGTERM);
+        while (true) pause();
+      },
+      testing::ExitedWithCode(kExitLate), "\"event\":\"stopped_late\".*\"exit_code\":4}");
+}
+
+TEST(LastResortDeathTest, EndsAProcessUnlessItIsSetAgain) {
+  EXPECT_EXIT(
+      {
+        LastResort unused("unused", "", 1);
+        unused.Set(0.01);
+        unused.Set(0);
+        LastResort used("used", "too late", 7);
+        used.Set(3600);
+        used.Set(0.05);
+        while (true) pause();
+      },
+      testing::ExitedWithCode(7), "\"event\":\"used\",\"message\":\"too late\"");
 }
 
 }  // namespace

@@ -12,8 +12,7 @@ from wire import corpus, judge, protobuf, rounds
 from wire.protobuf import message
 
 KEPT_LINES = 2000
-FLAGS = ("--admin-listen", "127.0.0.1:0", "--default-model", "sbu", "--log-success-ratio", "0",
-         "--self-check-seconds", "1")
+FLAGS = ("--admin-listen", "127.0.0.1:0", "--default-model", "sbu", "--self-check-seconds", "1")
 # What never comes, or is never read, is given up soon, so that rounds follow quickly.
 IMPATIENT = ("--receive-timeout-seconds", "1", "--write-timeout-seconds", "2", "--live-idle-seconds", "1")
 REPORTS = ("Sanitizer", "runtime error:", "Assertion", "terminate called", "buffer overflow",

@@ -13,7 +13,6 @@
 #include <thread>
 #include <vector>
 
-#include "server/common/activity.h"
 #include "tests/server/support/fake_clock.h"
 #include "tests/server/support/gated_model.h"
 #include "tests/support/fake_synthesizer.h"
@@ -57,18 +56,6 @@ struct Ticket {
   }
 };
 
-TEST(BatcherTest, EvaluatesAWindow) {
-  const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
-  Ticket ticket;
-  ASSERT_THAT(batcher->Submit(ticket.Job(std::make_shared<FakeSynthesizer>())), IsOk());
-  const WindowOutcome outcome = ticket.outcome.get();
-  ASSERT_THAT(outcome.result, IsOk());
-  const motion::Vec3 expected =
-      FakeAnswer(SwayingMotion(4, 15).at(0, 7), std::vector<float>(6, 0.0F));
-  EXPECT_EQ(outcome.result->at(0, 7), expected);
-  EXPECT_EQ(outcome.timings.batch_size, 1);
-}
-
 TEST(BatcherTest, EvaluatesAsManyBatchesAtOnceAsThereAreWorkers) {
   const auto batcher = MakeBatcher({2, 4, {4}}, common::Clock::Real());
   GatedModel model;
@@ -79,48 +66,6 @@ TEST(BatcherTest, EvaluatesAsManyBatchesAtOnceAsThereAreWorkers) {
   model.Open();
   EXPECT_THAT(first.outcome.get().result, IsOk());
   EXPECT_THAT(second.outcome.get().result, IsOk());
-}
-
-// The threads of a batcher that the watchdog sees, and what it sees of them. No other is alive.
-std::vector<std::string> SeeWorkers() {
-  const auto threads = std::make_unique<common::ThreadStates>();
-  common::ReadThreads(threads.get());
-  std::vector<std::string> seen;
-  for (const common::ThreadState& thread : *threads) {
-    if (thread.thread_id != 0) seen.emplace_back(thread.step == nullptr ? "" : thread.step->doing);
-  }
-  return seen;
-}
-
-TEST(BatcherTest, WatchdogSeesBusyAndIdleWorkers) {
-  GatedModel model;
-  const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
-  Ticket ticket;
-  ASSERT_THAT(batcher->Submit(ticket.Job(model.get())), IsOk());
-  model.WaitUntilStarted(1);
-  EXPECT_THAT(SeeWorkers(), ::testing::Contains("evaluating a batch"));
-  model.Open();
-  EXPECT_THAT(ticket.outcome.get().result, IsOk());
-  while (!::testing::Value(SeeWorkers(), ::testing::Each(""))) std::this_thread::yield();
-}
-
-TEST(BatcherTest, RejectsANewCallWhenTheQueueIsFull) {
-  GatedModel model;
-  const auto batcher = MakeBatcher({1, 1, {4}}, common::Clock::Real());
-  Ticket running, waiting, refused, continued;
-  ASSERT_THAT(batcher->Submit(running.Job(model.get())), IsOk());
-  model.WaitUntilStarted(1);
-  ASSERT_THAT(batcher->Submit(waiting.Job(model.get())), IsOk());
-  EXPECT_EQ(batcher->queued_windows(), 1u);
-  EXPECT_THAT(batcher->Submit(refused.Job(model.get())),
-              StatusIs(kResourceExhausted,
-                       HasSubstr("at most 1 first windows of calls may wait, each counted once")));
-  WindowJob next = continued.Job(model.get());
-  next.continues_call = true;
-  EXPECT_THAT(batcher->Submit(std::move(next)), IsOk());
-  model.Open();
-  EXPECT_THAT(waiting.outcome.get().result, IsOk());
-  EXPECT_THAT(continued.outcome.get().result, IsOk());
 }
 
 TEST(BatcherTest, NeverStartsACancelledWindow) {
@@ -152,47 +97,6 @@ TEST(BatcherTest, ModelSeesCancellationDuringABatch) {
   EXPECT_THAT(ticket.outcome.get().result, IsOk());
   EXPECT_FALSE(before);
   EXPECT_TRUE(after);
-}
-
-TEST(BatcherTest, NeverStartsAnExpiredWindow) {
-  FakeClock clock;
-  GatedModel model;
-  const auto batcher = MakeBatcher({1, 4, {4}}, clock);
-  Ticket running, expired;
-  ASSERT_THAT(batcher->Submit(running.Job(model.get())), IsOk());
-  model.WaitUntilStarted(1);
-  WindowJob job = expired.Job(model.get());
-  job.deadline = clock.Now() + milliseconds(100);
-  ASSERT_THAT(batcher->Submit(std::move(job)), IsOk());
-  clock.Advance(milliseconds(100));
-  model.Open();
-  EXPECT_THAT(expired.outcome.get().result,
-              StatusIs(kDeadlineExceeded, HasSubstr("before this window started")));
-  EXPECT_EQ(model.started(), 1);
-}
-
-TEST(BatcherTest, StartsInteractiveWindowsFirst) {
-  GatedModel gate;
-  const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real());
-  Ticket running, bulk, interactive;
-  ASSERT_THAT(batcher->Submit(running.Job(gate.get())), IsOk());
-  gate.WaitUntilStarted(1);
-  std::vector<std::string> order;  // written by the one worker, read after both outcomes
-  const auto naming = [&order](const char* name) {
-    auto model = std::make_shared<FakeSynthesizer>();
-    model->on_batch = [&order, name](absl::Span<const engine::SynthesisWindow* const>) {
-      order.emplace_back(name);
-    };
-    return model;
-  };
-  WindowJob bulk_job = bulk.Job(naming("bulk"));
-  bulk_job.priority = Priority::kBulk;
-  ASSERT_THAT(batcher->Submit(std::move(bulk_job)), IsOk());
-  ASSERT_THAT(batcher->Submit(interactive.Job(naming("interactive"))), IsOk());
-  gate.Open();
-  bulk.outcome.wait();
-  interactive.outcome.wait();
-  EXPECT_THAT(order, ElementsAre("interactive", "bulk"));
 }
 
 // Keeps the timings of the second window that it is told of.
@@ -276,26 +180,6 @@ class HeldWorker {
   GatedModel gate_;
   Ticket ticket_;
 };
-
-TEST(BatcherTest, EvaluatesWaitingWindowsInOneBatch) {
-  CountingObserver observer;
-  const auto model = std::make_shared<FakeSynthesizer>();
-  {
-    const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real(), &observer);
-    HeldWorker held(*batcher);
-    std::vector<Ticket> tickets(6);
-    for (Ticket& ticket : tickets) ASSERT_THAT(batcher->Submit(ticket.Job(model)), IsOk());
-    held.Release();
-    std::vector<int> sizes;
-    sizes.reserve(tickets.size());
-    for (Ticket& ticket : tickets) sizes.push_back(ticket.outcome.get().timings.batch_size);
-    EXPECT_THAT(sizes, ElementsAre(4, 4, 4, 4, 2, 2));
-  }
-  EXPECT_EQ(observer.batches, 3);  // with the one that held the worker
-  EXPECT_EQ(observer.batched_windows, 7);
-  EXPECT_EQ(observer.evaluated, 7);
-  EXPECT_EQ(observer.dropped, 0);
-}
 
 TEST(BatcherTest, GivesEveryCallItsOwnResult) {
   const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real());
@@ -388,69 +272,6 @@ TEST(BatcherTest, RejectsACallThatWouldStartTooLate) {
 
 // Delays: an hour is longer than any test; what waits for it in vain runs into the time limit.
 
-TEST(BatcherTest, BatchWaitsForMoreWindowsWhileAnotherWorkerIsBusy) {
-  const auto batcher = MakeBatcher({2, 8, {2, hours(1)}}, common::Clock::Real());
-  HeldWorker held(*batcher);
-  const auto model = std::make_shared<FakeSynthesizer>();
-  Ticket first, second;
-  ASSERT_THAT(batcher->Submit(first.Job(model)), IsOk());
-  ASSERT_THAT(batcher->Submit(second.Job(model)), IsOk());
-  EXPECT_EQ(first.outcome.get().timings.batch_size, 2);
-  EXPECT_EQ(second.outcome.get().timings.batch_size, 2);
-}
-
-TEST(BatcherTest, PartialBatchStartsAfterTheDelay) {
-  const auto batcher = MakeBatcher({2, 8, {2, milliseconds(1)}}, common::Clock::Real());
-  HeldWorker held(*batcher);
-  Ticket ticket;
-  ASSERT_THAT(batcher->Submit(ticket.Job(std::make_shared<FakeSynthesizer>())), IsOk());
-  EXPECT_EQ(ticket.outcome.get().timings.batch_size, 1);
-}
-
-TEST(BatcherTest, SingleCallOnAnIdleServerStartsImmediately) {
-  const auto batcher = MakeBatcher({2, 8, {2, hours(1)}}, common::Clock::Real());
-  const auto model = std::make_shared<FakeSynthesizer>();
-  for (int i = 0; i < 3; ++i) {
-    Ticket ticket;
-    ASSERT_THAT(batcher->Submit(ticket.Job(model)), IsOk());
-    EXPECT_EQ(ticket.outcome.get().timings.batch_size, 1);
-  }
-}
-
-TEST(BatcherTest, NextWindowOfASingleCallStartsImmediately) {
-  const auto batcher = MakeBatcher({2, 8, {2, hours(1)}}, common::Clock::Real());
-  const auto model = std::make_shared<FakeSynthesizer>();
-  Ticket first, second;
-  WindowJob job = first.Job(model);
-  job.done = [&](const WindowOutcome&) { EXPECT_THAT(batcher->Submit(second.Job(model)), IsOk()); };
-  ASSERT_THAT(batcher->Submit(std::move(job)), IsOk());
-  EXPECT_EQ(second.outcome.get().timings.batch_size, 1);
-}
-
-TEST(BatcherTest, SurvivesAModelThatThrows) {
-  const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
-  Ticket broken, sound;
-  ASSERT_THAT(batcher->Submit(broken.Job(std::make_shared<BrokenModel>(true))), IsOk());
-  EXPECT_THAT(broken.outcome.get().result, StatusIs(kInternal, HasSubstr("out of luck")));
-  ASSERT_THAT(batcher->Submit(sound.Job(std::make_shared<FakeSynthesizer>())), IsOk());
-  EXPECT_THAT(sound.outcome.get().result, IsOk());
-}
-
-TEST(BatcherTest, ExceptionFailsOnlyItsBatch) {
-  const auto batcher = MakeBatcher({1, 8, {2}}, common::Clock::Real());
-  HeldWorker held(*batcher);
-  const auto broken_model = std::make_shared<BrokenModel>(true);
-  std::vector<Ticket> broken(2), sound(2);
-  for (Ticket& ticket : broken) ASSERT_THAT(batcher->Submit(ticket.Job(broken_model)), IsOk());
-  const auto sound_model = std::make_shared<FakeSynthesizer>();
-  for (Ticket& ticket : sound) ASSERT_THAT(batcher->Submit(ticket.Job(sound_model)), IsOk());
-  held.Release();
-  for (Ticket& ticket : broken) {
-    EXPECT_THAT(ticket.outcome.get().result, StatusIs(kInternal, HasSubstr("out of luck")));
-  }
-  for (Ticket& ticket : sound) EXPECT_THAT(ticket.outcome.get().result, IsOk());
-}
-
 TEST(BatcherTest, WindowThatCausesAnExceptionFailsAlone) {
   const auto batcher = MakeBatcher({1, 8, {4}}, common::Clock::Real());
   const auto model = std::make_shared<FakeSynthesizer>();
@@ -473,10 +294,23 @@ TEST(BatcherTest, WindowThatCausesAnExceptionFailsAlone) {
   EXPECT_THAT(last.outcome.get().result, IsOk());
 }
 
+// Answers no window of a batch.
+class SilentModel final : public engine::Synthesizer {
+ public:
+  const engine::ModelDescription& description() const override { return description_; }
+  std::vector<engine::WindowResult> Synthesize(
+      absl::Span<const engine::SynthesisWindow* const>) const override {
+    return {};
+  }
+
+ private:
+  const engine::ModelDescription description_ = FakeDescription();
+};
+
 TEST(BatcherTest, SurvivesAModelThatGivesTooFewResults) {
   const auto batcher = MakeBatcher({1, 4, {4}}, common::Clock::Real());
   Ticket ticket;
-  ASSERT_THAT(batcher->Submit(ticket.Job(std::make_shared<BrokenModel>(false))), IsOk());
+  ASSERT_THAT(batcher->Submit(ticket.Job(std::make_shared<SilentModel>())), IsOk());
   EXPECT_THAT(ticket.outcome.get().result,
               StatusIs(kInternal, HasSubstr("expected results for 1 windows, got 0")));
 }

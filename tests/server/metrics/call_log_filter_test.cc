@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <string>
 #include <thread>
 #include <vector>
 
@@ -13,23 +12,8 @@ namespace {
 constexpr int kFull = 8;  // RESOURCE_EXHAUSTED
 constexpr int kWho = 16;  // UNAUTHENTICATED
 
-// Which successful calls are logged: "x..x..".
-std::string Successes(double ratio, int calls) {
-  CallLogFilter filter(ratio, 0);
-  std::string pattern;
-  for (int i = 0; i < calls; ++i) pattern += filter.LogSuccess() ? 'x' : '.';
-  return pattern;
-}
-
-TEST(CallLogFilterTest, SpreadsSuccessesEvenly) {
-  EXPECT_EQ(Successes(1, 4), "xxxx");
-  EXPECT_EQ(Successes(0.25, 8), "x...x...");
-  EXPECT_EQ(Successes(0.75, 8), "x.xxx.xx");
-  EXPECT_EQ(Successes(0, 4), "....");
-}
-
 TEST(CallLogFilterTest, LogsTheFirstRejectionsOfASecondAndCountsTheRest) {
-  CallLogFilter filter(1, 2);
+  CallLogFilter filter(2);
   EXPECT_TRUE(filter.LogRefusal(kFull, 100.0));
   EXPECT_TRUE(filter.LogRefusal(kFull, 100.5));
   EXPECT_FALSE(filter.LogRefusal(kFull, 100.6));
@@ -43,19 +27,19 @@ TEST(CallLogFilterTest, LogsTheFirstRejectionsOfASecondAndCountsTheRest) {
 }
 
 TEST(CallLogFilterTest, LimitsEachCodeSeparately) {
-  CallLogFilter filter(1, 1);
+  CallLogFilter filter(1);
   for (int i = 0; i < 100; ++i) filter.LogRefusal(kFull, 5);
   EXPECT_TRUE(filter.LogRefusal(kWho, 5));
 }
 
 TEST(CallLogFilterTest, LogsAfterTheClockIsSetBack) {
-  CallLogFilter filter(1, 1);
+  CallLogFilter filter(1);
   EXPECT_TRUE(filter.LogRefusal(kFull, 5000));
   EXPECT_TRUE(filter.LogRefusal(kFull, 10));
 }
 
 TEST(CallLogFilterTest, EveryCallIsLoggedOrCounted) {
-  CallLogFilter filter(1, 10);
+  CallLogFilter filter(10);
   std::atomic<int> logged{0};
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t) {

@@ -1,16 +1,23 @@
 #include "server/metrics/log_sink.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdio.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "server/common/mutex.h"
+#include "tests/support/matchers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace duet::server::metrics {
@@ -48,17 +55,6 @@ class Disk {
   std::string text_;
   std::unique_ptr<std::FILE, Close> stream_;
 };
-
-TEST(StreamLogSinkTest, WritesLines) {
-  Disk disk(100);
-  StreamLogSink sink(disk.stream());
-  EXPECT_TRUE(sink.Write("one"));
-  EXPECT_EQ(disk.text(), "one\n") << "at once";
-  EXPECT_TRUE(sink.Write(""));
-  EXPECT_TRUE(sink.Write("two"));
-  EXPECT_EQ(disk.text(), "one\n\ntwo\n");
-  EXPECT_EQ(sink.dropped_lines(), 0u);
-}
 
 TEST(StreamLogSinkTest, LinesOfManyThreadsStayWhole) {
   TemporaryFolder folder;
@@ -108,13 +104,164 @@ TEST(StreamLogSinkTest, StartsANewLineAfterAPartlyWrittenOne) {
   EXPECT_EQ(disk.text(), "one\ntw\nfive\nsix\n");
 }
 
-TEST(StreamLogSinkTest, LosesEveryLineOnAFullDevice) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> full(std::fopen("/dev/full", "w"),
-                                                             &std::fclose);
-  ASSERT_NE(full, nullptr);
-  StreamLogSink sink(full.get());
-  for (int i = 0; i < 3; ++i) EXPECT_FALSE(sink.Write("line"));
-  EXPECT_EQ(sink.dropped_lines(), 3u);
+// A sink that the test blocks and fills: it accepts no line until it is opened, and loses the lines
+// that arrive while it is full.
+//
+// Threads: safe to call concurrently.
+class PuppetSink final : public LogSink {
+ public:
+  bool Write(std::string_view line) override {
+    common::MutexLock lock(mutex_);
+    ++begun_;
+    changed_.NotifyAll();
+    while (!open_) changed_.Wait(mutex_);
+    if (full_) return false;
+    lines_.emplace_back(line);
+    changed_.NotifyAll();
+    return true;
+  }
+  void Open() {
+    common::MutexLock lock(mutex_);
+    open_ = true;
+    changed_.NotifyAll();
+  }
+  void SetFull(bool full) {
+    common::MutexLock lock(mutex_);
+    full_ = full;
+  }
+  void WaitUntilBegun(int writes) {
+    common::MutexLock lock(mutex_);
+    while (begun_ < writes) changed_.Wait(mutex_);
+  }
+  // Waits until that many lines were accepted.
+  void WaitFor(std::size_t lines) {
+    common::MutexLock lock(mutex_);
+    while (lines_.size() < lines) changed_.Wait(mutex_);
+  }
+  std::vector<std::string> lines() const {
+    common::MutexLock lock(mutex_);
+    return lines_;
+  }
+
+ private:
+  mutable common::Mutex mutex_;
+  common::CondVar changed_;
+  bool open_ DUET_GUARDED_BY(mutex_) = false;
+  bool full_ DUET_GUARDED_BY(mutex_) = false;
+  int begun_ DUET_GUARDED_BY(mutex_) = 0;
+  std::vector<std::string> lines_ DUET_GUARDED_BY(mutex_);
+};
+
+QueuedLogSink::Options Options(std::size_t capacity) {
+  QueuedLogSink::Options options;
+  options.capacity = capacity;
+  options.patience = std::chrono::hours(1);
+  options.drop_notice = [](std::uint64_t dropped) { return std::to_string(dropped) + " dropped"; };
+  return options;
+}
+
+TEST(QueuedLogSinkTest, WriteDoesNotBlockOnAStuckSink) {
+  const auto sink = std::make_shared<PuppetSink>();
+  QueuedLogSink log(sink, Options(2));
+  log.Write("stuck");
+  sink->WaitUntilBegun(1);
+  for (const char* line : {"a", "b", "lost", "lost"}) log.Write(line);  // returns each time
+  EXPECT_EQ(log.dropped_lines(), 2u);
+  EXPECT_THAT(sink->lines(), IsEmpty());
+  sink->Open();
+}
+
+TEST(QueuedLogSinkTest, ReportsDroppedLinesWhenTheSinkRecovers) {
+  const auto sink = std::make_shared<PuppetSink>();
+  {
+    QueuedLogSink log(sink, Options(2));
+    log.Write("stuck");
+    sink->WaitUntilBegun(1);
+    for (const char* line : {"a", "b", "lost", "lost"}) log.Write(line);
+    sink->Open();
+    sink->WaitFor(3);
+    log.Write("c");
+    EXPECT_EQ(log.dropped_lines(), 2u);
+  }
+  EXPECT_THAT(sink->lines(), ElementsAre("stuck", "a", "b", "2 dropped", "c"));
+}
+
+TEST(QueuedLogSinkTest, ReportsLinesThatTheSinkLosesOnce) {
+  const auto sink = std::make_shared<PuppetSink>();
+  sink->Open();
+  sink->SetFull(true);
+  std::uint64_t dropped = 0;
+  {
+    QueuedLogSink log(sink, Options(8));
+    log.Write("lost");
+    sink->WaitUntilBegun(2);  // the line and its notice
+    log.Write("lost too");
+    sink->WaitUntilBegun(4);
+    EXPECT_EQ(log.dropped_lines(), 2u) << "a notice is no line";
+    sink->SetFull(false);
+    log.Write("a");
+    sink->WaitUntilBegun(6);  // the notice comes with "a", not with "b"
+    log.Write("b");
+    dropped = log.dropped_lines();
+  }
+  EXPECT_THAT(sink->lines(), ElementsAre("a", "2 dropped", "b"));
+  EXPECT_EQ(dropped, 2u);
+}
+
+TEST(QueuedLogSinkTest, DestructorWritesTheRemainingLines) {
+  const auto sink = std::make_shared<PuppetSink>();
+  std::thread opener;
+  {
+    QueuedLogSink log(sink, Options(8));
+    for (const char* line : {"a", "b", "c"}) log.Write(line);
+    sink->WaitUntilBegun(1);
+    opener = std::thread([&sink] { sink->Open(); });
+  }
+  EXPECT_THAT(sink->lines(), ElementsAre("a", "b", "c"));
+  opener.join();
+}
+
+TEST(QueuedLogSinkTest, DestructorGivesUpOnAStuckSink) {
+  const auto sink = std::make_shared<PuppetSink>();
+  {
+    QueuedLogSink::Options options = Options(8);
+    options.patience = std::chrono::milliseconds(0);
+    QueuedLogSink log(sink, options);
+    log.Write("stuck");
+    sink->WaitUntilBegun(1);
+  }
+  EXPECT_THAT(sink->lines(), IsEmpty());
+  sink->Open();  // its thread still exists and ends now
+  sink->WaitFor(1);
+  EXPECT_THAT(sink->lines(), ElementsAre("stuck"));
+}
+
+TEST(QueuedLogSinkTest, KeepsEveryLineOfManyThreads) {
+  const auto sink = std::make_shared<PuppetSink>();
+  sink->Open();
+  std::uint64_t dropped = 0;
+  {
+    QueuedLogSink log(sink, Options(16));
+    std::vector<std::thread> writers;
+    for (char c = 'a'; c < 'e'; ++c) {
+      writers.emplace_back([&log, c] {
+        for (int i = 0; i < 200; ++i) log.Write(std::string(1, c));
+      });
+    }
+    for (std::thread& writer : writers) writer.join();
+    dropped = log.dropped_lines();
+  }
+  std::size_t written = 0;
+  std::uint64_t reported = 0;
+  for (const std::string& line : sink->lines()) {
+    if (line.size() == 1) {
+      ++written;
+    } else {
+      reported += std::stoull(line);
+    }
+  }
+  EXPECT_EQ(written + dropped, 800u);
+  EXPECT_EQ(reported, dropped);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <ctime>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -66,41 +65,6 @@ TEST(ServerMetricsTest, DurationsAreHistogramsInSeconds) {
   EXPECT_THAT(text, HasSubstr(R"(duet_frames_total{model="sbu",version="3"} 300)"));
 }
 
-// The upper bounds of a histogram's buckets in the Prometheus format.
-std::vector<std::string> Buckets(const std::string& text, const std::string& histogram) {
-  std::vector<std::string> ends;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t at = line.find("le=\"");
-    if (line.rfind(histogram + "_bucket{", 0) != 0 || at == std::string::npos) continue;
-    ends.push_back(line.substr(at + 4, line.find('"', at + 4) - at - 4));
-  }
-  return ends;
-}
-
-TEST(ServerMetricsTest, BucketsCoverOneMillisecondToOneMinuteAndOneToSixtyFourWindows) {
-  ServerMetrics metrics;
-  metrics.WindowFinished(batching::Priority::kBulk, {0.2, 0.04, 1});
-  metrics.BatchFinished({0, 0.04, 1});
-  const std::string text = metrics.Render();
-  EXPECT_THAT(Buckets(text, "duet_batch_size"),
-              ElementsAre("1", "2", "4", "8", "16", "32", "64", "+Inf"));
-  EXPECT_THAT(Buckets(text, "duet_queue_seconds"),
-              ElementsAre("0.001", "0.0025", "0.005", "0.01", "0.025", "0.05", "0.1", "0.25", "0.5",
-                          "1", "2.5", "5", "10", "30", "60", "+Inf"));
-}
-
-TEST(ServerMetricsTest, RejectedCallHasNoFirstChunk) {
-  ServerMetrics metrics;
-  CallRecord record = Record();
-  record.first_chunk_seconds = -1;
-  record.frames = 0;
-  record.status = absl::InvalidArgumentError("no");
-  metrics.CallFinished(record);
-  EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_first_chunk_seconds_count")));
-  EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_frames_total{")));
-}
-
 TEST(ServerMetricsTest, LabelsNeverContainTextOfACaller) {
   ServerMetrics metrics;
   metrics.CallFinished(Record());
@@ -137,31 +101,6 @@ TEST(ServerMetricsTest, ReadsTheQueueLengthAtEveryScrape) {
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_queued_windows 3\n"));
   length = 5;
   EXPECT_THAT(metrics.Render(), HasSubstr("duet_queued_windows 5\n"));
-}
-
-TEST(ServerMetricsTest, ReadsThePlacesInUseAtEveryScrape) {
-  ServerMetrics metrics;
-  EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_places_in_use")));
-  double places = 3;
-  ReadValues read;
-  read.places_in_use = [&] { return places; };
-  metrics.SetRead(std::move(read));
-  EXPECT_THAT(metrics.Render(), HasSubstr("duet_places_in_use 3\n"));
-  places = 0;
-  EXPECT_THAT(metrics.Render(), HasSubstr("duet_places_in_use 0\n"));
-}
-
-TEST(ServerMetricsTest, CountsDroppedLogLines) {
-  ServerMetrics metrics;
-  EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 0\n"));
-  double dropped = 3;
-  ReadValues read;
-  read.dropped_log_lines = [&] { return dropped; };
-  metrics.SetRead(std::move(read));
-  EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 3\n"));
-  dropped = 5;
-  EXPECT_THAT(metrics.Render(), HasSubstr("duet_log_lines_dropped_total 5\n"));
-  EXPECT_THAT(metrics.Render(), HasSubstr("# TYPE duet_log_lines_dropped_total counter"));
 }
 
 TEST(ServerMetricsTest, CountsRejectionsByReason) {
@@ -214,20 +153,16 @@ TEST(ServerMetricsTest, ReadsModelsAtEveryScrape) {
   EXPECT_THAT(text, Not(HasSubstr(R"(duet_model_info{model="sbu")")));
 }
 
-TEST(ServerMetricsTest, ReportsCertificatesAndSpansIfConfigured) {
+TEST(ServerMetricsTest, ReportsCertificatesIfConfigured) {
   ServerMetrics metrics;
   EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_tls_certificate_expiry")));
-  EXPECT_THAT(metrics.Render(), Not(HasSubstr("duet_spans_")));
   ReadValues read;
   read.certificate_end = [] { return 1900000000.0; };
-  read.spans = [] { return SpanCounts{5, 2}; };
   metrics.SetRead(std::move(read));
   metrics.SecretsReloaded("access", true);
   metrics.SecretsReloaded("tls", false);
   const std::string text = metrics.Render();
   EXPECT_THAT(text, HasSubstr("duet_tls_certificate_expiry_timestamp_seconds 1900000000\n"));
-  EXPECT_THAT(text, HasSubstr("duet_spans_sent_total 5\n"));
-  EXPECT_THAT(text, HasSubstr("duet_spans_dropped_total 2\n"));
   EXPECT_THAT(text, HasSubstr(R"(duet_secrets_reloads_total{kind="access",outcome="taken"} 1)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_secrets_reloads_total{kind="tls",outcome="refused"} 1)"));
   EXPECT_THAT(text, HasSubstr(R"(duet_secrets_last_reload_successful{kind="access"} 1)"));
@@ -254,13 +189,6 @@ TEST(ServerMetricsTest, ReportsTheProcess) {
   EXPECT_GE(Value(text, "process_open_fds"), 3);
   EXPECT_LT(Value(text, "process_open_fds"), Value(text, "process_max_fds"));
   EXPECT_THAT(text, HasSubstr("# TYPE process_cpu_seconds_total counter"));
-}
-
-TEST(ServerMetricsTest, CountsOpenDescriptorsExactly) {
-  const double before = Value("\n" + ServerMetrics().Render(), "process_open_fds");
-  const int opened = dup(0);
-  EXPECT_EQ(Value("\n" + ServerMetrics().Render(), "process_open_fds"), before + 1);
-  close(opened);
 }
 
 TEST(ServerMetricsTest, ReportsServedCheckpoints) {

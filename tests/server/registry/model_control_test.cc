@@ -151,35 +151,16 @@ TEST_F(ModelControlTest, RejectedFileIsAProblemUntilItIsFixed) {
   EXPECT_THAT(control.problems(), ElementsAre("certificates: expired"));
 }
 
-TEST_F(ModelControlTest, UnreadableRepositoryIsAProblemUntilItIsReadable) {
-  Write("1");
-  gate_.Set();
-  ModelControl control(manager_, registry_, events_);
-  const auto reload = [&control] {
-    std::promise<absl::Status> reloaded;
-    control.Reload([&](const auto& report) { reloaded.set_value(report.status()); });
-    return reloaded.get_future().get();
-  };
-  EXPECT_THAT(reload(), IsOk());
-  fs::rename(folder_ / "fake", folder_ / ".fake");
-  EXPECT_FALSE(reload().ok());
-  EXPECT_THAT(control.problems(), ElementsAre(HasSubstr("model repository: no model")));
-  EXPECT_EQ(registry_.List().size(), 1u);
-  fs::rename(folder_ / ".fake", folder_ / "fake");
-  EXPECT_THAT(reload(), IsOk());
-  EXPECT_THAT(control.problems(), IsEmpty());
-}
-
 TEST_F(ModelControlTest, AReloadReportsNamesThatNoModelHas) {
   Write("1");
   gate_.Set();
-  manager_.SetPolicies({{"fak", 1, {}}});
+  manager_.SetLabels({{"fak", "stable", 1}});
   ModelControl control(manager_, registry_, events_);
   std::promise<absl::StatusOr<ReloadReport>> reloaded;
   control.Reload([&](const auto& report) { reloaded.set_value(report); });
   EXPECT_THAT(
       reloaded.get_future().get()->problems,
-      ElementsAre(HasSubstr("version_policies[0].model: expected one of: fake, got \"fak\"")));
+      ElementsAre(HasSubstr("version_labels[0].model: expected one of: fake, got \"fak\"")));
 }
 
 TEST_F(ModelControlTest, LoadsAndUnloadsOneAfterTheOther) {

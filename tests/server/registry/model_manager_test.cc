@@ -170,15 +170,6 @@ TEST_F(ModelManagerTest, BrokenCheckpointNeverReplacesAGoodOne) {
   EXPECT_EQ(StatusOf("a", 1).error, "");
 }
 
-TEST_F(ModelManagerTest, ReplacesAVersionWhoseWeightsChanged) {
-  Write("a", 1);
-  WriteWeights("a/1", "+old");
-  Reload();
-  WriteWeights("a/1", "+new");
-  EXPECT_THAT(Reload().loaded, ElementsAre("a/1"));
-  EXPECT_EQ(Answer({}), "a/1 first+new");
-}
-
 TEST_F(ModelManagerTest, DocumentsAndHiddenFilesAreNoChange) {
   Write("a", 1);
   Reload();
@@ -206,18 +197,6 @@ TEST_F(ModelManagerTest, TruncatedWeightsMakeAServedVersionOutdatedUntilTheyAreF
   EXPECT_THAT(events_.Take(), ElementsAre("refused a/1, served on", "loaded a/1"));
 }
 
-TEST_F(ModelManagerTest, NextSuccessfulLoadClearsTheError) {
-  Write("a", 1);
-  Reload();
-  WriteWeights("a/1", "torn");
-  EXPECT_FALSE(manager_.Load("a", 1).ok());
-  EXPECT_TRUE(StatusOf("a", 1).outdated);
-  Delete("a/1/weights.safetensors");
-  Reload();
-  EXPECT_EQ(StatusOf("a", 1).error, "");
-  EXPECT_FALSE(StatusOf("a", 1).outdated);
-}
-
 TEST_F(ModelManagerTest, RemovedOutdatedVersionIsUnloadedAndNotFailed) {
   Write("a", 1);
   Write("a", 2);
@@ -228,14 +207,6 @@ TEST_F(ModelManagerTest, RemovedOutdatedVersionIsUnloadedAndNotFailed) {
   EXPECT_EQ(StatusOf("a", 1).state, ModelState::kUnloaded);
   EXPECT_EQ(StatusOf("a", 1).error, "");
   EXPECT_FALSE(StatusOf("a", 1).outdated);
-  WriteWeights("a/2", "torn");
-  manager_.SetPolicies({{"a", {}, {1}}});
-  EXPECT_FALSE(manager_.Load("a", 2).ok());
-  WriteWeights("a/1", "+whole");
-  EXPECT_THAT(manager_.Load("a", 1), IsOk());
-  Reload();
-  EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
-  EXPECT_EQ(StatusOf("a", 2).error, "");
 }
 
 // Files that change while they are read: nobody knows which content was loaded.
@@ -262,14 +233,11 @@ TEST_F(ModelManagerTest, ReportsConfiguredNamesThatNoModelHas) {
   Write("first", 1);
   Write("second", 1);
   manager_.SetLabels({{"first", "stable", 1}, {"firs", "canary", 1}});
-  manager_.SetPolicies({{"", 1, {}}, {"third", 1, {}}});
   Reload();
   EXPECT_THAT(
       manager_.UnknownNames(),
       ElementsAre("version_labels[1].model: expected one of: first, second, got \"firs\"; did you "
-                  "mean first?",
-                  testing::StartsWith("version_policies[1].model: expected one of: first, second, "
-                                      "got \"third\"")));
+                  "mean first?"));
 }
 
 TEST_F(ModelManagerTest, TriesAgainWhatDidNotLoad) {
@@ -281,19 +249,14 @@ TEST_F(ModelManagerTest, TriesAgainWhatDidNotLoad) {
   EXPECT_THAT(events_.Take(), ElementsAre("refused a/2", "loaded a/1", "refused a/2"));
 }
 
-TEST_F(ModelManagerTest, ForgetsAFailedVersionWhenItsFolderOrItsPolicyIsGone) {
-  manager_.SetPolicies({{"a", 1, {}}});
+TEST_F(ModelManagerTest, ForgetsAFailedVersionWhenItsFolderIsGone) {
   Write("a", 1);
-  Write("a", 2, "bad");
   Write("a", 3, "bad");
   Reload();
   events_.Take();
   Delete("a/3");
-  Write("a", 4);
   Reload();
-  EXPECT_THAT(events_.Take(),
-              ElementsAre("loaded a/4", "forgotten a/2", "unloaded a/1", "forgotten a/3"));
-  EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
+  EXPECT_THAT(events_.Take(), ElementsAre("forgotten a/3"));
 }
 
 TEST_F(ModelManagerTest, UnloadsARemovedVersionAfterItsSuccessorIsServed) {
@@ -318,15 +281,6 @@ TEST_F(ModelManagerTest, DefaultModelAlwaysKeepsAVersion) {
   EXPECT_EQ(Served(), "a/1 b/1");
 }
 
-TEST_F(ModelManagerTest, AnEmptyRepositoryChangesNothing) {
-  Write("a", 1);
-  Reload();
-  Delete("a");
-  EXPECT_THAT(manager_.Reload(kNever),
-              StatusIs(kFailedPrecondition, HasSubstr("the repository is empty")));
-  EXPECT_EQ(Served(), "a/1");
-}
-
 TEST_F(ModelManagerTest, UnreadableRepositoryChangesNothing) {
   Write("a", 1);
   Reload();
@@ -344,45 +298,22 @@ TEST_F(ModelManagerTest, StopsBeforeTheNextCheckpoint) {
   EXPECT_EQ(Served(), "a/2");
 }
 
-TEST_F(ModelManagerTest, LatestVersionsCountOnlyThoseThatLoad) {
-  manager_.SetPolicies({{"a", 2, {}}, {"", 1, {}}});
-  for (const int version : {1, 2, 3, 10}) Write("a", version);
-  for (const int version : {1, 2}) Write("b", version);
-  Reload();
-  EXPECT_EQ(Served(), "a/10 a/3 b/2");
-  EXPECT_EQ(StatusOf("a", 2).state, ModelState::kUnloaded);
-  Write("a", 11, "bad");
-  Write("a", 12);
-  EXPECT_THAT(Reload().unloaded, ElementsAre("a/3"));
-  EXPECT_EQ(Served(), "a/12 a/10 b/2") << "11 leaves its place to 10";
-}
-
-TEST_F(ModelManagerTest, NamedVersionsAreServedAlone) {
-  manager_.SetPolicies({{"a", {}, {1, 3, 9}}});
-  for (const int version : {1, 2, 3}) Write("a", version);
-  EXPECT_THAT(Reload().problems, ElementsAre(HasSubstr("version 9 of model a")));
-  EXPECT_EQ(Served(), "a/3 a/1");
-}
-
-TEST_F(ModelManagerTest, LabelledVersionStaysServedDespiteThePolicy) {
-  manager_.SetPolicies({{"a", 1, {}}});
+TEST_F(ModelManagerTest, LabelledVersionStaysServedWithoutItsFolder) {
   manager_.SetLabels({{"a", "stable", 1}});
-  for (const int version : {1, 2, 3}) Write("a", version);
+  for (const int version : {1, 2}) Write("a", version);
   Reload();
-  EXPECT_EQ(Served(), "a/3 a/1");
-  EXPECT_THAT(Answer({"a", {}, "stable"}), HasSubstr("a/1"));
   Delete("a/1");
   EXPECT_THAT(Reload().problems, ElementsAre(AllOf(HasSubstr("a/1 stays"), HasSubstr("stable"))));
   EXPECT_THAT(Answer({"a", {}, "stable"}), HasSubstr("a/1"));
 }
 
-TEST_F(ModelManagerTest, MovesALabelAndLetsGoOfWhatItLeaves) {
-  manager_.SetPolicies({{"a", 1, {}}});
+TEST_F(ModelManagerTest, MovesALabelBeforeItUnloadsWhatThatLeaves) {
   manager_.SetLabels({{"a", "stable", 1}, {"a", "old", 2}});
   for (const int version : {1, 2, 3}) Write("a", version);
   Reload();
   manager_.SetLabels({{"a", "stable", 3}});
-  EXPECT_THAT(Reload().unloaded, ElementsAre("a/2", "a/1"));
+  Delete("a/1");
+  EXPECT_THAT(Reload().unloaded, ElementsAre("a/1"));
   EXPECT_THAT(Answer({"a", {}, "stable"}), HasSubstr("a/3"));
   EXPECT_THAT(Answer({"a", {}, "old"}),
               HasSubstr("expected a label of model a (stable), got \"old\""));
@@ -407,16 +338,6 @@ TEST_F(ModelManagerTest, LabelOfAFailedVersionIsRetried) {
   Write("a", 2, "good");
   EXPECT_THAT(Reload().refused_labels, IsEmpty());
   EXPECT_EQ(Answer({"a", {}, "canary"}), "a/2 good");
-}
-
-TEST_F(ModelManagerTest, LoadsByNameWhatNoPolicyWants) {
-  manager_.SetPolicies({{"a", 1, {}}});
-  for (const int version : {1, 2}) Write("a", version);
-  Reload();
-  EXPECT_THAT(manager_.Load("a", 1), IsOk());
-  EXPECT_EQ(Served(), "a/2 a/1");
-  Reload();
-  EXPECT_EQ(Served(), "a/2 a/1") << "it stays";
 }
 
 TEST_F(ModelManagerTest, LoadsAgainEvenWhatHasNotChanged) {
@@ -460,16 +381,6 @@ TEST_F(ModelManagerTest, RefusesToUnloadWhatIsNeeded) {
   ASSERT_THAT(registry_.DeleteLabel("a", "stable"), IsOk());
   EXPECT_THAT(manager_.Unload("a", 1), StatusIs(kFailedPrecondition, HasSubstr("last")));
   EXPECT_THAT(manager_.Unload("a", 9), StatusIs(kNotFound, HasSubstr("version 9")));
-}
-
-TEST_F(ModelManagerTest, ListsLabelsDefaultAndTimes) {
-  for (const int version : {1, 2}) Write("a", version);
-  Reload();
-  ASSERT_THAT(registry_.SetLabel("a", "stable", 1), IsOk());
-  EXPECT_THAT(StatusOf("a", 1).version_labels, ElementsAre("stable"));
-  EXPECT_FALSE(StatusOf("a", 1).is_default);
-  EXPECT_TRUE(StatusOf("a", 2).is_default);
-  EXPECT_GE(StatusOf("a", 2).load_seconds, 0);
 }
 
 TEST(ModelManagerWithoutRepositoryTest, ServesWhatItIsGivenAndHasLabels) {

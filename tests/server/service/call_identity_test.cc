@@ -1,11 +1,10 @@
-#include "server/service/call_identity.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 
 #include "model/base/request_id.h"
+#include "server/service/call_pipeline.h"
 
 namespace duet::server::service {
 namespace {

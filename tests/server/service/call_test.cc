@@ -1,5 +1,5 @@
-// Call with a source that the test controls. clip_replies_test.cc and live_replies_test.cc test the
-// sources of Synthesize and SynthesizeLive.
+// Call with a source that the test controls. live_replies_test.cc and the tests over the wire test
+// the sources of SynthesizeLive and Synthesize.
 #include "server/service/call.h"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,6 @@
 #include "duet/v1/model.pb.h"
 #include "server/service/refusals.h"
 #include "tests/server/support/fake_clock.h"
-#include "tests/server/support/fake_transport.h"
 #include "tests/server/support/recording_observer.h"
 #include "tests/server/support/refusal.h"
 #include "tests/support/matchers.h"
@@ -35,8 +34,43 @@ using absl::StatusCode;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-// Any message can be a reply: here a ModelSelector with a name.
-using PuppetTransport = test::FakeTransport<v1::ModelSelector>;
+// A caller that the test steps. Any message can be a reply: here a ModelSelector with a name.
+class PuppetTransport final : public Transport {
+ public:
+  void Read() override { ++reads; }
+  void Write(const google::protobuf::Message& reply) override {
+    EXPECT_FALSE(writing) << "two writes at once";
+    EXPECT_FALSE(finished.has_value()) << "a write after the end";
+    writing = true;
+    replies.push_back(dynamic_cast<const v1::ModelSelector&>(reply));
+  }
+  void Finish(CallScope& scope, const absl::Status& status) override {
+    EXPECT_FALSE(writing) << "the end during a write";
+    EXPECT_FALSE(finished.has_value()) << "two ends";
+    scope.Finish(status);
+    finished = status;
+  }
+  void BreakOff(const absl::Status& reason) override {
+    ++broken_off;
+    broken_off_with = reason;
+    if (on_break_off) on_break_off();
+  }
+
+  // The reader took the message that is being written.
+  void Written(Call& call, bool ok = true) {
+    ASSERT_TRUE(writing);
+    writing = false;
+    call.OnWritten(ok);
+  }
+
+  int reads = 0;
+  bool writing = false;
+  int broken_off = 0;
+  absl::Status broken_off_with;
+  std::function<void()> on_break_off;
+  std::vector<v1::ModelSelector> replies;
+  std::optional<absl::Status> finished;
+};
 
 // What the test sees of a source that the call owns.
 struct SourceState {
@@ -47,7 +81,6 @@ struct SourceState {
   SourceEvents events;
   bool cancelled = false;
   int reports = 0;
-  bool owes = false;
   std::vector<std::size_t> message_sizes;
   int ends = 0, drains = 0;
 };
@@ -77,7 +110,6 @@ class PuppetSource final : public ReplySource {
   }
   void OnEndOfMessages() override { ++state_.ends; }
   void OnDraining() override { ++state_.drains; }
-  bool OwesAnswers() const override { return state_.owes; }
 
  private:
   SourceState& state_;
@@ -132,26 +164,6 @@ class CallTest : public ::testing::Test {
   SourceState source_;
   PuppetTransport transport_;
 };
-
-TEST_F(CallTest, ArrivedMessageIsHandled) {
-  const auto call = Receive(transport_);
-  EXPECT_TRUE(call->OnFirstMessage());
-  EXPECT_FALSE(transport_.finished.has_value());
-  call->Refuse(absl::NotFoundError("no such model"));
-  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kNotFound, _));
-  EXPECT_EQ(admission_.calls(), 0u);
-}
-
-TEST_F(CallTest, DisconnectBeforeTheMessageIsCancelledNotMalformed) {
-  Receive(transport_)->OnNoMessage(/*cancelled=*/true);
-  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, _));
-  EXPECT_EQ(admission_.calls(), 0u);
-}
-
-TEST_F(CallTest, CallThatEndsWithoutAMessageIsMalformed) {
-  Receive(transport_)->OnNoMessage(/*cancelled=*/false);
-  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kInvalidArgument, _));
-}
 
 TEST_F(CallTest, EventsAfterTheEndAreIgnored) {
   const auto call = Receive(transport_);
@@ -233,6 +245,22 @@ TEST_F(CallTest, MessageAfterTheTimeoutEndsTheCall) {
   EXPECT_EQ(admission_.calls(), 0u);
 }
 
+TEST_F(CallTest, ActiveCallsTellLaterCallsOfDrainAndEnd) {
+  ActiveCalls calls;
+  const auto before = Receive(transport_);
+  calls.Add(before);
+  calls.Drain();
+  EXPECT_TRUE(before->OnFirstMessage());
+  Run(*before, /*takes_messages=*/true);
+  EXPECT_EQ(source_.drains, 1);
+  calls.AbortAll(absl::UnavailableError("over"));
+  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kUnavailable, "over"));
+  PuppetTransport later;
+  calls.Add(Receive(later));
+  EXPECT_THAT(*later.finished, StatusIs(StatusCode::kUnavailable, "over"))
+      << "it was admitted before the end";
+}
+
 // A call that streams.
 class StreamTest : public CallTest {
  protected:
@@ -312,20 +340,6 @@ TEST_F(StreamTest, AbortCancelsTheSourceAndDropsItsReplies) {
   EXPECT_THAT(observer_.records(), SizeIs(1));
 }
 
-TEST_F(StreamTest, AbortWhileTheSourceIsAskedDropsItsReply) {
-  source_.ready = {"never"};
-  source_.on_next = [this] { call_->Abort(absl::CancelledError("gone")); };
-  Run();
-  EXPECT_THAT(written(), IsEmpty());
-  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, "gone"));
-}
-
-TEST_F(StreamTest, AbortWhileIdleEndsAtOnce) {
-  Run();
-  call_->Abort(absl::CancelledError("gone"));
-  EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kCancelled, "gone"));
-}
-
 TEST_F(StreamTest, FailedWriteEndsTheCall) {
   source_.ready = {"one"};
   Run();
@@ -377,41 +391,13 @@ TEST_F(StreamTest, WriteThatCompletesDuringAnAbortKeepsTheTransport) {
   EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kDeadlineExceeded, _));
 }
 
-TEST_F(StreamTest, EndingAStalledCallReleasesItsPlaceImmediately) {
+TEST_F(StreamTest, WriteOfAnAbortedCallCanBeBrokenOff) {
   source_.ready = {"one"};
   Run();
-  EXPECT_EQ(call_->waiting_since(), clock_.Now());
-  clock_.Advance(milliseconds(1999));
-  EXPECT_FALSE(call_->GiveUpReader(clock_.Now(), 2).has_value()) << "it has not waited long enough";
-  clock_.Advance(milliseconds(1));
-  EXPECT_TRUE(call_->GiveUpReader(clock_.Now(), 2).has_value());
-  EXPECT_EQ(admission_.calls(), 0u) << "although the write is still under way";
-  EXPECT_FALSE(call_->GiveUpReader(clock_.Now(), 0).has_value()) << "only once";
-  EXPECT_EQ(call_->waiting_since(), std::nullopt);
-  EXPECT_EQ(transport_.broken_off, 1);
-  EXPECT_FALSE(transport_.finished.has_value());
-  Written(/*ok=*/false);
-  for (const absl::Status& status : {transport_.broken_off_with, *transport_.finished}) {
-    EXPECT_THAT(status, StatusIs(StatusCode::kResourceExhausted, HasSubstr("while other calls")));
-  }
-}
-
-TEST_F(StreamTest, CallThatWaitsForItsSourceHasNoStalledReader) {
-  source_.ready = {"one"};
-  Run();
-  Written();
-  clock_.Advance(seconds(10));
-  EXPECT_EQ(call_->waiting_since(), std::nullopt);
-  EXPECT_FALSE(call_->GiveUpReader(clock_.Now(), 2).has_value());
-  EXPECT_EQ(transport_.broken_off, 0);
-  EXPECT_EQ(admission_.calls(), 1u);
-}
-
-TEST_F(StreamTest, EndedCallKeepsItsReasonWhenItsReaderStalls) {
-  source_.ready = {"one"};
-  Run();
+  call_->BreakOffWrite();
+  EXPECT_EQ(transport_.broken_off, 0) << "the call goes on";
   call_->Abort(absl::UnavailableError("shutting down"));
-  EXPECT_TRUE(call_->GiveUpReader(clock_.Now(), 0).has_value());
+  call_->BreakOffWrite();
   EXPECT_THAT(transport_.broken_off_with, StatusIs(StatusCode::kUnavailable, "shutting down"));
   Written(/*ok=*/false);
   EXPECT_THAT(*transport_.finished, StatusIs(StatusCode::kUnavailable, "shutting down"));
@@ -510,33 +496,6 @@ TEST_F(FurtherMessagesTest, MessageThatDoesNotArriveInTimeEndsTheCall) {
               StatusIs(StatusCode::kDeadlineExceeded, HasSubstr("live_idle_seconds = 5")));
 }
 
-TEST_F(FurtherMessagesTest, IdleCallGivesItsPlaceUp) {
-  EXPECT_EQ(call_->idle_since(), std::nullopt) << "no message is read";
-  EXPECT_TRUE(call_->ReadNext(60));
-  EXPECT_EQ(call_->idle_since(), clock_.Now());
-  clock_.Advance(milliseconds(4999));
-  EXPECT_FALSE(call_->GiveUpIdle(clock_.Now(), 5));
-  clock_.Advance(milliseconds(1));
-  EXPECT_EQ(admission_.calls(), 1u);
-  EXPECT_TRUE(call_->GiveUpIdle(clock_.Now(), 5));
-  EXPECT_EQ(admission_.calls(), 0u);
-  EXPECT_EQ(transport_.finished->code(), StatusCode::kResourceExhausted);
-  EXPECT_GT(test::Decode(*transport_.finished).retry_seconds, 0);
-  EXPECT_FALSE(call_->GiveUpIdle(clock_.Now(), 5)) << "only once";
-}
-
-TEST_F(FurtherMessagesTest, CallThatOwesAnswersIsNotIdle) {
-  EXPECT_TRUE(call_->ReadNext(60));
-  clock_.Advance(seconds(9));
-  source_.owes = true;
-  EXPECT_EQ(call_->idle_since(), std::nullopt);
-  EXPECT_FALSE(call_->GiveUpIdle(clock_.Now(), 5));
-  source_.owes = false;
-  Progress("being written");
-  EXPECT_EQ(call_->idle_since(), std::nullopt);
-  EXPECT_FALSE(transport_.finished.has_value());
-}
-
 TEST_F(FurtherMessagesTest, MessagesAfterTheEndAreDropped) {
   EXPECT_TRUE(call_->ReadNext(30));
   call_->Abort(absl::CancelledError("gone"));
@@ -562,13 +521,6 @@ TEST_F(StreamTest, DrainThatBeginsBeforeTheStreamIsReported) {
   EXPECT_EQ(source_.drains, 0);
   CallTest::Run(*call_, /*takes_messages=*/true);
   EXPECT_EQ(source_.drains, 1);
-}
-
-TEST_F(StreamTest, CallOfOneMessageReadsNoFurtherOne) {
-  EXPECT_FALSE(call_->ReadNext(30)) << "its first message is still handled";
-  Run();
-  EXPECT_FALSE(call_->ReadNext(30));
-  EXPECT_EQ(transport_.reads, 0);
 }
 
 }  // namespace

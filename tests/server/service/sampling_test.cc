@@ -1,5 +1,4 @@
 // What seed, variety and candidates do on their way from the wire to the network and back.
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "model/engine/clip_synthesis.h"
+#include "server/common/mutex.h"
 #include "tests/server/support/running_service.h"
 #include "tests/server/support/sample_request.h"
 #include "tests/support/fake_synthesizer.h"
@@ -58,17 +58,6 @@ TEST_F(SamplingTest, SameSeedGivesTheSameBytesAndAnotherSeedDifferentOnes) {
   EXPECT_NE(Ask(8, 1).Positions(), seven);
 }
 
-TEST_F(SamplingTest, VarietyReachesTheModel) {
-  const std::vector<float> typical = Ask(7, 0).Positions();
-  EXPECT_EQ(Ask(8, 0).Positions(), typical);
-  EXPECT_NEAR(Ask(7, 2).Positions().front(), typical.front() + FakeDraw({7, 2}).x, 1e-5);
-}
-
-TEST_F(SamplingTest, TheDefaultSeedIsTheOneThatTheHeaderNames) {
-  const Reply reply = Ask(std::nullopt, std::nullopt);
-  EXPECT_EQ(reply.Positions(), Ask(reply.messages.front().header().seed(), 1).Positions());
-}
-
 TEST_F(SamplingTest, TheHeaderAndTheLogSayWhatWasUsed) {
   const Reply given = Ask(18446744073709551615u, 0.25f);
   EXPECT_EQ(given.messages.front().header().seed(), 18446744073709551615u);
@@ -97,21 +86,6 @@ TEST_F(SamplingTest, CandidatesReachEveryWindow) {
   EXPECT_EQ(running_.calls().WaitFor(1).candidates, 4);
 }
 
-TEST_F(SamplingTest, OneCandidateByDefault) {
-  EXPECT_EQ(Ask(7, 1).messages.front().header().candidates(), 1u);
-  EXPECT_EQ(running_.calls().WaitFor(1).candidates, 1);
-}
-
-TEST_F(SamplingTest, DeterministicModelHasOneCandidate) {
-  RunningService running;
-  v1::SynthesizeRequest request = Sampled(7, 1);
-  request.set_candidates(4);
-  const Reply reply = Call(running.stub(), request);
-  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
-  EXPECT_EQ(reply.messages.front().header().candidates(), 1u);
-  EXPECT_EQ(running.calls().WaitFor(1).candidates, 1);
-}
-
 TEST_F(SamplingTest, SummaryGradesTheFollower) {
   const v1::SynthesisSummary summary = Ask(0, 1).messages.back().summary();
   ASSERT_TRUE(summary.has_grade());
@@ -121,25 +95,6 @@ TEST_F(SamplingTest, SummaryGradesTheFollower) {
   }
   EXPECT_EQ(summary.grade().overlapping(), 0);
   EXPECT_EQ(summary.grade().bad_runs_size(), 0);
-}
-
-TEST_F(SamplingTest, GradeNamesTheFramesThatOverlap) {
-  model_->answer = [](motion::Vec3 leader, absl::Span<const float>) { return leader; };
-  const v1::SynthesisSummary summary = Ask(0, 0).messages.back().summary();
-  EXPECT_EQ(summary.grade().overlapping(), 1);
-  EXPECT_EQ(summary.grade().skating(), summary.grade().leader_skating());
-  ASSERT_EQ(summary.grade().bad_runs_size(), 1);
-  EXPECT_EQ(summary.grade().bad_runs(0).first_frame(), 0u);
-  EXPECT_EQ(summary.grade().bad_runs(0).frame_count(), 120u);
-}
-
-TEST_F(SamplingTest, ModelWithoutHipsHasNoGrade) {
-  engine::ModelDescription description = SamplingDescription();
-  description.skeleton.hips.reset();
-  RunningService running(Serve(std::make_shared<FakeSynthesizer>(description)));
-  const Reply reply = Call(running.stub(), Sampled(7, 1));
-  ASSERT_TRUE(reply.status.ok()) << reply.status.error_message();
-  EXPECT_FALSE(reply.messages.back().summary().has_grade());
 }
 
 TEST_F(SamplingTest, DeterministicModelIgnoresSeedAndVarietyAndEchoesThem) {
@@ -162,9 +117,65 @@ TEST_F(SamplingTest, SummaryAndLogReportUnfamiliarity) {
   EXPECT_EQ(running_.calls().WaitFor(1).unfamiliarity, 1.2);
 }
 
-TEST_F(SamplingTest, ModelWithoutStatisticsReportsNoUnfamiliarity) {
-  EXPECT_FALSE(Ask(0, 1).messages.back().summary().has_unfamiliarity());
-  EXPECT_FALSE(running_.calls().WaitFor(1).unfamiliarity.has_value());
+using test::FakeDescription;
+
+// A service whose model notes what each of its windows was told.
+class Service {
+ public:
+  Service(engine::ModelDescription model, std::optional<bool> operators_choice) {
+    auto noting = std::make_shared<FakeSynthesizer>(std::move(model));
+    noting->on_batch = [this](absl::Span<const engine::SynthesisWindow* const> windows) {
+      common::MutexLock lock(mutex_);
+      for (const engine::SynthesisWindow* window : windows)
+        told_.push_back(window->options.clean_up);
+    };
+    RunningService::Setup setup;
+    setup.model = std::move(noting);
+    setup.clean_up = operators_choice;
+    running_ = std::make_unique<RunningService>(setup);
+  }
+
+  // Makes a call of several windows. What the header says, where every window was told the same.
+  std::optional<v1::CleanUp> Ask(v1::CleanUp wanted) {
+    v1::SynthesizeRequest request = SampleRequest(120);
+    request.set_clean_up(wanted);
+    const Reply reply = Call(running_->stub(), request);
+    EXPECT_TRUE(reply.status.ok()) << reply.status.error_message();
+    if (!reply.status.ok()) return std::nullopt;
+    const v1::CleanUp said = reply.messages.front().header().clean_up();
+    common::MutexLock lock(mutex_);
+    EXPECT_GT(told_.size(), 1u);
+    for (const std::optional<bool>& told : told_) EXPECT_EQ(told, said == v1::CLEAN_UP_ON);
+    told_.clear();
+    return said;
+  }
+
+  RunningService& running() { return *running_; }
+
+ private:
+  common::Mutex mutex_;
+  std::vector<std::optional<bool>> told_ DUET_GUARDED_BY(mutex_);
+  std::unique_ptr<RunningService> running_;
+};
+
+TEST(CleanUpChoiceTest, DefaultDependsOnWhetherTheModelSamples) {
+  EXPECT_EQ(Service(SamplingDescription(), std::nullopt).Ask(v1::CLEAN_UP_UNSPECIFIED),
+            v1::CLEAN_UP_ON);
+  EXPECT_EQ(Service(FakeDescription(), std::nullopt).Ask(v1::CLEAN_UP_UNSPECIFIED),
+            v1::CLEAN_UP_OFF);
+}
+
+TEST(CleanUpChoiceTest, TheOperatorWinsOverTheModel) {
+  EXPECT_EQ(Service(SamplingDescription(), false).Ask(v1::CLEAN_UP_UNSPECIFIED), v1::CLEAN_UP_OFF);
+  EXPECT_EQ(Service(FakeDescription(), true).Ask(v1::CLEAN_UP_UNSPECIFIED), v1::CLEAN_UP_ON);
+}
+
+TEST(CleanUpChoiceTest, TheRequestWinsOverBoth) {
+  Service never(SamplingDescription(), false);
+  EXPECT_EQ(never.Ask(v1::CLEAN_UP_ON), v1::CLEAN_UP_ON);
+  EXPECT_EQ(never.Ask(v1::CLEAN_UP_OFF), v1::CLEAN_UP_OFF) << "the call before has no say";
+  Service always(FakeDescription(), true);
+  EXPECT_EQ(always.Ask(v1::CLEAN_UP_OFF), v1::CLEAN_UP_OFF);
 }
 
 }  // namespace

@@ -112,22 +112,6 @@ TEST(ValidateLiveStartTest, AHistoryFromFrameZeroHasTheFirstFrames) {
   EXPECT_EQ(valid->rig_follower[0][2].y, valid->live.follower[0][2].y);
 }
 
-TEST(ValidateLiveStartTest, ResumedSessionMayHaveBegunWithoutAPerson) {
-  v1::LiveStart start = ResumedWithRotations();
-  for (float& value : *start.mutable_history()->mutable_rig_leader_positions()) value = 0.25F;
-  EXPECT_THAT(Validate(start), IsOk());
-}
-
-TEST(ValidateLiveStartTest, ANewSessionWithRotationsHasNoFirstFramesYet) {
-  v1::LiveStart start = New();
-  start.set_reply_rotations(true);
-  const absl::StatusOr<ValidatedLiveStart> valid = Validate(start);
-  ASSERT_THAT(valid, IsOk());
-  EXPECT_TRUE(valid->rotations);
-  EXPECT_TRUE(valid->rig_leader.empty());
-  EXPECT_TRUE(valid->rig_follower.empty());
-}
-
 TEST(ValidateLiveStartTest, HistoryIsReadInTheCallersUnitAndOrder) {
   v1::LiveStart start = Resumed();
   const absl::StatusOr<ValidatedLiveStart> metres = Validate(start);
@@ -232,29 +216,22 @@ TEST_P(StartRefusalTest, NamesTheField) {
 
 INSTANTIATE_TEST_SUITE_P(
     Start, StartRefusalTest,
-    ::testing::Values(
-        Spoiled<Start>{"no_labels", [](Start& s) { s.clear_label_vector(); }, "start.label_vector",
-                       ""},
-        Spoiled<Start>{"rate", [](Start& s) { s.mutable_leader()->set_frame_rate_hz(241); },
-                       "start.leader.frame_rate_hz", "got 241"},
-        Spoiled<Start>{"unit", [](Start& s) { s.mutable_leader()->clear_unit(); },
-                       "start.leader.unit", "expected"},
-        Spoiled<Start>{"up_axis", [](Start& s) { s.mutable_leader()->clear_up_axis(); },
-                       "start.leader.up_axis", "expected"},
-        Spoiled<Start>{"nan", [](Start& s) { s.mutable_leader()->set_positions(7, kNan); },
-                       "start.leader.positions[7]", "finite"},
-        Spoiled<Start>{"positions", [](Start& s) { s.mutable_leader()->add_positions(0); },
-                       "start.leader.positions", "got 451"},
-        Spoiled<Start>{"variety", [](Start& s) { s.set_variety(2.5F); }, "start.variety", "2.5"},
-        Spoiled<Start>{"reaction", [](Start& s) { s.set_reaction(3); }, "start.reaction", "3"},
-        Spoiled<Start>{"candidates", [](Start& s) { s.set_candidates(17); }, "start.candidates",
-                       "17"},
-        Spoiled<Start>{"delay", [](Start& s) { s.set_delay_frames(11); }, "start.delay_frames",
-                       "expected 0 to 10, got 11"},
-        Spoiled<Start>{"delay_seconds", [](Start& s) { s.set_delay_frames(8); },
-                       "start.delay_frames", "expected at most 0.5 s, got 8 frames"},
-        Spoiled<Start>{"plan", [](Start& s) { s.set_plan_frames(31); }, "start.plan_frames",
-                       "expected 0 to 30, got 31"}),
+    ::testing::Values(Spoiled<Start>{"no_labels", [](Start& s) { s.clear_label_vector(); },
+                                     "start.label_vector", ""},
+                      Spoiled<Start>{"rate",
+                                     [](Start& s) { s.mutable_leader()->set_frame_rate_hz(241); },
+                                     "start.leader.frame_rate_hz", "got 241"},
+                      Spoiled<Start>{"positions",
+                                     [](Start& s) { s.mutable_leader()->add_positions(0); },
+                                     "start.leader.positions", "got 451"},
+                      Spoiled<Start>{"candidates", [](Start& s) { s.set_candidates(17); },
+                                     "start.candidates", "17"},
+                      Spoiled<Start>{"delay", [](Start& s) { s.set_delay_frames(11); },
+                                     "start.delay_frames", "expected 0 to 10, got 11"},
+                      Spoiled<Start>{"delay_seconds", [](Start& s) { s.set_delay_frames(8); },
+                                     "start.delay_frames", "expected at most 0.5 s, got 8 frames"},
+                      Spoiled<Start>{"plan", [](Start& s) { s.set_plan_frames(31); },
+                                     "start.plan_frames", "expected 0 to 30, got 31"}),
     NameOf<Start>);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -279,17 +256,8 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled<Start>{"more_than_leader",
                        [](Start& s) { s.mutable_history()->set_follower_frame_count(11); },
                        "start.history.follower_frame_count", "got 11"},
-        Spoiled<Start>{"huge",
-                       [](Start& s) { s.mutable_history()->set_follower_frame_count(0xFFFFFFFF); },
-                       "start.history.follower_frame_count", "got 4294967295"},
         Spoiled<Start>{"values", [](Start& s) { s.mutable_history()->add_follower_positions(0); },
                        "start.history.follower_positions", "expected 360 values (8 frames x 15"},
-        Spoiled<Start>{"nan",
-                       [](Start& s) { s.mutable_history()->set_follower_positions(9, kNan); },
-                       "start.history.follower_positions[9]", "finite"},
-        Spoiled<Start>{"far",
-                       [](Start& s) { s.mutable_history()->set_follower_positions(9, 20000); },
-                       "start.history.follower_positions[9..11]", ""},
         Spoiled<Start>{"centimetres",
                        [](Start& s) { Scale(s.mutable_history()->mutable_follower_positions()); },
                        "start.history.follower_positions", "the size of a person"}),
@@ -309,31 +277,12 @@ INSTANTIATE_TEST_SUITE_P(
                                        s.mutable_history()->add_rig_follower_positions(0);
                                      },
                                      "start.history.rig_follower_positions", "got 46"},
-                      Spoiled<Start>{"rig_nan",
-                                     [](Start& s) {
-                                       s = ResumedWithRotations();
-                                       s.mutable_history()->set_rig_leader_positions(4, kNan);
-                                     },
-                                     "start.history.rig_leader_positions[4]", "finite"},
-                      Spoiled<Start>{"rig_far",
-                                     [](Start& s) {
-                                       s = ResumedWithRotations();
-                                       s.mutable_history()->set_rig_follower_positions(9, 20000);
-                                     },
-                                     "start.history.rig_follower_positions[9..11]", ""},
                       Spoiled<Start>{"rig_leader_centimetres",
                                      [](Start& s) {
                                        s = ResumedWithRotations();
                                        Scale(s.mutable_history()->mutable_rig_leader_positions());
                                      },
                                      "start.history.rig_leader_positions", "the size of a person"},
-                      Spoiled<Start>{"rig_follower_centimetres",
-                                     [](Start& s) {
-                                       s = ResumedWithRotations();
-                                       Scale(s.mutable_history()->mutable_rig_follower_positions());
-                                     },
-                                     "start.history.rig_follower_positions",
-                                     "the size of a person"},
                       Spoiled<Start>{"unit_without_rotations",
                                      [](Start& s) {
                                        s = New();
@@ -398,9 +347,7 @@ INSTANTIATE_TEST_SUITE_P(
                         "frames.positions",
                         "expected 180 values (4 frames x 15 joints x 3), got 179"},
         Spoiled<Frames>{"nan", [](Frames& f) { f.set_positions(50, kNan); }, "frames.positions[50]",
-                        "finite"},
-        Spoiled<Frames>{"far", [](Frames& f) { f.set_positions(50, -20000); },
-                        "frames.positions[48..50]", ""}),
+                        "finite"}),
     NameOf<Frames>);
 
 TEST(ReadLeaderFramesTest, EveryInvalidFieldIsNamed) {
@@ -456,8 +403,6 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Spoiled<Change>{"final", [](Change& c) { c.set_frame(kNext - 1); }, "label_change.frame",
                         "expected at least 40, the first frame that is not final"},
-        Spoiled<Change>{"far", [](Change& c) { c.set_frame(0xFFFFFFFF); }, "label_change.frame",
-                        "got 4294967295"},
         Spoiled<Change>{"ease", [](Change& c) { c.set_ease_frames(151); },
                         "label_change.ease_frames", "expected at most 150"},
         Spoiled<Change>{"no_weights", [](Change& c) { c.clear_label_vector(); },
@@ -465,10 +410,6 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled<Change>{"class",
                         [](Change& c) { AddWeight(*c.mutable_label_vector(), "tango", 1); },
                         "label_change.label_vector.weights[1].interaction_class", "tango"},
-        Spoiled<Change>{
-            "nan",
-            [](Change& c) { c.mutable_label_vector()->mutable_weights(0)->set_weight(kNan); },
-            "label_change.label_vector.weights[0].weight", "nan"},
         Spoiled<Change>{
             "weight",
             [](Change& c) { c.mutable_label_vector()->mutable_weights(0)->set_weight(2.5F); },

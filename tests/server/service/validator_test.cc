@@ -122,41 +122,21 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"metres_as_millimetres",
                 [](Request& r) { r.mutable_leader()->set_unit(v1::LENGTH_UNIT_MILLIMETRES); },
                 "leader.positions", "check leader.unit"},
-        Spoiled{"infinite", [](Request& r) { r.mutable_leader()->set_positions(5, -kInfinity); },
-                "leader.positions[5]", "expected a finite number, got -inf"},
         Spoiled{"too_few_values",
                 [](Request& r) { r.mutable_leader()->mutable_positions()->RemoveLast(); },
                 "leader.positions", "expected 1800 values (40 frames x 15 joints x 3), got 1799"},
-        Spoiled{"too_many_values", [](Request& r) { r.mutable_leader()->add_positions(0); },
-                "leader.positions", "x 3), got 1801"},
-        Spoiled{"no_values", [](Request& r) { r.mutable_leader()->clear_positions(); },
-                "leader.positions", "x 3), got 0"},
         Spoiled{"one_frame",
                 [](Request& r) {
                   r.mutable_leader()->set_frame_count(1);
                   r.mutable_leader()->mutable_positions()->Truncate(kJoints * 3);
                 },
                 "leader.frame_count", "expected at least 2, got 1"},
-        Spoiled{"zero_frames",
-                [](Request& r) {
-                  r.mutable_leader()->set_frame_count(0);
-                  r.mutable_leader()->clear_positions();
-                },
-                "leader.frame_count", "expected at least 2, got 0"},
         Spoiled{"no_rate", [](Request& r) { r.mutable_leader()->clear_frame_rate_hz(); },
                 "leader.frame_rate_hz", "expected 1 to 240 frames per second, got 0"},
-        Spoiled{"negative_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(-15); },
-                "leader.frame_rate_hz", "expected 1 to 240 frames per second, got -15"},
-        Spoiled{"slightly_high_rate",
-                [](Request& r) { r.mutable_leader()->set_frame_rate_hz(240.00002); },
-                "leader.frame_rate_hz", "frames per second, got 240.00002"},
         Spoiled{"high_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(240.5); },
                 "leader.frame_rate_hz", "frames per second, got 240.5"},
         Spoiled{"nan_rate", [](Request& r) { r.mutable_leader()->set_frame_rate_hz(kNan); },
                 "leader.frame_rate_hz", "expected 1 to 240 frames per second, got nan"},
-        Spoiled{"infinite_rate",
-                [](Request& r) { r.mutable_leader()->set_frame_rate_hz(kInfinity); },
-                "leader.frame_rate_hz", "expected 1 to 240 frames per second, got inf"},
         Spoiled{"no_unit", [](Request& r) { r.mutable_leader()->clear_unit(); }, "leader.unit",
                 "or LENGTH_UNIT_SBU_NORMALISED, got LENGTH_UNIT_UNSPECIFIED"},
         Spoiled{"unknown_unit",
@@ -164,9 +144,6 @@ INSTANTIATE_TEST_SUITE_P(
                 "leader.unit", "or LENGTH_UNIT_SBU_NORMALISED, got 17"},
         Spoiled{"no_up_axis", [](Request& r) { r.mutable_leader()->clear_up_axis(); },
                 "leader.up_axis", "or UP_AXIS_Y_DOWN, got UP_AXIS_UNSPECIFIED"},
-        Spoiled{"unknown_up_axis",
-                [](Request& r) { r.mutable_leader()->set_up_axis(static_cast<v1::UpAxis>(-1)); },
-                "leader.up_axis", "or UP_AXIS_Y_DOWN, got -1"},
         Spoiled{"sbu_unit_with_y_up",
                 [](Request& r) { r.mutable_leader()->set_unit(v1::LENGTH_UNIT_SBU_NORMALISED); },
                 "leader.up_axis",
@@ -240,24 +217,13 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"unknown_class",
                 [](Request& r) { AddWeight(*r.mutable_label_vector(), "dance", 1); },
                 "label_vector.weights[1].interaction_class", ", got \"dance\""},
-        Spoiled{"unnamed_class", [](Request& r) { AddWeight(*r.mutable_label_vector(), "", 1); },
-                "label_vector.weights[1].interaction_class", ", got \"\""},
         Spoiled{"repeated_class",
                 [](Request& r) { AddWeight(*r.mutable_label_vector(), "kick", 1); },
                 "label_vector.weights[1].interaction_class", "got \"kick\" again after weights[0]"},
-        Spoiled{"slightly_large",
-                [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", 2.0000002F); },
-                "label_vector.weights[1].weight",
-                "expected a finite value in [-2, 2], got 2.0000002"},
         Spoiled{"too_large", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", 2.5F); },
                 "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got 2.5"},
-        Spoiled{"too_small", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", -2.5F); },
-                "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got -2.5"},
         Spoiled{"nan", [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", kNan); },
                 "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got nan"},
-        Spoiled{"infinite",
-                [](Request& r) { AddWeight(*r.mutable_label_vector(), "hug", kInfinity); },
-                "label_vector.weights[1].weight", "expected a finite value in [-2, 2], got inf"},
         Spoiled{"absurdly_many",
                 [](Request& r) {
                   for (int i = 0; i < 1000; ++i) AddWeight(*r.mutable_label_vector(), "x", 1);
@@ -268,42 +234,27 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Keyframes, RefusalTest,
-    ::testing::Values(
-        Spoiled{"past_the_end", [](Request& r) { AddKeyframe(r, 40); }, "label_keyframes[0].frame",
-                "expected less than 40, the number of frames, got 40"},
-        Spoiled{"backwards",
-                [](Request& r) {
-                  AddKeyframe(r, 20);
-                  AddKeyframe(r, 10);
-                },
-                "label_keyframes[1].frame",
-                "expected more than the previous keyframe's 20, got 10"},
-        Spoiled{"repeated",
-                [](Request& r) {
-                  AddKeyframe(r, 20);
-                  AddKeyframe(r, 20);
-                },
-                "label_keyframes[1].frame",
-                "expected more than the previous keyframe's 20, got 20"},
-        Spoiled{"empty_vector",
-                [](Request& r) {
-                  AddKeyframe(r, 0);
-                  r.mutable_label_keyframes(0)->clear_label_vector();
-                },
-                "label_keyframes[0].label_vector.weights", "got none"},
-        Spoiled{
-            "weight",
-            [](Request& r) {
-              AddKeyframe(r, 0);
-              r.mutable_label_keyframes(0)->mutable_label_vector()->mutable_weights(0)->set_weight(
-                  9);
-            },
-            "label_keyframes[0].label_vector.weights[0].weight", ", got 9"},
-        Spoiled{"too_many",
-                [](Request& r) {
-                  for (uint32_t i = 0; i < 4097; ++i) AddKeyframe(r, i);
-                },
-                "label_keyframes", "expected at most 4096 keyframes, got 4097"}),
+    ::testing::Values(Spoiled{"past_the_end", [](Request& r) { AddKeyframe(r, 40); },
+                              "label_keyframes[0].frame",
+                              "expected less than 40, the number of frames, got 40"},
+                      Spoiled{"backwards",
+                              [](Request& r) {
+                                AddKeyframe(r, 20);
+                                AddKeyframe(r, 10);
+                              },
+                              "label_keyframes[1].frame",
+                              "expected more than the previous keyframe's 20, got 10"},
+                      Spoiled{"empty_vector",
+                              [](Request& r) {
+                                AddKeyframe(r, 0);
+                                r.mutable_label_keyframes(0)->clear_label_vector();
+                              },
+                              "label_keyframes[0].label_vector.weights", "got none"},
+                      Spoiled{"too_many",
+                              [](Request& r) {
+                                for (uint32_t i = 0; i < 4097; ++i) AddKeyframe(r, i);
+                              },
+                              "label_keyframes", "expected at most 4096 keyframes, got 4097"}),
     SpoiledName);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -317,10 +268,6 @@ INSTANTIATE_TEST_SUITE_P(
                 "follower_start.pose.positions", "got all joints in one point in every frame"},
         Spoiled{"empty", [](Request& r) { r.mutable_follower_start(); }, "follower_start.start",
                 "expected root_position or pose, got neither"},
-        Spoiled{"nan", [](Request& r) { SetRoot(r, 0, kNan, 0); },
-                "follower_start.root_position[1]", "expected a finite number, got nan"},
-        Spoiled{"far_away", [](Request& r) { SetRoot(r, 0, 0, 1e6F); },
-                "follower_start.root_position[0..2]", "expected at most 10000 m"},
         Spoiled{"short_pose",
                 [](Request& r) { r.mutable_follower_start()->mutable_pose()->add_positions(1); },
                 "follower_start.pose.positions", "expected 45 values (15 joints x 3), got 1"},
@@ -338,13 +285,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Spoiled{"no_chunk_frames", [](Request& r) { r.set_chunk_frames(0); }, "chunk_frames",
                 "expected 1 to 240, got 0"},
-        Spoiled{"many_chunk_frames", [](Request& r) { r.set_chunk_frames(241); }, "chunk_frames",
-                "expected 1 to 240, got 241"},
         Spoiled{"huge_chunk_frames", [](Request& r) { r.set_chunk_frames(4294967295U); },
                 "chunk_frames", "expected 1 to 240, got 4294967295"},
-        Spoiled{"unspecified_priority",
-                [](Request& r) { r.set_priority(v1::PRIORITY_UNSPECIFIED); }, "priority",
-                "or no value, got PRIORITY_UNSPECIFIED"},
         Spoiled{"unknown_priority",
                 [](Request& r) { r.set_priority(static_cast<v1::Priority>(9)); }, "priority",
                 "or no value, got 9"},
@@ -374,30 +316,18 @@ INSTANTIATE_TEST_SUITE_P(
                   r.add_reply_joint_names("head");
                 },
                 "reply_rotations", "expected no reply_joint_names: a rig needs every joint, got 1"},
-        Spoiled{"negative_variety", [](Request& r) { r.set_variety(-0.5F); }, "variety",
-                "expected a finite value in [0, 2], got -0.5"},
-        Spoiled{"much_variety", [](Request& r) { r.set_variety(2.5F); }, "variety",
-                "expected a finite value in [0, 2], got 2.5"},
         Spoiled{"nan_variety", [](Request& r) { r.set_variety(kNan); }, "variety",
                 "expected a finite value in [0, 2], got nan"},
-        Spoiled{"infinite_variety", [](Request& r) { r.set_variety(kInfinity); }, "variety",
-                "expected a finite value in [0, 2], got inf"},
         Spoiled{"negative_reaction", [](Request& r) { r.set_reaction(-0.5F); }, "reaction",
                 "expected a finite value in [0, 2], got -0.5"},
-        Spoiled{"nan_reaction", [](Request& r) { r.set_reaction(kNan); }, "reaction",
-                "expected a finite value in [0, 2], got nan"},
         Spoiled{"no_candidates", [](Request& r) { r.set_candidates(0); }, "candidates",
                 "expected 1 to 16, got 0"},
-        Spoiled{"many_candidates", [](Request& r) { r.set_candidates(17); }, "candidates",
-                "expected 1 to 16, got 17"},
         Spoiled{"countless_candidates", [](Request& r) { r.set_candidates(4294967295u); },
                 "candidates", "expected 1 to 16, got 4294967295"},
         Spoiled{"unknown_clean_up", [](Request& r) { r.set_clean_up(static_cast<v1::CleanUp>(9)); },
                 "clean_up", "expected CLEAN_UP_ON, CLEAN_UP_OFF or no value, got 9"},
         Spoiled{"no_direction", [](Request& r) { SetDirection(r, 0, 0, 0); }, "partner_direction",
                 "expected a direction that is neither vertical nor of length 0, got (0, 0, 0)"},
-        Spoiled{"vertical_direction", [](Request& r) { SetDirection(r, 0, 3, 0); },
-                "partner_direction", "got (0, 3, 0)"},
         Spoiled{"nearly_vertical_direction", [](Request& r) { SetDirection(r, 1e-6F, -3, 1e-6F); },
                 "partner_direction", "expected a direction that is neither vertical"},
         Spoiled{"nan_direction", [](Request& r) { SetDirection(r, kNan, 0, 1); },
@@ -407,10 +337,6 @@ INSTANTIATE_TEST_SUITE_P(
                 "UP_AXIS_Y_UP, got (0, 0, 0)"},
         Spoiled{"far_up", [](Request& r) { SetVertical(r, 0, 1, 1.001F); }, "up",
                 "got (0, 1, 1.001)"},
-        Spoiled{"upside_down", [](Request& r) { SetVertical(r, 0, -1, 0); }, "up",
-                "got (0, -1, 0)"},
-        Spoiled{"infinite_up", [](Request& r) { SetVertical(r, 0, kInfinity, 0); }, "up[1]",
-                "expected a finite number, got inf"},
         Spoiled{"direction_along_up",
                 [](Request& r) {
                   SetVertical(r, 0, 2, 1);
@@ -452,14 +378,6 @@ TEST(ValidateRequestTest, NamesTheFirstBadValuesAndCountsAll) {
                                             "leader.positions[102]", "leader.positions"));
   EXPECT_THAT(refusal.Of("leader.positions"),
               HasSubstr("got 800 of 1800 values that are not finite"));
-}
-
-TEST(ValidateRequestTest, ListsTheFirstFarPositionsAndCountsAll) {
-  v1::SynthesizeRequest request = SampleRequest();
-  for (int i = 0; i < 300; ++i) request.mutable_leader()->set_positions(i, 1e5F);
-  const Refusal refusal = Decode(Validate(request).status());
-  EXPECT_THAT(refusal.Fields(), SizeIs(4));
-  EXPECT_THAT(refusal.Of("leader.positions"), HasSubstr("got 100 positions farther away"));
 }
 
 TEST(ValidateRequestTest, RefusesMoreThanTenMinutes) {
@@ -664,12 +582,6 @@ TEST(ValidateRequestTest, LevelsAStartPose) {
   EXPECT_EQ(validated->clip.start->root, validated->clip.start->pose[2]);
 }
 
-TEST(ValidateRequestTest, WithoutUpNothingIsLevelled) {
-  const absl::StatusOr<ValidatedRequest> validated = Validate(SampleRequest());
-  ASSERT_THAT(validated, IsOk());
-  EXPECT_FALSE(validated->reply.levelling.has_value());
-}
-
 TEST(ValidateRequestTest, ReadsAStartPoseInTheLeadersJointOrder) {
   v1::SynthesizeRequest request = SampleRequest();
   ReverseJoints(*request.mutable_leader());
@@ -718,51 +630,21 @@ TEST(ValidateRequestTest, ReadsLabelsInTheModelsClassOrder) {
   EXPECT_EQ(weights, (std::vector<float>{1, 0, 0, 0, 0, -0.5F}));
 }
 
-TEST(ValidateRequestTest, ReadsKeyframes) {
-  v1::SynthesizeRequest request = SampleRequest();
-  AddKeyframe(request, 10);
-  AddKeyframe(request, 20);
-  request.mutable_label_keyframes(1)->mutable_label_vector()->mutable_weights(0)->set_weight(1.5F);
-  const absl::StatusOr<ValidatedRequest> validated = Validate(request);
-  ASSERT_THAT(validated, IsOk());
-  std::vector<float> weights(6);
-  validated->clip.labels.At(15, weights.data());
-  EXPECT_FLOAT_EQ(weights[3], 1.0F);
-}
-
-TEST(ValidateRequestTest, PicksReplyJoints) {
-  v1::SynthesizeRequest request = SampleRequest();
-  request.add_reply_joint_names("torso");
-  request.add_reply_joint_names("head");
-  const absl::StatusOr<ValidatedRequest> validated = Validate(request);
-  ASSERT_THAT(validated, IsOk());
-  EXPECT_THAT(validated->reply.joint_names, ElementsAre("torso", "head"));
-  EXPECT_THAT(validated->reply.joints, ElementsAre(2, 0));
-}
-
 INSTANTIATE_TEST_SUITE_P(
     Constraints, RefusalTest,
     ::testing::Values(
         Spoiled{"unknown_joint", [](Request& r) { AddConstraint(r, "left_wing", 3, 0, 1, 0); },
                 "constraints[0].joint_name",
                 "a joint of model fake (head, neck, torso, left_shoulder", kFailedPrecondition},
-        Spoiled{"no_joint", [](Request& r) { AddConstraint(r, "", 3, 0, 1, 0); },
-                "constraints[0].joint_name", "got \"\"", kFailedPrecondition},
         Spoiled{"frame_after_the_end", [](Request& r) { AddConstraint(r, "head", 40, 0, 1, 0); },
                 "constraints[0].frame", "expected less than the 40 frames of leader, got 40"},
         Spoiled{"no_position", [](Request& r) { r.add_constraints()->set_joint_name("head"); },
                 "constraints[0].position", "expected a point, got none"},
         Spoiled{"nan_position", [](Request& r) { AddConstraint(r, "head", 3, 0, kNan, 0); },
                 "constraints[0].position", "expected finite numbers, got (0, nan, 0)"},
-        Spoiled{"infinite_position",
-                [](Request& r) { AddConstraint(r, "head", 3, kInfinity, 0, 0); },
-                "constraints[0].position", "expected finite numbers, got (inf, 0, 0)"},
         Spoiled{"millimetres_as_metres",
                 [](Request& r) { AddConstraint(r, "head", 3, 100, 1600, 0); },
                 "constraints[0].position", "at most 20 m from the leader in this frame"},
-        Spoiled{"negative_softness",
-                [](Request& r) { AddConstraint(r, "head", 3, 0, 1, 0).set_softness(-0.1F); },
-                "constraints[0].softness", "expected a value in [0, 1], got -0.1"},
         Spoiled{"nan_softness",
                 [](Request& r) { AddConstraint(r, "head", 3, 0, 1, 0).set_softness(kNan); },
                 "constraints[0].softness", "expected a value in [0, 1], got nan"},

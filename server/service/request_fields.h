@@ -1,21 +1,32 @@
-#ifndef DUET_SERVER_SERVICE_VALIDATE_LEADER_H_
-#define DUET_SERVER_SERVICE_VALIDATE_LEADER_H_
+#ifndef DUET_SERVER_SERVICE_REQUEST_FIELDS_H_
+#define DUET_SERVER_SERVICE_REQUEST_FIELDS_H_
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "absl/strings/string_view.h"
 #include "absl/types/span.h"
 #include "duet/v1/motion.pb.h"
+#include "duet/v1/synthesis.pb.h"
+#include "model/engine/label_track.h"
 #include "model/engine/model_description.h"
+#include "model/engine/synthesis_options.h"
 #include "model/motion/coordinates.h"
+#include "model/motion/levelling.h"
+#include "model/motion/pin.h"
 #include "model/motion/poses.h"
 #include "model/motion/vec3.h"
 #include "server/service/request_limits.h"
 #include "server/service/violations.h"
 
+// The fields of a request, read and checked one by one. validator.h and validate_live.h read whole
+// messages.
+
 namespace duet::server::service {
+
+// The leader (validate_leader.cc).
 
 // Adds a violation under `field` if the poses, in metres, are far larger or smaller than a person:
 // positions in another unit than the declared one. Single lost joints and frames do not matter: a
@@ -59,6 +70,44 @@ bool ValidateFinite(absl::string_view field,
                     const google::protobuf::RepeatedField<float>& positions,
                     Violations& violations);
 
+// Labels (validate_labels.cc).
+
+// Reads the request's label vector or keyframes, in the model's class order. A label vector becomes
+// one keyframe at frame 0. `frames`: keyframes lie before this frame. Adds every invalid field to
+// `violations`; the result is then meaningless.
+std::vector<engine::LabelKeyframe> ValidateLabels(const v1::SynthesizeRequest& request,
+                                                  uint32_t frames,
+                                                  const engine::ModelDescription& model,
+                                                  const RequestLimits& limits,
+                                                  Violations& violations);
+
+// Reads one label vector, the field `field`, in the model's class order. Shapes: returns [classes].
+std::vector<float> ReadLabelVector(const std::string& field, const v1::LabelVector& label_vector,
+                                   const engine::ModelDescription& model,
+                                   const RequestLimits& limits, Violations& violations);
+
+// Options and constraints (validate_options.cc).
+
+// Reads the optional fields of a request that configure the synthesis: seed, variety, clean_up.
+// Adds every invalid field to `violations`; the result is then meaningless.
+engine::SynthesisOptions ValidateOptions(const v1::SynthesizeRequest& request,
+                                         const RequestLimits& limits, Violations& violations);
+
+// The world of a request, as far as it is valid. The result for `constraints` is complete only if
+// it is.
+struct RequestWorld {
+  std::optional<motion::Coordinates> coordinates;
+  std::optional<motion::Levelling> levelling;
+  const motion::Poses& leader;  // level world metres, the model's joints; empty if it is invalid
+};
+
+// Converts SynthesizeRequest.constraints to pins in the caller's frames, the model's joints and
+// level world metres, in the same order. Adds every invalid one to `violations`; the result is then
+// meaningless.
+motion::Pins ValidateConstraints(const v1::SynthesizeRequest& request, const RequestWorld& world,
+                                 const engine::ModelDescription& model, const RequestLimits& limits,
+                                 Violations& violations);
+
 }  // namespace duet::server::service
 
-#endif  // DUET_SERVER_SERVICE_VALIDATE_LEADER_H_
+#endif  // DUET_SERVER_SERVICE_REQUEST_FIELDS_H_

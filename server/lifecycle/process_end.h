@@ -1,0 +1,80 @@
+#ifndef DUET_SERVER_LIFECYCLE_PROCESS_END_H_
+#define DUET_SERVER_LIFECYCLE_PROCESS_END_H_
+
+#include <csignal>
+#include <ctime>
+#include <string>
+
+namespace duet::server::lifecycle {
+
+// Exit codes of duet-server.
+inline constexpr int kExitStopped = 0;  // drained after SIGTERM or SIGINT, or nothing to report
+inline constexpr int kExitFailed = 1;   // a file, address or model that settings name is invalid
+inline constexpr int kExitUsage = 2;    // a flag or the configuration file is invalid
+inline constexpr int kExitStuck = 3;    // no self-check succeeded for watchdog_seconds
+inline constexpr int kExitLate = 4;     // did not exit in time after a signal to stop
+
+// Ends the process if a time passes. A timer of the kernel does it, whose signal (SIGALRM) writes
+// one line to standard error and exits: a thread that hangs may hold any lock, also those of the
+// heap and the log, or be the one that would stop the process. The clock runs while the process is
+// paused.
+class LastResort {
+ public:
+  // The line is {"severity":"ERROR","event":EVENT,"message":MESSAGE,"exit_code":CODE}: texts
+  // without quotes.
+  LastResort(const std::string& event, const std::string& message, int exit_code);
+  ~LastResort();
+  LastResort(const LastResort&) = delete;
+  LastResort& operator=(const LastResort&) = delete;
+
+  // Ends the process in `seconds` from now, unless it is called again before; 0: never. May be
+  // called by a signal's handler.
+  void Set(double seconds);
+
+ private:
+  static void End(int, siginfo_t* info, void*);
+
+  const std::string line_;
+  const int exit_code_;
+  timer_t timer_ = {};
+};
+
+// Signals that the main thread has not handled yet: SIGTERM and SIGINT stop the server, SIGHUP
+// reloads. From a signal to stop on, the process has the time of AllowToStop to exit, and
+// kHurrySeconds from the second one; afterwards it ends as it is, with kExitLate. Both hold even if
+// the main thread hangs.
+//
+// At most one exists at a time. One thread waits.
+class StopSignal {
+ public:
+  enum class Kind { kStop, kReload };
+
+  // Maximum time to exit when no call is left: gRPC sends statuses for a second; a running
+  // self-check and a stuck log take at most five seconds each.
+  static constexpr double kHurrySeconds = 10;
+
+  StopSignal();
+  // Restores the default action of the signals, like Release.
+  ~StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  // For a process that does not drain.
+  void Release();
+  // The default is kHurrySeconds.
+  void AllowToStop(double seconds);
+
+  // Waits for a signal and returns its kind. A stop is returned before a reload; reloads that are
+  // not handled yet count as one.
+  Kind Wait();
+  // Waits at most `seconds` for a stop and returns whether it arrived; 0 only checks. A reload that
+  // arrives meanwhile is left for Wait.
+  bool WaitFor(double seconds);
+
+ private:
+  LastResort late_;
+};
+
+}  // namespace duet::server::lifecycle
+
+#endif  // DUET_SERVER_LIFECYCLE_PROCESS_END_H_
