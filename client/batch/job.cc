@@ -94,7 +94,7 @@ void Job::AskUntilDone() {
 void Job::Ask(Work work) {
   const auto model = static_cast<size_t>(work.item.model);
   const absl::StatusOr<LoadedLeader>& leader =
-      work.leader->Get(parts_.recipe.input, parts_.skeletons[model], parts_.limits);
+      work.leader->Get(parts_.recipe.input, parts_.skeletons[model]);
   if (!leader.ok()) {
     Fail(work.item, leader.status());
     return queue_.Done();
@@ -163,8 +163,7 @@ void Job::Judge(Work work, const SynthesisResult& result) {
   const auto model = static_cast<size_t>(work.item.model);
   const motion::Skeleton& skeleton = parts_.skeletons[model];
   const v1::QualityFilter& filter = parts_.recipe.filter;
-  const absl::StatusOr<LoadedLeader>& leader =
-      work.leader->Get(parts_.recipe.input, skeleton, parts_.limits);
+  const absl::StatusOr<LoadedLeader>& leader = work.leader->Get(parts_.recipe.input, skeleton);
   RecordedAnswer answer =
       ToRecorded(work.item, parts_.recipe, result, *leader, skeleton, work.retry);
   answer.skeleton = skeleton_indices_[model];

@@ -74,7 +74,6 @@ class Job {
     Shard shard;
     std::vector<ModelInfo> models;
     std::vector<motion::Skeleton> skeletons;
-    RequestLimits limits;  // of the server, if they are known
     Client client;
     const JobFolder* folder = nullptr;
     Survey* survey = nullptr;

@@ -317,47 +317,19 @@ absl::Status SetStart(const LeaderEntry& entry, formats::Side side, const Leader
   return absl::OkStatus();
 }
 
-// Checks the limits that would make the server reject every call with this leader.
-absl::Status CheckLimits(const std::filesystem::path& file, const motion::Clip& clip,
-                         const RequestLimits& limits) {
-  const auto refuse = [&file](const auto&... what) {
-    return absl::InvalidArgumentError(absl::StrCat(file.string(), ": ", what...));
-  };
-  const double rate_hz = clip.frame_rate_hz;
-  const int frames = clip.frame_count();
-  if (frames < limits.min_frames) {
-    return refuse("frames: expected at least ", limits.min_frames, ", got ", frames);
-  }
-  if (limits.max_frame_rate_hz > 0 &&
-      (rate_hz < limits.min_frame_rate_hz || rate_hz > limits.max_frame_rate_hz)) {
-    return refuse("frame rate: expected ", limits.min_frame_rate_hz, " to ",
-                  limits.max_frame_rate_hz, " Hz, got ", rate_hz,
-                  ". Resample it (duet convert --resample HZ).");
-  }
-  const double max_seconds = absl::ToDoubleSeconds(limits.max_duration);
-  if (max_seconds > 0 && frames > max_seconds * rate_hz) {
-    return refuse("duration: expected at most ", max_seconds, " s, got ", frames / rate_hz,
-                  " s. Cut it into several leaders.");
-  }
-  return absl::OkStatus();
-}
-
 absl::StatusOr<LoadedLeader> Load(const LeaderEntry& entry, formats::Side side,
-                                  const LeaderInput& input, const motion::Skeleton& skeleton,
-                                  const RequestLimits& limits) {
+                                  const LeaderInput& input, const motion::Skeleton& skeleton) {
   formats::ReadOptions options = input.reading;
   options.skeleton = skeleton;
   options.side = side;
   absl::StatusOr<motion::Clip> clip = formats::ReadLeader(entry.file, options);
   if (!clip.ok()) return clip.status();
-  absl::Status status = CheckLimits(entry.file, *clip, limits);
-  if (!status.ok()) return status;
   absl::StatusOr<std::string> digest = base::Sha256HexOfFile(entry.file);
   if (!digest.ok()) return digest.status();
   LoadedLeader loaded;
   loaded.clip = *std::move(clip);
   loaded.sha256 = *std::move(digest);
-  status = SetStart(entry, side, input, options, &loaded);
+  absl::Status status = SetStart(entry, side, input, options, &loaded);
   if (!status.ok()) return status;
   return loaded;
 }
@@ -429,9 +401,9 @@ absl::Status CheckInputs(const std::vector<std::string>& inputs, const fs::path&
 }
 
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
-                                        const LeaderInput& input, const motion::Skeleton& skeleton,
-                                        const RequestLimits& limits) {
-  absl::StatusOr<LoadedLeader> loaded = Load(entry, side, input, skeleton, limits);
+                                        const LeaderInput& input,
+                                        const motion::Skeleton& skeleton) {
+  absl::StatusOr<LoadedLeader> loaded = Load(entry, side, input, skeleton);
   if (!loaded.ok()) return WithMendingField(loaded.status());
   return loaded;
 }

@@ -84,11 +84,9 @@ struct LoadedLeader {
   std::optional<FollowerStart> follower_start;
 };
 
-// Reads the leader's file and the file of the follower's start, and checks the length and the rate
-// against the server's limits; a limit of 0 is unknown. Errors name the file.
+// Reads the leader's file and the file of the follower's start. Errors name the file.
 absl::StatusOr<LoadedLeader> LoadLeader(const LeaderEntry& entry, formats::Side side,
-                                        const LeaderInput& input, const motion::Skeleton& skeleton,
-                                        const RequestLimits& limits);
+                                        const LeaderInput& input, const motion::Skeleton& skeleton);
 
 // A leader that several items share. The first item that needs it reads it; the last one frees it.
 //
@@ -99,9 +97,8 @@ class SharedLeader {
       : entry_(std::move(entry)), side_(side) {}
 
   const absl::StatusOr<LoadedLeader>& Get(const LeaderInput& input,
-                                          const motion::Skeleton& skeleton,
-                                          const RequestLimits& limits) {
-    std::call_once(once_, [&] { loaded_ = LoadLeader(*entry_, side_, input, skeleton, limits); });
+                                          const motion::Skeleton& skeleton) {
+    std::call_once(once_, [&] { loaded_ = LoadLeader(*entry_, side_, input, skeleton); });
     return loaded_;
   }
 

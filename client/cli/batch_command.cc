@@ -106,7 +106,6 @@ absl::StatusOr<std::unique_ptr<batch::LeaderSource>> OpenLeaders(const BatchArgu
 struct Prepared {
   batch::Recipe recipe;
   std::vector<ModelInfo> models;
-  RequestLimits limits;
   std::vector<motion::Skeleton> skeletons;
 };
 
@@ -129,7 +128,6 @@ absl::Status AskModels(const BatchArguments& arguments, const ProgramEnvironment
     if (!skeleton.ok()) return skeleton.status();
     prepared->models.push_back(std::move(details->model));
     prepared->skeletons.push_back(*std::move(skeleton));
-    prepared->limits = details->limits;  // the same for all models of a server
   }
   return absl::OkStatus();
 }
@@ -157,8 +155,7 @@ class LeaderReader {
     const std::shared_ptr<batch::SharedLeader> shared =
         leaders_.Get(item.leader, item.side, item.model);
     const absl::StatusOr<batch::LoadedLeader>& leader =
-        shared->Get(prepared_.recipe.input, prepared_.skeletons[static_cast<size_t>(item.model)],
-                    prepared_.limits);
+        shared->Get(prepared_.recipe.input, prepared_.skeletons[static_cast<size_t>(item.model)]);
     if (leader.ok()) {
       frames += leader->clip.frame_count();
     } else if (bad_.insert(std::string(leader.status().message())).second) {
@@ -417,10 +414,10 @@ absl::StatusOr<ExitCode> RunWhole(const BatchArguments& arguments,
     status = folder.Begin(IdentityOf(prepared.recipe, arguments.shard, prepared.models));
   }
   if (!status.ok()) return status;
-  batch::Job job({std::move(prepared.recipe), arguments.shard, std::move(prepared.models),
-                  std::move(prepared.skeletons), prepared.limits, *std::move(client), &folder,
-                  survey->get(), check->items},
-                 *std::move(plan), ToJobOptions(arguments));
+  batch::Job job(
+      {std::move(prepared.recipe), arguments.shard, std::move(prepared.models),
+       std::move(prepared.skeletons), *std::move(client), &folder, survey->get(), check->items},
+      *std::move(plan), ToJobOptions(arguments));
   running.Set(&job);
   absl::StatusOr<ExitCode> code =
       RunJob(arguments, job, folder.out(), *check, environment, running);

@@ -7,7 +7,6 @@ killed, what duet_motion.sets makes of them, shards of a job, refusals, and Ctrl
 import hashlib
 import json
 import os
-import pathlib
 import random
 import resource
 import shutil
@@ -115,36 +114,6 @@ class BatchTest(tools.ServedTest):
         self.verified(out)
         (out / "far" / "push-kick-s1.npy").write_bytes(b"changed")
         self.assertIn("push-kick-s1.npy: was changed", self.verified(out, 42).stderr)
-
-    def test_motions_do_not_depend_on_how_leaders_are_listed(self):
-        recipe, link = self.recipe(), self.out("link")
-        link.symlink_to(self.leaders)
-        shutil.copytree(self.leaders, self.out("copy"))
-        expected = {name: digest for name, digest in digests(self.whole).items()
-                    if name.endswith(".npy")}
-        for number, leaders in enumerate(["leaders", "./leaders/", "../leaders", link,
-                                          self.out("copy")]):
-            with self.subTest(leaders):
-                out = self.out(number)
-                cwd = self.leaders if str(leaders).startswith("..") else self.folder
-                result = tools.run(*self.command(out, recipe, leaders=leaders), cwd=cwd)
-                self.assertEqual(result.returncode, 0, result.stderr)
-                self.assertEqual({name: digest for name, digest in digests(out).items()
-                                  if name.endswith(".npy")}, expected)
-        # The same leaders in a list have other names, and the same seeds and labels.
-        asked = ("leader_sha256", "reaction", "labels", "seed")
-        expected = sorted(json.dumps([entry[field] for field in asked])
-                          for entry in entries(self.whole))
-        manifest = self.out("list.tsv")
-        for folder in ("leaders", self.out("copy")):
-            manifest.write_text("leader\n" + "".join(f"{folder}/{name}.bvh\n" for name in
-                                                    ("far/push", "hug", "kick")), encoding="utf-8")
-            out = self.out(f"list-{pathlib.Path(folder).name}")
-            result = tools.duet("batch", "--manifest", manifest, "--recipe", recipe, "--out", out,
-                                "--server", self.server.address)
-            self.assertEqual(result.returncode, 0, result.stderr)
-            self.assertEqual(sorted(json.dumps([entry[field] for field in asked])
-                                    for entry in entries(out)), expected)
 
     def test_answer_equals_that_of_synthesize(self):
         out, single = self.whole, self.folder / "single.npy"
@@ -342,27 +311,6 @@ class BatchTest(tools.ServedTest):
         self.verified(self.out())
         wrong = self.batch(self.out("wrong"), recipe, "--allow-failed", "many", code=2)
         self.assertIn("--allow-failed: expected a number of leaders, or a share", wrong.stderr)
-
-    def test_every_set_describes_itself(self):
-        part = self.out()
-        self.batch(part, self.recipe(), "--limit", "20")
-        for out in (self.whole, part):
-            dataset = json.loads((out / "dataset.json").read_text(encoding="utf-8"))
-            index = entries(out)
-            self.assertEqual(dataset["format"], "duet-batch")
-            self.assertEqual(dataset["items"]["done"], len(index))
-            self.assertEqual(dataset["frames"], sum(entry["frames"] for entry in index))
-            (skeleton,), (model,) = dataset["skeletons"], dataset["models"]
-            self.assertEqual(len(skeleton["joint_names"]), len(skeleton["parents"]))
-            self.assertEqual([skeleton["joint_names"][joint] for joint, parent
-                              in enumerate(skeleton["parents"]) if parent < 0], ["torso"])
-            self.assertEqual({entry["model"] for entry in index}, {model["name"]})
-            self.assertEqual({entry["skeleton"] for entry in index}, {model["skeleton"]})
-            self.assertIn("research", model["terms"])
-            weights = tools.SOURCE / "model" / "embedded" / "sbu" / "3" / "weights.safetensors"
-            self.assertEqual(model["weights_sha256"],
-                             hashlib.sha256(weights.read_bytes()).hexdigest())
-            self.assertEqual(dataset["files"][0]["unit"], "metres")
 
     def test_one_rate_for_all_items(self):
         leaders, out = self.out("leaders"), self.out()

@@ -127,7 +127,6 @@ class JobTest : public ::testing::Test {
              {},
              {model},
              {motion::SbuSkeleton()},
-             {},
              Client(connection_),
              &folder,
              survey->get(),
@@ -187,24 +186,6 @@ TEST_F(JobTest, EveryRequestHasTheVerticalOfTheRecipe) {
       << "other ids";
 }
 
-TEST_F(JobTest, KeepsEveryAnswerAndListsIt) {
-  const auto report = Run("set");
-  ASSERT_THAT(report, IsOk());
-  EXPECT_EQ(report->set.done, kItems);
-  EXPECT_TRUE(report->complete());
-  EXPECT_EQ(connection().calls, kItems);
-  const auto lines = Lines("set/index.jsonl");
-  ASSERT_THAT(lines, SizeIs(kItems));
-  for (size_t i = 0; i < lines.size(); ++i) {
-    ::duet::batch::v1::IndexEntry entry;
-    ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(lines[i], &entry).ok()) << lines[i];
-    EXPECT_EQ(entry.item(), i);
-    EXPECT_EQ(entry.model(), "fake@3");
-    EXPECT_EQ(entry.request_id(), "batch-" + entry.id());
-    EXPECT_THAT(entry.leader_sha256(), SizeIs(64));
-  }
-}
-
 TEST_F(JobTest, AnswersThatAreMadeInAnotherWayAreRefusedByName) {
   JobOptions some;
   some.limit = 5;
@@ -247,34 +228,6 @@ TEST_F(JobTest, RejectsAnswersByTheirGrade) {
   const auto quality = nlohmann::json::parse(Lines("set/rejected.jsonl")[0])["quality"];
   EXPECT_EQ(quality["skating"], 0.5);
   EXPECT_EQ(quality["leader_skating"], 0.25);
-}
-
-TEST_F(JobTest, RecipesFrameRateAppliesToEveryArray) {
-  recipe_.insert(recipe_.rfind('}'), "frame_rate_hz: 60 ");
-  recipe_ =
-      "reactions { schedule { keyframes { at: 1 labels { weights { key: 'hug' value: 1 } } } } }" +
-      recipe_;
-  const auto report = Run("set");
-  ASSERT_THAT(report, IsOk());
-  for (const std::string& line : Lines("set/index.jsonl")) {
-    const auto record = nlohmann::json::parse(line);
-    EXPECT_EQ(record["frame_rate_hz"], 60);
-    EXPECT_EQ(record["frames"], 17);  // 4/15 s
-    if (record.contains("keyframes")) {
-      EXPECT_EQ(record["keyframes"][0]["frame"], 16);
-    }
-    formats::ReadOptions options;
-    options.skeleton = motion::SbuSkeleton();
-    options.frame_rate_hz = 60;
-    for (const formats::Side side : {formats::Side::kLeft, formats::Side::kRight}) {
-      options.side = side;
-      const auto clip = formats::ReadLeader(
-          folder_ / "set" / record["files"][0]["path"].get<std::string>(), options);
-      ASSERT_THAT(clip, IsOk());
-      EXPECT_EQ(clip->frame_count(), 17);
-    }
-  }
-  EXPECT_EQ(nlohmann::json::parse(Read("set/dataset.json"))["frame_rate_hz"], 60);
 }
 
 TEST_F(JobTest, ContinuesAfterAJournalTruncatedAnywhere) {
@@ -433,14 +386,6 @@ TEST_F(JobTest, MissingInformationNamesTheRecipesField) {
               HasSubstr("specify it in the recipe: input { frame_rate_hz }"));
 }
 
-TEST_F(JobTest, AnotherRecipeIsRefused) {
-  ASSERT_THAT(Run("set"), IsOk());
-  recipe_ += "seed: 9";
-  EXPECT_THAT(Run("set"), StatusIs(absl::StatusCode::kFailedPrecondition,
-                                   HasSubstr("was begun with another recipe: "
-                                             "added: seed: 9. Use the same")));
-}
-
 TEST_F(JobTest, ChangedLinesAreRejected) {
   const std::string before = "id\tleader\tlabels\tseed\nx\ta.csv\tkick=1\t1\n";
   ASSERT_THAT(Run("set", {}, before), IsOk());
@@ -453,17 +398,6 @@ TEST_F(JobTest, ChangedLinesAreRejected) {
   EXPECT_THAT(Run("set", {}, "id\tleader\tlabels\tseed\nx\ta.csv\tkick=1\t2\n"),
               refused("got x-kick-s0 of a.csv, asked in another way"));
   EXPECT_THAT(Run("set", {}, before), IsOk());
-}
-
-TEST_F(JobTest, MissingAndTruncatedFilesAreRequestedAgain) {
-  ASSERT_THAT(Run("set"), IsOk());
-  std::filesystem::remove(folder_ / "set/a-2-kick-s0.npy");
-  std::filesystem::resize_file(folder_ / "set/b-3-hug0p5-s1.npy", 100);
-  const auto report = Run("set");
-  ASSERT_THAT(report, IsOk());
-  EXPECT_TRUE(report->complete());
-  EXPECT_EQ(connection().calls, kItems + 2);
-  ExpectSameAsUndisturbed("set");
 }
 
 // The same size and another byte.
@@ -489,16 +423,6 @@ TEST_F(JobTest, ChangedFilesAreRequestedAgainIfTheyAreRead) {
   const int calls = connection().calls;
   ASSERT_THAT(Run("set"), IsOk());
   EXPECT_EQ(connection().calls, calls);
-}
-
-TEST_F(JobTest, DamagedJournalLineLosesOnlyItsItem) {
-  ASSERT_THAT(Run("set"), IsOk());
-  const std::filesystem::path journal = folder_ / "set/.duet-batch/journal";
-  const std::string lines = ReadTestFile(journal);
-  Change(journal, lines.find('\n', lines.size() / 2) - 5);
-  ASSERT_THAT(Run("set"), IsOk());
-  EXPECT_EQ(connection().calls, kItems + 1);
-  ExpectSameAsUndisturbed("set");
 }
 
 TEST_F(JobTest, ChangedLeaderIsRejected) {
