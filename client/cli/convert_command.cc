@@ -44,7 +44,6 @@ struct ConvertArguments {
   std::optional<People> people;    // nullopt: all
   std::optional<double> resample_hz;
   std::vector<std::filesystem::path> outputs;
-  std::optional<OutputFormat> output_format;  // for standard output
   double bvh_metres_per_unit = formats::kCentimetre;
   RigArguments rig;
   bool json = false;
@@ -100,9 +99,7 @@ absl::StatusOr<formats::FollowerRig> ReadRig(const RigArguments& arguments,
   return rig;
 }
 
-absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std::istream* in) {
-  absl::Status status = CheckInput(arguments.file, arguments.input.format);
-  if (!status.ok()) return status;
+absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments) {
   Conversion conversion;
   absl::StatusOr<motion::Skeleton> skeleton = SkeletonOf(arguments.skeleton);
   if (!skeleton.ok()) return skeleton.status();
@@ -111,15 +108,13 @@ absl::StatusOr<Conversion> ReadConversion(const ConvertArguments& arguments, std
   absl::StatusOr<formats::ReadOptions> options =
       ToReadOptions(arguments.input, conversion.skeleton);
   if (!options.ok()) return options.status();
-  const absl::StatusOr<MotionInput> input = MotionInput::Open(arguments.file, in);
-  if (!input.ok()) return input.status();
-  absl::StatusOr<formats::ReadPeople> read = ReadAllPeople(*input, *options);
+  absl::StatusOr<formats::ReadPeople> read = ReadAllPeople(arguments.file, *options);
   if (!read.ok()) return read.status();
-  conversion.source = input->name();
+  conversion.source = arguments.file.string();
   conversion.people = std::move(read->people);
   conversion.notes = std::move(read->notes);
   conversion.source_rate_hz = conversion.people[0].frame_rate_hz;
-  status = ChoosePeople(arguments.people, &conversion.people);
+  absl::Status status = ChoosePeople(arguments.people, &conversion.people);
   for (motion::Clip& person : conversion.people) {
     if (status.ok() && arguments.resample_hz) {
       status = motion::ResampleByRate("--resample", *arguments.resample_hz, &person);
@@ -155,25 +150,10 @@ absl::StatusOr<WrittenFiles> WriteOntoRig(const Conversion& conversion,
   return written;
 }
 
-absl::StatusOr<WrittenFiles> WriteToStandardOutput(const Conversion& conversion, Format format,
-                                                   std::ostream& out) {
-  if (format == Format::kBvh && conversion.people.size() > 1) {
-    return absl::InvalidArgumentError(
-        "--out -: BVH has one file for each person. Choose a person with --side");
-  }
-  const absl::StatusOr<std::string> content =
-      formats::FormatPeople(format, conversion.people, conversion.skeleton, conversion.writing);
-  if (!content.ok()) return content.status();
-  const absl::Status status = WriteToStream(*content, out);
-  if (!status.ok()) return status;
-  return WrittenFiles{{kStandardStream}, {}};
-}
-
 absl::StatusOr<WrittenFiles> Write(const Conversion& conversion,
-                                   const std::filesystem::path& output, Format format,
-                                   std::ostream& out) {
+                                   const std::filesystem::path& output) {
+  const Format format = *formats::FormatOf(output);
   if (conversion.rig) return WriteOntoRig(conversion, output, format);
-  if (output == kStandardStream) return WriteToStandardOutput(conversion, format, out);
   WrittenFiles written;
   absl::StatusOr<Paths> files = formats::WritePeople(output, format, conversion.people,
                                                      conversion.skeleton, conversion.writing);
@@ -194,11 +174,11 @@ std::string Describe(const Conversion& conversion, const std::vector<WrittenFile
   for (const std::string& note : conversion.notes) absl::StrAppend(&text, "          ", note, "\n");
   for (const WrittenFiles& output : written) {
     for (const std::filesystem::path& file : output.files) {
-      absl::StrAppend(
-          &text, "wrote     ", file == kStandardStream ? "standard output" : file.string(),
-          conversion.rig ? absl::StrCat(" (on the rig of ", conversion.rig->file.string(), ")")
-                         : "",
-          "\n");
+      absl::StrAppend(&text, "wrote     ", file.string(),
+                      conversion.rig
+                          ? absl::StrCat(" (on the rig of ", conversion.rig->file.string(), ")")
+                          : "",
+                      "\n");
     }
     for (const std::string& note : output.notes) absl::StrAppend(&text, "          ", note, "\n");
   }
@@ -222,20 +202,17 @@ nlohmann::json ToJson(const Conversion& conversion, const std::vector<WrittenFil
 }
 
 absl::Status RunConvert(const ConvertArguments& arguments, const ProgramEnvironment& environment) {
-  const absl::StatusOr<Conversion> conversion = ReadConversion(arguments, environment.in);
+  const absl::StatusOr<Conversion> conversion = ReadConversion(arguments);
   if (!conversion.ok()) return conversion.status();
   std::vector<WrittenFiles> all;
   for (const std::filesystem::path& output : arguments.outputs) {
-    const Format format =
-        output == kStandardStream ? *arguments.output_format->motion : *formats::FormatOf(output);
-    absl::StatusOr<WrittenFiles> written = Write(*conversion, output, format, *environment.out);
+    absl::StatusOr<WrittenFiles> written = Write(*conversion, output);
     if (!written.ok()) return written.status();
     all.push_back(*std::move(written));
   }
   if (arguments.quiet) return absl::OkStatus();
-  std::ostream& out =
-      WritesToStandardOutput(arguments.outputs) ? *environment.err : *environment.out;
-  out << (arguments.json ? Print(ToJson(*conversion, all)) : Describe(*conversion, all));
+  *environment.out << (arguments.json ? Print(ToJson(*conversion, all))
+                                      : Describe(*conversion, all));
   return absl::OkStatus();
 }
 
@@ -255,10 +232,6 @@ void CheckRig(const ConvertArguments& arguments) {
 }
 
 void CheckTogether(const ConvertArguments& arguments) {
-  CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
-  if (arguments.output_format && !arguments.output_format->motion) {
-    RejectFlag("--output-format", "html is not a motion format. Use duet view to make a page");
-  }
   for (const std::filesystem::path& output : arguments.outputs) {
     const absl::Status status =
         CheckOutput(output, {arguments.file, arguments.rig.file}, PageAllowed::kNo);
@@ -293,8 +266,7 @@ void AddRigFlags(CLI::App* app, RigArguments* rig) {
 
 void AddFlags(CLI::App* command, ConvertArguments* arguments) {
   command
-      ->add_option("file", arguments->file,
-                   absl::StrCat("Motion: ", formats::kReadableExtensions, "; - for standard input"))
+      ->add_option("file", arguments->file, absl::StrCat("Motion: ", formats::kReadableExtensions))
       ->required()
       ->type_name("FILE");
   AddChoice(command, "--side", kPeople, &arguments->people, "The people to write (default: all)")
@@ -302,11 +274,9 @@ void AddFlags(CLI::App* command, ConvertArguments* arguments) {
   AddInputFlags(command, &arguments->input);
   AddSkeletonFlag(command, &arguments->skeleton);
   command
-      ->add_option(
-          "--out", arguments->outputs,
-          absl::StrCat("File to write: ", formats::kWritableExtensions,
-                       ", of which .bvh makes a file for each person; repeatable; - for standard "
-                       "output"))
+      ->add_option("--out", arguments->outputs,
+                   absl::StrCat("File to write: ", formats::kWritableExtensions,
+                                ", of which .bvh makes a file for each person; repeatable"))
       ->required()
       ->allow_extra_args(false)
       ->type_name("FILE")
@@ -319,7 +289,6 @@ void AddFlags(CLI::App* command, ConvertArguments* arguments) {
       ->check(AboveZero())
       ->type_name("HZ")
       ->group(kOutputGroup);
-  AddOutputFormatFlag(command, &arguments->output_format);
   AddChoice(command, "--bvh-unit", kBvhUnits, &arguments->bvh_metres_per_unit,
             "Unit of .bvh output, which the format does not state: Maya, MotionBuilder and Unreal "
             "expect centimetres, Blender metres")

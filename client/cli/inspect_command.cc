@@ -258,21 +258,22 @@ struct InspectArguments {
 constexpr double kStandInRateHz = 30;
 
 // A file without a frame rate can be inspected too.
-absl::StatusOr<motion::Clip> ReadAtAnyRate(const MotionInput& input, formats::ReadOptions options) {
-  absl::StatusOr<motion::Clip> clip = input.Read(options);
+absl::StatusOr<motion::Clip> ReadAtAnyRate(const std::filesystem::path& file,
+                                           formats::ReadOptions options) {
+  absl::StatusOr<motion::Clip> clip = ReadMotion(file, options);
   if (motion::MendingSetting(clip.status()) != motion::ReadingSetting::kFrameRate) return clip;
   options.frame_rate_hz = kStandInRateHz;
-  clip = input.Read(options);
+  clip = ReadMotion(file, options);
   if (!clip.ok()) return clip;
   clip->frame_rate_hz = 0;
   options.report->frame_rate.reset();
   return clip;
 }
 
-absl::Status InspectPerson(const MotionInput& input, formats::ReadOptions options,
+absl::Status InspectPerson(const std::filesystem::path& file, formats::ReadOptions options,
                            InspectedPerson* person) {
   options.report = &person->report;
-  absl::StatusOr<motion::Clip> clip = ReadAtAnyRate(input, options);
+  absl::StatusOr<motion::Clip> clip = ReadAtAnyRate(file, options);
   if (!clip.ok()) return clip.status();
   person->clip = *std::move(clip);
   person->checks = CheckSkeleton(person->clip, options.skeleton);
@@ -288,25 +289,20 @@ void AddPeople(const Inspection& inspection, motion::VerticalEvidence* evidence)
   for (const InspectedPerson& person : inspection.people) evidence->Add(person.clip);
 }
 
-Inspection Inspect(const std::filesystem::path& file, const InputArguments& input_arguments,
-                   std::istream* in) {
+Inspection Inspect(const std::filesystem::path& file, const InputArguments& input) {
   Inspection inspection;
   inspection.file = file.string();
   inspection.people.emplace_back();
-  inspection.status = CheckInput(file, input_arguments.format);
+  inspection.status = formats::CheckReadable(file, input.format);
   if (!inspection.status.ok()) return inspection;
-  absl::StatusOr<formats::ReadOptions> options =
-      ToReadOptions(input_arguments, motion::SbuSkeleton());
-  const absl::StatusOr<MotionInput> input = MotionInput::Open(file, in);
-  inspection.status.Update(options.status());
-  inspection.status.Update(input.status());
+  absl::StatusOr<formats::ReadOptions> options = ToReadOptions(input, motion::SbuSkeleton());
+  inspection.status = options.status();
   if (!inspection.status.ok()) return inspection;
-  inspection.file = input->name();
-  inspection.status = InspectPerson(*input, *options, &inspection.people[0]);
+  inspection.status = InspectPerson(file, *options, &inspection.people[0]);
   if (inspection.status.ok() && inspection.people[0].report.people >= 2) {
     options->side = formats::Side::kRight;
     inspection.people.emplace_back();
-    inspection.status = InspectPerson(*input, *options, &inspection.people[1]);
+    inspection.status = InspectPerson(file, *options, &inspection.people[1]);
   }
   if (HasRate(inspection)) {
     motion::VerticalEvidence evidence(options->skeleton);
@@ -321,7 +317,7 @@ ExitCode RunInspect(const InspectArguments& arguments, const ProgramEnvironment&
   nlohmann::json files = nlohmann::json::array();
   motion::VerticalEvidence evidence(motion::SbuSkeleton());
   for (std::size_t i = 0; i < arguments.files.size(); ++i) {
-    const Inspection inspection = Inspect(arguments.files[i], arguments.input, environment.in);
+    const Inspection inspection = Inspect(arguments.files[i], arguments.input);
     worst = std::max(worst, ExitCodeFor(inspection.status));
     if (HasRate(inspection)) AddPeople(inspection, &evidence);
     if (arguments.json) {
@@ -344,9 +340,8 @@ ExitCode RunInspect(const InspectArguments& arguments, const ProgramEnvironment&
 
 void AddFlags(CLI::App* command, InspectArguments* arguments) {
   command
-      ->add_option(
-          "files", arguments->files,
-          absl::StrCat("Motions: ", formats::kReadableExtensions, "; - for standard input"))
+      ->add_option("files", arguments->files,
+                   absl::StrCat("Motions: ", formats::kReadableExtensions))
       ->required()
       ->type_name("FILE");
   AddInputFlags(command, &arguments->input);

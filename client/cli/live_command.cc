@@ -21,10 +21,8 @@
 #include "client/cli/report.h"
 #include "client/cli/server.h"
 #include "client/cli/stop_signals.h"
-#include "client/live/clip_source.h"
 #include "client/live/ends.h"
 #include "client/live/json_lines.h"
-#include "client/live/line_reader.h"
 #include "client/live/live_run.h"
 #include "client/model_skeleton.h"
 #include "model/base/counted.h"
@@ -36,6 +34,13 @@
 
 namespace duet::client::cli {
 namespace {
+
+// Standard input or output in place of a file.
+constexpr char kStandardStream[] = "-";
+
+std::ptrdiff_t CountOf(const std::string& word, const std::vector<std::string>& words) {
+  return std::count(words.begin(), words.end(), word);
+}
 
 // `leader` is the file of --from, if it is one.
 struct LiveArguments : ReactionArguments {
@@ -199,7 +204,7 @@ absl::StatusOr<std::unique_ptr<live::LeaderSource>> OpenSource(
     const LiveArguments& arguments, const motion::Skeleton& skeleton,
     const ProgramEnvironment& environment, SynthesisRequest* request) {
   std::vector<std::string> notes;
-  const absl::Status status = ReadMotions(arguments, skeleton, nullptr, request, &notes);
+  const absl::Status status = ReadMotions(arguments, skeleton, request, &notes);
   if (!status.ok()) return status;
   if (!arguments.leader.empty()) {
     return std::make_unique<live::ClipSource>(std::move(request->leader), arguments.realtime,
@@ -340,7 +345,7 @@ absl::Status RunLive(const LiveArguments& arguments, const ProgramEnvironment& e
   if (!report.ok()) return report.status();
   if (arguments.quiet) return absl::OkStatus();
   // With frames on standard output, the summary goes to standard error.
-  const bool out_has_frames = WritesToStandardOutput({arguments.to.begin(), arguments.to.end()});
+  const bool out_has_frames = CountOf(kStandardStream, arguments.to) > 0;
   (out_has_frames ? *environment.err : *environment.out)
       << (arguments.json ? LiveJson(*report) : DescribeLive(*report));
   return absl::OkStatus();
@@ -352,6 +357,7 @@ absl::Status CheckSink(const std::string& to, const LiveArguments& arguments) {
     return absl::InvalidArgumentError(
         absl::StrCat(to, ": expected a format that can hold one person, got SBU text"));
   }
+  if (to == kStandardStream) return absl::OkStatus();
   return CheckOutput(to, {arguments.leader, arguments.follower_start, arguments.request});
 }
 
@@ -360,7 +366,7 @@ void CheckTogether(const LiveArguments& arguments) {
   if (arguments.weights.empty() && arguments.keyframes.empty() && arguments.request.empty()) {
     RejectMissing("--label, --keyframe or --request");
   }
-  const auto outs = std::count(arguments.to.begin(), arguments.to.end(), kStandardStream);
+  const auto outs = CountOf(kStandardStream, arguments.to);
   if (outs > 1) RejectFlag("--to", "expected - once, got it twice");
   if (outs > 0 && arguments.json) {
     RejectFlag("--json", "cannot be used with --to -: both print to standard output");

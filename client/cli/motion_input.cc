@@ -16,7 +16,6 @@
 #include "model/base/text.h"
 #include "model/motion/inferred_coordinates.h"
 #include "model/motion/motion_limits.h"
-#include "model/motion/reading_setting.h"
 #include "model/motion/stated_unit.h"
 #include "model/retargeting/joint_mapping.h"
 
@@ -26,7 +25,6 @@ namespace {
 constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
 // The legs of a small child and of a giant, metres.
 constexpr double kShortestLikelyLeg = 0.2, kLongestLikelyLeg = 4;
-constexpr char kStandardInput[] = "standard input";
 // Of a skeleton in JSON, which is as deep as a motion.
 constexpr int kMaxDepth = 8;
 constexpr std::size_t kMaxNameBytes = 64;
@@ -41,21 +39,6 @@ absl::StatusOr<T> Known(const std::optional<T>& value, absl::string_view names,
 
 absl::StatusOr<formats::Format> ParseInputFormat(absl::string_view text) {
   return Known(formats::ParseFormat(text), formats::kReadableFormatNames, text);
-}
-
-absl::StatusOr<std::string> ReadWhole(std::istream* in) {
-  std::string content;
-  if (in == nullptr) return content;
-  std::string block(std::size_t{1} << 16, '\0');
-  while (in->read(block.data(), static_cast<std::streamsize>(block.size())) || in->gcount() > 0) {
-    content.append(block, 0, static_cast<std::size_t>(in->gcount()));
-    if (content.size() > motion::kMaxMotionFileBytes) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(kStandardInput, ": expected a motion of at most ",
-                       motion::kMaxMotionFileBytes >> 20, " MiB, got more"));
-    }
-  }
-  return content;
 }
 
 // A stated unit may be wrong. An inferred one always gives the legs of a person.
@@ -143,7 +126,7 @@ absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text) {
 void AddReadingFlags(CLI::App* app, InputArguments* input) {
   AddParsed(app, "--input-format", "FORMAT", ParseInputFormat, &input->format,
             absl::StrCat("Format of the input: ", formats::kReadableFormatNames,
-                         "; required for standard input (-), overrides the extension"))
+                         "; overrides the extension"))
       ->group(kInputGroup);
   app->add_option("--frame-rate", input->frame_rate_hz,
                   "Frame rate of the input; overrides the file")
@@ -177,33 +160,19 @@ void AddInputFlags(CLI::App* app, InputArguments* input) {
       ->group(kInputGroup);
 }
 
-absl::StatusOr<MotionInput> MotionInput::Open(const std::filesystem::path& path, std::istream* in) {
-  MotionInput input;
-  input.name_ = path.string();
-  if (path != kStandardStream) return input;
-  input.name_ = kStandardInput;
-  absl::StatusOr<std::string> content = ReadWhole(in);
-  if (!content.ok()) return content.status();
-  if (content->empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(kStandardInput, ": expected a motion, got no data"));
-  }
-  input.content_ = *std::move(content);
-  return input;
-}
-
-absl::StatusOr<motion::Clip> MotionInput::Read(const formats::ReadOptions& options) const {
-  absl::StatusOr<motion::Clip> clip = content_.has_value()
-                                          ? formats::ParseLeader(*content_, name_, options)
-                                          : formats::ReadLeader(name_, options);
+absl::StatusOr<motion::Clip> ReadMotion(const std::filesystem::path& file,
+                                        const formats::ReadOptions& options) {
+  absl::StatusOr<motion::Clip> clip = formats::ReadLeader(file, options);
   if (clip.ok()) WarnOfSize(*clip, options);
   return clip;
 }
 
-absl::StatusOr<formats::ReadPeople> ReadAllPeople(const MotionInput& input,
+absl::StatusOr<formats::ReadPeople> ReadAllPeople(const std::filesystem::path& file,
                                                   const formats::ReadOptions& options) {
+  absl::Status status = formats::CheckReadable(file, options.format);
+  if (!status.ok()) return status;
   return formats::ReadAllPeople(
-      [&input](const formats::ReadOptions& person) { return input.Read(person); }, options);
+      [&file](const formats::ReadOptions& person) { return ReadMotion(file, person); }, options);
 }
 
 absl::StatusOr<retargeting::JointOverrides> ReadJoints(const std::vector<std::string>& joint_map) {
@@ -262,15 +231,6 @@ void AddSkeletonFlag(CLI::App* app, std::filesystem::path* file) {
                   "(default: the 15 joints of sbu)")
       ->type_name("FILE")
       ->group(kInputGroup);
-}
-
-absl::Status CheckInput(const std::filesystem::path& path,
-                        const std::optional<formats::Format>& format) {
-  if (path != kStandardStream) return formats::CheckReadable(path, format);
-  if (format.has_value()) return absl::OkStatus();
-  return MendedBy(absl::InvalidArgumentError(
-                      absl::StrCat(kStandardInput, ": format: expected --input-format, got none")),
-                  motion::ReadingSetting::kFormat);
 }
 
 }  // namespace duet::client::cli

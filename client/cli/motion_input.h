@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <istream>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,9 +23,6 @@ namespace duet::client::cli {
 // The person who is read by default from a file with two people.
 inline constexpr formats::Side kDefaultSide = formats::Side::kLeft;
 extern const std::map<std::string, formats::Side> kSides;
-
-// Standard input or output in place of a file.
-inline constexpr char kStandardStream[] = "-";
 
 inline constexpr char kInputGroup[] = "Input";
 inline constexpr char kOutputGroup[] = "Output";
@@ -51,24 +47,11 @@ void AddInputFlags(CLI::App* app, InputArguments* input);
 absl::StatusOr<motion::LengthUnit> ParseUnit(absl::string_view text);
 absl::StatusOr<motion::UpAxis> ParseAxis(absl::string_view text);
 
-// A motion file, or standard input, which is read completely and only once.
-class MotionInput {
- public:
-  // `-` is standard input; `in` may be null if there is none.
-  static absl::StatusOr<MotionInput> Open(const std::filesystem::path& path, std::istream* in);
-
-  // Its name in errors and reports.
-  const std::string& name() const { return name_; }
-
-  // Like formats::ReadLeader. Warns in the report of a person of no likely size.
-  absl::StatusOr<motion::Clip> Read(const formats::ReadOptions& options) const;
-
- private:
-  std::string name_;
-  std::optional<std::string> content_;  // of standard input
-};
-
-absl::StatusOr<formats::ReadPeople> ReadAllPeople(const MotionInput& input,
+// Like formats::ReadLeader. Warns in the report of a person of no likely size.
+absl::StatusOr<motion::Clip> ReadMotion(const std::filesystem::path& file,
+                                        const formats::ReadOptions& options);
+// The same for all people of a file that exists and has a known format.
+absl::StatusOr<formats::ReadPeople> ReadAllPeople(const std::filesystem::path& file,
                                                   const formats::ReadOptions& options);
 
 // The values of --joint-map. A pair overrides a line of a file.
@@ -86,10 +69,6 @@ absl::StatusOr<formats::ReadOptions> ToReadOptions(const InputArguments& input,
 absl::StatusOr<motion::Skeleton> SkeletonOf(const std::filesystem::path& file);
 // --skeleton, for commands that read motions without a server.
 void AddSkeletonFlag(CLI::App* app, std::filesystem::path* file);
-
-// Checks that the file exists and has a known format. `-` needs `format`.
-absl::Status CheckInput(const std::filesystem::path& path,
-                        const std::optional<formats::Format>& format);
 
 }  // namespace duet::client::cli
 

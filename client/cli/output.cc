@@ -1,6 +1,5 @@
 #include "client/cli/output.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <string>
@@ -11,10 +10,8 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/cli/flags.h"
 #include "client/viewer/page.h"
 #include "model/base/file.h"
-#include "model/base/program_output.h"
 #include "model/formats/motion_file.h"
 
 namespace duet::client::cli {
@@ -62,13 +59,6 @@ formats::WriteOptions WritingOf(const Synthesis& synthesis, const motion::Proven
   return writing;
 }
 
-absl::StatusOr<std::string> FormatPair(formats::Format format, const Synthesis& synthesis) {
-  const motion::Provenance provenance = ProvenanceOf(synthesis);
-  const motion::ClipPair& pair = synthesis.result.pair;
-  return formats::FormatPeople(format, {pair.leader, pair.follower}, synthesis.skeleton,
-                               WritingOf(synthesis, provenance));
-}
-
 absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
   const SynthesisResult& result = synthesis.result;
   viewer::PageContent content;
@@ -82,44 +72,17 @@ absl::StatusOr<std::string> RenderSynthesis(const Synthesis& synthesis) {
   content.weights = KeyframesOf(synthesis.request);
   content.grade = result.grade;
   if (content.pair.leader.frame_count() <= kMostFramesToHandOut) {
-    absl::StatusOr<std::string> glb = FormatPair(formats::Format::kGlb, synthesis);
+    const motion::Provenance provenance = ProvenanceOf(synthesis);
+    absl::StatusOr<std::string> glb =
+        formats::FormatPeople(formats::Format::kGlb, {content.pair.leader, content.pair.follower},
+                              synthesis.skeleton, WritingOf(synthesis, provenance));
     if (!glb.ok()) return glb.status();
     content.glb = *std::move(glb);
   }
   return RenderPage(content);
 }
 
-absl::StatusOr<OutputFormat> ParseOutputFormat(absl::string_view text) {
-  if (text == "html") return OutputFormat{};
-  const std::optional<formats::Format> format = formats::ParseFormat(text);
-  if (format) return OutputFormat{format};
-  return absl::InvalidArgumentError(
-      absl::StrCat("expected html, ", formats::kReadableFormatNames, ", got ", base::Quoted(text)));
-}
-
 }  // namespace
-
-void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format) {
-  AddParsed(app, "--output-format", "FORMAT", ParseOutputFormat, format,
-            "Format of standard output (--out -): html, or a format of --out FILE such as csv")
-      ->group(kOutputGroup);
-}
-
-bool WritesToStandardOutput(const std::vector<std::filesystem::path>& outputs) {
-  return std::find(outputs.begin(), outputs.end(), kStandardStream) != outputs.end();
-}
-
-void CheckStandardOutput(const std::vector<std::filesystem::path>& outputs,
-                         const std::optional<OutputFormat>& format, bool json) {
-  const auto count = std::count(outputs.begin(), outputs.end(), kStandardStream);
-  if (count == 0) {
-    if (!format.has_value()) return;
-    RejectFlag("--output-format", "is only valid with --out -");
-  }
-  if (count > 1) RejectFlag("--out", "expected - once, got it twice");
-  if (!format.has_value()) RejectMissing("--output-format, which --out - needs,");
-  if (json) RejectFlag("--json", "cannot be used with --out -: both print to standard output");
-}
 
 std::vector<std::filesystem::path> PairFiles(const std::filesystem::path& output) {
   std::vector<std::filesystem::path> files = {output};
@@ -143,7 +106,6 @@ absl::Status CheckReplacesNone(const std::filesystem::path& written,
 
 absl::Status CheckOutput(const std::filesystem::path& output,
                          const std::vector<std::filesystem::path>& inputs, PageAllowed page) {
-  if (output == kStandardStream) return absl::OkStatus();
   const bool page_allowed = page == PageAllowed::kYes;
   if (!formats::FormatOf(output) && !(page_allowed && IsPage(output))) {
     return formats::UnknownExtension(
@@ -200,16 +162,6 @@ absl::StatusOr<WrittenFiles> WriteFollower(const std::filesystem::path& output,
   if (!files.ok()) return files.status();
   written.files = *std::move(files);
   return written;
-}
-
-absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis) {
-  if (!format.motion.has_value()) return RenderSynthesis(synthesis);
-  return FormatPair(*format.motion, synthesis);
-}
-
-absl::Status WriteToStream(const std::string& content, std::ostream& out) {
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  return NotWritten(base::FlushOutput(&out));
 }
 
 absl::Status NotWritten(const absl::Status& status) {

@@ -1,10 +1,7 @@
 #ifndef DUET_CLIENT_CLI_OUTPUT_H_
 #define DUET_CLIENT_CLI_OUTPUT_H_
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
-#include <optional>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -18,22 +15,6 @@
 
 namespace duet::client::cli {
 
-// The kind of output: a motion, or an HTML page.
-struct OutputFormat {
-  std::optional<formats::Format> motion;  // absent: a page
-};
-
-// --output-format, of what goes to standard output.
-void AddOutputFormatFlag(CLI::App* app, std::optional<OutputFormat>* format);
-
-// Whether one of the outputs is standard output.
-bool WritesToStandardOutput(const std::vector<std::filesystem::path>& outputs);
-
-// What standard output cannot take: several results, a summary besides, a result without
-// --output-format. Calls RejectFlag, for use during parsing.
-void CheckStandardOutput(const std::vector<std::filesystem::path>& outputs,
-                         const std::optional<OutputFormat>& format, bool json);
-
 // A finished synthesis, with everything that any kind of output shows of it.
 struct Synthesis {
   SynthesisRequest request;
@@ -45,7 +26,7 @@ struct Synthesis {
 
 enum class PageAllowed { kNo, kYes };
 // Checks that an output can be written, before any work is done for it: a known extension, a folder
-// that exists, and neither a folder nor one of the files that are read. Standard output always can.
+// that exists, and neither a folder nor one of the files that are read.
 // Errors: INVALID_ARGUMENT.
 absl::Status CheckOutput(const std::filesystem::path& output,
                          const std::vector<std::filesystem::path>& inputs,
@@ -70,12 +51,6 @@ absl::StatusOr<WrittenFiles> WriteOutput(const std::filesystem::path& output,
 // Writes only the follower, as one file; a page shows both.
 absl::StatusOr<WrittenFiles> WriteFollower(const std::filesystem::path& output,
                                            const Synthesis& synthesis);
-// The pair as bytes, for a pipe.
-absl::StatusOr<std::string> FormatOutput(const OutputFormat& format, const Synthesis& synthesis);
-
-// Writes all of it. ABORTED if that fails: a full disk, a reader that is gone.
-absl::Status WriteToStream(const std::string& content, std::ostream& out);
-
 // ABORTED instead of PERMISSION_DENIED: a disk may be full or a folder closed for a while, so the
 // same call may succeed later.
 absl::Status NotWritten(const absl::Status& status);

@@ -28,7 +28,7 @@ struct ProgramEnvironment {
 };
 
 // Runs the whole `duet` program: parses, calls, writes and prints. Returns its exit code
-// (exit_code.h). `arguments` come without the program's name.
+// (report.h). `arguments` come without the program's name.
 int RunProgram(const std::vector<std::string>& arguments, const ProgramEnvironment& environment);
 
 }  // namespace duet::client::cli

@@ -56,34 +56,32 @@ absl::StatusOr<FollowerStart> ReadStart(const ReactionArguments& arguments,
 }
 
 // Everybody whom the camera captured: the leader and, in a file with two people, the other person.
-motion::VerticalEstimate EstimateVertical(const motion::Clip& leader, const MotionInput& input,
+motion::VerticalEstimate EstimateVertical(const motion::Clip& leader,
+                                          const std::filesystem::path& file,
                                           formats::ReadOptions options, int people) {
   motion::VerticalEvidence evidence(options.skeleton);
   evidence.Add(leader);
   if (people >= 2) {
     options.side = batch::OtherSide(options.side);
     options.report = nullptr;
-    const absl::StatusOr<motion::Clip> other = input.Read(options);
+    const absl::StatusOr<motion::Clip> other = ReadMotion(file, options);
     if (other.ok()) evidence.Add(*other);
   }
   return evidence.Estimate();
 }
 
 absl::Status ReadLeader(const ReactionArguments& arguments, formats::ReadOptions options,
-                        std::istream* in, SynthesisRequest* request,
-                        std::vector<std::string>* notes) {
-  const absl::StatusOr<MotionInput> input = MotionInput::Open(arguments.leader, in);
-  if (!input.ok()) return input.status();
+                        SynthesisRequest* request, std::vector<std::string>* notes) {
   retargeting::ReadingReport report;
   options.side = arguments.leader_side;
   options.report = &report;
-  absl::StatusOr<motion::Clip> leader = input->Read(options);
+  absl::StatusOr<motion::Clip> leader = ReadMotion(arguments.leader, options);
   if (!leader.ok()) return leader.status();
   request->leader = *std::move(leader);
   if (notes != nullptr) *notes = report.Notes();
   if (request->up) return absl::OkStatus();
   const motion::VerticalEstimate vertical =
-      EstimateVertical(request->leader, *input, options, report.people);
+      EstimateVertical(request->leader, arguments.leader, options, report.people);
   const bool tilted = vertical.verdict == motion::TiltVerdict::kTilted;
   if (tilted) request->up = vertical.up;
   if (notes != nullptr) {
@@ -290,11 +288,11 @@ absl::StatusOr<SynthesisRequest> ReadRequestFile(const std::filesystem::path& fi
 absl::Status CheckInputs(const ReactionArguments& arguments) {
   absl::Status status = ReadJoints(arguments.input.joint_map).status();
   if (status.ok() && !arguments.leader.empty()) {
-    status = CheckInput(arguments.leader, arguments.input.format);
+    status = formats::CheckReadable(arguments.leader, arguments.input.format);
   }
   const std::string& start = arguments.follower_start;
   if (!status.ok() || start.empty() || batch::ParsePoint(start).has_value()) return status;
-  status = CheckInput(start, std::nullopt);
+  status = formats::CheckReadable(start, std::nullopt);
   if (!absl::IsNotFound(status)) return status;
   return absl::NotFoundError(
       absl::StrCat("--follower-start: ", status.message(), "; expected a motion file or X,Y,Z"));
@@ -333,8 +331,7 @@ absl::Status CheckLabels(const SynthesisRequest& request, const ModelInfo& model
 }
 
 absl::Status ReadMotions(const ReactionArguments& arguments, const motion::Skeleton& skeleton,
-                         std::istream* in, SynthesisRequest* request,
-                         std::vector<std::string>* notes) {
+                         SynthesisRequest* request, std::vector<std::string>* notes) {
   const absl::StatusOr<formats::ReadOptions> options = ToReadOptions(arguments.input, skeleton);
   if (!options.ok()) return options.status();
   if (!arguments.follower_start.empty()) {
@@ -343,7 +340,7 @@ absl::Status ReadMotions(const ReactionArguments& arguments, const motion::Skele
     request->follower_start = *std::move(start);
   }
   if (arguments.leader.empty()) return absl::OkStatus();
-  return ReadLeader(arguments, *options, in, request, notes);
+  return ReadLeader(arguments, *options, request, notes);
 }
 
 }  // namespace duet::client::cli

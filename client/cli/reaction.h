@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
-#include <istream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,10 +72,9 @@ absl::Status CheckLabels(const SynthesisRequest& request, const ModelInfo& model
 
 // Reads the follower's start and, if the flags name one, the leader, in the skeleton's joints.
 // Levels a leader from a tilted camera. `notes`, which may be null, receives the choices that were
-// made. A leader `-` is read from `in`.
+// made.
 absl::Status ReadMotions(const ReactionArguments& arguments, const motion::Skeleton& skeleton,
-                         std::istream* in, SynthesisRequest* request,
-                         std::vector<std::string>* notes);
+                         SynthesisRequest* request, std::vector<std::string>* notes);
 
 }  // namespace duet::client::cli
 

@@ -34,7 +34,6 @@ using Paths = std::vector<std::filesystem::path>;
 struct SynthesizeArguments : ReactionArguments {
   ServerArguments server;
   Paths outputs;
-  std::optional<OutputFormat> output_format;  // for standard output
   bool json = false;
   bool quiet = false;
 };
@@ -48,12 +47,10 @@ std::string OutputsText(const Paths& outputs) {
 
 // Whether an output holds joint rotations.
 bool HoldsRotations(const SynthesizeArguments& arguments) {
-  for (const std::filesystem::path& output : arguments.outputs) {
-    const std::optional<formats::Format> format =
-        output != kStandardStream ? formats::FormatOf(output) : arguments.output_format->motion;
-    if (format == formats::Format::kJson) return true;
-  }
-  return false;
+  return std::any_of(arguments.outputs.begin(), arguments.outputs.end(),
+                     [](const std::filesystem::path& output) {
+                       return formats::FormatOf(output) == formats::Format::kJson;
+                     });
 }
 
 // Checks flags that depend on each other.
@@ -61,11 +58,6 @@ void CheckTogether(const SynthesizeArguments& arguments) {
   if (arguments.leader.empty() && arguments.request.empty()) RejectMissing("--leader or --request");
   if (arguments.weights.empty() && arguments.keyframes.empty() && arguments.request.empty()) {
     RejectMissing("--label, --keyframe or --request");
-  }
-  CheckStandardOutput(arguments.outputs, arguments.output_format, arguments.json);
-  if (arguments.output_format && arguments.output_format->motion == formats::Format::kBvh) {
-    RejectFlag("--output-format",
-               "bvh cannot be used with --out -: it has one file for each person");
   }
   for (const std::filesystem::path& output : arguments.outputs) {
     const absl::Status status = CheckOutput(output, {});
@@ -90,18 +82,9 @@ absl::Status CheckRequest(const SynthesizeArguments& arguments, const SynthesisR
   return absl::OkStatus();
 }
 
-absl::StatusOr<WrittenFiles> WriteAll(const SynthesizeArguments& arguments,
-                                      const Synthesis& synthesis, std::ostream& out) {
+absl::StatusOr<WrittenFiles> WriteAll(const Paths& outputs, const Synthesis& synthesis) {
   WrittenFiles written;
-  for (const std::filesystem::path& output : arguments.outputs) {
-    if (output == kStandardStream) {
-      const absl::StatusOr<std::string> content = FormatOutput(*arguments.output_format, synthesis);
-      if (!content.ok()) return content.status();
-      absl::Status status = WriteToStream(*content, out);
-      if (!status.ok()) return status;
-      written.files.push_back(output);
-      continue;
-    }
+  for (const std::filesystem::path& output : outputs) {
     absl::StatusOr<WrittenFiles> one = WriteOutput(output, synthesis);
     if (!one.ok()) return NotWritten(one.status());
     std::move(one->files.begin(), one->files.end(), std::back_inserter(written.files));
@@ -322,28 +305,24 @@ absl::Status RunSynthesize(const SynthesizeArguments& arguments,
   const absl::StatusOr<motion::Skeleton> skeleton = ToSkeleton(details->model);
   if (!skeleton.ok()) return skeleton.status();
   std::vector<std::string> notes;  // on how the leader was read
-  status = ReadMotions(arguments, *skeleton, environment.in, &*request, &notes);
+  status = ReadMotions(arguments, *skeleton, &*request, &notes);
   if (!status.ok()) return status;
   absl::StatusOr<SynthesisResult> result = client->Synthesize(*request);
   if (!result.ok()) return result.status();
   const Synthesis synthesis{*std::move(request), *std::move(result), *skeleton,
                             arguments.leader.empty() ? arguments.request : arguments.leader,
                             details->model.samples};
-  const absl::StatusOr<WrittenFiles> written = WriteAll(arguments, synthesis, *environment.out);
+  const absl::StatusOr<WrittenFiles> written = WriteAll(arguments.outputs, synthesis);
   if (!written.ok()) return written.status();
   if (arguments.quiet) return absl::OkStatus();
-  // With a motion on standard output, the summary goes to standard error.
-  std::ostream& out =
-      WritesToStandardOutput(arguments.outputs) ? *environment.err : *environment.out;
-  out << (arguments.json ? Print(SynthesisJson(synthesis, *written, notes))
-                         : DescribeSynthesis(synthesis, *written, notes));
+  *environment.out << (arguments.json ? Print(SynthesisJson(synthesis, *written, notes))
+                                      : DescribeSynthesis(synthesis, *written, notes));
   return absl::OkStatus();
 }
 
 void AddFlags(CLI::App* app, SynthesizeArguments* arguments) {
   app->add_option("--leader", arguments->leader,
-                  absl::StrCat("Motion of the leader: ", formats::kReadableExtensions,
-                               "; - for standard input"))
+                  absl::StrCat("Motion of the leader: ", formats::kReadableExtensions))
       ->type_name("FILE")
       ->group(kInputGroup);
   AddLeaderFlags(app, arguments);
@@ -351,12 +330,11 @@ void AddFlags(CLI::App* app, SynthesizeArguments* arguments) {
   app->add_option(
          "--out", arguments->outputs,
          absl::StrCat("File to write: .html (a page to watch), ", formats::kWritableExtensions,
-                      ", of which .bvh makes two files; repeatable; - for standard output"))
+                      ", of which .bvh makes two files; repeatable"))
       ->required()
       ->allow_extra_args(false)
       ->type_name("FILE")
       ->group(kOutputGroup);
-  AddOutputFormatFlag(app, &arguments->output_format);
   app->add_flag("--json", arguments->json, "Print the summary as JSON")->group(kOutputGroup);
   app->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
   AddServerFlags(app, &arguments->server);

@@ -19,7 +19,7 @@
 #include "client/cli/flags.h"
 #include "client/cli/motion_input.h"
 #include "client/cli/output.h"
-#include "client/viewer/gallery.h"
+#include "client/viewer/page.h"
 #include "model/base/file.h"
 #include "model/motion/clip.h"
 #include "model/motion/skeleton.h"
@@ -52,7 +52,7 @@ constexpr char kLeaderEnding[] = ".leader.bvh", kFollowerEnding[] = ".follower.b
 
 bool Exists(const fs::path& path) {
   std::error_code error;
-  return path == kStandardStream || fs::exists(path, error);
+  return fs::exists(path, error);
 }
 
 // The name and the files of "[NAME=]FILE"; a text that is the name of a file denotes that file. The
@@ -66,7 +66,7 @@ Take ParseTake(const std::string& text) {
     file = text.substr(equals + 1);
   }
   take.files = {file};
-  std::string name = file == kStandardStream ? "standard input" : fs::path(file).stem().string();
+  std::string name = fs::path(file).stem().string();
   if (absl::EndsWith(file, kLeaderEnding)) {
     name = fs::path(name).stem().string();
     const fs::path follower = absl::StrCat(absl::StripSuffix(file, kLeaderEnding), kFollowerEnding);
@@ -76,24 +76,13 @@ Take ParseTake(const std::string& text) {
   return take;
 }
 
-absl::StatusOr<formats::ReadPeople> ReadFile(const fs::path& file,
-                                             const formats::ReadOptions& options,
-                                             std::istream* in) {
-  const absl::Status status = CheckInput(file, options.format);
-  if (!status.ok()) return status;
-  const absl::StatusOr<MotionInput> input = MotionInput::Open(file, in);
-  if (!input.ok()) return input.status();
-  return ReadAllPeople(*input, options);
-}
-
 // Reads the motions of a take's files.
-absl::Status Read(const formats::ReadOptions& options, formats::Side leader_side, std::istream* in,
-                  Take* take) {
-  absl::StatusOr<formats::ReadPeople> read = ReadFile(take->files[0], options, in);
+absl::Status Read(const formats::ReadOptions& options, formats::Side leader_side, Take* take) {
+  absl::StatusOr<formats::ReadPeople> read = ReadAllPeople(take->files[0], options);
   if (!read.ok()) return read.status();
   std::vector<motion::Clip>& people = read->people;
   if (take->files.size() > 1) {
-    absl::StatusOr<formats::ReadPeople> other = ReadFile(take->files[1], options, in);
+    absl::StatusOr<formats::ReadPeople> other = ReadAllPeople(take->files[1], options);
     if (!other.ok()) return other.status();
     people = {std::move(people[0]), std::move(other->people[0])};
   } else if (people.size() > 1 && leader_side == formats::Side::kRight) {
@@ -113,7 +102,7 @@ absl::Status Read(const formats::ReadOptions& options, formats::Side leader_side
 
 // Reads the takes, except files that are the follower of another take.
 absl::StatusOr<std::vector<Take>> ReadTakes(const ViewArguments& arguments,
-                                            const motion::Skeleton& skeleton, std::istream* in) {
+                                            const motion::Skeleton& skeleton) {
   const absl::StatusOr<formats::ReadOptions> options = ToReadOptions(arguments.input, skeleton);
   if (!options.ok()) return options.status();
   std::vector<Take> takes;
@@ -127,7 +116,7 @@ absl::StatusOr<std::vector<Take>> ReadTakes(const ViewArguments& arguments,
                      [&followers](const Take& take) { return followers.count(take.files[0]) > 0; }),
       takes.end());
   for (Take& take : takes) {
-    const absl::Status status = Read(*options, arguments.leader_side, in, &take);
+    const absl::Status status = Read(*options, arguments.leader_side, &take);
     if (!status.ok()) return status;
   }
   return takes;
@@ -161,22 +150,10 @@ std::string Describe(const std::vector<Take>& takes) {
   return text;
 }
 
-absl::Status Write(const ViewArguments& arguments, const std::string& page,
-                   const std::string& report, const ProgramEnvironment& environment) {
-  const bool to_stream = arguments.out == kStandardStream;
-  const absl::Status status = to_stream ? WriteToStream(page, *environment.out)
-                                        : NotWritten(base::WriteFile(arguments.out, page));
-  if (status.ok() && !arguments.quiet) {
-    (to_stream ? *environment.err : *environment.out)
-        << report << "wrote     " << arguments.out.string() << "\n";
-  }
-  return status;
-}
-
 absl::Status RunView(const ViewArguments& arguments, const ProgramEnvironment& environment) {
   const absl::StatusOr<motion::Skeleton> skeleton = SkeletonOf(arguments.skeleton);
   if (!skeleton.ok()) return skeleton.status();
-  const absl::StatusOr<std::vector<Take>> takes = ReadTakes(arguments, *skeleton, environment.in);
+  const absl::StatusOr<std::vector<Take>> takes = ReadTakes(arguments, *skeleton);
   if (!takes.ok()) return takes.status();
   viewer::GalleryContent content;
   for (const Take& take : *takes) {
@@ -188,11 +165,14 @@ absl::Status RunView(const ViewArguments& arguments, const ProgramEnvironment& e
       absl::StrCat(takes->size(), takes->size() == 1 ? " motion" : " motions side by side");
   const absl::StatusOr<std::string> page = RenderGallery(content);
   if (!page.ok()) return page.status();
-  return Write(arguments, *page, Describe(*takes), environment);
+  const absl::Status status = NotWritten(base::WriteFile(arguments.out, *page));
+  if (status.ok() && !arguments.quiet) {
+    *environment.out << Describe(*takes) << "wrote     " << arguments.out.string() << "\n";
+  }
+  return status;
 }
 
 void CheckPage(const fs::path& page) {
-  if (page == kStandardStream) return;
   const std::string extension = absl::AsciiStrToLower(page.extension().string());
   if (extension != ".html" && extension != ".htm") {
     RejectFlag("--out",
@@ -213,7 +193,7 @@ void AddFlags(CLI::App* command, ViewArguments* arguments) {
       ->group(kInputGroup);
   AddInputFlags(command, &arguments->input);
   AddSkeletonFlag(command, &arguments->skeleton);
-  command->add_option("--out", arguments->out, "Page to write, .html; - for standard output")
+  command->add_option("--out", arguments->out, "Page to write, .html")
       ->required()
       ->type_name("FILE")
       ->group(kOutputGroup);
@@ -222,13 +202,7 @@ void AddFlags(CLI::App* command, ViewArguments* arguments) {
       ->group(kOutputGroup);
   command->add_flag("--quiet", arguments->quiet, "Print only errors")->group(kOutputGroup);
   command->footer(kFooter);
-  command->callback([arguments] {
-    const std::vector<std::string>& takes = arguments->takes;
-    if (std::count(takes.begin(), takes.end(), kStandardStream) > 1) {
-      RejectFlag("files", "expected - once, got it twice");
-    }
-    CheckPage(arguments->out);
-  });
+  command->callback([arguments] { CheckPage(arguments->out); });
 }
 
 }  // namespace

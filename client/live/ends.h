@@ -1,8 +1,12 @@
 #ifndef DUET_CLIENT_LIVE_ENDS_H_
 #define DUET_CLIENT_LIVE_ENDS_H_
 
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -11,6 +15,7 @@
 #include "absl/time/time.h"
 #include "client/live_session.h"
 #include "client/request.h"
+#include "model/motion/clip.h"
 #include "model/motion/vec3.h"
 
 namespace duet::client::live {
@@ -66,6 +71,31 @@ class LeaderSource {
   // What the user may want to know about how the source was read, one line each: joints that were
   // chosen, duplicates, gaps. Called after the last Next. Default: nothing.
   virtual std::vector<std::string> Notes() const { return {}; }
+};
+
+// A motion that is complete, played at its frame rate or as fast as the follower answers.
+class ClipSource final : public LeaderSource {
+ public:
+  ClipSource(motion::Clip clip, bool realtime, std::vector<std::string> notes)
+      : clip_(std::move(clip)), realtime_(realtime), notes_(std::move(notes)) {}
+
+  absl::StatusOr<LeaderFormat> Open() override;
+  absl::StatusOr<std::optional<LeaderEvent>> Next() override;
+  void Stop() override;
+  bool IsLive() const override { return realtime_; }
+  std::vector<std::string> Notes() const override { return notes_; }
+
+ private:
+  bool WaitForFrame();
+
+  const motion::Clip clip_;
+  const bool realtime_;
+  const std::vector<std::string> notes_;
+  int next_ = 0;
+  std::chrono::steady_clock::time_point begin_;
+  std::mutex mutex_;
+  std::condition_variable stopping_;
+  bool stopped_ = false;
 };
 
 // What `duet live --to` writes to: a file, standard output, or a protocol of 3D programs.

@@ -1,9 +1,13 @@
 #include "client/viewer/page.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 
 #include "absl/strings/escaping.h"
-#include "client/viewer/page_parts.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/string_view.h"
 #include "nlohmann/json.hpp"
 
 // Embedded by duet_embed_file.
@@ -11,10 +15,131 @@ extern "C" {
 extern const char duet_page[], duet_page_end[];
 extern const char duet_page_style[], duet_page_style_end[];
 extern const char duet_page_script[], duet_page_script_end[];
+extern const char duet_gallery[], duet_gallery_end[];
+extern const char duet_gallery_style[], duet_gallery_style_end[];
+extern const char duet_gallery_script[], duet_gallery_script_end[];
+extern const char duet_frame[], duet_frame_end[];
+extern const char duet_frame_views[], duet_frame_views_end[];
+extern const char duet_frame_play[], duet_frame_play_end[];
+extern const char duet_frame_speeds[], duet_frame_speeds_end[];
+extern const char duet_frame_licence[], duet_frame_licence_end[];
+extern const char duet_three[], duet_three_end[];
+extern const char duet_three_controls[], duet_three_controls_end[];
 }
 
 namespace duet::client::viewer {
 namespace {
+
+// The parts in which the pages differ: values of the placeholders of page/frame.html. `body` may
+// contain the shared controls "{{VIEWS}}", "{{PLAY}}" and "{{SPEEDS}}".
+struct PageParts {
+  absl::string_view body;
+  std::string title;
+  absl::string_view style;
+  std::string data;  // JSON of SafeJson
+  absl::string_view script;
+};
+
+// Returns the text of an embedded file.
+inline absl::string_view Embedded(const char* begin, const char* end) {
+  return {begin, static_cast<size_t>(end - begin)};
+}
+
+std::string EscapeHtml(absl::string_view text) {
+  return absl::StrReplaceAll(text,
+                             {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}});
+}
+
+void AppendLittleEndian(float value, std::string* bytes) {
+  uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  for (int shift = 0; shift < 32; shift += 8) bytes->push_back(static_cast<char>(bits >> shift));
+}
+
+absl::Status CheckPerson(const std::string& name, const motion::Clip& clip,
+                         const std::vector<std::string>& joint_names) {
+  if (clip.frame_count() < 1 || !(clip.frame_rate_hz > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": expected at least one frame and a rate above 0, got ",
+                     clip.frame_count(), " frames at ", clip.frame_rate_hz, " Hz"));
+  }
+  if (clip.joint_names != joint_names || clip.poses.joint_count() != clip.joint_count()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": expected the joints of the first motion, got others"));
+  }
+  for (const motion::Vec3& position : clip.poses.all()) {
+    if (IsFinite(position)) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": expected finite positions, got one that is not"));
+  }
+  return absl::OkStatus();
+}
+
+std::string FillPage(const PageParts& parts) {
+  const std::string page =
+      absl::StrReplaceAll(Embedded(duet_frame, duet_frame_end), {{"{{BODY}}", parts.body}});
+  // One pass: inserted text is not searched again, so a title that contains "{{DATA}}" is harmless.
+  return absl::StrReplaceAll(
+      page, {{"{{TITLE}}", EscapeHtml(parts.title)},
+             {"{{VIEWS}}", Embedded(duet_frame_views, duet_frame_views_end)},
+             {"{{PLAY}}", Embedded(duet_frame_play, duet_frame_play_end)},
+             {"{{SPEEDS}}", Embedded(duet_frame_speeds, duet_frame_speeds_end)},
+             {"{{STYLE}}", parts.style},
+             {"{{DATA}}", parts.data},
+             {"{{LICENCE}}", Embedded(duet_frame_licence, duet_frame_licence_end)},
+             {"{{THREE}}", Embedded(duet_three, duet_three_end)},
+             {"{{CONTROLS}}", Embedded(duet_three_controls, duet_three_controls_end)},
+             {"{{SCRIPT}}", parts.script}});
+}
+
+// Serialises `data` as JSON that is safe inside <script> for any names.
+std::string SafeJson(const nlohmann::json& data) {
+  // "</script>" inside a string would end the script. In JSON, "<" occurs only inside strings,
+  // where it can be escaped.
+  return absl::StrReplaceAll(data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
+                             {{"<", "\\u003c"}});
+}
+
+// Encodes positions [frames, joints, 3] as base64 of little-endian float32.
+std::string EncodePositions(const motion::Clip& clip) {
+  std::string bytes;
+  bytes.reserve(clip.poses.all().size() * sizeof(motion::Vec3));
+  for (const motion::Vec3& position : clip.poses.all()) {
+    AppendLittleEndian(position.x, &bytes);
+    AppendLittleEndian(position.y, &bytes);
+    AppendLittleEndian(position.z, &bytes);
+  }
+  return absl::Base64Escape(bytes);
+}
+
+// INVALID_ARGUMENT, with `name` in front, unless leader and follower have at least one frame, a
+// rate above 0, these joints, finite positions, and the same frames and rate. `follower` may be
+// null.
+absl::Status CheckMotion(const std::string& name, const std::vector<std::string>& joint_names,
+                         const motion::Clip& leader, const motion::Clip* follower) {
+  absl::Status status = CheckPerson(name, leader, joint_names);
+  if (!status.ok() || follower == nullptr) return status;
+  status = CheckPerson(name, *follower, joint_names);
+  if (!status.ok()) return status;
+  if (follower->frame_count() == leader.frame_count() &&
+      follower->frame_rate_hz == leader.frame_rate_hz) {
+    return status;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(name, ": expected equal frames and rates of leader and follower"));
+}
+
+// INVALID_ARGUMENT if a bone names a joint outside of [0, joint_count).
+absl::Status CheckBones(const std::vector<motion::Bone>& bones, int joint_count) {
+  for (const motion::Bone& bone : bones) {
+    for (const int joint : {bone.parent, bone.child}) {
+      if (joint >= 0 && joint < joint_count) continue;
+      return absl::InvalidArgumentError(
+          absl::StrCat("bones: expected joints 0 to ", joint_count - 1, ", got ", joint));
+    }
+  }
+  return absl::OkStatus();
+}
 
 // All classes in the keyframes, in the order of their first occurrence.
 std::vector<std::string> Classes(const std::vector<WeightKeyframe>& keyframes) {
@@ -48,6 +173,41 @@ nlohmann::json GradeJson(const MotionGrade& grade) {
           {"leaderSkating", grade.leader_skating},
           {"overlapping", grade.overlapping},
           {"badRuns", runs}};
+}
+
+absl::Status Check(const GalleryContent& content) {
+  if (content.motions.empty() || content.motions.size() > kMostMotions) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("motions: expected 1 to ", kMostMotions, ", got ", content.motions.size()));
+  }
+  const motion::Clip& first = content.motions[0].leader;
+  for (const GalleryMotion& motion : content.motions) {
+    absl::Status status = CheckMotion(motion.name, first.joint_names, motion.leader,
+                                      motion.follower ? &*motion.follower : nullptr);
+    if (!status.ok()) return status;
+  }
+  return CheckBones(content.bones, first.joint_count());
+}
+
+nlohmann::json MotionJson(const GalleryMotion& motion) {
+  nlohmann::json object = {{"name", motion.name},
+                           {"frameRate", motion.leader.frame_rate_hz},
+                           {"frames", motion.leader.frame_count()},
+                           {"leader", EncodePositions(motion.leader)}};
+  if (motion.follower) object["follower"] = EncodePositions(*motion.follower);
+  return object;
+}
+
+// {title, subtitle, joints, bones, motions [{name, frameRate, frames, leader, follower?}]}
+nlohmann::json Data(const GalleryContent& content) {
+  nlohmann::json motions = nlohmann::json::array(), bones = nlohmann::json::array();
+  for (const GalleryMotion& motion : content.motions) motions.push_back(MotionJson(motion));
+  for (const motion::Bone& bone : content.bones) bones.push_back({bone.parent, bone.child});
+  return {{"title", content.title},
+          {"subtitle", content.subtitle},
+          {"joints", content.motions[0].leader.joint_names},
+          {"bones", bones},
+          {"motions", motions}};
 }
 
 }  // namespace
@@ -84,6 +244,14 @@ absl::StatusOr<std::string> RenderPage(const PageContent& content) {
   return FillPage({Embedded(duet_page, duet_page_end), content.title,
                    Embedded(duet_page_style, duet_page_style_end), PageDataJson(content),
                    Embedded(duet_page_script, duet_page_script_end)});
+}
+
+absl::StatusOr<std::string> RenderGallery(const GalleryContent& content) {
+  absl::Status status = Check(content);
+  if (!status.ok()) return status;
+  return FillPage({Embedded(duet_gallery, duet_gallery_end), content.title,
+                   Embedded(duet_gallery_style, duet_gallery_style_end), SafeJson(Data(content)),
+                   Embedded(duet_gallery_script, duet_gallery_script_end)});
 }
 
 }  // namespace duet::client::viewer

@@ -193,8 +193,10 @@ def _read(path: Path, joint_map: Optional[Mapping[str, str]], **options: Any) ->
             arguments += [_FLAGS[option], str(value)]
     for joint, name in (joint_map or {}).items():
         arguments += ["--joint-map", f"{joint}={name}"]
-    answer = json.loads(run("convert", _word(path), *arguments, "--out", "-", "--output-format", "json",
-                            "--quiet"))
+    with tempfile.TemporaryDirectory() as folder:
+        document = pathlib.Path(folder) / "motion.json"
+        run("convert", _word(path), *arguments, "--out", str(document), "--quiet")
+        answer = json.loads(document.read_text(encoding="utf-8"))
     return [Motion(answer[role], answer["joint_names"], answer["frame_rate_hz"], answer["unit"],
                    answer["up_axis"]) for role in ("leader", "follower") if role in answer]
 

@@ -18,7 +18,7 @@
 #include "absl/synchronization/mutex.h"
 #include "absl/synchronization/notification.h"
 #include "contrib/load/server_calls.h"
-#include "tests/client/support/context_ends.h"
+#include "contrib/load/tests/context_ends.h"
 #include "tests/client/support/fake_service.h"
 
 namespace duet::contrib::load {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "contrib/load/server_sessions.h"
-#include "tests/client/support/context_ends.h"
+#include "contrib/load/tests/context_ends.h"
 #include "tests/client/support/fake_service.h"
 
 namespace duet::contrib::load {

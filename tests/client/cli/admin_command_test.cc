@@ -113,12 +113,6 @@ TEST_F(AdminCommandTest, ShowsOutdatedAndRejectedModels) {
             "problem: access file: empty\n");
 }
 
-TEST_F(AdminCommandTest, LoadsAModelAndPrintsTheResult) {
-  EXPECT_CALL(*client_, LoadModel("sbu", 3));
-  EXPECT_EQ(Run({"load", "sbu", "3"}), kExitDone);
-  EXPECT_THAT(out_.str(), HasSubstr("sbu/3  served"));
-}
-
 TEST_F(AdminCommandTest, PrintsTheReasonOfAFailure) {
   EXPECT_CALL(*client_, UnloadModel("sbu", 3))
       .WillOnce(Return(absl::FailedPreconditionError("version label \"canary\" points at it")));

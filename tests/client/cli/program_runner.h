@@ -24,17 +24,16 @@ inline Strings operator+(Strings a, const Strings& b) {
 // scripts.
 class ProgramRunner : public ::testing::Test {
  public:
-  int Run(const Strings& arguments, const std::string& input = "") {
+  int Run(const Strings& arguments) {
     out_.str("");
     err_.str("");
-    std::istringstream in(input);
     const ProgramEnvironment environment{
         [this](const ClientOptions& options) -> absl::StatusOr<Client> {
           options_ = options;
           if (connection_ != nullptr) return Client(connection_);
           return absl::UnavailableError("no server was expected");
         },
-        &out_, &err_, &in};
+        &out_, &err_};
     return RunProgram(arguments, environment);
   }
 

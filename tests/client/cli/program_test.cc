@@ -396,38 +396,6 @@ TEST_F(ProgramTest, PrintsTheGradeIfTheServerReportsIt) {
   EXPECT_EQ(json["bad_runs"][1], (nlohmann::json{{"first_frame", 3}, {"frame_count", 2}}));
 }
 
-TEST_F(ProgramTest, SynthesizesBetweenPipes) {
-  ASSERT_EQ(Run({"synthesize", "--leader", "-", "--input-format", "csv", "--label", "kick=1",
-                 "--out", "-", "--output-format", "csv"},
-                ReadTestFile(folder_ / "leader.csv")),
-            0)
-      << err();
-  EXPECT_THAT(err(), HasSubstr("wrote     -\n"));
-  WriteTestFile(folder_ / "piped.csv", out());
-  formats::ReadOptions options;
-  options.side = formats::Side::kRight;
-  const absl::StatusOr<motion::Clip> follower = ReadLeader(folder_ / "piped.csv", options);
-  ASSERT_THAT(follower, IsOk());
-  EXPECT_NEAR(follower->at(3, 0).z, leader_.at(3, 0).z - 2, 1e-5);
-  ASSERT_EQ(Run({"synthesize", "--leader", Path("leader.csv"), "--label", "kick=1", "--quiet",
-                 "--out", "-", "--output-format", "html"}),
-            0);
-  EXPECT_THAT(out(), StartsWith("<!doctype html>"));
-  EXPECT_EQ(err(), "");
-}
-
-TEST_F(ProgramTest, InvalidUseOfPipesMakesNoCall) {
-  EXPECT_CALL(*server_, GetModel).Times(0);
-  const auto refused = [this](int code, const Strings& more, const std::string& message) {
-    EXPECT_EQ(Run(Strings{"synthesize", "--label", "kick=1"} + more), code) << message;
-    EXPECT_THAT(err(), HasSubstr(message));
-  };
-  refused(42, {"--leader", "-", "--out", Path("a.csv")}, "standard input: format");
-  refused(2, {"--leader", Path("leader.csv"), "--out", "-"}, "--output-format");
-  refused(2, {"--leader", Path("leader.csv"), "--out", "-", "--output-format", "bvh"},
-          "bvh cannot be used with --out -");
-}
-
 TEST_F(ProgramTest, UnknownClassIsRejectedWithASuggestion) {
   EXPECT_CALL(*server_, Synthesize).Times(0);
   EXPECT_EQ(Synthesize("pair.html", {"--label", "hugg=1"}), 42);

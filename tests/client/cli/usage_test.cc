@@ -87,8 +87,7 @@ TEST_F(UsageTest, ErrorsNameTheFlagWhatIsExpectedAndWhatIsGiven) {
       {{"--seed", "-1"}, "--seed: expected a whole number"},
       {{"--variety", "3"}, "--variety: expected a number from 0 to 2, got \"3\""},
       {{"--out", Path("pair.fbx")}, "got \".fbx\""},
-      {{"--out", Path("no/pair.csv")}, "there is no folder"},
-      {{"--output-format", "csv"}, "--output-format: is only valid with --out -"}};
+      {{"--out", Path("no/pair.csv")}, "there is no folder"}};
   for (const auto& [more, message] : cases) ExpectUsageError(synthesize_ + more, message);
   ExpectUsageError(unlabelled_ + Strings{"--keyframe", "kick=1"},
                    "--keyframe: expected FRAME:CLASS=WEIGHT");

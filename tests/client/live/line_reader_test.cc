@@ -1,11 +1,11 @@
-#include "client/live/line_reader.h"
-
+// Lines of an input that may be slow.
 #include <unistd.h>
 
 #include <sstream>
 #include <string>
 #include <thread>
 
+#include "client/live/json_lines.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/status_matchers.h"

@@ -11,7 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/synchronization/notification.h"
 #include "client/client.h"
-#include "client/live/clip_source.h"
+#include "client/live/ends.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_service.h"
@@ -122,23 +122,6 @@ class LiveRunTest : public ::testing::Test {
   KeepingSink sink_;
 };
 
-TEST_F(LiveRunTest, SendsEveryFrameAndHandsOutEveryAnswer) {
-  AddFrames(0, 50);
-  const absl::StatusOr<LiveReport> report = Run();
-  ASSERT_THAT(report, IsOk());
-  EXPECT_EQ(report->totals.frames, 50);
-  EXPECT_EQ(report->leader_frames, 50);
-  EXPECT_EQ(report->frame_rate_hz, 30);
-  EXPECT_EQ(report->info.model_name, "dancer");
-  EXPECT_THAT(report->written, ElementsAre("kept 50"));
-  EXPECT_EQ(sink_.leaders, 50);
-  EXPECT_EQ(sink_.finished, 1);
-  EXPECT_EQ(sink_.model, "dancer");
-  EXPECT_GT(report->totals.latency.p50, absl::ZeroDuration());
-  EXPECT_LT(report->totals.latency.p99, kLongestCall);
-  EXPECT_EQ(sink_.poses.at(49, 2).x, leader_.at(49, 2).x + 1);
-}
-
 TEST_F(LiveRunTest, ASourceThatIsNotLiveWaitsForEachAnswer) {
   source_.is_live = false;
   request_.delay_frames = 2;
@@ -154,15 +137,6 @@ TEST_F(LiveRunTest, ASourceThatIsNotLiveWaitsForEachAnswer) {
   EXPECT_LE(most, 4);  // of the message that is being answered, and one that follows it
 }
 
-TEST_F(LiveRunTest, LabelsChangeBetweenFrames) {
-  AddFrames(0, 10);
-  source_.events.push_back(LabelCommand{{{"hug", 2}}, absl::ZeroDuration()});
-  AddFrames(10, 20);
-  ASSERT_THAT(Run(), IsOk());
-  EXPECT_EQ(sink_.poses.at(9, 0).y, leader_.at(9, 0).y);
-  EXPECT_EQ(sink_.poses.at(10, 0).y, leader_.at(10, 0).y + 2);
-}
-
 TEST_F(LiveRunTest, GapsAndLateFramesAreCounted) {
   AddFrames(0, 10);
   AddFrames(13, 15);
@@ -172,14 +146,6 @@ TEST_F(LiveRunTest, GapsAndLateFramesAreCounted) {
   EXPECT_EQ(report->totals.frames, 16);
   EXPECT_EQ(report->totals.gap_frames, 3);
   EXPECT_EQ(report->totals.late_frames, 1);
-}
-
-TEST_F(LiveRunTest, AFailedSourceEndsTheRunAfterTheFramesThatAreDue) {
-  AddFrames(0, 10);
-  source_.events.emplace_back(absl::InvalidArgumentError("line 12: what?"));
-  EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kInvalidArgument, "line 12: what?"));
-  EXPECT_EQ(sink_.poses.frame_count(), 10);
-  EXPECT_EQ(sink_.finished, 1);
 }
 
 TEST_F(LiveRunTest, AFailedSessionStopsTheSource) {
@@ -200,18 +166,6 @@ TEST_F(LiveRunTest, AFailedSinkEndsTheRun) {
   source_.waits = true;
   sink_.accepts = absl::AbortedError("standard output: cannot write all of it");
   EXPECT_THAT(Run(), StatusIs(absl::StatusCode::kAborted, HasSubstr("cannot write")));
-}
-
-TEST_F(LiveRunTest, AResumedSessionLosesNothing) {
-  AddFrames(0, 40);
-  mirror_.before_frame = [](int stream, int frame) {
-    return stream == 0 && frame == 20 ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "away")
-                                      : grpc::Status::OK;
-  };
-  const absl::StatusOr<LiveReport> report = Run();
-  ASSERT_THAT(report, IsOk());
-  EXPECT_EQ(report->totals.frames, 40);
-  EXPECT_EQ(report->totals.resumed, 1);
 }
 
 TEST(LatencyLogTest, PercentilesAreOfTheLastFrames) {

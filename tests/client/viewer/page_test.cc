@@ -2,7 +2,9 @@
 
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/strings/escaping.h"
 #include "gmock/gmock.h"
@@ -41,14 +43,6 @@ float LittleEndian(const std::string& bytes, size_t index) {
   float value = 0;
   std::memcpy(&value, &bits, sizeof value);
   return value;
-}
-
-TEST(PageDataTest, AcceptsOneFramePerSecondAndNonAsciiNames) {
-  PageContent content = SmallContent();
-  content.pair.leader.frame_rate_hz = content.pair.follower.frame_rate_hz = 1;
-  content.title = "\u00dcbergabe";
-  EXPECT_TRUE(RenderPage(content).ok());
-  EXPECT_NE(PageDataJson(content).find("\u00dcbergabe"), std::string::npos);
 }
 
 TEST(PageDataTest, ContainsTheMotion) {
@@ -105,26 +99,6 @@ TEST(PageDataTest, InvalidUtf8InNamesIsReplaced) {
   EXPECT_EQ(Data(content)["title"], "\xEF\xBF\xBD");  // the replacement character
 }
 
-TEST(RenderPageTest, IsOneSelfContainedFile) {
-  const absl::StatusOr<std::string> page = RenderPage(SmallContent());
-  ASSERT_THAT(page, IsOk());
-  EXPECT_THAT(*page, StartsWith("<!doctype html>"));
-  EXPECT_THAT(*page, HasSubstr("<title>kick</title>"));
-  EXPECT_THAT(*page, HasSubstr("OrbitControls"));
-  EXPECT_THAT(*page, HasSubstr("default-src 'none'"));
-  for (const char* never : {"{{", "src=\"", "href=\"", "@import", "url("}) {
-    EXPECT_THAT(*page, Not(HasSubstr(never)));
-  }
-}
-
-TEST(RenderPageTest, TitlesAreEscaped) {
-  PageContent content = SmallContent();
-  content.title = "<b>&{{SCRIPT}}";
-  const absl::StatusOr<std::string> page = RenderPage(content);
-  ASSERT_THAT(page, IsOk());
-  EXPECT_THAT(*page, HasSubstr("<title>&lt;b&gt;&amp;{{SCRIPT}}</title>"));
-}
-
 TEST(RenderPageTest, InvalidContentIsRejected) {
   const auto refused = [](void (*spoil)(PageContent*)) {
     PageContent content = SmallContent();
@@ -146,6 +120,84 @@ TEST(RenderPageTest, InvalidContentIsRejected) {
               }),
               StatusIs(kInvalid, HasSubstr("expected finite positions")));
   EXPECT_THAT(refused([](PageContent* c) {
+                c->bones = {{0, 2}};
+              }),
+              StatusIs(kInvalid, HasSubstr("expected joints 0 to 1, got 2")));
+}
+
+motion::Clip SmallClip(double frame_rate_hz, int frames) {
+  motion::Clip clip;
+  clip.joint_names = {"root", "tip"};
+  clip.frame_rate_hz = frame_rate_hz;
+  for (int frame = 0; frame < frames; ++frame) {
+    clip.Append(std::vector<motion::Vec3>{{0, 1, 0}, {0, 2, 0}});
+  }
+  return clip;
+}
+
+GalleryContent SmallGallery() {
+  GalleryContent content;
+  content.motions = {{"captured", SmallClip(15, 3), SmallClip(15, 3)},
+                     {"alone", SmallClip(30, 5), std::nullopt}};
+  content.bones = {{0, 1}};
+  content.title = "<two>";
+  return content;
+}
+
+nlohmann::json GalleryData(const GalleryContent& content) {
+  const absl::StatusOr<std::string> page = RenderGallery(content);
+  EXPECT_THAT(page, IsOk());
+  if (!page.ok()) return {};
+  const std::string start = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t from = page->find(start) + start.size();
+  return nlohmann::json::parse(page->substr(from, page->find("</script>", from) - from));
+}
+
+TEST(RenderGalleryTest, IsOneSelfContainedFile) {
+  const absl::StatusOr<std::string> page = RenderGallery(SmallGallery());
+  ASSERT_THAT(page, IsOk());
+  EXPECT_THAT(*page, AllOf(StartsWith("<!doctype html>"), HasSubstr("<title>&lt;two&gt;</title>"),
+                           HasSubstr("default-src 'none'"), HasSubstr("class Gallery"),
+                           HasSubstr("three.js authors")));
+  for (const char* never : {"{{", "src=\"", "href=\"", "@import", "url("}) {
+    EXPECT_THAT(*page, Not(HasSubstr(never)));
+  }
+}
+
+TEST(RenderGalleryTest, ContainsMotions) {
+  const nlohmann::json data = GalleryData(SmallGallery());
+  EXPECT_EQ(data["title"], "<two>");
+  ASSERT_EQ(data["motions"].size(), 2u);
+  EXPECT_EQ(data["motions"][0]["name"], "captured");
+  EXPECT_EQ(data["motions"][0]["frames"], 3);
+  EXPECT_TRUE(data["motions"][0].contains("follower"));
+  EXPECT_FALSE(data["motions"][1].contains("follower"));
+  EXPECT_EQ(data["motions"][1]["frameRate"], 30);
+}
+
+TEST(RenderGalleryTest, InvalidContentIsRejected) {
+  const auto refused = [](void (*spoil)(GalleryContent*)) {
+    GalleryContent content = SmallGallery();
+    spoil(&content);
+    return RenderGallery(content).status();
+  };
+  EXPECT_THAT(refused([](GalleryContent* c) { c->motions.clear(); }),
+              StatusIs(kInvalid, HasSubstr("expected 1 to 12, got 0")));
+  EXPECT_THAT(refused([](GalleryContent* c) { c->motions.resize(13, c->motions[0]); }),
+              StatusIs(kInvalid, HasSubstr("got 13")));
+  EXPECT_THAT(refused([](GalleryContent* c) { c->motions[1].leader.poses = {}; }),
+              StatusIs(kInvalid, HasSubstr("alone: expected at least one frame")));
+  EXPECT_THAT(refused([](GalleryContent* c) { c->motions[1].leader.frame_rate_hz = 0; }),
+              StatusIs(kInvalid, HasSubstr("at 0 Hz")));
+  EXPECT_THAT(refused([](GalleryContent* c) { c->motions[1].leader.joint_names[0] = "x"; }),
+              StatusIs(kInvalid, HasSubstr("alone: expected the joints")));
+  EXPECT_THAT(refused([](GalleryContent* c) { c->motions[0].follower = SmallClip(15, 2); }),
+              StatusIs(kInvalid, HasSubstr("captured: expected equal frames")));
+  EXPECT_THAT(refused([](GalleryContent* c) {
+                c->motions[0].follower->at(1, 1).x = std::numeric_limits<float>::quiet_NaN();
+              }),
+              StatusIs(kInvalid, HasSubstr("expected finite positions")));
+  EXPECT_THAT(refused([](GalleryContent* c) {
                 c->bones = {{0, 2}};
               }),
               StatusIs(kInvalid, HasSubstr("expected joints 0 to 1, got 2")));

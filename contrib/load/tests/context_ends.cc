@@ -1,4 +1,4 @@
-#include "tests/client/support/context_ends.h"
+#include "contrib/load/tests/context_ends.h"
 
 #include <memory>
 #include <mutex>

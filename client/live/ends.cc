@@ -1,4 +1,4 @@
-#include "client/live/clip_source.h"
+#include "client/live/ends.h"
 
 #include "absl/time/clock.h"
 
