@@ -4,12 +4,12 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
-#include "client/internal/label_track.h"
 #include "client/internal/rotations.h"
 #include "client/live_session.h"
 #include "duet/v1/live.pb.h"
@@ -49,6 +49,27 @@ class FrameLog {
 
   int first_ = 0;
   motion::Poses poses_;
+};
+
+// The weights of a session over its frames: linear between keyframes, constant before the first and
+// after the last. A class without a weight has weight 0.
+class LabelTrack {
+ public:
+  // `keyframes`: by increasing frame.
+  explicit LabelTrack(std::vector<WeightKeyframe> keyframes) : keyframes_(std::move(keyframes)) {}
+
+  // Changes the weights linearly from those at `frame` to `weights` within `ease_frames` frames.
+  // All later keyframes are dropped.
+  void Change(int frame, const std::vector<ClassWeight>& weights, int ease_frames);
+
+  // The keyframes that determine the weights from `frame` on.
+  std::vector<WeightKeyframe> From(int frame) const;
+
+ private:
+  std::vector<ClassWeight> At(int frame) const;
+  void Append(int frame, std::vector<ClassWeight> weights);
+
+  std::vector<WeightKeyframe> keyframes_;
 };
 
 // What an answer of the server means for the caller.

@@ -1,5 +1,4 @@
-#include "client/internal/label_track.h"
-
+#include "client/internal/live_state.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/matchers.h"
