@@ -10,11 +10,32 @@ namespace {
 
 using test::ThreeJointLeader;
 
+// In the order of the fields' numbers.
+constexpr char kEveryField[] =
+    "model { name: \"dancer\" version: 3 } "
+    "label_keyframes { label_vector { weights { interaction_class: \"kick\" weight: 1 } } } "
+    "label_keyframes { frame: 1 label_vector { weights { interaction_class: \"hug\" weight: 1 } } "
+    "} "
+    "follower_start { root_position { x: 1 y: 2 z: 3 } } chunk_frames: 8 priority: PRIORITY_BULK "
+    "partner_direction { x: -1 y: 0.25 z: 0.5 } seed: 18446744073709551615 variety: 0.25 "
+    "clean_up: CLEAN_UP_OFF candidates: 4 reply_rotations: true up { x: 0.25 y: 1 z: -0.5 } "
+    "constraints { joint_name: \"hand\" frame: 1 position { x: 0.5 y: 1 z: -2 } softness: 0.25 } "
+    "constraints { joint_name: \"head\" position { y: 1.5 } } reaction: 1.5";
+
 SynthesisRequest GoodRequest() {
   SynthesisRequest request;
   request.leader = ThreeJointLeader(2);
   request.weights = {{"kick", 1.0f}, {"hug", -0.5f}};
   return request;
+}
+
+// The wire's message without the leader, as text.
+std::string Wire(const SynthesisRequest& request) {
+  absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
+  EXPECT_THAT(wire, IsOk());
+  if (!wire.ok()) return "";
+  wire->clear_leader();
+  return wire->ShortDebugString();
 }
 
 TEST(SynthesizeRequestTest, LeaderIsSentInMetresYUp) {
@@ -27,67 +48,23 @@ TEST(SynthesizeRequestTest, LeaderIsSentInMetresYUp) {
   EXPECT_EQ(leader.up_axis(), v1::UP_AXIS_Y_UP);
   EXPECT_EQ(leader.frame_count(), 2u);
   ASSERT_EQ(leader.positions_size(), 18);
-  EXPECT_EQ(leader.positions(15), 5.0f);   // the last joint of the last frame: x,
-  EXPECT_EQ(leader.positions(16), 2.5f);   // y,
-  EXPECT_EQ(leader.positions(17), -5.0f);  // z
+  EXPECT_EQ(leader.positions(16), 2.5f);  // y of the last joint of the last frame
 }
 
-TEST(SynthesizeRequestTest, WeightsKeepTheirOrder) {
-  const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(GoodRequest());
-  ASSERT_THAT(wire, IsOk());
-  ASSERT_EQ(wire->label_vector().weights_size(), 2);
-  EXPECT_EQ(wire->label_vector().weights(0).interaction_class(), "kick");
-  EXPECT_EQ(wire->label_vector().weights(1).weight(), -0.5f);
-  EXPECT_EQ(wire->label_keyframes_size(), 0);
-  EXPECT_FALSE(wire->has_follower_start());
-  EXPECT_FALSE(wire->has_chunk_frames());
-  EXPECT_EQ(wire->priority(), v1::PRIORITY_INTERACTIVE);
-  EXPECT_FALSE(wire->has_seed());
-  EXPECT_EQ(wire->reaction(), 1);
-  EXPECT_EQ(wire->variety(), 1);
-  EXPECT_EQ(wire->candidates(), 1u);
-  EXPECT_EQ(wire->clean_up(), v1::CLEAN_UP_UNSPECIFIED);
+TEST(SynthesizeRequestTest, AbsentFieldsAreNotSent) {
+  EXPECT_EQ(Wire(GoodRequest()),
+            "model { } label_vector { weights { interaction_class: \"kick\" weight: 1 } "
+            "weights { interaction_class: \"hug\" weight: -0.5 } } "
+            "priority: PRIORITY_INTERACTIVE variety: 1 candidates: 1 reaction: 1");
 }
 
-TEST(SynthesizeRequestTest, KeyframesReplaceTheLabelVector) {
-  SynthesisRequest request = GoodRequest();
-  request.weights.clear();
+TEST(SynthesizeRequestTest, EveryFieldIsSent) {
+  SynthesisRequest request;
+  request.leader = ThreeJointLeader(2);
   request.keyframes = {{0, {{"kick", 1}}}, {1, {{"hug", 1}}}};
-  const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
-  ASSERT_THAT(wire, IsOk());
-  EXPECT_FALSE(wire->has_label_vector());
-  ASSERT_EQ(wire->label_keyframes_size(), 2);
-  EXPECT_EQ(wire->label_keyframes(1).frame(), 1u);
-  EXPECT_EQ(wire->label_keyframes(1).label_vector().weights(0).interaction_class(), "hug");
-}
-
-TEST(SynthesizeRequestTest, ConstraintsAreCarriedInOrder) {
-  SynthesisRequest request = GoodRequest();
-  EXPECT_EQ(ToProto(request)->constraints_size(), 0);
-  request.constraints = {{"hand", 1, {0.5f, 1, -2}, 0.25f}, {"head", 0, {0, 1.5f, 0}}};
-  const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
-  ASSERT_THAT(wire, IsOk());
-  ASSERT_EQ(wire->constraints_size(), 2);
-  EXPECT_EQ(wire->constraints(0).joint_name(), "hand");
-  EXPECT_EQ(wire->constraints(0).frame(), 1u);
-  EXPECT_EQ(wire->constraints(0).position().x(), 0.5f);
-  EXPECT_EQ(wire->constraints(0).position().y(), 1);
-  EXPECT_EQ(wire->constraints(0).position().z(), -2);
-  EXPECT_EQ(wire->constraints(0).softness(), 0.25f);
-  EXPECT_EQ(wire->constraints(1).joint_name(), "head");
-  EXPECT_EQ(wire->constraints(1).softness(), 0);
-  request.constraints[1].frame = -1;
-  EXPECT_THAT(ToProto(request).status(),
-              StatusIs(absl::StatusCode::kInvalidArgument,
-                       HasSubstr("constraints[1].frame: expected 0 or more, got -1")));
-}
-
-TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
-  SynthesisRequest request = GoodRequest();
   request.follower_start = motion::Vec3{1, 2, 3};
   request.partner_direction = motion::Vec3{-1, 0.25f, 0.5f};
-  EXPECT_FALSE(ToProto(request)->has_up());
-  request.up = motion::Vec3{0.1f, 1, -0.2f};
+  request.up = motion::Vec3{0.25f, 1, -0.5f};
   request.seed = 18446744073709551615u;
   request.variety = 0.25f;
   request.reaction = 1.5f;
@@ -97,31 +74,13 @@ TEST(SynthesizeRequestTest, OptionalFieldsAreCarried) {
   request.chunk_frames = 8;
   request.priority = Priority::kBulk;
   request.model = {"dancer", 3, ""};
-  absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
-  ASSERT_THAT(wire, IsOk());
-  EXPECT_EQ(wire->follower_start().root_position().z(), 3);
-  EXPECT_EQ(wire->partner_direction().x(), -1);
-  EXPECT_EQ(wire->partner_direction().y(), 0.25f);
-  EXPECT_EQ(wire->partner_direction().z(), 0.5f);
-  EXPECT_EQ(wire->up().x(), 0.1f);
-  EXPECT_EQ(wire->up().y(), 1);
-  EXPECT_EQ(wire->up().z(), -0.2f);
-  EXPECT_EQ(wire->seed(), 18446744073709551615u);
-  EXPECT_EQ(wire->variety(), 0.25f);
-  EXPECT_EQ(wire->reaction(), 1.5f);
-  EXPECT_EQ(wire->candidates(), 4u);
-  EXPECT_EQ(wire->clean_up(), v1::CLEAN_UP_OFF);
-  EXPECT_TRUE(wire->reply_rotations());
-  EXPECT_EQ(wire->chunk_frames(), 8u);
-  EXPECT_EQ(wire->priority(), v1::PRIORITY_BULK);
-  EXPECT_EQ(wire->model().name(), "dancer");
-  EXPECT_EQ(wire->model().version(), 3u);
-
+  request.constraints = {{"hand", 1, {0.5f, 1, -2}, 0.25f}, {"head", 0, {0, 1.5f, 0}}};
+  EXPECT_EQ(Wire(request), kEveryField);
   request.clean_up = true;
   EXPECT_EQ(ToProto(request)->clean_up(), v1::CLEAN_UP_ON);
   request.follower_start = std::vector<motion::Vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
   request.model = {"dancer", std::nullopt, "canary"};
-  wire = ToProto(request);
+  const absl::StatusOr<v1::SynthesizeRequest> wire = ToProto(request);
   ASSERT_THAT(wire, IsOk());
   EXPECT_THAT(wire->follower_start().pose().positions(), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9));
   EXPECT_EQ(wire->model().version_label(), "canary");
@@ -150,6 +109,10 @@ TEST(SynthesizeRequestTest, ValuesThatTheProtoCannotHoldAreRejected) {
       StatusIs(kInvalid, HasSubstr("label_keyframes[0].frame: expected 0 or more, got -1")));
   EXPECT_THAT(refused([](SynthesisRequest* r) { r->chunk_frames = -8; }),
               StatusIs(kInvalid, HasSubstr("chunk_frames: expected 1 or more, got -8")));
+  EXPECT_THAT(refused([](SynthesisRequest* r) {
+                r->constraints = {{"head", -1, {}}};
+              }),
+              StatusIs(kInvalid, HasSubstr("constraints[0].frame: expected 0 or more, got -1")));
   EXPECT_THAT(refused([](SynthesisRequest* r) { r->candidates = 0; }),
               StatusIs(kInvalid, HasSubstr("candidates: expected 1 or more, got 0")));
   EXPECT_THAT(refused([](SynthesisRequest* r) { r->model.version = 0; }),

@@ -141,42 +141,31 @@ TEST_F(ReplyWithRotationsTest, AssemblesThem) {
   EXPECT_EQ(result.rotations->rotations.size(), 10u);
 }
 
-TEST_F(ReplyWithRotationsTest, RejectsWhatIsNoRig) {
-  const auto header = [](const std::function<void(v1::SynthesisHeader*)>& spoil) {
-    return [spoil](Reply* reply) { spoil(reply->front().mutable_header()); };
-  };
-  EXPECT_THAT(FeedWithRotations(header([](auto* h) { h->clear_rig(); })),
-              StatusIs(absl::StatusCode::kInternal, HasSubstr("header.rig: expected joints")));
-  EXPECT_THAT(
-      FeedWithRotations(header([](auto* h) { h->mutable_rig(0)->set_parent(0); })),
-      StatusIs(absl::StatusCode::kInternal, HasSubstr("rig[0].parent: expected -1, got 0")));
-  EXPECT_THAT(FeedWithRotations(header([](auto* h) { h->mutable_rig(1)->set_parent(1); })),
-              StatusIs(absl::StatusCode::kInternal, HasSubstr("rig[1].parent: expected 0 to 0")));
-  EXPECT_THAT(FeedWithRotations(header([](auto* h) { h->mutable_rig(1)->set_joint(3); })),
-              StatusIs(absl::StatusCode::kInternal, HasSubstr("joint: expected 0 to 2, got 3")));
-  EXPECT_THAT(FeedWithRotations(header([](auto* h) { h->mutable_rig(1)->set_name("root"); })),
-              StatusIs(absl::StatusCode::kInternal, HasSubstr("got \"root\" again")));
-  EXPECT_THAT(
-      FeedWithRotations(header([](auto* h) {
-        h->mutable_rig(1)->mutable_offset()->set_x(std::numeric_limits<float>::infinity());
-      })),
-      StatusIs(absl::StatusCode::kInternal, HasSubstr("rig[1].offset: expected finite values")));
-}
-
-TEST_F(ReplyWithRotationsTest, RejectsWhatAreNoRotations) {
-  const auto chunk = [](const std::function<void(v1::MotionChunk*)>& spoil) {
-    return [spoil](Reply* reply) { spoil((*reply)[2].mutable_chunk()); };
-  };
-  EXPECT_THAT(FeedWithRotations(chunk([](auto* c) { c->add_rotations(0); })),
-              StatusIs(absl::StatusCode::kInternal,
-                       HasSubstr("chunk.rotations: expected 16 values for 2 frames, got 17, in the "
-                                 "chunk of frame 2")));
-  EXPECT_THAT(FeedWithRotations(chunk([](auto* c) { c->set_rotations(4, 0.5F); })),
-              StatusIs(absl::StatusCode::kInternal,
-                       HasSubstr("rotations[4..7]: expected a unit quaternion, got norm 0.5")));
-  EXPECT_THAT(FeedWithRotations(chunk(
-                  [](auto* c) { c->set_rotations(5, std::numeric_limits<float>::quiet_NaN()); })),
-              StatusIs(absl::StatusCode::kInternal, HasSubstr("rotations[4..7]")));
+TEST_F(ReplyWithRotationsTest, WhatIsNoRigOrNoRotationIsRejected) {
+  const auto header = [](Reply* r) { return r->front().mutable_header(); };
+  const auto chunk = [](Reply* r) { return (*r)[2].mutable_chunk(); };
+  const std::vector<std::pair<std::string, std::function<void(Reply*)>>> breaches = {
+      {"header.rig: expected joints", [&](Reply* r) { header(r)->clear_rig(); }},
+      {"rig[0].parent: expected -1, got 0",
+       [&](Reply* r) { header(r)->mutable_rig(0)->set_parent(0); }},
+      {"rig[1].parent: expected 0 to 0",
+       [&](Reply* r) { header(r)->mutable_rig(1)->set_parent(1); }},
+      {"joint: expected 0 to 2, got 3", [&](Reply* r) { header(r)->mutable_rig(1)->set_joint(3); }},
+      {"got \"root\" again", [&](Reply* r) { header(r)->mutable_rig(1)->set_name("root"); }},
+      {"rig[1].offset: expected finite values",
+       [&](Reply* r) {
+         header(r)->mutable_rig(1)->mutable_offset()->set_x(std::numeric_limits<float>::infinity());
+       }},
+      {"chunk.rotations: expected 16 values for 2 frames, got 17, in the chunk of frame 2",
+       [&](Reply* r) { chunk(r)->add_rotations(0); }},
+      {"rotations[4..7]: expected a unit quaternion, got norm 0.5",
+       [&](Reply* r) { chunk(r)->set_rotations(4, 0.5F); }},
+      {"rotations[4..7]",
+       [&](Reply* r) { chunk(r)->set_rotations(5, std::numeric_limits<float>::quiet_NaN()); }}};
+  for (const auto& [message, spoil] : breaches) {
+    EXPECT_THAT(FeedWithRotations(spoil),
+                StatusIs(absl::StatusCode::kInternal, HasSubstr(message)));
+  }
 }
 
 TEST_F(ReplyAssemblerTest, RejectsRotationsThatNobodyAskedFor) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/client/support/fake_stub.h"
@@ -81,38 +82,31 @@ TEST_F(RetryTest, UnreachableServerIsDescribedInWordsAlsoAfterTheLastAttempt) {
 }
 
 TEST(DescribeUnreachableTest, NamesTheCauseWithoutSocketsAndSystemCalls) {
-  const auto told = [](const std::string& last) {
-    return DescribeUnreachable("a:1", "failed to connect to all addresses; last error: " + last);
-  };
-  EXPECT_EQ(told("UNKNOWN: ipv4:10.0.0.1:1: Failed to connect to remote host: Connection refused"),
-            "the server at a:1 is not running: it refused the connection");
-  EXPECT_EQ(told("UNKNOWN: unix:/run/duet.sock: No such file or directory"),
-            "the server at a:1 is not running: its socket does not exist");
-  EXPECT_EQ(DescribeUnreachable("a:1",
-                                "DNS resolution failed for a:1: C-ares status is not "
-                                "ARES_SUCCESS qtype=AAAA name=a: Domain name not found"),
-            "the server at a:1 cannot be found: the name has no address");
-  EXPECT_EQ(told("INTERNAL: ipv4:10.0.0.1:1: Trying to connect an http1.x server"),
-            "the server at a:1 is not a Duet server: it does not speak gRPC");
-  EXPECT_EQ(told("UNKNOWN: ipv4:10.0.0.1:1: Ssl handshake failed: SSL_ERROR_SSL: "
-                 "error:0A00010B:SSL routines::wrong version number"),
-            "the server at a:1 does not encrypt, but this client does");
-  EXPECT_EQ(told("UNKNOWN: ipv4:10.0.0.1:1: Ssl handshake failed: SSL_ERROR_SSL: "
-                 "error:0A000086:SSL routines::certificate verify failed"),
-            "the server at a:1 is not trusted: its certificate was not accepted");
-  EXPECT_EQ(told("UNKNOWN: ipv4:10.0.0.1:1: connection attempt timed out before receiving "
-                 "SETTINGS frame"),
-            "the server at a:1 does not answer: the connection timed out");
+  const std::string all = "failed to connect to all addresses; last error: UNKNOWN: ";
   // As reported by the policy that distributes calls over several servers.
-  const std::string several = "connections to all backends failing; last error: ";
-  EXPECT_EQ(
-      DescribeUnreachable("a:1", several + "UNAVAILABLE: ipv4:10.0.0.1:1: Failed parsing HTTP/2"),
-      "the server at a:1 is not a Duet server: it does not speak gRPC");
-  EXPECT_EQ(DescribeUnreachable("a:1", several + "UNAVAILABLE: ipv4:10.0.0.1:1: Socket closed"),
-            "the server at a:1 closed the connection: it has stopped, or it expects TLS");
-  EXPECT_EQ(told("UNAVAILABLE: backend unhealthy"),
-            "the server at a:1 is not ready: it loads its models, or it shuts down");
-  EXPECT_EQ(DescribeUnreachable("a:1", "odd"), "the server at a:1 cannot be reached: odd");
+  const std::string several = "connections to all backends failing; last error: UNAVAILABLE: ";
+  const std::string tls = all + "ipv4:10.0.0.1:1: Ssl handshake failed: SSL_ERROR_SSL: ";
+  const std::pair<std::string, const char*> causes[] = {
+      {all + "ipv4:10.0.0.1:1: Failed to connect to remote host: Connection refused",
+       "is not running: it refused the connection"},
+      {all + "unix:/run/duet.sock: No such file or directory",
+       "is not running: its socket does not exist"},
+      {"DNS resolution failed for a:1: C-ares status is not ARES_SUCCESS: Domain name not found",
+       "cannot be found: the name has no address"},
+      {all + "Trying to connect an http1.x server", "is not a Duet server: it does not speak gRPC"},
+      {tls + "error:0A00010B:SSL routines::wrong version number",
+       "does not encrypt, but this client does"},
+      {tls + "error:0A000086:SSL routines::certificate verify failed",
+       "is not trusted: its certificate was not accepted"},
+      {all + "connection attempt timed out before receiving SETTINGS frame",
+       "does not answer: the connection timed out"},
+      {several + "Failed parsing HTTP/2", "is not a Duet server: it does not speak gRPC"},
+      {several + "Socket closed", "closed the connection: it has stopped, or it expects TLS"},
+      {several + "backend unhealthy", "is not ready: it loads its models, or it shuts down"},
+      {"odd", "cannot be reached: odd"}};
+  for (const auto& [message, cause] : causes) {
+    EXPECT_EQ(DescribeUnreachable("a:1", message), absl::StrCat("the server at a:1 ", cause));
+  }
 }
 
 TEST_F(RetryTest, AnyReplyRestartsTheWait) {

@@ -177,14 +177,6 @@ class ClientServerTest(tools.ServedTest):
         mine = {path.name for path in self.folder.glob(out["json"].stem + ".*")}
         self.assertEqual(len(mine), 6, mine)
 
-    def test_weights_can_change_over_time(self):
-        out = self.out("json")
-        result = tools.duet("synthesize", "--server", self.server.address, "--leader",
-                            tools.sample("hug"), "--keyframe", "0:push=1", "--keyframe",
-                            "60:push=0,hug=1", "--out", out)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("at frame 0 push 1; at frame 60 push 0, hug 1", result.stdout)
-
     def test_follower_starts_at_follower_start(self):
         plain, told = self.out("plain.json"), self.out("told.json")
         self.good(tools.sample("kick"), "kick=1", out=plain)

@@ -28,9 +28,9 @@ BONES = ((2, 1), (1, 0), (1, 3), (3, 4), (4, 5), (1, 6), (6, 7), (7, 8), (2, 9),
          (2, 12), (12, 13), (13, 14))
 
 
-def person(side, stride=0):
-    """Sways at one side of the origin; side is 1 or -1. Walks along x, `stride` metres a frame."""
-    return [[[side * x + stride * frame, y, side * (z - 0.6) + 0.1 * math.sin(frame / 9)] for x, y, z in PLACES]
+def person(side):
+    """Sways at one side of the origin; side is 1 or -1."""
+    return [[[side * x, y, side * (z - 0.6) + 0.1 * math.sin(frame / 9)] for x, y, z in PLACES]
             for frame in range(FRAMES)]
 
 
@@ -73,8 +73,6 @@ class ElementTest(tools.FolderTest):
         (cls.folder / "pair.json").write_text(json.dumps(MOTION), encoding="utf-8")
         alone = {name: value for name, value in MOTION.items() if name != "follower"}
         (cls.folder / "alone.json").write_text(json.dumps(alone), encoding="utf-8")
-        walk = {**MOTION, "leader": person(1, 0.1), "follower": person(-1, 0.1)}
-        (cls.folder / "walk.json").write_text(json.dumps(walk), encoding="utf-8")
         (cls.folder / "sunk.json").write_text(json.dumps({**MOTION, "up_axis": "z-up"}))
         (cls.folder / "broken.json").write_text("{", encoding="utf-8")
         handler = functools.partial(Handler, directory=str(cls.folder))
@@ -166,13 +164,6 @@ class ElementTest(tools.FolderTest):
         self.assertTrue(page.evaluate("elements[0].stage.renderer === window.first"))
         self.sees(page)
 
-    def test_new_motion_is_drawn_after_the_context_is_lost(self):
-        page = self.open('<duet-motion src="pair.json" paused></duet-motion>')
-        page.evaluate("elements[0].stage.renderer.forceContextLoss()")
-        page.evaluate("elements[0].motion = elements[0].motion")
-        page.next_frame()
-        self.sees(page)
-
     def test_attributes_set_frame_speed_and_view(self):
         page = self.open('<duet-motion src="pair.json" paused frame="12" view="top" speed="2" once>'
                          '</duet-motion>')
@@ -186,21 +177,6 @@ class ElementTest(tools.FolderTest):
         page.next_frame()
         self.assertEqual([kind for _, kind, _ in self.told(page, "play", "pause")],
                          ["play", "pause"])
-
-    def test_camera_tracks_walking_people_where_asked(self):
-        page = self.open('<duet-motion src="walk.json" paused view="side"></duet-motion>')
-        start, end = (f"elements[0].project({0.1 * frame}, 1, 0)[0] / elements[0].clientWidth"
-                      for frame in (0, FRAMES - 1))
-        self.assertLess(abs(page.evaluate(start) - 0.5), 0.5)
-        self.assertGreater(abs(page.evaluate(end) - page.evaluate(start)), 0.3)
-        page.evaluate("elements[0].setAttribute('track', '')")
-        page.next_frame()
-        for frame, place in ((0, start), (FRAMES - 1, end)):
-            page.evaluate(f"elements[0].seek({frame}), elements[0].draw()")
-            # The path is an average, so that it lags where people start and stop.
-            self.assertAlmostEqual(page.evaluate(place), 0.5, delta=0.2)
-        page.evaluate("elements[0].removeAttribute('track')")
-        self.assertGreater(abs(page.evaluate(end) - page.evaluate(start)), 0.3)
 
     def test_keys_control_only_the_focused_element(self):
         page = self.open('<duet-motion src="pair.json" paused></duet-motion>' * 2)
@@ -229,22 +205,6 @@ class ElementTest(tools.FolderTest):
         self.assertTrue(page.evaluate("elements[0].playing"))
         self.assertEqual(page.evaluate("elements[0].shadowRoot.querySelector('output').textContent")
                          [-8:], "/ 1.97 s")
-
-    def test_the_wheel_scrolls_the_page_until_it_has_the_focus(self):
-        page = self.open('<duet-motion src="pair.json" paused></duet-motion><pre>' + "\n" * 200
-                         + "</pre>")
-        away = "elements[0].stage.camera.position.distanceTo(elements[0].stage.controls.target)"
-
-        def wheel():
-            page.call("Input.dispatchMouseEvent", type="mouseWheel", x=300, y=100, deltaX=0,
-                      deltaY=40)
-        before = page.evaluate(away)
-        wheel()
-        page.wait_until("window.scrollY > 0")
-        self.assertEqual(page.evaluate(away), before)
-        page.evaluate("window.scrollTo(0, 0); elements[0].focus()")
-        wheel()
-        page.wait_until(f"{away} > {before} + 0.01")
 
     def test_does_not_draw_while_invisible(self):
         page = self.open('<duet-motion src="pair.json"></duet-motion><pre>' + "\n" * 200 + "</pre>")

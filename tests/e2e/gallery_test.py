@@ -82,42 +82,6 @@ class GalleryTest(tools.FolderTest):
         self.assertEqual(picture.count(tools.is_leader_orange, **everywhere), 0)
         self.assertGreater(picture.count(tools.is_follower_teal, **everywhere), 300)
 
-    def test_controls_on_a_phone_are_large_enough(self):
-        for file in (self.file, self.compared):
-            page = self.open("#paused", file, width=390, height=844)
-            sizes = page.evaluate("""Object.fromEntries(
-              [...document.querySelectorAll('button')].map((button) => {
-                const box = button.getBoundingClientRect();
-                return [button.id || button.textContent.trim(), [box.width, box.height, box.right]];
-              }))""")
-            self.assertIn("loop", sizes)
-            for name, (width, height, right) in sizes.items():
-                if width == 0 and name in ("", "¼×", "Leader", "Follower"):
-                    continue  # not on a phone, or not in a comparison of single people
-                self.assertGreaterEqual(min(width, height), 44, name)
-                self.assertLessEqual(right, 390, name)
-
-    def test_soles_touch_the_floor_for_any_ankle_height(self):
-        page = self.open("#paused")
-        for ankle in (0.02, 0.06, 0.12):
-            lowest = page.evaluate(f"""(() => {{
-              const data = JSON.parse(document.getElementById("data").textContent);
-              const motion = new Motion({{...data.motions[0], joints: data.joints, bones: data.bones}});
-              const feet = ['left_foot', 'right_foot'].map((name) => motion.find(name));
-              const raise = {ankle} - motion.lowOf('leader', feet);
-              const positions = motion.people.leader;
-              for (let i = 1; i < positions.length; i += 3) positions[i] += raise;
-              const figure = new Figure(motion, 'leader', 0);
-              let low = Infinity;
-              for (let frame = 0; frame < motion.frames; ++frame) {{
-                figure.update(frame);
-                figure.group.updateMatrixWorld(true);
-                low = Math.min(low, new THREE.Box3().setFromObject(figure.group).min.y);
-              }}
-              return low;
-            }})()""")
-            self.assertAlmostEqual(lowest, 0, delta=0.025, msg=f"ankles at {ankle} m")
-
 
 if __name__ == "__main__":
     browser.find_chromium()

@@ -1,7 +1,6 @@
 """The Python package and its examples against a real server."""
 
 import asyncio
-import concurrent.futures
 import dataclasses
 import importlib.util
 import os
@@ -64,16 +63,6 @@ class PythonClientTest(tools.ServedTest):
         np.testing.assert_array_equal(answers[0], answers[1])
         self.assertGreater(np.abs(answers[0] - answers[2]).max(), 0.01)
 
-    def test_grade_is_returned_at_any_frame_rate(self):
-        for rate in (30, 240):
-            grade = self.client.synthesize(self.hug.resampled(rate), {"hug": 1}, seed=3).grade
-            for share in (grade.twisted, grade.skating, grade.leader_skating, grade.overlapping):
-                self.assertTrue(0 <= share <= 1, grade)
-            bad = sum(run.frame_count for run in grade.bad_runs)
-            frames = self.hug.resampled(rate).frame_count
-            self.assertTrue(max(grade.twisted, grade.overlapping) * frames - 1e-3 <= bad
-                            <= (grade.twisted + grade.overlapping) * frames + 1e-3, grade)
-
     def test_a_tilted_leader_gets_the_level_answer_tilted(self):
         angle = np.radians(12)
         rotation = np.array([[1, 0, 0], [0, np.cos(angle), np.sin(angle)],
@@ -95,15 +84,6 @@ class PythonClientTest(tools.ServedTest):
             _, follower = duet.read_pair(out)
         result = self.client.synthesize(self.hug, {"hug": 1}, seed=3)
         np.testing.assert_array_equal(result.follower.positions, follower.positions)
-
-    def test_follower_has_the_leaders_unit_and_world(self):
-        # Clean-up decides when a foot steps, and where two moments are equally good, rounding decides.
-        metres = self.client.synthesize(self.hug, {"hug": 1}, clean_up=False)
-        other = self.client.synthesize(self.hug.converted("millimetres", "z-up"), {"hug": 1},
-                                       clean_up=False)
-        self.assertEqual((other.follower.unit, other.follower.up_axis), ("millimetres", "z-up"))
-        np.testing.assert_allclose(other.follower.converted().positions,
-                                   metres.follower.positions, atol=1e-3)
 
     def test_rotations_are_in_the_leaders_unit_and_axes(self):
         def turned(q, v):
@@ -132,14 +112,6 @@ class PythonClientTest(tools.ServedTest):
         unequal = dataclasses.replace(self.hug, unit="sbu-normalised", up_axis="y-down")
         with self.assertRaisesRegex(duet.InvalidRequestError, "reply_rotations: expected LENGTH_"):
             self.client.synthesize(unequal, {"hug": 1}, rotations=True)
-
-    def test_stream_yields_chunks(self):
-        with self.client.stream(self.hug, {"hug": 1}, chunk_frames=10) as stream:
-            firsts = [chunk.first_frame for chunk in stream]
-            result = stream.result()
-        self.assertEqual(firsts[0], 0)
-        self.assertGreaterEqual(len(firsts), 10)
-        self.assertLessEqual(result.timings.first_chunk, result.timings.total)
 
     def test_error_lists_every_violation(self):
         with self.assertRaises(duet.InvalidRequestError) as caught:
@@ -216,28 +188,6 @@ class PythonClientTest(tools.ServedTest):
             refused = tools.run(*command, env=environment)
             self.assertEqual(refused.returncode, 2)
             self.assertIn("split: expected train", refused.stderr)
-
-    def test_calls_of_several_threads_give_the_same_answers(self):
-        requests = [duet.SynthesisRequest(self.hug, {name: 1}, priority="bulk")
-                    for name in tools.CLASSES]
-        with concurrent.futures.ThreadPoolExecutor(3) as pool:
-            results = list(pool.map(self.client.synthesize_request, requests))
-        alone = self.client.synthesize(self.hug, {"hug": 1})
-        together = results[tools.CLASSES.index("hug")]
-        np.testing.assert_array_equal(together.follower.positions, alone.follower.positions)
-
-    def test_asyncio_client_gives_the_same_answers(self):
-        async def ask():
-            async with duet.aio.Client(self.server.address) as client:
-                models = await client.list_models()
-                return models, await asyncio.gather(
-                    client.synthesize(self.hug, {"hug": 1}, seed=3),
-                    client.synthesize(self.hug, {"kick": 1}))
-        models, (hug, kick) = asyncio.run(ask())
-        self.assertEqual(models, self.client.list_models())
-        waited = self.client.synthesize(self.hug, {"hug": 1}, seed=3)
-        np.testing.assert_array_equal(hug.follower.positions, waited.follower.positions)
-        self.assertGreater(np.abs(kick.follower.positions - hug.follower.positions).max(), 0.05)
 
     def test_call_survives_a_server_restart(self):
         server = tools.Server()

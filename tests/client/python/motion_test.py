@@ -3,7 +3,6 @@
 import unittest
 
 import support
-import duet_motion as duet
 import numpy as np
 
 

@@ -152,31 +152,10 @@ class ReplyTest(unittest.TestCase):
                 with self.assertRaisesRegex(duet.MalformedReplyError, message):
                     self.accept(*responses)
 
-    def test_retried_stream_returns_each_frame_once(self):
-        self.accept(*support.good_reply(self.leader, size=4)[:2])
-        self.reply.start_stream()
-        chunks = self.accept(*support.good_reply(self.leader, size=3))
-        self.assertEqual([c and (c.first_frame, len(c.positions)) for c in chunks],
-                         [None, None, (4, 2), None])
-        np.testing.assert_array_equal(chunks[2].positions, support.follower_of(self.leader)[4:])
-
-    def test_early_end_is_unavailable(self):
-        self.accept(support.header(self.leader), support.chunk(self.leader, 0, 2))
-        ended = self.reply.end_stream(None)
-        self.assertIsInstance(ended, duet.UnavailableError)
-        self.assertIn("without a summary, after 2 of 6 frames", ended.message)
-        reset = self.reply.end_stream(make_error(grpc.StatusCode.INTERNAL, "RST_STREAM"))
-        self.assertIsInstance(reset, duet.UnavailableError)
-        self.assertIn("RST_STREAM", reset.message)
-
     def test_error_with_a_reason_is_kept(self):
         self.accept(support.header(self.leader))
         failed = make_error(grpc.StatusCode.INTERNAL, "failed", reason="MODEL_FAILED")
         self.assertIs(self.reply.end_stream(failed), failed)
-
-    def test_complete_reply_ignores_a_later_reset(self):
-        self.accept(*support.good_reply(self.leader))
-        self.assertIsNone(self.reply.end_stream(make_error(grpc.StatusCode.UNAVAILABLE, "reset")))
 
 
 if __name__ == "__main__":

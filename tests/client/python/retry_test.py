@@ -71,16 +71,6 @@ class AttemptsTest(unittest.TestCase):
                                      address="lab:50051")
         self.attempts = Attempts(self.settings)
 
-    def test_last_error_has_the_number_of_attempts(self):
-        for wait in (0.1, 0.2, 0.4):
-            self.attempts.begin()
-            self.assertAlmostEqual(self.attempts.wait_after(make_error(UNAVAILABLE, "away")), wait)
-        self.attempts.begin()
-        with self.assertRaisesRegex(duet.UnavailableError, r"away \(after 4 attempts\)"):
-            self.attempts.wait_after(make_error(UNAVAILABLE, "away"))
-        away = "the server at lab:50051 cannot be reached: away"
-        self.assertEqual(self.waits, [(away, 0.1), (away, 0.2), (away, 0.4)])
-
     def fail(self, error, **settings):
         """Makes attempts that fail with the error until there is no further one."""
         self.attempts = Attempts(dataclasses.replace(
