@@ -29,33 +29,31 @@ float UnitsOf(float squares, float largest) {
 
 }  // namespace
 
-float RoundToInt16(const float* from, std::ptrdiff_t stride, int count, int16_t* to) {
+float RoundToInt16(const float* from, int count, int16_t* to) {
   float squares = 0, largest = 0;
   for (int k = 0; k < count; ++k) {
-    const float value = from[k * stride];
-    squares += value * value;
-    largest = std::max(largest, std::abs(value));
+    squares += from[k] * from[k];
+    largest = std::max(largest, std::abs(from[k]));
   }
   const float units = UnitsOf(squares, largest);
   for (int k = 0; k < count; ++k) {
-    const float value = std::nearbyint(from[k * stride] * units);
+    const float value = std::nearbyint(from[k] * units);
     // Values that are not finite have no integer; the unit is not finite then.
     to[k] = std::abs(value) <= kMost ? static_cast<int16_t>(value) : int16_t{0};
   }
   return 1 / units;
 }
 
-Int16Matrix RoundPanels(const std::vector<float>& panels, int outputs, int inputs) {
+Int16Matrix PackInt16(const float* weights, int outputs, int inputs) {
   const int pairs = Pairs(inputs), count = PanelCount(outputs);
   Int16Matrix matrix;
   matrix.panels.resize(static_cast<std::size_t>(std::ptrdiff_t{count} * pairs * kPanel * 2));
+  matrix.units.resize(static_cast<std::size_t>(count * kPanel));
   std::vector<int16_t> rounded(static_cast<std::size_t>(inputs));
-  for (int n = 0; n < count * kPanel; ++n) {
-    const float* const row =
-        panels.data() + std::ptrdiff_t{n / kPanel} * inputs * kPanel + n % kPanel;
-    matrix.units.push_back(RoundToInt16(row, kPanel, inputs, rounded.data()));
-    int16_t* const to = matrix.panels.data() + std::ptrdiff_t{n / kPanel} * pairs * kPanel * 2 +
-                        std::ptrdiff_t{n % kPanel} * 2;
+  for (std::ptrdiff_t n = 0; n < outputs; ++n) {
+    matrix.units[static_cast<std::size_t>(n)] =
+        RoundToInt16(weights + n * inputs, inputs, rounded.data());
+    int16_t* const to = matrix.panels.data() + (n / kPanel * pairs * kPanel + n % kPanel) * 2;
     for (int k = 0; k < inputs; ++k) {
       to[std::ptrdiff_t{k / 2} * kPanel * 2 + k % 2] = rounded[static_cast<std::size_t>(k)];
     }
@@ -72,7 +70,7 @@ void GemmInt16Portable(const Rows& x, const Int16Matrix& matrix, const float* bi
     for (int n = 0; n < y.width; ++n) out[n] = bias == nullptr ? 0 : bias[n];
     for (int first = 0; first < x.width; first += 2 * kPairsAtOnce) {
       const int count = std::min(2 * kPairsAtOnce, x.width - first);
-      const float unit = RoundToInt16(x.values + r * x.stride + first, 1, count, rounded.data());
+      const float unit = RoundToInt16(x.values + r * x.stride + first, count, rounded.data());
       for (int n = 0; n < y.width; ++n) {
         const int16_t* const panel =
             matrix.panels.data() +

@@ -31,11 +31,11 @@ struct Int16Matrix {
   std::vector<float> units;     // of each output's row; padded to whole panels
 };
 
-// Rounds `count` values, `stride` apart, to multiples of the returned unit.
-float RoundToInt16(const float* from, std::ptrdiff_t stride, int count, int16_t* to);
+// Rounds `count` values to multiples of the returned unit.
+float RoundToInt16(const float* from, int count, int16_t* to);
 
-// From panels of float32 in the layout of PackPanels.
-Int16Matrix RoundPanels(const std::vector<float>& panels, int outputs, int inputs);
+// Rounds and packs a matrix [outputs, inputs], row-major.
+Int16Matrix PackInt16(const float* weights, int outputs, int inputs);
 
 // y = x W^T + bias. A null bias means none; it is padded to whole panels.
 //

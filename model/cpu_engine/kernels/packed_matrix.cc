@@ -50,15 +50,15 @@ void PackPanels(const float* from, std::ptrdiff_t output_stride, std::ptrdiff_t 
 PackedMatrix::PackedMatrix(const std::vector<float>& weights, const std::vector<float>& bias,
                            int outputs, int inputs, Precision precision)
     : outputs_(outputs), inputs_(inputs), precision_(precision), bias_(bias) {
+  if (!bias_.empty()) bias_.resize(Size(std::ptrdiff_t{PanelCount(outputs)} * kPanel));
+  if (precision == Precision::kInt16) {
+    integers_ = PackInt16(weights.data(), outputs, inputs);
+    return;
+  }
   panels_.resize(Size(std::ptrdiff_t{PanelCount(outputs)} * inputs * kPanel));
   PackPanels(weights.data(), inputs, 1, outputs, inputs, panels_.data());
-  if (!bias_.empty()) bias_.resize(Size(std::ptrdiff_t{PanelCount(outputs)} * kPanel));
   if (precision == Precision::kFloat32) return;
-  if (precision == Precision::kBfloat16) {
-    rounded_panels_ = RoundedPanels(panels_, outputs, inputs);
-  } else {
-    integers_ = RoundPanels(panels_, outputs, inputs);
-  }
+  rounded_panels_ = RoundedPanels(panels_, outputs, inputs);
   panels_ = {};
 }
 

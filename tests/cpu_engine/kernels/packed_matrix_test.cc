@@ -154,10 +154,8 @@ TEST_P(PackedMatrixTest, IntegersKeepZerosAndPassOnWhatIsNotFinite) {
 TEST_P(PackedMatrixTest, PortableIntegersEqualTheProcessors) {
   constexpr int kRows = 14, kInputs = 601, kOutputs = 70;
   const std::vector<float> weights = Values(kInputs * kOutputs), x = Values(kRows * kInputs);
-  std::vector<float> panels(static_cast<std::size_t>(PanelCount(kOutputs) * kInputs * kPanel)),
-      bias = Values(PanelCount(kOutputs) * kPanel);
-  PackPanels(weights.data(), kInputs, 1, kOutputs, kInputs, panels.data());
-  const Int16Matrix matrix = RoundPanels(panels, kOutputs, kInputs);
+  const std::vector<float> bias = Values(PanelCount(kOutputs) * kPanel);
+  const Int16Matrix matrix = PackInt16(weights.data(), kOutputs, kInputs);
   std::vector<float> y(kRows * kOutputs), same(kRows * kOutputs);
   for (const float* begin :
        {static_cast<const float*>(bias.data()), static_cast<const float*>(nullptr)}) {
