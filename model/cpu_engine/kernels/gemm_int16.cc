@@ -18,6 +18,7 @@ constexpr float kLeastNorm = 1e-30f;
 
 // Pairs of inputs of a block of x: the rounded rows of a tile stay in the first-level cache.
 constexpr int kPairsAtOnce = 256;
+constexpr int kLanes = 16;
 
 int Pairs(int inputs) { return (inputs + 1) / 2; }
 
@@ -42,23 +43,6 @@ float RoundToInt16(const float* from, int count, int16_t* to) {
     to[k] = std::abs(value) <= kMost ? static_cast<int16_t>(value) : int16_t{0};
   }
   return 1 / units;
-}
-
-Int16Matrix PackInt16(const float* weights, int outputs, int inputs) {
-  const int pairs = Pairs(inputs), count = PanelCount(outputs);
-  Int16Matrix matrix;
-  matrix.panels.resize(static_cast<std::size_t>(std::ptrdiff_t{count} * pairs * kPanel * 2));
-  matrix.units.resize(static_cast<std::size_t>(count * kPanel));
-  std::vector<int16_t> rounded(static_cast<std::size_t>(inputs));
-  for (std::ptrdiff_t n = 0; n < outputs; ++n) {
-    matrix.units[static_cast<std::size_t>(n)] =
-        RoundToInt16(weights + n * inputs, inputs, rounded.data());
-    int16_t* const to = matrix.panels.data() + (n / kPanel * pairs * kPanel + n % kPanel) * 2;
-    for (int k = 0; k < inputs; ++k) {
-      to[std::ptrdiff_t{k / 2} * kPanel * 2 + k % 2] = rounded[static_cast<std::size_t>(k)];
-    }
-  }
-  return matrix;
 }
 
 void GemmInt16Portable(const Rows& x, const Int16Matrix& matrix, const float* bias,
@@ -92,7 +76,6 @@ void GemmInt16Portable(const Rows& x, const Int16Matrix& matrix, const float* bi
 
 namespace {
 
-constexpr int kLanes = 16;
 constexpr __mmask16 kAll = 0xffff;  // GCC 12 reports the forms without a mask as uninitialised
 // Vectors of sums that fit the registers besides the factors, and rows of two such vectors.
 constexpr int kSums = 24, kRows = kSums / 2;
@@ -269,6 +252,8 @@ void GemmInt16(const Rows& x, const Int16Matrix& matrix, const float* bias, cons
 
 #else
 
+constexpr auto RoundRow = RoundToInt16;
+
 bool HasInt16() { return false; }
 
 void GemmInt16(const Rows& x, const Int16Matrix& matrix, const float* bias, const Output& y) {
@@ -276,5 +261,22 @@ void GemmInt16(const Rows& x, const Int16Matrix& matrix, const float* bias, cons
 }
 
 #endif
+
+Int16Matrix PackInt16(const float* weights, int outputs, int inputs) {
+  const int pairs = Pairs(inputs), count = PanelCount(outputs);
+  Int16Matrix matrix;
+  matrix.panels.resize(static_cast<std::size_t>(std::ptrdiff_t{count} * pairs * kPanel * 2));
+  matrix.units.resize(static_cast<std::size_t>(count * kPanel));
+  const auto round = HasInt16() ? RoundRow : RoundToInt16;
+  std::vector<int16_t> rounded(static_cast<std::size_t>(inputs + kLanes));  // RoundRow's zeros
+  for (std::ptrdiff_t n = 0; n < outputs; ++n) {
+    matrix.units[static_cast<std::size_t>(n)] = round(weights + n * inputs, inputs, rounded.data());
+    int16_t* const to = matrix.panels.data() + (n / kPanel * pairs * kPanel + n % kPanel) * 2;
+    for (int k = 0; k < inputs; ++k) {
+      to[std::ptrdiff_t{k / 2} * kPanel * 2 + k % 2] = rounded[static_cast<std::size_t>(k)];
+    }
+  }
+  return matrix;
+}
 
 }  // namespace duet::cpu_engine::kernels
