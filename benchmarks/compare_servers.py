@@ -23,7 +23,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 SECONDS = 4
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1")
 # Generator in inference_eager.py, version of the embedded sbu.
-GENERATORS = (("Paper", 1), ("Sampling", 2))
+GENERATORS = (("Paper", 1), ("Sampling", 3))
 
 
 def wait_for(find, process):
